@@ -1,0 +1,47 @@
+// A person's fixed measures: segment lengths, masses, joint limits and the thirteen solids.
+#pragma once
+
+#include <array>
+
+#include "pirsim/body/body_part.hpp"
+#include "pirsim/schema/script_spec.hpp"
+
+namespace pirsim::body {
+
+/// Lengths in metres as fractions of stature. Ref: [DrillisContini1966].
+struct Measures {
+  double stature_m = 0.0;
+  double hip_height_m = 0.0;       ///< 0.530 H, standing
+  double knee_height_m = 0.0;      ///< 0.285 H
+  double ankle_height_m = 0.0;     ///< 0.039 H
+  double thigh_m = 0.0;            ///< hip to knee, 0.245 H
+  double shank_m = 0.0;            ///< knee to ankle, 0.246 H
+  double foot_length_m = 0.0;      ///< 0.152 H
+  double shoulder_height_m = 0.0;  ///< 0.818 H, standing
+  double shoulder_width_m = 0.0;   ///< between the shoulder joints, from 0.259 H
+  double hip_width_m = 0.0;        ///< between the hip joints, from 0.191 H
+  double upper_arm_m = 0.0;        ///< 0.186 H
+  double forearm_m = 0.0;          ///< elbow to knuckles of a loosely closed hand
+  double head_height_m = 0.0;      ///< 0.130 H
+};
+
+class Humanoid {
+ public:
+  explicit Humanoid(const PersonSpec& person);
+  [[nodiscard]] const Measures& measures() const noexcept { return measures_; }
+  [[nodiscard]] const Solids& solids() const noexcept { return solids_; }
+  /// Ref: [Plagenhoef1983]; sums to the person's mass.
+  [[nodiscard]] const std::array<double, n_parts>& masses_kg() const noexcept { return masses_kg_; }
+  /// Radius of the vertical cylinder that a walking person keeps clear of obstacles, metres.
+  [[nodiscard]] double clearance_radius_m() const noexcept { return clearance_radius_m_; }
+  [[nodiscard]] double walking_speed_m_s() const noexcept { return walking_speed_m_s_; }
+
+ private:
+  Measures measures_;
+  Solids solids_;
+  std::array<double, n_parts> masses_kg_{};
+  double clearance_radius_m_ = 0.0;
+  double walking_speed_m_s_ = 1.0;
+};
+
+}  // namespace pirsim::body

@@ -1,0 +1,47 @@
+// Where a person can walk, and the way from here to there.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pirsim/geom/floor_area.hpp"
+#include "pirsim/geom/mesh.hpp"
+#include "pirsim/schema/scene_spec.hpp"
+
+namespace pirsim::body {
+
+/// Another person to walk around.
+struct Disc {
+  Vec2 centre{0.0};
+  double radius_m = 0.0;
+};
+
+/// A grid of 0.1 m cells (paper: section 2.2) on the floor area and the strips that lead out through the
+/// entrances. A cell is walkable if its centre keeps `clearance_m` from everything solid between 0.1 m and 2.0 m
+/// above the floor. Immutable.
+class WalkableFloor {
+ public:
+  static constexpr double cell_m = 0.1;
+  WalkableFloor(const FloorArea& floor, std::span<const EntranceSpec> entrances, std::span<const TriMesh> obstacles,
+                double clearance_m);
+
+  /// Is the point itself at a walkable place?
+  [[nodiscard]] bool walkable(const Vec2& point) const noexcept;
+  /// Shortest way found by A* (8 neighbours, ties broken by cell index), then pulled tight: each leg of the result
+  /// is walkable throughout. Starts at `from` and ends at `to` exactly. A start or goal that isn't walkable itself
+  /// is led to the nearest walkable cell within 0.5 m. `others` are kept clear of. std::nullopt: no way.
+  [[nodiscard]] std::optional<std::vector<Vec2>> find_way(const Vec2& from, const Vec2& to,
+                                                          std::span<const Disc> others = {}) const;
+
+ private:
+  [[nodiscard]] std::size_t index(int column, int row) const noexcept;
+
+  Vec2 lower_{0.0};
+  int columns_ = 0;
+  int rows_ = 0;
+  std::vector<std::uint8_t> walkable_;  ///< (rows x columns) 1 where walkable
+};
+
+}  // namespace pirsim::body

@@ -1,0 +1,47 @@
+// Counter-based random streams (Philox4x32-10, Random123).
+// Ref: [Salmon2011]. A stream is a pure function of its key, so results depend neither on the order in which
+// streams are used nor on threads or shards, and switching one stream on never reshuffles another.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace pirsim {
+
+/// What a stream is used for. Append only: a value is part of every published result.
+enum class Purpose : std::uint32_t {
+  spine_tilt = 1,    ///< which tilt a sitter takes at each redraw
+  seat_scatter = 2,  ///< where exactly, and how turned, a sitter sits down in this run
+  test = 0xFFFF0000, ///< reserved for tests
+};
+
+struct StreamKey {
+  std::uint64_t seed = 0;   ///< of the whole study
+  std::uint32_t run = 0;    ///< index of the run in the study
+  std::uint32_t entity = 0; ///< index of the person or sensor that draws
+  Purpose purpose = Purpose::test;
+  bool operator==(const StreamKey&) const = default;
+};
+
+/// A value: copying it copies the position in the stream. Distributions are our own because those of <random>
+/// differ between standard libraries.
+class Stream {
+ public:
+  explicit Stream(StreamKey key) noexcept : key_(key) {}
+  [[nodiscard]] std::uint32_t next_u32() noexcept;
+  /// Uniform in [0, 1), 53 bits.
+  [[nodiscard]] double uniform() noexcept;
+  /// Uniform in {0, ..., n - 1}, without modulo bias; n >= 1.
+  [[nodiscard]] std::uint32_t index(std::uint32_t n) noexcept;
+  /// Standard normal (Box-Muller, one value per call, the pair's second discarded: no hidden state).
+  [[nodiscard]] double normal() noexcept;
+  bool operator==(const Stream&) const = default;
+
+ private:
+  StreamKey key_;
+  std::uint32_t block_ = 0;             ///< index of the next Philox block of four words
+  std::uint32_t used_ = 4;              ///< words of the current block already given out
+  std::array<std::uint32_t, 4> words_{};
+};
+
+}  // namespace pirsim

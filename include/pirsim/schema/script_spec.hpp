@@ -1,0 +1,100 @@
+// What happens in a study as plain data: people and their actions, the trials, how sensors are read.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "pirsim/core/error.hpp"
+#include "pirsim/geom/frame.hpp"
+
+namespace pirsim {
+
+enum class ChangePer { cluster, beam };       ///< whose change of activity is motion
+enum class RaysPerZone { one = 1, five = 5, nine = 9, sixteen = 16 };
+
+struct SensingSpec {
+  int tick_rate_hz = 50;
+  int ticks_per_window = 50;  ///< a row and its bits cover this many ticks
+  RaysPerZone rays_per_zone = RaysPerZone::five;
+  ChangePer change_per = ChangePer::cluster;
+};
+
+/// Which cells a summary adds up, and what they are compared with.
+struct SummarySpec {
+  std::vector<std::string> phases;  ///< rows in these phases count
+  std::string reference_file;       ///< CSV with measured sums, or empty; relative to the script
+};
+
+/// Person-to-person and chair-to-chair variation, drawn once a run and person.
+struct SeatScatterSpec {
+  double position_sd_m = 0.0;  ///< of each horizontal coordinate
+  double heading_sd_deg = 0.0;
+};
+
+// Actions, carried out one after the other. Names are resolved against the scene when a Model is compiled.
+namespace action {
+struct Wait { double duration_s = 0.0; };
+/// Appears outside the entrance and walks to just inside it.
+struct Enter { std::string entrance; };
+/// Walks through the given floor points, in order; `straight` skips way-finding between them.
+enum class Way { find, straight };
+struct Walk { std::vector<Vec2> points; Way way = Way::find; };
+/// Walks to the seat, turns and sits down.
+struct Sit { std::string seat; };
+/// Desk work while seated: both forearms slide on the table in opposite phase, the spine changes its tilt.
+struct Work {
+  double duration_s = 180.0;
+  double arm_amplitude_m = 0.1;   ///< paper: 0.1 sin(2 pi t / 3)
+  double arm_period_s = 3.0;
+  std::vector<double> tilt_choices_deg{-15.0, 0.0, 15.0};  ///< positive forward
+  double tilt_every_s = 30.0;
+};
+/// Rises from the seat and stays standing behind it.
+struct Rise {};
+/// Walks out through the entrance (rising first if seated) and disappears.
+struct Leave { std::string entrance; };
+/// Stands on the spot and turns to face a heading.
+struct Turn { double heading_deg = 0.0; };
+}  // namespace action
+
+using Action = std::variant<action::Wait, action::Enter, action::Walk, action::Sit, action::Work, action::Rise,
+                            action::Leave, action::Turn>;
+
+struct ScriptedAction {
+  Action what;
+  std::optional<double> at_s;  ///< starts then: interrupts what goes on, or waits if that is already done
+  std::string phase;           ///< label of rows while this action runs; empty: named after the action and its stage
+  Where where;                 ///< for messages
+};
+
+/// A person; lengths follow from stature by the fractions of Drillis & Contini (1966).
+struct PersonSpec {
+  std::string id;
+  double stature_m = 1.86;
+  double mass_kg = 80.0;
+  double walking_speed_m_s = 1.0;
+  SeatScatterSpec seat_scatter;
+  std::vector<ScriptedAction> actions;
+};
+
+/// One choreography; a study runs every trial once per replicate.
+struct TrialSpec {
+  std::string id;                   ///< as the output names it, "S1"
+  std::vector<PersonSpec> people;   ///< the first one's actions name the rows' phase
+};
+
+struct ScriptSpec {
+  std::string name;
+  std::uint64_t seed = 1;
+  int replicates = 1;
+  SensingSpec sensing;
+  SummarySpec summary;
+  std::vector<TrialSpec> trials;
+  std::vector<Issue> warnings;
+  std::string directory;            ///< of the script file, for relative references
+};
+
+}  // namespace pirsim

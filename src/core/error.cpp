@@ -1,0 +1,94 @@
+#include "pirsim/core/error.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+namespace pirsim {
+namespace {
+
+std::string join(const std::vector<Issue>& issues) {
+  std::string text;
+  for (const Issue& issue : issues) {
+    if (!text.empty()) text += '\n';
+    text += to_string(issue);
+  }
+  return text;
+}
+
+/// Levenshtein distance, letters compared without case.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substitution = diagonal + (lower(a[i - 1]) == lower(b[j - 1]) ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitution});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string to_string(const Issue& issue) {
+  std::string text;
+  if (!issue.where.file.empty()) {
+    text += issue.where.file + ':';
+    if (issue.where.line > 0) text += std::to_string(issue.where.line) + ':';
+    if (issue.where.line > 0 && issue.where.column > 0) text += std::to_string(issue.where.column) + ':';
+    text += ' ';
+  }
+  return text + (issue.severity == Severity::error ? "error: " : "warning: ") + issue.message;
+}
+
+Error::Error(ErrorCode code, std::vector<Issue> issues)
+    : std::runtime_error(join(issues)), code_(code), issues_(std::move(issues)) {}
+Error::Error(ErrorCode code, Where where, std::string message)
+    : Error(code, std::vector<Issue>{{Severity::error, std::move(where), std::move(message)}}) {}
+Error::Error(ErrorCode code, std::string message) : Error(code, Where{}, std::move(message)) {}
+
+void Diagnostics::error(Where where, std::string message) {
+  issues_.push_back({Severity::error, std::move(where), std::move(message)});
+}
+void Diagnostics::warning(Where where, std::string message) {
+  issues_.push_back({Severity::warning, std::move(where), std::move(message)});
+}
+void Diagnostics::throw_if_errors(ErrorCode code) const {
+  if (!has_errors()) return;
+  std::vector<Issue> errors;
+  std::copy_if(issues_.begin(), issues_.end(), std::back_inserter(errors),
+               [](const Issue& issue) { return issue.severity == Severity::error; });
+  throw Error(code, std::move(errors));
+}
+bool Diagnostics::has_errors() const noexcept {
+  return std::any_of(issues_.begin(), issues_.end(), [](const Issue& i) { return i.severity == Severity::error; });
+}
+std::vector<Issue> Diagnostics::warnings() const {
+  std::vector<Issue> result;
+  std::copy_if(issues_.begin(), issues_.end(), std::back_inserter(result),
+               [](const Issue& issue) { return issue.severity == Severity::warning; });
+  return result;
+}
+
+std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
+  std::size_t best = std::numeric_limits<std::size_t>::max();
+  const std::string* nearest = nullptr;
+  for (const std::string& candidate : candidates) {
+    if (const std::size_t distance = edit_distance(name, candidate); distance < best) {
+      best = distance;
+      nearest = &candidate;
+    }
+  }
+  const std::size_t limit = std::max<std::size_t>(1, name.size() / 3 + 1);
+  if (nearest == nullptr || best > limit) return {};
+  return " (did you mean '" + *nearest + "'?)";
+}
+
+}  // namespace pirsim
