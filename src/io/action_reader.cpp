@@ -1,7 +1,7 @@
 #include "io/action_reader.hpp"
 
+#include <algorithm>
 #include <array>
-#include <functional>
 #include <utility>
 
 #include "io/yaml_map.hpp"
@@ -92,7 +92,9 @@ ScriptedAction read_action_map(const YamlNode& node, Diagnostics& faults) {
   }
   map.finish();
   if (found > 1) faults.error(node.where(), "one action an entry: start each with its own '-'");
-  if (found == 0 && node.keys().empty()) faults.error(node.where(), "an action is missing, e.g. `sit: S1`");
+  const bool nothing_else =
+      std::ranges::all_of(node.keys(), [](const YamlKey& key) { return key.name == "at_s" || key.name == "phase"; });
+  if (found == 0 && nothing_else && node.is_map()) faults.error(node.where(), "an action is missing, e.g. `sit: S1`");
   return action;
 }
 

@@ -92,9 +92,27 @@ std::vector<Variables> combinations(const std::optional<YamlNode>& for_each, Dia
   return result;
 }
 
+/// Trials written out one by one, each with people of its own.
+std::vector<TrialSpec> read_listed_trials(const YamlNode& list, Diagnostics& faults) {
+  std::vector<TrialSpec> trials;
+  std::set<std::string> ids;
+  for (const YamlNode& item : list.items()) {
+    YamlMap map(item, faults, "trial");
+    trials.push_back({map.required_text("id"), read_people(map.list("people"), {}, faults)});
+    if (!ids.insert(trials.back().id).second) faults.error(item.where(), "a second trial '" + trials.back().id + "'");
+    map.finish();
+  }
+  return trials;
+}
+
+/// One trial for every combination of variables, all with the same people.
 std::vector<TrialSpec> read_trials(const std::optional<YamlNode>& node, const std::vector<YamlNode>& people,
                                    Diagnostics& faults) {
   if (!node) return {{"1", read_people(people, {}, faults)}};
+  if (node->is_list()) {
+    if (!people.empty()) faults.error(people.front().where(), "people stand in every listed trial, not beside them");
+    return read_listed_trials(*node, faults);
+  }
   YamlMap map(*node, faults, "trials");
   std::vector<TrialSpec> trials;
   std::set<std::string> ids;

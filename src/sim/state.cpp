@@ -5,6 +5,14 @@
 #include "pirsim/pir/optics.hpp"
 
 namespace pirsim {
+
+void append_solids(const Actor& actor, std::vector<PosedShape>& solids) {
+  if (!actor.present()) return;
+  const body::Posture posture = actor.motion().posture();
+  const body::Solids& shapes = actor.person().humanoid.solids();
+  for (std::size_t i = 0; i < body::n_parts; ++i) solids.push_back(place(shapes[i], posture[i]));
+}
+
 namespace {
 
 int people_on_floor(const Model& model, const std::vector<Actor>& actors) {
@@ -55,12 +63,7 @@ State& State::operator=(const State& other) {
 
 void State::look(const Model& model) {
   solids_.clear();
-  for (const Actor& actor : actors_) {
-    if (!actor.present()) continue;
-    const body::Posture posture = actor.motion().posture();
-    const body::Solids& solids = actor.person().humanoid.solids();
-    for (std::size_t i = 0; i < body::n_parts; ++i) solids_.push_back(place(solids[i], posture[i]));
-  }
+  for (const Actor& actor : actors_) append_solids(actor, solids_);
   std::swap(zones_, previous_zones_);
   tracer_->trace(solids_, zones_);
   pir::mark_motion(model.rated_rays(), model.script().sensing.change_per, previous_zones_, zones_, bits_);

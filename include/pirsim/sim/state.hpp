@@ -51,6 +51,9 @@ class State {
   std::unique_ptr<rt::Tracer> tracer_;     ///< scratch; a copy of the State makes its own
 };
 
+/// Appends the thirteen posed solids of a person who is present, in the order of body::Part.
+void append_solids(const Actor& actor, std::vector<PosedShape>& solids);
+
 /// Advances to the end of the next window, whose reading is then state.sample(). False if the run had ended.
 bool step(const Model& model, State& state);
 /// Advances one tick; true if a window ended with it.
