@@ -40,7 +40,8 @@ class YamlMap {
     if (!node) return otherwise;
     std::vector<std::string> list;
     for (const auto& [name, value] : names) list.push_back(name);
-    return names[node->choice(*faults_, label(key), list)].second;
+    const std::optional<std::size_t> index = node->choice(*faults_, label(key), list);
+    return index ? names[*index].second : otherwise;
   }
 
   [[nodiscard]] std::vector<double> numbers(const std::string& key, std::vector<double> otherwise,

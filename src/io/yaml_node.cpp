@@ -155,14 +155,15 @@ bool YamlNode::flag(Diagnostics& faults, std::string_view what) const {
   faults.error(where(), fault_text(what, "true or false", *tree_));
   return false;
 }
-std::size_t YamlNode::choice(Diagnostics& faults, std::string_view what, const std::vector<std::string>& names) const {
+std::optional<std::size_t> YamlNode::choice(Diagnostics& faults, std::string_view what,
+                                            const std::vector<std::string>& names) const {
   const auto found = is_scalar() ? std::find(names.begin(), names.end(), tree_->scalar) : names.end();
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   const std::string hint = is_scalar() ? did_you_mean(tree_->scalar, names) : std::string{};
   faults.error(where(), fault_text(what, "one of " + list, *tree_) + hint);
-  return 0;
+  return std::nullopt;
 }
 
 YamlNode YamlNode::with(const Variables& variables, Diagnostics& faults) const {

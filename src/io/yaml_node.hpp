@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -61,9 +62,9 @@ class YamlNode {
   [[nodiscard]] long long integer(Diagnostics& faults, std::string_view what, IntegerRange range = {}) const;
   [[nodiscard]] std::string text(Diagnostics& faults, std::string_view what) const;
   [[nodiscard]] bool flag(Diagnostics& faults, std::string_view what) const;  ///< true or false
-  /// Index into `names`, 0 after a fault.
-  [[nodiscard]] std::size_t choice(Diagnostics& faults, std::string_view what,
-                                   const std::vector<std::string>& names) const;
+  /// Index into `names`; none after a fault.
+  [[nodiscard]] std::optional<std::size_t> choice(Diagnostics& faults, std::string_view what,
+                                                  const std::vector<std::string>& names) const;
 
   /// The same tree with every `${name}` in its scalars (not its keys) replaced; `$${` stands for a plain `${`. A
   /// name that isn't in `variables` is reported once a place and left as it is.
