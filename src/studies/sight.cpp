@@ -70,7 +70,9 @@ SightReport look_around(const Model& model) {
 
   SightReport report;
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
-    count_rays(model, i, report.sensors.emplace_back(SensorSight{.sensor = scene.sensors[i].id}));
+    SensorSight& sight = report.sensors.emplace_back();
+    sight.sensor = scene.sensors[i].id;
+    count_rays(model, i, sight);
   }
   const Vec2 lower = scene.floor.lower(), upper = scene.floor.upper();
   for (double z = lower.y + report.spacing_m / 2; z < upper.y; z += report.spacing_m) {
