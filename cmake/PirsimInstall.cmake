@@ -1,0 +1,21 @@
+# `cmake --install` gives a static library that find_package(pirsim) and pkg-config find, the command, and the data.
+include(CMakePackageConfigHelpers)
+
+set(PIRSIM_DATA_INSTALL_DIR "${CMAKE_INSTALL_DATADIR}/pirsim")
+install(TARGETS pirsim EXPORT pirsimTargets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+  FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
+if(TARGET pirsim_app)
+  install(TARGETS pirsim_app RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+endif()
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/data/" DESTINATION "${PIRSIM_DATA_INSTALL_DIR}")
+
+set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/pirsim")
+install(EXPORT pirsimTargets NAMESPACE pirsim:: DESTINATION "${package_dir}")
+configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/pirsimConfig.cmake.in"
+  "${PROJECT_BINARY_DIR}/pirsimConfig.cmake" INSTALL_DESTINATION "${package_dir}")
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/pirsimConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/pirsimConfig.cmake" "${PROJECT_BINARY_DIR}/pirsimConfigVersion.cmake"
+  DESTINATION "${package_dir}")
+
+configure_file("${CMAKE_CURRENT_LIST_DIR}/pirsim.pc.in" "${PROJECT_BINARY_DIR}/pirsim.pc" @ONLY)
+install(FILES "${PROJECT_BINARY_DIR}/pirsim.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")

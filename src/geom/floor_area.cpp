@@ -16,6 +16,13 @@ double signed_area(const std::vector<Vec2>& loop) noexcept {
   return 0.5 * twice;
 }
 
+/// Just inside the loop, beside the middle of its first edge: unlike a corner it isn't on the edge of a neighbour.
+Vec2 point_inside(const std::vector<Vec2>& loop) noexcept {
+  const Vec2 along = loop[1 % loop.size()] - loop[0];
+  const Vec2 left(-along.y, along.x);
+  return loop[0] + 0.5 * along + (signed_area(loop) > 0.0 ? 1e-6 : -1e-6) * left;
+}
+
 }  // namespace
 
 FloorArea::FloorArea(std::vector<std::vector<Vec2>> loops, double height_m)
@@ -50,7 +57,7 @@ double FloorArea::area_m2() const {
   for (const auto& loop : loops_) {
     int depth = 0;
     for (const auto& other : loops_) {
-      if (&other != &loop && FloorArea({other}, height_m_).contains(loop.front())) ++depth;
+      if (&other != &loop && FloorArea({other}, height_m_).contains(point_inside(loop))) ++depth;
     }
     total += (depth % 2 == 0 ? 1.0 : -1.0) * std::abs(signed_area(loop));
   }

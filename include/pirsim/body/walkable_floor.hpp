@@ -1,7 +1,7 @@
 // Where a person can walk, and the way from here to there.
 #pragma once
 
-#include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,9 +18,10 @@ struct Disc {
   double radius_m = 0.0;
 };
 
-/// A grid of 0.1 m cells (paper: section 2.2) on the floor area and the strips that lead out through the
-/// entrances. A cell is walkable if its centre keeps `clearance_m` from everything solid between 0.1 m and 2.0 m
-/// above the floor. Immutable.
+/// The floor area and the strips that lead out through the entrances, as a grid of 0.1 m cells (paper: section 2.2).
+/// A point is walkable if the centre of its cell is on the floor and the point itself keeps `clearance_m` from
+/// everything solid between 0.1 m and 2.0 m above the floor; a cell is walkable if its centre is.
+/// Immutable; copies share their data.
 class WalkableFloor {
  public:
   static constexpr double cell_m = 0.1;
@@ -29,19 +30,18 @@ class WalkableFloor {
 
   /// Is the point itself at a walkable place?
   [[nodiscard]] bool walkable(const Vec2& point) const noexcept;
+  /// Can one walk straight from a to b, clear of `others`?
+  [[nodiscard]] bool walkable(const Vec2& a, const Vec2& b, std::span<const Disc> others = {}) const noexcept;
   /// Shortest way found by A* (8 neighbours, ties broken by cell index), then pulled tight: each leg of the result
   /// is walkable throughout. Starts at `from` and ends at `to` exactly. A start or goal that isn't walkable itself
-  /// is led to the nearest walkable cell within 0.5 m. `others` are kept clear of. std::nullopt: no way.
+  /// is led to the nearest walkable cell within 0.5 m, by a leg that comes no nearer to anything than the start or
+  /// goal already is. `others` are kept clear of, by their radius and clearance_m. std::nullopt: no way.
   [[nodiscard]] std::optional<std::vector<Vec2>> find_way(const Vec2& from, const Vec2& to,
                                                           std::span<const Disc> others = {}) const;
 
  private:
-  [[nodiscard]] std::size_t index(int column, int row) const noexcept;
-
-  Vec2 lower_{0.0};
-  int columns_ = 0;
-  int rows_ = 0;
-  std::vector<std::uint8_t> walkable_;  ///< (rows x columns) 1 where walkable
+  struct Impl;
+  std::shared_ptr<const Impl> impl_;
 };
 
 }  // namespace pirsim::body

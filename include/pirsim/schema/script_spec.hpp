@@ -37,11 +37,15 @@ struct SeatScatterSpec {
 // Actions, carried out one after the other. Names are resolved against the scene when a Model is compiled.
 namespace action {
 struct Wait { double duration_s = 0.0; };
-/// Appears outside the entrance and walks to just inside it.
+/// Stands on the floor from now on, without having entered.
+struct Appear {
+  Vec2 point{0.0};
+  double heading_deg = 0.0;  ///< 0 facing -Z, positive turning left
+};
+/// Appears outside the entrance and walks to just inside it, or straight on if the next action leads elsewhere.
 struct Enter { std::string entrance; };
-/// Walks through the given floor points, in order; `straight` skips way-finding between them.
-enum class Way { find, straight };
-struct Walk { std::vector<Vec2> points; Way way = Way::find; };
+/// Walks to each of the given floor points in turn.
+struct Walk { std::vector<Vec2> points; };
 /// Walks to the seat, turns and sits down.
 struct Sit { std::string seat; };
 /// Desk work while seated: both forearms slide on the table in opposite phase, the spine changes its tilt.
@@ -60,13 +64,13 @@ struct Leave { std::string entrance; };
 struct Turn { double heading_deg = 0.0; };
 }  // namespace action
 
-using Action = std::variant<action::Wait, action::Enter, action::Walk, action::Sit, action::Work, action::Rise,
+using Action = std::variant<action::Wait, action::Appear, action::Enter, action::Walk, action::Sit, action::Work, action::Rise,
                             action::Leave, action::Turn>;
 
 struct ScriptedAction {
   Action what;
   std::optional<double> at_s;  ///< starts then: interrupts what goes on, or waits if that is already done
-  std::string phase;           ///< label of rows while this action runs; empty: named after the action and its stage
+  std::string phase;           ///< label of rows while this action runs; empty: what the body is doing
   Where where;                 ///< for messages
 };
 

@@ -1,0 +1,43 @@
+// Output files that appear complete or not at all.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <ostream>
+
+namespace pirsim::io {
+
+/// Writes `<path>.partial` in the same folder and renames it onto the path at commit, so that no reader, crash or
+/// full disk ever leaves half a file, and an older file survives a failure. A path that exists and isn't a regular
+/// file (/dev/stdout, a pipe) is written directly. Every fault is Error(io) that names the path and the cause.
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::filesystem::path path);
+  ~AtomicFile();  ///< without commit: removes the partial file
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  [[nodiscard]] std::ostream& stream() noexcept { return stream_; }
+  /// Flushes, checks that everything was written, and puts the file in its place. Once.
+  void commit();
+
+ private:
+  /// Keeps the errno of the first write that failed, which streams forget.
+  class Buffer : public std::filebuf {
+   public:
+    int fault = 0;
+
+   protected:
+    int_type overflow(int_type c) override;
+    std::streamsize xsputn(const char* data, std::streamsize size) override;
+    int sync() override;
+  };
+  [[noreturn]] void fail(const char* what, int cause);
+
+  std::filesystem::path path_;
+  std::filesystem::path partial_;  ///< what is written; the path itself where it isn't a regular file
+  Buffer buffer_;
+  std::ostream stream_{&buffer_};
+};
+
+}  // namespace pirsim::io

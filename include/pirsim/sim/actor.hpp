@@ -1,0 +1,78 @@
+// One person carrying out their script.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "pirsim/body/motion.hpp"
+#include "pirsim/core/random.hpp"
+#include "pirsim/sim/model.hpp"
+
+namespace pirsim {
+
+/// What others need to know to keep out of a person's way.
+struct Presence {
+  Vec2 position{0.0};
+  double radius_m = 0.0;
+};
+
+/// A value; all its randomness comes from streams keyed by (seed, run, person).
+class Actor {
+ public:
+  Actor(const Model& model, std::uint32_t run, std::uint32_t person);
+
+  /// One tick: starts, goes on with or interrupts actions, then moves the body. others: everyone else in the scene.
+  /// Throws Error(infeasible) when people block each other for good.
+  void advance(const Model& model, std::int64_t tick, std::span<const Presence> others);
+
+  [[nodiscard]] bool present() const noexcept { return motion_.has_value(); }
+  [[nodiscard]] bool done() const noexcept { return action_ == person().spec.actions.size(); }
+  [[nodiscard]] std::string_view phase() const noexcept;
+  [[nodiscard]] const PersonModel& person() const noexcept { return *person_; }
+  /// Only while present.
+  [[nodiscard]] const body::Motion& motion() const { return *motion_; }
+  [[nodiscard]] Presence presence() const;
+
+ private:
+  // Steps that an action is made of; each begins when the body has settled.
+  struct ComeIn { Vec2 point; double heading; };  ///< appears once nobody stands there
+  struct WalkTo { Vec2 target; };
+  struct FaceTo { double heading; };
+  struct SitOn { body::SeatPlace place; };
+  struct StandUp {};
+  struct Vanish {};
+  using Errand = std::variant<ComeIn, WalkTo, FaceTo, SitOn, StandUp, Vanish>;
+  enum class Progress { going_on, done };
+
+  void plan(const Model& model);
+  void plan_sitting();
+  void work(const Model& model, const action::Work& work, std::int64_t tick);
+  [[nodiscard]] bool interrupted(const Model& model, std::int64_t tick) const;
+  [[nodiscard]] bool time_is_up(const Model& model, std::int64_t tick) const;
+  [[nodiscard]] bool free_to_stand(std::span<const Presence> others) const;
+  Progress carry_out(const Errand& errand, const Model& model, std::span<const Presence> others);
+  Progress walk_to(const Vec2& target, const Model& model, std::span<const Presence> others);
+  Progress become_standing(std::span<const Presence> others);
+  void keep_distance(const Model& model, std::span<const Presence> others);
+  void wait_for_others(const Model& model);
+  [[nodiscard]] const ScriptedAction& action() const { return person().spec.actions[action_]; }
+
+  const PersonModel* person_ = nullptr;
+  std::uint32_t index_ = 0;           ///< of the person in the trial
+  std::optional<body::Motion> motion_;
+  std::size_t action_ = 0;            ///< index of the current action
+  bool begun_ = false;                ///< the current action has begun
+  std::int64_t began_ = 0;            ///< tick at which it did
+  std::deque<Errand> errands_;        ///< still to do for the current action
+  std::optional<body::Route> route_;  ///< to walk once the body faces its start, or being walked
+  int blocked_ticks_ = 0;             ///< for how long others have been in the way
+  Stream tilt_stream_;
+  Stream scatter_stream_;
+};
+
+}  // namespace pirsim

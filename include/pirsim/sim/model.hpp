@@ -1,0 +1,79 @@
+// A study compiled for running: everything immutable, shared by all threads.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pirsim/body/humanoid.hpp"
+#include "pirsim/body/motion.hpp"
+#include "pirsim/body/walkable_floor.hpp"
+#include "pirsim/geom/ray_bundle.hpp"
+#include "pirsim/rt/room.hpp"
+#include "pirsim/rt/tracer.hpp"
+#include "pirsim/schema/scene_spec.hpp"
+#include "pirsim/schema/script_spec.hpp"
+
+namespace pirsim {
+
+/// A seat as one person uses it.
+struct SeatPlan {
+  body::SeatPlace place;
+  double stand_back_m = 0.0;  ///< where to stand before sitting down: so far behind the pelvis point, along the seat's axis
+};
+
+/// One person of one trial.
+struct PersonModel {
+  PersonSpec spec;
+  body::Humanoid humanoid;
+  std::shared_ptr<const body::WalkableFloor> floor;  ///< shared by all who need the same clearance
+  std::vector<SeatPlan> seats;                       ///< (n_actions) of the sit actions; empty plans for the others
+};
+
+struct TrialModel {
+  std::string id;
+  std::vector<PersonModel> people;
+};
+
+struct CompileOptions {
+  rt::TracerKind tracer = rt::TracerKind::embree;
+};
+
+class Model {
+ public:
+  [[nodiscard]] const SceneSpec& scene() const noexcept { return scene_; }
+  [[nodiscard]] const ScriptSpec& script() const noexcept { return script_; }
+  [[nodiscard]] const std::vector<TrialModel>& trials() const noexcept { return trials_; }
+  [[nodiscard]] const rt::Room& room() const noexcept { return *room_; }
+  [[nodiscard]] const RayBundle& rated_rays() const noexcept { return *rated_; }
+  [[nodiscard]] const RayBundle& clipped_rays() const noexcept { return *clipped_; }
+  [[nodiscard]] rt::TracerKind tracer() const noexcept { return tracer_; }
+  [[nodiscard]] double tick_s() const noexcept { return 1.0 / script_.sensing.tick_rate_hz; }
+
+  /// Runs are numbered replicate by replicate, trials in order within each.
+  [[nodiscard]] std::uint32_t n_runs() const noexcept;
+  [[nodiscard]] const TrialModel& trial_of(std::uint32_t run) const noexcept { return trials_[run % trials_.size()]; }
+  [[nodiscard]] int replicate_of(std::uint32_t run) const noexcept { return static_cast<int>(run / trials_.size()) + 1; }
+
+  /// replicate, trial, time_s, phase, people, then one column a sensor.
+  [[nodiscard]] std::vector<std::string> columns() const;
+  [[nodiscard]] std::unique_ptr<rt::Tracer> make_tracer() const;
+
+ private:
+  friend Model compile(SceneSpec scene, ScriptSpec script, const CompileOptions& options);
+  SceneSpec scene_;
+  ScriptSpec script_;
+  std::vector<TrialModel> trials_;
+  std::unique_ptr<rt::Room> room_;
+  std::unique_ptr<RayBundle> rated_;
+  std::unique_ptr<RayBundle> clipped_;
+  rt::TracerKind tracer_ = rt::TracerKind::embree;
+};
+
+/// The only door from Spec to Model. Throws Error(input) for names that the scene lacks or actions in an impossible
+/// order, Error(infeasible) for a seat or point that can't be reached.
+[[nodiscard]] Model compile(SceneSpec scene, ScriptSpec script, const CompileOptions& options = {});
+
+}  // namespace pirsim

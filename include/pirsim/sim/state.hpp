@@ -1,0 +1,62 @@
+// Everything that changes during one run.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "pirsim/geom/ray_bundle.hpp"
+#include "pirsim/schema/sample.hpp"
+#include "pirsim/sim/actor.hpp"
+#include "pirsim/sim/model.hpp"
+
+namespace pirsim {
+
+/// A value: a copy goes on by itself from the same moment. Belongs to one thread at a time and to the Model it was
+/// made for, which must outlive it.
+class State {
+ public:
+  /// The moment before the first tick of a run, run in [0, model.n_runs()).
+  State(const Model& model, std::uint32_t run);
+  State(const State& other);
+  State& operator=(const State& other);
+  State(State&&) noexcept = default;
+  State& operator=(State&&) noexcept = default;
+  ~State() = default;
+
+  [[nodiscard]] std::uint32_t run() const noexcept { return run_; }
+  [[nodiscard]] std::int64_t tick() const noexcept { return tick_; }
+  [[nodiscard]] const std::vector<Actor>& actors() const noexcept { return actors_; }
+  /// (n_zones) at the current tick.
+  [[nodiscard]] const ZoneActivity& zones() const noexcept { return zones_; }
+  /// The reading at the end of the last whole window.
+  [[nodiscard]] const Sample& sample() const noexcept { return sample_; }
+  /// Every person has carried out all actions and the last window is complete.
+  [[nodiscard]] bool finished() const noexcept { return finished_; }
+
+ private:
+  friend bool step_tick(const Model& model, State& state);
+  void look(const Model& model);
+
+  const Model* model_;
+  std::uint32_t run_ = 0;
+  std::int64_t tick_ = 0;
+  bool finished_ = false;
+  std::vector<Actor> actors_;
+  ZoneActivity zones_, previous_zones_;
+  std::vector<std::uint8_t> bits_;  ///< (n_sensors) motion so far in this window
+  Sample sample_;
+  std::vector<PosedShape> solids_;         ///< scratch of look()
+  std::unique_ptr<rt::Tracer> tracer_;     ///< scratch; a copy of the State makes its own
+};
+
+/// Appends the thirteen posed solids of a person who is present, in the order of body::Part.
+void append_solids(const Actor& actor, std::vector<PosedShape>& solids);
+
+/// Advances to the end of the next window, whose reading is then state.sample(). False if the run had ended.
+bool step(const Model& model, State& state);
+/// Advances one tick; true if a window ended with it.
+bool step_tick(const Model& model, State& state);
+
+}  // namespace pirsim

@@ -1,0 +1,39 @@
+// All runs of a study, in parallel, results in order.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "pirsim/geom/ray_bundle.hpp"
+#include "pirsim/schema/sample.hpp"
+#include "pirsim/sim/model.hpp"
+
+namespace pirsim {
+
+enum class Record {
+  samples,           ///< rows only
+  samples_and_zones  ///< also every zone's activity at every tick: some 500 bytes a tick and sensor
+};
+
+struct RunResult {
+  std::uint32_t run = 0;
+  int replicate = 0;
+  std::string trial;
+  std::vector<Sample> samples;      ///< one a window
+  std::vector<ZoneActivity> zones;  ///< (n_ticks x n_zones) from tick 1 on, if recorded
+};
+
+struct StudyOptions {
+  unsigned threads = 0;  ///< 0: all cores. Never changes a byte of the results.
+  Record record = Record::samples;
+};
+
+/// Runs everything and hands each run's result to `consume` in the order of runs, from one thread at a time.
+/// Memory is bounded by a few runs a thread. Throws what a run or `consume` throws.
+void run_study(const Model& model, const StudyOptions& options, const std::function<void(const RunResult&)>& consume);
+
+/// One run from beginning to end.
+[[nodiscard]] RunResult run_once(const Model& model, std::uint32_t run, Record record = Record::samples);
+
+}  // namespace pirsim

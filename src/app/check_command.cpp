@@ -1,0 +1,44 @@
+#include <iomanip>
+#include <iostream>
+
+#include "app/commands.hpp"
+#include "app/session.hpp"
+#include "pirsim/studies/sight.hpp"
+
+namespace pirsim::app {
+namespace {
+
+void print(std::ostream& out, const Model& model, const studies::SightReport& report) {
+  const SceneSpec& scene = model.scene();
+  const auto percent = [&](std::size_t places) {
+    return report.places == 0 ? 0.0 : 100.0 * static_cast<double>(places) / static_cast<double>(report.places);
+  };
+  out << scene.name << ": " << scene.meshes.size() << " meshes, " << scene.sensors.size() << " sensors, "
+      << scene.seats.size() << " seats, " << scene.entrances.size() << " entrances, floor " << std::fixed
+      << std::setprecision(2) << scene.floor.area_m2() << " m2\n";
+  out << model.script().name << ": " << model.trials().size() << " trials x " << model.script().replicates
+      << " replicates = " << model.n_runs() << " runs\n\n";
+  out << "what each sensor sees of a person standing on one of " << report.places << " places (every "
+      << report.spacing_m << " m), and seated at rest:\n";
+  for (const studies::SensorSight& sight : report.sensors) {
+    out << "  " << std::left << std::setw(8) << sight.sensor << std::right << std::setw(5) << sight.rays << " rays, "
+        << std::setw(4) << sight.rays_cut << " end at the room, longest " << std::setw(5) << sight.longest_m
+        << " m; floor " << std::setw(5) << std::setprecision(1) << percent(sight.places) << std::setprecision(2)
+        << " %; seats";
+    if (sight.seats.empty()) out << " none";
+    for (const std::string& seat : sight.seats) out << ' ' << seat;
+    out << '\n';
+  }
+  out << "  any sensor: floor " << std::setprecision(1) << percent(report.places_seen_by_any) << " %\n";
+}
+
+}  // namespace
+
+void check(const Inputs& inputs) {
+  const Model model = load(inputs);
+  const studies::SightReport report = studies::look_around(model);
+  tell(studies::warnings(report, model.scene().name), inputs.verbosity);
+  if (inputs.verbosity != Verbosity::quiet) print(std::cout, model, report);
+}
+
+}  // namespace pirsim::app

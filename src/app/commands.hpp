@@ -1,0 +1,13 @@
+// What the command line can do. Each returns normally or throws Error.
+#pragma once
+
+#include "app/options.hpp"
+
+namespace pirsim::app {
+
+void run(const Inputs& inputs, const RunOptions& options);
+void check(const Inputs& inputs);
+void preview(const Inputs& inputs, const PreviewOptions& options);
+void export_gltf(const Inputs& inputs, const ExportOptions& options);
+
+}  // namespace pirsim::app

@@ -1,0 +1,149 @@
+// pirsim's command line: argv -> options -> library calls, and errors -> messages and exit codes.
+#include <CLI/CLI.hpp>
+
+#include <csignal>
+#include <cstdlib>
+#include <exception>
+#include <iostream>
+#include <new>
+
+#include "app/commands.hpp"
+#include "pirsim/core/error.hpp"
+#include "pirsim/core/version.hpp"
+#include "pirsim/rt/room.hpp"
+
+namespace {
+
+using namespace pirsim;
+using namespace pirsim::app;
+
+constexpr const char* examples = R"(Examples:
+  pirsim --scene room.gltf --script study.yaml                     rows of the whole study as CSV on stdout
+  pirsim --scene room.gltf --script study.yaml -o rows.csv --summary table.md
+  pirsim check --scene room.gltf --script study.yaml               validate, and report what each sensor can see
+  pirsim preview --scene room.gltf --script study.yaml -o room.png  a picture of room, people and beams
+  pirsim export --scene room.gltf --script study.yaml -o run.glb    an animated glTF of one run
+)";
+
+void add_inputs(CLI::App& command, Inputs& inputs) {
+  command.add_option("--scene", inputs.scene, "room: a glTF 2.0 file (.gltf or .glb)")->option_text("FILE");
+  command.add_option("--script", inputs.script, "study: a YAML file")->option_text("FILE");
+  command.add_option("--set", inputs.overrides, "override a value of the script: sensing.rays_per_zone=9")
+      ->option_text("KEY=VALUE")
+      ->allow_extra_args(false);
+  command
+      .add_option_function<std::int64_t>(
+          "--seed", [&](std::int64_t n) { inputs.overrides.push_back("seed=" + std::to_string(n)); },
+          "seed of all random streams")
+      ->option_text("N");
+  command
+      .add_option_function<int>(
+          "--replicates", [&](int n) { inputs.overrides.push_back("replicates=" + std::to_string(n)); },
+          "how often every trial is run")
+      ->option_text("N");
+  command.add_option("--sensors", inputs.sensor_directories, "folder with sensor models, searched first")
+      ->option_text("DIR")
+      ->allow_extra_args(false);
+  command.add_option("--tracer", inputs.tracer, "auto, embree or reference")->option_text("NAME");
+  command.add_flag_callback("-q,--quiet", [&] { inputs.verbosity = Verbosity::quiet; }, "errors only");
+  command.add_flag_callback("-v,--verbose", [&] { inputs.verbosity = Verbosity::verbose; }, "more about what goes on");
+}
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  command.add_option("-o,--output", options.output, "rows as CSV (default: standard output)")->option_text("FILE");
+  command.add_option("--summary", options.summary, "table of sums per trial and sensor, .csv or .md")->option_text("FILE");
+  command.add_option("--zones", options.zones, "every zone's activity at every tick, as CSV")->option_text("FILE");
+  command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
+  command.add_flag_callback("--print-config", [&] { options.action = RunOptions::Action::print_config; },
+                            "print the resolved script and stop");
+}
+
+void add_preview_options(CLI::App& command, PreviewOptions& options) {
+  command.add_option("-o,--output", options.output, "PNG file")->option_text("FILE")->capture_default_str();
+  command.add_option("--trial", options.trial, "which trial (default: the first)")->option_text("ID");
+  command.add_option("--replicate", options.replicate, "which replicate")->option_text("N")->capture_default_str();
+  command.add_option("--time", options.time_s, "moment of the run in seconds (default: 10 s into desk work)")->option_text("S");
+  command.add_option("--beams", options.beams, "sensors whose beams are drawn, or all or none (default: the first)")
+      ->option_text("ID,...")->delimiter(',');
+  command.add_option("--camera", options.camera, "where the camera stands, m")->option_text("X,Y,Z")->delimiter(',');
+  command.add_option("--look-at", options.look_at, "what it looks at, m")->option_text("X,Y,Z")->delimiter(',');
+  command.add_option("--fov-deg", options.field_of_view_deg, "vertical field of view")->option_text("DEG")->capture_default_str();
+  command.add_option("--width", options.width, "pixels")->check(CLI::Range(16, 7680))->capture_default_str();
+  command.add_option("--height", options.height, "pixels")->check(CLI::Range(16, 4320))->capture_default_str();
+}
+
+void add_export_options(CLI::App& command, ExportOptions& options) {
+  command.add_option("-o,--output", options.output, "glTF file, .gltf or .glb")->option_text("FILE")->capture_default_str();
+  command.add_option("--trial", options.trial, "which trial (default: the first)")->option_text("ID");
+  command.add_option("--replicate", options.replicate, "which replicate")->option_text("N")->capture_default_str();
+  command.add_option("--keys-per-s", options.keys_per_s, "animation keys a second")->option_text("N")->capture_default_str();
+  command.add_option("--beams", options.beams, "sensors whose beams are drawn, or all or none")
+      ->option_text("ID,...")->delimiter(',')->capture_default_str();
+}
+
+std::string version_text() {
+  return "pirsim " + version() + " (" + git_revision() + "), " + compiler() + ", Embree " + rt::embree_version() + " " +
+         rt::instruction_set();
+}
+
+int run_command_line(int argc, char** argv) {
+  CLI::App app{"Headless simulator of passive-infrared motion sensors", "pirsim"};
+  app.footer(examples);
+  app.set_version_flag("--version", version_text);
+  app.require_subcommand(0, 1);
+
+  Inputs inputs;
+  RunOptions run_options;
+  PreviewOptions preview_options;
+  ExportOptions export_options;
+  add_inputs(app, inputs);
+  add_run_options(app, run_options);
+  CLI::App* run_command = app.add_subcommand("run", "run the study (the default)");
+  add_inputs(*run_command, inputs);
+  add_run_options(*run_command, run_options);
+  CLI::App* check_command = app.add_subcommand("check", "validate scene and script without running them");
+  add_inputs(*check_command, inputs);
+  CLI::App* preview_command = app.add_subcommand("preview", "render room, people and beams as PNG");
+  add_inputs(*preview_command, inputs);
+  add_preview_options(*preview_command, preview_options);
+  CLI::App* export_command = app.add_subcommand("export", "write one run as an animated glTF");
+  add_inputs(*export_command, inputs);
+  add_export_options(*export_command, export_options);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : static_cast<int>(ErrorCode::usage);
+  }
+  if (inputs.scene.empty() || inputs.script.empty()) {
+    throw Error(ErrorCode::usage, std::string(inputs.scene.empty() ? "--scene" : "--script") + " FILE is missing; see pirsim --help");
+  }
+  if (*check_command) {
+    check(inputs);
+  } else if (*preview_command) {
+    preview(inputs, preview_options);
+  } else if (*export_command) {
+    export_gltf(inputs, export_options);
+  } else {
+    run(inputs, run_options);
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_DFL);  // `pirsim ... | head` ends quietly
+  try {
+    return run_command_line(argc, argv);
+  } catch (const Error& error) {
+    std::cerr << error.what() << '\n';
+    return static_cast<int>(error.code());
+  } catch (const std::bad_alloc&) {
+    std::cerr << "error: out of memory\n";
+  } catch (const std::exception& error) {
+    std::cerr << "error: internal fault: " << error.what() << '\n';
+  }
+  return static_cast<int>(ErrorCode::internal);
+}

@@ -1,0 +1,132 @@
+#include <algorithm>
+#include <iostream>
+#include <optional>
+
+#include "app/commands.hpp"
+#include "app/progress.hpp"
+#include "app/session.hpp"
+#include "pirsim/core/version.hpp"
+#include "pirsim/io/atomic_file.hpp"
+#include "pirsim/io/csv_writer.hpp"
+#include "pirsim/io/manifest.hpp"
+#include "pirsim/io/script_reader.hpp"
+#include "pirsim/sim/study.hpp"
+#include "pirsim/studies/sight.hpp"
+#include "pirsim/studies/summary.hpp"
+
+namespace pirsim::app {
+namespace {
+
+/// A file that appears when all is well, or standard output.
+class Output {
+ public:
+  explicit Output(const std::filesystem::path& path) {
+    if (!path.empty()) file_.emplace(path);
+  }
+  [[nodiscard]] std::ostream& stream() { return file_ ? file_->stream() : std::cout; }
+  void commit() {
+    if (file_) {
+      file_->commit();
+    } else if (!std::cout.flush()) {
+      throw Error(ErrorCode::io, "standard output can't be written");
+    }
+  }
+
+ private:
+  std::optional<io::AtomicFile> file_;
+};
+
+std::vector<std::string> sensor_ids(const Model& model) {
+  std::vector<std::string> ids;
+  for (const SensorSpec& sensor : model.scene().sensors) ids.push_back(sensor.id);
+  return ids;
+}
+
+std::vector<std::size_t> first_zones(const Model& model) {
+  const RayBundle& rays = model.rated_rays();
+  std::vector<std::size_t> begins;
+  for (const auto cluster : rays.sensor_clusters_begin) begins.push_back(rays.cluster_zones_begin[cluster]);
+  return begins;
+}
+
+/// Seconds with motion per sensor over the rows that count.
+std::vector<int> sums(const RunResult& result, const std::vector<std::string>& phases, std::size_t n_sensors) {
+  std::vector<int> total(n_sensors, 0);
+  for (const Sample& sample : result.samples) {
+    if (!phases.empty() && std::ranges::find(phases, sample.phase) == phases.end()) continue;
+    for (std::size_t i = 0; i < n_sensors; ++i) total[i] += sample.bits[i];
+  }
+  return total;
+}
+
+void write_summary(const Model& model, const studies::Summary& summary, const RunOptions& options) {
+  io::AtomicFile file(options.summary);
+  file.stream() << (options.summary.extension() == ".md" ? studies::to_markdown(summary) : studies::to_csv(summary));
+  file.commit();
+  static_cast<void>(model);
+}
+
+io::Manifest manifest_of(const Model& model, const Inputs& inputs, std::uint64_t rows) {
+  return {.program = version() + " " + git_revision() + " " + compiler(),
+          .embree = rt::embree_version() + " " + rt::instruction_set(),
+          .tracer = std::string(rt::name(model.tracer())),
+          .scene = inputs.scene.filename().string(),
+          .script = inputs.script.filename().string(),
+          .resolved_script = io::to_yaml(model.script()),
+          .seed = model.script().seed,
+          .runs = model.n_runs(),
+          .rows = rows};
+}
+
+studies::Summary make_summary(const Model& model) {
+  std::vector<std::string> trials;
+  for (const TrialModel& trial : model.trials()) trials.push_back(trial.id);
+  return {trials, sensor_ids(model)};
+}
+
+}  // namespace
+
+void run(const Inputs& inputs, const RunOptions& options) {
+  if (options.action == RunOptions::Action::print_config) {
+    std::cout << io::to_yaml(io::read_script(inputs.script, inputs.overrides));
+    return;
+  }
+  const Model model = load(inputs);
+  tell(studies::warnings(studies::look_around(model), model.scene().name), inputs.verbosity);
+
+  Output rows(options.output);
+  io::CsvWriter csv(rows.stream(), model.columns());
+  std::optional<io::AtomicFile> zones_file;
+  std::optional<io::ZoneCsvWriter> zones;
+  if (!options.zones.empty()) {
+    zones_file.emplace(options.zones);
+    zones.emplace(zones_file->stream(), sensor_ids(model), first_zones(model));
+  }
+  studies::Summary summary = make_summary(model);
+  std::uint64_t n_rows = 0;
+  Progress progress(model.n_runs(), inputs.verbosity);
+  const StudyOptions study{options.threads, zones ? Record::samples_and_zones : Record::samples};
+  run_study(model, study, [&](const RunResult& result) {
+    for (const Sample& sample : result.samples) csv.write(sample);
+    n_rows += result.samples.size();
+    if (!rows.stream()) throw Error(ErrorCode::io, "the rows can't be written: is the disk full?");
+    for (std::size_t i = 0; zones && i < result.zones.size(); ++i) {
+      zones->write(result.replicate, result.trial, static_cast<std::int64_t>(i) + 1, result.zones[i]);
+    }
+    summary.add_run(result.trial, sums(result, model.script().summary.phases, model.scene().sensors.size()));
+    progress.run_finished();
+  });
+  rows.commit();
+  if (zones_file) zones_file->commit();
+  if (!options.summary.empty()) write_summary(model, summary, options);
+  if (!options.output.empty()) {
+    std::filesystem::path side_car = options.output;
+    side_car += ".json";
+    io::write_manifest(side_car, manifest_of(model, inputs, n_rows));
+  }
+  if (inputs.verbosity == Verbosity::verbose) {
+    std::cerr << model.n_runs() << " runs, " << n_rows << " rows in " << progress.seconds() << " s\n";
+  }
+}
+
+}  // namespace pirsim::app

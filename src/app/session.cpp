@@ -1,0 +1,68 @@
+#include "app/session.hpp"
+
+#include <iostream>
+
+#include "pirsim/io/scene_reader.hpp"
+#include "pirsim/io/script_reader.hpp"
+
+namespace pirsim::app {
+namespace {
+
+rt::TracerKind tracer_kind(const std::string& name) {
+  if (name == "auto") return rt::TracerKind::embree;
+  std::vector<std::string> names{"auto"};
+  for (const auto kind : {rt::TracerKind::embree, rt::TracerKind::reference}) {
+    if (rt::name(kind) == name) return kind;
+    names.emplace_back(rt::name(kind));
+  }
+  throw Error(ErrorCode::usage, "--tracer: '" + name + "' isn't a tracer" + did_you_mean(name, names));
+}
+
+}  // namespace
+
+void tell(const std::vector<Issue>& issues, Verbosity verbosity) {
+  if (verbosity == Verbosity::quiet) return;
+  for (const Issue& issue : issues) std::cerr << to_string(issue) << '\n';
+}
+
+Model load(const Inputs& inputs) {
+  const rt::TracerKind tracer = tracer_kind(inputs.tracer);
+  ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
+  SceneSpec scene = io::read_scene(inputs.scene, {inputs.sensor_directories});
+  tell(scene.warnings, inputs.verbosity);
+  tell(script.warnings, inputs.verbosity);
+  return compile(std::move(scene), std::move(script), {tracer});
+}
+
+std::uint32_t find_run(const Model& model, const std::string& trial, int replicate) {
+  if (replicate < 1 || replicate > model.script().replicates) {
+    throw Error(ErrorCode::usage, "--replicate: the script has 1 to " + std::to_string(model.script().replicates));
+  }
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < model.trials().size(); ++i) {
+    names.push_back(model.trials()[i].id);
+    if (trial.empty() || trial == names.back()) {
+      return static_cast<std::uint32_t>(static_cast<std::size_t>(replicate - 1) * model.trials().size() + i);
+    }
+  }
+  throw Error(ErrorCode::usage, "--trial: '" + trial + "' is not in the script" + did_you_mean(trial, names));
+}
+
+std::vector<std::size_t> find_sensors(const Model& model, const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const SensorSpec& sensor : model.scene().sensors) known.push_back(sensor.id);
+  std::vector<std::size_t> indices;
+  for (const std::string& name : names) {
+    if (name == "none") continue;
+    bool found = name == "all";
+    for (std::size_t i = 0; i < known.size(); ++i) {
+      if (name != "all" && name != known[i]) continue;
+      indices.push_back(i);
+      found = true;
+    }
+    if (!found) throw Error(ErrorCode::usage, "--beams: sensor '" + name + "' is not in the scene" + did_you_mean(name, known));
+  }
+  return indices;
+}
+
+}  // namespace pirsim::app

@@ -1,0 +1,19 @@
+// What all commands begin with: read, compile, tell what is odd.
+#pragma once
+
+#include <string>
+
+#include "app/options.hpp"
+#include "pirsim/sim/model.hpp"
+
+namespace pirsim::app {
+
+/// Reads and compiles; warnings of the readers go to standard error unless quiet.
+[[nodiscard]] Model load(const Inputs& inputs);
+/// Index of the run of a trial ("" for the first) and replicate (from 1). Throws Error(usage).
+[[nodiscard]] std::uint32_t find_run(const Model& model, const std::string& trial, int replicate);
+/// Resolves "all", "none" and sensor names to indices. Throws Error(usage).
+[[nodiscard]] std::vector<std::size_t> find_sensors(const Model& model, const std::vector<std::string>& names);
+void tell(const std::vector<Issue>& issues, Verbosity verbosity);
+
+}  // namespace pirsim::app

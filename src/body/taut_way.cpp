@@ -1,0 +1,101 @@
+#include "body/taut_way.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+namespace pirsim::body {
+namespace {
+
+constexpr double coarse_m = 0.05;  ///< distance of the places at which legs are cut short: half a cell
+constexpr double fine_m = 0.005;
+constexpr int max_passes = 10;      ///< each pass shortens; in rooms two or three suffice
+constexpr double gain_m = 1e-4;     ///< a pass that gains less is the last
+constexpr int halvings = 12;        ///< of the length by which a corner is cut off: to a millimetre and below
+constexpr double corner_rad = 0.2;  ///< a smaller change of direction isn't cut off. assumed (0.1-0.5)
+
+double length_of(const std::vector<Vec2>& way) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < way.size(); ++i) length += glm::distance(way[i - 1], way[i]);
+  return length;
+}
+
+std::vector<Vec2> subdivided(const std::vector<Vec2>& way, double spacing_m) {
+  std::vector<Vec2> points{way.front()};
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    const int parts = std::max(1, static_cast<int>(std::ceil(glm::distance(way[i - 1], way[i]) / spacing_m)));
+    for (int part = 1; part < parts; ++part) {
+      points.push_back(way[i - 1] + (way[i] - way[i - 1]) * (static_cast<double>(part) / parts));
+    }
+    points.push_back(way[i]);
+  }
+  return points;
+}
+
+/// From each point straight to a far one, found by steps that double while they succeed and halve where they don't.
+std::vector<Vec2> shortcut(const std::vector<Vec2>& points, const StraightWay& straight) {
+  std::vector<Vec2> kept{points.front()};
+  for (std::size_t i = 0; i + 1 < points.size();) {
+    std::size_t next = i + 1;
+    for (std::size_t step = 1; step > 0;) {
+      const bool reached = next + step < points.size() && straight(points[i], points[next + step]);
+      if (reached) next += step;
+      step = reached ? 2 * step : step / 2;
+    }
+    kept.push_back(points[next]);
+    i = next;
+  }
+  return kept;
+}
+
+/// How much of the corner between a and b can be cut off, measured along either leg.
+double cut_m(const Vec2& a, const Vec2& corner, const Vec2& b, const StraightWay& straight) {
+  const double turn = std::remainder(heading_of(b - corner) - heading_of(corner - a), 2.0 * std::numbers::pi);
+  if (std::abs(turn) < corner_rad) return 0.0;
+  const Vec2 to_a = glm::normalize(a - corner);
+  const Vec2 to_b = glm::normalize(b - corner);
+  double cut = 0.0;
+  // Half of the shorter leg at most: the other half belongs to the corner at its other end.
+  double step = 0.25 * std::min(glm::distance(a, corner), glm::distance(corner, b));
+  for (int i = 0; i < halvings; ++i, step *= 0.5) {
+    if (straight(corner + to_a * (cut + step), corner + to_b * (cut + step))) cut += step;
+  }
+  return cut;
+}
+
+/// Two corners of half the angle instead of each one.
+std::vector<Vec2> corners_cut_off(const std::vector<Vec2>& way, const StraightWay& straight) {
+  std::vector<Vec2> result{way.front()};
+  for (std::size_t i = 1; i + 1 < way.size(); ++i) {
+    const double cut = cut_m(way[i - 1], way[i], way[i + 1], straight);
+    if (cut > 0.0) {
+      result.push_back(way[i] + glm::normalize(way[i - 1] - way[i]) * cut);
+      result.push_back(way[i] + glm::normalize(way[i + 1] - way[i]) * cut);
+    } else {
+      result.push_back(way[i]);
+    }
+  }
+  result.push_back(way.back());
+  return result;
+}
+
+}  // namespace
+
+std::vector<Vec2> pulled_tight(std::vector<Vec2> way, const StraightWay& straight) {
+  if (way.size() < 3) return way;
+  // Coarse first, because the way over the cells has many corners, then fine.
+  for (const double spacing_m : {coarse_m, fine_m}) {
+    for (int pass = 0; pass < max_passes; ++pass) {
+      const double before = length_of(way);
+      for (int direction = 0; direction < 2; ++direction) {
+        way = shortcut(subdivided(way, spacing_m), straight);
+        std::reverse(way.begin(), way.end());
+      }
+      if (before - length_of(way) < gain_m) break;
+    }
+  }
+  return corners_cut_off(way, straight);
+}
+
+}  // namespace pirsim::body

@@ -1,0 +1,166 @@
+// The arithmetic of the three ray tests, written once for any number type: float here, a pack of lanes in a
+// vectorised tracer. Only + - * /, square root, comparison and selection are used, each rounded on its own (no
+// fused multiply-add), so a lane and a float get the same bits. Everything is a sum of products in which a
+// mirrored coordinate changes sign twice or not at all: mirroring x changes no bit of a distance.
+//
+// All tests first move the ray's origin to its point nearest to the solid's centre. The numbers that are then
+// squared and subtracted are as small as the solid, so a limb 12 m away is as sharp as one that is near.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace pirsim::ray_tests {
+
+// What the tests need of a number type beyond operators; a lane type brings its own overloads.
+inline float select(bool condition, float if_true, float if_false) noexcept { return condition ? if_true : if_false; }
+inline float smaller(float a, float b) noexcept { return a < b ? a : b; }
+inline float larger(float a, float b) noexcept { return a < b ? b : a; }
+inline float square_root(float x) noexcept { return std::sqrt(x); }
+
+template <typename F>
+struct Vector {
+  F x, y, z;
+  friend Vector operator+(const Vector& a, const Vector& b) noexcept { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend Vector operator-(const Vector& a, const Vector& b) noexcept { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend Vector operator*(const Vector& a, const F& s) noexcept { return {a.x * s, a.y * s, a.z * s}; }
+};
+template <typename F>
+F dot(const Vector<F>& a, const Vector<F>& b) noexcept {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/// Where the ray is inside: from `enter` to `leave`, metres from its origin; empty if enter > leave.
+template <typename F>
+struct Interval {
+  F enter, leave;
+};
+template <typename F>
+Interval<F> everything() noexcept {
+  return {F(-std::numeric_limits<float>::infinity()), F(std::numeric_limits<float>::infinity())};
+}
+template <typename F>
+Interval<F> intersection(const Interval<F>& a, const Interval<F>& b) noexcept {
+  return {larger(a.enter, b.enter), smaller(a.leave, b.leave)};
+}
+/// Of two intervals whose union is one interval; an empty one adds nothing.
+template <typename F>
+Interval<F> united(const Interval<F>& a, const Interval<F>& b) noexcept {
+  const auto a_empty = a.enter > a.leave, b_empty = b.enter > b.leave;
+  const Interval<F> both{smaller(a.enter, b.enter), larger(a.leave, b.leave)};
+  return {select(a_empty, b.enter, select(b_empty, a.enter, both.enter)),
+          select(a_empty, b.leave, select(b_empty, a.leave, both.leave))};
+}
+/// `interval` where the condition holds, else empty.
+template <typename F, typename Condition>
+Interval<F> only_if(const Condition& condition, const Interval<F>& interval) noexcept {
+  const Interval<F> all = everything<F>();
+  return {select(condition, interval.enter, all.leave), select(condition, interval.leave, all.enter)};
+}
+template <typename F>
+Interval<F> shifted(const Interval<F>& interval, const F& by) noexcept {
+  return {interval.enter + by, interval.leave + by};
+}
+
+/// The ray's point nearest to `centre`: its distance along the ray and its position relative to `centre`.
+template <typename F>
+struct Approach {
+  F distance;
+  Vector<F> offset;
+};
+template <typename F>
+Approach<F> approach(const Vector<F>& origin, const Vector<F>& direction, const Vector<F>& centre) noexcept {
+  const Vector<F> to_centre = centre - origin;
+  const F distance = dot(to_centre, direction);
+  return {distance, direction * distance - to_centre};
+}
+
+/// A sphere at the origin, for a line through `start`.
+template <typename F>
+Interval<F> inside_sphere(const Vector<F>& start, const Vector<F>& direction, const F& radius) noexcept {
+  const F nearest = F(0) - dot(start, direction);
+  const Vector<F> offset = start + direction * nearest;
+  const F square = radius * radius - dot(offset, offset);
+  const F half_chord = square_root(larger(square, F(0)));
+  return only_if(square >= F(0), Interval<F>{nearest - half_chord, nearest + half_chord});
+}
+
+/// One pair of planes, -half_width <= start + s step <= half_width; a zero step gives no NaN.
+template <typename F>
+Interval<F> inside_slab(const F& start, const F& step, const F& half_width) noexcept {
+  const auto parallel = step == F(0);
+  const F divisor = select(parallel, F(1), step);
+  const F lower = (F(0) - half_width - start) / divisor, upper = (half_width - start) / divisor;
+  const auto within = (start >= F(0) - half_width) & (start <= half_width);
+  const Interval<F> crossing{smaller(lower, upper), larger(lower, upper)};
+  const Interval<F> along = only_if(within, everything<F>());
+  return {select(parallel, along.enter, crossing.enter), select(parallel, along.leave, crossing.leave)};
+}
+
+/// A round bar without ends along the unit `axis` through the origin.
+template <typename F>
+Interval<F> inside_bar(const Vector<F>& start, const Vector<F>& direction, const Vector<F>& axis,
+                       const F& radius) noexcept {
+  const Vector<F> step = direction - axis * dot(direction, axis);
+  const Vector<F> across = start - axis * dot(start, axis);
+  const F step_square = dot(step, step);
+  // Below 1e-6 rad `step` is rounding alone, and over a limb's length it is worth a micrometre: call it parallel.
+  const auto parallel = step_square < F(1e-12F);
+  const F divisor = select(parallel, F(1), step_square);
+  const F nearest = select(parallel, F(0), F(0) - dot(across, step) / divisor);
+  const Vector<F> offset = across + step * nearest;
+  const F square = radius * radius - dot(offset, offset);
+  const F half_chord = square_root(larger(square, F(0)) / divisor);
+  const Interval<F> all = everything<F>();
+  return only_if(square >= F(0), Interval<F>{select(parallel, all.enter, nearest - half_chord),
+                                             select(parallel, all.leave, nearest + half_chord)});
+}
+
+template <typename F>
+Interval<F> sphere(const Vector<F>& origin, const Vector<F>& direction, const Vector<F>& centre,
+                   const F& radius) noexcept {
+  const Approach<F> near = approach(origin, direction, centre);
+  return shifted(inside_sphere(near.offset, direction, radius), near.distance);
+}
+
+/// A capsule is convex and the union of two spheres and a bar cut off at their centres.
+template <typename F>
+Interval<F> capsule(const Vector<F>& origin, const Vector<F>& direction, const Vector<F>& a, const Vector<F>& b,
+                    const F& radius) noexcept {
+  const Vector<F> half_axis = (b - a) * F(0.5F);
+  const F half_length = square_root(dot(half_axis, half_axis));
+  const auto has_length = half_length > F(0);
+  const F divisor = select(has_length, half_length, F(1));
+  const Vector<F> axis{half_axis.x / divisor, half_axis.y / divisor, half_axis.z / divisor};
+
+  const Approach<F> near = approach(origin, direction, (a + b) * F(0.5F));
+  const Interval<F> ends = united(inside_sphere(near.offset - half_axis, direction, radius),
+                                  inside_sphere(near.offset + half_axis, direction, radius));
+  const Interval<F> bar =
+      only_if(has_length, intersection(inside_bar(near.offset, direction, axis, radius),
+                                       inside_slab(dot(near.offset, axis), dot(direction, axis), half_length)));
+  return shifted(united(ends, bar), near.distance);
+}
+
+template <typename F>
+Interval<F> box(const Vector<F>& origin, const Vector<F>& direction, const Vector<F>& centre,
+                const std::array<Vector<F>, 3>& axes, const Vector<F>& half_extents) noexcept {
+  const Approach<F> near = approach(origin, direction, centre);
+  const Interval<F> x = inside_slab(dot(near.offset, axes[0]), dot(direction, axes[0]), half_extents.x);
+  const Interval<F> y = inside_slab(dot(near.offset, axes[1]), dot(direction, axes[1]), half_extents.y);
+  const Interval<F> z = inside_slab(dot(near.offset, axes[2]), dot(direction, axes[2]), half_extents.z);
+  return shifted(intersection(intersection(x, y), z), near.distance);
+}
+
+/// The ray starts at 0: what lies behind it doesn't count, and from inside the distance is 0 (never -0).
+template <typename F>
+F entry(const Interval<F>& inside) noexcept {
+  return larger(F(0), inside.enter);
+}
+template <typename F>
+auto is_hit(const Interval<F>& inside, const F& t_max) noexcept {
+  return (inside.enter <= inside.leave) & (inside.leave >= F(0)) & (entry(inside) < t_max);
+}
+
+}  // namespace pirsim::ray_tests

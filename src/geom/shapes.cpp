@@ -1,0 +1,126 @@
+#include "pirsim/geom/shapes.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "geom/ray_tests.hpp"
+
+namespace pirsim {
+namespace {
+
+using Vector = ray_tests::Vector<float>;
+using Interval = ray_tests::Interval<float>;
+
+template <typename... Functions>
+struct Overloaded : Functions... {
+  using Functions::operator()...;
+};
+template <typename... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;
+
+Vector vector(const Vec3f& v) noexcept { return {v.x, v.y, v.z}; }
+
+std::optional<float> entry_of(const Interval& inside, float t_max) noexcept {
+  if (!ray_tests::is_hit(inside, t_max)) return std::nullopt;
+  return ray_tests::entry(inside);
+}
+
+/// Point of the segment nearest to `point`.
+Vec3f nearest_on_segment(const PosedCapsule& capsule, const Vec3f& point) noexcept {
+  const Vec3f along = capsule.b - capsule.a;
+  const float square = glm::dot(along, along);
+  const float share = square > 0.0F ? glm::dot(point - capsule.a, along) / square : 0.0F;
+  return capsule.a + along * std::clamp(share, 0.0F, 1.0F);
+}
+
+/// `direction` scaled to unit length; straight up where it has none.
+Vec3f unit_or_up(const Vec3f& direction) noexcept {
+  const float length = glm::length(direction);
+  return length > 0.0F ? direction / length : Vec3f(0.0F, 1.0F, 0.0F);
+}
+
+/// The face whose plane the point is nearest to, from inside or outside.
+Vec3f box_normal(const PosedBox& box, const Vec3f& point) noexcept {
+  const Vec3f offset = point - box.centre;
+  int face = 0;
+  float greatest = -std::numeric_limits<float>::infinity();
+  float side = 1.0F;
+  for (int i = 0; i < 3; ++i) {
+    const float along = glm::dot(offset, box.axes[i]);
+    const float beyond = std::abs(along) - box.half_extents[i];
+    if (beyond > greatest) {
+      greatest = beyond;
+      face = i;
+      side = along < 0.0F ? -1.0F : 1.0F;
+    }
+  }
+  return box.axes[face] * side;
+}
+
+}  // namespace
+
+PosedShape place(const Shape& shape, const Frame& world_from_shape) {
+  const Frame& frame = world_from_shape;
+  return std::visit(Overloaded{[&](const Sphere& s) -> PosedShape {
+                                 return PosedSphere{Vec3f(frame.origin), static_cast<float>(s.radius)};
+                               },
+                               [&](const Capsule& c) -> PosedShape {
+                                 const Vec3 half_axis = frame.rotation * Vec3(0.0, c.half_length, 0.0);
+                                 return PosedCapsule{Vec3f(frame.origin - half_axis), Vec3f(frame.origin + half_axis),
+                                                     static_cast<float>(c.radius)};
+                               },
+                               [&](const Box& b) -> PosedShape {
+                                 const glm::mat3 axes(Vec3f(frame.rotation * Vec3(1, 0, 0)),
+                                                      Vec3f(frame.rotation * Vec3(0, 1, 0)),
+                                                      Vec3f(frame.rotation * Vec3(0, 0, 1)));
+                                 return PosedBox{Vec3f(frame.origin), axes, Vec3f(b.half_extents)};
+                               }},
+                    shape);
+}
+
+Bounds bounds(const PosedShape& shape) noexcept {
+  return std::visit(Overloaded{[](const PosedSphere& s) {
+                                 return Bounds{s.centre - s.radius, s.centre + s.radius};
+                               },
+                               [](const PosedCapsule& c) {
+                                 return Bounds{glm::min(c.a, c.b) - c.radius, glm::max(c.a, c.b) + c.radius};
+                               },
+                               [](const PosedBox& b) {
+                                 const Vec3f reach = glm::abs(b.axes[0]) * b.half_extents.x +
+                                                     glm::abs(b.axes[1]) * b.half_extents.y +
+                                                     glm::abs(b.axes[2]) * b.half_extents.z;
+                                 return Bounds{b.centre - reach, b.centre + reach};
+                               }},
+                    shape);
+}
+
+std::optional<float> entry_distance(const Ray& ray, const PosedSphere& sphere, float t_max) noexcept {
+  return entry_of(ray_tests::sphere(vector(ray.origin), vector(ray.direction), vector(sphere.centre), sphere.radius),
+                  t_max);
+}
+
+std::optional<float> entry_distance(const Ray& ray, const PosedCapsule& capsule, float t_max) noexcept {
+  return entry_of(ray_tests::capsule(vector(ray.origin), vector(ray.direction), vector(capsule.a), vector(capsule.b),
+                                     capsule.radius),
+                  t_max);
+}
+
+std::optional<float> entry_distance(const Ray& ray, const PosedBox& box, float t_max) noexcept {
+  const std::array<Vector, 3> axes{vector(box.axes[0]), vector(box.axes[1]), vector(box.axes[2])};
+  return entry_of(
+      ray_tests::box(vector(ray.origin), vector(ray.direction), vector(box.centre), axes, vector(box.half_extents)),
+      t_max);
+}
+
+std::optional<float> entry_distance(const Ray& ray, const PosedShape& shape, float t_max) noexcept {
+  return std::visit([&](const auto& solid) { return entry_distance(ray, solid, t_max); }, shape);
+}
+
+Vec3f surface_normal(const PosedShape& shape, const Vec3f& point) noexcept {
+  return std::visit(Overloaded{[&](const PosedSphere& s) { return unit_or_up(point - s.centre); },
+                               [&](const PosedCapsule& c) { return unit_or_up(point - nearest_on_segment(c, point)); },
+                               [&](const PosedBox& b) { return box_normal(b, point); }},
+                    shape);
+}
+
+}  // namespace pirsim

@@ -1,0 +1,114 @@
+#include "io/action_reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "io/yaml_map.hpp"
+
+namespace pirsim::io {
+namespace {
+
+constexpr NumberRange positive{.above = 0.0, .max = 1e6};
+constexpr NumberRange room_sized{.min = -1e4, .max = 1e4};
+
+Vec2 read_point(const YamlNode& node, Diagnostics& faults, std::string_view what) {
+  const std::vector<double> xz = read_numbers(node, faults, what, room_sized);
+  if (xz.size() == 2) return {xz[0], xz[1]};
+  if (node.is_list()) faults.error(node.where(), std::string(what) + ": expected two numbers, x and z");
+  return Vec2(0.0);
+}
+
+Action read_wait(const YamlNode& node, Diagnostics& faults) {
+  return action::Wait{node.number(faults, "wait_s", {.min = 0.0, .max = 1e6})};
+}
+Action read_appear(const YamlNode& node, Diagnostics& faults) {
+  YamlMap map(node, faults, "appear");
+  action::Appear appear{read_point(map.required_child("at_xz_m"), faults, "at_xz_m"), map.number("heading_deg", 0.0)};
+  map.finish();
+  return appear;
+}
+Action read_enter(const YamlNode& node, Diagnostics& faults) { return action::Enter{node.text(faults, "enter")}; }
+Action read_walk(const YamlNode& node, Diagnostics& faults) {
+  YamlMap map(node, faults, "walk");
+  action::Walk walk;
+  for (const YamlNode& point : map.required_list("to_xz_m")) walk.points.push_back(read_point(point, faults, "to_xz_m"));
+  map.finish();
+  return walk;
+}
+Action read_sit(const YamlNode& node, Diagnostics& faults) { return action::Sit{node.text(faults, "sit")}; }
+Action read_work(const YamlNode& node, Diagnostics& faults) {
+  YamlMap map(node, faults, "work");
+  action::Work work;
+  work.duration_s = map.number("duration_s", work.duration_s, positive);
+  work.arm_amplitude_m = map.number("arm_amplitude_m", work.arm_amplitude_m, {.min = 0.0, .max = 0.15});
+  work.arm_period_s = map.number("arm_period_s", work.arm_period_s, {.min = 0.2, .max = 1e6});
+  work.tilt_choices_deg = map.numbers("tilt_choices_deg", work.tilt_choices_deg, {.min = -30.0, .max = 45.0});
+  work.tilt_every_s = map.number("tilt_every_s", work.tilt_every_s, positive);
+  map.finish();
+  return work;
+}
+Action read_rise(const YamlNode& node, Diagnostics& faults) {
+  if (!node.is_null() && !node.is_scalar()) faults.error(node.where(), "rise: expected nothing");
+  return action::Rise{};
+}
+Action read_turn(const YamlNode& node, Diagnostics& faults) {
+  YamlMap map(node, faults, "turn");
+  const action::Turn turn{map.required_number("heading_deg", {.min = -360.0, .max = 360.0})};
+  map.finish();
+  return turn;
+}
+Action read_leave(const YamlNode& node, Diagnostics& faults) { return action::Leave{node.text(faults, "leave")}; }
+
+struct ActionKind {
+  const char* key;
+  Action (*read)(const YamlNode&, Diagnostics&);
+};
+constexpr std::array<ActionKind, 9> kinds{{{"wait_s", read_wait},
+                                           {"appear", read_appear},
+                                           {"enter", read_enter},
+                                           {"walk", read_walk},
+                                           {"sit", read_sit},
+                                           {"work", read_work},
+                                           {"rise", read_rise},
+                                           {"turn", read_turn},
+                                           {"leave", read_leave}}};
+
+ScriptedAction read_action_map(const YamlNode& node, Diagnostics& faults) {
+  YamlMap map(node, faults, "action");
+  ScriptedAction action;
+  action.where = node.where();
+  action.at_s = map.optional_number("at_s", {.min = 0.0, .max = 1e7});
+  action.phase = map.text("phase");
+  int found = 0;
+  for (const ActionKind& kind : kinds) {
+    if (!map.has(kind.key)) {
+      static_cast<void>(map.child(kind.key));  // known, so that finish() can suggest it
+      continue;
+    }
+    action.where = map.where(kind.key);
+    action.what = kind.read(*map.child(kind.key), faults);
+    ++found;
+  }
+  map.finish();
+  if (found > 1) faults.error(node.where(), "one action an entry: start each with its own '-'");
+  const bool nothing_else =
+      std::ranges::all_of(node.keys(), [](const YamlKey& key) { return key.name == "at_s" || key.name == "phase"; });
+  if (found == 0 && nothing_else && node.is_map()) faults.error(node.where(), "an action is missing, e.g. `sit: S1`");
+  return action;
+}
+
+}  // namespace
+
+ScriptedAction read_action(const YamlNode& node, Diagnostics& faults) {
+  if (!node.is_scalar()) return read_action_map(node, faults);
+  const std::string word = node.text(faults, "action");
+  if (word != "rise") {
+    std::vector<std::string> names;
+    for (const ActionKind& kind : kinds) names.emplace_back(kind.key);
+    faults.error(node.where(), "'" + word + "' isn't a whole action" + did_you_mean(word, names));
+  }
+  return {action::Rise{}, std::nullopt, {}, node.where()};
+}
+
+}  // namespace pirsim::io

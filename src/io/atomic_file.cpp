@@ -1,0 +1,87 @@
+#include "pirsim/io/atomic_file.hpp"
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "pirsim/core/error.hpp"
+
+namespace pirsim::io {
+namespace {
+
+/// A link is followed, so that the file that it names is replaced and not the link.
+std::filesystem::path resolved(const std::filesystem::path& path) {
+  std::error_code fault;
+  const std::filesystem::path target = std::filesystem::canonical(path, fault);
+  return fault ? path : target;
+}
+
+bool is_written_directly(const std::filesystem::path& path) {
+  std::error_code fault;
+  const std::filesystem::file_status status = std::filesystem::status(path, fault);
+  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+}
+
+}  // namespace
+
+std::filebuf::int_type AtomicFile::Buffer::overflow(int_type c) {
+  errno = 0;
+  const int_type result = std::filebuf::overflow(c);
+  if (traits_type::eq_int_type(result, traits_type::eof()) && fault == 0) fault = errno;
+  return result;
+}
+
+std::streamsize AtomicFile::Buffer::xsputn(const char* data, std::streamsize size) {
+  errno = 0;
+  const std::streamsize written = std::filebuf::xsputn(data, size);
+  if (written < size && fault == 0) fault = errno;
+  return written;
+}
+
+int AtomicFile::Buffer::sync() {
+  errno = 0;
+  const int result = std::filebuf::sync();
+  if (result != 0 && fault == 0) fault = errno;
+  return result;
+}
+
+AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), partial_(path_) {
+  if (!is_written_directly(path_)) {
+    path_ = resolved(path_);
+    partial_ = path_;
+    partial_ += ".partial";
+  }
+  errno = 0;
+  if (buffer_.open(partial_, std::ios::out | std::ios::binary | std::ios::trunc) == nullptr) fail("can't write", errno);
+}
+
+AtomicFile::~AtomicFile() {
+  if (!buffer_.is_open()) return;
+  buffer_.close();
+  std::error_code ignored;
+  if (partial_ != path_) std::filesystem::remove(partial_, ignored);
+}
+
+void AtomicFile::commit() {
+  if (!buffer_.is_open()) throw Error(ErrorCode::internal, Where{path_.string()}, "the file was committed before");
+  stream_.flush();
+  if (!stream_) fail("can't write", buffer_.fault);
+  errno = 0;
+  if (buffer_.close() == nullptr) fail("can't write", errno);
+  if (partial_ == path_) return;
+  std::error_code fault;
+  std::filesystem::rename(partial_, path_, fault);
+  if (fault) fail("can't replace the file", fault.value());
+}
+
+void AtomicFile::fail(const char* what, int cause) {
+  if (buffer_.is_open()) buffer_.close();
+  std::error_code ignored;
+  if (partial_ != path_) std::filesystem::remove(partial_, ignored);
+  std::string message = what;
+  if (cause != 0) message += ": " + std::generic_category().message(cause);
+  throw Error(ErrorCode::io, Where{path_.string()}, message);
+}
+
+}  // namespace pirsim::io

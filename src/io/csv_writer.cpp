@@ -1,0 +1,53 @@
+#include "pirsim/io/csv_writer.hpp"
+
+#include <array>
+#include <charconv>
+#include <utility>
+
+namespace pirsim::io {
+
+std::string csv_field(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+std::string csv_number(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
+
+CsvWriter::CsvWriter(std::ostream& out, const std::vector<std::string>& columns) : out_(out) {
+  std::string line;
+  for (const std::string& column : columns) line += (line.empty() ? "" : ",") + csv_field(column);
+  out_ << line << '\n';
+}
+
+void CsvWriter::write(const Sample& sample) {
+  std::string line = std::to_string(sample.replicate) + ',' + csv_field(sample.trial) + ',' +
+                     csv_number(sample.time_s) + ',' + csv_field(sample.phase) + ',' + std::to_string(sample.people);
+  for (const std::uint8_t bit : sample.bits) line += bit != 0 ? ",1" : ",0";
+  out_ << line << '\n';
+}
+
+ZoneCsvWriter::ZoneCsvWriter(std::ostream& out, std::vector<std::string> sensors, std::vector<std::size_t> zones_begin)
+    : out_(out), sensors_(std::move(sensors)), zones_begin_(std::move(zones_begin)) {
+  out_ << "replicate,trial,tick,sensor,zones\n";
+}
+
+void ZoneCsvWriter::write(int replicate, std::string_view trial, std::int64_t tick,
+                          std::span<const std::uint8_t> zones) {
+  const std::string run = std::to_string(replicate) + ',' + csv_field(trial) + ',' + std::to_string(tick) + ',';
+  for (std::size_t sensor = 0; sensor < sensors_.size(); ++sensor) {
+    std::string line = run + csv_field(sensors_[sensor]) + ',';
+    for (std::size_t z = zones_begin_[sensor]; z < zones_begin_[sensor + 1]; ++z) line += zones[z] != 0 ? '1' : '0';
+    out_ << line << '\n';
+  }
+}
+
+}  // namespace pirsim::io

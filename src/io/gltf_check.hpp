@@ -1,0 +1,12 @@
+// The parts of a glTF JSON that pirsim reads, checked for type, size and reference. Private to io.
+#pragma once
+
+#include "io/json_text.hpp"
+
+namespace pirsim::io::detail {
+
+/// Adds a fault for whatever tinygltf would silently leave out, cut short or index with. Buffers' contents are not
+/// looked at.
+void check_structure(const JsonText& text, Diagnostics& faults);
+
+}  // namespace pirsim::io::detail

@@ -1,0 +1,27 @@
+// Triangles out of a glTF's accessors, every access checked. Private to io.
+#pragma once
+
+#include <cstddef>
+
+#include "io/gltf_document.hpp"
+#include "pirsim/geom/mesh.hpp"
+
+namespace pirsim::io::detail {
+
+/// How many vertices and triangles a scene may still bring in, over all copies of its meshes. A few bytes of JSON can
+/// ask for billions.
+class GeometryBudget {
+ public:
+  /// False if `elements` more would pass the limit.
+  [[nodiscard]] bool take(std::size_t elements) noexcept;
+
+ private:
+  static constexpr std::size_t limit = 20'000'000;  // assumed: a scanned office has a few million
+  std::size_t left_ = limit;
+};
+
+/// All triangles of a mesh in its own frame. Faults name the mesh and stand at the accessor or primitive; what isn't
+/// triangles is left out with a warning.
+[[nodiscard]] TriMesh read_mesh(const GltfDocument& document, int mesh, GeometryBudget& budget, Diagnostics& remarks);
+
+}  // namespace pirsim::io::detail

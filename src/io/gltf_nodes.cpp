@@ -1,0 +1,141 @@
+#include "io/gltf_nodes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+#include <utility>
+
+namespace pirsim::io::detail {
+namespace {
+
+constexpr double world_limit_m = 1e5;    // assumed: far beyond any building, yet 1e-5 of it is still exact in float
+constexpr double smallest_scale = 1e-9;  // assumed: a scale below turns a kilometre into a micrometre
+
+std::string pointer_of(int node) { return "/nodes/" + std::to_string(node); }
+
+class Placement {
+ public:
+  Placement(const GltfDocument& document, Diagnostics& remarks)
+      : document_(document), remarks_(remarks), seen_(document.model.nodes.size(), false) {}
+
+  std::vector<PlacedNode> run() {
+    const tinygltf::Model& model = document_.model;
+    if (model.scenes.empty()) {
+      remarks_.error(document_.text.where(""), "the file has no 'scenes'");
+      return {};
+    }
+    const int scene = std::max(model.defaultScene, 0);
+    const std::string pointer = "/scenes/" + std::to_string(scene) + "/nodes";
+    pending_.clear();
+    push(model.scenes[static_cast<std::size_t>(scene)].nodes, glm::dmat4(1.0), pointer);
+    while (!pending_.empty()) {
+      const Pending next = std::move(pending_.back());
+      pending_.pop_back();
+      visit(next);
+    }
+    return std::move(placed_);
+  }
+
+ private:
+  struct Pending {
+    int node;
+    glm::dmat4 world_from_parent;
+    std::string pointer;  ///< where the node is listed
+  };
+
+  /// A stack rather than recursion: chains of nodes may be as long as the file allows.
+  void push(const std::vector<int>& nodes, const glm::dmat4& world_from_parent, const std::string& pointer) {
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+      pending_.push_back({nodes[i], world_from_parent, pointer + '/' + std::to_string(i)});
+    }
+  }
+
+  void visit(const Pending& pending) {
+    const auto index = static_cast<std::size_t>(pending.node);
+    const tinygltf::Node& node = document_.model.nodes[index];
+    if (seen_[index]) {
+      remarks_.error(document_.text.where(pending.pointer),
+                     node_label(document_.model, pending.node) + " is its own ancestor or has two parents");
+      return;
+    }
+    seen_[index] = true;
+    const glm::dmat4 world_from_node = pending.world_from_parent * local(node, pending.node);
+    if (!sane(world_from_node, pending.node)) return;
+    placed_.push_back({pending.node, world_from_node});
+    push(node.children, world_from_node, pointer_of(pending.node) + "/children");
+  }
+
+  glm::dmat4 local(const tinygltf::Node& node, int index) {
+    glm::dmat4 result(1.0);
+    if (!node.matrix.empty()) {
+      for (int i = 0; i < 16; ++i) result[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
+      const bool affine = result[0][3] == 0.0 && result[1][3] == 0.0 && result[2][3] == 0.0 && result[3][3] == 1.0;
+      if (!affine) fault(index, "/matrix", "its matrix is not affine: the last row must be 0 0 0 1");
+      return result;
+    }
+    const auto& t = node.translation;
+    const auto& r = node.rotation;
+    const auto& s = node.scale;
+    if (!t.empty()) result = glm::translate(result, Vec3(t[0], t[1], t[2]));
+    if (!r.empty()) {
+      const Quat rotation(r[3], r[0], r[1], r[2]);
+      // assumed: exporters round to 6 digits or more; what is farther off is no rotation
+      if (std::abs(glm::length(rotation) - 1.0) > 1e-3)
+        fault(index, "/rotation", "its rotation is not a unit quaternion");
+      result *= glm::mat4_cast(glm::normalize(rotation));
+    }
+    if (!s.empty()) result = glm::scale(result, Vec3(s[0], s[1], s[2]));
+    return result;
+  }
+
+  bool sane(const glm::dmat4& m, int node) {
+    const auto finite = [](const glm::dvec4& v) { return std::isfinite(v.x + v.y + v.z + v.w); };
+    if (!finite(m[0]) || !finite(m[1]) || !finite(m[2]) || !finite(m[3])) {
+      return fault(node, "", "its transform is not finite");
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::abs(m[3][axis]) > world_limit_m) {
+        return fault(node, "/translation",
+                     "it lies more than " + std::to_string(static_cast<int>(world_limit_m)) + " m from the origin");
+      }
+    }
+    // Volume of the unit axes, so that small models (in millimetres, say) are no worse than large ones.
+    const Vec3 x(m[0]), y(m[1]), z(m[2]);
+    const double lengths = glm::length(x) * glm::length(y) * glm::length(z);
+    const double shortest = std::min({glm::length(x), glm::length(y), glm::length(z)});
+    if (shortest < smallest_scale || std::abs(glm::dot(glm::cross(x, y), z)) < 1e-9 * lengths) {
+      const auto& given = document_.model.nodes[static_cast<std::size_t>(node)];
+      return fault(node, given.matrix.empty() ? "/scale" : "/matrix", "its transform is singular (a scale of zero?)");
+    }
+    return true;
+  }
+
+  bool fault(int node, const std::string& member, const std::string& message) {
+    remarks_.error(document_.text.where(pointer_of(node) + member), node_label(document_.model, node) + ": " + message);
+    return false;
+  }
+
+  const GltfDocument& document_;
+  Diagnostics& remarks_;
+  std::vector<bool> seen_;
+  std::vector<Pending> pending_;
+  std::vector<PlacedNode> placed_;
+};
+
+}  // namespace
+
+std::vector<PlacedNode> place_nodes(const GltfDocument& document, Diagnostics& remarks) {
+  return Placement(document, remarks).run();
+}
+
+Frame rigid_frame(const glm::dmat4& world_from_node) {
+  const Vec3 back = glm::normalize(Vec3(world_from_node[2]));
+  const Vec3 given_up(world_from_node[1]);
+  const Vec3 up = glm::normalize(given_up - back * glm::dot(back, given_up));
+  const glm::dmat3 axes(glm::cross(up, back), up, back);
+  return {glm::normalize(glm::quat_cast(axes)), Vec3(world_from_node[3])};
+}
+
+}  // namespace pirsim::io::detail

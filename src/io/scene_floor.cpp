@@ -1,0 +1,119 @@
+#include "io/scene_floor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace pirsim::io::detail {
+namespace {
+
+constexpr double flatness_m = 0.01;  // assumed: less than any step one could trip over
+
+using Loop = std::vector<Vec2>;
+
+/// Twice the signed area of a triangle.
+double side(const Vec2& a, const Vec2& b, const Vec2& p) {
+  return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+}
+
+/// Two segments that cross in their inner points; touching is allowed.
+bool cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  // Rounding must not make touching edges cross: within this many square metres a point is on the line.
+  constexpr double on_line = 1e-9;
+  const auto opposite = [&](double s, double t) {
+    return (s > on_line && t < -on_line) || (s < -on_line && t > on_line);
+  };
+  return opposite(side(a, b, c), side(a, b, d)) && opposite(side(c, d, a), side(c, d, b));
+}
+
+bool cross(const Loop& first, const Loop& second) {
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    for (std::size_t j = 0; j < second.size(); ++j) {
+      if (cross(first[i], first[(i + 1) % first.size()], second[j], second[(j + 1) % second.size()])) return true;
+    }
+  }
+  return false;
+}
+
+double area_of(const std::vector<Loop>& loops) { return FloorArea(loops, 0.0).area_m2(); }
+
+/// Whether the floor just beside an edge of the first, on its inner side, also belongs to the second.
+bool edge_runs_inside(const std::vector<Loop>& first, const std::vector<Loop>& second) {
+  const FloorArea own(first, 0.0), other(second, 0.0);
+  for (const Loop& loop : first) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Vec2 a = loop[i], along = loop[(i + 1) % loop.size()] - a;
+      const Vec2 aside = Vec2(-along.y, along.x) * 1e-6;
+      for (const Vec2& beside : {a + 0.5 * along + aside, a + 0.5 * along - aside}) {
+        if (own.contains(beside) && other.contains(beside)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Floors may touch, but an overlap would count as no floor by the even-odd rule.
+bool overlap(const std::vector<Loop>& first, const std::vector<Loop>& second) {
+  for (const Loop& a : first) {
+    for (const Loop& b : second) {
+      if (cross(a, b)) return true;
+    }
+  }
+  return edge_runs_inside(first, second) || edge_runs_inside(second, first);
+}
+
+}  // namespace
+
+bool FloorBuilder::flat(const std::vector<Vec3>& points, const Where& where, const std::string& label) {
+  const auto [lowest, highest] =
+      std::minmax_element(points.begin(), points.end(), [](const Vec3& a, const Vec3& b) { return a.y < b.y; });
+  if (highest->y - lowest->y <= flatness_m) return true;
+  faults_.error(where, label + ": a floor must be flat and level; this one rises by " +
+                           std::to_string(highest->y - lowest->y) + " m");
+  return false;
+}
+
+void FloorBuilder::add_mesh(const TriMesh& mesh, const Where& where, const std::string& label) {
+  if (mesh.positions.empty())
+    return faults_.error(where, label + ": its mesh has no triangles, so it has no floor area");
+  if (!flat(mesh.positions, where, label)) return;
+  try {
+    add({boundary_loops_xz(mesh), mesh.positions.front().y, where, label});
+  } catch (const Error& fault) {
+    faults_.error(where, label + ": " + fault.issues().front().message);
+  }
+}
+
+void FloorBuilder::add_polygon(const std::vector<Vec3>& corners, const Where& where, const std::string& label) {
+  if (!flat(corners, where, label)) return;
+  Loop loop;
+  for (const Vec3& corner : corners) loop.push_back(floor_point(corner));
+  add({{std::move(loop)}, corners.front().y, where, label});
+}
+
+void FloorBuilder::add(Part part) {
+  for (const Loop& loop : part.loops) {
+    if (cross(loop, loop)) return faults_.error(part.where, part.label + ": the outline of the floor crosses itself");
+  }
+  if (area_of(part.loops) < 1e-6) return faults_.error(part.where, part.label + ": the floor has no area");
+  parts_.push_back(std::move(part));
+}
+
+FloorArea FloorBuilder::build() {
+  std::vector<Loop> loops;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const Part& part = parts_[i];
+    if (std::abs(part.height_m - parts_.front().height_m) > flatness_m) {
+      faults_.error(part.where, part.label + " and " + parts_.front().label + " are floors at different heights");
+    }
+    for (std::size_t k = 0; k < i; ++k) {
+      if (overlap(parts_[k].loops, part.loops)) {
+        faults_.error(part.where, part.label + " overlaps the floor of " + parts_[k].label);
+      }
+    }
+    loops.insert(loops.end(), part.loops.begin(), part.loops.end());
+  }
+  return {std::move(loops), parts_.empty() ? 0.0 : parts_.front().height_m};
+}
+
+}  // namespace pirsim::io::detail

@@ -1,0 +1,149 @@
+#include "io/scene_markup.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace pirsim::io::detail {
+namespace {
+
+using nlohmann::json;
+
+class MarkupReader {
+ public:
+  MarkupReader(const GltfDocument& document, int node, const json& value, Diagnostics& remarks)
+      : document_(document), node_(node), value_(value), remarks_(remarks) {}
+
+  std::optional<Markup> read() {
+    if (!value_.is_object()) return error("", "'pirsim' must be an object with a 'type'"), std::nullopt;
+    if (!value_.contains("type")) return error("", "'type' is missing; " + types_told()), std::nullopt;
+    if (!value_["type"].is_string()) return error("/type", "'type' must be a text; " + types_told()), std::nullopt;
+    const auto type = value_["type"].get<std::string>();
+    std::optional<Markup> result;
+    if (type == "sensor") result = sensor();
+    if (type == "seat") result = seat();
+    if (type == "entrance") result = entrance();
+    if (type == "floor") result = floor();
+    if (type == "ignore") result = ignore();
+    if (!result) error("/type", "unknown type '" + type + "'" + did_you_mean(type, types()) + "; " + types_told());
+    return faulty_ ? std::nullopt : result;
+  }
+
+ private:
+  static std::vector<std::string> types() { return {"sensor", "seat", "entrance", "floor", "ignore"}; }
+  static std::string types_told() { return "known are sensor, seat, entrance, floor and ignore"; }
+
+  mark::Sensor sensor() {
+    only({"type", "id", "model"});
+    return {name("id"), name("model")};
+  }
+  mark::Seat seat() {
+    only({"type", "id"});
+    return {name("id")};
+  }
+  mark::Entrance entrance() {
+    only({"type", "id", "width_m", "outside_m"});
+    mark::Entrance result{name("id")};
+    // assumed: nobody passes a narrower gap or waits farther off
+    result.width_m = number("width_m", result.width_m, 0.3, 20.0);
+    result.outside_m = number("outside_m", result.outside_m, 0.3, 50.0);
+    return result;
+  }
+  mark::Floor floor() {
+    only({"type", "polygon_xz_m", "occludes"});
+    mark::Floor result;
+    if (value_.contains("occludes")) {
+      if (!value_["occludes"].is_boolean()) error("/occludes", "'occludes' must be true or false");
+      if (value_["occludes"] == false) result.occludes = mark::Occludes::no;
+    }
+    if (value_.contains("polygon_xz_m")) result.polygon = polygon();
+    const bool has_mesh = document_.model.nodes[static_cast<std::size_t>(node_)].mesh >= 0;
+    if (!result.polygon && !has_mesh) error("", "a floor needs a mesh at its node, or 'polygon_xz_m'");
+    return result;
+  }
+  mark::Ignore ignore() {
+    only({"type"});
+    return {};
+  }
+
+  void only(const std::vector<std::string>& keys) {
+    for (const auto& [key, unused] : value_.items()) {
+      if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
+      error_at(document_.text.where_key(markup_pointer(node_) + '/' + key),
+               "unknown key '" + key + "'" + did_you_mean(key, keys));
+    }
+  }
+
+  /// Ids become names of columns, models names of files.
+  std::string name(const char* key) {
+    if (!value_.contains(key)) return error("", value_["type"].get<std::string>() + " without '" + key + "'"), "";
+    const std::string pointer = std::string("/") + key;
+    if (!value_[key].is_string()) return error(pointer, std::string("'") + key + "' must be a text"), "";
+    const auto text = value_[key].get<std::string>();
+    const auto fits = [](char c) {
+      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
+    };
+    if (text.empty() || text.front() == '.' || !std::all_of(text.begin(), text.end(), fits)) {
+      error(pointer, std::string("'") + key + "' is '" + text + "'; it needs letters, digits, '_', '-' or '.'");
+    }
+    return text;
+  }
+
+  double number(const char* key, double otherwise, double least, double most) {
+    if (!value_.contains(key)) return otherwise;
+    if (value_[key].is_number() && value_[key] >= least && value_[key] <= most) return value_[key].get<double>();
+    const auto told = [](double v) { return json(v).dump(); };
+    error(std::string("/") + key,
+          std::string("'") + key + "' must be a number of metres from " + told(least) + " to " + told(most));
+    return otherwise;
+  }
+
+  std::vector<Vec2> polygon() {
+    const json& points = value_["polygon_xz_m"];
+    std::vector<Vec2> result;
+    if (!points.is_array() || points.size() < 3) {
+      return error("/polygon_xz_m", "'polygon_xz_m' must be an array of at least three points [x, z]"), result;
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const json& p = points[i];
+      if (p.is_array() && p.size() == 2 && p[0].is_number() && p[1].is_number()) {
+        result.emplace_back(p[0].get<double>(), p[1].get<double>());
+      } else {
+        error("/polygon_xz_m/" + std::to_string(i), "a point of 'polygon_xz_m' must be two numbers [x, z]");
+      }
+    }
+    return result;
+  }
+
+  void error(const std::string& member, const std::string& message) {
+    error_at(document_.text.where(markup_pointer(node_) + member), message);
+  }
+  void error_at(Where where, const std::string& message) {
+    faulty_ = true;
+    remarks_.error(std::move(where), node_label(document_.model, node_) + ": " + message);
+  }
+
+  const GltfDocument& document_;
+  int node_;
+  const json& value_;
+  Diagnostics& remarks_;
+  bool faulty_ = false;
+};
+
+}  // namespace
+
+std::string markup_pointer(int node) { return "/nodes/" + std::to_string(node) + "/extras/pirsim"; }
+
+std::optional<Markup> read_markup(const GltfDocument& document, int node, Diagnostics& remarks) {
+  const json& given = document.text.root()["nodes"][static_cast<std::size_t>(node)];
+  const auto extras = given.find("extras");
+  if (extras == given.end() || !extras->is_object() || !extras->contains("pirsim")) return std::nullopt;
+  const json& value = (*extras)["pirsim"];
+  if (!value.is_string()) return MarkupReader(document, node, value, remarks).read();
+  // Editors such as Blender offer texts as custom properties, so the object may come as one.
+  const json parsed = json::parse(value.get<std::string>(), nullptr, false);
+  return MarkupReader(document, node, parsed, remarks).read();
+}
+
+}  // namespace pirsim::io::detail

@@ -1,0 +1,210 @@
+#include "pirsim/io/scene_reader.hpp"
+
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "io/gltf_geometry.hpp"
+#include "io/gltf_nodes.hpp"
+#include "io/scene_floor.hpp"
+#include "io/scene_markup.hpp"
+#include "io/sensor_lookup.hpp"
+#include "pirsim/io/sensor_reader.hpp"
+
+namespace pirsim::io {
+namespace {
+
+using namespace detail;
+
+constexpr double least_upright = 0.9962;  // cos 5 deg; assumed: a seat or doorway tilted more is a mistake of axes
+constexpr double world_limit_m = 1e5;     // as for nodes
+
+TriMesh transformed(const TriMesh& mesh, const glm::dmat4& world_from_node, std::string name) {
+  TriMesh result{std::move(name), mesh.positions, mesh.triangles};
+  for (Vec3& p : result.positions) p = Vec3(world_from_node * glm::dvec4(p, 1.0));
+  if (glm::determinant(glm::dmat3(world_from_node)) < 0.0) {
+    for (auto& triangle : result.triangles) std::swap(triangle[1], triangle[2]);  // mirroring turns the triangles over
+  }
+  return result;
+}
+
+class SceneBuilder {
+ public:
+  SceneBuilder(const std::filesystem::path& file, const SceneOptions& options)
+      : file_(file), options_(options), document_(load_gltf(file, remarks_)), floor_(remarks_) {
+    spec_.name = file.filename().string();
+  }
+
+  SceneSpec build() {
+    warn_of_what_is_left_out();
+    for (const PlacedNode& placed : place_nodes(document_, remarks_)) add_node(placed);
+    spec_.floor = floor_.build();
+    require_floor();
+    if (spec_.sensors.empty() && !remarks_.has_errors()) {
+      remarks_.warning(document_.text.where(""), "the scene has no sensors");
+    }
+    read_sensor_models();
+    remarks_.throw_if_errors();
+    spec_.warnings = remarks_.warnings();
+    return std::move(spec_);
+  }
+
+ private:
+  void warn_of_what_is_left_out() {
+    const nlohmann::json& root = document_.text.root();
+    if (root.contains("animations") && !root["animations"].empty()) {
+      remarks_.warning(document_.text.where_key("/animations"), "animations are not played; nodes stay at rest");
+    }
+    if (root.contains("skins") && !root["skins"].empty()) {
+      remarks_.warning(document_.text.where_key("/skins"), "skins are not posed; meshes stay at rest");
+    }
+    for (const char* collection : {"meshes", "scenes"}) {
+      const auto array = root.find(collection);
+      for (std::size_t i = 0; array != root.end() && i < array->size(); ++i) {
+        const auto extras = (*array)[i].find("extras");
+        if (extras == (*array)[i].end() || !extras->is_object() || !extras->contains("pirsim")) continue;
+        remarks_.warning(
+            document_.text.where("/" + std::string(collection) + '/' + std::to_string(i) + "/extras/pirsim"),
+            "'pirsim' counts on nodes only; here it is not read");
+      }
+    }
+  }
+
+  void add_node(const PlacedNode& placed) {
+    const auto markup = read_markup(document_, placed.node, remarks_);
+    if (markup && std::holds_alternative<mark::Ignore>(*markup)) return;
+    if (const int mesh = document_.model.nodes[static_cast<std::size_t>(placed.node)].mesh; mesh >= 0) {
+      add_mesh(placed, mesh,
+               markup && std::holds_alternative<mark::Floor>(*markup) ? &std::get<mark::Floor>(*markup) : nullptr);
+    }
+    if (!markup) return;
+    if (const auto* sensor = std::get_if<mark::Sensor>(&*markup)) add_sensor(placed, *sensor);
+    if (const auto* seat = std::get_if<mark::Seat>(&*markup)) add_seat(placed, *seat);
+    if (const auto* entrance = std::get_if<mark::Entrance>(&*markup)) add_entrance(placed, *entrance);
+    if (const auto* floor = std::get_if<mark::Floor>(&*markup); floor && floor->polygon) add_polygon(placed, *floor);
+  }
+
+  void add_mesh(const PlacedNode& placed, int mesh, const mark::Floor* floor) {
+    const auto [known, is_first] = meshes_.try_emplace(mesh);
+    if (is_first) known->second = read_mesh(document_, mesh, budget_, remarks_);
+    const TriMesh& local = known->second;
+    if (local.triangles.empty()) return;
+    if (!budget_.take(local.positions.size() + local.triangles.size())) {
+      return node_error(placed.node, "/mesh", "the copies of its mesh make the scene too large");
+    }
+    const auto& node = document_.model.nodes[static_cast<std::size_t>(placed.node)];
+    const auto& given = document_.model.meshes[static_cast<std::size_t>(mesh)];
+    const std::string name = !node.name.empty()    ? node.name
+                             : !given.name.empty() ? given.name
+                                                   : "mesh " + std::to_string(mesh);
+    const TriMesh world = transformed(local, placed.world_from_node, name);
+    for (const Vec3& p : world.positions) {
+      if (std::abs(p.x) <= world_limit_m && std::abs(p.y) <= world_limit_m && std::abs(p.z) <= world_limit_m) continue;
+      return node_error(placed.node, "/mesh", "its mesh reaches more than 100 km from the origin");
+    }
+    CleanMesh cleaned = clean(world);
+    if (is_first) warn_of_audit(cleaned.audit, placed.node, mesh);
+    if (floor && !floor->polygon)
+      floor_.add_mesh(cleaned.mesh, markup_place(placed.node), node_label(document_.model, placed.node));
+    if (!floor || floor->occludes == mark::Occludes::yes) spec_.meshes.push_back(std::move(cleaned.mesh));
+  }
+
+  void warn_of_audit(const MeshAudit& audit, int node, int mesh) {
+    const auto warn = [&](std::size_t n, const char* what) {
+      if (n == 0) return;
+      remarks_.warning(document_.text.where("/meshes/" + std::to_string(mesh)),
+                       mesh_label(document_.model, mesh) + " (" + node_label(document_.model, node) +
+                           "): " + std::to_string(n) + (n == 1 ? " triangle " : " triangles ") + what);
+    };
+    warn(audit.degenerate_triangles, "without area, dropped");
+    warn(audit.duplicate_triangles, "given twice, dropped");
+    warn(audit.non_manifold_triangles, "not manifold (an edge or corner shared by too many); kept as occluders");
+  }
+
+  void add_sensor(const PlacedNode& placed, const mark::Sensor& sensor) {
+    check_unique("sensor", sensor.id, placed.node);
+    model_places_.try_emplace(sensor.model, document_.text.where(markup_pointer(placed.node) + "/model"));
+    spec_.sensors.push_back({sensor.id, sensor.model, rigid_frame(placed.world_from_node)});
+  }
+  void add_seat(const PlacedNode& placed, const mark::Seat& seat) {
+    check_unique("seat", seat.id, placed.node);
+    spec_.seats.push_back({seat.id, upright_frame(placed)});
+  }
+  void add_entrance(const PlacedNode& placed, const mark::Entrance& entrance) {
+    check_unique("entrance", entrance.id, placed.node);
+    spec_.entrances.push_back({entrance.id, upright_frame(placed), entrance.width_m, entrance.outside_m});
+  }
+  void add_polygon(const PlacedNode& placed, const mark::Floor& floor) {
+    std::vector<Vec3> corners;
+    for (const Vec2& p : *floor.polygon) corners.emplace_back(placed.world_from_node * glm::dvec4(p.x, 0.0, p.y, 1.0));
+    floor_.add_polygon(corners, document_.text.where(markup_pointer(placed.node) + "/polygon_xz_m"),
+                       node_label(document_.model, placed.node));
+  }
+
+  Frame upright_frame(const PlacedNode& placed) {
+    const Frame frame = rigid_frame(placed.world_from_node);
+    if (frame.up().y < least_upright) {
+      remarks_.error(markup_place(placed.node),
+                     node_label(document_.model, placed.node) + ": must stand upright (its +Y up)");
+    }
+    return frame;
+  }
+
+  void check_unique(const std::string& type, const std::string& id, int node) {
+    const auto [first, is_new] = ids_.try_emplace({type, id}, node);
+    if (is_new) return;
+    node_error(node, "/extras/pirsim/id",
+               type + " id '" + id + "' is taken by " + node_label(document_.model, first->second));
+  }
+
+  void require_floor() {
+    if (!spec_.floor.empty() || remarks_.has_errors()) return;
+    remarks_.error(document_.text.where("/nodes"),
+                   "the scene has no floor area; give the floor's node extras {\"pirsim\": {\"type\": \"floor\"}}");
+  }
+
+  void read_sensor_models() {
+    const auto directories = sensor_directories(options_.sensor_directories, file_.parent_path());
+    for (const auto& [model, where] : model_places_) {
+      const auto sensor_file = find_sensor_file(model, directories);
+      if (sensor_file.empty()) {
+        const auto available = available_sensor_models(directories);
+        std::string known;
+        for (const std::string& name : available) known += (known.empty() ? "; known are " : ", ") + name;
+        if (available.empty()) known = "; no folder of sensors was found";
+        remarks_.error(where, "sensor model '" + model + "' is not known" + did_you_mean(model, available) + known);
+        continue;
+      }
+      try {
+        spec_.sensor_models.emplace(model, read_sensor_model(sensor_file));
+      } catch (const Error& fault) {
+        for (const Issue& issue : fault.issues()) remarks_.error(issue.where, issue.message);
+      }
+    }
+  }
+
+  [[nodiscard]] Where markup_place(int node) const { return document_.text.where(markup_pointer(node)); }
+  void node_error(int node, const std::string& member, const std::string& message) {
+    remarks_.error(document_.text.where("/nodes/" + std::to_string(node) + member),
+                   node_label(document_.model, node) + ": " + message);
+  }
+
+  std::filesystem::path file_;
+  const SceneOptions& options_;
+  Diagnostics remarks_;
+  GltfDocument document_;
+  GeometryBudget budget_;
+  FloorBuilder floor_;
+  SceneSpec spec_;
+  std::map<int, TriMesh> meshes_;                           ///< in their own frames, by index
+  std::map<std::string, Where> model_places_;               ///< where each sensor model is first named
+  std::map<std::pair<std::string, std::string>, int> ids_;  ///< (type, id) to node
+};
+
+}  // namespace
+
+SceneSpec read_scene(const std::filesystem::path& file, const SceneOptions& options) {
+  return SceneBuilder(file, options).build();
+}
+
+}  // namespace pirsim::io

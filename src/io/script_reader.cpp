@@ -1,0 +1,162 @@
+#include "pirsim/io/script_reader.hpp"
+
+#include <cmath>
+#include <set>
+
+#include "io/action_reader.hpp"
+#include "io/yaml_map.hpp"
+
+namespace pirsim::io {
+namespace {
+
+constexpr int format_version = 1;
+
+SensingSpec read_sensing(const std::optional<YamlNode>& node, Diagnostics& faults) {
+  SensingSpec sensing;
+  if (!node) return sensing;
+  YamlMap map(*node, faults, "sensing");
+  sensing.tick_rate_hz = map.integer("tick_rate_hz", sensing.tick_rate_hz, {.min = 1, .max = 10000});
+  const double window_s = map.number("window_s", 1.0, {.above = 0.0, .max = 3600.0});
+  const double ticks = window_s * sensing.tick_rate_hz;
+  if (std::abs(ticks - std::round(ticks)) > 1e-9 * ticks || ticks < 1.0) {
+    faults.error(map.where("window_s"), "window_s: expected a whole number of ticks of 1/" +
+                                            std::to_string(sensing.tick_rate_hz) + " s");
+  }
+  sensing.ticks_per_window = static_cast<int>(std::lround(ticks));
+  sensing.rays_per_zone = map.choice<RaysPerZone>(
+      "rays_per_zone", sensing.rays_per_zone,
+      {{"1", RaysPerZone::one}, {"5", RaysPerZone::five}, {"9", RaysPerZone::nine}, {"16", RaysPerZone::sixteen}});
+  sensing.change_per = map.choice<ChangePer>("change_per", sensing.change_per,
+                                             {{"cluster", ChangePer::cluster}, {"beam", ChangePer::beam}});
+  map.finish();
+  return sensing;
+}
+
+SummarySpec read_summary(const std::optional<YamlNode>& node, Diagnostics& faults) {
+  SummarySpec summary;
+  if (!node) return summary;
+  YamlMap map(*node, faults, "summary");
+  summary.phases = map.texts("phases");
+  summary.reference_file = map.text("reference");
+  map.finish();
+  return summary;
+}
+
+PersonSpec read_person(const YamlNode& node, Diagnostics& faults) {
+  YamlMap map(node, faults, "person");
+  PersonSpec person;
+  person.id = map.required_text("id");
+  person.stature_m = map.number("stature_m", person.stature_m, {.min = 0.8, .max = 2.3});
+  person.mass_kg = map.number("mass_kg", person.mass_kg, {.min = 10.0, .max = 250.0});
+  person.walking_speed_m_s = map.number("walking_speed_m_s", person.walking_speed_m_s, {.min = 0.1, .max = 3.0});
+  if (const auto child = map.child("seat_scatter")) {
+    YamlMap scatter(*child, faults, "seat_scatter");
+    person.seat_scatter.position_sd_m = scatter.number("position_sd_m", 0.0, {.min = 0.0, .max = 0.2});
+    person.seat_scatter.heading_sd_deg = scatter.number("heading_sd_deg", 0.0, {.min = 0.0, .max = 30.0});
+    scatter.finish();
+  }
+  for (const YamlNode& action : map.list("actions")) person.actions.push_back(read_action(action, faults));
+  map.finish();
+  return person;
+}
+
+std::vector<PersonSpec> read_people(const std::vector<YamlNode>& nodes, const Variables& variables,
+                                    Diagnostics& faults) {
+  std::vector<PersonSpec> people;
+  std::set<std::string> ids;
+  for (const YamlNode& node : nodes) {
+    people.push_back(read_person(node.with(variables, faults), faults));
+    if (!ids.insert(people.back().id).second) faults.error(node.where(), "a second person '" + people.back().id + "'");
+  }
+  return people;
+}
+
+/// Every combination of the values of `for_each`, the last variable changing fastest.
+std::vector<Variables> combinations(const std::optional<YamlNode>& for_each, Diagnostics& faults) {
+  std::vector<Variables> result{{}};
+  if (!for_each) return result;
+  if (!for_each->is_map()) faults.error(for_each->where(), "for_each: expected variables with lists of values");
+  const std::vector<YamlKey> keys = for_each->keys();
+  const std::vector<YamlNode> values = for_each->items();
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    std::vector<Variables> extended;
+    for (const Variables& variables : result) {
+      for (const YamlNode& value : values[i].items()) {
+        extended.push_back(variables);
+        extended.back()[keys[i].name] = value.text(faults, keys[i].name);
+      }
+    }
+    if (extended.empty()) faults.error(values[i].where(), keys[i].name + ": expected a list of values");
+    result = std::move(extended);
+  }
+  return result;
+}
+
+/// Trials written out one by one, each with people of its own.
+std::vector<TrialSpec> read_listed_trials(const YamlNode& list, Diagnostics& faults) {
+  std::vector<TrialSpec> trials;
+  std::set<std::string> ids;
+  for (const YamlNode& item : list.items()) {
+    YamlMap map(item, faults, "trial");
+    trials.push_back({map.required_text("id"), read_people(map.list("people"), {}, faults)});
+    if (!ids.insert(trials.back().id).second) faults.error(item.where(), "a second trial '" + trials.back().id + "'");
+    map.finish();
+  }
+  return trials;
+}
+
+/// One trial for every combination of variables, all with the same people.
+std::vector<TrialSpec> read_trials(const std::optional<YamlNode>& node, const std::vector<YamlNode>& people,
+                                   Diagnostics& faults) {
+  if (!node) return {{"1", read_people(people, {}, faults)}};
+  if (node->is_list()) {
+    if (!people.empty()) faults.error(people.front().where(), "people stand in every listed trial, not beside them");
+    return read_listed_trials(*node, faults);
+  }
+  YamlMap map(*node, faults, "trials");
+  std::vector<TrialSpec> trials;
+  std::set<std::string> ids;
+  const auto all = combinations(map.child("for_each"), faults);
+  const std::string pattern = map.required_text("id");
+  map.finish();
+  Diagnostics found;  // trials share their text: what is wrong in one is wrong in all, and said once
+  for (const Variables& variables : all) {
+    TrialSpec& trial = trials.emplace_back();
+    trial.id = substitute(pattern, variables, map.where("id"), found);
+    trial.people = read_people(people, variables, found);
+    if (!ids.insert(trial.id).second) found.error(map.where("id"), "a second trial '" + trial.id + "'");
+  }
+  std::set<std::string> told;
+  for (const Issue& issue : found.issues()) {
+    if (told.insert(to_string(issue)).second) faults.error(issue.where, issue.message);
+  }
+  return trials;
+}
+
+}  // namespace
+
+ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  const YamlNode root = YamlNode::load(file, overrides);
+  Diagnostics faults;
+  YamlMap map(root, faults, "script");
+  const int version = map.required_integer("pirsim_script");
+  if (map.has("pirsim_script") && version != format_version) {
+    faults.error(map.where("pirsim_script"), "format version " + std::to_string(version) +
+                                                 " isn't known: this pirsim reads version " +
+                                                 std::to_string(format_version));
+  }
+  ScriptSpec script;
+  script.name = map.text("name", file.stem().string());
+  script.directory = file.parent_path().string();
+  script.seed = map.unsigned_integer("seed", script.seed);
+  script.replicates = map.integer("replicates", script.replicates, {.min = 1, .max = 10000000});
+  script.sensing = read_sensing(map.child("sensing"), faults);
+  script.summary = read_summary(map.child("summary"), faults);
+  script.trials = read_trials(map.child("trials"), map.list("people"), faults);
+  map.finish();
+  faults.throw_if_errors();
+  script.warnings = faults.warnings();
+  return script;
+}
+
+}  // namespace pirsim::io

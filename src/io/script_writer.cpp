@@ -1,0 +1,101 @@
+#include <yaml-cpp/yaml.h>
+
+#include "pirsim/io/csv_writer.hpp"
+#include "pirsim/io/script_reader.hpp"
+
+namespace pirsim::io {
+namespace {
+
+YAML::Node number(double value) { return YAML::Node(csv_number(value)); }
+
+YAML::Node point(const Vec2& p) {
+  YAML::Node node;
+  node.push_back(number(p.x));
+  node.push_back(number(p.y));
+  node.SetStyle(YAML::EmitterStyle::Flow);
+  return node;
+}
+
+/// Adds an action's key and value to its entry.
+struct ActionWriter {
+  YAML::Node entry;
+
+  void operator()(const action::Wait& wait) { entry["wait_s"] = number(wait.duration_s); }
+  void operator()(const action::Appear& appear) {
+    entry["appear"]["at_xz_m"] = point(appear.point);
+    entry["appear"]["heading_deg"] = number(appear.heading_deg);
+  }
+  void operator()(const action::Enter& enter) { entry["enter"] = enter.entrance; }
+  void operator()(const action::Walk& walk) {
+    for (const Vec2& p : walk.points) entry["walk"]["to_xz_m"].push_back(point(p));
+  }
+  void operator()(const action::Sit& sit) { entry["sit"] = sit.seat; }
+  void operator()(const action::Work& work) {
+    YAML::Node node;
+    node["duration_s"] = number(work.duration_s);
+    node["arm_amplitude_m"] = number(work.arm_amplitude_m);
+    node["arm_period_s"] = number(work.arm_period_s);
+    node["tilt_choices_deg"] = YAML::Node(YAML::NodeType::Sequence);
+    for (const double tilt : work.tilt_choices_deg) node["tilt_choices_deg"].push_back(number(tilt));
+    node["tilt_choices_deg"].SetStyle(YAML::EmitterStyle::Flow);
+    node["tilt_every_s"] = number(work.tilt_every_s);
+    entry["work"] = node;
+  }
+  void operator()(const action::Rise&) { entry["rise"] = YAML::Node(YAML::NodeType::Null); }
+  void operator()(const action::Turn& turn) { entry["turn"]["heading_deg"] = number(turn.heading_deg); }
+  void operator()(const action::Leave& leave) { entry["leave"] = leave.entrance; }
+};
+
+YAML::Node write(const ScriptedAction& action) {
+  ActionWriter writer;
+  std::visit(writer, action.what);
+  if (action.at_s) writer.entry["at_s"] = number(*action.at_s);
+  if (!action.phase.empty()) writer.entry["phase"] = action.phase;
+  return writer.entry;
+}
+
+YAML::Node write(const PersonSpec& person) {
+  YAML::Node node;
+  node["id"] = person.id;
+  node["stature_m"] = number(person.stature_m);
+  node["mass_kg"] = number(person.mass_kg);
+  node["walking_speed_m_s"] = number(person.walking_speed_m_s);
+  node["seat_scatter"]["position_sd_m"] = number(person.seat_scatter.position_sd_m);
+  node["seat_scatter"]["heading_sd_deg"] = number(person.seat_scatter.heading_sd_deg);
+  node["actions"] = YAML::Node(YAML::NodeType::Sequence);
+  for (const ScriptedAction& action : person.actions) node["actions"].push_back(write(action));
+  return node;
+}
+
+YAML::Node write(const SensingSpec& sensing) {
+  YAML::Node node;
+  node["tick_rate_hz"] = sensing.tick_rate_hz;
+  node["window_s"] = number(static_cast<double>(sensing.ticks_per_window) / sensing.tick_rate_hz);
+  node["rays_per_zone"] = static_cast<int>(sensing.rays_per_zone);
+  node["change_per"] = sensing.change_per == ChangePer::cluster ? "cluster" : "beam";
+  return node;
+}
+
+}  // namespace
+
+std::string to_yaml(const ScriptSpec& script) {
+  YAML::Node root;
+  root["pirsim_script"] = 1;
+  root["name"] = script.name;
+  root["seed"] = script.seed;
+  root["replicates"] = script.replicates;
+  root["sensing"] = write(script.sensing);
+  root["summary"]["phases"] = script.summary.phases;
+  root["summary"]["reference"] = script.summary.reference_file;
+  for (const TrialSpec& trial : script.trials) {
+    YAML::Node node;
+    node["id"] = trial.id;
+    for (const PersonSpec& person : trial.people) node["people"].push_back(write(person));
+    root["trials"].push_back(node);
+  }
+  YAML::Emitter out;
+  out << root;
+  return std::string(out.c_str()) + '\n';
+}
+
+}  // namespace pirsim::io

@@ -1,0 +1,249 @@
+#include "pirsim/io/sensor_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/yaml_map.hpp"
+
+namespace pirsim::io {
+namespace {
+
+enum class Layout { diamond, square };
+enum class Polarity { checkerboard, same };
+enum class Missing { none, outer };
+
+constexpr NumberRange positive{.above = 0.0, .max = 1000.0};
+constexpr NumberRange on_plane{.min = -1000.0, .max = 1000.0};
+
+/// What the facets of one lens share.
+struct FacetLaw {
+  double plane_m = 1.0;
+  Layout layout = Layout::diamond;
+  double half_spacing_ratio = 0.0;  ///< of the distance from the sensor to the facet's centre on the plane
+  double half_diagonal_ratio = 0.0;
+  std::optional<double> range_m;
+  Polarity polarity = Polarity::checkerboard;
+};
+
+/// Centres and half-sizes of the four zones of one facet, counter-clockwise from the right (or upper right) one.
+struct Quad {
+  std::array<Vec2, 4> centres;
+  std::array<Vec2, 4> corner_offsets;  ///< from a zone's centre
+};
+
+Quad diamond(const Vec2& facet, double half_spacing_m, double half_diagonal_m) {
+  Quad quad;
+  const std::array<Vec2, 4> axes{Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1)};
+  for (std::size_t i = 0; i < 4; ++i) {
+    quad.centres[i] = facet + axes[i] * half_spacing_m;
+    quad.corner_offsets[i] = axes[i] * half_diagonal_m;
+  }
+  return quad;
+}
+Quad square(const Vec2& facet, double pitch_m, double side_m) {
+  Quad quad;
+  const std::array<Vec2, 4> diagonals{Vec2(1, 1), Vec2(-1, 1), Vec2(-1, -1), Vec2(1, -1)};
+  for (std::size_t i = 0; i < 4; ++i) {
+    quad.centres[i] = facet + diagonals[i] * (0.5 * pitch_m);
+    quad.corner_offsets[i] = diagonals[i] * (0.5 * side_m);
+  }
+  return quad;
+}
+
+/// Index of the zone that lies farthest from the lens axis.
+std::size_t outermost(const Quad& quad) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < 4; ++i) {
+    if (glm::dot(quad.centres[i], quad.centres[i]) > glm::dot(quad.centres[best], quad.centres[best])) best = i;
+  }
+  return best;
+}
+
+std::vector<ZoneSpec> zones_of(const Quad& quad, Polarity polarity, Missing missing) {
+  std::vector<ZoneSpec> zones;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (missing == Missing::outer && i == outermost(quad)) continue;
+    ZoneSpec zone;
+    for (std::size_t k = 0; k < 4; ++k) zone.corners[k] = quad.centres[i] + quad.corner_offsets[k];
+    zone.polarity = polarity == Polarity::checkerboard && i % 2 == 1 ? -1 : 1;
+    zones.push_back(zone);
+  }
+  return zones;
+}
+
+double read_range(YamlMap& map, const std::optional<double>& common) {
+  return common && !map.has("range_m") ? map.number("range_m", *common) : map.required_number("range_m", positive);
+}
+
+ClusterSpec read_facet(const YamlNode& node, const FacetLaw& law, Diagnostics& faults) {
+  YamlMap map(node, faults, "facet");
+  ClusterSpec cluster;
+  cluster.centre = {map.required_number("x_m", on_plane), map.required_number("y_m", on_plane)};
+  cluster.range_m = read_range(map, law.range_m);
+  cluster.lens_step = map.integer("lens_step", 1, {.min = 1, .max = 99});
+  const auto missing =
+      map.choice<Missing>("missing", Missing::none, {{"none", Missing::none}, {"outer", Missing::outer}});
+  Quad quad;
+  if (law.layout == Layout::diamond) {
+    const double distance = std::hypot(std::hypot(cluster.centre.x, cluster.centre.y), law.plane_m);
+    quad = diamond(cluster.centre, law.half_spacing_ratio * distance, law.half_diagonal_ratio * distance);
+  } else {
+    const double side = map.required_number("zone_side_m", positive);
+    quad = square(cluster.centre, map.required_number("pitch_m", positive), side);
+  }
+  cluster.zones = zones_of(quad, law.polarity, missing);
+  map.finish();
+  return cluster;
+}
+
+double cross(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
+
+/// All turns of the outline go the same way.
+bool is_convex(const std::array<Vec2, 4>& corners) {
+  int left = 0;
+  int right = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vec2 in = corners[(i + 1) % 4] - corners[i];
+    const Vec2 out = corners[(i + 2) % 4] - corners[(i + 1) % 4];
+    (cross(in, out) > 0.0 ? left : right) += cross(in, out) != 0.0 ? 1 : 0;
+  }
+  return left == 4 || right == 4;
+}
+
+ZoneSpec read_zone(const YamlNode& node, Diagnostics& faults) {
+  YamlMap map(node, faults, "zone");
+  ZoneSpec zone;
+  const std::vector<YamlNode> corners = map.required_list("corners_m");
+  zone.polarity = map.choice<int>("polarity", 1, {{"1", 1}, {"-1", -1}});
+  map.finish();
+  if (corners.size() != zone.corners.size()) {
+    faults.error(map.where("corners_m"), "zone: corners_m: expected 4 corners, got " + std::to_string(corners.size()));
+    return zone;
+  }
+  const std::size_t faults_before = faults.issues().size();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const std::vector<double> xy = read_numbers(corners[i], faults, "zone: corner", on_plane);
+    if (xy.size() == 2) {
+      zone.corners[i] = {xy[0], xy[1]};
+    } else if (corners[i].is_list()) {
+      faults.error(corners[i].where(), "zone: corner: expected [x, y]");
+    }
+  }
+  if (faults.issues().size() == faults_before && !is_convex(zone.corners)) {
+    faults.error(map.where("corners_m"), "zone: corners_m: expected the corners of a convex area in order round it");
+  }
+  return zone;
+}
+
+ClusterSpec read_cluster(const YamlNode& node, const std::optional<double>& range_m, Diagnostics& faults) {
+  YamlMap map(node, faults, "cluster");
+  ClusterSpec cluster;
+  cluster.range_m = read_range(map, range_m);
+  cluster.lens_step = map.integer("lens_step", 1, {.min = 1, .max = 99});
+  double corner_count = 0.0;
+  for (const YamlNode& zone : map.required_list("zones")) {
+    cluster.zones.push_back(read_zone(zone, faults));
+    for (const Vec2& corner : cluster.zones.back().corners) cluster.centre += corner;
+    corner_count += 4.0;
+  }
+  if (corner_count > 0.0) cluster.centre /= corner_count;
+  map.finish();
+  return cluster;
+}
+
+const std::vector<std::string>& sourced_keys() {
+  static const std::vector<std::string> keys{"plane_m",
+                                             "half_spacing_ratio",
+                                             "half_diagonal_ratio",
+                                             "range_m",
+                                             "lens_step",
+                                             "polarity",
+                                             "x_m",
+                                             "y_m",
+                                             "zone_side_m",
+                                             "pitch_m",
+                                             "missing",
+                                             "corners_m"};
+  return keys;
+}
+
+/// Adds the names of all keys in a tree that stand for a number with a source.
+void collect_sourced_keys(const YamlNode& node, std::vector<YamlKey>& found) {
+  const std::vector<YamlKey> keys = node.keys();
+  const std::vector<YamlNode> items = node.items();
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i < keys.size()) {
+      const std::string& name = keys[i].name;
+      if (name == "sources") continue;
+      const auto same = [&](const YamlKey& key) { return key.name == name; };
+      const bool sourced = std::find(sourced_keys().begin(), sourced_keys().end(), name) != sourced_keys().end();
+      if (sourced && std::none_of(found.begin(), found.end(), same)) found.push_back(keys[i]);
+    }
+    collect_sourced_keys(items[i], found);
+  }
+}
+
+/// Every number in the file has to say where it comes from.
+void check_sources(YamlMap& map, const YamlNode& root) {
+  Diagnostics& faults = map.faults();
+  YamlMap sources(map.required_child("sources"), faults, "sources");
+  for (const std::string& name : sourced_keys()) {
+    const std::string text = sources.text(name, "assumed:");
+    const std::string tag = text.substr(0, text.find(':'));
+    if (tag != "quoted" && tag != "measured" && tag != "inferred" && tag != "assumed") {
+      faults.error(sources.where(name),
+                   "sources: " + name + ": expected 'quoted:', 'measured:', 'inferred:' or 'assumed:' in front");
+    }
+  }
+  sources.finish();
+  if (!map.has("sources")) return;
+  std::vector<YamlKey> used;
+  collect_sourced_keys(root, used);
+  for (const YamlKey& key : used) {
+    if (!sources.has(key.name)) faults.error(key.where, "'" + key.name + "' has no entry under 'sources'");
+  }
+}
+
+FacetLaw read_law(YamlMap& map, double plane_m, const std::optional<double>& range_m) {
+  FacetLaw law;
+  law.plane_m = plane_m;
+  law.range_m = range_m;
+  if (!map.has("layout")) map.faults().error(map.where(), "sensor: 'layout' is missing");
+  law.layout = map.choice<Layout>("layout", Layout::square, {{"diamond", Layout::diamond}, {"square", Layout::square}});
+  if (law.layout == Layout::diamond) {
+    law.half_spacing_ratio = map.required_number("half_spacing_ratio", {.above = 0.0, .max = 1.0});
+    law.half_diagonal_ratio = map.required_number("half_diagonal_ratio", {.above = 0.0, .max = 1.0});
+  }
+  law.polarity = map.choice<Polarity>("polarity", Polarity::checkerboard,
+                                      {{"checkerboard", Polarity::checkerboard}, {"same", Polarity::same}});
+  return law;
+}
+
+}  // namespace
+
+SensorModelSpec read_sensor_model(const std::filesystem::path& path) {
+  const YamlNode root = YamlNode::load(path);
+  Diagnostics faults;
+  YamlMap map(root, faults, "sensor");
+  SensorModelSpec model;
+  model.id = map.required_text("id");
+  model.description = map.text("description");
+  model.plane_m = map.required_number("plane_m", positive);
+  const std::optional<double> range_m = map.optional_number("range_m", positive);
+  if (map.has("facets") == map.has("clusters")) {
+    faults.error(map.where(), "sensor: expected either 'facets' or 'clusters'");
+  }
+  if (map.has("clusters")) {
+    for (const YamlNode& node : map.required_list("clusters"))
+      model.clusters.push_back(read_cluster(node, range_m, faults));
+  } else if (map.has("facets")) {
+    const FacetLaw law = read_law(map, model.plane_m, range_m);
+    for (const YamlNode& node : map.required_list("facets")) model.clusters.push_back(read_facet(node, law, faults));
+  }
+  check_sources(map, root);
+  map.finish();
+  faults.throw_if_errors();
+  return model;
+}
+
+}  // namespace pirsim::io

@@ -1,0 +1,202 @@
+#include "io/yaml_node.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include "io/yaml_tree.hpp"
+
+namespace pirsim::io {
+namespace {
+
+constexpr std::size_t max_file_bytes = 16'000'000;
+
+std::string read_limited(const std::filesystem::path& path) {
+  const Where where{path.string(), 0, 0};
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw Error(ErrorCode::io, where, "is a directory");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    const bool exists = std::filesystem::exists(path, ignored);
+    throw Error(ErrorCode::io, where, exists ? "can't be read" : "no such file");
+  }
+  std::string text(max_file_bytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (file.bad()) throw Error(ErrorCode::io, where, "can't be read");
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > max_file_bytes) throw Error(ErrorCode::input, where, "larger than 16 MB");
+  return text;
+}
+
+std::string describe(const YamlTree& tree) {
+  switch (tree.kind) {
+    case YamlTree::Kind::null:
+      return "nothing";
+    case YamlTree::Kind::list:
+      return "a list";
+    case YamlTree::Kind::map:
+      return "a map";
+    case YamlTree::Kind::scalar:
+      break;
+  }
+  constexpr std::size_t enough = 60;
+  return "'" + (tree.scalar.size() > enough ? tree.scalar.substr(0, enough) + "..." : tree.scalar) + "'";
+}
+
+std::string fault_text(std::string_view what, const std::string& expected, const YamlTree& tree) {
+  return std::string(what) + ": expected " + expected + ", got " + describe(tree);
+}
+
+std::string expected_number(const NumberRange& range) {
+  std::ostringstream text;
+  text << "a finite number";
+  const char* joint = " ";
+  const auto bound = [&](const char* relation, double value) {
+    if (!std::isfinite(value)) return;
+    text << joint << relation << ' ' << value;
+    joint = " and ";
+  };
+  bound(">", range.above);
+  bound(">=", range.min);
+  bound("<=", range.max);
+  return text.str();
+}
+
+double fallback(const NumberRange& range) {
+  if (std::isfinite(range.min)) return range.min;
+  if (std::isfinite(range.max)) return range.max;
+  return std::isfinite(range.above) ? range.above + 1.0 : 0.0;
+}
+
+/// The whole of `text` as a number, with a leading plus allowed as YAML has it.
+template <typename Number>
+std::optional<Number> parse_number(std::string_view text) {
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  Number value{};
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (fault != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+YamlTreePtr substituted(const YamlTreePtr& tree, const Variables& variables, Diagnostics& faults) {
+  auto copy = std::make_shared<YamlTree>(*tree);
+  if (tree->kind == YamlTree::Kind::scalar) {
+    copy->scalar = substitute(tree->scalar, variables, tree->place.where(), faults);
+  }
+  for (YamlTreePtr& child : copy->children) child = substituted(child, variables, faults);
+  return copy;
+}
+
+void report_once(Diagnostics& faults, const Where& where, const std::string& message) {
+  const auto& issues = faults.issues();
+  const bool known = std::any_of(issues.begin(), issues.end(),
+                                 [&](const Issue& issue) { return issue.where == where && issue.message == message; });
+  if (!known) faults.error(where, message);
+}
+
+}  // namespace
+
+YamlNode YamlNode::load(const std::filesystem::path& path, std::span<const std::string> overrides) {
+  return parse(read_limited(path), path.string(), overrides);
+}
+YamlNode YamlNode::parse(std::string_view text, const std::string& name, std::span<const std::string> overrides) {
+  YamlTreePtr root = parse_yaml_tree(text, name);
+  for (const std::string& change : overrides) root = apply_override(root, change);
+  return YamlNode(std::move(root));
+}
+
+Where YamlNode::where() const { return tree_->place.where(); }
+bool YamlNode::is_null() const noexcept { return tree_->kind == YamlTree::Kind::null; }
+bool YamlNode::is_scalar() const noexcept { return tree_->kind == YamlTree::Kind::scalar; }
+bool YamlNode::is_list() const noexcept { return tree_->kind == YamlTree::Kind::list; }
+bool YamlNode::is_map() const noexcept { return tree_->kind == YamlTree::Kind::map; }
+
+std::vector<YamlNode> YamlNode::items() const {
+  std::vector<YamlNode> nodes;
+  nodes.reserve(tree_->children.size());
+  for (const YamlTreePtr& child : tree_->children) nodes.emplace_back(child);
+  return nodes;
+}
+std::vector<YamlKey> YamlNode::keys() const {
+  std::vector<YamlKey> keys;
+  keys.reserve(tree_->keys.size());
+  for (const YamlTreeKey& key : tree_->keys) keys.push_back({key.name, key.place.where()});
+  return keys;
+}
+
+double YamlNode::number(Diagnostics& faults, std::string_view what, NumberRange range) const {
+  const std::optional<double> value = is_scalar() ? parse_number<double>(tree_->scalar) : std::nullopt;
+  if (value && std::isfinite(*value) && *value > range.above && *value >= range.min && *value <= range.max) {
+    return *value;
+  }
+  faults.error(where(), fault_text(what, expected_number(range), *tree_));
+  return fallback(range);
+}
+long long YamlNode::integer(Diagnostics& faults, std::string_view what, IntegerRange range) const {
+  const std::optional<long long> value = is_scalar() ? parse_number<long long>(tree_->scalar) : std::nullopt;
+  if (value && *value >= range.min && *value <= range.max) return *value;
+  std::string limits;
+  if (range.min > IntegerRange{}.min) limits += " from " + std::to_string(range.min);
+  if (range.max < IntegerRange{}.max) limits += " up to " + std::to_string(range.max);
+  faults.error(where(), fault_text(what, "a whole number" + limits, *tree_));
+  return range.min;
+}
+std::string YamlNode::text(Diagnostics& faults, std::string_view what) const {
+  if (is_scalar()) return tree_->scalar;
+  faults.error(where(), fault_text(what, "a text", *tree_));
+  return {};
+}
+bool YamlNode::flag(Diagnostics& faults, std::string_view what) const {
+  if (is_scalar() && tree_->scalar == "true") return true;
+  if (is_scalar() && tree_->scalar == "false") return false;
+  faults.error(where(), fault_text(what, "true or false", *tree_));
+  return false;
+}
+std::optional<std::size_t> YamlNode::choice(Diagnostics& faults, std::string_view what,
+                                            const std::vector<std::string>& names) const {
+  const auto found = is_scalar() ? std::find(names.begin(), names.end(), tree_->scalar) : names.end();
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  const std::string hint = is_scalar() ? did_you_mean(tree_->scalar, names) : std::string{};
+  faults.error(where(), fault_text(what, "one of " + list, *tree_) + hint);
+  return std::nullopt;
+}
+
+YamlNode YamlNode::with(const Variables& variables, Diagnostics& faults) const {
+  return YamlNode(substituted(tree_, variables, faults));
+}
+
+std::string substitute(std::string_view text, const Variables& variables, const Where& where, Diagnostics& faults) {
+  std::string result;
+  while (true) {
+    const std::size_t begin = text.find("${");
+    if (begin == std::string_view::npos) return result.append(text);
+    if (begin > 0 && text[begin - 1] == '$') {  // escaped: drop one dollar sign
+      result.append(text.substr(0, begin)).append("{");
+      text.remove_prefix(begin + 2);
+      continue;
+    }
+    result.append(text.substr(0, begin));
+    const std::size_t end = text.find('}', begin);
+    if (end == std::string_view::npos) {
+      report_once(faults, where, "'${' without its '}'");
+      return result.append(text.substr(begin));
+    }
+    const std::string_view name = text.substr(begin + 2, end - begin - 2);
+    if (const auto found = variables.find(name); found != variables.end()) {
+      result += found->second;
+    } else {
+      std::vector<std::string> known;
+      for (const auto& [key, value] : variables) known.push_back(key);
+      report_once(faults, where, "'${" + std::string(name) + "}' is not defined" + did_you_mean(name, known));
+      result.append(text.substr(begin, end - begin + 1));
+    }
+    text.remove_prefix(end + 1);
+  }
+}
+
+}  // namespace pirsim::io

@@ -1,0 +1,81 @@
+// YAML as an immutable tree in which every node knows its place. The only door to yaml-cpp.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pirsim/core/error.hpp"
+
+namespace pirsim::io {
+
+/// Which finite numbers are accepted: `{.above = 0.0, .max = 3.0}` is 0 < x <= 3.
+struct NumberRange {
+  double above = -std::numeric_limits<double>::infinity();
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+};
+struct IntegerRange {
+  long long min = std::numeric_limits<int>::min();
+  long long max = std::numeric_limits<int>::max();
+};
+
+/// Values of `${name}`.
+using Variables = std::map<std::string, std::string, std::less<>>;
+
+struct YamlKey {
+  std::string name;
+  Where where;
+};
+struct YamlTree;  // the storage, see yaml_tree.hpp
+
+/// A node of a YAML document; cheap to copy, keeps what it needs alive.
+class YamlNode {
+ public:
+  explicit YamlNode(std::shared_ptr<const YamlTree> tree) : tree_(std::move(tree)) {}
+
+  /// Reads a file with one document, at most 16 MB, 1e6 nodes after aliases are expanded, 64 levels deep; a map that
+  /// has a key twice is refused. Each override `a.b.0.c=value` (value: YAML) then replaces or adds one node; list
+  /// items are addressed by number from 0. Throws Error: io (no file), input (content), usage (an override).
+  [[nodiscard]] static YamlNode load(const std::filesystem::path& path, std::span<const std::string> overrides = {});
+  /// The same from memory; `name` stands in messages.
+  [[nodiscard]] static YamlNode parse(std::string_view text, const std::string& name,
+                                      std::span<const std::string> overrides = {});
+
+  [[nodiscard]] Where where() const;
+  [[nodiscard]] bool is_null() const noexcept;
+  [[nodiscard]] bool is_scalar() const noexcept;
+  [[nodiscard]] bool is_list() const noexcept;
+  [[nodiscard]] bool is_map() const noexcept;
+
+  [[nodiscard]] std::vector<YamlNode> items() const;  ///< of a list; values of a map in file order; else empty
+  [[nodiscard]] std::vector<YamlKey> keys() const;    ///< of a map, matching items(); else empty
+
+  // A scalar's value. A fault is reported as "<what>: expected ..." and gives a value within the range, or "".
+  [[nodiscard]] double number(Diagnostics& faults, std::string_view what, NumberRange range = {}) const;
+  [[nodiscard]] long long integer(Diagnostics& faults, std::string_view what, IntegerRange range = {}) const;
+  [[nodiscard]] std::string text(Diagnostics& faults, std::string_view what) const;
+  [[nodiscard]] bool flag(Diagnostics& faults, std::string_view what) const;  ///< true or false
+  /// Index into `names`; none after a fault.
+  [[nodiscard]] std::optional<std::size_t> choice(Diagnostics& faults, std::string_view what,
+                                                  const std::vector<std::string>& names) const;
+
+  /// The same tree with every `${name}` in its scalars (not its keys) replaced; `$${` stands for a plain `${`. A
+  /// name that isn't in `variables` is reported once a place and left as it is.
+  [[nodiscard]] YamlNode with(const Variables& variables, Diagnostics& faults) const;
+
+ private:
+  std::shared_ptr<const YamlTree> tree_;
+};
+
+/// `text` with every `${name}` replaced; see YamlNode::with.
+[[nodiscard]] std::string substitute(std::string_view text, const Variables& variables, const Where& where,
+                                     Diagnostics& faults);
+
+}  // namespace pirsim::io

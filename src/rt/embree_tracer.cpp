@@ -1,0 +1,175 @@
+// One Embree instance per solid, moved with it; each zone asks for any solid before the room and stops at the first.
+// Embree leaves out the solids that a ray can't meet; whether it does meet one of the rest is decided by
+// entry_distance() with the ray as it is in the world (docs/adr/0001-shared-ray-tests.md).
+#include <algorithm>
+#include <array>
+#include <glm/geometric.hpp>
+#include <vector>
+
+#include "rt/room_impl.hpp"
+#include "rt/tracers.hpp"
+#include "rt/view_cones.hpp"
+
+namespace pirsim::rt {
+namespace {
+
+/// Columns of the map from the cube [-1, 1]^3 to a box around a solid.
+using Transform = std::array<Vec3f, 4>;
+
+/// Room around a solid in which rounding of Embree's transformed rays and boxes gets lost, metres: at coordinates
+/// up to a kilometre single precision is good to 6e-5 m.
+constexpr float padding = 1e-3F;
+constexpr float relative_padding = 1e-4F;
+
+Transform around(const Vec3f& centre, const glm::mat3& axes, const Vec3f& half_extents) noexcept {
+  const Vec3f reach = half_extents * (1.0F + relative_padding) + padding;
+  return {axes[0] * reach.x, axes[1] * reach.y, axes[2] * reach.z, centre};
+}
+
+/// A right-handed frame with the given unit vector as its Y.
+glm::mat3 frame_along(const Vec3f& y) noexcept {
+  const Vec3f helper = std::abs(y.x) < 0.5F ? Vec3f(1.0F, 0.0F, 0.0F) : Vec3f(0.0F, 0.0F, 1.0F);
+  const Vec3f z = glm::normalize(glm::cross(helper, y));
+  return {glm::cross(y, z), y, z};
+}
+
+Transform cube_transform(const PosedShape& shape) noexcept {
+  if (const auto* sphere = std::get_if<PosedSphere>(&shape)) {
+    return around(sphere->centre, glm::mat3(1.0F), Vec3f(sphere->radius));
+  }
+  if (const auto* capsule = std::get_if<PosedCapsule>(&shape)) {
+    const Vec3f half_axis = (capsule->b - capsule->a) * 0.5F;
+    const float half_length = glm::length(half_axis);
+    const glm::mat3 axes = half_length > 0.0F ? frame_along(half_axis / half_length) : glm::mat3(1.0F);
+    const Vec3f half_extents(capsule->radius, half_length + capsule->radius, capsule->radius);
+    return around((capsule->a + capsule->b) * 0.5F, axes, half_extents);
+  }
+  const auto& box = std::get<PosedBox>(shape);
+  return around(box.centre, box.axes, box.half_extents);
+}
+
+struct AnySolidQuery : QueryContext {
+  Ray ray;  ///< in the world
+  float range = 0.0F;
+  std::span<const PosedShape> solids;
+};
+
+void bound_cube(const RTCBoundsFunctionArguments* arguments) {
+  *arguments->bounds_o = {-1.0F, -1.0F, -1.0F, 0.0F, 1.0F, 1.0F, 1.0F, 0.0F};
+}
+
+void meet_solid(const RTCOccludedFunctionNArguments* arguments) {
+  if (arguments->valid[0] == 0) return;
+  const auto& query = *static_cast<const AnySolidQuery*>(arguments->context);
+  const PosedShape& solid = query.solids[query.instID[0]];
+  if (!entry_distance(query.ray, solid, query.range)) return;
+  RTCRayN_tfar(arguments->ray, arguments->N, 0) = -unlimited;  // Embree's sign for "occluded"
+}
+
+class EmbreeTracer final : public Tracer {
+ public:
+  explicit EmbreeTracer(const TracerSetup& setup)
+      : device_(setup.room->impl().device.get()),
+        bundle_(*setup.clipped),
+        cones_(view_cones(bundle_)),
+        cube_(make_scene(device_, RTC_SCENE_FLAG_ROBUST)),
+        scene_(make_scene(device_, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC)) {
+    const GeometryHandle cube = make_geometry(device_, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(cube.get(), 1);
+    rtcSetGeometryBoundsFunction(cube.get(), bound_cube, nullptr);
+    rtcSetGeometryOccludedFunction(cube.get(), meet_solid);
+    rtcCommitGeometry(cube.get());
+    rtcAttachGeometry(cube_.get(), cube.get());
+    commit(device_, cube_.get());
+  }
+
+  void trace(std::span<const PosedShape> solids, std::span<std::uint8_t> zones) override {
+    std::fill(zones.begin(), zones.end(), std::uint8_t{0});
+    if (solids.empty()) return;
+    move_instances(solids);
+    balls_.clear();
+    for (const PosedShape& solid : solids) balls_.push_back(ball_around(solid));
+
+    AnySolidQuery query;
+    initialise(query);
+    query.solids = solids;
+    for (std::size_t cluster = 0; cluster < bundle_.n_clusters(); ++cluster) {
+      const ViewCone& cone = cones_[cluster];
+      if (std::none_of(balls_.begin(), balls_.end(), [&](const Ball& ball) { return may_touch(cone, ball); })) continue;
+      for (std::size_t zone = bundle_.cluster_zones_begin[cluster]; zone < bundle_.cluster_zones_begin[cluster + 1];
+           ++zone) {
+        zones[zone] = sees_solid(query, zone);
+      }
+    }
+  }
+
+ private:
+  struct Instance {
+    GeometryHandle geometry;
+    Transform transform{};
+    bool is_enabled = false;
+  };
+
+  void add_instance() {
+    Instance instance{make_geometry(device_, RTC_GEOMETRY_TYPE_INSTANCE), {}, false};
+    rtcSetGeometryInstancedScene(instance.geometry.get(), cube_.get());
+    rtcSetGeometryTimeStepCount(instance.geometry.get(), 1);
+    rtcCommitGeometry(instance.geometry.get());
+    rtcAttachGeometryByID(scene_.get(), instance.geometry.get(), static_cast<unsigned int>(instances_.size()));
+    rtcDisableGeometry(instance.geometry.get());
+    check(device_, "add an instance");
+    instances_.push_back(std::move(instance));
+  }
+
+  /// Instance i follows solid i; instances that are left over are switched off and kept.
+  void move_instances(std::span<const PosedShape> solids) {
+    while (instances_.size() < solids.size()) add_instance();
+    bool has_changed = false;
+    for (std::size_t i = 0; i < instances_.size(); ++i) {
+      const bool is_wanted = i < solids.size();
+      has_changed |= set_enabled(instances_[i], is_wanted);
+      if (is_wanted) has_changed |= set_transform(instances_[i], cube_transform(solids[i]));
+    }
+    if (has_changed) commit(device_, scene_.get());
+  }
+
+  static bool set_enabled(Instance& instance, bool is_wanted) noexcept {
+    if (instance.is_enabled == is_wanted) return false;
+    instance.is_enabled = is_wanted;
+    is_wanted ? rtcEnableGeometry(instance.geometry.get()) : rtcDisableGeometry(instance.geometry.get());
+    return true;
+  }
+
+  static bool set_transform(Instance& instance, const Transform& transform) noexcept {
+    if (instance.transform == transform) return false;
+    instance.transform = transform;
+    rtcSetGeometryTransform(instance.geometry.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, transform.data());
+    rtcCommitGeometry(instance.geometry.get());
+    return true;
+  }
+
+  [[nodiscard]] bool sees_solid(AnySolidQuery& query, std::size_t zone) const noexcept {
+    for (std::uint32_t i = bundle_.zone_rays_begin[zone]; i < bundle_.zone_rays_begin[zone + 1]; ++i) {
+      query.ray = bundle_.rays[i];
+      query.range = bundle_.range[i];
+      RTCRay ray = embree_ray(query.ray, query.range);
+      any_hit(scene_.get(), query, ray);
+      if (ray.tfar < 0.0F) return true;
+    }
+    return false;
+  }
+
+  RTCDevice device_;
+  const RayBundle& bundle_;
+  std::vector<ViewCone> cones_;  ///< (n_clusters)
+  SceneHandle cube_;             ///< the one primitive that every instance shows: a cube around its solid
+  SceneHandle scene_;
+  std::vector<Instance> instances_;
+  std::vector<Ball> balls_;  ///< (n_solids)
+};
+
+}  // namespace
+
+std::unique_ptr<Tracer> make_embree_tracer(const TracerSetup& setup) { return std::make_unique<EmbreeTracer>(setup); }
+
+}  // namespace pirsim::rt

@@ -1,0 +1,91 @@
+// The plain way, which the others are measured against: at each tick a new scene of all triangles and all solids,
+// and for every ray the nearest triangle and the nearest solid within the rated range. No ray is cut, no zone is
+// left early.
+#include <algorithm>
+#include <vector>
+
+#include "rt/room_impl.hpp"
+#include "rt/tracers.hpp"
+
+namespace pirsim::rt {
+namespace {
+
+/// A query that remembers the nearest solid. Solids don't shorten Embree's ray: the nearest triangle is then found
+/// by the very same query as in the room alone, and the two distances are compared here, exactly.
+struct NearestSolidQuery : QueryContext {
+  Ray ray;
+  float range = 0.0F;
+  float nearest_solid = unlimited;
+};
+
+void bound_solid(const RTCBoundsFunctionArguments* arguments) {
+  constexpr float padding = 1e-3F;  // metres; far more than the ray tests' rounding
+  const auto [lower, upper] = bounds(*static_cast<const PosedShape*>(arguments->geometryUserPtr));
+  *arguments->bounds_o = {lower.x - padding, lower.y - padding, lower.z - padding, 0.0F,
+                          upper.x + padding, upper.y + padding, upper.z + padding, 0.0F};
+}
+
+void meet_solid(const RTCIntersectFunctionNArguments* arguments) {
+  if (arguments->valid[0] == 0) return;
+  auto& query = *static_cast<NearestSolidQuery*>(arguments->context);
+  const auto& solid = *static_cast<const PosedShape*>(arguments->geometryUserPtr);
+  if (const auto distance = entry_distance(query.ray, solid, query.range)) {
+    query.nearest_solid = std::min(query.nearest_solid, *distance);
+  }
+}
+
+class ReferenceTracer final : public Tracer {
+ public:
+  explicit ReferenceTracer(const TracerSetup& setup) : room_(setup.room->impl()), rated_(*setup.rated) {}
+
+  void trace(std::span<const PosedShape> solids, std::span<std::uint8_t> zones) override {
+    const SceneHandle scene = build(solids);
+    std::fill(zones.begin(), zones.end(), std::uint8_t{0});
+    for (std::size_t zone = 0; zone < rated_.n_zones(); ++zone) {
+      for (std::uint32_t i = rated_.zone_rays_begin[zone]; i < rated_.zone_rays_begin[zone + 1]; ++i) {
+        if (sees_solid(scene.get(), rated_.rays[i], rated_.range[i])) zones[zone] = 1;
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] SceneHandle build(std::span<const PosedShape> solids) const {
+    RTCDevice device = room_.device.get();
+    SceneHandle scene = make_scene(device, room_scene_flags);
+    room_.attach_to(scene.get());
+    for (std::uint32_t i = 0; i < solids.size(); ++i) {
+      const GeometryHandle geometry = make_geometry(device, RTC_GEOMETRY_TYPE_USER);
+      rtcSetGeometryUserPrimitiveCount(geometry.get(), 1);
+      rtcSetGeometryUserData(geometry.get(), const_cast<PosedShape*>(&solids[i]));
+      rtcSetGeometryBoundsFunction(geometry.get(), bound_solid, nullptr);
+      rtcSetGeometryIntersectFunction(geometry.get(), meet_solid);
+      rtcCommitGeometry(geometry.get());
+      rtcAttachGeometryByID(scene.get(), geometry.get(), room_.n_meshes() + i);
+    }
+    check(device, "attach a solid");
+    commit(device, scene.get());
+    return scene;
+  }
+
+  [[nodiscard]] static bool sees_solid(RTCScene scene, const Ray& ray, float range) noexcept {
+    NearestSolidQuery query;
+    initialise(query);
+    query.ray = ray;
+    query.range = range;
+    RTCRayHit hit = embree_ray_hit(ray, range);
+    closest_hit(scene, query, hit);
+    const bool meets_room = hit.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+    return query.nearest_solid < (meets_room ? std::min(hit.ray.tfar, range) : range);
+  }
+
+  const Room::Impl& room_;
+  const RayBundle& rated_;
+};
+
+}  // namespace
+
+std::unique_ptr<Tracer> make_reference_tracer(const TracerSetup& setup) {
+  return std::make_unique<ReferenceTracer>(setup);
+}
+
+}  // namespace pirsim::rt

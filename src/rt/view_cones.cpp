@@ -1,0 +1,85 @@
+#include "rt/view_cones.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+namespace pirsim::rt {
+namespace {
+
+/// Widens cones (radians) and balls (metres, and as a share of the distance) far beyond single precision's rounding.
+constexpr double angle_margin = 1e-4;
+constexpr float distance_margin = 1e-3F;
+constexpr float relative_margin = 1e-5F;
+
+ViewCone touches_everything() noexcept {
+  ViewCone cone;
+  cone.length = std::numeric_limits<float>::infinity();
+  cone.sine = 1.0F;
+  cone.cosine = 0.0F;
+  cone.axis = Vec3f(0.0F);
+  return cone;
+}
+
+ViewCone cone_around(std::span<const Ray> rays, std::span<const float> range) {
+  if (rays.empty()) return ViewCone{};
+  const bool one_origin =
+      std::all_of(rays.begin(), rays.end(), [&](const Ray& ray) { return ray.origin == rays.front().origin; });
+  Vec3 sum(0.0);
+  for (const Ray& ray : rays) sum += Vec3(ray.direction);
+  if (!one_origin || !(glm::length(sum) > 1e-6)) return touches_everything();
+
+  const Vec3 axis = glm::normalize(sum);
+  double widest = 0.0;
+  for (const Ray& ray : rays) {
+    const Vec3 direction(ray.direction);
+    widest = std::max(widest, std::atan2(glm::length(glm::cross(axis, direction)), glm::dot(axis, direction)));
+  }
+  const double half_angle = widest + angle_margin;
+  // The test below holds for cones up to a half-space.
+  if (half_angle > 1.5) return touches_everything();
+
+  ViewCone cone;
+  cone.apex = rays.front().origin;
+  cone.axis = Vec3f(axis);
+  cone.cosine = static_cast<float>(std::cos(half_angle));
+  cone.sine = static_cast<float>(std::sin(half_angle));
+  cone.length = *std::max_element(range.begin(), range.end());
+  return cone;
+}
+
+}  // namespace
+
+Ball ball_around(const PosedShape& shape) noexcept {
+  if (const auto* sphere = std::get_if<PosedSphere>(&shape)) return {sphere->centre, sphere->radius};
+  if (const auto* capsule = std::get_if<PosedCapsule>(&shape)) {
+    return {(capsule->a + capsule->b) * 0.5F, glm::length(capsule->b - capsule->a) * 0.5F + capsule->radius};
+  }
+  const auto& box = std::get<PosedBox>(shape);
+  return {box.centre, glm::length(box.half_extents)};
+}
+
+std::vector<ViewCone> view_cones(const RayBundle& bundle) {
+  std::vector<ViewCone> cones;
+  cones.reserve(bundle.n_clusters());
+  for (std::size_t cluster = 0; cluster < bundle.n_clusters(); ++cluster) {
+    const std::size_t begin = bundle.zone_rays_begin[bundle.cluster_zones_begin[cluster]];
+    const std::size_t end = bundle.zone_rays_begin[bundle.cluster_zones_begin[cluster + 1]];
+    cones.push_back(cone_around(std::span(bundle.rays).subspan(begin, end - begin),
+                                std::span(bundle.range).subspan(begin, end - begin)));
+  }
+  return cones;
+}
+
+bool may_touch(const ViewCone& cone, const Ball& ball) noexcept {
+  const Vec3f offset = ball.centre - cone.apex;
+  const float along = glm::dot(offset, cone.axis);
+  const float across = glm::length(offset - cone.axis * along);
+  const float reach = ball.radius + distance_margin + relative_margin * (std::abs(along) + across);
+  // Projection of the offset on the cone's outward normal: at most the distance to the cone, equal beside it.
+  const bool outside = across * cone.cosine - along * cone.sine > reach;
+  return !outside && along - reach <= cone.length;
+}
+
+}  // namespace pirsim::rt

@@ -1,0 +1,252 @@
+#include "pirsim/sim/actor.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pirsim/core/error.hpp"
+#include "pirsim/core/units.hpp"
+
+namespace pirsim {
+namespace {
+
+using body::Stage;
+
+constexpr double look_ahead_m = 1.2;        ///< assumed: how far ahead a walker minds others (tried 0.8-2)
+constexpr double gap_m = 0.1;               ///< assumed: kept between two people beside their radii
+constexpr double braking_m_s2 = 1.5;        ///< assumed, as Motion's acceleration
+constexpr double patience_s = 0.5;          ///< assumed: wait before looking for another way
+constexpr double patience_step_s = 0.7;     ///< more for every later person, so that two don't dodge alike
+constexpr double search_every_s = 0.2;      ///< how often one who found no way looks again
+constexpr double give_up_s = 60.0;          ///< then people block each other for good
+
+std::int64_t ticks(double seconds, const Model& model) {
+  return std::llround(seconds * model.script().sensing.tick_rate_hz);
+}
+
+bool leads_elsewhere(const ScriptedAction& action) {
+  return !action.at_s && (std::holds_alternative<action::Sit>(action.what) ||
+                          std::holds_alternative<action::Walk>(action.what));
+}
+
+}  // namespace
+
+Actor::Actor(const Model& model, std::uint32_t run, std::uint32_t person)
+    : person_(&model.trial_of(run).people[person]),
+      index_(person),
+      tilt_stream_({model.script().seed, run, person, Purpose::spine_tilt}),
+      scatter_stream_({model.script().seed, run, person, Purpose::seat_scatter}) {}
+
+std::string_view Actor::phase() const noexcept {
+  if (!done() && begun_ && !action().phase.empty()) return action().phase;
+  if (!present()) return "outside";
+  if (!done() && begun_ && std::holds_alternative<action::Work>(action().what)) return "working";
+  return body::name(motion_->stage());
+}
+
+Presence Actor::presence() const { return {motion_->position(), person().humanoid.clearance_radius_m()}; }
+
+void Actor::advance(const Model& model, std::int64_t tick, std::span<const Presence> others) {
+  while (!done()) {
+    if (!begun_) {
+      if (action().at_s && tick < ticks(*action().at_s, model)) break;
+      begun_ = true;
+      began_ = tick;
+      plan(model);
+    }
+    while (!errands_.empty() && carry_out(errands_.front(), model, others) == Progress::done) errands_.pop_front();
+    if (const auto* work_action = std::get_if<action::Work>(&action().what)) work(model, *work_action, tick);
+    if (!interrupted(model, tick) && !(errands_.empty() && time_is_up(model, tick))) break;
+    errands_.clear();
+    route_.reset();
+    if (motion_ && std::holds_alternative<action::Work>(action().what)) motion_->rest();
+    ++action_;
+    begun_ = false;
+  }
+  if (!motion_) return;
+  keep_distance(model, others);
+  motion_->advance();
+}
+
+bool Actor::interrupted(const Model& model, std::int64_t tick) const {
+  const auto& actions = person().spec.actions;
+  return action_ + 1 < actions.size() && actions[action_ + 1].at_s && tick >= ticks(*actions[action_ + 1].at_s, model);
+}
+
+bool Actor::time_is_up(const Model& model, std::int64_t tick) const {
+  if (const auto* wait = std::get_if<action::Wait>(&action().what)) return tick - began_ >= ticks(wait->duration_s, model);
+  if (const auto* work = std::get_if<action::Work>(&action().what)) return tick - began_ >= ticks(work->duration_s, model);
+  return true;
+}
+
+void Actor::plan(const Model& model) {
+  const auto entrance = [&](const std::string& id) -> const EntranceSpec& {
+    return *std::ranges::find(model.scene().entrances, id, &EntranceSpec::id);
+  };
+  const auto outside = [](const EntranceSpec& e) { return floor_point(e.world_from_entrance * Vec3(0, 0, e.outside_m)); };
+  const auto& actions = person().spec.actions;
+  if (const auto* appear = std::get_if<action::Appear>(&action().what)) {
+    errands_.push_back(ComeIn{appear->point, radians(appear->heading_deg)});
+  } else if (const auto* enter = std::get_if<action::Enter>(&action().what)) {
+    const EntranceSpec& door = entrance(enter->entrance);
+    errands_.push_back(ComeIn{outside(door), heading_of(door.world_from_entrance)});
+    if (action_ + 1 == actions.size() || !leads_elsewhere(actions[action_ + 1])) {
+      const double inside_m = 2.0 * person().humanoid.clearance_radius_m();
+      errands_.push_back(WalkTo{floor_point(door.world_from_entrance * Vec3(0, 0, -inside_m))});
+    }
+  } else if (const auto* walk = std::get_if<action::Walk>(&action().what)) {
+    for (const Vec2& point : walk->points) errands_.push_back(WalkTo{point});
+  } else if (std::holds_alternative<action::Sit>(action().what)) {
+    plan_sitting();
+  } else if (std::holds_alternative<action::Rise>(action().what)) {
+    errands_.push_back(StandUp{});
+  } else if (const auto* turn = std::get_if<action::Turn>(&action().what)) {
+    errands_.push_back(FaceTo{radians(turn->heading_deg)});
+  } else if (const auto* leave = std::get_if<action::Leave>(&action().what)) {
+    errands_.push_back(WalkTo{outside(entrance(leave->entrance))});
+    errands_.push_back(Vanish{});
+  } else if (const auto* work_action = std::get_if<action::Work>(&action().what)) {
+    if (!motion_ || motion_->stage() != Stage::seated) {
+      throw Error(ErrorCode::infeasible, action().where, "'" + person().spec.id + "' is not seated when work begins");
+    }
+    motion_->work({work_action->arm_amplitude_m, work_action->arm_period_s});
+  }
+}
+
+void Actor::plan_sitting() {
+  const SeatPlan& seat = person().seats[action_];
+  const SeatScatterSpec& scatter = person().spec.seat_scatter;
+  body::SeatPlace place = seat.place;
+  // Drawn whether used or not, so that a scatter of zero leaves every other draw where it was.
+  const double dx = scatter_stream_.normal(), dz = scatter_stream_.normal(), turn = scatter_stream_.normal();
+  place.world_from_seat.origin += scatter.position_sd_m * Vec3(dx, 0, dz);
+  if (scatter.heading_sd_deg > 0.0) {
+    place.world_from_seat.rotation =
+        rotation_from_heading(radians(scatter.heading_sd_deg * turn)) * place.world_from_seat.rotation;
+  }
+  const double heading = heading_of(place.world_from_seat);
+  errands_.push_back(WalkTo{floor_point(place.world_from_seat.origin) - seat.stand_back_m * direction_of(heading)});
+  errands_.push_back(FaceTo{heading});
+  errands_.push_back(SitOn{place});
+}
+
+void Actor::work(const Model& model, const action::Work& work, std::int64_t tick) {
+  const std::int64_t since = tick - began_;
+  if (work.tilt_choices_deg.empty() || since >= ticks(work.duration_s, model)) return;
+  if (since % std::max<std::int64_t>(1, ticks(work.tilt_every_s, model)) != 0) return;
+  const auto choice = tilt_stream_.index(static_cast<std::uint32_t>(work.tilt_choices_deg.size()));
+  motion_->tilt_spine(radians(work.tilt_choices_deg[choice]));
+}
+
+Actor::Progress Actor::carry_out(const Errand& errand, const Model& model, std::span<const Presence> others) {
+  if (const auto* come = std::get_if<ComeIn>(&errand)) {
+    const double radius = person().humanoid.clearance_radius_m();
+    for (const Presence& other : others) {
+      if (glm::distance(other.position, come->point) < other.radius_m + radius + gap_m) return Progress::going_on;
+    }
+    motion_.emplace(person().humanoid, come->point, come->heading, model.scene().floor.height_m(), model.tick_s());
+    return Progress::done;
+  }
+  if (std::holds_alternative<Vanish>(errand)) {
+    motion_.reset();
+    return Progress::done;
+  }
+  if (const auto* walk = std::get_if<WalkTo>(&errand)) return walk_to(walk->target, model, others);
+  if (const auto* seat = std::get_if<SitOn>(&errand)) {
+    if (motion_->stage() == Stage::seated && motion_->settled()) return Progress::done;
+    if (motion_->stage() == Stage::standing && motion_->settled()) motion_->sit_down(seat->place);
+    return Progress::going_on;
+  }
+  if (become_standing(others) == Progress::going_on) return Progress::going_on;
+  if (const auto* face = std::get_if<FaceTo>(&errand)) {
+    if (std::abs(std::remainder(face->heading - motion_->heading(), 2.0 * pi)) < 1e-9) return Progress::done;
+    motion_->turn_to(face->heading);
+    return Progress::going_on;
+  }
+  return Progress::done;  // StandUp
+}
+
+Actor::Progress Actor::become_standing(std::span<const Presence> others) {
+  if (motion_->stage() == Stage::standing) return motion_->settled() ? Progress::done : Progress::going_on;
+  const bool on_seat = motion_->stage() == Stage::seated || motion_->stage() == Stage::sitting_down;
+  if (on_seat && free_to_stand(others)) motion_->rise();
+  // A walk or turn that an earlier action began and that isn't wanted any more; our own ends by itself.
+  if (!on_seat && !route_ && motion_->stage() == Stage::walking) motion_->stop();
+  return Progress::going_on;
+}
+
+bool Actor::free_to_stand(std::span<const Presence> others) const {
+  const double radius = person().humanoid.clearance_radius_m();
+  const Vec2 behind = motion_->position() - radius * direction_of(motion_->heading());
+  return std::ranges::none_of(others, [&](const Presence& other) {
+    return glm::distance(other.position, behind) < other.radius_m + radius - gap_m;
+  });
+}
+
+Actor::Progress Actor::walk_to(const Vec2& target, const Model& model, std::span<const Presence> others) {
+  if (route_ && motion_->stage() == Stage::walking) return Progress::going_on;
+  if (become_standing(others) == Progress::going_on) return Progress::going_on;
+  constexpr double arrived_m = 1e-6;
+  if (glm::distance(motion_->position(), target) < arrived_m) {
+    route_.reset();
+    return Progress::done;
+  }
+  if (!route_ && blocked_ticks_ % std::max<std::int64_t>(1, ticks(search_every_s, model)) != 0) {
+    wait_for_others(model);
+    return Progress::going_on;
+  }
+  if (!route_) {
+    std::vector<body::Disc> discs;
+    for (const Presence& other : others) discs.push_back({other.position, other.radius_m + gap_m});
+    const auto way = person().floor->find_way(motion_->position(), target, discs);
+    if (!way) {
+      wait_for_others(model);
+      return Progress::going_on;
+    }
+    route_.emplace(*way);
+  }
+  constexpr double facing_rad = 1e-6;
+  const double off = std::remainder(route_->heading(0.0) - motion_->heading(), 2.0 * pi);
+  if (std::abs(off) > facing_rad) {
+    motion_->turn_to(route_->heading(0.0));
+  } else {
+    motion_->walk(*route_);
+  }
+  return Progress::going_on;
+}
+
+void Actor::keep_distance(const Model& model, std::span<const Presence> others) {
+  if (motion_->stage() != Stage::walking) return;
+  const double radius = person().humanoid.clearance_radius_m();
+  double free_m = look_ahead_m;
+  for (const Presence& other : others) {
+    const Vec2 to_other = other.position - motion_->position();
+    const Vec2 ahead = direction_of(motion_->heading());
+    const double along = glm::dot(to_other, ahead);
+    const double aside = std::abs(to_other.x * ahead.y - to_other.y * ahead.x);
+    const double reach = radius + other.radius_m;
+    if (along > 0.0 && aside < reach) {
+      free_m = std::min(free_m, along - std::sqrt(reach * reach - aside * aside) - gap_m);
+    }
+  }
+  const double speed = person().humanoid.walking_speed_m_s();
+  const double safe = std::sqrt(2.0 * braking_m_s2 * std::max(0.0, free_m));
+  motion_->limit_speed(std::min(speed, safe));
+  if (free_m > gap_m) {
+    blocked_ticks_ = 0;
+    return;
+  }
+  wait_for_others(model);
+  if (blocked_ticks_ % ticks(patience_s + patience_step_s * index_, model) == 0) {
+    motion_->stop();  // stands, then looks for a way round the others
+    route_.reset();
+  }
+}
+
+void Actor::wait_for_others(const Model& model) {
+  if (++blocked_ticks_ <= ticks(give_up_s, model)) return;
+  throw Error(ErrorCode::infeasible, action().where, "'" + person().spec.id + "' can't get past the others");
+}
+
+}  // namespace pirsim

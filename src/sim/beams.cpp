@@ -1,0 +1,29 @@
+#include "pirsim/sim/beams.hpp"
+
+namespace pirsim::sim {
+
+std::vector<BeamSegment> beams_of(const Model& model, const State& state, std::size_t sensor) {
+  const RayBundle& bundle = model.clipped_rays();
+  const auto first_ray = [&](std::uint32_t cluster) {
+    return bundle.zone_rays_begin[bundle.cluster_zones_begin[cluster]];
+  };
+  std::vector<PosedShape> solids;
+  for (const Actor& actor : state.actors()) append_solids(actor, solids);
+  std::vector<BeamSegment> beams;
+  for (auto i = first_ray(bundle.sensor_clusters_begin[sensor]); i < first_ray(bundle.sensor_clusters_begin[sensor + 1]);
+       ++i) {
+    const Ray& ray = bundle.rays[i];
+    float reach = bundle.range[i];
+    bool sees_person = false;
+    for (const PosedShape& solid : solids) {
+      if (const auto distance = entry_distance(ray, solid, reach)) {
+        reach = *distance;
+        sees_person = true;
+      }
+    }
+    beams.push_back({Vec3(ray.origin), Vec3(ray.origin + reach * ray.direction), sees_person});
+  }
+  return beams;
+}
+
+}  // namespace pirsim::sim

@@ -1,0 +1,13 @@
+// What can be said about a script's actions without moving anybody.
+#pragma once
+
+#include "pirsim/schema/scene_spec.hpp"
+#include "pirsim/schema/script_spec.hpp"
+
+namespace pirsim::sim {
+
+/// Throws Error(input) with all faults: unknown seats and entrances (with the nearest name), actions before the
+/// person is there, work without a seat, times that run backwards.
+void check_actions(const SceneSpec& scene, const ScriptSpec& script);
+
+}  // namespace pirsim::sim

@@ -1,0 +1,124 @@
+#include "sim/plan_people.hpp"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "sim/check_actions.hpp"
+
+namespace pirsim::sim {
+namespace {
+
+/// Height of the table top in front of a seat, or none: what lies under a point half an arm's length ahead.
+std::optional<double> table_height(const SeatSpec& seat, double floor_y, const rt::Room& room) {
+  constexpr double ahead_m = 0.45;                     // assumed: between the elbows and the hands (tried 0.3-0.6)
+  constexpr double from_m = 1.3, lowest_m = 0.5, highest_m = 1.1;  // what counts as a table, above the floor
+  const Vec3 above = seat.world_from_seat * Vec3(0, 0, -ahead_m);
+  const Ray down{Vec3f(static_cast<float>(above.x), static_cast<float>(floor_y + from_m), static_cast<float>(above.z)),
+                 Vec3f(0, -1, 0)};
+  const auto hit = room.first_hit(down, static_cast<float>(from_m));
+  if (!hit) return std::nullopt;
+  const double height = from_m - static_cast<double>(hit->distance);
+  if (height < lowest_m || height > highest_m) return std::nullopt;
+  return floor_y + height;
+}
+
+/// Walks through one person's actions in thought: where are they, where must they get to?
+class Rehearsal {
+ public:
+  Rehearsal(const SceneSpec& scene, const rt::Room& room, PersonModel& person, Diagnostics& diagnostics)
+      : scene_(scene), room_(room), person_(person), diagnostics_(diagnostics) {}
+
+  void run() {
+    person_.seats.resize(person_.spec.actions.size());
+    for (std::size_t i = 0; i < person_.spec.actions.size(); ++i) {
+      const ScriptedAction& action = person_.spec.actions[i];
+      if (const auto* appear = std::get_if<action::Appear>(&action.what)) at_ = appear->point;
+      if (const auto* enter = std::get_if<action::Enter>(&action.what)) at_ = outside(enter->entrance);
+      if (const auto* sit = std::get_if<action::Sit>(&action.what)) person_.seats[i] = sit_down(sit->seat, action.where);
+      if (const auto* leave = std::get_if<action::Leave>(&action.what)) {
+        go_to(outside(leave->entrance), "entrance '" + leave->entrance + "'", action.where);
+      }
+      if (const auto* walk = std::get_if<action::Walk>(&action.what)) {
+        for (const Vec2& point : walk->points) go_to(point, "point " + text(point), action.where);
+      }
+    }
+  }
+
+ private:
+  static std::string text(const Vec2& p) {
+    const auto round = [](double v) { return std::to_string(v).substr(0, std::to_string(v).find('.') + 3); };
+    return "(" + round(p.x) + ", " + round(p.y) + ")";
+  }
+
+  Vec2 outside(const std::string& id) const {
+    const EntranceSpec& entrance = *std::ranges::find(scene_.entrances, id, &EntranceSpec::id);
+    return floor_point(entrance.world_from_entrance * Vec3(0, 0, entrance.outside_m));
+  }
+
+  void go_to(const Vec2& target, const std::string& what, const Where& where) {
+    if (!person_.floor->find_way(at_, target)) {
+      diagnostics_.error(where, what + " can't be reached by '" + person_.spec.id + "' from " + text(at_) +
+                                    ": no way that keeps " +
+                                    std::to_string(person_.humanoid.clearance_radius_m()).substr(0, 4) +
+                                    " m clear of everything solid");
+    }
+    at_ = target;
+  }
+
+  /// Stands as near to the free fall into the seat as the furniture allows, at most a metre farther back.
+  SeatPlan sit_down(const std::string& id, const Where& where) {
+    const SeatSpec& seat = *std::ranges::find(scene_.seats, id, &SeatSpec::id);
+    const double floor_y = scene_.floor.height_m();
+    SeatPlan plan{{seat.world_from_seat, floor_y, table_height(seat, floor_y, room_)}, 0.0};
+    const double fall_back = body::fall_back_m(person_.humanoid, plan.place);
+    const Vec2 pelvis = floor_point(seat.world_from_seat.origin);
+    const Vec2 facing = direction_of(heading_of(seat.world_from_seat));
+    constexpr double step_m = 0.02, farthest_m = 1.0;
+    for (double back = -fall_back; back <= farthest_m; back += step_m) {
+      const Vec2 stand = pelvis - back * facing;
+      if (!person_.floor->walkable(stand) || !person_.floor->find_way(at_, stand)) continue;
+      plan.stand_back_m = back;
+      at_ = stand;
+      return plan;
+    }
+    diagnostics_.error(where, "seat '" + id + "' of " + scene_.name + " can't be reached by '" + person_.spec.id +
+                                  "': nowhere to stand before it within a metre that has a way from " + text(at_));
+    return plan;
+  }
+
+  const SceneSpec& scene_;
+  const rt::Room& room_;
+  PersonModel& person_;
+  Diagnostics& diagnostics_;
+  Vec2 at_{0.0};
+};
+
+}  // namespace
+
+std::vector<TrialModel> plan_people(const SceneSpec& scene, const ScriptSpec& script, const rt::Room& room) {
+  check_actions(scene, script);
+  std::map<double, std::shared_ptr<const body::WalkableFloor>> floors;  // by clearance
+  std::vector<TrialModel> trials;
+  Diagnostics diagnostics;
+  for (const TrialSpec& trial : script.trials) {
+    TrialModel& planned = trials.emplace_back();
+    planned.id = trial.id;
+    for (const PersonSpec& spec : trial.people) {
+      body::Humanoid humanoid(spec);
+      auto& floor = floors[humanoid.clearance_radius_m()];
+      if (!floor) {
+        floor = std::make_shared<const body::WalkableFloor>(scene.floor, scene.entrances, scene.meshes,
+                                                            humanoid.clearance_radius_m());
+      }
+      PersonModel& person = planned.people.emplace_back(PersonModel{spec, humanoid, floor, {}});
+      Rehearsal(scene, room, person, diagnostics).run();
+    }
+  }
+  diagnostics.throw_if_errors(ErrorCode::infeasible);
+  return trials;
+}
+
+}  // namespace pirsim::sim

@@ -1,0 +1,15 @@
+// Resolves what the people of a script do against the scene, and finds out whether they can do it.
+#pragma once
+
+#include <vector>
+
+#include "pirsim/rt/room.hpp"
+#include "pirsim/sim/model.hpp"
+
+namespace pirsim::sim {
+
+/// Throws Error(input) with every unknown name and impossible order at once, then Error(infeasible) for the first
+/// places that can't be reached.
+[[nodiscard]] std::vector<TrialModel> plan_people(const SceneSpec& scene, const ScriptSpec& script, const rt::Room& room);
+
+}  // namespace pirsim::sim

@@ -1,0 +1,26 @@
+#include "pirsim/sim/study.hpp"
+
+#include "pirsim/core/parallel.hpp"
+#include "pirsim/sim/state.hpp"
+
+namespace pirsim {
+
+RunResult run_once(const Model& model, std::uint32_t run, Record record) {
+  RunResult result{run, model.replicate_of(run), model.trial_of(run).id, {}, {}};
+  State state(model, run);
+  while (!state.finished()) {
+    const bool window_ended = step_tick(model, state);
+    if (record == Record::samples_and_zones) result.zones.push_back(state.zones());
+    if (window_ended) result.samples.push_back(state.sample());
+  }
+  return result;
+}
+
+void run_study(const Model& model, const StudyOptions& options, const std::function<void(const RunResult&)>& consume) {
+  ordered_parallel<RunResult>(
+      model.n_runs(), options.threads,
+      [&](std::size_t run) { return run_once(model, static_cast<std::uint32_t>(run), options.record); },
+      [&](RunResult& result) { consume(result); });
+}
+
+}  // namespace pirsim

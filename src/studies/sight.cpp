@@ -1,0 +1,106 @@
+#include "pirsim/studies/sight.hpp"
+
+#include <algorithm>
+
+#include "pirsim/body/motion.hpp"
+
+namespace pirsim::studies {
+namespace {
+
+/// Traces single postures and tells which sensors have an active zone.
+class Onlooker {
+ public:
+  Onlooker(const Model& model, const body::Humanoid& humanoid)
+      : rays_(model.rated_rays()), humanoid_(humanoid), tracer_(model.make_tracer()), zones_(rays_.n_zones()) {}
+
+  /// (n_sensors) whether the sensor sees the posture.
+  std::vector<bool> sensors_that_see(const body::Posture& posture) {
+    std::vector<PosedShape> solids;
+    for (std::size_t i = 0; i < body::n_parts; ++i) solids.push_back(place(humanoid_.solids()[i], posture[i]));
+    tracer_->trace(solids, zones_);
+    std::vector<bool> seen;
+    for (std::size_t sensor = 0; sensor < rays_.n_sensors(); ++sensor) {
+      const auto first = rays_.cluster_zones_begin[rays_.sensor_clusters_begin[sensor]];
+      const auto last = rays_.cluster_zones_begin[rays_.sensor_clusters_begin[sensor + 1]];
+      seen.push_back(std::any_of(zones_.begin() + first, zones_.begin() + last, [](auto zone) { return zone != 0; }));
+    }
+    return seen;
+  }
+
+ private:
+  const RayBundle& rays_;
+  const body::Humanoid& humanoid_;
+  std::unique_ptr<rt::Tracer> tracer_;
+  ZoneActivity zones_;
+};
+
+body::Posture seated_posture(const Model& model, const body::Humanoid& humanoid, const SeatSpec& seat) {
+  const body::SeatPlace place{seat.world_from_seat, model.scene().floor.height_m(), std::nullopt};
+  const double heading = heading_of(seat.world_from_seat);
+  const Vec2 stand = floor_point(seat.world_from_seat.origin) + body::fall_back_m(humanoid, place) * direction_of(heading);
+  body::Motion motion(humanoid, stand, heading, place.floor_height_m, model.tick_s());
+  motion.sit_down(place);
+  while (!(motion.stage() == body::Stage::seated && motion.settled())) motion.advance();
+  return motion.posture();
+}
+
+void count_rays(const Model& model, std::size_t sensor, SensorSight& sight) {
+  const RayBundle& rated = model.rated_rays();
+  const RayBundle& clipped = model.clipped_rays();
+  const auto ray_of_cluster = [&](std::uint32_t cluster) {
+    return rated.zone_rays_begin[rated.cluster_zones_begin[cluster]];
+  };
+  const auto first = ray_of_cluster(rated.sensor_clusters_begin[sensor]);
+  const auto last = ray_of_cluster(rated.sensor_clusters_begin[sensor + 1]);
+  sight.rays = last - first;
+  for (auto ray = first; ray < last; ++ray) {
+    if (clipped.range[ray] < rated.range[ray]) ++sight.rays_cut;
+    sight.longest_m = std::max(sight.longest_m, static_cast<double>(clipped.range[ray]));
+  }
+}
+
+}  // namespace
+
+SightReport look_around(const Model& model) {
+  const SceneSpec& scene = model.scene();
+  const auto& people = model.trials().front().people;
+  const body::Humanoid humanoid(people.empty() ? PersonSpec{} : people.front().spec);
+  const body::WalkableFloor floor(scene.floor, {}, scene.meshes, humanoid.clearance_radius_m());
+  Onlooker onlooker(model, humanoid);
+
+  SightReport report;
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+    count_rays(model, i, report.sensors.emplace_back(SensorSight{.sensor = scene.sensors[i].id}));
+  }
+  const Vec2 lower = scene.floor.lower(), upper = scene.floor.upper();
+  for (double z = lower.y + report.spacing_m / 2; z < upper.y; z += report.spacing_m) {
+    for (double x = lower.x + report.spacing_m / 2; x < upper.x; x += report.spacing_m) {
+      if (!scene.floor.contains({x, z}) || !floor.walkable({x, z})) continue;
+      const body::Motion standing(humanoid, {x, z}, 0.0, scene.floor.height_m(), model.tick_s());
+      const std::vector<bool> seen = onlooker.sensors_that_see(standing.posture());
+      ++report.places;
+      if (std::ranges::find(seen, true) != seen.end()) ++report.places_seen_by_any;
+      for (std::size_t i = 0; i < seen.size(); ++i) report.sensors[i].places += seen[i] ? 1 : 0;
+    }
+  }
+  for (const SeatSpec& seat : scene.seats) {
+    const std::vector<bool> seen = onlooker.sensors_that_see(seated_posture(model, humanoid, seat));
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      if (seen[i]) report.sensors[i].seats.push_back(seat.id);
+    }
+  }
+  return report;
+}
+
+std::vector<Issue> warnings(const SightReport& report, const std::string& scene) {
+  std::vector<Issue> issues;
+  for (const SensorSight& sight : report.sensors) {
+    if (!sight.sees_nothing()) continue;
+    issues.push_back({Severity::warning, {scene, 0, 0},
+                      "sensor '" + sight.sensor + "' can see NOBODY: no zone reaches a standing or seated person " +
+                          "anywhere on the floor area (does it look at a wall, along -Z of its node?)"});
+  }
+  return issues;
+}
+
+}  // namespace pirsim::studies

@@ -1,0 +1,189 @@
+#!/usr/bin/env python3
+"""End-to-end tests of the real binary: exit codes, messages, bytes.
+
+Usage: run_e2e.py PIRSIM DATA_DIR [unittest arguments]. Needs python3 only.
+"""
+import csv
+import io
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PIRSIM = DATA = None
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def pirsim(*args, code=0, **kwargs):
+    result = subprocess.run([PIRSIM, *map(str, args)], capture_output=True, text=True, timeout=300, **kwargs)
+    assert result.returncode == code, f"{args}: exit code {result.returncode}, expected {code}\n{result.stderr}"
+    return result
+
+
+def study(*args, scene="meeting_room.gltf", script="studyA.yaml", **kwargs):
+    return pirsim("--scene", DATA / "rooms" / scene, "--script", DATA / "studies" / script, *args, **kwargs)
+
+
+def rows(text):
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+def write(folder, name, text):
+    path = pathlib.Path(folder) / name
+    path.write_text(text)
+    return path
+
+
+class CommandLine(unittest.TestCase):
+    def test_help_starts_a_user_off_and_version_names_embree(self):
+        self.assertIn("--scene", pirsim("--help").stdout)
+        self.assertIn("Embree", pirsim("--version").stdout)
+
+    def test_missing_and_unknown_options_are_usage_errors(self):
+        self.assertIn("--scene", pirsim("--script", "x.yaml", code=2).stderr)
+        pirsim("--no-such-option", code=2)
+        self.assertIn("did you mean", study("--tracer", "embre", code=2).stderr)
+
+    def test_a_file_that_is_not_there_is_an_io_error_that_names_it(self):
+        result = pirsim("--scene", "nowhere.gltf", "--script", DATA / "studies" / "studyA.yaml", code=4)
+        self.assertIn("nowhere.gltf", result.stderr)
+
+    def test_overrides_are_checked_like_the_script(self):
+        self.assertIn("--set", study("--set", "sensing.rays_per_zone=7", code=3).stderr)
+        self.assertIn("did you mean", study("--set", "sensing.tick_rate=7", code=3).stderr)
+
+    def test_print_config_reads_back_to_itself(self):
+        with tempfile.TemporaryDirectory() as folder:
+            first = study("--print-config").stdout
+            path = write(folder, "resolved.yaml", first)
+            second = pirsim("--scene", "unused", "--script", path, "--print-config").stdout
+        self.assertEqual(first, second)
+
+
+class Hostile(unittest.TestCase):
+    def test_every_hostile_script_is_refused_with_its_place(self):
+        files = sorted((HERE / "hostile" / "scripts").glob("*.yaml"))
+        self.assertGreaterEqual(len(files), 10)
+        for file in files:
+            with self.subTest(file.name):
+                _, _, code, fragment = file.read_text().splitlines()[0].split(" ", 3)
+                result = pirsim("--scene", DATA / "rooms" / "meeting_room.gltf", "--script", file, code=int(code))
+                self.assertEqual(result.stdout, "")
+                self.assertIn(str(file), result.stderr)
+                self.assertIn(fragment, result.stderr)
+
+    def test_an_unwritable_output_is_an_io_error_and_leaves_nothing(self):
+        with tempfile.TemporaryDirectory() as folder:
+            target = pathlib.Path(folder) / "no" / "such" / "folder.csv"
+            self.assertIn("folder.csv", study("--replicates", 1, "-o", target, code=4).stderr)
+            self.assertEqual(list(pathlib.Path(folder).iterdir()), [])
+
+
+class MainJob(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.text = study("--replicates", 2, "-q").stdout
+        cls.rows = rows(cls.text)
+
+    def test_stdout_is_pure_csv_in_the_order_of_replicates_and_trials(self):
+        self.assertEqual(self.text.splitlines()[0], "replicate,trial,time_s,phase,people,PIR1,PIR2,PIR3,PIR4,PIR5")
+        order = list(dict.fromkeys((row["replicate"], row["trial"]) for row in self.rows))
+        self.assertEqual(order, [(str(r), f"S{s}") for r in (1, 2) for s in range(1, 11)])
+
+    def test_every_trial_counts_180_s_of_work_and_begins_and_ends_outside(self):
+        for replicate in "12":
+            for seat in range(1, 11):
+                trial = [r for r in self.rows if r["replicate"] == replicate and r["trial"] == f"S{seat}"]
+                self.assertEqual(sum(r["phase"] == "working" for r in trial), 180)
+                self.assertEqual([int(float(r["time_s"])) for r in trial], list(range(1, len(trial) + 1)))
+                self.assertEqual(trial[-1]["people"], "0")
+                self.assertTrue(all(r["people"] == "1" for r in trial if r["phase"] == "working"))
+
+    def test_the_bytes_do_not_depend_on_the_number_of_threads(self):
+        for threads in (1, 2, 7):
+            self.assertEqual(study("--replicates", 2, "-q", "--threads", threads).stdout, self.text)
+
+    def test_another_seed_gives_other_bits_but_the_same_walk(self):
+        other = rows(study("--replicates", 1, "-q", "--seed", 5).stdout)
+        mine = [r for r in self.rows if r["replicate"] == "1"]
+        self.assertEqual([(r["time_s"], r["phase"]) for r in other], [(r["time_s"], r["phase"]) for r in mine])
+        self.assertNotEqual(other, mine)
+
+    def test_more_replicates_do_not_change_the_first_ones(self):
+        one = study("--replicates", 1, "-q").stdout
+        self.assertTrue(self.text.startswith(one))
+
+    def test_the_reference_tracer_gives_the_same_bytes(self):
+        args = ("--replicates", 1, "-q", "--set", "trials.for_each.seat=[S1, S6]", "--set", "sensing.tick_rate_hz=10")
+        self.assertEqual(study(*args, "--tracer", "reference").stdout, study(*args).stdout)
+
+    def test_files_and_manifest_agree_with_stdout_and_the_zones_with_the_bits(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            study("--replicates", 1, "-o", folder / "rows.csv", "--zones", folder / "zones.csv", "--summary",
+                  folder / "summary.csv", "--set", "trials.for_each.seat=[S3]")
+            text = (folder / "rows.csv").read_text()
+            manifest = json.loads((folder / "rows.csv.json").read_text())
+            self.assertEqual(manifest["rows"], len(rows(text)))
+            self.assertEqual(sorted(p.name for p in folder.iterdir()),
+                             ["rows.csv", "rows.csv.json", "summary.csv", "zones.csv"])
+            self.assertEqual(self.bits_from_zones((folder / "zones.csv").read_text()),
+                             [[row[f"PIR{i}"] for i in range(1, 6)] for row in rows(text)])
+
+    @staticmethod
+    def bits_from_zones(text, ticks_per_window=50, zones_per_cluster=4):
+        """The sensors' bits computed anew from zone activity, as the paper's section 2.1 defines motion."""
+        last, bits = {}, {}
+        for row in rows(text):
+            zones, sensor = row["zones"], row["sensor"]
+            clusters = ["1" in zones[i:i + zones_per_cluster] for i in range(0, len(zones), zones_per_cluster)]
+            window = (int(row["tick"]) - 1) // ticks_per_window
+            changed = clusters != last.get(sensor, [False] * len(clusters))
+            key = (window, sensor)
+            bits[key] = "1" if changed or bits.get(key) == "1" else "0"
+            last[sensor] = clusters
+        windows = max(window for window, _ in bits) + 1
+        return [[bits[w, f"PIR{i}"] for i in range(1, 6)] for w in range(windows)]
+
+
+class Looking(unittest.TestCase):
+    def test_check_reports_what_sensors_see_and_warns_of_a_blind_one(self):
+        files = ("--scene", DATA / "rooms" / "meeting_room.gltf", "--script", DATA / "studies" / "studyA.yaml")
+        result = pirsim("check", *files)
+        self.assertIn("PIR5", result.stdout)
+        self.assertNotIn("NOBODY", result.stderr)
+        with tempfile.TemporaryDirectory() as folder:
+            scene = json.loads((DATA / "rooms" / "meeting_room.gltf").read_text())
+            node = next(n for n in scene["nodes"] if n.get("extras", {}).get("pirsim", {}).get("id") == "PIR3")
+            node["rotation"] = [0, 1, 0, 0]  # looks into the wall behind it
+            blind = write(folder, "blind.gltf", json.dumps(scene))
+            result = pirsim("check", "--scene", blind, *files[2:], "--sensors", DATA / "sensors")
+        self.assertIn("sensor 'PIR3' can see NOBODY", result.stderr)
+
+    def test_preview_writes_a_png_of_the_asked_size(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "p.png"
+            pirsim("preview", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
+                   DATA / "studies" / "studyA.yaml", "-o", out, "--width", 160, "--height", 90, "--time", 20)
+            header = out.read_bytes()[:24]
+        self.assertEqual(header[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual((int.from_bytes(header[16:20], "big"), int.from_bytes(header[20:24], "big")), (160, 90))
+
+    def test_export_writes_thirteen_parts_with_their_primitives(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "run.gltf"
+            pirsim("export", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
+                   DATA / "studies" / "studyA.yaml", "-o", out, "--trial", "S3")
+            gltf = json.loads(out.read_text())
+        parts = [n["extras"]["pirsim"] for n in gltf["nodes"]
+                 if n.get("extras", {}).get("pirsim", {}).get("type") == "body_part"]
+        kinds = sorted(part["primitive"] for part in parts)
+        self.assertEqual(kinds, ["box"] * 3 + ["capsule"] * 9 + ["sphere"])
+
+
+if __name__ == "__main__":
+    PIRSIM = pathlib.Path(sys.argv.pop(1)).resolve()
+    DATA = pathlib.Path(sys.argv.pop(1)).resolve()
+    unittest.main(verbosity=2)

@@ -1,0 +1,80 @@
+#include "pirsim/io/png.hpp"
+
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "pirsim/core/error.hpp"
+#include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
+
+using namespace pirsim;
+using pirsim::io::write_png;
+
+namespace {
+
+std::string content(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<std::uint8_t>(bytes[at + i]);
+  return value;
+}
+
+/// CRC-32 as the PNG specification's appendix defines it.
+std::uint32_t crc(const std::string& bytes) {
+  std::uint32_t value = 0xFFFFFFFFU;
+  for (const char c : bytes) {
+    value ^= static_cast<std::uint8_t>(c);
+    for (int bit = 0; bit < 8; ++bit) value = (value & 1U) != 0 ? 0xEDB88320U ^ (value >> 1) : value >> 1;
+  }
+  return ~value;
+}
+
+}  // namespace
+
+TEST_CASE("a picture is a PNG of its size in 8-bit RGB with sound chunks from header to end", "[png]") {
+  const TemporaryFolder folder;
+  std::vector<std::uint8_t> rgb(5 * 3 * 3);
+  for (std::size_t i = 0; i < rgb.size(); ++i) rgb[i] = static_cast<std::uint8_t>(i * 37);
+  write_png(folder.path() / "a.png", 5, 3, rgb);
+  const std::string bytes = content(folder.path() / "a.png");
+  REQUIRE(bytes.substr(0, 8) == "\x89PNG\r\n\x1a\n");
+  std::vector<std::string> chunks;
+  for (std::size_t at = 8; at < bytes.size();) {
+    const std::uint32_t size = big_endian(bytes, at);
+    chunks.push_back(bytes.substr(at + 4, 4));
+    REQUIRE(crc(bytes.substr(at + 4, 4 + size)) == big_endian(bytes, at + 8 + size));
+    at += 12 + size;
+  }
+  CHECK(chunks == std::vector<std::string>{"IHDR", "IDAT", "IEND"});
+  CHECK(big_endian(bytes, 16) == 5);
+  CHECK(big_endian(bytes, 20) == 3);
+  CHECK(bytes[24] == 8);
+  CHECK(bytes[25] == 2);
+}
+
+TEST_CASE("a picture of the wrong size is refused and nothing is written", "[png]") {
+  const TemporaryFolder folder;
+  const std::vector<std::uint8_t> rgb(12);
+  CHECK_THROWS_AS(write_png(folder.path() / "a.png", 2, 3, rgb), Error);
+  CHECK_THROWS_AS(write_png(folder.path() / "a.png", 0, 0, {}), Error);
+  CHECK_THROWS_AS(write_png(folder.path() / "a.png", -2, -2, rgb), Error);
+  CHECK_THROWS_AS(write_png(folder.path() / "a.png", 1 << 20, 1 << 20, rgb), Error);
+  CHECK(std::filesystem::is_empty(folder.path()));
+}
+
+TEST_CASE("a picture that can't be written is an io error", "[png]") {
+  const TemporaryFolder folder;
+  const std::vector<std::uint8_t> rgb(12);
+  try {
+    write_png(folder.path() / "none" / "a.png", 2, 2, rgb);
+    FAIL("no error");
+  } catch (const Error& error) {
+    CHECK(error.code() == ErrorCode::io);
+  }
+}

@@ -1,0 +1,194 @@
+#include "pirsim/io/sensor_reader.hpp"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <sstream>
+
+#include "pirsim/core/error.hpp"
+#include "support/catch.hpp"
+
+using namespace pirsim;
+
+namespace {
+
+const std::filesystem::path sensors = std::filesystem::path(PIRSIM_DATA_DIR) / "sensors";
+
+struct PlaneZone {
+  Vec2 centre;
+  Vec2 half_diagonal;
+  double range_m = 0.0;
+};
+
+/// An independent reading of the EKMC1604111's drawing.
+std::vector<PlaneZone> second_reading() {
+  std::ifstream file(sensors / "ekmc1604111_zones.csv");
+  std::vector<PlaneZone> zones;
+  for (std::string line; std::getline(file, line);) {
+    if (line.empty() || std::isdigit(static_cast<unsigned char>(line[0])) == 0) continue;
+    std::vector<double> fields;
+    std::istringstream stream(line);
+    for (std::string field; std::getline(stream, field, ',');) fields.push_back(std::stod(field));
+    zones.push_back({{fields.at(3), fields.at(4)}, {fields.at(5), fields.at(6)}, fields.at(2)});
+  }
+  return zones;
+}
+
+Vec2 centre_of(const ZoneSpec& zone) {
+  return (zone.corners[0] + zone.corners[1] + zone.corners[2] + zone.corners[3]) / 4.0;
+}
+
+/// Reads a sensor model from a file with this text; tests run in parallel, so the file has a name of its own.
+SensorModelSpec model_of(const std::string& text) {
+  static int count = 0;
+  const std::string name = "pirsim_" + std::to_string(getpid()) + "_" + std::to_string(++count) + ".yaml";
+  const std::filesystem::path path = std::filesystem::temp_directory_path() / name;
+  std::ofstream(path) << text;
+  const std::shared_ptr<void> cleanup(nullptr, [&](void*) { std::filesystem::remove(path); });
+  return io::read_sensor_model(path);
+}
+/// All faults, one a line, with the file called f.
+std::string refusal_of(const std::string& text) {
+  std::string message;
+  try {
+    (void)model_of(text);
+  } catch (const Error& error) {
+    for (Issue issue : error.issues()) {
+      issue.where.file = "f";
+      if (!message.empty()) message += '\n';
+      message += to_string(issue);
+    }
+  }
+  return message;
+}
+
+}  // namespace
+
+TEST_CASE("the 68 zones of EKMC1604111 agree with a second reading of the drawing", "[sensor]") {
+  const SensorModelSpec model = io::read_sensor_model(sensors / "EKMC1604111.yaml");
+  std::vector<PlaneZone> expected = second_reading();
+  REQUIRE(expected.size() == 68);
+  CHECK(model.plane_m == 5.0);
+  double squares = 0.0;
+  double worst_size = 0.0;
+  for (const ClusterSpec& cluster : model.clusters) {
+    for (const ZoneSpec& zone : cluster.zones) {
+      const Vec2 centre = centre_of(zone);
+      const auto distance = [&](const PlaneZone& other) { return glm::length(other.centre - centre); };
+      const auto nearest = std::min_element(expected.begin(), expected.end(),
+                                            [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+      REQUIRE(nearest != expected.end());
+      CHECK(distance(*nearest) < 0.015);
+      CHECK(nearest->range_m == cluster.range_m);
+      squares += distance(*nearest) * distance(*nearest);
+      worst_size = std::max(worst_size, std::abs(zone.corners[0].x - centre.x - nearest->half_diagonal.x));
+      worst_size = std::max(worst_size, std::abs(zone.corners[1].y - centre.y - nearest->half_diagonal.y));
+      expected.erase(nearest);  // one to one
+    }
+  }
+  CHECK(expected.empty());
+  CHECK(std::sqrt(squares / 68.0) < 0.010);
+  CHECK(worst_size < 0.005);
+}
+
+TEST_CASE("the pattern of EKMC1604111 has the printed edges and steps", "[sensor]") {
+  const SensorModelSpec model = io::read_sensor_model(sensors / "EKMC1604111.yaml");
+  Vec2 lower(1e9);
+  Vec2 upper(-1e9);
+  std::map<double, std::size_t> zones_of_range;
+  for (const ClusterSpec& cluster : model.clusters) {
+    zones_of_range[cluster.range_m] += cluster.zones.size();
+    CHECK(cluster.range_m == (cluster.lens_step == 1 ? 12.0 : cluster.lens_step == 2 ? 6.0 : 3.0));
+    for (const ZoneSpec& zone : cluster.zones) {
+      for (const Vec2& corner : zone.corners) {
+        lower = glm::min(lower, corner);
+        upper = glm::max(upper, corner);
+      }
+    }
+  }
+  const auto projected_deg = [&](double x) { return std::atan(x / model.plane_m) * 180.0 / M_PI; };
+  CHECK(std::abs(projected_deg(upper.y) - 6.6) < 0.2);
+  CHECK(std::abs(projected_deg(lower.y) - -48.9) < 0.2);
+  CHECK(std::abs(projected_deg(upper.x) - 56.1) < 0.2);
+  CHECK(std::abs(projected_deg(lower.x) - -56.1) < 0.2);
+  CHECK(std::abs(upper.x - lower.x - 14.9) < 0.05);  // printed with one decimal
+  CHECK(std::abs(-lower.y - 5.7) < 0.05);
+  CHECK(zones_of_range == std::map<double, std::size_t>{{3.0, 16}, {6.0, 24}, {12.0, 28}});
+}
+
+TEST_CASE("every lens file has the catalogue's number of zones, symmetric about its middle", "[sensor]") {
+  const std::map<std::string, std::size_t> zones{{"EKMC1601111", 64},  {"EKMC1603111", 92}, {"EKMC1604111", 68},
+                                                 {"EKMC1606111", 128}, {"EKMC1607111", 32}, {"EKMC1691111", 112},
+                                                 {"EKMC1693111", 84},  {"AMN31111", 64},    {"AMN32111", 104},
+                                                 {"AMN33111", 24},     {"AMN34111", 80}};
+  for (const auto& [id, count] : zones) {
+    const SensorModelSpec model = io::read_sensor_model(sensors / (id + ".yaml"));
+    INFO(id);
+    CHECK(model.id == id);
+    std::size_t found = 0;
+    double lowest = 0.0;
+    double highest = 0.0;
+    for (const ClusterSpec& cluster : model.clusters) {
+      int polarity = 0;
+      for (const ZoneSpec& zone : cluster.zones) {
+        polarity += zone.polarity;
+        lowest = std::min(lowest, centre_of(zone).x);
+        highest = std::max(highest, centre_of(zone).x);
+      }
+      CHECK(std::abs(polarity) == (cluster.zones.size() == 3 ? 1 : 0));
+      found += cluster.zones.size();
+    }
+    CHECK(found == count);
+    CHECK(std::abs(lowest + highest) < 0.015);
+  }
+}
+
+TEST_CASE("the low-profile lens misses the zones at its outer corners", "[sensor]") {
+  const SensorModelSpec model = io::read_sensor_model(sensors / "EKMC1607111.yaml");
+  for (const ClusterSpec& cluster : model.clusters) {
+    const bool corner = std::abs(cluster.centre.x) > 1.0 && std::abs(cluster.centre.y) > 1.0;
+    CHECK(cluster.zones.size() == (corner ? 3 : 4));
+    for (const ZoneSpec& zone : cluster.zones) {
+      if (!corner) continue;
+      const Vec2 out = glm::sign(cluster.centre) * (centre_of(zone) - cluster.centre);
+      CHECK_FALSE((out.x > 0.0 && out.y > 0.0));
+    }
+  }
+}
+
+TEST_CASE("zones may be written out by their corners", "[sensor]") {
+  const auto model = model_of(
+      "id: X\nplane_m: 2\nrange_m: 4\nsources: {plane_m: 'assumed: a', range_m: "
+      "'assumed: b', corners_m: 'assumed: c'}\n"
+      "clusters:\n  - zones:\n    - corners_m: [[0, 0], [1, 0], [1, 1], [0, 1]]\n"
+      "    - {corners_m: [[2, 0], [3, 0], [3, 1], [2, 1]]}\n");
+  REQUIRE(model.clusters.size() == 1);
+  CHECK(model.clusters[0].zones.size() == 2);
+  CHECK(model.clusters[0].range_m == 4.0);
+  CHECK(model.clusters[0].centre == Vec2(1.5, 0.5));
+  CHECK(model.clusters[0].zones[1].corners[2] == Vec2(3, 1));
+}
+
+TEST_CASE("faults of a sensor file are told with line and column", "[sensor]") {
+  const std::string head =
+      "id: X\nplane_m: 2\nsources: {plane_m: 'assumed: a', range_m: 'assumed: b', x_m: 'assumed: a', "
+      "y_m: 'assumed: a', corners_m: 'assumed: c', zone_side_m: 'assumed: a', pitch_m: 'assumed: a'}\n";
+  CHECK(refusal_of(head) == "f:1:1: error: sensor: expected either 'facets' or 'clusters'");
+  CHECK(
+      refusal_of(head + "layout: square\nfacets:\n  - {x_m: 0, y_m: 0, zone_side_m: 1, pitch_m: 2, range: 3}\n") ==
+      "f:6:5: error: facet: 'range_m' is missing\nf:6:50: error: facet: unknown key 'range' (did you mean 'range_m'?)");
+  CHECK(refusal_of(head + "layout: squere\nfacets:\n  - {x_m: 0, y_m: 0, zone_side_m: -1, pitch_m: 2, range_m: 3}\n") ==
+        "f:4:9: error: sensor: layout: expected one of diamond, square, got 'squere' (did you mean 'square'?)\n"
+        "f:6:35: error: facet: zone_side_m: expected a finite number > 0 and <= 1000, got '-1'");
+  CHECK(refusal_of(head + "clusters:\n  - range_m: 1\n    zones: [corners_m: [[0, 0], [1, 1], [1, 0], [0, 1]]]\n") ==
+        "f:6:24: error: zone: corners_m: expected the corners of a convex area in order round it");
+  CHECK(refusal_of("id: X\nplane_m: 2\nsources: {}\nclusters:\n  - range_m: 1\n"
+                   "    zones: [corners_m: [[0, 0], [1, 0], [1, 1], [0, 1]]]\n")
+            .find("f:2:1: error: 'plane_m' has no entry under 'sources'") == 0);
+  CHECK(refusal_of("id: X\nplane_m: 2\nsources: {plane_m: 'guess: 2'}\nclusters: []\n")
+            .find("expected 'quoted:', 'measured:', 'inferred:' or 'assumed:' in front") != std::string::npos);
+}

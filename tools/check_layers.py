@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""Checks the layers of pirsim: who may include whom, no cycles, each third-party library in its one place.
+
+Usage: check_layers.py [ROOT]; prints every violation as file:line: message and exits with 1 if there is any.
+The table below is the one in docs/architecture.md.
+"""
+import pathlib
+import re
+import sys
+
+BELOW = {
+    "core": set(),
+    "geom": {"core"},
+    "schema": {"geom", "core"},
+    "rt": {"schema", "geom", "core"},
+    "body": {"schema", "geom", "core"},
+    "pir": {"schema", "geom", "core"},
+    "io": {"schema", "geom", "core"},
+    "sim": {"rt", "body", "pir", "io", "schema", "geom", "core"},
+    "studies": {"sim", "rt", "body", "pir", "io", "schema", "geom", "core"},
+    "reconcile": {"sim", "rt", "body", "pir", "io", "schema", "geom", "core"},
+}
+BELOW["app"] = set(BELOW)
+# header prefix of a third-party library -> the only layers that may include it
+THIRD_PARTY = {
+    "embree": {"rt"},
+    "tiny_gltf": {"io"},
+    "yaml-cpp": {"io"},
+    "nlohmann": {"io"},
+    "stb": {"io"},
+    "OpenMesh": {"geom"},
+    "oneapi": {"core"},
+    "tbb": {"core"},
+    "Random123": {"core"},
+    "CLI": {"app"},
+}
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+
+def layer_of(path: pathlib.Path, root: pathlib.Path):
+    parts = path.relative_to(root).parts
+    if parts[:2] == ("include", "pirsim"):
+        return parts[2] if len(parts) > 3 else None  # pirsim.hpp itself is the umbrella
+    return parts[1] if parts[0] == "src" and len(parts) > 2 else None
+
+
+def included_layer(name: str):
+    parts = name.split("/")
+    if parts[0] == "pirsim":
+        return parts[1] if len(parts) > 2 else None
+    return parts[0] if parts[0] in BELOW and len(parts) > 1 else None
+
+
+def violations(root: pathlib.Path):
+    files = sorted([*root.glob("include/**/*.hpp"), *root.glob("src/**/*.hpp"), *root.glob("src/**/*.cpp")])
+    graph = {}
+    for file in files:
+        layer = layer_of(file, root)
+        here = file.relative_to(root)
+        key = str(here).removeprefix("include/").removeprefix("src/")
+        graph[key] = []
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            match = INCLUDE.match(line)
+            if not match:
+                continue
+            name = match.group(2)
+            if match.group(1) == '"':
+                graph[key].append(name)
+            target = included_layer(name)
+            if layer and target and target != layer and target not in BELOW[layer]:
+                yield f"{here}:{number}: layer {layer} must not include layer {target} ({name})"
+            for prefix, homes in THIRD_PARTY.items():
+                if match.group(1) == "<" and (name == prefix or name.startswith((prefix + "/", prefix + "."))
+                                              or (prefix == "embree" and name.startswith("embree"))):
+                    if layer not in homes or here.parts[0] == "include":
+                        yield f"{here}:{number}: {name} may only be included in src/{'/, src/'.join(sorted(homes))}/"
+    yield from cycles(graph)
+
+
+def cycles(graph):
+    state = {}
+
+    def visit(node, path):
+        state[node] = "open"
+        for target in graph.get(node, []):
+            if state.get(target) == "open":
+                yield f"{node}:1: include cycle: {' -> '.join([*path, node, target])}"
+            elif target in graph and target not in state:
+                yield from visit(target, [*path, node])
+        state[node] = "done"
+
+    for node in graph:
+        if node not in state:
+            yield from visit(node, [])
+
+
+def main():
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent.parent)
+    found = list(violations(root))
+    print("\n".join(found) if found else "layers: no violation")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,315 @@
+#!/usr/bin/env python3
+"""Writes the shipped rooms as glTF: data/rooms/{meeting_room,open_office,open_hall}.gltf.
+
+The meeting room follows data/rooms/room_layouts.json; `--alternative N` (1-8, or `all`) writes
+meeting_room_altN.gltf from one of the other layouts that the paper's data allow. The output depends on nothing but
+this file and the layouts. Frame: glTF's, metres, +Y up; everything that faces somewhere faces its local -Z.
+"""
+import argparse
+import base64
+import json
+import math
+import pathlib
+import struct
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+# Not given by the paper; assumed, in metres.
+WALL = 0.1            # thickness, outside the room
+DOOR_WIDTH, DOOR_HEIGHT = 0.9, 2.05
+DOOR_FROM_CORNER = 0.115
+CEILING_GAP = 0.01    # the sensors' openings lie at the room's height: the slab must not swallow their rays
+TABLE_LEG = 0.06
+TELEVISION = (1.23, 0.71, 0.06)  # 55 inch
+TELEVISION_HEIGHT = 1.35         # of its centre
+
+
+# -- transforms ---------------------------------------------------------------------------------------------------
+
+def rounded(numbers):
+    return [round(float(n), 6) + 0.0 for n in numbers]
+
+
+def rotation(yaw_deg=0.0, tilt_down_deg=0.0):
+    """Quaternion (x, y, z, w): turned left by the yaw, then the look tilted down by the tilt."""
+    y, x = math.radians(yaw_deg) / 2, -math.radians(tilt_down_deg) / 2
+    return [math.cos(y) * math.sin(x), math.sin(y) * math.cos(x), -math.sin(y) * math.sin(x), math.cos(y) * math.cos(x)]
+
+
+def heading_deg(facing_xz):
+    """Yaw that turns -Z to the given direction."""
+    return math.degrees(math.atan2(-facing_xz[0], -facing_xz[1]))
+
+
+# -- a glTF in the making -----------------------------------------------------------------------------------------
+
+class Scene:
+    def __init__(self, name):
+        self.name, self.nodes, self.meshes, self.materials = name, [], [], []
+        self.accessors, self.views, self.bytes = [], [], b""
+        self.roots = []
+
+    def _accessor(self, data, target, component, kind, count, **limits):
+        self.bytes += b"\0" * (-len(self.bytes) % 4)
+        self.views.append({"buffer": 0, "byteOffset": len(self.bytes), "byteLength": len(data), "target": target})
+        self.bytes += data
+        self.accessors.append({"bufferView": len(self.views) - 1, "componentType": component, "count": count,
+                               "type": kind, **limits})
+        return len(self.accessors) - 1
+
+    def geometry(self, points, triangles):
+        """Accessors of positions (float) and indices (8 or 16 bit)."""
+        flat = [i for triangle in triangles for i in triangle]
+        small = len(points) < 256
+        low, high = ([round(f(p[k] for p in points), 6) for k in range(3)] for f in (min, max))
+        position = self._accessor(b"".join(struct.pack("<3f", *p) for p in points), 34962, 5126, "VEC3", len(points),
+                                  min=low, max=high)
+        index = self._accessor(struct.pack("<%d%s" % (len(flat), "B" if small else "H"), *flat), 34963,
+                               5121 if small else 5123, "SCALAR", len(flat))
+        return position, index
+
+    def material(self, name, colour):
+        self.materials.append({"name": name, "pbrMetallicRoughness": {"baseColorFactor": [*colour, 1],
+                                                                      "metallicFactor": 0, "roughnessFactor": 0.9}})
+        return len(self.materials) - 1
+
+    def mesh(self, name, geometry, material):
+        self.meshes.append({"name": name, "primitives": [{"attributes": {"POSITION": geometry[0]},
+                                                          "indices": geometry[1], "material": material}]})
+        return len(self.meshes) - 1
+
+    def node(self, name, parent=None, at=None, turned=None, scale=None, mesh=None, mark=None):
+        node = {"name": name}
+        if mesh is not None:
+            node["mesh"] = mesh
+        for key, value in (("translation", at), ("rotation", turned), ("scale", scale)):
+            if value is not None:
+                node[key] = rounded(value)
+        if mark:
+            node["extras"] = {"pirsim": mark}
+        self.nodes.append(node)
+        index = len(self.nodes) - 1
+        (self.roots if parent is None else self.nodes[parent].setdefault("children", [])).append(index)
+        return index
+
+    def box(self, name, parent, mesh, low, high):
+        """A copy of the unit box between two corners."""
+        centre = [(a + b) / 2 for a, b in zip(low, high)]
+        return self.node(name, parent, at=centre, scale=[b - a for a, b in zip(low, high)], mesh=mesh)
+
+    def text(self):
+        parts = {"asset": {"version": "2.0", "generator": "pirsim tools/make_rooms.py"},
+                 "scene": 0, "scenes": [{"name": self.name, "nodes": self.roots}], "nodes": self.nodes}
+        if self.meshes:
+            uri = "data:application/octet-stream;base64," + base64.b64encode(self.bytes).decode()
+            parts |= {"meshes": self.meshes, "materials": self.materials, "accessors": self.accessors,
+                      "bufferViews": self.views, "buffers": [{"byteLength": len(self.bytes), "uri": uri}]}
+        return dump(parts) + "\n"
+
+
+def dump(value, depth=0):
+    """JSON with an indent of one, and everything short on one line."""
+    line = json.dumps(value, ensure_ascii=False)
+    if not isinstance(value, (dict, list)) or len(line) + depth <= 100:
+        return line
+    pad = "\n" + " " * (depth + 1)
+    if isinstance(value, dict):
+        inner = ("," + pad).join(json.dumps(k) + ": " + dump(v, depth + 1) for k, v in value.items())
+        return "{" + pad + inner + "\n" + " " * depth + "}"
+    return "[" + pad + ("," + pad).join(dump(v, depth + 1) for v in value) + "\n" + " " * depth + "]"
+
+
+def box_geometry(low=(-0.5, -0.5, -0.5), high=(0.5, 0.5, 0.5)):
+    points = [[(low, high)[k >> axis & 1][axis] for axis in range(3)] for k in range(8)]
+    quads = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]  # outward
+    return points, [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+
+
+def joined(*parts):
+    points, triangles = [], []
+    for more, faces in parts:
+        triangles += [tuple(i + len(points) for i in face) for face in faces]
+        points += more
+    return points, triangles
+
+
+class Stock:
+    """Materials and the unit box in each of them; all boxes share one set of numbers."""
+
+    def __init__(self, scene):
+        box = scene.geometry(*box_geometry())
+        self.floor_material = scene.material("carpet", (0.45, 0.47, 0.5))
+        colours = {"plaster": (0.9, 0.9, 0.88), "wood": (0.65, 0.48, 0.32), "screen": (0.08, 0.08, 0.1),
+                   "fabric": (0.35, 0.45, 0.55)}
+        self.material = {name: scene.material(name, colour) for name, colour in colours.items()}
+        self.box = {name: scene.mesh(name + " box", box, material) for name, material in self.material.items()}
+
+
+def add_sensor(scene, parent, name, model, at, yaw_deg, tilt_down_deg):
+    scene.node(name, parent, at=at, turned=rotation(yaw_deg, tilt_down_deg),
+               mark={"type": "sensor", "id": name, "model": model})
+
+
+def add_seat(scene, parent, name, at, yaw_deg):
+    scene.node(name, parent, at=at, turned=rotation(yaw_deg), mark={"type": "seat", "id": name})
+
+
+# -- the meeting room ---------------------------------------------------------------------------------------------
+
+def meeting_room(layout, name):
+    scene = Scene(name)
+    stock = Stock(scene)
+    width, depth, height = (layout["room"][k] for k in ("width_x_m", "depth_z_m", "height_y_m"))
+    top = height + CEILING_GAP
+
+    structure = scene.node("structure")
+    floor = scene.geometry([(0, 0, 0), (width, 0, 0), (width, 0, -depth), (0, 0, -depth)], [(0, 1, 2), (0, 2, 3)])
+    scene.node("floor", structure, mesh=scene.mesh("floor", floor, stock.floor_material), mark={"type": "floor"})
+    plaster = stock.box["plaster"]
+    scene.box("ceiling", structure, plaster, (-WALL, top, -depth - WALL), (width + WALL, top + WALL, WALL))
+    scene.box("wall left", structure, plaster, (-WALL, 0, -depth - WALL), (0, top, WALL))
+    scene.box("wall right", structure, plaster, (width, 0, -depth - WALL), (width + WALL, top, WALL))
+    scene.box("wall far", structure, plaster, (0, 0, -depth - WALL), (width, top, -depth))
+    door_right = width - DOOR_FROM_CORNER
+    door_left = door_right - DOOR_WIDTH
+    scene.box("sensor wall left of the door", structure, plaster, (0, 0, 0), (door_left, top, WALL))
+    scene.box("sensor wall right of the door", structure, plaster, (door_right, 0, 0), (width, top, WALL))
+    scene.box("sensor wall above the door", structure, plaster, (door_left, DOOR_HEIGHT, 0), (door_right, top, WALL))
+    scene.node("door", structure, at=[(door_left + door_right) / 2, 0, 0],
+               mark={"type": "entrance", "id": "door", "width_m": DOOR_WIDTH, "outside_m": 1.5})
+
+    table = layout["table"]
+    add_table(scene, stock, table)
+    furniture = scene.node("wall furniture")
+    half = [TELEVISION[0] / 2, TELEVISION[1] / 2]
+    scene.box("television", furniture, stock.box["screen"],
+              (table["centre_x_m"] - half[0], TELEVISION_HEIGHT - half[1], -depth),
+              (table["centre_x_m"] + half[0], TELEVISION_HEIGHT + half[1], -depth + TELEVISION[2]))
+
+    sensors = scene.node("sensors")
+    for s in layout["sensors"]:
+        add_sensor(scene, sensors, s["id"], "EKMC1604111", s["position_m"], s["yaw_deg"], s["tilt_down_deg"])
+    seats = scene.node("seats")
+    hip = layout["body_fit"]["hip_z"]
+    for s in layout["seats"]:
+        add_seat(scene, seats, s["id"], [s["pelvis_x_m"], hip, s["pelvis_z_m"]], heading_deg(s["facing_xz"]))
+    return scene
+
+
+def add_table(scene, stock, table):
+    x, z = table["size_x_m"] / 2, table["size_z_m"] / 2
+    top, under = table["top_y_m"], table["top_y_m"] - table["thickness_m"]
+    node = scene.node("table", at=[table["centre_x_m"], 0, table["centre_z_m"]])
+    scene.box("table top", node, stock.box["wood"], (-x, under, -z), (x, top, z))
+    for name, sx, sz in (("near left", -1, 1), ("near right", 1, 1), ("far left", -1, -1), ("far right", 1, -1)):
+        outer, inner = (sx * x, sz * z), (sx * (x - TABLE_LEG), sz * (z - TABLE_LEG))
+        scene.box("table leg " + name, node, stock.box["wood"],
+                  (min(outer[0], inner[0]), 0, min(outer[1], inner[1])),
+                  (max(outer[0], inner[0]), under, max(outer[1], inner[1])))
+
+
+# -- the open office: invented, to differ from the meeting room in everything ----------------------------------------
+
+def open_office():
+    scene = Scene("open office")
+    stock = Stock(scene)
+    height = 3.0
+    add_office_structure(scene, stock, height)
+
+    # One desk, eight copies. It stands on its node, the user sits at +Z; a drawer unit on the right.
+    desk = scene.mesh("desk", scene.geometry(*joined(
+        box_geometry((-0.79, 0.715, -0.39), (0.79, 0.74, 0.39)), box_geometry((-0.78, 0, -0.35), (-0.75, 0.715, 0.35)),
+        box_geometry((0.36, 0.1, -0.35), (0.78, 0.715, 0.35)))), stock.material["wood"])
+    island_a = scene.node("island A", at=[3.0, 0, -2.5])
+    island_b = scene.node("island B", at=[9.4, 0, -2.5], turned=rotation(90))
+    for island, first in ((island_a, 1), (island_b, 5)):
+        add_island(scene, stock, island, desk, first)
+
+    lounge = scene.node("lounge", at=[5.6, 0, -6.6], turned=rotation(30))
+    scene.box("low table", lounge, stock.box["wood"], (-0.4, 0.35, -1.3), (0.4, 0.4, -0.7))
+    add_seat(scene, lounge, "S9", [0, 0.45, 0], 0)
+
+    ceiling = scene.node("ceiling sensors", at=[0, height - 0.01, 0])  # just below the slab
+    for name, x, z, yaw in (("C1", 3.0, -2.5, 0), ("C2", 9.4, -2.5, 45), ("C3", 4.0, -6.2, 90)):
+        # Looking straight down, the image's +Y points to the room's -Z, turned left by the yaw.
+        add_sensor(scene, ceiling, name, "EKMC1601111", [x, 0, z], yaw, 90)
+    add_sensor(scene, None, "W1", "EKMC1604111", [0.03, 2.3, -6.2], -90, 10)
+    return scene
+
+
+def add_office_structure(scene, stock, height):
+    """12 x 8 m without the corner x > 8, z < -5; doors in the front and the right wall."""
+    plaster = stock.box["plaster"]
+    structure = scene.node("structure")
+    corners = [(0, 0), (12, 0), (12, -5), (8, -5), (8, -8), (0, -8)]  # counter-clockwise seen from above
+    floor = scene.geometry([(x, 0, z) for x, z in corners], [(3, 4, 5), (3, 5, 0), (3, 0, 1), (3, 1, 2)])
+    scene.node("floor", structure, mesh=scene.mesh("floor", floor, stock.floor_material), mark={"type": "floor"})
+    door = 2.1
+    for name, low, high in (
+            ("ceiling", (-WALL, height, -8 - WALL), (12 + WALL, height + WALL, WALL)),
+            ("front wall left of the door", (0, 0, 0), (1, height, WALL)),
+            ("front wall right of the door", (2, 0, 0), (12, height, WALL)),
+            ("front wall above the door", (1, door, 0), (2, height, WALL)),
+            ("left wall", (-WALL, 0, -8 - WALL), (0, height, WALL)),
+            ("back wall", (0, 0, -8 - WALL), (8 + WALL, height, -8)),
+            ("core wall along x", (8 + WALL, 0, -5 - WALL), (12 + WALL, height, -5)),
+            ("core wall along z", (8, 0, -8), (8 + WALL, height, -5)),
+            ("right wall near the front", (12, 0, -0.3), (12 + WALL, height, WALL)),
+            ("right wall near the core", (12, 0, -5), (12 + WALL, height, -1.3)),
+            ("right wall above the door", (12, door, -1.3), (12 + WALL, height, -0.3)),
+            ("pillar", (6.0, 0, -4.9), (6.4, height, -4.5))):
+        scene.box(name, structure, plaster, low, high)
+    for name, at, yaw in (("front door", [1.5, 0, 0], 0), ("side door", [12, 0, -0.8], 90)):
+        scene.node(name, structure, at=at, turned=rotation(yaw),
+                   mark={"type": "entrance", "id": name.replace(" ", "_"), "width_m": 1.0, "outside_m": 1.5})
+
+
+def add_island(scene, stock, island, desk, first_seat):
+    """Two by two desks back to back, a partition screen between them."""
+    scene.box("partition", island, stock.box["fabric"], (-1.6, 0.6, -0.02), (1.6, 1.25, 0.02))
+    places = (("left", -0.8, 0.42, 0), ("right", 0.8, 0.42, 0), ("right", 0.8, -0.42, 180), ("left", -0.8, -0.42, 180))
+    for k, (side, x, z, yaw) in enumerate(places):
+        seat = "S%d" % (first_seat + k)
+        place = scene.node("place " + seat, island, at=[x, 0, z], turned=rotation(yaw))
+        # Drawers point to the aisle on both sides: the mirrored copy has a negative scale.
+        mirrored = (side == "left") == (yaw == 0)
+        scene.node("desk " + seat, place, mesh=desk, scale=[-1, 1, 1] if mirrored else None)
+        scene.box("monitor " + seat, place, stock.box["screen"], (-0.3, 0.85, -0.25), (0.3, 1.2, -0.21))
+        add_seat(scene, place, seat, [0, 0.53, 0.55], 0)
+
+
+# -- the open hall: the paper's density experiment, section 2.1 -------------------------------------------------------
+
+def open_hall():
+    scene = Scene("open hall")
+    scene.node("floor", mark={"type": "floor", "polygon_xz_m": [[-10, 0], [10, 0], [10, -30], [-10, -30]]})
+    add_sensor(scene, None, "PIR1", "EKMC1604111", [0, 3, -3], 0, 20)
+    return scene
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--alternative", metavar="N", help="write only alternative layout N of the meeting room, or 'all'")
+    parser.add_argument("--layouts", type=pathlib.Path, default=ROOT / "data/rooms/room_layouts.json")
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=ROOT / "data/rooms", help="folder")
+    arguments = parser.parse_args()
+    layouts = json.loads(arguments.layouts.read_text())
+    alternatives = layouts["alternatives"]
+
+    if arguments.alternative is None:
+        rooms = {"meeting_room": meeting_room(layouts["meeting_room"], "meeting room"),
+                 "open_office": open_office(), "open_hall": open_hall()}
+    else:
+        names = [str(n) for n in range(1, len(alternatives) + 1)]
+        wanted = names if arguments.alternative == "all" else [arguments.alternative]
+        if not set(wanted) <= set(names):
+            parser.error("--alternative must be 1 to %d, or 'all'" % len(names))
+        rooms = {"meeting_room_alt" + n: meeting_room(alternatives[int(n) - 1], "meeting room, alternative " + n)
+                 for n in wanted}
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    for name, scene in rooms.items():
+        (arguments.output / (name + ".gltf")).write_text(scene.text())
+
+
+if __name__ == "__main__":
+    main()
