@@ -18,11 +18,13 @@ struct Measures {
   double shank_m = 0.0;            ///< knee to ankle, 0.246 H
   double foot_length_m = 0.0;      ///< 0.152 H
   double shoulder_height_m = 0.0;  ///< 0.818 H, standing
-  double shoulder_width_m = 0.0;   ///< between the shoulder joints, from 0.259 H
-  double hip_width_m = 0.0;        ///< between the hip joints, from 0.191 H
+  double shoulder_width_m = 0.0;   ///< between the shoulder joints: 0.259 H less the soft parts
+  double hip_width_m = 0.0;        ///< between the hip joints: 0.191 H less the soft parts
   double upper_arm_m = 0.0;        ///< 0.186 H
   double forearm_m = 0.0;          ///< elbow to knuckles of a loosely closed hand
   double head_height_m = 0.0;      ///< 0.130 H
+  double heel_m = 0.0;             ///< ankle joint to the back of the heel
+  bool operator==(const Measures&) const = default;
 };
 
 class Humanoid {
@@ -35,6 +37,9 @@ class Humanoid {
   /// Radius of the vertical cylinder that a walking person keeps clear of obstacles, metres.
   [[nodiscard]] double clearance_radius_m() const noexcept { return clearance_radius_m_; }
   [[nodiscard]] double walking_speed_m_s() const noexcept { return walking_speed_m_s_; }
+  /// Of a part that is a sphere or a capsule.
+  [[nodiscard]] double radius_m(Part part) const noexcept;
+  bool operator==(const Humanoid&) const = default;
 
  private:
   Measures measures_;

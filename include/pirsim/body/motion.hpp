@@ -1,31 +1,24 @@
 // How one person moves: the state machine of standing, walking, turning, sitting down, sitting and rising.
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <optional>
-#include <vector>
 
+#include "pirsim/body/arms.hpp"
 #include "pirsim/body/body_part.hpp"
+#include "pirsim/body/foot_plan.hpp"
 #include "pirsim/body/humanoid.hpp"
+#include "pirsim/body/min_jerk.hpp"
 #include "pirsim/body/route.hpp"
+#include "pirsim/body/seating.hpp"
+#include "pirsim/body/skeleton.hpp"
 #include "pirsim/geom/frame.hpp"
 
 namespace pirsim::body {
 
 enum class Stage { standing, walking, turning, sitting_down, seated, rising };
 [[nodiscard]] std::string_view name(Stage stage) noexcept;
-
-/// A seat as the body needs it.
-struct SeatPlace {
-  Frame world_from_seat;                 ///< pelvis rests at the origin, facing -Z
-  double floor_height_m = 0.0;           ///< y of the floor under the feet
-  std::optional<double> table_height_m;  ///< y of what the forearms rest on; none: hands on the thighs
-};
-
-/// Arm and spine motion of a seated person (Stefansson et al. 2021, section 3.1).
-struct DeskWork {
-  double arm_amplitude_m = 0.1;
-  double arm_period_s = 3.0;
-};
 
 /// A value: copying it copies the whole state of the person's body. Commands may be given at any time; every part
 /// stays continuous in position whatever the order of commands, and joint speeds stay bounded.
@@ -55,14 +48,51 @@ class Motion {
   [[nodiscard]] Vec2 position() const noexcept;  ///< of the pelvis over the floor
   [[nodiscard]] double heading() const noexcept;
   [[nodiscard]] double speed_m_s() const noexcept;
-  [[nodiscard]] Posture posture() const;
+  [[nodiscard]] Posture posture() const noexcept;
+  bool operator==(const Motion&) const = default;
 
  private:
-  struct Impl;
-};
+  [[nodiscard]] bool on_track() const noexcept { return stage_ == Stage::walking || stage_ == Stage::turning; }
+  [[nodiscard]] bool on_seat() const noexcept { return stage_ != Stage::standing && !on_track(); }
+  [[nodiscard]] int ticks(double seconds) const noexcept;
+  [[nodiscard]] Placement pelvis() const noexcept;
+  [[nodiscard]] Feet feet() const noexcept;
+  [[nodiscard]] double hip_height_m(const Placement& pelvis, const Feet& feet) const noexcept;
+  [[nodiscard]] double spine_tilt() const noexcept;
+  [[nodiscard]] double hand_offset_m() const noexcept;
+  [[nodiscard]] std::array<ArmPose, 2> arms(const Pose& pose) const noexcept;
+  void begin_track(Stage stage, const Track& track, const StepStyle& style);
+  void begin_turn(double angle);
+  void advance_on_track();
+  void advance_on_seat() noexcept;
+  void come_to_stand(const Placement& place, const std::array<Placement, 2>& feet) noexcept;
 
-/// Where to stand before sitting down there: how far before the seat's pelvis point (along the facing direction) a
-/// person stands who falls back into it without moving the chair.
-[[nodiscard]] double fall_back_m(const Humanoid& humanoid, const SeatPlace& seat) noexcept;
+  Humanoid humanoid_;
+  double floor_height_m_ = 0.0;
+  double tick_s_ = 0.02;
+  Stage stage_ = Stage::standing;
+
+  // Standing; also where sitting down began.
+  Placement stand_;
+  std::array<Placement, 2> stand_feet_{};
+
+  // Walking and turning; distances in metres or radians.
+  Track track_;
+  FootPlan steps_;
+  double distance_ = 0.0;
+  double track_speed_ = 0.0;
+  double speed_limit_m_s_ = std::numeric_limits<double>::infinity();
+  std::optional<Route> route_after_turning_;
+
+  // Sitting.
+  Seating seating_;
+  MinJerk fall_;     ///< 0 standing, 1 at the seat's height
+  MinJerk slide_m_;
+  MinJerk tilt_;     ///< of the spine, beyond what falling and rising need
+  MinJerk reach_;    ///< of the arms: 0 on the thighs, 1 on the table
+  DeskWork work_;
+  std::int64_t work_tick_ = 0;
+  MinJerk hand_offset_left_over_m_;  ///< from desk work that was replaced by another, fading
+};
 
 }  // namespace pirsim::body

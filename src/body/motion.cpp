@@ -1,0 +1,212 @@
+// The state machine: commands and the tick. How the state becomes a posture is in motion_posture.cpp.
+#include "pirsim/body/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace pirsim::body {
+
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+constexpr double reference_stature_m = 1.86;
+
+// Paper, section 2.2: ellipse 0.5 m long and 0.3 m high.
+constexpr double longest_step_m = 0.5;
+constexpr double walking_lift_m = 0.15;
+constexpr double walking_pitch_per_lift = 2.6;         // assumed (1-2.9 rad/m): 13 degrees at mid-swing
+constexpr double walking_acceleration_m_s2 = 1.5;      // assumed (1-2)
+constexpr double turning_step = 22.5 * degree;         // of the pelvis; each foot turns by up to twice that
+constexpr double turning_lift_m = 0.05;                // assumed (0.03-0.08)
+constexpr double turning_speed = 90 * degree;          // per second, assumed (60-120)
+constexpr double turning_acceleration = 180 * degree;  // per second squared, assumed (120-360)
+constexpr double turn_before_walking = 20 * degree;    // assumed: less is blended into the first step
+constexpr double furthest_from_route_m = 0.1;          // assumed: more than that is another place
+
+constexpr double fall_s = 1.2;             // assumed (0.8-2)
+constexpr double sliding_speed_m_s = 0.4;  // assumed (0.2-0.6), highest
+constexpr double shortest_slide_s = 0.6;   // assumed
+constexpr double reach_s = 1.0;            // assumed (0.6-1.5): hands between thighs and table
+constexpr double tilt_s = 1.0;             // assumed (0.5-2): for 15 degrees of spine tilt
+constexpr double shortest_tilt_s = 0.4;    // assumed
+constexpr double backmost_tilt = -20 * degree;  // within the spine's limits, with room for a passing overshoot
+constexpr double foremost_tilt = 50 * degree;
+
+[[noreturn]] void refuse(const char* command, Stage stage) {
+  throw std::logic_error(std::string(command) + " is not possible while " + std::string(name(stage)));
+}
+
+bool rests_at(const MinJerk& motion, double target) { return motion.settled() && motion.target() == target; }
+
+}  // namespace
+
+std::string_view name(Stage stage) noexcept {
+  static constexpr std::array<std::string_view, 6> names{"standing",     "walking", "turning",
+                                                         "sitting_down", "seated",  "rising"};
+  return names[static_cast<std::size_t>(stage)];
+}
+
+Motion::Motion(const Humanoid& humanoid, const Vec2& position, double heading, double floor_height_m, double tick_s)
+    : humanoid_(humanoid), floor_height_m_(floor_height_m), tick_s_(tick_s) {
+  const Placement place{position, heading};
+  const double half_stance = 0.5 * humanoid.measures().hip_width_m;
+  come_to_stand(place, {place.shifted(0.0, -half_stance), place.shifted(0.0, half_stance)});
+}
+
+int Motion::ticks(double seconds) const noexcept {
+  return std::max(1, static_cast<int>(std::lround(seconds / tick_s_)));
+}
+
+void Motion::come_to_stand(const Placement& place, const std::array<Placement, 2>& feet) noexcept {
+  stage_ = Stage::standing;
+  stand_ = {place.position, wrapped(place.heading)};
+  stand_feet_ = feet;
+  track_speed_ = 0.0;
+}
+
+void Motion::begin_track(Stage stage, const Track& track, const StepStyle& style) {
+  track_ = track;
+  steps_ = FootPlan(stand_feet_, track.length(), style, 0.5 * humanoid_.measures().hip_width_m);
+  distance_ = 0.0;
+  track_speed_ = 0.0;
+  stage_ = stage;
+}
+
+void Motion::begin_turn(double angle) {
+  const int leading_foot = angle > 0.0 ? 0 : 1;
+  begin_track(Stage::turning, Track::turn(stand_, angle),
+              {.step = turning_step, .lift_m = turning_lift_m, .pitch_per_lift = 1.0, .first_foot = leading_foot});
+}
+
+void Motion::walk(const Route& route) {
+  if (stage_ != Stage::standing) refuse("walking off", stage_);
+  if (glm::distance(route.position(0.0), stand_.position) > furthest_from_route_m) {
+    throw std::logic_error("a route begins where the person stands");
+  }
+  if (route.length_m() <= 0.0) return;
+  const double aside = wrapped(route.heading(0.0) - stand_.heading);
+  if (std::abs(aside) > turn_before_walking) {
+    route_after_turning_ = route;
+    begin_turn(aside);
+    return;
+  }
+  const double scale = humanoid_.measures().stature_m / reference_stature_m;
+  const double step = longest_step_m * scale;
+  begin_track(Stage::walking, Track(route, stand_, step),
+              {.step = step, .lift_m = walking_lift_m * scale, .pitch_per_lift = walking_pitch_per_lift / scale});
+}
+
+void Motion::turn_to(double heading) {
+  if (stage_ != Stage::standing) refuse("turning", stage_);
+  const double angle = wrapped(heading - stand_.heading);
+  if (angle != 0.0) begin_turn(angle);
+}
+
+void Motion::stop() {
+  if (stage_ == Stage::standing) return;
+  if (!on_track()) refuse("stopping", stage_);
+  route_after_turning_.reset();
+  const double braking = stage_ == Stage::walking ? walking_acceleration_m_s2 : turning_acceleration;
+  steps_.shorten(distance_, track_speed_ * track_speed_ / (2.0 * braking) + track_speed_ * tick_s_);
+}
+
+void Motion::sit_down(const SeatPlace& seat) {
+  if (stage_ == Stage::rising && seat == seating_.seat()) {
+    stage_ = Stage::sitting_down;
+    return;
+  }
+  if (stage_ != Stage::standing) refuse("sitting down", stage_);
+  seating_ = Seating(humanoid_, seat, stand_, stand_feet_);
+  stage_ = Stage::sitting_down;
+}
+
+void Motion::rise() {
+  if (stage_ == Stage::rising) return;
+  if (!on_seat()) refuse("rising", stage_);
+  rest();
+  stage_ = Stage::rising;
+}
+
+void Motion::work(const DeskWork& work) {
+  if (stage_ != Stage::seated) refuse("desk work", stage_);
+  // The oscillation starts with this tick; what the hands were off their base until now fades.
+  hand_offset_left_over_m_ = MinJerk(reach_.value() > 0.0 ? hand_offset_m() : 0.0);
+  hand_offset_left_over_m_.move_to(0.0, ticks(reach_s));
+  work_ = work;
+  work_tick_ = 0;
+  reach_.move_to(1.0, ticks(reach_s));
+}
+
+void Motion::rest() {
+  if (!on_seat()) return;
+  reach_.move_to(0.0, ticks(reach_s));
+  if (stage_ == Stage::seated) tilt_spine(0.0);
+}
+
+void Motion::tilt_spine(double radians) {
+  if (stage_ != Stage::seated) refuse("tilting the spine", stage_);
+  const double target = std::clamp(radians, backmost_tilt, foremost_tilt);
+  const double seconds = tilt_s * std::sqrt(std::abs(target - tilt_.value()) / (15 * degree));
+  tilt_.move_to(target, ticks(std::max(seconds, shortest_tilt_s)));
+}
+
+void Motion::limit_speed(double metres_per_second) { speed_limit_m_s_ = std::max(0.0, metres_per_second); }
+
+void Motion::advance() {
+  if (on_track()) advance_on_track();
+  if (on_seat()) advance_on_seat();
+}
+
+void Motion::advance_on_track() {
+  const bool walking = stage_ == Stage::walking;
+  const double acceleration = walking ? walking_acceleration_m_s2 : turning_acceleration;
+  const double wanted = walking ? std::min(humanoid_.walking_speed_m_s(), speed_limit_m_s_) : turning_speed;
+  const double change = acceleration * tick_s_;
+  // The highest speed from which, after this tick, one can still brake on the way that remains.
+  const double remaining = steps_.length() - distance_;
+  const double root = std::sqrt(tick_s_ * tick_s_ + 2.0 * remaining / acceleration);
+  const double braking = acceleration * (root - tick_s_);
+  track_speed_ = std::min(std::clamp(wanted, track_speed_ - change, track_speed_ + change), braking);
+  distance_ += track_speed_ * tick_s_;
+  constexpr double arrived = 1e-7;  // metres or radians
+  if (steps_.length() - distance_ > arrived) return;
+
+  const Feet feet = steps_.feet(track_, steps_.length());
+  come_to_stand(track_.at(steps_.length()), {feet[0].print, feet[1].print});
+  if (!route_after_turning_) return;
+  const Route route = *route_after_turning_;
+  route_after_turning_.reset();
+  walk(route);
+}
+
+void Motion::advance_on_seat() noexcept {
+  for (MinJerk* motion : {&fall_, &slide_m_, &tilt_, &reach_, &hand_offset_left_over_m_}) motion->advance();
+  ++work_tick_;
+  const auto slide_to = [this](double target) {
+    const double seconds = 1.875 * std::abs(target - slide_m_.value()) / sliding_speed_m_s;  // minimum jerk's peak
+    slide_m_.move_to(target, ticks(std::max(seconds, shortest_slide_s)));
+  };
+  const double seat_slide = seating_.slide_length_m();
+  if (stage_ == Stage::sitting_down) {
+    fall_.move_to(1.0, ticks(fall_s));
+    if (rests_at(fall_, 1.0)) slide_to(seat_slide);
+    if (rests_at(fall_, 1.0) && rests_at(slide_m_, seat_slide)) stage_ = Stage::seated;
+  } else if (stage_ == Stage::rising && rests_at(reach_, 0.0) && rests_at(tilt_, 0.0)) {
+    slide_to(0.0);
+    if (rests_at(slide_m_, 0.0)) fall_.move_to(0.0, ticks(fall_s));
+    if (rests_at(fall_, 0.0)) come_to_stand(stand_, stand_feet_);
+  }
+}
+
+Stage Motion::stage() const noexcept { return stage_; }
+
+bool Motion::settled() const noexcept {
+  if (stage_ == Stage::standing) return true;
+  return stage_ == Stage::seated && tilt_.settled() && reach_.settled() && hand_offset_left_over_m_.settled();
+}
+
+}  // namespace pirsim::body

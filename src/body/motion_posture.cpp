@@ -1,0 +1,120 @@
+// How the state of motion becomes a posture.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+
+#include "pirsim/body/motion.hpp"
+
+namespace pirsim::body {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double furthest_extension = 0.998;  // of a stretched leg that stands off to the side; assumed (0.995-1)
+constexpr double lean_while_falling = 25 * pi / 180;  // assumed (15-40 degrees), at half way
+
+double height_over(double leg_m, double horizontal_m) {
+  return std::sqrt(std::max(0.0, leg_m * leg_m - horizontal_m * horizontal_m));
+}
+
+}  // namespace
+
+Placement Motion::pelvis() const noexcept {
+  if (on_track()) return track_.at(distance_);
+  if (on_seat()) return seating_.pelvis(std::clamp(fall_.value(), 0.0, 1.0), slide_m_.value());
+  return stand_;
+}
+
+Feet Motion::feet() const noexcept {
+  if (on_track()) return steps_.feet(track_, distance_);
+  if (on_seat()) return seating_.feet(slide_m_.value());
+  return {Footstep{stand_feet_[0]}, Footstep{stand_feet_[1]}};
+}
+
+double Motion::hip_height_m(const Placement& pelvis, const Feet& feet) const noexcept {
+  if (on_seat()) return seating_.hip_height_m(std::clamp(fall_.value(), 0.0, 1.0));
+  const Measures& m = humanoid_.measures();
+  const double standing = standing_hip_height_m(m);
+  double height = standing;
+  if (stage_ == Stage::walking) {
+    // Both feet are half a step away where steps change, and one is below the hip halfway between.
+    const double lowest = m.ankle_height_m + height_over(standing - m.ankle_height_m, 0.5 * steps_.step());
+    height = lowest + (standing - lowest) * 0.5 * (1.0 + std::cos(2.0 * pi * distance_ / steps_.step()));
+  }
+  // On a bend a foot can be further away than that.
+  for (std::size_t side : {0U, 1U}) {
+    const Vec2 hip = pelvis.shifted(0.0, (side == 0 ? -0.5 : 0.5) * m.hip_width_m).position;
+    const double reach = height_over(furthest_extension * (m.thigh_m + m.shank_m),
+                                     glm::distance(hip, feet[side].print.position));
+    height = std::min(height, m.ankle_height_m + feet[side].lift_m + reach);
+  }
+  return height;
+}
+
+double Motion::spine_tilt() const noexcept {
+  const double s = std::sin(pi * std::clamp(fall_.value(), 0.0, 1.0));
+  return fall_.settled() ? tilt_.value() : tilt_.value() + lean_while_falling * s * s;
+}
+
+double Motion::hand_offset_m() const noexcept {
+  const double period = work_.arm_period_s / tick_s_;
+  // A whole number of ticks repeats bit for bit.
+  const double rounded = std::round(period);
+  const bool whole = std::abs(period - rounded) < 1e-9 * period && rounded >= 1.0;
+  const double phase = whole ? static_cast<double>(work_tick_ % static_cast<std::int64_t>(rounded)) / rounded
+                             : std::fmod(static_cast<double>(work_tick_), period) / period;
+  return work_.arm_amplitude_m * std::sin(2.0 * pi * phase) + hand_offset_left_over_m_.value();
+}
+
+std::array<ArmPose, 2> Motion::arms(const Pose& pose) const noexcept {
+  const Measures& m = humanoid_.measures();
+  const double fall = std::clamp(fall_.value(), 0.0, 1.0);
+  const double reach = std::clamp(reach_.value(), 0.0, 1.0);
+  std::array<ArmPose, 2> arms;
+  if (fall < 1.0) {
+    const Frame hips_from_world = inverse(pose.world_from_hips);
+    // Feet before a sitter don't make the arms swing: only their difference counts.
+    arms = hanging_arms(m, {-(hips_from_world * pose.world_from_ankle[0].origin).z,
+                            -(hips_from_world * pose.world_from_ankle[1].origin).z});
+  }
+  if (fall > 0.0 && reach < 1.0) {
+    const auto resting = arms_on_thighs(humanoid_, pose.spine_tilt, seating_.thigh_angle(1.0));
+    for (std::size_t side : {0U, 1U}) arms[side] = blend(arms[side], resting[side], smoothstep(fall));
+  }
+  if (reach > 0.0) {
+    const double thighs = pose.world_from_hips.origin.y + humanoid_.radius_m(Part::left_thigh);
+    const double table = seating_.seat().table_height_m.value_or(thighs);
+    const auto working =
+        arms_on_table(humanoid_, pose.spine_tilt, table - pose.world_from_hips.origin.y, hand_offset_m());
+    for (std::size_t side : {0U, 1U}) arms[side] = reach_over(arms[side], working[side], reach);
+  }
+  return arms;
+}
+
+Posture Motion::posture() const noexcept {
+  const Placement pelvis_place = pelvis();
+  const Feet both_feet = feet();
+  const double hip_height = floor_height_m_ + hip_height_m(pelvis_place, both_feet);
+  Pose pose;
+  pose.world_from_hips = {rotation_from_heading(pelvis_place.heading),
+                          Vec3(pelvis_place.position.x, hip_height, pelvis_place.position.y)};
+  pose.spine_tilt = spine_tilt();
+  const double ankle_height = floor_height_m_ + humanoid_.measures().ankle_height_m;
+  for (std::size_t side : {0U, 1U}) {
+    const Footstep& foot = both_feet[side];
+    pose.world_from_ankle[side] = {
+        rotation_from_heading(foot.print.heading) * glm::angleAxis(foot.pitch, Vec3(1, 0, 0)),
+        Vec3(foot.print.position.x, ankle_height + foot.lift_m, foot.print.position.y)};
+  }
+  pose.arms = arms(pose);
+  return posture_of(humanoid_, pose);
+}
+
+Vec2 Motion::position() const noexcept { return pelvis().position; }
+
+double Motion::heading() const noexcept { return wrapped(pelvis().heading); }
+
+double Motion::speed_m_s() const noexcept { return stage_ == Stage::walking ? track_speed_ : 0.0; }
+
+}  // namespace pirsim::body

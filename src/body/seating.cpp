@@ -1,0 +1,111 @@
+#include "pirsim/body/seating.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <stdexcept>
+
+#include "pirsim/core/error.hpp"
+
+namespace pirsim::body {
+
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+constexpr double leg_extension = 0.995;            // assumed (0.99-1): knees 11 degrees bent
+constexpr double furthest_off_axis_m = 0.3;        // assumed: more than that is another place, not an error
+constexpr double furthest_off_heading = 45 * degree;
+constexpr double furthest_slide_m = 1.5;           // assumed: a chair's way from under a table
+constexpr double negligible_slide_m = 0.02;        // assumed: less is leaned away rather than walked
+constexpr double lowest_thigh = 120 * degree;      // from the vertical; knees bent by about 130 degrees
+constexpr double highest_thigh = 30 * degree;      // leaning rather than sitting
+// A chair is moved by small steps. assumed (step 0.15-0.3 m, lift 0.02-0.05 m)
+constexpr StepStyle shuffle{.step = 0.2, .lift_m = 0.03, .pitch_per_lift = 1.0, .first_foot = 0};
+
+/// The leg of a standing person seen from the side.
+struct StandingLeg {
+  double knee_ahead_m;   ///< of hip and ankle, which are above one another
+  double knee_height_m;  ///< above the floor
+  double thigh_angle;    ///< from the vertical
+};
+
+StandingLeg standing_leg(const Measures& m) {
+  const double distance = leg_extension * (m.thigh_m + m.shank_m);
+  const double along =
+      (m.shank_m * m.shank_m - m.thigh_m * m.thigh_m + distance * distance) / (2.0 * distance);
+  const double ahead = std::sqrt(m.shank_m * m.shank_m - along * along);
+  return {ahead, m.ankle_height_m + along, std::asin(ahead / m.thigh_m)};
+}
+
+/// Of the thigh from the vertical when the hips are at the seat's height; may be out of range.
+double cosine_when_seated(const Measures& m, const SeatPlace& seat) {
+  const double hip_height = seat.world_from_seat.origin.y - seat.floor_height_m;
+  return (hip_height - standing_leg(m).knee_height_m) / m.thigh_m;
+}
+
+}  // namespace
+
+double standing_hip_height_m(const Measures& m) noexcept {
+  return m.ankle_height_m + leg_extension * (m.thigh_m + m.shank_m);
+}
+
+double fall_back_m(const Humanoid& humanoid, const SeatPlace& seat) noexcept {
+  const Measures& m = humanoid.measures();
+  const double cosine = std::clamp(cosine_when_seated(m, seat), -1.0, 1.0);
+  return m.thigh_m * std::sqrt(1.0 - cosine * cosine) - standing_leg(m).knee_ahead_m;
+}
+
+Seating::Seating(const Humanoid& humanoid, const SeatPlace& seat, const Placement& standing,
+                 const std::array<Placement, 2>& feet)
+    : seat_(seat), from_(standing) {
+  const Measures& m = humanoid.measures();
+  const double cosine = cosine_when_seated(m, seat);
+  if (cosine < std::cos(lowest_thigh) || cosine > std::cos(highest_thigh)) {
+    throw Error(ErrorCode::infeasible, "a seat whose pelvis point is " +
+                                           std::to_string(seat.world_from_seat.origin.y - seat.floor_height_m) +
+                                           " m above the floor can't be sat on by a person of " +
+                                           std::to_string(m.stature_m) + " m");
+  }
+  const StandingLeg leg = standing_leg(m);
+  thigh_m_ = m.thigh_m;
+  knee_ahead_m_ = leg.knee_ahead_m;
+  knee_height_m_ = leg.knee_height_m;
+  standing_angle_ = leg.thigh_angle;
+  seated_angle_ = std::acos(cosine);
+
+  const double seat_heading = heading_of(seat.world_from_seat);
+  const Vec2 seat_point = floor_point(seat.world_from_seat.origin);
+  const Vec2 forward = direction_of(seat_heading);
+  const double ahead = glm::dot(standing.position - seat_point, forward);
+  double slide = fall_back_m(humanoid, seat) - ahead;
+  const double off_axis = glm::length(standing.position - seat_point - ahead * forward);
+  const double off_heading = wrapped(seat_heading - standing.heading);
+  if (off_axis > furthest_off_axis_m || std::abs(slide) > furthest_slide_m ||
+      std::abs(off_heading) > furthest_off_heading) {
+    throw std::logic_error("a person sits down from a place on the seat's axis, facing as the seat does");
+  }
+  if (std::abs(slide) < negligible_slide_m) slide = 0.0;
+  const double before_m = fall_back_m(humanoid, seat) - slide;
+  before_ = {seat_point + before_m * forward, standing.heading + off_heading};
+  sliding_ = Track::slide(before_, before_.heading, slide);
+  shuffling_ = FootPlan(feet, sliding_.length(), shuffle, 0.5 * m.hip_width_m);
+}
+
+double Seating::thigh_angle(double fall) const noexcept {
+  return standing_angle_ + fall * (seated_angle_ - standing_angle_);
+}
+
+double Seating::hip_height_m(double fall) const noexcept {
+  return knee_height_m_ + thigh_m_ * std::cos(thigh_angle(fall));
+}
+
+Placement Seating::pelvis(double fall, double slide_m) const noexcept {
+  const double weight = smoothstep(fall);
+  const Placement slid = sliding_.at(slide_m);
+  const Placement over_feet{slid.position + (1.0 - weight) * (from_.position - before_.position),
+                            slid.heading + (1.0 - weight) * (from_.heading - before_.heading)};
+  return over_feet.shifted(knee_ahead_m_ - thigh_m_ * std::sin(thigh_angle(fall)), 0.0);
+}
+
+}  // namespace pirsim::body
