@@ -1,0 +1,2 @@
+#include "app/commands.hpp"
+namespace pirsim::app { void preview(const Inputs&, const PreviewOptions&) {} }
