@@ -28,14 +28,17 @@ Placement Placement::shifted(double forward, double right) const noexcept {
   return {position + forward * ahead + right * sideways, heading};
 }
 
-Track::Track(const Route& route, const Placement& start, double step_m)
-    : start_(start), length_(route.length_m()), route_(route), blend_length_(step_m) {
+Track::Track(const Route& route, double from_s, double to_s, const Placement& start, double step_m)
+    : start_(start), length_(to_s - from_s), route_(route), from_s_(from_s), blend_length_(step_m) {
   const int n = std::max(1, static_cast<int>(std::ceil(length_ * samples_per_step / step_m)));
   spacing_ = length_ / n;
   std::vector<double> raw(static_cast<std::size_t>(n) + 1);
-  raw[0] = start.heading + wrapped(route.heading(0.0) - start.heading);
-  for (std::size_t i = 1; i < raw.size(); ++i) {
-    raw[i] = raw[i - 1] + wrapped(route.heading(static_cast<double>(i) * spacing_) - raw[i - 1]);
+  raw[0] = start.heading + wrapped(route.heading(from_s) - start.heading);
+  for (int i = 1; i <= n; ++i) {
+    // At to_s itself the route may already head for what comes after a sharp turn.
+    const double s = i < n ? from_s + i * spacing_ : to_s - 1e-9;
+    const double before = raw[static_cast<std::size_t>(i) - 1];
+    raw[static_cast<std::size_t>(i)] = before + wrapped(route.heading(s) - before);
   }
   headings_.resize(raw.size());
   for (int i = 0; i <= n; ++i) {
@@ -71,10 +74,10 @@ double Track::mean_heading(double s) const noexcept {
 
 Placement Track::at(double s) const noexcept {
   if (!route_) return {start_.position + s * slide_direction_, start_.heading + turn_per_length_ * s};
-  Placement place{route_->position(s), mean_heading(s)};
+  Placement place{route_->position(from_s_ + s), mean_heading(s)};
   const double fading = 1.0 - smoothstep(s / blend_length_);
   if (fading > 0.0) {
-    place.position += fading * (start_.position - route_->position(0.0));
+    place.position += fading * (start_.position - route_->position(from_s_));
     place.heading += fading * (start_.heading - headings_.front());
   }
   return place;

@@ -87,17 +87,25 @@ void Motion::walk(const Route& route) {
   if (glm::distance(route.position(0.0), stand_.position) > furthest_from_route_m) {
     throw std::logic_error("a route begins where the person stands");
   }
-  if (route.length_m() <= 0.0) return;
-  const double aside = wrapped(route.heading(0.0) - stand_.heading);
+  if (route.length_m() > 0.0) walk_from(route, 0.0);
+}
+
+void Motion::walk_from(const Route& route, double from_s) {
+  const double aside = wrapped(route.heading(from_s) - stand_.heading);
   if (std::abs(aside) > turn_before_walking) {
-    route_after_turning_ = route;
     begin_turn(aside);
+    remainder_ = Remainder{route, from_s};
     return;
+  }
+  double to_s = route.length_m();
+  for (const double turn_s : route.sharp_turns_s()) {
+    if (turn_s > from_s) to_s = std::min(to_s, turn_s);
   }
   const double scale = humanoid_.measures().stature_m / reference_stature_m;
   const double step = longest_step_m * scale;
-  begin_track(Stage::walking, Track(route, stand_, step),
+  begin_track(Stage::walking, Track(route, from_s, to_s, stand_, step),
               {.step = step, .lift_m = walking_lift_m * scale, .pitch_per_lift = walking_pitch_per_lift / scale});
+  if (to_s < route.length_m()) remainder_ = Remainder{route, to_s};
 }
 
 void Motion::turn_to(double heading) {
@@ -109,7 +117,7 @@ void Motion::turn_to(double heading) {
 void Motion::stop() {
   if (stage_ == Stage::standing) return;
   if (!on_track()) refuse("stopping", stage_);
-  route_after_turning_.reset();
+  remainder_.reset();
   const double braking = stage_ == Stage::walking ? walking_acceleration_m_s2 : turning_acceleration;
   steps_.shorten(distance_, track_speed_ * track_speed_ / (2.0 * braking) + track_speed_ * tick_s_);
 }
@@ -177,10 +185,10 @@ void Motion::advance_on_track() {
 
   const Feet feet = steps_.feet(track_, steps_.length());
   come_to_stand(track_.at(steps_.length()), {feet[0].print, feet[1].print});
-  if (!route_after_turning_) return;
-  const Route route = *route_after_turning_;
-  route_after_turning_.reset();
-  walk(route);
+  if (!remainder_) return;
+  const Remainder remainder = *remainder_;
+  remainder_.reset();
+  walk_from(remainder.route, remainder.from_s);
 }
 
 void Motion::advance_on_seat() noexcept {

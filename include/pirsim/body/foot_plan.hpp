@@ -24,9 +24,10 @@ struct Placement {
 class Track {
  public:
   Track() = default;
-  /// A walk from `start`; what `start` is off the route is blended away within `step_m`. The heading is the route's,
-  /// averaged over a step, since people turn into a corner before they reach it.
-  Track(const Route& route, const Placement& start, double step_m);
+  /// A walk from `start` along the route from from_s to to_s, between which it has no sharp turn; what `start` is off
+  /// the route is blended away within `step_m`. The heading is the route's, averaged over a step, since people turn
+  /// into a corner before they reach it.
+  Track(const Route& route, double from_s, double to_s, const Placement& start, double step_m);
   static Track turn(const Placement& start, double angle);
   static Track slide(const Placement& start, double direction, double distance_m);
 
@@ -42,6 +43,7 @@ class Track {
   double turn_per_length_ = 0.0;  ///< +1 or -1 when turning on the spot
   Vec2 slide_direction_{0.0};
   std::optional<Route> route_;
+  double from_s_ = 0.0;
   std::vector<double> headings_;  ///< along the route, radians without jumps, at multiples of spacing_
   double spacing_ = 0.0;
   double blend_length_ = 0.0;

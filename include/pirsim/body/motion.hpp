@@ -63,6 +63,7 @@ class Motion {
   [[nodiscard]] std::array<ArmPose, 2> arms(const Pose& pose) const noexcept;
   void begin_track(Stage stage, const Track& track, const StepStyle& style);
   void begin_turn(double angle);
+  void walk_from(const Route& route, double from_s);
   void advance_on_track();
   void advance_on_seat() noexcept;
   void come_to_stand(const Placement& place, const std::array<Placement, 2>& feet) noexcept;
@@ -82,7 +83,13 @@ class Motion {
   double distance_ = 0.0;
   double track_speed_ = 0.0;
   double speed_limit_m_s_ = std::numeric_limits<double>::infinity();
-  std::optional<Route> route_after_turning_;
+  /// What is left to walk after the present track: of a route with sharp turns.
+  struct Remainder {
+    Route route;
+    double from_s = 0.0;
+    bool operator==(const Remainder&) const = default;
+  };
+  std::optional<Remainder> remainder_;
 
   // Sitting.
   Seating seating_;
