@@ -96,13 +96,16 @@ class EmbreeTracer final : public Tracer {
   }
 
  private:
-  /// Zones that may see a solid: of the clusters near one, the zones near one.
+  /// Zones that may see a solid; coarse to fine: clusters against all solids at once, against each, zones against each.
   void find_candidates(std::span<const PosedShape> solids) {
     balls_.clear();
     for (const PosedShape& solid : solids) balls_.push_back(ball_around(solid));
     candidates_.clear();
+    if (balls_.empty()) return;
+    const Ball all = ball_around(balls_);
     for (std::size_t cluster = 0; cluster < bundle_.n_clusters(); ++cluster) {
-      if (!may_touch_any(cluster_cones_[cluster], balls_)) continue;
+      const ViewCone& cone = cluster_cones_[cluster];
+      if (!may_touch_any(cone, {&all, 1}) || !may_touch_any(cone, balls_)) continue;
       const std::size_t end = bundle_.cluster_zones_begin[cluster + 1];
       for (std::size_t zone = bundle_.cluster_zones_begin[cluster]; zone < end; ++zone) {
         if (may_touch_any(zone_cones_[zone], balls_)) candidates_.push_back(zone);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -74,6 +75,19 @@ Ball ball_around(const PosedShape& shape) noexcept {
   }
   const auto& box = std::get<PosedBox>(shape);
   return {box.centre, glm::length(box.half_extents)};
+}
+
+Ball ball_around(std::span<const Ball> balls) noexcept {
+  Vec3f lower = balls.front().centre, upper = lower;
+  for (const Ball& ball : balls) {
+    lower = glm::min(lower, ball.centre - ball.radius);
+    upper = glm::max(upper, ball.centre + ball.radius);
+  }
+  Ball all{(lower + upper) * 0.5F, 0.0F};
+  for (const Ball& ball : balls) {
+    all.radius = std::max(all.radius, glm::length(ball.centre - all.centre) + ball.radius);
+  }
+  return all;
 }
 
 std::vector<ViewCone> cluster_cones(const RayBundle& bundle) {

@@ -14,6 +14,8 @@ struct Ball {
   float radius = 0.0F;
 };
 [[nodiscard]] Ball ball_around(const PosedShape& shape) noexcept;
+/// Ball around balls; at least one.
+[[nodiscard]] Ball ball_around(std::span<const Ball> balls) noexcept;
 
 /// All points that rays from `apex` within `half_angle` of `axis` reach up to `length` metres.
 struct ViewCone {
