@@ -23,20 +23,20 @@ int index_of_last(std::size_t size) { return static_cast<int>(size) - 1; }
 
 }  // namespace
 
-GltfDocument::GltfDocument(const std::string& title) {
+GltfBuilder::GltfBuilder(const std::string& title) {
   model_.asset.version = "2.0";
   model_.asset.generator = "pirsim";
   model_.defaultScene = 0;
   model_.scenes.emplace_back().name = title;
 }
 
-int GltfDocument::add_positions(const std::vector<Vec3>& positions) {
+int GltfBuilder::add_positions(const std::vector<Vec3>& positions) {
   return add_floats(flattened(positions), TINYGLTF_TYPE_VEC3, TINYGLTF_TARGET_ARRAY_BUFFER);
 }
 
-int GltfDocument::add_normals(const std::vector<Vec3>& normals) { return add_positions(normals); }
+int GltfBuilder::add_normals(const std::vector<Vec3>& normals) { return add_positions(normals); }
 
-int GltfDocument::add_indices(const std::vector<std::uint32_t>& indices) {
+int GltfBuilder::add_indices(const std::vector<std::uint32_t>& indices) {
   tinygltf::Accessor accessor;
   accessor.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
   accessor.type = TINYGLTF_TYPE_SCALAR;
@@ -45,15 +45,15 @@ int GltfDocument::add_indices(const std::vector<std::uint32_t>& indices) {
                       std::move(accessor));
 }
 
-int GltfDocument::add_key_times(const std::vector<double>& seconds) {
+int GltfBuilder::add_key_times(const std::vector<double>& seconds) {
   return add_floats({seconds.begin(), seconds.end()}, TINYGLTF_TYPE_SCALAR, no_target);
 }
 
-int GltfDocument::add_track(const std::vector<Vec3>& values) {
+int GltfBuilder::add_track(const std::vector<Vec3>& values) {
   return add_floats(flattened(values), TINYGLTF_TYPE_VEC3, no_target);
 }
 
-int GltfDocument::add_track(const std::vector<Quat>& values) {
+int GltfBuilder::add_track(const std::vector<Quat>& values) {
   std::vector<float> flat;
   flat.reserve(4 * values.size());
   for (const Quat& q : values) {
@@ -62,7 +62,7 @@ int GltfDocument::add_track(const std::vector<Quat>& values) {
   return add_floats(flat, TINYGLTF_TYPE_VEC4, no_target);
 }
 
-int GltfDocument::add_floats(const std::vector<float>& values, int type, int target) {
+int GltfBuilder::add_floats(const std::vector<float>& values, int type, int target) {
   const auto width = static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type)));
   tinygltf::Accessor accessor;
   accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
@@ -81,7 +81,7 @@ int GltfDocument::add_floats(const std::vector<float>& values, int type, int tar
   return add_accessor(values.data(), values.size() * sizeof(float), target, std::move(accessor));
 }
 
-int GltfDocument::add_accessor(const void* data, std::size_t bytes, int target, tinygltf::Accessor accessor) {
+int GltfBuilder::add_accessor(const void* data, std::size_t bytes, int target, tinygltf::Accessor accessor) {
   if (model_.buffers.empty()) model_.buffers.emplace_back();
   std::vector<unsigned char>& buffer = model_.buffers.front().data;
   static_assert(sizeof(float) == alignment && sizeof(std::uint32_t) == alignment);
@@ -97,7 +97,7 @@ int GltfDocument::add_accessor(const void* data, std::size_t bytes, int target, 
   return index_of_last(model_.accessors.size());
 }
 
-int GltfDocument::add_material(const std::string& name, const Vec3& colour, double opacity) {
+int GltfBuilder::add_material(const std::string& name, const Vec3& colour, double opacity) {
   tinygltf::Material& material = model_.materials.emplace_back();
   material.name = name;
   material.pbrMetallicRoughness.baseColorFactor = {colour.x, colour.y, colour.z, opacity};
@@ -108,14 +108,14 @@ int GltfDocument::add_material(const std::string& name, const Vec3& colour, doub
   return index_of_last(model_.materials.size());
 }
 
-int GltfDocument::add_mesh(const std::string& name, const tinygltf::Primitive& primitive) {
+int GltfBuilder::add_mesh(const std::string& name, const tinygltf::Primitive& primitive) {
   tinygltf::Mesh& mesh = model_.meshes.emplace_back();
   mesh.name = name;
   mesh.primitives.push_back(primitive);
   return index_of_last(model_.meshes.size());
 }
 
-int GltfDocument::add_node(tinygltf::Node node, int parent) {
+int GltfBuilder::add_node(tinygltf::Node node, int parent) {
   model_.nodes.push_back(std::move(node));
   const int index = index_of_last(model_.nodes.size());
   auto& siblings = parent < 0 ? model_.scenes.front().nodes : model_.nodes[static_cast<std::size_t>(parent)].children;
@@ -123,7 +123,7 @@ int GltfDocument::add_node(tinygltf::Node node, int parent) {
   return index;
 }
 
-void GltfDocument::animate(int node, const std::string& path, int key_times, int track,
+void GltfBuilder::animate(int node, const std::string& path, int key_times, int track,
                            const std::string& interpolation) {
   if (model_.animations.empty()) model_.animations.emplace_back().name = model_.scenes.front().name;
   tinygltf::Animation& animation = model_.animations.front();

@@ -12,9 +12,9 @@
 namespace pirsim::io {
 
 /// All functions that add something return its index in the document.
-class GltfDocument {
+class GltfBuilder {
  public:
-  explicit GltfDocument(const std::string& title);
+  explicit GltfBuilder(const std::string& title);
 
   int add_positions(const std::vector<Vec3>& positions);
   int add_normals(const std::vector<Vec3>& normals);

@@ -84,7 +84,7 @@ tinygltf::Node named(const std::string& name) {
   return node;
 }
 
-void add_room(GltfDocument& document, const std::vector<TriMesh>& meshes) {
+void add_room(GltfBuilder& document, const std::vector<TriMesh>& meshes) {
   int walls = -1;
   int furniture = -1;
   for (const TriMesh& mesh : meshes) {
@@ -126,7 +126,7 @@ struct DescribeShape {
   }
 };
 
-int add_solid(GltfDocument& document, const std::string& name, const Shape& shape, int material) {
+int add_solid(GltfBuilder& document, const std::string& name, const Shape& shape, int material) {
   const SolidMesh solid = tessellated(shape);
   tinygltf::Primitive primitive;
   primitive.mode = TINYGLTF_MODE_TRIANGLES;
@@ -149,7 +149,7 @@ std::vector<Quat> continuous_rotations(const std::vector<Frame>& frames) {
   return rotations;
 }
 
-void add_part(GltfDocument& document, const ExportedPart& part, const std::string& person, int parent, int material,
+void add_part(GltfBuilder& document, const ExportedPart& part, const std::string& person, int parent, int material,
               int key_times) {
   const std::string name = person + "/" + part.part;
   const std::vector<Quat> rotations = continuous_rotations(part.world_from_part);
@@ -168,7 +168,7 @@ void add_part(GltfDocument& document, const ExportedPart& part, const std::strin
   document.animate(index, "rotation", key_times, document.add_track(rotations), "LINEAR");
 }
 
-void add_people(GltfDocument& document, const ExportedRun& run) {
+void add_people(GltfBuilder& document, const ExportedRun& run) {
   if (run.people.empty()) return;
   const int key_times = document.add_key_times(run.key_times_s);
   for (std::size_t i = 0; i < run.people.size(); ++i) {
@@ -186,7 +186,7 @@ void add_people(GltfDocument& document, const ExportedRun& run) {
   }
 }
 
-void add_beams(GltfDocument& document, const std::vector<ExportedBeams>& all_beams) {
+void add_beams(GltfBuilder& document, const std::vector<ExportedBeams>& all_beams) {
   for (std::size_t i = 0; i < all_beams.size(); ++i) {
     const ExportedBeams& beams = all_beams[i];
     if (beams.segments.empty()) continue;
@@ -209,7 +209,7 @@ void add_beams(GltfDocument& document, const std::vector<ExportedBeams>& all_bea
 void write_gltf(const std::filesystem::path& file, const ExportedRun& run) {
   const Where where{file.string()};
   check(run, where);
-  GltfDocument document(run.title.empty() ? "run" : run.title);
+  GltfBuilder document(run.title.empty() ? "run" : run.title);
   add_room(document, run.meshes);
   add_people(document, run);
   add_beams(document, run.beams);
