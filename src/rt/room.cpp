@@ -104,6 +104,8 @@ Room::~Room() = default;
 Room::Room(Room&&) noexcept = default;
 Room& Room::operator=(Room&&) noexcept = default;
 
+std::size_t Room::n_meshes() const noexcept { return impl_->meshes.size(); }
+
 std::optional<RoomHit> Room::first_hit(const Ray& ray, float t_max) const noexcept {
   QueryContext context;
   initialise(context);

@@ -1,6 +1,7 @@
 // The static part of a scene as an Embree ray scene.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -28,6 +29,7 @@ class Room {
   Room(Room&&) noexcept;
   Room& operator=(Room&&) noexcept;
 
+  [[nodiscard]] std::size_t n_meshes() const noexcept;
   [[nodiscard]] std::optional<RoomHit> first_hit(const Ray& ray, float t_max) const noexcept;
   /// Cuts every ray's range at the first thing in its way.
   void clip(RayBundle& bundle) const noexcept;
