@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "pirsim/io/scene_reader.hpp"
+#include "support/catch.hpp"
 
 namespace pirsim::test {
 
@@ -141,6 +142,15 @@ struct GltfBuilder {
     return io::read_scene(folder.write("room.gltf", text()), {{std::filesystem::path(PIRSIM_DATA_DIR) / "sensors"}});
   }
 };
+
+/// Matches a text that holds the fragment; Catch2 version 3 has another name for it.
+inline auto contains(const std::string& fragment) {
+#if __has_include(<catch2/catch_all.hpp>)
+  return Catch::Matchers::ContainsSubstring(fragment);
+#else
+  return Catch::Matchers::Contains(fragment);
+#endif
+}
 
 /// Message of the Error that reading throws, or "accepted".
 template <typename Read>
