@@ -17,7 +17,7 @@ constexpr double fitted_stature_m = 1.86;
 // assumed: abduction 10 (5-15), elbow 15 (10-30), swing 18 (15-25) degrees at the longest step.
 constexpr double hanging_abduction = 10 * degree;
 constexpr double hanging_elbow = 15 * degree;
-constexpr double elbow_per_swing = 0.6;  // 0.3-1: the elbow bends further as the arm comes forward
+constexpr double elbow_per_swing = 0.4;  // 0.3-1: the elbow bends further as the arm comes forward
 constexpr double widest_swing = 18 * degree;
 constexpr double longest_half_step_m = 0.25;  // semi-axis of the foot's ellipse, paper section 2.2
 
@@ -98,7 +98,7 @@ std::array<ArmPose, 2> arms_on_thighs(const Humanoid& humanoid, double spine_til
     const Vec3 thigh_point(0.5 * sign_of(side) * m.hip_width_m, -along * cosine, -along * sine);
     const Vec3 hand = torso_from_hips * (thigh_point + above * Vec3(0, sine, -cosine));
     const Vec3 from = shoulder(m, side);
-    const Vec3 pole = torso_from_hips * Vec3(0.8 * sign_of(side), -0.3, 0.6);
+    const Vec3 pole = torso_from_hips * Vec3(0.45 * sign_of(side), -0.3, 0.7);
     const Vec3 elbow = two_bone_joint(from, hand, m.upper_arm_m, m.forearm_m, pole);
     arms[side] = arm_through(from, elbow, hand);
   }

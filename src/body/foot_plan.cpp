@@ -57,6 +57,13 @@ Track Track::turn(const Placement& start, double angle) {
   return track;
 }
 
+Track Track::stay(const Placement& start, double length) {
+  Track track;
+  track.start_ = start;
+  track.length_ = length;
+  return track;
+}
+
 Track Track::slide(const Placement& start, double direction, double distance_m) {
   Track track;
   track.start_ = start;
@@ -83,7 +90,7 @@ Placement Track::at(double s) const noexcept {
   return place;
 }
 
-FootPlan::FootPlan(const std::array<Placement, 2>& start, double length, const StepStyle& style, double half_stance_m)
+FootPlan::FootPlan(const Feet& start, double length, const StepStyle& style, double half_stance_m)
     : start_(start),
       length_(length),
       // A step longer by rounding alone must not cost a step more.
@@ -108,7 +115,7 @@ void FootPlan::shorten(double s, double braking) noexcept {
 }
 
 Placement FootPlan::print(const Track& track, std::size_t foot, double s) const noexcept {
-  return s > 0.0 ? track.at(s).shifted(0.0, foot == 0 ? -half_stance_m_ : half_stance_m_) : start_[foot];
+  return s > 0.0 ? track.at(s).shifted(0.0, foot == 0 ? -half_stance_m_ : half_stance_m_) : start_[foot].print;
 }
 
 Feet FootPlan::feet(const Track& track, double s) const noexcept {
@@ -134,6 +141,10 @@ Feet FootPlan::feet(const Track& track, double s) const noexcept {
   // The heel leaves the floor first, the toes come up before it lands. Toes 0.11 H ahead of the ankle clear the floor
   // for pitch_per_lift up to about 2.9 rad/m (H = 1.86 m).
   foot.pitch = -pitch_per_lift_ * highest * std::sin(pi * p) * (std::cos(pi * p) + 0.6);
+  if (j == 0) {
+    foot.lift_m += start_[swinging].lift_m * (1.0 - smoothstep(p));
+    foot.pitch += start_[swinging].pitch * (1.0 - smoothstep(p));
+  }
   return feet;
 }
 

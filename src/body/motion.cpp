@@ -24,6 +24,7 @@ constexpr double turning_step = 22.5 * degree;         // of the pelvis; each fo
 constexpr double turning_lift_m = 0.05;                // assumed (0.03-0.08)
 constexpr double turning_speed = 90 * degree;          // per second, assumed (60-120)
 constexpr double turning_acceleration = 180 * degree;  // per second squared, assumed (120-360)
+constexpr double standstill_m_s = 0.05;                // assumed: slower than this is waiting
 constexpr double turn_before_walking = 20 * degree;    // assumed: less is blended into the first step
 constexpr double furthest_from_route_m = 0.1;          // assumed: more than that is another place
 
@@ -54,14 +55,14 @@ Motion::Motion(const Humanoid& humanoid, const Vec2& position, double heading, d
     : humanoid_(humanoid), floor_height_m_(floor_height_m), tick_s_(tick_s) {
   const Placement place{position, heading};
   const double half_stance = 0.5 * humanoid.measures().hip_width_m;
-  come_to_stand(place, {place.shifted(0.0, -half_stance), place.shifted(0.0, half_stance)});
+  come_to_stand(place, {Footstep{place.shifted(0.0, -half_stance)}, Footstep{place.shifted(0.0, half_stance)}});
 }
 
 int Motion::ticks(double seconds) const noexcept {
   return std::max(1, static_cast<int>(std::lround(seconds / tick_s_)));
 }
 
-void Motion::come_to_stand(const Placement& place, const std::array<Placement, 2>& feet) noexcept {
+void Motion::come_to_stand(const Placement& place, const Feet& feet) noexcept {
   stage_ = Stage::standing;
   stand_ = {place.position, wrapped(place.heading)};
   stand_feet_ = feet;
@@ -73,7 +74,19 @@ void Motion::begin_track(Stage stage, const Track& track, const StepStyle& style
   steps_ = FootPlan(stand_feet_, track.length(), style, 0.5 * humanoid_.measures().hip_width_m);
   distance_ = 0.0;
   track_speed_ = 0.0;
+  hips_lowered_m_ = 0.0;
   stage_ = stage;
+}
+
+void Motion::bring_feet_together() {
+  const Feet feet_now = feet();
+  const Placement place = pelvis();
+  const double lowered = standing_hip_height_m(humanoid_.measures()) - hip_height_m(place, feet_now);
+  come_to_stand(place, feet_now);
+  const int airborne = feet_now[1].lift_m > 0.0 ? 1 : 0;
+  begin_track(Stage::turning, Track::stay(place, 2.0 * turning_step),
+              {.step = 2.0 * turning_step, .lift_m = turning_lift_m, .pitch_per_lift = 1.0, .first_foot = airborne});
+  hips_lowered_m_ = lowered;
 }
 
 void Motion::begin_turn(double angle) {
@@ -118,6 +131,10 @@ void Motion::stop() {
   if (stage_ == Stage::standing) return;
   if (!on_track()) refuse("stopping", stage_);
   remainder_.reset();
+  if (stage_ == Stage::walking && track_speed_ < standstill_m_s) {
+    bring_feet_together();
+    return;
+  }
   const double braking = stage_ == Stage::walking ? walking_acceleration_m_s2 : turning_acceleration;
   steps_.shorten(distance_, track_speed_ * track_speed_ / (2.0 * braking) + track_speed_ * tick_s_);
 }
@@ -184,7 +201,7 @@ void Motion::advance_on_track() {
   if (steps_.length() - distance_ > arrived) return;
 
   const Feet feet = steps_.feet(track_, steps_.length());
-  come_to_stand(track_.at(steps_.length()), {feet[0].print, feet[1].print});
+  come_to_stand(track_.at(steps_.length()), {Footstep{feet[0].print}, Footstep{feet[1].print}});
   if (!remainder_) return;
   const Remainder remainder = *remainder_;
   remainder_.reset();

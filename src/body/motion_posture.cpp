@@ -29,7 +29,7 @@ Placement Motion::pelvis() const noexcept {
 Feet Motion::feet() const noexcept {
   if (on_track()) return steps_.feet(track_, distance_);
   if (on_seat()) return seating_.feet(slide_m_.value());
-  return {Footstep{stand_feet_[0]}, Footstep{stand_feet_[1]}};
+  return stand_feet_;
 }
 
 double Motion::hip_height_m(const Placement& pelvis, const Feet& feet) const noexcept {
@@ -42,6 +42,7 @@ double Motion::hip_height_m(const Placement& pelvis, const Feet& feet) const noe
     const double lowest = m.ankle_height_m + height_over(standing - m.ankle_height_m, 0.5 * steps_.step());
     height = lowest + (standing - lowest) * 0.5 * (1.0 + std::cos(2.0 * pi * distance_ / steps_.step()));
   }
+  if (stage_ == Stage::turning) height -= hips_lowered_m_ * (1.0 - smoothstep(distance_ / steps_.length()));
   // On a bend a foot can be further away than that.
   for (std::size_t side : {0U, 1U}) {
     const Vec2 hip = pelvis.shifted(0.0, (side == 0 ? -0.5 : 0.5) * m.hip_width_m).position;

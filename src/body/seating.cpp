@@ -57,7 +57,7 @@ double fall_back_m(const Humanoid& humanoid, const SeatPlace& seat) noexcept {
 }
 
 Seating::Seating(const Humanoid& humanoid, const SeatPlace& seat, const Placement& standing,
-                 const std::array<Placement, 2>& feet)
+                 const Feet& feet)
     : seat_(seat), from_(standing) {
   const Measures& m = humanoid.measures();
   const double cosine = cosine_when_seated(m, seat);

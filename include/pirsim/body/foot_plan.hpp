@@ -29,6 +29,8 @@ class Track {
   /// into a corner before they reach it.
   Track(const Route& route, double from_s, double to_s, const Placement& start, double step_m);
   static Track turn(const Placement& start, double angle);
+  /// Stays there; the length only counts how far the feet are with their steps.
+  static Track stay(const Placement& start, double length);
   static Track slide(const Placement& start, double direction, double distance_m);
 
   [[nodiscard]] double length() const noexcept { return length_; }
@@ -54,6 +56,7 @@ struct Footstep {
   Placement print;       ///< under the ankle
   double lift_m = 0.0;   ///< of the ankle above its height when standing
   double pitch = 0.0;    ///< radians, positive toes up
+  bool operator==(const Footstep&) const = default;
 };
 using Feet = std::array<Footstep, 2>;  ///< left, right
 
@@ -70,7 +73,8 @@ struct StepStyle {
 class FootPlan {
  public:
   FootPlan() = default;
-  FootPlan(const std::array<Placement, 2>& start, double length, const StepStyle& style, double half_stance_m);
+  /// The first foot of `start` to swing may already be in the air.
+  FootPlan(const Feet& start, double length, const StepStyle& style, double half_stance_m);
 
   /// Ends the plan at the first footprint that leaves at least `braking` of way from s.
   void shorten(double s, double braking) noexcept;
@@ -84,7 +88,7 @@ class FootPlan {
   [[nodiscard]] int interval(double s) const noexcept;
   [[nodiscard]] Placement print(const Track& track, std::size_t foot, double s) const noexcept;
 
-  std::array<Placement, 2> start_{};
+  Feet start_{};
   double length_ = 0.0;
   double step_ = 0.0;
   int steps_ = 0;

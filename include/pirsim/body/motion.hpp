@@ -31,7 +31,9 @@ class Motion {
   // sequences them; stop() and rise() lead back to standing from anywhere.
   void walk(const Route& route);        ///< from standing; the route starts here
   void turn_to(double heading);         ///< from standing, in place, with small steps
-  void stop();                          ///< from walking or turning: comes to stand within two steps
+  /// From walking or turning: comes to stand within two steps. Who waits in mid-stride (limit_speed(0)) brings the
+  /// feet together on the spot, which counts as turning.
+  void stop();
   void sit_down(const SeatPlace& seat); ///< from standing, facing as the seat does; also reverses rising from it
   void rise();                          ///< from seated or sitting_down: back to where sitting down began
   void work(const DeskWork& work);      ///< from seated: forearms to the table, then oscillating
@@ -66,7 +68,8 @@ class Motion {
   void walk_from(const Route& route, double from_s);
   void advance_on_track();
   void advance_on_seat() noexcept;
-  void come_to_stand(const Placement& place, const std::array<Placement, 2>& feet) noexcept;
+  void bring_feet_together();
+  void come_to_stand(const Placement& place, const Feet& feet) noexcept;
 
   Humanoid humanoid_;
   double floor_height_m_ = 0.0;
@@ -75,13 +78,14 @@ class Motion {
 
   // Standing; also where sitting down began.
   Placement stand_;
-  std::array<Placement, 2> stand_feet_{};
+  Feet stand_feet_{};
 
   // Walking and turning; distances in metres or radians.
   Track track_;
   FootPlan steps_;
   double distance_ = 0.0;
   double track_speed_ = 0.0;
+  double hips_lowered_m_ = 0.0;  ///< below standing at the start of a turn, fading
   double speed_limit_m_s_ = std::numeric_limits<double>::infinity();
   /// What is left to walk after the present track: of a route with sharp turns.
   struct Remainder {

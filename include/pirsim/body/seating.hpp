@@ -28,8 +28,7 @@ class Seating {
   Seating() = default;
   /// Throws Error(infeasible) if the seat's height can't be sat on, std::logic_error if the person stands elsewhere
   /// than before or behind the seat on its axis, or faces another way.
-  Seating(const Humanoid& humanoid, const SeatPlace& seat, const Placement& standing,
-          const std::array<Placement, 2>& feet);
+  Seating(const Humanoid& humanoid, const SeatPlace& seat, const Placement& standing, const Feet& feet);
 
   [[nodiscard]] const SeatPlace& seat() const noexcept { return seat_; }
   [[nodiscard]] double slide_length_m() const noexcept { return shuffling_.length(); }
