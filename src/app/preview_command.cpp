@@ -1,0 +1,135 @@
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "app/commands.hpp"
+#include "app/session.hpp"
+#include "pirsim/core/units.hpp"
+#include "pirsim/io/png.hpp"
+#include "pirsim/rt/renderer.hpp"
+#include "pirsim/sim/beams.hpp"
+#include "pirsim/sim/state.hpp"
+
+namespace pirsim::app {
+namespace {
+
+struct Extent {
+  Vec3 lower{1e9}, upper{-1e9};
+};
+
+Extent extent(const TriMesh& mesh) {
+  Extent result;
+  for (const Vec3& p : mesh.positions) {
+    result.lower = glm::min(result.lower, p);
+    result.upper = glm::max(result.upper, p);
+  }
+  return result;
+}
+
+struct MeshLook {
+  rt::Surface surface;
+  rt::Colour colour;
+};
+
+/// Tall or high things are walls and ceilings, cut away towards the camera; the rest is furniture.
+MeshLook look_of(const TriMesh& mesh, double floor_y) {
+  constexpr double wall_height_m = 2.0, floor_thickness_m = 0.05;
+  const Extent e = extent(mesh);
+  const Vec3 size = e.upper - e.lower;
+  const bool is_high = e.lower.y >= floor_y + wall_height_m;
+  if (is_high && size.y < std::min(size.x, size.z)) return {rt::Surface::hidden, {0.9F, 0.9F, 0.9F}};
+  if (is_high || size.y > wall_height_m) return {rt::Surface::see_through, {0.82F, 0.84F, 0.86F}};
+  if (e.upper.y < floor_y + floor_thickness_m) return {rt::Surface::opaque, {0.60F, 0.57F, 0.53F}};
+  return {rt::Surface::opaque, {0.55F, 0.36F, 0.20F}};
+}
+
+rt::Colour colour_of(body::Part part) {
+  switch (part) {
+    case body::Part::head:
+    case body::Part::left_forearm:
+    case body::Part::right_forearm: return {0.78F, 0.50F, 0.36F};
+    case body::Part::torso:
+    case body::Part::left_upper_arm:
+    case body::Part::right_upper_arm: return {0.10F, 0.28F, 0.52F};
+    case body::Part::left_foot:
+    case body::Part::right_foot: return {0.05F, 0.05F, 0.06F};
+    default: return {0.14F, 0.15F, 0.20F};
+  }
+}
+
+/// From above and beside, far enough to hold the whole floor area and a storey of height.
+rt::Camera dolls_house_camera(const SceneSpec& scene, double fov_rad, double aspect) {
+  const Vec2 lower = scene.floor.lower(), upper = scene.floor.upper();
+  const Vec2 middle = 0.5 * (lower + upper);
+  const Vec3 target(middle.x, scene.floor.height_m() + 0.6, middle.y);
+  const double radius = 0.5 * glm::length(Vec3(upper.x - lower.x, 2.0, upper.y - lower.y));
+  const double narrow = std::min(fov_rad, 2.0 * std::atan(std::tan(fov_rad / 2.0) * aspect));
+  const Vec3 direction = glm::normalize(Vec3(-0.55, 0.85, -1.0));
+  return {target + direction * (0.92 * radius / std::sin(narrow / 2.0)), target, fov_rad};
+}
+
+bool reached_default_time(const State& state, std::int64_t& work_began, const Model& model) {
+  constexpr double into_work_s = 10.0;
+  if (work_began < 0 && !state.actors().empty() && state.actors().front().phase() == "working") work_began = state.tick();
+  return work_began >= 0 && static_cast<double>(state.tick() - work_began) * model.tick_s() >= into_work_s;
+}
+
+State go_to_moment(const Model& model, const PreviewOptions& options) {
+  State state(model, find_run(model, options.trial, options.replicate));
+  std::int64_t work_began = -1;
+  while (!state.finished()) {
+    if (options.time_s ? static_cast<double>(state.tick()) * model.tick_s() >= *options.time_s
+                       : reached_default_time(state, work_began, model)) {
+      break;
+    }
+    step_tick(model, state);
+  }
+  return state;
+}
+
+}  // namespace
+
+void preview(const Inputs& inputs, const PreviewOptions& options) {
+  const Model model = load(inputs);
+  const State state = go_to_moment(model, options);
+
+  std::vector<rt::Surface> surfaces;
+  std::vector<rt::Colour> colours;
+  for (const TriMesh& mesh : model.scene().meshes) {
+    const MeshLook look = look_of(mesh, model.scene().floor.height_m());
+    surfaces.push_back(look.surface);
+    colours.push_back(look.colour);
+  }
+  std::vector<rt::RenderedSolid> solids;
+  for (const Actor& actor : state.actors()) {
+    std::vector<PosedShape> shapes;
+    append_solids(actor, shapes);
+    for (std::size_t i = 0; i < shapes.size(); ++i) solids.push_back({shapes[i], colour_of(static_cast<body::Part>(i))});
+  }
+  std::vector<std::string> names = options.beams;
+  if (names.empty() && !model.scene().sensors.empty()) names.push_back(model.scene().sensors.front().id);
+  std::vector<rt::Beam> beams;
+  constexpr rt::Colour idle{0.10F, 0.45F, 0.75F}, seeing{1.0F, 0.25F, 0.02F};
+  for (const std::size_t sensor : find_sensors(model, names)) {
+    for (const sim::BeamSegment& beam : sim::beams_of(model, state, sensor)) {
+      beams.push_back({beam.from, beam.to, beam.sees_person ? seeing : idle});
+    }
+  }
+  const double fov = radians(options.field_of_view_deg);
+  rt::Camera camera = dolls_house_camera(model.scene(), fov, static_cast<double>(options.width) / options.height);
+  const auto vec = [](const std::array<double, 3>& a) { return Vec3(a[0], a[1], a[2]); };
+  if (options.camera) camera.position = vec(*options.camera);
+  if (options.look_at) camera.target = vec(*options.look_at);
+
+  const rt::Image image =
+      rt::render(model.room(), surfaces, colours, solids, beams, camera, options.width, options.height);
+  io::write_png(options.output, image.width, image.height, image.rgb);
+  if (inputs.verbosity != Verbosity::quiet) {
+    std::cerr << "wrote " << options.output.string() << ": trial " << model.trial_of(state.run()).id << " at "
+              << static_cast<double>(state.tick()) * model.tick_s() << " s\n";
+  }
+}
+
+}  // namespace pirsim::app

@@ -1,2 +1,0 @@
-#include "app/commands.hpp"
-namespace pirsim::app { void preview(const Inputs&, const PreviewOptions&) {} }
