@@ -24,7 +24,8 @@ constexpr float occlusion_reach = 0.9F;  // metres within which surfaces darken 
 constexpr float surface_offset = 1e-3F;  // metres above a surface at which its own rays start
 constexpr float far_away = 1e4F;         // metres
 constexpr float key_softness = 0.07F;    // tangent of the key light's angular radius
-constexpr float key_strength = 0.48F, sky_strength = 0.62F;
+constexpr float key_strength = 0.42F, sky_strength = 0.64F;
+constexpr float occlusion_strength = 0.8F;  // 1 would make the inmost corner black in the sky's light
 
 float linear_from_srgb(float x) { return x <= 0.04045F ? x / 12.92F : std::pow((x + 0.055F) / 1.055F, 2.4F); }
 float srgb_from_linear(float x) { return x <= 0.0031308F ? 12.92F * x : 1.055F * std::pow(x, 1.0F / 2.4F) - 0.055F; }
@@ -85,15 +86,22 @@ Room drawn_part(const Room& room, std::span<const Surface> surfaces, const Camer
   return Room(drawn);
 }
 
+/// False only if the ray passes the ball.
+bool may_meet(const Ray& ray, const Ball& ball, float reach) {
+  const Vec3f offset = ball.centre - ray.origin;
+  const float nearest = std::clamp(glm::dot(offset, ray.direction), 0.0F, reach);
+  const Vec3f miss = offset - ray.direction * nearest;
+  const float radius = ball.radius * 1.001F + 1e-3F;
+  return glm::dot(miss, miss) <= radius * radius;
+}
+
 class Picture {
  public:
   Picture(const Room& drawn_room, std::span<const Colour> colours, std::span<const RenderedSolid> solids,
           const View& view)
       : room_(drawn_room), colours_(colours), solids_(solids), view_(view) {
-    std::vector<Ball> balls;
-    for (const RenderedSolid& solid : solids) balls.push_back(ball_around(solid.shape));
-    if (!balls.empty()) around_solids_ = ball_around(balls);
-    to_key_ = glm::normalize(Vec3f(0.0F, 1.0F, 0.0F) + view.right * -0.45F - view.forward * 0.35F);
+    for (const RenderedSolid& solid : solids) balls_.push_back(ball_around(solid.shape));
+    to_key_ = glm::normalize(Vec3f(0.0F, 0.75F, 0.0F) + view.right * -0.3F - view.forward * 0.6F);
     key_sides_ = tangents(to_key_);
     for (std::size_t i = 0; i < 3; ++i) {
       background_[static_cast<int>(i)] = linear_from_srgb(static_cast<float>(background_rgb[i]) / 255.0F);
@@ -126,9 +134,11 @@ class Picture {
       const Vec3f position = ray.origin + ray.direction * hit->distance;
       nearest = SurfacePoint{hit->distance, position, hit->normal, vector(colours_[hit->mesh])};
     }
-    if (!may_meet_solids(ray)) return nearest;
-    for (const RenderedSolid& solid : solids_) {
-      const auto distance = entry_distance(ray, solid.shape, nearest ? nearest->distance : far_away);
+    for (std::size_t i = 0; i < solids_.size(); ++i) {
+      const float reach = nearest ? nearest->distance : far_away;
+      if (!may_meet(ray, balls_[i], reach)) continue;
+      const RenderedSolid& solid = solids_[i];
+      const auto distance = entry_distance(ray, solid.shape, reach);
       if (!distance) continue;
       const Vec3f position = ray.origin + ray.direction * *distance;
       nearest = SurfacePoint{*distance, position, surface_normal(solid.shape, position), vector(solid.colour)};
@@ -142,16 +152,10 @@ class Picture {
     RTCRay query = embree_ray(ray, reach);
     any_hit(room_.impl().scene.get(), context, query);
     if (query.tfar < 0.0F) return true;
-    return may_meet_solids(ray) && std::any_of(solids_.begin(), solids_.end(), [&](const RenderedSolid& solid) {
-             return entry_distance(ray, solid.shape, reach).has_value();
-           });
-  }
-
-  [[nodiscard]] bool may_meet_solids(const Ray& ray) const {
-    if (solids_.empty()) return false;
-    const Vec3f offset = around_solids_.centre - ray.origin;
-    const float along = std::max(glm::dot(offset, ray.direction), 0.0F);
-    return glm::length(offset - ray.direction * along) <= around_solids_.radius * 1.001F + 1e-3F;
+    for (std::size_t i = 0; i < solids_.size(); ++i) {
+      if (may_meet(ray, balls_[i], reach) && entry_distance(ray, solids_[i].shape, reach)) return true;
+    }
+    return false;
   }
 
   [[nodiscard]] Vec3f shade(const SurfacePoint& point, int sample, float noise) const {
@@ -175,7 +179,7 @@ class Picture {
       const Vec3f direction = glm::normalize(side * u + other_side * v + normal * height);
       open += is_blocked({start, direction}, occlusion_reach * std::sqrt(share)) ? 0 : 1;
     }
-    return static_cast<float>(open) / occlusion_rays;
+    return 1.0F - occlusion_strength * (1.0F - static_cast<float>(open) / occlusion_rays);
   }
 
   [[nodiscard]] float key_light(const Vec3f& start, const Vec3f& normal, int sample, float noise) const {
@@ -190,7 +194,7 @@ class Picture {
   std::span<const Colour> colours_;
   std::span<const RenderedSolid> solids_;
   const View& view_;
-  Ball around_solids_;
+  std::vector<Ball> balls_;  ///< (n_solids)
   Vec3f to_key_{0.0F};
   std::array<Vec3f, 2> key_sides_{};
   Vec3f background_{0.0F};
