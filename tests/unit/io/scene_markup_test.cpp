@@ -217,3 +217,37 @@ TEST_CASE("buffers outside the scene's folder are not opened, not even through a
   folder.write("room/short.bin", scene.buffer.substr(4));
   CHECK_THAT(read("short.bin"), contains("cut short: it has 32 of 36 bytes"));
 }
+
+TEST_CASE("the example of the documentation is a scene", "[scene]") {
+  std::ifstream page(std::filesystem::path(PIRSIM_DATA_DIR) / ".." / "docs/formats/scene.md");
+  const std::string text(std::istreambuf_iterator<char>(page), {});
+  const std::size_t begin = text.find("```json\n") + 8;
+  const TemporaryFolder folder;
+  const auto file = folder.write("room.gltf", text.substr(begin, text.find("```", begin) - begin));
+  const SceneSpec spec = pirsim::io::read_scene(file, {{std::filesystem::path(PIRSIM_DATA_DIR) / "sensors"}});
+  CHECK(spec.floor.area_m2() == Approx(12.0));
+  CHECK(spec.seats.size() == 1);
+  CHECK(spec.entrances.size() == 1);
+  CHECK(std::asin(-spec.sensors.at(0).world_from_sensor.forward().y) ==
+        Approx(20.0 * 3.14159265358979 / 180.0).epsilon(1e-5));
+}
+
+TEST_CASE("a node has a matrix or translation, rotation and scale, not both", "[scene]") {
+  GltfBuilder scene;
+  scene.floor();
+  scene.node("both", {{"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}, {"scale", {2, 2, 2}}});
+  CHECK_THAT(fault(scene), contains("node 'both': it has both 'matrix' and 'scale'"));
+}
+
+TEST_CASE("of thousands of faults the first are told, and soon", "[scene]") {
+  GltfBuilder scene;
+  scene.floor();
+  for (int i = 0; i < 20000; ++i) scene.node("n", GltfBuilder::marked({{"type", "seat"}}));
+  const std::string told = fault(scene);
+  CHECK(std::count(told.begin(), told.end(), '\n') == 19);
+  json repeated = json::array();
+  for (int i = 0; i < 200000; ++i) repeated.push_back(1);
+  scene.root["nodes"] = {{{"name", "a"}}, {{"name", "b"}, {"children", repeated}}};
+  scene.root["scenes"][0]["nodes"] = {0, 1};
+  CHECK_THAT(fault(scene), contains("node 'b' is its own ancestor or has two parents"));
+}
