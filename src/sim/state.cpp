@@ -25,10 +25,12 @@ void move_people(const Model& model, std::int64_t tick, std::vector<Actor>& acto
   std::vector<Presence> others;
   for (Actor& actor : actors) {
     others.clear();
+    std::size_t n_before = 0;
     for (const Actor& other : actors) {
+      if (&other == &actor) n_before = others.size();
       if (&other != &actor && other.present()) others.push_back(other.presence());
     }
-    actor.advance(model, tick, others);
+    actor.advance(model, tick, others, n_before);
   }
 }
 
