@@ -6,8 +6,8 @@
 namespace pirsim::io {
 namespace {
 
-constexpr std::uint32_t sectors = 20;       ///< round the axis
-constexpr std::uint32_t quarter_rings = 5;  ///< from a pole to the equator
+constexpr std::uint32_t sectors = 24;       ///< round the axis
+constexpr std::uint32_t quarter_rings = 6;  ///< from a pole to the equator
 
 /// A circle of vertices about the Y axis.
 struct Ring {
