@@ -31,7 +31,7 @@ ScreenPoint project(const View& view, const Vec3f& point) noexcept {
 
 /// Share of the beam's colour at `distance` pixels from its middle: a core and a glow around it.
 float line_cover(float distance) noexcept {
-  return 0.34F * std::exp(-distance * distance / 0.5F) + 0.05F * std::exp(-distance * distance / 5.0F);
+  return 0.42F * std::exp(-distance * distance / 0.5F) + 0.06F * std::exp(-distance * distance / 5.0F);
 }
 
 class Painter {

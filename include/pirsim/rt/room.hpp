@@ -41,7 +41,7 @@ class Room {
   std::unique_ptr<Impl> impl_;
 };
 
-/// "3.13.5" and "sse4.2": what decides the bits of a hit distance, for manifests and --version.
+/// "3.13.5" and "sse4.2" (what Embree is held to, docs/adr/0002-embree-pinned.md), for manifests and --version.
 [[nodiscard]] std::string embree_version();
 [[nodiscard]] std::string instruction_set();
 
