@@ -1,5 +1,6 @@
 #include "pirsim/body/humanoid.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -84,9 +85,12 @@ Humanoid::Humanoid(const PersonSpec& person)
 
   set(Part::pelvis, Capsule{pelvis_radius_m * girth, 0.5 * m.hip_width_m});
   const double torso_half_height = 0.5 * (torso_top * h - m.hip_height_m - torso_bottom * h);
-  set(Part::torso, Box{{torso_half_width_m * girth, torso_half_height, torso_half_depth_m * girth}});
+  const Capsule arm = limb(mass(Part::left_upper_arm), m.upper_arm_m);
+  for (const Part part : {Part::left_upper_arm, Part::right_upper_arm}) set(part, arm);
+  // A slender person's torso still reaches into the arms.
+  const double torso_half_width = std::max(torso_half_width_m * girth, 0.5 * (m.shoulder_width_m - arm.radius));
+  set(Part::torso, Box{{torso_half_width, torso_half_height, torso_half_depth_m * girth}});
   set(Part::head, Sphere{head_radius * h});
-  for (const Part part : {Part::left_upper_arm, Part::right_upper_arm}) set(part, limb(mass(part), m.upper_arm_m));
   for (const Part part : {Part::left_forearm, Part::right_forearm}) set(part, limb(mass(part), m.forearm_m));
   for (const Part part : {Part::left_thigh, Part::right_thigh}) set(part, limb(mass(part), m.thigh_m));
   for (const Part part : {Part::left_shank, Part::right_shank}) set(part, limb(mass(part), m.shank_m));

@@ -110,12 +110,9 @@ void Motion::walk_from(const Route& route, double from_s) {
     remainder_ = Remainder{route, from_s};
     return;
   }
-  double to_s = route.length_m();
-  for (const double turn_s : route.sharp_turns_s()) {
-    if (turn_s > from_s) to_s = std::min(to_s, turn_s);
-  }
   const double scale = humanoid_.measures().stature_m / reference_stature_m;
   const double step = longest_step_m * scale;
+  const double to_s = next_pivot(route, from_s, step);
   begin_track(Stage::walking, Track(route, from_s, to_s, stand_, step),
               {.step = step, .lift_m = walking_lift_m * scale, .pitch_per_lift = walking_pitch_per_lift / scale});
   if (to_s < route.length_m()) remainder_ = Remainder{route, to_s};

@@ -51,6 +51,10 @@ class Track {
   double blend_length_ = 0.0;
 };
 
+/// Where, beyond from_s, a walker whose steps are step_m long has to stand and turn: at sharp turns, and amid bends too
+/// tight for crossing legs. The route's length if nowhere.
+[[nodiscard]] double next_pivot(const Route& route, double from_s, double step_m) noexcept;
+
 /// A foot at one moment.
 struct Footstep {
   Placement print;       ///< under the ankle

@@ -76,7 +76,7 @@ class RandomCommands {
 
 }  // namespace
 
-TEST_CASE("random commands keep every part continuous, every joint in its limits and everything above the floor") {
+TEST_CASE("random commands keep every part continuous, every joint in its limits and everything above the floor", "[motion]") {
   Soundness soundness;
   double fastest = 0.0;
   double fastest_turn = 0.0;
@@ -112,7 +112,7 @@ TEST_CASE("random commands keep every part continuous, every joint in its limits
   CHECK(fastest_turn < fastest_turn_rad_s);
 }
 
-TEST_CASE("a copy of a motion goes on as the original does") {
+TEST_CASE("a copy of a motion goes on as the original does", "[motion]") {
   RandomCommands commands(1000);
   Motion motion(man(), {0, 0}, 0.0, 0.0, tick_s);
   for (int tick = 0; tick < 3000; ++tick) {
