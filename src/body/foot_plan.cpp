@@ -44,10 +44,11 @@ Track::Track(const Route& route, double from_s, double to_s, const Placement& st
   }
   headings_.resize(raw.size());
   for (int i = 0; i <= n; ++i) {
-    const int half = std::min({samples_per_step / 2, i, n - i});
     double sum = 0.0;
-    for (int k = i - half; k <= i + half; ++k) sum += raw[static_cast<std::size_t>(k)];
-    headings_[static_cast<std::size_t>(i)] = sum / (2 * half + 1);
+    for (int k = i - samples_per_step / 2; k <= i + samples_per_step / 2; ++k) {
+      sum += raw[static_cast<std::size_t>(std::clamp(k, 0, n))];
+    }
+    headings_[static_cast<std::size_t>(i)] = sum / (samples_per_step + 1);
   }
 }
 

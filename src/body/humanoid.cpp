@@ -25,15 +25,15 @@ constexpr double tissue_density_kg_m3 = 1050.0;  // assumed; limbs 1030-1100
 // Widths without a source, assumed; the range considered stands behind each.
 constexpr double reference_stature_m = 1.86;
 constexpr double reference_mass_kg = 80.0;
-constexpr double pelvis_radius_m = 0.09;       // 0.08-0.10: 0.09 sits on a chair of 0.44 m
-constexpr double torso_half_width_m = 0.165;   // 0.15-0.18
-constexpr double torso_half_depth_m = 0.11;    // 0.10-0.13
-constexpr double torso_bottom = 0.02;          // of stature above the hips; 0-0.04
-constexpr double torso_top = 0.857;            // of stature; 0.82-0.87: the base of the neck, so that no gap remains
-constexpr double head_radius = 0.0725;         // of stature; 0.065-0.075: one sphere for head and neck
-constexpr double closed_hand = 0.64;           // of the hand's length; 0.5-0.7: knuckles of a loosely closed hand
-constexpr double foot_width = 0.055;           // of stature; 0.05-0.06
-constexpr double heel = 0.25;                  // of the foot's length, ankle to heel; 0.2-0.3
+constexpr double pelvis_radius_m = 0.09;          // 0.08-0.10: 0.09 sits on a chair of 0.44 m
+constexpr double torso_half_width_m = 0.165;      // 0.15-0.18
+constexpr double torso_half_depth_m = 0.11;       // 0.10-0.13
+constexpr double torso_bottom = 0.02;             // of stature above the hips; 0-0.04
+constexpr double torso_top = 0.857;               // of stature; 0.82-0.87: the base of the neck, so that no gap remains
+constexpr double head_radius = 0.0725;            // of stature; 0.065-0.075: one sphere for head and neck
+constexpr double closed_hand = 0.64;              // of the hand's length; 0.5-0.7: knuckles of a loosely closed hand
+constexpr double foot_width = 0.055;              // of stature; 0.05-0.06
+constexpr double heel = 0.25;                     // of the foot's length, ankle to heel; 0.2-0.3
 constexpr double soft_parts_at_shoulder = 0.054;  // of stature, both sides together; 0.04-0.07
 constexpr double soft_parts_at_hip = 0.086;       // 0.07-0.10
 
@@ -58,8 +58,8 @@ Measures measures_of(double stature) {
 
 std::array<double, n_parts> masses_of(double mass) {
   const double arm = forearm + hand;
-  std::array<double, n_parts> masses{pelvis, thorax + abdomen, head_and_neck, upper_arm, upper_arm, arm, arm,
-                                     thigh,  thigh,            shank,         shank,     foot,      foot};
+  std::array<double, n_parts> masses{
+      pelvis, thorax + abdomen, head_and_neck, upper_arm, upper_arm, arm, arm, thigh, thigh, shank, shank, foot, foot};
   for (double& m : masses) m *= mass;
   return masses;
 }

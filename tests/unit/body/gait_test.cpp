@@ -79,7 +79,8 @@ TEST_CASE("seen from a body that walks straight, a foot runs along the upper hal
 }
 
 TEST_CASE("a foot that stands neither slides nor sinks while the other swings", "[motion]") {
-  for (const auto& points : {std::vector<Vec2>{{0, 0}, {0, -6}}, std::vector<Vec2>{{0, 0}, {0, -3}, {3, -4}, {3, -8}}}) {
+  for (const auto& points :
+       {std::vector<Vec2>{{0, 0}, {0, -6}}, std::vector<Vec2>{{0, 0}, {0, -3}, {3, -4}, {3, -8}}}) {
     Motion motion = standing();
     motion.walk(Route(points));
     Posture before = motion.posture();
@@ -171,8 +172,14 @@ TEST_CASE("who is told to stop stands within two steps, feet together", "[motion
     motion.walk(Route({{0, 0}, {0, -5}}));
     for (int i = 0; i < when; ++i) motion.advance();
     const double from = motion.position().y;
+    double before = motion.speed_m_s();
+    double hardest = 0.0;
     motion.stop();
-    run_until(motion, stands, [](const Motion&) {});
+    run_until(motion, stands, [&](const Motion& m) {
+      hardest = std::max(hardest, (before - m.speed_m_s()) / tick_s);
+      before = m.speed_m_s();
+    });
+    CHECK(hardest < 1.1 * 1.5 + 0.05 / tick_s);  // m/s^2; at the very end what is left of the way is taken at once
     CHECK(from - motion.position().y <= 1.0);
     const Posture posture = motion.posture();
     const Vec3 apart = posture[at(Part::right_foot)].origin - posture[at(Part::left_foot)].origin;

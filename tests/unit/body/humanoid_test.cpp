@@ -114,7 +114,8 @@ TEST_CASE("neighbouring parts overlap at their joint, so that the body has no ga
     };
     const auto joint = [&](Joint j) { return joint_places(humanoid, posture, j).by_child; };
     CHECK((inside(joint(Joint::left_knee), Part::left_thigh) && inside(joint(Joint::left_knee), Part::left_shank)));
-    CHECK((inside(joint(Joint::left_elbow), Part::left_upper_arm) && inside(joint(Joint::left_elbow), Part::left_forearm)));
+    CHECK((inside(joint(Joint::left_elbow), Part::left_upper_arm) &&
+           inside(joint(Joint::left_elbow), Part::left_forearm)));
     CHECK((inside(joint(Joint::left_hip), Part::pelvis) && inside(joint(Joint::left_hip), Part::left_thigh)));
     // Shoulder joint to torso, ankle joint to foot: the capsule's round end reaches into the box.
     CHECK(signed_distance(joint(Joint::right_shoulder), humanoid.solids()[at(Part::torso)], posture[at(Part::torso)]) <

@@ -23,12 +23,14 @@ Motion seated(double dt = tick_s) {
   return motion;
 }
 void settle(Motion& motion) {
-  run_until(motion, [](const Motion& m) { return m.settled(); }, [](const Motion&) {});
+  run_until(
+      motion, [](const Motion& m) { return m.settled(); }, [](const Motion&) {});
 }
 
 }  // namespace
 
-TEST_CASE("on a chair whose pelvis point is 0.531 m high the hips pass 80 degrees and the pelvis is at that point", "[motion]") {
+TEST_CASE("on a chair whose pelvis point is 0.531 m high the hips pass 80 degrees and the pelvis is at that point",
+          "[motion]") {
   for (const double ahead : {fall_back_m(man(), desk_seat()), 0.0, -0.25, 0.8}) {
     Motion motion = before_seat(ahead);
     motion.sit_down(desk_seat());
@@ -55,7 +57,8 @@ TEST_CASE("small errors of place and heading before a seat are gone when seated"
   CHECK(motion.heading() == Approx(0.0).margin(1e-12));
 }
 
-TEST_CASE("in the controlled fall knees and feet stay, and the pelvis never falls faster than gravity lets it", "[motion]") {
+TEST_CASE("in the controlled fall knees and feet stay, and the pelvis never falls faster than gravity lets it",
+          "[motion]") {
   constexpr double dt = 0.001;
   Motion motion(man(), {0.0, -fall_back_m(man(), desk_seat())}, 0.0, 0.0, dt);
   const Posture start = motion.posture();
@@ -156,7 +159,7 @@ TEST_CASE("hands follow plus and minus 0.1 sin(2 pi t / 3) m from the tick of th
       CHECK(hand.y == Approx(plane).margin(1e-9));
       if (glm::distance(shoulder_at, wanted) <= reach) {
         CHECK(glm::distance(hand, wanted) < 1e-3);  // 0.247 m is rounded
-      } else {  // the far end is a little beyond the stretched arm
+      } else {                                      // the far end is a little beyond the stretched arm
         CHECK(glm::distance(shoulder_at, hand) == Approx(reach));
         CHECK(glm::distance(hand, wanted) < 0.008);
         ++out_of_reach;
@@ -212,7 +215,8 @@ TEST_CASE("the whole choreography of desk work is sound, and no forearm dips bel
   CHECK(lowest > 0.74 - 1e-9);
 }
 
-TEST_CASE("a near hand's elbow is where the circles about shoulder and hand cross in the table's plane, outside", "[motion]") {
+TEST_CASE("a near hand's elbow is where the circles about shoulder and hand cross in the table's plane, outside",
+          "[motion]") {
   Motion motion = seated();
   motion.work({});
   const double plane = 0.74 + man().radius_m(Part::left_forearm);
