@@ -79,8 +79,8 @@ std::array<ArmPose, 2> hanging_arms(const Measures& measures, const std::array<d
   std::array<ArmPose, 2> arms;
   for (std::size_t side : {0U, 1U}) {
     const double swing = -sign_of(side) * left_swing;
-    arms[side].torso_from_upper_arm = glm::angleAxis(swing, Vec3(1, 0, 0)) *
-                                      glm::angleAxis(sign_of(side) * hanging_abduction, Vec3(0, 0, 1));
+    arms[side].torso_from_upper_arm =
+        glm::angleAxis(swing, Vec3(1, 0, 0)) * glm::angleAxis(sign_of(side) * hanging_abduction, Vec3(0, 0, 1));
     arms[side].elbow_flexion = hanging_elbow + elbow_per_swing * (swing + widest_swing);
   }
   return arms;

@@ -10,6 +10,8 @@ namespace pirsim::body {
 namespace {
 constexpr double pi = std::numbers::pi;
 constexpr int samples_per_step = 8;
+// Within one step's way; assumed (90-120 degrees): beyond, the hips would pass their limits.
+constexpr double sharpest_bend = 100.0 * pi / 180.0;
 }  // namespace
 
 double smoothstep(double x) noexcept {
@@ -42,10 +44,11 @@ Track::Track(const Route& route, double from_s, double to_s, const Placement& st
   }
   headings_.resize(raw.size());
   for (int i = 0; i <= n; ++i) {
-    const int half = std::min({samples_per_step / 2, i, n - i});
     double sum = 0.0;
-    for (int k = i - half; k <= i + half; ++k) sum += raw[static_cast<std::size_t>(k)];
-    headings_[static_cast<std::size_t>(i)] = sum / (2 * half + 1);
+    for (int k = i - samples_per_step / 2; k <= i + samples_per_step / 2; ++k) {
+      sum += raw[static_cast<std::size_t>(std::clamp(k, 0, n))];
+    }
+    headings_[static_cast<std::size_t>(i)] = sum / (samples_per_step + 1);
   }
 }
 
@@ -88,6 +91,32 @@ Placement Track::at(double s) const noexcept {
     place.heading += fading * (start_.heading - headings_.front());
   }
   return place;
+}
+
+double next_pivot(const Route& route, double from_s, double step_m) noexcept {
+  double end = route.length_m();
+  for (const double turn_s : route.sharp_turns_s()) {
+    if (turn_s > from_s) end = std::min(end, turn_s);
+  }
+  const auto bend_around = [&](double s) {
+    const double before = route.heading(std::max(from_s, s - 0.5 * step_m));
+    return std::abs(route.heading(std::min(end - 1e-9, s + 0.5 * step_m)) - before);
+  };
+  double sharpest = sharpest_bend;
+  double first = end;  // of the places with the sharpest bend around them; the pivot is midway between first and last
+  double last = end;
+  const double spacing = step_m / samples_per_step;
+  for (int i = 1; from_s + i * spacing < end; ++i) {
+    const double s = from_s + i * spacing;
+    const double bend = bend_around(s);
+    if (bend > sharpest + 1e-9) {
+      sharpest = bend;
+      first = s;
+    }
+    if (first < end && bend > sharpest - 1e-9) last = s;
+    if (first < end && bend < sharpest_bend) break;
+  }
+  return first < end ? 0.5 * (first + last) : end;
 }
 
 FootPlan::FootPlan(const Feet& start, double length, const StepStyle& style, double half_stance_m)

@@ -1,5 +1,6 @@
 #include "pirsim/body/humanoid.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -24,15 +25,15 @@ constexpr double tissue_density_kg_m3 = 1050.0;  // assumed; limbs 1030-1100
 // Widths without a source, assumed; the range considered stands behind each.
 constexpr double reference_stature_m = 1.86;
 constexpr double reference_mass_kg = 80.0;
-constexpr double pelvis_radius_m = 0.09;       // 0.08-0.10: 0.09 sits on a chair of 0.44 m
-constexpr double torso_half_width_m = 0.165;   // 0.15-0.18
-constexpr double torso_half_depth_m = 0.11;    // 0.10-0.13
-constexpr double torso_bottom = 0.02;          // of stature above the hips; 0-0.04
-constexpr double torso_top = 0.857;            // of stature; 0.82-0.87: the base of the neck, so that no gap remains
-constexpr double head_radius = 0.0725;         // of stature; 0.065-0.075: one sphere for head and neck
-constexpr double closed_hand = 0.64;           // of the hand's length; 0.5-0.7: knuckles of a loosely closed hand
-constexpr double foot_width = 0.055;           // of stature; 0.05-0.06
-constexpr double heel = 0.25;                  // of the foot's length, ankle to heel; 0.2-0.3
+constexpr double pelvis_radius_m = 0.09;          // 0.08-0.10: 0.09 sits on a chair of 0.44 m
+constexpr double torso_half_width_m = 0.165;      // 0.15-0.18
+constexpr double torso_half_depth_m = 0.11;       // 0.10-0.13
+constexpr double torso_bottom = 0.02;             // of stature above the hips; 0-0.04
+constexpr double torso_top = 0.857;               // of stature; 0.82-0.87: the base of the neck, so that no gap remains
+constexpr double head_radius = 0.0725;            // of stature; 0.065-0.075: one sphere for head and neck
+constexpr double closed_hand = 0.64;              // of the hand's length; 0.5-0.7: knuckles of a loosely closed hand
+constexpr double foot_width = 0.055;              // of stature; 0.05-0.06
+constexpr double heel = 0.25;                     // of the foot's length, ankle to heel; 0.2-0.3
 constexpr double soft_parts_at_shoulder = 0.054;  // of stature, both sides together; 0.04-0.07
 constexpr double soft_parts_at_hip = 0.086;       // 0.07-0.10
 
@@ -57,8 +58,8 @@ Measures measures_of(double stature) {
 
 std::array<double, n_parts> masses_of(double mass) {
   const double arm = forearm + hand;
-  std::array<double, n_parts> masses{pelvis, thorax + abdomen, head_and_neck, upper_arm, upper_arm, arm, arm,
-                                     thigh,  thigh,            shank,         shank,     foot,      foot};
+  std::array<double, n_parts> masses{
+      pelvis, thorax + abdomen, head_and_neck, upper_arm, upper_arm, arm, arm, thigh, thigh, shank, shank, foot, foot};
   for (double& m : masses) m *= mass;
   return masses;
 }
@@ -84,9 +85,12 @@ Humanoid::Humanoid(const PersonSpec& person)
 
   set(Part::pelvis, Capsule{pelvis_radius_m * girth, 0.5 * m.hip_width_m});
   const double torso_half_height = 0.5 * (torso_top * h - m.hip_height_m - torso_bottom * h);
-  set(Part::torso, Box{{torso_half_width_m * girth, torso_half_height, torso_half_depth_m * girth}});
+  const Capsule arm = limb(mass(Part::left_upper_arm), m.upper_arm_m);
+  for (const Part part : {Part::left_upper_arm, Part::right_upper_arm}) set(part, arm);
+  // A slender person's torso still reaches into the arms.
+  const double torso_half_width = std::max(torso_half_width_m * girth, 0.5 * (m.shoulder_width_m - arm.radius));
+  set(Part::torso, Box{{torso_half_width, torso_half_height, torso_half_depth_m * girth}});
   set(Part::head, Sphere{head_radius * h});
-  for (const Part part : {Part::left_upper_arm, Part::right_upper_arm}) set(part, limb(mass(part), m.upper_arm_m));
   for (const Part part : {Part::left_forearm, Part::right_forearm}) set(part, limb(mass(part), m.forearm_m));
   for (const Part part : {Part::left_thigh, Part::right_thigh}) set(part, limb(mass(part), m.thigh_m));
   for (const Part part : {Part::left_shank, Part::right_shank}) set(part, limb(mass(part), m.shank_m));

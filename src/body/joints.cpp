@@ -48,8 +48,8 @@ constexpr JointLimits knee = degrees({0, -rounding, -rounding}, {150, rounding, 
 // assumed dorsiflexion 35 (30-45), which the ankle has under load; twist 35 (25-45) stands for the subtalar joint
 // and the rotation of the bent knee together, abduction for inversion and eversion.
 constexpr JointLimits ankle = degrees({-50, -35, -35}, {35, 35, 35});
-constexpr std::array<JointLimits, n_joints> table{spine, neck, shoulder_limits, shoulder_limits, elbow, elbow,
-                                                  hip,   hip,  knee,            knee,            ankle, ankle};
+constexpr std::array<JointLimits, n_joints> table{
+    spine, neck, shoulder_limits, shoulder_limits, elbow, elbow, hip, hip, knee, knee, ankle, ankle};
 
 /// Sign of flexion about +X (thigh, forearm and toes forward and up are positive; spine and knee bend the other way).
 double flexion_sign(Joint joint) {
@@ -57,8 +57,10 @@ double flexion_sign(Joint joint) {
     case Joint::spine:
     case Joint::neck:
     case Joint::left_knee:
-    case Joint::right_knee: return -1.0;
-    default: return 1.0;
+    case Joint::right_knee:
+      return -1.0;
+    default:
+      return 1.0;
   }
 }
 /// +1 for joints of the right side and of the middle.
@@ -75,7 +77,8 @@ Quat upright(const Posture& posture, Part part) {
 Vec3 joint_in(const Humanoid& humanoid, Part part, Joint joint, const Vec3& end) {
   const auto side = static_cast<std::size_t>(joint) % 2;
   const Measures& m = humanoid.measures();
-  if (part == Part::pelvis) return joint == Joint::spine ? Vec3(0.0) : Vec3(0, (side == 0 ? -0.5 : 0.5) * m.hip_width_m, 0);
+  if (part == Part::pelvis)
+    return joint == Joint::spine ? Vec3(0.0) : Vec3(0, (side == 0 ? -0.5 : 0.5) * m.hip_width_m, 0);
   const Shape& shape = humanoid.solids()[at(part)];
   if (const auto* capsule = std::get_if<Capsule>(&shape)) return end * capsule->half_length;
   return Vec3(0.0);
@@ -110,12 +113,19 @@ JointPlaces joint_places(const Humanoid& humanoid, const Posture& posture, Joint
   const Vec3 hips_in_torso = glm::conjugate(posture[at(Part::torso)].rotation) *
                              (posture[at(Part::pelvis)].origin - posture[at(Part::torso)].origin);
   switch (joint) {
-    case Joint::spine: in_child = Vec3(0, hips_in_torso.y, 0); break;
+    case Joint::spine:
+      in_child = Vec3(0, hips_in_torso.y, 0);
+      break;
     case Joint::left_shoulder:
-    case Joint::right_shoulder: in_parent = Vec3(0, hips_in_torso.y, 0) + shoulder(m, side); break;
+    case Joint::right_shoulder:
+      in_parent = Vec3(0, hips_in_torso.y, 0) + shoulder(m, side);
+      break;
     case Joint::left_ankle:
-    case Joint::right_ankle: in_child = Vec3(0, 0.5 * m.ankle_height_m, 0.5 * m.foot_length_m - m.heel_m); break;
-    default: break;
+    case Joint::right_ankle:
+      in_child = Vec3(0, 0.5 * m.ankle_height_m, 0.5 * m.foot_length_m - m.heel_m);
+      break;
+    default:
+      break;
   }
   if (joint == Joint::neck) {
     in_child = Vec3(0, -humanoid.radius_m(Part::head), 0);

@@ -28,12 +28,12 @@ constexpr double standstill_m_s = 0.05;                // assumed: slower than t
 constexpr double turn_before_walking = 20 * degree;    // assumed: less is blended into the first step
 constexpr double furthest_from_route_m = 0.1;          // assumed: more than that is another place
 
-constexpr double fall_s = 1.2;             // assumed (0.8-2)
-constexpr double sliding_speed_m_s = 0.4;  // assumed (0.2-0.6), highest
-constexpr double shortest_slide_s = 0.6;   // assumed
-constexpr double reach_s = 1.0;            // assumed (0.6-1.5): hands between thighs and table
-constexpr double tilt_s = 1.0;             // assumed (0.5-2): for 15 degrees of spine tilt
-constexpr double shortest_tilt_s = 0.4;    // assumed
+constexpr double fall_s = 1.2;                  // assumed (0.8-2)
+constexpr double sliding_speed_m_s = 0.4;       // assumed (0.2-0.6), highest
+constexpr double shortest_slide_s = 0.6;        // assumed
+constexpr double reach_s = 1.0;                 // assumed (0.6-1.5): hands between thighs and table
+constexpr double tilt_s = 1.0;                  // assumed (0.5-2): for 15 degrees of spine tilt
+constexpr double shortest_tilt_s = 0.4;         // assumed
 constexpr double backmost_tilt = -20 * degree;  // within the spine's limits, with room for a passing overshoot
 constexpr double foremost_tilt = 50 * degree;
 
@@ -110,12 +110,9 @@ void Motion::walk_from(const Route& route, double from_s) {
     remainder_ = Remainder{route, from_s};
     return;
   }
-  double to_s = route.length_m();
-  for (const double turn_s : route.sharp_turns_s()) {
-    if (turn_s > from_s) to_s = std::min(to_s, turn_s);
-  }
   const double scale = humanoid_.measures().stature_m / reference_stature_m;
   const double step = longest_step_m * scale;
+  const double to_s = next_pivot(route, from_s, step);
   begin_track(Stage::walking, Track(route, from_s, to_s, stand_, step),
               {.step = step, .lift_m = walking_lift_m * scale, .pitch_per_lift = walking_pitch_per_lift / scale});
   if (to_s < route.length_m()) remainder_ = Remainder{route, to_s};

@@ -46,8 +46,8 @@ double Motion::hip_height_m(const Placement& pelvis, const Feet& feet) const noe
   // On a bend a foot can be further away than that.
   for (std::size_t side : {0U, 1U}) {
     const Vec2 hip = pelvis.shifted(0.0, (side == 0 ? -0.5 : 0.5) * m.hip_width_m).position;
-    const double reach = height_over(furthest_extension * (m.thigh_m + m.shank_m),
-                                     glm::distance(hip, feet[side].print.position));
+    const double reach =
+        height_over(furthest_extension * (m.thigh_m + m.shank_m), glm::distance(hip, feet[side].print.position));
     height = std::min(height, m.ankle_height_m + feet[side].lift_m + reach);
   }
   return height;

@@ -13,13 +13,13 @@ namespace pirsim::body {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
-constexpr double leg_extension = 0.995;            // assumed (0.99-1): knees 11 degrees bent
-constexpr double furthest_off_axis_m = 0.3;        // assumed: more than that is another place, not an error
+constexpr double leg_extension = 0.995;      // assumed (0.99-1): knees 11 degrees bent
+constexpr double furthest_off_axis_m = 0.3;  // assumed: more than that is another place, not an error
 constexpr double furthest_off_heading = 45 * degree;
-constexpr double furthest_slide_m = 1.5;           // assumed: a chair's way from under a table
-constexpr double negligible_slide_m = 0.02;        // assumed: less is leaned away rather than walked
-constexpr double lowest_thigh = 120 * degree;      // from the vertical; knees bent by about 130 degrees
-constexpr double highest_thigh = 30 * degree;      // leaning rather than sitting
+constexpr double furthest_slide_m = 1.5;       // assumed: a chair's way from under a table
+constexpr double negligible_slide_m = 0.02;    // assumed: less is leaned away rather than walked
+constexpr double lowest_thigh = 120 * degree;  // from the vertical; knees bent by about 130 degrees
+constexpr double highest_thigh = 30 * degree;  // leaning rather than sitting
 // A chair is moved by small steps. assumed (step 0.15-0.3 m, lift 0.02-0.05 m)
 constexpr StepStyle shuffle{.step = 0.2, .lift_m = 0.03, .pitch_per_lift = 1.0, .first_foot = 0};
 
@@ -32,8 +32,7 @@ struct StandingLeg {
 
 StandingLeg standing_leg(const Measures& m) {
   const double distance = leg_extension * (m.thigh_m + m.shank_m);
-  const double along =
-      (m.shank_m * m.shank_m - m.thigh_m * m.thigh_m + distance * distance) / (2.0 * distance);
+  const double along = (m.shank_m * m.shank_m - m.thigh_m * m.thigh_m + distance * distance) / (2.0 * distance);
   const double ahead = std::sqrt(m.shank_m * m.shank_m - along * along);
   return {ahead, m.ankle_height_m + along, std::asin(ahead / m.thigh_m)};
 }
@@ -56,16 +55,14 @@ double fall_back_m(const Humanoid& humanoid, const SeatPlace& seat) noexcept {
   return m.thigh_m * std::sqrt(1.0 - cosine * cosine) - standing_leg(m).knee_ahead_m;
 }
 
-Seating::Seating(const Humanoid& humanoid, const SeatPlace& seat, const Placement& standing,
-                 const Feet& feet)
+Seating::Seating(const Humanoid& humanoid, const SeatPlace& seat, const Placement& standing, const Feet& feet)
     : seat_(seat), from_(standing) {
   const Measures& m = humanoid.measures();
   const double cosine = cosine_when_seated(m, seat);
   if (cosine < std::cos(lowest_thigh) || cosine > std::cos(highest_thigh)) {
-    throw Error(ErrorCode::infeasible, "a seat whose pelvis point is " +
-                                           std::to_string(seat.world_from_seat.origin.y - seat.floor_height_m) +
-                                           " m above the floor can't be sat on by a person of " +
-                                           std::to_string(m.stature_m) + " m");
+    throw Error(ErrorCode::infeasible,
+                "a seat whose pelvis point is " + std::to_string(seat.world_from_seat.origin.y - seat.floor_height_m) +
+                    " m above the floor can't be sat on by a person of " + std::to_string(m.stature_m) + " m");
   }
   const StandingLeg leg = standing_leg(m);
   thigh_m_ = m.thigh_m;

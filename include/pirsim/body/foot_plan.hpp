@@ -26,7 +26,7 @@ class Track {
   Track() = default;
   /// A walk from `start` along the route from from_s to to_s, between which it has no sharp turn; what `start` is off
   /// the route is blended away within `step_m`. The heading is the route's, averaged over a step, since people turn
-  /// into a corner before they reach it.
+  /// into a corner before they reach it (so a bend in the last half step is not turned out fully).
   Track(const Route& route, double from_s, double to_s, const Placement& start, double step_m);
   static Track turn(const Placement& start, double angle);
   /// Stays there; the length only counts how far the feet are with their steps.
@@ -51,21 +51,25 @@ class Track {
   double blend_length_ = 0.0;
 };
 
+/// Where, beyond from_s, a walker whose steps are step_m long has to stand and turn: at sharp turns, and amid bends too
+/// tight for crossing legs. The route's length if nowhere.
+[[nodiscard]] double next_pivot(const Route& route, double from_s, double step_m) noexcept;
+
 /// A foot at one moment.
 struct Footstep {
-  Placement print;       ///< under the ankle
-  double lift_m = 0.0;   ///< of the ankle above its height when standing
-  double pitch = 0.0;    ///< radians, positive toes up
+  Placement print;      ///< under the ankle
+  double lift_m = 0.0;  ///< of the ankle above its height when standing
+  double pitch = 0.0;   ///< radians, positive toes up
   bool operator==(const Footstep&) const = default;
 };
 using Feet = std::array<Footstep, 2>;  ///< left, right
 
 /// How steps are made: paper section 2.2 for walking.
 struct StepStyle {
-  double step = 0.5;           ///< longest way of the body during one step (metres, or radians when turning)
-  double lift_m = 0.15;        ///< of a foot that passes two such steps
-  double pitch_per_lift = 0.0; ///< radians per metre of lift
-  int first_foot = 0;          ///< 0 left, 1 right
+  double step = 0.5;            ///< longest way of the body during one step (metres, or radians when turning)
+  double lift_m = 0.15;         ///< of a foot that passes two such steps
+  double pitch_per_lift = 0.0;  ///< radians per metre of lift
+  int first_foot = 0;           ///< 0 left, 1 right
 };
 
 /// Alternating steps along a track. Footprints lie at distances 0, 0, l, 2l, ..., (M-1)l, L, L; while one foot stands

@@ -29,16 +29,16 @@ class Motion {
 
   // Commands. A command that needs another stage first (walk while seated) throws std::logic_error: the caller
   // sequences them; stop() and rise() lead back to standing from anywhere.
-  void walk(const Route& route);        ///< from standing; the route starts here
-  void turn_to(double heading);         ///< from standing, in place, with small steps
+  void walk(const Route& route);  ///< from standing; the route starts here
+  void turn_to(double heading);   ///< from standing, in place, with small steps
   /// From walking or turning: comes to stand within two steps. Who waits in mid-stride (limit_speed(0)) brings the
   /// feet together on the spot, which counts as turning.
   void stop();
-  void sit_down(const SeatPlace& seat); ///< from standing, facing as the seat does; also reverses rising from it
-  void rise();                          ///< from seated or sitting_down: back to where sitting down began
-  void work(const DeskWork& work);      ///< from seated: forearms to the table, then oscillating
-  void rest();                          ///< ends desk work: arms and spine come to rest
-  void tilt_spine(double radians);      ///< target of the spine's tilt, positive forward; only while seated
+  void sit_down(const SeatPlace& seat);  ///< from standing, facing as the seat does; also reverses rising from it
+  void rise();                           ///< from seated or sitting_down: back to where sitting down began
+  void work(const DeskWork& work);       ///< from seated: forearms to the table, then oscillating
+  void rest();                           ///< ends desk work: arms and spine come to rest
+  void tilt_spine(double radians);       ///< target of the spine's tilt, positive forward; only while seated
   /// Upper bound of the walking speed from now on (m/s); 0 lets a walker wait on the spot.
   void limit_speed(double metres_per_second);
 
@@ -97,10 +97,10 @@ class Motion {
 
   // Sitting.
   Seating seating_;
-  MinJerk fall_;     ///< 0 standing, 1 at the seat's height
+  MinJerk fall_;  ///< 0 standing, 1 at the seat's height
   MinJerk slide_m_;
-  MinJerk tilt_;     ///< of the spine, beyond what falling and rising need
-  MinJerk reach_;    ///< of the arms: 0 on the thighs, 1 on the table
+  MinJerk tilt_;   ///< of the spine, beyond what falling and rising need
+  MinJerk reach_;  ///< of the arms: 0 on the thighs, 1 on the table
   DeskWork work_;
   std::int64_t work_tick_ = 0;
   MinJerk hand_offset_left_over_m_;  ///< from desk work that was replaced by another, fading

@@ -35,7 +35,7 @@ class Seating {
   [[nodiscard]] Placement pelvis(double fall, double slide_m) const noexcept;
   [[nodiscard]] double hip_height_m(double fall) const noexcept;  ///< above the floor
   [[nodiscard]] Feet feet(double slide_m) const noexcept { return shuffling_.feet(sliding_, slide_m); }
-  [[nodiscard]] double thigh_angle(double fall) const noexcept;   ///< radians from the vertical
+  [[nodiscard]] double thigh_angle(double fall) const noexcept;  ///< radians from the vertical
   bool operator==(const Seating&) const = default;
 
  private:

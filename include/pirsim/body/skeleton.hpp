@@ -17,8 +17,8 @@ struct ArmPose {
 
 /// Arrays are left, right.
 struct Pose {
-  Frame world_from_hips;  ///< upright; origin midway between the hip joints
-  double spine_tilt = 0.0;  ///< radians about the hips' axis, positive forward
+  Frame world_from_hips;                  ///< upright; origin midway between the hip joints
+  double spine_tilt = 0.0;                ///< radians about the hips' axis, positive forward
   std::array<Frame, 2> world_from_ankle;  ///< origin in the ankle joint, facing as the foot does
   std::array<ArmPose, 2> arms;
 };
@@ -36,9 +36,18 @@ struct Pose {
 
 /// Twelve joints below the root, which is the pelvis.
 enum class Joint : std::size_t {
-  spine, neck,
-  left_shoulder, right_shoulder, left_elbow, right_elbow,
-  left_hip, right_hip, left_knee, right_knee, left_ankle, right_ankle,
+  spine,
+  neck,
+  left_shoulder,
+  right_shoulder,
+  left_elbow,
+  right_elbow,
+  left_hip,
+  right_hip,
+  left_knee,
+  right_knee,
+  left_ankle,
+  right_ankle,
 };
 inline constexpr std::size_t n_joints = 12;
 

@@ -37,7 +37,7 @@ double signed_distance(const Vec3& world_point, const Shape& shape, const Frame&
 
 }  // namespace
 
-TEST_CASE("the parts are one sphere, three boxes and nine capsules, as the paper says") {
+TEST_CASE("the parts are one sphere, three boxes and nine capsules, as the paper says", "[motion]") {
   // The paper counts the torso and both feet as boxes.
   int spheres = 0;
   int boxes = 0;
@@ -55,7 +55,7 @@ TEST_CASE("the parts are one sphere, three boxes and nine capsules, as the paper
   CHECK(name(Part::left_thigh) == "left_thigh");
 }
 
-TEST_CASE("the parts' masses sum to the person's mass") {
+TEST_CASE("the parts' masses sum to the person's mass", "[motion]") {
   for (const double mass : {50.0, 80.0, 120.0}) {
     const Humanoid humanoid = person(1.7, mass);
     const auto& masses = humanoid.masses_kg();
@@ -65,9 +65,9 @@ TEST_CASE("the parts' masses sum to the person's mass") {
   }
 }
 
-TEST_CASE("lengths are Drillis and Contini's fractions of stature") {
+TEST_CASE("lengths are Drillis and Contini's fractions of stature", "[motion]") {
   for (const double stature : {1.5, 1.86, 2.0}) {
-    const Measures& m = person(stature, 80.0).measures();
+    const Measures m = person(stature, 80.0).measures();
     CHECK(m.thigh_m == Approx(0.245 * stature));
     CHECK(m.shank_m + m.thigh_m + m.ankle_height_m == Approx(0.530 * stature));
     CHECK(m.upper_arm_m == Approx(0.186 * stature));
@@ -75,14 +75,14 @@ TEST_CASE("lengths are Drillis and Contini's fractions of stature") {
   CHECK(person(1.86, 80).measures().forearm_m == Approx(0.400).margin(0.001));
 }
 
-TEST_CASE("widths grow with the square root of mass over stature") {
+TEST_CASE("widths grow with the square root of mass over stature", "[motion]") {
   const Humanoid heavy = person(1.86, 4.0 * 80.0);
   for (const Part part : {Part::pelvis, Part::left_upper_arm, Part::right_forearm, Part::left_thigh}) {
     CHECK(heavy.radius_m(part) == Approx(2.0 * man().radius_m(part)));
   }
 }
 
-TEST_CASE("a standing person is as tall as the stature says and stands on the floor with both soles") {
+TEST_CASE("a standing person is as tall as the stature says and stands on the floor with both soles", "[motion]") {
   for (const double stature : {1.5, 1.86, 2.05}) {
     const Humanoid humanoid = person(stature, 75.0);
     const Posture posture = Motion(humanoid, {1, 2}, 0.7, 0.25, tick_s).posture();
@@ -94,7 +94,7 @@ TEST_CASE("a standing person is as tall as the stature says and stands on the fl
   }
 }
 
-TEST_CASE("a posture scales with stature") {
+TEST_CASE("a posture scales with stature", "[motion]") {
   const Posture small = Motion(person(1.5, 60.0), {0, 0}, 0, 0, tick_s).posture();
   const Posture large = Motion(person(1.8, 60.0), {0, 0}, 0, 0, tick_s).posture();
   for (std::size_t i = 0; i < n_parts; ++i) {
@@ -105,7 +105,7 @@ TEST_CASE("a posture scales with stature") {
   CHECK(glm::distance(large[at(Part::left_forearm)].origin, 1.2 * small[at(Part::left_forearm)].origin) < 1e-12);
 }
 
-TEST_CASE("neighbouring parts overlap at their joint, so that the body has no gaps") {
+TEST_CASE("neighbouring parts overlap at their joint, so that the body has no gaps", "[motion]") {
   for (const double mass : {55.0, 80.0, 110.0}) {
     const Humanoid humanoid = person(1.86, mass);
     const Posture posture = Motion(humanoid, {0, 0}, 0, 0, tick_s).posture();
@@ -114,7 +114,8 @@ TEST_CASE("neighbouring parts overlap at their joint, so that the body has no ga
     };
     const auto joint = [&](Joint j) { return joint_places(humanoid, posture, j).by_child; };
     CHECK((inside(joint(Joint::left_knee), Part::left_thigh) && inside(joint(Joint::left_knee), Part::left_shank)));
-    CHECK((inside(joint(Joint::left_elbow), Part::left_upper_arm) && inside(joint(Joint::left_elbow), Part::left_forearm)));
+    CHECK((inside(joint(Joint::left_elbow), Part::left_upper_arm) &&
+           inside(joint(Joint::left_elbow), Part::left_forearm)));
     CHECK((inside(joint(Joint::left_hip), Part::pelvis) && inside(joint(Joint::left_hip), Part::left_thigh)));
     // Shoulder joint to torso, ankle joint to foot: the capsule's round end reaches into the box.
     CHECK(signed_distance(joint(Joint::right_shoulder), humanoid.solids()[at(Part::torso)], posture[at(Part::torso)]) <

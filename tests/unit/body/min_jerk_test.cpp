@@ -7,7 +7,7 @@
 
 using pirsim::body::MinJerk;
 
-TEST_CASE("a minimum-jerk motion from rest follows 10 t^3 - 15 t^4 + 6 t^5") {
+TEST_CASE("a minimum-jerk motion from rest follows 10 t^3 - 15 t^4 + 6 t^5", "[motion]") {
   MinJerk motion(2.0);
   motion.move_to(5.0, 50);
   for (int tick = 0; tick <= 50; ++tick) {
@@ -17,7 +17,7 @@ TEST_CASE("a minimum-jerk motion from rest follows 10 t^3 - 15 t^4 + 6 t^5") {
   }
 }
 
-TEST_CASE("a minimum-jerk motion ends at its target bit for bit, whatever came before") {
+TEST_CASE("a minimum-jerk motion ends at its target bit for bit, whatever came before", "[motion]") {
   MinJerk direct(0.0);
   direct.move_to(0.1, 30);
   for (int i = 0; i < 30; ++i) direct.advance();
@@ -32,7 +32,7 @@ TEST_CASE("a minimum-jerk motion ends at its target bit for bit, whatever came b
   CHECK(direct == wandering);
 }
 
-TEST_CASE("sending a minimum-jerk motion elsewhere halfway keeps position, velocity and acceleration") {
+TEST_CASE("sending a minimum-jerk motion elsewhere halfway keeps position, velocity and acceleration", "[motion]") {
   MinJerk motion(0.0);
   motion.move_to(1.0, 1000);
   std::vector<double> x;
@@ -49,7 +49,7 @@ TEST_CASE("sending a minimum-jerk motion elsewhere halfway keeps position, veloc
   CHECK(worst < 3e-7);
 }
 
-TEST_CASE("a minimum-jerk motion that is sent to and fro does not overshoot its ends") {
+TEST_CASE("a minimum-jerk motion that is sent to and fro does not overshoot its ends", "[motion]") {
   double lowest = 0.0;
   double highest = 0.0;
   for (int first = 1; first < 60; ++first) {
