@@ -17,5 +17,7 @@ write_basic_package_version_file("${PROJECT_BINARY_DIR}/pirsimConfigVersion.cmak
 install(FILES "${PROJECT_BINARY_DIR}/pirsimConfig.cmake" "${PROJECT_BINARY_DIR}/pirsimConfigVersion.cmake"
   DESTINATION "${package_dir}")
 
+# Relative to the .pc file itself, so that an installation can be moved.
+file(RELATIVE_PATH PIRSIM_PC_TO_PREFIX "/prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/prefix")
 configure_file("${CMAKE_CURRENT_LIST_DIR}/pirsim.pc.in" "${PROJECT_BINARY_DIR}/pirsim.pc" @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/pirsim.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")

@@ -37,8 +37,10 @@ struct MeshLook {
 MeshLook look_of(const TriMesh& mesh, double floor_y) {
   constexpr double wall_height_m = 2.0, floor_thickness_m = 0.05;
   const Extent e = extent(mesh);
-  if (e.lower.y > floor_y + wall_height_m) return {rt::Surface::hidden, {0.9F, 0.9F, 0.9F}};
-  if (e.upper.y - e.lower.y > wall_height_m) return {rt::Surface::see_through, {0.82F, 0.84F, 0.86F}};
+  const Vec3 size = e.upper - e.lower;
+  const bool is_high = e.lower.y >= floor_y + wall_height_m;
+  if (is_high && size.y < std::min(size.x, size.z)) return {rt::Surface::hidden, {0.9F, 0.9F, 0.9F}};
+  if (is_high || size.y > wall_height_m) return {rt::Surface::see_through, {0.82F, 0.84F, 0.86F}};
   if (e.upper.y < floor_y + floor_thickness_m) return {rt::Surface::opaque, {0.60F, 0.57F, 0.53F}};
   return {rt::Surface::opaque, {0.55F, 0.36F, 0.20F}};
 }

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <iostream>
 #include <optional>
 
@@ -7,6 +6,7 @@
 #include "app/session.hpp"
 #include "pirsim/core/version.hpp"
 #include "pirsim/io/atomic_file.hpp"
+#include "pirsim/io/csv_reader.hpp"
 #include "pirsim/io/csv_writer.hpp"
 #include "pirsim/io/manifest.hpp"
 #include "pirsim/io/script_reader.hpp"
@@ -49,21 +49,11 @@ std::vector<std::size_t> first_zones(const Model& model) {
   return begins;
 }
 
-/// Seconds with motion per sensor over the rows that count.
-std::vector<int> sums(const RunResult& result, const std::vector<std::string>& phases, std::size_t n_sensors) {
-  std::vector<int> total(n_sensors, 0);
-  for (const Sample& sample : result.samples) {
-    if (!phases.empty() && std::ranges::find(phases, sample.phase) == phases.end()) continue;
-    for (std::size_t i = 0; i < n_sensors; ++i) total[i] += sample.bits[i];
-  }
-  return total;
-}
-
-void write_summary(const Model& model, const studies::Summary& summary, const RunOptions& options) {
+void write_summary(const studies::Summary& summary, const RunOptions& options, Verbosity verbosity) {
   io::AtomicFile file(options.summary);
   file.stream() << (options.summary.extension() == ".md" ? studies::to_markdown(summary) : studies::to_csv(summary));
   file.commit();
-  static_cast<void>(model);
+  if (verbosity != Verbosity::quiet) std::cerr << studies::to_text(summary);
 }
 
 io::Manifest manifest_of(const Model& model, const Inputs& inputs, std::uint64_t rows) {
@@ -81,7 +71,12 @@ io::Manifest manifest_of(const Model& model, const Inputs& inputs, std::uint64_t
 studies::Summary make_summary(const Model& model) {
   std::vector<std::string> trials;
   for (const TrialModel& trial : model.trials()) trials.push_back(trial.id);
-  return {trials, sensor_ids(model)};
+  const SummarySpec& spec = model.script().summary;
+  std::vector<MeasuredCell> measured;
+  if (!spec.reference_file.empty()) {
+    measured = io::read_measured_cells(std::filesystem::path(model.script().directory) / spec.reference_file);
+  }
+  return {trials, sensor_ids(model), measured};
 }
 
 }  // namespace
@@ -113,12 +108,14 @@ void run(const Inputs& inputs, const RunOptions& options) {
     for (std::size_t i = 0; zones && i < result.zones.size(); ++i) {
       zones->write(result.replicate, result.trial, static_cast<std::int64_t>(i) + 1, result.zones[i]);
     }
-    summary.add_run(result.trial, sums(result, model.script().summary.phases, model.scene().sensors.size()));
+    studies::RunCounts counts(model.scene().sensors.size(), model.script().summary);
+    for (const Sample& sample : result.samples) counts.add(sample);
+    summary.add_run(result.trial, counts.counts());
     progress.run_finished();
   });
   rows.commit();
   if (zones_file) zones_file->commit();
-  if (!options.summary.empty()) write_summary(model, summary, options);
+  if (!options.summary.empty()) write_summary(summary, options, inputs.verbosity);
   if (!options.output.empty()) {
     std::filesystem::path side_car = options.output;
     side_car += ".json";

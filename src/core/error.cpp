@@ -87,7 +87,8 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
     }
   }
   const std::size_t limit = std::max<std::size_t>(1, name.size() / 3 + 1);
-  if (nearest == nullptr || best > limit) return {};
+  const bool something_in_common = nearest != nullptr && best < std::max(name.size(), nearest->size());
+  if (!something_in_common || best > limit) return {};
   return " (did you mean '" + *nearest + "'?)";
 }
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <set>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "geom/mesh_connectivity.hpp"
@@ -17,6 +17,18 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
+
+/// Multiplicative hashing with the golden ratio.
+std::size_t hash_of(std::int64_t a, std::int64_t b, std::int64_t c) noexcept {
+  const auto mix = [](std::size_t h, std::int64_t v) {
+    h = (h ^ static_cast<std::size_t>(v)) * 0x9E3779B97F4A7C15ULL;
+    return h ^ (h >> 29U);
+  };
+  return mix(mix(mix(0, a), b), c);
+}
+struct HashTriangle {
+  std::size_t operator()(const Triangle& t) const noexcept { return hash_of(t[0], t[1], t[2]); }
+};
 
 /// Finds an earlier point within the tolerance through a grid of cells.
 class PointGrid {
@@ -51,12 +63,7 @@ class PointGrid {
     bool operator==(const Cell&) const = default;
   };
   struct Hash {
-    std::size_t operator()(const Cell& c) const noexcept {
-      const auto mix = [](std::size_t h, std::int64_t v) {
-        return (h ^ static_cast<std::size_t>(v)) * 0x9E3779B97F4A7C15ULL;
-      };
-      return mix(mix(mix(0, c.x), c.y), c.z);
-    }
+    std::size_t operator()(const Cell& c) const noexcept { return hash_of(c.x, c.y, c.z); }
   };
   [[nodiscard]] Cell cell_of(const Vec3& p) const {
     const auto at = [&](double v) { return static_cast<std::int64_t>(std::floor(v / cell_)); };
@@ -127,7 +134,8 @@ CleanMesh clean(const TriMesh& mesh, double tolerance_m) {
   for (const Vec3& p : mesh.positions) welded.push_back(grid.find_or_add(p, result.mesh.positions));
   result.audit.welded_vertices = mesh.positions.size() - result.mesh.positions.size();
 
-  std::set<Triangle> seen;
+  std::unordered_set<Triangle, HashTriangle> seen;
+  seen.reserve(mesh.triangles.size());
   for (const Triangle& given : mesh.triangles) {
     const Triangle triangle{welded[given[0]], welded[given[1]], welded[given[2]]};
     if (has_no_area(triangle, result.mesh.positions, tolerance_m)) {

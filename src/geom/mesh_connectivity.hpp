@@ -15,7 +15,8 @@ namespace pirsim::detail {
 /// same topological conditions that OpenMesh tests.
 class MeshConnectivity {
  public:
-  /// Triangles must have three different vertices. A triangle that fits only the other way round is turned.
+  /// Triangles must have three different vertices. Which way round they are given doesn't matter: within the
+  /// structure neighbours agree.
   explicit MeshConnectivity(const TriMesh& mesh);
 
   [[nodiscard]] std::size_t non_manifold_triangles() const noexcept { return non_manifold_triangles_; }

@@ -15,11 +15,14 @@ namespace fs = std::filesystem;
 constexpr std::uint32_t chunk_json = 0x4E4F534A;    // "JSON", glTF 2.0 section 4.4
 constexpr std::uint32_t chunk_binary = 0x004E4942;  // "BIN\0"
 
+constexpr std::uintmax_t largest_file = 1'000'000'000;  // assumed; tinygltf counts bytes in 32 bits
+
 std::string read_bytes(const fs::path& file) {
   std::error_code fault;
   const fs::file_status status = fs::status(file, fault);
   if (!fs::exists(status)) throw Error(ErrorCode::io, {file.string()}, "no such file");
   if (!fs::is_regular_file(status)) throw Error(ErrorCode::io, {file.string()}, "is not a regular file");
+  if (fs::file_size(file, fault) > largest_file) throw Error(ErrorCode::input, {file.string()}, "is larger than 1 GB");
   std::ifstream stream(file, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   if (!stream && !stream.eof()) throw Error(ErrorCode::io, {file.string()}, "can't be read");

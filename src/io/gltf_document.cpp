@@ -1,6 +1,7 @@
 #include "io/gltf_document.hpp"
 
-#include <array>
+#include <algorithm>
+#include <cctype>
 #include <utility>
 
 #include "io/gltf_check.hpp"
@@ -68,7 +69,9 @@ tinygltf::Model parse_structure(const JsonText& text) {
   return model;
 }
 
-std::string label(const char* what, const std::string& name, int index) {
+std::string label(const char* what, std::string name, int index) {
+  const auto is_control = [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; };
+  std::replace_if(name.begin(), name.end(), is_control, '?');  // messages go to terminals
   return what + (name.empty() ? ' ' + std::to_string(index) : " '" + name + "'");
 }
 

@@ -13,6 +13,8 @@ namespace {
 constexpr double world_limit_m = 1e5;    // assumed: far beyond any building, yet 1e-5 of it is still exact in float
 constexpr double smallest_scale = 1e-9;  // assumed: a scale below turns a kilometre into a micrometre
 
+constexpr std::size_t max_faults = 20;  // told at once
+
 std::string pointer_of(int node) { return "/nodes/" + std::to_string(node); }
 
 class Placement {
@@ -30,7 +32,7 @@ class Placement {
     const std::string pointer = "/scenes/" + std::to_string(scene) + "/nodes";
     pending_.clear();
     push(model.scenes[static_cast<std::size_t>(scene)].nodes, glm::dmat4(1.0), pointer);
-    while (!pending_.empty()) {
+    while (!pending_.empty() && n_faults_ < max_faults) {
       const Pending next = std::move(pending_.back());
       pending_.pop_back();
       visit(next);
@@ -56,6 +58,7 @@ class Placement {
     const auto index = static_cast<std::size_t>(pending.node);
     const tinygltf::Node& node = document_.model.nodes[index];
     if (seen_[index]) {
+      ++n_faults_;
       remarks_.error(document_.text.where(pending.pointer),
                      node_label(document_.model, pending.node) + " is its own ancestor or has two parents");
       return;
@@ -70,6 +73,11 @@ class Placement {
   glm::dmat4 local(const tinygltf::Node& node, int index) {
     glm::dmat4 result(1.0);
     if (!node.matrix.empty()) {
+      const auto& given = document_.text.root()["nodes"][static_cast<std::size_t>(index)];
+      for (const char* other : {"translation", "rotation", "scale"}) {
+        if (given.contains(other))
+          fault(index, std::string("/") + other, std::string("it has both 'matrix' and '") + other + "'");
+      }
       for (int i = 0; i < 16; ++i) result[i / 4][i % 4] = node.matrix[static_cast<std::size_t>(i)];
       const bool affine = result[0][3] == 0.0 && result[1][3] == 0.0 && result[2][3] == 0.0 && result[3][3] == 1.0;
       if (!affine) fault(index, "/matrix", "its matrix is not affine: the last row must be 0 0 0 1");
@@ -113,6 +121,7 @@ class Placement {
   }
 
   bool fault(int node, const std::string& member, const std::string& message) {
+    ++n_faults_;
     remarks_.error(document_.text.where(pointer_of(node) + member), node_label(document_.model, node) + ": " + message);
     return false;
   }
@@ -122,6 +131,7 @@ class Placement {
   std::vector<bool> seen_;
   std::vector<Pending> pending_;
   std::vector<PlacedNode> placed_;
+  std::size_t n_faults_ = 0;
 };
 
 }  // namespace

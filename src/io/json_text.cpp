@@ -10,6 +10,13 @@ namespace {
 
 constexpr int max_nesting = 100;  // assumed: glTF itself needs about 6; libraries recurse over their JSON
 
+/// Offset of the quote that closes the string opened at `quote`, or the end of the text.
+std::size_t end_of_string(std::string_view text, std::size_t quote) {
+  std::size_t at = quote + 1;
+  while (at < text.size() && text[at] != '"') at += text[at] == '\\' ? 2 : 1;
+  return std::min(at, text.size());
+}
+
 /// Walks over a text that is known to be valid JSON.
 class Scanner {
  public:
@@ -23,9 +30,8 @@ class Scanner {
   }
   /// The raw characters between the quotes.
   std::string_view take_string() {
-    const std::size_t begin = ++at_;
-    while (at_ < text_.size() && text_[at_] != '"') at_ += text_[at_] == '\\' ? 2 : 1;
-    const std::size_t end = std::min(at_, text_.size());
+    const std::size_t begin = at_ + 1, end = end_of_string(text_, at_);
+    at_ = end;
     step_over_punctuation();
     return text_.substr(begin, end - begin);
   }
@@ -109,6 +115,16 @@ std::optional<Member> find_element(std::string_view text, std::size_t array, con
   return std::nullopt;
 }
 
+/// Where the token begins that the parser had read up to `last`: a text is complained about at its closing quote.
+std::size_t start_of_token(std::string_view text, std::size_t last) {
+  if (last >= text.size() || text[last] != '"') return std::min(last, text.size());
+  std::size_t begin = last;
+  do {
+    begin = begin == 0 ? std::string_view::npos : text.rfind('"', begin - 1);
+  } while (begin != std::string_view::npos && begin > 0 && text[begin - 1] == '\\');
+  return begin == std::string_view::npos ? last : begin;
+}
+
 /// nlohmann's message without its prefix and without the text it read last, which may be a whole buffer.
 std::string plain_message(std::string message) {
   if (const auto begin = message.find(": syntax error"); begin != std::string::npos) message.erase(0, begin + 2);
@@ -127,7 +143,8 @@ JsonText::JsonText(std::string file, std::string text, Places places)
   try {
     root_ = nlohmann::json::parse(text_);
   } catch (const nlohmann::json::parse_error& fault) {
-    throw Error(ErrorCode::input, at(fault.byte == 0 ? 0 : fault.byte - 1), plain_message(fault.what()));
+    throw Error(ErrorCode::input, at(start_of_token(text_, fault.byte == 0 ? 0 : fault.byte - 1)),
+                plain_message(fault.what()));
   } catch (const nlohmann::json::out_of_range& fault) {
     const std::string_view message = fault.what();
     const std::size_t begin = message.find('\'') + 1;
@@ -140,9 +157,7 @@ void JsonText::refuse_deep_nesting() const {
   int depth = 0;
   for (std::size_t i = 0; i < text_.size(); ++i) {
     if (text_[i] == '"') {
-      for (++i; i < text_.size() && text_[i] != '"'; ++i) {
-        if (text_[i] == '\\') ++i;
-      }
+      i = end_of_string(text_, i);
     } else if (text_[i] == '{' || text_[i] == '[') {
       if (++depth > max_nesting) {
         throw Error(ErrorCode::input, at(i), "JSON nested deeper than " + std::to_string(max_nesting) + " levels");
@@ -156,9 +171,7 @@ void JsonText::refuse_deep_nesting() const {
 std::size_t JsonText::offset_of_number(std::string_view number) const {
   for (std::size_t i = 0; i < text_.size(); ++i) {
     if (text_[i] == '"') {
-      for (++i; i < text_.size() && text_[i] != '"'; ++i) {
-        if (text_[i] == '\\') ++i;
-      }
+      i = end_of_string(text_, i);
     } else if (text_.compare(i, number.size(), number) == 0) {
       return i;
     }

@@ -1,8 +1,7 @@
 #include "io/scene_markup.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
+#include <cctype>
 #include <utility>
 
 namespace pirsim::io::detail {
@@ -85,7 +84,8 @@ class MarkupReader {
       return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
     };
     if (text.empty() || text.front() == '.' || !std::all_of(text.begin(), text.end(), fits)) {
-      error(pointer, std::string("'") + key + "' is '" + text + "'; it needs letters, digits, '_', '-' or '.'");
+      error(pointer,
+            std::string("'") + key + "' is " + value_[key].dump() + "; it needs letters, digits, '_', '-' or '.'");
     }
     return text;
   }

@@ -1,5 +1,6 @@
 #include "pirsim/io/scene_reader.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -37,7 +38,10 @@ class SceneBuilder {
 
   SceneSpec build() {
     warn_of_what_is_left_out();
-    for (const PlacedNode& placed : place_nodes(document_, remarks_)) add_node(placed);
+    for (const PlacedNode& placed : place_nodes(document_, remarks_)) {
+      add_node(placed);
+      if (too_many_faults()) break;
+    }
     spec_.floor = floor_.build();
     require_floor();
     if (spec_.sensors.empty() && !remarks_.has_errors()) {
@@ -181,6 +185,12 @@ class SceneBuilder {
         for (const Issue& issue : fault.issues()) remarks_.error(issue.where, issue.message);
       }
     }
+  }
+
+  /// A faulty exporter makes thousands, each of which is looked for in the text.
+  [[nodiscard]] bool too_many_faults() const {
+    const auto is_error = [](const Issue& issue) { return issue.severity == Severity::error; };
+    return remarks_.has_errors() && std::count_if(remarks_.issues().begin(), remarks_.issues().end(), is_error) >= 20;
   }
 
   [[nodiscard]] Where markup_place(int node) const { return document_.text.where(markup_pointer(node)); }

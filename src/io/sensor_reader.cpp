@@ -85,7 +85,7 @@ ClusterSpec read_facet(const YamlNode& node, const FacetLaw& law, Diagnostics& f
       map.choice<Missing>("missing", Missing::none, {{"none", Missing::none}, {"outer", Missing::outer}});
   Quad quad;
   if (law.layout == Layout::diamond) {
-    const double distance = std::hypot(std::hypot(cluster.centre.x, cluster.centre.y), law.plane_m);
+    const double distance = std::sqrt(glm::dot(cluster.centre, cluster.centre) + law.plane_m * law.plane_m);
     quad = diamond(cluster.centre, law.half_spacing_ratio * distance, law.half_diagonal_ratio * distance);
   } else {
     const double side = map.required_number("zone_side_m", positive);

@@ -1,6 +1,7 @@
 // Reads the keys of one YAML map with their types and defaults, and refuses the keys that nobody asked for.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>

@@ -1,35 +1,15 @@
 #include "io/yaml_node.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <sstream>
 
+#include "io/text_input.hpp"
 #include "io/yaml_tree.hpp"
 
 namespace pirsim::io {
 namespace {
-
-constexpr std::size_t max_file_bytes = 16'000'000;
-
-std::string read_limited(const std::filesystem::path& path) {
-  const Where where{path.string(), 0, 0};
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw Error(ErrorCode::io, where, "is a directory");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    const bool exists = std::filesystem::exists(path, ignored);
-    throw Error(ErrorCode::io, where, exists ? "can't be read" : "no such file");
-  }
-  std::string text(max_file_bytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad()) throw Error(ErrorCode::io, where, "can't be read");
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (text.size() > max_file_bytes) throw Error(ErrorCode::input, where, "larger than 16 MB");
-  return text;
-}
 
 std::string describe(const YamlTree& tree) {
   switch (tree.kind) {
@@ -71,16 +51,6 @@ double fallback(const NumberRange& range) {
   return std::isfinite(range.above) ? range.above + 1.0 : 0.0;
 }
 
-/// The whole of `text` as a number, with a leading plus allowed as YAML has it.
-template <typename Number>
-std::optional<Number> parse_number(std::string_view text) {
-  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
-  Number value{};
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (fault != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 YamlTreePtr substituted(const YamlTreePtr& tree, const Variables& variables, Diagnostics& faults) {
   auto copy = std::make_shared<YamlTree>(*tree);
   if (tree->kind == YamlTree::Kind::scalar) {
@@ -100,7 +70,7 @@ void report_once(Diagnostics& faults, const Where& where, const std::string& mes
 }  // namespace
 
 YamlNode YamlNode::load(const std::filesystem::path& path, std::span<const std::string> overrides) {
-  return parse(read_limited(path), path.string(), overrides);
+  return parse(read_text_file(path), path.string(), overrides);
 }
 YamlNode YamlNode::parse(std::string_view text, const std::string& name, std::span<const std::string> overrides) {
   YamlTreePtr root = parse_yaml_tree(text, name);

@@ -1,8 +1,8 @@
 // `--set a.b.0.c=value`: one node of a tree replaced.
 #include <algorithm>
-#include <charconv>
 #include <optional>
 
+#include "io/text_input.hpp"
 #include "io/yaml_tree.hpp"
 
 namespace pirsim::io {
@@ -50,13 +50,12 @@ Override parse_override(const std::string& text) {
 }
 
 std::size_t list_index(const std::string& text, std::size_t size, const Where& where) {
-  std::size_t index = 0;
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), index);
-  if (fault != std::errc{} || end != text.data() + text.size() || index >= size) {
+  const std::optional<std::size_t> index = parse_number<std::size_t>(text);
+  if (!index || *index >= size) {
     throw Error(ErrorCode::usage, where,
                 "'" + text + "' is not an index of this list of " + std::to_string(size) + ", which count from 0");
   }
-  return index;
+  return *index;
 }
 
 YamlTreePtr replaced(const YamlTreePtr& tree, const Override& change, std::size_t depth) {

@@ -5,10 +5,7 @@
 #include <yaml-cpp/mark.h>
 #include <yaml-cpp/parser.h>
 
-#include <algorithm>
 #include <map>
-#include <optional>
-#include <set>
 #include <sstream>
 #include <utility>
 

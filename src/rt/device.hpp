@@ -49,6 +49,9 @@ inline constexpr float unlimited = std::numeric_limits<float>::infinity();
   result.mask = everything_mask;
   return result;
 }
+[[nodiscard]] inline Ray pirsim_ray(const RTCRay& ray) noexcept {
+  return {Vec3f(ray.org_x, ray.org_y, ray.org_z), Vec3f(ray.dir_x, ray.dir_y, ray.dir_z)};
+}
 [[nodiscard]] inline RTCRayHit embree_ray_hit(const Ray& ray, float t_max) noexcept {
   RTCRayHit result{};
   result.ray = embree_ray(ray, t_max);

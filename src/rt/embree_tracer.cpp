@@ -71,7 +71,8 @@ class EmbreeTracer final : public Tracer {
   explicit EmbreeTracer(const TracerSetup& setup)
       : device_(setup.room->impl().device.get()),
         bundle_(*setup.clipped),
-        cones_(view_cones(bundle_)),
+        cluster_cones_(cluster_cones(bundle_)),
+        zone_cones_(zone_cones(bundle_)),
         cube_(make_scene(device_, RTC_SCENE_FLAG_ROBUST)),
         scene_(make_scene(device_, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC)) {
     const GeometryHandle cube = make_geometry(device_, RTC_GEOMETRY_TYPE_USER);
@@ -85,25 +86,33 @@ class EmbreeTracer final : public Tracer {
 
   void trace(std::span<const PosedShape> solids, std::span<std::uint8_t> zones) override {
     std::fill(zones.begin(), zones.end(), std::uint8_t{0});
-    if (solids.empty()) return;
+    find_candidates(solids);
+    if (candidates_.empty()) return;
     move_instances(solids);
-    balls_.clear();
-    for (const PosedShape& solid : solids) balls_.push_back(ball_around(solid));
-
     AnySolidQuery query;
     initialise(query);
     query.solids = solids;
+    for (const std::size_t zone : candidates_) zones[zone] = sees_solid(query, zone);
+  }
+
+ private:
+  /// Zones that may see a solid; coarse to fine: clusters against all solids at once, against each, zones against each.
+  void find_candidates(std::span<const PosedShape> solids) {
+    balls_.clear();
+    for (const PosedShape& solid : solids) balls_.push_back(ball_around(solid));
+    candidates_.clear();
+    if (balls_.empty()) return;
+    const Ball all = ball_around(balls_);
     for (std::size_t cluster = 0; cluster < bundle_.n_clusters(); ++cluster) {
-      const ViewCone& cone = cones_[cluster];
-      if (std::none_of(balls_.begin(), balls_.end(), [&](const Ball& ball) { return may_touch(cone, ball); })) continue;
-      for (std::size_t zone = bundle_.cluster_zones_begin[cluster]; zone < bundle_.cluster_zones_begin[cluster + 1];
-           ++zone) {
-        zones[zone] = sees_solid(query, zone);
+      const ViewCone& cone = cluster_cones_[cluster];
+      if (!may_touch_any(cone, {&all, 1}) || !may_touch_any(cone, balls_)) continue;
+      const std::size_t end = bundle_.cluster_zones_begin[cluster + 1];
+      for (std::size_t zone = bundle_.cluster_zones_begin[cluster]; zone < end; ++zone) {
+        if (may_touch_any(zone_cones_[zone], balls_)) candidates_.push_back(zone);
       }
     }
   }
 
- private:
   struct Instance {
     GeometryHandle geometry;
     Transform transform{};
@@ -161,11 +170,13 @@ class EmbreeTracer final : public Tracer {
 
   RTCDevice device_;
   const RayBundle& bundle_;
-  std::vector<ViewCone> cones_;  ///< (n_clusters)
-  SceneHandle cube_;             ///< the one primitive that every instance shows: a cube around its solid
+  std::vector<ViewCone> cluster_cones_;  ///< (n_clusters)
+  std::vector<ViewCone> zone_cones_;     ///< (n_zones)
+  SceneHandle cube_;                     ///< the one primitive that every instance shows: a cube around its solid
   SceneHandle scene_;
   std::vector<Instance> instances_;
   std::vector<Ball> balls_;  ///< (n_solids)
+  std::vector<std::size_t> candidates_;
 };
 
 }  // namespace

@@ -1,6 +1,5 @@
 // The plain way, which the others are measured against: at each tick a new scene of all triangles and all solids,
-// and for every ray the nearest triangle and the nearest solid within the rated range. No ray is cut, no zone is
-// left early.
+// and for every ray the nearest hit within the rated range. No ray is cut at the room, no zone is left early.
 #include <algorithm>
 #include <vector>
 
@@ -9,14 +8,6 @@
 
 namespace pirsim::rt {
 namespace {
-
-/// A query that remembers the nearest solid. Solids don't shorten Embree's ray: the nearest triangle is then found
-/// by the very same query as in the room alone, and the two distances are compared here, exactly.
-struct NearestSolidQuery : QueryContext {
-  Ray ray;
-  float range = 0.0F;
-  float nearest_solid = unlimited;
-};
 
 void bound_solid(const RTCBoundsFunctionArguments* arguments) {
   constexpr float padding = 1e-3F;  // metres; far more than the ray tests' rounding
@@ -27,10 +18,9 @@ void bound_solid(const RTCBoundsFunctionArguments* arguments) {
 
 void meet_solid(const RTCIntersectFunctionNArguments* arguments) {
   if (arguments->valid[0] == 0) return;
-  auto& query = *static_cast<NearestSolidQuery*>(arguments->context);
   const auto& solid = *static_cast<const PosedShape*>(arguments->geometryUserPtr);
-  if (const auto distance = entry_distance(query.ray, solid, query.range)) {
-    query.nearest_solid = std::min(query.nearest_solid, *distance);
+  if (const auto distance = entry_distance(ray_of(*arguments), solid, unlimited)) {
+    offer_hit(*arguments, *distance, Vec3f(0.0F));
   }
 }
 
@@ -67,15 +57,13 @@ class ReferenceTracer final : public Tracer {
     return scene;
   }
 
-  [[nodiscard]] static bool sees_solid(RTCScene scene, const Ray& ray, float range) noexcept {
-    NearestSolidQuery query;
-    initialise(query);
-    query.ray = ray;
-    query.range = range;
-    RTCRayHit hit = embree_ray_hit(ray, range);
-    closest_hit(scene, query, hit);
-    const bool meets_room = hit.hit.geomID != RTC_INVALID_GEOMETRY_ID;
-    return query.nearest_solid < (meets_room ? std::min(hit.ray.tfar, range) : range);
+  /// Solids come after the room's meshes.
+  [[nodiscard]] bool sees_solid(RTCScene scene, const Ray& ray, float range) const noexcept {
+    QueryContext context;
+    initialise(context);
+    RTCRayHit nearest = embree_ray_hit(ray, range);
+    closest_hit(scene, context, nearest);
+    return nearest.hit.geomID != RTC_INVALID_GEOMETRY_ID && nearest.hit.geomID >= room_.n_meshes();
   }
 
   const Room::Impl& room_;

@@ -1,10 +1,13 @@
 #include "pirsim/rt/room.hpp"
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "pirsim/core/error.hpp"
 #include "rt/room_impl.hpp"
+#include "rt/triangle_test.hpp"
 
 namespace pirsim::rt {
 namespace {
@@ -23,23 +26,65 @@ RoomMesh in_single_precision(const TriMesh& mesh) {
   return result;
 }
 
-template <typename Element>
-void fill_buffer(RTCDevice device, RTCGeometry geometry, RTCBufferType type, RTCFormat format,
-                 const std::vector<Element>& elements) {
-  void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Element), elements.size());
-  check(device, "store a mesh");
-  std::copy(elements.begin(), elements.end(), static_cast<Element*>(buffer));
+std::array<Vec3f, 3> corners(const RoomMesh& mesh, unsigned int triangle) noexcept {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  return {mesh.positions[a], mesh.positions[b], mesh.positions[c]};
+}
+
+void bound_triangle(const RTCBoundsFunctionArguments* arguments) {
+  constexpr float padding = 1e-4F;  // metres; far more than Embree's rounding
+  const auto [a, b, c] = corners(*static_cast<const RoomMesh*>(arguments->geometryUserPtr), arguments->primID);
+  const Vec3f lower = glm::min(glm::min(a, b), c) - padding, upper = glm::max(glm::max(a, b), c) + padding;
+  *arguments->bounds_o = {lower.x, lower.y, lower.z, 0.0F, upper.x, upper.y, upper.z, 0.0F};
+}
+
+void meet_triangle(const RTCIntersectFunctionNArguments* arguments) {
+  if (arguments->valid[0] == 0) return;
+  const auto [a, b, c] = corners(*static_cast<const RoomMesh*>(arguments->geometryUserPtr), arguments->primID);
+  const float distance = distance_to_triangle(ray_of(*arguments), a, b, c);
+  offer_hit(*arguments, distance, glm::cross(b - a, c - a));
+}
+
+void shade_triangle(const RTCOccludedFunctionNArguments* arguments) {
+  if (arguments->valid[0] == 0) return;
+  const auto [a, b, c] = corners(*static_cast<const RoomMesh*>(arguments->geometryUserPtr), arguments->primID);
+  const RTCRay query = rtcGetRayFromRayN(arguments->ray, arguments->N, 0);
+  const float distance = distance_to_triangle(pirsim_ray(query), a, b, c);
+  if (distance >= query.tnear && distance < query.tfar) RTCRayN_tfar(arguments->ray, arguments->N, 0) = -unlimited;
 }
 
 }  // namespace
 
+Ray ray_of(const RTCIntersectFunctionNArguments& arguments) noexcept {
+  return pirsim_ray(rtcGetRayFromRayN(RTCRayHitN_RayN(arguments.rayhit, arguments.N), arguments.N, 0));
+}
+
+void offer_hit(const RTCIntersectFunctionNArguments& arguments, float distance, const Vec3f& normal) noexcept {
+  RTCRayN* ray = RTCRayHitN_RayN(arguments.rayhit, arguments.N);
+  RTCHitN* hit = RTCRayHitN_HitN(arguments.rayhit, arguments.N);
+  const unsigned int n = arguments.N;
+  const float reach = RTCRayN_tfar(ray, n, 0);
+  const bool has_hit = RTCHitN_geomID(hit, n, 0) != RTC_INVALID_GEOMETRY_ID;
+  const bool is_lower =
+      std::pair(arguments.geomID, arguments.primID) < std::pair(RTCHitN_geomID(hit, n, 0), RTCHitN_primID(hit, n, 0));
+  const bool is_nearer = distance < reach || (distance == reach && has_hit && is_lower);
+  if (!is_nearer || distance < RTCRayN_tnear(ray, n, 0)) return;
+  RTCRayN_tfar(ray, n, 0) = distance;
+  RTCHitN_Ng_x(hit, n, 0) = normal.x;
+  RTCHitN_Ng_y(hit, n, 0) = normal.y;
+  RTCHitN_Ng_z(hit, n, 0) = normal.z;
+  RTCHitN_geomID(hit, n, 0) = arguments.geomID;
+  RTCHitN_primID(hit, n, 0) = arguments.primID;
+}
+
 void Room::Impl::attach_to(RTCScene target) const {
   for (std::uint32_t i = 0; i < n_meshes(); ++i) {
-    if (meshes[i].triangles.empty()) continue;
-    const GeometryHandle geometry = make_geometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    fill_buffer(device.get(), geometry.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, meshes[i].positions);
-    fill_buffer(device.get(), geometry.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, meshes[i].triangles);
-    rtcSetGeometryBuildQuality(geometry.get(), RTC_BUILD_QUALITY_MEDIUM);
+    const GeometryHandle geometry = make_geometry(device.get(), RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned int>(meshes[i].triangles.size()));
+    rtcSetGeometryUserData(geometry.get(), const_cast<RoomMesh*>(&meshes[i]));
+    rtcSetGeometryBoundsFunction(geometry.get(), bound_triangle, nullptr);
+    rtcSetGeometryIntersectFunction(geometry.get(), meet_triangle);
+    rtcSetGeometryOccludedFunction(geometry.get(), shade_triangle);
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometryByID(target, geometry.get(), i);
     check(device.get(), "attach a mesh");
@@ -59,12 +104,14 @@ Room::~Room() = default;
 Room::Room(Room&&) noexcept = default;
 Room& Room::operator=(Room&&) noexcept = default;
 
+std::size_t Room::n_meshes() const noexcept { return impl_->meshes.size(); }
+
 std::optional<RoomHit> Room::first_hit(const Ray& ray, float t_max) const noexcept {
   QueryContext context;
   initialise(context);
   RTCRayHit query = embree_ray_hit(ray, t_max);
   closest_hit(impl_->scene.get(), context, query);
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID || !(query.ray.tfar < t_max)) return std::nullopt;
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   const Vec3f normal = glm::normalize(Vec3f(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z));
   const bool faces_origin = glm::dot(normal, ray.direction) <= 0.0F;
   return RoomHit{query.ray.tfar, faces_origin ? normal : -normal, query.hit.geomID};

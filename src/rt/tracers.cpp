@@ -8,6 +8,8 @@ std::string_view name(TracerKind kind) noexcept {
   switch (kind) {
     case TracerKind::reference:
       return "reference";
+    case TracerKind::remembering:
+      return "remembering";
     case TracerKind::embree:
       return "embree";
   }
@@ -16,7 +18,15 @@ std::string_view name(TracerKind kind) noexcept {
 
 std::unique_ptr<Tracer> make_tracer(TracerKind kind, const TracerSetup& setup) {
   assert(setup.room != nullptr && setup.rated != nullptr && setup.clipped != nullptr);
-  return kind == TracerKind::reference ? make_reference_tracer(setup) : make_embree_tracer(setup);
+  switch (kind) {
+    case TracerKind::reference:
+      return make_reference_tracer(setup);
+    case TracerKind::embree:
+      return make_embree_tracer(setup);
+    case TracerKind::remembering:
+      break;
+  }
+  return make_remembering_tracer(setup);
 }
 
 }  // namespace pirsim::rt

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -49,6 +50,22 @@ ViewCone cone_around(std::span<const Ray> rays, std::span<const float> range) {
   return cone;
 }
 
+ViewCone cone_of(const RayBundle& bundle, std::size_t first_zone, std::size_t end_zone) {
+  const std::size_t begin = bundle.zone_rays_begin[first_zone], end = bundle.zone_rays_begin[end_zone];
+  return cone_around(std::span(bundle.rays).subspan(begin, end - begin),
+                     std::span(bundle.range).subspan(begin, end - begin));
+}
+
+bool may_touch(const ViewCone& cone, const Ball& ball) noexcept {
+  const Vec3f offset = ball.centre - cone.apex;
+  const float along = glm::dot(offset, cone.axis);
+  const float across = glm::length(offset - cone.axis * along);
+  const float reach = ball.radius + distance_margin + relative_margin * (std::abs(along) + across);
+  // Projection of the offset on the cone's outward normal: at most the distance to the cone, equal beside it.
+  const bool is_beside = across * cone.cosine - along * cone.sine > reach;
+  return !is_beside && along - reach <= cone.length;
+}
+
 }  // namespace
 
 Ball ball_around(const PosedShape& shape) noexcept {
@@ -60,26 +77,35 @@ Ball ball_around(const PosedShape& shape) noexcept {
   return {box.centre, glm::length(box.half_extents)};
 }
 
-std::vector<ViewCone> view_cones(const RayBundle& bundle) {
+Ball ball_around(std::span<const Ball> balls) noexcept {
+  Vec3f lower = balls.front().centre, upper = lower;
+  for (const Ball& ball : balls) {
+    lower = glm::min(lower, ball.centre - ball.radius);
+    upper = glm::max(upper, ball.centre + ball.radius);
+  }
+  Ball all{(lower + upper) * 0.5F, 0.0F};
+  for (const Ball& ball : balls) {
+    all.radius = std::max(all.radius, glm::length(ball.centre - all.centre) + ball.radius);
+  }
+  return all;
+}
+
+std::vector<ViewCone> cluster_cones(const RayBundle& bundle) {
   std::vector<ViewCone> cones;
-  cones.reserve(bundle.n_clusters());
   for (std::size_t cluster = 0; cluster < bundle.n_clusters(); ++cluster) {
-    const std::size_t begin = bundle.zone_rays_begin[bundle.cluster_zones_begin[cluster]];
-    const std::size_t end = bundle.zone_rays_begin[bundle.cluster_zones_begin[cluster + 1]];
-    cones.push_back(cone_around(std::span(bundle.rays).subspan(begin, end - begin),
-                                std::span(bundle.range).subspan(begin, end - begin)));
+    cones.push_back(cone_of(bundle, bundle.cluster_zones_begin[cluster], bundle.cluster_zones_begin[cluster + 1]));
   }
   return cones;
 }
 
-bool may_touch(const ViewCone& cone, const Ball& ball) noexcept {
-  const Vec3f offset = ball.centre - cone.apex;
-  const float along = glm::dot(offset, cone.axis);
-  const float across = glm::length(offset - cone.axis * along);
-  const float reach = ball.radius + distance_margin + relative_margin * (std::abs(along) + across);
-  // Projection of the offset on the cone's outward normal: at most the distance to the cone, equal beside it.
-  const bool outside = across * cone.cosine - along * cone.sine > reach;
-  return !outside && along - reach <= cone.length;
+std::vector<ViewCone> zone_cones(const RayBundle& bundle) {
+  std::vector<ViewCone> cones;
+  for (std::size_t zone = 0; zone < bundle.n_zones(); ++zone) cones.push_back(cone_of(bundle, zone, zone + 1));
+  return cones;
+}
+
+bool may_touch_any(const ViewCone& cone, std::span<const Ball> balls) noexcept {
+  return std::any_of(balls.begin(), balls.end(), [&](const Ball& ball) { return may_touch(cone, ball); });
 }
 
 }  // namespace pirsim::rt

@@ -1,4 +1,4 @@
-// Which clusters of rays can't meet any solid? A cone around each cluster's rays against a ball around each solid.
+// Which groups of rays can't meet any solid? A cone around each group's rays against a ball around each solid.
 #pragma once
 
 #include <span>
@@ -14,6 +14,8 @@ struct Ball {
   float radius = 0.0F;
 };
 [[nodiscard]] Ball ball_around(const PosedShape& shape) noexcept;
+/// Ball around balls; at least one.
+[[nodiscard]] Ball ball_around(std::span<const Ball> balls) noexcept;
 
 /// All points that rays from `apex` within `half_angle` of `axis` reach up to `length` metres.
 struct ViewCone {
@@ -24,10 +26,12 @@ struct ViewCone {
   float length = 0.0F;
 };
 
-/// One cone a cluster, (n_clusters). A cluster whose rays don't share one origin gets a cone that touches everything.
-[[nodiscard]] std::vector<ViewCone> view_cones(const RayBundle& bundle);
+/// One cone a cluster (n_clusters) or a zone (n_zones). A group whose rays don't share one origin gets a cone that
+/// touches everything.
+[[nodiscard]] std::vector<ViewCone> cluster_cones(const RayBundle& bundle);
+[[nodiscard]] std::vector<ViewCone> zone_cones(const RayBundle& bundle);
 
-/// False only if no ray of the cone can meet anything inside the ball; true may be wrong.
-[[nodiscard]] bool may_touch(const ViewCone& cone, const Ball& ball) noexcept;
+/// False only if no ray of the cone can meet anything inside a ball; true may be wrong.
+[[nodiscard]] bool may_touch_any(const ViewCone& cone, std::span<const Ball> balls) noexcept;
 
 }  // namespace pirsim::rt

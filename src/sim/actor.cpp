@@ -14,6 +14,7 @@ namespace {
 using body::Stage;
 
 constexpr double look_ahead_m = 1.2;        ///< assumed: how far ahead a walker minds others (tried 0.8-2)
+constexpr double foresight_s = 1.5;         ///< assumed: how long before ways cross one gives way (tried 1-2)
 constexpr double gap_m = 0.1;               ///< assumed: kept between two people beside their radii
 constexpr double braking_m_s2 = 1.5;        ///< assumed, as Motion's acceleration
 constexpr double patience_s = 0.5;          ///< assumed: wait before looking for another way
@@ -38,45 +39,59 @@ Actor::Actor(const Model& model, std::uint32_t run, std::uint32_t person)
       tilt_stream_({model.script().seed, run, person, Purpose::spine_tilt}),
       scatter_stream_({model.script().seed, run, person, Purpose::seat_scatter}) {}
 
-std::string_view Actor::phase() const noexcept {
+std::string_view Actor::current_phase() const noexcept {
   if (!done() && begun_ && !action().phase.empty()) return action().phase;
   if (!present()) return "outside";
   if (!done() && begun_ && std::holds_alternative<action::Work>(action().what)) return "working";
   return body::name(motion_->stage());
 }
 
-Presence Actor::presence() const { return {motion_->position(), person().humanoid.clearance_radius_m()}; }
+Presence Actor::presence() const {
+  return {motion_->position(), motion_->speed_m_s() * direction_of(motion_->heading()),
+          person().humanoid.clearance_radius_m()};
+}
 
-void Actor::advance(const Model& model, std::int64_t tick, std::span<const Presence> others) {
+void Actor::advance(const Model& model, std::int64_t tick, std::span<const Presence> others, std::size_t n_before) {
+  carry_on(model, tick - 1, others);
+  if (motion_) {
+    keep_distance(model, others, n_before);
+    motion_->advance();
+  }
+  phase_ = current_phase();
+  if (!done() && begun_ && errands_.empty() && time_is_up(model, tick)) finish_action();
+}
+
+void Actor::carry_on(const Model& model, std::int64_t now, std::span<const Presence> others) {
   while (!done()) {
     if (!begun_) {
-      if (action().at_s && tick < ticks(*action().at_s, model)) break;
+      if (action().at_s && now < ticks(*action().at_s, model)) return;
       begun_ = true;
-      began_ = tick;
+      began_ = now;
       plan(model);
     }
     while (!errands_.empty() && carry_out(errands_.front(), model, others) == Progress::done) errands_.pop_front();
-    if (const auto* work_action = std::get_if<action::Work>(&action().what)) work(model, *work_action, tick);
-    if (!interrupted(model, tick) && !(errands_.empty() && time_is_up(model, tick))) break;
-    errands_.clear();
-    route_.reset();
-    if (motion_ && std::holds_alternative<action::Work>(action().what)) motion_->rest();
-    ++action_;
-    begun_ = false;
+    if (const auto* work_action = std::get_if<action::Work>(&action().what)) work(model, *work_action, now);
+    if (!interrupted(model, now) && !(errands_.empty() && time_is_up(model, now))) return;
+    finish_action();
   }
-  if (!motion_) return;
-  keep_distance(model, others);
-  motion_->advance();
 }
 
-bool Actor::interrupted(const Model& model, std::int64_t tick) const {
+void Actor::finish_action() {
+  errands_.clear();
+  route_.reset();
+  if (motion_ && std::holds_alternative<action::Work>(action().what)) motion_->rest();
+  ++action_;
+  begun_ = false;
+}
+
+bool Actor::interrupted(const Model& model, std::int64_t now) const {
   const auto& actions = person().spec.actions;
-  return action_ + 1 < actions.size() && actions[action_ + 1].at_s && tick >= ticks(*actions[action_ + 1].at_s, model);
+  return action_ + 1 < actions.size() && actions[action_ + 1].at_s && now >= ticks(*actions[action_ + 1].at_s, model);
 }
 
-bool Actor::time_is_up(const Model& model, std::int64_t tick) const {
-  if (const auto* wait = std::get_if<action::Wait>(&action().what)) return tick - began_ >= ticks(wait->duration_s, model);
-  if (const auto* work = std::get_if<action::Work>(&action().what)) return tick - began_ >= ticks(work->duration_s, model);
+bool Actor::time_is_up(const Model& model, std::int64_t now) const {
+  if (const auto* wait = std::get_if<action::Wait>(&action().what)) return now - began_ >= ticks(wait->duration_s, model);
+  if (const auto* work = std::get_if<action::Work>(&action().what)) return now - began_ >= ticks(work->duration_s, model);
   return true;
 }
 
@@ -131,8 +146,8 @@ void Actor::plan_sitting() {
   errands_.push_back(SitOn{place});
 }
 
-void Actor::work(const Model& model, const action::Work& work, std::int64_t tick) {
-  const std::int64_t since = tick - began_;
+void Actor::work(const Model& model, const action::Work& work, std::int64_t now) {
+  const std::int64_t since = now - began_;
   if (work.tilt_choices_deg.empty() || since >= ticks(work.duration_s, model)) return;
   if (since % std::max<std::int64_t>(1, ticks(work.tilt_every_s, model)) != 0) return;
   const auto choice = tilt_stream_.index(static_cast<std::uint32_t>(work.tilt_choices_deg.size()));
@@ -216,23 +231,41 @@ Actor::Progress Actor::walk_to(const Vec2& target, const Model& model, std::span
   return Progress::going_on;
 }
 
-void Actor::keep_distance(const Model& model, std::span<const Presence> others) {
-  if (motion_->stage() != Stage::walking) return;
-  const double radius = person().humanoid.clearance_radius_m();
+double Actor::free_way_ahead(std::span<const Presence> others) const {
   double free_m = look_ahead_m;
+  const Vec2 ahead = direction_of(motion_->heading());
   for (const Presence& other : others) {
     const Vec2 to_other = other.position - motion_->position();
-    const Vec2 ahead = direction_of(motion_->heading());
     const double along = glm::dot(to_other, ahead);
     const double aside = std::abs(to_other.x * ahead.y - to_other.y * ahead.x);
-    const double reach = radius + other.radius_m;
+    const double reach = person().humanoid.clearance_radius_m() + other.radius_m;
     if (along > 0.0 && aside < reach) {
       free_m = std::min(free_m, along - std::sqrt(reach * reach - aside * aside) - gap_m);
     }
   }
-  const double speed = person().humanoid.walking_speed_m_s();
-  const double safe = std::sqrt(2.0 * braking_m_s2 * std::max(0.0, free_m));
-  motion_->limit_speed(std::min(speed, safe));
+  return free_m;
+}
+
+/// Will somebody who goes first come too near within the next moments if both go on as they do?
+bool Actor::must_give_way(std::span<const Presence> others) const {
+  const Presence mine = presence();
+  for (const Presence& other : others) {
+    const Vec2 offset = other.position - mine.position;
+    const Vec2 closing = other.velocity - person().humanoid.walking_speed_m_s() * direction_of(motion_->heading());
+    const double speed2 = glm::dot(closing, closing);
+    if (glm::length(other.velocity) < 0.1 || speed2 < 1e-6) continue;  // who stands is walked round
+    const double when = std::clamp(-glm::dot(offset, closing) / speed2, 0.0, foresight_s);
+    if (when > 0.0 && glm::length(offset + when * closing) < mine.radius_m + other.radius_m + gap_m) return true;
+  }
+  return false;
+}
+
+void Actor::keep_distance(const Model& model, std::span<const Presence> others, std::size_t n_before) {
+  if (motion_->stage() != Stage::walking) return;
+  const double free_m = free_way_ahead(others);
+  const bool give_way = must_give_way(others.first(n_before));
+  const double safe = give_way ? 0.0 : std::sqrt(2.0 * braking_m_s2 * std::max(0.0, free_m));
+  motion_->limit_speed(std::min(person().humanoid.walking_speed_m_s(), safe));
   if (free_m > gap_m) {
     blocked_ticks_ = 0;
     return;

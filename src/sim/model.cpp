@@ -1,5 +1,6 @@
 #include "pirsim/sim/model.hpp"
 
+#include <mutex>
 #include <utility>
 
 #include "pirsim/pir/optics.hpp"
@@ -17,8 +18,25 @@ std::vector<std::string> Model::columns() const {
   return names;
 }
 
-std::unique_ptr<rt::Tracer> Model::make_tracer() const {
-  return rt::make_tracer(tracer_, {room_.get(), rated_.get(), clipped_.get()});
+struct Model::TracerPool {
+  std::mutex mutex;
+  std::vector<std::unique_ptr<rt::Tracer>> idle;
+};
+
+std::shared_ptr<rt::Tracer> Model::borrow_tracer() const {
+  std::unique_ptr<rt::Tracer> tracer;
+  {
+    const std::lock_guard lock(idle_tracers_->mutex);
+    if (!idle_tracers_->idle.empty()) {
+      tracer = std::move(idle_tracers_->idle.back());
+      idle_tracers_->idle.pop_back();
+    }
+  }
+  if (!tracer) tracer = rt::make_tracer(tracer_, {room_.get(), rated_.get(), clipped_.get()});
+  return {tracer.release(), [pool = idle_tracers_](rt::Tracer* used) {
+            const std::lock_guard lock(pool->mutex);
+            pool->idle.emplace_back(used);
+          }};
 }
 
 Model compile(SceneSpec scene, ScriptSpec script, const CompileOptions& options) {
@@ -26,6 +44,7 @@ Model compile(SceneSpec scene, ScriptSpec script, const CompileOptions& options)
   model.scene_ = std::move(scene);
   model.script_ = std::move(script);
   model.tracer_ = options.tracer;
+  model.idle_tracers_ = std::make_shared<Model::TracerPool>();
   model.room_ = std::make_unique<rt::Room>(model.scene_.meshes);
   model.rated_ = std::make_unique<RayBundle>();
   for (const SensorSpec& sensor : model.scene_.sensors) {

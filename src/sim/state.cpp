@@ -25,17 +25,19 @@ void move_people(const Model& model, std::int64_t tick, std::vector<Actor>& acto
   std::vector<Presence> others;
   for (Actor& actor : actors) {
     others.clear();
+    std::size_t n_before = 0;
     for (const Actor& other : actors) {
+      if (&other == &actor) n_before = others.size();
       if (&other != &actor && other.present()) others.push_back(other.presence());
     }
-    actor.advance(model, tick, others);
+    actor.advance(model, tick, others, n_before);
   }
 }
 
 }  // namespace
 
 State::State(const Model& model, std::uint32_t run)
-    : model_(&model), run_(run), bits_(model.scene().sensors.size(), 0), tracer_(model.make_tracer()) {
+    : model_(&model), run_(run), bits_(model.scene().sensors.size(), 0), tracer_(model.borrow_tracer()) {
   const TrialModel& trial = model.trial_of(run);
   for (std::uint32_t person = 0; person < trial.people.size(); ++person) actors_.emplace_back(model, run, person);
   zones_.assign(model.rated_rays().n_zones(), 0);
@@ -54,7 +56,7 @@ State::State(const State& other)
       previous_zones_(other.previous_zones_),
       bits_(other.bits_),
       sample_(other.sample_),
-      tracer_(other.model_->make_tracer()) {}
+      tracer_(other.model_->borrow_tracer()) {}
 
 State& State::operator=(const State& other) {
   State copy(other);

@@ -11,7 +11,7 @@ namespace {
 class Onlooker {
  public:
   Onlooker(const Model& model, const body::Humanoid& humanoid)
-      : rays_(model.rated_rays()), humanoid_(humanoid), tracer_(model.make_tracer()), zones_(rays_.n_zones()) {}
+      : rays_(model.rated_rays()), humanoid_(humanoid), tracer_(model.borrow_tracer()), zones_(rays_.n_zones()) {}
 
   /// (n_sensors) whether the sensor sees the posture.
   std::vector<bool> sensors_that_see(const body::Posture& posture) {
@@ -30,7 +30,7 @@ class Onlooker {
  private:
   const RayBundle& rays_;
   const body::Humanoid& humanoid_;
-  std::unique_ptr<rt::Tracer> tracer_;
+  std::shared_ptr<rt::Tracer> tracer_;
   ZoneActivity zones_;
 };
 
@@ -70,7 +70,9 @@ SightReport look_around(const Model& model) {
 
   SightReport report;
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
-    count_rays(model, i, report.sensors.emplace_back(SensorSight{.sensor = scene.sensors[i].id}));
+    SensorSight& sight = report.sensors.emplace_back();
+    sight.sensor = scene.sensors[i].id;
+    count_rays(model, i, sight);
   }
   const Vec2 lower = scene.floor.lower(), upper = scene.floor.upper();
   for (double z = lower.y + report.spacing_m / 2; z < upper.y; z += report.spacing_m) {

@@ -1,6 +1,7 @@
 // The static part of a scene as an Embree ray scene.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -28,6 +29,7 @@ class Room {
   Room(Room&&) noexcept;
   Room& operator=(Room&&) noexcept;
 
+  [[nodiscard]] std::size_t n_meshes() const noexcept;
   [[nodiscard]] std::optional<RoomHit> first_hit(const Ray& ray, float t_max) const noexcept;
   /// Cuts every ray's range at the first thing in its way.
   void clip(RayBundle& bundle) const noexcept;
@@ -39,7 +41,7 @@ class Room {
   std::unique_ptr<Impl> impl_;
 };
 
-/// "3.13.5" and "sse4.2": what decides the bits of a hit distance, for manifests and --version.
+/// "3.13.5" and "sse4.2" (what Embree is held to, docs/adr/0002-embree-pinned.md), for manifests and --version.
 [[nodiscard]] std::string embree_version();
 [[nodiscard]] std::string instruction_set();
 

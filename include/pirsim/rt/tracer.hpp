@@ -12,6 +12,7 @@ namespace pirsim::rt {
 
 enum class TracerKind {
   reference,  ///< the plain way: whole scene rebuilt, closest hit of every ray at its full rated range
+  remembering,///< the next one, and the zones of postures seen before are looked up
   embree,     ///< rays cut once at the room, one instance moved per body part, occlusion queries
 };
 [[nodiscard]] std::string_view name(TracerKind kind) noexcept;

@@ -18,6 +18,7 @@ namespace pirsim {
 /// What others need to know to keep out of a person's way.
 struct Presence {
   Vec2 position{0.0};
+  Vec2 velocity{0.0};  ///< m/s
   double radius_m = 0.0;
 };
 
@@ -26,13 +27,15 @@ class Actor {
  public:
   Actor(const Model& model, std::uint32_t run, std::uint32_t person);
 
-  /// One tick: starts, goes on with or interrupts actions, then moves the body. others: everyone else in the scene.
+  /// From tick - 1 to tick: starts, goes on with or interrupts actions, then moves the body. others: everyone else in
+  /// the scene, in the order of the script; those before this person go first where ways cross.
   /// Throws Error(infeasible) when people block each other for good.
-  void advance(const Model& model, std::int64_t tick, std::span<const Presence> others);
+  void advance(const Model& model, std::int64_t tick, std::span<const Presence> others, std::size_t n_before);
 
   [[nodiscard]] bool present() const noexcept { return motion_.has_value(); }
   [[nodiscard]] bool done() const noexcept { return action_ == person().spec.actions.size(); }
-  [[nodiscard]] std::string_view phase() const noexcept;
+  /// What the step to this tick was part of: the action's label, "outside", "working" or what the body did.
+  [[nodiscard]] std::string_view phase() const noexcept { return phase_; }
   [[nodiscard]] const PersonModel& person() const noexcept { return *person_; }
   /// Only while present.
   [[nodiscard]] const body::Motion& motion() const { return *motion_; }
@@ -51,14 +54,19 @@ class Actor {
 
   void plan(const Model& model);
   void plan_sitting();
-  void work(const Model& model, const action::Work& work, std::int64_t tick);
-  [[nodiscard]] bool interrupted(const Model& model, std::int64_t tick) const;
-  [[nodiscard]] bool time_is_up(const Model& model, std::int64_t tick) const;
+  void work(const Model& model, const action::Work& work, std::int64_t now);
+  void carry_on(const Model& model, std::int64_t now, std::span<const Presence> others);
+  void finish_action();
+  [[nodiscard]] std::string_view current_phase() const noexcept;
+  [[nodiscard]] bool interrupted(const Model& model, std::int64_t now) const;
+  [[nodiscard]] bool time_is_up(const Model& model, std::int64_t now) const;
   [[nodiscard]] bool free_to_stand(std::span<const Presence> others) const;
   Progress carry_out(const Errand& errand, const Model& model, std::span<const Presence> others);
   Progress walk_to(const Vec2& target, const Model& model, std::span<const Presence> others);
   Progress become_standing(std::span<const Presence> others);
-  void keep_distance(const Model& model, std::span<const Presence> others);
+  void keep_distance(const Model& model, std::span<const Presence> others, std::size_t n_before);
+  [[nodiscard]] double free_way_ahead(std::span<const Presence> others) const;
+  [[nodiscard]] bool must_give_way(std::span<const Presence> others) const;
   void wait_for_others(const Model& model);
   [[nodiscard]] const ScriptedAction& action() const { return person().spec.actions[action_]; }
 
@@ -70,6 +78,7 @@ class Actor {
   std::int64_t began_ = 0;            ///< tick at which it did
   std::deque<Errand> errands_;        ///< still to do for the current action
   std::optional<body::Route> route_;  ///< to walk once the body faces its start, or being walked
+  std::string_view phase_ = "outside";
   int blocked_ticks_ = 0;             ///< for how long others have been in the way
   Stream tilt_stream_;
   Stream scatter_stream_;

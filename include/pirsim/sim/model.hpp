@@ -38,7 +38,7 @@ struct TrialModel {
 };
 
 struct CompileOptions {
-  rt::TracerKind tracer = rt::TracerKind::embree;
+  rt::TracerKind tracer = rt::TracerKind::remembering;
 };
 
 class Model {
@@ -59,7 +59,8 @@ class Model {
 
   /// replicate, trial, time_s, phase, people, then one column a sensor.
   [[nodiscard]] std::vector<std::string> columns() const;
-  [[nodiscard]] std::unique_ptr<rt::Tracer> make_tracer() const;
+  /// A tracer of one's own for as long as one holds it; goes back for others to use. Safe to call from any thread.
+  [[nodiscard]] std::shared_ptr<rt::Tracer> borrow_tracer() const;
 
  private:
   friend Model compile(SceneSpec scene, ScriptSpec script, const CompileOptions& options);
@@ -69,7 +70,9 @@ class Model {
   std::unique_ptr<rt::Room> room_;
   std::unique_ptr<RayBundle> rated_;
   std::unique_ptr<RayBundle> clipped_;
-  rt::TracerKind tracer_ = rt::TracerKind::embree;
+  rt::TracerKind tracer_ = rt::TracerKind::remembering;
+  struct TracerPool;
+  std::shared_ptr<TracerPool> idle_tracers_;  ///< not part of what a Model is: memory that runs hand on
 };
 
 /// The only door from Spec to Model. Throws Error(input) for names that the scene lacks or actions in an impossible

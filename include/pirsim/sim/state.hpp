@@ -48,7 +48,7 @@ class State {
   std::vector<std::uint8_t> bits_;  ///< (n_sensors) motion so far in this window
   Sample sample_;
   std::vector<PosedShape> solids_;         ///< scratch of look()
-  std::unique_ptr<rt::Tracer> tracer_;     ///< scratch; a copy of the State makes its own
+  std::shared_ptr<rt::Tracer> tracer_;     ///< scratch; a copy of the State borrows its own
 };
 
 /// Appends the thirteen posed solids of a person who is present, in the order of body::Part.

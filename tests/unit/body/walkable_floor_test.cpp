@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "pirsim/body/route.hpp"
@@ -79,32 +80,35 @@ void require_clear(const WalkableFloor& floor, const std::vector<Block>& blocks,
 
 /// Least cost between two cells of a floor of 0.1 m cells from the origin, by relaxation; infinite for no way.
 double brute_force_m(const WalkableFloor& floor, int columns, int rows, const Vec2& from, const Vec2& to) {
-  const auto centre = [](int column, int row) { return Vec2(0.1 * column + 0.05, 0.1 * row + 0.05); };
-  std::vector<double> cost(static_cast<std::size_t>(columns * rows), std::numeric_limits<double>::infinity());
-  const auto at = [&](const Vec2& p) -> double& {
-    return cost[static_cast<std::size_t>(static_cast<int>(p.y * 10) * columns + static_cast<int>(p.x * 10))];
+  struct Edge {
+    std::size_t a, b;
+    double cost;
   };
-  at(from) = 0.0;
-  for (bool changed = true; changed;) {
-    changed = false;
-    for (int row = 0; row < rows; ++row) {
-      for (int column = 0; column < columns; ++column) {
-        const Vec2 a = centre(column, row);
-        if (std::isinf(at(a))) continue;
-        for (int dr = -1; dr <= 1; ++dr) {
-          for (int dc = -1; dc <= 1; ++dc) {
-            const int c = column + dc;
-            const int r = row + dr;
-            if (c < 0 || c >= columns || r < 0 || r >= rows || !floor.walkable(a, centre(c, r))) continue;
-            if (!floor.walkable(centre(c, row)) || !floor.walkable(centre(column, r))) continue;
-            const double through = at(a) + 0.1 * std::hypot(dc, dr);
-            if (through < at(centre(c, r)) - 1e-9) at(centre(c, r)) = through, changed = true;
-          }
-        }
+  const auto centre = [](int column, int row) { return Vec2(0.1 * column + 0.05, 0.1 * row + 0.05); };
+  const auto index = [&](int column, int row) { return static_cast<std::size_t>(row * columns + column); };
+  const auto index_at = [&](const Vec2& p) { return index(static_cast<int>(p.x * 10), static_cast<int>(p.y * 10)); };
+  std::vector<Edge> edges;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      for (const auto& [dc, dr] : {std::pair{1, 0}, {0, 1}, {1, 1}, {-1, 1}}) {
+        const int c = column + dc;
+        const int r = row + dr;
+        if (c < 0 || c >= columns || r >= rows || !floor.walkable(centre(column, row), centre(c, r))) continue;
+        if (!floor.walkable(centre(c, row)) || !floor.walkable(centre(column, r))) continue;
+        edges.push_back({index(column, row), index(c, r), 0.1 * std::hypot(dc, dr)});
       }
     }
   }
-  return at(to);
+  std::vector<double> cost(static_cast<std::size_t>(columns * rows), std::numeric_limits<double>::infinity());
+  cost[index_at(from)] = 0.0;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const auto& [a, b, step] : edges) {
+      if (cost[a] + step < cost[b] - 1e-9) cost[b] = cost[a] + step, changed = true;
+      if (cost[b] + step < cost[a] - 1e-9) cost[a] = cost[b] + step, changed = true;
+    }
+  }
+  return cost[index_at(to)];
 }
 
 std::vector<Block> random_blocks(Stream& stream, double width, double depth) {
@@ -339,6 +343,29 @@ TEST_CASE("who stands too near to a table is led away from it, never through it"
   const WalkableFloor split(rectangle(5, 4), {}, meshes_of({{{2, -1}, {2.05, 5}}}), clearance);
   CHECK_FALSE(split.find_way({1.95, 2.0}, {4.0, 2.0}).has_value());
   CHECK(split.find_way({1.95, 2.0}, {1.0, 1.0}).has_value());
+}
+
+TEST_CASE("a lead crosses neither another person nor a gap in the floor", "[walkable_floor]") {
+  // Against a wall, with somebody on the other side: the only free cells are behind that person.
+  const WalkableFloor floor(rectangle(3, 2), {}, meshes_of({{{-0.2, -1}, {0, 3}}}), clearance);
+  const Vec2 start(0.1, 1.0);
+  CHECK(floor.find_way(start, {2, 1}).has_value());
+  CHECK_FALSE(floor.find_way(start, {2, 1}, std::vector<Disc>{{{0.2, 1.0}, 0.05}}).has_value());
+
+  // An island too narrow to walk on, across a gap from a floor that one can walk on.
+  const std::vector<std::vector<Vec2>> islands{{{0, 0}, {0.4, 0}, {0.4, 2}, {0, 2}},
+                                               {{0.6, 0}, {3, 0}, {3, 2}, {0.6, 2}}};
+  const WalkableFloor split(FloorArea(islands, 0.0), {}, meshes_of({{{-0.2, -1}, {0, 3}}}), 0.45);
+  CHECK(split.walkable({0.65, 1.05}));
+  CHECK_FALSE(split.find_way({0.2, 1.05}, {2, 1}).has_value());
+}
+
+TEST_CASE("a floor without walls isn't left at its inner corner", "[walkable_floor]") {
+  const FloorArea area({{{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 4}, {0, 4}}}, 0.0);
+  const WalkableFloor floor(area, {}, {}, clearance);
+  const Way way = *floor.find_way({0.5, 3.5}, {3.5, 0.5});
+  along(way, [&](const Vec2& p) { REQUIRE(floor.walkable(p)); });
+  CHECK(length_of(way) == Approx(2 * std::hypot(0.5, 2.5)).margin(0.05));
 }
 
 TEST_CASE("who is more than half a metre from anywhere walkable has no way", "[walkable_floor]") {

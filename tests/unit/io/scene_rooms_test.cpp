@@ -1,5 +1,6 @@
-#include <filesystem>
+#include <cstdlib>
 
+#include "gltf_builder.hpp"
 #include "pirsim/io/scene_reader.hpp"
 #include "support/catch.hpp"
 
@@ -61,4 +62,50 @@ TEST_CASE("the open hall is a bare floor of 20 by 30 m with one sensor 3 m up", 
   CHECK(hall.meshes.empty());
   REQUIRE(hall.sensors.size() == 1);
   check_point(hall.sensors[0].world_from_sensor.origin, {0.0, 3.0, -3.0});
+}
+
+TEST_CASE("all eight alternative meeting rooms are read without a remark", "[scene][rooms]") {
+  for (int n = 1; n <= 8; ++n) {
+    const SceneSpec room = shipped("meeting_room_alt" + std::to_string(n) + ".gltf");
+    CHECK(room.warnings.empty());
+    CHECK(room.floor.area_m2() == Approx(30.7).margin(0.1));
+    CHECK(room.sensors.size() == 5);
+    CHECK(room.seats.size() == 10);
+    for (const auto& seat : room.seats) CHECK(room.floor.contains(pirsim::floor_point(seat.world_from_seat.origin)));
+  }
+}
+
+TEST_CASE("closed parts of the shipped rooms have no boundary and nothing needs repair", "[scene][rooms]") {
+  for (const char* name : {"meeting_room.gltf", "open_office.gltf"}) {
+    for (const auto& mesh : shipped(name).meshes) {
+      const auto audit = pirsim::clean(mesh).audit;
+      INFO(name << ": " << mesh.name);
+      CHECK(audit.non_manifold_triangles == 0);
+      CHECK((audit.boundary_edges == 0) == (mesh.name != "floor"));
+    }
+  }
+}
+
+TEST_CASE("the shipped rooms are what the generator writes", "[scene][rooms]") {
+  if (std::system("python3 -c pass > /dev/null 2>&1") != 0) {
+    WARN("skipped: python3 is not installed");
+    return;
+  }
+  const std::filesystem::path data = PIRSIM_DATA_DIR;
+  const pirsim::test::TemporaryFolder folder;
+  const std::string command =
+      "python3 '" + (data / ".." / "tools" / "make_rooms.py").string() + "' -o '" + folder.path().string() + "'";
+  REQUIRE(std::system(command.c_str()) == 0);
+  REQUIRE(std::system((command + " --alternative all").c_str()) == 0);
+  const auto content = [](const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  int compared = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    INFO(entry.path().filename());
+    CHECK((content(entry.path()) == content(data / "rooms" / entry.path().filename())));
+    ++compared;
+  }
+  CHECK(compared == 11);
 }

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -125,6 +126,9 @@ TEST_CASE("every lens file has the catalogue's number of zones, symmetric about 
                                                  {"EKMC1606111", 128}, {"EKMC1607111", 32}, {"EKMC1691111", 112},
                                                  {"EKMC1693111", 84},  {"AMN31111", 64},    {"AMN32111", 104},
                                                  {"AMN33111", 24},     {"AMN34111", 80}};
+  const auto is_lens = [](const auto& entry) { return entry.path().extension() == ".yaml"; };
+  const auto files = std::filesystem::directory_iterator(sensors);
+  CHECK(std::count_if(begin(files), end(files), is_lens) == static_cast<std::ptrdiff_t>(zones.size()));
   for (const auto& [id, count] : zones) {
     const SensorModelSpec model = io::read_sensor_model(sensors / (id + ".yaml"));
     INFO(id);

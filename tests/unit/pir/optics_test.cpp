@@ -140,6 +140,8 @@ TEST_CASE("a mirrored sensor has exactly mirrored rays", "[optics]") {
   }
 }
 
+// Of the five rays a zone that pass the plane `distance` from the wall within their range and between the heights of
+// a seated torso (0.70 to 1.40 m), the one farthest to the side.
 TEST_CASE("at the paper's mounting the beams reach as far sideways as the design table says", "[optics]") {
   const Frame frame{tilted_down(20.0), Vec3(0, 2.65, 0)};
   const RayBundle bundle = bundle_of(wall_lens(), frame, RaysPerZone::five);
@@ -155,7 +157,7 @@ TEST_CASE("at the paper's mounting the beams reach as far sideways as the design
       if (t <= bundle.range[i] && height >= 0.70 && height <= 1.40) reach = std::max(reach, std::abs(t * d.x));
     }
     INFO("distance " << distance);
-    CHECK(reach == Approx(expected).margin(0.03));
+    CHECK(std::abs(reach - expected) < 0.006);  // the table has two decimals
   }
 }
 

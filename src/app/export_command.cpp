@@ -1,0 +1,63 @@
+#include <cmath>
+#include <iostream>
+
+#include "app/commands.hpp"
+#include "app/session.hpp"
+#include "pirsim/io/gltf_writer.hpp"
+#include "pirsim/sim/beams.hpp"
+#include "pirsim/sim/state.hpp"
+
+namespace pirsim::app {
+namespace {
+
+io::ExportedPerson without_keys(const Actor& actor) {
+  io::ExportedPerson person{actor.person().spec.id, {}, {}};
+  for (std::size_t i = 0; i < body::n_parts; ++i) {
+    const auto part = static_cast<body::Part>(i);
+    person.parts.push_back({person.id, std::string(body::name(part)), actor.person().humanoid.solids()[i], {}});
+  }
+  return person;
+}
+
+/// While away, a person's parts keep their last place (they are drawn at scale 0).
+void add_key(const Actor& actor, io::ExportedPerson& person) {
+  person.present.push_back(actor.present() ? 1 : 0);
+  const body::Posture posture = actor.present() ? actor.motion().posture() : body::Posture{};
+  for (std::size_t i = 0; i < body::n_parts; ++i) {
+    auto& keys = person.parts[i].world_from_part;
+    keys.push_back(actor.present() || keys.empty() ? posture[i] : keys.back());
+  }
+}
+
+}  // namespace
+
+void export_gltf(const Inputs& inputs, const ExportOptions& options) {
+  const Model model = load(inputs);
+  const int rate = model.script().sensing.tick_rate_hz;
+  const auto ticks_per_key = std::max<std::int64_t>(1, std::llround(rate / options.keys_per_s));
+
+  State state(model, find_run(model, options.trial, options.replicate));
+  io::ExportedRun run;
+  run.title = model.script().name + ", trial " + model.trial_of(state.run()).id;
+  run.meshes = model.scene().meshes;
+  for (const std::size_t sensor : find_sensors(model, options.beams)) {
+    io::ExportedBeams& beams = run.beams.emplace_back();
+    beams.sensor = model.scene().sensors[sensor].id;
+    for (const sim::BeamSegment& beam : sim::beams_of(model, state, sensor)) beams.segments.emplace_back(beam.from, beam.to);
+  }
+  for (const Actor& actor : state.actors()) run.people.push_back(without_keys(actor));
+  while (true) {
+    if (state.tick() % ticks_per_key == 0 || state.finished()) {
+      run.key_times_s.push_back(static_cast<double>(state.tick()) / rate);
+      for (std::size_t i = 0; i < run.people.size(); ++i) add_key(state.actors()[i], run.people[i]);
+    }
+    if (state.finished()) break;
+    step_tick(model, state);
+  }
+  io::write_gltf(options.output, run);
+  if (inputs.verbosity != Verbosity::quiet) {
+    std::cerr << "wrote " << options.output.string() << ": " << run.title << ", " << run.key_times_s.back() << " s\n";
+  }
+}
+
+}  // namespace pirsim::app

@@ -1,0 +1,46 @@
+// A glTF document under construction: nodes, and arrays packed into its one buffer.
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pirsim/geom/frame.hpp"
+
+namespace pirsim::io {
+
+/// All functions that add something return its index in the document.
+class GltfBuilder {
+ public:
+  explicit GltfBuilder(const std::string& title);
+
+  int add_positions(const std::vector<Vec3>& positions);
+  int add_normals(const std::vector<Vec3>& normals);
+  int add_indices(const std::vector<std::uint32_t>& indices);
+  int add_key_times(const std::vector<double>& seconds);
+  int add_track(const std::vector<Vec3>& values);  ///< translations or scales, one a key
+  int add_track(const std::vector<Quat>& values);  ///< rotations, one a key
+
+  int add_material(const std::string& name, const Vec3& colour, double opacity);
+  /// One primitive of the given mode (TINYGLTF_MODE_*); accessor -1: none.
+  int add_mesh(const std::string& name, const tinygltf::Primitive& primitive);
+  /// A node below `parent`, or of the scene's roots for parent -1.
+  int add_node(tinygltf::Node node, int parent = -1);
+  /// Adds a channel to the one animation; interpolation as glTF spells it.
+  void animate(int node, const std::string& path, int key_times, int track, const std::string& interpolation);
+
+  [[nodiscard]] const tinygltf::Model& model() const noexcept { return model_; }
+
+ private:
+  int add_floats(const std::vector<float>& values, int type, int target);
+  int add_accessor(const void* data, std::size_t bytes, int target, tinygltf::Accessor accessor);
+
+  tinygltf::Model model_;
+};
+
+/// What pirsim says about a node: extras {"pirsim": {"type": type, ...members}}.
+[[nodiscard]] tinygltf::Value pirsim_extras(const std::string& type, tinygltf::Value::Object members);
+
+}  // namespace pirsim::io

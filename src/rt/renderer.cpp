@@ -1,0 +1,252 @@
+// Soft light from everywhere (ambient occlusion), one soft key light, and a doll's-house cut.
+#include "pirsim/rt/renderer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "pirsim/core/error.hpp"
+#include "pirsim/core/parallel.hpp"
+#include "rt/picture.hpp"
+#include "rt/room_impl.hpp"
+#include "rt/view_cones.hpp"
+
+namespace pirsim::rt {
+namespace {
+
+constexpr int samples_a_side = 2;  // 2 x 2 a pixel
+constexpr int n_samples = samples_a_side * samples_a_side;
+constexpr int occlusion_rays = 4;        // a sample
+constexpr float occlusion_reach = 0.9F;  // metres within which surfaces darken each other
+constexpr float surface_offset = 1e-3F;  // metres above a surface at which its own rays start
+constexpr float far_away = 1e4F;         // metres
+constexpr float key_softness = 0.07F;    // tangent of the key light's angular radius
+constexpr float key_strength = 0.42F, sky_strength = 0.64F;
+constexpr float occlusion_strength = 0.8F;  // 1 would make the inmost corner black in the sky's light
+
+float linear_from_srgb(float x) { return x <= 0.04045F ? x / 12.92F : std::pow((x + 0.055F) / 1.055F, 2.4F); }
+float srgb_from_linear(float x) { return x <= 0.0031308F ? 12.92F * x : 1.055F * std::pow(x, 1.0F / 2.4F) - 0.055F; }
+std::uint8_t encoded(float light) {
+  return static_cast<std::uint8_t>(std::lround(255.0F * srgb_from_linear(std::clamp(light, 0.0F, 1.0F))));
+}
+Vec3f vector(const Colour& colour) { return {colour[0], colour[1], colour[2]}; }
+
+/// A value in [0, 1) that differs evenly between neighbouring pixels. Ref: [Jimenez2014], interleaved gradient noise.
+float pixel_noise(int x, int y) {
+  const float inner = 0.06711056F * static_cast<float>(x) + 0.00583715F * static_cast<float>(y);
+  const float outer = 52.9829189F * (inner - std::floor(inner));
+  return outer - std::floor(outer);
+}
+
+/// Two unit vectors square to a normal and to each other.
+std::array<Vec3f, 2> tangents(const Vec3f& normal) {
+  const Vec3f helper = std::abs(normal.y) < 0.9F ? Vec3f(0, 1, 0) : Vec3f(1, 0, 0);
+  const Vec3f first = glm::normalize(glm::cross(helper, normal));
+  return {first, glm::cross(normal, first)};
+}
+
+/// Point i of n spread evenly over the unit disc, turned by `turn` in [0, 1).
+std::array<float, 2> on_disc(int i, int n, float turn) {
+  constexpr float golden_angle = 2.39996323F;
+  const float radius = std::sqrt((static_cast<float>(i) + 0.5F) / static_cast<float>(n));
+  const float angle = static_cast<float>(i) * golden_angle + turn * 2.0F * std::numbers::pi_v<float>;
+  return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+struct SurfacePoint {
+  float distance = 0.0F;
+  Vec3f position{0.0F};
+  Vec3f normal{0.0F};  ///< unit, towards where the ray came from
+  Vec3f colour{0.0F};
+};
+
+/// Does the plane through a triangle have the camera on one side and the camera's target on the other?
+bool separates(const std::array<Vec3, 3>& corners, const Camera& camera) {
+  const Vec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+  return glm::dot(normal, camera.position - corners[0]) * glm::dot(normal, camera.target - corners[0]) < 0.0;
+}
+
+/// The room without what is hidden or cut away; mesh indices stay.
+Room drawn_part(const Room& room, std::span<const Surface> surfaces, const Camera& camera) {
+  std::vector<TriMesh> drawn(room.n_meshes());
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    if (surfaces[i] == Surface::hidden) continue;
+    const RoomMesh& mesh = room.impl().meshes[i];
+    drawn[i].positions.assign(mesh.positions.begin(), mesh.positions.end());
+    const auto& positions = drawn[i].positions;
+    std::copy_if(mesh.triangles.begin(), mesh.triangles.end(), std::back_inserter(drawn[i].triangles),
+                 [&](const auto& t) {
+                   return surfaces[i] == Surface::opaque ||
+                          !separates({positions[t[0]], positions[t[1]], positions[t[2]]}, camera);
+                 });
+  }
+  return Room(drawn);
+}
+
+/// False only if the ray passes the ball.
+bool may_meet(const Ray& ray, const Ball& ball, float reach) {
+  const Vec3f offset = ball.centre - ray.origin;
+  const float nearest = std::clamp(glm::dot(offset, ray.direction), 0.0F, reach);
+  const Vec3f miss = offset - ray.direction * nearest;
+  const float radius = ball.radius * 1.001F + 1e-3F;
+  return glm::dot(miss, miss) <= radius * radius;
+}
+
+class Picture {
+ public:
+  Picture(const Room& drawn_room, std::span<const Colour> colours, std::span<const RenderedSolid> solids,
+          const View& view)
+      : room_(drawn_room), colours_(colours), solids_(solids), view_(view) {
+    for (const RenderedSolid& solid : solids) balls_.push_back(ball_around(solid.shape));
+    to_key_ = glm::normalize(Vec3f(0.0F, 0.75F, 0.0F) + view.right * -0.3F - view.forward * 0.6F);
+    key_sides_ = tangents(to_key_);
+    for (std::size_t i = 0; i < 3; ++i) {
+      background_[static_cast<int>(i)] = linear_from_srgb(static_cast<float>(background_rgb[i]) / 255.0F);
+    }
+  }
+
+  [[nodiscard]] std::vector<Pixel> row(int y) const {
+    std::vector<Pixel> pixels(static_cast<std::size_t>(view_.width));
+    for (int x = 0; x < view_.width; ++x) pixels[static_cast<std::size_t>(x)] = pixel(x, y);
+    return pixels;
+  }
+
+ private:
+  [[nodiscard]] Pixel pixel(int x, int y) const {
+    Pixel result{Vec3f(0.0F), std::numeric_limits<float>::infinity()};
+    for (int sample = 0; sample < n_samples; ++sample) {
+      const float dx = (static_cast<float>(sample % samples_a_side) + 0.5F) / samples_a_side;
+      const float dy = (static_cast<float>(sample / samples_a_side) + 0.5F) / samples_a_side;
+      const Ray ray = view_.ray_through(static_cast<float>(x) + dx, static_cast<float>(y) + dy);
+      const auto point = meet(ray);
+      if (point) result.depth = std::min(result.depth, view_.depth_of(point->position));
+      result.light += (point ? shade(*point, sample, pixel_noise(x, y)) : background_) / static_cast<float>(n_samples);
+    }
+    return result;
+  }
+
+  [[nodiscard]] std::optional<SurfacePoint> meet(const Ray& ray) const {
+    std::optional<SurfacePoint> nearest;
+    if (const auto hit = room_.first_hit(ray, far_away)) {
+      const Vec3f position = ray.origin + ray.direction * hit->distance;
+      nearest = SurfacePoint{hit->distance, position, hit->normal, vector(colours_[hit->mesh])};
+    }
+    for (std::size_t i = 0; i < solids_.size(); ++i) {
+      const float reach = nearest ? nearest->distance : far_away;
+      if (!may_meet(ray, balls_[i], reach)) continue;
+      const RenderedSolid& solid = solids_[i];
+      const auto distance = entry_distance(ray, solid.shape, reach);
+      if (!distance) continue;
+      const Vec3f position = ray.origin + ray.direction * *distance;
+      nearest = SurfacePoint{*distance, position, surface_normal(solid.shape, position), vector(solid.colour)};
+    }
+    return nearest;
+  }
+
+  [[nodiscard]] bool is_blocked(const Ray& ray, float reach) const {
+    QueryContext context;
+    initialise(context);
+    RTCRay query = embree_ray(ray, reach);
+    any_hit(room_.impl().scene.get(), context, query);
+    if (query.tfar < 0.0F) return true;
+    for (std::size_t i = 0; i < solids_.size(); ++i) {
+      if (may_meet(ray, balls_[i], reach) && entry_distance(ray, solids_[i].shape, reach)) return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] Vec3f shade(const SurfacePoint& point, int sample, float noise) const {
+    const Vec3f start = point.position + point.normal * surface_offset;
+    // A little more light from above than from below, so that undersides read as such.
+    const float sky = sky_strength * (0.88F + 0.12F * point.normal.y) * openness(start, point.normal, sample, noise);
+    return point.colour * (sky + key_strength * key_light(start, point.normal, sample, noise));
+  }
+
+  /// Share of the sky that nothing near takes away, weighted by the cosine. Rays of many lengths let far things count
+  /// less than near ones.
+  [[nodiscard]] float openness(const Vec3f& start, const Vec3f& normal, int sample, float noise) const {
+    constexpr int n = occlusion_rays * n_samples;
+    const auto [side, other_side] = tangents(normal);
+    int open = 0;
+    for (int i = 0; i < occlusion_rays; ++i) {
+      const int index = i * n_samples + sample;
+      const auto [u, v] = on_disc(index, n, noise);
+      const float height = std::sqrt(std::max(1.0F - u * u - v * v, 0.0F));
+      const float share = (static_cast<float>((7 * index) % n) + 0.5F) / static_cast<float>(n);
+      const Vec3f direction = glm::normalize(side * u + other_side * v + normal * height);
+      open += is_blocked({start, direction}, occlusion_reach * std::sqrt(share)) ? 0 : 1;
+    }
+    return 1.0F - occlusion_strength * (1.0F - static_cast<float>(open) / occlusion_rays);
+  }
+
+  [[nodiscard]] float key_light(const Vec3f& start, const Vec3f& normal, int sample, float noise) const {
+    const auto [u, v] = on_disc(sample, n_samples, noise);
+    const Vec3f direction = glm::normalize(to_key_ + (key_sides_[0] * u + key_sides_[1] * v) * key_softness);
+    const float slope = glm::dot(normal, direction);
+    if (slope <= 0.0F || is_blocked({start, direction}, far_away)) return 0.0F;
+    return slope;
+  }
+
+  const Room& room_;
+  std::span<const Colour> colours_;
+  std::span<const RenderedSolid> solids_;
+  const View& view_;
+  std::vector<Ball> balls_;  ///< (n_solids)
+  Vec3f to_key_{0.0F};
+  std::array<Vec3f, 2> key_sides_{};
+  Vec3f background_{0.0F};
+};
+
+void check_arguments(const Room& room, std::span<const Surface> surfaces, std::span<const Colour> colours, int width,
+                     int height) {
+  const std::size_t n_meshes = room.n_meshes();
+  if (surfaces.size() != n_meshes || colours.size() != n_meshes) {
+    throw Error(ErrorCode::usage, "the room has " + std::to_string(n_meshes) + " meshes, but there are " +
+                                      std::to_string(surfaces.size()) + " surfaces and " +
+                                      std::to_string(colours.size()) + " colours");
+  }
+  if (width < 1 || height < 1) {
+    throw Error(ErrorCode::usage,
+                "a picture of " + std::to_string(width) + " x " + std::to_string(height) + " pixels can't be drawn");
+  }
+}
+
+}  // namespace
+
+View make_view(const Camera& camera, int width, int height) noexcept {
+  const Vec3 forward = glm::normalize(camera.target - camera.position);
+  const Vec3 up_hint = std::abs(forward.y) < 0.9999 ? Vec3(0, 1, 0) : Vec3(0, 0, -1);
+  const Vec3 right = glm::normalize(glm::cross(forward, up_hint));
+  View view{Vec3f(camera.position), Vec3f(right), Vec3f(glm::cross(right, forward)), Vec3f(forward)};
+  view.pixels_per_tangent = static_cast<float>(0.5 * height / std::tan(0.5 * camera.vertical_fov_rad));
+  view.width = width;
+  view.height = height;
+  return view;
+}
+
+Image render(const Room& room, std::span<const Surface> mesh_surfaces, std::span<const Colour> mesh_colours,
+             std::span<const RenderedSolid> solids, std::span<const Beam> beams, const Camera& camera, int width,
+             int height) {
+  check_arguments(room, mesh_surfaces, mesh_colours, width, height);
+  const View view = make_view(camera, width, height);
+  const Room drawn_room = drawn_part(room, mesh_surfaces, camera);
+  const Picture picture(drawn_room, mesh_colours, solids, view);
+  Pixels pixels;
+  pixels.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  ordered_parallel<std::vector<Pixel>>(
+      static_cast<std::size_t>(height), 0, [&](std::size_t y) { return picture.row(static_cast<int>(y)); },
+      [&](std::vector<Pixel>& row) { pixels.insert(pixels.end(), row.begin(), row.end()); });
+  draw_beams(view, beams, pixels);
+
+  Image image{width, height, {}};
+  image.rgb.reserve(3 * pixels.size());
+  for (const Pixel& pixel : pixels) {
+    for (int channel = 0; channel < 3; ++channel) image.rgb.push_back(encoded(pixel.light[channel]));
+  }
+  return image;
+}
+
+}  // namespace pirsim::rt

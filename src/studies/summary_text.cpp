@@ -1,0 +1,195 @@
+// A summary as CSV, as a table for a terminal and as Markdown.
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+
+#include "pirsim/studies/summary.hpp"
+
+namespace pirsim::studies {
+namespace {
+
+std::string fixed(double value, int digits) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof(buffer), "%.*f", digits, value);
+  return buffer;
+}
+/// As few digits as it takes: published means are whole numbers or have a decimal.
+std::string shortest(double value) {
+  char buffer[64];
+  std::snprintf(buffer, sizeof(buffer), "%g", value);
+  return buffer;
+}
+template <typename Number>
+std::string optional_text(const std::optional<Number>& value, int digits) {
+  return value ? fixed(static_cast<double>(*value), digits) : std::string{};
+}
+
+/// RFC 4180: quoted only where it has to be.
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+using Row = std::vector<std::string>;
+
+/// One line of the table: what it is called, and its text for a cell.
+struct Line {
+  std::string label;
+  std::function<std::string(const CellSummary&)> text;
+};
+
+std::string verdict(const CellSummary& cell) {
+  if (!cell.inside) return {};
+  return *cell.inside ? "in" : "out";
+}
+
+/// The lines that have something to say, in the paper's order, ours first.
+std::vector<Line> lines_for(const std::vector<CellSummary>& cells) {
+  std::vector<Line> lines;
+  const auto any = [&](auto condition) { return std::any_of(cells.begin(), cells.end(), condition); };
+  const bool measured = any([](const CellSummary& c) { return c.measured.has_value(); });
+  const bool published = any([](const CellSummary& c) { return c.measured && c.measured->min_sim; });
+  if (measured) {
+    lines.push_back({"real", [](const CellSummary& c) { return c.measured ? std::to_string(c.measured->real) : ""; }});
+  }
+  lines.push_back({"min", [](const CellSummary& c) { return c.runs > 0 ? std::to_string(c.min) : ""; }});
+  lines.push_back({"max", [](const CellSummary& c) { return c.runs > 0 ? std::to_string(c.max) : ""; }});
+  lines.push_back({"mean", [](const CellSummary& c) { return c.runs > 0 ? fixed(c.mean, 1) : ""; }});
+  if (measured) {
+    lines.push_back({"real in min..max", verdict});
+    lines.push_back({"CRPS", [](const CellSummary& c) { return optional_text(c.crps, 1); }});
+  }
+  if (published) {
+    const auto paper = [](auto member) {
+      return [member](const CellSummary& c) {
+        if (!c.measured || !((*c.measured).*member)) return std::string{};
+        return shortest(static_cast<double>(*((*c.measured).*member)));
+      };
+    };
+    lines.push_back({"published min", paper(&MeasuredCell::min_sim)});
+    lines.push_back({"published max", paper(&MeasuredCell::max_sim)});
+    lines.push_back({"published mean", paper(&MeasuredCell::mean_sim)});
+  }
+  return lines;
+}
+
+/// Header and body; a trial's name stands on its first line only.
+std::vector<Row> cell_table(const Summary& summary) {
+  const std::vector<CellSummary> cells = summary.cells();
+  const std::size_t n_sensors = summary.sensors().size();
+  std::vector<Row> table{{"trial", ""}};
+  table[0].insert(table[0].end(), summary.sensors().begin(), summary.sensors().end());
+  const std::vector<Line> lines = lines_for(cells);
+  for (std::size_t trial = 0; trial < summary.trials().size(); ++trial) {
+    for (const Line& line : lines) {
+      Row row{&line == &lines.front() ? summary.trials()[trial] : std::string{}, line.label};
+      for (std::size_t sensor = 0; sensor < n_sensors; ++sensor) {
+        row.push_back(line.text(cells[trial * n_sensors + sensor]));
+      }
+      table.push_back(std::move(row));
+    }
+  }
+  return table;
+}
+
+/// Nothing where nothing was measured.
+std::vector<Row> overall_table(const Summary& summary) {
+  const OverallSummary ours = summary.overall();
+  if (ours.cells == 0) return {};
+  const std::optional<OverallSummary> published = summary.published();
+  std::vector<Row> table{{"over all cells", "this study"}};
+  if (published) table[0].push_back("published");
+  const auto add = [&](const std::string& label, const std::function<std::string(const OverallSummary&)>& text) {
+    table.push_back({label, text(ours)});
+    if (published) table.back().push_back(text(*published));
+  };
+  add("cells compared", [](const auto& o) { return std::to_string(o.cells); });
+  add("real in min..max", [](const auto& o) { return std::to_string(o.inside); });
+  add("the same, cells shuffled",
+      [](const auto& o) { return fixed(o.shuffled_inside, 1) + " +- " + fixed(o.shuffled_inside_sd, 1); });
+  add("total real", [](const auto& o) { return fixed(o.real_total, 0); });
+  add("total simulated mean", [](const auto& o) { return fixed(o.simulated_total, 0); });
+  add("bias (simulated - real)", [](const auto& o) { return fixed(o.bias, 1); });
+  add("mean absolute error", [](const auto& o) { return fixed(o.mean_absolute_error, 1); });
+  add("mean CRPS", [](const auto& o) { return o.mean_crps ? fixed(*o.mean_crps, 1) : std::string("-"); });
+  return table;
+}
+
+/// The first `left` columns to the left, the others to the right.
+std::string aligned(const std::vector<Row>& table, std::size_t left) {
+  std::vector<std::size_t> widths;
+  for (const Row& row : table) {
+    widths.resize(std::max(widths.size(), row.size()), 0);
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  std::string text;
+  for (const Row& row : table) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string padding(widths[i] - row[i].size(), ' ');
+      line += (i > 0 ? "  " : "") + (i < left ? row[i] + padding : padding + row[i]);
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + '\n';
+  }
+  return text;
+}
+
+std::string markdown_field(const std::string& text) {
+  std::string field;
+  for (const char c : text) field += c == '|' ? std::string("\\|") : std::string(1, c);
+  return field;
+}
+
+std::string markdown(const std::vector<Row>& table, std::size_t left) {
+  std::string text;
+  for (std::size_t r = 0; r < table.size(); ++r) {
+    text += '|';
+    for (const std::string& field : table[r]) text += ' ' + markdown_field(field) + " |";
+    text += '\n';
+    if (r > 0) continue;
+    text += '|';
+    for (std::size_t i = 0; i < table[0].size(); ++i) text += i < left ? "---|" : "---:|";
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string to_csv(const Summary& summary) {
+  std::string text = "trial,sensor,runs,min,max,mean,real,inside,crps,published_min,published_max,published_mean\n";
+  for (const CellSummary& c : summary.cells()) {
+    const MeasuredCell measured = c.measured.value_or(MeasuredCell{});
+    const bool ran = c.runs > 0;
+    const Row row{csv_field(c.trial),
+                  csv_field(c.sensor),
+                  std::to_string(c.runs),
+                  ran ? std::to_string(c.min) : "",
+                  ran ? std::to_string(c.max) : "",
+                  ran ? fixed(c.mean, 3) : "",
+                  c.measured ? std::to_string(measured.real) : "",
+                  c.inside ? (*c.inside ? "1" : "0") : "",
+                  optional_text(c.crps, 3),
+                  optional_text(measured.min_sim, 0),
+                  optional_text(measured.max_sim, 0),
+                  optional_text(measured.mean_sim, 3)};
+    for (std::size_t i = 0; i < row.size(); ++i) text += (i > 0 ? "," : "") + row[i];
+    text += '\n';
+  }
+  return text;
+}
+
+std::string to_text(const Summary& summary) {
+  const std::string overall = aligned(overall_table(summary), 1);
+  return aligned(cell_table(summary), 2) + (overall.empty() ? "" : "\n" + overall);
+}
+
+std::string to_markdown(const Summary& summary) {
+  const std::string overall = markdown(overall_table(summary), 1);
+  return markdown(cell_table(summary), 2) + (overall.empty() ? "" : "\n" + overall);
+}
+
+}  // namespace pirsim::studies

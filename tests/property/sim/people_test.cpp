@@ -1,0 +1,115 @@
+// Several people with scripts of their own.
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <map>
+
+#include "pirsim/core/random.hpp"
+#include "pirsim/sim/state.hpp"
+#include "support/catch.hpp"
+#include "support/shipped.hpp"
+
+using namespace pirsim;
+using namespace pirsim::test;
+
+namespace {
+
+/// Least distance between any two people's pelvises over a run, metres, and whether all came to the end.
+struct Encounter {
+  double nearest_m = 1e9;
+  std::size_t ticks = 0;
+  std::size_t most_people = 0;
+};
+
+Encounter watch(const Model& model) {
+  Encounter result;
+  State state(model, 0);
+  while (!state.finished()) {
+    step_tick(model, state);
+    ++result.ticks;
+    std::vector<Vec2> places;
+    for (const Actor& actor : state.actors()) {
+      if (actor.present()) places.push_back(actor.motion().position());
+    }
+    result.most_people = std::max(result.most_people, places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) result.nearest_m = std::min(result.nearest_m, glm::distance(places[i], places[j]));
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("two people who walk towards each other in an open hall pass without touching") {
+  const SceneSpec scene = shipped_scene("open_hall.gltf");
+  const Model model(compile(scene, script_of({
+      person("a", {act(action::Appear{{-5, -10}, 0}), act(action::Walk{{{5, -10}}})}),
+      person("b", {act(action::Appear{{5, -10}, 0}), act(action::Walk{{{-5, -10}}})}),
+  })));
+  const Encounter encounter = watch(model);
+  CHECK(encounter.most_people == 2);
+  // Trunks are at most half a body breadth wide each: 0.36 m between pelvises is shoulder past shoulder at an angle.
+  CHECK(encounter.nearest_m > 0.36);
+  CHECK(encounter.ticks < 60 * 50);
+}
+
+TEST_CASE("six people cross a hall on random ways: nobody is walked through and everybody arrives") {
+  const SceneSpec scene = shipped_scene("open_hall.gltf");
+  for (std::uint32_t seed = 0; seed < 6; ++seed) {
+    Stream stream({seed, 0, 0, Purpose::test});
+    const auto point = [&] { return Vec2(-6.0 + 12.0 * stream.uniform(), -6.0 - 12.0 * stream.uniform()); };
+    std::vector<PersonSpec> people;
+    for (int i = 0; i < 6; ++i) {
+      // A start of one's own in a row; targets anywhere.
+      people.push_back(person("p" + std::to_string(i), {act(action::Appear{{-5.0 + 2.0 * i, -3.0}, 0}),
+                                                        act(action::Walk{{point(), point()}}),
+                                                        act(action::Walk{{{-5.0 + 2.0 * i, -20.0}}})}));
+    }
+    const Encounter encounter = watch(Model(compile(scene, script_of(people))));
+    INFO("seed " << seed << ", nearest " << encounter.nearest_m);
+    CHECK(encounter.most_people == 6);
+    CHECK(encounter.nearest_m > 0.36);
+  }
+}
+
+TEST_CASE("a meeting of five: all come in through one door, sit side by side, and leave; people are counted") {
+  std::vector<PersonSpec> people;
+  for (int i = 1; i <= 5; ++i) {
+    people.push_back(person("p" + std::to_string(i), {act(action::Wait{2.0 * i}), act(action::Enter{"door"}),
+                                                      act(action::Sit{"S" + std::to_string(i)}), act(action::Work{30.0}),
+                                                      act(action::Rise{}), act(action::Leave{"door"})}));
+  }
+  const Model model(compile(shipped_scene("meeting_room.gltf"), script_of(people)));
+  const Encounter encounter = watch(model);
+  CHECK(encounter.most_people == 5);
+  CHECK(encounter.nearest_m > 0.36);
+  const RunResult result = run_once(model, 0);
+  CHECK(std::ranges::max(result.samples, {}, &Sample::people).people == 5);
+  CHECK(result.samples.back().people == 0);
+}
+
+TEST_CASE("the script can interrupt anything: a person called away in mid-walk, mid-fall and mid-work leaves") {
+  const SceneSpec scene = shipped_scene("meeting_room.gltf");
+  for (const double moment : {3.0, 5.3, 7.1, 8.0, 9.4, 11.0, 20.0}) {
+    PersonSpec spec = person("a", {act(action::Enter{"door"}), act(action::Sit{"S4"}), act(action::Work{60.0})});
+    spec.actions.push_back(act_at(moment, action::Leave{"door"}));
+    if (moment < 12.0) spec.actions.erase(spec.actions.begin() + 2);
+    const RunResult result = run_once(compile(scene, script_of({spec})), 0);
+    INFO("called away at " << moment << " s");
+    CHECK(result.samples.back().people == 0);
+    CHECK(result.samples.back().time_s < moment + 30.0);
+  }
+}
+
+TEST_CASE("people are counted from geometry: 0 outside the door, 1 inside, whatever the script is doing") {
+  const Model model(compile(shipped_scene("meeting_room.gltf"),
+                            script_of({person("a", {act(action::Enter{"door"}), act(action::Sit{"S5"}), act(action::Rise{}),
+                                                    act(action::Leave{"door"})})})));
+  State state(model, 0);
+  while (step(model, state)) {
+    const Actor& actor = state.actors().front();
+    const int inside = actor.present() && actor.motion().position().y < 0.0 ? 1 : 0;  // the room extends to -Z
+    REQUIRE(state.sample().people == inside);
+  }
+}

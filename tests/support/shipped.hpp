@@ -1,0 +1,38 @@
+// The shipped rooms and studies, and small scenes made of numbers.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pirsim/io/scene_reader.hpp"
+#include "pirsim/io/script_reader.hpp"
+#include "pirsim/sim/model.hpp"
+#include "pirsim/sim/study.hpp"
+
+namespace pirsim::test {
+
+inline std::filesystem::path data(const std::string& file) { return std::filesystem::path(PIRSIM_DATA_DIR) / file; }
+inline SceneSpec shipped_scene(const std::string& file) { return io::read_scene(data("rooms/" + file)); }
+inline ScriptSpec shipped_script(const std::string& file, const std::vector<std::string>& overrides = {}) {
+  return io::read_script(data("studies/" + file), overrides);
+}
+
+/// A script with one trial and these people.
+inline ScriptSpec script_of(std::vector<PersonSpec> people) {
+  ScriptSpec script;
+  script.name = "test";
+  script.trials = {{"1", std::move(people)}};
+  return script;
+}
+
+inline PersonSpec person(std::string id, std::vector<ScriptedAction> actions) {
+  PersonSpec spec;
+  spec.id = std::move(id);
+  spec.actions = std::move(actions);
+  return spec;
+}
+inline ScriptedAction act(Action what) { return {std::move(what), {}, {}, {}}; }
+inline ScriptedAction act_at(double seconds, Action what) { return {std::move(what), seconds, {}, {}}; }
+
+}  // namespace pirsim::test
