@@ -224,6 +224,19 @@ TEST_CASE("at equal arm phase and tilt a sitter's postures are the same bits, wh
   CHECK_FALSE(plain.posture() == other.posture());
 }
 
+TEST_CASE("desk work repeats bit for bit after a period that is a whole number of ticks but for rounding", "[motion]") {
+  constexpr double period_s = 1.16;
+  REQUIRE(period_s / tick_s != std::round(period_s / tick_s));
+  Motion motion = seated();
+  motion.work({0.1, period_s});
+  for (int i = 0; i < 60; ++i) motion.advance();
+  std::vector<Posture> first;
+  for (int i = 0; i < 58 * 40; ++i, motion.advance()) {
+    if (i < 58) first.push_back(motion.posture());
+    if (i >= 58) CHECK(motion.posture() == first[static_cast<std::size_t>(i % 58)]);
+  }
+}
+
 TEST_CASE("the whole choreography of desk work is sound, and no forearm dips below the table", "[motion]") {
   Motion motion = seated();
   motion.work({});
