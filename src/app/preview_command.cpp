@@ -117,6 +117,8 @@ void preview(const Inputs& inputs, const PreviewOptions& options) {
       beams.push_back({beam.from, beam.to, beam.sees_person ? seeing : idle});
     }
   }
+  // What sees the person is drawn last, over the rest.
+  std::ranges::stable_partition(beams, [&](const rt::Beam& beam) { return beam.colour == idle; });
   const double fov = radians(options.field_of_view_deg);
   rt::Camera camera = dolls_house_camera(model.scene(), fov, static_cast<double>(options.width) / options.height);
   const auto vec = [](const std::array<double, 3>& a) { return Vec3(a[0], a[1], a[2]); };
