@@ -67,7 +67,7 @@ rt::Camera dolls_house_camera(const SceneSpec& scene, double fov_rad, double asp
   const double radius = 0.5 * glm::length(Vec3(upper.x - lower.x, 2.0, upper.y - lower.y));
   const double narrow = std::min(fov_rad, 2.0 * std::atan(std::tan(fov_rad / 2.0) * aspect));
   const Vec3 direction = glm::normalize(Vec3(-0.55, 0.85, -1.0));
-  return {target + direction * (0.92 * radius / std::sin(narrow / 2.0)), target, fov_rad};
+  return {target + direction * (0.8 * radius / std::sin(narrow / 2.0)), target, fov_rad};
 }
 
 bool reached_default_time(const State& state, std::int64_t& work_began, const Model& model) {
