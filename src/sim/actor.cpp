@@ -16,6 +16,7 @@ using body::Stage;
 constexpr double look_ahead_m = 1.2;        ///< assumed: how far ahead a walker minds others (tried 0.8-2)
 constexpr double foresight_s = 1.5;         ///< assumed: how long before ways cross one gives way (tried 1-2)
 constexpr double gap_m = 0.1;               ///< assumed: kept between two people beside their radii
+constexpr double doorway_m = 2.5;           ///< assumed: who comes in is through the door at that distance (tried 2-3)
 constexpr double braking_m_s2 = 1.5;        ///< assumed, as Motion's acceleration
 constexpr double patience_s = 0.5;          ///< assumed: wait before looking for another way
 constexpr double patience_step_s = 0.7;     ///< more for every later person, so that two don't dodge alike
@@ -48,7 +49,7 @@ std::string_view Actor::current_phase() const noexcept {
 
 Presence Actor::presence() const {
   return {motion_->position(), motion_->speed_m_s() * direction_of(motion_->heading()),
-          person().humanoid.clearance_radius_m()};
+          route_ ? route_->position(route_->length_m()) : motion_->position(), seat_, person().humanoid.clearance_radius_m()};
 }
 
 void Actor::advance(const Model& model, std::int64_t tick, std::span<const Presence> others, std::size_t n_before) {
@@ -105,6 +106,9 @@ void Actor::plan(const Model& model) {
     errands_.push_back(ComeIn{appear->point, radians(appear->heading_deg)});
   } else if (const auto* enter = std::get_if<action::Enter>(&action().what)) {
     const EntranceSpec& door = entrance(enter->entrance);
+    const auto* sit_next = action_ + 1 < actions.size() ? std::get_if<action::Sit>(&actions[action_ + 1].what) : nullptr;
+    if (sit_next != nullptr) errands_.push_back(WaitForSeat{sit_next->seat});  // better outside than in the doorway
+    errands_.push_back(WaitForDoor{outside(door), Through::in});
     errands_.push_back(ComeIn{outside(door), heading_of(door.world_from_entrance)});
     if (action_ + 1 == actions.size() || !leads_elsewhere(actions[action_ + 1])) {
       const double inside_m = 2.0 * person().humanoid.clearance_radius_m();
@@ -119,6 +123,7 @@ void Actor::plan(const Model& model) {
   } else if (const auto* turn = std::get_if<action::Turn>(&action().what)) {
     errands_.push_back(FaceTo{radians(turn->heading_deg)});
   } else if (const auto* leave = std::get_if<action::Leave>(&action().what)) {
+    errands_.push_back(WaitForDoor{outside(entrance(leave->entrance)), Through::out});
     errands_.push_back(WalkTo{outside(entrance(leave->entrance))});
     errands_.push_back(Vanish{});
   } else if (const auto* work_action = std::get_if<action::Work>(&action().what)) {
@@ -141,6 +146,9 @@ void Actor::plan_sitting() {
         rotation_from_heading(radians(scatter.heading_sd_deg * turn)) * place.world_from_seat.rotation;
   }
   const double heading = heading_of(place.world_from_seat);
+  const std::string_view id = std::get<action::Sit>(action().what).seat;
+  errands_.push_back(WaitForSeat{id});
+  errands_.push_back(TakeSeat{id});
   errands_.push_back(WalkTo{floor_point(place.world_from_seat.origin) - seat.stand_back_m * direction_of(heading)});
   errands_.push_back(FaceTo{heading});
   errands_.push_back(SitOn{place});
@@ -158,13 +166,28 @@ Actor::Progress Actor::carry_out(const Errand& errand, const Model& model, std::
   if (const auto* come = std::get_if<ComeIn>(&errand)) {
     const double radius = person().humanoid.clearance_radius_m();
     for (const Presence& other : others) {
-      if (glm::distance(other.position, come->point) < other.radius_m + radius + gap_m) return Progress::going_on;
+      if (glm::distance(other.position, come->point) >= other.radius_m + radius + gap_m) continue;
+      wait_for_others(model);
+      return Progress::going_on;
     }
     motion_.emplace(person().humanoid, come->point, come->heading, model.scene().floor.height_m(), model.tick_s());
     return Progress::done;
   }
   if (std::holds_alternative<Vanish>(errand)) {
     motion_.reset();
+    return Progress::done;
+  }
+  const auto* door = std::get_if<WaitForDoor>(&errand);
+  const auto* taken_seat = std::get_if<WaitForSeat>(&errand);
+  if (door != nullptr || taken_seat != nullptr) {
+    const bool taken = door != nullptr ? door_is_taken(*door, others)
+                                       : std::ranges::find(others, taken_seat->seat, &Presence::seat) != others.end();
+    if (!taken) return Progress::done;
+    if (present()) wait_for_others(model);  // who isn't there yet is in nobody's way
+    return Progress::going_on;
+  }
+  if (const auto* take = std::get_if<TakeSeat>(&errand)) {
+    seat_ = take->seat;
     return Progress::done;
   }
   if (const auto* walk = std::get_if<WalkTo>(&errand)) return walk_to(walk->target, model, others);
@@ -189,6 +212,14 @@ Actor::Progress Actor::become_standing(std::span<const Presence> others) {
   // A walk or turn that an earlier action began and that isn't wanted any more; our own ends by itself.
   if (!on_seat && !route_ && motion_->stage() == Stage::walking) motion_->stop();
   return Progress::going_on;
+}
+
+bool Actor::door_is_taken(const WaitForDoor& door, std::span<const Presence> others) const {
+  return std::ranges::any_of(others, [&](const Presence& other) {
+    const bool goes_out = glm::distance(other.destination, door.outside) < gap_m;
+    if (door.way == Through::in) return goes_out;
+    return !goes_out && glm::distance(other.position, door.outside) < doorway_m;
+  });
 }
 
 bool Actor::free_to_stand(std::span<const Presence> others) const {
@@ -227,6 +258,7 @@ Actor::Progress Actor::walk_to(const Vec2& target, const Model& model, std::span
     motion_->turn_to(route_->heading(0.0));
   } else {
     motion_->walk(*route_);
+    if (!std::holds_alternative<action::Sit>(action().what)) seat_ = {};
   }
   return Progress::going_on;
 }
@@ -279,7 +311,7 @@ void Actor::keep_distance(const Model& model, std::span<const Presence> others, 
 
 void Actor::wait_for_others(const Model& model) {
   if (++blocked_ticks_ <= ticks(give_up_s, model)) return;
-  throw Error(ErrorCode::infeasible, action().where, "'" + person().spec.id + "' can't get past the others");
+  throw Error(ErrorCode::infeasible, action().where, "'" + person().spec.id + "' waits in vain for others to make way");
 }
 
 }  // namespace pirsim

@@ -18,7 +18,9 @@ namespace pirsim {
 /// What others need to know to keep out of a person's way.
 struct Presence {
   Vec2 position{0.0};
-  Vec2 velocity{0.0};  ///< m/s
+  Vec2 velocity{0.0};     ///< m/s
+  Vec2 destination{0.0};  ///< where the current walk leads; the position of who isn't walking
+  std::string_view seat;  ///< taken: from setting out for it to walking away from it; or empty
   double radius_m = 0.0;
 };
 
@@ -44,12 +46,16 @@ class Actor {
  private:
   // Steps that an action is made of; each begins when the body has settled.
   struct ComeIn { Vec2 point; double heading; };  ///< appears once nobody stands there
+  enum class Through { in, out };
+  struct WaitForDoor { Vec2 outside; Through way; };  ///< until nobody goes the other way through it
+  struct WaitForSeat { std::string_view seat; };      ///< until nobody else has taken it
+  struct TakeSeat { std::string_view seat; };
   struct WalkTo { Vec2 target; };
   struct FaceTo { double heading; };
   struct SitOn { body::SeatPlace place; };
   struct StandUp {};
   struct Vanish {};
-  using Errand = std::variant<ComeIn, WalkTo, FaceTo, SitOn, StandUp, Vanish>;
+  using Errand = std::variant<ComeIn, WaitForDoor, WaitForSeat, TakeSeat, WalkTo, FaceTo, SitOn, StandUp, Vanish>;
   enum class Progress { going_on, done };
 
   void plan(const Model& model);
@@ -60,6 +66,7 @@ class Actor {
   [[nodiscard]] std::string_view current_phase() const noexcept;
   [[nodiscard]] bool interrupted(const Model& model, std::int64_t now) const;
   [[nodiscard]] bool time_is_up(const Model& model, std::int64_t now) const;
+  [[nodiscard]] bool door_is_taken(const WaitForDoor& door, std::span<const Presence> others) const;
   [[nodiscard]] bool free_to_stand(std::span<const Presence> others) const;
   Progress carry_out(const Errand& errand, const Model& model, std::span<const Presence> others);
   Progress walk_to(const Vec2& target, const Model& model, std::span<const Presence> others);
@@ -78,6 +85,7 @@ class Actor {
   std::int64_t began_ = 0;            ///< tick at which it did
   std::deque<Errand> errands_;        ///< still to do for the current action
   std::optional<body::Route> route_;  ///< to walk once the body faces its start, or being walked
+  std::string_view seat_;             ///< taken, or empty
   std::string_view phase_ = "outside";
   int blocked_ticks_ = 0;             ///< for how long others have been in the way
   Stream tilt_stream_;

@@ -89,6 +89,33 @@ TEST_CASE("a meeting of five: all come in through one door, sit side by side, an
   CHECK(result.samples.back().people == 0);
 }
 
+TEST_CASE("two who use one door in opposite directions wait for each other, and a taken seat is waited for") {
+  const SceneSpec scene = shipped_scene("meeting_room.gltf");
+  const PersonSpec first = person("first", {act(action::Enter{"door"}), act(action::Sit{"S4"}), act(action::Work{20.0}),
+                                            act(action::Leave{"door"})});
+  for (const double delay : {1.0, 20.0, 31.0, 33.0, 35.0, 37.0}) {
+    const PersonSpec second = person("second", {act(action::Wait{delay}), act(action::Enter{"door"}),
+                                                act(action::Sit{"S4"}), act(action::Leave{"door"})});
+    const Encounter encounter = watch(Model(compile(scene, script_of({first, second}))));
+    INFO("the second comes after " << delay << " s; nearest " << encounter.nearest_m << " m");
+    CHECK(encounter.nearest_m > 0.36);
+  }
+}
+
+TEST_CASE("ten people fill the meeting room and leave it when the meeting is over") {
+  std::vector<PersonSpec> people;
+  for (int i = 1; i <= 10; ++i) {
+    // Those who sit farthest from the door come first and leave last.
+    const int seat = i <= 5 ? i + 5 : i - 5;
+    people.push_back(person("p" + std::to_string(i), {act(action::Wait{4.0 * i}), act(action::Enter{"door"}),
+                                                      act(action::Sit{"S" + std::to_string(seat)}),
+                                                      act_at(70.0 + 4.0 * (10 - i), action::Rise{}), act(action::Leave{"door"})}));
+  }
+  const Encounter encounter = watch(Model(compile(shipped_scene("meeting_room.gltf"), script_of(people))));
+  CHECK(encounter.most_people == 10);
+  CHECK(encounter.nearest_m > 0.36);
+}
+
 TEST_CASE("the script can interrupt anything: a person called away in mid-walk, mid-fall and mid-work leaves") {
   const SceneSpec scene = shipped_scene("meeting_room.gltf");
   for (const double moment : {3.0, 5.3, 7.1, 8.0, 9.4, 11.0, 20.0}) {
