@@ -121,6 +121,7 @@ void TriangleSurface::visit(const MayConcern& may_concern, const LookAt& look_at
 }
 
 std::optional<float> TriangleSurface::first_hit(const Vec3& origin, const Vec3& direction, float t_max) const noexcept {
+  if (!(t_max > 0.0F)) return std::nullopt;
   float nearest = t_max;
   const double square_length = glm::dot(direction, direction);
   const auto may_meet = [&](const Ball& ball) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "pirsim/rt/tracer.hpp"
+#include "pirsim/sim/model.hpp"
 #include "support/catch.hpp"
 #include "support/fine_mesh.hpp"
 
@@ -12,7 +13,8 @@ using pirsim::testing::RandomScene;
 
 namespace {
 
-constexpr std::array kinds{TracerKind::reference, TracerKind::embree, TracerKind::remembering};
+constexpr TracerKind usual = CompileOptions{}.tracer;
+constexpr std::array kinds{TracerKind::reference, TracerKind::embree, usual};
 
 /// Closed and open surfaces; the same ones stand in for many solids, as they do for a person's.
 std::vector<MeshSolid> wardrobe(Draw& draw) {
@@ -104,7 +106,8 @@ TEST_CASE("no tracer leaves out a mesh that a ray clips by micrometres at its ou
   CHECK(n_hits > n_rays * 3 / 4);
 }
 
-TEST_CASE("the remembering tracer tells two meshes at one place apart", "[rt][mesh_body]") {
+TEST_CASE("the usual tracer, which remembers what it has seen, tells two meshes at one place apart",
+          "[rt][mesh_body]") {
   const rt::Room nothing{{}};
   RayBundle bundle;
   bundle.rays.push_back({Vec3f(0, 0, 3), Vec3f(0, 0, -1)});
@@ -114,7 +117,7 @@ TEST_CASE("the remembering tracer tells two meshes at one place apart", "[rt][me
   testing::close_sensor(bundle);
   const MeshSolid in_the_way = testing::mesh_solid(testing::box_mesh(Vec3(-0.1), Vec3(0.1)));
   const MeshSolid beside = testing::mesh_solid(testing::box_mesh({0.2, -0.1, -0.1}, {0.4, 0.1, 0.1}));
-  const auto tracer = rt::make_tracer(TracerKind::remembering, {&nothing, &bundle, &bundle});
+  const auto tracer = rt::make_tracer(usual, {&nothing, &bundle, &bundle});
   ZoneActivity zones(1);
   for (int round = 0; round < 2; ++round) {
     tracer->trace(std::vector{place(in_the_way, {})}, zones);

@@ -51,8 +51,8 @@ TEST_CASE("a walker made of fine meshes is seen by the zones that see the exact 
     return run_once(compile(shipped_scene("open_hall.gltf"), script_of({person}), {tracer}), 0,
                     Record::samples_and_zones);
   };
-  const RunResult exact = run(walker(), rt::TracerKind::remembering);
-  const RunResult meshed = run(in_meshes(walker()), rt::TracerKind::remembering);
+  const RunResult exact = run(walker(), CompileOptions{}.tracer);
+  const RunResult meshed = run(in_meshes(walker()), CompileOptions{}.tracer);
   const auto [active, lost, gained] = compare(exact, meshed);
   WARN(active << " active zones in " << exact.zones.size() << " ticks; fine meshes lose " << lost << ", gain "
               << gained);
@@ -60,7 +60,7 @@ TEST_CASE("a walker made of fine meshes is seen by the zones that see the exact 
   CHECK(lost < active / 500);
   CHECK(gained == 0);  // the meshes are inscribed
 
-  const auto coarse = compare(exact, run(in_meshes(walker(), 2), rt::TracerKind::remembering));
+  const auto coarse = compare(exact, run(in_meshes(walker(), 2), CompileOptions{}.tracer));
   WARN("meshes of eight sectors lose " << coarse.lost << ", gain " << coarse.gained);
   CHECK(coarse.lost > active / 500);
   CHECK(coarse.gained == 0);
@@ -71,7 +71,7 @@ TEST_CASE("a walker made of fine meshes is seen by the zones that see the exact 
 
   PersonSpec headless = walker();  // and a mesh far away from its part does make a difference
   headless.body_meshes["torso"] = testing::mesh_solid(testing::box_mesh({-0.01, 2, -0.01}, {0.01, 2.1, 0.01}));
-  CHECK(run(headless, rt::TracerKind::remembering).zones != exact.zones);
+  CHECK(run(headless, CompileOptions{}.tracer).zones != exact.zones);
 }
 
 TEST_CASE("looking around sees a mesh body where it sees the exact one", "[mesh_body]") {
