@@ -34,6 +34,11 @@ struct KeyWriter {
     for (int i = 0; i < 3; ++i) append(key, box.axes[i]);
     append(key, box.half_extents);
   }
+  void operator()(const PosedMesh& mesh) const {
+    key.append(reinterpret_cast<const char*>(&mesh.surface), sizeof mesh.surface);  // it outlives the tracer
+    append(key, mesh.origin);
+    for (int i = 0; i < 3; ++i) append(key, mesh.axes[i]);
+  }
 };
 
 class RememberingTracer : public Tracer {

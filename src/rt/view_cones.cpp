@@ -73,7 +73,8 @@ Ball ball_around(const PosedShape& shape) noexcept {
   if (const auto* capsule = std::get_if<PosedCapsule>(&shape)) {
     return {(capsule->a + capsule->b) * 0.5F, glm::length(capsule->b - capsule->a) * 0.5F + capsule->radius};
   }
-  const auto& box = std::get<PosedBox>(shape);
+  const auto* mesh = std::get_if<PosedMesh>(&shape);
+  const PosedBox box = mesh != nullptr ? box_around(*mesh) : std::get<PosedBox>(shape);
   return {box.centre, glm::length(box.half_extents)};
 }
 

@@ -21,7 +21,7 @@ enum class TracerKind {
 class Tracer {
  public:
   virtual ~Tracer() = default;
-  /// solids: everything of every person that is in the scene now; zones: (n_zones) overwritten.
+  /// solids: everything of every person that is in the scene now (surfaces of meshes outlive the tracer); zones: (n_zones) overwritten.
   virtual void trace(std::span<const PosedShape> solids, std::span<std::uint8_t> zones) = 0;
 };
 
