@@ -38,7 +38,7 @@ struct TrialModel {
 };
 
 struct CompileOptions {
-  rt::TracerKind tracer = rt::TracerKind::remembering;
+  rt::TracerKind tracer = rt::fastest_tracer;
 };
 
 class Model {
@@ -70,7 +70,7 @@ class Model {
   std::unique_ptr<rt::Room> room_;
   std::unique_ptr<RayBundle> rated_;
   std::unique_ptr<RayBundle> clipped_;
-  rt::TracerKind tracer_ = rt::TracerKind::remembering;
+  rt::TracerKind tracer_ = rt::fastest_tracer;
   struct TracerPool;
   std::shared_ptr<TracerPool> idle_tracers_;  ///< not part of what a Model is: memory that runs hand on
 };
