@@ -38,14 +38,14 @@ class DirectTracer final : public Tracer {
   void meet(const PosedShape& solid, const Ball& ball, ZoneSet::Word* zones);
 
   const RayKernel& kernel_;
-  std::size_t n_words_;             ///< of a set of all zones
+  std::size_t n_words_;  ///< of a set of all zones
   std::vector<RayPack> packs_;
-  std::vector<ConeBlock> cones_;    ///< of packs_
+  std::vector<ConeBlock> cones_;  ///< of packs_
   std::vector<Memory> people_;
   // Scratch.
-  std::vector<std::uint32_t> moved_;           ///< indices of solids
+  std::vector<std::uint32_t> moved_;  ///< indices of solids
   std::vector<Ball> moved_balls_;
-  std::vector<std::uint32_t> near_person_;     ///< packs whose cone touches the ball around all that moved
+  std::vector<std::uint32_t> near_person_;  ///< packs whose cone touches the ball around all that moved
   std::vector<ConeBlock> near_person_cones_;
   std::vector<std::uint32_t> near_solid_;
   std::vector<PackHits> hits_;

@@ -22,6 +22,7 @@ inline PackMask less(Pack a, Pack b) noexcept { return _mm512_cmp_ps_mask(a, b, 
 inline PackMask less_equal(Pack a, Pack b) noexcept { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
 inline PackMask equal(Pack a, Pack b) noexcept { return _mm512_cmp_ps_mask(a, b, _CMP_EQ_OQ); }
 inline PackMask both(PackMask a, PackMask b) noexcept { return static_cast<PackMask>(a & b); }
+inline PackMask either(PackMask a, PackMask b) noexcept { return static_cast<PackMask>(a | b); }
 inline Pack choose(PackMask m, Pack a, Pack b) noexcept { return _mm512_mask_blend_ps(m, b, a); }
 inline Pack minimum(Pack a, Pack b) noexcept { return _mm512_min_ps(a, b); }
 inline Pack maximum(Pack a, Pack b) noexcept { return _mm512_max_ps(a, b); }
@@ -37,6 +38,7 @@ inline PackMask less(Pack a, Pack b) noexcept { return _mm256_cmp_ps(a, b, _CMP_
 inline PackMask less_equal(Pack a, Pack b) noexcept { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
 inline PackMask equal(Pack a, Pack b) noexcept { return _mm256_cmp_ps(a, b, _CMP_EQ_OQ); }
 inline PackMask both(PackMask a, PackMask b) noexcept { return _mm256_and_ps(a, b); }
+inline PackMask either(PackMask a, PackMask b) noexcept { return _mm256_or_ps(a, b); }
 inline Pack choose(PackMask m, Pack a, Pack b) noexcept { return _mm256_blendv_ps(b, a, m); }
 inline Pack minimum(Pack a, Pack b) noexcept { return _mm256_min_ps(a, b); }
 inline Pack maximum(Pack a, Pack b) noexcept { return _mm256_max_ps(a, b); }
@@ -52,6 +54,7 @@ inline PackMask less(Pack a, Pack b) noexcept { return _mm_cmplt_ps(a, b); }
 inline PackMask less_equal(Pack a, Pack b) noexcept { return _mm_cmple_ps(a, b); }
 inline PackMask equal(Pack a, Pack b) noexcept { return _mm_cmpeq_ps(a, b); }
 inline PackMask both(PackMask a, PackMask b) noexcept { return _mm_and_ps(a, b); }
+inline PackMask either(PackMask a, PackMask b) noexcept { return _mm_or_ps(a, b); }
 inline Pack choose(PackMask m, Pack a, Pack b) noexcept { return _mm_or_ps(_mm_and_ps(m, a), _mm_andnot_ps(m, b)); }
 inline Pack minimum(Pack a, Pack b) noexcept { return _mm_min_ps(a, b); }
 inline Pack maximum(Pack a, Pack b) noexcept { return _mm_max_ps(a, b); }
@@ -67,6 +70,7 @@ inline PackMask less(Pack a, Pack b) noexcept { return a < b; }
 inline PackMask less_equal(Pack a, Pack b) noexcept { return a <= b; }
 inline PackMask equal(Pack a, Pack b) noexcept { return a == b; }
 inline PackMask both(PackMask a, PackMask b) noexcept { return a && b; }
+inline PackMask either(PackMask a, PackMask b) noexcept { return a || b; }
 inline Pack choose(PackMask m, Pack a, Pack b) noexcept { return m ? a : b; }
 inline Pack minimum(Pack a, Pack b) noexcept { return a < b ? a : b; }
 inline Pack maximum(Pack a, Pack b) noexcept { return a > b ? a : b; }
@@ -77,6 +81,7 @@ inline unsigned int bits_of(PackMask m) noexcept { return m ? 1U : 0U; }
 struct Mask {
   PackMask value;
   friend Mask operator&(Mask a, Mask b) noexcept { return {both(a.value, b.value)}; }
+  friend Mask operator|(Mask a, Mask b) noexcept { return {either(a.value, b.value)}; }
 };
 /// Bit i tells lane i.
 inline unsigned int bits(Mask mask) noexcept { return bits_of(mask.value); }

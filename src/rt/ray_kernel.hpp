@@ -20,8 +20,8 @@ struct RayKernel {
   bool (*is_available)();
   /// Writes the indices of cones that may touch the ball (never leaves one out that does) and tells how many they are.
   std::size_t (*cull)(const ConeBlock* cones, std::size_t n_blocks, const Ball& ball, std::uint32_t* indices) noexcept;
-  /// picked: (n) indices into rays; hits: (n). The same bits as entry_distance() of geom/shapes.hpp, ray by ray; `around` is a ball around
-  /// the solid.
+  /// picked: (n) indices into rays; hits: (n). The same bits as entry_distance() of geom/shapes.hpp, ray by ray;
+  /// `around` is a ball around the solid.
   void (*meet_sphere)(const RayPack* rays, const std::uint32_t* picked, std::size_t n, const PosedSphere& solid,
                       const Ball& around, PackHits* hits) noexcept;
   void (*meet_capsule)(const RayPack* rays, const std::uint32_t* picked, std::size_t n, const PosedCapsule& solid,

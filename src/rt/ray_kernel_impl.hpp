@@ -24,7 +24,8 @@ inline Vector load(const Column& x, const Column& y, const Column& z, std::size_
 inline Lanes size_of(Lanes x) noexcept { return larger(x, Lanes(0.0F) - x); }
 
 /// may_touch() of view_cones.cpp.
-std::size_t cull(const ConeBlock* cones, std::size_t n_blocks, const Ball& ball, std::uint32_t* indices) noexcept {
+[[gnu::flatten]] std::size_t cull(const ConeBlock* cones, std::size_t n_blocks, const Ball& ball,
+                                  std::uint32_t* indices) noexcept {
   const Vector centre = vector_of(ball.centre);
   const Lanes radius(ball.radius + ball_margin), share(relative_margin);
   std::size_t n = 0;
@@ -48,9 +49,18 @@ std::size_t cull(const ConeBlock* cones, std::size_t n_blocks, const Ball& ball,
   return n;
 }
 
-template <typename Test>
+/// Rays that pass an endless bar around the solid at more than `reach` needn't be tested; those that run along it must.
+inline Mask passes_near(const Vector& offset, const Vector& direction, const Vector& axis, Lanes reach) noexcept {
+  const Vector normal{direction.y * axis.z - direction.z * axis.y, direction.z * axis.x - direction.x * axis.z,
+                      direction.x * axis.y - direction.y * axis.x};
+  const Lanes square = dot(normal, normal), apart = dot(offset, normal);
+  // Within a hundredth of a radian rounding could be worth more than the margin.
+  return (apart * apart <= reach * reach * square) | (square < Lanes(1e-4F));
+}
+
+template <typename Cull, typename Test>
 inline void meet(const RayPack* rays, const std::uint32_t* picked, std::size_t n, const Ball& around, PackHits* hits,
-                 const Test& inside_solid) noexcept {
+                 const Cull& may_meet, const Test& inside_solid) noexcept {
   const Vector centre = vector_of(around.centre);
   const float reach = around.radius * (1.0F + relative_margin) + ball_margin;
   const Lanes margin(reach), share(relative_margin);
@@ -62,8 +72,9 @@ inline void meet(const RayPack* rays, const std::uint32_t* picked, std::size_t n
       const Vector direction = load(pack.direction_x, pack.direction_y, pack.direction_z, lane);
       const Lanes range = Lanes::at(pack.range + lane);
       const auto near = ray_tests::approach(origin, direction, centre);
-      const Lanes wide = margin + share * size_of(near.distance);
-      const Mask is_near = (dot(near.offset, near.offset) <= wide * wide) & (near.distance - wide <= range);
+      const Lanes slack = share * size_of(near.distance), wide = margin + slack;
+      const Mask is_near = (dot(near.offset, near.offset) <= wide * wide) & (near.distance - wide <= range) &
+                           may_meet(near.offset, direction, slack);
       if (bits(is_near) == 0) continue;
       found |= bits(ray_tests::is_hit(inside_solid(origin, direction), range)) << lane;
     }
@@ -71,29 +82,37 @@ inline void meet(const RayPack* rays, const std::uint32_t* picked, std::size_t n
   }
 }
 
-void meet_sphere(const RayPack* rays, const std::uint32_t* picked, std::size_t n, const PosedSphere& solid,
-                 const Ball& around, PackHits* hits) noexcept {
+inline Mask any_ray(const Vector&, const Vector&, Lanes slack) noexcept { return slack >= Lanes(0.0F); }
+
+[[gnu::flatten]] void meet_sphere(const RayPack* rays, const std::uint32_t* picked, std::size_t n,
+                                  const PosedSphere& solid, const Ball& around, PackHits* hits) noexcept {
   const Vector centre = vector_of(solid.centre);
   const Lanes radius(solid.radius);
-  meet(rays, picked, n, around, hits, [&](const Vector& origin, const Vector& direction) {
+  meet(rays, picked, n, around, hits, any_ray, [&](const Vector& origin, const Vector& direction) {
     return ray_tests::sphere(origin, direction, centre, radius);
   });
 }
 
-void meet_capsule(const RayPack* rays, const std::uint32_t* picked, std::size_t n, const PosedCapsule& solid,
-                  const Ball& around, PackHits* hits) noexcept {
+[[gnu::flatten]] void meet_capsule(const RayPack* rays, const std::uint32_t* picked, std::size_t n,
+                                   const PosedCapsule& solid, const Ball& around, PackHits* hits) noexcept {
   const auto axis = ray_tests::capsule_axis(vector_of(solid.a), vector_of(solid.b));
   const Lanes radius(solid.radius);
-  meet(rays, picked, n, around, hits, [&](const Vector& origin, const Vector& direction) {
-    return ray_tests::capsule(origin, direction, axis, radius);
-  });
+  const Lanes reach(solid.radius * (1.0F + relative_margin) + ball_margin);
+  meet(
+      rays, picked, n, around, hits,
+      [&](const Vector& offset, const Vector& direction, Lanes slack) {
+        return passes_near(offset, direction, axis.axis, reach + slack);
+      },
+      [&](const Vector& origin, const Vector& direction) {
+        return ray_tests::capsule(origin, direction, axis, radius);
+      });
 }
 
-void meet_box(const RayPack* rays, const std::uint32_t* picked, std::size_t n, const PosedBox& solid, const Ball& around,
-              PackHits* hits) noexcept {
+[[gnu::flatten]] void meet_box(const RayPack* rays, const std::uint32_t* picked, std::size_t n, const PosedBox& solid,
+                               const Ball& around, PackHits* hits) noexcept {
   const Vector centre = vector_of(solid.centre), half_extents = vector_of(solid.half_extents);
   const std::array<Vector, 3> axes{vector_of(solid.axes[0]), vector_of(solid.axes[1]), vector_of(solid.axes[2])};
-  meet(rays, picked, n, around, hits, [&](const Vector& origin, const Vector& direction) {
+  meet(rays, picked, n, around, hits, any_ray, [&](const Vector& origin, const Vector& direction) {
     return ray_tests::box(origin, direction, centre, axes, half_extents);
   });
 }

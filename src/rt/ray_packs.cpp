@@ -10,9 +10,9 @@
 namespace pirsim::rt {
 namespace {
 
-constexpr Column ConeBlock::* columns[] = {&ConeBlock::apex_x, &ConeBlock::apex_y, &ConeBlock::apex_z,
-                                           &ConeBlock::axis_x, &ConeBlock::axis_y, &ConeBlock::axis_z,
-                                           &ConeBlock::cosine, &ConeBlock::sine,   &ConeBlock::length};
+constexpr Column ConeBlock::*columns[] = {&ConeBlock::apex_x, &ConeBlock::apex_y, &ConeBlock::apex_z,
+                                          &ConeBlock::axis_x, &ConeBlock::axis_y, &ConeBlock::axis_z,
+                                          &ConeBlock::cosine, &ConeBlock::sine,   &ConeBlock::length};
 
 ConeBlock untouchable() noexcept {
   ConeBlock block{};
@@ -109,7 +109,8 @@ void pick(const std::vector<ConeBlock>& cones, const std::uint32_t* indices, std
   picked.assign((n + pack_size - 1) / pack_size, empty);
   for (std::size_t k = 0; k < n; ++k) {
     const ConeBlock& from = cones[indices[k] / pack_size];
-    for (const auto column : columns) (picked[k / pack_size].*column)[k % pack_size] = (from.*column)[indices[k] % pack_size];
+    for (const auto column : columns)
+      (picked[k / pack_size].*column)[k % pack_size] = (from.*column)[indices[k] % pack_size];
   }
 }
 
