@@ -46,8 +46,9 @@ class Motion {
 
   // Commands. A command that needs another stage first (walk while seated) throws std::logic_error: the caller
   // sequences them; stop() and rise() lead back to standing from anywhere.
-  void walk(const Route& route);  ///< from standing; the route starts here
-  void turn_to(double heading);   ///< from standing, in place, with small steps
+  /// From standing; the route starts here. Turns first where it leads off by more than 20 degrees, and at pivots.
+  void walk(const Route& route);
+  void turn_to(double heading);  ///< from standing, in place, with small steps
   /// From walking or turning: comes to stand within two steps. Who waits in mid-stride (limit_speed(0)) brings the
   /// feet together on the spot, which counts as turning.
   void stop();

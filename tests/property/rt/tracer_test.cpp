@@ -36,6 +36,27 @@ std::size_t active(const ZoneActivity& zones) {
   return static_cast<std::size_t>(std::count(zones.begin(), zones.end(), std::uint8_t{1}));
 }
 
+/// A direction in which a solid's oriented box touches it, and the point where it does: an axis for round solids, a
+/// point on an edge for a box.
+std::pair<Vec3, Vec3> outermost_point(Draw& draw, const PosedShape& shape) {
+  const double side = draw.index(2) == 0 ? -1.0 : 1.0;
+  if (const auto* s = std::get_if<PosedSphere>(&shape)) {
+    Vec3 axis(0.0);
+    axis[static_cast<int>(draw.index(3))] = side;
+    return {axis, Vec3(s->centre) + axis * double(s->radius)};
+  }
+  if (const auto* c = std::get_if<PosedCapsule>(&shape)) {
+    const Vec3 axis = glm::normalize(side * (Vec3(c->b) - Vec3(c->a)));
+    return {axis, Vec3(side > 0 ? c->b : c->a) + axis * double(c->radius)};
+  }
+  const auto& b = std::get<PosedBox>(shape);
+  const int i = static_cast<int>(draw.index(3)), j = (i + 1) % 3, k = (i + 2) % 3;
+  const Vec3 first = side * Vec3(b.axes[i]), second = Vec3(b.axes[j]);
+  const Vec3 corner = Vec3(b.centre) + first * double(b.half_extents[i]) + second * double(b.half_extents[j]);
+  return {glm::normalize(first + second),
+          corner + draw.between(-0.5, 0.5) * double(b.half_extents[k]) * Vec3(b.axes[k])};
+}
+
 TriMesh mirrored(TriMesh mesh) {
   for (Vec3& position : mesh.positions) position = testing::mirrored(position);
   return mesh;
@@ -108,6 +129,41 @@ TEST_CASE("the tracers agree with a loop over all triangles and solids in double
   }
   WARN(n_grazing << " of " << n_zones << " zones differ, all of them with a ray within 1e-5 m of grazing");
   CHECK(n_grazing < n_zones / 1000);
+}
+
+TEST_CASE("Embree leaves out no solid that a ray clips by micrometres at its outermost points", "[rt]") {
+  const rt::Room nothing{{}};
+  std::size_t n_hits = 0;
+  constexpr int n_rays = 4000;
+  Draw draw(12);
+  for (int i = 0; i < n_rays; ++i) {
+    // Square to the world, where Embree's boxes are tightest, or turned anyhow; others far off, so that there are
+    // boxes.
+    const Frame frame{draw.index(2) == 0 ? Quat(1, 0, 0, 0) : draw.rotation(), draw.inside({-6, 0, -6}, {6, 3, 6})};
+    const PosedShape solid = place(draw.shape(), frame);
+    std::vector<PosedShape> solids(8, solid);
+    for (std::size_t k = 1; k < solids.size(); ++k) {
+      solids[k] = place(draw.shape(), {draw.rotation(), draw.inside({-6, 50, -6}, {6, 60, 6})});
+    }
+    const auto [outwards, outermost] = outermost_point(draw, solid);
+    const Vec3 along = glm::normalize(glm::cross(outwards, draw.direction()));
+    const Vec3 aim = outermost - outwards * std::pow(10.0, draw.between(-6.0, -3.0));
+    RayBundle bundle;
+    bundle.rays.push_back({Vec3f(aim - draw.between(1.0, 11.0) * along), Vec3f(along)});
+    bundle.range.push_back(12.0F);
+    testing::close_zone(bundle);
+    testing::close_cluster(bundle);
+    testing::close_sensor(bundle);
+    const bool expected = entry_distance(bundle.rays[0], solid, 12.0F).has_value();
+    n_hits += expected ? 1 : 0;
+    for (const TracerKind kind : {TracerKind::reference, TracerKind::embree}) {
+      ZoneActivity zones(1);
+      rt::make_tracer(kind, {&nothing, &bundle, &bundle})->trace(solids, zones);
+      INFO("ray " << i << ", shape " << solid.index() << ", " << rt::name(kind) << " tracer");
+      REQUIRE((zones[0] == 1) == expected);
+    }
+  }
+  CHECK(n_hits > n_rays * 9 / 10);
 }
 
 TEST_CASE("an occluder that is added never adds an active zone, and boxed-in sensors see nobody", "[rt]") {
