@@ -32,23 +32,10 @@ RayBundle small_bundle() {
   bundle.sensor_clusters_begin = {0, 1, 3, 3};
   return bundle;
 }
-void mark(ChangePer per, const std::array<std::uint8_t, 4>& before, const std::array<std::uint8_t, 4>& after,
-          std::span<std::uint8_t> bits) {
-  const pir::MotionDetector detector(small_bundle(), per);
-  const auto channels = [&](const std::array<std::uint8_t, 4>& active) {
-    ZoneSet zones(active.size()), result(detector.n_channels());
-    for (std::size_t i = 0; i < active.size(); ++i) {
-      if (active[i] != 0) zones.insert(i);
-    }
-    detector.add_channels(zones, result);
-    return result;
-  };
-  detector.mark(channels(before).words(), channels(after).words(), bits);
-}
 std::array<std::uint8_t, 3> motion(ChangePer per, std::array<std::uint8_t, 4> before,
                                    std::array<std::uint8_t, 4> after) {
   std::array<std::uint8_t, 3> bits{};
-  mark(per, before, after, bits);
+  pir::mark_motion(small_bundle(), per, before, after, bits);
   return bits;
 }
 
@@ -202,6 +189,6 @@ TEST_CASE("motion per cluster is a cluster that falls silent or wakes", "[optics
 TEST_CASE("a bit once set stays set", "[optics]") {
   std::array<std::uint8_t, 3> bits{1, 0, 1};
   const std::array<std::uint8_t, 4> still{};
-  mark(ChangePer::beam, still, still, bits);
+  pir::mark_motion(small_bundle(), ChangePer::beam, still, still, bits);
   CHECK(bits == std::array<std::uint8_t, 3>{1, 0, 1});
 }
