@@ -14,6 +14,17 @@ void copy_bits(const Solid& solid, std::uint32_t* to) noexcept {
   std::ranges::copy(words, to);
 }
 
+/// For solids that have no test of many rays at a time.
+PackHits met_one_by_one(const RayPack& pack, const PosedShape& solid) noexcept {
+  unsigned int hits = 0;
+  for (unsigned int i = 0; i < pack_size; ++i) {
+    const Ray ray{Vec3f(pack.origin_x[i], pack.origin_y[i], pack.origin_z[i]),
+                  Vec3f(pack.direction_x[i], pack.direction_y[i], pack.direction_z[i])};
+    if (entry_distance(ray, solid, pack.range[i])) hits |= 1U << i;
+  }
+  return static_cast<PackHits>(hits);
+}
+
 }  // namespace
 
 DirectTracer::DirectTracer(const TracerSetup& setup, const RayKernel& kernel)
@@ -72,8 +83,10 @@ void DirectTracer::meet(const PosedShape& solid, const Ball& ball, ZoneSet::Word
     kernel_.meet_sphere(packs_.data(), near_solid_.data(), n, *sphere, ball, hits_.data());
   } else if (const auto* capsule = std::get_if<PosedCapsule>(&solid)) {
     kernel_.meet_capsule(packs_.data(), near_solid_.data(), n, *capsule, ball, hits_.data());
+  } else if (const auto* box = std::get_if<PosedBox>(&solid)) {
+    kernel_.meet_box(packs_.data(), near_solid_.data(), n, *box, ball, hits_.data());
   } else {
-    kernel_.meet_box(packs_.data(), near_solid_.data(), n, std::get<PosedBox>(solid), ball, hits_.data());
+    for (std::size_t k = 0; k < n; ++k) hits_[k] = met_one_by_one(packs_[near_solid_[k]], solid);
   }
   for (std::size_t k = 0; k < n; ++k) {
     const RayPack& pack = packs_[near_solid_[k]];
