@@ -44,8 +44,10 @@ double Motion::hip_height_m(const Placement& pelvis, const Feet& feet) const noe
   }
   if (stage_ == Stage::turning) height -= hips_lowered_m_ * (1.0 - smoothstep(distance_ / steps_.length()));
   // On a bend a foot can be further away than that.
+  const Vec2 ahead = direction_of(pelvis.heading);
+  const Vec2 sideways(-ahead.y, ahead.x);
   for (std::size_t side : {0U, 1U}) {
-    const Vec2 hip = pelvis.shifted(0.0, (side == 0 ? -0.5 : 0.5) * m.hip_width_m).position;
+    const Vec2 hip = pelvis.position + (side == 0 ? -0.5 : 0.5) * m.hip_width_m * sideways;
     const double reach =
         height_over(furthest_extension * (m.thigh_m + m.shank_m), glm::distance(hip, feet[side].print.position));
     height = std::min(height, m.ankle_height_m + feet[side].lift_m + reach);
