@@ -56,10 +56,16 @@ void write_summary(const studies::Summary& summary, const RunOptions& options, V
   if (verbosity != Verbosity::quiet) std::cerr << studies::to_text(summary);
 }
 
+std::string tracer_used(const Model& model) {
+  std::string name(rt::name(model.tracer()));
+  if (model.tracer() == rt::TracerKind::direct) name += " " + std::string(rt::direct_instruction_set());
+  return name;
+}
+
 io::Manifest manifest_of(const Model& model, const Inputs& inputs, std::uint64_t rows) {
   return {.program = version() + " " + git_revision() + " " + compiler(),
           .embree = rt::embree_version() + " " + rt::instruction_set(),
-          .tracer = std::string(rt::name(model.tracer())),
+          .tracer = tracer_used(model),
           .scene = inputs.scene.filename().string(),
           .script = inputs.script.filename().string(),
           .resolved_script = io::to_yaml(model.script()),

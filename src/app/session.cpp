@@ -9,9 +9,9 @@ namespace pirsim::app {
 namespace {
 
 rt::TracerKind tracer_kind(const std::string& name) {
-  if (name == "auto") return rt::TracerKind::remembering;
+  if (name == "auto") return rt::fastest_tracer;
   std::vector<std::string> names{"auto"};
-  for (const auto kind : {rt::TracerKind::remembering, rt::TracerKind::embree, rt::TracerKind::reference}) {
+  for (const auto kind : {rt::TracerKind::direct, rt::TracerKind::embree, rt::TracerKind::reference}) {
     if (rt::name(kind) == name) return kind;
     names.emplace_back(rt::name(kind));
   }

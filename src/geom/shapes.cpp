@@ -119,9 +119,8 @@ std::optional<float> entry_distance(const Ray& ray, const PosedSphere& sphere, f
 }
 
 std::optional<float> entry_distance(const Ray& ray, const PosedCapsule& capsule, float t_max) noexcept {
-  return entry_of(ray_tests::capsule(vector(ray.origin), vector(ray.direction), vector(capsule.a), vector(capsule.b),
-                                     capsule.radius),
-                  t_max);
+  const auto axis = ray_tests::capsule_axis(vector(capsule.a), vector(capsule.b));
+  return entry_of(ray_tests::capsule(vector(ray.origin), vector(ray.direction), axis, capsule.radius), t_max);
 }
 
 std::optional<float> entry_distance(const Ray& ray, const PosedBox& box, float t_max) noexcept {

@@ -23,6 +23,8 @@ ViewCone touches_everything() noexcept {
   return cone;
 }
 
+}  // namespace
+
 ViewCone cone_around(std::span<const Ray> rays, std::span<const float> range) {
   if (rays.empty()) return ViewCone{};
   const bool one_origin =
@@ -49,6 +51,8 @@ ViewCone cone_around(std::span<const Ray> rays, std::span<const float> range) {
   cone.length = *std::max_element(range.begin(), range.end());
   return cone;
 }
+
+namespace {
 
 ViewCone cone_of(const RayBundle& bundle, std::size_t first_zone, std::size_t end_zone) {
   const std::size_t begin = bundle.zone_rays_begin[first_zone], end = bundle.zone_rays_begin[end_zone];

@@ -265,6 +265,7 @@ Actor::Progress Actor::walk_to(const Vec2& target, const Model& model, std::span
 
 double Actor::free_way_ahead(std::span<const Presence> others) const {
   double free_m = look_ahead_m;
+  if (others.empty()) return free_m;
   const Vec2 ahead = direction_of(motion_->heading());
   for (const Presence& other : others) {
     const Vec2 to_other = other.position - motion_->position();
@@ -280,6 +281,7 @@ double Actor::free_way_ahead(std::span<const Presence> others) const {
 
 /// Will somebody who goes first come too near within the next moments if both go on as they do?
 bool Actor::must_give_way(std::span<const Presence> others) const {
+  if (others.empty()) return false;
   const Presence mine = presence();
   for (const Presence& other : others) {
     const Vec2 offset = other.position - mine.position;

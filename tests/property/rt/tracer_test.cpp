@@ -1,9 +1,11 @@
 #include "pirsim/rt/tracer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "pirsim/core/parallel.hpp"
+#include "rt/direct_tracer.hpp"
 #include "support/catch.hpp"
 #include "support/random_scene.hpp"
 
@@ -14,12 +16,16 @@ using pirsim::testing::RandomScene;
 
 namespace {
 
-/// A scene with its two tracers.
+/// A scene with its tracers.
 struct Traced {
   explicit Traced(const RandomScene& scene) : rated(scene.bundle), clipped(scene.bundle), room(scene.room) {
     room.clip(clipped);
     reference = rt::make_tracer(TracerKind::reference, {&room, &rated, &clipped});
     embree = rt::make_tracer(TracerKind::embree, {&room, &rated, &clipped});
+    for (const rt::RayKernel* kernel : rt::all_ray_kernels()) {
+      if (kernel->is_available())
+        direct.emplace_back(std::make_unique<rt::DirectTracer>(rt::TracerSetup{&room, &rated, &clipped}, *kernel));
+    }
   }
   ZoneActivity by(rt::Tracer& tracer, const std::vector<PosedShape>& solids) const {
     ZoneActivity zones(rated.n_zones(), std::uint8_t{7});
@@ -30,6 +36,7 @@ struct Traced {
   RayBundle rated, clipped;
   rt::Room room;
   std::unique_ptr<rt::Tracer> reference, embree;
+  std::vector<std::unique_ptr<rt::DirectTracer>> direct;  ///< one an instruction set
 };
 
 std::size_t active(const ZoneActivity& zones) {
@@ -79,7 +86,9 @@ RandomScene mirrored(RandomScene scene) {
 
 }  // namespace
 
-TEST_CASE("both tracers give the same zones in 2000 random scenes, while people come, move and go", "[rt]") {
+TEST_CASE(
+    "all tracers, on every instruction set, give the same zones in 2000 random scenes, while people come, move and go",
+    "[rt]") {
   std::size_t n_zones = 0, n_active = 0;
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     Draw draw(1000 + seed);
@@ -90,6 +99,7 @@ TEST_CASE("both tracers give the same zones in 2000 random scenes, while people 
       INFO("seed " << 1000 + seed << ", tick " << tick << ", " << solids.size() << " solids");
       const ZoneActivity expected = traced.by(*traced.reference, solids);
       REQUIRE(traced.by(*traced.embree, solids) == expected);
+      for (const auto& direct : traced.direct) REQUIRE(traced.by(*direct, solids) == expected);
       n_zones += expected.size();
       n_active += active(expected);
       if (tick % 2 == 0 && !solids.empty()) solids.resize(draw.index(static_cast<std::uint32_t>(solids.size())));
@@ -102,6 +112,21 @@ TEST_CASE("both tracers give the same zones in 2000 random scenes, while people 
   CHECK(n_active > n_zones / 20);
   CHECK(n_active < n_zones / 2);
   WARN(n_zones << " zones compared, " << n_active << " of them active");
+}
+
+TEST_CASE("people traced one by one give the zones of all of them together", "[rt]") {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    Draw draw(3000 + seed);
+    const RandomScene scene = testing::random_scene(draw);
+    const Traced traced(scene);
+    const std::span<const PosedShape> all(scene.solids);
+    const std::size_t cut = draw.index(static_cast<std::uint32_t>(all.size()) + 1);
+    const ZoneActivity together = traced.by(*traced.reference, scene.solids);
+    ZoneSet apart(together.size());
+    traced.direct.front()->add(0, all.first(cut), apart);
+    traced.direct.front()->add(1, all.subspan(cut), apart);
+    for (std::size_t zone = 0; zone < together.size(); ++zone) REQUIRE(apart.test(zone) == (together[zone] == 1));
+  }
 }
 
 TEST_CASE("the tracers agree with a loop over all triangles and solids in double precision", "[rt]") {
@@ -218,7 +243,8 @@ TEST_CASE("tracers of one room on several threads give the zones that one thread
   const Traced traced(scene);
   const auto run = [&](std::size_t i) {
     Draw own(20 + i);
-    const TracerKind kind = i % 2 == 0 ? TracerKind::embree : TracerKind::reference;
+    constexpr std::array kinds{TracerKind::embree, TracerKind::reference, TracerKind::direct};
+    const TracerKind kind = kinds[i % kinds.size()];
     const auto tracer = rt::make_tracer(kind, {&traced.room, &traced.rated, &traced.clipped});
     ZoneActivity all;
     for (int tick = 0; tick < 50; ++tick) {
