@@ -49,8 +49,7 @@ std::vector<std::size_t> first_zones(const Model& model) {
   return begins;
 }
 
-void write_summary(const studies::Summary& summary, const RunOptions& options, Verbosity verbosity) {
-  io::AtomicFile file(options.summary);
+void write_summary(const studies::Summary& summary, io::AtomicFile& file, const RunOptions& options, Verbosity verbosity) {
   file.stream() << (options.summary.extension() == ".md" ? studies::to_markdown(summary) : studies::to_csv(summary));
   file.commit();
   if (verbosity != Verbosity::quiet) std::cerr << studies::to_text(summary);
@@ -103,6 +102,8 @@ void run(const Inputs& inputs, const RunOptions& options) {
     zones_file.emplace(options.zones);
     zones.emplace(zones_file->stream(), sensor_ids(model), first_zones(model));
   }
+  std::optional<io::AtomicFile> summary_file;
+  if (!options.summary.empty()) summary_file.emplace(options.summary);
   studies::Summary summary = make_summary(model);
   std::uint64_t n_rows = 0;
   Progress progress(model.n_runs(), inputs.verbosity);
@@ -121,7 +122,7 @@ void run(const Inputs& inputs, const RunOptions& options) {
   });
   rows.commit();
   if (zones_file) zones_file->commit();
-  if (!options.summary.empty()) write_summary(summary, options, inputs.verbosity);
+  if (summary_file) write_summary(summary, *summary_file, options, inputs.verbosity);
   if (!options.output.empty()) {
     std::filesystem::path side_car = options.output;
     side_car += ".json";
