@@ -8,6 +8,7 @@ namespace pirsim::app {
 void run(const Inputs& inputs, const RunOptions& options);
 void check(const Inputs& inputs);
 void preview(const Inputs& inputs, const PreviewOptions& options);
+void coverage(const Inputs& inputs, const CoverageOptions& options);
 void export_gltf(const Inputs& inputs, const ExportOptions& options);
 
 }  // namespace pirsim::app

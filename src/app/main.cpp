@@ -22,6 +22,7 @@ constexpr const char* examples = R"(Examples:
   pirsim --scene room.gltf --script study.yaml -o rows.csv --summary table.md
   pirsim check --scene room.gltf --script study.yaml               validate, and report what each sensor can see
   pirsim preview --scene room.gltf --script study.yaml -o room.png  a picture of room, people and beams
+  pirsim coverage --scene room.gltf --script studyB.yaml -o maps   where each sensor sees a moving target
   pirsim export --scene room.gltf --script study.yaml -o run.glb    an animated glTF of one run
 )";
 
@@ -72,6 +73,12 @@ void add_preview_options(CLI::App& command, PreviewOptions& options) {
   command.add_option("--height", options.height, "pixels")->check(CLI::Range(16, 4320))->capture_default_str();
 }
 
+void add_coverage_options(CLI::App& command, CoverageOptions& options) {
+  command.add_option("-o,--output", options.output, "folder for maps and figures")->option_text("DIR")->capture_default_str();
+  command.add_option("--report", options.report, "the maps as one self-contained page, .html")->option_text("FILE");
+  command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
+}
+
 void add_export_options(CLI::App& command, ExportOptions& options) {
   command.add_option("-o,--output", options.output, "glTF file, .gltf or .glb")->option_text("FILE")->capture_default_str();
   command.add_option("--trial", options.trial, "which trial (default: the first)")->option_text("ID");
@@ -96,6 +103,7 @@ int run_command_line(int argc, char** argv) {
   RunOptions run_options;
   PreviewOptions preview_options;
   ExportOptions export_options;
+  CoverageOptions coverage_options;
   add_inputs(app, inputs);
   add_run_options(app, run_options);
   CLI::App* run_command = app.add_subcommand("run", "run the study (the default)");
@@ -110,6 +118,10 @@ int run_command_line(int argc, char** argv) {
   add_inputs(*export_command, inputs);
   add_export_options(*export_command, export_options);
 
+  CLI::App* coverage_command = app.add_subcommand("coverage", "map where each sensor sees a moving target");
+  add_inputs(*coverage_command, inputs);
+  add_coverage_options(*coverage_command, coverage_options);
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -123,6 +135,8 @@ int run_command_line(int argc, char** argv) {
     check(inputs);
   } else if (*preview_command) {
     preview(inputs, preview_options);
+  } else if (*coverage_command) {
+    coverage(inputs, coverage_options);
   } else if (*export_command) {
     export_gltf(inputs, export_options);
   } else {

@@ -41,6 +41,12 @@ struct PreviewOptions {
   int width = 1280, height = 720;
 };
 
+struct CoverageOptions {
+  std::filesystem::path output = "coverage";  ///< folder
+  std::filesystem::path report;               ///< .html
+  unsigned threads = 0;
+};
+
 struct ExportOptions {
   std::filesystem::path output = "run.glb";
   std::string trial;
