@@ -157,7 +157,7 @@ namespace {
 
 /// Distance from a point to the nearest of the lens's rays through the zones' centres, and through their corners if
 /// there are five rays a zone; from the lens data by plane trigonometry, without the ray bundle.
-double distance_to_rays(const SceneSpec& scene, RaysPerZone rays, const Vec3& point) {
+double distance_to_rays(const SceneSpec& scene, RaysPerZone rays, double shortened_m, const Vec3& point) {
   const double tilt = radians(20.0);
   const Vec3 eye = scene.sensors.front().world_from_sensor.origin;
   double nearest = 1e9;
@@ -171,7 +171,7 @@ double distance_to_rays(const SceneSpec& scene, RaysPerZone rays, const Vec3& po
         const Vec3 aim(p.x, p.y * std::cos(tilt) - plane * std::sin(tilt),
                        -p.y * std::sin(tilt) - plane * std::cos(tilt));
         const Vec3 along = aim / std::sqrt(aim.x * aim.x + aim.y * aim.y + aim.z * aim.z);
-        const double reach = std::clamp(glm::dot(point - eye, along), 0.0, cluster.range_m);
+        const double reach = std::clamp(glm::dot(point - eye, along), 0.0, cluster.range_m - shortened_m);
         nearest = std::min(nearest, glm::distance(point, eye + reach * along));
       }
     }
@@ -189,11 +189,14 @@ Agreement compare(const CoverageMap& map, const SceneSpec& scene, RaysPerZone ra
   for (std::size_t row = 0; row < map.grid.n_rows(); ++row) {
     for (std::size_t column = 0; column + moved_columns < map.grid.n_columns(); ++column) {
       const Vec2 at = map.grid.centre(column, row);
-      const double nearest =
-          std::min(distance_to_rays(scene, rays, {at.x, 1.0, at.y}), distance_to_rays(scene, rays, {at.x, 0.25, at.y}));
+      const auto distance = [&](double shortened_m) {
+        return std::min(distance_to_rays(scene, rays, shortened_m, {at.x, 1.0, at.y}),
+                        distance_to_rays(scene, rays, shortened_m, {at.x, 0.25, at.y}));
+      };
       const bool motion = map.count(column + moved_columns, row, 0) > 0;
-      if (motion && nearest > 0.2 + 1e-6) ++result.motion_far_from_rays;
-      if (nearest > 0.05 && nearest < 0.15) {
+      if (motion && distance(0.0) > 0.2 + 1e-6) ++result.motion_far_from_rays;
+      const double nearest = distance(0.2);    // of rays that go all the way through
+      if (nearest > 0.07 && nearest < 0.15) {  // nearer than a bar is wide, a ray may be hit all the time
         ++result.rays;
         result.rays_without_motion += motion ? 0 : 1;
       }
