@@ -1,12 +1,16 @@
 #include <iostream>
 
 #include "app/commands.hpp"
+#include "app/gnuplot_runner.hpp"
 #include "app/progress.hpp"
 #include "app/session.hpp"
+#include "pirsim/core/version.hpp"
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/coverage_reader.hpp"
+#include "pirsim/io/gnuplot.hpp"
 #include "pirsim/io/scene_reader.hpp"
 #include "pirsim/studies/coverage_figures.hpp"
+#include "pirsim/studies/coverage_report.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -24,6 +28,23 @@ void write(const std::filesystem::path& path, const std::string& text) {
   file.commit();
 }
 
+/// What made a page or a file of maps.
+std::string provenance(const Inputs& inputs) {
+  return "pirsim " + version() + " (" + git_revision() + "), " + inputs.scene.filename().string() + ", " +
+         inputs.script.filename().string();
+}
+
+void draw_maps(const studies::CoverageStudy& study, const studies::CoverageMap& map, const Inputs& inputs,
+               const std::filesystem::path& folder) {
+  for (std::size_t i = 0; i < map.sensors.size(); ++i) {
+    io::MapChart chart = studies::map_chart(study, map, i);
+    chart.title = study.spec().name + ", " + chart.title;
+    if (run_gnuplot(io::gnuplot_program(chart, folder / (map.sensors[i] + ".png")))) continue;
+    return tell({{Severity::warning, {}, "no pictures of the maps: gnuplot (package gnuplot-nox) isn't there or failed"}},
+                inputs.verbosity);
+  }
+}
+
 }  // namespace
 
 void coverage(const Inputs& inputs, const CoverageOptions& options) {
@@ -39,6 +60,12 @@ void coverage(const Inputs& inputs, const CoverageOptions& options) {
   }
   const studies::CoverageFigures figures = studies::figures_of(map);
   write(options.output / "coverage.csv", to_csv(map));
+  draw_maps(study, map, inputs, options.output);
+  if (!options.report.empty()) {
+    io::Report report = studies::coverage_report(study, map, figures);
+    report.footer = provenance(inputs);
+    io::write_report(options.report, report);
+  }
   if (inputs.verbosity != Verbosity::quiet) std::cout << to_text(map, figures);
 }
 
