@@ -4,13 +4,13 @@
 #include "app/gnuplot_runner.hpp"
 #include "app/progress.hpp"
 #include "app/session.hpp"
-#include "pirsim/core/version.hpp"
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/coverage_reader.hpp"
 #include "pirsim/io/gnuplot.hpp"
 #include "pirsim/io/scene_reader.hpp"
 #include "pirsim/studies/coverage_figures.hpp"
 #include "pirsim/studies/coverage_report.hpp"
+#include "pirsim/studies/row_store.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -28,10 +28,32 @@ void write(const std::filesystem::path& path, const std::string& text) {
   file.commit();
 }
 
-/// What made a page or a file of maps.
-std::string provenance(const Inputs& inputs) {
-  return "pirsim " + version() + " (" + git_revision() + "), " + inputs.scene.filename().string() + ", " +
-         inputs.script.filename().string();
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code fault;
+  std::filesystem::create_directories(folder, fault);
+  if (fault) throw Error(ErrorCode::io, Where{folder.string()}, "can't make the folder: " + fault.message());
+}
+
+/// Goes on where an interrupted run of the same study stopped.
+studies::CoverageMap compute(const studies::CoverageStudy& study, const Inputs& inputs,
+                             const CoverageOptions& options) {
+  make_folder(options.output);
+  studies::RowStore rows(options.output / "coverage.rows", study);
+  studies::CoverageMap map = studies::empty_map(study);
+  map.counts = rows.found();
+  if (rows.n_found_rows() > 0 && inputs.verbosity != Verbosity::quiet) {
+    std::cerr << "going on after " << rows.n_found_rows() << " of " << study.grid().n_rows() << " rows of squares\n";
+  }
+  Progress progress(static_cast<std::uint32_t>(study.grid().n_rows() - rows.n_found_rows()), inputs.verbosity,
+                    "rows of squares");
+  const auto keep = [&](std::size_t, const std::vector<studies::MotionCount>& counts) {
+    rows.append(counts);
+    map.counts.insert(map.counts.end(), counts.begin(), counts.end());
+    progress.run_finished();
+  };
+  studies::run_rows(study, rows.n_found_rows(), options.threads, keep);
+  rows.remove();
+  return map;
 }
 
 void draw_maps(const studies::CoverageStudy& study, const studies::CoverageMap& map, const Inputs& inputs,
@@ -40,8 +62,9 @@ void draw_maps(const studies::CoverageStudy& study, const studies::CoverageMap& 
     io::MapChart chart = studies::map_chart(study, map, i);
     chart.title = study.spec().name + ", " + chart.title;
     if (run_gnuplot(io::gnuplot_program(chart, folder / (map.sensors[i] + ".png")))) continue;
-    return tell({{Severity::warning, {}, "no pictures of the maps: gnuplot (package gnuplot-nox) isn't there or failed"}},
-                inputs.verbosity);
+    return tell(
+        {{Severity::warning, {}, "no pictures of the maps: gnuplot (package gnuplot-nox) isn't there or failed"}},
+        inputs.verbosity);
   }
 }
 
@@ -49,23 +72,11 @@ void draw_maps(const studies::CoverageStudy& study, const studies::CoverageMap& 
 
 void coverage(const Inputs& inputs, const CoverageOptions& options) {
   const studies::CoverageStudy study = load_coverage(inputs);
-  std::filesystem::create_directories(options.output);
-  studies::CoverageMap map = studies::empty_map(study);
-  {
-    Progress progress(static_cast<std::uint32_t>(study.grid().n_rows()), inputs.verbosity, "rows of squares");
-    studies::run_rows(study, 0, options.threads, [&](std::size_t, const std::vector<studies::MotionCount>& counts) {
-      map.counts.insert(map.counts.end(), counts.begin(), counts.end());
-      progress.run_finished();
-    });
-  }
+  const studies::CoverageMap map = compute(study, inputs, options);
   const studies::CoverageFigures figures = studies::figures_of(map);
   write(options.output / "coverage.csv", to_csv(map));
   draw_maps(study, map, inputs, options.output);
-  if (!options.report.empty()) {
-    io::Report report = studies::coverage_report(study, map, figures);
-    report.footer = provenance(inputs);
-    io::write_report(options.report, report);
-  }
+  if (!options.report.empty()) write_page(options.report, studies::coverage_report(study, map, figures), inputs);
   if (inputs.verbosity != Verbosity::quiet) std::cout << to_text(map, figures);
 }
 

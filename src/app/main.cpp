@@ -53,6 +53,7 @@ void add_inputs(CLI::App& command, Inputs& inputs) {
 void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("-o,--output", options.output, "rows as CSV (default: standard output)")->option_text("FILE");
   command.add_option("--summary", options.summary, "table of sums per trial and sensor, .csv or .md")->option_text("FILE");
+  command.add_option("--report", options.report, "counts and time series as one self-contained page, .html")->option_text("FILE");
   command.add_option("--zones", options.zones, "every zone's activity at every tick, as CSV")->option_text("FILE");
   command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
   command.add_flag_callback("--print-config", [&] { options.action = RunOptions::Action::print_config; },

@@ -26,6 +26,7 @@ struct RunOptions {
   std::filesystem::path output;   ///< empty: standard output
   std::filesystem::path summary;  ///< .csv or .md
   std::filesystem::path zones;
+  std::filesystem::path report;   ///< .html
   unsigned threads = 0;
   enum class Action { run, print_config } action = Action::run;
 };

@@ -32,7 +32,8 @@ void write_squares(std::ostream& out, const MapChart& chart) {
     for (int column = 0; column < chart.columns; ++column) {
       const auto& value = chart.values[static_cast<std::size_t>(row * chart.columns + column)];
       out << csv_number(chart.lower.x + (column + 0.5) * chart.spacing_m) << ' '
-          << csv_number(chart.lower.y + (row + 0.5) * chart.spacing_m) << ' ' << (value ? csv_number(*value) : "NaN") << '\n';
+          << csv_number(chart.lower.y + (row + 0.5) * chart.spacing_m) << ' ' << (value ? csv_number(*value) : "NaN")
+          << '\n';
     }
     out << '\n';
   }
@@ -66,7 +67,8 @@ std::string gnuplot_program(const MapChart& chart, const std::filesystem::path& 
       << "set xlabel 'x, m'\nset ylabel 'z, m'\nset cblabel " << quoted(chart.label) << " noenhanced\nunset key\n"
       << "set size ratio -1\nset tics out nomirror\nset cbrange [0:" << csv_number(chart.max) << "]\n"
       << "set xrange [" << csv_number(chart.lower.x - 0.1) << ':' << csv_number(chart.lower.x + width_m + 0.1) << "]\n"
-      << "set yrange [" << csv_number(chart.lower.y + depth_m + 0.1) << ':' << csv_number(chart.lower.y - 0.1) << "]\n"
+      << "set yrange [" << csv_number(chart.lower.y + depth_m + 0.1) << ':' << csv_number(chart.lower.y - 0.1)
+      << "]\n"
       // Viridis, by nine of its colours (Smith and van der Walt, CC0).
       << "set palette defined (0 '#440154', 1 '#472c7a', 2 '#3b518b', 3 '#2c718e', 4 '#21908d', 5 '#27ad81', "
          "6 '#5cc863', 7 '#aadc32', 8 '#fde725')\n"

@@ -67,7 +67,8 @@ io::MapChart map_chart(const CoverageStudy& study, const CoverageMap& map, std::
   io::MapChart chart;
   chart.title = spec.id;
   chart.label = "motion, s";
-  const double window_s = static_cast<double>(study.spec().sensing.ticks_per_window) / study.spec().sensing.tick_rate_hz;
+  const double window_s =
+      static_cast<double>(study.spec().sensing.ticks_per_window) / study.spec().sensing.tick_rate_hz;
   if (window_s != 1.0) chart.label = "windows";
   chart.unit = (window_s == 1.0 ? "s of " : "windows of ") + std::to_string(map.n_windows) + " with motion";
   chart.lower = grid.centre(0, 0) - 0.5 * Vec2(grid.spacing_m());
@@ -89,13 +90,15 @@ io::MapChart map_chart(const CoverageStudy& study, const CoverageMap& map, std::
 io::Report coverage_report(const CoverageStudy& study, const CoverageMap& map, const CoverageFigures& figures) {
   io::Report report;
   report.title = study.spec().name + ": where each sensor sees motion";
-  report.paragraphs = {
-      "A moving target stood for " + fixed(study.spec().duration_s, 0) + " s in every square of " +
-          fixed(100.0 * map.grid.spacing_m(), 0) + " cm of the floor of " + study.scene().name + " (" +
-          std::to_string(map.grid.n_squares()) + " squares). The maps, seen from above, tell for each sensor in how many "
-          "of these windows it reported motion: 0 means blind there. Point at a square for its value.",
-      "The target is " + std::to_string(study.target().crosses().size()) + " crosses of two bars, turning on the spot. "
-          "The triangle is the sensor, the solid line the floor's edge, the dashed line what was taken out of the room."};
+  report.paragraphs = {"A moving target stood for " + fixed(study.spec().duration_s, 0) + " s in every square of " +
+                           fixed(100.0 * map.grid.spacing_m(), 0) + " cm of the floor of " + study.scene().name + " (" +
+                           std::to_string(map.grid.n_squares()) +
+                           " squares). The maps, seen from above, tell for each sensor in how many "
+                           "of these windows it reported motion: 0 means blind there. Point at a square for its value.",
+                       "The target is " + std::to_string(study.target().crosses().size()) +
+                           " crosses of two bars, turning on the spot. "
+                           "The triangle is the sensor, the solid line the floor's edge, the dashed line what was "
+                           "taken out of the room."};
 
   io::Table table{{"sensor", "mean step", "greatest step", "blind", "area seen, m²"}, {}};
   for (std::size_t i = 0; i < map.sensors.size(); ++i) table.rows.push_back(row_of(map.sensors[i], figures.sensors[i]));
