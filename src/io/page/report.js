@@ -142,19 +142,24 @@
     view.runAsync().catch((fault) => { console.error(fault); place.textContent = "This chart can't be drawn."; });
   }
 
-  // Charts are drawn when they come into sight: a study of fifty cells opens at once.
+  // Charts are drawn when they come near the window: a study of fifty cells opens at once.
   const places = Array.from(document.querySelectorAll(".plot"));
-  const nearby = new IntersectionObserver((entries) => entries.forEach((entry) => {
-    if (entry.isIntersecting && !views.has(entry.target)) draw(entry.target);
-  }), { rootMargin: "600px" });
+  function drawNearby() {
+    places.forEach((place) => {
+      const box = place.getBoundingClientRect();
+      if (!views.has(place) && box.top < window.innerHeight + 600 && box.bottom > -600) draw(place);
+    });
+  }
   const redraw = () => views.forEach((view, place) => draw(place));
-  places.forEach((place) => nearby.observe(place));
+  drawNearby();
+  window.addEventListener("scroll", drawNearby, { passive: true });
   let waiting = 0;
   window.addEventListener("resize", () => {
     clearTimeout(waiting);
-    waiting = setTimeout(() => views.forEach((view, place) => {
-      if (place.dataset.width !== String(place.clientWidth)) draw(place);
-    }), 150);
+    waiting = setTimeout(() => {
+      views.forEach((view, place) => { if (place.dataset.width !== String(place.clientWidth)) draw(place); });
+      drawNearby();
+    }, 150);
   });
   window.addEventListener("beforeprint", () => places.filter((place) => !views.has(place)).forEach(draw));
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
