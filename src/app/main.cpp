@@ -80,6 +80,12 @@ void add_coverage_options(CLI::App& command, CoverageOptions& options) {
   command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
 }
 
+void add_walk_test_options(CLI::App& command, WalkTestOptions& options) {
+  command.add_option("-o,--output", options.output, "points with tries and verdicts, as CSV")->option_text("FILE")->capture_default_str();
+  command.add_option("--report", options.report, "the maps as one self-contained page, .html")->option_text("FILE");
+  command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
+}
+
 void add_export_options(CLI::App& command, ExportOptions& options) {
   command.add_option("-o,--output", options.output, "glTF file, .gltf or .glb")->option_text("FILE")->capture_default_str();
   command.add_option("--trial", options.trial, "which trial (default: the first)")->option_text("ID");
@@ -105,6 +111,7 @@ int run_command_line(int argc, char** argv) {
   PreviewOptions preview_options;
   ExportOptions export_options;
   CoverageOptions coverage_options;
+  WalkTestOptions walk_test_options;
   add_inputs(app, inputs);
   add_run_options(app, run_options);
   CLI::App* run_command = app.add_subcommand("run", "run the study (the default)");
@@ -122,6 +129,9 @@ int run_command_line(int argc, char** argv) {
   CLI::App* coverage_command = app.add_subcommand("coverage", "map where each sensor sees a moving target");
   add_inputs(*coverage_command, inputs);
   add_coverage_options(*coverage_command, coverage_options);
+  CLI::App* walk_test_command = app.add_subcommand("walktest", "how surely walkers and sitters are noticed in time");
+  add_inputs(*walk_test_command, inputs);
+  add_walk_test_options(*walk_test_command, walk_test_options);
 
   try {
     app.parse(argc, argv);
@@ -138,6 +148,8 @@ int run_command_line(int argc, char** argv) {
     preview(inputs, preview_options);
   } else if (*coverage_command) {
     coverage(inputs, coverage_options);
+  } else if (*walk_test_command) {
+    walk_test(inputs, walk_test_options);
   } else if (*export_command) {
     export_gltf(inputs, export_options);
   } else {

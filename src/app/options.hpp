@@ -48,6 +48,12 @@ struct CoverageOptions {
   unsigned threads = 0;
 };
 
+struct WalkTestOptions {
+  std::filesystem::path output = "walk_test.csv";
+  std::filesystem::path report;  ///< .html
+  unsigned threads = 0;
+};
+
 struct ExportOptions {
   std::filesystem::path output = "run.glb";
   std::string trial;

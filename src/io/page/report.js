@@ -22,6 +22,14 @@
     };
   }
 
+  // Twice, the first as a dark rim: readable on every colour.
+  function label(fill, stroke) {
+    return { type: "text", from: { data: "markers" }, interactive: false, encode: { enter: {
+      x: { scale: "x", field: "x" }, y: { scale: "z", field: "z", offset: -16 }, text: { field: "label" },
+      align: { value: "center" }, fill: { value: fill }, stroke: { value: stroke }, strokeWidth: { value: 3 },
+      strokeJoin: { value: "round" }, fontWeight: { value: "bold" } } } };
+  }
+
   // Seen from above, x to the right and z down the page.
   function map(chart, width) {
     const inner = width - 118, s = chart.spacing_m, x1 = chart.x0 + s * chart.columns, z1 = chart.z0 + s * chart.rows;
@@ -56,10 +64,7 @@
           x: { scale: "x", field: "x" }, y: { scale: "z", field: "z" }, shape: { value: "triangle-up" },
           size: { value: 110 }, angle: { field: "angle_deg" }, fill: { value: "#ff4d6d" },
           stroke: { value: "#ffffff" }, strokeWidth: { value: 1.2 } } } },
-        { type: "text", from: { data: "markers" }, interactive: false, encode: { enter: {
-          x: { scale: "x", field: "x" }, y: { scale: "z", field: "z", offset: -16 }, text: { field: "label" },
-          align: { value: "center" }, fill: { value: "#ffffff" }, stroke: { value: "#00000000" },
-          fontWeight: { value: "bold" } } } },
+        label("#000000", "#000000"), label("#ffffff", null),
       ],
     };
   }
