@@ -112,6 +112,7 @@ int run_command_line(int argc, char** argv) {
   ExportOptions export_options;
   CoverageOptions coverage_options;
   WalkTestOptions walk_test_options;
+  PlacementOptions placement_options;
   add_inputs(app, inputs);
   add_run_options(app, run_options);
   CLI::App* run_command = app.add_subcommand("run", "run the study (the default)");
@@ -132,6 +133,10 @@ int run_command_line(int argc, char** argv) {
   CLI::App* walk_test_command = app.add_subcommand("walktest", "how surely walkers and sitters are noticed in time");
   add_inputs(*walk_test_command, inputs);
   add_walk_test_options(*walk_test_command, walk_test_options);
+  CLI::App* placements_command = app.add_subcommand("placements", "rank sets of sensors, and look for a better one");
+  add_inputs(*placements_command, inputs);
+  placements_command->add_option("--threads", placement_options.threads, "0: all cores; changes no byte of any result")
+      ->option_text("N");
 
   try {
     app.parse(argc, argv);
@@ -150,6 +155,8 @@ int run_command_line(int argc, char** argv) {
     coverage(inputs, coverage_options);
   } else if (*walk_test_command) {
     walk_test(inputs, walk_test_options);
+  } else if (*placements_command) {
+    placements(inputs, placement_options);
   } else if (*export_command) {
     export_gltf(inputs, export_options);
   } else {

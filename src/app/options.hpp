@@ -54,6 +54,10 @@ struct WalkTestOptions {
   unsigned threads = 0;
 };
 
+struct PlacementOptions {
+  unsigned threads = 0;
+};
+
 struct ExportOptions {
   std::filesystem::path output = "run.glb";
   std::string trial;

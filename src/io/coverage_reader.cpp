@@ -3,13 +3,11 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "io/coverage_keys.hpp"
 #include "io/sensing_reader.hpp"
-#include "io/yaml_map.hpp"
 
 namespace pirsim::io {
 namespace {
-
-constexpr int format_version = 1;
 
 TurnSpec read_turn(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "turn");
@@ -39,26 +37,10 @@ XShapesSpec read_x_shapes(const YamlNode& node, Diagnostics& faults) {
   return target;
 }
 
-void read_target(const YamlNode& node, CoverageSpec& spec, Diagnostics& faults) {
-  YamlMap map(node, faults, "target");
-  spec.target = read_x_shapes(map.required_child("x_shapes"), faults);
-  map.finish();
-}
-
 }  // namespace
 
-CoverageSpec read_coverage(const std::filesystem::path& file, std::span<const std::string> overrides) {
-  const YamlNode root = YamlNode::load(file, overrides);
-  Diagnostics faults;
-  YamlMap map(root, faults, "coverage study");
-  const int version = map.required_integer("pirsim_coverage");
-  if (map.has("pirsim_coverage") && version != format_version) {
-    faults.error(map.where("pirsim_coverage"), "format version " + std::to_string(version) +
-                                                   " isn't known: this pirsim reads version " +
-                                                   std::to_string(format_version));
-  }
-  CoverageSpec spec;
-  spec.name = map.text("name", file.stem().string());
+void read_coverage_keys(YamlMap& map, CoverageSpec& spec) {
+  Diagnostics& faults = map.faults();
   spec.sensing = read_sensing(map.child("sensing"), faults);
   spec.spacing_m = map.number("spacing_m", spec.spacing_m, {.min = 0.005, .max = 10.0});
   spec.duration_s = map.number("duration_s", spec.duration_s, {.above = 0.0, .max = 3600.0});
@@ -70,7 +52,27 @@ CoverageSpec read_coverage(const std::filesystem::path& file, std::span<const st
     spec.without.push_back(item.text(faults, "without"));
     spec.without_where.push_back(item.where());
   }
-  read_target(map.required_child("target"), spec, faults);
+  YamlMap target(map.required_child("target"), faults, "target");
+  spec.target = read_x_shapes(target.required_child("x_shapes"), faults);
+  target.finish();
+}
+
+void check_version(YamlMap& map, const std::string& key) {
+  constexpr int format_version = 1;
+  const int version = map.required_integer(key);
+  if (!map.has(key) || version == format_version) return;
+  map.faults().error(map.where(key), "format version " + std::to_string(version) +
+                                         " isn't known: this pirsim reads version " + std::to_string(format_version));
+}
+
+CoverageSpec read_coverage(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  const YamlNode root = YamlNode::load(file, overrides);
+  Diagnostics faults;
+  YamlMap map(root, faults, "coverage study");
+  check_version(map, "pirsim_coverage");
+  CoverageSpec spec;
+  spec.name = map.text("name", file.stem().string());
+  read_coverage_keys(map, spec);
   map.finish();
   faults.throw_if_errors();
   return spec;

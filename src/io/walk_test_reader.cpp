@@ -1,12 +1,10 @@
 #include "pirsim/io/walk_test_reader.hpp"
 
+#include "io/coverage_keys.hpp"
 #include "io/sensing_reader.hpp"
-#include "io/yaml_map.hpp"
 
 namespace pirsim::io {
 namespace {
-
-constexpr int format_version = 1;
 
 void read_requirement(YamlMap& map, WalkRequirement& requirement) {
   requirement.within_s = map.number("within_s", requirement.within_s, {.above = 0.0, .max = 600.0});
@@ -46,12 +44,7 @@ WalkTestSpec read_walk_test(const std::filesystem::path& file, std::span<const s
   const YamlNode root = YamlNode::load(file, overrides);
   Diagnostics faults;
   YamlMap map(root, faults, "walk test");
-  const int version = map.required_integer("pirsim_walk_test");
-  if (map.has("pirsim_walk_test") && version != format_version) {
-    faults.error(map.where("pirsim_walk_test"), "format version " + std::to_string(version) +
-                                                    " isn't known: this pirsim reads version " +
-                                                    std::to_string(format_version));
-  }
+  check_version(map, "pirsim_walk_test");
   WalkTestSpec spec;
   spec.name = map.text("name", file.stem().string());
   spec.sensing = read_sensing(map.child("sensing"), faults);
