@@ -2,6 +2,7 @@
 #include <set>
 
 #include "app/commands.hpp"
+#include "app/progress.hpp"
 #include "app/session.hpp"
 #include "pirsim/io/placement_reader.hpp"
 #include "pirsim/io/scene_reader.hpp"
@@ -36,7 +37,9 @@ void placements(const Inputs& inputs, const PlacementOptions& options) {
     scores.push_back(studies::score(scene, spec.coverage, set, options.threads));
   std::optional<studies::PlacementSearch> search;
   if (spec.search) {
-    search = studies::search_placement(scene, spec.coverage, *spec.search, options.threads);
+    Progress progress(static_cast<std::uint32_t>(spec.search->evaluations), inputs.verbosity, "sets");
+    search = studies::search_placement(scene, spec.coverage, *spec.search, options.threads,
+                                       [&] { progress.run_finished(); });
     scores.push_back(search->even);
     scores.push_back(search->found);
   }

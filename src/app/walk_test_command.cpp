@@ -1,6 +1,7 @@
 #include <iostream>
 
 #include "app/commands.hpp"
+#include "app/progress.hpp"
 #include "app/session.hpp"
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/scene_reader.hpp"
@@ -14,7 +15,10 @@ void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
   SceneSpec scene = io::read_scene(inputs.scene, {inputs.sensor_directories});
   tell(scene.warnings, inputs.verbosity);
   const studies::WalkTest test(std::move(scene), std::move(spec));
-  const studies::WalkTestResult result = studies::run_walk_test(test, options.threads);
+  const studies::WalkTestResult result = [&] {
+    Progress progress(static_cast<std::uint32_t>(test.grid().n_rows()), inputs.verbosity, "rows of points");
+    return studies::run_walk_test(test, options.threads, [&] { progress.run_finished(); });
+  }();
   io::AtomicFile file(options.output);
   file.stream() << to_csv(test, result);
   file.commit();

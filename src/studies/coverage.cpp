@@ -20,7 +20,10 @@ bool is_called(const TriMesh& mesh, const std::string& name) {
 std::vector<TriMesh> take_out(SceneSpec& scene, const CoverageSpec& spec) {
   Diagnostics faults;
   std::vector<std::string> known;
-  for (const TriMesh& mesh : scene.meshes) known.push_back(mesh.name);
+  for (const TriMesh& mesh : scene.meshes) {
+    known.push_back(mesh.name.substr(0, mesh.name.find(' ')));
+    known.push_back(mesh.name);
+  }
   for (std::size_t i = 0; i < spec.without.size(); ++i) {
     const std::string& name = spec.without[i];
     if (std::ranges::any_of(scene.meshes, [&](const TriMesh& mesh) { return is_called(mesh, name); })) continue;

@@ -32,12 +32,14 @@ struct Objective {
   const CoverageSpec& coverage;
   const PlacementSearchSpec& search;
   unsigned threads;
+  const std::function<void()>& set_done;
   int evaluations = 0;
   double best_area = -1.0;
   std::vector<double> best;
 
   double area(const std::vector<double>& shares) {
     ++evaluations;
+    set_done();
     const double seen = score(scene, coverage, sensors_along(search, shares, ""), threads).seen_area_m2;
     if (seen > best_area) {
       best_area = seen;
@@ -118,10 +120,11 @@ SensorSetSpec sensors_along(const PlacementSearchSpec& search, const std::vector
 }
 
 PlacementSearch search_placement(const SceneSpec& scene, const CoverageSpec& coverage,
-                                 const PlacementSearchSpec& search, unsigned threads) {
+                                 const PlacementSearchSpec& search, unsigned threads,
+                                 const std::function<void()>& set_done) {
   std::vector<double> even;
   for (int i = 0; i < search.n_sensors; ++i) even.push_back((i + 0.5) / search.n_sensors);
-  Objective objective{scene, coverage, search, threads, 0, -1.0, {}};
+  Objective objective{scene, coverage, search, threads, set_done, 0, -1.0, {}};
   static_cast<void>(objective.area(even));
   maximise(nlopt::GN_DIRECT_L, objective, search.evaluations * 2 / 3);
   maximise(nlopt::LN_SBPLX, objective, search.evaluations - objective.evaluations);

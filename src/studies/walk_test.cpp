@@ -110,7 +110,7 @@ std::unique_ptr<rt::Tracer> WalkTest::make_tracer() const {
   return rt::make_tracer(rt::TracerKind::embree, {&room_, &rated_, &clipped_});
 }
 
-WalkTestResult run_walk_test(const WalkTest& test, unsigned threads) {
+WalkTestResult run_walk_test(const WalkTest& test, unsigned threads, const std::function<void()>& row_done) {
   const FloorGrid& grid = test.grid();
   WalkTestResult result;
   ordered_parallel<std::vector<PointResult>>(
@@ -125,6 +125,7 @@ WalkTestResult run_walk_test(const WalkTest& test, unsigned threads) {
       },
       [&](std::vector<PointResult>& points) {
         result.points.insert(result.points.end(), points.begin(), points.end());
+        row_done();
       });
   const std::unique_ptr<rt::Tracer> tracer = test.make_tracer();
   for (const SeatSpec& seat : test.scene().seats) result.seats.push_back({seat.id, test.notices_sitter(seat, *tracer)});

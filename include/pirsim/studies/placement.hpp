@@ -1,6 +1,7 @@
 // Which set of sensors covers a room best, and could another one do better?
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,9 +33,11 @@ struct PlacementSearch {
 };
 
 /// Looks for the sensors' places along the lines that cover most: NLopt's DIRECT-L over all of them, then SBPLX from
-/// the best. Both are deterministic. Ref: [Gablonsky2001], [Rowan1990].
-[[nodiscard]] PlacementSearch search_placement(const SceneSpec& scene, const CoverageSpec& coverage,
-                                               const PlacementSearchSpec& search, unsigned threads = 0);
+/// the best. Both are deterministic. `set_done` is called after each set that was tried. Ref: [Gablonsky2001],
+/// [Rowan1990].
+[[nodiscard]] PlacementSearch search_placement(
+    const SceneSpec& scene, const CoverageSpec& coverage, const PlacementSearchSpec& search, unsigned threads = 0,
+    const std::function<void()>& set_done = [] {});
 
 /// Sensors at these shares, in [0, 1], of the lines' joint length.
 [[nodiscard]] SensorSetSpec sensors_along(const PlacementSearchSpec& search, const std::vector<double>& shares,

@@ -2,6 +2,7 @@
 // In the manner of NEMA WD 7 (major and minor motion, cell by cell) and EN 50131-2-2 (walks in several directions).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -72,8 +73,9 @@ struct WalkTestResult {
   std::vector<SeatResult> seats;
 };
 
-/// threads 0: all cores; changes nothing in the result.
-[[nodiscard]] WalkTestResult run_walk_test(const WalkTest& test, unsigned threads = 0);
+/// threads 0: all cores; changes nothing in the result. `row_done` is called after each row of points.
+[[nodiscard]] WalkTestResult run_walk_test(
+    const WalkTest& test, unsigned threads = 0, const std::function<void()>& row_done = [] {});
 
 /// x_m, z_m, and for major and minor motion the tries, how many were noticed, and pass or fail.
 [[nodiscard]] std::string to_csv(const WalkTest& test, const WalkTestResult& result);
