@@ -6,6 +6,7 @@
 #include "pirsim/body/motion.hpp"
 #include "pirsim/core/parallel.hpp"
 #include "pirsim/core/units.hpp"
+#include "pirsim/pir/motion_detector.hpp"
 #include "pirsim/pir/optics.hpp"
 
 namespace pirsim::studies {
