@@ -48,7 +48,8 @@ std::string_view Actor::current_phase() const noexcept {
 }
 
 Presence Actor::presence() const {
-  return {motion_->position(), motion_->speed_m_s() * direction_of(motion_->heading()),
+  const double speed = motion_->speed_m_s();
+  return {motion_->position(), speed > 0.0 ? speed * direction_of(motion_->heading()) : Vec2(0.0),
           route_ ? route_->position(route_->length_m()) : motion_->position(), seat_, person().humanoid.clearance_radius_m()};
 }
 
