@@ -34,6 +34,7 @@ State::State(const Model& model, std::uint32_t run)
       lookout_(model.borrow_lookout()) {
   const TrialModel& trial = model.trial_of(run);
   for (std::uint32_t person = 0; person < trial.people.size(); ++person) actors_.emplace_back(model, run, person);
+  presences_.resize(actors_.size());
   sample_.replicate = model.replicate_of(run);
   sample_.trial = trial.id;
 }
@@ -44,6 +45,7 @@ State::State(const State& other)
       tick_(other.tick_),
       finished_(other.finished_),
       actors_(other.actors_),
+      presences_(other.presences_),
       zones_(other.zones_),
       channels_(other.channels_),
       previous_channels_(other.previous_channels_),
@@ -57,14 +59,17 @@ State& State::operator=(const State& other) {
 }
 
 void State::move_people(const Model& model) {
-  for (Actor& actor : actors_) {
+  for (std::size_t i = 0; i < actors_.size(); ++i) {
     others_.clear();
     std::size_t n_before = 0;
-    for (const Actor& other : actors_) {
-      if (&other == &actor) n_before = others_.size();
-      if (&other != &actor && other.present()) others_.push_back(other.presence());
+    for (std::size_t other = 0; other < actors_.size(); ++other) {
+      if (other == i) n_before = others_.size();
+      if (other != i && presences_[other]) others_.push_back(*presences_[other]);
     }
-    actor.advance(model, tick_, others_, n_before);
+    actors_[i].advance(model, tick_, others_, n_before);
+    if (actors_.size() == 1) continue;  // nobody asks
+    presences_[i].reset();
+    if (actors_[i].present()) presences_[i] = actors_[i].presence();
   }
 }
 

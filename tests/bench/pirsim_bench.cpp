@@ -1,6 +1,7 @@
 // How fast whole studies run, as CSV: benchmark,case,value,unit. What stands in a case tells what is measured; the
 // machine is described by the first lines. docs/performance.md explains the numbers.
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <ctime>
 #include <fstream>
@@ -165,6 +166,53 @@ void postures_anew() {
   }
 }
 
+// A kernel that counts what it is asked.
+struct Counts {
+  std::size_t packs = 0, hits = 0;
+};
+Counts counts;
+template <typename Solid>
+using Meet = void (*)(const rt::RayPack*, const std::uint32_t*, std::size_t, const Solid&, const rt::Ball&,
+                      rt::PackHits*) noexcept;
+template <typename Solid, Meet<Solid> rt::RayKernel::*meet>
+void counted(const rt::RayPack* rays, const std::uint32_t* picked, std::size_t n, const Solid& solid,
+             const rt::Ball& around, rt::PackHits* hits) noexcept {
+  (rt::best_ray_kernel().*meet)(rays, picked, n, solid, around, hits);
+  counts.packs += n;
+  for (std::size_t k = 0; k < n; ++k) counts.hits += static_cast<std::size_t>(std::popcount(hits[k]));
+}
+
+/// What must be tested at all: packs that pass the cones of a part, and rays that meet it.
+void limit() {
+  const Model model = study_a(rt::TracerKind::direct);
+  rt::RayKernel counting = rt::best_ray_kernel();
+  counting.meet_sphere = counted<PosedSphere, &rt::RayKernel::meet_sphere>;
+  counting.meet_capsule = counted<PosedCapsule, &rt::RayKernel::meet_capsule>;
+  counting.meet_box = counted<PosedBox, &rt::RayKernel::meet_box>;
+  for (const Phase& phase : phases) {
+    const std::string name(phase.name);
+    const int n_ticks = std::min(phase.n_ticks, 1000);
+    const auto one = outlines(model, phase.name, n_ticks, 1);
+    const body::Humanoid humanoid{model.trials().front().people.front().spec};
+    std::vector<PosedShape> solids;
+    const double pose = least(5, [&] {
+      const Stopwatch stopwatch;
+      for (const body::Outline& outline : one.front()) {
+        solids.clear();
+        append_solids(humanoid, body::posture_of(humanoid, outline), solids);
+      }
+      return stopwatch.seconds() / n_ticks * 1e9;
+    });
+    counts = {};
+    (void)anew_ns(model, one, counting);
+    report("limit", name + ", pose alone", pose, "ns");
+    report("limit", name + ", pairs of a part and a pack tested", static_cast<double>(counts.packs) / n_ticks,
+           "per tick");
+    report("limit", name + ", pairs of a part and a ray that meet", static_cast<double>(counts.hits) / n_ticks,
+           "per tick");
+  }
+}
+
 void people() {
   const Model model = study_a(rt::TracerKind::direct);
   const auto all = outlines(model, "working", 1000, 8);
@@ -239,8 +287,8 @@ int main(int argc, char** argv) {
   };
   describe_machine();
   for (const Section& section :
-       {Section{"start-up", start_up}, Section{"anew", postures_anew}, Section{"people", people},
-        Section{"ticks", ticks_by_phase}, Section{"runs", runs_per_second}}) {
+       {Section{"start-up", start_up}, Section{"anew", postures_anew}, Section{"limit", limit},
+        Section{"people", people}, Section{"ticks", ticks_by_phase}, Section{"runs", runs_per_second}}) {
     if (wanted.empty() || wanted == section.name) section.run();
   }
 }

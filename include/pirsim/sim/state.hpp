@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,6 +46,7 @@ class State {
   std::int64_t tick_ = 0;
   bool finished_ = false;
   std::vector<Actor> actors_;
+  std::vector<std::optional<Presence>> presences_;  ///< of the actors as they are now; of those in the scene
   ZoneSet zones_;
   ZoneSet channels_, previous_channels_;  ///< of the Model's detector
   std::vector<std::uint8_t> bits_;  ///< (n_sensors) motion so far in this window
