@@ -61,7 +61,8 @@ class Scene:
         """Accessors of positions (float) and indices (8 or 16 bit)."""
         flat = [i for triangle in triangles for i in triangle]
         small = len(points) < 256
-        low, high = ([round(f(p[k] for p in points), 6) for k in range(3)] for f in (min, max))
+        single = [struct.unpack("<3f", struct.pack("<3f", *p)) for p in points]  # the limits must be those stored
+        low, high = ([f(p[k] for p in single) for k in range(3)] for f in (min, max))
         position = self._accessor(b"".join(struct.pack("<3f", *p) for p in points), 34962, 5126, "VEC3", len(points),
                                   min=low, max=high)
         index = self._accessor(struct.pack("<%d%s" % (len(flat), "B" if small else "H"), *flat), 34963,
@@ -134,15 +135,23 @@ def joined(*parts):
 
 
 class Stock:
-    """Materials and the unit box in each of them; all boxes share one set of numbers."""
+    """Materials, and the unit box in each of them, made when first asked for; all boxes share one set of numbers."""
+    COLOURS = {"carpet": (0.45, 0.47, 0.5), "plaster": (0.9, 0.9, 0.88), "wood": (0.65, 0.48, 0.32),
+               "screen": (0.08, 0.08, 0.1), "fabric": (0.35, 0.45, 0.55)}
 
     def __init__(self, scene):
-        box = scene.geometry(*box_geometry())
-        self.floor_material = scene.material("carpet", (0.45, 0.47, 0.5))
-        colours = {"plaster": (0.9, 0.9, 0.88), "wood": (0.65, 0.48, 0.32), "screen": (0.08, 0.08, 0.1),
-                   "fabric": (0.35, 0.45, 0.55)}
-        self.material = {name: scene.material(name, colour) for name, colour in colours.items()}
-        self.box = {name: scene.mesh(name + " box", box, material) for name, material in self.material.items()}
+        self.scene, self.materials, self.boxes = scene, {}, {}
+        self.unit_box = scene.geometry(*box_geometry())
+
+    def material(self, name):
+        if name not in self.materials:
+            self.materials[name] = self.scene.material(name, self.COLOURS[name])
+        return self.materials[name]
+
+    def box(self, name):
+        if name not in self.boxes:
+            self.boxes[name] = self.scene.mesh(name + " box", self.unit_box, self.material(name))
+        return self.boxes[name]
 
 
 def add_sensor(scene, parent, name, model, at, yaw_deg, tilt_down_deg):
@@ -164,8 +173,8 @@ def meeting_room(layout, name):
 
     structure = scene.node("structure")
     floor = scene.geometry([(0, 0, 0), (width, 0, 0), (width, 0, -depth), (0, 0, -depth)], [(0, 1, 2), (0, 2, 3)])
-    scene.node("floor", structure, mesh=scene.mesh("floor", floor, stock.floor_material), mark={"type": "floor"})
-    plaster = stock.box["plaster"]
+    scene.node("floor", structure, mesh=scene.mesh("floor", floor, stock.material("carpet")), mark={"type": "floor"})
+    plaster = stock.box("plaster")
     scene.box("ceiling", structure, plaster, (-WALL, top, -depth - WALL), (width + WALL, top + WALL, WALL))
     scene.box("wall left", structure, plaster, (-WALL, 0, -depth - WALL), (0, top, WALL))
     scene.box("wall right", structure, plaster, (width, 0, -depth - WALL), (width + WALL, top, WALL))
@@ -182,7 +191,7 @@ def meeting_room(layout, name):
     add_table(scene, stock, table)
     furniture = scene.node("wall furniture")
     half = [TELEVISION[0] / 2, TELEVISION[1] / 2]
-    scene.box("television", furniture, stock.box["screen"],
+    scene.box("television", furniture, stock.box("screen"),
               (table["centre_x_m"] - half[0], TELEVISION_HEIGHT - half[1], -depth),
               (table["centre_x_m"] + half[0], TELEVISION_HEIGHT + half[1], -depth + TELEVISION[2]))
 
@@ -200,10 +209,10 @@ def add_table(scene, stock, table):
     x, z = table["size_x_m"] / 2, table["size_z_m"] / 2
     top, under = table["top_y_m"], table["top_y_m"] - table["thickness_m"]
     node = scene.node("table", at=[table["centre_x_m"], 0, table["centre_z_m"]])
-    scene.box("table top", node, stock.box["wood"], (-x, under, -z), (x, top, z))
+    scene.box("table top", node, stock.box("wood"), (-x, under, -z), (x, top, z))
     for name, sx, sz in (("near left", -1, 1), ("near right", 1, 1), ("far left", -1, -1), ("far right", 1, -1)):
         outer, inner = (sx * x, sz * z), (sx * (x - TABLE_LEG), sz * (z - TABLE_LEG))
-        scene.box("table leg " + name, node, stock.box["wood"],
+        scene.box("table leg " + name, node, stock.box("wood"),
                   (min(outer[0], inner[0]), 0, min(outer[1], inner[1])),
                   (max(outer[0], inner[0]), under, max(outer[1], inner[1])))
 
@@ -219,14 +228,14 @@ def open_office():
     # One desk, eight copies. It stands on its node, the user sits at +Z; a drawer unit on the right.
     desk = scene.mesh("desk", scene.geometry(*joined(
         box_geometry((-0.79, 0.715, -0.39), (0.79, 0.74, 0.39)), box_geometry((-0.78, 0, -0.35), (-0.75, 0.715, 0.35)),
-        box_geometry((0.36, 0.1, -0.35), (0.78, 0.715, 0.35)))), stock.material["wood"])
+        box_geometry((0.36, 0.1, -0.35), (0.78, 0.715, 0.35)))), stock.material("wood"))
     island_a = scene.node("island A", at=[3.0, 0, -2.5])
     island_b = scene.node("island B", at=[9.4, 0, -2.5], turned=rotation(90))
     for island, first in ((island_a, 1), (island_b, 5)):
         add_island(scene, stock, island, desk, first)
 
     lounge = scene.node("lounge", at=[5.6, 0, -6.6], turned=rotation(30))
-    scene.box("low table", lounge, stock.box["wood"], (-0.4, 0.35, -1.3), (0.4, 0.4, -0.7))
+    scene.box("low table", lounge, stock.box("wood"), (-0.4, 0.35, -1.3), (0.4, 0.4, -0.7))
     add_seat(scene, lounge, "S9", [0, 0.45, 0], 0)
 
     ceiling = scene.node("ceiling sensors", at=[0, height - 0.01, 0])  # just below the slab
@@ -239,11 +248,11 @@ def open_office():
 
 def add_office_structure(scene, stock, height):
     """12 x 8 m without the corner x > 8, z < -5; doors in the front and the right wall."""
-    plaster = stock.box["plaster"]
+    plaster = stock.box("plaster")
     structure = scene.node("structure")
     corners = [(0, 0), (12, 0), (12, -5), (8, -5), (8, -8), (0, -8)]  # counter-clockwise seen from above
     floor = scene.geometry([(x, 0, z) for x, z in corners], [(3, 4, 5), (3, 5, 0), (3, 0, 1), (3, 1, 2)])
-    scene.node("floor", structure, mesh=scene.mesh("floor", floor, stock.floor_material), mark={"type": "floor"})
+    scene.node("floor", structure, mesh=scene.mesh("floor", floor, stock.material("carpet")), mark={"type": "floor"})
     door = 2.1
     for name, low, high in (
             ("ceiling", (-WALL, height, -8 - WALL), (12 + WALL, height + WALL, WALL)),
@@ -266,7 +275,7 @@ def add_office_structure(scene, stock, height):
 
 def add_island(scene, stock, island, desk, first_seat):
     """Two by two desks back to back, a partition screen between them."""
-    scene.box("partition", island, stock.box["fabric"], (-1.6, 0.6, -0.02), (1.6, 1.25, 0.02))
+    scene.box("partition", island, stock.box("fabric"), (-1.6, 0.6, -0.02), (1.6, 1.25, 0.02))
     places = (("left", -0.8, 0.42, 0), ("right", 0.8, 0.42, 0), ("right", 0.8, -0.42, 180), ("left", -0.8, -0.42, 180))
     for k, (side, x, z, yaw) in enumerate(places):
         seat = "S%d" % (first_seat + k)
@@ -274,7 +283,7 @@ def add_island(scene, stock, island, desk, first_seat):
         # Drawers point to the aisle on both sides: the mirrored copy has a negative scale.
         mirrored = (side == "left") == (yaw == 0)
         scene.node("desk " + seat, place, mesh=desk, scale=[-1, 1, 1] if mirrored else None)
-        scene.box("monitor " + seat, place, stock.box["screen"], (-0.3, 0.85, -0.25), (0.3, 1.2, -0.21))
+        scene.box("monitor " + seat, place, stock.box("screen"), (-0.3, 0.85, -0.25), (0.3, 1.2, -0.21))
         add_seat(scene, place, seat, [0, 0.53, 0.55], 0)
 
 
@@ -289,7 +298,8 @@ def open_hall():
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--alternative", metavar="N", help="write only alternative layout N of the meeting room, or 'all'")
+    parser.add_argument("--alternative", metavar="N",
+                        help="write only alternative layout N of the meeting room, or 'all'")
     parser.add_argument("--layouts", type=pathlib.Path, default=ROOT / "data/rooms/room_layouts.json")
     parser.add_argument("-o", "--output", type=pathlib.Path, default=ROOT / "data/rooms", help="folder")
     arguments = parser.parse_args()

@@ -45,7 +45,7 @@ void add_inputs(CLI::App& command, Inputs& inputs) {
   command.add_option("--sensors", inputs.sensor_directories, "folder with sensor models, searched first")
       ->option_text("DIR")
       ->allow_extra_args(false);
-  command.add_option("--tracer", inputs.tracer, "auto, remembering, embree or reference")->option_text("NAME");
+  command.add_option("--tracer", inputs.tracer, "auto, direct, embree or reference")->option_text("NAME");
   command.add_flag_callback("-q,--quiet", [&] { inputs.verbosity = Verbosity::quiet; }, "errors only");
   command.add_flag_callback("-v,--verbose", [&] { inputs.verbosity = Verbosity::verbose; }, "more about what goes on");
 }

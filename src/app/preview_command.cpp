@@ -67,7 +67,7 @@ rt::Camera dolls_house_camera(const SceneSpec& scene, double fov_rad, double asp
   const double radius = 0.5 * glm::length(Vec3(upper.x - lower.x, 2.0, upper.y - lower.y));
   const double narrow = std::min(fov_rad, 2.0 * std::atan(std::tan(fov_rad / 2.0) * aspect));
   const Vec3 direction = glm::normalize(Vec3(-0.55, 0.85, -1.0));
-  return {target + direction * (0.92 * radius / std::sin(narrow / 2.0)), target, fov_rad};
+  return {target + direction * (0.8 * radius / std::sin(narrow / 2.0)), target, fov_rad};
 }
 
 bool reached_default_time(const State& state, std::int64_t& work_began, const Model& model) {
@@ -117,6 +117,8 @@ void preview(const Inputs& inputs, const PreviewOptions& options) {
       beams.push_back({beam.from, beam.to, beam.sees_person ? seeing : idle});
     }
   }
+  // What sees the person is drawn last, over the rest.
+  std::ranges::stable_partition(beams, [&](const rt::Beam& beam) { return beam.colour == idle; });
   const double fov = radians(options.field_of_view_deg);
   rt::Camera camera = dolls_house_camera(model.scene(), fov, static_cast<double>(options.width) / options.height);
   const auto vec = [](const std::array<double, 3>& a) { return Vec3(a[0], a[1], a[2]); };

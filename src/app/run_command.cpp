@@ -50,17 +50,22 @@ std::vector<std::size_t> first_zones(const Model& model) {
   return begins;
 }
 
-void write_summary(const studies::Summary& summary, const RunOptions& options, Verbosity verbosity) {
-  io::AtomicFile file(options.summary);
+void write_summary(const studies::Summary& summary, io::AtomicFile& file, const RunOptions& options, Verbosity verbosity) {
   file.stream() << (options.summary.extension() == ".md" ? studies::to_markdown(summary) : studies::to_csv(summary));
   file.commit();
   if (verbosity != Verbosity::quiet) std::cerr << studies::to_text(summary);
 }
 
+std::string tracer_used(const Model& model) {
+  std::string name(rt::name(model.tracer()));
+  if (model.tracer() == rt::TracerKind::direct) name += " " + std::string(rt::direct_instruction_set());
+  return name;
+}
+
 io::Manifest manifest_of(const Model& model, const Inputs& inputs, std::uint64_t rows) {
   return {.program = version() + " " + git_revision() + " " + compiler(),
           .embree = rt::embree_version() + " " + rt::instruction_set(),
-          .tracer = std::string(rt::name(model.tracer())),
+          .tracer = tracer_used(model),
           .scene = inputs.scene.filename().string(),
           .script = inputs.script.filename().string(),
           .resolved_script = io::to_yaml(model.script()),
@@ -98,6 +103,10 @@ void run(const Inputs& inputs, const RunOptions& options) {
     zones_file.emplace(options.zones);
     zones.emplace(zones_file->stream(), sensor_ids(model), first_zones(model));
   }
+  std::optional<io::AtomicFile> summary_file;
+  if (!options.summary.empty()) summary_file.emplace(options.summary);
+  std::optional<io::AtomicFile> report_file;
+  if (!options.report.empty()) report_file.emplace(options.report);
   studies::Summary summary = make_summary(model);
   studies::StudyReport report(model);
   std::uint64_t n_rows = 0;
@@ -118,8 +127,8 @@ void run(const Inputs& inputs, const RunOptions& options) {
   });
   rows.commit();
   if (zones_file) zones_file->commit();
-  if (!options.summary.empty()) write_summary(summary, options, inputs.verbosity);
-  if (!options.report.empty()) write_page(options.report, report.finish(summary), inputs);
+  if (summary_file) write_summary(summary, *summary_file, options, inputs.verbosity);
+  if (report_file) write_page(*report_file, report.finish(summary), inputs);
   if (!options.output.empty()) {
     std::filesystem::path side_car = options.output;
     side_car += ".json";

@@ -10,9 +10,9 @@ namespace pirsim::app {
 namespace {
 
 rt::TracerKind tracer_kind(const std::string& name) {
-  if (name == "auto") return rt::TracerKind::remembering;
+  if (name == "auto") return rt::fastest_tracer;
   std::vector<std::string> names{"auto"};
-  for (const auto kind : {rt::TracerKind::remembering, rt::TracerKind::embree, rt::TracerKind::reference}) {
+  for (const auto kind : {rt::TracerKind::direct, rt::TracerKind::embree, rt::TracerKind::reference}) {
     if (rt::name(kind) == name) return kind;
     names.emplace_back(rt::name(kind));
   }
@@ -26,10 +26,11 @@ void tell(const std::vector<Issue>& issues, Verbosity verbosity) {
   for (const Issue& issue : issues) std::cerr << to_string(issue) << '\n';
 }
 
-void write_page(const std::filesystem::path& file, io::Report report, const Inputs& inputs) {
+void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs) {
   report.footer = "pirsim " + version() + " (" + git_revision() + "), " + inputs.scene.filename().string() + ", " +
                   inputs.script.filename().string();
-  io::write_report(file, report);
+  file.stream() << io::to_html(report);
+  file.commit();
 }
 
 Model load(const Inputs& inputs) {

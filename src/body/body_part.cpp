@@ -1,12 +1,11 @@
 #include "pirsim/body/body_part.hpp"
 
+#include "pirsim/schema/body_part_names.hpp"
+
 namespace pirsim::body {
 
-std::string_view name(Part part) noexcept {
-  static constexpr std::array<std::string_view, n_parts> names{
-      "pelvis",     "torso",       "head",       "left_upper_arm", "right_upper_arm", "left_forearm", "right_forearm",
-      "left_thigh", "right_thigh", "left_shank", "right_shank",    "left_foot",       "right_foot"};
-  return names[static_cast<std::size_t>(part)];
-}
+static_assert(body_part_names.size() == n_parts);
+
+std::string_view name(Part part) noexcept { return body_part_names[static_cast<std::size_t>(part)]; }
 
 }  // namespace pirsim::body

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "pirsim/schema/body_part_names.hpp"
+
 namespace pirsim::body {
 
 namespace {
@@ -70,6 +72,15 @@ Capsule limb(double mass_kg, double length_m) {
   return {radius, 0.5 * length_m};
 }
 
+Solids with_meshes(Solids solids, const BodyMeshes& meshes) {
+  for (const auto& [name, mesh] : meshes) {
+    const auto part = std::find(body_part_names.begin(), body_part_names.end(), name);
+    if (part == body_part_names.end()) throw Error(ErrorCode::usage, "a mesh for '" + name + "', which is no body part");
+    solids[static_cast<std::size_t>(part - body_part_names.begin())] = mesh;
+  }
+  return solids;
+}
+
 }  // namespace
 
 Humanoid::Humanoid(const PersonSpec& person)
@@ -80,7 +91,7 @@ Humanoid::Humanoid(const PersonSpec& person)
   const double h = m.stature_m;
   // Widths grow as those of a body of constant density do.
   const double girth = std::sqrt((person.mass_kg / reference_mass_kg) / (h / reference_stature_m));
-  const auto set = [this](Part part, const Shape& shape) { solids_[static_cast<std::size_t>(part)] = shape; };
+  const auto set = [this](Part part, const Shape& shape) { primitives_[static_cast<std::size_t>(part)] = shape; };
   const auto mass = [this](Part part) { return masses_kg_[static_cast<std::size_t>(part)]; };
 
   set(Part::pelvis, Capsule{pelvis_radius_m * girth, 0.5 * m.hip_width_m});
@@ -96,13 +107,14 @@ Humanoid::Humanoid(const PersonSpec& person)
   for (const Part part : {Part::left_shank, Part::right_shank}) set(part, limb(mass(part), m.shank_m));
   const Box foot_box{{0.5 * foot_width * h, 0.5 * m.ankle_height_m, 0.5 * m.foot_length_m}};
   for (const Part part : {Part::left_foot, Part::right_foot}) set(part, foot_box);
+  solids_ = with_meshes(primitives_, person.body_meshes);
   // Arms hang 10 degrees out from the shoulders.
   constexpr double out = 0.1736;
   clearance_radius_m_ = 0.5 * m.shoulder_width_m + out * m.upper_arm_m + radius_m(Part::left_upper_arm);
 }
 
 double Humanoid::radius_m(Part part) const noexcept {
-  const Shape& shape = solids_[static_cast<std::size_t>(part)];
+  const Shape& shape = primitives_[static_cast<std::size_t>(part)];
   if (const auto* capsule = std::get_if<Capsule>(&shape)) return capsule->radius;
   const auto* sphere = std::get_if<Sphere>(&shape);
   assert(sphere != nullptr);

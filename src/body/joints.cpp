@@ -79,7 +79,7 @@ Vec3 joint_in(const Humanoid& humanoid, Part part, Joint joint, const Vec3& end)
   const Measures& m = humanoid.measures();
   if (part == Part::pelvis)
     return joint == Joint::spine ? Vec3(0.0) : Vec3(0, (side == 0 ? -0.5 : 0.5) * m.hip_width_m, 0);
-  const Shape& shape = humanoid.solids()[at(part)];
+  const Shape& shape = humanoid.primitives()[at(part)];
   if (const auto* capsule = std::get_if<Capsule>(&shape)) return end * capsule->half_length;
   return Vec3(0.0);
 }

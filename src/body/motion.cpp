@@ -56,6 +56,7 @@ Motion::Motion(const Humanoid& humanoid, const Vec2& position, double heading, d
   const Placement place{position, heading};
   const double half_stance = 0.5 * humanoid.measures().hip_width_m;
   come_to_stand(place, {Footstep{place.shifted(0.0, -half_stance)}, Footstep{place.shifted(0.0, half_stance)}});
+  update_stance();
 }
 
 int Motion::ticks(double seconds) const noexcept {
@@ -101,6 +102,7 @@ void Motion::walk(const Route& route) {
     throw std::logic_error("a route begins where the person stands");
   }
   if (route.length_m() > 0.0) walk_from(route, 0.0);
+  update_stance();
 }
 
 void Motion::walk_from(const Route& route, double from_s) {
@@ -122,6 +124,7 @@ void Motion::turn_to(double heading) {
   if (stage_ != Stage::standing) refuse("turning", stage_);
   const double angle = wrapped(heading - stand_.heading);
   if (angle != 0.0) begin_turn(angle);
+  update_stance();
 }
 
 void Motion::stop() {
@@ -130,10 +133,11 @@ void Motion::stop() {
   remainder_.reset();
   if (stage_ == Stage::walking && track_speed_ < standstill_m_s) {
     bring_feet_together();
-    return;
+  } else {
+    const double braking = stage_ == Stage::walking ? walking_acceleration_m_s2 : turning_acceleration;
+    steps_.shorten(distance_, track_speed_ * track_speed_ / (2.0 * braking) + track_speed_ * tick_s_);
   }
-  const double braking = stage_ == Stage::walking ? walking_acceleration_m_s2 : turning_acceleration;
-  steps_.shorten(distance_, track_speed_ * track_speed_ / (2.0 * braking) + track_speed_ * tick_s_);
+  update_stance();
 }
 
 void Motion::sit_down(const SeatPlace& seat) {
@@ -144,6 +148,7 @@ void Motion::sit_down(const SeatPlace& seat) {
   if (stage_ != Stage::standing) refuse("sitting down", stage_);
   seating_ = Seating(humanoid_, seat, stand_, stand_feet_);
   stage_ = Stage::sitting_down;
+  update_stance();
 }
 
 void Motion::rise() {
@@ -179,8 +184,17 @@ void Motion::tilt_spine(double radians) {
 void Motion::limit_speed(double metres_per_second) { speed_limit_m_s_ = std::max(0.0, metres_per_second); }
 
 void Motion::advance() {
+  const Stage before = stage_;
+  const bool was_moving = on_track() || (on_seat() && !(fall_.settled() && slide_m_.settled()));
   if (on_track()) advance_on_track();
   if (on_seat()) advance_on_seat();
+  if (was_moving || stage_ != before) update_stance();
+}
+
+void Motion::update_stance() noexcept {
+  stance_.pelvis = pelvis();
+  stance_.feet = feet();
+  stance_.hip_height_m = hip_height_m(stance_.pelvis, stance_.feet);
 }
 
 void Motion::advance_on_track() {

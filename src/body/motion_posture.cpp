@@ -44,8 +44,10 @@ double Motion::hip_height_m(const Placement& pelvis, const Feet& feet) const noe
   }
   if (stage_ == Stage::turning) height -= hips_lowered_m_ * (1.0 - smoothstep(distance_ / steps_.length()));
   // On a bend a foot can be further away than that.
+  const Vec2 ahead = direction_of(pelvis.heading);
+  const Vec2 sideways(-ahead.y, ahead.x);
   for (std::size_t side : {0U, 1U}) {
-    const Vec2 hip = pelvis.shifted(0.0, (side == 0 ? -0.5 : 0.5) * m.hip_width_m).position;
+    const Vec2 hip = pelvis.position + (side == 0 ? -0.5 : 0.5) * m.hip_width_m * sideways;
     const double reach =
         height_over(furthest_extension * (m.thigh_m + m.shank_m), glm::distance(hip, feet[side].print.position));
     height = std::min(height, m.ankle_height_m + feet[side].lift_m + reach);
@@ -54,8 +56,9 @@ double Motion::hip_height_m(const Placement& pelvis, const Feet& feet) const noe
 }
 
 double Motion::spine_tilt() const noexcept {
+  if (fall_.settled()) return tilt_.value();
   const double s = std::sin(pi * std::clamp(fall_.value(), 0.0, 1.0));
-  return fall_.settled() ? tilt_.value() : tilt_.value() + lean_while_falling * s * s;
+  return tilt_.value() + lean_while_falling * s * s;
 }
 
 double Motion::hand_offset_m() const noexcept {
@@ -68,53 +71,67 @@ double Motion::hand_offset_m() const noexcept {
   return work_.arm_amplitude_m * std::sin(2.0 * pi * phase) + hand_offset_left_over_m_.value();
 }
 
-std::array<ArmPose, 2> Motion::arms(const Pose& pose) const noexcept {
-  const Measures& m = humanoid_.measures();
-  const double fall = std::clamp(fall_.value(), 0.0, 1.0);
-  const double reach = std::clamp(reach_.value(), 0.0, 1.0);
+Outline Motion::outline() const noexcept {
+  Outline outline;
+  outline.pelvis = stance_.pelvis;
+  outline.feet = stance_.feet;
+  outline.floor_height_m = floor_height_m_;
+  outline.hip_height_m = floor_height_m_ + stance_.hip_height_m;
+  outline.spine_tilt = spine_tilt();
+  outline.fall = std::clamp(fall_.value(), 0.0, 1.0);
+  outline.reach = std::clamp(reach_.value(), 0.0, 1.0);
+  if (outline.fall > 0.0) outline.thigh_angle = seating_.thigh_angle(1.0);
+  if (outline.reach > 0.0) {
+    const double thighs = outline.hip_height_m + humanoid_.radius_m(Part::left_thigh);
+    outline.table_height_m = seating_.seat().table_height_m.value_or(thighs);
+    outline.hand_offset_m = hand_offset_m();
+  }
+  return outline;
+}
+
+namespace {
+
+std::array<ArmPose, 2> arms_of(const Humanoid& humanoid, const Outline& outline, const Pose& pose) noexcept {
   std::array<ArmPose, 2> arms;
-  if (fall < 1.0) {
+  if (outline.fall < 1.0) {
     const Frame hips_from_world = inverse(pose.world_from_hips);
     // Feet before a sitter don't make the arms swing: only their difference counts.
-    arms = hanging_arms(m, {-(hips_from_world * pose.world_from_ankle[0].origin).z,
-                            -(hips_from_world * pose.world_from_ankle[1].origin).z});
+    arms = hanging_arms(humanoid.measures(), {-(hips_from_world * pose.world_from_ankle[0].origin).z,
+                                              -(hips_from_world * pose.world_from_ankle[1].origin).z});
   }
-  if (fall > 0.0 && reach < 1.0) {
-    const auto resting = arms_on_thighs(humanoid_, pose.spine_tilt, seating_.thigh_angle(1.0));
-    for (std::size_t side : {0U, 1U}) arms[side] = blend(arms[side], resting[side], smoothstep(fall));
+  if (outline.fall > 0.0 && outline.reach < 1.0) {
+    const auto resting = arms_on_thighs(humanoid, pose.spine_tilt, outline.thigh_angle);
+    for (std::size_t side : {0U, 1U}) arms[side] = blend(arms[side], resting[side], smoothstep(outline.fall));
   }
-  if (reach > 0.0) {
-    const double thighs = pose.world_from_hips.origin.y + humanoid_.radius_m(Part::left_thigh);
-    const double table = seating_.seat().table_height_m.value_or(thighs);
-    const auto working =
-        arms_on_table(humanoid_, pose.spine_tilt, table - pose.world_from_hips.origin.y, hand_offset_m());
-    for (std::size_t side : {0U, 1U}) arms[side] = reach_over(arms[side], working[side], reach);
+  if (outline.reach > 0.0) {
+    const double table_above_hips_m = outline.table_height_m - pose.world_from_hips.origin.y;
+    const auto working = arms_on_table(humanoid, pose.spine_tilt, table_above_hips_m, outline.hand_offset_m);
+    for (std::size_t side : {0U, 1U}) arms[side] = reach_over(arms[side], working[side], outline.reach);
   }
   return arms;
 }
 
-Posture Motion::posture() const noexcept {
-  const Placement pelvis_place = pelvis();
-  const Feet both_feet = feet();
-  const double hip_height = floor_height_m_ + hip_height_m(pelvis_place, both_feet);
+}  // namespace
+
+Posture posture_of(const Humanoid& humanoid, const Outline& outline) noexcept {
   Pose pose;
-  pose.world_from_hips = {rotation_from_heading(pelvis_place.heading),
-                          Vec3(pelvis_place.position.x, hip_height, pelvis_place.position.y)};
-  pose.spine_tilt = spine_tilt();
-  const double ankle_height = floor_height_m_ + humanoid_.measures().ankle_height_m;
+  pose.world_from_hips = {rotation_from_heading(outline.pelvis.heading),
+                          Vec3(outline.pelvis.position.x, outline.hip_height_m, outline.pelvis.position.y)};
+  pose.spine_tilt = outline.spine_tilt;
+  const double ankle_height = outline.floor_height_m + humanoid.measures().ankle_height_m;
   for (std::size_t side : {0U, 1U}) {
-    const Footstep& foot = both_feet[side];
+    const Footstep& foot = outline.feet[side];
     pose.world_from_ankle[side] = {
         rotation_from_heading(foot.print.heading) * glm::angleAxis(foot.pitch, Vec3(1, 0, 0)),
         Vec3(foot.print.position.x, ankle_height + foot.lift_m, foot.print.position.y)};
   }
-  pose.arms = arms(pose);
-  return posture_of(humanoid_, pose);
+  pose.arms = arms_of(humanoid, outline, pose);
+  return posture_of(humanoid, pose);
 }
 
-Vec2 Motion::position() const noexcept { return pelvis().position; }
+Vec2 Motion::position() const noexcept { return stance_.pelvis.position; }
 
-double Motion::heading() const noexcept { return wrapped(pelvis().heading); }
+double Motion::heading() const noexcept { return wrapped(stance_.pelvis.heading); }
 
 double Motion::speed_m_s() const noexcept { return stage_ == Stage::walking ? track_speed_ : 0.0; }
 

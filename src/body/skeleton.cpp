@@ -33,7 +33,7 @@ double torso_centre(const Humanoid& humanoid) {
   // The box ends where the head's sphere begins.
   const Measures& m = humanoid.measures();
   const double top = m.stature_m - 2.0 * humanoid.radius_m(Part::head) + 0.002 * m.stature_m - m.hip_height_m;
-  return top - std::get<Box>(humanoid.solids()[at(Part::torso)]).half_extents.y;
+  return top - std::get<Box>(humanoid.primitives()[at(Part::torso)]).half_extents.y;
 }
 double head_centre(const Humanoid& humanoid) {
   const Measures& m = humanoid.measures();

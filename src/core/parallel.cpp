@@ -1,7 +1,10 @@
 #include "pirsim/core/parallel.hpp"
 
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_pipeline.h>
 #include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
 
 namespace pirsim::detail {
 
@@ -9,7 +12,10 @@ void ordered_parallel(std::size_t count, unsigned threads,
                       const std::function<std::shared_ptr<void>(std::size_t)>& produce,
                       const std::function<void(void*)>& consume) {
   namespace tbb = oneapi::tbb;
-  tbb::task_arena arena(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads));
+  // More than TBB allows would only make it print a warning; the results don't depend on it.
+  const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  const std::size_t wanted = threads == 0 ? allowed : std::min<std::size_t>(threads, allowed);
+  tbb::task_arena arena(static_cast<int>(wanted));
   arena.execute([&] {
     std::size_t next = 0;
     const auto take = [&](tbb::flow_control& control) -> std::size_t {

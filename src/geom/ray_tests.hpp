@@ -36,9 +36,10 @@ template <typename F>
 struct Interval {
   F enter, leave;
 };
+inline constexpr float infinity = std::numeric_limits<float>::infinity();
 template <typename F>
 Interval<F> everything() noexcept {
-  return {F(-std::numeric_limits<float>::infinity()), F(std::numeric_limits<float>::infinity())};
+  return {F(-infinity), F(infinity)};
 }
 template <typename F>
 Interval<F> intersection(const Interval<F>& a, const Interval<F>& b) noexcept {
@@ -124,22 +125,32 @@ Interval<F> sphere(const Vector<F>& origin, const Vector<F>& direction, const Ve
   return shifted(inside_sphere(near.offset, direction, radius), near.distance);
 }
 
-/// A capsule is convex and the union of two spheres and a bar cut off at their centres.
+/// What a capsule's test needs that doesn't depend on the ray.
 template <typename F>
-Interval<F> capsule(const Vector<F>& origin, const Vector<F>& direction, const Vector<F>& a, const Vector<F>& b,
-                    const F& radius) noexcept {
+struct CapsuleAxis {
+  Vector<F> centre, half_axis, axis;  ///< axis: half_axis as a unit vector
+  F half_length;
+};
+template <typename F>
+CapsuleAxis<F> capsule_axis(const Vector<F>& a, const Vector<F>& b) noexcept {
   const Vector<F> half_axis = (b - a) * F(0.5F);
   const F half_length = square_root(dot(half_axis, half_axis));
-  const auto has_length = half_length > F(0);
-  const F divisor = select(has_length, half_length, F(1));
+  const F divisor = select(half_length > F(0), half_length, F(1));
   const Vector<F> axis{half_axis.x / divisor, half_axis.y / divisor, half_axis.z / divisor};
+  return {(a + b) * F(0.5F), half_axis, axis, half_length};
+}
 
-  const Approach<F> near = approach(origin, direction, (a + b) * F(0.5F));
-  const Interval<F> ends = united(inside_sphere(near.offset - half_axis, direction, radius),
-                                  inside_sphere(near.offset + half_axis, direction, radius));
-  const Interval<F> bar =
-      only_if(has_length, intersection(inside_bar(near.offset, direction, axis, radius),
-                                       inside_slab(dot(near.offset, axis), dot(direction, axis), half_length)));
+/// A capsule is convex and the union of two spheres and a bar cut off at their centres.
+template <typename F>
+Interval<F> capsule(const Vector<F>& origin, const Vector<F>& direction, const CapsuleAxis<F>& bone,
+                    const F& radius) noexcept {
+  const Approach<F> near = approach(origin, direction, bone.centre);
+  const Interval<F> ends = united(inside_sphere(near.offset - bone.half_axis, direction, radius),
+                                  inside_sphere(near.offset + bone.half_axis, direction, radius));
+  const Interval<F> bar = only_if(
+      bone.half_length > F(0),
+      intersection(inside_bar(near.offset, direction, bone.axis, radius),
+                   inside_slab(dot(near.offset, bone.axis), dot(direction, bone.axis), bone.half_length)));
   return shifted(united(ends, bar), near.distance);
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "geom/ray_tests.hpp"
+#include "pirsim/geom/triangle_surface.hpp"
 
 namespace pirsim {
 namespace {
@@ -57,6 +58,22 @@ Vec3f box_normal(const PosedBox& box, const Vec3f& point) noexcept {
   return box.axes[face] * side;
 }
 
+Bounds bounds_of_box(const PosedBox& box) noexcept {
+  const Vec3f reach = glm::abs(box.axes[0]) * box.half_extents.x + glm::abs(box.axes[1]) * box.half_extents.y +
+                      glm::abs(box.axes[2]) * box.half_extents.z;
+  return {box.centre - reach, box.centre + reach};
+}
+
+glm::mat3 axes_of(const Quat& rotation) {
+  return {Vec3f(rotation * Vec3(1, 0, 0)), Vec3f(rotation * Vec3(0, 1, 0)), Vec3f(rotation * Vec3(0, 0, 1))};
+}
+
+/// Components along a mesh's axes: from the world to the mesh's frame, in double precision. The direction's length is
+/// kept as it is, so that distances stay metres along the ray in the world.
+Vec3 in_frame_of(const PosedMesh& mesh, const Vec3& v) noexcept {
+  return {glm::dot(v, Vec3(mesh.axes[0])), glm::dot(v, Vec3(mesh.axes[1])), glm::dot(v, Vec3(mesh.axes[2]))};
+}
+
 }  // namespace
 
 PosedShape place(const Shape& shape, const Frame& world_from_shape) {
@@ -70,12 +87,18 @@ PosedShape place(const Shape& shape, const Frame& world_from_shape) {
                                                      static_cast<float>(c.radius)};
                                },
                                [&](const Box& b) -> PosedShape {
-                                 const glm::mat3 axes(Vec3f(frame.rotation * Vec3(1, 0, 0)),
-                                                      Vec3f(frame.rotation * Vec3(0, 1, 0)),
-                                                      Vec3f(frame.rotation * Vec3(0, 0, 1)));
-                                 return PosedBox{Vec3f(frame.origin), axes, Vec3f(b.half_extents)};
+                                 return PosedBox{Vec3f(frame.origin), axes_of(frame.rotation), Vec3f(b.half_extents)};
+                               },
+                               [&](const MeshSolid& m) -> PosedShape {
+                                 return PosedMesh{m.surface.get(), Vec3f(frame.origin), axes_of(frame.rotation)};
                                }},
                     shape);
+}
+
+PosedBox box_around(const PosedMesh& mesh) noexcept {
+  const Vec3f centre(0.5 * (mesh.surface->lower() + mesh.surface->upper()));
+  const Vec3f half_extents(0.5 * (mesh.surface->upper() - mesh.surface->lower()));
+  return {mesh.origin + mesh.axes * centre, mesh.axes, half_extents};
 }
 
 Bounds bounds(const PosedShape& shape) noexcept {
@@ -85,12 +108,8 @@ Bounds bounds(const PosedShape& shape) noexcept {
                                [](const PosedCapsule& c) {
                                  return Bounds{glm::min(c.a, c.b) - c.radius, glm::max(c.a, c.b) + c.radius};
                                },
-                               [](const PosedBox& b) {
-                                 const Vec3f reach = glm::abs(b.axes[0]) * b.half_extents.x +
-                                                     glm::abs(b.axes[1]) * b.half_extents.y +
-                                                     glm::abs(b.axes[2]) * b.half_extents.z;
-                                 return Bounds{b.centre - reach, b.centre + reach};
-                               }},
+                               [](const PosedBox& b) { return bounds_of_box(b); },
+                               [](const PosedMesh& m) { return bounds_of_box(box_around(m)); }},
                     shape);
 }
 
@@ -100,9 +119,8 @@ std::optional<float> entry_distance(const Ray& ray, const PosedSphere& sphere, f
 }
 
 std::optional<float> entry_distance(const Ray& ray, const PosedCapsule& capsule, float t_max) noexcept {
-  return entry_of(ray_tests::capsule(vector(ray.origin), vector(ray.direction), vector(capsule.a), vector(capsule.b),
-                                     capsule.radius),
-                  t_max);
+  const auto axis = ray_tests::capsule_axis(vector(capsule.a), vector(capsule.b));
+  return entry_of(ray_tests::capsule(vector(ray.origin), vector(ray.direction), axis, capsule.radius), t_max);
 }
 
 std::optional<float> entry_distance(const Ray& ray, const PosedBox& box, float t_max) noexcept {
@@ -112,6 +130,11 @@ std::optional<float> entry_distance(const Ray& ray, const PosedBox& box, float t
       t_max);
 }
 
+std::optional<float> entry_distance(const Ray& ray, const PosedMesh& mesh, float t_max) noexcept {
+  const Vec3 origin = in_frame_of(mesh, Vec3(ray.origin) - Vec3(mesh.origin));
+  return mesh.surface->first_hit(origin, in_frame_of(mesh, Vec3(ray.direction)), t_max);
+}
+
 std::optional<float> entry_distance(const Ray& ray, const PosedShape& shape, float t_max) noexcept {
   return std::visit([&](const auto& solid) { return entry_distance(ray, solid, t_max); }, shape);
 }
@@ -119,7 +142,11 @@ std::optional<float> entry_distance(const Ray& ray, const PosedShape& shape, flo
 Vec3f surface_normal(const PosedShape& shape, const Vec3f& point) noexcept {
   return std::visit(Overloaded{[&](const PosedSphere& s) { return unit_or_up(point - s.centre); },
                                [&](const PosedCapsule& c) { return unit_or_up(point - nearest_on_segment(c, point)); },
-                               [&](const PosedBox& b) { return box_normal(b, point); }},
+                               [&](const PosedBox& b) { return box_normal(b, point); },
+                               [&](const PosedMesh& m) {
+                                 const Vec3 local = in_frame_of(m, Vec3(point) - Vec3(m.origin));
+                                 return unit_or_up(m.axes * Vec3f(m.surface->normal_near(local)));
+                               }},
                     shape);
 }
 

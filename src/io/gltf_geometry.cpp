@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <glm/matrix.hpp>
 #include <utility>
 
 #include "io/gltf_accessor.hpp"
@@ -111,6 +112,15 @@ bool GeometryBudget::take(std::size_t elements) noexcept {
 
 TriMesh read_mesh(const GltfDocument& document, int mesh, GeometryBudget& budget, Diagnostics& remarks) {
   return MeshReader(document, mesh, budget, remarks).read();
+}
+
+TriMesh transformed(const TriMesh& mesh, const glm::dmat4& transform, std::string name) {
+  TriMesh result{std::move(name), mesh.positions, mesh.triangles};
+  for (Vec3& p : result.positions) p = Vec3(transform * glm::dvec4(p, 1.0));
+  if (glm::determinant(glm::dmat3(transform)) < 0.0) {
+    for (auto& triangle : result.triangles) std::swap(triangle[1], triangle[2]);  // mirroring turns the triangles over
+  }
+  return result;
 }
 
 }  // namespace pirsim::io::detail

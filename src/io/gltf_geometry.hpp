@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <glm/mat4x4.hpp>
+#include <string>
 
 #include "io/gltf_document.hpp"
 #include "pirsim/geom/mesh.hpp"
@@ -23,5 +25,8 @@ class GeometryBudget {
 /// All triangles of a mesh in its own frame. Faults name the mesh and stand at the accessor or primitive; what isn't
 /// triangles is left out with a warning.
 [[nodiscard]] TriMesh read_mesh(const GltfDocument& document, int mesh, GeometryBudget& budget, Diagnostics& remarks);
+
+/// The mesh moved, scaled or mirrored, under a new name; its triangles stay counter-clockwise seen from outside.
+[[nodiscard]] TriMesh transformed(const TriMesh& mesh, const glm::dmat4& transform, std::string name);
 
 }  // namespace pirsim::io::detail

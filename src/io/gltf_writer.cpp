@@ -124,6 +124,7 @@ struct DescribeShape {
     return {{"primitive", Value(std::string("box"))},
             {"half_extents_m", Value(Value::Array{Value(h.x), Value(h.y), Value(h.z)})}};
   }
+  Value::Object operator()(const MeshSolid&) const { return {{"primitive", Value(std::string("mesh"))}}; }
 };
 
 int add_solid(GltfBuilder& document, const std::string& name, const Shape& shape, int material) {

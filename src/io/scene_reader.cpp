@@ -20,15 +20,6 @@ using namespace detail;
 constexpr double least_upright = 0.9962;  // cos 5 deg; assumed: a seat or doorway tilted more is a mistake of axes
 constexpr double world_limit_m = 1e5;     // as for nodes
 
-TriMesh transformed(const TriMesh& mesh, const glm::dmat4& world_from_node, std::string name) {
-  TriMesh result{std::move(name), mesh.positions, mesh.triangles};
-  for (Vec3& p : result.positions) p = Vec3(world_from_node * glm::dvec4(p, 1.0));
-  if (glm::determinant(glm::dmat3(world_from_node)) < 0.0) {
-    for (auto& triangle : result.triangles) std::swap(triangle[1], triangle[2]);  // mirroring turns the triangles over
-  }
-  return result;
-}
-
 class SceneBuilder {
  public:
   SceneBuilder(const std::filesystem::path& file, const SceneOptions& options)

@@ -3,11 +3,14 @@
 #include <set>
 
 #include "io/action_reader.hpp"
+#include "io/body_mesh_reader.hpp"
 #include "io/sensing_reader.hpp"
 #include "io/yaml_map.hpp"
 
 namespace pirsim::io {
 namespace {
+
+using detail::BodyMeshReader;
 
 constexpr int format_version = 1;
 
@@ -21,7 +24,7 @@ SummarySpec read_summary(const std::optional<YamlNode>& node, Diagnostics& fault
   return summary;
 }
 
-PersonSpec read_person(const YamlNode& node, Diagnostics& faults) {
+PersonSpec read_person(const YamlNode& node, BodyMeshReader& body_meshes, Diagnostics& faults) {
   YamlMap map(node, faults, "person");
   PersonSpec person;
   person.id = map.required_text("id");
@@ -34,17 +37,19 @@ PersonSpec read_person(const YamlNode& node, Diagnostics& faults) {
     person.seat_scatter.heading_sd_deg = scatter.number("heading_sd_deg", 0.0, {.min = 0.0, .max = 30.0});
     scatter.finish();
   }
+  person.body_mesh_file = map.text("body_mesh");
+  person.body_meshes = body_meshes.read(person.body_mesh_file, map.where("body_mesh"), faults);
   for (const YamlNode& action : map.list("actions")) person.actions.push_back(read_action(action, faults));
   map.finish();
   return person;
 }
 
 std::vector<PersonSpec> read_people(const std::vector<YamlNode>& nodes, const Variables& variables,
-                                    Diagnostics& faults) {
+                                    BodyMeshReader& body_meshes, Diagnostics& faults) {
   std::vector<PersonSpec> people;
   std::set<std::string> ids;
   for (const YamlNode& node : nodes) {
-    people.push_back(read_person(node.with(variables, faults), faults));
+    people.push_back(read_person(node.with(variables, faults), body_meshes, faults));
     if (!ids.insert(people.back().id).second) faults.error(node.where(), "a second person '" + people.back().id + "'");
   }
   return people;
@@ -72,12 +77,12 @@ std::vector<Variables> combinations(const std::optional<YamlNode>& for_each, Dia
 }
 
 /// Trials written out one by one, each with people of its own.
-std::vector<TrialSpec> read_listed_trials(const YamlNode& list, Diagnostics& faults) {
+std::vector<TrialSpec> read_listed_trials(const YamlNode& list, BodyMeshReader& body_meshes, Diagnostics& faults) {
   std::vector<TrialSpec> trials;
   std::set<std::string> ids;
   for (const YamlNode& item : list.items()) {
     YamlMap map(item, faults, "trial");
-    trials.push_back({map.required_text("id"), read_people(map.list("people"), {}, faults)});
+    trials.push_back({map.required_text("id"), read_people(map.list("people"), {}, body_meshes, faults)});
     if (!ids.insert(trials.back().id).second) faults.error(item.where(), "a second trial '" + trials.back().id + "'");
     map.finish();
   }
@@ -86,11 +91,11 @@ std::vector<TrialSpec> read_listed_trials(const YamlNode& list, Diagnostics& fau
 
 /// One trial for every combination of variables, all with the same people.
 std::vector<TrialSpec> read_trials(const std::optional<YamlNode>& node, const std::vector<YamlNode>& people,
-                                   Diagnostics& faults) {
-  if (!node) return {{"1", read_people(people, {}, faults)}};
+                                   BodyMeshReader& body_meshes, Diagnostics& faults) {
+  if (!node) return {{"1", read_people(people, {}, body_meshes, faults)}};
   if (node->is_list()) {
     if (!people.empty()) faults.error(people.front().where(), "people stand in every listed trial, not beside them");
-    return read_listed_trials(*node, faults);
+    return read_listed_trials(*node, body_meshes, faults);
   }
   YamlMap map(*node, faults, "trials");
   std::vector<TrialSpec> trials;
@@ -102,12 +107,14 @@ std::vector<TrialSpec> read_trials(const std::optional<YamlNode>& node, const st
   for (const Variables& variables : all) {
     TrialSpec& trial = trials.emplace_back();
     trial.id = substitute(pattern, variables, map.where("id"), found);
-    trial.people = read_people(people, variables, found);
+    trial.people = read_people(people, variables, body_meshes, found);
     if (!ids.insert(trial.id).second) found.error(map.where("id"), "a second trial '" + trial.id + "'");
   }
   std::set<std::string> told;
   for (const Issue& issue : found.issues()) {
-    if (told.insert(to_string(issue)).second) faults.error(issue.where, issue.message);
+    if (!told.insert(to_string(issue)).second) continue;
+    issue.severity == Severity::error ? faults.error(issue.where, issue.message)
+                                      : faults.warning(issue.where, issue.message);
   }
   return trials;
 }
@@ -131,7 +138,8 @@ ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::s
   script.replicates = map.integer("replicates", script.replicates, {.min = 1, .max = 10000000});
   script.sensing = read_sensing(map.child("sensing"), faults);
   script.summary = read_summary(map.child("summary"), faults);
-  script.trials = read_trials(map.child("trials"), map.list("people"), faults);
+  BodyMeshReader body_meshes(file.parent_path());
+  script.trials = read_trials(map.child("trials"), map.list("people"), body_meshes, faults);
   map.finish();
   faults.throw_if_errors();
   script.warnings = faults.warnings();

@@ -62,6 +62,7 @@ YAML::Node write(const PersonSpec& person) {
   node["walking_speed_m_s"] = number(person.walking_speed_m_s);
   node["seat_scatter"]["position_sd_m"] = number(person.seat_scatter.position_sd_m);
   node["seat_scatter"]["heading_sd_deg"] = number(person.seat_scatter.heading_sd_deg);
+  if (!person.body_mesh_file.empty()) node["body_mesh"] = person.body_mesh_file;
   node["actions"] = YAML::Node(YAML::NodeType::Sequence);
   for (const ScriptedAction& action : person.actions) node["actions"].push_back(write(action));
   return node;

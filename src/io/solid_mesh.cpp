@@ -1,7 +1,11 @@
 #include "io/solid_mesh.hpp"
 
+#include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <numbers>
+
+#include "pirsim/geom/triangle_surface.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -80,10 +84,28 @@ SolidMesh box(const Vec3& half_extents) {
   return mesh;
 }
 
+/// The triangles as they are, each with corners of its own.
+SolidMesh flat_shaded(const TriMesh& given) {
+  SolidMesh mesh;
+  for (const auto& [a, b, c] : given.triangles) {
+    const std::array<Vec3, 3> corners{given.positions[a], given.positions[b], given.positions[c]};
+    const Vec3 facing = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const double length = glm::length(facing);
+    if (length == 0.0) continue;
+    for (const Vec3& corner : corners) {
+      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+      mesh.positions.push_back(corner);
+      mesh.normals.push_back(facing / length);
+    }
+  }
+  return mesh;
+}
+
 struct Tessellation {
   SolidMesh operator()(const Sphere& sphere) const { return round_solid(sphere.radius, 0.0); }
   SolidMesh operator()(const Capsule& capsule) const { return round_solid(capsule.radius, capsule.half_length); }
   SolidMesh operator()(const Box& solid) const { return box(solid.half_extents); }
+  SolidMesh operator()(const MeshSolid& solid) const { return flat_shaded(solid.surface->mesh()); }
 };
 
 }  // namespace

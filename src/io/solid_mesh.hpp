@@ -1,4 +1,4 @@
-// Triangles of primitive solids, for pictures: rays are traced against the solids themselves.
+// Triangles of solids, for pictures: rays are traced against the solids themselves.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct SolidMesh {
   std::vector<std::uint32_t> indices;  ///< three a triangle, counter-clockwise from outside
 };
 
-/// Closed; a sphere of radius r is missed by 0.02 r at most.
+/// Of primitives closed; a sphere of radius r is missed by 0.02 r at most. A mesh is its own, flat shaded.
 [[nodiscard]] SolidMesh tessellated(const Shape& shape);
 
 }  // namespace pirsim::io

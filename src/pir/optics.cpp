@@ -60,29 +60,4 @@ void append(RayBundle& bundle, const SensorSpec& sensor, const SensorModelSpec& 
   bundle.sensor_clusters_begin.push_back(static_cast<std::uint32_t>(bundle.n_clusters()));
 }
 
-namespace {
-
-bool any_active(std::span<const std::uint8_t> zones) noexcept {
-  return std::any_of(zones.begin(), zones.end(), [](std::uint8_t active) { return active != 0; });
-}
-
-/// A beam's own activity, or a cluster's: active where any of its beams is.
-bool changed(ChangePer change_per, std::span<const std::uint8_t> before, std::span<const std::uint8_t> after) noexcept {
-  if (change_per == ChangePer::cluster) return any_active(before) != any_active(after);
-  return !std::equal(before.begin(), before.end(), after.begin());
-}
-
-}  // namespace
-
-void mark_motion(const RayBundle& bundle, ChangePer change_per, std::span<const std::uint8_t> before,
-                 std::span<const std::uint8_t> after, std::span<std::uint8_t> bits) noexcept {
-  for (std::size_t sensor = 0; sensor < bundle.n_sensors(); ++sensor) {
-    for (std::uint32_t c = bundle.sensor_clusters_begin[sensor]; c < bundle.sensor_clusters_begin[sensor + 1]; ++c) {
-      const std::uint32_t first = bundle.cluster_zones_begin[c];
-      const std::uint32_t count = bundle.cluster_zones_begin[c + 1] - first;
-      if (changed(change_per, before.subspan(first, count), after.subspan(first, count))) bits[sensor] |= 1U;
-    }
-  }
-}
-
 }  // namespace pirsim::pir

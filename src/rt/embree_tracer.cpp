@@ -44,7 +44,8 @@ Transform cube_transform(const PosedShape& shape) noexcept {
     const Vec3f half_extents(capsule->radius, half_length + capsule->radius, capsule->radius);
     return around((capsule->a + capsule->b) * 0.5F, axes, half_extents);
   }
-  const auto& box = std::get<PosedBox>(shape);
+  const auto* mesh = std::get_if<PosedMesh>(&shape);
+  const PosedBox box = mesh != nullptr ? box_around(*mesh) : std::get<PosedBox>(shape);
   return around(box.centre, box.axes, box.half_extents);
 }
 

@@ -141,7 +141,10 @@ class Picture {
       const auto distance = entry_distance(ray, solid.shape, reach);
       if (!distance) continue;
       const Vec3f position = ray.origin + ray.direction * *distance;
-      nearest = SurfacePoint{*distance, position, surface_normal(solid.shape, position), vector(solid.colour)};
+      const Vec3f outward = surface_normal(solid.shape, position);
+      // A mesh may be open and show its inside.
+      const Vec3f normal = glm::dot(outward, ray.direction) <= 0.0F ? outward : -outward;
+      nearest = SurfacePoint{*distance, position, normal, vector(solid.colour)};
     }
     return nearest;
   }

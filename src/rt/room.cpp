@@ -5,9 +5,9 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "geom/triangle_test.hpp"
 #include "pirsim/core/error.hpp"
 #include "rt/room_impl.hpp"
-#include "rt/triangle_test.hpp"
 
 namespace pirsim::rt {
 namespace {

@@ -2,18 +2,30 @@
 
 #include <cassert>
 
+#include "rt/ray_kernel.hpp"
+
 namespace pirsim::rt {
 
 std::string_view name(TracerKind kind) noexcept {
   switch (kind) {
     case TracerKind::reference:
       return "reference";
-    case TracerKind::remembering:
-      return "remembering";
     case TracerKind::embree:
       return "embree";
+    case TracerKind::direct:
+      return "direct";
   }
   return "unknown";
+}
+
+std::string_view direct_instruction_set() noexcept { return best_ray_kernel().name; }
+
+void Tracer::add(std::size_t, std::span<const PosedShape> solids, ZoneSet& zones) {
+  ZoneActivity seen(zones.size());
+  trace(solids, seen);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (seen[i] != 0) zones.insert(i);
+  }
 }
 
 std::unique_ptr<Tracer> make_tracer(TracerKind kind, const TracerSetup& setup) {
@@ -23,10 +35,10 @@ std::unique_ptr<Tracer> make_tracer(TracerKind kind, const TracerSetup& setup) {
       return make_reference_tracer(setup);
     case TracerKind::embree:
       return make_embree_tracer(setup);
-    case TracerKind::remembering:
+    case TracerKind::direct:
       break;
   }
-  return make_remembering_tracer(setup);
+  return make_direct_tracer(setup);
 }
 
 }  // namespace pirsim::rt

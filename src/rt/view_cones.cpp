@@ -23,6 +23,8 @@ ViewCone touches_everything() noexcept {
   return cone;
 }
 
+}  // namespace
+
 ViewCone cone_around(std::span<const Ray> rays, std::span<const float> range) {
   if (rays.empty()) return ViewCone{};
   const bool one_origin =
@@ -50,6 +52,8 @@ ViewCone cone_around(std::span<const Ray> rays, std::span<const float> range) {
   return cone;
 }
 
+namespace {
+
 ViewCone cone_of(const RayBundle& bundle, std::size_t first_zone, std::size_t end_zone) {
   const std::size_t begin = bundle.zone_rays_begin[first_zone], end = bundle.zone_rays_begin[end_zone];
   return cone_around(std::span(bundle.rays).subspan(begin, end - begin),
@@ -73,7 +77,8 @@ Ball ball_around(const PosedShape& shape) noexcept {
   if (const auto* capsule = std::get_if<PosedCapsule>(&shape)) {
     return {(capsule->a + capsule->b) * 0.5F, glm::length(capsule->b - capsule->a) * 0.5F + capsule->radius};
   }
-  const auto& box = std::get<PosedBox>(shape);
+  const auto* mesh = std::get_if<PosedMesh>(&shape);
+  const PosedBox box = mesh != nullptr ? box_around(*mesh) : std::get<PosedBox>(shape);
   return {box.centre, glm::length(box.half_extents)};
 }
 

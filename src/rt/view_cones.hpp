@@ -26,6 +26,8 @@ struct ViewCone {
   float length = 0.0F;
 };
 
+/// Around rays that start in one point; range: (n of `rays`).
+[[nodiscard]] ViewCone cone_around(std::span<const Ray> rays, std::span<const float> range);
 /// One cone a cluster (n_clusters) or a zone (n_zones). A group whose rays don't share one origin gets a cone that
 /// touches everything.
 [[nodiscard]] std::vector<ViewCone> cluster_cones(const RayBundle& bundle);

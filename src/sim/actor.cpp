@@ -16,6 +16,7 @@ using body::Stage;
 constexpr double look_ahead_m = 1.2;        ///< assumed: how far ahead a walker minds others (tried 0.8-2)
 constexpr double foresight_s = 1.5;         ///< assumed: how long before ways cross one gives way (tried 1-2)
 constexpr double gap_m = 0.1;               ///< assumed: kept between two people beside their radii
+constexpr double doorway_m = 2.5;           ///< assumed: who comes in is through the door at that distance (tried 2-3)
 constexpr double braking_m_s2 = 1.5;        ///< assumed, as Motion's acceleration
 constexpr double patience_s = 0.5;          ///< assumed: wait before looking for another way
 constexpr double patience_step_s = 0.7;     ///< more for every later person, so that two don't dodge alike
@@ -48,7 +49,8 @@ std::string_view Actor::current_phase() const noexcept {
 
 Presence Actor::presence() const {
   return {motion_->position(), motion_->speed_m_s() * direction_of(motion_->heading()),
-          person().humanoid.clearance_radius_m()};
+          route_ ? route_->position(route_->length_m()) : motion_->position(), seat_,
+          done() ? Presence::Script::carried_out : Presence::Script::going_on, person().humanoid.clearance_radius_m()};
 }
 
 void Actor::advance(const Model& model, std::int64_t tick, std::span<const Presence> others, std::size_t n_before) {
@@ -71,8 +73,10 @@ void Actor::carry_on(const Model& model, std::int64_t now, std::span<const Prese
     }
     while (!errands_.empty() && carry_out(errands_.front(), model, others) == Progress::done) errands_.pop_front();
     if (const auto* work_action = std::get_if<action::Work>(&action().what)) work(model, *work_action, now);
-    if (!interrupted(model, now) && !(errands_.empty() && time_is_up(model, now))) return;
+    const auto next = interrupting_action(model, now);
+    if (!next && !(errands_.empty() && time_is_up(model, now))) return;
     finish_action();
+    if (next) action_ = *next;
   }
 }
 
@@ -84,9 +88,12 @@ void Actor::finish_action() {
   begun_ = false;
 }
 
-bool Actor::interrupted(const Model& model, std::int64_t now) const {
+std::optional<std::size_t> Actor::interrupting_action(const Model& model, std::int64_t now) const {
   const auto& actions = person().spec.actions;
-  return action_ + 1 < actions.size() && actions[action_ + 1].at_s && now >= ticks(*actions[action_ + 1].at_s, model);
+  for (std::size_t i = actions.size(); i-- > action_ + 1;) {
+    if (actions[i].at_s && now >= ticks(*actions[i].at_s, model)) return i;
+  }
+  return std::nullopt;
 }
 
 bool Actor::time_is_up(const Model& model, std::int64_t now) const {
@@ -101,10 +108,17 @@ void Actor::plan(const Model& model) {
   };
   const auto outside = [](const EntranceSpec& e) { return floor_point(e.world_from_entrance * Vec3(0, 0, e.outside_m)); };
   const auto& actions = person().spec.actions;
+  const bool arrives = std::holds_alternative<action::Appear>(action().what) ||
+                       std::holds_alternative<action::Enter>(action().what) ||
+                       std::holds_alternative<action::Wait>(action().what);
+  if (!present() && !arrives) return;  // called away before they came: nothing to do
   if (const auto* appear = std::get_if<action::Appear>(&action().what)) {
     errands_.push_back(ComeIn{appear->point, radians(appear->heading_deg)});
   } else if (const auto* enter = std::get_if<action::Enter>(&action().what)) {
     const EntranceSpec& door = entrance(enter->entrance);
+    const auto* sit_next = action_ + 1 < actions.size() ? std::get_if<action::Sit>(&actions[action_ + 1].what) : nullptr;
+    if (sit_next != nullptr) errands_.push_back(WaitForSeat{sit_next->seat});  // better outside than in the doorway
+    errands_.push_back(WaitForDoor{outside(door), Through::in});
     errands_.push_back(ComeIn{outside(door), heading_of(door.world_from_entrance)});
     if (action_ + 1 == actions.size() || !leads_elsewhere(actions[action_ + 1])) {
       const double inside_m = 2.0 * person().humanoid.clearance_radius_m();
@@ -119,10 +133,13 @@ void Actor::plan(const Model& model) {
   } else if (const auto* turn = std::get_if<action::Turn>(&action().what)) {
     errands_.push_back(FaceTo{radians(turn->heading_deg)});
   } else if (const auto* leave = std::get_if<action::Leave>(&action().what)) {
-    errands_.push_back(WalkTo{outside(entrance(leave->entrance))});
+    errands_.push_back(WaitForDoor{outside(entrance(leave->entrance)), Through::out});
+    const EntranceSpec& door = entrance(leave->entrance);
+    const double behind_m = std::min(door.outside_m, 2.0 * person().humanoid.clearance_radius_m());
+    errands_.push_back(WalkOut{outside(door), floor_point(door.world_from_entrance * Vec3(0, 0, behind_m))});
     errands_.push_back(Vanish{});
   } else if (const auto* work_action = std::get_if<action::Work>(&action().what)) {
-    if (!motion_ || motion_->stage() != Stage::seated) {
+    if (motion_->stage() != Stage::seated) {
       throw Error(ErrorCode::infeasible, action().where, "'" + person().spec.id + "' is not seated when work begins");
     }
     motion_->work({work_action->arm_amplitude_m, work_action->arm_period_s});
@@ -141,9 +158,24 @@ void Actor::plan_sitting() {
         rotation_from_heading(radians(scatter.heading_sd_deg * turn)) * place.world_from_seat.rotation;
   }
   const double heading = heading_of(place.world_from_seat);
-  errands_.push_back(WalkTo{floor_point(place.world_from_seat.origin) - seat.stand_back_m * direction_of(heading)});
+  const std::string_view id = std::get<action::Sit>(action().what).seat;
+  errands_.push_back(WaitForSeat{id});
+  errands_.push_back(TakeSeat{id});
+  errands_.push_back(WalkTo{standing_place(place, seat.stand_back_m)});
   errands_.push_back(FaceTo{heading});
   errands_.push_back(SitOn{place});
+}
+
+/// A scattered seat may need a little more room behind it than the seat as it stands in the scene.
+Vec2 Actor::standing_place(const body::SeatPlace& place, double back_m) const {
+  constexpr double step_m = 0.02, farthest_m = 0.4;
+  const Vec2 pelvis = floor_point(place.world_from_seat.origin);
+  const Vec2 facing = direction_of(heading_of(place.world_from_seat));
+  for (double more = 0.0; more <= farthest_m; more += step_m) {
+    const Vec2 stand = pelvis - (back_m + more) * facing;
+    if (person().floor->walkable(stand)) return stand;
+  }
+  return pelvis - back_m * facing;
 }
 
 void Actor::work(const Model& model, const action::Work& work, std::int64_t now) {
@@ -158,7 +190,9 @@ Actor::Progress Actor::carry_out(const Errand& errand, const Model& model, std::
   if (const auto* come = std::get_if<ComeIn>(&errand)) {
     const double radius = person().humanoid.clearance_radius_m();
     for (const Presence& other : others) {
-      if (glm::distance(other.position, come->point) < other.radius_m + radius + gap_m) return Progress::going_on;
+      if (glm::distance(other.position, come->point) >= other.radius_m + radius + gap_m) continue;
+      wait_for_others(model);
+      return Progress::going_on;
     }
     motion_.emplace(person().humanoid, come->point, come->heading, model.scene().floor.height_m(), model.tick_s());
     return Progress::done;
@@ -166,6 +200,28 @@ Actor::Progress Actor::carry_out(const Errand& errand, const Model& model, std::
   if (std::holds_alternative<Vanish>(errand)) {
     motion_.reset();
     return Progress::done;
+  }
+  const auto* door = std::get_if<WaitForDoor>(&errand);
+  const auto* taken_seat = std::get_if<WaitForSeat>(&errand);
+  if (door != nullptr || taken_seat != nullptr) {
+    const bool taken = door != nullptr ? door_is_taken(*door, others)
+                                       : std::ranges::find(others, taken_seat->seat, &Presence::seat) != others.end();
+    if (!taken) return Progress::done;
+    const bool for_good = std::ranges::find(others, Presence::Script::going_on, &Presence::script) == others.end();
+    if (for_good) give_up("'" + person().spec.id + "' waits in vain: nobody of those there has anything more to do");
+    if (present()) wait_for_others(model);  // who isn't there yet is in nobody's way, and may wait long
+    return Progress::going_on;
+  }
+  if (const auto* take = std::get_if<TakeSeat>(&errand)) {
+    seat_ = take->seat;
+    return Progress::done;
+  }
+  if (const auto* out = std::get_if<WalkOut>(&errand)) {
+    if (route_) return walk_to(route_->position(route_->length_m()), model, others);  // decided when setting out
+    const bool occupied = std::ranges::any_of(others, [&](const Presence& other) {
+      return glm::distance(other.position, out->outside) < other.radius_m + person().humanoid.clearance_radius_m() + gap_m;
+    });
+    return walk_to(occupied ? out->behind_door : out->outside, model, others);
   }
   if (const auto* walk = std::get_if<WalkTo>(&errand)) return walk_to(walk->target, model, others);
   if (const auto* seat = std::get_if<SitOn>(&errand)) {
@@ -189,6 +245,15 @@ Actor::Progress Actor::become_standing(std::span<const Presence> others) {
   // A walk or turn that an earlier action began and that isn't wanted any more; our own ends by itself.
   if (!on_seat && !route_ && motion_->stage() == Stage::walking) motion_->stop();
   return Progress::going_on;
+}
+
+bool Actor::door_is_taken(const WaitForDoor& door, std::span<const Presence> others) const {
+  return std::ranges::any_of(others, [&](const Presence& other) {
+    const bool goes_out = glm::distance(other.destination, door.outside) < gap_m;
+    if (door.way == Through::in) return goes_out;
+    const bool stays = glm::distance(other.destination, other.position) < gap_m;  // has no way in: let the other out
+    return !goes_out && !stays && glm::distance(other.position, door.outside) < doorway_m;
+  });
 }
 
 bool Actor::free_to_stand(std::span<const Presence> others) const {
@@ -216,6 +281,9 @@ Actor::Progress Actor::walk_to(const Vec2& target, const Model& model, std::span
     for (const Presence& other : others) discs.push_back({other.position, other.radius_m + gap_m});
     const auto way = person().floor->find_way(motion_->position(), target, discs);
     if (!way) {
+      if (!person().floor->find_way(motion_->position(), target)) {
+        give_up("'" + person().spec.id + "' finds no way to where they are to go, even if nobody stands in it");
+      }
       wait_for_others(model);
       return Progress::going_on;
     }
@@ -227,12 +295,14 @@ Actor::Progress Actor::walk_to(const Vec2& target, const Model& model, std::span
     motion_->turn_to(route_->heading(0.0));
   } else {
     motion_->walk(*route_);
+    if (!std::holds_alternative<action::Sit>(action().what)) seat_ = {};
   }
   return Progress::going_on;
 }
 
 double Actor::free_way_ahead(std::span<const Presence> others) const {
   double free_m = look_ahead_m;
+  if (others.empty()) return free_m;
   const Vec2 ahead = direction_of(motion_->heading());
   for (const Presence& other : others) {
     const Vec2 to_other = other.position - motion_->position();
@@ -248,6 +318,7 @@ double Actor::free_way_ahead(std::span<const Presence> others) const {
 
 /// Will somebody who goes first come too near within the next moments if both go on as they do?
 bool Actor::must_give_way(std::span<const Presence> others) const {
+  if (others.empty()) return false;
   const Presence mine = presence();
   for (const Presence& other : others) {
     const Vec2 offset = other.position - mine.position;
@@ -277,9 +348,11 @@ void Actor::keep_distance(const Model& model, std::span<const Presence> others, 
   }
 }
 
+void Actor::give_up(const std::string& why) const { throw Error(ErrorCode::infeasible, action().where, why); }
+
 void Actor::wait_for_others(const Model& model) {
   if (++blocked_ticks_ <= ticks(give_up_s, model)) return;
-  throw Error(ErrorCode::infeasible, action().where, "'" + person().spec.id + "' can't get past the others");
+  give_up("'" + person().spec.id + "' waits in vain for others to make way");
 }
 
 }  // namespace pirsim

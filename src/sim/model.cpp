@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "pirsim/pir/optics.hpp"
+#include "sim/lookout.hpp"
 #include "sim/plan_people.hpp"
 
 namespace pirsim {
@@ -18,24 +19,31 @@ std::vector<std::string> Model::columns() const {
   return names;
 }
 
-struct Model::TracerPool {
+struct Model::Pool {
   std::mutex mutex;
-  std::vector<std::unique_ptr<rt::Tracer>> idle;
+  std::vector<std::unique_ptr<sim::Lookout>> idle;
 };
 
-std::shared_ptr<rt::Tracer> Model::borrow_tracer() const {
-  std::unique_ptr<rt::Tracer> tracer;
+std::unique_ptr<rt::Tracer> Model::make_tracer() const {
+  return rt::make_tracer(tracer_, {room_.get(), rated_.get(), clipped_.get()});
+}
+
+std::shared_ptr<sim::Lookout> Model::borrow_lookout() const {
+  std::unique_ptr<sim::Lookout> lookout;
   {
-    const std::lock_guard lock(idle_tracers_->mutex);
-    if (!idle_tracers_->idle.empty()) {
-      tracer = std::move(idle_tracers_->idle.back());
-      idle_tracers_->idle.pop_back();
+    const std::lock_guard lock(idle_lookouts_->mutex);
+    if (!idle_lookouts_->idle.empty()) {
+      lookout = std::move(idle_lookouts_->idle.back());
+      idle_lookouts_->idle.pop_back();
     }
   }
-  if (!tracer) tracer = rt::make_tracer(tracer_, {room_.get(), rated_.get(), clipped_.get()});
-  return {tracer.release(), [pool = idle_tracers_](rt::Tracer* used) {
-            const std::lock_guard lock(pool->mutex);
-            pool->idle.emplace_back(used);
+  if (!lookout) lookout = std::make_unique<sim::Lookout>(*this);
+  return {lookout.release(), [pool = std::weak_ptr(idle_lookouts_)](sim::Lookout* used) {
+            std::unique_ptr<sim::Lookout> back(used);
+            if (const auto open = pool.lock()) {
+              const std::lock_guard lock(open->mutex);
+              open->idle.push_back(std::move(back));
+            }
           }};
 }
 
@@ -44,14 +52,16 @@ Model compile(SceneSpec scene, ScriptSpec script, const CompileOptions& options)
   model.scene_ = std::move(scene);
   model.script_ = std::move(script);
   model.tracer_ = options.tracer;
-  model.idle_tracers_ = std::make_shared<Model::TracerPool>();
+  model.idle_lookouts_ = std::make_shared<Model::Pool>();
   model.room_ = std::make_unique<rt::Room>(model.scene_.meshes);
   model.rated_ = std::make_unique<RayBundle>();
   for (const SensorSpec& sensor : model.scene_.sensors) {
-    pir::append(*model.rated_, sensor, model.scene_.sensor_models.at(sensor.model), model.script_.sensing.rays_per_zone);
+    pir::append(*model.rated_, sensor, model.scene_.sensor_models.at(sensor.model),
+                model.script_.sensing.rays_per_zone);
   }
   model.clipped_ = std::make_unique<RayBundle>(*model.rated_);
   model.room_->clip(*model.clipped_);
+  model.detector_ = std::make_unique<pir::MotionDetector>(*model.rated_, model.script_.sensing.change_per);
   model.trials_ = sim::plan_people(model.scene_, model.script_, *model.room_);
   return model;
 }

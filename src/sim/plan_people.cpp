@@ -79,14 +79,22 @@ class Rehearsal {
     constexpr double step_m = 0.02, farthest_m = 1.0;
     for (double back = -fall_back; back <= farthest_m; back += step_m) {
       const Vec2 stand = pelvis - back * facing;
-      if (!person_.floor->walkable(stand) || !person_.floor->find_way(at_, stand)) continue;
+      if (!person_.floor->walkable(stand) || !room_behind(seat, back + fall_back)) continue;
+      if (!person_.floor->find_way(at_, stand)) continue;
       plan.stand_back_m = back;
       at_ = stand;
       return plan;
     }
     diagnostics_.error(where, "seat '" + id + "' of " + scene_.name + " can't be reached by '" + person_.spec.id +
-                                  "': nowhere to stand before it within a metre that has a way from " + text(at_));
+                                  "': no place to stand and sit down from, within a metre of it, has a way from " + text(at_));
     return plan;
+  }
+
+  /// Can the pelvis go so far back from the seat, on a chair that is drawn back from the table, before a wall?
+  bool room_behind(const SeatSpec& seat, double back_m) const {
+    constexpr double half_body_depth_m = 0.15;  // assumed, as is a chair's back (tried 0.1-0.25)
+    const Ray behind{Vec3f(seat.world_from_seat.origin), Vec3f(-seat.world_from_seat.forward())};
+    return back_m <= 0.0 || !room_.first_hit(behind, static_cast<float>(back_m + half_body_depth_m));
   }
 
   const SceneSpec& scene_;

@@ -2,15 +2,16 @@
 
 #include <algorithm>
 
-#include "pirsim/pir/optics.hpp"
+#include "sim/lookout.hpp"
 
 namespace pirsim {
 
+void append_solids(const body::Humanoid& humanoid, const body::Posture& posture, std::vector<PosedShape>& solids) {
+  for (std::size_t i = 0; i < body::n_parts; ++i) solids.push_back(place(humanoid.solids()[i], posture[i]));
+}
+
 void append_solids(const Actor& actor, std::vector<PosedShape>& solids) {
-  if (!actor.present()) return;
-  const body::Posture posture = actor.motion().posture();
-  const body::Solids& shapes = actor.person().humanoid.solids();
-  for (std::size_t i = 0; i < body::n_parts; ++i) solids.push_back(place(shapes[i], posture[i]));
+  if (actor.present()) append_solids(actor.person().humanoid, actor.motion().posture(), solids);
 }
 
 namespace {
@@ -21,27 +22,18 @@ int people_on_floor(const Model& model, const std::vector<Actor>& actors) {
   }));
 }
 
-void move_people(const Model& model, std::int64_t tick, std::vector<Actor>& actors) {
-  std::vector<Presence> others;
-  for (Actor& actor : actors) {
-    others.clear();
-    std::size_t n_before = 0;
-    for (const Actor& other : actors) {
-      if (&other == &actor) n_before = others.size();
-      if (&other != &actor && other.present()) others.push_back(other.presence());
-    }
-    actor.advance(model, tick, others, n_before);
-  }
-}
-
 }  // namespace
 
 State::State(const Model& model, std::uint32_t run)
-    : model_(&model), run_(run), bits_(model.scene().sensors.size(), 0), tracer_(model.borrow_tracer()) {
+    : model_(&model),
+      run_(run),
+      zones_(model.detector().n_zones()),
+      channels_(model.detector().n_channels()),
+      previous_channels_(channels_),
+      bits_(model.scene().sensors.size(), 0),
+      lookout_(model.borrow_lookout()) {
   const TrialModel& trial = model.trial_of(run);
   for (std::uint32_t person = 0; person < trial.people.size(); ++person) actors_.emplace_back(model, run, person);
-  zones_.assign(model.rated_rays().n_zones(), 0);
-  previous_zones_ = zones_;
   sample_.replicate = model.replicate_of(run);
   sample_.trial = trial.id;
 }
@@ -53,27 +45,38 @@ State::State(const State& other)
       finished_(other.finished_),
       actors_(other.actors_),
       zones_(other.zones_),
-      previous_zones_(other.previous_zones_),
+      channels_(other.channels_),
+      previous_channels_(other.previous_channels_),
       bits_(other.bits_),
       sample_(other.sample_),
-      tracer_(other.model_->borrow_tracer()) {}
+      lookout_(other.model_->borrow_lookout()) {}
 
 State& State::operator=(const State& other) {
   State copy(other);
   return *this = std::move(copy);
 }
 
+void State::move_people(const Model& model) {
+  for (Actor& actor : actors_) {
+    others_.clear();
+    std::size_t n_before = 0;
+    for (const Actor& other : actors_) {
+      if (&other == &actor) n_before = others_.size();
+      if (&other != &actor && other.present()) others_.push_back(other.presence());
+    }
+    actor.advance(model, tick_, others_, n_before);
+  }
+}
+
 void State::look(const Model& model) {
-  solids_.clear();
-  for (const Actor& actor : actors_) append_solids(actor, solids_);
-  std::swap(zones_, previous_zones_);
-  tracer_->trace(solids_, zones_);
-  pir::mark_motion(model.rated_rays(), model.script().sensing.change_per, previous_zones_, zones_, bits_);
+  std::swap(channels_, previous_channels_);
+  lookout_->look(actors_, zones_, channels_);
+  model.detector().mark(previous_channels_.words(), channels_.words(), bits_);
 }
 
 bool step_tick(const Model& model, State& state) {
   ++state.tick_;
-  move_people(model, state.tick_, state.actors_);
+  state.move_people(model);
   state.look(model);
   const int window = model.script().sensing.ticks_per_window;
   if (state.tick_ % window != 0) return false;

@@ -5,12 +5,22 @@
 
 namespace pirsim {
 
+namespace {
+
+ZoneActivity activity_of(const ZoneSet& zones) {
+  ZoneActivity activity(zones.size());
+  for (std::size_t i = 0; i < activity.size(); ++i) activity[i] = zones.test(i) ? 1 : 0;
+  return activity;
+}
+
+}  // namespace
+
 RunResult run_once(const Model& model, std::uint32_t run, Record record) {
   RunResult result{run, model.replicate_of(run), model.trial_of(run).id, {}, {}};
   State state(model, run);
   while (!state.finished()) {
     const bool window_ended = step_tick(model, state);
-    if (record == Record::samples_and_zones) result.zones.push_back(state.zones());
+    if (record == Record::samples_and_zones) result.zones.push_back(activity_of(state.zones()));
     if (window_ended) result.samples.push_back(state.sample());
   }
   return result;

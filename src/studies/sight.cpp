@@ -11,7 +11,7 @@ namespace {
 class Onlooker {
  public:
   Onlooker(const Model& model, const body::Humanoid& humanoid)
-      : rays_(model.rated_rays()), humanoid_(humanoid), tracer_(model.borrow_tracer()), zones_(rays_.n_zones()) {}
+      : rays_(model.rated_rays()), humanoid_(humanoid), tracer_(model.make_tracer()), zones_(rays_.n_zones()) {}
 
   /// (n_sensors) whether the sensor sees the posture.
   std::vector<bool> sensors_that_see(const body::Posture& posture) {
@@ -30,7 +30,7 @@ class Onlooker {
  private:
   const RayBundle& rays_;
   const body::Humanoid& humanoid_;
-  std::shared_ptr<rt::Tracer> tracer_;
+  std::unique_ptr<rt::Tracer> tracer_;
   ZoneActivity zones_;
 };
 

@@ -7,6 +7,7 @@
 
 #include "pirsim/core/random.hpp"
 #include "pirsim/geom/shapes.hpp"
+#include "pirsim/geom/triangle_surface.hpp"
 
 namespace pirsim::testing {
 
@@ -56,6 +57,17 @@ inline double signed_distance(const PosedBox& b, const Vec3& p) {
   const glm::dmat3 axes(b.axes);
   const Vec3 q = glm::abs(glm::transpose(axes) * (p - Vec3(b.centre))) - Vec3(b.half_extents);
   return glm::length(glm::max(q, Vec3(0.0))) + std::min(std::max({q.x, q.y, q.z}), 0.0);
+}
+/// Of a closed, convex mesh, outside from its faces' planes only: at most the distance to it, negative inside.
+inline double signed_distance(const PosedMesh& m, const Vec3& p) {
+  const Vec3 local = glm::transpose(glm::dmat3(m.axes)) * (p - Vec3(m.origin));
+  const TriMesh& mesh = m.surface->mesh();
+  double distance = -1e30;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3 &corner = mesh.positions[a], facing = glm::cross(mesh.positions[b] - corner, mesh.positions[c] - corner);
+    distance = std::max(distance, glm::dot(glm::normalize(facing), local - corner));
+  }
+  return distance;
 }
 inline double signed_distance(const PosedShape& shape, const Vec3& p) {
   return std::visit([&](const auto& solid) { return signed_distance(solid, p); }, shape);

@@ -29,9 +29,13 @@ struct Measures {
 
 class Humanoid {
  public:
+  /// Throws Error(usage) for a mesh of a part that there is not.
   explicit Humanoid(const PersonSpec& person);
   [[nodiscard]] const Measures& measures() const noexcept { return measures_; }
+  /// What rays are traced against: the primitives, or the person's meshes where there are any.
   [[nodiscard]] const Solids& solids() const noexcept { return solids_; }
+  /// Spheres, capsules and boxes only: what kinematics reckons with, whatever the person looks like.
+  [[nodiscard]] const Solids& primitives() const noexcept { return primitives_; }
   /// Ref: [Plagenhoef1983]; sums to the person's mass.
   [[nodiscard]] const std::array<double, n_parts>& masses_kg() const noexcept { return masses_kg_; }
   /// Radius of the vertical cylinder that a walking person keeps clear of obstacles, metres.
@@ -43,6 +47,7 @@ class Humanoid {
 
  private:
   Measures measures_;
+  Solids primitives_;
   Solids solids_;
   std::array<double, n_parts> masses_kg_{};
   double clearance_radius_m_ = 0.0;

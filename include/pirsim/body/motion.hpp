@@ -20,6 +20,23 @@ namespace pirsim::body {
 enum class Stage { standing, walking, turning, sitting_down, seated, rising };
 [[nodiscard]] std::string_view name(Stage stage) noexcept;
 
+/// What a person's posture depends on beside their measures. Equal outlines give equal postures, bit for bit, and a
+/// choreography repeats its outlines; they cost a tenth of a posture. Doubles only, so that bytes can be compared.
+struct Outline {
+  Placement pelvis;
+  double hip_height_m = 0.0;  ///< y in the world, as all heights here
+  Feet feet{};
+  double floor_height_m = 0.0;
+  double spine_tilt = 0.0;
+  double fall = 0.0;             ///< 0 standing, 1 at the seat's height
+  double reach = 0.0;            ///< of the arms: 0 on the thighs, 1 on the table
+  double thigh_angle = 0.0;      ///< when seated; 0 while fall is 0
+  double table_height_m = 0.0;   ///< what the forearms rest on; 0 while reach is 0, as the next
+  double hand_offset_m = 0.0;    ///< of the left hand ahead of its base place
+  bool operator==(const Outline&) const = default;
+};
+[[nodiscard]] Posture posture_of(const Humanoid& humanoid, const Outline& outline) noexcept;
+
 /// A value: copying it copies the whole state of the person's body. Commands may be given at any time; every part
 /// stays continuous in position whatever the order of commands, and joint speeds stay bounded.
 class Motion {
@@ -29,8 +46,9 @@ class Motion {
 
   // Commands. A command that needs another stage first (walk while seated) throws std::logic_error: the caller
   // sequences them; stop() and rise() lead back to standing from anywhere.
-  void walk(const Route& route);  ///< from standing; the route starts here
-  void turn_to(double heading);   ///< from standing, in place, with small steps
+  /// From standing; the route starts here. Turns first where it leads off by more than 20 degrees, and at pivots.
+  void walk(const Route& route);
+  void turn_to(double heading);  ///< from standing, in place, with small steps
   /// From walking or turning: comes to stand within two steps. Who waits in mid-stride (limit_speed(0)) brings the
   /// feet together on the spot, which counts as turning.
   void stop();
@@ -50,7 +68,8 @@ class Motion {
   [[nodiscard]] Vec2 position() const noexcept;  ///< of the pelvis over the floor
   [[nodiscard]] double heading() const noexcept;
   [[nodiscard]] double speed_m_s() const noexcept;
-  [[nodiscard]] Posture posture() const noexcept;
+  [[nodiscard]] Outline outline() const noexcept;
+  [[nodiscard]] Posture posture() const noexcept { return posture_of(humanoid_, outline()); }
   bool operator==(const Motion&) const = default;
 
  private:
@@ -62,7 +81,6 @@ class Motion {
   [[nodiscard]] double hip_height_m(const Placement& pelvis, const Feet& feet) const noexcept;
   [[nodiscard]] double spine_tilt() const noexcept;
   [[nodiscard]] double hand_offset_m() const noexcept;
-  [[nodiscard]] std::array<ArmPose, 2> arms(const Pose& pose) const noexcept;
   void begin_track(Stage stage, const Track& track, const StepStyle& style);
   void begin_turn(double angle);
   void walk_from(const Route& route, double from_s);
@@ -70,6 +88,7 @@ class Motion {
   void advance_on_seat() noexcept;
   void bring_feet_together();
   void come_to_stand(const Placement& place, const Feet& feet) noexcept;
+  void update_stance() noexcept;
 
   Humanoid humanoid_;
   double floor_height_m_ = 0.0;
@@ -79,6 +98,15 @@ class Motion {
   // Standing; also where sitting down began.
   Placement stand_;
   Feet stand_feet_{};
+
+  /// Where pelvis and feet are: follows from all that is below, kept because it changes rarely while seated.
+  struct Stance {
+    Placement pelvis;
+    Feet feet{};
+    double hip_height_m = 0.0;  ///< above the floor
+    bool operator==(const Stance&) const = default;
+  };
+  Stance stance_;
 
   // Walking and turning; distances in metres or radians.
   Track track_;

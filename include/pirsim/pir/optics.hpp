@@ -1,7 +1,6 @@
-// From a sensor's lens data to rays, and from zone activity to motion.
+// From a sensor's lens data to rays.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "pirsim/geom/ray_bundle.hpp"
@@ -17,9 +16,5 @@ namespace pirsim::pir {
 
 /// Appends a sensor's rays at their rated ranges.
 void append(RayBundle& bundle, const SensorSpec& sensor, const SensorModelSpec& model, RaysPerZone rays);
-
-/// bits[s] |= 1 where sensor s's activity changed between two ticks. before, after: (n_zones); bits: (n_sensors).
-void mark_motion(const RayBundle& bundle, ChangePer change_per, std::span<const std::uint8_t> before,
-                 std::span<const std::uint8_t> after, std::span<std::uint8_t> bits) noexcept;
 
 }  // namespace pirsim::pir

@@ -6,14 +6,15 @@
 #include <string_view>
 
 #include "pirsim/geom/ray_bundle.hpp"
+#include "pirsim/geom/zone_set.hpp"
 #include "pirsim/rt/room.hpp"
 
 namespace pirsim::rt {
 
 enum class TracerKind {
   reference,  ///< the plain way: whole scene rebuilt, closest hit of every ray at its full rated range
-  remembering,///< the next one, and the zones of postures seen before are looked up
   embree,     ///< rays cut once at the room, one instance moved per body part, occlusion queries
+  direct,     ///< rays cut once at the room, cones around rays, then every solid against many rays at a time
 };
 [[nodiscard]] std::string_view name(TracerKind kind) noexcept;
 
@@ -21,8 +22,10 @@ enum class TracerKind {
 class Tracer {
  public:
   virtual ~Tracer() = default;
-  /// solids: everything of every person that is in the scene now; zones: (n_zones) overwritten.
+  /// solids: everything of every person that is in the scene now (surfaces of meshes outlive the tracer); zones: (n_zones) overwritten.
   virtual void trace(std::span<const PosedShape> solids, std::span<std::uint8_t> zones) = 0;
+  /// Adds the zones that see one person of several to `zones`; what is kept from tick to tick is kept by `person`.
+  virtual void add(std::size_t person, std::span<const PosedShape> solids, ZoneSet& zones);
 };
 
 /// What a tracer works on; all of it outlives the tracer.
@@ -31,6 +34,10 @@ struct TracerSetup {
   const RayBundle* rated = nullptr;    ///< ranges as rated
   const RayBundle* clipped = nullptr;  ///< the same rays cut at the room
 };
+/// What --tracer auto stands for.
+inline constexpr TracerKind fastest_tracer = TracerKind::direct;
+/// "avx512f", "avx2" or "baseline": what the direct tracer uses on this processor. Changes no bit.
+[[nodiscard]] std::string_view direct_instruction_set() noexcept;
 [[nodiscard]] std::unique_ptr<Tracer> make_tracer(TracerKind kind, const TracerSetup& setup);
 
 }  // namespace pirsim::rt

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -9,6 +10,7 @@
 
 #include "pirsim/core/error.hpp"
 #include "pirsim/geom/frame.hpp"
+#include "pirsim/geom/shapes.hpp"
 
 namespace pirsim {
 
@@ -74,6 +76,9 @@ struct ScriptedAction {
   Where where;                 ///< for messages
 };
 
+/// Meshes by the name of the body part (schema/body_part_names.hpp) that they stand for, in that part's frame.
+using BodyMeshes = std::map<std::string, MeshSolid, std::less<>>;
+
 /// A person; lengths follow from stature by the fractions of Drillis & Contini (1966).
 struct PersonSpec {
   std::string id;
@@ -81,6 +86,8 @@ struct PersonSpec {
   double mass_kg = 80.0;
   double walking_speed_m_s = 1.0;
   SeatScatterSpec seat_scatter;
+  std::string body_mesh_file;  ///< glTF, or empty; relative to the script
+  BodyMeshes body_meshes;      ///< what was read from it: parts without a mesh stay primitive solids
   std::vector<ScriptedAction> actions;
 };
 

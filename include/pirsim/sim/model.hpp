@@ -11,12 +11,16 @@
 #include "pirsim/body/motion.hpp"
 #include "pirsim/body/walkable_floor.hpp"
 #include "pirsim/geom/ray_bundle.hpp"
+#include "pirsim/pir/motion_detector.hpp"
 #include "pirsim/rt/room.hpp"
 #include "pirsim/rt/tracer.hpp"
 #include "pirsim/schema/scene_spec.hpp"
 #include "pirsim/schema/script_spec.hpp"
 
 namespace pirsim {
+namespace sim {
+class Lookout;
+}
 
 /// A seat as one person uses it.
 struct SeatPlan {
@@ -38,7 +42,7 @@ struct TrialModel {
 };
 
 struct CompileOptions {
-  rt::TracerKind tracer = rt::TracerKind::remembering;
+  rt::TracerKind tracer = rt::fastest_tracer;
 };
 
 class Model {
@@ -59,8 +63,12 @@ class Model {
 
   /// replicate, trial, time_s, phase, people, then one column a sensor.
   [[nodiscard]] std::vector<std::string> columns() const;
-  /// A tracer of one's own for as long as one holds it; goes back for others to use. Safe to call from any thread.
-  [[nodiscard]] std::shared_ptr<rt::Tracer> borrow_tracer() const;
+  /// Which channels of which sensors are watched for changes.
+  [[nodiscard]] const pir::MotionDetector& detector() const noexcept { return *detector_; }
+  [[nodiscard]] std::unique_ptr<rt::Tracer> make_tracer() const;
+  /// Of one's own for as long as one holds it; goes back, with what it remembers, for others to use. Safe to call from
+  /// any thread.
+  [[nodiscard]] std::shared_ptr<sim::Lookout> borrow_lookout() const;
 
  private:
   friend Model compile(SceneSpec scene, ScriptSpec script, const CompileOptions& options);
@@ -70,9 +78,10 @@ class Model {
   std::unique_ptr<rt::Room> room_;
   std::unique_ptr<RayBundle> rated_;
   std::unique_ptr<RayBundle> clipped_;
-  rt::TracerKind tracer_ = rt::TracerKind::remembering;
-  struct TracerPool;
-  std::shared_ptr<TracerPool> idle_tracers_;  ///< not part of what a Model is: memory that runs hand on
+  rt::TracerKind tracer_ = rt::fastest_tracer;
+  std::unique_ptr<pir::MotionDetector> detector_;
+  struct Pool;
+  std::shared_ptr<Pool> idle_lookouts_;  ///< not part of what a Model is: memory that runs hand on
 };
 
 /// The only door from Spec to Model. Throws Error(input) for names that the scene lacks or actions in an impossible

@@ -29,7 +29,7 @@ class State {
   [[nodiscard]] std::int64_t tick() const noexcept { return tick_; }
   [[nodiscard]] const std::vector<Actor>& actors() const noexcept { return actors_; }
   /// (n_zones) at the current tick.
-  [[nodiscard]] const ZoneActivity& zones() const noexcept { return zones_; }
+  [[nodiscard]] const ZoneSet& zones() const noexcept { return zones_; }
   /// The reading at the end of the last whole window.
   [[nodiscard]] const Sample& sample() const noexcept { return sample_; }
   /// Every person has carried out all actions and the last window is complete.
@@ -37,6 +37,7 @@ class State {
 
  private:
   friend bool step_tick(const Model& model, State& state);
+  void move_people(const Model& model);
   void look(const Model& model);
 
   const Model* model_;
@@ -44,14 +45,16 @@ class State {
   std::int64_t tick_ = 0;
   bool finished_ = false;
   std::vector<Actor> actors_;
-  ZoneActivity zones_, previous_zones_;
+  ZoneSet zones_;
+  ZoneSet channels_, previous_channels_;  ///< of the Model's detector
   std::vector<std::uint8_t> bits_;  ///< (n_sensors) motion so far in this window
   Sample sample_;
-  std::vector<PosedShape> solids_;         ///< scratch of look()
-  std::shared_ptr<rt::Tracer> tracer_;     ///< scratch; a copy of the State borrows its own
+  std::vector<Presence> others_;           ///< scratch
+  std::shared_ptr<sim::Lookout> lookout_;  ///< scratch; a copy of the State borrows its own
 };
 
-/// Appends the thirteen posed solids of a person who is present, in the order of body::Part.
+/// Appends the thirteen posed solids of a posture, or of a person if present, in the order of body::Part.
+void append_solids(const body::Humanoid& humanoid, const body::Posture& posture, std::vector<PosedShape>& solids);
 void append_solids(const Actor& actor, std::vector<PosedShape>& solids);
 
 /// Advances to the end of the next window, whose reading is then state.sample(). False if the run had ended.

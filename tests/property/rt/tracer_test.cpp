@@ -1,9 +1,11 @@
 #include "pirsim/rt/tracer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "pirsim/core/parallel.hpp"
+#include "rt/direct_tracer.hpp"
 #include "support/catch.hpp"
 #include "support/random_scene.hpp"
 
@@ -14,12 +16,16 @@ using pirsim::testing::RandomScene;
 
 namespace {
 
-/// A scene with its two tracers.
+/// A scene with its tracers.
 struct Traced {
   explicit Traced(const RandomScene& scene) : rated(scene.bundle), clipped(scene.bundle), room(scene.room) {
     room.clip(clipped);
     reference = rt::make_tracer(TracerKind::reference, {&room, &rated, &clipped});
     embree = rt::make_tracer(TracerKind::embree, {&room, &rated, &clipped});
+    for (const rt::RayKernel* kernel : rt::all_ray_kernels()) {
+      if (kernel->is_available())
+        direct.emplace_back(std::make_unique<rt::DirectTracer>(rt::TracerSetup{&room, &rated, &clipped}, *kernel));
+    }
   }
   ZoneActivity by(rt::Tracer& tracer, const std::vector<PosedShape>& solids) const {
     ZoneActivity zones(rated.n_zones(), std::uint8_t{7});
@@ -30,10 +36,32 @@ struct Traced {
   RayBundle rated, clipped;
   rt::Room room;
   std::unique_ptr<rt::Tracer> reference, embree;
+  std::vector<std::unique_ptr<rt::DirectTracer>> direct;  ///< one an instruction set
 };
 
 std::size_t active(const ZoneActivity& zones) {
   return static_cast<std::size_t>(std::count(zones.begin(), zones.end(), std::uint8_t{1}));
+}
+
+/// A direction in which a solid's oriented box touches it, and the point where it does: an axis for round solids, a
+/// point on an edge for a box.
+std::pair<Vec3, Vec3> outermost_point(Draw& draw, const PosedShape& shape) {
+  const double side = draw.index(2) == 0 ? -1.0 : 1.0;
+  if (const auto* s = std::get_if<PosedSphere>(&shape)) {
+    Vec3 axis(0.0);
+    axis[static_cast<int>(draw.index(3))] = side;
+    return {axis, Vec3(s->centre) + axis * double(s->radius)};
+  }
+  if (const auto* c = std::get_if<PosedCapsule>(&shape)) {
+    const Vec3 axis = glm::normalize(side * (Vec3(c->b) - Vec3(c->a)));
+    return {axis, Vec3(side > 0 ? c->b : c->a) + axis * double(c->radius)};
+  }
+  const auto& b = std::get<PosedBox>(shape);
+  const int i = static_cast<int>(draw.index(3)), j = (i + 1) % 3, k = (i + 2) % 3;
+  const Vec3 first = side * Vec3(b.axes[i]), second = Vec3(b.axes[j]);
+  const Vec3 corner = Vec3(b.centre) + first * double(b.half_extents[i]) + second * double(b.half_extents[j]);
+  return {glm::normalize(first + second),
+          corner + draw.between(-0.5, 0.5) * double(b.half_extents[k]) * Vec3(b.axes[k])};
 }
 
 TriMesh mirrored(TriMesh mesh) {
@@ -58,7 +86,9 @@ RandomScene mirrored(RandomScene scene) {
 
 }  // namespace
 
-TEST_CASE("both tracers give the same zones in 2000 random scenes, while people come, move and go", "[rt]") {
+TEST_CASE(
+    "all tracers, on every instruction set, give the same zones in 2000 random scenes, while people come, move and go",
+    "[rt]") {
   std::size_t n_zones = 0, n_active = 0;
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     Draw draw(1000 + seed);
@@ -69,6 +99,7 @@ TEST_CASE("both tracers give the same zones in 2000 random scenes, while people 
       INFO("seed " << 1000 + seed << ", tick " << tick << ", " << solids.size() << " solids");
       const ZoneActivity expected = traced.by(*traced.reference, solids);
       REQUIRE(traced.by(*traced.embree, solids) == expected);
+      for (const auto& direct : traced.direct) REQUIRE(traced.by(*direct, solids) == expected);
       n_zones += expected.size();
       n_active += active(expected);
       if (tick % 2 == 0 && !solids.empty()) solids.resize(draw.index(static_cast<std::uint32_t>(solids.size())));
@@ -81,6 +112,21 @@ TEST_CASE("both tracers give the same zones in 2000 random scenes, while people 
   CHECK(n_active > n_zones / 20);
   CHECK(n_active < n_zones / 2);
   WARN(n_zones << " zones compared, " << n_active << " of them active");
+}
+
+TEST_CASE("people traced one by one give the zones of all of them together", "[rt]") {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    Draw draw(3000 + seed);
+    const RandomScene scene = testing::random_scene(draw);
+    const Traced traced(scene);
+    const std::span<const PosedShape> all(scene.solids);
+    const std::size_t cut = draw.index(static_cast<std::uint32_t>(all.size()) + 1);
+    const ZoneActivity together = traced.by(*traced.reference, scene.solids);
+    ZoneSet apart(together.size());
+    traced.direct.front()->add(0, all.first(cut), apart);
+    traced.direct.front()->add(1, all.subspan(cut), apart);
+    for (std::size_t zone = 0; zone < together.size(); ++zone) REQUIRE(apart.test(zone) == (together[zone] == 1));
+  }
 }
 
 TEST_CASE("the tracers agree with a loop over all triangles and solids in double precision", "[rt]") {
@@ -108,6 +154,41 @@ TEST_CASE("the tracers agree with a loop over all triangles and solids in double
   }
   WARN(n_grazing << " of " << n_zones << " zones differ, all of them with a ray within 1e-5 m of grazing");
   CHECK(n_grazing < n_zones / 1000);
+}
+
+TEST_CASE("Embree leaves out no solid that a ray clips by micrometres at its outermost points", "[rt]") {
+  const rt::Room nothing{{}};
+  std::size_t n_hits = 0;
+  constexpr int n_rays = 4000;
+  Draw draw(12);
+  for (int i = 0; i < n_rays; ++i) {
+    // Square to the world, where Embree's boxes are tightest, or turned anyhow; others far off, so that there are
+    // boxes.
+    const Frame frame{draw.index(2) == 0 ? Quat(1, 0, 0, 0) : draw.rotation(), draw.inside({-6, 0, -6}, {6, 3, 6})};
+    const PosedShape solid = place(draw.shape(), frame);
+    std::vector<PosedShape> solids(8, solid);
+    for (std::size_t k = 1; k < solids.size(); ++k) {
+      solids[k] = place(draw.shape(), {draw.rotation(), draw.inside({-6, 50, -6}, {6, 60, 6})});
+    }
+    const auto [outwards, outermost] = outermost_point(draw, solid);
+    const Vec3 along = glm::normalize(glm::cross(outwards, draw.direction()));
+    const Vec3 aim = outermost - outwards * std::pow(10.0, draw.between(-6.0, -3.0));
+    RayBundle bundle;
+    bundle.rays.push_back({Vec3f(aim - draw.between(1.0, 11.0) * along), Vec3f(along)});
+    bundle.range.push_back(12.0F);
+    testing::close_zone(bundle);
+    testing::close_cluster(bundle);
+    testing::close_sensor(bundle);
+    const bool expected = entry_distance(bundle.rays[0], solid, 12.0F).has_value();
+    n_hits += expected ? 1 : 0;
+    for (const TracerKind kind : {TracerKind::reference, TracerKind::embree}) {
+      ZoneActivity zones(1);
+      rt::make_tracer(kind, {&nothing, &bundle, &bundle})->trace(solids, zones);
+      INFO("ray " << i << ", shape " << solid.index() << ", " << rt::name(kind) << " tracer");
+      REQUIRE((zones[0] == 1) == expected);
+    }
+  }
+  CHECK(n_hits > n_rays * 9 / 10);
 }
 
 TEST_CASE("an occluder that is added never adds an active zone, and boxed-in sensors see nobody", "[rt]") {
@@ -162,7 +243,8 @@ TEST_CASE("tracers of one room on several threads give the zones that one thread
   const Traced traced(scene);
   const auto run = [&](std::size_t i) {
     Draw own(20 + i);
-    const TracerKind kind = i % 2 == 0 ? TracerKind::embree : TracerKind::reference;
+    constexpr std::array kinds{TracerKind::embree, TracerKind::reference, TracerKind::direct};
+    const TracerKind kind = kinds[i % kinds.size()];
     const auto tracer = rt::make_tracer(kind, {&traced.room, &traced.rated, &traced.clipped});
     ZoneActivity all;
     for (int tick = 0; tick < 50; ++tick) {

@@ -6,6 +6,7 @@
 #include "pirsim/core/units.hpp"
 #include "pirsim/io/coverage_reader.hpp"
 #include "pirsim/io/sensor_reader.hpp"
+#include "pirsim/pir/motion_detector.hpp"
 #include "pirsim/pir/optics.hpp"
 #include "support/catch.hpp"
 #include "support/random_scene.hpp"

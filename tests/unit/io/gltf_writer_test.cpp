@@ -14,6 +14,7 @@
 
 #include "pirsim/core/error.hpp"
 #include "pirsim/core/random.hpp"
+#include "pirsim/geom/triangle_surface.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -212,6 +213,28 @@ TEST_CASE("the triangles of a part lie on its primitive, a capsule's along Y", "
     CHECK(std::abs(box[i + 1]) == Approx(0.3));
     CHECK(std::abs(box[i + 2]) == Approx(0.1));
   }
+}
+
+TEST_CASE("a part that is a mesh is exported as its own triangles, flat shaded", "[gltf_writer]") {
+  const TemporaryFolder folder;
+  ExportedRun run = some_run();
+  const TriMesh hat{"hat", {{0, 0.3, 0}, {0.1, 0, 0}, {0, 0, -0.1}, {-0.1, 0, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+  run.people[0].parts[0].shape = MeshSolid{std::make_shared<const TriangleSurface>(hat)};
+  write_gltf(folder.path() / "run.gltf", run);
+  const tinygltf::Model model = read_back(folder.path() / "run.gltf");
+  check_equal(model, run);
+  const int node = node_names(model).at("anna/head");
+  CHECK(extras(model, node).Get("primitive").Get<std::string>() == "mesh");
+  const auto mesh = static_cast<std::size_t>(model.nodes[static_cast<std::size_t>(node)].mesh);
+  const auto& attributes = model.meshes[mesh].primitives[0].attributes;
+  CHECK(floats(model, attributes.at("POSITION")) ==
+        std::vector<float>{0, 0.3F, 0, 0.1F, 0, 0, 0, 0, -0.1F, 0, 0.3F, 0, 0, 0, -0.1F, -0.1F, 0, 0});
+  const std::vector<float> normals = floats(model, attributes.at("NORMAL"));
+  REQUIRE(normals.size() == 18);
+  CHECK(normals[0] > 0.0F);  // of the first triangle, to the right and up
+  CHECK(normals[1] > 0.0F);
+  CHECK(normals[9] < 0.0F);
+  CHECK(normals[10] > 0.0F);
 }
 
 TEST_CASE("room and beams are exported as triangles and lines at their places", "[gltf_writer]") {

@@ -169,6 +169,9 @@ TEST_CASE("sensor files are looked for in the given folders before those beside 
   const auto file = folder.write("rooms/room.gltf", scene.text());
   const auto read = [&] { return pirsim::io::read_scene(file); };
   CHECK_THAT(fault_of(read), contains("room.gltf:") && contains("sensor model 'EKMC1604111' is not known; no folder"));
+  REQUIRE(setenv("PIRSIM_DATA_DIR", PIRSIM_DATA_DIR, 1) == 0);
+  CHECK(read().sensor_models.count("EKMC1604111") == 1);
+  REQUIRE(unsetenv("PIRSIM_DATA_DIR") == 0);
   std::filesystem::copy(std::filesystem::path(PIRSIM_DATA_DIR) / "sensors", folder.path() / "sensors");
   CHECK(read().sensor_models.count("EKMC1604111") == 1);
   const auto first = folder.write("first/EKMC1604111.yaml", "not a sensor");

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pirsim/io/sensor_reader.hpp"
+#include "pirsim/pir/motion_detector.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

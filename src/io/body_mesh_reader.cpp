@@ -1,0 +1,92 @@
+#include "io/body_mesh_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <utility>
+#include <vector>
+
+#include "io/gltf_geometry.hpp"
+#include "io/gltf_nodes.hpp"
+#include "pirsim/geom/triangle_surface.hpp"
+#include "pirsim/schema/body_part_names.hpp"
+
+namespace pirsim::io::detail {
+namespace {
+
+constexpr double farthest_m = 3.0;  // assumed; 2.5 to 10 would do: nobody's part is longer, one in millimetres is
+
+const std::vector<std::string> part_names(body_part_names.begin(), body_part_names.end());
+
+/// What is left of a node's transform within its own frame: scale and mirroring.
+glm::dmat4 scale_of(const glm::dmat4& world_from_node) {
+  const Frame node_from_world = inverse(rigid_frame(world_from_node));
+  return glm::translate(glm::dmat4(1.0), node_from_world.origin) * glm::mat4_cast(node_from_world.rotation) *
+         world_from_node;
+}
+
+class BodyBuilder {
+ public:
+  BodyBuilder(const std::filesystem::path& file, Diagnostics& faults)
+      : faults_(faults), document_(load_gltf(file, faults)) {}
+
+  BodyMeshes build() {
+    for (const PlacedNode& placed : place_nodes(document_, faults_)) {
+      if (document_.model.nodes[static_cast<std::size_t>(placed.node)].mesh >= 0) add_part(placed);
+    }
+    if (meshes_.empty() && !faults_.has_errors()) faults_.error(document_.text.where(""), "no node has a mesh");
+    return std::move(meshes_);
+  }
+
+ private:
+  void add_part(const PlacedNode& placed) {
+    const auto& node = document_.model.nodes[static_cast<std::size_t>(placed.node)];
+    if (std::find(part_names.begin(), part_names.end(), node.name) == part_names.end()) {
+      return error(placed.node, node.name.empty() ? "" : "/name",
+                   "no part of the body is called so" + did_you_mean(node.name, part_names));
+    }
+    if (meshes_.contains(node.name)) return error(placed.node, "/name", "a second mesh for this part");
+    const TriMesh local = read_mesh(document_, node.mesh, budget_, faults_);
+    TriMesh part = clean(transformed(local, scale_of(placed.world_from_node), node.name)).mesh;
+    if (part.triangles.empty()) return error(placed.node, "/mesh", "its mesh has no triangle with an area");
+    const auto is_near = [](const Vec3& p) { return glm::length(p) <= farthest_m; };
+    if (!std::all_of(part.positions.begin(), part.positions.end(), is_near)) {
+      return error(placed.node, "/mesh",
+                   "its mesh reaches more than 3 m from the part's origin; metres are expected, in the part's frame");
+    }
+    meshes_[node.name] = MeshSolid{std::make_shared<const TriangleSurface>(std::move(part))};
+  }
+
+  void error(int node, const std::string& member, const std::string& message) {
+    faults_.error(document_.text.where("/nodes/" + std::to_string(node) + member),
+                  node_label(document_.model, node) + ": " + message);
+  }
+
+  Diagnostics& faults_;
+  GltfDocument document_;
+  GeometryBudget budget_;
+  BodyMeshes meshes_;
+};
+
+}  // namespace
+
+BodyMeshes BodyMeshReader::read(const std::string& file, const Where& where, Diagnostics& faults) {
+  if (file.empty()) return {};
+  const auto [known, is_first] = known_.try_emplace(file);
+  if (!is_first) return known->second;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(folder_ / file, ignored)) {
+    faults.error(where, "body_mesh: there is no file '" + (folder_ / file).string() + "'");
+    return {};
+  }
+  try {
+    known->second = BodyBuilder(folder_ / file, faults).build();
+  } catch (const Error& fault) {
+    for (const Issue& issue : fault.issues()) faults.error(issue.where, issue.message);
+  }
+  return known->second;
+}
+
+}  // namespace pirsim::io::detail

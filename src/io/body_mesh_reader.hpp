@@ -1,0 +1,27 @@
+// Bodies as glTF meshes, one a part. Private to io.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "pirsim/schema/script_spec.hpp"
+
+namespace pirsim::io::detail {
+
+/// Reads each file once, however many people wear it.
+class BodyMeshReader {
+ public:
+  /// folder: what file names are relative to.
+  explicit BodyMeshReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// The mesh of every node that has one; a node's name is its part's, a node's frame is its part's frame. Faults of
+  /// the file go to `faults` with their place in it; a missing file is a fault at `where`.
+  [[nodiscard]] BodyMeshes read(const std::string& file, const Where& where, Diagnostics& faults);
+
+ private:
+  std::filesystem::path folder_;
+  std::map<std::string, BodyMeshes> known_;
+};
+
+}  // namespace pirsim::io::detail

@@ -1,0 +1,29 @@
+#include "rt/ray_kernel.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace pirsim::rt {
+
+#if defined(__x86_64__)
+extern const RayKernel ray_kernel_avx512;
+extern const RayKernel ray_kernel_avx2;
+#endif
+extern const RayKernel ray_kernel_baseline;
+
+std::span<const RayKernel* const> all_ray_kernels() noexcept {
+#if defined(__x86_64__)
+  static constexpr std::array kernels{&ray_kernel_avx512, &ray_kernel_avx2, &ray_kernel_baseline};
+#else
+  static constexpr std::array kernels{&ray_kernel_baseline};
+#endif
+  return kernels;
+}
+
+const RayKernel& best_ray_kernel() noexcept {
+  static const RayKernel& best =
+      **std::ranges::find_if(all_ray_kernels(), [](const RayKernel* kernel) { return kernel->is_available(); });
+  return best;
+}
+
+}  // namespace pirsim::rt

@@ -1,0 +1,10 @@
+// Sixteen rays at a time; compiled with -mavx512f (src/CMakeLists.txt).
+#include "rt/ray_kernel_impl.hpp"
+
+namespace pirsim::rt {
+
+extern const RayKernel ray_kernel_avx512;
+const RayKernel ray_kernel_avx512{
+    "avx512f", [] { return __builtin_cpu_supports("avx512f") != 0; }, cull, meet_sphere, meet_capsule, meet_box};
+
+}  // namespace pirsim::rt

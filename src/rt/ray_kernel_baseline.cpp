@@ -1,0 +1,9 @@
+// What every processor of the architecture can: SSE2 with four rays at a time on x86-64, elsewhere one.
+#include "rt/ray_kernel_impl.hpp"
+
+namespace pirsim::rt {
+
+extern const RayKernel ray_kernel_baseline;
+const RayKernel ray_kernel_baseline{"baseline", [] { return true; }, cull, meet_sphere, meet_capsule, meet_box};
+
+}  // namespace pirsim::rt

@@ -1,0 +1,121 @@
+// Body of a RayKernel; included by one file an instruction set. Internal linkage throughout: see lanes.hpp.
+#pragma once
+
+#include "geom/ray_tests.hpp"
+#include "rt/lanes.hpp"
+#include "rt/ray_kernel.hpp"
+
+namespace pirsim::rt {
+namespace {
+
+using Vector = ray_tests::Vector<Lanes>;
+using Interval = ray_tests::Interval<Lanes>;
+
+/// Metres added to a ball before anything is left out: far above single precision's rounding (a kilometre from the
+/// world's origin 6e-5 m), so that what the exact tests say of a ray outside the ball is always "misses".
+constexpr float ball_margin = 1e-3F;
+constexpr float relative_margin = 1e-5F;
+
+inline Vector vector_of(const Vec3f& v) noexcept { return {Lanes(v.x), Lanes(v.y), Lanes(v.z)}; }
+
+inline Vector load(const Column& x, const Column& y, const Column& z, std::size_t i) noexcept {
+  return {Lanes::at(x + i), Lanes::at(y + i), Lanes::at(z + i)};
+}
+inline Lanes size_of(Lanes x) noexcept { return larger(x, Lanes(0.0F) - x); }
+
+/// may_touch() of view_cones.cpp.
+[[gnu::flatten]] std::size_t cull(const ConeBlock* cones, std::size_t n_blocks, const Ball& ball,
+                                  std::uint32_t* indices) noexcept {
+  const Vector centre = vector_of(ball.centre);
+  const Lanes radius(ball.radius + ball_margin), share(relative_margin);
+  std::size_t n = 0;
+  for (std::size_t block = 0; block < n_blocks; ++block) {
+    const ConeBlock& cone = cones[block];
+    for (std::size_t lane = 0; lane < pack_size; lane += n_lanes) {
+      const Vector offset = centre - load(cone.apex_x, cone.apex_y, cone.apex_z, lane);
+      const Vector axis = load(cone.axis_x, cone.axis_y, cone.axis_z, lane);
+      const Lanes along = dot(offset, axis);
+      const Vector aside = offset - axis * along;
+      const Lanes across = square_root(dot(aside, aside));
+      const Lanes reach = radius + share * (size_of(along) + across);
+      const Lanes beside = across * Lanes::at(cone.cosine + lane) - along * Lanes::at(cone.sine + lane);
+      unsigned int touched = bits((beside <= reach) & (along - reach <= Lanes::at(cone.length + lane)));
+      for (; touched != 0; touched &= touched - 1) {
+        const std::size_t bit = static_cast<std::size_t>(__builtin_ctz(touched));
+        indices[n++] = static_cast<std::uint32_t>(block * pack_size + lane + bit);
+      }
+    }
+  }
+  return n;
+}
+
+/// Rays that pass an endless bar around the solid at more than `reach` needn't be tested; those that run along it must.
+inline Mask passes_near(const Vector& offset, const Vector& direction, const Vector& axis, Lanes reach) noexcept {
+  const Vector normal{direction.y * axis.z - direction.z * axis.y, direction.z * axis.x - direction.x * axis.z,
+                      direction.x * axis.y - direction.y * axis.x};
+  const Lanes square = dot(normal, normal), apart = dot(offset, normal);
+  // Within a hundredth of a radian rounding could be worth more than the margin.
+  return (apart * apart <= reach * reach * square) | (square < Lanes(1e-4F));
+}
+
+template <typename Cull, typename Test>
+inline void meet(const RayPack* rays, const std::uint32_t* picked, std::size_t n, const Ball& around, PackHits* hits,
+                 const Cull& may_meet, const Test& inside_solid) noexcept {
+  const Vector centre = vector_of(around.centre);
+  const float reach = around.radius * (1.0F + relative_margin) + ball_margin;
+  const Lanes margin(reach), share(relative_margin);
+  for (std::size_t k = 0; k < n; ++k) {
+    const RayPack& pack = rays[picked[k]];
+    unsigned int found = 0;
+    for (std::size_t lane = 0; lane < pack_size; lane += n_lanes) {
+      const Vector origin = load(pack.origin_x, pack.origin_y, pack.origin_z, lane);
+      const Vector direction = load(pack.direction_x, pack.direction_y, pack.direction_z, lane);
+      const Lanes range = Lanes::at(pack.range + lane);
+      const auto near = ray_tests::approach(origin, direction, centre);
+      const Lanes slack = share * size_of(near.distance), wide = margin + slack;
+      const Mask is_near = (dot(near.offset, near.offset) <= wide * wide) & (near.distance - wide <= range) &
+                           may_meet(near.offset, direction, slack);
+      if (bits(is_near) == 0) continue;
+      found |= bits(ray_tests::is_hit(inside_solid(origin, direction), range)) << lane;
+    }
+    hits[k] = static_cast<PackHits>(found);
+  }
+}
+
+inline Mask any_ray(const Vector&, const Vector&, Lanes slack) noexcept { return slack >= Lanes(0.0F); }
+
+[[gnu::flatten]] void meet_sphere(const RayPack* rays, const std::uint32_t* picked, std::size_t n,
+                                  const PosedSphere& solid, const Ball& around, PackHits* hits) noexcept {
+  const Vector centre = vector_of(solid.centre);
+  const Lanes radius(solid.radius);
+  meet(rays, picked, n, around, hits, any_ray, [&](const Vector& origin, const Vector& direction) {
+    return ray_tests::sphere(origin, direction, centre, radius);
+  });
+}
+
+[[gnu::flatten]] void meet_capsule(const RayPack* rays, const std::uint32_t* picked, std::size_t n,
+                                   const PosedCapsule& solid, const Ball& around, PackHits* hits) noexcept {
+  const auto axis = ray_tests::capsule_axis(vector_of(solid.a), vector_of(solid.b));
+  const Lanes radius(solid.radius);
+  const Lanes reach(solid.radius * (1.0F + relative_margin) + ball_margin);
+  meet(
+      rays, picked, n, around, hits,
+      [&](const Vector& offset, const Vector& direction, Lanes slack) {
+        return passes_near(offset, direction, axis.axis, reach + slack);
+      },
+      [&](const Vector& origin, const Vector& direction) {
+        return ray_tests::capsule(origin, direction, axis, radius);
+      });
+}
+
+[[gnu::flatten]] void meet_box(const RayPack* rays, const std::uint32_t* picked, std::size_t n, const PosedBox& solid,
+                               const Ball& around, PackHits* hits) noexcept {
+  const Vector centre = vector_of(solid.centre), half_extents = vector_of(solid.half_extents);
+  const std::array<Vector, 3> axes{vector_of(solid.axes[0]), vector_of(solid.axes[1]), vector_of(solid.axes[2])};
+  meet(rays, picked, n, around, hits, any_ray, [&](const Vector& origin, const Vector& direction) {
+    return ray_tests::box(origin, direction, centre, axes, half_extents);
+  });
+}
+
+}  // namespace
+}  // namespace pirsim::rt

@@ -1,0 +1,102 @@
+#include "pirsim/sim/zone_tracks.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "pirsim/core/parallel.hpp"
+#include "pirsim/sim/state.hpp"
+
+namespace pirsim::sim {
+namespace {
+
+/// Numbers sets in the order in which they come.
+class Numbering {
+ public:
+  explicit Numbering(std::size_t n_zones) { (void)number(ZoneSet(n_zones)); }
+
+  std::uint32_t number(const ZoneSet& set) {
+    const auto [known, is_new] = numbers_.try_emplace({set.words().begin(), set.words().end()}, sets_.size());
+    if (is_new) sets_.push_back(set);
+    return static_cast<std::uint32_t>(known->second);
+  }
+  [[nodiscard]] std::vector<ZoneSet>& sets() noexcept { return sets_; }
+
+ private:
+  std::map<std::vector<ZoneSet::Word>, std::size_t> numbers_;
+  std::vector<ZoneSet> sets_;
+};
+
+/// A run with its own numbering of sets.
+struct TracedRun {
+  ZoneTrack track;
+  std::vector<ZoneSet> sets;
+};
+
+TracedRun trace_run(const Model& model, std::uint32_t run) {
+  TracedRun traced{{{run, model.replicate_of(run), model.trial_of(run).id, {}, {}}, {}}, {}};
+  Numbering numbering(model.detector().n_zones());
+  State state(model, run);
+  ZoneSet last(model.detector().n_zones());
+  std::uint32_t number = 0;
+  while (!state.finished()) {
+    if (step_tick(model, state)) traced.track.rows.samples.push_back(state.sample());
+    if (state.zones() != last) {
+      last = state.zones();
+      number = numbering.number(last);
+    }
+    traced.track.sets.push_back(number);
+  }
+  traced.sets = std::move(numbering.sets());
+  return traced;
+}
+
+}  // namespace
+
+ZoneTracks trace(const Model& model, std::span<const std::uint32_t> runs, unsigned threads) {
+  ZoneTracks tracks;
+  tracks.n_sensors = model.scene().sensors.size();
+  tracks.ticks_per_window = model.script().sensing.ticks_per_window;
+  Numbering numbering(model.detector().n_zones());
+  ordered_parallel<TracedRun>(
+      runs.size(), threads, [&](std::size_t i) { return trace_run(model, runs[i]); },
+      [&](TracedRun& traced) {
+        std::vector<std::uint32_t> renumbered;
+        for (const ZoneSet& set : traced.sets) renumbered.push_back(numbering.number(set));
+        for (std::uint32_t& number : traced.track.sets) number = renumbered[number];
+        tracks.runs.push_back(std::move(traced.track));
+      });
+  tracks.sets = std::move(numbering.sets());
+  return tracks;
+}
+
+void ChangeLogic::prepare(std::span<const ZoneSet> sets) {
+  channels_.clear();
+  for (const ZoneSet& set : sets) {
+    channels_.emplace_back(detector_.n_channels());
+    detector_.add_channels(set, channels_.back());
+  }
+}
+
+void ChangeLogic::begin_run(std::uint64_t, std::uint32_t) {}
+
+void ChangeLogic::tick(std::uint32_t before, std::uint32_t after, std::span<std::uint8_t> bits) noexcept {
+  if (before != after) detector_.mark(channels_[before].words(), channels_[after].words(), bits);
+}
+
+RunResult emit(const ZoneTracks& tracks, std::size_t index, DetectorLogic& detector, std::uint64_t seed) {
+  const ZoneTrack& track = tracks.runs[index];
+  RunResult result = track.rows;
+  detector.begin_run(seed, result.run);
+  std::uint32_t before = 0;
+  std::size_t tick = 0;
+  for (Sample& sample : result.samples) {
+    sample.bits.assign(tracks.n_sensors, 0);
+    for (int i = 0; i < tracks.ticks_per_window; ++i, ++tick) {
+      detector.tick(before, track.sets[tick], sample.bits);
+      before = track.sets[tick];
+    }
+  }
+  return result;
+}
+
+}  // namespace pirsim::sim

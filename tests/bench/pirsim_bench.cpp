@@ -1,0 +1,246 @@
+// How fast whole studies run, as CSV: benchmark,case,value,unit. What stands in a case tells what is measured; the
+// machine is described by the first lines. docs/performance.md explains the numbers.
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "pirsim/core/version.hpp"
+#include "pirsim/io/csv_writer.hpp"
+#include "pirsim/sim/state.hpp"
+#include "rt/direct_tracer.hpp"
+#include "support/shipped.hpp"
+
+using namespace pirsim;
+using pirsim::test::shipped_scene;
+using pirsim::test::shipped_script;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+/// Of this thread alone: other programs that want the processor don't count.
+class Stopwatch {
+ public:
+  [[nodiscard]] double seconds() const { return now() - begin_; }
+
+ private:
+  static double now() {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
+  double begin_ = now();
+};
+/// Of all threads.
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+void report(const std::string& benchmark, const std::string& what, double value, const std::string& unit) {
+  std::cout << benchmark << ",\"" << what << "\"," << value << ',' << unit << std::endl;
+}
+
+/// Least of several repetitions: what the machine can do when nobody disturbs it.
+double least(int repetitions, const std::function<double()>& measure) {
+  double best = measure();
+  for (int i = 1; i < repetitions; ++i) best = std::min(best, measure());
+  return best;
+}
+
+void describe_machine() {
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  std::string processor = "unknown";
+  for (std::string line; std::getline(cpuinfo, line);) {
+    if (line.starts_with("model name")) processor = line.substr(line.find(':') + 2);
+  }
+  std::cout << "benchmark,case,value,unit\n";
+  std::cout << "machine,\"" << processor << "\"," << std::thread::hardware_concurrency() << ",threads\n";
+  std::cout << "machine,\"" << rt::direct_instruction_set() << "\",1,instruction set\n";
+  std::cout << "machine,\"pirsim " << version() << ' ' << git_revision() << ", " << compiler() << "\",1,build\n";
+}
+
+Model study_a(rt::TracerKind kind, std::vector<std::string> overrides = {}) {
+  overrides.emplace_back("replicates=1000");
+  return compile(shipped_scene("meeting_room.gltf"), shipped_script("studyA.yaml", overrides), {kind});
+}
+const std::vector<std::string> scattered{"people.0.seat_scatter.position_sd_m=0.05",
+                                         "people.0.seat_scatter.heading_sd_deg=4.3"};
+
+/// The states of a run from the first tick of a phase on.
+State at_phase(const Model& model, std::uint32_t run, std::string_view phase) {
+  State state(model, run);
+  do step_tick(model, state);
+  while (state.actors().front().phase() != phase);
+  return state;
+}
+
+/// Nanoseconds per tick of everything: person, posture, rays, motion.
+double tick_ns(const Model& model, const State& from, int n_ticks) {
+  State state = from;
+  const Stopwatch stopwatch;
+  for (int i = 0; i < n_ticks; ++i) step_tick(model, state);
+  return stopwatch.seconds() / n_ticks * 1e9;
+}
+
+struct Phase {
+  std::string_view name;
+  int n_ticks;
+};
+constexpr Phase phases[] = {{"walking", 150}, {"sitting_down", 60}, {"working", 8000}};
+
+void ticks_by_phase() {
+  const Model direct = study_a(rt::TracerKind::direct);
+  const Model embree = study_a(rt::TracerKind::embree), reference = study_a(rt::TracerKind::reference);
+  for (const Phase& phase : phases) {
+    const std::string name(phase.name);
+    const int few = std::min(phase.n_ticks, 150);
+    const double plain = least(3, [&] { return tick_ns(reference, at_phase(reference, 3, phase.name), few); });
+    const double instances = least(3, [&] { return tick_ns(embree, at_phase(embree, 3, phase.name), few); });
+    const double study = least(3, [&] {
+      const Model fresh = study_a(rt::TracerKind::direct);
+      return tick_ns(fresh, at_phase(fresh, 3, phase.name), phase.n_ticks);
+    });
+    const double known = least(5, [&] { return tick_ns(direct, at_phase(direct, 3, phase.name), phase.n_ticks); });
+    report("tick", name + ", reference", plain, "ns");
+    report("tick", name + ", embree", instances, "ns");
+    report("tick", name + ", direct, first run", study, "ns");
+    report("tick", name + ", direct, postures known", known, "ns");
+    report("ratio", name + ", reference to direct, first run", plain / study, "1");
+    report("ratio", name + ", reference to direct, postures known", plain / known, "1");
+  }
+}
+
+/// The outlines of `n_people` people who work at as many seats at once.
+std::vector<std::vector<body::Outline>> outlines(const Model& model, std::string_view phase, int n_ticks,
+                                                 std::uint32_t n_people) {
+  std::vector<std::vector<body::Outline>> result(n_people);
+  for (std::uint32_t person = 0; person < n_people; ++person) {
+    State state = at_phase(model, person, phase);
+    for (int i = 0; i < n_ticks; ++i) {
+      result[person].push_back(state.actors().front().motion().outline());
+      step_tick(model, state);
+    }
+  }
+  return result;
+}
+
+/// Nanoseconds per tick of posture and rays with one kernel, nothing remembered but the parts that stand still.
+double anew_ns(const Model& model, const std::vector<std::vector<body::Outline>>& people, const rt::RayKernel& kernel) {
+  rt::DirectTracer tracer({&model.room(), &model.rated_rays(), &model.clipped_rays()}, kernel);
+  const body::Humanoid humanoid{model.trials().front().people.front().spec};
+  ZoneSet zones(model.rated_rays().n_zones());
+  std::vector<PosedShape> solids;
+  const std::size_t n_ticks = people.front().size();
+  const Stopwatch stopwatch;
+  for (std::size_t tick = 0; tick < n_ticks; ++tick) {
+    zones.clear();
+    for (std::size_t person = 0; person < people.size(); ++person) {
+      solids.clear();
+      append_solids(humanoid, body::posture_of(humanoid, people[person][tick]), solids);
+      tracer.add(person, solids, zones);
+    }
+  }
+  return stopwatch.seconds() / static_cast<double>(n_ticks) * 1e9;
+}
+
+void postures_anew() {
+  const Model model = study_a(rt::TracerKind::direct);
+  for (const Phase& phase : phases) {
+    const int n_ticks = std::min(phase.n_ticks, 1000);
+    const auto one = outlines(model, phase.name, n_ticks, 1);
+    for (const rt::RayKernel* kernel : rt::all_ray_kernels()) {
+      if (!kernel->is_available()) continue;
+      const double ns = least(5, [&] { return anew_ns(model, one, *kernel); });
+      const std::string what = std::string(phase.name) + ", " + std::string(kernel->name);
+      report("posture and rays anew", what, ns, "ns");
+      report("posture and rays anew", what + ", per ray", ns / static_cast<double>(model.rated_rays().rays.size()),
+             "ns");
+    }
+  }
+}
+
+void people() {
+  const Model model = study_a(rt::TracerKind::direct);
+  const auto all = outlines(model, "working", 1000, 8);
+  double apart = 0.0;
+  for (std::size_t person = 0; person < all.size(); ++person) {
+    const double ns = least(5, [&] { return anew_ns(model, {all[person]}, rt::best_ray_kernel()); });
+    report("people at work anew", "the one at seat " + std::to_string(person + 1), ns, "ns");
+    apart += ns;
+    if ((person & (person + 1)) != 0) continue;
+    const std::vector<std::vector<body::Outline>> together(all.begin(), all.begin() + static_cast<long>(person) + 1);
+    const double ns_together = least(5, [&] { return anew_ns(model, together, rt::best_ray_kernel()); });
+    report("people at work anew", std::to_string(person + 1) + " together", ns_together, "ns");
+    report("people at work anew", std::to_string(person + 1) + " together, share of one by one", ns_together / apart,
+           "1");
+  }
+}
+
+void runs_per_second() {
+  const unsigned most = std::max(1U, std::thread::hardware_concurrency());
+  for (const bool is_scattered : {false, true}) {
+    const std::string kind = is_scattered ? "scattered seats" : "Study A";
+    double alone = 0.0, alone_processor = 0.0;
+    for (unsigned threads = 1; threads <= most; ++threads) {
+      const std::string what = kind + ", " + std::to_string(threads) + " threads";
+      double processor = 1e30;
+      const double seconds = least(5, [&] {
+        std::vector<std::string> overrides = is_scattered ? scattered : std::vector<std::string>{};
+        overrides.emplace_back("replicates=30");
+        const Model model = compile(shipped_scene("meeting_room.gltf"), shipped_script("studyA.yaml", overrides));
+        std::ofstream null("/dev/null");
+        io::CsvWriter csv(null, model.columns());
+        const auto begin = Clock::now();
+        const double processor_begin = processor_seconds();
+        run_study(model, {threads, Record::samples}, [&](const RunResult& result) {
+          for (const Sample& sample : result.samples) csv.write(sample);
+        });
+        processor = std::min(processor, processor_seconds() - processor_begin);
+        return seconds_since(begin);
+      });
+      if (threads == 1) {
+        alone = seconds;
+        alone_processor = processor;
+      }
+      report("runs per second", what, 300.0 / seconds, "1/s");
+      report("processor time", what, processor / 300.0, "s a run");
+      report("speed-up", what, alone / seconds, "1");
+      // What the speed-up would be on an idle machine whose memory and clock keep up.
+      report("speed-up by processor time", what, threads * alone_processor / processor, "1");
+    }
+  }
+}
+
+void start_up() {
+  const double seconds = least(5, [] {
+    const auto begin = Clock::now();
+    const Model model = study_a(rt::TracerKind::direct);
+    State state(model, 0);
+    step(model, state);
+    return seconds_since(begin);
+  });
+  report("start-up", "files to first row", seconds, "s");
+}
+
+}  // namespace
+
+/// With a name, that section alone.
+int main(int argc, char** argv) {
+  const std::string wanted = argc > 1 ? argv[1] : "";
+  struct Section {
+    std::string name;
+    void (*run)();
+  };
+  describe_machine();
+  for (const Section& section :
+       {Section{"start-up", start_up}, Section{"anew", postures_anew}, Section{"people", people},
+        Section{"ticks", ticks_by_phase}, Section{"runs", runs_per_second}}) {
+    if (wanted.empty() || wanted == section.name) section.run();
+  }
+}

@@ -1,0 +1,33 @@
+#include "pirsim/io/csv_writer.hpp"
+
+#include <sstream>
+
+#include "pirsim/io/csv_reader.hpp"
+#include "support/catch.hpp"
+
+using namespace pirsim;
+
+TEST_CASE("numbers are written in the shortest form that reads back") {
+  CHECK(io::csv_number(1.0) == "1");
+  CHECK(io::csv_number(0.1) == "0.1");
+  CHECK(io::csv_number(1.0 / 3.0) == "0.3333333333333333");
+}
+
+TEST_CASE("names with commas, quotes and line breaks come back from the reader as they were") {
+  std::ostringstream out;
+  io::CsvWriter csv(out, {"trial, one", "a \"b\""});
+  csv.write({1, "S1,\n\"x\"", 0.5, "working", 2, {1, 0}});
+  const io::CsvTable table = io::CsvTable::parse("replicate,trial,time_s,phase,people,A,B" + out.str().substr(out.str().find('\n')), "x");
+  CHECK(table.text(0, 1) == "S1,\n\"x\"");
+  CHECK(table.text(0, 2) == "0.5");
+  CHECK(table.text(0, 6) == "0");
+  CHECK(out.str().starts_with("\"trial, one\",\"a \"\"b\"\"\"\n"));
+}
+
+TEST_CASE("zone activity is one line a sensor, zones split at the sensors' borders") {
+  std::ostringstream out;
+  io::ZoneCsvWriter zones(out, {"A", "B"}, {0, 2, 5});
+  const std::vector<std::uint8_t> activity{1, 0, 0, 1, 1};
+  zones.write(3, "S1", 42, activity);
+  CHECK(out.str() == "replicate,trial,tick,sensor,zones\n3,S1,42,A,10\n3,S1,42,B,011\n");
+}

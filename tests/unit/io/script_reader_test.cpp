@@ -1,0 +1,91 @@
+#include "pirsim/io/script_reader.hpp"
+
+#include <fstream>
+
+#include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
+
+using namespace pirsim;
+
+namespace {
+
+ScriptSpec read(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "s.yaml") << text;
+  return io::read_script(folder.path() / "s.yaml", overrides);
+}
+
+std::string fault(const std::string& text) {
+  try {
+    static_cast<void>(read(text));
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+constexpr const char* two_variables = R"(
+pirsim_script: 1
+trials:
+  for_each: {seat: [S1, S2, S3], tall: [1.6, 1.9]}
+  id: ${seat}-${tall}
+people:
+  - id: a
+    stature_m: ${tall}
+    actions:
+      - enter: door
+      - {sit: "${seat}", at_s: 3.5, phase: seated}
+      - work:
+      - rise
+)";
+
+}  // namespace
+
+TEST_CASE("for_each makes every combination, the last variable fastest, and fills it in") {
+  const ScriptSpec script = read(two_variables);
+  REQUIRE(script.trials.size() == 6);
+  CHECK(script.trials[0].id == "S1-1.6");
+  CHECK(script.trials[1].id == "S1-1.9");
+  CHECK(script.trials[5].id == "S3-1.9");
+  const PersonSpec& person = script.trials[5].people.at(0);
+  CHECK(person.stature_m == 1.9);
+  REQUIRE(person.actions.size() == 4);
+  CHECK(std::get<action::Sit>(person.actions[1].what).seat == "S3");
+  CHECK(person.actions[1].at_s == 3.5);
+  CHECK(person.actions[1].phase == "seated");
+  CHECK(std::get<action::Work>(person.actions[2].what).tilt_every_s == 30.0);
+  CHECK(std::holds_alternative<action::Rise>(person.actions[3].what));
+}
+
+TEST_CASE("a script without trials is one trial; defaults are those of the paper") {
+  const ScriptSpec script = read("pirsim_script: 1\npeople: [{id: a}]\n");
+  REQUIRE(script.trials.size() == 1);
+  CHECK(script.sensing.tick_rate_hz == 50);
+  CHECK(script.sensing.ticks_per_window == 50);
+  CHECK(script.sensing.rays_per_zone == RaysPerZone::five);
+  CHECK(script.trials[0].people[0].stature_m == 1.86);
+}
+
+TEST_CASE("the resolved script reads back to itself") {
+  const std::string once = io::to_yaml(read(two_variables));
+  CHECK(io::to_yaml(read(once)) == once);
+}
+
+TEST_CASE("overrides replace values and are validated like the file") {
+  CHECK(read(two_variables, {"seed=9", "people.0.mass_kg=60", "trials.for_each.seat=[S7]"}).trials.at(1).id == "S7-1.9");
+  CHECK_THROWS_AS(read(two_variables, {"people.0.mass=60"}), Error);
+}
+
+TEST_CASE("every fault of a script is told at once, each with its place") {
+  const std::string text = fault("pirsim_script: 1\nseeds: 3\npeople:\n  - id: a\n    actions:\n      - sti: S1\n      - wait_s: -1\n");
+  CHECK(text.find(":2:1: error: script: unknown key 'seeds' (did you mean 'seed'?)") != std::string::npos);
+  CHECK(text.find(":6:9: error: action: unknown key 'sti' (did you mean 'sit'?)") != std::string::npos);
+  CHECK(text.find(":7:17: error: wait_s") != std::string::npos);
+}
+
+TEST_CASE("two actions in one entry, an entry without one, and two people of one name are refused") {
+  const std::string people = "pirsim_script: 1\npeople:\n  - id: a\n    actions:\n";
+  CHECK(fault(people + "      - {sit: S1, rise: }\n").find("one action an entry") != std::string::npos);
+  CHECK(fault(people + "      - at_s: 4\n").find("an action is missing") != std::string::npos);
+  CHECK(fault("pirsim_script: 1\npeople: [{id: a}, {id: a}]\n").find("a second person 'a'") != std::string::npos);
+}
