@@ -39,6 +39,7 @@ void check(const Inputs& inputs) {
   const studies::SightReport report = studies::look_around(model);
   tell(studies::warnings(report, model.scene().name), inputs.verbosity);
   if (inputs.verbosity != Verbosity::quiet) print(std::cout, model, report);
+  require_written();
 }
 
 }  // namespace pirsim::app

@@ -18,7 +18,7 @@ namespace {
 
 studies::CoverageStudy load_coverage(const Inputs& inputs) {
   CoverageSpec spec = io::read_coverage(inputs.script, inputs.overrides);
-  SceneSpec scene = io::read_scene(inputs.scene, {inputs.sensor_directories});
+  SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
   return {std::move(scene), std::move(spec)};
 }

@@ -61,38 +61,38 @@ void add_run_options(CLI::App& command, RunOptions& options) {
 }
 
 void add_preview_options(CLI::App& command, PreviewOptions& options) {
-  command.add_option("-o,--output", options.output, "PNG file")->option_text("FILE")->capture_default_str();
+  command.add_option("-o,--output", options.output, "PNG file (default: preview.png)")->option_text("FILE");
   command.add_option("--trial", options.trial, "which trial (default: the first)")->option_text("ID");
-  command.add_option("--replicate", options.replicate, "which replicate")->option_text("N")->capture_default_str();
+  command.add_option("--replicate", options.replicate, "which replicate (default: 1)")->option_text("N");
   command.add_option("--time", options.time_s, "moment of the run in seconds (default: 10 s into desk work)")->option_text("S");
   command.add_option("--beams", options.beams, "sensors whose beams are drawn, or all or none (default: the first)")
       ->option_text("ID,...")->delimiter(',');
   command.add_option("--camera", options.camera, "where the camera stands, m")->option_text("X,Y,Z")->delimiter(',');
   command.add_option("--look-at", options.look_at, "what it looks at, m")->option_text("X,Y,Z")->delimiter(',');
-  command.add_option("--fov-deg", options.field_of_view_deg, "vertical field of view")->option_text("DEG")->capture_default_str();
-  command.add_option("--width", options.width, "pixels")->check(CLI::Range(16, 7680))->capture_default_str();
-  command.add_option("--height", options.height, "pixels")->check(CLI::Range(16, 4320))->capture_default_str();
+  command.add_option("--fov-deg", options.field_of_view_deg, "vertical field of view (default: 45)")->option_text("DEG")->check(CLI::Range(1.0, 170.0));
+  command.add_option("--width", options.width, "pixels (default: 1280)")->option_text("N")->check(CLI::Range(16, 7680));
+  command.add_option("--height", options.height, "pixels (default: 720)")->option_text("N")->check(CLI::Range(16, 4320));
 }
 
 void add_coverage_options(CLI::App& command, CoverageOptions& options) {
-  command.add_option("-o,--output", options.output, "folder for maps and figures")->option_text("DIR")->capture_default_str();
+  command.add_option("-o,--output", options.output, "folder for maps and figures")->option_text("DIR");
   command.add_option("--report", options.report, "the maps as one self-contained page, .html")->option_text("FILE");
   command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
 }
 
 void add_walk_test_options(CLI::App& command, WalkTestOptions& options) {
-  command.add_option("-o,--output", options.output, "points with tries and verdicts, as CSV")->option_text("FILE")->capture_default_str();
+  command.add_option("-o,--output", options.output, "points with tries and verdicts, as CSV")->option_text("FILE");
   command.add_option("--report", options.report, "the maps as one self-contained page, .html")->option_text("FILE");
   command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
 }
 
 void add_export_options(CLI::App& command, ExportOptions& options) {
-  command.add_option("-o,--output", options.output, "glTF file, .gltf or .glb")->option_text("FILE")->capture_default_str();
+  command.add_option("-o,--output", options.output, "glTF file, .gltf or .glb (default: run.glb)")->option_text("FILE");
   command.add_option("--trial", options.trial, "which trial (default: the first)")->option_text("ID");
-  command.add_option("--replicate", options.replicate, "which replicate")->option_text("N")->capture_default_str();
-  command.add_option("--keys-per-s", options.keys_per_s, "animation keys a second")->option_text("N")->capture_default_str();
-  command.add_option("--beams", options.beams, "sensors whose beams are drawn, or all or none")
-      ->option_text("ID,...")->delimiter(',')->capture_default_str();
+  command.add_option("--replicate", options.replicate, "which replicate (default: 1)")->option_text("N");
+  command.add_option("--keys-per-s", options.keys_per_s, "animation keys a second (default: 10)")->option_text("N")->check(CLI::Range(0.001, 10000.0));
+  command.add_option("--beams", options.beams, "sensors whose beams are drawn, or all or none (default: all)")
+      ->option_text("ID,...")->delimiter(',');
 }
 
 std::string version_text() {

@@ -21,7 +21,7 @@ void add_models(SceneSpec& scene, const PlacementSpec& spec, const Inputs& input
   if (spec.search) names.insert(spec.search->model);
   for (const std::string& name : names) {
     if (scene.sensor_models.contains(name)) continue;
-    scene.sensor_models[name] = io::find_sensor_model(name, inputs.scene, {inputs.sensor_directories});
+    scene.sensor_models[name] = io::find_sensor_model(name, inputs.scene, scene_options(inputs));
   }
 }
 
@@ -29,7 +29,7 @@ void add_models(SceneSpec& scene, const PlacementSpec& spec, const Inputs& input
 
 void placements(const Inputs& inputs, const PlacementOptions& options) {
   const PlacementSpec spec = io::read_placements(inputs.script, inputs.overrides);
-  SceneSpec scene = io::read_scene(inputs.scene, {inputs.sensor_directories});
+  SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
   add_models(scene, spec, inputs);
   std::vector<studies::PlacementScore> scores;

@@ -67,7 +67,20 @@ rt::Camera dolls_house_camera(const SceneSpec& scene, double fov_rad, double asp
   const double radius = 0.5 * glm::length(Vec3(upper.x - lower.x, 2.0, upper.y - lower.y));
   const double narrow = std::min(fov_rad, 2.0 * std::atan(std::tan(fov_rad / 2.0) * aspect));
   const Vec3 direction = glm::normalize(Vec3(-0.55, 0.85, -1.0));
-  return {target + direction * (0.8 * radius / std::sin(narrow / 2.0)), target, fov_rad};
+  return {target + direction * (0.95 * radius / std::sin(narrow / 2.0)), target, fov_rad};
+}
+
+/// A camera that the user has placed.
+void require_usable(const rt::Camera& camera) {
+  constexpr double farthest_m = 1e5;
+  for (int i = 0; i < 3; ++i) {
+    if (!(std::abs(camera.position[i]) < farthest_m) || !(std::abs(camera.target[i]) < farthest_m)) {
+      throw Error(ErrorCode::usage, "--camera and --look-at: expected coordinates in metres");
+    }
+  }
+  if (glm::length(camera.target - camera.position) < 1e-6) {
+    throw Error(ErrorCode::usage, "--camera and --look-at: the camera stands in the very point it looks at");
+  }
 }
 
 bool reached_default_time(const State& state, std::int64_t& work_began, const Model& model) {
@@ -124,6 +137,8 @@ void preview(const Inputs& inputs, const PreviewOptions& options) {
   const auto vec = [](const std::array<double, 3>& a) { return Vec3(a[0], a[1], a[2]); };
   if (options.camera) camera.position = vec(*options.camera);
   if (options.look_at) camera.target = vec(*options.look_at);
+
+  require_usable(camera);
 
   const rt::Image image =
       rt::render(model.room(), surfaces, colours, solids, beams, camera, options.width, options.height);

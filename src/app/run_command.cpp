@@ -74,12 +74,13 @@ io::Manifest manifest_of(const Model& model, const Inputs& inputs, std::uint64_t
           .rows = rows};
 }
 
-studies::Summary make_summary(const Model& model) {
+studies::Summary make_summary(const Model& model, const RunOptions& options) {
   std::vector<std::string> trials;
   for (const TrialModel& trial : model.trials()) trials.push_back(trial.id);
   const SummarySpec& spec = model.script().summary;
   std::vector<MeasuredCell> measured;
-  if (!spec.reference_file.empty()) {
+  const bool compared = !options.summary.empty() || !options.report.empty();
+  if (compared && !spec.reference_file.empty()) {
     measured = io::read_measured_cells(std::filesystem::path(model.script().directory) / spec.reference_file);
   }
   return {trials, sensor_ids(model), measured};
@@ -90,6 +91,7 @@ studies::Summary make_summary(const Model& model) {
 void run(const Inputs& inputs, const RunOptions& options) {
   if (options.action == RunOptions::Action::print_config) {
     std::cout << io::to_yaml(io::read_script(inputs.script, inputs.overrides));
+    require_written();
     return;
   }
   const Model model = load(inputs);
@@ -107,7 +109,7 @@ void run(const Inputs& inputs, const RunOptions& options) {
   if (!options.summary.empty()) summary_file.emplace(options.summary);
   std::optional<io::AtomicFile> report_file;
   if (!options.report.empty()) report_file.emplace(options.report);
-  studies::Summary summary = make_summary(model);
+  studies::Summary summary = make_summary(model, options);
   studies::StudyReport report(model);
   std::uint64_t n_rows = 0;
   Progress progress(model.n_runs(), inputs.verbosity);

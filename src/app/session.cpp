@@ -33,10 +33,21 @@ void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs) {
   file.commit();
 }
 
+void require_written() {
+  if (!std::cout.flush()) throw Error(ErrorCode::io, "standard output can't be written");
+}
+
+io::SceneOptions scene_options(const Inputs& inputs) {
+  std::error_code unknown;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
+  // Installed (bin beside share), or in a build folder of the source tree (build/<preset>).
+  return {inputs.sensor_directories, {program / ".." / "share" / "pirsim", program / ".." / ".." / "data"}};
+}
+
 Model load(const Inputs& inputs) {
   const rt::TracerKind tracer = tracer_kind(inputs.tracer);
   ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
-  SceneSpec scene = io::read_scene(inputs.scene, {inputs.sensor_directories});
+  SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
   tell(script.warnings, inputs.verbosity);
   return compile(std::move(scene), std::move(script), {tracer});

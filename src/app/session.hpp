@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/options.hpp"
+#include "pirsim/io/scene_reader.hpp"
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/report.hpp"
 #include "pirsim/sim/model.hpp"
@@ -18,6 +19,10 @@ namespace pirsim::app {
 [[nodiscard]] std::vector<std::size_t> find_sensors(const Model& model, const std::vector<std::string>& names);
 /// Writes a report with what made it in the footer, and commits the file.
 void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs);
+/// Where a scene's sensors are looked for: what the user names, and last the data that came with this program.
+[[nodiscard]] io::SceneOptions scene_options(const Inputs& inputs);
+/// Throws Error(io) if what was printed to standard output didn't get there.
+void require_written();
 void tell(const std::vector<Issue>& issues, Verbosity verbosity);
 
 }  // namespace pirsim::app

@@ -13,7 +13,7 @@ namespace pirsim::app {
 
 void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
   WalkTestSpec spec = io::read_walk_test(inputs.script, inputs.overrides);
-  SceneSpec scene = io::read_scene(inputs.scene, {inputs.sensor_directories});
+  SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
   const studies::WalkTest test(std::move(scene), std::move(spec));
   io::AtomicFile file(options.output);

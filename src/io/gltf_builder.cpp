@@ -37,7 +37,7 @@ int GltfBuilder::add_positions(const std::vector<Vec3>& positions) {
 int GltfBuilder::add_normals(const std::vector<Vec3>& normals) { return add_positions(normals); }
 
 int GltfBuilder::add_indices(const std::vector<std::uint32_t>& indices) {
-  tinygltf::Accessor accessor;
+  tinygltf::Accessor accessor{};
   accessor.componentType = TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
   accessor.type = TINYGLTF_TYPE_SCALAR;
   accessor.count = indices.size();
@@ -64,7 +64,7 @@ int GltfBuilder::add_track(const std::vector<Quat>& values) {
 
 int GltfBuilder::add_floats(const std::vector<float>& values, int type, int target) {
   const auto width = static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type)));
-  tinygltf::Accessor accessor;
+  tinygltf::Accessor accessor{};
   accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
   accessor.type = type;
   accessor.count = values.size() / width;

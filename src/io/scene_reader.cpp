@@ -159,14 +159,14 @@ class SceneBuilder {
   }
 
   void read_sensor_models() {
-    const auto directories = sensor_directories(options_.sensor_directories, file_.parent_path());
+    const auto directories = sensor_directories(options_, file_.parent_path());
     for (const auto& [model, where] : model_places_) {
       const auto sensor_file = find_sensor_file(model, directories);
       if (sensor_file.empty()) {
         const auto available = available_sensor_models(directories);
         std::string known;
         for (const std::string& name : available) known += (known.empty() ? "; known are " : ", ") + name;
-        if (available.empty()) known = "; no folder of sensors was found";
+        if (available.empty()) known = "; no folder of sensors was found: name one by --sensors or set PIRSIM_DATA_DIR";
         remarks_.error(where, "sensor model '" + model + "' is not known" + did_you_mean(model, available) + known);
         continue;
       }

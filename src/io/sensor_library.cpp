@@ -7,7 +7,7 @@ namespace pirsim::io {
 
 SensorModelSpec find_sensor_model(const std::string& model, const std::filesystem::path& scene_file,
                                   const SceneOptions& options) {
-  const auto folders = detail::sensor_directories(options.sensor_directories, scene_file.parent_path());
+  const auto folders = detail::sensor_directories(options, scene_file.parent_path());
   const std::filesystem::path file = detail::find_sensor_file(model, folders);
   if (file.empty()) {
     throw Error(ErrorCode::input,

@@ -7,13 +7,14 @@ namespace pirsim::io::detail {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> sensor_directories(const std::vector<fs::path>& first, const fs::path& scene_folder) {
-  std::vector<fs::path> result = first;
+std::vector<fs::path> sensor_directories(const SceneOptions& options, const fs::path& scene_folder) {
+  std::vector<fs::path> result = options.sensor_directories;
   result.push_back(scene_folder / "sensors");
   result.push_back(scene_folder / ".." / "sensors");
   if (const char* data = std::getenv("PIRSIM_DATA_DIR"); data != nullptr && *data != '\0') {
     result.push_back(fs::path(data) / "sensors");
   }
+  for (const fs::path& data : options.data_directories) result.push_back(data / "sensors");
 #ifdef PIRSIM_INSTALLED_DATA_DIR
   result.push_back(fs::path(PIRSIM_INSTALLED_DATA_DIR) / "sensors");
 #endif

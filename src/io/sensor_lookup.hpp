@@ -5,10 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "pirsim/io/scene_reader.hpp"
+
 namespace pirsim::io::detail {
 
 /// `first`, then `sensors` in the scene's folder and beside it, `$PIRSIM_DATA_DIR/sensors`, the installed data.
-[[nodiscard]] std::vector<std::filesystem::path> sensor_directories(const std::vector<std::filesystem::path>& first,
+[[nodiscard]] std::vector<std::filesystem::path> sensor_directories(const SceneOptions& options,
                                                                     const std::filesystem::path& scene_folder);
 
 /// Empty if no folder has `<model>.yaml`.

@@ -10,8 +10,9 @@ namespace pirsim::io {
 
 struct SceneOptions {
   /// Where `<model>.yaml` of a sensor is looked for first; then in `sensors` beside the scene and beside its folder,
-  /// in `$PIRSIM_DATA_DIR/sensors` and in the installed data.
+  /// in `$PIRSIM_DATA_DIR/sensors`, in `sensors` of the data_directories and in the installed data.
   std::vector<std::filesystem::path> sensor_directories;
+  std::vector<std::filesystem::path> data_directories{};
 };
 
 /// Reads a .gltf or .glb file with everything it refers to. Meshes are in world coordinates and cleaned.

@@ -73,7 +73,7 @@ TEST_CASE("six people cross a hall on random ways: nobody is walked through and 
   }
 }
 
-TEST_CASE("a meeting of five: all come in through one door, sit side by side, and leave; people are counted") {
+TEST_CASE("a meeting of five: all come in through one door, sit side by side, and leave, people are counted") {
   std::vector<PersonSpec> people;
   for (int i = 1; i <= 5; ++i) {
     people.push_back(person("p" + std::to_string(i), {act(action::Wait{2.0 * i}), act(action::Enter{"door"}),

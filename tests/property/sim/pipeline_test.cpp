@@ -39,7 +39,7 @@ SceneSpec moved(SceneSpec scene, const Frame& motion) {
 
 }  // namespace
 
-TEST_CASE("an empty room gives zeros, and so does a person behind every beam; in front of them it doesn't") {
+TEST_CASE("an empty room gives zeros, and so does a person behind every beam, in front of them it doesn't") {
   const SceneSpec scene = shipped_scene("open_hall.gltf");
   const auto run = [&](std::vector<PersonSpec> people) {
     return run_once(compile(scene, script_of(std::move(people))), 0);

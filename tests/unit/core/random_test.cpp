@@ -18,7 +18,7 @@ TEST_CASE("a stream with key zero gives Philox's published words for counter zer
   CHECK(stream.next_u32() == 0x9b00dbd8U);
 }
 
-TEST_CASE("streams that differ in one part of the key are uncorrelated; a stream with itself is not") {
+TEST_CASE("streams that differ in one part of the key are uncorrelated, a stream with itself is not") {
   const auto correlation = [](Stream a, Stream b) {
     constexpr int n = 20000;
     double sum = 0.0;
@@ -35,7 +35,7 @@ TEST_CASE("streams that differ in one part of the key are uncorrelated; a stream
   CHECK(std::abs(correlation(Stream(base), Stream(base))) > bound);
 }
 
-TEST_CASE("normal() has mean 0 and variance 1; uniform() shifted to mean 0 does not") {
+TEST_CASE("normal() has mean 0 and variance 1, uniform() shifted to mean 0 does not") {
   constexpr int n = 40000;
   const auto moments = [](auto draw) {
     double sum = 0.0, squares = 0.0;

@@ -143,15 +143,6 @@ struct GltfBuilder {
   }
 };
 
-/// Matches a text that holds the fragment; Catch2 version 3 has another name for it.
-inline auto contains(const std::string& fragment) {
-#if __has_include(<catch2/catch_all.hpp>)
-  return Catch::Matchers::ContainsSubstring(fragment);
-#else
-  return Catch::Matchers::Contains(fragment);
-#endif
-}
-
 /// Message of the Error that reading throws, or "accepted".
 template <typename Read>
 std::string fault_of(Read read) {

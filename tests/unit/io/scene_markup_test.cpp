@@ -84,7 +84,7 @@ TEST_CASE("markup may come as a text, as editors with custom properties write it
   CHECK_THAT(fault(scene), contains("node 'broken': 'pirsim' must be an object"));
 }
 
-TEST_CASE("a floor mesh bounds the floor and occludes unless it says otherwise; ignored meshes do neither", "[scene]") {
+TEST_CASE("a floor mesh bounds the floor and occludes unless it says otherwise, ignored meshes do neither", "[scene]") {
   GltfBuilder scene;
   const int p = scene.positions({0, 0, 0, 4, 0, 0, 4, 0, -3, 0, 0, -3});
   const int mesh = scene.mesh(p, scene.indices<std::uint8_t>({0, 1, 2, 0, 2, 3}));
@@ -101,7 +101,7 @@ TEST_CASE("a floor mesh bounds the floor and occludes unless it says otherwise; 
   CHECK(spec.meshes.size() == (occludes ? 1 : 0));
 }
 
-TEST_CASE("floors side by side are joined; floors that overlap, differ in height or cross themselves are refused",
+TEST_CASE("floors side by side are joined, floors that overlap, differ in height or cross themselves are refused",
           "[scene]") {
   GltfBuilder scene;
   scene.node("left", GltfBuilder::marked(polygon_floor({{0, 0}, {2, 0}, {2, 3}, {0, 3}})));

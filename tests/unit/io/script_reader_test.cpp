@@ -57,7 +57,7 @@ TEST_CASE("for_each makes every combination, the last variable fastest, and fill
   CHECK(std::holds_alternative<action::Rise>(person.actions[3].what));
 }
 
-TEST_CASE("a script without trials is one trial; defaults are those of the paper") {
+TEST_CASE("a script without trials is one trial, defaults are those of the paper") {
   const ScriptSpec script = read("pirsim_script: 1\npeople: [{id: a}]\n");
   REQUIRE(script.trials.size() == 1);
   CHECK(script.sensing.tick_rate_hz == 50);

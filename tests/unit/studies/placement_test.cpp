@@ -69,7 +69,7 @@ TEST_CASE("a search without time to look is even spacing, and gains nothing", "[
   CHECK(search.found.set.sensors[1].world_from_sensor.origin.x == Approx(7.5));
 }
 
-TEST_CASE("sets are ranked by what they see; overlap and blind seats are told", "[placement]") {
+TEST_CASE("sets are ranked by what they see, overlap and blind seats are told", "[placement]") {
   const auto set = [](const std::string& id, double x1, double x2) {
     return SensorSetSpec{
         id, {{"A", "needle", mounted({x1, 2.6, 0}, 0, 90)}, {"B", "needle", mounted({x2, 2.6, 0}, 0, 90)}}};
