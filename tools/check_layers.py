@@ -32,6 +32,7 @@ THIRD_PARTY = {
     "oneapi": {"core"},
     "tbb": {"core"},
     "Random123": {"core"},
+    "nlopt": {"studies"},
     "CLI": {"app"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

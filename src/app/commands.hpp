@@ -8,6 +8,9 @@ namespace pirsim::app {
 void run(const Inputs& inputs, const RunOptions& options);
 void check(const Inputs& inputs);
 void preview(const Inputs& inputs, const PreviewOptions& options);
+void coverage(const Inputs& inputs, const CoverageOptions& options);
+void walk_test(const Inputs& inputs, const WalkTestOptions& options);
+void placements(const Inputs& inputs, const PlacementOptions& options);
 void export_gltf(const Inputs& inputs, const ExportOptions& options);
 
 }  // namespace pirsim::app

@@ -22,6 +22,7 @@ constexpr const char* examples = R"(Examples:
   pirsim --scene room.gltf --script study.yaml -o rows.csv --summary table.md
   pirsim check --scene room.gltf --script study.yaml               validate, and report what each sensor can see
   pirsim preview --scene room.gltf --script study.yaml -o room.png  a picture of room, people and beams
+  pirsim coverage --scene room.gltf --script studyB.yaml -o maps   where each sensor sees a moving target
   pirsim export --scene room.gltf --script study.yaml -o run.glb    an animated glTF of one run
 )";
 
@@ -52,6 +53,7 @@ void add_inputs(CLI::App& command, Inputs& inputs) {
 void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("-o,--output", options.output, "rows as CSV (default: standard output)")->option_text("FILE");
   command.add_option("--summary", options.summary, "table of sums per trial and sensor, .csv or .md")->option_text("FILE");
+  command.add_option("--report", options.report, "counts and time series as one self-contained page, .html")->option_text("FILE");
   command.add_option("--zones", options.zones, "every zone's activity at every tick, as CSV")->option_text("FILE");
   command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
   command.add_flag_callback("--print-config", [&] { options.action = RunOptions::Action::print_config; },
@@ -70,6 +72,18 @@ void add_preview_options(CLI::App& command, PreviewOptions& options) {
   command.add_option("--fov-deg", options.field_of_view_deg, "vertical field of view")->option_text("DEG")->capture_default_str();
   command.add_option("--width", options.width, "pixels")->check(CLI::Range(16, 7680))->capture_default_str();
   command.add_option("--height", options.height, "pixels")->check(CLI::Range(16, 4320))->capture_default_str();
+}
+
+void add_coverage_options(CLI::App& command, CoverageOptions& options) {
+  command.add_option("-o,--output", options.output, "folder for maps and figures")->option_text("DIR")->capture_default_str();
+  command.add_option("--report", options.report, "the maps as one self-contained page, .html")->option_text("FILE");
+  command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
+}
+
+void add_walk_test_options(CLI::App& command, WalkTestOptions& options) {
+  command.add_option("-o,--output", options.output, "points with tries and verdicts, as CSV")->option_text("FILE")->capture_default_str();
+  command.add_option("--report", options.report, "the maps as one self-contained page, .html")->option_text("FILE");
+  command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
 }
 
 void add_export_options(CLI::App& command, ExportOptions& options) {
@@ -96,6 +110,9 @@ int run_command_line(int argc, char** argv) {
   RunOptions run_options;
   PreviewOptions preview_options;
   ExportOptions export_options;
+  CoverageOptions coverage_options;
+  WalkTestOptions walk_test_options;
+  PlacementOptions placement_options;
   add_inputs(app, inputs);
   add_run_options(app, run_options);
   CLI::App* run_command = app.add_subcommand("run", "run the study (the default)");
@@ -110,6 +127,17 @@ int run_command_line(int argc, char** argv) {
   add_inputs(*export_command, inputs);
   add_export_options(*export_command, export_options);
 
+  CLI::App* coverage_command = app.add_subcommand("coverage", "map where each sensor sees a moving target");
+  add_inputs(*coverage_command, inputs);
+  add_coverage_options(*coverage_command, coverage_options);
+  CLI::App* walk_test_command = app.add_subcommand("walktest", "how surely walkers and sitters are noticed in time");
+  add_inputs(*walk_test_command, inputs);
+  add_walk_test_options(*walk_test_command, walk_test_options);
+  CLI::App* placements_command = app.add_subcommand("placements", "rank sets of sensors, and look for a better one");
+  add_inputs(*placements_command, inputs);
+  placements_command->add_option("--threads", placement_options.threads, "0: all cores; changes no byte of any result")
+      ->option_text("N");
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -123,6 +151,12 @@ int run_command_line(int argc, char** argv) {
     check(inputs);
   } else if (*preview_command) {
     preview(inputs, preview_options);
+  } else if (*coverage_command) {
+    coverage(inputs, coverage_options);
+  } else if (*walk_test_command) {
+    walk_test(inputs, walk_test_options);
+  } else if (*placements_command) {
+    placements(inputs, placement_options);
   } else if (*export_command) {
     export_gltf(inputs, export_options);
   } else {

@@ -26,6 +26,7 @@ struct RunOptions {
   std::filesystem::path output;   ///< empty: standard output
   std::filesystem::path summary;  ///< .csv or .md
   std::filesystem::path zones;
+  std::filesystem::path report;   ///< .html
   unsigned threads = 0;
   enum class Action { run, print_config } action = Action::run;
 };
@@ -39,6 +40,22 @@ struct PreviewOptions {
   std::optional<std::array<double, 3>> camera, look_at;
   double field_of_view_deg = 45.0;
   int width = 1280, height = 720;
+};
+
+struct CoverageOptions {
+  std::filesystem::path output = "coverage";  ///< folder
+  std::filesystem::path report;               ///< .html
+  unsigned threads = 0;
+};
+
+struct WalkTestOptions {
+  std::filesystem::path output = "walk_test.csv";
+  std::filesystem::path report;  ///< .html
+  unsigned threads = 0;
+};
+
+struct PlacementOptions {
+  unsigned threads = 0;
 };
 
 struct ExportOptions {

@@ -4,12 +4,13 @@
 
 #include <cmath>
 #include <iostream>
-#include <string>
+#include <utility>
 
 namespace pirsim::app {
 
-Progress::Progress(std::uint32_t total_runs, Verbosity verbosity)
-    : total_(total_runs),
+Progress::Progress(std::uint32_t total, Verbosity verbosity, std::string unit)
+    : unit_(std::move(unit)),
+      total_(total),
       style_(verbosity == Verbosity::quiet ? Style::silent : isatty(STDERR_FILENO) != 0 ? Style::terminal : Style::heartbeat) {}
 
 Progress::~Progress() {
@@ -26,7 +27,7 @@ void Progress::run_finished() {
   if (std::chrono::duration<double>(now - told_).count() < interval_s) return;
   told_ = now;
   const double left_s = seconds() / done_ * (total_ - done_);
-  const std::string line = std::to_string(done_) + " of " + std::to_string(total_) + " runs, " +
+  const std::string line = std::to_string(done_) + " of " + std::to_string(total_) + " " + unit_ + ", " +
                            std::to_string(std::lround(left_s)) + " s left";
   if (style_ == Style::terminal) {
     std::cerr << '\r' << line << "\033[K" << std::flush;

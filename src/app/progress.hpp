@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <string>
 
 #include "app/options.hpp"
 
@@ -10,7 +11,8 @@ namespace pirsim::app {
 
 class Progress {
  public:
-  Progress(std::uint32_t total_runs, Verbosity verbosity);
+  /// unit: what is counted, in messages.
+  Progress(std::uint32_t total, Verbosity verbosity, std::string unit = "runs");
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -21,6 +23,7 @@ class Progress {
   using Clock = std::chrono::steady_clock;
   enum class Style { silent, terminal, heartbeat };
 
+  std::string unit_;
   std::uint32_t total_;
   std::uint32_t done_ = 0;
   Style style_;

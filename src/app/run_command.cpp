@@ -12,6 +12,7 @@
 #include "pirsim/io/script_reader.hpp"
 #include "pirsim/sim/study.hpp"
 #include "pirsim/studies/sight.hpp"
+#include "pirsim/studies/study_report.hpp"
 #include "pirsim/studies/summary.hpp"
 
 namespace pirsim::app {
@@ -49,8 +50,7 @@ std::vector<std::size_t> first_zones(const Model& model) {
   return begins;
 }
 
-void write_summary(const studies::Summary& summary, const RunOptions& options, Verbosity verbosity) {
-  io::AtomicFile file(options.summary);
+void write_summary(const studies::Summary& summary, io::AtomicFile& file, const RunOptions& options, Verbosity verbosity) {
   file.stream() << (options.summary.extension() == ".md" ? studies::to_markdown(summary) : studies::to_csv(summary));
   file.commit();
   if (verbosity != Verbosity::quiet) std::cerr << studies::to_text(summary);
@@ -103,7 +103,10 @@ void run(const Inputs& inputs, const RunOptions& options) {
     zones_file.emplace(options.zones);
     zones.emplace(zones_file->stream(), sensor_ids(model), first_zones(model));
   }
+  std::optional<io::AtomicFile> summary_file;
+  if (!options.summary.empty()) summary_file.emplace(options.summary);
   studies::Summary summary = make_summary(model);
+  studies::StudyReport report(model);
   std::uint64_t n_rows = 0;
   Progress progress(model.n_runs(), inputs.verbosity);
   const StudyOptions study{options.threads, zones ? Record::samples_and_zones : Record::samples};
@@ -117,11 +120,13 @@ void run(const Inputs& inputs, const RunOptions& options) {
     studies::RunCounts counts(model.scene().sensors.size(), model.script().summary);
     for (const Sample& sample : result.samples) counts.add(sample);
     summary.add_run(result.trial, counts.counts());
+    report.add_run(result, counts.counts());
     progress.run_finished();
   });
   rows.commit();
   if (zones_file) zones_file->commit();
-  if (!options.summary.empty()) write_summary(summary, options, inputs.verbosity);
+  if (summary_file) write_summary(summary, *summary_file, options, inputs.verbosity);
+  if (!options.report.empty()) write_page(options.report, report.finish(summary), inputs);
   if (!options.output.empty()) {
     std::filesystem::path side_car = options.output;
     side_car += ".json";

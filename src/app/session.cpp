@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "pirsim/core/version.hpp"
 #include "pirsim/io/scene_reader.hpp"
 #include "pirsim/io/script_reader.hpp"
 
@@ -23,6 +24,12 @@ rt::TracerKind tracer_kind(const std::string& name) {
 void tell(const std::vector<Issue>& issues, Verbosity verbosity) {
   if (verbosity == Verbosity::quiet) return;
   for (const Issue& issue : issues) std::cerr << to_string(issue) << '\n';
+}
+
+void write_page(const std::filesystem::path& file, io::Report report, const Inputs& inputs) {
+  report.footer = "pirsim " + version() + " (" + git_revision() + "), " + inputs.scene.filename().string() + ", " +
+                  inputs.script.filename().string();
+  io::write_report(file, report);
 }
 
 Model load(const Inputs& inputs) {

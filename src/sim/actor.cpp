@@ -48,9 +48,9 @@ std::string_view Actor::current_phase() const noexcept {
 }
 
 Presence Actor::presence() const {
-  const double speed = motion_->speed_m_s();
-  return {motion_->position(), speed > 0.0 ? speed * direction_of(motion_->heading()) : Vec2(0.0),
-          route_ ? route_->position(route_->length_m()) : motion_->position(), seat_, person().humanoid.clearance_radius_m()};
+  return {motion_->position(), motion_->speed_m_s() * direction_of(motion_->heading()),
+          route_ ? route_->position(route_->length_m()) : motion_->position(), seat_,
+          done() ? Presence::Script::carried_out : Presence::Script::going_on, person().humanoid.clearance_radius_m()};
 }
 
 void Actor::advance(const Model& model, std::int64_t tick, std::span<const Presence> others, std::size_t n_before) {
@@ -73,8 +73,10 @@ void Actor::carry_on(const Model& model, std::int64_t now, std::span<const Prese
     }
     while (!errands_.empty() && carry_out(errands_.front(), model, others) == Progress::done) errands_.pop_front();
     if (const auto* work_action = std::get_if<action::Work>(&action().what)) work(model, *work_action, now);
-    if (!interrupted(model, now) && !(errands_.empty() && time_is_up(model, now))) return;
+    const auto next = interrupting_action(model, now);
+    if (!next && !(errands_.empty() && time_is_up(model, now))) return;
     finish_action();
+    if (next) action_ = *next;
   }
 }
 
@@ -86,9 +88,12 @@ void Actor::finish_action() {
   begun_ = false;
 }
 
-bool Actor::interrupted(const Model& model, std::int64_t now) const {
+std::optional<std::size_t> Actor::interrupting_action(const Model& model, std::int64_t now) const {
   const auto& actions = person().spec.actions;
-  return action_ + 1 < actions.size() && actions[action_ + 1].at_s && now >= ticks(*actions[action_ + 1].at_s, model);
+  for (std::size_t i = actions.size(); i-- > action_ + 1;) {
+    if (actions[i].at_s && now >= ticks(*actions[i].at_s, model)) return i;
+  }
+  return std::nullopt;
 }
 
 bool Actor::time_is_up(const Model& model, std::int64_t now) const {
@@ -103,6 +108,10 @@ void Actor::plan(const Model& model) {
   };
   const auto outside = [](const EntranceSpec& e) { return floor_point(e.world_from_entrance * Vec3(0, 0, e.outside_m)); };
   const auto& actions = person().spec.actions;
+  const bool arrives = std::holds_alternative<action::Appear>(action().what) ||
+                       std::holds_alternative<action::Enter>(action().what) ||
+                       std::holds_alternative<action::Wait>(action().what);
+  if (!present() && !arrives) return;  // called away before they came: nothing to do
   if (const auto* appear = std::get_if<action::Appear>(&action().what)) {
     errands_.push_back(ComeIn{appear->point, radians(appear->heading_deg)});
   } else if (const auto* enter = std::get_if<action::Enter>(&action().what)) {
@@ -125,10 +134,12 @@ void Actor::plan(const Model& model) {
     errands_.push_back(FaceTo{radians(turn->heading_deg)});
   } else if (const auto* leave = std::get_if<action::Leave>(&action().what)) {
     errands_.push_back(WaitForDoor{outside(entrance(leave->entrance)), Through::out});
-    errands_.push_back(WalkTo{outside(entrance(leave->entrance))});
+    const EntranceSpec& door = entrance(leave->entrance);
+    const double behind_m = std::min(door.outside_m, 2.0 * person().humanoid.clearance_radius_m());
+    errands_.push_back(WalkOut{outside(door), floor_point(door.world_from_entrance * Vec3(0, 0, behind_m))});
     errands_.push_back(Vanish{});
   } else if (const auto* work_action = std::get_if<action::Work>(&action().what)) {
-    if (!motion_ || motion_->stage() != Stage::seated) {
+    if (motion_->stage() != Stage::seated) {
       throw Error(ErrorCode::infeasible, action().where, "'" + person().spec.id + "' is not seated when work begins");
     }
     motion_->work({work_action->arm_amplitude_m, work_action->arm_period_s});
@@ -150,9 +161,21 @@ void Actor::plan_sitting() {
   const std::string_view id = std::get<action::Sit>(action().what).seat;
   errands_.push_back(WaitForSeat{id});
   errands_.push_back(TakeSeat{id});
-  errands_.push_back(WalkTo{floor_point(place.world_from_seat.origin) - seat.stand_back_m * direction_of(heading)});
+  errands_.push_back(WalkTo{standing_place(place, seat.stand_back_m)});
   errands_.push_back(FaceTo{heading});
   errands_.push_back(SitOn{place});
+}
+
+/// A scattered seat may need a little more room behind it than the seat as it stands in the scene.
+Vec2 Actor::standing_place(const body::SeatPlace& place, double back_m) const {
+  constexpr double step_m = 0.02, farthest_m = 0.4;
+  const Vec2 pelvis = floor_point(place.world_from_seat.origin);
+  const Vec2 facing = direction_of(heading_of(place.world_from_seat));
+  for (double more = 0.0; more <= farthest_m; more += step_m) {
+    const Vec2 stand = pelvis - (back_m + more) * facing;
+    if (person().floor->walkable(stand)) return stand;
+  }
+  return pelvis - back_m * facing;
 }
 
 void Actor::work(const Model& model, const action::Work& work, std::int64_t now) {
@@ -184,12 +207,21 @@ Actor::Progress Actor::carry_out(const Errand& errand, const Model& model, std::
     const bool taken = door != nullptr ? door_is_taken(*door, others)
                                        : std::ranges::find(others, taken_seat->seat, &Presence::seat) != others.end();
     if (!taken) return Progress::done;
-    if (present()) wait_for_others(model);  // who isn't there yet is in nobody's way
+    const bool for_good = std::ranges::find(others, Presence::Script::going_on, &Presence::script) == others.end();
+    if (for_good) give_up("'" + person().spec.id + "' waits in vain: nobody of those there has anything more to do");
+    if (present()) wait_for_others(model);  // who isn't there yet is in nobody's way, and may wait long
     return Progress::going_on;
   }
   if (const auto* take = std::get_if<TakeSeat>(&errand)) {
     seat_ = take->seat;
     return Progress::done;
+  }
+  if (const auto* out = std::get_if<WalkOut>(&errand)) {
+    if (route_) return walk_to(route_->position(route_->length_m()), model, others);  // decided when setting out
+    const bool occupied = std::ranges::any_of(others, [&](const Presence& other) {
+      return glm::distance(other.position, out->outside) < other.radius_m + person().humanoid.clearance_radius_m() + gap_m;
+    });
+    return walk_to(occupied ? out->behind_door : out->outside, model, others);
   }
   if (const auto* walk = std::get_if<WalkTo>(&errand)) return walk_to(walk->target, model, others);
   if (const auto* seat = std::get_if<SitOn>(&errand)) {
@@ -219,7 +251,8 @@ bool Actor::door_is_taken(const WaitForDoor& door, std::span<const Presence> oth
   return std::ranges::any_of(others, [&](const Presence& other) {
     const bool goes_out = glm::distance(other.destination, door.outside) < gap_m;
     if (door.way == Through::in) return goes_out;
-    return !goes_out && glm::distance(other.position, door.outside) < doorway_m;
+    const bool stays = glm::distance(other.destination, other.position) < gap_m;  // has no way in: let the other out
+    return !goes_out && !stays && glm::distance(other.position, door.outside) < doorway_m;
   });
 }
 
@@ -248,6 +281,9 @@ Actor::Progress Actor::walk_to(const Vec2& target, const Model& model, std::span
     for (const Presence& other : others) discs.push_back({other.position, other.radius_m + gap_m});
     const auto way = person().floor->find_way(motion_->position(), target, discs);
     if (!way) {
+      if (!person().floor->find_way(motion_->position(), target)) {
+        give_up("'" + person().spec.id + "' finds no way to where they are to go, even if nobody stands in it");
+      }
       wait_for_others(model);
       return Progress::going_on;
     }
@@ -312,9 +348,11 @@ void Actor::keep_distance(const Model& model, std::span<const Presence> others, 
   }
 }
 
+void Actor::give_up(const std::string& why) const { throw Error(ErrorCode::infeasible, action().where, why); }
+
 void Actor::wait_for_others(const Model& model) {
   if (++blocked_ticks_ <= ticks(give_up_s, model)) return;
-  throw Error(ErrorCode::infeasible, action().where, "'" + person().spec.id + "' waits in vain for others to make way");
+  give_up("'" + person().spec.id + "' waits in vain for others to make way");
 }
 
 }  // namespace pirsim

@@ -21,6 +21,7 @@ struct Presence {
   Vec2 velocity{0.0};     ///< m/s
   Vec2 destination{0.0};  ///< where the current walk leads; the position of who isn't walking
   std::string_view seat;  ///< taken: from setting out for it to walking away from it; or empty
+  enum class Script { going_on, carried_out } script = Script::going_on;
   double radius_m = 0.0;
 };
 
@@ -54,8 +55,9 @@ class Actor {
   struct FaceTo { double heading; };
   struct SitOn { body::SeatPlace place; };
   struct StandUp {};
+  struct WalkOut { Vec2 outside; Vec2 behind_door; };  ///< to the first, or to the second if somebody stands there
   struct Vanish {};
-  using Errand = std::variant<ComeIn, WaitForDoor, WaitForSeat, TakeSeat, WalkTo, FaceTo, SitOn, StandUp, Vanish>;
+  using Errand = std::variant<ComeIn, WaitForDoor, WaitForSeat, TakeSeat, WalkTo, FaceTo, SitOn, StandUp, WalkOut, Vanish>;
   enum class Progress { going_on, done };
 
   void plan(const Model& model);
@@ -64,7 +66,8 @@ class Actor {
   void carry_on(const Model& model, std::int64_t now, std::span<const Presence> others);
   void finish_action();
   [[nodiscard]] std::string_view current_phase() const noexcept;
-  [[nodiscard]] bool interrupted(const Model& model, std::int64_t now) const;
+  /// Index of the latest action whose moment has come, if it is later than the current one.
+  [[nodiscard]] std::optional<std::size_t> interrupting_action(const Model& model, std::int64_t now) const;
   [[nodiscard]] bool time_is_up(const Model& model, std::int64_t now) const;
   [[nodiscard]] bool door_is_taken(const WaitForDoor& door, std::span<const Presence> others) const;
   [[nodiscard]] bool free_to_stand(std::span<const Presence> others) const;
@@ -75,6 +78,8 @@ class Actor {
   [[nodiscard]] double free_way_ahead(std::span<const Presence> others) const;
   [[nodiscard]] bool must_give_way(std::span<const Presence> others) const;
   void wait_for_others(const Model& model);
+  [[noreturn]] void give_up(const std::string& why) const;
+  [[nodiscard]] Vec2 standing_place(const body::SeatPlace& place, double back_m) const;
   [[nodiscard]] const ScriptedAction& action() const { return person().spec.actions[action_]; }
 
   const PersonModel* person_ = nullptr;

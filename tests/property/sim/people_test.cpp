@@ -102,6 +102,77 @@ TEST_CASE("two who use one door in opposite directions wait for each other, and 
   }
 }
 
+TEST_CASE("one who leaves and one who comes in pass a door one after the other, whoever the script names first") {
+  const SceneSpec scene = shipped_scene("meeting_room.gltf");
+  for (const double delay : {0.0, 1.0, 2.5, 4.0}) {
+    for (const Vec2 target : {Vec2(6.5, -2.0), Vec2(5.5, -2.5)}) {
+      std::vector<PersonSpec> people{
+          person("out", {act(action::Appear{{6.5, -2.0}, 0}), act(action::Leave{"door"})}),
+          person("in", {act(action::Wait{delay}), act(action::Enter{"door"}), act(action::Walk{{target}})})};
+      for (int order = 0; order < 2; ++order) {
+        INFO("delay " << delay << ", target x " << target.x << ", order " << order);
+        CHECK(watch(Model(compile(scene, script_of(people)))).nearest_m > 0.36);
+        std::swap(people[0], people[1]);
+      }
+    }
+  }
+}
+
+TEST_CASE("waiting for good ends with an error, not with an endless run") {
+  const SceneSpec scene = shipped_scene("meeting_room.gltf");
+  const auto outcome = [&](std::vector<PersonSpec> people) {
+    try {
+      watch(Model(compile(scene, script_of(std::move(people)))));
+    } catch (const Error& error) {
+      return error.code();
+    }
+    return ErrorCode::internal;
+  };
+  const PersonSpec stays = person("stays", {act(action::Appear{{6, -2}, 0}), act(action::Wait{10.0})});
+  const PersonSpec sits = person("sits", {act(action::Enter{"door"}), act(action::Sit{"S4"})});
+  CHECK(outcome({stays, person("b", {act(action::Appear{{6, -2}, 0})})}) == ErrorCode::infeasible);
+  CHECK(outcome({sits, person("b", {act(action::Wait{5.0}), act(action::Enter{"door"}), act(action::Sit{"S4"})})}) ==
+        ErrorCode::infeasible);
+}
+
+TEST_CASE("at_s starts its action at its moment and skips what was to come before") {
+  const SceneSpec scene = shipped_scene("meeting_room.gltf");
+  const auto run = [&](std::vector<ScriptedAction> actions) {
+    return run_once(compile(scene, script_of({person("a", std::move(actions))})), 0).samples;
+  };
+  const auto samples = run({act(action::Enter{"door"}), act(action::Sit{"S3"}), act(action::Work{100.0}),
+                            act(action::Rise{}), act_at(40.0, action::Leave{"door"})});
+  for (const Sample& sample : samples) {
+    if (sample.time_s > 20.0 && sample.time_s <= 40.0) CHECK(sample.phase == "working");
+    if (sample.time_s > 40.0) CHECK(sample.phase != "working");
+  }
+  CHECK(samples.back().time_s < 60.0);
+  const auto never = run({act(action::Wait{5.0}), act(action::Enter{"door"}), act_at(2.0, action::Leave{"door"})});
+  CHECK(never.size() <= 3);
+  for (const Sample& sample : never) CHECK(sample.phase == "outside");
+}
+
+TEST_CASE("at work the forearms lie on the table") {
+  const Model model(compile(shipped_scene("meeting_room.gltf"),
+                            script_of({person("a", {act(action::Enter{"door"}), act(action::Sit{"S8"}), act(action::Work{20.0})})})));
+  State state(model, 0);
+  double lowest = 1e9, highest = -1e9;
+  while (!state.finished()) {
+    step_tick(model, state);
+    const Actor& actor = state.actors().front();
+    if (actor.phase() != "working" || state.tick() < 20 * 50) continue;  // hands are on the table by then
+    const auto part = static_cast<std::size_t>(body::Part::left_forearm);
+    const auto& forearm = std::get<Capsule>(actor.person().humanoid.solids()[part]);
+    const Frame frame = actor.motion().posture()[part];
+    const double one_end = (frame * Vec3(0, forearm.half_length, 0)).y, other_end = (frame * Vec3(0, -forearm.half_length, 0)).y;
+    lowest = std::min(lowest, std::min(one_end, other_end) - forearm.radius);    // no end in the table
+    highest = std::max(highest, std::min(one_end, other_end) - forearm.radius);  // the hand on it
+  }
+  constexpr double table_top_m = 0.74;  // data/rooms/room_layouts.json
+  CHECK(lowest > table_top_m - 1e-3);
+  CHECK(highest < table_top_m + 0.02);
+}
+
 TEST_CASE("ten people fill the meeting room and leave it when the meeting is over") {
   std::vector<PersonSpec> people;
   for (int i = 1; i <= 10; ++i) {

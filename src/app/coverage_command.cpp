@@ -1,0 +1,83 @@
+#include <iostream>
+
+#include "app/commands.hpp"
+#include "app/gnuplot_runner.hpp"
+#include "app/progress.hpp"
+#include "app/session.hpp"
+#include "pirsim/io/atomic_file.hpp"
+#include "pirsim/io/coverage_reader.hpp"
+#include "pirsim/io/gnuplot.hpp"
+#include "pirsim/io/scene_reader.hpp"
+#include "pirsim/studies/coverage_figures.hpp"
+#include "pirsim/studies/coverage_report.hpp"
+#include "pirsim/studies/row_store.hpp"
+
+namespace pirsim::app {
+namespace {
+
+studies::CoverageStudy load_coverage(const Inputs& inputs) {
+  CoverageSpec spec = io::read_coverage(inputs.script, inputs.overrides);
+  SceneSpec scene = io::read_scene(inputs.scene, {inputs.sensor_directories});
+  tell(scene.warnings, inputs.verbosity);
+  return {std::move(scene), std::move(spec)};
+}
+
+void write(const std::filesystem::path& path, const std::string& text) {
+  io::AtomicFile file(path);
+  file.stream() << text;
+  file.commit();
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code fault;
+  std::filesystem::create_directories(folder, fault);
+  if (fault) throw Error(ErrorCode::io, Where{folder.string()}, "can't make the folder: " + fault.message());
+}
+
+/// Goes on where an interrupted run of the same study stopped.
+studies::CoverageMap compute(const studies::CoverageStudy& study, const Inputs& inputs,
+                             const CoverageOptions& options) {
+  make_folder(options.output);
+  studies::RowStore rows(options.output / "coverage.rows", study);
+  studies::CoverageMap map = studies::empty_map(study);
+  map.counts = rows.found();
+  if (rows.n_found_rows() > 0 && inputs.verbosity != Verbosity::quiet) {
+    std::cerr << "going on after " << rows.n_found_rows() << " of " << study.grid().n_rows() << " rows of squares\n";
+  }
+  Progress progress(static_cast<std::uint32_t>(study.grid().n_rows() - rows.n_found_rows()), inputs.verbosity,
+                    "rows of squares");
+  const auto keep = [&](std::size_t, const std::vector<studies::MotionCount>& counts) {
+    rows.append(counts);
+    map.counts.insert(map.counts.end(), counts.begin(), counts.end());
+    progress.run_finished();
+  };
+  studies::run_rows(study, rows.n_found_rows(), options.threads, keep);
+  rows.remove();
+  return map;
+}
+
+void draw_maps(const studies::CoverageStudy& study, const studies::CoverageMap& map, const Inputs& inputs,
+               const std::filesystem::path& folder) {
+  for (std::size_t i = 0; i < map.sensors.size(); ++i) {
+    io::MapChart chart = studies::map_chart(study, map, i);
+    chart.title = study.spec().name + ", " + chart.title;
+    if (run_gnuplot(io::gnuplot_program(chart, folder / (map.sensors[i] + ".png")))) continue;
+    return tell(
+        {{Severity::warning, {}, "no pictures of the maps: gnuplot (package gnuplot-nox) isn't there or failed"}},
+        inputs.verbosity);
+  }
+}
+
+}  // namespace
+
+void coverage(const Inputs& inputs, const CoverageOptions& options) {
+  const studies::CoverageStudy study = load_coverage(inputs);
+  const studies::CoverageMap map = compute(study, inputs, options);
+  const studies::CoverageFigures figures = studies::figures_of(map);
+  write(options.output / "coverage.csv", to_csv(map));
+  draw_maps(study, map, inputs, options.output);
+  if (!options.report.empty()) write_page(options.report, studies::coverage_report(study, map, figures), inputs);
+  if (inputs.verbosity != Verbosity::quiet) std::cout << to_text(map, figures);
+}
+
+}  // namespace pirsim::app

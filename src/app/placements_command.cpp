@@ -1,0 +1,50 @@
+#include <iostream>
+#include <set>
+
+#include "app/commands.hpp"
+#include "app/progress.hpp"
+#include "app/session.hpp"
+#include "pirsim/io/placement_reader.hpp"
+#include "pirsim/io/scene_reader.hpp"
+#include "pirsim/io/sensor_library.hpp"
+#include "pirsim/studies/placement.hpp"
+
+namespace pirsim::app {
+namespace {
+
+/// Models that the study names and the scene doesn't.
+void add_models(SceneSpec& scene, const PlacementSpec& spec, const Inputs& inputs) {
+  std::set<std::string> names;
+  for (const SensorSetSpec& set : spec.sets) {
+    for (const SensorSpec& sensor : set.sensors) names.insert(sensor.model);
+  }
+  if (spec.search) names.insert(spec.search->model);
+  for (const std::string& name : names) {
+    if (scene.sensor_models.contains(name)) continue;
+    scene.sensor_models[name] = io::find_sensor_model(name, inputs.scene, {inputs.sensor_directories});
+  }
+}
+
+}  // namespace
+
+void placements(const Inputs& inputs, const PlacementOptions& options) {
+  const PlacementSpec spec = io::read_placements(inputs.script, inputs.overrides);
+  SceneSpec scene = io::read_scene(inputs.scene, {inputs.sensor_directories});
+  tell(scene.warnings, inputs.verbosity);
+  add_models(scene, spec, inputs);
+  std::vector<studies::PlacementScore> scores;
+  for (const SensorSetSpec& set : spec.sets)
+    scores.push_back(studies::score(scene, spec.coverage, set, options.threads));
+  std::optional<studies::PlacementSearch> search;
+  if (spec.search) {
+    Progress progress(static_cast<std::uint32_t>(spec.search->evaluations), inputs.verbosity, "sets");
+    search = studies::search_placement(scene, spec.coverage, *spec.search, options.threads,
+                                       [&] { progress.run_finished(); });
+    scores.push_back(search->even);
+    scores.push_back(search->found);
+  }
+  std::cout << to_text(studies::ranked(std::move(scores)));
+  if (search) std::cout << to_text(*search);
+}
+
+}  // namespace pirsim::app

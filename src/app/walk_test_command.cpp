@@ -1,0 +1,29 @@
+#include <iostream>
+
+#include "app/commands.hpp"
+#include "app/progress.hpp"
+#include "app/session.hpp"
+#include "pirsim/io/atomic_file.hpp"
+#include "pirsim/io/scene_reader.hpp"
+#include "pirsim/io/walk_test_reader.hpp"
+#include "pirsim/studies/walk_test.hpp"
+
+namespace pirsim::app {
+
+void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
+  WalkTestSpec spec = io::read_walk_test(inputs.script, inputs.overrides);
+  SceneSpec scene = io::read_scene(inputs.scene, {inputs.sensor_directories});
+  tell(scene.warnings, inputs.verbosity);
+  const studies::WalkTest test(std::move(scene), std::move(spec));
+  const studies::WalkTestResult result = [&] {
+    Progress progress(static_cast<std::uint32_t>(test.grid().n_rows()), inputs.verbosity, "rows of points");
+    return studies::run_walk_test(test, options.threads, [&] { progress.run_finished(); });
+  }();
+  io::AtomicFile file(options.output);
+  file.stream() << to_csv(test, result);
+  file.commit();
+  if (!options.report.empty()) write_page(options.report, studies::walk_test_report(test, result), inputs);
+  if (inputs.verbosity != Verbosity::quiet) std::cout << to_text(test, result);
+}
+
+}  // namespace pirsim::app

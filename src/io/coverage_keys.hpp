@@ -1,0 +1,16 @@
+// What the readers of coverage studies, walk tests and placements share. Private to io.
+#pragma once
+
+#include <string>
+
+#include "io/yaml_map.hpp"
+#include "pirsim/schema/coverage_spec.hpp"
+
+namespace pirsim::io {
+
+/// A top-level format version, which has to be 1.
+void check_version(YamlMap& map, const std::string& key);
+/// sensing, spacing_m, duration_s, without and target.
+void read_coverage_keys(YamlMap& map, CoverageSpec& spec);
+
+}  // namespace pirsim::io

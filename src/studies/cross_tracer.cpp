@@ -1,0 +1,63 @@
+#include "studies/cross_tracer.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <glm/geometric.hpp>
+
+#include "geom/float_lanes.hpp"
+#include "geom/ray_tests.hpp"
+
+namespace pirsim::studies {
+
+using Lanes = ray_tests::FloatLanes;
+constexpr std::size_t width = Lanes::width;
+
+std::size_t padded(std::size_t n_poses) noexcept { return (n_poses + width - 1) / width * width; }
+
+std::vector<Vec3> half_axes(const Capsule& bar, const std::vector<Quat>& rotation) {
+  std::vector<Vec3> result;
+  for (const Quat& world_from_bar : rotation) result.push_back(world_from_bar * Vec3(0.0, bar.half_length, 0.0));
+  return result;
+}
+
+void pose_bar(const std::vector<Vec3>& half_axes, const Vec3& middle, double radius, BarPoses& poses) {
+  const std::size_t n = half_axes.size(), n_padded = padded(n);
+  for (auto* values : {&poses.ax, &poses.ay, &poses.az, &poses.bx, &poses.by, &poses.bz}) values->resize(n_padded);
+  for (std::size_t i = 0; i < n_padded; ++i) {
+    const Vec3& half_axis = half_axes[std::min(i, n - 1)];
+    poses.ax[i] = static_cast<float>(middle.x - half_axis.x);
+    poses.ay[i] = static_cast<float>(middle.y - half_axis.y);
+    poses.az[i] = static_cast<float>(middle.z - half_axis.z);
+    poses.bx[i] = static_cast<float>(middle.x + half_axis.x);
+    poses.by[i] = static_cast<float>(middle.y + half_axis.y);
+    poses.bz[i] = static_cast<float>(middle.z + half_axis.z);
+  }
+  poses.radius = static_cast<float>(radius);
+}
+
+void mark_active(const Ray& ray, float range, const BarPoses& poses, std::vector<std::int32_t>& active) noexcept {
+  using Vector = ray_tests::Vector<Lanes>;
+  const auto all = [](const Vec3f& v) { return Vector{Lanes(v.x), Lanes(v.y), Lanes(v.z)}; };
+  const Vector origin = all(ray.origin), direction = all(ray.direction);
+  const Lanes radius(poses.radius), t_max(range);
+  for (std::size_t i = 0; i < active.size(); i += width) {
+    Lanes::Bits known;
+    std::memcpy(&known, &active[i], sizeof known);
+    if ((known[0] & known[1] & known[2] & known[3]) != 0) continue;
+    const Vector a{Lanes::load(&poses.ax[i]), Lanes::load(&poses.ay[i]), Lanes::load(&poses.az[i])};
+    const Vector b{Lanes::load(&poses.bx[i]), Lanes::load(&poses.by[i]), Lanes::load(&poses.bz[i])};
+    known |= ray_tests::is_hit(ray_tests::capsule(origin, direction, ray_tests::capsule_axis(a, b), radius), t_max).bits;
+    std::memcpy(&active[i], &known, sizeof known);
+  }
+}
+
+bool may_meet(const Ray& ray, float range, const Vec3& middle, double reach_m) noexcept {
+  constexpr double safety_m = 1e-3;  // as the tracers' bounding boxes have it
+  const Vec3 to_middle = middle - Vec3(ray.origin), direction(ray.direction);
+  const double along = std::clamp(glm::dot(to_middle, direction), 0.0, static_cast<double>(range));
+  const Vec3 offset = to_middle - along * direction;
+  const double reach = reach_m + safety_m;
+  return glm::dot(offset, offset) <= reach * reach;
+}
+
+}  // namespace pirsim::studies

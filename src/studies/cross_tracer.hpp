@@ -1,0 +1,32 @@
+// One ray against all poses of a bar, several poses at a time. Private to studies.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "pirsim/geom/shapes.hpp"
+
+namespace pirsim::studies {
+
+/// All poses of one capsule as posed by place(), laid out for lanes of poses; padded to whole lanes.
+struct BarPoses {
+  std::vector<float> ax, ay, az, bx, by, bz;
+  float radius = 0.0F;
+};
+
+/// Half axes of a bar, relative to its middle, computed once: (n_poses).
+[[nodiscard]] std::vector<Vec3> half_axes(const Capsule& bar, const std::vector<Quat>& rotation);
+/// The poses of a bar with its middle at `middle`, the same bits as place() of each.
+void pose_bar(const std::vector<Vec3>& half_axes, const Vec3& middle, double radius, BarPoses& poses);
+
+/// Lanes of poses in a row of `n_poses`: how long `active` below is.
+[[nodiscard]] std::size_t padded(std::size_t n_poses) noexcept;
+
+/// active[pose] |= all ones where entry_distance(ray, capsule of the pose, range) has a value. (padded n_poses)
+void mark_active(const Ray& ray, float range, const BarPoses& poses, std::vector<std::int32_t>& active) noexcept;
+
+/// Whether the ray passes a ball within its range; a millimetre is added to be on the safe side of rounding.
+[[nodiscard]] bool may_meet(const Ray& ray, float range, const Vec3& middle, double reach_m) noexcept;
+
+}  // namespace pirsim::studies

@@ -1,0 +1,159 @@
+#include "pirsim/studies/placement.hpp"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <iomanip>
+#include <nlopt.hpp>
+#include <sstream>
+#include <utility>
+
+#include "pirsim/studies/coverage_figures.hpp"
+
+namespace pirsim::studies {
+namespace {
+
+/// Share of the squares with motion in which two sensors or more see it.
+double overlap_of(const CoverageMap& map) {
+  std::size_t seen = 0, shared = 0;
+  const std::size_t n_sensors = map.sensors.size();
+  for (std::size_t at = 0; at < map.counts.size(); at += n_sensors) {
+    const auto counts = map.counts.begin() + static_cast<std::ptrdiff_t>(at);
+    const auto by =
+        std::count_if(counts, counts + static_cast<std::ptrdiff_t>(n_sensors), [](auto n) { return n > 0; });
+    seen += by > 0 ? 1 : 0;
+    shared += by > 1 ? 1 : 0;
+  }
+  return seen == 0 ? 0.0 : static_cast<double>(shared) / static_cast<double>(seen);
+}
+
+/// The search as NLopt calls it.
+struct Objective {
+  const SceneSpec& scene;
+  const CoverageSpec& coverage;
+  const PlacementSearchSpec& search;
+  unsigned threads;
+  const std::function<void()>& set_done;
+  int evaluations = 0;
+  double best_area = -1.0;
+  std::vector<double> best;
+
+  double area(const std::vector<double>& shares) {
+    ++evaluations;
+    set_done();
+    const double seen = score(scene, coverage, sensors_along(search, shares, ""), threads).seen_area_m2;
+    if (seen > best_area) {
+      best_area = seen;
+      best = shares;
+    }
+    return seen;
+  }
+};
+
+void maximise(nlopt::algorithm algorithm, Objective& objective, int evaluations) {
+  if (evaluations < 1) return;
+  nlopt::opt optimiser(algorithm, static_cast<unsigned>(objective.search.n_sensors));
+  optimiser.set_lower_bounds(0.0);
+  optimiser.set_upper_bounds(1.0);
+  optimiser.set_maxeval(evaluations);
+  optimiser.set_xtol_abs(1e-3);
+  optimiser.set_initial_step(0.1);
+  optimiser.set_max_objective([](const std::vector<double>& shares, std::vector<double>&,
+                                 void* data) { return static_cast<Objective*>(data)->area(shares); },
+                              &objective);
+  std::vector<double> shares = objective.best;
+  double area = 0.0;
+  try {
+    optimiser.optimize(shares, area);
+  } catch (const nlopt::roundoff_limited&) {
+    // The best so far is kept: no further progress is possible.
+  }
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : " ") + name;
+  return text.empty() ? "none" : text;
+}
+
+}  // namespace
+
+PlacementScore score(const SceneSpec& scene, const CoverageSpec& coverage, SensorSetSpec set, unsigned threads) {
+  SceneSpec with_set = scene;
+  if (!set.sensors.empty()) with_set.sensors = set.sensors;
+  const CoverageStudy study(std::move(with_set), coverage);
+  const CoverageMap map = run_coverage(study, threads);
+  const MapFigures figures = figures_of(map).all;
+  PlacementScore result{std::move(set), figures.seen_area_m2, figures.blind_fraction, overlap_of(map), {}};
+  for (const SeatSpec& seat : scene.seats) {
+    const std::vector<MotionCount> counts = study.counts_at(floor_point(seat.world_from_seat.origin));
+    if (std::ranges::all_of(counts, [](MotionCount n) { return n == 0; })) result.blind_seats.push_back(seat.id);
+  }
+  return result;
+}
+
+std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores) {
+  std::ranges::stable_sort(scores, [](const PlacementScore& a, const PlacementScore& b) {
+    if (a.seen_area_m2 != b.seen_area_m2) return a.seen_area_m2 > b.seen_area_m2;
+    return a.blind_seats.size() < b.blind_seats.size();
+  });
+  return scores;
+}
+
+SensorSetSpec sensors_along(const PlacementSearchSpec& search, const std::vector<double>& shares, std::string id) {
+  double total = 0.0;
+  for (const MountingLineSpec& line : search.lines) total += glm::distance(line.from, line.to);
+  SensorSetSpec set{std::move(id), {}};
+  for (const double share : shares) {
+    double along = share * total;
+    std::size_t i = 0;
+    while (i + 1 < search.lines.size() && along > glm::distance(search.lines[i].from, search.lines[i].to)) {
+      along -= glm::distance(search.lines[i].from, search.lines[i].to);
+      ++i;
+    }
+    const MountingLineSpec& line = search.lines[i];
+    const double length = glm::distance(line.from, line.to);
+    const double part = length > 0.0 ? std::clamp(along / length, 0.0, 1.0) : 0.0;
+    set.sensors.push_back({"PIR" + std::to_string(set.sensors.size() + 1), search.model,
+                           mounted(line.from + part * (line.to - line.from), line.yaw_deg, line.tilt_deg)});
+  }
+  return set;
+}
+
+PlacementSearch search_placement(const SceneSpec& scene, const CoverageSpec& coverage,
+                                 const PlacementSearchSpec& search, unsigned threads,
+                                 const std::function<void()>& set_done) {
+  std::vector<double> even;
+  for (int i = 0; i < search.n_sensors; ++i) even.push_back((i + 0.5) / search.n_sensors);
+  Objective objective{scene, coverage, search, threads, set_done, 0, -1.0, {}};
+  static_cast<void>(objective.area(even));
+  maximise(nlopt::GN_DIRECT_L, objective, search.evaluations * 2 / 3);
+  maximise(nlopt::LN_SBPLX, objective, search.evaluations - objective.evaluations);
+  return {score(scene, coverage, sensors_along(search, even, "even spacing"), threads),
+          score(scene, coverage, sensors_along(search, objective.best, "found"), threads), objective.evaluations};
+}
+
+std::string to_text(const std::vector<PlacementScore>& scores) {
+  std::ostringstream out;
+  out << "  rank  seen, m2  blind, %  overlap, %  set (blind seats)\n" << std::fixed;
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const PlacementScore& s = scores[i];
+    out << std::setw(6) << i + 1 << std::setprecision(2) << std::setw(10) << s.seen_area_m2 << std::setprecision(1)
+        << std::setw(10) << 100.0 * s.blind_fraction << std::setw(12) << 100.0 * s.overlap << "  " << s.set.id << " ("
+        << listed(s.blind_seats) << ")\n";
+  }
+  return out.str();
+}
+
+std::string to_text(const PlacementSearch& search) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(2) << search.evaluations << " sets tried: " << search.found.seen_area_m2
+      << " m2 found, " << search.found.seen_area_m2 - search.even.seen_area_m2 << " m2 more than even spacing ("
+      << search.even.seen_area_m2 << " m2). Sensors at:\n";
+  for (const SensorSpec& sensor : search.found.set.sensors) {
+    const Vec3 p = sensor.world_from_sensor.origin;
+    out << "  " << sensor.id << "  " << p.x << ' ' << p.y << ' ' << p.z << '\n';
+  }
+  return out.str();
+}
+
+}  // namespace pirsim::studies

@@ -1,0 +1,136 @@
+#include <iomanip>
+#include <sstream>
+
+#include "pirsim/studies/walk_test.hpp"
+
+namespace pirsim::studies {
+namespace {
+
+bool passes(const Tries& tries, const WalkRequirement& requirement) {
+  return tries.made > 0 && *tries.probability() >= requirement.probability - 1e-12;
+}
+
+struct PassCount {
+  std::size_t tried = 0, passed = 0;
+};
+
+PassCount count_passes(const WalkTestResult& result, Tries PointResult::*motion, const WalkRequirement& requirement) {
+  PassCount count;
+  for (const PointResult& point : result.points) {
+    if ((point.*motion).made == 0) continue;
+    ++count.tried;
+    count.passed += passes(point.*motion, requirement) ? 1 : 0;
+  }
+  return count;
+}
+
+std::string percent(double share) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(0) << 100.0 * share << " %";
+  return out.str();
+}
+
+std::string seconds(double value) {
+  std::ostringstream out;
+  out << value << " s";
+  return out.str();
+}
+
+std::string sentence(const std::string& motion, const PassCount& count, const WalkRequirement& requirement) {
+  return motion + " noticed within " + seconds(requirement.within_s) + " in at least " +
+         percent(requirement.probability) + " of " + std::to_string(requirement.directions) +
+         " directions: " + std::to_string(count.passed) + " of " + std::to_string(count.tried) + " points pass";
+}
+
+std::string seats_in_words(const WalkTestResult& result) {
+  std::string noticed, missed;
+  for (const SeatResult& seat : result.seats) (seat.noticed ? noticed : missed) += " " + seat.seat;
+  return "seats where a sitter's arms are noticed:" + (noticed.empty() ? " none" : noticed) +
+         "; not noticed:" + (missed.empty() ? " none" : missed);
+}
+
+io::MapChart map_of(const WalkTest& test, const std::string& title, const std::string& label) {
+  const FloorGrid& grid = test.grid();
+  io::MapChart chart;
+  chart.title = title;
+  chart.label = label;
+  chart.lower = grid.centre(0, 0) - 0.5 * Vec2(grid.spacing_m());
+  chart.spacing_m = grid.spacing_m();
+  chart.columns = static_cast<int>(grid.n_columns());
+  chart.rows = static_cast<int>(grid.n_rows());
+  chart.outline = test.scene().floor.loops();
+  for (const SensorSpec& sensor : test.scene().sensors) {
+    chart.markers.push_back(
+        {sensor.id, floor_point(sensor.world_from_sensor.origin), heading_of(sensor.world_from_sensor)});
+  }
+  return chart;
+}
+
+void add_maps(io::ReportSection& section, const WalkTest& test, const WalkTestResult& result,
+              Tries PointResult::*motion, const WalkRequirement& requirement) {
+  io::MapChart probability = map_of(test, "Probability of being noticed", "probability");
+  io::MapChart pass = map_of(test, "Pass (1) or fail (0)", "pass");
+  probability.note = "within " + seconds(requirement.within_s) + "; no colour: nothing could be tried there";
+  pass.note = "required: " + percent(requirement.probability);
+  probability.unit = "of the tries noticed";
+  pass.unit = "(1: pass, 0: fail)";
+  for (const PointResult& point : result.points) {
+    const Tries& tries = point.*motion;
+    probability.values.push_back(tries.probability());
+    pass.values.push_back(tries.made == 0 ? std::nullopt : std::optional(passes(tries, requirement) ? 1.0 : 0.0));
+  }
+  section.charts.emplace_back(std::move(probability));
+  section.charts.emplace_back(std::move(pass));
+}
+
+}  // namespace
+
+std::string to_csv(const WalkTest& test, const WalkTestResult& result) {
+  std::ostringstream out;
+  out << "x_m,z_m,major_tries,major_noticed,major,minor_tries,minor_noticed,minor\n"
+      << std::fixed << std::setprecision(4);
+  const FloorGrid& grid = test.grid();
+  const auto write = [&](const Tries& tries, const WalkRequirement& requirement) {
+    const char* verdict = tries.made == 0 ? "untried" : passes(tries, requirement) ? "pass" : "fail";
+    out << ',' << tries.made << ',' << tries.noticed << ',' << verdict;
+  };
+  for (std::size_t row = 0; row < grid.n_rows(); ++row) {
+    for (std::size_t column = 0; column < grid.n_columns(); ++column) {
+      if (!grid.on_floor(column, row)) continue;
+      const Vec2 centre = grid.centre(column, row);
+      const PointResult& point = result.points[row * grid.n_columns() + column];
+      out << centre.x << ',' << centre.y;
+      write(point.major, test.spec().major);
+      write(point.minor, test.spec().minor);
+      out << '\n';
+    }
+  }
+  return out.str();
+}
+
+std::string to_text(const WalkTest& test, const WalkTestResult& result) {
+  return sentence("walker", count_passes(result, &PointResult::major, test.spec().major), test.spec().major) + "\n" +
+         sentence("sitter's arms", count_passes(result, &PointResult::minor, test.spec().minor), test.spec().minor) +
+         "\n" + (result.seats.empty() ? "" : seats_in_words(result) + "\n");
+}
+
+io::Report walk_test_report(const WalkTest& test, const WalkTestResult& result) {
+  const WalkTestSpec& spec = test.spec();
+  io::Report report;
+  report.title = spec.name + ": walk test of " + test.scene().name;
+  report.paragraphs = {
+      "At every point of a grid a person of the study's measures walks across in several directions (major motion), "
+      "and "
+      "sits there facing several ways and moves both forearms (minor motion). A try counts as noticed if any sensor "
+      "reports motion in time. In the manner of NEMA WD 7 and EN 50131-2-2; not a conformity test."};
+  io::ReportSection major{"Major motion: walking", {}, {}, {}}, minor{"Minor motion: arms of a sitter", {}, {}, {}};
+  major.paragraphs = {sentence("Walker", count_passes(result, &PointResult::major, spec.major), spec.major) + "."};
+  minor.paragraphs = {sentence("Arms", count_passes(result, &PointResult::minor, spec.minor), spec.minor) + "."};
+  if (!result.seats.empty()) minor.paragraphs.push_back("Facing as the seats do, " + seats_in_words(result) + ".");
+  add_maps(major, test, result, &PointResult::major, spec.major);
+  add_maps(minor, test, result, &PointResult::minor, spec.minor);
+  report.sections = {std::move(major), std::move(minor)};
+  return report;
+}
+
+}  // namespace pirsim::studies

@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""The commands coverage, walktest and placements as a user calls them.
+
+Usage: run_coverage.py PIRSIM DATA_DIRECTORY
+"""
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+
+def main():
+    pirsim, data = sys.argv[1], pathlib.Path(sys.argv[2])
+    scene = ["--scene", str(data / "rooms/meeting_room.gltf")]
+
+    def call(command, script, *more, code=0):
+        result = subprocess.run([pirsim, command, *scene, "--script", str(script), *map(str, more)], capture_output=True,
+                                text=True)
+        assert result.returncode == code, (command, more, result.returncode, result.stderr)
+        return result
+
+    study_b = data / "studies/studyB.yaml"
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        coarse = ["--set", "spacing_m=0.06"]
+        whole = call("coverage", study_b, *coarse, "-o", folder / "one", "--threads", 1)
+        assert "blind" in whole.stdout and "PIR5" in whole.stdout, whole.stdout
+        csv = (folder / "one/coverage.csv").read_bytes()
+        assert csv.startswith(b"x_m,z_m,PIR1,PIR2,PIR3,PIR4,PIR5\n"), csv[:80]
+        call("coverage", study_b, *coarse, "-o", folder / "four", "--threads", 4)
+        assert (folder / "four/coverage.csv").read_bytes() == csv, "threads change the map"
+        if shutil.which("gnuplot"):
+            assert (folder / "one/PIR1.png").read_bytes().startswith(b"\x89PNG")
+        else:
+            assert "gnuplot" in whole.stderr, whole.stderr
+
+        # Killed on its way, it goes on from its rows to the same bytes.
+        command = [pirsim, "coverage", "-q", *scene, "--script", str(study_b), *coarse, "--threads", "1", "-o",
+                   str(folder / "cut")]
+        process = subprocess.Popen(command)
+        rows, until = folder / "cut/coverage.rows", time.monotonic() + 60
+        while time.monotonic() < until and not (rows.exists() and rows.stat().st_size > 5000) and process.poll() is None:
+            time.sleep(0.005)
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+        again = call("coverage", study_b, *coarse, "-o", folder / "cut")
+        assert "going on after" in again.stderr or process.returncode == 0, again.stderr
+        assert (folder / "cut/coverage.csv").read_bytes() == csv, "an interruption changes the map"
+        assert not rows.exists()
+
+        fault = call("coverage", study_b, "--set", "without=[tabel]", "-o", folder / "no", code=3)
+        assert "tabel" in fault.stderr and "did you mean" in fault.stderr, fault.stderr
+        call("coverage", study_b, "--set", "duration_s=0.3", "-o", folder / "no", code=3)
+        call("coverage", data / "studies/studyA.yaml", "-o", folder / "no", code=3)
+        call("coverage", study_b, *coarse, "-o", "/dev/null/no", code=4)
+
+        small = ["--set", "spacing_m=1", "--set", "minor_motion.directions=1"]
+        walk = data / "studies/walk_test.yaml"
+        assert "points pass" in call("walktest", walk, *small, "-o", folder / "w1.csv", "--threads", 1).stdout
+        call("walktest", walk, *small, "-o", folder / "w2.csv", "--threads", 4)
+        assert (folder / "w1.csv").read_bytes() == (folder / "w2.csv").read_bytes()
+
+        sets = ["--set", "spacing_m=0.3", "--set", "search.evaluations=8"]
+        ranking = call("placements", data / "studies/placements.yaml", *sets).stdout
+        assert "as built" in ranking and "more than even spacing" in ranking, ranking
+        call("placements", data / "studies/placements.yaml", "--set", "search.model=NOPE", code=3)
+    print("coverage, walk test and placements: as described")
+
+
+if __name__ == "__main__":
+    main()

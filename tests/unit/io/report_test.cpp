@@ -1,0 +1,65 @@
+#include "pirsim/io/report.hpp"
+
+#include "pirsim/io/gnuplot.hpp"
+#include "support/catch.hpp"
+
+using namespace pirsim;
+using namespace pirsim::io;
+
+namespace {
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t n = 0;
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += what.size()) ++n;
+  return n;
+}
+
+MapChart small_map() {
+  MapChart chart;
+  chart.title = "it's";
+  chart.columns = 2;
+  chart.rows = 1;
+  chart.spacing_m = 0.5;
+  chart.values = {3.0, std::nullopt};
+  chart.max = 60;
+  chart.outline = {{{0, 0}, {1, 0}, {1, 0.5}}};
+  return chart;
+}
+
+}  // namespace
+
+TEST_CASE("names from files can't become markup or end a script", "[report]") {
+  Report empty;
+  const std::size_t scripts = count(to_html(empty), "</script>");
+  Report report;
+  const std::string evil = "</script><script>alert(1)</script><b>&\"";
+  report.title = report.footer = evil;
+  report.paragraphs = {evil};
+  HistogramChart histogram{evil, evil, evil, evil, {1, 2}, {}};
+  report.sections = {{evil, {evil}, {{{evil}, {{evil}}}}, {histogram}}};
+  const std::string html = to_html(report);
+  CHECK(count(html, "</script>") == scripts);
+  CHECK(count(html, "<b>") == 0);
+  CHECK(count(html, "&lt;b&gt;&amp;&quot;") >= 5);
+}
+
+TEST_CASE("a page carries Vega with it and points nowhere else", "[report]") {
+  const std::string html = to_html({});
+  CHECK(html.size() > 400000);
+  CHECK(count(html, "src=\"http") == 0);
+  CHECK(count(html, "<link") == 1);  // the empty icon, so that browsers don't ask for one
+}
+
+TEST_CASE("maps go into the page as numbers, holes as null", "[report]") {
+  Report report;
+  report.sections = {{"maps", {}, {}, {small_map()}}};
+  CHECK(count(to_html(report), "\"values\":[3,null]") == 1);
+}
+
+TEST_CASE("gnuplot gets quotes doubled, and no value off the floor", "[report]") {
+  const std::string program = gnuplot_program(small_map(), "a'b.png");
+  CHECK(count(program, "set title 'it''s'") == 1);
+  CHECK(count(program, "set output 'a''b.png'") == 1);
+  CHECK(count(program, "0.25 0.25 3\n") == 1);
+  CHECK(count(program, "0.75 0.25 NaN\n") == 1);
+}
