@@ -1,4 +1,5 @@
 #include <iostream>
+#include <optional>
 
 #include "app/commands.hpp"
 #include "app/gnuplot_runner.hpp"
@@ -72,11 +73,13 @@ void draw_maps(const studies::CoverageStudy& study, const studies::CoverageMap& 
 
 void coverage(const Inputs& inputs, const CoverageOptions& options) {
   const studies::CoverageStudy study = load_coverage(inputs);
+  std::optional<io::AtomicFile> report_file;
+  if (!options.report.empty()) report_file.emplace(options.report);
   const studies::CoverageMap map = compute(study, inputs, options);
   const studies::CoverageFigures figures = studies::figures_of(map);
   write(options.output / "coverage.csv", to_csv(map));
   draw_maps(study, map, inputs, options.output);
-  if (!options.report.empty()) write_page(options.report, studies::coverage_report(study, map, figures), inputs);
+  if (report_file) write_page(*report_file, studies::coverage_report(study, map, figures), inputs);
   if (inputs.verbosity != Verbosity::quiet) std::cout << to_text(map, figures);
 }
 

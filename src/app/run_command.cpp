@@ -105,6 +105,8 @@ void run(const Inputs& inputs, const RunOptions& options) {
   }
   std::optional<io::AtomicFile> summary_file;
   if (!options.summary.empty()) summary_file.emplace(options.summary);
+  std::optional<io::AtomicFile> report_file;
+  if (!options.report.empty()) report_file.emplace(options.report);
   studies::Summary summary = make_summary(model);
   studies::StudyReport report(model);
   std::uint64_t n_rows = 0;
@@ -126,7 +128,7 @@ void run(const Inputs& inputs, const RunOptions& options) {
   rows.commit();
   if (zones_file) zones_file->commit();
   if (summary_file) write_summary(summary, *summary_file, options, inputs.verbosity);
-  if (!options.report.empty()) write_page(options.report, report.finish(summary), inputs);
+  if (report_file) write_page(*report_file, report.finish(summary), inputs);
   if (!options.output.empty()) {
     std::filesystem::path side_car = options.output;
     side_car += ".json";

@@ -26,10 +26,11 @@ void tell(const std::vector<Issue>& issues, Verbosity verbosity) {
   for (const Issue& issue : issues) std::cerr << to_string(issue) << '\n';
 }
 
-void write_page(const std::filesystem::path& file, io::Report report, const Inputs& inputs) {
+void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs) {
   report.footer = "pirsim " + version() + " (" + git_revision() + "), " + inputs.scene.filename().string() + ", " +
                   inputs.script.filename().string();
-  io::write_report(file, report);
+  file.stream() << io::to_html(report);
+  file.commit();
 }
 
 Model load(const Inputs& inputs) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/options.hpp"
+#include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/report.hpp"
 #include "pirsim/sim/model.hpp"
 
@@ -15,8 +16,8 @@ namespace pirsim::app {
 [[nodiscard]] std::uint32_t find_run(const Model& model, const std::string& trial, int replicate);
 /// Resolves "all", "none" and sensor names to indices. Throws Error(usage).
 [[nodiscard]] std::vector<std::size_t> find_sensors(const Model& model, const std::vector<std::string>& names);
-/// Writes a report with what made it in the footer.
-void write_page(const std::filesystem::path& file, io::Report report, const Inputs& inputs);
+/// Writes a report with what made it in the footer, and commits the file.
+void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs);
 void tell(const std::vector<Issue>& issues, Verbosity verbosity);
 
 }  // namespace pirsim::app

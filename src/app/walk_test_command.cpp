@@ -1,4 +1,5 @@
 #include <iostream>
+#include <optional>
 
 #include "app/commands.hpp"
 #include "app/progress.hpp"
@@ -15,14 +16,16 @@ void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
   SceneSpec scene = io::read_scene(inputs.scene, {inputs.sensor_directories});
   tell(scene.warnings, inputs.verbosity);
   const studies::WalkTest test(std::move(scene), std::move(spec));
+  io::AtomicFile file(options.output);
+  std::optional<io::AtomicFile> report_file;
+  if (!options.report.empty()) report_file.emplace(options.report);
   const studies::WalkTestResult result = [&] {
     Progress progress(static_cast<std::uint32_t>(test.grid().n_rows()), inputs.verbosity, "rows of points");
     return studies::run_walk_test(test, options.threads, [&] { progress.run_finished(); });
   }();
-  io::AtomicFile file(options.output);
   file.stream() << to_csv(test, result);
   file.commit();
-  if (!options.report.empty()) write_page(options.report, studies::walk_test_report(test, result), inputs);
+  if (report_file) write_page(*report_file, studies::walk_test_report(test, result), inputs);
   if (inputs.verbosity != Verbosity::quiet) std::cout << to_text(test, result);
 }
 

@@ -48,9 +48,13 @@ std::string_view Actor::current_phase() const noexcept {
 }
 
 Presence Actor::presence() const {
-  return {motion_->position(), motion_->speed_m_s() * direction_of(motion_->heading()),
-          route_ ? route_->position(route_->length_m()) : motion_->position(), seat_,
-          done() ? Presence::Script::carried_out : Presence::Script::going_on, person().humanoid.clearance_radius_m()};
+  const double speed = motion_->speed_m_s();
+  return {motion_->position(),
+          speed > 0.0 ? speed * direction_of(motion_->heading()) : Vec2(0.0),
+          route_ ? route_->position(route_->length_m()) : motion_->position(),
+          seat_,
+          done() ? Presence::Script::carried_out : Presence::Script::going_on,
+          person().humanoid.clearance_radius_m()};
 }
 
 void Actor::advance(const Model& model, std::int64_t tick, std::span<const Presence> others, std::size_t n_before) {

@@ -46,7 +46,8 @@ void mark_active(const Ray& ray, float range, const BarPoses& poses, std::vector
     if ((known[0] & known[1] & known[2] & known[3]) != 0) continue;
     const Vector a{Lanes::load(&poses.ax[i]), Lanes::load(&poses.ay[i]), Lanes::load(&poses.az[i])};
     const Vector b{Lanes::load(&poses.bx[i]), Lanes::load(&poses.by[i]), Lanes::load(&poses.bz[i])};
-    known |= ray_tests::is_hit(ray_tests::capsule(origin, direction, ray_tests::capsule_axis(a, b), radius), t_max).bits;
+    known |=
+        ray_tests::is_hit(ray_tests::capsule(origin, direction, ray_tests::capsule_axis(a, b), radius), t_max).bits;
     std::memcpy(&active[i], &known, sizeof known);
   }
 }

@@ -108,7 +108,7 @@ bool WalkTest::notices_sitter(const SeatSpec& seat, rt::Tracer& tracer) const {
 }
 
 std::unique_ptr<rt::Tracer> WalkTest::make_tracer() const {
-  return rt::make_tracer(rt::TracerKind::embree, {&room_, &rated_, &clipped_});
+  return rt::make_tracer(rt::fastest_tracer, {&room_, &rated_, &clipped_});
 }
 
 WalkTestResult run_walk_test(const WalkTest& test, unsigned threads, const std::function<void()>& row_done) {

@@ -28,9 +28,11 @@ TEST_CASE("a lane gets the bits that a float gets", "[lanes]") {
     const float radius = static_cast<float>(draw.between(0.01, 0.2)),
                 range = static_cast<float>(draw.between(0.0, 20.0));
     const bool hit = entry_distance(ray, PosedCapsule{a, b, radius}, range).has_value();
-    const auto lanes = ray_tests::capsule(vector<FloatLanes>(ray.origin), vector<FloatLanes>(ray.direction),
-                                          ray_tests::capsule_axis(vector<FloatLanes>(a), vector<FloatLanes>(b)), FloatLanes(radius));
-    const auto single = ray_tests::capsule(vector<float>(ray.origin), vector<float>(ray.direction), ray_tests::capsule_axis(vector<float>(a), vector<float>(b)), radius);
+    const auto lanes =
+        ray_tests::capsule(vector<FloatLanes>(ray.origin), vector<FloatLanes>(ray.direction),
+                           ray_tests::capsule_axis(vector<FloatLanes>(a), vector<FloatLanes>(b)), FloatLanes(radius));
+    const auto single = ray_tests::capsule(vector<float>(ray.origin), vector<float>(ray.direction),
+                                           ray_tests::capsule_axis(vector<float>(a), vector<float>(b)), radius);
     const FloatLanes::Mask mask = ray_tests::is_hit(lanes, FloatLanes(range));
     for (int lane = 0; lane < FloatLanes::width; ++lane) {
       const float enter = lanes.enter.value[lane];
