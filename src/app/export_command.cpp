@@ -43,7 +43,8 @@ void export_gltf(const Inputs& inputs, const ExportOptions& options) {
   for (const std::size_t sensor : find_sensors(model, options.beams)) {
     io::ExportedBeams& beams = run.beams.emplace_back();
     beams.sensor = model.scene().sensors[sensor].id;
-    for (const sim::BeamSegment& beam : sim::beams_of(model, state, sensor)) beams.segments.emplace_back(beam.from, beam.to);
+    for (const sim::BeamSegment& beam : sim::beams_of(model, state, sensor))
+      beams.segments.emplace_back(beam.from, beam.to);
   }
   for (const Actor& actor : state.actors()) run.people.push_back(without_keys(actor));
   while (true) {

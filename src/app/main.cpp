@@ -46,32 +46,43 @@ void add_inputs(CLI::App& command, Inputs& inputs) {
       ->option_text("DIR")
       ->allow_extra_args(false);
   command.add_option("--tracer", inputs.tracer, "auto, direct, embree or reference")->option_text("NAME");
-  command.add_flag_callback("-q,--quiet", [&] { inputs.verbosity = Verbosity::quiet; }, "errors only");
-  command.add_flag_callback("-v,--verbose", [&] { inputs.verbosity = Verbosity::verbose; }, "more about what goes on");
+  command.add_flag_callback(
+      "-q,--quiet", [&] { inputs.verbosity = Verbosity::quiet; }, "errors only");
+  command.add_flag_callback(
+      "-v,--verbose", [&] { inputs.verbosity = Verbosity::verbose; }, "more about what goes on");
 }
 
 void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("-o,--output", options.output, "rows as CSV (default: standard output)")->option_text("FILE");
-  command.add_option("--summary", options.summary, "table of sums per trial and sensor, .csv or .md")->option_text("FILE");
-  command.add_option("--report", options.report, "counts and time series as one self-contained page, .html")->option_text("FILE");
+  command.add_option("--summary", options.summary, "table of sums per trial and sensor, .csv or .md")
+      ->option_text("FILE");
+  command.add_option("--report", options.report, "counts and time series as one self-contained page, .html")
+      ->option_text("FILE");
   command.add_option("--zones", options.zones, "every zone's activity at every tick, as CSV")->option_text("FILE");
   command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
-  command.add_flag_callback("--print-config", [&] { options.action = RunOptions::Action::print_config; },
-                            "print the resolved script and stop");
+  command.add_flag_callback(
+      "--print-config", [&] { options.action = RunOptions::Action::print_config; },
+      "print the resolved script and stop");
 }
 
 void add_preview_options(CLI::App& command, PreviewOptions& options) {
   command.add_option("-o,--output", options.output, "PNG file (default: preview.png)")->option_text("FILE");
   command.add_option("--trial", options.trial, "which trial (default: the first)")->option_text("ID");
   command.add_option("--replicate", options.replicate, "which replicate (default: 1)")->option_text("N");
-  command.add_option("--time", options.time_s, "moment of the run in seconds (default: 10 s into desk work)")->option_text("S");
+  command.add_option("--time", options.time_s, "moment of the run in seconds (default: 10 s into desk work)")
+      ->option_text("S");
   command.add_option("--beams", options.beams, "sensors whose beams are drawn, or all or none (default: the first)")
-      ->option_text("ID,...")->delimiter(',');
+      ->option_text("ID,...")
+      ->delimiter(',');
   command.add_option("--camera", options.camera, "where the camera stands, m")->option_text("X,Y,Z")->delimiter(',');
   command.add_option("--look-at", options.look_at, "what it looks at, m")->option_text("X,Y,Z")->delimiter(',');
-  command.add_option("--fov-deg", options.field_of_view_deg, "vertical field of view (default: 45)")->option_text("DEG")->check(CLI::Range(1.0, 170.0));
+  command.add_option("--fov-deg", options.field_of_view_deg, "vertical field of view (default: 45)")
+      ->option_text("DEG")
+      ->check(CLI::Range(1.0, 170.0));
   command.add_option("--width", options.width, "pixels (default: 1280)")->option_text("N")->check(CLI::Range(16, 7680));
-  command.add_option("--height", options.height, "pixels (default: 720)")->option_text("N")->check(CLI::Range(16, 4320));
+  command.add_option("--height", options.height, "pixels (default: 720)")
+      ->option_text("N")
+      ->check(CLI::Range(16, 4320));
 }
 
 void add_coverage_options(CLI::App& command, CoverageOptions& options) {
@@ -90,9 +101,12 @@ void add_export_options(CLI::App& command, ExportOptions& options) {
   command.add_option("-o,--output", options.output, "glTF file, .gltf or .glb (default: run.glb)")->option_text("FILE");
   command.add_option("--trial", options.trial, "which trial (default: the first)")->option_text("ID");
   command.add_option("--replicate", options.replicate, "which replicate (default: 1)")->option_text("N");
-  command.add_option("--keys-per-s", options.keys_per_s, "animation keys a second (default: 10)")->option_text("N")->check(CLI::Range(0.001, 10000.0));
+  command.add_option("--keys-per-s", options.keys_per_s, "animation keys a second (default: 10)")
+      ->option_text("N")
+      ->check(CLI::Range(0.001, 10000.0));
   command.add_option("--beams", options.beams, "sensors whose beams are drawn, or all or none (default: all)")
-      ->option_text("ID,...")->delimiter(',');
+      ->option_text("ID,...")
+      ->delimiter(',');
 }
 
 std::string version_text() {
@@ -145,7 +159,8 @@ int run_command_line(int argc, char** argv) {
     return code == 0 ? 0 : static_cast<int>(ErrorCode::usage);
   }
   if (inputs.scene.empty() || inputs.script.empty()) {
-    throw Error(ErrorCode::usage, std::string(inputs.scene.empty() ? "--scene" : "--script") + " FILE is missing; see pirsim --help");
+    throw Error(ErrorCode::usage,
+                std::string(inputs.scene.empty() ? "--scene" : "--script") + " FILE is missing; see pirsim --help");
   }
   if (*check_command) {
     check(inputs);

@@ -16,7 +16,7 @@ enum class Verbosity { quiet, normal, verbose };
 struct Inputs {
   std::filesystem::path scene;
   std::filesystem::path script;
-  std::vector<std::string> overrides;               ///< "sensing.rays_per_zone=9"
+  std::vector<std::string> overrides;  ///< "sensing.rays_per_zone=9"
   std::vector<std::filesystem::path> sensor_directories;
   std::string tracer = "auto";
   Verbosity verbosity = Verbosity::normal;
@@ -26,17 +26,17 @@ struct RunOptions {
   std::filesystem::path output;   ///< empty: standard output
   std::filesystem::path summary;  ///< .csv or .md
   std::filesystem::path zones;
-  std::filesystem::path report;   ///< .html
+  std::filesystem::path report;  ///< .html
   unsigned threads = 0;
   enum class Action { run, print_config } action = Action::run;
 };
 
 struct PreviewOptions {
   std::filesystem::path output = "preview.png";
-  std::string trial;              ///< empty: the first
+  std::string trial;  ///< empty: the first
   int replicate = 1;
-  std::optional<double> time_s;   ///< empty: when the first person has been at work for a while
-  std::vector<std::string> beams; ///< sensors whose beams are drawn; "all", "none"
+  std::optional<double> time_s;    ///< empty: when the first person has been at work for a while
+  std::vector<std::string> beams;  ///< sensors whose beams are drawn; "all", "none"
   std::optional<std::array<double, 3>> camera, look_at;
   double field_of_view_deg = 45.0;
   int width = 1280, height = 720;

@@ -49,13 +49,17 @@ rt::Colour colour_of(body::Part part) {
   switch (part) {
     case body::Part::head:
     case body::Part::left_forearm:
-    case body::Part::right_forearm: return {0.78F, 0.50F, 0.36F};
+    case body::Part::right_forearm:
+      return {0.78F, 0.50F, 0.36F};
     case body::Part::torso:
     case body::Part::left_upper_arm:
-    case body::Part::right_upper_arm: return {0.10F, 0.28F, 0.52F};
+    case body::Part::right_upper_arm:
+      return {0.10F, 0.28F, 0.52F};
     case body::Part::left_foot:
-    case body::Part::right_foot: return {0.05F, 0.05F, 0.06F};
-    default: return {0.14F, 0.15F, 0.20F};
+    case body::Part::right_foot:
+      return {0.05F, 0.05F, 0.06F};
+    default:
+      return {0.14F, 0.15F, 0.20F};
   }
 }
 
@@ -85,7 +89,8 @@ void require_usable(const rt::Camera& camera) {
 
 bool reached_default_time(const State& state, std::int64_t& work_began, const Model& model) {
   constexpr double into_work_s = 10.0;
-  if (work_began < 0 && !state.actors().empty() && state.actors().front().phase() == "working") work_began = state.tick();
+  if (work_began < 0 && !state.actors().empty() && state.actors().front().phase() == "working")
+    work_began = state.tick();
   return work_began >= 0 && static_cast<double>(state.tick() - work_began) * model.tick_s() >= into_work_s;
 }
 
@@ -119,7 +124,8 @@ void preview(const Inputs& inputs, const PreviewOptions& options) {
   for (const Actor& actor : state.actors()) {
     std::vector<PosedShape> shapes;
     append_solids(actor, shapes);
-    for (std::size_t i = 0; i < shapes.size(); ++i) solids.push_back({shapes[i], colour_of(static_cast<body::Part>(i))});
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      solids.push_back({shapes[i], colour_of(static_cast<body::Part>(i))});
   }
   std::vector<std::string> names = options.beams;
   if (names.empty() && !model.scene().sensors.empty()) names.push_back(model.scene().sensors.front().id);

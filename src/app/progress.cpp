@@ -11,7 +11,9 @@ namespace pirsim::app {
 Progress::Progress(std::uint32_t total, Verbosity verbosity, std::string unit)
     : unit_(std::move(unit)),
       total_(total),
-      style_(verbosity == Verbosity::quiet ? Style::silent : isatty(STDERR_FILENO) != 0 ? Style::terminal : Style::heartbeat) {}
+      style_(verbosity == Verbosity::quiet ? Style::silent
+             : isatty(STDERR_FILENO) != 0  ? Style::terminal
+                                           : Style::heartbeat) {}
 
 Progress::~Progress() {
   if (style_ == Style::terminal) std::cerr << "\r\033[K" << std::flush;

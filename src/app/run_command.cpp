@@ -50,7 +50,8 @@ std::vector<std::size_t> first_zones(const Model& model) {
   return begins;
 }
 
-void write_summary(const studies::Summary& summary, io::AtomicFile& file, const RunOptions& options, Verbosity verbosity) {
+void write_summary(const studies::Summary& summary, io::AtomicFile& file, const RunOptions& options,
+                   Verbosity verbosity) {
   file.stream() << (options.summary.extension() == ".md" ? studies::to_markdown(summary) : studies::to_csv(summary));
   file.commit();
   if (verbosity != Verbosity::quiet) std::cerr << studies::to_text(summary);

@@ -79,7 +79,8 @@ std::vector<std::size_t> find_sensors(const Model& model, const std::vector<std:
       indices.push_back(i);
       found = true;
     }
-    if (!found) throw Error(ErrorCode::usage, "--beams: sensor '" + name + "' is not in the scene" + did_you_mean(name, known));
+    if (!found)
+      throw Error(ErrorCode::usage, "--beams: sensor '" + name + "' is not in the scene" + did_you_mean(name, known));
   }
   return indices;
 }

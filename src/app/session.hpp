@@ -4,9 +4,9 @@
 #include <string>
 
 #include "app/options.hpp"
-#include "pirsim/io/scene_reader.hpp"
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/report.hpp"
+#include "pirsim/io/scene_reader.hpp"
 #include "pirsim/sim/model.hpp"
 
 namespace pirsim::app {

@@ -75,7 +75,8 @@ Capsule limb(double mass_kg, double length_m) {
 Solids with_meshes(Solids solids, const BodyMeshes& meshes) {
   for (const auto& [name, mesh] : meshes) {
     const auto part = std::find(body_part_names.begin(), body_part_names.end(), name);
-    if (part == body_part_names.end()) throw Error(ErrorCode::usage, "a mesh for '" + name + "', which is no body part");
+    if (part == body_part_names.end())
+      throw Error(ErrorCode::usage, "a mesh for '" + name + "', which is no body part");
     solids[static_cast<std::size_t>(part - body_part_names.begin())] = mesh;
   }
   return solids;

@@ -30,7 +30,8 @@ void ordered_parallel(std::size_t count, unsigned threads,
         tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, take) &
             tbb::make_filter<std::size_t, std::shared_ptr<void>>(tbb::filter_mode::parallel, produce) &
             tbb::make_filter<std::shared_ptr<void>, void>(
-                tbb::filter_mode::serial_in_order, [&](const std::shared_ptr<void>& result) { consume(result.get()); }));
+                tbb::filter_mode::serial_in_order,
+                [&](const std::shared_ptr<void>& result) { consume(result.get()); }));
   });
 }
 

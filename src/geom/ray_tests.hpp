@@ -147,10 +147,10 @@ Interval<F> capsule(const Vector<F>& origin, const Vector<F>& direction, const C
   const Approach<F> near = approach(origin, direction, bone.centre);
   const Interval<F> ends = united(inside_sphere(near.offset - bone.half_axis, direction, radius),
                                   inside_sphere(near.offset + bone.half_axis, direction, radius));
-  const Interval<F> bar = only_if(
-      bone.half_length > F(0),
-      intersection(inside_bar(near.offset, direction, bone.axis, radius),
-                   inside_slab(dot(near.offset, bone.axis), dot(direction, bone.axis), bone.half_length)));
+  const Interval<F> bar =
+      only_if(bone.half_length > F(0),
+              intersection(inside_bar(near.offset, direction, bone.axis, radius),
+                           inside_slab(dot(near.offset, bone.axis), dot(direction, bone.axis), bone.half_length)));
   return shifted(united(ends, bar), near.distance);
 }
 

@@ -124,7 +124,7 @@ int GltfBuilder::add_node(tinygltf::Node node, int parent) {
 }
 
 void GltfBuilder::animate(int node, const std::string& path, int key_times, int track,
-                           const std::string& interpolation) {
+                          const std::string& interpolation) {
   if (model_.animations.empty()) model_.animations.emplace_back().name = model_.scenes.front().name;
   tinygltf::Animation& animation = model_.animations.front();
   tinygltf::AnimationSampler& sampler = animation.samplers.emplace_back();

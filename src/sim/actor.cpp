@@ -13,23 +13,23 @@ namespace {
 
 using body::Stage;
 
-constexpr double look_ahead_m = 1.2;        ///< assumed: how far ahead a walker minds others (tried 0.8-2)
-constexpr double foresight_s = 1.5;         ///< assumed: how long before ways cross one gives way (tried 1-2)
-constexpr double gap_m = 0.1;               ///< assumed: kept between two people beside their radii
-constexpr double doorway_m = 2.5;           ///< assumed: who comes in is through the door at that distance (tried 2-3)
-constexpr double braking_m_s2 = 1.5;        ///< assumed, as Motion's acceleration
-constexpr double patience_s = 0.5;          ///< assumed: wait before looking for another way
-constexpr double patience_step_s = 0.7;     ///< more for every later person, so that two don't dodge alike
-constexpr double search_every_s = 0.2;      ///< how often one who found no way looks again
-constexpr double give_up_s = 60.0;          ///< then people block each other for good
+constexpr double look_ahead_m = 1.2;     ///< assumed: how far ahead a walker minds others (tried 0.8-2)
+constexpr double foresight_s = 1.5;      ///< assumed: how long before ways cross one gives way (tried 1-2)
+constexpr double gap_m = 0.1;            ///< assumed: kept between two people beside their radii
+constexpr double doorway_m = 2.5;        ///< assumed: who comes in is through the door at that distance (tried 2-3)
+constexpr double braking_m_s2 = 1.5;     ///< assumed, as Motion's acceleration
+constexpr double patience_s = 0.5;       ///< assumed: wait before looking for another way
+constexpr double patience_step_s = 0.7;  ///< more for every later person, so that two don't dodge alike
+constexpr double search_every_s = 0.2;   ///< how often one who found no way looks again
+constexpr double give_up_s = 60.0;       ///< then people block each other for good
 
 std::int64_t ticks(double seconds, const Model& model) {
   return std::llround(seconds * model.script().sensing.tick_rate_hz);
 }
 
 bool leads_elsewhere(const ScriptedAction& action) {
-  return !action.at_s && (std::holds_alternative<action::Sit>(action.what) ||
-                          std::holds_alternative<action::Walk>(action.what));
+  return !action.at_s &&
+         (std::holds_alternative<action::Sit>(action.what) || std::holds_alternative<action::Walk>(action.what));
 }
 
 }  // namespace
@@ -101,8 +101,10 @@ std::optional<std::size_t> Actor::interrupting_action(const Model& model, std::i
 }
 
 bool Actor::time_is_up(const Model& model, std::int64_t now) const {
-  if (const auto* wait = std::get_if<action::Wait>(&action().what)) return now - began_ >= ticks(wait->duration_s, model);
-  if (const auto* work = std::get_if<action::Work>(&action().what)) return now - began_ >= ticks(work->duration_s, model);
+  if (const auto* wait = std::get_if<action::Wait>(&action().what))
+    return now - began_ >= ticks(wait->duration_s, model);
+  if (const auto* work = std::get_if<action::Work>(&action().what))
+    return now - began_ >= ticks(work->duration_s, model);
   return true;
 }
 
@@ -110,7 +112,9 @@ void Actor::plan(const Model& model) {
   const auto entrance = [&](const std::string& id) -> const EntranceSpec& {
     return *std::ranges::find(model.scene().entrances, id, &EntranceSpec::id);
   };
-  const auto outside = [](const EntranceSpec& e) { return floor_point(e.world_from_entrance * Vec3(0, 0, e.outside_m)); };
+  const auto outside = [](const EntranceSpec& e) {
+    return floor_point(e.world_from_entrance * Vec3(0, 0, e.outside_m));
+  };
   const auto& actions = person().spec.actions;
   const bool arrives = std::holds_alternative<action::Appear>(action().what) ||
                        std::holds_alternative<action::Enter>(action().what) ||
@@ -120,7 +124,8 @@ void Actor::plan(const Model& model) {
     errands_.push_back(ComeIn{appear->point, radians(appear->heading_deg)});
   } else if (const auto* enter = std::get_if<action::Enter>(&action().what)) {
     const EntranceSpec& door = entrance(enter->entrance);
-    const auto* sit_next = action_ + 1 < actions.size() ? std::get_if<action::Sit>(&actions[action_ + 1].what) : nullptr;
+    const auto* sit_next =
+        action_ + 1 < actions.size() ? std::get_if<action::Sit>(&actions[action_ + 1].what) : nullptr;
     if (sit_next != nullptr) errands_.push_back(WaitForSeat{sit_next->seat});  // better outside than in the doorway
     errands_.push_back(WaitForDoor{outside(door), Through::in});
     errands_.push_back(ComeIn{outside(door), heading_of(door.world_from_entrance)});
@@ -223,7 +228,8 @@ Actor::Progress Actor::carry_out(const Errand& errand, const Model& model, std::
   if (const auto* out = std::get_if<WalkOut>(&errand)) {
     if (route_) return walk_to(route_->position(route_->length_m()), model, others);  // decided when setting out
     const bool occupied = std::ranges::any_of(others, [&](const Presence& other) {
-      return glm::distance(other.position, out->outside) < other.radius_m + person().humanoid.clearance_radius_m() + gap_m;
+      return glm::distance(other.position, out->outside) <
+             other.radius_m + person().humanoid.clearance_radius_m() + gap_m;
     });
     return walk_to(occupied ? out->behind_door : out->outside, model, others);
   }

@@ -10,8 +10,8 @@ std::vector<BeamSegment> beams_of(const Model& model, const State& state, std::s
   std::vector<PosedShape> solids;
   for (const Actor& actor : state.actors()) append_solids(actor, solids);
   std::vector<BeamSegment> beams;
-  for (auto i = first_ray(bundle.sensor_clusters_begin[sensor]); i < first_ray(bundle.sensor_clusters_begin[sensor + 1]);
-       ++i) {
+  for (auto i = first_ray(bundle.sensor_clusters_begin[sensor]);
+       i < first_ray(bundle.sensor_clusters_begin[sensor + 1]); ++i) {
     const Ray& ray = bundle.rays[i];
     float reach = bundle.range[i];
     bool sees_person = false;

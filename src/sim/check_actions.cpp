@@ -41,8 +41,14 @@ class Check {
     arrive();
     check_name(scene_.entrances, enter.entrance, "entrance", scene_, where_->where, diagnostics_);
   }
-  void operator()(const action::Walk&) { need_presence(); seated_ = false; }
-  void operator()(const action::Turn&) { need_presence(); seated_ = false; }
+  void operator()(const action::Walk&) {
+    need_presence();
+    seated_ = false;
+  }
+  void operator()(const action::Turn&) {
+    need_presence();
+    seated_ = false;
+  }
   void operator()(const action::Rise&) {
     need_presence();
     if (present_ && !seated_) fault(*where_, "rises without having sat down");

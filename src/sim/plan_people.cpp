@@ -13,7 +13,7 @@ namespace {
 
 /// Height of the table top in front of a seat, or none: what lies under a point half an arm's length ahead.
 std::optional<double> table_height(const SeatSpec& seat, double floor_y, const rt::Room& room) {
-  constexpr double ahead_m = 0.45;                     // assumed: between the elbows and the hands (tried 0.3-0.6)
+  constexpr double ahead_m = 0.45;  // assumed: between the elbows and the hands (tried 0.3-0.6)
   constexpr double from_m = 1.3, lowest_m = 0.5, highest_m = 1.1;  // what counts as a table, above the floor
   const Vec3 above = seat.world_from_seat * Vec3(0, 0, -ahead_m);
   const Ray down{Vec3f(static_cast<float>(above.x), static_cast<float>(floor_y + from_m), static_cast<float>(above.z)),
@@ -37,7 +37,8 @@ class Rehearsal {
       const ScriptedAction& action = person_.spec.actions[i];
       if (const auto* appear = std::get_if<action::Appear>(&action.what)) at_ = appear->point;
       if (const auto* enter = std::get_if<action::Enter>(&action.what)) at_ = outside(enter->entrance);
-      if (const auto* sit = std::get_if<action::Sit>(&action.what)) person_.seats[i] = sit_down(sit->seat, action.where);
+      if (const auto* sit = std::get_if<action::Sit>(&action.what))
+        person_.seats[i] = sit_down(sit->seat, action.where);
       if (const auto* leave = std::get_if<action::Leave>(&action.what)) {
         go_to(outside(leave->entrance), "entrance '" + leave->entrance + "'", action.where);
       }
@@ -86,7 +87,8 @@ class Rehearsal {
       return plan;
     }
     diagnostics_.error(where, "seat '" + id + "' of " + scene_.name + " can't be reached by '" + person_.spec.id +
-                                  "': no place to stand and sit down from, within a metre of it, has a way from " + text(at_));
+                                  "': no place to stand and sit down from, within a metre of it, has a way from " +
+                                  text(at_));
     return plan;
   }
 

@@ -10,6 +10,7 @@ namespace pirsim::sim {
 
 /// Throws Error(input) with every unknown name and impossible order at once, then Error(infeasible) for the first
 /// places that can't be reached.
-[[nodiscard]] std::vector<TrialModel> plan_people(const SceneSpec& scene, const ScriptSpec& script, const rt::Room& room);
+[[nodiscard]] std::vector<TrialModel> plan_people(const SceneSpec& scene, const ScriptSpec& script,
+                                                  const rt::Room& room);
 
 }  // namespace pirsim::sim

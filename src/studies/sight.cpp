@@ -37,7 +37,8 @@ class Onlooker {
 body::Posture seated_posture(const Model& model, const body::Humanoid& humanoid, const SeatSpec& seat) {
   const body::SeatPlace place{seat.world_from_seat, model.scene().floor.height_m(), std::nullopt};
   const double heading = heading_of(seat.world_from_seat);
-  const Vec2 stand = floor_point(seat.world_from_seat.origin) + body::fall_back_m(humanoid, place) * direction_of(heading);
+  const Vec2 stand =
+      floor_point(seat.world_from_seat.origin) + body::fall_back_m(humanoid, place) * direction_of(heading);
   body::Motion motion(humanoid, stand, heading, place.floor_height_m, model.tick_s());
   motion.sit_down(place);
   while (!(motion.stage() == body::Stage::seated && motion.settled())) motion.advance();
@@ -98,7 +99,8 @@ std::vector<Issue> warnings(const SightReport& report, const std::string& scene)
   std::vector<Issue> issues;
   for (const SensorSight& sight : report.sensors) {
     if (!sight.sees_nothing()) continue;
-    issues.push_back({Severity::warning, {scene, 0, 0},
+    issues.push_back({Severity::warning,
+                      {scene, 0, 0},
                       "sensor '" + sight.sensor + "' can see NOBODY: no zone reaches a standing or seated person " +
                           "anywhere on the floor area (does it look at a wall, along -Z of its node?)"});
   }

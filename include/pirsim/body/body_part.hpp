@@ -12,14 +12,19 @@
 namespace pirsim::body {
 
 enum class Part : std::size_t {
-  pelvis,     ///< capsule, lying from hip to hip
-  torso,      ///< box: abdomen and thorax
-  head,       ///< sphere
-  left_upper_arm, right_upper_arm,  ///< capsules
-  left_forearm, right_forearm,      ///< capsules: forearm and loosely closed hand
-  left_thigh, right_thigh,          ///< capsules
-  left_shank, right_shank,          ///< capsules
-  left_foot, right_foot,            ///< boxes
+  pelvis,  ///< capsule, lying from hip to hip
+  torso,   ///< box: abdomen and thorax
+  head,    ///< sphere
+  left_upper_arm,
+  right_upper_arm,  ///< capsules
+  left_forearm,
+  right_forearm,  ///< capsules: forearm and loosely closed hand
+  left_thigh,
+  right_thigh,  ///< capsules
+  left_shank,
+  right_shank,  ///< capsules
+  left_foot,
+  right_foot,  ///< boxes
 };
 inline constexpr std::size_t n_parts = 13;
 /// "left_upper_arm" and so on, as glTF node names and messages use it.

@@ -28,11 +28,11 @@ struct Outline {
   Feet feet{};
   double floor_height_m = 0.0;
   double spine_tilt = 0.0;
-  double fall = 0.0;             ///< 0 standing, 1 at the seat's height
-  double reach = 0.0;            ///< of the arms: 0 on the thighs, 1 on the table
-  double thigh_angle = 0.0;      ///< when seated; 0 while fall is 0
-  double table_height_m = 0.0;   ///< what the forearms rest on; 0 while reach is 0, as the next
-  double hand_offset_m = 0.0;    ///< of the left hand ahead of its base place
+  double fall = 0.0;            ///< 0 standing, 1 at the seat's height
+  double reach = 0.0;           ///< of the arms: 0 on the thighs, 1 on the table
+  double thigh_angle = 0.0;     ///< when seated; 0 while fall is 0
+  double table_height_m = 0.0;  ///< what the forearms rest on; 0 while reach is 0, as the next
+  double hand_offset_m = 0.0;   ///< of the left hand ahead of its base place
   bool operator==(const Outline&) const = default;
 };
 [[nodiscard]] Posture posture_of(const Humanoid& humanoid, const Outline& outline) noexcept;

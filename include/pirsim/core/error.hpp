@@ -10,11 +10,11 @@ namespace pirsim {
 
 /// What went wrong, as the process exit code that the command line returns for it (docs/formats/exit_codes.md).
 enum class ErrorCode : int {
-  usage = 2,     ///< the command line or an argument of a library call is wrong
-  input = 3,     ///< a file was read but its content is refused
-  io = 4,        ///< a file can't be read or written
-  infeasible = 5,///< the inputs are valid but the run they ask for can't be done (a seat that can't be reached)
-  internal = 70, ///< a fault of pirsim itself
+  usage = 2,       ///< the command line or an argument of a library call is wrong
+  input = 3,       ///< a file was read but its content is refused
+  io = 4,          ///< a file can't be read or written
+  infeasible = 5,  ///< the inputs are valid but the run they ask for can't be done (a seat that can't be reached)
+  internal = 70,   ///< a fault of pirsim itself
 };
 
 /// A place in an input file; line and column count from 1, 0 means unknown.

@@ -10,15 +10,15 @@ namespace pirsim {
 
 /// What a stream is used for. Append only: a value is part of every published result.
 enum class Purpose : std::uint32_t {
-  spine_tilt = 1,    ///< which tilt a sitter takes at each redraw
-  seat_scatter = 2,  ///< where exactly, and how turned, a sitter sits down in this run
-  test = 0xFFFF0000, ///< reserved for tests
+  spine_tilt = 1,     ///< which tilt a sitter takes at each redraw
+  seat_scatter = 2,   ///< where exactly, and how turned, a sitter sits down in this run
+  test = 0xFFFF0000,  ///< reserved for tests
 };
 
 struct StreamKey {
-  std::uint64_t seed = 0;   ///< of the whole study
-  std::uint32_t run = 0;    ///< index of the run in the study
-  std::uint32_t entity = 0; ///< index of the person or sensor that draws
+  std::uint64_t seed = 0;    ///< of the whole study
+  std::uint32_t run = 0;     ///< index of the run in the study
+  std::uint32_t entity = 0;  ///< index of the person or sensor that draws
   Purpose purpose = Purpose::test;
   bool operator==(const StreamKey&) const = default;
 };
@@ -39,8 +39,8 @@ class Stream {
 
  private:
   StreamKey key_;
-  std::uint32_t block_ = 0;             ///< index of the next Philox block of four words
-  std::uint32_t used_ = 4;              ///< words of the current block already given out
+  std::uint32_t block_ = 0;  ///< index of the next Philox block of four words
+  std::uint32_t used_ = 4;   ///< words of the current block already given out
   std::array<std::uint32_t, 4> words_{};
 };
 

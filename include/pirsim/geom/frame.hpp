@@ -36,7 +36,9 @@ struct Frame {
 
 /// Heading: radians about +Y, 0 facing -Z, positive turning left (counter-clockwise seen from above).
 [[nodiscard]] inline Quat rotation_from_heading(double heading) { return glm::angleAxis(heading, Vec3(0, 1, 0)); }
-[[nodiscard]] inline double heading_of(const Vec2& direction_xz) { return std::atan2(-direction_xz.x, -direction_xz.y); }
+[[nodiscard]] inline double heading_of(const Vec2& direction_xz) {
+  return std::atan2(-direction_xz.x, -direction_xz.y);
+}
 [[nodiscard]] inline double heading_of(const Frame& frame) {
   const Vec3 forward = frame.forward();
   return heading_of(Vec2(forward.x, forward.z));

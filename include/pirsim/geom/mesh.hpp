@@ -20,11 +20,11 @@ struct TriMesh {
 
 /// What clean-up found in a mesh.
 struct MeshAudit {
-  std::size_t welded_vertices = 0;       ///< vertices merged into an equal one
-  std::size_t degenerate_triangles = 0;  ///< triangles of no area, dropped
-  std::size_t duplicate_triangles = 0;   ///< same three vertices again, dropped
-  std::size_t non_manifold_triangles = 0;///< triangles that OpenMesh can't attach as a manifold; kept as occluders
-  std::size_t boundary_edges = 0;        ///< 0 for a closed surface
+  std::size_t welded_vertices = 0;         ///< vertices merged into an equal one
+  std::size_t degenerate_triangles = 0;    ///< triangles of no area, dropped
+  std::size_t duplicate_triangles = 0;     ///< same three vertices again, dropped
+  std::size_t non_manifold_triangles = 0;  ///< triangles that OpenMesh can't attach as a manifold; kept as occluders
+  std::size_t boundary_edges = 0;          ///< 0 for a closed surface
 };
 
 struct CleanMesh {

@@ -12,8 +12,8 @@ namespace pirsim {
 /// `zone_rays_begin` has n_zones + 1 entries: zone z owns rays [zone_rays_begin[z], zone_rays_begin[z + 1]);
 /// likewise `cluster_zones_begin` (n_clusters + 1) and `sensor_clusters_begin` (n_sensors + 1).
 struct RayBundle {
-  std::vector<Ray> rays;             ///< (n_rays) world frame
-  std::vector<float> range;          ///< (n_rays) metres; rated range, or less where the room cuts the ray
+  std::vector<Ray> rays;     ///< (n_rays) world frame
+  std::vector<float> range;  ///< (n_rays) metres; rated range, or less where the room cuts the ray
   std::vector<std::uint32_t> zone_rays_begin{0};
   std::vector<std::uint32_t> cluster_zones_begin{0};
   std::vector<std::uint32_t> sensor_clusters_begin{0};

@@ -10,6 +10,7 @@
 namespace pirsim::io {
 
 /// Reads and validates; overrides as in read_script(). Throws Error (io, input, usage).
-[[nodiscard]] CoverageSpec read_coverage(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+[[nodiscard]] CoverageSpec read_coverage(const std::filesystem::path& file,
+                                         std::span<const std::string> overrides = {});
 
 }  // namespace pirsim::io

@@ -8,10 +8,10 @@
 namespace pirsim::io {
 
 struct Manifest {
-  std::string program;          ///< version, revision, compiler
-  std::string embree;           ///< version and instruction set
+  std::string program;  ///< version, revision, compiler
+  std::string embree;   ///< version and instruction set
   std::string tracer;
-  std::string scene;            ///< file names as given
+  std::string scene;  ///< file names as given
   std::string script;
   std::string resolved_script;  ///< YAML, after overrides
   std::uint64_t seed = 0;

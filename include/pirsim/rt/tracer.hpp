@@ -22,7 +22,8 @@ enum class TracerKind {
 class Tracer {
  public:
   virtual ~Tracer() = default;
-  /// solids: everything of every person that is in the scene now (surfaces of meshes outlive the tracer); zones: (n_zones) overwritten.
+  /// solids: everything of every person that is in the scene now (surfaces of meshes outlive the tracer); zones:
+  /// (n_zones) overwritten.
   virtual void trace(std::span<const PosedShape> solids, std::span<std::uint8_t> zones) = 0;
   /// Adds the zones that see one person of several to `zones`; what is kept from tick to tick is kept by `person`.
   virtual void add(std::size_t person, std::span<const PosedShape> solids, ZoneSet& zones);

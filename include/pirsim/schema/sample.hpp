@@ -10,7 +10,7 @@ namespace pirsim {
 /// The reading at the end of one window: bits cover the ticks (time_s - window, time_s], everything else is the
 /// state at time_s.
 struct Sample {
-  int replicate = 0;               ///< counts from 1
+  int replicate = 0;  ///< counts from 1
   std::string trial;
   double time_s = 0.0;
   std::string phase;

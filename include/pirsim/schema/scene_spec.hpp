@@ -36,14 +36,14 @@ struct EntranceSpec {
 };
 
 struct SceneSpec {
-  std::string name;                ///< file name, for messages
-  std::vector<TriMesh> meshes;     ///< everything that occludes, world frame, cleaned
-  std::vector<SensorSpec> sensors; ///< in file order: the order of the output columns
+  std::string name;                 ///< file name, for messages
+  std::vector<TriMesh> meshes;      ///< everything that occludes, world frame, cleaned
+  std::vector<SensorSpec> sensors;  ///< in file order: the order of the output columns
   std::vector<SeatSpec> seats;
   std::vector<EntranceSpec> entrances;
   FloorArea floor;
   std::map<std::string, SensorModelSpec> sensor_models;  ///< every model that a sensor names
-  std::vector<Issue> warnings;     ///< what the reader noticed and repaired or ignored
+  std::vector<Issue> warnings;                           ///< what the reader noticed and repaired or ignored
 };
 
 }  // namespace pirsim

@@ -14,7 +14,7 @@
 
 namespace pirsim {
 
-enum class ChangePer { cluster, beam };       ///< whose change of activity is motion
+enum class ChangePer { cluster, beam };  ///< whose change of activity is motion
 enum class RaysPerZone { one = 1, five = 5, nine = 9, sixteen = 16 };
 
 struct SensingSpec {
@@ -38,22 +38,30 @@ struct SeatScatterSpec {
 
 // Actions, carried out one after the other. Names are resolved against the scene when a Model is compiled.
 namespace action {
-struct Wait { double duration_s = 0.0; };
+struct Wait {
+  double duration_s = 0.0;
+};
 /// Stands on the floor from now on, without having entered.
 struct Appear {
   Vec2 point{0.0};
   double heading_deg = 0.0;  ///< 0 facing -Z, positive turning left
 };
 /// Appears outside the entrance and walks to just inside it, or straight on if the next action leads elsewhere.
-struct Enter { std::string entrance; };
+struct Enter {
+  std::string entrance;
+};
 /// Walks to each of the given floor points in turn.
-struct Walk { std::vector<Vec2> points; };
+struct Walk {
+  std::vector<Vec2> points;
+};
 /// Walks to the seat, turns and sits down.
-struct Sit { std::string seat; };
+struct Sit {
+  std::string seat;
+};
 /// Desk work while seated: both forearms slide on the table in opposite phase, the spine changes its tilt.
 struct Work {
   double duration_s = 180.0;
-  double arm_amplitude_m = 0.1;   ///< paper: 0.1 sin(2 pi t / 3)
+  double arm_amplitude_m = 0.1;  ///< paper: 0.1 sin(2 pi t / 3)
   double arm_period_s = 3.0;
   std::vector<double> tilt_choices_deg{-15.0, 0.0, 15.0};  ///< positive forward
   double tilt_every_s = 30.0;
@@ -61,13 +69,17 @@ struct Work {
 /// Rises from the seat and stays standing behind it.
 struct Rise {};
 /// Walks out through the entrance (rising first if seated) and disappears.
-struct Leave { std::string entrance; };
+struct Leave {
+  std::string entrance;
+};
 /// Stands on the spot and turns to face a heading.
-struct Turn { double heading_deg = 0.0; };
+struct Turn {
+  double heading_deg = 0.0;
+};
 }  // namespace action
 
-using Action = std::variant<action::Wait, action::Appear, action::Enter, action::Walk, action::Sit, action::Work, action::Rise,
-                            action::Leave, action::Turn>;
+using Action = std::variant<action::Wait, action::Appear, action::Enter, action::Walk, action::Sit, action::Work,
+                            action::Rise, action::Leave, action::Turn>;
 
 struct ScriptedAction {
   Action what;
@@ -93,8 +105,8 @@ struct PersonSpec {
 
 /// One choreography; a study runs every trial once per replicate.
 struct TrialSpec {
-  std::string id;                   ///< as the output names it, "S1"
-  std::vector<PersonSpec> people;   ///< the first one's actions name the rows' phase
+  std::string id;                  ///< as the output names it, "S1"
+  std::vector<PersonSpec> people;  ///< the first one's actions name the rows' phase
 };
 
 struct ScriptSpec {
@@ -105,7 +117,7 @@ struct ScriptSpec {
   SummarySpec summary;
   std::vector<TrialSpec> trials;
   std::vector<Issue> warnings;
-  std::string directory;            ///< of the script file, for relative references
+  std::string directory;  ///< of the script file, for relative references
 };
 
 }  // namespace pirsim

@@ -19,16 +19,16 @@ struct ZoneSpec {
 
 /// The zones of one facet: what the paper calls a cluster of beams.
 struct ClusterSpec {
-  Vec2 centre{0.0};     ///< on the plane, metres
-  double range_m = 0.0; ///< rated detection distance of the facet's lens step
-  int lens_step = 0;    ///< 1 for the farthest-reaching row
+  Vec2 centre{0.0};      ///< on the plane, metres
+  double range_m = 0.0;  ///< rated detection distance of the facet's lens step
+  int lens_step = 0;     ///< 1 for the farthest-reaching row
   std::vector<ZoneSpec> zones;
 };
 
 struct SensorModelSpec {
-  std::string id;          ///< as scenes name it, "EKMC1604111"
+  std::string id;  ///< as scenes name it, "EKMC1604111"
   std::string description;
-  double plane_m = 1.0;    ///< distance of the plane on which the zones are drawn
+  double plane_m = 1.0;  ///< distance of the plane on which the zones are drawn
   std::vector<ClusterSpec> clusters;
 };
 

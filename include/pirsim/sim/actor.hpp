@@ -46,18 +46,38 @@ class Actor {
 
  private:
   // Steps that an action is made of; each begins when the body has settled.
-  struct ComeIn { Vec2 point; double heading; };  ///< appears once nobody stands there
+  struct ComeIn {
+    Vec2 point;
+    double heading;
+  };  ///< appears once nobody stands there
   enum class Through { in, out };
-  struct WaitForDoor { Vec2 outside; Through way; };  ///< until nobody goes the other way through it
-  struct WaitForSeat { std::string_view seat; };      ///< until nobody else has taken it
-  struct TakeSeat { std::string_view seat; };
-  struct WalkTo { Vec2 target; };
-  struct FaceTo { double heading; };
-  struct SitOn { body::SeatPlace place; };
+  struct WaitForDoor {
+    Vec2 outside;
+    Through way;
+  };  ///< until nobody goes the other way through it
+  struct WaitForSeat {
+    std::string_view seat;
+  };  ///< until nobody else has taken it
+  struct TakeSeat {
+    std::string_view seat;
+  };
+  struct WalkTo {
+    Vec2 target;
+  };
+  struct FaceTo {
+    double heading;
+  };
+  struct SitOn {
+    body::SeatPlace place;
+  };
   struct StandUp {};
-  struct WalkOut { Vec2 outside; Vec2 behind_door; };  ///< to the first, or to the second if somebody stands there
+  struct WalkOut {
+    Vec2 outside;
+    Vec2 behind_door;
+  };  ///< to the first, or to the second if somebody stands there
   struct Vanish {};
-  using Errand = std::variant<ComeIn, WaitForDoor, WaitForSeat, TakeSeat, WalkTo, FaceTo, SitOn, StandUp, WalkOut, Vanish>;
+  using Errand =
+      std::variant<ComeIn, WaitForDoor, WaitForSeat, TakeSeat, WalkTo, FaceTo, SitOn, StandUp, WalkOut, Vanish>;
   enum class Progress { going_on, done };
 
   void plan(const Model& model);
@@ -83,7 +103,7 @@ class Actor {
   [[nodiscard]] const ScriptedAction& action() const { return person().spec.actions[action_]; }
 
   const PersonModel* person_ = nullptr;
-  std::uint32_t index_ = 0;           ///< of the person in the trial
+  std::uint32_t index_ = 0;  ///< of the person in the trial
   std::optional<body::Motion> motion_;
   std::size_t action_ = 0;            ///< index of the current action
   bool begun_ = false;                ///< the current action has begun
@@ -92,7 +112,7 @@ class Actor {
   std::optional<body::Route> route_;  ///< to walk once the body faces its start, or being walked
   std::string_view seat_;             ///< taken, or empty
   std::string_view phase_ = "outside";
-  int blocked_ticks_ = 0;             ///< for how long others have been in the way
+  int blocked_ticks_ = 0;  ///< for how long others have been in the way
   Stream tilt_stream_;
   Stream scatter_stream_;
 };

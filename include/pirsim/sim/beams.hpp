@@ -10,7 +10,7 @@ namespace pirsim::sim {
 
 struct BeamSegment {
   Vec3 from{0.0};
-  Vec3 to{0.0};              ///< where the ray ends: at a person, at the room, or at its rated range
+  Vec3 to{0.0};  ///< where the ray ends: at a person, at the room, or at its rated range
   bool sees_person = false;
 };
 

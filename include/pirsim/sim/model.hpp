@@ -25,7 +25,8 @@ class Lookout;
 /// A seat as one person uses it.
 struct SeatPlan {
   body::SeatPlace place;
-  double stand_back_m = 0.0;  ///< where to stand before sitting down: so far behind the pelvis point, along the seat's axis
+  double stand_back_m =
+      0.0;  ///< where to stand before sitting down: so far behind the pelvis point, along the seat's axis
 };
 
 /// One person of one trial.
@@ -59,7 +60,9 @@ class Model {
   /// Runs are numbered replicate by replicate, trials in order within each.
   [[nodiscard]] std::uint32_t n_runs() const noexcept;
   [[nodiscard]] const TrialModel& trial_of(std::uint32_t run) const noexcept { return trials_[run % trials_.size()]; }
-  [[nodiscard]] int replicate_of(std::uint32_t run) const noexcept { return static_cast<int>(run / trials_.size()) + 1; }
+  [[nodiscard]] int replicate_of(std::uint32_t run) const noexcept {
+    return static_cast<int>(run / trials_.size()) + 1;
+  }
 
   /// replicate, trial, time_s, phase, people, then one column a sensor.
   [[nodiscard]] std::vector<std::string> columns() const;

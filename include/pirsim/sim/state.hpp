@@ -49,7 +49,7 @@ class State {
   std::vector<std::optional<Presence>> presences_;  ///< of the actors as they are now; of those in the scene
   ZoneSet zones_;
   ZoneSet channels_, previous_channels_;  ///< of the Model's detector
-  std::vector<std::uint8_t> bits_;  ///< (n_sensors) motion so far in this window
+  std::vector<std::uint8_t> bits_;        ///< (n_sensors) motion so far in this window
   Sample sample_;
   std::vector<Presence> others_;           ///< scratch
   std::shared_ptr<sim::Lookout> lookout_;  ///< scratch; a copy of the State borrows its own

@@ -33,7 +33,8 @@ Encounter watch(const Model& model) {
     }
     result.most_people = std::max(result.most_people, places.size());
     for (std::size_t i = 0; i < places.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) result.nearest_m = std::min(result.nearest_m, glm::distance(places[i], places[j]));
+      for (std::size_t j = 0; j < i; ++j)
+        result.nearest_m = std::min(result.nearest_m, glm::distance(places[i], places[j]));
     }
   }
   return result;
@@ -44,9 +45,9 @@ Encounter watch(const Model& model) {
 TEST_CASE("two people who walk towards each other in an open hall pass without touching") {
   const SceneSpec scene = shipped_scene("open_hall.gltf");
   const Model model(compile(scene, script_of({
-      person("a", {act(action::Appear{{-5, -10}, 0}), act(action::Walk{{{5, -10}}})}),
-      person("b", {act(action::Appear{{5, -10}, 0}), act(action::Walk{{{-5, -10}}})}),
-  })));
+                                       person("a", {act(action::Appear{{-5, -10}, 0}), act(action::Walk{{{5, -10}}})}),
+                                       person("b", {act(action::Appear{{5, -10}, 0}), act(action::Walk{{{-5, -10}}})}),
+                                   })));
   const Encounter encounter = watch(model);
   CHECK(encounter.most_people == 2);
   // Trunks are at most half a body breadth wide each: 0.36 m between pelvises is shoulder past shoulder at an angle.
@@ -62,9 +63,9 @@ TEST_CASE("six people cross a hall on random ways: nobody is walked through and 
     std::vector<PersonSpec> people;
     for (int i = 0; i < 6; ++i) {
       // A start of one's own in a row; targets anywhere.
-      people.push_back(person("p" + std::to_string(i), {act(action::Appear{{-5.0 + 2.0 * i, -3.0}, 0}),
-                                                        act(action::Walk{{point(), point()}}),
-                                                        act(action::Walk{{{-5.0 + 2.0 * i, -20.0}}})}));
+      people.push_back(person("p" + std::to_string(i),
+                              {act(action::Appear{{-5.0 + 2.0 * i, -3.0}, 0}), act(action::Walk{{point(), point()}}),
+                               act(action::Walk{{{-5.0 + 2.0 * i, -20.0}}})}));
     }
     const Encounter encounter = watch(Model(compile(scene, script_of(people))));
     INFO("seed " << seed << ", nearest " << encounter.nearest_m);
@@ -76,9 +77,10 @@ TEST_CASE("six people cross a hall on random ways: nobody is walked through and 
 TEST_CASE("a meeting of five: all come in through one door, sit side by side, and leave, people are counted") {
   std::vector<PersonSpec> people;
   for (int i = 1; i <= 5; ++i) {
-    people.push_back(person("p" + std::to_string(i), {act(action::Wait{2.0 * i}), act(action::Enter{"door"}),
-                                                      act(action::Sit{"S" + std::to_string(i)}), act(action::Work{30.0}),
-                                                      act(action::Rise{}), act(action::Leave{"door"})}));
+    people.push_back(
+        person("p" + std::to_string(i),
+               {act(action::Wait{2.0 * i}), act(action::Enter{"door"}), act(action::Sit{"S" + std::to_string(i)}),
+                act(action::Work{30.0}), act(action::Rise{}), act(action::Leave{"door"})}));
   }
   const Model model(compile(shipped_scene("meeting_room.gltf"), script_of(people)));
   const Encounter encounter = watch(model);
@@ -153,8 +155,9 @@ TEST_CASE("at_s starts its action at its moment and skips what was to come befor
 }
 
 TEST_CASE("at work the forearms lie on the table") {
-  const Model model(compile(shipped_scene("meeting_room.gltf"),
-                            script_of({person("a", {act(action::Enter{"door"}), act(action::Sit{"S8"}), act(action::Work{20.0})})})));
+  const Model model(
+      compile(shipped_scene("meeting_room.gltf"),
+              script_of({person("a", {act(action::Enter{"door"}), act(action::Sit{"S8"}), act(action::Work{20.0})})})));
   State state(model, 0);
   double lowest = 1e9, highest = -1e9;
   while (!state.finished()) {
@@ -164,7 +167,8 @@ TEST_CASE("at work the forearms lie on the table") {
     const auto part = static_cast<std::size_t>(body::Part::left_forearm);
     const auto& forearm = std::get<Capsule>(actor.person().humanoid.solids()[part]);
     const Frame frame = actor.motion().posture()[part];
-    const double one_end = (frame * Vec3(0, forearm.half_length, 0)).y, other_end = (frame * Vec3(0, -forearm.half_length, 0)).y;
+    const double one_end = (frame * Vec3(0, forearm.half_length, 0)).y,
+                 other_end = (frame * Vec3(0, -forearm.half_length, 0)).y;
     lowest = std::min(lowest, std::min(one_end, other_end) - forearm.radius);    // no end in the table
     highest = std::max(highest, std::min(one_end, other_end) - forearm.radius);  // the hand on it
   }
@@ -178,9 +182,10 @@ TEST_CASE("ten people fill the meeting room and leave it when the meeting is ove
   for (int i = 1; i <= 10; ++i) {
     // Those who sit farthest from the door come first and leave last.
     const int seat = i <= 5 ? i + 5 : i - 5;
-    people.push_back(person("p" + std::to_string(i), {act(action::Wait{4.0 * i}), act(action::Enter{"door"}),
-                                                      act(action::Sit{"S" + std::to_string(seat)}),
-                                                      act_at(70.0 + 4.0 * (10 - i), action::Rise{}), act(action::Leave{"door"})}));
+    people.push_back(
+        person("p" + std::to_string(i),
+               {act(action::Wait{4.0 * i}), act(action::Enter{"door"}), act(action::Sit{"S" + std::to_string(seat)}),
+                act_at(70.0 + 4.0 * (10 - i), action::Rise{}), act(action::Leave{"door"})}));
   }
   const Encounter encounter = watch(Model(compile(shipped_scene("meeting_room.gltf"), script_of(people))));
   CHECK(encounter.most_people == 10);
@@ -202,8 +207,8 @@ TEST_CASE("the script can interrupt anything: a person called away in mid-walk, 
 
 TEST_CASE("people are counted from geometry: 0 outside the door, 1 inside, whatever the script is doing") {
   const Model model(compile(shipped_scene("meeting_room.gltf"),
-                            script_of({person("a", {act(action::Enter{"door"}), act(action::Sit{"S5"}), act(action::Rise{}),
-                                                    act(action::Leave{"door"})})})));
+                            script_of({person("a", {act(action::Enter{"door"}), act(action::Sit{"S5"}),
+                                                    act(action::Rise{}), act(action::Leave{"door"})})})));
   State state(model, 0);
   while (step(model, state)) {
     const Actor& actor = state.actors().front();

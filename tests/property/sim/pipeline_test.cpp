@@ -55,11 +55,13 @@ TEST_CASE("an empty room gives zeros, and so does a person behind every beam, in
 }
 
 TEST_CASE("an added occluder never adds an active zone, at no tick of a whole trial") {
-  ScriptSpec script = shipped_script("studyA.yaml", {"trials.for_each.seat=[S3]", "people.0.actions.3.work.duration_s=20"});
+  ScriptSpec script =
+      shipped_script("studyA.yaml", {"trials.for_each.seat=[S3]", "people.0.actions.3.work.duration_s=20"});
   const Model open(compile(shipped_scene("meeting_room.gltf"), script));
   SceneSpec with_screen = shipped_scene("meeting_room.gltf");
   // A hanging screen, above everybody's head, between the sensors and the table.
-  with_screen.meshes.push_back({"screen", {{1, 2.1, -0.5}, {6, 2.1, -0.5}, {6, 2.6, -0.5}, {1, 2.6, -0.5}}, {{0, 1, 2}, {0, 2, 3}}});
+  with_screen.meshes.push_back(
+      {"screen", {{1, 2.1, -0.5}, {6, 2.1, -0.5}, {6, 2.6, -0.5}, {1, 2.6, -0.5}}, {{0, 1, 2}, {0, 2, 3}}});
   const Model screened(compile(with_screen, script));
   const RunResult a = run_once(open, 0, Record::samples_and_zones);
   const RunResult b = run_once(screened, 0, Record::samples_and_zones);
@@ -76,7 +78,8 @@ TEST_CASE("an added occluder never adds an active zone, at no tick of a whole tr
 }
 
 TEST_CASE("moving and turning the whole scene changes no row") {
-  const ScriptSpec script = shipped_script("studyA.yaml", {"trials.for_each.seat=[S2, S7]", "people.0.actions.3.work.duration_s=60"});
+  const ScriptSpec script =
+      shipped_script("studyA.yaml", {"trials.for_each.seat=[S2, S7]", "people.0.actions.3.work.duration_s=60"});
   const SceneSpec scene = shipped_scene("meeting_room.gltf");
   const Model here(compile(scene, script));
   // A quarter turn and a shift by whole grid cells: way-finding sees the same grid.
@@ -92,7 +95,8 @@ TEST_CASE("moving and turning the whole scene changes no row") {
 }
 
 TEST_CASE("a copied state goes on like the original, and a used tracer changes nothing") {
-  const Model model(compile(shipped_scene("meeting_room.gltf"), shipped_script("studyA.yaml", {"people.0.actions.3.work.duration_s=10"})));
+  const Model model(compile(shipped_scene("meeting_room.gltf"),
+                            shipped_script("studyA.yaml", {"people.0.actions.3.work.duration_s=10"})));
   State original(model, 3);
   for (int i = 0; i < 15; ++i) step(model, original);
   State copy = original;

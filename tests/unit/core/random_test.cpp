@@ -49,8 +49,8 @@ TEST_CASE("normal() has mean 0 and variance 1, uniform() shifted to mean 0 does 
   Stream stream({7, 0, 0, Purpose::test});
   const auto normal = moments([&] { return stream.normal(); });
   const auto uniform = moments([&] { return stream.uniform() - 0.5; });
-  const double mean_error = 1.0 / std::sqrt(n);         // standard error of the mean
-  const double variance_error = std::sqrt(2.0 / n);     // standard error of the variance of a normal
+  const double mean_error = 1.0 / std::sqrt(n);      // standard error of the mean
+  const double variance_error = std::sqrt(2.0 / n);  // standard error of the variance of a normal
   CHECK(std::abs(normal[0]) < 4 * mean_error);
   CHECK(std::abs(normal[1] - 1.0) < 4 * variance_error);
   CHECK(std::abs(uniform[1] - 1.0) > 4 * variance_error);

@@ -17,7 +17,8 @@ TEST_CASE("names with commas, quotes and line breaks come back from the reader a
   std::ostringstream out;
   io::CsvWriter csv(out, {"trial, one", "a \"b\""});
   csv.write({1, "S1,\n\"x\"", 0.5, "working", 2, {1, 0}});
-  const io::CsvTable table = io::CsvTable::parse("replicate,trial,time_s,phase,people,A,B" + out.str().substr(out.str().find('\n')), "x");
+  const io::CsvTable table =
+      io::CsvTable::parse("replicate,trial,time_s,phase,people,A,B" + out.str().substr(out.str().find('\n')), "x");
   CHECK(table.text(0, 1) == "S1,\n\"x\"");
   CHECK(table.text(0, 2) == "0.5");
   CHECK(table.text(0, 6) == "0");

@@ -72,12 +72,14 @@ TEST_CASE("the resolved script reads back to itself") {
 }
 
 TEST_CASE("overrides replace values and are validated like the file") {
-  CHECK(read(two_variables, {"seed=9", "people.0.mass_kg=60", "trials.for_each.seat=[S7]"}).trials.at(1).id == "S7-1.9");
+  CHECK(read(two_variables, {"seed=9", "people.0.mass_kg=60", "trials.for_each.seat=[S7]"}).trials.at(1).id ==
+        "S7-1.9");
   CHECK_THROWS_AS(read(two_variables, {"people.0.mass=60"}), Error);
 }
 
 TEST_CASE("every fault of a script is told at once, each with its place") {
-  const std::string text = fault("pirsim_script: 1\nseeds: 3\npeople:\n  - id: a\n    actions:\n      - sti: S1\n      - wait_s: -1\n");
+  const std::string text =
+      fault("pirsim_script: 1\nseeds: 3\npeople:\n  - id: a\n    actions:\n      - sti: S1\n      - wait_s: -1\n");
   CHECK(text.find(":2:1: error: script: unknown key 'seeds' (did you mean 'seed'?)") != std::string::npos);
   CHECK(text.find(":6:9: error: action: unknown key 'sti' (did you mean 'sit'?)") != std::string::npos);
   CHECK(text.find(":7:17: error: wait_s") != std::string::npos);
