@@ -96,15 +96,14 @@ SightReport look_around(const Model& model) {
 }
 
 std::vector<Issue> warnings(const SightReport& report, const std::string& scene) {
-  std::vector<Issue> issues;
+  Diagnostics remarks;
   for (const SensorSight& sight : report.sensors) {
     if (!sight.sees_nothing()) continue;
-    issues.push_back({Severity::warning,
-                      {scene, 0, 0},
-                      "sensor '" + sight.sensor + "' can see NOBODY: no zone reaches a standing or seated person " +
-                          "anywhere on the floor area (does it look at a wall, along -Z of its node?)"});
+    remarks.warning({scene, 0, 0}, "sensor '" + sight.sensor +
+                                       "' can see NOBODY: no zone reaches a standing or seated person anywhere on the "
+                                       "floor area (does it look at a wall, along -Z of its node?)");
   }
-  return issues;
+  return remarks.issues();
 }
 
 }  // namespace pirsim::studies
