@@ -27,6 +27,8 @@ std::int64_t ticks(double seconds, const Model& model) {
   return std::llround(seconds * model.script().sensing.tick_rate_hz);
 }
 
+Vec2 outside(const EntranceSpec& door) { return floor_point(door.world_from_entrance * Vec3(0, 0, door.outside_m)); }
+
 bool leads_elsewhere(const ScriptedAction& action) {
   return !action.at_s &&
          (std::holds_alternative<action::Sit>(action.what) || std::holds_alternative<action::Walk>(action.what));
@@ -112,47 +114,47 @@ void Actor::plan(const Model& model) {
   const auto entrance = [&](const std::string& id) -> const EntranceSpec& {
     return *std::ranges::find(model.scene().entrances, id, &EntranceSpec::id);
   };
-  const auto outside = [](const EntranceSpec& e) {
-    return floor_point(e.world_from_entrance * Vec3(0, 0, e.outside_m));
-  };
-  const auto& actions = person().spec.actions;
-  const bool arrives = std::holds_alternative<action::Appear>(action().what) ||
-                       std::holds_alternative<action::Enter>(action().what) ||
-                       std::holds_alternative<action::Wait>(action().what);
+  const Action& what = action().what;
+  const bool arrives = std::holds_alternative<action::Appear>(what) || std::holds_alternative<action::Enter>(what) ||
+                       std::holds_alternative<action::Wait>(what);
   if (!present() && !arrives) return;  // called away before they came: nothing to do
-  if (const auto* appear = std::get_if<action::Appear>(&action().what)) {
+  if (const auto* appear = std::get_if<action::Appear>(&what)) {
     errands_.push_back(ComeIn{appear->point, radians(appear->heading_deg)});
-  } else if (const auto* enter = std::get_if<action::Enter>(&action().what)) {
-    const EntranceSpec& door = entrance(enter->entrance);
-    const auto* sit_next =
-        action_ + 1 < actions.size() ? std::get_if<action::Sit>(&actions[action_ + 1].what) : nullptr;
-    if (sit_next != nullptr) errands_.push_back(WaitForSeat{sit_next->seat});  // better outside than in the doorway
-    errands_.push_back(WaitForDoor{outside(door), Through::in});
-    errands_.push_back(ComeIn{outside(door), heading_of(door.world_from_entrance)});
-    if (action_ + 1 == actions.size() || !leads_elsewhere(actions[action_ + 1])) {
-      const double inside_m = 2.0 * person().humanoid.clearance_radius_m();
-      errands_.push_back(WalkTo{floor_point(door.world_from_entrance * Vec3(0, 0, -inside_m))});
-    }
-  } else if (const auto* walk = std::get_if<action::Walk>(&action().what)) {
+  } else if (const auto* enter = std::get_if<action::Enter>(&what)) {
+    plan_entering(entrance(enter->entrance));
+  } else if (const auto* walk = std::get_if<action::Walk>(&what)) {
     for (const Vec2& point : walk->points) errands_.push_back(WalkTo{point});
-  } else if (std::holds_alternative<action::Sit>(action().what)) {
+  } else if (std::holds_alternative<action::Sit>(what)) {
     plan_sitting();
-  } else if (std::holds_alternative<action::Rise>(action().what)) {
+  } else if (std::holds_alternative<action::Rise>(what)) {
     errands_.push_back(StandUp{});
-  } else if (const auto* turn = std::get_if<action::Turn>(&action().what)) {
+  } else if (const auto* turn = std::get_if<action::Turn>(&what)) {
     errands_.push_back(FaceTo{radians(turn->heading_deg)});
-  } else if (const auto* leave = std::get_if<action::Leave>(&action().what)) {
-    errands_.push_back(WaitForDoor{outside(entrance(leave->entrance)), Through::out});
-    const EntranceSpec& door = entrance(leave->entrance);
-    const double behind_m = std::min(door.outside_m, 2.0 * person().humanoid.clearance_radius_m());
-    errands_.push_back(WalkOut{outside(door), floor_point(door.world_from_entrance * Vec3(0, 0, behind_m))});
-    errands_.push_back(Vanish{});
-  } else if (const auto* work_action = std::get_if<action::Work>(&action().what)) {
-    if (motion_->stage() != Stage::seated) {
-      throw Error(ErrorCode::infeasible, action().where, "'" + person().spec.id + "' is not seated when work begins");
-    }
+  } else if (const auto* leave = std::get_if<action::Leave>(&what)) {
+    plan_leaving(entrance(leave->entrance));
+  } else if (const auto* work_action = std::get_if<action::Work>(&what)) {
+    if (motion_->stage() != Stage::seated) give_up("'" + person().spec.id + "' is not seated when work begins");
     motion_->work({work_action->arm_amplitude_m, work_action->arm_period_s});
   }
+}
+
+void Actor::plan_entering(const EntranceSpec& door) {
+  const auto& actions = person().spec.actions;
+  const ScriptedAction* next = action_ + 1 < actions.size() ? &actions[action_ + 1] : nullptr;
+  const auto* sit_next = next != nullptr ? std::get_if<action::Sit>(&next->what) : nullptr;
+  if (sit_next != nullptr) errands_.push_back(WaitForSeat{sit_next->seat});  // better outside than in the doorway
+  errands_.push_back(WaitForDoor{outside(door), Through::in});
+  errands_.push_back(ComeIn{outside(door), heading_of(door.world_from_entrance)});
+  if (next != nullptr && leads_elsewhere(*next)) return;
+  const double inside_m = 2.0 * person().humanoid.clearance_radius_m();
+  errands_.push_back(WalkTo{floor_point(door.world_from_entrance * Vec3(0, 0, -inside_m))});
+}
+
+void Actor::plan_leaving(const EntranceSpec& door) {
+  const double behind_m = std::min(door.outside_m, 2.0 * person().humanoid.clearance_radius_m());
+  errands_.push_back(WaitForDoor{outside(door), Through::out});
+  errands_.push_back(WalkOut{outside(door), floor_point(door.world_from_entrance * Vec3(0, 0, behind_m))});
+  errands_.push_back(Vanish{});
 }
 
 void Actor::plan_sitting() {

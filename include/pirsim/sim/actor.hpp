@@ -46,18 +46,21 @@ class Actor {
 
  private:
   // Steps that an action is made of; each begins when the body has settled.
+  /// Appears once nobody stands there.
   struct ComeIn {
     Vec2 point;
     double heading;
-  };  ///< appears once nobody stands there
+  };
   enum class Through { in, out };
+  /// Waits until nobody goes the other way through the door.
   struct WaitForDoor {
     Vec2 outside;
     Through way;
-  };  ///< until nobody goes the other way through it
+  };
+  /// Waits until nobody else has taken the seat.
   struct WaitForSeat {
     std::string_view seat;
-  };  ///< until nobody else has taken it
+  };
   struct TakeSeat {
     std::string_view seat;
   };
@@ -71,16 +74,19 @@ class Actor {
     body::SeatPlace place;
   };
   struct StandUp {};
+  /// Walks to the first point, or to the second if somebody stands there.
   struct WalkOut {
     Vec2 outside;
     Vec2 behind_door;
-  };  ///< to the first, or to the second if somebody stands there
+  };
   struct Vanish {};
   using Errand =
       std::variant<ComeIn, WaitForDoor, WaitForSeat, TakeSeat, WalkTo, FaceTo, SitOn, StandUp, WalkOut, Vanish>;
   enum class Progress { going_on, done };
 
   void plan(const Model& model);
+  void plan_entering(const EntranceSpec& door);
+  void plan_leaving(const EntranceSpec& door);
   void plan_sitting();
   void work(const Model& model, const action::Work& work, std::int64_t now);
   void carry_on(const Model& model, std::int64_t now, std::span<const Presence> others);
