@@ -18,6 +18,12 @@ std::string join(const std::vector<Issue>& issues) {
   return text;
 }
 
+std::vector<Issue> only(Issue issue) {
+  std::vector<Issue> issues;
+  issues.push_back(std::move(issue));
+  return issues;
+}
+
 /// Levenshtein distance, letters compared without case.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
@@ -51,7 +57,7 @@ std::string to_string(const Issue& issue) {
 Error::Error(ErrorCode code, std::vector<Issue> issues)
     : std::runtime_error(join(issues)), code_(code), issues_(std::move(issues)) {}
 Error::Error(ErrorCode code, Where where, std::string message)
-    : Error(code, std::vector<Issue>{{Severity::error, std::move(where), std::move(message)}}) {}
+    : Error(code, only(Issue{Severity::error, std::move(where), std::move(message)})) {}
 Error::Error(ErrorCode code, std::string message) : Error(code, Where{}, std::move(message)) {}
 
 void Diagnostics::error(Where where, std::string message) {
