@@ -1,7 +1,6 @@
 #include "pirsim/body/walkable_floor.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -378,29 +377,4 @@ TEST_CASE("without floor there is no way", "[walkable_floor]") {
   const WalkableFloor floor(FloorArea(), {}, {}, clearance);
   CHECK_FALSE(floor.walkable({0, 0}));
   CHECK_FALSE(floor.find_way({0, 0}, {1, 1}).has_value());
-}
-
-TEST_CASE("a room of 7 by 5 m with much furniture is laid out in 50 ms and crossed in 5 ms",
-          "[.][bench][walkable_floor]") {
-  std::vector<Block> blocks;
-  for (int i = 0; i < 50; ++i) blocks.push_back({{2 + 0.06 * i, 1.0}, {2 + 0.06 * i + 0.05, 3.5}});
-  const FloorArea area = rectangle(7, 5);
-  const auto meshes = meshes_of(blocks);
-  const auto milliseconds = [](auto&& work) {
-    const auto begin = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-  };
-  CHECK(milliseconds([&] { WalkableFloor(area, {}, meshes, clearance); }) < 50.0);
-  const WalkableFloor floor(area, {}, meshes, clearance);
-  Stream stream({.seed = 25});
-  double slowest = 0.0;
-  for (int i = 0; i < 200; ++i) {
-    const Vec2 from(7 * stream.uniform(), 5 * stream.uniform());
-    const Vec2 to(7 * stream.uniform(), 5 * stream.uniform());
-    slowest = std::max(slowest, milliseconds([&] { (void)floor.find_way(from, to); }));
-  }
-  CHECK(slowest < 5.0);
-  WARN("slowest way: " << slowest << " ms, building: "
-                       << milliseconds([&] { WalkableFloor(area, {}, meshes, clearance); }) << " ms");
 }
