@@ -16,9 +16,10 @@ BELOW = {
     "body": {"schema", "geom", "core"},
     "pir": {"schema", "geom", "core"},
     "io": {"schema", "geom", "core"},
-    "sim": {"rt", "body", "pir", "io", "schema", "geom", "core"},
-    "studies": {"sim", "rt", "body", "pir", "io", "schema", "geom", "core"},
-    "reconcile": {"sim", "rt", "body", "pir", "io", "schema", "geom", "core"},
+    "effects": {"schema", "geom", "core"},
+    "sim": {"effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
+    "studies": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
+    "reconcile": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
 }
 BELOW["app"] = set(BELOW)
 # header prefix of a third-party library -> the only layers that may include it

@@ -4,6 +4,7 @@
 
 #include "io/action_reader.hpp"
 #include "io/body_mesh_reader.hpp"
+#include "io/effect_reader.hpp"
 #include "io/sensing_reader.hpp"
 #include "io/yaml_map.hpp"
 
@@ -140,6 +141,7 @@ ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::s
   script.summary = read_summary(map.child("summary"), faults);
   BodyMeshReader body_meshes(file.parent_path());
   script.trials = read_trials(map.child("trials"), map.list("people"), body_meshes, faults);
+  script.effects = read_effects(map.list("effects"), faults);
   map.finish();
   faults.throw_if_errors();
   script.warnings = faults.warnings();

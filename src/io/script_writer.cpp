@@ -77,6 +77,15 @@ YAML::Node write(const SensingSpec& sensing) {
   return node;
 }
 
+YAML::Node write(const EffectSpec& effect) {
+  YAML::Node settings(YAML::NodeType::Map);
+  for (const auto& [name, value] : effect.parameters) settings[name] = number(value);
+  for (const auto& [name, choice] : effect.choices) settings[name] = choice;
+  YAML::Node node;
+  node[effect.name] = settings;
+  return node;
+}
+
 }  // namespace
 
 std::string to_yaml(const ScriptSpec& script) {
@@ -94,6 +103,7 @@ std::string to_yaml(const ScriptSpec& script) {
     for (const PersonSpec& person : trial.people) node["people"].push_back(write(person));
     root["trials"].push_back(node);
   }
+  for (const EffectSpec& effect : script.effects) root["effects"].push_back(write(effect));
   YAML::Emitter out;
   out << root;
   return std::string(out.c_str()) + '\n';

@@ -3,6 +3,7 @@
 #include <mutex>
 #include <utility>
 
+#include "pirsim/effects/catalogue.hpp"
 #include "pirsim/pir/optics.hpp"
 #include "sim/lookout.hpp"
 #include "sim/plan_people.hpp"
@@ -51,18 +52,20 @@ Model compile(SceneSpec scene, ScriptSpec script, const CompileOptions& options)
   Model model;
   model.scene_ = std::move(scene);
   model.script_ = std::move(script);
+  ScriptSpec altered = model.script_;
+  effects::alter(model.scene_, altered);
   model.tracer_ = options.tracer;
   model.idle_lookouts_ = std::make_shared<Model::Pool>();
   model.room_ = std::make_unique<rt::Room>(model.scene_.meshes);
   model.rated_ = std::make_unique<RayBundle>();
   for (const SensorSpec& sensor : model.scene_.sensors) {
-    pir::append(*model.rated_, sensor, model.scene_.sensor_models.at(sensor.model),
-                model.script_.sensing.rays_per_zone);
+    pir::append(*model.rated_, sensor, model.scene_.sensor_models.at(sensor.model), altered.sensing.rays_per_zone);
   }
   model.clipped_ = std::make_unique<RayBundle>(*model.rated_);
   model.room_->clip(*model.clipped_);
-  model.detector_ = std::make_unique<pir::MotionDetector>(*model.rated_, model.script_.sensing.change_per);
-  model.trials_ = sim::plan_people(model.scene_, model.script_, *model.room_);
+  model.detector_ = std::make_unique<pir::MotionDetector>(*model.rated_, altered.sensing.change_per);
+  model.pipeline_ = effects::Pipeline(model.script_.effects, {model.scene_, altered.sensing, *model.clipped_});
+  model.trials_ = sim::plan_people(model.scene_, altered, *model.room_);
   return model;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sim/add_triggers.hpp"
 #include "sim/lookout.hpp"
 
 namespace pirsim {
@@ -30,11 +31,15 @@ State::State(const Model& model, std::uint32_t run)
       zones_(model.detector().n_zones()),
       channels_(model.detector().n_channels()),
       previous_channels_(channels_),
-      bits_(model.scene().sensors.size(), 0),
+      pipeline_(model.pipeline()),
+      triggers_(model.scene().sensors.size(), 0),
+      bits_(triggers_),
       lookout_(model.borrow_lookout()) {
   const TrialModel& trial = model.trial_of(run);
   for (std::uint32_t person = 0; person < trial.people.size(); ++person) actors_.emplace_back(model, run, person);
   presences_.resize(actors_.size());
+  seated_.resize(actors_.size(), 0);
+  pipeline_.begin_run(model.script().seed, run);
   sample_.replicate = model.replicate_of(run);
   sample_.trial = trial.id;
 }
@@ -49,6 +54,10 @@ State::State(const State& other)
       zones_(other.zones_),
       channels_(other.channels_),
       previous_channels_(other.previous_channels_),
+      seated_(other.seated_),
+      seats_left_(other.seats_left_),
+      pipeline_(other.pipeline_),
+      triggers_(other.triggers_),
       bits_(other.bits_),
       sample_(other.sample_),
       lookout_(other.model_->borrow_lookout()) {}
@@ -73,16 +82,35 @@ void State::move_people(const Model& model) {
   }
 }
 
+void State::note_seats_left(const Model& model) {
+  seats_left_.clear();
+  for (std::size_t i = 0; i < actors_.size(); ++i) {
+    const Actor& actor = actors_[i];
+    const bool seated = actor.present() && actor.motion().stage() == body::Stage::seated;
+    if (seated_[i] != 0 && !seated) {
+      const auto& seats = model.scene().seats;
+      const auto seat = std::ranges::find(seats, actor.seat(), &SeatSpec::id);
+      if (seat != seats.end()) seats_left_.push_back(static_cast<std::size_t>(seat - seats.begin()));
+    }
+    seated_[i] = seated ? 1 : 0;
+  }
+}
+
+/// From people to this tick's triggers, before any effect of environment or electronics.
 void State::look(const Model& model) {
   std::swap(channels_, previous_channels_);
   lookout_->look(actors_, zones_, channels_);
-  model.detector().mark(previous_channels_.words(), channels_.words(), bits_);
+  std::ranges::fill(triggers_, std::uint8_t{0});
+  model.detector().mark(previous_channels_.words(), channels_.words(), triggers_);
 }
 
 bool step_tick(const Model& model, State& state) {
   ++state.tick_;
   state.move_people(model);
+  state.note_seats_left(model);
   state.look(model);
+  for (const std::size_t seat : state.seats_left_) state.pipeline_.seat_left(seat);
+  sim::add_triggers(state.pipeline_, state.tick_, state.triggers_, state.bits_);
   const int window = model.script().sensing.ticks_per_window;
   if (state.tick_ % window != 0) return false;
 
@@ -91,6 +119,7 @@ bool step_tick(const Model& model, State& state) {
   sample.phase = state.actors_.empty() ? "outside" : state.actors_.front().phase();
   sample.people = people_on_floor(model, state.actors_);
   sample.bits = state.bits_;
+  state.pipeline_.apply(sample);
   std::ranges::fill(state.bits_, std::uint8_t{0});
   state.finished_ = std::ranges::all_of(state.actors_, &Actor::done);
   return true;

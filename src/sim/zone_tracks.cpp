@@ -4,7 +4,9 @@
 #include <map>
 
 #include "pirsim/core/parallel.hpp"
+#include "pirsim/effects/catalogue.hpp"
 #include "pirsim/sim/state.hpp"
+#include "sim/add_triggers.hpp"
 
 namespace pirsim::sim {
 namespace {
@@ -33,13 +35,14 @@ struct TracedRun {
 };
 
 TracedRun trace_run(const Model& model, std::uint32_t run) {
-  TracedRun traced{{{run, model.replicate_of(run), model.trial_of(run).id, {}, {}}, {}}, {}};
+  TracedRun traced{{{run, model.replicate_of(run), model.trial_of(run).id, {}, {}}, {}, {}}, {}};
   Numbering numbering(model.detector().n_zones());
   State state(model, run);
   ZoneSet last(model.detector().n_zones());
   std::uint32_t number = 0;
   while (!state.finished()) {
     if (step_tick(model, state)) traced.track.rows.samples.push_back(state.sample());
+    for (const std::size_t seat : state.seats_left()) traced.track.seats_left.push_back({state.tick(), seat});
     if (state.zones() != last) {
       last = state.zones();
       number = numbering.number(last);
@@ -79,24 +82,46 @@ void ChangeLogic::prepare(std::span<const ZoneSet> sets) {
 
 void ChangeLogic::begin_run(std::uint64_t, std::uint32_t) {}
 
-void ChangeLogic::tick(std::uint32_t before, std::uint32_t after, std::span<std::uint8_t> bits) noexcept {
-  if (before != after) detector_.mark(channels_[before].words(), channels_[after].words(), bits);
+void ChangeLogic::tick(std::uint32_t before, std::uint32_t after, std::span<std::uint8_t> triggers) noexcept {
+  if (before != after) detector_.mark(channels_[before].words(), channels_[after].words(), triggers);
 }
 
-RunResult emit(const ZoneTracks& tracks, std::size_t index, DetectorLogic& detector, std::uint64_t seed) {
+std::unique_ptr<DetectorLogic> make_logic(const Model& model) {
+  return std::make_unique<ChangeLogic>(model.detector());
+}
+
+RunResult emit(const ZoneTracks& tracks, std::size_t index, DetectorLogic& detector, std::uint64_t seed,
+               const effects::Pipeline& stages) {
   const ZoneTrack& track = tracks.runs[index];
   RunResult result = track.rows;
+  effects::Pipeline pipeline = stages;
+  pipeline.begin_run(seed, result.run);
   detector.begin_run(seed, result.run);
+  std::vector<std::uint8_t> triggers(tracks.n_sensors);
+  auto left = track.seats_left.begin();
   std::uint32_t before = 0;
-  std::size_t tick = 0;
+  std::int64_t tick = 0;
   for (Sample& sample : result.samples) {
     sample.bits.assign(tracks.n_sensors, 0);
-    for (int i = 0; i < tracks.ticks_per_window; ++i, ++tick) {
-      detector.tick(before, track.sets[tick], sample.bits);
-      before = track.sets[tick];
+    for (int i = 0; i < tracks.ticks_per_window; ++i) {
+      const std::uint32_t after = track.sets[static_cast<std::size_t>(tick)];
+      ++tick;
+      std::ranges::fill(triggers, std::uint8_t{0});
+      detector.tick(before, after, triggers);
+      before = after;
+      for (; left != track.seats_left.end() && left->tick == tick; ++left) pipeline.seat_left(left->seat);
+      add_triggers(pipeline, tick, triggers, sample.bits);
     }
+    pipeline.apply(sample);
   }
   return result;
+}
+
+effects::Pipeline make_pipeline(const Model& model, std::span<const EffectSpec> effects) {
+  Diagnostics diagnostics;
+  effects::check(effects, model.scene(), diagnostics);
+  diagnostics.throw_if_errors();
+  return {effects, {model.scene(), model.script().sensing, model.clipped_rays()}};
 }
 
 }  // namespace pirsim::sim

@@ -10,9 +10,18 @@ namespace pirsim {
 
 /// What a stream is used for. Append only: a value is part of every published result.
 enum class Purpose : std::uint32_t {
-  spine_tilt = 1,     ///< which tilt a sitter takes at each redraw
-  seat_scatter = 2,   ///< where exactly, and how turned, a sitter sits down in this run
-  test = 0xFFFF0000,  ///< reserved for tests
+  spine_tilt = 1,      ///< which tilt a sitter takes at each redraw
+  seat_scatter = 2,    ///< where exactly, and how turned, a sitter sits down in this run
+  zone_edge = 3,       ///< soft_zone_edges: which of the nested zones decides in a window
+  false_trigger = 4,   ///< false_triggers: when the next one comes
+  burst = 5,           ///< trigger_bursts: when the first burst comes in a run, and its triggers
+  warm_chair = 6,      ///< warm_chair: triggers after a seat was left
+  missed_trigger = 7,  ///< missed_triggers: which windows are lost
+  pulse_length = 8,    ///< pulse_stretching: how long an output holds
+  fidgeting = 9,       ///< fidgeting: when somebody moves, and how
+  dead_sensor = 10,    ///< dead_sensor: which rows a dying sensor loses
+  effect_prior = 11,   ///< parameters drawn from the catalogue's priors
+  test = 0xFFFF0000,   ///< reserved for tests
 };
 
 struct StreamKey {

@@ -11,6 +11,7 @@
 #include "pirsim/core/error.hpp"
 #include "pirsim/geom/frame.hpp"
 #include "pirsim/geom/shapes.hpp"
+#include "pirsim/schema/effect_spec.hpp"
 
 namespace pirsim {
 
@@ -116,6 +117,7 @@ struct ScriptSpec {
   SensingSpec sensing;
   SummarySpec summary;
   std::vector<TrialSpec> trials;
+  std::vector<EffectSpec> effects;  ///< what the plain model leaves out; applied when a Model is compiled
   std::vector<Issue> warnings;
   std::string directory;  ///< of the script file, for relative references
 };

@@ -43,6 +43,8 @@ class Actor {
   /// Only while present.
   [[nodiscard]] const body::Motion& motion() const { return *motion_; }
   [[nodiscard]] Presence presence() const;
+  /// Taken, from setting out for it to walking away from it; or empty.
+  [[nodiscard]] std::string_view seat() const noexcept { return seat_; }
 
  private:
   // Steps that an action is made of; each begins when the body has settled.

@@ -10,6 +10,7 @@
 #include "pirsim/body/humanoid.hpp"
 #include "pirsim/body/motion.hpp"
 #include "pirsim/body/walkable_floor.hpp"
+#include "pirsim/effects/stage.hpp"
 #include "pirsim/geom/ray_bundle.hpp"
 #include "pirsim/pir/motion_detector.hpp"
 #include "pirsim/rt/room.hpp"
@@ -48,7 +49,9 @@ struct CompileOptions {
 
 class Model {
  public:
+  /// As the script's effects made it.
   [[nodiscard]] const SceneSpec& scene() const noexcept { return scene_; }
+  /// As it was given, effects listed but not applied: what people do is in trials().
   [[nodiscard]] const ScriptSpec& script() const noexcept { return script_; }
   [[nodiscard]] const std::vector<TrialModel>& trials() const noexcept { return trials_; }
   [[nodiscard]] const rt::Room& room() const noexcept { return *room_; }
@@ -68,6 +71,8 @@ class Model {
   [[nodiscard]] std::vector<std::string> columns() const;
   /// Which channels of which sensors are watched for changes.
   [[nodiscard]] const pir::MotionDetector& detector() const noexcept { return *detector_; }
+  /// What the script's effects do to triggers and rows, before any run.
+  [[nodiscard]] const effects::Pipeline& pipeline() const noexcept { return pipeline_; }
   [[nodiscard]] std::unique_ptr<rt::Tracer> make_tracer() const;
   /// Of one's own for as long as one holds it; goes back, with what it remembers, for others to use. Safe to call from
   /// any thread.
@@ -83,12 +88,14 @@ class Model {
   std::unique_ptr<RayBundle> clipped_;
   rt::TracerKind tracer_ = rt::fastest_tracer;
   std::unique_ptr<pir::MotionDetector> detector_;
+  effects::Pipeline pipeline_;
   struct Pool;
   std::shared_ptr<Pool> idle_lookouts_;  ///< not part of what a Model is: memory that runs hand on
 };
 
-/// The only door from Spec to Model. Throws Error(input) for names that the scene lacks or actions in an impossible
-/// order, Error(infeasible) for a seat or point that can't be reached.
+/// The only door from Spec to Model; script.effects are applied here, so that whoever uses a Model has them. Throws
+/// Error(input) for names that the scene or the catalogue lacks or actions in an impossible order, Error(infeasible)
+/// for a seat or point that can't be reached.
 [[nodiscard]] Model compile(SceneSpec scene, ScriptSpec script, const CompileOptions& options = {});
 
 }  // namespace pirsim

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "pirsim/effects/stage.hpp"
 #include "pirsim/geom/ray_bundle.hpp"
 #include "pirsim/schema/sample.hpp"
 #include "pirsim/sim/actor.hpp"
@@ -31,6 +32,8 @@ class State {
   [[nodiscard]] const std::vector<Actor>& actors() const noexcept { return actors_; }
   /// (n_zones) at the current tick.
   [[nodiscard]] const ZoneSet& zones() const noexcept { return zones_; }
+  /// Indices (into scene().seats) of the seats from which somebody rose in the step to this tick.
+  [[nodiscard]] const std::vector<std::size_t>& seats_left() const noexcept { return seats_left_; }
   /// The reading at the end of the last whole window.
   [[nodiscard]] const Sample& sample() const noexcept { return sample_; }
   /// Every person has carried out all actions and the last window is complete.
@@ -39,6 +42,7 @@ class State {
  private:
   friend bool step_tick(const Model& model, State& state);
   void move_people(const Model& model);
+  void note_seats_left(const Model& model);
   void look(const Model& model);
 
   const Model* model_;
@@ -49,7 +53,11 @@ class State {
   std::vector<std::optional<Presence>> presences_;  ///< of the actors as they are now; of those in the scene
   ZoneSet zones_;
   ZoneSet channels_, previous_channels_;  ///< of the Model's detector
-  std::vector<std::uint8_t> bits_;        ///< (n_sensors) motion so far in this window
+  std::vector<std::uint8_t> seated_;      ///< (n_actors) 1 while seated
+  std::vector<std::size_t> seats_left_;
+  effects::Pipeline pipeline_;
+  std::vector<std::uint8_t> triggers_;  ///< (n_sensors) at this tick
+  std::vector<std::uint8_t> bits_;      ///< (n_sensors) triggers so far in this window
   Sample sample_;
   std::vector<Presence> others_;           ///< scratch
   std::shared_ptr<sim::Lookout> lookout_;  ///< scratch; a copy of the State borrows its own

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "pirsim/effects/stage.hpp"
 #include "pirsim/geom/zone_set.hpp"
 #include "pirsim/pir/motion_detector.hpp"
 #include "pirsim/sim/model.hpp"
@@ -17,6 +19,11 @@ namespace pirsim::sim {
 struct ZoneTrack {
   RunResult rows;                   ///< as the study has them; of interest is all but the bits
   std::vector<std::uint32_t> sets;  ///< (n_ticks) from tick 1 on: index into ZoneTracks::sets
+  struct SeatLeft {
+    std::int64_t tick = 0;
+    std::size_t seat = 0;  ///< index into the scene's seats
+  };
+  std::vector<SeatLeft> seats_left;  ///< in order of time
 };
 
 struct ZoneTracks {
@@ -37,8 +44,8 @@ class DetectorLogic {
   virtual void prepare(std::span<const ZoneSet> sets) = 0;
   /// All randomness follows from these two.
   virtual void begin_run(std::uint64_t seed, std::uint32_t run) = 0;
-  /// From one tick to the next: sets bits[s] to 1 where sensor s triggers. before, after: indices of sets.
-  virtual void tick(std::uint32_t before, std::uint32_t after, std::span<std::uint8_t> bits) noexcept = 0;
+  /// From one tick to the next: sets triggers[s] to 1 where sensor s triggers. before, after: indices of sets.
+  virtual void tick(std::uint32_t before, std::uint32_t after, std::span<std::uint8_t> triggers) noexcept = 0;
 };
 
 /// The study's own: a change in a channel is motion; nothing random.
@@ -47,15 +54,24 @@ class ChangeLogic final : public DetectorLogic {
   explicit ChangeLogic(pir::MotionDetector detector) : detector_(std::move(detector)) {}
   void prepare(std::span<const ZoneSet> sets) override;
   void begin_run(std::uint64_t seed, std::uint32_t run) override;
-  void tick(std::uint32_t before, std::uint32_t after, std::span<std::uint8_t> bits) noexcept override;
+  void tick(std::uint32_t before, std::uint32_t after, std::span<std::uint8_t> triggers) noexcept override;
 
  private:
   pir::MotionDetector detector_;
   std::vector<ZoneSet> channels_;  ///< of each set
 };
 
-/// The rows of tracks.runs[index] as this detector gives them, which has been prepared with tracks.sets. With
-/// ChangeLogic(model.detector()): the study's rows, bit for bit.
-[[nodiscard]] RunResult emit(const ZoneTracks& tracks, std::size_t index, DetectorLogic& detector, std::uint64_t seed);
+/// The detector that the Model's own runs have.
+[[nodiscard]] std::unique_ptr<DetectorLogic> make_logic(const Model& model);
+
+/// The rows of tracks.runs[index] as this detector gives them, which has been prepared with tracks.sets, changed by
+/// what the pipeline does to triggers and rows. With ChangeLogic(model.detector()), the script's seed and the Model's
+/// pipeline: the study's rows, bit for bit.
+[[nodiscard]] RunResult emit(const ZoneTracks& tracks, std::size_t index, DetectorLogic& detector, std::uint64_t seed,
+                             const effects::Pipeline& pipeline = {});
+
+/// What these effects do to triggers and rows of a study that was compiled without them, to be given to emit(). Those
+/// that reach geometry are passed over: they need a Model of their own. Throws Error(input) for unknown names.
+[[nodiscard]] effects::Pipeline make_pipeline(const Model& model, std::span<const EffectSpec> effects);
 
 }  // namespace pirsim::sim

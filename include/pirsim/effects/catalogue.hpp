@@ -1,0 +1,95 @@
+// Everything that a plain model is known to leave out: what it is called, what it does, how strong it may be.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pirsim/core/random.hpp"
+#include "pirsim/effects/stage.hpp"
+#include "pirsim/schema/effect_spec.hpp"
+#include "pirsim/schema/scene_spec.hpp"
+#include "pirsim/schema/script_spec.hpp"
+
+namespace pirsim::effects {
+
+enum class Scale { linear, logarithmic, whole };  ///< how a prior spreads over its range; whole: whole numbers
+enum class Role {
+  strength,  ///< with all of these at `off` nothing happens, bit for bit
+  detail     ///< how it happens; has no off of its own (`off` repeats `typical`)
+};
+struct ParameterInfo {
+  std::string name;  ///< with unit suffix
+  std::string unit;  ///< "" for a pure number
+  Role role = Role::strength;
+  double off = 0.0;
+  double typical = 0.0;            ///< what a script gets that doesn't say
+  double low = 0.0, high = 0.0;    ///< the prior
+  double least = 0.0, most = 0.0;  ///< what is accepted
+  Scale scale = Scale::linear;
+  std::string source;  ///< of the range: a paper, a data sheet, or `assumed`
+};
+enum class ChoiceKind { sensor, mesh, word };
+struct ChoiceInfo {
+  std::string name;
+  ChoiceKind kind = ChoiceKind::word;
+  std::vector<std::string> words;  ///< of a word; the first is the default
+  std::string otherwise;           ///< what happens if the script doesn't say
+};
+
+enum class Family { optics, person, mounting, occlusion, electronics, environment, motion, data };
+/// What must be computed anew when the effect changes.
+enum class Reach {
+  geometry,  ///< people or rays differ: must be traced again
+  triggers,  ///< acts tick by tick on what remembered zones trigger
+  rows       ///< acts on finished rows
+};
+[[nodiscard]] std::string_view name(Family family) noexcept;
+[[nodiscard]] std::string_view name(Reach reach) noexcept;
+[[nodiscard]] std::string_view name(Scale scale) noexcept;
+
+struct EffectInfo {
+  std::string name;
+  Family family = Family::data;
+  std::string stage;        ///< where it acts: placement, body, optics, detector, environment, electronics, books
+  std::string summary;      ///< one sentence
+  std::string fingerprint;  ///< what it does to the data
+  std::vector<std::string> confused_with;  ///< other entries with a like fingerprint
+  std::vector<ParameterInfo> parameters;   ///< the first is the one that names its strength
+  std::vector<ChoiceInfo> choices;
+  Reach reach = Reach::geometry;
+};
+
+/// One file of src/effects. Hooks get an EffectSpec with every parameter filled in; null where the effect doesn't act.
+struct Effect {
+  EffectInfo info;
+  void (*alter)(SceneSpec& scene, ScriptSpec& script, const EffectSpec& effect) = nullptr;
+  std::unique_ptr<TriggerStage> (*make_stage)(const EffectSpec& effect, const StageContext& context) = nullptr;
+  std::unique_ptr<RowStage> (*make_row_stage)(const EffectSpec& effect, const StageContext& context) = nullptr;
+  /// Puts what the ranges alone can't draw (a free place in the room) into a spec drawn from them.
+  void (*draw)(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec& script, Stream& stream) = nullptr;
+};
+
+/// In the order in which they act; alter() first, then stages tick by tick, then rows.
+[[nodiscard]] const std::vector<const Effect*>& catalogue();
+/// Throws Error(usage) with the nearest name.
+[[nodiscard]] const Effect& find(std::string_view name);
+
+/// Every unknown name, sensor or mesh and every value out of bounds. The first is without a scene: names and bounds.
+void check(std::span<const EffectSpec> effects, Diagnostics& diagnostics);
+void check(std::span<const EffectSpec> effects, const SceneSpec& scene, Diagnostics& diagnostics);
+
+/// Applies alter() of script.effects, in the catalogue's order, to both. Throws Error(input) for what check() finds.
+void alter(SceneSpec& scene, ScriptSpec& script);
+
+[[nodiscard]] bool is_off(const EffectSpec& effect);
+/// With every parameter: those not given take the typical value.
+[[nodiscard]] EffectSpec resolved(const Effect& effect, EffectSpec spec);
+[[nodiscard]] EffectSpec off(const Effect& effect);
+/// Parameters from their priors; a sensor from all and each (even odds between `all` and one of them).
+[[nodiscard]] EffectSpec draw_from_prior(const Effect& effect, const SceneSpec& scene, const ScriptSpec& script,
+                                         Stream& stream);
+
+}  // namespace pirsim::effects

@@ -1,0 +1,107 @@
+#include "pirsim/effects/catalogue.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "effects/entries.hpp"
+
+namespace pirsim::effects {
+
+// The order in which effects act: the room and its people, the optics, what disturbs the element, what the electronics
+// make of it, and the books.
+const std::vector<const Effect*>& catalogue() {
+  static const std::vector<const Effect*> effects{
+      &false_triggers(), &trigger_bursts(), &missed_triggers(), &dead_time(), &pulse_stretching(), &clock_lag(),
+  };
+  return effects;
+}
+
+std::string_view name(Family family) noexcept {
+  static constexpr std::array<std::string_view, 8> names{"optics",      "person",      "mounting", "occlusion",
+                                                         "electronics", "environment", "motion",   "data"};
+  return names[static_cast<std::size_t>(family)];
+}
+std::string_view name(Reach reach) noexcept {
+  static constexpr std::array<std::string_view, 3> names{"geometry", "triggers", "rows"};
+  return names[static_cast<std::size_t>(reach)];
+}
+std::string_view name(Scale scale) noexcept {
+  static constexpr std::array<std::string_view, 3> names{"linear", "logarithmic", "whole"};
+  return names[static_cast<std::size_t>(scale)];
+}
+
+const Effect& find(std::string_view name) {
+  const auto& all = catalogue();
+  const auto found = std::ranges::find_if(all, [&](const Effect* effect) { return effect->info.name == name; });
+  if (found != all.end()) return **found;
+  std::vector<std::string> names;
+  for (const Effect* effect : all) names.push_back(effect->info.name);
+  throw Error(ErrorCode::usage, "'" + std::string(name) + "' is not an effect" + did_you_mean(name, names));
+}
+
+bool is_off(const EffectSpec& effect) {
+  const EffectSpec complete = resolved(find(effect.name), effect);
+  return std::ranges::all_of(find(effect.name).info.parameters, [&](const ParameterInfo& parameter) {
+    return parameter.role == Role::detail || complete.parameters.at(parameter.name) == parameter.off;
+  });
+}
+
+EffectSpec resolved(const Effect& effect, EffectSpec spec) {
+  for (const ParameterInfo& parameter : effect.info.parameters) {
+    spec.parameters.try_emplace(parameter.name, parameter.typical);
+  }
+  return spec;
+}
+
+EffectSpec off(const Effect& effect) {
+  EffectSpec spec{effect.info.name, {}, {}, {}};
+  for (const ParameterInfo& parameter : effect.info.parameters) spec.parameters[parameter.name] = parameter.off;
+  return spec;
+}
+
+void alter(SceneSpec& scene, ScriptSpec& script) {
+  Diagnostics diagnostics;
+  check(script.effects, scene, diagnostics);
+  diagnostics.throw_if_errors();
+  const std::vector<EffectSpec> specs = script.effects;
+  for (const Effect* effect : catalogue()) {
+    for (const EffectSpec& spec : specs) {
+      if (effect->alter == nullptr || spec.name != effect->info.name || is_off(spec)) continue;
+      effect->alter(scene, script, resolved(*effect, spec));
+    }
+  }
+}
+
+namespace {
+
+double draw(const ParameterInfo& parameter, Stream& stream) {
+  const double u = stream.uniform();
+  switch (parameter.scale) {
+    case Scale::logarithmic:
+      return parameter.low * std::pow(parameter.high / parameter.low, u);
+    case Scale::whole:
+      return std::min(parameter.high, std::floor(parameter.low + u * (parameter.high - parameter.low + 1.0)));
+    case Scale::linear:
+      break;
+  }
+  return parameter.low + u * (parameter.high - parameter.low);
+}
+
+}  // namespace
+
+EffectSpec draw_from_prior(const Effect& effect, const SceneSpec& scene, const ScriptSpec& script, Stream& stream) {
+  EffectSpec spec{effect.info.name, {}, {}, {}};
+  for (const ParameterInfo& parameter : effect.info.parameters) {
+    spec.parameters[parameter.name] = draw(parameter, stream);
+  }
+  for (const ChoiceInfo& choice : effect.info.choices) {
+    const auto pick = [&](const auto& list) { return list[stream.index(static_cast<std::uint32_t>(list.size()))]; };
+    if (choice.kind == ChoiceKind::word) spec.choices[choice.name] = pick(choice.words);
+    if (choice.kind == ChoiceKind::sensor && stream.index(2) == 1) spec.choices[choice.name] = pick(scene.sensors).id;
+  }
+  if (effect.draw != nullptr) effect.draw(spec, scene, script, stream);
+  return spec;
+}
+
+}  // namespace pirsim::effects

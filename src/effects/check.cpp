@@ -1,0 +1,102 @@
+// Faults of `effects:`, all at once.
+#include <algorithm>
+#include <sstream>
+
+#include "pirsim/effects/catalogue.hpp"
+
+namespace pirsim::effects {
+namespace {
+
+std::string text(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+std::vector<std::string> names_of(const auto& items) {
+  std::vector<std::string> names;
+  for (const auto& item : items) names.push_back(item.name);
+  return names;
+}
+
+std::vector<std::string> setting_names(const EffectInfo& info) {
+  std::vector<std::string> names = names_of(info.parameters);
+  for (const ChoiceInfo& choice : info.choices) names.push_back(choice.name);
+  return names;
+}
+
+void check_parameters(const EffectSpec& spec, const EffectInfo& info, Diagnostics& diagnostics) {
+  for (const auto& [name, value] : spec.parameters) {
+    const auto known = std::ranges::find(info.parameters, name, &ParameterInfo::name);
+    if (known == info.parameters.end()) {
+      const bool is_choice = std::ranges::find(info.choices, name, &ChoiceInfo::name) != info.choices.end();
+      diagnostics.error(spec.where, is_choice ? info.name + "." + name + ": expected a name, not a number"
+                                              : info.name + " has no parameter '" + name + "'" +
+                                                    did_you_mean(name, setting_names(info)));
+    } else if (!(value >= known->least && value <= known->most)) {
+      diagnostics.error(spec.where, info.name + "." + name + ": expected a number from " + text(known->least) + " to " +
+                                        text(known->most) + ", not " + text(value));
+    }
+  }
+}
+
+void check_choices(const EffectSpec& spec, const EffectInfo& info, const SceneSpec* scene, Diagnostics& diagnostics) {
+  for (const auto& [name, value] : spec.choices) {
+    const auto known = std::ranges::find(info.choices, name, &ChoiceInfo::name);
+    if (known == info.choices.end()) {
+      const bool is_number = std::ranges::find(info.parameters, name, &ParameterInfo::name) != info.parameters.end();
+      diagnostics.error(spec.where, is_number ? info.name + "." + name + ": expected a number, not '" + value + "'"
+                                              : info.name + " has no setting '" + name + "'" +
+                                                    did_you_mean(name, setting_names(info)));
+      continue;
+    }
+    std::vector<std::string> allowed = known->words;
+    if (known->kind != ChoiceKind::word && scene == nullptr) continue;
+    if (known->kind == ChoiceKind::sensor) {
+      for (const SensorSpec& sensor : scene->sensors) allowed.push_back(sensor.id);
+    } else if (known->kind == ChoiceKind::mesh) {
+      allowed = names_of(scene->meshes);
+    }
+    if (std::ranges::find(allowed, value) != allowed.end()) continue;
+    const std::string place = known->kind == ChoiceKind::word ? "known here" : "in " + scene->name;
+    diagnostics.error(spec.where,
+                      info.name + "." + name + ": '" + value + "' is not " + place + did_you_mean(value, allowed));
+  }
+}
+
+/// Two stages of one kind on one sensor would draw the same numbers.
+bool meet(const EffectSpec& a, const EffectSpec& b, const Effect& effect) {
+  if (effect.make_stage == nullptr && effect.make_row_stage == nullptr) return false;
+  const auto x = a.choices.find("sensor"), y = b.choices.find("sensor");
+  return a.name == b.name && (x == a.choices.end() || y == b.choices.end() || x->second == y->second);
+}
+
+void check_all(std::span<const EffectSpec> effects, const SceneSpec* scene, Diagnostics& diagnostics) {
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    const EffectSpec& spec = effects[i];
+    const auto known = std::ranges::find(catalogue(), spec.name, [](const Effect* e) { return e->info.name; });
+    if (known == catalogue().end()) {
+      std::vector<std::string> names;
+      for (const Effect* effect : catalogue()) names.push_back(effect->info.name);
+      diagnostics.error(spec.where, "'" + spec.name + "' is not an effect" + did_you_mean(spec.name, names));
+      continue;
+    }
+    check_parameters(spec, (*known)->info, diagnostics);
+    check_choices(spec, (*known)->info, scene, diagnostics);
+    for (std::size_t before = 0; before < i; ++before) {
+      if (meet(effects[before], spec, **known)) {
+        diagnostics.error(spec.where, spec.name + " stands here a second time for the same sensor");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void check(std::span<const EffectSpec> effects, Diagnostics& diagnostics) { check_all(effects, nullptr, diagnostics); }
+
+void check(std::span<const EffectSpec> effects, const SceneSpec& scene, Diagnostics& diagnostics) {
+  check_all(effects, &scene, diagnostics);
+}
+
+}  // namespace pirsim::effects

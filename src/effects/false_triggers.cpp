@@ -1,0 +1,66 @@
+// Triggers without a person: noise of element and amplifier, draughts.
+#include "effects/entries.hpp"
+#include "effects/kit.hpp"
+
+namespace pirsim::effects {
+namespace {
+
+/// A Poisson process a sensor, alike at all times.
+class FalseTriggers final : public CloneableTriggerStage<FalseTriggers> {
+ public:
+  FalseTriggers(std::vector<std::uint32_t> sensors, double mean_per_tick)
+      : sensors_(std::move(sensors)), mean_per_tick_(mean_per_tick) {}
+
+  void begin_run(std::uint64_t seed, std::uint32_t run) override {
+    streams_ = streams_of(sensors_, seed, run, Purpose::false_trigger);
+    next_.clear();
+    for (Stream& stream : streams_) next_.push_back(ticks_to_event(stream, mean_per_tick_));
+  }
+
+  void tick(std::int64_t tick, std::span<std::uint8_t> triggers) noexcept override {
+    for (std::size_t i = 0; i < sensors_.size(); ++i) {
+      if (tick != next_[i]) continue;
+      triggers[sensors_[i]] = 1;
+      next_[i] += ticks_to_event(streams_[i], mean_per_tick_);
+    }
+  }
+
+ private:
+  std::vector<std::uint32_t> sensors_;
+  double mean_per_tick_;
+  std::vector<Stream> streams_;     ///< (n_sensors)
+  std::vector<std::int64_t> next_;  ///< (n_sensors) tick
+};
+
+std::unique_ptr<TriggerStage> make(const EffectSpec& effect, const StageContext& context) {
+  return std::make_unique<FalseTriggers>(sensors_of(effect, context.scene),
+                                         effect.parameters.at("rate_per_s") / context.sensing.tick_rate_hz);
+}
+
+}  // namespace
+
+const Effect& false_triggers() {
+  static const Effect effect{
+      .info = {.name = "false_triggers",
+               .family = Family::environment,
+               .stage = "environment",
+               .summary = "Sensors trigger at random moments without anybody's doing, at one rate.",
+               .fingerprint = "silent cells come alive, all by the same amount; single ones, at any moment",
+               .confused_with = {"trigger_bursts"},
+               .parameters = {{.name = "rate_per_s",
+                               .unit = "1/s",
+                               .off = 0.0,
+                               .typical = 0.01,
+                               .low = 0.0005,
+                               .high = 0.06,
+                               .least = 0.0,
+                               .most = 10.0,
+                               .scale = Scale::logarithmic,
+                               .source = "assumed: from one in half an hour to one in 17 s"}},
+               .choices = {sensor_choice()},
+               .reach = Reach::triggers},
+      .make_stage = make};
+  return effect;
+}
+
+}  // namespace pirsim::effects

@@ -1,0 +1,161 @@
+// What every entry of the catalogue keeps to. A new entry is tested here without another line.
+#include <algorithm>
+#include <set>
+
+#include "pirsim/sim/state.hpp"
+#include "pirsim/sim/zone_tracks.hpp"
+#include "support/catch.hpp"
+#include "support/effects.hpp"
+#include "support/temporary_folder.hpp"
+
+using namespace pirsim;
+using namespace pirsim::test;
+using effects::Effect;
+using effects::Reach;
+
+namespace {
+
+struct Place {
+  SceneSpec scene;
+  ScriptSpec script;
+};
+std::vector<Place> places() {
+  return {{shipped_scene("meeting_room.gltf"), short_study_a()}, {shipped_scene("open_office.gltf"), short_office()}};
+}
+Model model_of(const Place& place, std::vector<EffectSpec> effects) {
+  return compile(place.scene, with(place.script, std::move(effects)));
+}
+
+std::vector<EffectSpec> everything(EffectSpec (*at)(const Effect&)) {
+  std::vector<EffectSpec> specs;
+  for (const Effect* effect : effects::catalogue()) specs.push_back(at(*effect));
+  return specs;
+}
+
+}  // namespace
+
+TEST_CASE("every effect at off leaves every row as it is: in a meeting room and an open office") {
+  for (const Place& place : places()) {
+    const auto plain = results_of(model_of(place, {}));
+    CHECK(same_rows(results_of(model_of(place, everything(effects::off))), plain));
+    for (const Effect* effect : effects::catalogue()) {
+      INFO(effect->info.name << " in " << place.scene.name);
+      CHECK(same_rows(results_of(model_of(place, {effects::off(*effect)})), plain));
+    }
+  }
+}
+
+TEST_CASE("every effect at full strength changes some row: in one of the rooms at least") {
+  std::set<std::string> seen;
+  for (const Place& place : places()) {
+    const auto plain = results_of(model_of(place, {}));
+    for (const Effect* effect : effects::catalogue()) {
+      const Model model = model_of(place, {strong(*effect)});
+      if (!same_rows(results_of(model), plain)) seen.insert(effect->info.name);
+    }
+  }
+  for (const Effect* effect : effects::catalogue()) {
+    INFO(effect->info.name);
+    CHECK(seen.contains(effect->info.name));
+  }
+}
+
+TEST_CASE("an effect's rows don't depend on the number of threads and a copied state goes on alike") {
+  const Place place = places().front();
+  for (const Effect* effect : effects::catalogue()) {
+    INFO(effect->info.name);
+    const Model model = model_of(place, {strong(*effect)});
+    const auto one = results_of(model, 1);
+    CHECK(same_rows(one, results_of(model, 2)));
+    State state(model, 1);
+    for (int i = 0; i < 20; ++i) step(model, state);
+    State copy = state;
+    while (step(model, state)) {
+      REQUIRE(step(model, copy));
+      REQUIRE(copy.sample() == state.sample());
+    }
+    CHECK(one[1].samples.back() == copy.sample());
+  }
+}
+
+TEST_CASE("remembered zones give the rows of the study with every effect that acts after them") {
+  const Place place = places().front();
+  const Model plain = model_of(place, {});
+  const sim::ZoneTracks plain_tracks = sim::trace(plain, all_runs(plain), 1);
+  for (const Effect* effect : effects::catalogue()) {
+    INFO(effect->info.name);
+    const EffectSpec spec = strong(*effect);
+    const Model model = model_of(place, {spec});
+    const auto rows = results_of(model);
+    const bool traced_anew = effect->info.reach == Reach::geometry;
+    const sim::ZoneTracks own_tracks = traced_anew ? sim::trace(model, all_runs(model), 1) : sim::ZoneTracks{};
+    const sim::ZoneTracks& tracks = traced_anew ? own_tracks : plain_tracks;
+    const auto logic = sim::make_logic(model);
+    logic->prepare(tracks.sets);
+    const effects::Pipeline pipeline = sim::make_pipeline(plain, std::vector{spec});
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      CHECK(sim::emit(tracks, i, *logic, model.script().seed, pipeline).samples == rows[i].samples);
+    }
+  }
+}
+
+TEST_CASE("an effect reads back from the script that is written of it and does the same") {
+  const TemporaryFolder folder;
+  const Place place = places().front();
+  Stream stream({7, 0, 0, Purpose::test});
+  for (const Effect* effect : effects::catalogue()) {
+    INFO(effect->info.name);
+    const EffectSpec spec = effects::draw_from_prior(*effect, place.scene, place.script, stream);
+    const std::string text = io::to_yaml(with(place.script, {spec}));
+    const ScriptSpec again = io::read_script(folder.write("script.yaml", text));
+    REQUIRE(again.effects.size() == 1);
+    CHECK(again.effects[0].parameters == spec.parameters);
+    CHECK(again.effects[0].choices == spec.choices);
+    CHECK(io::to_yaml(again) == text);
+  }
+}
+
+TEST_CASE("a prior's draws are accepted by the check and stay in their ranges") {
+  Stream stream({8, 0, 0, Purpose::test});
+  for (const Place& place : places()) {
+    for (const Effect* effect : effects::catalogue()) {
+      for (int i = 0; i < 50; ++i) {
+        const EffectSpec spec = effects::draw_from_prior(*effect, place.scene, place.script, stream);
+        Diagnostics diagnostics;
+        effects::check(std::vector{spec}, place.scene, diagnostics);
+        INFO(effect->info.name);
+        REQUIRE_FALSE(diagnostics.has_errors());
+        REQUIRE_FALSE(effects::is_off(spec));
+      }
+    }
+  }
+}
+
+TEST_CASE("entries are complete and refer to one another by name") {
+  std::set<std::string> names;
+  for (const Effect* effect : effects::catalogue()) names.insert(effect->info.name);
+  CHECK(names.size() == effects::catalogue().size());
+  for (const Effect* effect : effects::catalogue()) {
+    const effects::EffectInfo& info = effect->info;
+    INFO(info.name);
+    CHECK_FALSE(info.summary.empty());
+    CHECK_FALSE(info.fingerprint.empty());
+    CHECK_FALSE(info.stage.empty());
+    REQUIRE_FALSE(info.parameters.empty());
+    CHECK(info.parameters.front().role == effects::Role::strength);
+    for (const std::string& other : info.confused_with) CHECK(names.contains(other));
+    for (const effects::ParameterInfo& parameter : info.parameters) {
+      INFO(parameter.name);
+      CHECK_FALSE(parameter.source.empty());
+      CHECK((parameter.low < parameter.high || parameter.scale == effects::Scale::whole));
+      CHECK(parameter.least <= std::min({parameter.low, parameter.off, parameter.typical}));
+      CHECK(parameter.most >= std::max({parameter.high, parameter.off, parameter.typical}));
+      CHECK((parameter.scale != effects::Scale::logarithmic || parameter.low > 0.0));
+      CHECK((parameter.role == effects::Role::strength || parameter.off == parameter.typical));
+    }
+    const bool rows = effect->make_row_stage != nullptr, triggers = effect->make_stage != nullptr;
+    CHECK((effect->alter != nullptr || rows || triggers));
+    CHECK((info.reach == Reach::rows) == rows);
+    CHECK((info.reach == Reach::triggers) == triggers);
+  }
+}

@@ -1,0 +1,222 @@
+// Trigger stages against closed forms, on triggers made by hand.
+#include <algorithm>
+#include <cmath>
+
+#include "pirsim/core/random.hpp"
+#include "support/catch.hpp"
+#include "support/effects.hpp"
+
+using namespace pirsim;
+using namespace pirsim::test;
+
+namespace {
+
+constexpr int rate_hz = 50;
+
+/// Two sensors that see nothing.
+struct Bench {
+  SceneSpec scene;
+  SensingSpec sensing;
+  RayBundle rays;
+
+  Bench() {
+    scene.name = "bench";
+    scene.sensors = {{"A", "none", {}}, {"B", "none", {}}};
+  }
+  [[nodiscard]] effects::Pipeline pipeline(const std::vector<EffectSpec>& effects, std::uint32_t run = 0) const {
+    effects::Pipeline pipeline(effects, {scene, sensing, rays});
+    pipeline.begin_run(1, run);
+    return pipeline;
+  }
+};
+
+EffectSpec effect(const std::string& name, std::map<std::string, double, std::less<>> parameters,
+                  std::map<std::string, std::string, std::less<>> choices = {}) {
+  return {name, std::move(parameters), std::move(choices), {}};
+}
+
+using Series = std::vector<std::uint8_t>;  // (n_ticks) of one sensor, from tick 1 on
+
+/// Both sensors' triggers after the pipeline; sensor A is given `before`, sensor B nothing.
+std::array<Series, 2> through(effects::Pipeline pipeline, const Series& before) {
+  std::array<Series, 2> after;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    std::array<std::uint8_t, 2> triggers{before[i], 0};
+    pipeline.tick(static_cast<std::int64_t>(i) + 1, triggers);
+    for (std::size_t s : {0U, 1U}) after[s].push_back(triggers[s]);
+  }
+  return after;
+}
+
+Series with_ones(std::size_t n, const std::vector<std::size_t>& ticks) {
+  Series series(n, 0);
+  for (const std::size_t tick : ticks) series[tick - 1] = 1;
+  return series;
+}
+std::vector<std::size_t> ones(const Series& series) {
+  std::vector<std::size_t> ticks;
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    if (series[i] != 0) ticks.push_back(i + 1);
+  }
+  return ticks;
+}
+Series random_triggers(std::size_t n, double probability) {
+  Stream stream({3, 0, 0, Purpose::test});
+  Series series(n);
+  for (std::uint8_t& trigger : series) trigger = stream.uniform() < probability ? 1 : 0;
+  return series;
+}
+double count(const Series& series) { return static_cast<double>(std::ranges::count(series, std::uint8_t{1})); }
+
+/// Windows with a trigger.
+double windows(const Series& series) {
+  double n = 0;
+  for (std::size_t begin = 0; begin + rate_hz <= series.size(); begin += rate_hz) {
+    const std::span<const std::uint8_t> window(&series[begin], rate_hz);
+    n += std::ranges::find(window, std::uint8_t{1}) != window.end() ? 1 : 0;
+  }
+  return n;
+}
+
+}  // namespace
+
+TEST_CASE("false triggers come as often as their rate says with the spread of a Poisson process") {
+  const std::size_t n_ticks = 4'000'000;
+  const double rate = 0.05, seconds = static_cast<double>(n_ticks) / rate_hz;
+  const auto after = through(Bench().pipeline({effect("false_triggers", {{"rate_per_s", rate}})}), Series(n_ticks, 0));
+  const double standard_error = std::sqrt(rate * seconds);  // 63 of 4000
+  for (const Series& series : after) {
+    CHECK(std::abs(count(series) - rate * seconds) < 4.0 * standard_error);
+    // Must fail: a rate that is a tenth off.
+    CHECK_FALSE(std::abs(count(series) - 1.1 * rate * seconds) < 4.0 * standard_error);
+    // Gaps are exponential: the share longer than the mean is 1/e.
+    const auto ticks = ones(series);
+    double longer = 0;
+    for (std::size_t i = 1; i < ticks.size(); ++i)
+      longer += static_cast<double>(ticks[i] - ticks[i - 1]) > rate_hz / rate ? 1 : 0;
+    const double gaps = static_cast<double>(ticks.size() - 1), p = std::exp(-1.0);
+    CHECK(std::abs(longer - p * gaps) < 4.0 * std::sqrt(p * (1 - p) * gaps));
+    CHECK_FALSE(std::abs(longer - 0.5 * gaps) < 4.0 * std::sqrt(p * (1 - p) * gaps));
+  }
+  CHECK(after[0] != after[1]);
+}
+
+TEST_CASE("false triggers of one sensor leave the other alone") {
+  const auto only_b =
+      through(Bench().pipeline({effect("false_triggers", {{"rate_per_s", 1.0}}, {{"sensor", "B"}})}), Series(20000, 0));
+  const auto both = through(Bench().pipeline({effect("false_triggers", {{"rate_per_s", 1.0}})}), Series(20000, 0));
+  CHECK(count(only_b[0]) == 0);
+  CHECK(only_b[1] == both[1]);  // and draw the same numbers, with or without the others
+}
+
+TEST_CASE("bursts come back a period apart and hold triggers at their rate") {
+  const std::size_t n_ticks = 2'000'000;
+  const auto after = through(
+      Bench().pipeline({effect("trigger_bursts", {{"length_s", 4.0}, {"period_s", 20.0}, {"rate_per_s", 2.0}})}, 5),
+      Series(n_ticks, 0));
+  // Folded by the period, everything lies within one stretch of four seconds, which both sensors share.
+  Series folded(1000, 0);
+  for (const Series& series : after) {
+    for (const std::size_t tick : ones(series)) folded[tick % 1000] = 1;
+  }
+  std::size_t longest_gap = 0, gap = 0;
+  for (std::size_t i = 0; i < 2 * folded.size(); ++i) {
+    gap = folded[i % 1000] != 0 ? 0 : gap + 1;
+    longest_gap = std::max(longest_gap, gap);
+  }
+  CHECK(longest_gap >= 1000 - 201);
+  CHECK(longest_gap <= 1000 - 150);
+  const double expected = 2.0 * static_cast<double>(n_ticks) / rate_hz * 4.0 / 20.0;  // 16000
+  for (const Series& series : after) {
+    // A tick holds one trigger at most: 2 % fewer.
+    const double per_tick = 1.0 - std::exp(-2.0 / rate_hz);
+    CHECK(std::abs(count(series) - expected * per_tick * rate_hz / 2.0) < 4.0 * std::sqrt(expected));
+    CHECK_FALSE(std::abs(count(series) - 1.1 * expected) < 4.0 * std::sqrt(expected));
+  }
+}
+
+TEST_CASE("missed triggers thin the windows by their probability and nothing within a window") {
+  const Series before = random_triggers(2'000'000, 0.02);
+  const auto after = through(Bench().pipeline({effect("missed_triggers", {{"probability", 0.3}})}), before)[0];
+  const double n = windows(before), kept = windows(after);
+  const double standard_error = std::sqrt(0.3 * 0.7 * n);
+  CHECK(std::abs(kept - 0.7 * n) < 4.0 * standard_error);
+  CHECK_FALSE(std::abs(kept - 0.73 * n) < 4.0 * standard_error);  // must fail
+  for (std::size_t begin = 0; begin < before.size(); begin += rate_hz) {
+    const bool whole = std::equal(&before[begin], &before[begin] + rate_hz, &after[begin]);
+    const bool none = std::all_of(&after[begin], &after[begin] + rate_hz, [](auto t) { return t == 0; });
+    REQUIRE((whole || none));
+  }
+}
+
+TEST_CASE("after a trigger a dead time lets nothing through and the next trigger after it at once") {
+  const Series before = with_ones(500, {10, 11, 109, 110, 111, 300});
+  const auto after = through(Bench().pipeline({effect("dead_time", {{"dead_s", 2.0}})}), before)[0];
+  CHECK(ones(after) == std::vector<std::size_t>{10, 110, 300});
+  const auto busy =
+      ones(through(Bench().pipeline({effect("dead_time", {{"dead_s", 2.0}})}), random_triggers(200'000, 0.05))[0]);
+  std::size_t shortest = 1000;
+  for (std::size_t i = 1; i < busy.size(); ++i) shortest = std::min(shortest, busy[i] - busy[i - 1]);
+  CHECK(shortest == 100);
+  // The rate of a non-paralysable counter: r / (1 + r tau), one tick more for the mean wait.
+  const double expected = 200'000 / (1 / 0.05 + 100 - 1);
+  CHECK(std::abs(static_cast<double>(busy.size()) - expected) < 0.02 * expected);
+}
+
+TEST_CASE("a pulse holds for its length and begins anew with every trigger") {
+  const Series before = with_ones(400, {10, 40, 300});
+  const auto after = ones(through(Bench().pipeline({effect("pulse_stretching", {{"hold_s", 1.0}})}), before)[0]);
+  std::vector<std::size_t> expected;
+  for (std::size_t tick = 10; tick <= 90; ++tick) expected.push_back(tick);
+  for (std::size_t tick = 300; tick <= 350; ++tick) expected.push_back(tick);
+  CHECK(after == expected);
+}
+
+TEST_CASE("pulses of random length spread evenly round their mean") {
+  std::vector<std::size_t> every_four_seconds;
+  for (std::size_t tick = 1; tick < 1'000'000; tick += 200) every_four_seconds.push_back(tick);
+  const auto after = through(Bench().pipeline({effect("pulse_stretching", {{"hold_s", 2.0}, {"spread", 0.5}})}),
+                             with_ones(1'000'000, every_four_seconds))[0];
+  double sum = 0, squares = 0;
+  const auto n = static_cast<double>(every_four_seconds.size());
+  for (const std::size_t tick : every_four_seconds) {
+    double length = 0;
+    while (after[tick + static_cast<std::size_t>(length)] != 0) ++length;
+    CHECK(length >= 50);
+    CHECK(length <= 150);
+    sum += length;
+    squares += length * length;
+  }
+  const double mean = sum / n, variance = squares / n - mean * mean, uniform = 100.0 * 100.0 / 12.0;
+  CHECK(std::abs(mean - 100.0) < 4.0 * std::sqrt(uniform / n));
+  CHECK_FALSE(std::abs(mean - 105.0) < 4.0 * std::sqrt(uniform / n));
+  CHECK(std::abs(variance - uniform) < 0.1 * uniform);
+}
+
+TEST_CASE("a late clock stamps every trigger later by its lag and its drift") {
+  const Series before = with_ones(5000, {1, 2, 50, 1000, 1001, 3000, 4999});
+  const auto lag = through(Bench().pipeline({effect("clock_lag", {{"lag_s", 1.0}, {"drift_percent", 0.0}})}), before);
+  CHECK(ones(lag[0]) == std::vector<std::size_t>{51, 52, 100, 1050, 1051, 3050});
+  const auto drift = through(Bench().pipeline({effect("clock_lag", {{"lag_s", 0.0}, {"drift_percent", 1.0}})}), before);
+  CHECK(ones(drift[0]) == std::vector<std::size_t>{1, 2, 51, 1010, 1011, 3030});
+}
+
+TEST_CASE("stages act in the catalogue's order whatever the script's") {
+  const Bench bench;
+  const Series before = random_triggers(50'000, 0.01);
+  const std::vector<EffectSpec> effects{effect("pulse_stretching", {{"hold_s", 0.5}}),
+                                        effect("dead_time", {{"dead_s", 1.0}}),
+                                        effect("false_triggers", {{"rate_per_s", 0.1}})};
+  const std::vector<EffectSpec> reversed(effects.rbegin(), effects.rend());
+  CHECK(through(bench.pipeline(effects), before) == through(bench.pipeline(reversed), before));
+}
+
+TEST_CASE("one effect's chances are the same whatever other effects there are") {
+  const Bench bench;
+  const Series silent(200'000, 0);
+  const EffectSpec falses = effect("false_triggers", {{"rate_per_s", 0.1}}, {{"sensor", "A"}});
+  const EffectSpec bursts = effect("trigger_bursts", {{"period_s", 30.0}}, {{"sensor", "B"}});
+  const auto both = through(bench.pipeline({falses, bursts}), silent);
+  CHECK(both[0] == through(bench.pipeline({falses}), silent)[0]);
+  CHECK(both[1] == through(bench.pipeline({bursts}), silent)[1]);
+}
