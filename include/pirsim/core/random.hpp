@@ -21,7 +21,10 @@ enum class Purpose : std::uint32_t {
   fidgeting = 9,       ///< fidgeting: when somebody moves, and how
   dead_sensor = 10,    ///< dead_sensor: which rows a dying sensor loses
   effect_prior = 11,   ///< parameters drawn from the catalogue's priors
-  test = 0xFFFF0000,   ///< reserved for tests
+  // Of the physical response, from 300 on.
+  detector_noise = 300,  ///< of one sensor's element and amplifier
+  reader_phase = 301,    ///< when in its window each sensor is read
+  test = 0xFFFF0000,     ///< reserved for tests
 };
 
 struct StreamKey {

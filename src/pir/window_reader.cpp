@@ -1,0 +1,32 @@
+#include "pirsim/pir/window_reader.hpp"
+
+#include <utility>
+
+namespace pirsim::pir {
+
+WindowReader::WindowReader(std::vector<std::int32_t> lead_ticks, std::int32_t ticks_per_window)
+    : lead_ticks_(std::move(lead_ticks)),
+      ticks_per_window_(ticks_per_window),
+      latches_(lead_ticks_.size(), 0),
+      readings_(lead_ticks_.size(), 0) {}
+
+void WindowReader::advance(std::int64_t tick, std::span<const std::uint8_t> triggers) noexcept {
+  for (std::size_t sensor = 0; sensor < latches_.size(); ++sensor) {
+    if (triggers[sensor] != 0) latches_[sensor] = 1;
+    if ((tick + lead_ticks_[sensor]) % ticks_per_window_ == 0) {
+      readings_[sensor] = std::exchange(latches_[sensor], std::uint8_t{0});
+    }
+  }
+}
+
+std::vector<std::int32_t> drawn_leads(std::size_t n_sensors, std::int32_t ticks_per_window, std::uint64_t seed,
+                                      std::uint32_t run) {
+  std::vector<std::int32_t> leads;
+  for (std::uint32_t sensor = 0; sensor < n_sensors; ++sensor) {
+    Stream stream({.seed = seed, .run = run, .entity = sensor, .purpose = Purpose::reader_phase});
+    leads.push_back(static_cast<std::int32_t>(stream.index(static_cast<std::uint32_t>(ticks_per_window))));
+  }
+  return leads;
+}
+
+}  // namespace pirsim::pir
