@@ -9,10 +9,11 @@
 #include "pirsim/io/script_reader.hpp"
 #include "pirsim/sim/model.hpp"
 #include "pirsim/sim/study.hpp"
+#include "support/paths.hpp"
 
 namespace pirsim::test {
 
-inline std::filesystem::path data(const std::string& file) { return std::filesystem::path(PIRSIM_DATA_DIR) / file; }
+inline std::filesystem::path data(const std::string& file) { return data_dir() / file; }
 inline SceneSpec shipped_scene(const std::string& file) { return io::read_scene(data("rooms/" + file)); }
 inline ScriptSpec shipped_script(const std::string& file, const std::vector<std::string>& overrides = {}) {
   return io::read_script(data("studies/" + file), overrides);

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "support/catch.hpp"
+#include "support/paths.hpp"
 
 using namespace pirsim;
 using namespace pirsim::io;
@@ -78,7 +79,7 @@ TEST_CASE("CSV that breaks the rules is refused with line and column", "[csv]") 
 
 TEST_CASE("the paper's Table 1 is read whole", "[csv]") {
   const std::vector<MeasuredCell> cells =
-      read_measured_cells(std::string(PIRSIM_DATA_DIR) + "/measured/stefansson2021_table1.csv");
+      read_measured_cells(pirsim::test::data_dir() / "measured/stefansson2021_table1.csv");
   REQUIRE(cells.size() == 50);
   const MeasuredCell& cell = cells[33];  // the paper's largest difference
   CHECK(cell.trial == "S7");

@@ -11,6 +11,7 @@
 
 #include "pirsim/io/scene_reader.hpp"
 #include "support/catch.hpp"
+#include "support/paths.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace pirsim::test {
@@ -118,7 +119,7 @@ struct GltfBuilder {
   }
   [[nodiscard]] SceneSpec read() const {
     const TemporaryFolder folder;
-    return io::read_scene(folder.write("room.gltf", text()), {{std::filesystem::path(PIRSIM_DATA_DIR) / "sensors"}});
+    return io::read_scene(folder.write("room.gltf", text()), {{pirsim::test::data_dir() / "sensors"}});
   }
 };
 

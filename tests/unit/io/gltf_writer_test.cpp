@@ -16,6 +16,7 @@
 #include "pirsim/core/random.hpp"
 #include "pirsim/geom/triangle_surface.hpp"
 #include "support/catch.hpp"
+#include "support/paths.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace pirsim;
@@ -149,7 +150,7 @@ void check_equal(const tinygltf::Model& model, const ExportedRun& run) {
 /// Whether the file passes tools/validate_gltf, and what it said.
 std::pair<bool, std::string> validated(const fs::path& file) {
   const fs::path said = file.string() + ".txt";
-  const std::string tool = fs::path(PIRSIM_TESTS_DIR).parent_path() / "tools" / "validate_gltf";
+  const std::string tool = pirsim::test::tests_dir().parent_path() / "tools" / "validate_gltf";
   const int status = std::system(("'" + tool + "' '" + file.string() + "' >'" + said.string() + "' 2>&1").c_str());
   return {status == 0, content(said)};
 }

@@ -4,12 +4,13 @@
 
 #include "gltf_builder.hpp"
 #include "support/catch.hpp"
+#include "support/paths.hpp"
 
 using namespace pirsim::test;
 
 namespace {
 
-const std::filesystem::path folder = std::filesystem::path(PIRSIM_TESTS_DIR) / "e2e/hostile/scenes";
+const std::filesystem::path folder = pirsim::test::tests_dir() / "e2e/hostile/scenes";
 
 struct Expected {
   std::string file, place, message;
@@ -37,9 +38,8 @@ TEST_CASE("every hostile scene is refused with file, line and column and a messa
   std::set<std::string> listed{"expected.tsv", "README.md"};
   for (const Expected& expected : expected_faults()) {
     listed.insert(expected.file);
-    const std::string told = fault_of([&] {
-      return pirsim::io::read_scene(folder / expected.file, {{std::filesystem::path(PIRSIM_DATA_DIR) / "sensors"}});
-    });
+    const std::string told = fault_of(
+        [&] { return pirsim::io::read_scene(folder / expected.file, {{pirsim::test::data_dir() / "sensors"}}); });
     const std::string place = expected.place == "-" ? ": error: " : ":" + expected.place + ": error: ";
     CHECK_THAT(told, contains(expected.file + place) && contains(expected.message));
   }

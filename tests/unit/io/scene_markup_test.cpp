@@ -3,6 +3,7 @@
 
 #include "gltf_builder.hpp"
 #include "support/catch.hpp"
+#include "support/paths.hpp"
 
 using pirsim::SceneSpec;
 using pirsim::Vec3;
@@ -169,10 +170,10 @@ TEST_CASE("sensor files are looked for in the given folders before those beside 
   const auto file = folder.write("rooms/room.gltf", scene.text());
   const auto read = [&] { return pirsim::io::read_scene(file); };
   CHECK_THAT(fault_of(read), contains("room.gltf:") && contains("sensor model 'EKMC1604111' is not known; no folder"));
-  REQUIRE(setenv("PIRSIM_DATA_DIR", PIRSIM_DATA_DIR, 1) == 0);
+  REQUIRE(setenv("PIRSIM_DATA_DIR", pirsim::test::data_dir().c_str(), 1) == 0);
   CHECK(read().sensor_models.count("EKMC1604111") == 1);
   REQUIRE(unsetenv("PIRSIM_DATA_DIR") == 0);
-  std::filesystem::copy(std::filesystem::path(PIRSIM_DATA_DIR) / "sensors", folder.path() / "sensors");
+  std::filesystem::copy(pirsim::test::data_dir() / "sensors", folder.path() / "sensors");
   CHECK(read().sensor_models.count("EKMC1604111") == 1);
   const auto first = folder.write("first/EKMC1604111.yaml", "not a sensor");
   CHECK_THAT(fault_of([&] { return pirsim::io::read_scene(file, {{folder.path() / "first"}}); }),
@@ -222,12 +223,12 @@ TEST_CASE("buffers outside the scene's folder are not opened, not even through a
 }
 
 TEST_CASE("the example of the documentation is a scene", "[scene]") {
-  std::ifstream page(std::filesystem::path(PIRSIM_DATA_DIR) / ".." / "docs/formats/scene.md");
+  std::ifstream page(pirsim::test::data_dir() / ".." / "docs/formats/scene.md");
   const std::string text(std::istreambuf_iterator<char>(page), {});
   const std::size_t begin = text.find("```json\n") + 8;
   const TemporaryFolder folder;
   const auto file = folder.write("room.gltf", text.substr(begin, text.find("```", begin) - begin));
-  const SceneSpec spec = pirsim::io::read_scene(file, {{std::filesystem::path(PIRSIM_DATA_DIR) / "sensors"}});
+  const SceneSpec spec = pirsim::io::read_scene(file, {{pirsim::test::data_dir() / "sensors"}});
   CHECK(spec.floor.area_m2() == Approx(12.0));
   CHECK(spec.seats.size() == 1);
   CHECK(spec.entrances.size() == 1);

@@ -3,6 +3,7 @@
 #include "gltf_builder.hpp"
 #include "pirsim/io/scene_reader.hpp"
 #include "support/catch.hpp"
+#include "support/paths.hpp"
 
 using pirsim::SceneSpec;
 using pirsim::io::read_scene;
@@ -10,7 +11,7 @@ using pirsim::io::read_scene;
 namespace {
 
 SceneSpec shipped(const std::string& name) {
-  const std::filesystem::path data = PIRSIM_DATA_DIR;
+  const std::filesystem::path data = pirsim::test::data_dir();
   return read_scene(data / "rooms" / name, {{data / "sensors"}});
 }
 
@@ -91,7 +92,7 @@ TEST_CASE("the shipped rooms are what the generator writes", "[scene][rooms]") {
     WARN("skipped: python3 is not installed");
     return;
   }
-  const std::filesystem::path data = PIRSIM_DATA_DIR;
+  const std::filesystem::path data = pirsim::test::data_dir();
   const pirsim::test::TemporaryFolder folder;
   const std::string command =
       "python3 '" + (data / ".." / "tools" / "make_rooms.py").string() + "' -o '" + folder.path().string() + "'";

@@ -12,12 +12,13 @@
 
 #include "pirsim/core/error.hpp"
 #include "support/catch.hpp"
+#include "support/paths.hpp"
 
 using namespace pirsim;
 
 namespace {
 
-const std::filesystem::path sensors = std::filesystem::path(PIRSIM_DATA_DIR) / "sensors";
+const std::filesystem::path sensors = pirsim::test::data_dir() / "sensors";
 
 struct PlaneZone {
   Vec2 centre;

@@ -7,14 +7,13 @@
 #include "pirsim/io/sensor_reader.hpp"
 #include "pirsim/pir/motion_detector.hpp"
 #include "support/catch.hpp"
+#include "support/paths.hpp"
 
 using namespace pirsim;
 
 namespace {
 
-SensorModelSpec wall_lens() {
-  return io::read_sensor_model(std::string(PIRSIM_DATA_DIR) + "/sensors/EKMC1604111.yaml");
-}
+SensorModelSpec wall_lens() { return io::read_sensor_model(pirsim::test::data_dir() / "sensors/EKMC1604111.yaml"); }
 
 Quat tilted_down(double degrees) { return glm::angleAxis(-degrees * M_PI / 180.0, Vec3(1, 0, 0)); }
 

@@ -8,6 +8,7 @@
 #include "pirsim/core/error.hpp"
 #include "pirsim/io/csv_reader.hpp"
 #include "support/catch.hpp"
+#include "support/paths.hpp"
 
 using namespace pirsim;
 using namespace pirsim::studies;
@@ -15,7 +16,7 @@ using namespace pirsim::studies;
 namespace {
 
 std::vector<MeasuredCell> paper() {
-  return io::read_measured_cells(std::string(PIRSIM_DATA_DIR) + "/measured/stefansson2021_table1.csv");
+  return io::read_measured_cells(pirsim::test::data_dir() / "measured/stefansson2021_table1.csv");
 }
 
 /// mean |x - y| - 1/2 mean |x - x'|, pair by pair.
