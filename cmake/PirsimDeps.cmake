@@ -11,6 +11,10 @@ find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(Threads REQUIRED)
 find_package(NLopt REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)  # SHA-256 of data and inputs
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)  # Debian's package has no CMake file
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 # Vega draws the charts of reports: its script is built into the library.
 find_path(VEGA_DIR NAMES vega-parser.min.js vega.min.js PATHS /usr/share/javascript/vega NO_DEFAULT_PATH REQUIRED)

@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "app/commands.hpp"
+#include "app/row_output.hpp"
 #include "app/session.hpp"
 #include "pirsim/studies/sight.hpp"
 

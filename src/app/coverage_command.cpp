@@ -3,8 +3,10 @@
 
 #include "app/commands.hpp"
 #include "app/gnuplot_runner.hpp"
+#include "app/output_checks.hpp"
 #include "app/progress.hpp"
 #include "app/session.hpp"
+#include "app/stop_request.hpp"
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/coverage_reader.hpp"
 #include "pirsim/io/gnuplot.hpp"
@@ -47,10 +49,12 @@ studies::CoverageMap compute(const studies::CoverageStudy& study, const Inputs& 
   }
   Progress progress(static_cast<std::uint32_t>(study.grid().n_rows() - rows.n_found_rows()), inputs.verbosity,
                     "rows of squares");
+  const StopRequest stop;
   const auto keep = [&](std::size_t, const std::vector<studies::MotionCount>& counts) {
     rows.append(counts);
     map.counts.insert(map.counts.end(), counts.begin(), counts.end());
     progress.run_finished();
+    stop.throw_if_made();
   };
   studies::run_rows(study, rows.n_found_rows(), options.threads, keep);
   rows.remove();
@@ -72,6 +76,7 @@ void draw_maps(const studies::CoverageStudy& study, const studies::CoverageMap& 
 }  // namespace
 
 void coverage(const Inputs& inputs, const CoverageOptions& options) {
+  check_outputs({{"--report", options.report, {".html"}}}, inputs);
   const studies::CoverageStudy study = load_coverage(inputs);
   std::optional<io::AtomicFile> report_file;
   if (!options.report.empty()) report_file.emplace(options.report);

@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "app/commands.hpp"
+#include "app/output_checks.hpp"
 #include "app/session.hpp"
 #include "pirsim/io/gltf_writer.hpp"
 #include "pirsim/sim/beams.hpp"
@@ -32,6 +33,7 @@ void add_key(const Actor& actor, io::ExportedPerson& person) {
 }  // namespace
 
 void export_gltf(const Inputs& inputs, const ExportOptions& options) {
+  check_outputs({{"-o", options.output, {".gltf", ".glb"}}}, inputs);
   const Model model = load(inputs);
   const int rate = model.script().sensing.tick_rate_hz;
   const auto ticks_per_key = std::max<std::int64_t>(1, std::llround(rate / options.keys_per_s));

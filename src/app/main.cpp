@@ -1,13 +1,19 @@
 // pirsim's command line: argv -> options -> library calls, and errors -> messages and exit codes.
+#include <unistd.h>
 #include <CLI/CLI.hpp>
 
 #include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
+#include <map>
 #include <new>
+#include <sstream>
+#include <string_view>
 
 #include "app/commands.hpp"
+#include "app/output_checks.hpp"
+#include "app/row_output.hpp"
 #include "pirsim/core/error.hpp"
 #include "pirsim/core/version.hpp"
 #include "pirsim/rt/room.hpp"
@@ -24,6 +30,7 @@ constexpr const char* examples = R"(Examples:
   pirsim preview --scene room.gltf --script study.yaml -o room.png  a picture of room, people and beams
   pirsim coverage --scene room.gltf --script studyB.yaml -o maps   where each sensor sees a moving target
   pirsim export --scene room.gltf --script study.yaml -o run.glb    an animated glTF of one run
+  pirsim --scene room.gltf --script study.yaml --shard 3/100 -o out a block of the runs; then pirsim status, merge
 )";
 
 void add_inputs(CLI::App& command, Inputs& inputs) {
@@ -53,16 +60,51 @@ void add_inputs(CLI::App& command, Inputs& inputs) {
 }
 
 void add_run_options(CLI::App& command, RunOptions& options) {
-  command.add_option("-o,--output", options.output, "rows as CSV (default: standard output)")->option_text("FILE");
+  command
+      .add_option("-o,--output", options.output, "rows, .csv, .csv.gz or .csv.zst (default: as CSV on standard output)")
+      ->option_text("FILE");
   command.add_option("--summary", options.summary, "table of sums per trial and sensor, .csv or .md")
       ->option_text("FILE");
   command.add_option("--report", options.report, "counts and time series as one self-contained page, .html")
       ->option_text("FILE");
-  command.add_option("--zones", options.zones, "every zone's activity at every tick, as CSV")->option_text("FILE");
+  command.add_option("--zones", options.zones, "every zone's activity at every tick, .csv, .csv.gz or .csv.zst")
+      ->option_text("FILE");
   command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
+  command
+      .add_option("--shard", options.shard,
+                  "only this block of the runs: I/N, auto/N or auto (in a job array); -o names a folder")
+      ->option_text("I/N");
+  command.add_option("--format", options.format, "of a shard: .csv, .csv.gz or .csv.zst (default: .csv)")
+      ->option_text("ENDING")
+      ->check(CLI::IsMember(table_endings()));
+  command.add_flag_callback(
+      "--resume", [&] { options.start = RunOptions::Start::resume; },
+      "go on at the last whole run; nothing to do if all is done");
+  command.add_option("--max-time", options.max_time_s, "stop at the end of a run after so long: 3000, 50m, 2h")
+      ->option_text("TIME")
+      ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1.0}, {"m", 60.0}, {"h", 3600.0}},
+                                        CLI::AsNumberWithUnit::CASE_SENSITIVE, "TIME"));
   command.add_flag_callback(
       "--print-config", [&] { options.action = RunOptions::Action::print_config; },
       "print the resolved script and stop");
+}
+
+/// One word "X,Y,Z": an option of three values would take the next option for the third.
+void add_point(CLI::App& command, const std::string& name, std::optional<std::array<double, 3>>& point,
+               const std::string& what) {
+  const auto read = [name, &point](const std::string& text) {
+    std::istringstream stream(text);
+    std::array<double, 3> values{};
+    char comma = ',', rest = 0;
+    for (double& value : values) {
+      const bool is_first = &value == values.data();
+      if ((is_first || (stream >> comma && comma == ',')) && stream >> value) continue;
+      throw Error(ErrorCode::usage, name + ": expected X,Y,Z in metres, got '" + text + "'");
+    }
+    if (stream >> rest) throw Error(ErrorCode::usage, name + ": expected X,Y,Z in metres, got '" + text + "'");
+    point = values;
+  };
+  command.add_option_function<std::string>(name, read, what)->option_text("X,Y,Z");
 }
 
 void add_preview_options(CLI::App& command, PreviewOptions& options) {
@@ -74,8 +116,8 @@ void add_preview_options(CLI::App& command, PreviewOptions& options) {
   command.add_option("--beams", options.beams, "sensors whose beams are drawn, or all or none (default: the first)")
       ->option_text("ID,...")
       ->delimiter(',');
-  command.add_option("--camera", options.camera, "where the camera stands, m")->option_text("X,Y,Z")->delimiter(',');
-  command.add_option("--look-at", options.look_at, "what it looks at, m")->option_text("X,Y,Z")->delimiter(',');
+  add_point(command, "--camera", options.camera, "where the camera stands, m");
+  add_point(command, "--look-at", options.look_at, "what it looks at, m");
   command.add_option("--fov-deg", options.field_of_view_deg, "vertical field of view (default: 45)")
       ->option_text("DEG")
       ->check(CLI::Range(1.0, 170.0));
@@ -107,6 +149,12 @@ void add_export_options(CLI::App& command, ExportOptions& options) {
   command.add_option("--beams", options.beams, "sensors whose beams are drawn, or all or none (default: all)")
       ->option_text("ID,...")
       ->delimiter(',');
+}
+
+void add_campaign_options(CLI::App& command, CampaignOptions& options) {
+  command.add_option("DIR", options.folder, "folder with the shards")->required();
+  command.add_flag_callback(
+      "-q,--quiet", [&] { options.verbosity = Verbosity::quiet; }, "errors only");
 }
 
 std::string version_text() {
@@ -152,11 +200,23 @@ int run_command_line(int argc, char** argv) {
   placements_command->add_option("--threads", placement_options.threads, "0: all cores; changes no byte of any result")
       ->option_text("N");
 
+  CampaignOptions campaign_options;
+  CLI::App* status_command = app.add_subcommand("status", "which shards of a folder are missing or broken");
+  add_campaign_options(*status_command, campaign_options);
+  CLI::App* merge_command = app.add_subcommand("merge", "shards to one file, the same as of one process");
+  add_campaign_options(*merge_command, campaign_options);
+  merge_command->add_option("-o,--output", campaign_options.output, "rows, .csv, .csv.gz or .csv.zst")
+      ->option_text("FILE");
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const int code = app.exit(error);
     return code == 0 ? 0 : static_cast<int>(ErrorCode::usage);
+  }
+  if (*status_command || *merge_command) {
+    *status_command ? status(campaign_options) : merge(campaign_options);
+    return 0;
   }
   if (inputs.scene.empty() || inputs.script.empty()) {
     throw Error(ErrorCode::usage,
@@ -180,15 +240,32 @@ int run_command_line(int argc, char** argv) {
   return 0;
 }
 
+/// Libraries may allocate where they must not throw, as nlohmann's destructor does: that ends here.
+[[noreturn]] void end_without_memory() {
+  try {
+    if (const std::exception_ptr fault = std::current_exception()) std::rethrow_exception(fault);
+  } catch (const std::bad_alloc&) {
+    constexpr std::string_view message = "error: out of memory\n";
+    [[maybe_unused]] const auto written = ::write(STDERR_FILENO, message.data(), message.size());
+    std::_Exit(static_cast<int>(ErrorCode::internal));
+  } catch (...) {
+  }
+  std::abort();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGPIPE, SIG_DFL);  // `pirsim ... | head` ends quietly
+  std::set_terminate(end_without_memory);
+  std::signal(SIGPIPE, SIG_IGN);  // so that unfinished files are removed first
   try {
     return run_command_line(argc, argv);
   } catch (const Error& error) {
     std::cerr << error.what() << '\n';
     return static_cast<int>(error.code());
+  } catch (const ClosedPipe&) {
+    std::signal(SIGPIPE, SIG_DFL);  // `pirsim ... | head` ends quietly
+    std::raise(SIGPIPE);
   } catch (const std::bad_alloc&) {
     std::cerr << "error: out of memory\n";
   } catch (const std::exception& error) {

@@ -23,10 +23,14 @@ struct Inputs {
 };
 
 struct RunOptions {
-  std::filesystem::path output;   ///< empty: standard output
+  std::filesystem::path output;   ///< .csv, .csv.gz or .csv.zst; of a shard its folder; empty: standard output
   std::filesystem::path summary;  ///< .csv or .md
-  std::filesystem::path zones;
-  std::filesystem::path report;  ///< .html
+  std::filesystem::path zones;    ///< .csv, .csv.gz or .csv.zst
+  std::filesystem::path report;   ///< .html
+  std::string shard;              ///< "3/100", "auto"; empty: the whole study
+  std::string format = ".csv";    ///< ending of a shard's file
+  enum class Start { anew, resume } start = Start::anew;
+  std::optional<double> max_time_s;
   unsigned threads = 0;
   enum class Action { run, print_config } action = Action::run;
 };
@@ -56,6 +60,12 @@ struct WalkTestOptions {
 
 struct PlacementOptions {
   unsigned threads = 0;
+};
+
+struct CampaignOptions {
+  std::filesystem::path folder;  ///< with shards
+  std::filesystem::path output;  ///< of merge
+  Verbosity verbosity = Verbosity::normal;
 };
 
 struct ExportOptions {

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "app/commands.hpp"
+#include "app/output_checks.hpp"
 #include "app/session.hpp"
 #include "pirsim/core/units.hpp"
 #include "pirsim/io/png.hpp"
@@ -110,6 +111,7 @@ State go_to_moment(const Model& model, const PreviewOptions& options) {
 }  // namespace
 
 void preview(const Inputs& inputs, const PreviewOptions& options) {
+  check_outputs({{"-o", options.output, {".png"}}}, inputs);
   const Model model = load(inputs);
   const State state = go_to_moment(model, options);
 

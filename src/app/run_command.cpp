@@ -1,11 +1,17 @@
+#include <atomic>
 #include <iostream>
+#include <memory>
 #include <optional>
+#include <sstream>
 
 #include "app/commands.hpp"
+#include "app/output_checks.hpp"
 #include "app/progress.hpp"
+#include "app/row_output.hpp"
 #include "app/session.hpp"
-#include "pirsim/core/version.hpp"
+#include "app/stop_request.hpp"
 #include "pirsim/io/atomic_file.hpp"
+#include "pirsim/io/compression.hpp"
 #include "pirsim/io/csv_reader.hpp"
 #include "pirsim/io/csv_writer.hpp"
 #include "pirsim/io/manifest.hpp"
@@ -17,25 +23,6 @@
 
 namespace pirsim::app {
 namespace {
-
-/// A file that appears when all is well, or standard output.
-class Output {
- public:
-  explicit Output(const std::filesystem::path& path) {
-    if (!path.empty()) file_.emplace(path);
-  }
-  [[nodiscard]] std::ostream& stream() { return file_ ? file_->stream() : std::cout; }
-  void commit() {
-    if (file_) {
-      file_->commit();
-    } else if (!std::cout.flush()) {
-      throw Error(ErrorCode::io, "standard output can't be written");
-    }
-  }
-
- private:
-  std::optional<io::AtomicFile> file_;
-};
 
 std::vector<std::string> sensor_ids(const Model& model) {
   std::vector<std::string> ids;
@@ -51,28 +38,12 @@ std::vector<std::size_t> first_zones(const Model& model) {
 }
 
 void write_summary(const studies::Summary& summary, io::AtomicFile& file, const RunOptions& options,
-                   Verbosity verbosity) {
-  file.stream() << (options.summary.extension() == ".md" ? studies::to_markdown(summary) : studies::to_csv(summary));
+                   const std::string& title, Verbosity verbosity) {
+  const bool is_document = options.summary.extension() == ".md";
+  if (is_document) file.stream() << "# " << title << ": seconds with motion\n\n";
+  file.stream() << (is_document ? studies::to_markdown(summary) : studies::to_csv(summary));
   file.commit();
   if (verbosity != Verbosity::quiet) std::cerr << studies::to_text(summary);
-}
-
-std::string tracer_used(const Model& model) {
-  std::string name(rt::name(model.tracer()));
-  if (model.tracer() == rt::TracerKind::direct) name += " " + std::string(rt::direct_instruction_set());
-  return name;
-}
-
-io::Manifest manifest_of(const Model& model, const Inputs& inputs, std::uint64_t rows) {
-  return {.program = version() + " " + git_revision() + " " + compiler(),
-          .embree = rt::embree_version() + " " + rt::instruction_set(),
-          .tracer = tracer_used(model),
-          .scene = inputs.scene.filename().string(),
-          .script = inputs.script.filename().string(),
-          .resolved_script = io::to_yaml(model.script()),
-          .seed = model.script().seed,
-          .runs = model.n_runs(),
-          .rows = rows};
 }
 
 studies::Summary make_summary(const Model& model, const RunOptions& options) {
@@ -87,6 +58,111 @@ studies::Summary make_summary(const Model& model, const RunOptions& options) {
   return {trials, sensor_ids(model), measured};
 }
 
+/// Zones of all runs, compressed by the ending of the file's name.
+class ZoneOutput {
+ public:
+  ZoneOutput(const std::filesystem::path& file, const Model& model)
+      : file_(file),
+        writer_(file_.stream(), io::compression_of(file)),
+        csv_(lines_, sensor_ids(model), first_zones(model)) {}
+
+  void add(const RunResult& result) {
+    for (std::size_t i = 0; i < result.zones.size(); ++i) {
+      csv_.write(result.replicate, result.trial, static_cast<std::int64_t>(i) + 1, result.zones[i]);
+    }
+    pass_on();
+  }
+  void commit() {
+    pass_on();
+    writer_.finish();
+    file_.commit();
+  }
+
+ private:
+  void pass_on() {
+    writer_.write(lines_.view());
+    lines_.str({});
+    if (!file_.stream()) file_.commit();  // says why it can't be written
+  }
+
+  io::AtomicFile file_;
+  io::DataWriter writer_;
+  std::ostringstream lines_;
+  io::ZoneCsvWriter csv_;
+};
+
+/// The outputs that need all runs at once; nothing of them is left if the study ends early.
+class WholeStudyOutputs {
+ public:
+  WholeStudyOutputs(const Model& model, const Inputs& inputs, const RunOptions& options)
+      : inputs_(inputs), options_(options), summary_(make_summary(model, options)), report_(model), model_(model) {
+    if (!options.zones.empty()) zones_.emplace(options.zones, model);
+    if (!options.summary.empty()) summary_file_.emplace(options.summary);
+    if (!options.report.empty()) report_file_.emplace(options.report);
+  }
+  void add(const RunResult& result) {
+    if (zones_) zones_->add(result);
+    studies::RunCounts counts(model_.scene().sensors.size(), model_.script().summary);
+    for (const Sample& sample : result.samples) counts.add(sample);
+    summary_.add_run(result.trial, counts.counts());
+    report_.add_run(result, counts.counts());
+  }
+  void commit() {
+    if (zones_) zones_->commit();
+    if (summary_file_) write_summary(summary_, *summary_file_, options_, model_.script().name, inputs_.verbosity);
+    if (report_file_) write_page(*report_file_, report_.finish(summary_), inputs_);
+  }
+
+ private:
+  const Inputs& inputs_;
+  const RunOptions& options_;
+  studies::Summary summary_;
+  studies::StudyReport report_;
+  const Model& model_;
+  std::optional<ZoneOutput> zones_;
+  std::optional<io::AtomicFile> summary_file_, report_file_;
+};
+
+bool has_whole_study_outputs(const RunOptions& options) {
+  return !options.summary.empty() || !options.zones.empty() || !options.report.empty();
+}
+
+void check_options(const Inputs& inputs, const RunOptions& options) {
+  const bool sharded = !options.shard.empty();
+  const std::filesystem::path rows = sharded ? std::filesystem::path{} : options.output;
+  std::vector<NamedOutput> outputs{{"-o", rows, table_endings()},
+                                   {"--summary", options.summary, {".csv", ".md"}},
+                                   {"--zones", options.zones, table_endings()},
+                                   {"--report", options.report, {".html"}}};
+  if (!rows.empty()) outputs.push_back({"the manifest of -o", io::manifest_path(rows), {".json"}});
+  check_outputs(outputs, inputs);
+  const char* partial = sharded                                      ? "--shard"
+                        : options.start == RunOptions::Start::resume ? "--resume"
+                        : options.max_time_s                         ? "--max-time"
+                                                                     : nullptr;
+  if (partial == nullptr) return;
+  if (options.output.empty()) {
+    throw Error(ErrorCode::usage, std::string(partial) + " needs -o " + (sharded ? "DIR" : "FILE"));
+  }
+  if (!sharded && io::is_written_directly(options.output)) {
+    throw Error(ErrorCode::usage, std::string(partial) + ": '" + options.output.string() +
+                                      "' is no regular file, its rows can't be gone on with");
+  }
+  if (has_whole_study_outputs(options)) {
+    throw Error(ErrorCode::usage, std::string(partial) + " goes with none of --summary, --zones and --report: they " +
+                                      "need all runs at once");
+  }
+}
+
+std::string stop_message(const RunOptions& options, const std::string& cause, const Model& model,
+                         const RowOutput& rows) {
+  const RunRange left = rows.missing_runs();
+  std::string message = "stopped by " + cause;
+  if (options.output.empty() || io::is_written_directly(options.output)) return message;
+  message += ", " + std::to_string(left.count()) + " of " + std::to_string(model.n_runs()) + " runs are left";
+  return message + "; --resume goes on";
+}
+
 }  // namespace
 
 void run(const Inputs& inputs, const RunOptions& options) {
@@ -95,50 +171,43 @@ void run(const Inputs& inputs, const RunOptions& options) {
     require_written();
     return;
   }
+  check_options(inputs, options);
   const Model model = load(inputs);
   tell(studies::warnings(studies::look_around(model), model.scene().name), inputs.verbosity);
 
-  Output rows(options.output);
-  io::CsvWriter csv(rows.stream(), model.columns());
-  std::optional<io::AtomicFile> zones_file;
-  std::optional<io::ZoneCsvWriter> zones;
-  if (!options.zones.empty()) {
-    zones_file.emplace(options.zones);
-    zones.emplace(zones_file->stream(), sensor_ids(model), first_zones(model));
+  // Rows that only go to a stream can end anywhere, as by Ctrl-C.
+  std::optional<StopRequest> stop;
+  if (!options.output.empty() || has_whole_study_outputs(options)) stop.emplace();
+  const std::unique_ptr<RowOutput> rows = open_rows(model, options);
+  WholeStudyOutputs others(model, inputs, options);
+  const std::uint32_t wanted = rows->missing_runs().count();
+  Progress progress(wanted, inputs.verbosity);
+  std::atomic<std::uint32_t> done = 0;
+  const auto out_of_time = [&] { return options.max_time_s && done > 0 && progress.seconds() >= *options.max_time_s; };
+  StudyOptions study;
+  study.threads = options.threads;
+  study.record = options.zones.empty() ? Record::samples : Record::samples_and_zones;
+  study.runs = rows->missing_runs();
+  study.goes_on = [&] { return !(stop && stop->was_made()) && !out_of_time(); };
+  try {
+    run_study(model, study, [&](const RunResult& result) {
+      rows->add_run(result.samples);
+      others.add(result);
+      ++done;
+      progress.run_finished();
+    });
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::io) rows->discard();
+    throw;
   }
-  std::optional<io::AtomicFile> summary_file;
-  if (!options.summary.empty()) summary_file.emplace(options.summary);
-  std::optional<io::AtomicFile> report_file;
-  if (!options.report.empty()) report_file.emplace(options.report);
-  studies::Summary summary = make_summary(model, options);
-  studies::StudyReport report(model);
-  std::uint64_t n_rows = 0;
-  Progress progress(model.n_runs(), inputs.verbosity);
-  const StudyOptions study{options.threads, zones ? Record::samples_and_zones : Record::samples};
-  run_study(model, study, [&](const RunResult& result) {
-    for (const Sample& sample : result.samples) csv.write(sample);
-    n_rows += result.samples.size();
-    if (!rows.stream()) throw Error(ErrorCode::io, "the rows can't be written: is the disk full?");
-    for (std::size_t i = 0; zones && i < result.zones.size(); ++i) {
-      zones->write(result.replicate, result.trial, static_cast<std::int64_t>(i) + 1, result.zones[i]);
-    }
-    studies::RunCounts counts(model.scene().sensors.size(), model.script().summary);
-    for (const Sample& sample : result.samples) counts.add(sample);
-    summary.add_run(result.trial, counts.counts());
-    report.add_run(result, counts.counts());
-    progress.run_finished();
-  });
-  rows.commit();
-  if (zones_file) zones_file->commit();
-  if (summary_file) write_summary(summary, *summary_file, options, inputs.verbosity);
-  if (report_file) write_page(*report_file, report.finish(summary), inputs);
-  if (!options.output.empty()) {
-    std::filesystem::path side_car = options.output;
-    side_car += ".json";
-    io::write_manifest(side_car, manifest_of(model, inputs, n_rows));
+  if (done < wanted) {
+    const std::string cause = stop && stop->was_made() ? stop->signal_name() : "--max-time";
+    throw Error(ErrorCode::stopped, stop_message(options, cause, model, *rows));
   }
+  rows->commit();
+  others.commit();
   if (inputs.verbosity == Verbosity::verbose) {
-    std::cerr << model.n_runs() << " runs, " << n_rows << " rows in " << progress.seconds() << " s\n";
+    std::cerr << done << " runs, " << rows->rows() << " rows in " << progress.seconds() << " s\n";
   }
 }
 

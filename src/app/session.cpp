@@ -33,10 +33,6 @@ void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs) {
   file.commit();
 }
 
-void require_written() {
-  if (!std::cout.flush()) throw Error(ErrorCode::io, "standard output can't be written");
-}
-
 io::SceneOptions scene_options(const Inputs& inputs) {
   std::error_code unknown;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();

@@ -21,8 +21,6 @@ namespace pirsim::app {
 void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs);
 /// Where a scene's sensors are looked for: what the user names, and last the data that came with this program.
 [[nodiscard]] io::SceneOptions scene_options(const Inputs& inputs);
-/// Throws Error(io) if what was printed to standard output didn't get there.
-void require_written();
 void tell(const std::vector<Issue>& issues, Verbosity verbosity);
 
 }  // namespace pirsim::app

@@ -2,8 +2,10 @@
 #include <optional>
 
 #include "app/commands.hpp"
+#include "app/output_checks.hpp"
 #include "app/progress.hpp"
 #include "app/session.hpp"
+#include "app/stop_request.hpp"
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/scene_reader.hpp"
 #include "pirsim/io/walk_test_reader.hpp"
@@ -12,6 +14,7 @@
 namespace pirsim::app {
 
 void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
+  check_outputs({{"-o", options.output, {".csv"}}, {"--report", options.report, {".html"}}}, inputs);
   WalkTestSpec spec = io::read_walk_test(inputs.script, inputs.overrides);
   SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
@@ -19,9 +22,13 @@ void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
   io::AtomicFile file(options.output);
   std::optional<io::AtomicFile> report_file;
   if (!options.report.empty()) report_file.emplace(options.report);
+  const StopRequest stop;
   const studies::WalkTestResult result = [&] {
     Progress progress(static_cast<std::uint32_t>(test.grid().n_rows()), inputs.verbosity, "rows of points");
-    return studies::run_walk_test(test, options.threads, [&] { progress.run_finished(); });
+    return studies::run_walk_test(test, options.threads, [&] {
+      progress.run_finished();
+      stop.throw_if_made();
+    });
   }();
   file.stream() << to_csv(test, result);
   file.commit();

@@ -10,7 +10,7 @@ namespace pirsim::detail {
 
 void ordered_parallel(std::size_t count, unsigned threads,
                       const std::function<std::shared_ptr<void>(std::size_t)>& produce,
-                      const std::function<void(void*)>& consume) {
+                      const std::function<void(void*)>& consume, const std::function<bool()>& goes_on) {
   namespace tbb = oneapi::tbb;
   // More than TBB allows would only make it print a warning; the results don't depend on it.
   const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
@@ -19,7 +19,7 @@ void ordered_parallel(std::size_t count, unsigned threads,
   arena.execute([&] {
     std::size_t next = 0;
     const auto take = [&](tbb::flow_control& control) -> std::size_t {
-      if (next == count) {
+      if (next == count || (goes_on && !goes_on())) {
         control.stop();
         return 0;
       }

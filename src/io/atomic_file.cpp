@@ -5,25 +5,16 @@
 #include <system_error>
 #include <utility>
 
+#include "io/output_path.hpp"
 #include "pirsim/core/error.hpp"
 
 namespace pirsim::io {
-namespace {
-
-/// A link is followed, so that the file that it names is replaced and not the link.
-std::filesystem::path resolved(const std::filesystem::path& path) {
-  std::error_code fault;
-  const std::filesystem::path target = std::filesystem::canonical(path, fault);
-  return fault ? path : target;
-}
 
 bool is_written_directly(const std::filesystem::path& path) {
   std::error_code fault;
   const std::filesystem::file_status status = std::filesystem::status(path, fault);
   return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
 }
-
-}  // namespace
 
 std::filebuf::int_type AtomicFile::Buffer::overflow(int_type c) {
   errno = 0;

@@ -32,6 +32,7 @@ class BodyBuilder {
   BodyBuilder(const std::filesystem::path& file, Diagnostics& faults)
       : faults_(faults), document_(load_gltf(file, faults)) {}
 
+  [[nodiscard]] const std::vector<std::string>& files() const noexcept { return document_.files; }
   BodyMeshes build() {
     for (const PlacedNode& placed : place_nodes(document_, faults_)) {
       if (document_.model.nodes[static_cast<std::size_t>(placed.node)].mesh >= 0) add_part(placed);
@@ -82,7 +83,9 @@ BodyMeshes BodyMeshReader::read(const std::string& file, const Where& where, Dia
     return {};
   }
   try {
-    known->second = BodyBuilder(folder_ / file, faults).build();
+    BodyBuilder body(folder_ / file, faults);
+    files_.insert(files_.end(), body.files().begin(), body.files().end());
+    known->second = body.build();
   } catch (const Error& fault) {
     for (const Issue& issue : fault.issues()) faults.error(issue.where, issue.message);
   }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "pirsim/schema/script_spec.hpp"
 
@@ -18,10 +19,12 @@ class BodyMeshReader {
   /// The mesh of every node that has one; a node's name is its part's, a node's frame is its part's frame. Faults of
   /// the file go to `faults` with their place in it; a missing file is a fault at `where`.
   [[nodiscard]] BodyMeshes read(const std::string& file, const Where& where, Diagnostics& faults);
+  [[nodiscard]] const std::vector<std::string>& files() const noexcept { return files_; }  ///< all that was read
 
  private:
   std::filesystem::path folder_;
   std::map<std::string, BodyMeshes> known_;
+  std::vector<std::string> files_;
 };
 
 }  // namespace pirsim::io::detail

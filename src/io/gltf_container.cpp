@@ -120,13 +120,17 @@ std::vector<unsigned char> read_external(const std::string& uri, const fs::path&
 GltfContainer read_container(const fs::path& file) {
   std::string bytes = read_bytes(file);
   if (bytes.empty()) throw Error(ErrorCode::input, {file.string()}, "the file is empty");
-  if (bytes.starts_with("glTF")) return split_binary(bytes, file.string());
+  if (bytes.starts_with("glTF")) {
+    GltfContainer container = split_binary(bytes, file.string());
+    container.files = {file.string()};
+    return container;
+  }
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);  // byte order mark
   const std::size_t first = bytes.find_first_not_of(" \t\r\n");
   if (first == std::string::npos || bytes[first] != '{') {
     throw Error(ErrorCode::input, {file.string(), 1, 1}, "is neither glTF (.gltf, JSON) nor binary glTF (.glb)");
   }
-  return {GltfContainer::Kind::json, std::move(bytes), {}};
+  return {GltfContainer::Kind::json, std::move(bytes), {}, {file.string()}};
 }
 
 std::vector<std::vector<unsigned char>> read_buffers(const JsonText& text, GltfContainer& container,
@@ -150,6 +154,7 @@ std::vector<std::vector<unsigned char>> read_buffers(const JsonText& text, GltfC
       if (!tinygltf::DecodeDataURI(&bytes, media_type, uri, 0, false)) fault = "data: URI can't be decoded";
     } else {
       bytes = read_external(uri, folder, fault);
+      container.files.push_back((folder / percent_decoded(uri)).string());
     }
     const auto wanted = buffers[i]["byteLength"].get<std::size_t>();
     if (fault.empty() && bytes.size() < wanted) {

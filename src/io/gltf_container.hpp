@@ -14,13 +14,15 @@ struct GltfContainer {
   Kind kind = Kind::json;
   std::string json;
   std::vector<unsigned char> binary_chunk;  ///< of a .glb, may be empty
+  std::vector<std::string> files{};         ///< all that was read
 };
 
 /// Throws Error(io) for a missing or unreadable file, Error(input) for a file that is no glTF or is cut short.
 [[nodiscard]] GltfContainer read_container(const std::filesystem::path& file);
 
 /// Contents of all `buffers`, at least `byteLength` long each. Files are read from the scene's folder only: no
-/// absolute paths, no `..`, no links that lead out. Faults are added and leave an empty buffer.
+/// absolute paths, no `..`, no links that lead out. Faults are added and leave an empty buffer. Names of files go to
+/// the container.
 [[nodiscard]] std::vector<std::vector<unsigned char>> read_buffers(const JsonText& text, GltfContainer& container,
                                                                    const std::filesystem::path& folder,
                                                                    Diagnostics& faults);

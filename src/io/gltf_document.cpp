@@ -83,6 +83,7 @@ GltfDocument load_gltf(const std::filesystem::path& file, Diagnostics& remarks) 
   GltfDocument document{
       file.string(),
       JsonText(file.string(), std::move(container.json), is_json ? JsonText::Places::known : JsonText::Places::unknown),
+      {},
       {}};
   Diagnostics faults;
   if (!document.text.root().is_object()) faults.error(document.text.where(""), "glTF must be a JSON object");
@@ -94,6 +95,7 @@ GltfDocument load_gltf(const std::filesystem::path& file, Diagnostics& remarks) 
   auto buffers = read_buffers(document.text, container, file.parent_path(), faults);
   faults.throw_if_errors();
   document.model = parse_structure(document.text);
+  document.files = std::move(container.files);
   for (auto& bytes : buffers) document.model.buffers.emplace_back().data = std::move(bytes);
   for (const Issue& warning : faults.warnings()) remarks.warning(warning.where, warning.message);
   return document;

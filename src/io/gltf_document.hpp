@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "io/json_text.hpp"
 
@@ -13,7 +14,8 @@ namespace pirsim::io::detail {
 struct GltfDocument {
   std::string file;  ///< as messages name it
   JsonText text;
-  tinygltf::Model model;  ///< scenes, nodes, meshes, accessors, buffer views and buffers only
+  tinygltf::Model model;             ///< scenes, nodes, meshes, accessors, buffer views and buffers only
+  std::vector<std::string> files{};  ///< all that was read: the file and those of its buffers
 };
 
 /// Reads a .gltf or .glb (told apart by content). Indices between top-level arrays are in range afterwards;

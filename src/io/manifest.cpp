@@ -2,19 +2,137 @@
 
 #include <nlohmann/json.hpp>
 
+#include "io/text_input.hpp"
+#include "pirsim/core/error.hpp"
 #include "pirsim/io/atomic_file.hpp"
+#include "pirsim/io/sha256.hpp"
 
 namespace pirsim::io {
+namespace {
+
+constexpr int format_version = 2;
+
+using nlohmann::ordered_json;
+
+void compare(const char* what, const std::string& one, const std::string& other, std::vector<std::string>& found) {
+  if (one != other) found.push_back(std::string(what) + " (" + one + ", not " + other + ")");
+}
+
+void compare_inputs(const std::vector<HashedFile>& one, const std::vector<HashedFile>& other,
+                    std::vector<std::string>& found) {
+  if (one.size() != other.size()) {
+    found.push_back("number of input files (" + std::to_string(one.size()) + ", not " + std::to_string(other.size()) +
+                    ")");
+    return;
+  }
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    compare("name of an input", one[i].name, other[i].name, found);
+    if (one[i].name == other[i].name && one[i].sha256 != other[i].sha256) {
+      found.push_back("content of " + one[i].name);
+    }
+  }
+}
+
+ordered_json to_tree(const Manifest& manifest) {
+  const Provenance& made = manifest.provenance;
+  ordered_json inputs = ordered_json::array();
+  for (const HashedFile& file : made.inputs) inputs.push_back({{"file", file.name}, {"sha256", file.sha256}});
+  ordered_json tree = {{"pirsim_manifest", format_version},
+                       {"version", made.version},
+                       {"git_revision", made.git_revision},
+                       {"compiler", made.compiler},
+                       {"embree", made.embree},
+                       {"tracer", manifest.tracer},
+                       {"seed", made.seed},
+                       {"study_runs", made.study_runs}};
+  if (manifest.shard) tree["shard"] = {{"index", manifest.shard->index}, {"count", manifest.shard->count}};
+  tree["first_run"] = manifest.runs.first;
+  tree["runs"] = manifest.runs.count();
+  tree["rows"] = manifest.rows;
+  tree["bytes"] = manifest.bytes;
+  tree["sha256"] = manifest.sha256;
+  tree["inputs"] = std::move(inputs);
+  tree["resolved_script"] = made.resolved_script;
+  return tree;
+}
+
+Manifest from_tree(const ordered_json& tree) {
+  Manifest manifest;
+  Provenance& made = manifest.provenance;
+  tree.at("version").get_to(made.version);
+  tree.at("git_revision").get_to(made.git_revision);
+  tree.at("compiler").get_to(made.compiler);
+  tree.at("embree").get_to(made.embree);
+  tree.at("tracer").get_to(manifest.tracer);
+  tree.at("seed").get_to(made.seed);
+  tree.at("study_runs").get_to(made.study_runs);
+  if (tree.contains("shard")) {
+    manifest.shard = Shard{tree.at("shard").at("index").get<std::uint32_t>(), tree.at("shard").at("count")};
+  }
+  tree.at("first_run").get_to(manifest.runs.first);
+  manifest.runs.end = manifest.runs.first + tree.at("runs").get<std::uint32_t>();
+  tree.at("rows").get_to(manifest.rows);
+  tree.at("bytes").get_to(manifest.bytes);
+  tree.at("sha256").get_to(manifest.sha256);
+  for (const ordered_json& file : tree.at("inputs")) made.inputs.push_back({file.at("file"), file.at("sha256")});
+  tree.at("resolved_script").get_to(made.resolved_script);
+  return manifest;
+}
+
+}  // namespace
+
+std::vector<std::string> differences(const Provenance& one, const Provenance& other) {
+  std::vector<std::string> found;
+  compare("version", one.version, other.version, found);
+  compare("git revision", one.git_revision, other.git_revision, found);
+  compare("compiler", one.compiler, other.compiler, found);
+  compare("Embree", one.embree, other.embree, found);
+  compare("seed", std::to_string(one.seed), std::to_string(other.seed), found);
+  compare("number of runs in the study", std::to_string(one.study_runs), std::to_string(other.study_runs), found);
+  compare_inputs(one.inputs, other.inputs, found);
+  if (found.empty() && one.resolved_script != other.resolved_script) found.emplace_back("resolved script");
+  return found;
+}
+
+std::vector<HashedFile> hashed(const std::vector<std::string>& files) {
+  std::vector<HashedFile> result;
+  for (const std::string& file : files) {
+    result.push_back({std::filesystem::path(file).filename().string(), sha256_of_file(file)});
+  }
+  return result;
+}
+
+std::string to_json(const Manifest& manifest, int indent) {
+  return to_tree(manifest).dump(indent, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+Manifest manifest_from_json(const std::string& text, const std::string& name) {
+  try {
+    const ordered_json tree = ordered_json::parse(text);
+    if (const int version = tree.at("pirsim_manifest").get<int>(); version != format_version) {
+      throw Error(ErrorCode::input, Where{name},
+                  "manifest of format " + std::to_string(version) + "; this pirsim reads format " +
+                      std::to_string(format_version));
+    }
+    return from_tree(tree);
+  } catch (const nlohmann::json::exception&) {
+    throw Error(ErrorCode::input, Where{name}, "is no manifest of pirsim, or is damaged");
+  }
+}
+
+std::filesystem::path manifest_path(const std::filesystem::path& data_file) {
+  std::filesystem::path path = data_file;
+  return path += ".json";
+}
 
 void write_manifest(const std::filesystem::path& file, const Manifest& manifest) {
-  const nlohmann::ordered_json json = {{"pirsim_manifest", 1},      {"program", manifest.program},
-                                       {"embree", manifest.embree}, {"tracer", manifest.tracer},
-                                       {"scene", manifest.scene},   {"script", manifest.script},
-                                       {"seed", manifest.seed},     {"runs", manifest.runs},
-                                       {"rows", manifest.rows},     {"resolved_script", manifest.resolved_script}};
   AtomicFile out(file);
-  out.stream() << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+  out.stream() << to_json(manifest, 2) << '\n';
   out.commit();
+}
+
+Manifest read_manifest(const std::filesystem::path& file) {
+  return manifest_from_json(read_text_file(file), file.string());
 }
 
 }  // namespace pirsim::io

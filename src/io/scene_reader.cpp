@@ -33,6 +33,7 @@ class SceneBuilder {
       add_node(placed);
       if (too_many_faults()) break;
     }
+    spec_.files = document_.files;
     spec_.floor = floor_.build();
     require_floor();
     if (spec_.sensors.empty() && !remarks_.has_errors()) {
@@ -172,6 +173,7 @@ class SceneBuilder {
       }
       try {
         spec_.sensor_models.emplace(model, read_sensor_model(sensor_file));
+        spec_.files.push_back(sensor_file.string());
       } catch (const Error& fault) {
         for (const Issue& issue : fault.issues()) remarks_.error(issue.where, issue.message);
       }

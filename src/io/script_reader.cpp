@@ -144,6 +144,8 @@ ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::s
   script.effects = read_effects(map.list("effects"), faults);
   map.finish();
   faults.throw_if_errors();
+  script.files = body_meshes.files();
+  script.files.insert(script.files.begin(), file.string());
   script.warnings = faults.warnings();
   return script;
 }

@@ -27,10 +27,11 @@ RunResult run_once(const Model& model, std::uint32_t run, Record record) {
 }
 
 void run_study(const Model& model, const StudyOptions& options, const std::function<void(const RunResult&)>& consume) {
+  const RunRange runs = options.runs.value_or(RunRange{0, model.n_runs()});
   ordered_parallel<RunResult>(
-      model.n_runs(), options.threads,
-      [&](std::size_t run) { return run_once(model, static_cast<std::uint32_t>(run), options.record); },
-      [&](RunResult& result) { consume(result); });
+      runs.count(), options.threads,
+      [&](std::size_t i) { return run_once(model, runs.first + static_cast<std::uint32_t>(i), options.record); },
+      [&](RunResult& result) { consume(result); }, options.goes_on);
 }
 
 }  // namespace pirsim

@@ -14,7 +14,8 @@ enum class ErrorCode : int {
   input = 3,       ///< a file was read but its content is refused
   io = 4,          ///< a file can't be read or written
   infeasible = 5,  ///< the inputs are valid but the run they ask for can't be done (a seat that can't be reached)
-  internal = 70,   ///< a fault of pirsim itself
+  internal = 70,   ///< a fault of pirsim itself, or memory ran out
+  stopped = 75,    ///< a signal or a time limit ended the work early, at the end of a run (sysexits.h: EX_TEMPFAIL)
 };
 
 /// A place in an input file; line and column count from 1, 0 means unknown.

@@ -7,9 +7,12 @@
 
 namespace pirsim::io {
 
+/// A path that exists and isn't a regular file: /dev/stdout, a pipe.
+[[nodiscard]] bool is_written_directly(const std::filesystem::path& path);
+
 /// Writes `<path>.partial` in the same folder and renames it onto the path at commit, so that no reader, crash or
-/// full disk ever leaves half a file, and an older file survives a failure. A path that exists and isn't a regular
-/// file (/dev/stdout, a pipe) is written directly. Every fault is Error(io) that names the path and the cause.
+/// full disk ever leaves half a file, and an older file survives a failure. What is_written_directly() is not
+/// renamed. Every fault is Error(io) that names the path and the cause.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path);

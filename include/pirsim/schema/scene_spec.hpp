@@ -43,6 +43,7 @@ struct SceneSpec {
   std::vector<EntranceSpec> entrances;
   FloorArea floor;
   std::map<std::string, SensorModelSpec> sensor_models;  ///< every model that a sensor names
+  std::vector<std::string> files;                        ///< all that was read: scene, its buffers, sensors
   std::vector<Issue> warnings;                           ///< what the reader noticed and repaired or ignored
 };
 

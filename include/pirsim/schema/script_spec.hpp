@@ -119,7 +119,8 @@ struct ScriptSpec {
   std::vector<TrialSpec> trials;
   std::vector<EffectSpec> effects;  ///< what the plain model leaves out; applied when a Model is compiled
   std::vector<Issue> warnings;
-  std::string directory;  ///< of the script file, for relative references
+  std::string directory;           ///< of the script file, for relative references
+  std::vector<std::string> files;  ///< all that was read: script, body meshes and their buffers
 };
 
 }  // namespace pirsim

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "pirsim/geom/ray_bundle.hpp"
 #include "pirsim/schema/sample.hpp"
+#include "pirsim/schema/shard.hpp"
 #include "pirsim/sim/model.hpp"
 
 namespace pirsim {
@@ -27,10 +29,12 @@ struct RunResult {
 struct StudyOptions {
   unsigned threads = 0;  ///< 0: all cores. Never changes a byte of the results.
   Record record = Record::samples;
+  std::optional<RunRange> runs{};   ///< default: all of the study
+  std::function<bool()> goes_on{};  ///< asked before each run; after a false no further one begins
 };
 
-/// Runs everything and hands each run's result to `consume` in the order of runs, from one thread at a time.
-/// Memory is bounded by a few runs a thread. Throws what a run or `consume` throws.
+/// Runs the study, or a range of it, and hands each run's result to `consume` in the order of runs, from one thread at
+/// a time. Memory is bounded by a few runs a thread. Throws what a run or `consume` throws.
 void run_study(const Model& model, const StudyOptions& options, const std::function<void(const RunResult&)>& consume);
 
 /// One run from beginning to end.

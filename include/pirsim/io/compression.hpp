@@ -1,0 +1,48 @@
+// Data files as they are, as gzip (.gz) or as Zstandard (.zst).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <ostream>
+#include <string_view>
+
+namespace pirsim::io {
+
+enum class Compression { none, gzip, zstd };
+
+/// By the ending of the name: .gz, .zst, anything else is plain.
+[[nodiscard]] Compression compression_of(const std::filesystem::path& file);
+/// The name without .gz or .zst.
+[[nodiscard]] std::filesystem::path without_compression(const std::filesystem::path& file);
+
+/// Compresses into a stream. The same bytes give the same file: no time and no name is stored.
+class DataWriter {
+ public:
+  /// The stream outlives the writer; its state tells about write errors.
+  DataWriter(std::ostream& out, Compression compression);
+  ~DataWriter();
+  void write(std::string_view bytes);
+  void finish();  ///< once, after the last write
+
+  struct Encoder;
+
+ private:
+  std::unique_ptr<Encoder> encoder_;
+};
+
+/// Reads what DataWriter, or gzip and zstd themselves, wrote. Memory is bounded whatever the file says.
+class DataReader {
+ public:
+  explicit DataReader(const std::filesystem::path& file);
+  ~DataReader();
+  /// Up to `size` bytes; 0 at the end. Throws Error: io, or input for a file that is damaged or cut short.
+  [[nodiscard]] std::size_t read(char* to, std::size_t size);
+
+  struct Decoder;
+
+ private:
+  std::unique_ptr<Decoder> decoder_;
+};
+
+}  // namespace pirsim::io

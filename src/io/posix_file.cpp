@@ -1,0 +1,79 @@
+#include "io/posix_file.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "pirsim/core/error.hpp"
+
+namespace pirsim::io {
+namespace {
+
+template <typename Call>
+auto without_interruption(const Call& call) {
+  auto result = call();
+  while (result < 0 && errno == EINTR) result = call();
+  return result;
+}
+
+}  // namespace
+
+PosixFile::PosixFile(std::filesystem::path path, Mode mode) : path_(std::move(path)) {
+  const int flags = mode == Mode::read ? O_RDONLY : O_RDWR | O_CREAT | O_APPEND;
+  descriptor_ = without_interruption([&] { return ::open(path_.c_str(), flags | O_CLOEXEC, 0666); });
+  if (descriptor_ < 0) fail(mode == Mode::read ? "can't be read" : "can't write");
+}
+
+PosixFile::~PosixFile() { ::close(descriptor_); }
+
+std::size_t PosixFile::read(char* to, std::size_t size) {
+  const ssize_t n = without_interruption([&] { return ::read(descriptor_, to, size); });
+  if (n < 0) fail("can't be read");
+  return static_cast<std::size_t>(n);
+}
+
+void PosixFile::append(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = without_interruption([&] { return ::write(descriptor_, bytes.data(), bytes.size()); });
+    if (n < 0) fail("can't write");
+    bytes.remove_prefix(static_cast<std::size_t>(n));
+  }
+}
+
+void PosixFile::truncate(std::uint64_t size) {
+  if (without_interruption([&] { return ::ftruncate(descriptor_, static_cast<off_t>(size)); }) < 0) fail("can't write");
+}
+
+void PosixFile::rewind() {
+  if (::lseek(descriptor_, 0, SEEK_SET) < 0) fail("can't be read");
+}
+
+std::uint64_t PosixFile::size() const {
+  struct stat status {};
+  if (::fstat(descriptor_, &status) < 0) fail("can't be read");
+  return static_cast<std::uint64_t>(status.st_size);
+}
+
+void PosixFile::lock() {
+  const auto refuse = [&] { throw Error(ErrorCode::io, Where{path_.string()}, "another process is at work on this"); };
+  if (without_interruption([&] { return ::flock(descriptor_, LOCK_EX | LOCK_NB); }) < 0) {
+    if (errno == EWOULDBLOCK) refuse();
+    return;  // a file system without locks
+  }
+  struct stat mine {
+  }, named{};
+  const bool is_named = ::stat(path_.c_str(), &named) == 0 && ::fstat(descriptor_, &mine) == 0 &&
+                        mine.st_ino == named.st_ino && mine.st_dev == named.st_dev;
+  if (!is_named) refuse();  // it was finished and removed between opening and locking
+}
+
+void PosixFile::fail(const char* what) const {
+  throw Error(ErrorCode::io, Where{path_.string()}, std::string(what) + ": " + std::generic_category().message(errno));
+}
+
+}  // namespace pirsim::io

@@ -1,0 +1,38 @@
+// A file descriptor whose every fault is an Error that names the file and the cause. Private to io.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+
+namespace pirsim::io {
+
+class PosixFile {
+ public:
+  enum class Mode {
+    read,
+    append,  ///< reads, and writes at the end; made if it isn't there
+  };
+  PosixFile(std::filesystem::path path, Mode mode);
+  ~PosixFile();
+  PosixFile(const PosixFile&) = delete;
+  PosixFile& operator=(const PosixFile&) = delete;
+
+  /// How many bytes were read; 0 at the end.
+  [[nodiscard]] std::size_t read(char* to, std::size_t size);
+  void append(std::string_view bytes);  ///< all of them
+  void truncate(std::uint64_t size);
+  void rewind();
+  [[nodiscard]] std::uint64_t size() const;
+  /// Throws Error(io) if another process holds the lock, or replaced the file meanwhile. Folders that know no locks
+  /// pass.
+  void lock();
+
+ private:
+  [[noreturn]] void fail(const char* what) const;  ///< says what errno means
+
+  std::filesystem::path path_;
+  int descriptor_;
+};
+
+}  // namespace pirsim::io

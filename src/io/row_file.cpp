@@ -1,0 +1,274 @@
+#include "pirsim/io/row_file.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include "io/output_path.hpp"
+#include "io/posix_file.hpp"
+#include "pirsim/core/error.hpp"
+#include "pirsim/io/atomic_file.hpp"
+#include "pirsim/io/compression.hpp"
+#include "pirsim/io/sha256.hpp"
+
+namespace pirsim::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t block = 1U << 18U;
+
+fs::path with_ending(fs::path path, const char* ending) { return path += ending; }
+
+void rename_or_throw(const fs::path& from, const fs::path& to) {
+  std::error_code fault;
+  fs::rename(from, to, fault);
+  if (fault) throw Error(ErrorCode::io, Where{to.string()}, "can't replace the file: " + fault.message());
+}
+
+void remove_or_throw(const fs::path& file) {
+  std::error_code fault;
+  fs::remove(file, fault);
+  if (fault) throw Error(ErrorCode::io, Where{file.string()}, "can't be removed: " + fault.message());
+}
+
+std::optional<Manifest> readable_manifest(const fs::path& file) {
+  std::error_code fault;
+  if (!fs::exists(file, fault)) return std::nullopt;
+  try {
+    return read_manifest(file);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::input) throw;
+    return std::nullopt;
+  }
+}
+
+bool fits(const Manifest& found, const Manifest& wanted) {
+  return found.runs == wanted.runs && differences(found.provenance, wanted.provenance).empty();
+}
+
+void require_fit(const Manifest& found, const Manifest& wanted, const fs::path& file) {
+  std::vector<std::string> unlike = differences(found.provenance, wanted.provenance);
+  if (found.runs != wanted.runs) unlike.emplace_back("runs of the study");
+  if (unlike.empty()) return;
+  std::string text;
+  for (const std::string& each : unlike) text += (text.empty() ? "" : ", ") + each;
+  throw Error(ErrorCode::input, Where{file.string()},
+              "can't be resumed, it was made from something else: " + text +
+                  "; remove it, or run without --resume to replace it");
+}
+
+/// How far the rows reached after a run.
+struct Mark {
+  std::uint32_t next_run = 0;
+  std::uint64_t rows = 0;
+  std::uint64_t bytes = 0;
+  std::string sha256;
+};
+
+std::string to_line(const Mark& mark) {
+  return std::to_string(mark.next_run) + ' ' + std::to_string(mark.rows) + ' ' + std::to_string(mark.bytes) + ' ' +
+         mark.sha256 + '\n';
+}
+
+std::optional<Mark> mark_from(const std::string& line) {
+  std::istringstream words(line);
+  Mark mark;
+  std::string rest;
+  constexpr std::size_t hash_digits = 64;
+  if (!(words >> mark.next_run >> mark.rows >> mark.bytes >> mark.sha256) || words >> rest) return std::nullopt;
+  return mark.sha256.size() == hash_digits ? std::optional(mark) : std::nullopt;
+}
+
+/// What a journal says, as far as it was written whole.
+struct Journal {
+  std::string made;  ///< manifest in one line
+  std::optional<Mark> last;
+  std::uint64_t whole_bytes = 0;
+};
+
+Journal read_journal(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  Journal journal;
+  std::string line;
+  if (!std::getline(stream, journal.made) || stream.eof()) return {};
+  journal.whole_bytes = journal.made.size() + 1;
+  while (std::getline(stream, line) && !stream.eof()) {
+    const std::optional<Mark> mark = mark_from(line);
+    if (!mark) break;
+    journal.last = mark;
+    journal.whole_bytes += line.size() + 1;
+  }
+  return journal;
+}
+
+}  // namespace
+
+struct RowFile::Work {
+  fs::path file, partial_path, journal_path;
+  Manifest made;
+  bool finished = false;
+  std::optional<PosixFile> partial, journal;
+  Sha256 hash;
+  Mark mark;
+
+  void take_journal() {
+    journal.emplace(journal_path, PosixFile::Mode::append);
+    journal->lock();
+  }
+
+  /// Leaves a damaged file or manifest to be made anew, but refuses one that something else made.
+  bool is_finished() {
+    std::error_code fault;
+    if (fs::exists(journal_path, fault)) take_journal();
+    const fs::path manifest = manifest_path(file);
+    const std::optional<Manifest> found = readable_manifest(manifest);
+    if (!found) return false;
+    if (!fits(*found, made) && fs::exists(journal_path, fault)) return false;  // it was about to be replaced
+    require_fit(*found, made, manifest);
+    if (!fault_of_data(file, *found).empty()) return false;
+    finished = true;
+    mark = {found->runs.end, found->rows, found->bytes, found->sha256};
+    remove_traces();
+    return true;
+  }
+
+  void open(const std::string& header, Start start) {
+    if (!journal) take_journal();
+    if (start == Start::resume && recover()) return;
+    partial.emplace(partial_path, PosixFile::Mode::append);
+    partial->truncate(0);
+    journal->truncate(0);
+    hash = {};
+    mark = {made.runs.first, 0, 0, {}};
+    journal->append(to_json(made, -1) + '\n');
+    write(header, 0);
+  }
+
+  void write(std::string_view lines, std::uint64_t n_rows) {
+    partial->append(lines);
+    hash.add(lines);
+    mark.rows += n_rows;
+    mark.bytes += lines.size();
+    mark.sha256 = hash.hex();
+    journal->append(to_line(mark));
+  }
+
+  /// False if there is nothing that could be gone on with.
+  bool recover() {
+    const Journal found = read_journal(journal_path);
+    if (!found.last) return false;
+    require_fit(manifest_from_json(found.made, journal_path.string()), made, journal_path);
+    std::error_code fault;
+    const bool was_put_in_place = !fs::exists(partial_path, fault) && fs::is_regular_file(file, fault) &&
+                                  compression_of(file) == Compression::none;
+    if (was_put_in_place) rename_or_throw(file, partial_path);  // killed before its manifest
+    if (!fs::is_regular_file(partial_path, fault)) return false;
+    partial.emplace(partial_path, PosixFile::Mode::append);
+    if (!hash_whole_runs(*found.last)) return false;
+    partial->truncate(mark.bytes);
+    journal->truncate(found.whole_bytes);
+    return true;
+  }
+
+  /// Brings the hash to the mark. False if what is there isn't what was written, as after a power failure.
+  bool hash_whole_runs(const Mark& wanted) {
+    hash = {};
+    std::string buffer(block, '\0');
+    std::uint64_t left = wanted.bytes;
+    while (left > 0) {
+      const std::size_t n = partial->read(buffer.data(), std::min<std::uint64_t>(left, block));
+      if (n == 0) return false;
+      hash.add({buffer.data(), n});
+      left -= n;
+    }
+    mark = wanted;
+    return hash.hex() == wanted.sha256;
+  }
+
+  void put_in_place() {
+    const Compression compression = compression_of(file);
+    if (compression == Compression::none) return rename_or_throw(partial_path, file);
+    AtomicFile out(file);
+    DataWriter writer(out.stream(), compression);
+    partial->rewind();
+    std::string buffer(block, '\0');
+    while (const std::size_t n = partial->read(buffer.data(), buffer.size())) {
+      writer.write({buffer.data(), n});
+      if (!out.stream()) break;
+    }
+    writer.finish();
+    out.commit();
+  }
+
+  void remove_traces() {
+    remove_or_throw(partial_path);
+    remove_or_throw(journal_path);
+  }
+};
+
+RowFile::RowFile(fs::path file, Manifest made, const std::string& header, Start start)
+    : work_(std::make_unique<Work>()) {
+  work_->file = resolved(file);
+  work_->partial_path = with_ending(without_compression(work_->file), ".partial");
+  work_->journal_path = with_ending(without_compression(work_->file), ".journal");
+  work_->made = std::move(made);
+  if (start == Start::anew || !work_->is_finished()) work_->open(header, start);
+}
+
+RowFile::~RowFile() = default;
+
+bool RowFile::finished() const noexcept { return work_->finished; }
+std::uint32_t RowFile::next_run() const noexcept { return work_->mark.next_run; }
+std::uint64_t RowFile::rows() const noexcept { return work_->mark.rows; }
+
+void RowFile::add_run(std::string_view lines, std::uint64_t n_rows) {
+  ++work_->mark.next_run;
+  work_->write(lines, n_rows);
+}
+
+void RowFile::commit() {
+  Work& work = *work_;
+  if (work.mark.next_run != work.made.runs.end) throw Error(ErrorCode::internal, "committed before the last run");
+  work.made.rows = work.mark.rows;
+  work.made.bytes = work.mark.bytes;
+  work.made.sha256 = work.mark.sha256;
+  remove_or_throw(manifest_path(work.file));  // of an older file: it must not speak for the new one
+  work.put_in_place();
+  write_manifest(manifest_path(work.file), work.made);
+  work.remove_traces();
+  work.finished = true;
+}
+
+void RowFile::discard() noexcept {
+  if (work_->finished) return;
+  std::error_code ignored;
+  fs::remove(work_->partial_path, ignored);
+  fs::remove(work_->journal_path, ignored);
+}
+
+std::string fault_of_data(const fs::path& file, const Manifest& manifest) {
+  std::error_code fault;
+  if (!fs::is_regular_file(file, fault)) return "there is no data file";
+  try {
+    DataReader reader(file);
+    Sha256 hash;
+    std::uint64_t bytes = 0;
+    std::string buffer(block, '\0');
+    while (const std::size_t n = reader.read(buffer.data(), buffer.size())) {
+      hash.add({buffer.data(), n});
+      bytes += n;
+      if (bytes > manifest.bytes) return "longer than its manifest says";
+    }
+    if (bytes < manifest.bytes) return "shorter than its manifest says";
+    return hash.hex() == manifest.sha256 ? "" : "its hash is not the one in the manifest";
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::input) throw;
+    return error.issues().front().message;
+  }
+}
+
+}  // namespace pirsim::io

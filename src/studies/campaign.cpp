@@ -1,0 +1,287 @@
+#include "pirsim/studies/campaign.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "pirsim/core/error.hpp"
+#include "pirsim/io/atomic_file.hpp"
+#include "pirsim/io/compression.hpp"
+#include "pirsim/io/row_file.hpp"
+#include "pirsim/io/sha256.hpp"
+#include "pirsim/studies/shards.hpp"
+
+namespace pirsim::studies {
+namespace {
+
+namespace fs = std::filesystem;
+using State = ShardReport::State;
+
+/// What is known of one shard without reading its data. Of the manifest only what differs from shard to shard is kept:
+/// there may be many thousands.
+struct Entry {
+  ShardReport report;
+  fs::path file;
+  std::string made;  ///< hash of the provenance
+  io::Manifest brief;
+};
+
+std::string digest(const io::Provenance& provenance) {
+  io::Manifest only;
+  only.provenance = provenance;
+  io::Sha256 hash;
+  hash.add(io::to_json(only, -1));
+  return hash.hex();
+}
+
+void read_manifest_of(Entry& entry) {
+  try {
+    entry.brief = io::read_manifest(io::manifest_path(entry.file));
+    entry.made = digest(entry.brief.provenance);
+    const RunRange runs = runs_of(entry.report.shard, entry.brief.provenance.study_runs);
+    entry.brief.provenance.resolved_script.clear();
+    entry.brief.provenance.inputs.clear();
+    entry.report.state = State::done;
+    if (entry.brief.shard == entry.report.shard && entry.brief.runs == runs) return;
+    entry.report.why = "its manifest is that of another shard";
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::input) throw;
+    entry.report.why = error.issues().front().message;
+  }
+  entry.report.state = State::broken;
+}
+
+/// Told as broken: whoever isn't of the largest party (the first one of them, if there are more).
+void compare_provenances(std::vector<Entry>& entries) {
+  std::map<std::string, std::size_t> parties;
+  for (const Entry& entry : entries) {
+    if (entry.report.state == State::done) ++parties[entry.made];
+  }
+  const Entry* typical = nullptr;
+  for (const Entry& entry : entries) {
+    if (entry.report.state != State::done) continue;
+    if (typical == nullptr || parties[entry.made] > parties[typical->made]) typical = &entry;
+  }
+  std::map<std::string, const Entry*> by_hash;  // of the data: no two shards hold the same rows
+  for (Entry& entry : entries) {
+    if (entry.report.state != State::done) continue;
+    if (entry.made != typical->made) {
+      const auto unlike = io::differences(io::read_manifest(io::manifest_path(entry.file)).provenance,
+                                          io::read_manifest(io::manifest_path(typical->file)).provenance);
+      entry.report.state = State::broken;
+      entry.report.why = "remove it, it was made from something else than " + typical->file.filename().string() + ":";
+      for (const std::string& each : unlike) entry.report.why += ' ' + each;
+    } else if (entry.brief.rows > 0 && !by_hash.emplace(entry.brief.sha256, &entry).second) {
+      entry.report.state = State::broken;
+      entry.report.why = "holds the rows of " + by_hash[entry.brief.sha256]->file.filename().string();
+    }
+  }
+}
+
+struct Listing {
+  std::uint32_t count = 0;
+  std::map<std::uint32_t, std::vector<fs::path>> with_manifest;  ///< data files by index
+  std::map<std::uint32_t, fs::path> begun;                       ///< something is there
+};
+
+Listing list_folder(const fs::path& folder) {
+  std::error_code fault;
+  fs::directory_iterator entry(folder, fault);
+  if (fault) throw Error(ErrorCode::io, Where{folder.string()}, "can't be listed: " + fault.message());
+  Listing listing;
+  for (const fs::directory_iterator end; entry != end; entry.increment(fault)) {
+    if (fault) throw Error(ErrorCode::io, Where{folder.string()}, "can't be listed: " + fault.message());
+    const std::optional<Shard> shard = shard_of(entry->path().filename().string());
+    if (!shard) continue;
+    if (listing.count != 0 && listing.count != shard->count) {
+      throw Error(ErrorCode::input, Where{folder.string()},
+                  "holds shards of " + std::to_string(std::min(listing.count, shard->count)) + " and of " +
+                      std::to_string(std::max(listing.count, shard->count)));
+    }
+    listing.count = shard->count;
+    listing.begun[shard->index] = entry->path();
+    if (entry->path().extension() == ".json") {
+      listing.with_manifest[shard->index].push_back(fs::path(entry->path()).replace_extension());
+    }
+  }
+  if (listing.count == 0) {
+    throw Error(ErrorCode::input, Where{folder.string()}, "holds no shards (shard-0001-of-0100.csv and so on)");
+  }
+  return listing;
+}
+
+std::vector<Entry> survey(const fs::path& folder) {
+  const Listing listing = list_folder(folder);
+  std::vector<Entry> entries(listing.count);
+  for (std::uint32_t i = 0; i < listing.count; ++i) {
+    Entry& entry = entries[i];
+    entry.report.shard = {i + 1, listing.count};
+    const auto found = listing.with_manifest.find(i + 1);
+    if (found == listing.with_manifest.end()) {
+      if (listing.begun.contains(i + 1)) entry.report.state = State::unfinished;
+    } else if (found->second.size() > 1) {
+      entry.report.state = State::broken;
+      entry.report.why = "is there more than once: " + found->second[0].filename().string() + " and " +
+                         found->second[1].filename().string();
+    } else {
+      entry.file = found->second.front();
+      read_manifest_of(entry);
+    }
+  }
+  compare_provenances(entries);
+  return entries;
+}
+
+/// Copies the rows of one shard, its header only if it is the first, and checks hash and header.
+class Merger {
+ public:
+  Merger(io::AtomicFile& file, io::Compression compression) : file_(file), writer_(file.stream(), compression) {}
+
+  void add(const Entry& entry) {
+    io::DataReader reader(entry.file);
+    io::Sha256 hash;
+    std::uint64_t bytes = 0;
+    std::string header;
+    bool in_header = true;
+    while (const std::size_t n = reader.read(buffer_.data(), buffer_.size())) {
+      std::string_view part(buffer_.data(), n);
+      hash.add(part);
+      bytes += n;
+      if (in_header) {
+        const std::size_t end = part.find('\n');
+        in_header = end == std::string_view::npos;
+        header += part.substr(0, in_header ? part.size() : end + 1);
+        part.remove_prefix(in_header ? part.size() : end + 1);
+        if (header.size() > longest_header || bytes > entry.brief.bytes) break;
+        if (!in_header) take_header(header, entry);
+      }
+      write(part);
+    }
+    if (bytes != entry.brief.bytes || hash.hex() != entry.brief.sha256) {
+      throw Error(ErrorCode::input, Where{entry.file.string()}, "its content is not what its manifest says");
+    }
+  }
+  /// Fills in bytes and hash.
+  void finish(io::Manifest& manifest) {
+    writer_.finish();
+    file_.commit();
+    manifest.bytes = bytes_;
+    manifest.sha256 = hash_.hex();
+  }
+
+ private:
+  static constexpr std::size_t longest_header = 1U << 24U;
+
+  void take_header(const std::string& header, const Entry& entry) {
+    if (header_.empty()) {
+      header_ = header;
+      write(header);
+    } else if (header != header_) {
+      throw Error(ErrorCode::input, Where{entry.file.string(), 1, 1}, "its columns are not those of the first shard");
+    }
+  }
+  void write(std::string_view part) {
+    hash_.add(part);
+    bytes_ += part.size();
+    writer_.write(part);
+    if (!file_.stream()) file_.commit();  // says why it can't be written
+  }
+
+  io::AtomicFile& file_;
+  io::DataWriter writer_;
+  std::string buffer_ = std::string(1U << 18U, '\0');
+  std::string header_;
+  io::Sha256 hash_;
+  std::uint64_t bytes_ = 0;
+};
+
+const char* name(State state) {
+  switch (state) {
+    case State::done:
+      return "done";
+    case State::missing:
+      return "missing";
+    case State::unfinished:
+      return "unfinished";
+    case State::broken:
+      break;
+  }
+  return "broken";
+}
+
+}  // namespace
+
+std::vector<ShardReport> campaign_status(const fs::path& folder) {
+  std::vector<ShardReport> reports;
+  for (Entry& entry : survey(folder)) {
+    if (entry.report.state == State::done) {
+      entry.report.why = io::fault_of_data(entry.file, entry.brief);
+      if (!entry.report.why.empty()) entry.report.state = State::broken;
+    }
+    reports.push_back(std::move(entry.report));
+  }
+  return reports;
+}
+
+std::string array_specification(const std::vector<ShardReport>& shards) {
+  std::string text;
+  for (std::size_t i = 0; i < shards.size(); ++i) {
+    if (shards[i].state == State::done) continue;
+    const std::size_t first = i;
+    while (i + 1 < shards.size() && shards[i + 1].state != State::done) ++i;
+    text += (text.empty() ? "" : ",") + std::to_string(shards[first].shard.index);
+    if (i > first) text += '-' + std::to_string(shards[i].shard.index);
+  }
+  return text;
+}
+
+std::string to_text(const std::vector<ShardReport>& shards) {
+  std::string text;
+  std::size_t done = 0;
+  for (const ShardReport& each : shards) {
+    if (each.state == State::done) {
+      ++done;
+      continue;
+    }
+    text += shard_name(each.shard) + ": " + name(each.state) + (each.why.empty() ? "" : ": ") + each.why + '\n';
+  }
+  return text + std::to_string(done) + " of " + std::to_string(shards.size()) + " shards are done\n";
+}
+
+io::Manifest merge_campaign(const fs::path& folder, const fs::path& output) {
+  const std::vector<Entry> entries = survey(folder);
+  Diagnostics faults;
+  for (const Entry& entry : entries) {
+    if (entry.report.state == State::done) continue;
+    const std::string why = entry.report.why.empty() ? "" : ": " + entry.report.why;
+    faults.error(Where{(folder / shard_name(entry.report.shard)).string()}, name(entry.report.state) + why);
+  }
+  faults.throw_if_errors();
+
+  io::Manifest manifest = io::read_manifest(io::manifest_path(entries.front().file));
+  manifest.shard.reset();
+  manifest.runs = {0, manifest.provenance.study_runs};
+  manifest.rows = 0;
+  const fs::path side_car = io::manifest_path(output);
+  io::AtomicFile file(output);
+  Merger merger(file, io::compression_of(output));
+  std::uint32_t next_run = 0;
+  for (const Entry& entry : entries) {
+    if (entry.brief.runs.first != std::exchange(next_run, entry.brief.runs.end)) {
+      throw Error(ErrorCode::input, Where{entry.file.string()}, "its runs don't follow those of the shard before");
+    }
+    merger.add(entry);
+    manifest.rows += entry.brief.rows;
+  }
+  if (next_run != manifest.provenance.study_runs) {
+    throw Error(ErrorCode::input, Where{folder.string()}, "the last runs of the study are missing");
+  }
+  std::error_code ignored;
+  fs::remove(side_car, ignored);  // of an older file: it must not speak for the new one
+  merger.finish(manifest);
+  if (!io::is_written_directly(output)) io::write_manifest(side_car, manifest);
+  return manifest;
+}
+
+}  // namespace pirsim::studies

@@ -1,0 +1,435 @@
+#!/usr/bin/env python3
+"""Shards, resuming, merging, and what happens when calls fail, with the real binary.
+
+Usage: run_campaign.py PIRSIM DATA_DIR FAILING_CALLS_LIBRARY [unittest arguments]. Needs python3 only.
+PIRSIM_KILLS=200 in the environment kills so often (default 10).
+"""
+import contextlib
+import errno
+import gzip
+import json
+import os
+import pathlib
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PIRSIM = DATA = LIBRARY = None
+
+
+def arguments(*args, replicates=4):
+    return [str(PIRSIM), "--scene", str(DATA / "rooms" / "meeting_room.gltf"), "--script",
+            str(DATA / "studies" / "studyA.yaml"), "-q", "--replicates", str(replicates), *map(str, args)]
+
+
+def call(command, code=0, text=True, **kwargs):
+    result = subprocess.run(list(map(str, command)), capture_output=True, text=text, timeout=300, **kwargs)
+    assert result.returncode == code, f"{command}: exit code {result.returncode}, expected {code}\n{result.stderr}"
+    return result
+
+
+def study(*args, code=0, replicates=4, **kwargs):
+    return call(arguments(*args, replicates=replicates), code, **kwargs)
+
+
+def names(folder):
+    return sorted(path.name for path in pathlib.Path(folder).iterdir())
+
+
+@contextlib.contextmanager
+def scratch():
+    with tempfile.TemporaryDirectory() as folder:
+        yield pathlib.Path(folder)
+
+
+class Shards(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.scratch.name)
+        study("-o", cls.folder / "one.csv")
+        cls.bytes = (cls.folder / "one.csv").read_bytes()
+        cls.manifest = json.loads((cls.folder / "one.csv.json").read_text())
+        assert study(text=False).stdout == cls.bytes, "a file's rows are not those of standard output"
+        cls.shards = cls.folder / "shards"
+        for i in range(1, 6):
+            study("--shard", f"{i}/5", "-o", cls.shards, "--threads", 1 + i % 2)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    @contextlib.contextmanager
+    def copy(self):
+        with scratch() as folder:
+            yield pathlib.Path(shutil.copytree(self.shards, folder / "shards"))
+
+    def merged(self, folder, **kwargs):
+        return call([PIRSIM, "merge", folder, "-o", folder.parent / "all.csv"], **kwargs)
+
+    def test_merged_shards_are_what_one_process_writes_with_the_same_manifest(self):
+        for count, ending in ((1, ".csv"), (3, ".csv.gz"), (7, ".csv.zst"), (45, ".csv")):
+            with self.subTest(count=count, ending=ending), scratch() as folder:
+                for i in random.Random(count).sample(range(1, count + 1), count):
+                    study("--shard", f"{i}/{count}", "-o", folder / "out", "--format", ending)
+                self.assertEqual(len(names(folder / "out")), 2 * count)
+                self.assertIn(f"shard-0001-of-{count:04}{ending}", names(folder / "out"))
+                self.merged(folder / "out")
+                self.assertEqual((folder / "all.csv").read_bytes(), self.bytes)
+                self.assertEqual(json.loads((folder / "all.csv.json").read_text()), self.manifest)
+
+    def test_compressed_files_are_read_by_the_usual_tools(self):
+        with scratch() as folder:
+            for ending in ("gz", "zst"):
+                study("-o", folder / f"a.csv.{ending}")
+                study("-o", folder / f"b.csv.{ending}")
+                self.assertEqual((folder / f"a.csv.{ending}").read_bytes(), (folder / f"b.csv.{ending}").read_bytes())
+            self.assertEqual(gzip.decompress((folder / "a.csv.gz").read_bytes()), self.bytes)
+            if shutil.which("zstd"):
+                self.assertEqual(call(["zstd", "-dc", folder / "a.csv.zst"], text=False).stdout, self.bytes)
+
+    def test_the_manifest_names_every_input_with_its_hash(self):
+        inputs = {entry["file"]: entry["sha256"] for entry in self.manifest["inputs"]}
+        self.assertEqual(set(inputs), {"studyA.yaml", "meeting_room.gltf", "EKMC1604111.yaml"})
+        for file in (DATA / "studies" / "studyA.yaml", DATA / "rooms" / "meeting_room.gltf",
+                     DATA / "sensors" / "EKMC1604111.yaml", self.folder / "one.csv"):
+            told = inputs.get(file.name, self.manifest["sha256"])
+            self.assertEqual(call(["sha256sum", file]).stdout.split()[0], told)
+        self.assertEqual((self.manifest["runs"], self.manifest["rows"]), (40, self.bytes.count(b"\n") - 1))
+        self.assertEqual(self.manifest["bytes"], len(self.bytes))
+
+    def test_status_prints_what_to_submit_again(self):
+        with self.copy() as folder:
+            self.assertEqual(call([PIRSIM, "status", folder]).stdout, "")
+            (folder / "shard-0002-of-0005.csv.json").unlink()
+            with open(folder / "shard-0003-of-0005.csv", "ab") as file:
+                file.write(b"x")
+            for file in folder.glob("shard-0005*"):
+                file.unlink()
+            result = call([PIRSIM, "status", folder])
+            self.assertEqual(result.stdout, "2-3,5\n")
+            for line in ("shard-0002-of-0005: unfinished", "shard-0003-of-0005: broken: longer than",
+                         "shard-0005-of-0005: missing", "2 of 5 shards are done"):
+                self.assertIn(line, result.stderr)
+            fault = self.merged(folder, code=3).stderr
+            for word in ("shard-0002", "unfinished", "shard-0005", "missing"):
+                self.assertIn(word, fault)
+            self.assertEqual(names(folder.parent), ["shards"])
+            for task in (2, 3, 5):  # what a job array of these numbers would do
+                study("--shard", "auto/5", "-o", folder, "--resume",
+                      env={**os.environ, "SLURM_ARRAY_TASK_ID": str(task)})
+            self.merged(folder)
+            self.assertEqual((folder.parent / "all.csv").read_bytes(), self.bytes)
+
+    def test_merge_refuses_what_does_not_belong_together(self):
+        def replaced(name, old, new):
+            def change(folder):
+                path = folder / name
+                path.write_text(path.read_text().replace(old, new))
+            return change
+
+        def other_seed(folder):
+            study("--shard", "2/5", "-o", folder, "--seed", 5)
+
+        def copied(folder):
+            shutil.copy(folder / "shard-0001-of-0005.csv", folder / "shard-0002-of-0005.csv")
+            shutil.copy(folder / "shard-0001-of-0005.csv.json", folder / "shard-0002-of-0005.csv.json")
+
+        def twice(folder):
+            study("--shard", "2/5", "-o", folder, "--format", ".csv.gz")
+
+        def swapped_data(folder):
+            shutil.copy(folder / "shard-0001-of-0005.csv", folder / "shard-0002-of-0005.csv")
+
+        def other_count(folder):
+            (folder / "shard-0001-of-0006.csv").write_text("")
+
+        cases = {
+            "other seed": (other_seed, "made from something else than shard-0001-of-0005.csv: seed (5, not 2021)"),
+            "copied": (copied, "its manifest is that of another shard"),
+            "twice": (twice, "is there more than once"),
+            "swapped": (swapped_data, "its content is not what its manifest says"),
+            "altered bit": (replaced("shard-0004-of-0005.csv", "seated,1,0,0", "seated,1,1,0"), "not what its manifest"),
+            "other count": (other_count, "holds shards of 5 and of 6"),
+            "damaged manifest": (replaced("shard-0003-of-0005.csv.json", "}", ""), "is no manifest of pirsim"),
+            "other build": (replaced("shard-0003-of-0005.csv.json", '"compiler": "', '"compiler": "x'), "compiler (x"),
+            "other input": (replaced("shard-0003-of-0005.csv.json", '"sha256": "3d8', '"sha256": "3d9'), "content of"),
+            "same data": (replaced("shard-0003-of-0005.csv.json", self.hash_of(3), self.hash_of(2)), "holds the rows of"),
+        }
+        for name, (change, message) in cases.items():
+            with self.subTest(name), self.copy() as folder:
+                change(folder)
+                before = {path.name: path.read_bytes() for path in folder.iterdir()}
+                if before == {path.name: path.read_bytes() for path in self.shards.iterdir()}:
+                    self.skipTest("nothing to alter here")
+                self.assertIn(message, self.merged(folder, code=3).stderr)
+                self.assertEqual(names(folder.parent), ["shards"])
+
+    def hash_of(self, shard):
+        return json.loads((self.shards / f"shard-000{shard}-of-0005.csv.json").read_text())["sha256"]
+
+    def test_a_part_of_an_array_is_not_taken_for_a_whole_one(self):
+        array = {"SLURM_ARRAY_TASK_ID": "3", "SLURM_ARRAY_TASK_MIN": "3", "SLURM_ARRAY_TASK_MAX": "4",
+                 "SLURM_ARRAY_TASK_STEP": "1", "SLURM_ARRAY_TASK_COUNT": "2"}
+        with self.copy() as folder:
+            fault = study("--shard", "auto", "-o", folder, env={**os.environ, **array}, code=2).stderr
+        self.assertIn("this is shard 1 of 2", fault)
+        self.assertIn("use --shard auto/5", fault)
+
+
+class Stopping(unittest.TestCase):
+    REPLICATES = 60
+
+    @classmethod
+    def setUpClass(cls):
+        begun = time.monotonic()
+        cls.bytes = study(text=False, replicates=cls.REPLICATES).stdout
+        cls.seconds = time.monotonic() - begun
+
+    def interrupted(self, file, kind, after, *args):
+        """Starts, sends the signal after so many seconds, returns the process's exit code."""
+        process = subprocess.Popen(arguments("-o", file, "--resume", *args, replicates=self.REPLICATES),
+                                   stderr=subprocess.PIPE, text=True)
+        time.sleep(after)
+        process.send_signal(kind)
+        _, self.told = process.communicate(timeout=120)
+        return process.returncode
+
+    def test_a_signal_stops_at_the_end_of_a_run_and_resuming_gives_the_bytes(self):
+        for kind in (signal.SIGTERM, signal.SIGINT):
+            with scratch() as folder:
+                file, stops = folder / "rows.csv", 0
+                for attempt in range(40):
+                    code = self.interrupted(file, kind, 0.1 + 0.02 * attempt)
+                    if code == 0:
+                        break
+                    if code == -kind:
+                        continue  # before pirsim listened
+                    self.assertEqual(code, 75, self.told)
+                    self.assertIn(f"stopped by {kind.name}", self.told)
+                    self.assertEqual(names(folder), ["rows.csv.journal", "rows.csv.partial"])
+                    partial = (folder / "rows.csv.partial").read_bytes()
+                    self.assertTrue(self.bytes.startswith(partial) and partial.endswith(b"\n"))
+                    stops += 1
+                study("-o", file, "--resume", replicates=self.REPLICATES)
+                self.assertGreaterEqual(stops, 1)
+                self.assertEqual(file.read_bytes(), self.bytes)
+                self.assertEqual(names(folder), ["rows.csv", "rows.csv.json"])
+
+    def test_max_time_stops_with_progress_and_is_resumable(self):
+        with scratch() as folder:
+            for _ in range(3):
+                result = study("-o", folder / "rows.csv", "--resume", "--max-time", "0.001s", code=75,
+                               replicates=self.REPLICATES)
+                self.assertIn("stopped by --max-time", result.stderr)
+            self.assertGreaterEqual(len((folder / "rows.csv.journal").read_text().splitlines()), 1 + 1 + 3)
+            study("-o", folder / "rows.csv", "--resume", "--max-time", "1h", replicates=self.REPLICATES)
+            self.assertEqual((folder / "rows.csv").read_bytes(), self.bytes)
+            before = (folder / "rows.csv").stat().st_mtime_ns
+            study("-o", folder / "rows.csv", "--resume", replicates=self.REPLICATES)
+            self.assertEqual((folder / "rows.csv").stat().st_mtime_ns, before)
+
+    def test_a_signal_leaves_no_partial_file_of_what_cannot_be_resumed(self):
+        with scratch() as folder:
+            process = subprocess.Popen(
+                arguments("--zones", folder / "z.csv", "--summary", folder / "s.md", replicates=self.REPLICATES),
+                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            until = time.monotonic() + 60
+            while not (folder / "z.csv.partial").exists() and time.monotonic() < until:
+                time.sleep(0.002)
+            time.sleep(0.05)
+            process.terminate()
+            process.communicate(timeout=120)
+            self.assertEqual(process.returncode, 75)
+            self.assertEqual(names(folder), [])
+
+    def test_killed_at_random_moments_and_resumed_the_bytes_are_right(self):
+        kills, wanted, moments = 0, int(os.environ.get("PIRSIM_KILLS", 10)), random.Random(1)
+        with scratch() as folder:
+            while kills < wanted:
+                for ending in (".csv", ".csv.zst"):
+                    file = folder / ("rows" + ending)
+                    while not file.with_name(file.name + ".json").exists() and kills < wanted:
+                        code = self.interrupted(file, signal.SIGKILL, moments.uniform(0.0, 0.6 * self.seconds))
+                        kills += code == -signal.SIGKILL
+                    study("-o", file, "--resume", replicates=self.REPLICATES)
+                    study("-o", folder / "plain.csv", replicates=self.REPLICATES) if not kills else None
+                    text = call(["zstd", "-dc", file], text=False).stdout if ending == ".csv.zst" and shutil.which(
+                        "zstd") else file.read_bytes() if ending == ".csv" else None
+                    if text is not None:
+                        self.assertEqual(text, self.bytes)
+                    manifest = json.loads(file.with_name(file.name + ".json").read_text())
+                    self.assertEqual(manifest["bytes"], len(self.bytes))
+                    for path in folder.iterdir():
+                        path.unlink()
+        print(f"killed {kills} times", file=sys.stderr)
+
+
+class FailingCalls(unittest.TestCase):
+    """Every call in turn, until none is left that could fail."""
+
+    @staticmethod
+    def environment(call_name, at, reason, **more):
+        sanitizers = {"ASAN_OPTIONS": "verify_asan_link_order=0:detect_leaks=0"}
+        return {**os.environ, **sanitizers, "LD_PRELOAD": str(LIBRARY), "PIRSIM_FAIL_CALL": call_name,
+                "PIRSIM_FAIL_AT": str(at), "PIRSIM_FAIL_ERRNO": str(int(reason)), **more}
+
+    def each_failure(self, call_name, reason, *args, most=10000, step=lambda n: n + 1):
+        """Yields the folder and what was told, for every n for which the n-th call decides the outcome."""
+        n, failures = 1, 0
+        while n < most:
+            with scratch() as folder:
+                result = subprocess.run(arguments(*[str(arg).format(folder) for arg in args], replicates=1),
+                                        capture_output=True, text=True, timeout=300,
+                                        env=self.environment(call_name, n, reason))
+                if result.returncode == 0:
+                    self.assertGreater(failures, 0, "the library of failing calls had no effect")
+                    return
+                yield folder, result
+                failures += 1
+            n = step(n)
+        self.fail("there is no end of calls")
+
+    def test_a_full_disk_at_any_write_is_told_once_and_the_rest_is_resumed(self):
+        reference = study(text=False, replicates=1).stdout
+        for ending in (".csv", ".csv.gz"):
+            for folder, result in self.each_failure("write", errno.ENOSPC, "-o", "{}/rows" + ending):
+                self.assertEqual(result.returncode, 4, result.stderr)
+                self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+                self.assertIn("No space left on device", result.stderr)
+                self.assertIn("rows", result.stderr)
+                self.assertLessEqual(set(names(folder)), {"rows.csv.partial", "rows.csv.journal", "rows" + ending})
+                study("-o", folder / ("rows" + ending), "--resume", replicates=1)
+                data = (folder / ("rows" + ending)).read_bytes()
+                self.assertEqual(gzip.decompress(data) if ending == ".csv.gz" else data, reference)
+                self.assertEqual(names(folder), ["rows" + ending, f"rows{ending}.json"])
+
+    def test_a_full_disk_at_any_write_of_the_other_outputs_leaves_none_of_them(self):
+        step = lambda n: n + 1 + n // 3  # zones are many writes
+        for folder, result in self.each_failure("write", errno.ENOSPC, "--zones", "{}/z.csv", "--summary", "{}/s.md",
+                                                "--report", "{}/r.html", step=step):
+            self.assertEqual(result.returncode, 4, result.stderr)
+            self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+            self.assertFalse([name for name in names(folder) if name.endswith(".partial")])
+
+    def test_a_read_only_folder_and_failing_renames_are_told_once(self):
+        for call_name, reason, words in (("open", errno.EROFS, "Read-only file system"),
+                                         ("rename", errno.EACCES, "Permission denied"),
+                                         ("truncate", errno.EIO, "Input/output error")):
+            for folder, result in self.each_failure(call_name, reason, "-o", "{}/rows.csv"):
+                self.assertEqual(result.returncode, 4, result.stderr)
+                self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+                self.assertIn(words, result.stderr)
+                study("-o", folder / "rows.csv", "--resume", replicates=1)
+                self.assertEqual(names(folder), ["rows.csv", "rows.csv.json"])
+
+    def test_memory_that_runs_out_while_loading_is_told(self):
+        if "PIRSIM_NO_FAILING_MALLOC" in os.environ:
+            self.skipTest("the sanitizers have an allocator of their own")
+        outcomes = set()
+        for once in ({"PIRSIM_FAIL_ONCE": "1"}, {}):
+            for n in sorted({round(1.6 ** i) for i in range(30)}):
+                result = subprocess.run(arguments(replicates=1), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                        text=True, timeout=300, env=self.environment("malloc", n, 0, **once))
+                with self.subTest(n=n, **once):
+                    self.assertIn(result.returncode, (0, 4, 70), result.stderr)
+                    if result.returncode != 0:  # 4: a stream can't get its buffer, the file "can't be read"
+                        self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+                        self.assertIn("out of memory" if result.returncode == 70 else "can't be read", result.stderr)
+                outcomes.add(result.returncode)
+        self.assertIn(70, outcomes)
+
+    def test_memory_that_is_short_ends_with_a_message(self):
+        if "PIRSIM_NO_FAILING_MALLOC" in os.environ:
+            self.skipTest("the sanitizers need much address space")
+        with scratch() as folder:
+            big = folder / "big.gltf"
+            big.write_text('{"asset":{"version":"2.0"},"nodes":[' + "{}," * 2_000_000 + "{}]}")
+            limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (600_000_000, 600_000_000))
+            result = subprocess.run([str(PIRSIM), "--scene", str(big), "--script", str(DATA / "studies/studyA.yaml")],
+                                    capture_output=True, text=True, preexec_fn=limit, timeout=120)
+            self.assertIn(result.returncode, (3, 70), result.stderr)
+            self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+
+    def test_a_closed_pipe_ends_quietly_on_standard_output_and_is_told_of_a_named_one(self):
+        process = subprocess.Popen(arguments(replicates=20), stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        process.stdout.readline()
+        process.stdout.close()
+        self.assertEqual(process.stderr.read(), b"")
+        process.stderr.close()
+        self.assertEqual(process.wait(timeout=120), -signal.SIGPIPE)
+        with scratch() as folder:
+            pipe = folder / "pipe"
+            os.mkfifo(pipe)
+            process = subprocess.Popen(arguments("-o", pipe, "--summary", folder / "s.md", replicates=20),
+                                       stderr=subprocess.PIPE, text=True)
+            with open(pipe, "rb") as reader:
+                reader.readline()
+            _, told = process.communicate(timeout=120)
+            self.assertEqual(process.returncode, 4)
+            self.assertIn("Broken pipe", told)
+            self.assertEqual(len(told.strip().splitlines()), 1)
+            self.assertEqual(names(folder), ["pipe"])
+
+    def test_full_devices_are_told(self):
+        for args in (("-o", "/dev/full"), ("--zones", "/dev/full")):
+            self.assertIn("No space left", study(*args, code=4, replicates=1).stderr)
+        with open("/dev/full", "wb") as full:
+            result = subprocess.run(arguments(replicates=1), stdout=full, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(result.returncode, 4)
+        self.assertIn("standard output can't be written", result.stderr)
+
+
+class Options(unittest.TestCase):
+    def test_wrong_names_of_outputs_are_usage_errors_before_any_work(self):
+        with scratch() as folder:
+            for args, message in (
+                    (("--summary", folder / "t.txt"), "must end in .csv or .md"),
+                    (("-o", folder / "rows.txt"), "must end in .csv, .csv.gz or .csv.zst"),
+                    (("-o", folder / "rows"), "must end in"),
+                    (("--report", folder / "r.htm"), "must end in .html"),
+                    (("--zones", folder / "z"), "must end in"),
+                    (("-o", folder / "a.csv", "--summary", folder / "." / "a.csv"), "-o and --summary are one file"),
+                    (("--zones", folder / "a.csv", "--summary", folder / "a.csv"), "--summary and --zones are one file"),
+                    (("-o", folder / "a.csv", "--summary", folder / "a.csv.json"), "must end in .csv or .md"),
+                    (("--shard", "1/2"), "--shard needs -o DIR"),
+                    (("--resume",), "--resume needs -o FILE"),
+                    (("--max-time", "5m"), "--max-time needs -o FILE"),
+                    (("--max-time", "5x", "-o", folder / "a.csv"), "--max-time"),
+                    (("--resume", "-o", "/dev/null"), "no regular file"),
+                    (("--resume", "-o", folder / "a.csv", "--summary", folder / "s.md"), "need all runs at once"),
+                    (("--shard", "1/2", "-o", folder, "--format", ".txt"), "--format"),
+                    (("--shard", "auto", "-o", folder), "none of these variables is set")):
+                with self.subTest(args):
+                    environment = {k: v for k, v in os.environ.items() if not k.startswith(("SLURM", "SGE", "PBS"))}
+                    self.assertIn(message, study(*args, code=2, env=environment).stderr)
+            self.assertEqual(names(folder), [])
+
+    def test_an_output_that_is_an_input_is_refused(self):
+        with scratch() as folder:
+            script = shutil.copy(DATA / "studies" / "studyA.yaml", folder / "study.csv")
+            result = call([PIRSIM, "--scene", DATA / "rooms" / "meeting_room.gltf", "--script", script, "-o", script], 2)
+            self.assertIn("--script and -o are one file", result.stderr)
+            self.assertEqual((folder / "study.csv").read_bytes(), (DATA / "studies" / "studyA.yaml").read_bytes())
+
+    def test_a_camera_with_two_numbers_does_not_swallow_the_next_option(self):
+        files = ("--scene", DATA / "rooms" / "meeting_room.gltf", "--script", DATA / "studies" / "studyA.yaml")
+        for given in ("1,2", "1,2,", "1,2,3,4", "1;2;3", "a,b,c", ""):
+            result = call([PIRSIM, "preview", *files, "--camera", given, "--look-at", "0,1,0"], 2)
+            self.assertIn("--camera", result.stderr)
+
+    def test_a_summary_as_a_document_has_a_title(self):
+        with scratch() as folder:
+            study("--summary", folder / "s.md", replicates=1)
+            self.assertTrue((folder / "s.md").read_text().startswith("# Study A"), (folder / "s.md").read_text()[:60])
+
+
+if __name__ == "__main__":
+    PIRSIM, DATA, LIBRARY = (pathlib.Path(sys.argv.pop(1)).resolve() for _ in range(3))
+    unittest.main(verbosity=2)

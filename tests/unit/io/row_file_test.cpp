@@ -1,0 +1,188 @@
+// RowFile: whatever is left on the disk, to resume gives the bytes of an undisturbed run.
+#include "pirsim/io/row_file.hpp"
+
+#include <fstream>
+#include <iterator>
+
+#include "pirsim/core/error.hpp"
+#include "pirsim/io/sha256.hpp"
+#include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
+
+using namespace pirsim;
+namespace fs = std::filesystem;
+using Start = io::RowFile::Start;
+
+namespace {
+
+constexpr std::uint32_t n_runs = 6;
+const std::string header = "replicate,trial,PIR1\n";
+
+std::string rows_of(std::uint32_t run) {
+  std::string text;
+  for (std::uint32_t i = 0; i <= run % 3; ++i) text += std::to_string(run) + ",S" + std::to_string(i) + ",1\n";
+  return text;
+}
+
+std::string whole() {
+  std::string text = header;
+  for (std::uint32_t run = 0; run < n_runs; ++run) text += rows_of(run);
+  return text;
+}
+
+io::Manifest made(std::uint64_t seed = 1) {
+  io::Manifest manifest;
+  manifest.provenance.version = "1";
+  manifest.provenance.seed = seed;
+  manifest.provenance.study_runs = n_runs;
+  manifest.provenance.resolved_script = "a: 1\nb: \"\xC3\xA9\"\n";
+  manifest.runs = {0, n_runs};
+  return manifest;
+}
+
+std::string content(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+void write(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+
+/// Goes on from what is there up to, not including, run `until`.
+void work(const fs::path& file, Start start, std::uint32_t until = n_runs) {
+  io::RowFile rows(file, made(), header, start);
+  if (rows.finished()) return;
+  while (rows.next_run() < until) rows.add_run(rows_of(rows.next_run()), rows.next_run() % 3 + 1);
+  if (until == n_runs) rows.commit();
+}
+
+std::size_t files_in(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+}  // namespace
+
+TEST_CASE("a file of rows appears with its manifest and nothing else", "[io][row_file]") {
+  for (const char* name : {"rows.csv", "rows.csv.gz", "rows.csv.zst"}) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / name;
+    work(file, Start::anew);
+    CHECK(files_in(folder.path()) == 2);
+    const io::Manifest manifest = io::read_manifest(io::manifest_path(file));
+    io::Sha256 hash;
+    hash.add(whole());
+    CHECK(manifest.sha256 == hash.hex());
+    CHECK(manifest.bytes == whole().size());
+    CHECK(manifest.rows == 12);
+    CHECK(io::differences(manifest.provenance, made().provenance).empty());
+    CHECK(io::fault_of_data(file, manifest).empty());
+    const std::string bytes = content(file);
+    work(file, Start::resume);
+    CHECK(content(file) == bytes);
+  }
+}
+
+TEST_CASE("rows and journal cut short at any byte are gone on with to the same bytes", "[io][row_file]") {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "rows.csv", partial = folder.path() / "rows.csv.partial",
+                 journal = folder.path() / "rows.csv.journal";
+  work(file, Start::anew, 4);
+  const std::string all_rows = content(partial), all_marks = content(journal);
+  const auto check = [&](std::size_t n_rows, std::size_t n_marks) {
+    write(partial, all_rows.substr(0, n_rows));
+    write(journal, all_marks.substr(0, n_marks));
+    work(file, Start::resume);
+    INFO(n_rows << " bytes of rows, " << n_marks << " of the journal");
+    REQUIRE(content(file) == whole());
+    REQUIRE(files_in(folder.path()) == 2);
+    fs::remove(file);
+    fs::remove(io::manifest_path(file));
+  };
+  for (std::size_t n = 0; n <= all_marks.size(); ++n) check(all_rows.size(), n);
+  for (std::size_t n = 0; n <= all_rows.size(); ++n) check(n, all_marks.size());
+}
+
+TEST_CASE("rows that are not what was written are made anew", "[io][row_file]") {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "rows.csv", partial = folder.path() / "rows.csv.partial";
+  work(file, Start::anew, 4);
+  std::string zeroed = content(partial);
+  zeroed.replace(30, 8, 8, '\0');  // as a power failure may leave it
+  write(partial, zeroed);
+  io::RowFile rows(file, made(), header, Start::resume);
+  CHECK(rows.next_run() == 0);
+}
+
+TEST_CASE("to resume keeps the runs that were whole", "[io][row_file]") {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "rows.csv.zst";
+  work(file, Start::anew, 4);
+  write(folder.path() / "rows.csv.partial", content(folder.path() / "rows.csv.partial") + "4,S0");
+  CHECK(io::RowFile(file, made(), header, Start::resume).next_run() == 4);
+  CHECK(io::RowFile(file, made(), header, Start::anew).next_run() == 0);
+}
+
+TEST_CASE("a file that lacks only its manifest is not computed again", "[io][row_file]") {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "rows.csv";
+  work(file, Start::anew, 5);
+  {
+    io::RowFile rows(file, made(), header, Start::resume);
+    rows.add_run(rows_of(5), 3);
+  }
+  fs::rename(folder.path() / "rows.csv.partial", file);  // and then it was killed
+  {
+    io::RowFile rows(file, made(), header, Start::resume);
+    CHECK(rows.next_run() == n_runs);
+    rows.commit();
+  }
+  CHECK(content(file) == whole());
+  CHECK(files_in(folder.path()) == 2);
+}
+
+TEST_CASE("what something else made is refused and stays as it is", "[io][row_file]") {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "rows.csv", partial = folder.path() / "rows.csv.partial";
+  const auto resume_other = [&] { io::RowFile(file, made(2), header, Start::resume); };
+  work(file, Start::anew, 4);
+  const std::string rows = content(partial);
+  CHECK_THROWS_WITH(resume_other(), contains("can't be resumed") && contains("seed (1, not 2)"));
+  CHECK(content(partial) == rows);
+  work(file, Start::resume);
+  CHECK_THROWS_WITH(resume_other(), contains("can't be resumed") && contains("rows.csv.json"));
+  CHECK(content(file) == whole());
+  { io::RowFile replaced(file, made(2), header, Start::anew); }
+  CHECK(content(file) == whole());  // until the new one is whole
+}
+
+TEST_CASE("a finished file that was damaged is made anew by resuming", "[io][row_file]") {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "rows.csv";
+  for (const std::string& damaged : {whole() + "x", whole().substr(1), std::string()}) {
+    work(file, Start::anew);
+    write(file, damaged);
+    CHECK_FALSE(io::fault_of_data(file, io::read_manifest(io::manifest_path(file))).empty());
+    work(file, Start::resume);
+    CHECK(content(file) == whole());
+  }
+  write(io::manifest_path(file), "{\"pirsim_man");
+  work(file, Start::resume);
+  CHECK(io::fault_of_data(file, io::read_manifest(io::manifest_path(file))).empty());
+}
+
+TEST_CASE("two at work on one file is one too many", "[io][row_file]") {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "rows.csv";
+  io::RowFile first(file, made(), header, Start::anew);
+  for (const Start start : {Start::anew, Start::resume}) {
+    CHECK_THROWS_WITH(io::RowFile(file, made(), header, start), contains("another process is at work"));
+  }
+}
+
+TEST_CASE("what has no sense is discarded", "[io][row_file]") {
+  const TemporaryFolder folder;
+  io::RowFile rows(folder.path() / "rows.csv", made(), header, Start::anew);
+  rows.add_run(rows_of(0), 1);
+  CHECK_THROWS_AS(rows.commit(), Error);
+  rows.discard();
+  CHECK(files_in(folder.path()) == 0);
+}
