@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "stats/eigen.hpp"
+#include "stats/groups.hpp"
 #include "stats/require.hpp"
 #include "stats/row_blocks.hpp"
 
@@ -30,34 +31,6 @@ ShrunkCovariance shrink(const Eigen::MatrixXd& rows) {
   return shrunk;
 }
 
-struct Groups {
-  Eigen::MatrixXd means;      ///< (n_classes x n_columns)
-  Eigen::MatrixXd residuals;  ///< (n_rows x n_columns) rows less the mean of their class
-};
-
-Groups group(const Matrix<float>& features, std::span<const int> labels, int n_classes) {
-  Groups groups{Eigen::MatrixXd::Zero(n_classes, static_cast<Eigen::Index>(features.columns())),
-                as_eigen(features).cast<double>()};
-  Eigen::VectorXd counts = Eigen::VectorXd::Zero(n_classes);
-  for (std::size_t row = 0; row < labels.size(); ++row) {
-    groups.means.row(labels[row]) += groups.residuals.row(static_cast<Eigen::Index>(row));
-    counts(labels[row]) += 1.0;
-  }
-  require(counts.minCoeff() > 0.0, "discriminant: a class without rows");
-  groups.means.array().colwise() /= counts.array();
-  for (std::size_t row = 0; row < labels.size(); ++row)
-    groups.residuals.row(static_cast<Eigen::Index>(row)) -= groups.means.row(labels[row]);
-  return groups;
-}
-
-void check(const Matrix<float>& features, std::span<const int> labels, int n_classes) {
-  require(features.rows() > 1 && features.columns() > 0, "discriminant: too few rows or no columns");
-  require(labels.size() == features.rows(), "discriminant: rows and labels differ in number");
-  require(n_classes > 1, "discriminant: fewer than two classes");
-  require_finite(features.values(), "discriminant: a feature is not finite");
-  for (const int label : labels) require(label >= 0 && label < n_classes, "discriminant: label outside [0, n_classes)");
-}
-
 }  // namespace
 
 ShrunkCovariance ledoit_wolf(const Matrix<double>& rows) {
@@ -70,14 +43,10 @@ ShrunkCovariance ledoit_wolf(const Matrix<double>& rows) {
 }
 
 Discriminant Discriminant::fit(const Matrix<float>& features, std::span<const int> labels, int n_classes) {
-  check(features, labels, n_classes);
-  Groups groups = group(features, labels, n_classes);
-  const double n = static_cast<double>(features.rows());
-  const Eigen::RowVectorXd spread = (groups.residuals.colwise().squaredNorm() / n).cwiseSqrt();
-  const double smallest = 1e-9 * std::max(1e-30, spread.maxCoeff());
-  const Eigen::RowVectorXd inverse = spread.unaryExpr([&](double sd) { return sd > smallest ? 1.0 / sd : 0.0; });
-  groups.residuals.array().rowwise() *= inverse.array();
-
+  require(n_classes > 1, "discriminant: fewer than two classes");
+  detail::check_labelled(features, labels, n_classes, 1);
+  detail::Groups groups = detail::group(features, labels, n_classes);
+  const Eigen::RowVectorXd inverse = detail::scale_columns(groups.residuals);
   const Eigen::RowVectorXd centre = groups.means.colwise().mean();
   const Eigen::MatrixXd means = ((groups.means.rowwise() - centre).array().rowwise() * inverse.array()).transpose();
   const ShrunkCovariance within = shrink(groups.residuals);

@@ -2,28 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "pirsim/core/parallel.hpp"
+#include "stats/groups.hpp"
 #include "stats/require.hpp"
 #include "stats/row_blocks.hpp"
 #include "stats/tree_grower.hpp"
 
 namespace pirsim::stats {
 namespace {
-
-void check(const Matrix<float>& features, std::span<const int> labels, int n_classes) {
-  require(features.rows() > 0 && features.columns() > 0, "extra trees: no rows or no columns");
-  require(labels.size() == features.rows(), "extra trees: rows and labels differ in number");
-  require(n_classes > 0 && n_classes <= std::numeric_limits<std::uint16_t>::max(), "extra trees: number of classes");
-  require_finite(features.values(), "extra trees: a feature is not finite");
-  std::vector<bool> seen(static_cast<std::size_t>(n_classes), false);
-  for (const int label : labels) {
-    require(label >= 0 && label < n_classes, "extra trees: a label is outside [0, n_classes)");
-    seen[static_cast<std::size_t>(label)] = true;
-  }
-  require(std::find(seen.begin(), seen.end(), false) == seen.end(), "extra trees: a class without rows");
-}
 
 /// Class shares of the leaf that the row falls into are added.
 void add_leaf(const ExtraTrees::Tree& tree, std::span<const float> features, std::span<double> sum) {
@@ -39,7 +26,7 @@ void add_leaf(const ExtraTrees::Tree& tree, std::span<const float> features, std
 
 ExtraTrees ExtraTrees::fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
                            const ExtraTreesSettings& settings) {
-  check(features, labels, n_classes);
+  detail::check_labelled(features, labels, n_classes, 1);
   require(settings.trees > 0 && settings.min_leaf > 0, "extra trees: at least one tree and one row a leaf");
   const detail::GrowingData data = detail::prepare(features, labels, n_classes);
   const auto root = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(features.columns()))));
