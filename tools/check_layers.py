@@ -10,6 +10,7 @@ import sys
 
 BELOW = {
     "core": set(),
+    "stats": {"core"},
     "geom": {"core"},
     "schema": {"geom", "core"},
     "rt": {"schema", "geom", "core"},
@@ -18,8 +19,8 @@ BELOW = {
     "io": {"schema", "geom", "core"},
     "effects": {"schema", "geom", "core"},
     "sim": {"effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
-    "studies": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
-    "reconcile": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
+    "studies": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "stats", "core"},
+    "reconcile": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "stats", "core"},
 }
 BELOW["app"] = set(BELOW)
 # header prefix of a third-party library -> the only layers that may include it
@@ -37,6 +38,8 @@ THIRD_PARTY = {
     "tbb": {"core"},
     "Random123": {"core"},
     "nlopt": {"studies"},
+    "Eigen": {"stats"},
+    "boost": {"stats"},
     "CLI": {"app"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

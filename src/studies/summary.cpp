@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pirsim/core/error.hpp"
+#include "pirsim/stats/scores.hpp"
 
 namespace pirsim::studies {
 namespace {
@@ -95,7 +96,7 @@ std::vector<CellSummary> Summary::cells() const {
       cell.mean = static_cast<double>(total) / static_cast<double>(counts.size());
       if (cell.measured) {
         cell.inside = cell.min <= cell.measured->real && cell.measured->real <= cell.max;
-        cell.crps = crps(counts, cell.measured->real);
+        cell.crps = stats::crps(std::vector<double>(counts.begin(), counts.end()), cell.measured->real);
       }
     }
     cells.push_back(std::move(cell));
@@ -128,21 +129,6 @@ void RunCounts::add(const Sample& row) {
   const auto& phases = spec_.phases;
   if (!phases.empty() && std::find(phases.begin(), phases.end(), row.phase) == phases.end()) return;
   for (std::size_t sensor = 0; sensor < counts_.size(); ++sensor) counts_[sensor] += row.bits[sensor] != 0 ? 1 : 0;
-}
-
-double crps(std::span<const int> ensemble, int observed) {
-  std::vector<int> sorted(ensemble.begin(), ensemble.end());
-  std::sort(sorted.begin(), sorted.end());
-  const auto n = static_cast<std::int64_t>(sorted.size());
-  std::int64_t error = 0;   // sum of |x - y|
-  std::int64_t spread = 0;  // sum of |x - x'| over unordered pairs: member i is added i times and taken n - 1 - i times
-  for (std::int64_t i = 0; i < n; ++i) {
-    const std::int64_t x = sorted[static_cast<std::size_t>(i)];
-    error += std::abs(x - observed);
-    spread += x * (2 * i - n + 1);
-  }
-  const auto members = static_cast<double>(n);
-  return static_cast<double>(error) / members - static_cast<double>(spread) / (members * members);
 }
 
 InsideCount count_inside(std::span<const RangedValue> cells) {

@@ -21,6 +21,12 @@ enum class Purpose : std::uint32_t {
   fidgeting = 9,       ///< fidgeting: when somebody moves, and how
   dead_sensor = 10,    ///< dead_sensor: which rows a dying sensor loses
   effect_prior = 11,   ///< parameters drawn from the catalogue's priors
+  // Of statistics, from 100 on.
+  tied_ranks = 100,         ///< order of equal values in a rank test
+  bootstrap = 101,          ///< which blocks a bootstrap sample takes
+  tree_growing = 102,       ///< columns and thresholds that a randomised tree tries
+  projection = 103,         ///< random directions that a subspace is found from
+  calibration_split = 104,  ///< which rows are kept for calibration
   // Of the physical response, from 300 on.
   detector_noise = 300,  ///< of one sensor's element and amplifier
   reader_phase = 301,    ///< when in its window each sensor is read

@@ -24,7 +24,7 @@ struct CellSummary {
   double mean = 0.0;
   std::optional<MeasuredCell> measured;
   std::optional<bool> inside;  ///< min <= real <= max
-  std::optional<double> crps;  ///< in counts; see crps()
+  std::optional<double> crps;  ///< in counts; see stats::crps()
 };
 
 /// What the count of cells inside their range hides.
@@ -78,11 +78,6 @@ class RunCounts {
   SummarySpec spec_;
   std::vector<int> counts_;
 };
-
-/// Continuous ranked probability score of an ensemble (at least one member): mean |x - y| - 1/2 mean |x - x'|, over
-/// all pairs of members, each with itself too. 0 is perfect; with one member it is the absolute error.
-/// Ref: [Gneiting2007] equation 21.
-[[nodiscard]] double crps(std::span<const int> ensemble, int observed);
 
 /// A range and a value per cell: how many values lie in their range, and the expectation and standard deviation of
 /// that number over all n! ways to deal the values to the ranges.

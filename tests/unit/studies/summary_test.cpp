@@ -19,49 +19,7 @@ std::vector<MeasuredCell> paper() {
   return io::read_measured_cells(pirsim::test::data_dir() / "measured/stefansson2021_table1.csv");
 }
 
-/// mean |x - y| - 1/2 mean |x - x'|, pair by pair.
-double crps_by_pairs(const std::vector<int>& x, int y) {
-  double error = 0.0;
-  double spread = 0.0;
-  for (const int a : x) {
-    error += std::abs(a - y);
-    for (const int b : x) spread += std::abs(a - b);
-  }
-  const auto n = static_cast<double>(x.size());
-  return error / n - 0.5 * spread / (n * n);
-}
-
-/// Integral of (F(z) - [z >= y])^2, the score's definition; F is constant between whole numbers.
-double crps_by_integral(const std::vector<int>& x, int y) {
-  double sum = 0.0;
-  for (int z = -200; z < 200; ++z) {
-    const auto below = std::count_if(x.begin(), x.end(), [&](int member) { return member <= z; });
-    const double f = static_cast<double>(below) / static_cast<double>(x.size()) - (z >= y ? 1.0 : 0.0);
-    sum += f * f;
-  }
-  return sum;
-}
-
 }  // namespace
-
-TEST_CASE("the ensemble CRPS agrees with its pairs and with its integral", "[summary]") {
-  const std::vector<std::vector<int>> ensembles{{5}, {1, 3}, {0, 0, 0}, {7, 2, 9, 2, 100}, {-5, 4, 4, 12, 3, 3, 0}};
-  for (const std::vector<int>& x : ensembles) {
-    for (const int y : {-7, 0, 2, 3, 55}) {
-      CHECK(crps(x, y) == Approx(crps_by_pairs(x, y)).margin(1e-12));
-      CHECK(crps(x, y) == Approx(crps_by_integral(x, y)).margin(1e-12));
-    }
-  }
-  CHECK(crps(std::vector<int>{4}, 9) == 5.0);
-  CHECK(crps(std::vector<int>{4, 4}, 4) == 0.0);
-}
-
-TEST_CASE("the CRPS of a large uniform ensemble is that of the uniform distribution", "[summary]") {
-  // Members 0..n-1, seen from the middle: integral of F^2 and (1-F)^2 gives n / 12 for the continuous uniform.
-  std::vector<int> members(1200);
-  std::iota(members.begin(), members.end(), 0);
-  CHECK(crps(members, 600) == Approx(1200.0 / 12.0).epsilon(1e-3));
-}
 
 TEST_CASE("the shuffled count inside agrees with all permutations", "[summary]") {
   const std::vector<RangedValue> cells{{3, 0, 5}, {9, 2, 9}, {4, 4, 4}, {0, 1, 3}, {7, 6, 20}, {2, 0, 1}};

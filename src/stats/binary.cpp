@@ -1,0 +1,84 @@
+#include "pirsim/stats/binary.hpp"
+
+#include <bit>
+#include <istream>
+#include <ostream>
+
+#include "pirsim/core/error.hpp"
+
+namespace pirsim::stats {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the byte order of the format is that of the machine");
+
+constexpr std::uint64_t checksum_start = 14695981039346656037ULL;
+
+/// FNV-1a, eight bytes at a time. Ref: [FNV]
+void update(std::uint64_t& checksum, const void* bytes, std::size_t count) {
+  const auto* at = static_cast<const unsigned char*>(bytes);
+  while (count > 0) {
+    std::uint64_t word = 0;
+    const std::size_t taken = count < 8 ? count : 8;
+    for (std::size_t i = 0; i < taken; ++i) word |= std::uint64_t{at[i]} << (8 * i);
+    checksum = (checksum ^ word) * 1099511628211ULL;
+    checksum ^= checksum >> 32U;  // a multiplication alone carries nothing downwards
+    at += taken;
+    count -= taken;
+  }
+}
+
+}  // namespace
+
+BinaryWriter::BinaryWriter(std::ostream& out, std::string_view kind, std::uint32_t version)
+    : out_(out), checksum_(checksum_start) {
+  write(kind);
+  write(version);
+}
+
+void BinaryWriter::put(const void* bytes, std::size_t count) {
+  update(checksum_, bytes, count);
+  out_.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count));
+}
+
+void BinaryWriter::write(std::string_view text) {
+  write(static_cast<std::uint64_t>(text.size()));
+  put(text.data(), text.size());
+}
+
+void BinaryWriter::finish() {
+  const std::uint64_t checksum = checksum_;
+  out_.write(reinterpret_cast<const char*>(&checksum), sizeof checksum);
+  if (!out_) throw Error(ErrorCode::io, "can't write a fitted object: the stream failed");
+}
+
+BinaryReader::BinaryReader(std::istream& in, std::string_view kind, std::uint32_t version)
+    : in_(in), kind_(kind), checksum_(checksum_start) {
+  const auto length = read<std::uint64_t>();
+  std::string found(length == kind.size() ? kind.size() : 0, '\0');
+  get(found.data(), found.size());
+  if (found != kind) fail("was expected, but the stream holds something else");
+  const auto found_version = read<std::uint32_t>();
+  if (found_version != version)
+    fail("has version " + std::to_string(found_version) + ", this build reads version " + std::to_string(version));
+}
+
+void BinaryReader::get(void* bytes, std::size_t count) {
+  in_.read(static_cast<char*>(bytes), static_cast<std::streamsize>(count));
+  if (static_cast<std::size_t>(in_.gcount()) != count) fail("ends too early");
+  update(checksum_, bytes, count);
+}
+
+std::string BinaryReader::read_text() {
+  std::vector<char> text;
+  get_many(text, read<std::uint64_t>());
+  return {text.begin(), text.end()};
+}
+
+void BinaryReader::finish() {
+  const std::uint64_t expected = checksum_;
+  if (read<std::uint64_t>() != expected) fail("is damaged: its checksum differs");
+}
+
+void BinaryReader::fail(const std::string& what) const { throw Error(ErrorCode::input, kind_ + " " + what); }
+
+}  // namespace pirsim::stats

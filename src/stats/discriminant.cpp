@@ -1,0 +1,120 @@
+#include "pirsim/stats/discriminant.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stats/eigen.hpp"
+#include "stats/groups.hpp"
+#include "stats/require.hpp"
+#include "stats/row_blocks.hpp"
+
+namespace pirsim::stats {
+namespace {
+
+using detail::as_eigen;
+
+/// rows must have mean 0.
+ShrunkCovariance shrink(const Eigen::MatrixXd& rows) {
+  const auto n = static_cast<double>(rows.rows()), p = static_cast<double>(rows.cols());
+  Eigen::MatrixXd sample = Eigen::MatrixXd::Zero(rows.cols(), rows.cols());
+  sample.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose(), 1.0 / n);
+  sample.triangularView<Eigen::StrictlyUpper>() = sample.transpose();
+  const double mean_variance = sample.trace() / p;
+  const double sample_norm = sample.squaredNorm();
+  const double distance = sample_norm - p * mean_variance * mean_variance;  // squared, of the sample from the target
+  const double error = (rows.rowwise().squaredNorm().array().square().sum() / n - sample_norm) / n;
+  ShrunkCovariance shrunk;
+  shrunk.shrinkage = distance > 0.0 ? std::clamp(error / distance, 0.0, 1.0) : 1.0;
+  sample *= 1.0 - shrunk.shrinkage;
+  sample.diagonal().array() += shrunk.shrinkage * mean_variance;
+  shrunk.covariance = detail::to_matrix(sample);
+  return shrunk;
+}
+
+}  // namespace
+
+ShrunkCovariance ledoit_wolf(const Matrix<double>& rows) {
+  require(rows.rows() > 1 && rows.columns() > 0, "covariance: too few rows or no columns");
+  require_finite(rows.values(), "covariance: a number is not finite");
+  const Eigen::RowVectorXd mean = as_eigen(rows).colwise().mean();
+  ShrunkCovariance shrunk = shrink(as_eigen(rows).rowwise() - mean);
+  shrunk.mean.assign(mean.begin(), mean.end());
+  return shrunk;
+}
+
+Discriminant Discriminant::fit(const Matrix<float>& features, std::span<const int> labels, int n_classes) {
+  require(n_classes > 1, "discriminant: fewer than two classes");
+  detail::check_labelled(features, labels, n_classes, 1);
+  detail::Groups groups = detail::group(features, labels, n_classes);
+  const Eigen::RowVectorXd inverse = detail::scale_columns(groups.residuals);
+  const Eigen::RowVectorXd centre = groups.means.colwise().mean();
+  const Eigen::MatrixXd means = ((groups.means.rowwise() - centre).array().rowwise() * inverse.array()).transpose();
+  const ShrunkCovariance within = shrink(groups.residuals);
+  const Eigen::LLT<Eigen::MatrixXd> factor(as_eigen(within.covariance));
+  const Eigen::MatrixXd whitened = factor.matrixL().solve(means);  // (n_columns x n_classes)
+  const Eigen::JacobiSVD<Eigen::MatrixXd> parting(whitened, Eigen::ComputeThinU);
+  const auto& strength = parting.singularValues();
+  const Eigen::Index kept = (strength.array() > 1e-9 * strength(0)).count();
+  const Eigen::MatrixXd basis = parting.matrixU().leftCols(kept);
+  const Eigen::MatrixXd unwhitened = factor.matrixU().solve(basis);
+
+  Discriminant fitted;
+  fitted.centre_.assign(centre.begin(), centre.end());
+  fitted.directions_ = detail::to_matrix(unwhitened.transpose() * inverse.asDiagonal());
+  fitted.class_means_ = detail::to_matrix(whitened.transpose() * basis);
+  fitted.shrinkage_ = within.shrinkage;
+  return fitted;
+}
+
+std::vector<double> Discriminant::project(std::span<const float> features) const {
+  require(features.size() == centre_.size(), "discriminant: another number of features than was fitted");
+  const Eigen::VectorXd off = as_eigen(features).cast<double>() - as_eigen(std::span<const double>(centre_));
+  const Eigen::VectorXd place = as_eigen(directions_) * off;
+  return {place.begin(), place.end()};
+}
+
+Matrix<double> Discriminant::project(const Matrix<float>& features, unsigned threads) const {
+  return detail::map_rows(features.rows(), n_directions(), threads,
+                          [&](std::size_t row) { return project(features.row(row)); });
+}
+
+std::vector<double> Discriminant::log_densities(std::span<const float> features) const {
+  const std::vector<double> place = project(features);
+  std::vector<double> logs;
+  for (std::size_t k = 0; k < class_means_.rows(); ++k) {
+    double squares = 0.0;
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      const double off = place[i] - class_means_(k, i);
+      squares += off * off;
+    }
+    logs.push_back(-0.5 * squares);
+  }
+  return logs;
+}
+
+std::vector<double> Discriminant::probabilities(std::span<const float> features) const {
+  std::vector<double> shares = log_densities(features);
+  const double largest = *std::max_element(shares.begin(), shares.end());
+  double sum = 0.0;
+  for (double& share : shares) sum += share = std::exp(share - largest);
+  for (double& share : shares) share /= sum;
+  return shares;
+}
+
+void Discriminant::write(BinaryWriter& out) const {
+  out.write(centre_);
+  out.write(directions_);
+  out.write(class_means_);
+  out.write(shrinkage_);
+}
+
+Discriminant Discriminant::read(BinaryReader& in) {
+  Discriminant read;
+  read.centre_ = in.read_vector<double>();
+  read.directions_ = in.read_matrix<double>();
+  read.class_means_ = in.read_matrix<double>();
+  read.shrinkage_ = in.read<double>();
+  return read;
+}
+
+}  // namespace pirsim::stats

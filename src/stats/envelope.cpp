@@ -1,0 +1,187 @@
+#include "pirsim/stats/envelope.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "pirsim/core/parallel.hpp"
+#include "pirsim/core/random.hpp"
+#include "stats/require.hpp"
+
+namespace pirsim::stats {
+namespace {
+
+/// Ranks of a column from its smallest value up; the rank from the largest down is top - rank.
+struct ColumnRanks {
+  std::vector<double> from_below;  ///< (n_rows)
+  double top = 0.0;
+};
+
+/// Calls use(begin, end) for every run of equal values.
+template <typename Use>
+void for_each_tie(const std::vector<double>& sorted, const Use& use) {
+  for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
+    while (end < sorted.size() && sorted[end] == sorted[begin]) ++end;
+    use(begin, end);
+  }
+}
+
+/// Place of sorted[i] between its neighbours, in (0, n). Ref: [Hahn2015] in the form of [Myllymaki2024].
+double continuous_rank(const std::vector<double>& sorted, std::size_t i) {
+  const std::size_t last = sorted.size() - 1;
+  if (i == 0) return std::exp(-(sorted[1] - sorted[0]) / (sorted[last] - sorted[1]));
+  if (i == last) {
+    return static_cast<double>(last + 1) -
+           std::exp(-(sorted[last] - sorted[last - 1]) / (sorted[last - 1] - sorted[0]));
+  }
+  return static_cast<double>(i) + (sorted[i] - sorted[i - 1]) / (sorted[i + 1] - sorted[i - 1]);
+}
+
+ColumnRanks rank_column(const std::vector<double>& values, PointwiseRank kind, Stream stream) {
+  const std::size_t n = values.size();
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::uint32_t> lot(n, 0);
+  if (kind == PointwiseRank::random_ties) std::generate(lot.begin(), lot.end(), [&] { return stream.next_u32(); });
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    if (values[a] != values[b]) return values[a] < values[b];
+    return lot[a] != lot[b] ? lot[a] < lot[b] : a < b;
+  });
+  std::vector<double> sorted(n);
+  for (std::size_t i = 0; i < n; ++i) sorted[i] = values[order[i]];
+
+  ColumnRanks ranks{std::vector<double>(n), kind == PointwiseRank::continuous ? double(n) : double(n + 1)};
+  for_each_tie(sorted, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double rank = static_cast<double>(i + 1);
+      if (kind == PointwiseRank::middle_ties) rank = 0.5 * static_cast<double>(begin + 1 + end);
+      // Of a tied pair the formula of continuous_rank gives the middle too, except at an end.
+      if (kind == PointwiseRank::continuous)
+        rank = end - begin > 1 ? 0.5 * static_cast<double>(begin + end) : continuous_rank(sorted, i);
+      ranks.from_below[order[i]] = rank;
+    }
+  });
+  return ranks;
+}
+
+/// One-sided ranks of every entry; small is extreme. A side that the test doesn't look at is empty.
+struct SideRanks {
+  Matrix<double> low, high;
+};
+
+SideRanks rank_sides(const Matrix<double>& rows, const EnvelopeSettings& settings) {
+  SideRanks sides;
+  if (settings.alternative != Alternative::greater) sides.low = Matrix<double>(rows.rows(), rows.columns());
+  if (settings.alternative != Alternative::less) sides.high = Matrix<double>(rows.rows(), rows.columns());
+  std::size_t column = 0;
+  const auto rank = [&](std::size_t c) {
+    std::vector<double> values(rows.rows());
+    for (std::size_t r = 0; r < rows.rows(); ++r) values[r] = rows(r, c);
+    return rank_column(values, settings.rank,
+                       Stream({settings.seed, 0, static_cast<std::uint32_t>(c), Purpose::tied_ranks}));
+  };
+  const auto store = [&](ColumnRanks& ranks) {
+    for (std::size_t r = 0; r < rows.rows(); ++r) {
+      if (sides.low.rows() > 0) sides.low(r, column) = ranks.from_below[r];
+      if (sides.high.rows() > 0) sides.high(r, column) = ranks.top - ranks.from_below[r];
+    }
+    ++column;
+  };
+  ordered_parallel<ColumnRanks>(rows.columns(), settings.threads, rank, store);
+  return sides;
+}
+
+/// (n_rows x n_columns) per row its pointwise ranks of the sides looked at, smallest first.
+Matrix<double> sorted_ranks(const SideRanks& sides) {
+  Matrix<double> sorted = sides.low.rows() > 0 ? sides.low : sides.high;
+  if (sides.low.rows() > 0 && sides.high.rows() > 0) {
+    for (std::size_t i = 0; i < sorted.values().size(); ++i)
+      sorted.values()[i] = std::min(sorted.values()[i], sides.high.values()[i]);
+  }
+  for (std::size_t r = 0; r < sorted.rows(); ++r) std::sort(sorted.row(r).begin(), sorted.row(r).end());
+  return sorted;
+}
+
+std::vector<double> share_at_least_as_extreme(const Matrix<double>& sorted) {
+  const std::size_t n = sorted.rows();
+  const auto less = [&](std::size_t a, std::size_t b) {
+    const auto x = sorted.row(a), y = sorted.row(b);
+    return std::lexicographical_compare(x.begin(), x.end(), y.begin(), y.end());
+  };
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), less);
+  std::vector<double> share(n);
+  for (std::size_t begin = 0, end = 0; begin < n; begin = end) {
+    while (end < n && !less(order[begin], order[end])) ++end;
+    for (std::size_t i = begin; i < end; ++i) share[order[i]] = static_cast<double>(end) / static_cast<double>(n);
+  }
+  return share;
+}
+
+/// The envelope excludes the first row's entry once all rows at least as far out as it on that side are cut away.
+double adjusted_p(const Matrix<double>& side, const std::vector<double>& p, std::size_t column) {
+  double largest = 0.0;
+  for (std::size_t r = 0; r < side.rows(); ++r)
+    if (side(r, column) <= side(0, column)) largest = std::max(largest, p[r]);
+  return largest;
+}
+
+double median_without_first(const Matrix<double>& rows, std::size_t column) {
+  std::vector<double> values;
+  for (std::size_t r = 1; r < rows.rows(); ++r) values.push_back(rows(r, column));
+  std::sort(values.begin(), values.end());
+  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+}
+
+void draw_envelope(const Matrix<double>& rows, const std::vector<double>& p, const EnvelopeSettings& settings,
+                   GlobalEnvelope& envelope) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  envelope.lower.assign(rows.columns(), infinity);
+  envelope.upper.assign(rows.columns(), -infinity);
+  for (std::size_t r = 0; r < rows.rows(); ++r) {
+    if (p[r] <= settings.alpha) continue;
+    for (std::size_t c = 0; c < rows.columns(); ++c) {
+      envelope.lower[c] = std::min(envelope.lower[c], rows(r, c));
+      envelope.upper[c] = std::max(envelope.upper[c], rows(r, c));
+    }
+  }
+  if (settings.alternative == Alternative::greater) envelope.lower.assign(rows.columns(), -infinity);
+  if (settings.alternative == Alternative::less) envelope.upper.assign(rows.columns(), infinity);
+}
+
+}  // namespace
+
+std::vector<double> extremeness(const Matrix<double>& rows, const EnvelopeSettings& settings) {
+  require_finite(rows.values(), "envelope: a statistic is not finite");
+  return share_at_least_as_extreme(sorted_ranks(rank_sides(rows, settings)));
+}
+
+GlobalEnvelope global_envelope_test(std::span<const double> observed, const Matrix<double>& simulated,
+                                    const EnvelopeSettings& settings) {
+  require(simulated.rows() > 0, "envelope: no simulated row");
+  require(observed.size() == simulated.columns(), "envelope: observed and simulated rows differ in length");
+  require(settings.alpha > 0.0 && settings.alpha < 1.0, "envelope: alpha must lie between 0 and 1");
+  require_finite(observed, "envelope: an observed statistic is not finite");
+  require_finite(simulated.values(), "envelope: a simulated statistic is not finite");
+  Matrix<double> rows(simulated.rows() + 1, observed.size());
+  std::copy(observed.begin(), observed.end(), rows.values().begin());
+  std::copy(simulated.values().begin(), simulated.values().end(), rows.row(1).data());
+
+  const SideRanks sides = rank_sides(rows, settings);
+  const std::vector<double> p = share_at_least_as_extreme(sorted_ranks(sides));
+  GlobalEnvelope envelope;
+  envelope.p = p[0];
+  for (std::size_t c = 0; c < rows.columns(); ++c) {
+    double adjusted = 1.0;
+    for (const auto* side : {&sides.low, &sides.high})
+      if (side->rows() > 0) adjusted = std::min(adjusted, adjusted_p(*side, p, c));
+    envelope.adjusted_p.push_back(adjusted);
+    envelope.median.push_back(median_without_first(rows, c));
+  }
+  draw_envelope(rows, p, settings, envelope);
+  return envelope;
+}
+
+}  // namespace pirsim::stats

@@ -1,0 +1,40 @@
+#include "pirsim/stats/decision.hpp"
+
+#include "pirsim/core/error.hpp"
+#include "support/catch.hpp"
+
+using namespace pirsim::stats;
+
+namespace {
+
+/// Effects 0 and 1 are of family 7, effect 2 of family 8.
+const std::vector<int> families{7, 7, 8};
+
+std::vector<Candidate> singles(double p0, double p1, double p2) { return {{{0}, p0}, {{1}, p1}, {{2}, p2}}; }
+
+const std::vector<Candidate> pairs{{{0, 1}, 0.01}, {{0, 2}, 0.3}, {{1, 2}, 0.6}};
+
+}  // namespace
+
+TEST_CASE("a model that is not refused has no disagreement whatever the effects say", "[stats]") {
+  CHECK(decide(0.3, singles(0.9, 0.0, 0.0), pairs, families, 0.05) == Decision{});
+}
+
+TEST_CASE("one surviving effect is named", "[stats]") {
+  const Decision decision = decide(0.001, singles(0.01, 0.4, 0.05), pairs, families, 0.05);
+  CHECK(decision == Decision{Verdict::named, {1}, {1}, 7});
+}
+
+TEST_CASE("several surviving effects are one of them with the family if it is one", "[stats]") {
+  CHECK(decide(0.001, singles(0.1, 0.4, 0.0), pairs, families, 0.05) == Decision{Verdict::one_of, {1, 0}, {}, 7});
+  CHECK(decide(0.001, singles(0.1, 0.4, 0.2), pairs, families, 0.05) ==
+        Decision{Verdict::one_of, {1, 2, 0}, {}, std::nullopt});
+}
+
+TEST_CASE("combinations are looked at only when no single effect survives", "[stats]") {
+  CHECK(decide(0.001, singles(0.0, 0.0, 0.0), pairs, families, 0.05) ==
+        Decision{Verdict::several, {2, 1}, {2}, std::nullopt});
+  CHECK(decide(0.001, singles(0.0, 0.0, 0.0), pairs, families, 0.7).verdict == Verdict::none_in_catalogue);
+  CHECK(decide(0.001, singles(0.0, 0.0, 0.0), {}, families, 0.05).verdict == Verdict::none_in_catalogue);
+  CHECK_THROWS_AS(decide(0.5, std::vector<Candidate>{{{3}, 0.1}}, {}, families, 0.05), pirsim::Error);
+}

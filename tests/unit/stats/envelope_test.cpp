@@ -1,0 +1,174 @@
+#include "pirsim/stats/envelope.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "pirsim/core/error.hpp"
+#include "pirsim/core/random.hpp"
+#include "support/catch.hpp"
+
+using namespace pirsim;
+using namespace pirsim::stats;
+
+namespace {
+
+/// Rows of `columns` dependent numbers: normal, or (coarse) small whole numbers that are equal more often than not.
+Matrix<double> draw_rows(std::size_t rows, std::size_t columns, std::uint32_t study, double coarse) {
+  Stream stream({21, study, 0, Purpose::test});
+  Matrix<double> drawn(rows, columns);
+  for (std::size_t r = 0; r < rows; ++r) {
+    const double common = stream.normal();
+    for (std::size_t c = 0; c < columns; ++c) {
+      const double value = 0.6 * common + 0.8 * stream.normal();
+      drawn(r, c) = coarse > 0.0 ? std::floor(value / coarse) : value;
+    }
+  }
+  return drawn;
+}
+
+Matrix<double> without_first(const Matrix<double>& rows) {
+  std::vector<std::size_t> rest;
+  for (std::size_t r = 1; r < rows.rows(); ++r) rest.push_back(r);
+  return rows.select_rows(rest);
+}
+
+/// Share of studies whose true model is refused at 5 %, with 39 simulated rows: 2 of the 40 places.
+double refusals(PointwiseRank rank, double coarse, int studies) {
+  int refused = 0;
+  for (int study = 0; study < studies; ++study) {
+    const Matrix<double> rows = draw_rows(40, 6, static_cast<std::uint32_t>(study), coarse);
+    const EnvelopeSettings settings{.rank = rank, .seed = static_cast<std::uint64_t>(study), .threads = 1};
+    refused += global_envelope_test(rows.row(0), without_first(rows), settings).p <= 0.05 + 1e-12 ? 1 : 0;
+  }
+  return static_cast<double>(refused) / studies;
+}
+
+/// The twin that must fail: every entry tested alone at 5 %.
+double refusals_of_any_entry(int studies) {
+  int refused = 0;
+  for (int study = 0; study < studies; ++study) {
+    const Matrix<double> rows = draw_rows(40, 6, static_cast<std::uint32_t>(study), 0.0);
+    bool any = false;
+    for (std::size_t c = 0; c < 6; ++c) {
+      int below = 0;
+      for (std::size_t r = 0; r < 40; ++r) below += rows(r, c) <= rows(0, c) ? 1 : 0;
+      any = any || below == 1 || below == 40;
+    }
+    refused += any ? 1 : 0;
+  }
+  return static_cast<double>(refused) / studies;
+}
+
+/// Extreme rank length by its definition, pair by pair, for values without ties.
+double p_by_definition(const Matrix<double>& rows) {
+  const std::size_t n = rows.rows();
+  std::vector<std::vector<int>> words(n);
+  for (std::size_t r = 0; r < n; ++r) {
+    for (std::size_t c = 0; c < rows.columns(); ++c) {
+      int below = 0, above = 0;
+      for (std::size_t k = 0; k < n; ++k) {
+        below += rows(k, c) <= rows(r, c) ? 1 : 0;
+        above += rows(k, c) >= rows(r, c) ? 1 : 0;
+      }
+      words[r].push_back(std::min(below, above));
+    }
+    std::sort(words[r].begin(), words[r].end());
+  }
+  const auto as_extreme = std::count_if(words.begin(), words.end(), [&](const auto& w) { return w <= words[0]; });
+  return static_cast<double>(as_extreme) / static_cast<double>(n);
+}
+
+}  // namespace
+
+TEST_CASE("the envelope test's p is that of the definition of extreme rank length", "[stats]") {
+  for (std::uint32_t study = 0; study < 20; ++study) {
+    const Matrix<double> rows = draw_rows(60, 9, study, 0.0);
+    const GlobalEnvelope envelope = global_envelope_test(rows.row(0), without_first(rows));
+    CHECK(envelope.p == Approx(p_by_definition(rows)));
+    // Without ties the order of ties can't matter.
+    CHECK(global_envelope_test(rows.row(0), without_first(rows), {.rank = PointwiseRank::middle_ties}).p == envelope.p);
+  }
+}
+
+TEST_CASE("the envelope test refuses a true model in 5 of 100 studies - with ties too", "[stats]") {
+  constexpr int studies = 3000;
+  const double standard_error = std::sqrt(0.05 * 0.95 / studies);
+  CHECK(std::abs(refusals(PointwiseRank::random_ties, 0.0, studies) - 0.05) < 3 * standard_error);
+  CHECK(std::abs(refusals(PointwiseRank::continuous, 0.0, studies) - 0.05) < 3 * standard_error);
+  CHECK(std::abs(refusals(PointwiseRank::random_ties, 1.5, studies) - 0.05) < 3 * standard_error);
+  CHECK(refusals(PointwiseRank::middle_ties, 1.5, studies) < 0.05 + 3 * standard_error);
+  CHECK(refusals(PointwiseRank::continuous, 1.5, studies) < 0.05 + 3 * standard_error);
+  CHECK(refusals_of_any_entry(studies) > 0.05 + 10 * standard_error);
+}
+
+TEST_CASE("an entry is outside the drawn envelope just when its adjusted p says so and the test then refuses",
+          "[stats]") {
+  int outside_somewhere = 0;
+  for (std::uint32_t study = 0; study < 60; ++study) {
+    Matrix<double> rows = draw_rows(80, 7, study, 0.0);
+    if (study % 2 == 0) rows(0, study % 7) += 2.5;
+    for (const double alpha : {0.05, 0.25}) {
+      const GlobalEnvelope envelope = global_envelope_test(rows.row(0), without_first(rows), {.alpha = alpha});
+      CHECK(*std::min_element(envelope.adjusted_p.begin(), envelope.adjusted_p.end()) == envelope.p);
+      for (std::size_t c = 0; c < 7; ++c) {
+        const bool outside = rows(0, c) < envelope.lower[c] || rows(0, c) > envelope.upper[c];
+        CHECK(outside == (envelope.adjusted_p[c] <= alpha));
+        outside_somewhere += outside ? 1 : 0;
+      }
+    }
+  }
+  CHECK(outside_somewhere > 20);
+}
+
+TEST_CASE("one entry's envelope test is the Monte Carlo test of that number", "[stats]") {
+  Matrix<double> simulated(19, 1);
+  for (std::size_t r = 0; r < 19; ++r) simulated(r, 0) = static_cast<double>(r);
+  const auto p = [&](double observed, Alternative alternative) {
+    return global_envelope_test(std::vector<double>{observed}, simulated, {.alternative = alternative}).p;
+  };
+  CHECK(p(16.5, Alternative::greater) == Approx(3.0 / 20));    // itself, 17 and 18
+  CHECK(p(16.5, Alternative::less) == Approx(18.0 / 20));      // itself and 0 to 16
+  CHECK(p(16.5, Alternative::two_sided) == Approx(6.0 / 20));  // and as many from below
+  const GlobalEnvelope one_sided =
+      global_envelope_test(std::vector<double>{30.0}, simulated, {.alternative = Alternative::greater});
+  CHECK(one_sided.lower[0] == -std::numeric_limits<double>::infinity());
+  CHECK(one_sided.upper[0] == 18.0);
+  CHECK(one_sided.median[0] == 9.0);
+}
+
+TEST_CASE("one entry far outside among many is seen by continuous ranks", "[stats]") {
+  // With 400 independent entries most rows of 200 are first or last somewhere, so the first rank alone says little.
+  Stream stream({5, 0, 0, Purpose::test});
+  Matrix<double> simulated(199, 400);
+  for (double& value : simulated.values()) value = stream.normal();
+  std::vector<double> observed(400);
+  for (double& value : observed) value = stream.normal();
+  observed[123] = 12.0;
+  const auto test = [&](PointwiseRank rank) { return global_envelope_test(observed, simulated, {.rank = rank}); };
+  CHECK(test(PointwiseRank::continuous).p == Approx(1.0 / 200));
+  CHECK(test(PointwiseRank::continuous).adjusted_p[123] == Approx(1.0 / 200));
+  CHECK(test(PointwiseRank::random_ties).p > 0.05);
+}
+
+TEST_CASE("entries that are the same in all rows change nothing in the envelope test", "[stats]") {
+  const Matrix<double> rows = draw_rows(60, 5, 3, 0.0);
+  Matrix<double> wide(60, 8, 4.0);
+  for (std::size_t r = 0; r < 60; ++r) std::copy(rows.row(r).begin(), rows.row(r).end(), wide.row(r).begin());
+  const EnvelopeSettings settings{.rank = PointwiseRank::middle_ties};
+  CHECK(global_envelope_test(wide.row(0), without_first(wide), settings).p ==
+        global_envelope_test(rows.row(0), without_first(rows), settings).p);
+}
+
+TEST_CASE("the envelope test gives the same for any number of threads and refuses what it can't use", "[stats]") {
+  const Matrix<double> rows = draw_rows(50, 6, 1, 1.5);
+  const auto test = [&](unsigned threads, std::uint64_t seed) {
+    return global_envelope_test(rows.row(0), without_first(rows), {.seed = seed, .threads = threads}).adjusted_p;
+  };
+  CHECK(test(1, 7) == test(4, 7));
+  CHECK(test(1, 7) != test(1, 8));
+  CHECK_THROWS_AS(global_envelope_test(std::vector<double>{1.0}, rows), Error);
+  CHECK_THROWS_AS(global_envelope_test(std::vector<double>(6, std::nan("")), rows), Error);
+  CHECK_THROWS_AS(global_envelope_test(rows.row(0), Matrix<double>(0, 6)), Error);
+}
