@@ -28,15 +28,16 @@ THIRD_PARTY = {
     "embree": {"rt"},
     "tiny_gltf": {"io"},
     "yaml-cpp": {"io"},
-    "nlohmann": {"io"},
+    "nlohmann": {"io", "reconcile"},
     "stb": {"io"},
     "OpenMesh": {"geom"},
     "oneapi": {"core"},
     "tbb": {"core"},
     "Random123": {"core"},
-    "nlopt": {"studies"},
+    "nlopt": {"studies", "reconcile"},
     "Eigen": {"stats"},
     "boost": {"stats"},
+    "openssl": {"core"},
     "CLI": {"app"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
