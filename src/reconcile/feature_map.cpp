@@ -64,7 +64,12 @@ struct FeatureMap::Scaled {
 struct FeatureMap::Writer {
   std::vector<float> values;
   std::vector<std::string>* names = nullptr;
+  std::vector<std::size_t>* envelope = nullptr;
 
+  /// Whatever is added next is part of the global test.
+  void test_next() {
+    if (envelope != nullptr) envelope->push_back(values.size());
+  }
   template <typename Name>
   void add(double value, const Name& name) {
     values.push_back(static_cast<float>(value));
@@ -78,7 +83,7 @@ FeatureMap::FeatureMap(const StudyFrame& frame, const std::vector<CellKnowledge>
   for (const float value : plain.row(0)) known_.push_back(std::isnan(value) ? 0 : 1);
   learn_scales(plain);
   learn_covariates(knowledge);
-  Writer writer{{}, &names_};
+  Writer writer{{}, &names_, &envelope_columns_};
   write_all(plain.row(0), writer);
 }
 
@@ -158,6 +163,7 @@ void FeatureMap::write_cells(const Scaled& data, Writer& out) const {
   for (const std::size_t trial : trials_) {
     for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
       if (!known(trial, sensor, 0)) continue;
+      out.test_next();
       out.add(data.values[cell_index(frame_, trial, sensor, CellStatistic::seconds)],
               [&] { return frame_.trials[trial] + " " + frame_.sensors[sensor] + " seconds"; });
     }
@@ -176,6 +182,7 @@ void FeatureMap::write_sensors(const Scaled& data, Writer& out) const {
       }
       if (count == 0.0) continue;
       means.push_back(sum / count);
+      out.test_next();
       out.add(means.back(),
               [&] { return frame_.sensors[sensor] + " " + std::string(name(static_cast<CellStatistic>(k))); });
     }
@@ -241,7 +248,9 @@ void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
     if (count == 0.0) continue;
     const std::string_view statistic = name(static_cast<CellStatistic>(k));
     const auto label = [&](std::string_view which) { return std::string(which) + " " + std::string(statistic); };
+    out.test_next();
     out.add(sum / count, [&] { return label("mean"); });
+    out.test_next();
     out.add(size / count, [&] { return label("size of"); });
     out.add(greatest, [&] { return label("greatest"); });
     out.add(least, [&] { return label("least"); });

@@ -1,6 +1,7 @@
 #include "pirsim/reconcile/reference_table.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "pirsim/core/parallel.hpp"
 #include "pirsim/effects/catalogue.hpp"

@@ -29,6 +29,11 @@ class FeatureMap {
              std::vector<std::size_t> trials);
 
   [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }
+  [[nodiscard]] const std::vector<std::size_t>& trials() const noexcept { return trials_; }
+  [[nodiscard]] bool knows_cell(std::size_t trial, std::size_t sensor) const { return known(trial, sensor, 0); }
+  /// What the global test looks at: first the cells' seconds, by trial, then sensor; then the sensors' means and the
+  /// means and sizes over all cells.
+  [[nodiscard]] const std::vector<std::size_t>& envelope_columns() const noexcept { return envelope_columns_; }
   [[nodiscard]] std::vector<float> features(std::span<const float> statistics) const;
   [[nodiscard]] stats::Matrix<float> features(const stats::Matrix<float>& statistics, unsigned threads = 0) const;
 
@@ -56,6 +61,7 @@ class FeatureMap {
   std::vector<std::string> covariate_names_;
   std::vector<std::vector<double>> covariates_;  ///< (n_covariates x n_cells) mean 0, variance 1 over known cells
   std::vector<std::string> names_;
+  std::vector<std::size_t> envelope_columns_;
 };
 
 }  // namespace pirsim::reconcile
