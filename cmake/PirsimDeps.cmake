@@ -17,6 +17,7 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)  # Debian's package has no CMake file
 find_package(Eigen3 REQUIRED)
 find_package(Boost REQUIRED CONFIG)  # headers of Boost.Math
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 # Vega draws the charts of reports: its script is built into the library.
 find_path(VEGA_DIR NAMES vega-parser.min.js vega.min.js PATHS /usr/share/javascript/vega NO_DEFAULT_PATH REQUIRED)

@@ -28,7 +28,7 @@ THIRD_PARTY = {
     "embree": {"rt"},
     "tiny_gltf": {"io"},
     "yaml-cpp": {"io"},
-    "nlohmann": {"io"},
+    "nlohmann": {"io", "reconcile"},
     "stb": {"io"},
     "zlib": {"io"},
     "zstd": {"io"},
@@ -37,9 +37,10 @@ THIRD_PARTY = {
     "oneapi": {"core"},
     "tbb": {"core"},
     "Random123": {"core"},
-    "nlopt": {"studies"},
+    "nlopt": {"studies", "reconcile"},
     "Eigen": {"stats"},
     "boost": {"stats"},
+    "openssl": {"core"},
     "CLI": {"app"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

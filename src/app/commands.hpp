@@ -13,6 +13,7 @@ void walk_test(const Inputs& inputs, const WalkTestOptions& options);
 void placements(const Inputs& inputs, const PlacementOptions& options);
 void status(const CampaignOptions& options);
 void merge(const CampaignOptions& options);
+void reconcile_data(const Inputs& inputs, const ReconcileOptions& options);
 void export_gltf(const Inputs& inputs, const ExportOptions& options);
 
 }  // namespace pirsim::app

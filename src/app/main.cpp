@@ -157,6 +157,30 @@ void add_campaign_options(CLI::App& command, CampaignOptions& options) {
       "-q,--quiet", [&] { options.verbosity = Verbosity::quiet; }, "errors only");
 }
 
+void add_reconcile_options(CLI::App& command, ReconcileOptions& options) {
+  command.add_option("--measured", options.measured, "rows or sums from the real room, CSV")
+      ->option_text("FILE")
+      ->required();
+  command.add_option("-o,--out", options.output, "folder for report and patched script (default: reconcile)")
+      ->option_text("DIR");
+  command.add_option("--table", options.table, "folder that keeps the reference table (default: DIR/table)")
+      ->option_text("DIR");
+  command.add_option("--nuisance", options.nuisance, "what is uncertain about the room, YAML; or none")
+      ->option_text("FILE");
+  command.add_option("--alpha", options.alpha, "level of the tests (default: 0.05)")
+      ->option_text("P")
+      ->check(CLI::Range(0.001, 0.5));
+  command.add_option("--max-effects", options.max_effects, "most effects to put in (default: 3)")
+      ->option_text("N")
+      ->check(CLI::Range(1, 5));
+  command.add_option("--budget", options.budget, "times the usual number of simulated datasets (default: 1)")
+      ->option_text("X")
+      ->check(CLI::Range(0.05, 20.0));
+  command.add_option("--analysis-seed", options.seed, "of everything random in the analysis (default: 1)")
+      ->option_text("N");
+  command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
+}
+
 std::string version_text() {
   return "pirsim " + version() + " (" + git_revision() + "), " + compiler() + ", Embree " + rt::embree_version() + " " +
          rt::instruction_set();
@@ -175,6 +199,7 @@ int run_command_line(int argc, char** argv) {
   CoverageOptions coverage_options;
   WalkTestOptions walk_test_options;
   PlacementOptions placement_options;
+  ReconcileOptions reconcile_options;
   add_inputs(app, inputs);
   add_run_options(app, run_options);
   CLI::App* run_command = app.add_subcommand("run", "run the study (the default)");
@@ -208,6 +233,11 @@ int run_command_line(int argc, char** argv) {
   merge_command->add_option("-o,--output", campaign_options.output, "rows, .csv, .csv.gz or .csv.zst")
       ->option_text("FILE");
 
+  CLI::App* reconcile_command =
+      app.add_subcommand("reconcile", "where model and measurement disagree, and which effect is missing");
+  add_inputs(*reconcile_command, inputs);
+  add_reconcile_options(*reconcile_command, reconcile_options);
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -230,6 +260,8 @@ int run_command_line(int argc, char** argv) {
     coverage(inputs, coverage_options);
   } else if (*walk_test_command) {
     walk_test(inputs, walk_test_options);
+  } else if (*reconcile_command) {
+    reconcile_data(inputs, reconcile_options);
   } else if (*placements_command) {
     placements(inputs, placement_options);
   } else if (*export_command) {

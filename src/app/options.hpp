@@ -68,6 +68,18 @@ struct CampaignOptions {
   Verbosity verbosity = Verbosity::normal;
 };
 
+struct ReconcileOptions {
+  std::filesystem::path measured;
+  std::filesystem::path output = "reconcile";  ///< folder
+  std::filesystem::path table;                 ///< folder of the reference table; empty: in the output folder
+  std::string nuisance;                        ///< file, "none", or empty: the usual
+  double alpha = 0.05;
+  int max_effects = 3;
+  double budget = 1.0;  ///< times the usual number of simulated datasets
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+};
+
 struct ExportOptions {
   std::filesystem::path output = "run.glb";
   std::string trial;

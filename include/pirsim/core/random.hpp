@@ -27,6 +27,12 @@ enum class Purpose : std::uint32_t {
   tree_growing = 102,       ///< columns and thresholds that a randomised tree tries
   projection = 103,         ///< random directions that a subspace is found from
   calibration_split = 104,  ///< which rows are kept for calibration
+  // Of reconciliation, from 200 on.
+  nuisance = 200,              ///< where seats and sensors really are, and how large people are
+  simulated_seed = 201,        ///< seeds of simulated datasets
+  reference_parameters = 202,  ///< parameters of effects, from their priors
+  analysis = 203,              ///< ties, forests, splits, bootstrap
+  sealed_answer = 204,         ///< what a sealed challenge hides
   // Of the physical response, from 300 on.
   detector_noise = 300,  ///< of one sensor's element and amplifier
   reader_phase = 301,    ///< when in its window each sensor is read

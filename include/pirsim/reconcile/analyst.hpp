@@ -1,0 +1,51 @@
+// LOCATE, NAME and FIT with one reference table, ready for any number of datasets.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pirsim/reconcile/outcome.hpp"
+#include "pirsim/reconcile/reference_table.hpp"
+
+namespace pirsim::reconcile {
+
+struct AnalystSettings {
+  double alpha = 0.05;
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+  std::size_t trees = 300;
+};
+
+/// Learns from the table's datasets, of the given trials only. Immutable.
+class Analyst {
+ public:
+  /// frame, knowledge and table must outlive it.
+  Analyst(const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge, const ReferenceTable& table,
+          std::vector<std::size_t> trials, const AnalystSettings& settings);
+
+  /// Verdict without verification, for statistics of the table's shape. Without a disagreement no name is looked for.
+  [[nodiscard]] Outcome analyse(std::span<const float> measured) const;
+  /// The entry that fits best (at least 1), whatever the tests say, among those for which `wanted` holds; 0 if none.
+  [[nodiscard]] std::size_t likeliest(std::span<const float> measured,
+                                      const std::function<bool(std::size_t)>& wanted) const;
+  [[nodiscard]] FittedEffect fit(std::size_t entry, std::span<const float> measured) const;
+  [[nodiscard]] const FeatureMap& map() const noexcept { return map_; }
+  [[nodiscard]] const Namer& namer() const noexcept { return *namer_; }
+
+ private:
+  void decide(Outcome& outcome, std::vector<std::size_t> kept, std::span<const float> measured) const;
+
+  const StudyFrame& frame_;
+  const ReferenceTable& table_;
+  AnalystSettings settings_;
+  FeatureMap map_;
+  stats::Matrix<float> plain_;
+  std::unique_ptr<const Namer> namer_;
+};
+
+/// Every trial of a study.
+[[nodiscard]] std::vector<std::size_t> all_trials(const StudyFrame& frame);
+
+}  // namespace pirsim::reconcile

@@ -1,0 +1,42 @@
+// What a reconciliation found.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pirsim/reconcile/fit.hpp"
+#include "pirsim/reconcile/locate.hpp"
+#include "pirsim/reconcile/name.hpp"
+#include "pirsim/reconcile/verify.hpp"
+
+namespace pirsim::reconcile {
+
+enum class Verdict { no_disagreement, named, one_of, several, none_in_catalogue };
+[[nodiscard]] std::string_view name(Verdict verdict) noexcept;
+
+/// What became of one entry of the catalogue.
+struct Candidate {
+  EntryScore score;
+  std::string family;
+  bool kept = false;
+  std::string reason;  ///< why it was kept or dropped, as a sentence
+};
+
+struct Outcome {
+  Verdict verdict = Verdict::no_disagreement;
+  std::string sentence;  ///< the verdict for a reader
+  Location location;
+  std::vector<Candidate> candidates;  ///< most probable first; without `nothing`
+  EntryScore nothing;                 ///< how well the plain model fits
+  std::vector<std::string> named;     ///< effects put into the model, or those that can't be told apart
+  std::vector<FittedEffect> fits;     ///< of the effects that were put in
+  std::optional<Verification> verification;
+  std::vector<std::string> telling_features;
+  double calibration_error = 0.0;
+  std::string table_key;
+  std::vector<std::string> trail;  ///< every decision, in order
+};
+
+}  // namespace pirsim::reconcile

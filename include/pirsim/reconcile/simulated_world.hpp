@@ -1,0 +1,58 @@
+// Datasets of one world: people and rays are followed once, effects are put on top.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pirsim/reconcile/measured.hpp"
+#include "pirsim/reconcile/nuisance.hpp"
+#include "pirsim/schema/effect_spec.hpp"
+
+namespace pirsim::reconcile {
+
+/// What worlds are drawn from.
+struct WorldSource {
+  SceneSpec scene;
+  ScriptSpec script;  ///< with the effects that the model already has
+  NuisanceSpec nuisance;
+  std::uint64_t seed = 0;
+};
+
+inline constexpr std::uint32_t most_attempts = 12;  ///< at a world that people can get about in
+
+/// Belongs to one thread at a time.
+class SimulatedWorld {
+ public:
+  /// Traces n_runs runs of every trial. Throws Error(infeasible) if no attempt gives a world to get about in.
+  SimulatedWorld(const WorldSource& source, const StudyFrame& frame, std::uint32_t index, int n_runs);
+  ~SimulatedWorld();
+  SimulatedWorld(SimulatedWorld&&) noexcept;
+  SimulatedWorld& operator=(SimulatedWorld&&) noexcept;
+  SimulatedWorld(const SimulatedWorld&) = delete;
+  SimulatedWorld& operator=(const SimulatedWorld&) = delete;
+
+  [[nodiscard]] const World& world() const noexcept { return world_; }
+  /// The model as it is: runs first + 1 to first + n of every trial, numbered from 1.
+  [[nodiscard]] std::vector<Series> plain(int first, int n) const { return with({}, first, n); }
+  /// With more effects, in the same world: bit for bit what a study with all of them gives. None if people can't get
+  /// about in it.
+  [[nodiscard]] std::optional<std::vector<Series>> with_effects(std::span<const EffectSpec> more, int first,
+                                                                int n) const;
+
+ private:
+  struct Traced;
+  [[nodiscard]] std::vector<Series> with(std::span<const EffectSpec> more, int first, int n) const;
+  [[nodiscard]] std::vector<Series> anew(std::span<const EffectSpec> more, int n) const;
+
+  const StudyFrame* frame_;
+  World world_;
+  std::unique_ptr<Traced> traced_;
+};
+
+/// True if all these effects act on what remembered zones trigger, so that with_effects() is cheap.
+[[nodiscard]] bool acts_on_remembered_zones(std::span<const EffectSpec> effects);
+
+}  // namespace pirsim::reconcile

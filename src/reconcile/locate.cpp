@@ -1,0 +1,77 @@
+#include "pirsim/reconcile/locate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pirsim/stats/envelope.hpp"
+#include "pirsim/stats/intervals.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+LocatedCell cell_of(const StudyFrame& frame, const stats::Matrix<float>& plain, std::span<const float> measured,
+                    std::size_t trial, std::size_t sensor) {
+  const std::size_t column = cell_index(frame, trial, sensor, CellStatistic::seconds);
+  LocatedCell cell{frame.trials[trial], frame.sensors[sensor], static_cast<double>(measured[column]), 0, 0, 0, 1.0};
+  std::vector<double> simulated;
+  for (std::size_t row = 0; row < plain.rows(); ++row) simulated.push_back(static_cast<double>(plain(row, column)));
+  for (const double seconds : simulated) cell.expected_s += seconds / static_cast<double>(simulated.size());
+  cell.low_s = stats::quantile(simulated, 0.025);
+  cell.high_s = stats::quantile(simulated, 0.975);
+  return cell;
+}
+
+}  // namespace
+
+std::vector<std::size_t> rows_of(const ReferenceTable& table, std::size_t entry, Part part) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    if (table.rows[i].entry != entry) continue;
+    const bool held_back = is_for_calibration(table.rows[i].world);
+    if (part == Part::all || held_back == (part == Part::calibration)) rows.push_back(i);
+  }
+  return rows;
+}
+
+Location locate(const StudyFrame& frame, const FeatureMap& map, const stats::Matrix<float>& plain,
+                std::span<const float> measured, const LocateSettings& settings) {
+  const std::vector<std::size_t> columns = map.envelope_columns();
+  const auto picked = [&](const std::vector<float>& features) {
+    std::vector<double> values;
+    for (const std::size_t column : columns) values.push_back(static_cast<double>(features[column]));
+    return values;
+  };
+  const stats::Matrix<float> features = map.features(plain, settings.threads);
+  stats::Matrix<double> simulated(plain.rows(), columns.size());
+  for (std::size_t row = 0; row < plain.rows(); ++row) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      simulated(row, i) = static_cast<double>(features(row, columns[i]));
+    }
+  }
+  const std::vector<double> observed = picked(map.features(measured));
+  const stats::GlobalEnvelope test =
+      stats::global_envelope_test(observed, simulated,
+                                  {settings.alpha, stats::PointwiseRank::continuous, stats::Alternative::two_sided,
+                                   settings.seed, settings.threads});
+
+  Location location;
+  location.p = test.p;
+  location.n_simulated = plain.rows();
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    location.envelope.push_back(
+        {map.names()[columns[i]], observed[i], test.median[i], test.lower[i], test.upper[i], test.adjusted_p[i]});
+  }
+  std::size_t next = 0;  // the cells' seconds come first
+  for (const std::size_t trial : map.trials()) {
+    for (std::size_t sensor = 0; sensor < frame.sensors.size(); ++sensor) {
+      if (!map.knows_cell(trial, sensor)) continue;
+      location.cells.push_back(cell_of(frame, plain, measured, trial, sensor));
+      location.cells.back().adjusted_p = test.adjusted_p[next++];
+      location.band_s += 0.5 * (location.cells.back().high_s - location.cells.back().low_s);
+    }
+  }
+  location.band_s /= static_cast<double>(std::max<std::size_t>(1, location.cells.size()));
+  return location;
+}
+
+}  // namespace pirsim::reconcile

@@ -1,0 +1,181 @@
+#include "pirsim/reconcile/outputs.hpp"
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "pirsim/io/atomic_file.hpp"
+#include "pirsim/io/csv_writer.hpp"
+#include "pirsim/io/script_reader.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const Location& location) {
+  Json cells = Json::array(), envelope = Json::array();
+  for (const LocatedCell& cell : location.cells) {
+    cells.push_back({{"trial", cell.trial},
+                     {"sensor", cell.sensor},
+                     {"measured_s", cell.measured_s},
+                     {"expected_s", cell.expected_s},
+                     {"difference_s", cell.measured_s - cell.expected_s},
+                     {"band_s", {cell.low_s, cell.high_s}},
+                     {"adjusted_p", cell.adjusted_p}});
+  }
+  for (const EnvelopeEntry& entry : location.envelope) {
+    envelope.push_back({{"feature", entry.name},
+                        {"observed", entry.observed},
+                        {"median", entry.median},
+                        {"envelope", {entry.lower, entry.upper}},
+                        {"adjusted_p", entry.adjusted_p}});
+  }
+  return {{"p", location.p},
+          {"simulated_datasets", location.n_simulated},
+          {"mean_half_band_s", location.band_s},
+          {"cells", cells},
+          {"envelope", envelope}};
+}
+
+Json to_json(const EntryScore& score) {
+  return {{"probability", score.probability},
+          {"p", score.p},
+          {"p_relative", score.p_relative},
+          {"p_absolute", score.p_absolute}};
+}
+
+Json to_json(const Candidate& candidate) {
+  Json json = {{"effect", candidate.score.entry}, {"family", candidate.family}, {"kept", candidate.kept}};
+  json.update(to_json(candidate.score));
+  json["reason"] = candidate.reason;
+  return json;
+}
+
+Json to_json(const FittedEffect& fitted) {
+  Json parameters = Json::array();
+  for (const FittedParameter& p : fitted.parameters) {
+    parameters.push_back({{"name", p.name},
+                          {"unit", p.unit},
+                          {"value", p.value},
+                          {"interval_90", {p.interval.low, p.interval.high}},
+                          {"off", p.is_strength ? Json(p.off) : Json()}});
+  }
+  Json choices = Json::object();
+  for (const auto& [name, value] : fitted.effect.choices) choices[name] = value;
+  return {{"effect", fitted.effect.name},
+          {"parameters", parameters},
+          {"choices", choices},
+          {"interval_includes_off", fitted.includes_off}};
+}
+
+Json to_json(const Gap& gap) {
+  return {{"energy_score", gap.energy_score},
+          {"area_s", gap.area_s},
+          {"cells_outside", gap.cells_outside},
+          {"cells", gap.n_cells},
+          {"p", gap.p}};
+}
+
+Json to_json(const Verification& v) {
+  return {{"folds", v.n_folds},
+          {"named_in_folds", v.names},
+          {"before", to_json(v.before)},
+          {"after", to_json(v.after)},
+          {"noise_floor", v.noise_floor},
+          {"gain_95", {v.gain.low, v.gain.high}},
+          {"share_closed", v.share_closed},
+          {"placebo", {{"effect", v.placebo_effect}, {"energy_score", v.placebo}}},
+          {"shrunk", v.shrunk},
+          {"closed", v.closed}};
+}
+
+void write(const std::filesystem::path& file, const std::string& text) {
+  io::AtomicFile out(file);
+  out.stream() << text;
+  out.commit();
+}
+
+}  // namespace
+
+std::string to_json(const Outcome& outcome, const Measured& measured, const Settings& settings,
+                    const Provenance& provenance) {
+  Json json = {{"pirsim_reconcile_report", report_schema},
+               {"verdict", name(outcome.verdict)},
+               {"sentence", outcome.sentence},
+               {"effects", outcome.named},
+               {"program", provenance.program},
+               {"scene", provenance.scene},
+               {"script", provenance.script},
+               {"measured",
+                {{"file", provenance.measured},
+                 {"sha256", measured.digest},
+                 {"kind", measured.kind == Measured::Kind::series ? "series" : "sums"},
+                 {"runs", measured.n_replicates()},
+                 {"notes", measured.notes}}},
+               {"alpha", settings.alpha},
+               {"seed", settings.seed},
+               {"table", outcome.table_key},
+               {"nuisance",
+                {{"seat_position_m", settings.nuisance.seat_position_m},
+                 {"sensor_yaw_deg", settings.nuisance.sensor_yaw_deg},
+                 {"sensor_tilt_deg", settings.nuisance.sensor_tilt_deg},
+                 {"body_size", settings.nuisance.body_size},
+                 {"arm_amplitude", settings.nuisance.arm_amplitude}}}};
+  json["where"] = to_json(outcome.location);
+  Json candidates = Json::array(), fits = Json::array();
+  for (const Candidate& candidate : outcome.candidates) candidates.push_back(to_json(candidate));
+  for (const FittedEffect& fitted : outcome.fits) fits.push_back(to_json(fitted));
+  json["nothing"] = to_json(outcome.nothing);
+  json["candidates"] = candidates;
+  json["fits"] = fits;
+  json["verification"] = outcome.verification ? to_json(*outcome.verification) : Json();
+  json["telling_features"] = outcome.telling_features;
+  json["calibration_error"] = outcome.calibration_error;
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::string where_csv(const Outcome& outcome) {
+  std::ostringstream out;
+  out << "trial,sensor,measured_s,expected_s,difference_s,low_s,high_s,adjusted_p\n";
+  for (const LocatedCell& cell : outcome.location.cells) {
+    out << io::csv_field(cell.trial) << ',' << io::csv_field(cell.sensor) << ',' << io::csv_number(cell.measured_s)
+        << ',' << io::csv_number(cell.expected_s) << ',' << io::csv_number(cell.measured_s - cell.expected_s) << ','
+        << io::csv_number(cell.low_s) << ',' << io::csv_number(cell.high_s) << ',' << io::csv_number(cell.adjusted_p)
+        << '\n';
+  }
+  return out.str();
+}
+
+std::string candidates_csv(const Outcome& outcome) {
+  std::ostringstream out;
+  out << "effect,family,kept,probability,p,p_relative,p_absolute,reason\n";
+  for (const Candidate& c : outcome.candidates) {
+    out << c.score.entry << ',' << c.family << ',' << (c.kept ? 1 : 0) << ',' << io::csv_number(c.score.probability)
+        << ',' << io::csv_number(c.score.p) << ',' << io::csv_number(c.score.p_relative) << ','
+        << io::csv_number(c.score.p_absolute) << ',' << io::csv_field(c.reason) << '\n';
+  }
+  return out.str();
+}
+
+ScriptSpec patched(const ScriptSpec& script, const Outcome& outcome) {
+  ScriptSpec with = script;
+  for (const FittedEffect& fitted : outcome.fits) with.effects.push_back(fitted.effect);
+  return with;
+}
+
+void write_outputs(const std::filesystem::path& folder, const Outcome& outcome, const Measured& measured,
+                   const ScriptSpec& script, const Settings& settings, const Provenance& provenance) {
+  std::error_code fault;
+  std::filesystem::create_directories(folder, fault);
+  write(folder / "where.csv", where_csv(outcome));
+  write(folder / "candidates.csv", candidates_csv(outcome));
+  if (outcome.verdict == Verdict::named || outcome.verdict == Verdict::several) {
+    write(folder / "script_patched.yaml", io::to_yaml(patched(script, outcome)));
+  }
+  std::string trail;
+  for (const std::string& line : outcome.trail) trail += line + '\n';
+  write(folder / "trail.log", trail);
+  write(folder / "report.json", to_json(outcome, measured, settings, provenance));
+}
+
+}  // namespace pirsim::reconcile

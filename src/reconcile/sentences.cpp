@@ -1,0 +1,99 @@
+#include "reconcile/sentences.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "pirsim/effects/catalogue.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+std::string listed(const std::vector<std::string>& names, const std::string& last) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == names.size() ? " " + last + " " : ", ") + names[i];
+  }
+  return text;
+}
+
+std::string common_family(const std::vector<std::string>& effects) {
+  std::string family;
+  for (const std::string& effect : effects) {
+    const std::string own(name(effects::find(effect).info.family));
+    if (!family.empty() && family != own) return {};
+    family = own;
+  }
+  return family;
+}
+
+std::string where(const Outcome& outcome, double alpha) {
+  const auto differing =
+      std::ranges::count_if(outcome.location.cells, [&](const auto& c) { return c.adjusted_p <= alpha; });
+  return std::to_string(differing) + " of " + std::to_string(outcome.location.cells.size()) +
+         " cells (trial x sensor) differ by themselves, p = " + short_number(outcome.location.p);
+}
+
+}  // namespace
+
+std::string short_number(double value) {
+  std::ostringstream out;
+  out << std::setprecision(3) << value;
+  return out.str();
+}
+
+std::string in_words(const FittedEffect& fitted) {
+  std::string text = fitted.effect.name;
+  std::string details;
+  for (const FittedParameter& p : fitted.parameters) {
+    details += (details.empty() ? "" : ", ") + p.name + " " + short_number(p.value) + " (" +
+               short_number(p.interval.low) + " to " + short_number(p.interval.high) + ")";
+  }
+  for (const auto& [choice, value] : fitted.effect.choices) {
+    details += (details.empty() ? "" : ", ") + choice + " " + value;
+  }
+  return details.empty() ? text : text + " with " + details;
+}
+
+std::string verdict_sentence(const Outcome& outcome, double alpha) {
+  switch (outcome.verdict) {
+    case Verdict::no_disagreement:
+      return "No disagreement: model and measurement agree as well as the model agrees with itself (p = " +
+             short_number(outcome.location.p) + "); this experiment would hardly see differences below " +
+             short_number(outcome.location.band_s) + " s a cell.";
+    case Verdict::named:
+      return "The model lacks " + in_words(outcome.fits.back()) + ": " + where(outcome, alpha) +
+             ", and no other effect of the catalogue explains the data.";
+    case Verdict::one_of: {
+      const std::string family = common_family(outcome.named);
+      return "The model lacks one of " + listed(outcome.named, "or") +
+             (family.empty() ? std::string() : " (all of the family " + family + ")") +
+             ", which these data can't tell apart: " + where(outcome, alpha) + ".";
+    }
+    case Verdict::several:
+      return "The model lacks " + listed(outcome.named, "and") + " together: " + where(outcome, alpha) + ".";
+    case Verdict::none_in_catalogue:
+      break;
+  }
+  return "The model lacks something that is not in the catalogue: " + where(outcome, alpha) +
+         ", and no effect of the catalogue reproduces the data.";
+}
+
+std::string reason_of(const Candidate& candidate, double alpha) {
+  const EntryScore& score = candidate.score;
+  if (candidate.kept) {
+    return "Kept: it can have made these data (p " + short_number(score.p) +
+           "), and no other effect explains them so "
+           "much better that it can be ruled out.";
+  }
+  const bool relative = 2.0 * score.p_relative <= alpha, absolute = 2.0 * score.p_absolute <= alpha;
+  std::string text = "Dropped: ";
+  if (relative)
+    text += "another explains the data better than is usual for its own (p " + short_number(score.p_relative) + ")";
+  if (relative && absolute) text += "; and ";
+  if (absolute) text += "data of its own hardly ever look like these (p " + short_number(score.p_absolute) + ")";
+  return text + ".";
+}
+
+}  // namespace pirsim::reconcile

@@ -1,0 +1,95 @@
+#include "pirsim/reconcile/simulated_world.hpp"
+
+#include <algorithm>
+
+#include "pirsim/effects/catalogue.hpp"
+#include "pirsim/sim/zone_tracks.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+std::vector<std::uint32_t> all_runs(const Model& model) {
+  std::vector<std::uint32_t> runs;
+  for (std::uint32_t run = 0; run < model.n_runs(); ++run) runs.push_back(run);
+  return runs;
+}
+
+void add_series(const StudyFrame& frame, const RunResult& result, int first, std::vector<Series>& data) {
+  if (result.samples.empty()) return;
+  auto series = series_of(frame, result.replicate - first, result.samples.front().trial, result.samples);
+  if (series) data.push_back(std::move(*series));
+}
+
+}  // namespace
+
+struct SimulatedWorld::Traced {
+  Traced(const World& world, const StudyFrame& /*frame*/)
+      : model(compile(world.scene, world.script)), logic(model.detector()) {
+    tracks = sim::trace(model, all_runs(model), 1);
+    logic.prepare(tracks.sets);
+  }
+  [[nodiscard]] std::vector<Series> emit(const StudyFrame& frame, const effects::Pipeline& pipeline, int first, int n) {
+    std::vector<Series> data;
+    for (std::size_t i = 0; i < tracks.runs.size(); ++i) {
+      const int replicate = tracks.runs[i].rows.replicate;
+      if (replicate <= first || replicate > first + n) continue;
+      add_series(frame, sim::emit(tracks, i, logic, model.script().seed, pipeline), first, data);
+    }
+    return data;
+  }
+
+  Model model;
+  sim::ChangeLogic logic;
+  sim::ZoneTracks tracks;
+};
+
+SimulatedWorld::SimulatedWorld(const WorldSource& source, const StudyFrame& frame, std::uint32_t index, int n_runs)
+    : frame_(&frame) {
+  for (std::uint32_t attempt = 0;; ++attempt) {
+    world_ = draw_world(source.scene, source.script, source.nuisance, source.seed, index, attempt);
+    world_.script.replicates = n_runs;
+    try {
+      traced_ = std::make_unique<Traced>(world_, frame);
+      return;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::infeasible || attempt + 1 == most_attempts) throw;
+    }
+  }
+}
+
+SimulatedWorld::~SimulatedWorld() = default;
+SimulatedWorld::SimulatedWorld(SimulatedWorld&&) noexcept = default;
+SimulatedWorld& SimulatedWorld::operator=(SimulatedWorld&&) noexcept = default;
+
+std::vector<Series> SimulatedWorld::with(std::span<const EffectSpec> more, int first, int n) const {
+  std::vector<EffectSpec> all = world_.script.effects;
+  all.insert(all.end(), more.begin(), more.end());
+  return traced_->emit(*frame_, sim::make_pipeline(traced_->model, all), first, n);
+}
+
+std::vector<Series> SimulatedWorld::anew(std::span<const EffectSpec> more, int n) const {
+  World altered = world_;
+  altered.script.effects.insert(altered.script.effects.end(), more.begin(), more.end());
+  altered.script.replicates = n;
+  Traced traced(altered, *frame_);
+  return traced.emit(*frame_, traced.model.pipeline(), 0, n);
+}
+
+std::optional<std::vector<Series>> SimulatedWorld::with_effects(std::span<const EffectSpec> more, int first,
+                                                                int n) const {
+  if (acts_on_remembered_zones(more)) return with(more, first, n);
+  try {
+    return anew(more, n);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::infeasible) throw;
+    return std::nullopt;
+  }
+}
+
+bool acts_on_remembered_zones(std::span<const EffectSpec> effects) {
+  return std::ranges::all_of(effects, [](const EffectSpec& effect) {
+    return effects::find(effect.name).info.reach != effects::Reach::geometry;
+  });
+}
+
+}  // namespace pirsim::reconcile
