@@ -1,13 +1,14 @@
 // Body of a RayKernel; included by one file an instruction set. Internal linkage throughout: see lanes.hpp.
 #pragma once
 
+#include "geom/lanes.hpp"
 #include "geom/ray_tests.hpp"
-#include "rt/lanes.hpp"
 #include "rt/ray_kernel.hpp"
 
 namespace pirsim::rt {
 namespace {
 
+using ray_tests::Lanes, ray_tests::Mask, ray_tests::n_lanes;
 using Vector = ray_tests::Vector<Lanes>;
 using Interval = ray_tests::Interval<Lanes>;
 

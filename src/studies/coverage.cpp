@@ -139,7 +139,7 @@ class SquareCounter {
   std::size_t n_poses_;
   Vec3 foot_{0.0};
   std::vector<Posed> posed_;
-  std::vector<std::int32_t> active_;   ///< (padded n_poses)
+  std::vector<std::uint8_t> active_;   ///< (padded n_poses)
   std::vector<std::uint8_t> changed_;  ///< (n_poses) from the pose before to this one
 };
 

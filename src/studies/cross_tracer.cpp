@@ -1,16 +1,16 @@
 #include "studies/cross_tracer.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <bit>
 #include <glm/geometric.hpp>
 
-#include "geom/float_lanes.hpp"
+#include "geom/lanes.hpp"
 #include "geom/ray_tests.hpp"
 
 namespace pirsim::studies {
 
-using Lanes = ray_tests::FloatLanes;
-constexpr std::size_t width = Lanes::width;
+using ray_tests::Lanes;
+constexpr std::size_t width = ray_tests::n_lanes;
 
 std::size_t padded(std::size_t n_poses) noexcept { return (n_poses + width - 1) / width * width; }
 
@@ -35,20 +35,19 @@ void pose_bar(const std::vector<Vec3>& half_axes, const Vec3& middle, double rad
   poses.radius = static_cast<float>(radius);
 }
 
-void mark_active(const Ray& ray, float range, const BarPoses& poses, std::vector<std::int32_t>& active) noexcept {
+void mark_active(const Ray& ray, float range, const BarPoses& poses, std::vector<std::uint8_t>& active) noexcept {
   using Vector = ray_tests::Vector<Lanes>;
   const auto all = [](const Vec3f& v) { return Vector{Lanes(v.x), Lanes(v.y), Lanes(v.z)}; };
   const Vector origin = all(ray.origin), direction = all(ray.direction);
   const Lanes radius(poses.radius), t_max(range);
   for (std::size_t i = 0; i < active.size(); i += width) {
-    Lanes::Bits known;
-    std::memcpy(&known, &active[i], sizeof known);
-    if ((known[0] & known[1] & known[2] & known[3]) != 0) continue;
-    const Vector a{Lanes::load(&poses.ax[i]), Lanes::load(&poses.ay[i]), Lanes::load(&poses.az[i])};
-    const Vector b{Lanes::load(&poses.bx[i]), Lanes::load(&poses.by[i]), Lanes::load(&poses.bz[i])};
-    known |=
-        ray_tests::is_hit(ray_tests::capsule(origin, direction, ray_tests::capsule_axis(a, b), radius), t_max).bits;
-    std::memcpy(&active[i], &known, sizeof known);
+    if (std::all_of(&active[i], &active[i] + width, [](std::uint8_t known) { return known != 0; })) continue;
+    const Vector a{Lanes::at(&poses.ax[i]), Lanes::at(&poses.ay[i]), Lanes::at(&poses.az[i])};
+    const Vector b{Lanes::at(&poses.bx[i]), Lanes::at(&poses.by[i]), Lanes::at(&poses.bz[i])};
+    const auto bar = ray_tests::capsule(origin, direction, ray_tests::capsule_axis(a, b), radius);
+    for (unsigned int hits = bits(ray_tests::is_hit(bar, t_max)); hits != 0; hits &= hits - 1) {
+      active[i + static_cast<std::size_t>(std::countr_zero(hits))] = 1;
+    }
   }
 }
 

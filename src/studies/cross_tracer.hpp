@@ -23,8 +23,8 @@ void pose_bar(const std::vector<Vec3>& half_axes, const Vec3& middle, double rad
 /// Lanes of poses in a row of `n_poses`: how long `active` below is.
 [[nodiscard]] std::size_t padded(std::size_t n_poses) noexcept;
 
-/// active[pose] |= all ones where entry_distance(ray, capsule of the pose, range) has a value. (padded n_poses)
-void mark_active(const Ray& ray, float range, const BarPoses& poses, std::vector<std::int32_t>& active) noexcept;
+/// active[pose] becomes 1 where entry_distance(ray, capsule of the pose, range) has a value. (padded n_poses)
+void mark_active(const Ray& ray, float range, const BarPoses& poses, std::vector<std::uint8_t>& active) noexcept;
 
 /// Whether the ray passes a ball within its range; a millimetre is added to be on the safe side of rounding.
 [[nodiscard]] bool may_meet(const Ray& ray, float range, const Vec3& middle, double reach_m) noexcept;

@@ -1,4 +1,4 @@
-// A pack of floats as wide as the including file's instruction set, for the templates of geom/ray_tests.hpp. Every
+// A pack of floats as wide as the including file's instruction set, for the templates of ray_tests.hpp. Every
 // operation rounds each lane as the same operation on a float does; there is no fused multiply-add. All of it has
 // internal linkage, so that no file takes another's instructions.
 #pragma once
@@ -9,7 +9,7 @@
 #include <immintrin.h>
 #endif
 
-namespace pirsim::rt {
+namespace pirsim::ray_tests {
 namespace {  // NOLINT: one copy an instruction set is the purpose
 
 #if defined(__AVX512F__)
@@ -115,4 +115,4 @@ inline Lanes larger(Lanes a, Lanes b) noexcept { return Lanes(maximum(b.value, a
 inline Lanes square_root(Lanes x) noexcept { return Lanes(root(x.value)); }
 
 }  // namespace
-}  // namespace pirsim::rt
+}  // namespace pirsim::ray_tests

@@ -1,5 +1,6 @@
-#include "geom/float_lanes.hpp"
+#include "geom/lanes.hpp"
 
+#include <array>
 #include <cstring>
 
 #include "geom/ray_tests.hpp"
@@ -7,7 +8,7 @@
 #include "support/random_shapes.hpp"
 
 using namespace pirsim;
-using ray_tests::FloatLanes;
+using ray_tests::Lanes, ray_tests::n_lanes;
 
 namespace {
 template <typename F>
@@ -28,15 +29,16 @@ TEST_CASE("a lane gets the bits that a float gets", "[lanes]") {
     const float radius = static_cast<float>(draw.between(0.01, 0.2)),
                 range = static_cast<float>(draw.between(0.0, 20.0));
     const bool hit = entry_distance(ray, PosedCapsule{a, b, radius}, range).has_value();
-    const auto lanes =
-        ray_tests::capsule(vector<FloatLanes>(ray.origin), vector<FloatLanes>(ray.direction),
-                           ray_tests::capsule_axis(vector<FloatLanes>(a), vector<FloatLanes>(b)), FloatLanes(radius));
+    const auto lanes = ray_tests::capsule(vector<Lanes>(ray.origin), vector<Lanes>(ray.direction),
+                                          ray_tests::capsule_axis(vector<Lanes>(a), vector<Lanes>(b)), Lanes(radius));
     const auto single = ray_tests::capsule(vector<float>(ray.origin), vector<float>(ray.direction),
                                            ray_tests::capsule_axis(vector<float>(a), vector<float>(b)), radius);
-    const FloatLanes::Mask mask = ray_tests::is_hit(lanes, FloatLanes(range));
-    for (int lane = 0; lane < FloatLanes::width; ++lane) {
-      const float enter = lanes.enter.value[lane];
-      if ((mask.bits[lane] != 0) != hit || std::memcmp(&enter, &single.enter, sizeof enter) != 0) ++differences;
+    const unsigned int mask = bits(ray_tests::is_hit(lanes, Lanes(range)));
+    std::array<float, n_lanes> enter;
+    std::memcpy(enter.data(), &lanes.enter.value, sizeof enter);
+    for (std::size_t lane = 0; lane < enter.size(); ++lane) {
+      const bool is_same = std::memcmp(&enter[lane], &single.enter, sizeof(float)) == 0;
+      if (((mask >> lane & 1U) != 0) != hit || !is_same) ++differences;
     }
     hits += hit ? 1 : 0;
   }
