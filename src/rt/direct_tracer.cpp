@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <glm/geometric.hpp>
+#include <numeric>
 
 namespace pirsim::rt {
 namespace {
@@ -35,7 +37,10 @@ DirectTracer::DirectTracer(const TracerSetup& setup, const RayKernel& kernel)
       near_person_(packs_.size()),
       near_solid_(packs_.size()),
       hits_(packs_.size()),
+      all_(packs_.size()),
       zones_(setup.clipped->n_zones()) {
+  std::iota(all_.begin(), all_.end(), 0U);
+  for (const Ray& ray : setup.clipped->rays) farthest_m_ = std::max(farthest_m_, glm::length(ray.origin));
   near_person_cones_.reserve(cones_.size());
 }
 
@@ -50,15 +55,14 @@ void DirectTracer::find_moved(std::span<const PosedShape> solids, Memory& memory
   memory.slots.resize(solids.size());
   memory.hits.resize(solids.size() * n_words_);
   moved_.clear();
-  moved_balls_.clear();
+  left_.clear();
   for (std::size_t i = 0; i < solids.size(); ++i) {
     const Key key = key_of(solids[i]);
     Slot& slot = memory.slots[i];
     if (std::memcmp(&slot.key, &key, sizeof key) == 0) continue;
     slot.key = key;
-    slot.ball = ball_around(solids[i]);
     moved_.push_back(static_cast<std::uint32_t>(i));
-    moved_balls_.push_back(slot.ball);
+    if (!slot.near.cover(solids[i])) left_.push_back(static_cast<std::uint32_t>(i));
   }
 }
 
@@ -66,34 +70,63 @@ void DirectTracer::add(std::size_t person, std::span<const PosedShape> solids, Z
   if (people_.size() <= person) people_.resize(person + 1);
   Memory& memory = people_[person];
   find_moved(solids, memory);
-  if (!moved_.empty()) {
-    const Ball all = ball_around(moved_balls_);
-    const std::size_t n = kernel_.cull(cones_.data(), cones_.size(), all, near_person_.data());
-    pick(cones_, near_person_.data(), n, near_person_cones_);
-    for (const std::uint32_t i : moved_) meet(solids[i], memory.slots[i].ball, &memory.hits[i * n_words_]);
-  }
+  if (!left_.empty()) gather(solids, memory);
+  for (const std::uint32_t i : moved_) find_zones(solids[i], memory.slots[i].near, &memory.hits[i * n_words_]);
   for (std::size_t i = 0; i < solids.size(); ++i) zones.add({&memory.hits[i * n_words_], n_words_});
 }
 
-void DirectTracer::meet(const PosedShape& solid, const Ball& ball, ZoneSet::Word* zones) {
-  std::fill_n(zones, n_words_, ZoneSet::Word{0});
+/// A millimetre, and far above single precision's rounding wherever the ray starts.
+float DirectTracer::slack_m(const PosedShape& solid) const noexcept {
+  const Ball ball = ball_around(solid);
+  return 1e-3F + 1e-5F * (farthest_m_ + glm::length(ball.centre) + ball.radius);
+}
+
+void DirectTracer::gather(std::span<const PosedShape> solids, Memory& memory) {
+  grown_.clear();
+  balls_.clear();
+  for (const std::uint32_t i : left_) {
+    grown_.push_back(memory.slots[i].near.begin(solids[i], slack_m(solids[i])));
+    balls_.push_back(ball_around(grown_.back()));
+  }
+  const std::size_t n = kernel_.cull(cones_.data(), cones_.size(), ball_around(balls_), near_person_.data());
+  pick(cones_, near_person_.data(), n, near_person_cones_);
+  for (std::size_t k = 0; k < left_.size(); ++k) {
+    gather_one(grown_[k], balls_[k], memory.slots[left_[k]].near);
+  }
+}
+
+void DirectTracer::gather_one(const PosedShape& grown, const Ball& ball, NearRays& near) {
   const std::size_t n = kernel_.cull(near_person_cones_.data(), near_person_cones_.size(), ball, near_solid_.data());
   for (std::size_t k = 0; k < n; ++k) near_solid_[k] = near_person_[near_solid_[k]];
-  if (const auto* sphere = std::get_if<PosedSphere>(&solid)) {
-    kernel_.meet_sphere(packs_.data(), near_solid_.data(), n, *sphere, ball, hits_.data());
-  } else if (const auto* capsule = std::get_if<PosedCapsule>(&solid)) {
-    kernel_.meet_capsule(packs_.data(), near_solid_.data(), n, *capsule, ball, hits_.data());
-  } else if (const auto* box = std::get_if<PosedBox>(&solid)) {
-    kernel_.meet_box(packs_.data(), near_solid_.data(), n, *box, ball, hits_.data());
-  } else {
-    for (std::size_t k = 0; k < n; ++k) hits_[k] = met_one_by_one(packs_[near_solid_[k]], solid);
-  }
-  for (std::size_t k = 0; k < n; ++k) {
-    const RayPack& pack = packs_[near_solid_[k]];
+  meet(grown, ball, packs_, {near_solid_.data(), n});
+  for (std::size_t k = 0; k < n; ++k) near.add(packs_[near_solid_[k]], hits_[k]);
+  near.end();
+}
+
+void DirectTracer::find_zones(const PosedShape& solid, const NearRays& near, ZoneSet::Word* zones) {
+  std::fill_n(zones, n_words_, ZoneSet::Word{0});
+  const std::span<const RayPack> packs = near.packs();
+  if (packs.empty()) return;
+  meet(solid, ball_around(solid), packs, {all_.data(), packs.size()});
+  for (std::size_t k = 0; k < packs.size(); ++k) {
     for (unsigned int hits = hits_[k]; hits != 0; hits &= hits - 1) {
-      const std::uint32_t zone = pack.zone[std::countr_zero(hits)];
+      const std::uint32_t zone = packs[k].zone[std::countr_zero(hits)];
       zones[zone / ZoneSet::bits_per_word] |= ZoneSet::Word{1} << (zone % ZoneSet::bits_per_word);
     }
+  }
+}
+
+void DirectTracer::meet(const PosedShape& solid, const Ball& ball, std::span<const RayPack> packs,
+                        std::span<const std::uint32_t> picked) noexcept {
+  const auto n = picked.size();
+  if (const auto* sphere = std::get_if<PosedSphere>(&solid)) {
+    kernel_.meet_sphere(packs.data(), picked.data(), n, *sphere, ball, hits_.data());
+  } else if (const auto* capsule = std::get_if<PosedCapsule>(&solid)) {
+    kernel_.meet_capsule(packs.data(), picked.data(), n, *capsule, ball, hits_.data());
+  } else if (const auto* box = std::get_if<PosedBox>(&solid)) {
+    kernel_.meet_box(packs.data(), picked.data(), n, *box, ball, hits_.data());
+  } else {
+    for (std::size_t k = 0; k < n; ++k) hits_[k] = met_one_by_one(packs[picked[k]], solid);
   }
 }
 

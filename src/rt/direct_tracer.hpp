@@ -1,6 +1,7 @@
 // Every solid against the rays near it, without a hierarchy: cones around packs of sixteen rays leave out most packs,
-// what remains is tested with the shared ray tests, sixteen rays at a time. What a solid hits is kept while it stands
-// still.
+// of what remains the rays that pass the solid closely are gathered into packs of their own, and until the solid has
+// moved as far as that only they are tested with the shared ray tests, sixteen at a time. What a solid hits is kept
+// while it stands still.
 #pragma once
 
 #include <array>
@@ -9,6 +10,7 @@
 
 #include "pirsim/geom/zone_set.hpp"
 #include "pirsim/rt/tracer.hpp"
+#include "rt/near_rays.hpp"
 #include "rt/ray_kernel.hpp"
 #include "rt/ray_packs.hpp"
 
@@ -21,12 +23,14 @@ class DirectTracer final : public Tracer {
   void add(std::size_t person, std::span<const PosedShape> solids, ZoneSet& zones) override;
 
  private:
+  /// Of the packs around one solid; more are allocated when they are needed.
+  static constexpr std::size_t most_packs_reserved = 32;
   /// The bits of all numbers of a solid: what is compared to tell whether it moved.
   using Key = std::array<std::uint32_t, 16>;
   /// A solid as last seen. Its zones are words [i * n_words_, (i + 1) * n_words_) of a person's `hits`.
   struct Slot {
     Key key{};
-    Ball ball;
+    NearRays near{most_packs_reserved};
   };
   struct Memory {
     std::vector<Slot> slots;  ///< (n_solids)
@@ -35,20 +39,30 @@ class DirectTracer final : public Tracer {
 
   [[nodiscard]] static Key key_of(const PosedShape& solid) noexcept;
   void find_moved(std::span<const PosedShape> solids, Memory& memory);
-  void meet(const PosedShape& solid, const Ball& ball, ZoneSet::Word* zones);
+  void gather(std::span<const PosedShape> solids, Memory& memory);
+  void gather_one(const PosedShape& grown, const Ball& ball, NearRays& near);
+  /// Writes hits_ of the picked packs.
+  void meet(const PosedShape& solid, const Ball& ball, std::span<const RayPack> packs,
+            std::span<const std::uint32_t> picked) noexcept;
+  void find_zones(const PosedShape& solid, const NearRays& near, ZoneSet::Word* zones);
+  [[nodiscard]] float slack_m(const PosedShape& solid) const noexcept;
 
   const RayKernel& kernel_;
-  std::size_t n_words_;  ///< of a set of all zones
+  std::size_t n_words_;      ///< of a set of all zones
+  float farthest_m_ = 0.0F;  ///< where any ray starts, from the world's origin
   std::vector<RayPack> packs_;
   std::vector<ConeBlock> cones_;  ///< of packs_
   std::vector<Memory> people_;
   // Scratch.
-  std::vector<std::uint32_t> moved_;  ///< indices of solids
-  std::vector<Ball> moved_balls_;
+  std::vector<std::uint32_t> moved_;        ///< indices of solids
+  std::vector<std::uint32_t> left_;         ///< those of them that have left the rays gathered for them
+  std::vector<PosedShape> grown_;           ///< (n of left_)
+  std::vector<Ball> balls_;                 ///< around them
   std::vector<std::uint32_t> near_person_;  ///< packs whose cone touches the ball around all that moved
   std::vector<ConeBlock> near_person_cones_;
   std::vector<std::uint32_t> near_solid_;
   std::vector<PackHits> hits_;
+  std::vector<std::uint32_t> all_;  ///< 0, 1, 2, ...: indices of gathered packs
   ZoneSet zones_;
 };
 
