@@ -11,7 +11,8 @@
 
 namespace pirsim::body {
 
-/// The part of a triangle between two heights, seen from above: a convex polygon, a line under a vertical triangle.
+/// The part of a triangle between two heights, seen from above: a convex polygon, or the two ends of a line
+/// under a vertical triangle.
 struct Footprint {
   static constexpr std::size_t max_corners = 5;  ///< a triangle cut by two planes
   std::array<Vec2, max_corners> corners{};
@@ -22,7 +23,8 @@ struct Footprint {
   Vec2 upper{0.0};
 };
 
-/// The footprints of all triangles that reach into heights [lower_m, upper_m] (world y).
+/// The footprints of all triangles that reach into heights [lower_m, upper_m] (world y). Lines that overlap the line
+/// before them, of the same mesh, are one with it.
 [[nodiscard]] std::vector<Footprint> footprints(std::span<const TriMesh> meshes, double lower_m, double upper_m);
 
 [[nodiscard]] double distance(const Vec2& point, const Vec2& a, const Vec2& b) noexcept;  ///< to the segment ab

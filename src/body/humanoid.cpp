@@ -114,6 +114,11 @@ Humanoid::Humanoid(const PersonSpec& person)
   clearance_radius_m_ = 0.5 * m.shoulder_width_m + out * m.upper_arm_m + radius_m(Part::left_upper_arm);
 }
 
+double Humanoid::half_depth_m() const noexcept {
+  constexpr double to_spare_m = 0.01;  // assumed (0-0.03)
+  return std::get<Box>(primitives_[static_cast<std::size_t>(Part::torso)]).half_extents.z + to_spare_m;
+}
+
 double Humanoid::radius_m(Part part) const noexcept {
   const Shape& shape = primitives_[static_cast<std::size_t>(part)];
   if (const auto* capsule = std::get_if<Capsule>(&shape)) return capsule->radius;

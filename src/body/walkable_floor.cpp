@@ -10,6 +10,7 @@
 #include "body/footprint.hpp"
 #include "body/grid_search.hpp"
 #include "body/taut_way.hpp"
+#include "body/way_memory.hpp"
 
 namespace pirsim::body {
 namespace {
@@ -51,6 +52,7 @@ struct WalkableFloor::Impl {
   StepGrid grid;
   std::vector<std::uint8_t> on_floor;  ///< (rows x columns) 1 where the centre is on the floor or a strip
   std::vector<std::uint8_t> open;      ///< (rows x columns) 1 where the cell is walkable
+  std::vector<int> parts;              ///< (rows x columns) labels of cells that are connected
   std::size_t n_meshes = 0;
   std::vector<Footprint> obstacles;
 
@@ -72,10 +74,14 @@ struct WalkableFloor::Impl {
   [[nodiscard]] bool floor_at(int column, int row) const noexcept;
   [[nodiscard]] bool floor_along(const Vec2& a, const Vec2& b) const noexcept;
   [[nodiscard]] bool clear(const Vec2& a, const Vec2& b, std::span<const Disc> others) const noexcept;
+  [[nodiscard]] bool clear_of_obstacles(const Vec2& a, const Vec2& b, double keep_m) const noexcept;
   [[nodiscard]] bool walkable(const Vec2& a, const Vec2& b, std::span<const Disc> others) const noexcept {
     return floor_along(a, b) && clear(a, b, others);
   }
   [[nodiscard]] std::vector<int> leads(const Vec2& point, std::span<const Disc> others) const;
+  /// find_way() where one can't go straight; parts: of `steps`.
+  [[nodiscard]] WayMemory::Way way_over(const StepGrid& steps, std::span<const int> parts, const Vec2& from,
+                                        const Vec2& to, std::span<const Disc> others) const;
   [[nodiscard]] std::vector<int> cells_near(const Vec2& point) const;
   [[nodiscard]] std::vector<double> mesh_distances(const Vec2& point) const;
 };
@@ -229,6 +235,11 @@ bool WalkableFloor::Impl::clear(const Vec2& a, const Vec2& b, std::span<const Di
   for (const Disc& disc : others) {
     if (disc_distance(a, b, disc) < limit) return false;
   }
+  return clear_of_obstacles(a, b, clearance_m);
+}
+
+bool WalkableFloor::Impl::clear_of_obstacles(const Vec2& a, const Vec2& b, double keep_m) const noexcept {
+  const double limit = keep_m - rounding_m;
   return std::none_of(obstacles.begin(), obstacles.end(), [&](const Footprint& obstacle) {
     return distance_bound(a, b, obstacle) < limit && distance(a, b, obstacle) < limit;
   });
@@ -286,7 +297,8 @@ std::vector<int> WalkableFloor::Impl::leads(const Vec2& point, std::span<const D
 }
 
 WalkableFloor::WalkableFloor(const FloorArea& floor, std::span<const EntranceSpec> entrances,
-                             std::span<const TriMesh> obstacles, double clearance_m) {
+                             std::span<const TriMesh> obstacles, double clearance_m)
+    : known_ways_(std::make_shared<WayMemory>()) {
   auto impl = std::make_shared<Impl>();
   impl->clearance_m = clearance_m;
   impl->n_meshes = obstacles.size();
@@ -294,6 +306,7 @@ WalkableFloor::WalkableFloor(const FloorArea& floor, std::span<const EntranceSpe
   impl->lay_grid(floor, entrances);
   impl->find_open_cells();
   impl->open_steps();
+  impl->parts = connected_parts(impl->grid);
   impl_ = std::move(impl);
 }
 
@@ -302,22 +315,22 @@ bool WalkableFloor::walkable(const Vec2& a, const Vec2& b, std::span<const Disc>
   return impl_->walkable(a, b, others);
 }
 
-std::optional<std::vector<Vec2>> WalkableFloor::find_way(const Vec2& from, const Vec2& to,
-                                                         std::span<const Disc> others) const {
-  if (!finite(from) || !finite(to)) return std::nullopt;
-  if (from == to || walkable(from, to, others)) return std::vector<Vec2>{from, to};
-  const StepGrid grid = impl_->grid_around(others);
-  const std::vector<int> part = connected_parts(grid);
-  const std::vector<int> goals = impl_->leads(to, others);
-  for (const int start : impl_->leads(from, others)) {
+bool WalkableFloor::has_room(const Vec2& a, const Vec2& b, double clearance_m) const noexcept {
+  return impl_->floor_along(a, b) && impl_->clear_of_obstacles(a, b, clearance_m);
+}
+
+WayMemory::Way WalkableFloor::Impl::way_over(const StepGrid& steps, std::span<const int> parts, const Vec2& from,
+                                             const Vec2& to, std::span<const Disc> others) const {
+  const std::vector<int> goals = leads(to, others);
+  for (const int start : leads(from, others)) {
     const auto goal = std::find_if(goals.begin(), goals.end(), [&](int cell) {
-      return part[static_cast<std::size_t>(cell)] == part[static_cast<std::size_t>(start)];
+      return parts[static_cast<std::size_t>(cell)] == parts[static_cast<std::size_t>(start)];
     });
     if (goal == goals.end()) continue;
     // An end that isn't walkable keeps its lead; everything else is pulled tight.
     std::vector<Vec2> way;
     if (walkable(from, from, others)) way.push_back(from);
-    for (const int cell : shortest_way(grid, start, *goal)) way.push_back(impl_->centre(cell));
+    for (const int cell : shortest_way(steps, start, *goal)) way.push_back(centre(cell));
     if (walkable(to, to, others)) way.push_back(to);
     way = pulled_tight(std::move(way), [&](const Vec2& a, const Vec2& b) { return walkable(a, b, others); });
     if (way.front() != from) way.insert(way.begin(), from);
@@ -325,6 +338,17 @@ std::optional<std::vector<Vec2>> WalkableFloor::find_way(const Vec2& from, const
     return way;
   }
   return std::nullopt;
+}
+
+std::optional<std::vector<Vec2>> WalkableFloor::find_way(const Vec2& from, const Vec2& to,
+                                                         std::span<const Disc> others) const {
+  if (!finite(from) || !finite(to)) return std::nullopt;
+  if (from == to || walkable(from, to, others)) return std::vector<Vec2>{from, to};
+  if (others.empty()) {
+    return known_ways_->way(from, to, [&] { return impl_->way_over(impl_->grid, impl_->parts, from, to, {}); });
+  }
+  const StepGrid steps_left = impl_->grid_around(others);
+  return impl_->way_over(steps_left, connected_parts(steps_left), from, to, others);
 }
 
 }  // namespace pirsim::body

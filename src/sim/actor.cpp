@@ -77,7 +77,7 @@ void Actor::carry_on(const Model& model, std::int64_t now, std::span<const Prese
       began_ = now;
       plan(model);
     }
-    while (!errands_.empty() && carry_out(errands_.front(), model, others) == Progress::done) errands_.pop_front();
+    while (!errands_.empty() && carry_out_first(model, others) == Progress::done) errands_.pop_front();
     if (const auto* work_action = std::get_if<action::Work>(&action().what)) work(model, *work_action, now);
     const auto next = interrupting_action(model, now);
     if (!next && !(errands_.empty() && time_is_up(model, now))) return;
@@ -172,21 +172,21 @@ void Actor::plan_sitting() {
   const std::string_view id = std::get<action::Sit>(action().what).seat;
   errands_.push_back(WaitForSeat{id});
   errands_.push_back(TakeSeat{id});
-  errands_.push_back(WalkTo{standing_place(place, seat.stand_back_m)});
+  errands_.push_back(WalkTo{standing_place(place, seat)});
   errands_.push_back(FaceTo{heading});
   errands_.push_back(SitOn{place});
 }
 
 /// A scattered seat may need a little more room behind it than the seat as it stands in the scene.
-Vec2 Actor::standing_place(const body::SeatPlace& place, double back_m) const {
+Vec2 Actor::standing_place(const body::SeatPlace& place, const SeatPlan& seat) const {
   constexpr double step_m = 0.02, farthest_m = 0.4;
   const Vec2 pelvis = floor_point(place.world_from_seat.origin);
   const Vec2 facing = direction_of(heading_of(place.world_from_seat));
   for (double more = 0.0; more <= farthest_m; more += step_m) {
-    const Vec2 stand = pelvis - (back_m + more) * facing;
-    if (person().floor->walkable(stand)) return stand;
+    const Vec2 stand = pelvis - (seat.stand_back_m + more) * facing;
+    if (person().can_stand(stand, facing, seat.half_depth_m)) return stand;
   }
-  return pelvis - back_m * facing;
+  return pelvis - seat.stand_back_m * facing;
 }
 
 void Actor::work(const Model& model, const action::Work& work, std::int64_t now) {
@@ -197,57 +197,76 @@ void Actor::work(const Model& model, const action::Work& work, std::int64_t now)
   motion_->tilt_spine(radians(work.tilt_choices_deg[choice]));
 }
 
-Actor::Progress Actor::carry_out(const Errand& errand, const Model& model, std::span<const Presence> others) {
-  if (const auto* come = std::get_if<ComeIn>(&errand)) {
-    const double radius = person().humanoid.clearance_radius_m();
-    for (const Presence& other : others) {
-      if (glm::distance(other.position, come->point) >= other.radius_m + radius + gap_m) continue;
-      wait_for_others(model);
-      return Progress::going_on;
-    }
-    motion_.emplace(person().humanoid, come->point, come->heading, model.scene().floor.height_m(), model.tick_s());
-    return Progress::done;
-  }
-  if (std::holds_alternative<Vanish>(errand)) {
-    motion_.reset();
-    return Progress::done;
-  }
-  const auto* door = std::get_if<WaitForDoor>(&errand);
-  const auto* taken_seat = std::get_if<WaitForSeat>(&errand);
-  if (door != nullptr || taken_seat != nullptr) {
-    const bool taken = door != nullptr ? door_is_taken(*door, others)
-                                       : std::ranges::find(others, taken_seat->seat, &Presence::seat) != others.end();
-    if (!taken) return Progress::done;
-    const bool for_good = std::ranges::find(others, Presence::Script::going_on, &Presence::script) == others.end();
-    if (for_good) give_up("'" + person().spec.id + "' waits in vain: nobody of those there has anything more to do");
-    if (present()) wait_for_others(model);  // who isn't there yet is in nobody's way, and may wait long
+Actor::Progress Actor::carry_out_first(const Model& model, std::span<const Presence> others) {
+  return std::visit([&](const auto& errand) { return carry_out(errand, model, others); }, errands_.front());
+}
+
+Actor::Progress Actor::carry_out(const ComeIn& come, const Model& model, std::span<const Presence> others) {
+  if (somebody_near(come.point, others)) {
+    wait_for_others(model);
     return Progress::going_on;
   }
-  if (const auto* take = std::get_if<TakeSeat>(&errand)) {
-    seat_ = take->seat;
-    return Progress::done;
-  }
-  if (const auto* out = std::get_if<WalkOut>(&errand)) {
-    if (route_) return walk_to(route_->position(route_->length_m()), model, others);  // decided when setting out
-    const bool occupied = std::ranges::any_of(others, [&](const Presence& other) {
-      return glm::distance(other.position, out->outside) <
-             other.radius_m + person().humanoid.clearance_radius_m() + gap_m;
-    });
-    return walk_to(occupied ? out->behind_door : out->outside, model, others);
-  }
-  if (const auto* walk = std::get_if<WalkTo>(&errand)) return walk_to(walk->target, model, others);
-  if (const auto* seat = std::get_if<SitOn>(&errand)) {
-    if (motion_->stage() == Stage::seated && motion_->settled()) return Progress::done;
-    if (motion_->stage() == Stage::standing && motion_->settled()) motion_->sit_down(seat->place);
-    return Progress::going_on;
-  }
+  motion_.emplace(person().humanoid, come.point, come.heading, model.scene().floor.height_m(), model.tick_s());
+  return Progress::done;
+}
+
+Actor::Progress Actor::carry_out(const WaitForDoor& door, const Model& model, std::span<const Presence> others) {
+  return door_is_taken(door, others) ? wait_for_turn(model, others) : Progress::done;
+}
+
+Actor::Progress Actor::carry_out(const WaitForSeat& wait, const Model& model, std::span<const Presence> others) {
+  const bool is_taken = std::ranges::find(others, wait.seat, &Presence::seat) != others.end();
+  return is_taken ? wait_for_turn(model, others) : Progress::done;
+}
+
+Actor::Progress Actor::wait_for_turn(const Model& model, std::span<const Presence> others) {
+  const bool for_good = std::ranges::find(others, Presence::Script::going_on, &Presence::script) == others.end();
+  if (for_good) give_up("'" + person().spec.id + "' waits in vain: nobody of those there has anything more to do");
+  if (present()) wait_for_others(model);  // who isn't there yet is in nobody's way, and may wait long
+  return Progress::going_on;
+}
+
+Actor::Progress Actor::carry_out(const TakeSeat& take, const Model&, std::span<const Presence>) {
+  seat_ = take.seat;
+  return Progress::done;
+}
+
+Actor::Progress Actor::carry_out(const WalkTo& walk, const Model& model, std::span<const Presence> others) {
+  return walk_to(walk.target, model, others);
+}
+
+Actor::Progress Actor::carry_out(const WalkOut& out, const Model& model, std::span<const Presence> others) {
+  if (route_) return walk_to(route_->position(route_->length_m()), model, others);  // decided when setting out
+  return walk_to(somebody_near(out.outside, others) ? out.behind_door : out.outside, model, others);
+}
+
+Actor::Progress Actor::carry_out(const FaceTo& face, const Model&, std::span<const Presence> others) {
   if (become_standing(others) == Progress::going_on) return Progress::going_on;
-  if (const auto* face = std::get_if<FaceTo>(&errand)) {
-    if (std::abs(std::remainder(face->heading - motion_->heading(), 2.0 * pi)) < 1e-9) return Progress::done;
-    motion_->turn_to(face->heading);
-    return Progress::going_on;
-  }
-  return Progress::done;  // StandUp
+  if (std::abs(std::remainder(face.heading - motion_->heading(), 2.0 * pi)) < 1e-9) return Progress::done;
+  motion_->turn_to(face.heading);
+  return Progress::going_on;
+}
+
+Actor::Progress Actor::carry_out(const SitOn& seat, const Model&, std::span<const Presence>) {
+  if (motion_->stage() == Stage::seated && motion_->settled()) return Progress::done;
+  if (motion_->stage() == Stage::standing && motion_->settled()) motion_->sit_down(seat.place);
+  return Progress::going_on;
+}
+
+Actor::Progress Actor::carry_out(const StandUp&, const Model&, std::span<const Presence> others) {
+  return become_standing(others);
+}
+
+Actor::Progress Actor::carry_out(const Vanish&, const Model&, std::span<const Presence>) {
+  motion_.reset();
+  return Progress::done;
+}
+
+bool Actor::somebody_near(const Vec2& point, std::span<const Presence> others) const {
+  const double radius = person().humanoid.clearance_radius_m();
+  return std::ranges::any_of(others, [&](const Presence& other) {
+    return glm::distance(other.position, point) < other.radius_m + radius + gap_m;
+  });
 }
 
 Actor::Progress Actor::become_standing(std::span<const Presence> others) {

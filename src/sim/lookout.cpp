@@ -23,6 +23,7 @@ void Lookout::look(const std::vector<Actor>& actors, ZoneSet& zones, ZoneSet& ch
     look_at_all(actors, zones, channels);
     return;
   }
+  memory_.make_room_for(actors.size());
   const std::size_t n_zone_words = zones.words().size();
   for (std::size_t person = 0; person < actors.size(); ++person) {
     if (!actors[person].present()) continue;
@@ -45,7 +46,7 @@ void Lookout::look_at_all(const std::vector<Actor>& actors, ZoneSet& zones, Zone
 std::span<const ZoneSet::Word> Lookout::row_of(std::size_t person, const Actor& actor) {
   const body::Humanoid& humanoid = actor.person().humanoid;
   const body::Outline outline = actor.motion().outline();
-  if (const auto known = memory_.find(&humanoid, outline); !known.empty()) return known;
+  if (const auto known = memory_.find(person, &humanoid, outline); !known.empty()) return known;
   solids_.clear();
   append_solids(humanoid, body::posture_of(humanoid, outline), solids_);
   person_zones_.clear();
@@ -56,7 +57,7 @@ std::span<const ZoneSet::Word> Lookout::row_of(std::size_t person, const Actor& 
   for (const ZoneSet* set : {&person_zones_, &person_channels_}) {
     row_.insert(row_.end(), set->words().begin(), set->words().end());
   }
-  memory_.remember(row_);
+  memory_.remember(person, row_);
   return row_;
 }
 

@@ -10,6 +10,13 @@
 
 namespace pirsim {
 
+bool PersonModel::can_stand(const Vec2& place, const Vec2& facing, double half_depth_m) const noexcept {
+  const double radius_m = humanoid.clearance_radius_m();
+  if (half_depth_m >= radius_m) return floor->walkable(place);
+  const Vec2 aside = (radius_m - half_depth_m) * Vec2(-facing.y, facing.x);
+  return floor->has_room(place - aside, place + aside, half_depth_m);
+}
+
 std::uint32_t Model::n_runs() const noexcept {
   return static_cast<std::uint32_t>(trials_.size()) * static_cast<std::uint32_t>(script_.replicates);
 }

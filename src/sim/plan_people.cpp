@@ -73,18 +73,11 @@ class Rehearsal {
   SeatPlan sit_down(const std::string& id, const Where& where) {
     const SeatSpec& seat = *std::ranges::find(scene_.seats, id, &SeatSpec::id);
     const double floor_y = scene_.floor.height_m();
-    SeatPlan plan{{seat.world_from_seat, floor_y, table_height(seat, floor_y, room_)}, 0.0};
-    const double fall_back = body::fall_back_m(person_.humanoid, plan.place);
-    const Vec2 pelvis = floor_point(seat.world_from_seat.origin);
-    const Vec2 facing = direction_of(heading_of(seat.world_from_seat));
-    constexpr double step_m = 0.02, farthest_m = 1.0;
-    for (double back = -fall_back; back <= farthest_m; back += step_m) {
-      const Vec2 stand = pelvis - back * facing;
-      if (!person_.floor->walkable(stand) || !room_behind(seat, back + fall_back)) continue;
-      if (!person_.floor->find_way(at_, stand)) continue;
-      plan.stand_back_m = back;
-      at_ = stand;
-      return plan;
+    SeatPlan plan{{seat.world_from_seat, floor_y, table_height(seat, floor_y, room_)}, 0.0, 0.0};
+    // Where a table is near a wall nobody has the room of a walker: they squeeze in.
+    for (const double half_depth_m : {person_.humanoid.clearance_radius_m(), person_.humanoid.half_depth_m()}) {
+      plan.half_depth_m = half_depth_m;
+      if (find_place_to_stand(seat, plan)) return plan;
     }
     diagnostics_.error(where, "seat '" + id + "' of " + scene_.name + " can't be reached by '" + person_.spec.id +
                                   "': no place to stand and sit down from, within a metre of it, has a way from " +
@@ -92,11 +85,29 @@ class Rehearsal {
     return plan;
   }
 
+  bool find_place_to_stand(const SeatSpec& seat, SeatPlan& plan) {
+    const double fall_back = body::fall_back_m(person_.humanoid, plan.place);
+    const Vec2 pelvis = floor_point(seat.world_from_seat.origin);
+    const Vec2 facing = direction_of(heading_of(seat.world_from_seat));
+    constexpr double step_m = 0.02, farthest_m = 1.0;
+    for (double back = -fall_back; back <= farthest_m; back += step_m) {
+      const Vec2 stand = pelvis - back * facing;
+      if (!person_.can_stand(stand, facing, plan.half_depth_m)) continue;
+      if (!room_behind(seat, back + fall_back, plan.half_depth_m)) continue;
+      if (!person_.floor->find_way(at_, stand)) continue;
+      plan.stand_back_m = back;
+      at_ = stand;
+      return true;
+    }
+    return false;
+  }
+
   /// Can the pelvis go so far back from the seat, on a chair that is drawn back from the table, before a wall?
-  bool room_behind(const SeatSpec& seat, double back_m) const {
-    constexpr double half_body_depth_m = 0.15;  // assumed, as is a chair's back (tried 0.1-0.25)
+  bool room_behind(const SeatSpec& seat, double back_m, double half_depth_m) const {
+    constexpr double body_and_chair_m = 0.15;  // assumed, half a body and a chair's back (tried 0.1-0.25)
+    const double keep_m = std::min(body_and_chair_m, half_depth_m);
     const Ray behind{Vec3f(seat.world_from_seat.origin), Vec3f(-seat.world_from_seat.forward())};
-    return back_m <= 0.0 || !room_.first_hit(behind, static_cast<float>(back_m + half_body_depth_m));
+    return back_m <= 0.0 || !room_.first_hit(behind, static_cast<float>(back_m + keep_m));
   }
 
   const SceneSpec& scene_;

@@ -7,14 +7,24 @@
 namespace pirsim::sim {
 namespace {
 
-constexpr std::size_t n_buckets = 2 * PostureMemory::most_entries;  // a power of two
+// Powers of two. Few at first, so that what a single run looks up stays in the cache.
+constexpr std::size_t fewest_buckets = 4096;
+constexpr std::size_t most_buckets = 2 * PostureMemory::most_entries;
 
 }  // namespace
 
-PostureMemory::PostureMemory(std::size_t words_per_entry) : words_per_entry_(words_per_entry), buckets_(n_buckets, 0) {
+PostureMemory::PostureMemory(std::size_t words_per_row)
+    : words_per_row_(words_per_row), words_per_entry_(Key{}.size() + words_per_row) {
   // Address space only, until it is used: nothing is allocated while a study runs.
-  keys_.reserve(most_entries);
-  rows_.reserve(most_entries * words_per_entry);
+  buckets_.reserve(most_buckets);
+  buckets_.resize(fewest_buckets, 0);
+  entries_.reserve(most_entries * words_per_entry_);
+  successors_.reserve(most_entries + 1);
+  successors_.push_back(0);
+}
+
+void PostureMemory::make_room_for(std::size_t n_people) {
+  if (last_.size() < n_people) last_.resize(n_people, 0);
 }
 
 std::size_t PostureMemory::hash(const Key& key) noexcept {
@@ -34,31 +44,69 @@ std::size_t PostureMemory::hash(const Key& key) noexcept {
   return static_cast<std::size_t>(all);
 }
 
-std::span<const PostureMemory::Word> PostureMemory::find(const void* person, const body::Outline& outline) noexcept {
+bool PostureMemory::is_wanted(Number entry) const noexcept {
+  return std::memcmp(&entries_[(entry - 1) * words_per_entry_], &wanted_, sizeof wanted_) == 0;
+}
+
+std::span<const PostureMemory::Word> PostureMemory::row(Number entry) const noexcept {
+  return {&entries_[(entry - 1) * words_per_entry_ + wanted_.size()], words_per_row_};
+}
+
+void PostureMemory::follow(std::size_t person, Number entry) noexcept {
+  successors_[last_[person]] = entry;
+  last_[person] = entry;
+}
+
+std::span<const PostureMemory::Word> PostureMemory::find(std::size_t person, const void* humanoid,
+                                                         const body::Outline& outline) noexcept {
   static_assert(sizeof(body::Outline) % sizeof(Word) == 0);
   std::memcpy(wanted_.data(), &outline, sizeof outline);
-  wanted_.back() = std::bit_cast<std::uintptr_t>(person);
-  std::size_t bucket = hash(wanted_) % n_buckets;
-  for (; buckets_[bucket] != 0; bucket = (bucket + 1) % n_buckets) {
-    const std::size_t entry = buckets_[bucket] - 1;
-    if (std::memcmp(&keys_[entry], &wanted_, sizeof wanted_) == 0) {
-      return {&rows_[entry * words_per_entry_], words_per_entry_};
-    }
+  wanted_.back() = std::bit_cast<std::uintptr_t>(humanoid);
+  // As a rule what came last time comes again; it lies just behind in memory.
+  if (const Number next = successors_[last_[person]]; next != 0 && is_wanted(next)) {
+    last_[person] = next;
+    return row(next);
+  }
+  std::size_t bucket = hash(wanted_) % buckets_.size();
+  for (; buckets_[bucket] != 0; bucket = (bucket + 1) % buckets_.size()) {
+    if (!is_wanted(buckets_[bucket])) continue;
+    follow(person, buckets_[bucket]);
+    return row(buckets_[bucket]);
   }
   free_bucket_ = bucket;
   return {};
 }
 
-void PostureMemory::remember(std::span<const Word> row) noexcept {
-  if (keys_.size() == most_entries) {
-    std::ranges::fill(buckets_, 0U);
-    keys_.clear();
-    rows_.clear();
-    free_bucket_ = hash(wanted_) % n_buckets;
+void PostureMemory::spread() noexcept {
+  buckets_.assign(2 * buckets_.size(), 0);
+  const auto free_bucket = [&](const Key& key) {
+    std::size_t bucket = hash(key) % buckets_.size();
+    while (buckets_[bucket] != 0) bucket = (bucket + 1) % buckets_.size();
+    return bucket;
+  };
+  for (Number entry = 1; entry < successors_.size(); ++entry) {
+    Key key;
+    std::copy_n(&entries_[(entry - 1) * words_per_entry_], key.size(), key.begin());
+    buckets_[free_bucket(key)] = entry;
   }
-  keys_.push_back(wanted_);
-  rows_.insert(rows_.end(), row.begin(), row.end());
-  buckets_[free_bucket_] = static_cast<std::uint32_t>(keys_.size());
+  free_bucket_ = free_bucket(wanted_);
+}
+
+void PostureMemory::remember(std::size_t person, std::span<const Word> row) noexcept {
+  if (successors_.size() > most_entries) {
+    buckets_.assign(fewest_buckets, 0);
+    std::ranges::fill(last_, 0U);
+    entries_.clear();
+    successors_.assign(1, 0);
+    free_bucket_ = hash(wanted_) % buckets_.size();
+  } else if (2 * successors_.size() > buckets_.size()) {
+    spread();
+  }
+  entries_.insert(entries_.end(), wanted_.begin(), wanted_.end());
+  entries_.insert(entries_.end(), row.begin(), row.end());
+  buckets_[free_bucket_] = static_cast<Number>(successors_.size());
+  successors_.push_back(0);
+  follow(person, buckets_[free_bucket_]);
 }
 
 }  // namespace pirsim::sim

@@ -67,18 +67,28 @@ State& State::operator=(const State& other) {
   return *this = std::move(copy);
 }
 
+std::size_t State::gather_others(std::size_t i) {
+  others_.clear();
+  std::size_t n_before = 0;
+  for (std::size_t other = 0; other < actors_.size(); ++other) {
+    if (other == i) n_before = others_.size();
+    if (other != i && presences_[other]) others_.push_back(*presences_[other]);
+  }
+  return n_before;
+}
+
 void State::move_people(const Model& model) {
+  std::size_t n_before = 0;
+  bool gathered = false;
   for (std::size_t i = 0; i < actors_.size(); ++i) {
-    others_.clear();
-    std::size_t n_before = 0;
-    for (std::size_t other = 0; other < actors_.size(); ++other) {
-      if (other == i) n_before = others_.size();
-      if (other != i && presences_[other]) others_.push_back(*presences_[other]);
-    }
+    if (!gathered) n_before = gather_others(i);
     actors_[i].advance(model, tick_, others_, n_before);
     if (actors_.size() == 1) continue;  // nobody asks
     presences_[i].reset();
     if (actors_[i].present()) presences_[i] = actors_[i].presence();
+    // The next person's others are the same but for one: this person is where the next one was.
+    gathered = presences_[i] && i + 1 < actors_.size() && presences_[i + 1];
+    if (gathered) others_[n_before++] = *presences_[i];
   }
 }
 

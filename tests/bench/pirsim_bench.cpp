@@ -14,6 +14,7 @@
 #include "pirsim/core/version.hpp"
 #include "pirsim/io/csv_writer.hpp"
 #include "pirsim/sim/state.hpp"
+#include "pirsim/sim/study.hpp"
 #include "rt/direct_tracer.hpp"
 #include "support/shipped.hpp"
 
@@ -230,6 +231,31 @@ void people() {
   }
 }
 
+/// Whole ticks of so many people at work in one room, all postures known.
+void people_known() {
+  const SceneSpec scene = shipped_scene("meeting_room.gltf");
+  const ScriptSpec alone = shipped_script("studyA.yaml");
+  double one = 0.0;
+  for (const std::size_t n_people : {1U, 2U, 4U, 8U}) {
+    ScriptSpec script = alone;
+    script.trials.resize(1);
+    script.trials.front().people.clear();
+    for (std::size_t person = 0; person < n_people; ++person) {
+      script.trials.front().people.push_back(alone.trials[person].people.front());
+      script.trials.front().people.back().id += std::to_string(person);
+    }
+    const Model model = compile(scene, script);
+    State state(model, 0);
+    const auto works = [](const Actor& actor) { return actor.phase() == "working"; };
+    do step_tick(model, state);
+    while (!std::ranges::all_of(state.actors(), works));
+    const double ns = least(9, [&] { return tick_ns(model, state, 3000); });
+    if (n_people == 1) one = ns;
+    report("people at work, postures known", std::to_string(n_people) + " together", ns, "ns");
+    report("people at work, postures known", std::to_string(n_people) + " together, in people alone", ns / one, "1");
+  }
+}
+
 void runs_per_second() {
   const unsigned most = std::max(1U, std::thread::hardware_concurrency());
   for (const bool is_scattered : {false, true}) {
@@ -276,6 +302,30 @@ void start_up() {
   report("start-up", "files to first row", seconds, "s");
 }
 
+/// What every trial of an ensemble over rooms or seats costs: nothing is known yet, and every trial runs once.
+void first_runs() {
+  const SceneSpec scene = shipped_scene("meeting_room.gltf");
+  for (const bool is_scattered : {false, true}) {
+    std::vector<std::string> overrides = is_scattered ? scattered : std::vector<std::string>{};
+    overrides.emplace_back("replicates=1");
+    const ScriptSpec script = shipped_script("studyA.yaml", overrides);
+    const std::string what = is_scattered ? "scattered seats, " : "Study A, ";
+    const auto compiling = [&] {
+      const Stopwatch stopwatch;
+      const Model model = compile(scene, script);
+      return stopwatch.seconds();
+    };
+    const auto all = [&] {
+      const Stopwatch stopwatch;
+      const Model model = compile(scene, script);
+      for (std::uint32_t run = 0; run < model.n_runs(); ++run) (void)run_once(model, run);
+      return stopwatch.seconds();
+    };
+    report("first runs", what + "compile", least(10, compiling), "s");
+    report("first runs", what + "compile and ten first runs", least(10, all), "s");
+  }
+}
+
 }  // namespace
 
 /// With a name, that section alone.
@@ -287,8 +337,9 @@ int main(int argc, char** argv) {
   };
   describe_machine();
   for (const Section& section :
-       {Section{"start-up", start_up}, Section{"anew", postures_anew}, Section{"limit", limit},
-        Section{"people", people}, Section{"ticks", ticks_by_phase}, Section{"runs", runs_per_second}}) {
+       {Section{"start-up", start_up}, Section{"first", first_runs}, Section{"anew", postures_anew},
+        Section{"limit", limit}, Section{"people", people}, Section{"known", people_known},
+        Section{"ticks", ticks_by_phase}, Section{"runs", runs_per_second}}) {
     if (wanted.empty() || wanted == section.name) section.run();
   }
 }

@@ -40,6 +40,9 @@ class Humanoid {
   [[nodiscard]] const std::array<double, n_parts>& masses_kg() const noexcept { return masses_kg_; }
   /// Radius of the vertical cylinder that a walking person keeps clear of obstacles, metres.
   [[nodiscard]] double clearance_radius_m() const noexcept { return clearance_radius_m_; }
+  /// From a standing person's middle to the front and to the back: what they keep clear of where there is less room
+  /// than for the cylinder, between a table and a wall. The feet reach farther, under the table.
+  [[nodiscard]] double half_depth_m() const noexcept;
   [[nodiscard]] double walking_speed_m_s() const noexcept { return walking_speed_m_s_; }
   /// Of a part that is a sphere or a capsule.
   [[nodiscard]] double radius_m(Part part) const noexcept;

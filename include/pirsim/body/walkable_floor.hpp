@@ -12,6 +12,8 @@
 
 namespace pirsim::body {
 
+class WayMemory;
+
 /// Another person to walk around.
 struct Disc {
   Vec2 centre{0.0};
@@ -32,6 +34,9 @@ class WalkableFloor {
   [[nodiscard]] bool walkable(const Vec2& point) const noexcept;
   /// Can one walk straight from a to b, clear of `others`?
   [[nodiscard]] bool walkable(const Vec2& a, const Vec2& b, std::span<const Disc> others = {}) const noexcept;
+  /// Is the segment from a to b on the floor, and does it keep `clearance_m` (not the floor's own) from everything
+  /// solid?
+  [[nodiscard]] bool has_room(const Vec2& a, const Vec2& b, double clearance_m) const noexcept;
   /// Shortest way found by A* (8 neighbours, ties broken by cell index), then pulled tight: each leg of the result
   /// is walkable throughout. Starts at `from` and ends at `to` exactly. A start or goal that isn't walkable itself
   /// is led to the nearest walkable cell within 0.5 m, by a leg that comes no nearer to anything than the start or
@@ -42,6 +47,7 @@ class WalkableFloor {
  private:
   struct Impl;
   std::shared_ptr<const Impl> impl_;
+  std::shared_ptr<WayMemory> known_ways_;  ///< not part of what a floor is
 };
 
 }  // namespace pirsim::body

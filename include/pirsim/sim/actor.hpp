@@ -98,8 +98,20 @@ class Actor {
   [[nodiscard]] std::optional<std::size_t> interrupting_action(const Model& model, std::int64_t now) const;
   [[nodiscard]] bool time_is_up(const Model& model, std::int64_t now) const;
   [[nodiscard]] bool door_is_taken(const WaitForDoor& door, std::span<const Presence> others) const;
+  [[nodiscard]] bool somebody_near(const Vec2& point, std::span<const Presence> others) const;
   [[nodiscard]] bool free_to_stand(std::span<const Presence> others) const;
-  Progress carry_out(const Errand& errand, const Model& model, std::span<const Presence> others);
+  Progress carry_out_first(const Model& model, std::span<const Presence> others);
+  Progress carry_out(const ComeIn& errand, const Model& model, std::span<const Presence> others);
+  Progress carry_out(const WaitForDoor& errand, const Model& model, std::span<const Presence> others);
+  Progress carry_out(const WaitForSeat& errand, const Model& model, std::span<const Presence> others);
+  Progress carry_out(const TakeSeat& errand, const Model& model, std::span<const Presence> others);
+  Progress carry_out(const WalkTo& errand, const Model& model, std::span<const Presence> others);
+  Progress carry_out(const FaceTo& errand, const Model& model, std::span<const Presence> others);
+  Progress carry_out(const SitOn& errand, const Model& model, std::span<const Presence> others);
+  Progress carry_out(const StandUp& errand, const Model& model, std::span<const Presence> others);
+  Progress carry_out(const WalkOut& errand, const Model& model, std::span<const Presence> others);
+  Progress carry_out(const Vanish& errand, const Model& model, std::span<const Presence> others);
+  Progress wait_for_turn(const Model& model, std::span<const Presence> others);
   Progress walk_to(const Vec2& target, const Model& model, std::span<const Presence> others);
   Progress become_standing(std::span<const Presence> others);
   void keep_distance(const Model& model, std::span<const Presence> others, std::size_t n_before);
@@ -107,7 +119,7 @@ class Actor {
   [[nodiscard]] bool must_give_way(std::span<const Presence> others) const;
   void wait_for_others(const Model& model);
   [[noreturn]] void give_up(const std::string& why) const;
-  [[nodiscard]] Vec2 standing_place(const body::SeatPlace& place, double back_m) const;
+  [[nodiscard]] Vec2 standing_place(const body::SeatPlace& place, const SeatPlan& seat) const;
   [[nodiscard]] const ScriptedAction& action() const { return person().spec.actions[action_]; }
 
   const PersonModel* person_ = nullptr;

@@ -28,6 +28,7 @@ struct SeatPlan {
   body::SeatPlace place;
   double stand_back_m =
       0.0;  ///< where to stand before sitting down: so far behind the pelvis point, along the seat's axis
+  double half_depth_m = 0.0;  ///< what one who stands there keeps clear of, before and behind
 };
 
 /// One person of one trial.
@@ -35,7 +36,9 @@ struct PersonModel {
   PersonSpec spec;
   body::Humanoid humanoid;
   std::shared_ptr<const body::WalkableFloor> floor;  ///< shared by all who need the same clearance
-  std::vector<SeatPlan> seats;                       ///< (n_actions) of the sit actions; empty plans for the others
+  /// Is there room to stand, facing so, with the clearance radius to the sides and half_depth_m before and behind?
+  [[nodiscard]] bool can_stand(const Vec2& place, const Vec2& facing, double half_depth_m) const noexcept;
+  std::vector<SeatPlan> seats;  ///< (n_actions) of the sit actions; empty plans for the others
 };
 
 struct TrialModel {

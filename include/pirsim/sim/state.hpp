@@ -41,6 +41,8 @@ class State {
 
  private:
   friend bool step_tick(const Model& model, State& state);
+  /// Fills others_ with everyone in the scene but the i-th person; how many of them come before in the script.
+  std::size_t gather_others(std::size_t i);
   void move_people(const Model& model);
   void note_seats_left(const Model& model);
   void look(const Model& model);
