@@ -11,6 +11,7 @@ void preview(const Inputs& inputs, const PreviewOptions& options);
 void coverage(const Inputs& inputs, const CoverageOptions& options);
 void walk_test(const Inputs& inputs, const WalkTestOptions& options);
 void placements(const Inputs& inputs, const PlacementOptions& options);
+void list_effects(const EffectsOptions& options);
 void export_gltf(const Inputs& inputs, const ExportOptions& options);
 
 }  // namespace pirsim::app

@@ -5,6 +5,7 @@
 #include "app/progress.hpp"
 #include "app/session.hpp"
 #include "pirsim/core/version.hpp"
+#include "pirsim/effects/catalogue.hpp"
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/csv_reader.hpp"
 #include "pirsim/io/csv_writer.hpp"
@@ -91,7 +92,11 @@ studies::Summary make_summary(const Model& model, const RunOptions& options) {
 
 void run(const Inputs& inputs, const RunOptions& options) {
   if (options.action == RunOptions::Action::print_config) {
-    std::cout << io::to_yaml(io::read_script(inputs.script, inputs.overrides));
+    const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
+    Diagnostics diagnostics;
+    effects::check(script.effects, diagnostics);
+    diagnostics.throw_if_errors();
+    std::cout << io::to_yaml(script);
     require_written();
     return;
   }
