@@ -21,12 +21,14 @@ const Effect& dual_polarity() {
                .stage = "detector",
                .summary = "Zones count with their element's sign; a sensor triggers while their band-passed sum is "
                           "beyond a threshold.",
-               .fingerprint = "slow motion is lost, and motion that crosses both signs at once",
+               .fingerprint =
+                   "beams count one by one, so most cells change; slow motion is lost, and motion across both signs "
+                   "at once; above a threshold of 1 most of everything",
                .confused_with = {"missed_triggers", "arm_motion", "pulse_stretching"},
                .parameters = {{.name = "threshold",
                                .unit = "zones",
                                .off = 0.0,
-                               .typical = 0.5,
+                               .typical = 0.8,
                                .low = 0.2,
                                .high = 1.5,
                                .least = 0.0,
