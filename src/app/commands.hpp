@@ -14,6 +14,7 @@ void placements(const Inputs& inputs, const PlacementOptions& options);
 void status(const CampaignOptions& options);
 void merge(const CampaignOptions& options);
 void reconcile_data(const Inputs& inputs, const ReconcileOptions& options);
+void list_effects(const EffectsOptions& options);
 void export_gltf(const Inputs& inputs, const ExportOptions& options);
 
 }  // namespace pirsim::app

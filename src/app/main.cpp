@@ -29,6 +29,7 @@ constexpr const char* examples = R"(Examples:
   pirsim check --scene room.gltf --script study.yaml               validate, and report what each sensor can see
   pirsim preview --scene room.gltf --script study.yaml -o room.png  a picture of room, people and beams
   pirsim coverage --scene room.gltf --script studyB.yaml -o maps   where each sensor sees a moving target
+  pirsim effects                                                   what a script can add to the plain model
   pirsim export --scene room.gltf --script study.yaml -o run.glb    an animated glTF of one run
   pirsim --scene room.gltf --script study.yaml --shard 3/100 -o out a block of the runs; then pirsim status, merge
 )";
@@ -139,6 +140,13 @@ void add_walk_test_options(CLI::App& command, WalkTestOptions& options) {
   command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
 }
 
+void add_effects_options(CLI::App& command, EffectsOptions& options) {
+  command.add_option("name", options.name, "one effect in detail")->option_text("NAME");
+  command.add_option("--format", options.format, "text, csv or md")
+      ->option_text("NAME")
+      ->check(CLI::IsMember({"text", "csv", "md"}));
+}
+
 void add_export_options(CLI::App& command, ExportOptions& options) {
   command.add_option("-o,--output", options.output, "glTF file, .gltf or .glb (default: run.glb)")->option_text("FILE");
   command.add_option("--trial", options.trial, "which trial (default: the first)")->option_text("ID");
@@ -200,6 +208,7 @@ int run_command_line(int argc, char** argv) {
   WalkTestOptions walk_test_options;
   PlacementOptions placement_options;
   ReconcileOptions reconcile_options;
+  EffectsOptions effects_options;
   add_inputs(app, inputs);
   add_run_options(app, run_options);
   CLI::App* run_command = app.add_subcommand("run", "run the study (the default)");
@@ -214,6 +223,8 @@ int run_command_line(int argc, char** argv) {
   add_inputs(*export_command, inputs);
   add_export_options(*export_command, export_options);
 
+  CLI::App* effects_command = app.add_subcommand("effects", "list what a script can add to the plain model");
+  add_effects_options(*effects_command, effects_options);
   CLI::App* coverage_command = app.add_subcommand("coverage", "map where each sensor sees a moving target");
   add_inputs(*coverage_command, inputs);
   add_coverage_options(*coverage_command, coverage_options);
@@ -246,6 +257,10 @@ int run_command_line(int argc, char** argv) {
   }
   if (*status_command || *merge_command) {
     *status_command ? status(campaign_options) : merge(campaign_options);
+    return 0;
+  }
+  if (*effects_command) {
+    list_effects(effects_options);
     return 0;
   }
   if (inputs.scene.empty() || inputs.script.empty()) {

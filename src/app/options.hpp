@@ -80,6 +80,11 @@ struct ReconcileOptions {
   unsigned threads = 0;
 };
 
+struct EffectsOptions {
+  std::string name;  ///< empty: all
+  std::string format = "text";
+};
+
 struct ExportOptions {
   std::filesystem::path output = "run.glb";
   std::string trial;

@@ -10,6 +10,7 @@
 #include "app/row_output.hpp"
 #include "app/session.hpp"
 #include "app/stop_request.hpp"
+#include "pirsim/effects/catalogue.hpp"
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/compression.hpp"
 #include "pirsim/io/csv_reader.hpp"
@@ -167,7 +168,11 @@ std::string stop_message(const RunOptions& options, const std::string& cause, co
 
 void run(const Inputs& inputs, const RunOptions& options) {
   if (options.action == RunOptions::Action::print_config) {
-    std::cout << io::to_yaml(io::read_script(inputs.script, inputs.overrides));
+    const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
+    Diagnostics diagnostics;
+    effects::check(script.effects, diagnostics);
+    diagnostics.throw_if_errors();
+    std::cout << io::to_yaml(script);
     require_written();
     return;
   }

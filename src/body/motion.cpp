@@ -34,6 +34,7 @@ constexpr double shortest_slide_s = 0.6;        // assumed
 constexpr double reach_s = 1.0;                 // assumed (0.6-1.5): hands between thighs and table
 constexpr double tilt_s = 1.0;                  // assumed (0.5-2): for 15 degrees of spine tilt
 constexpr double shortest_tilt_s = 0.4;         // assumed
+constexpr double fidget_s = 0.6;                // assumed (0.4-1): a small move of trunk or head
 constexpr double backmost_tilt = -20 * degree;  // within the spine's limits, with room for a passing overshoot
 constexpr double foremost_tilt = 50 * degree;
 
@@ -155,6 +156,9 @@ void Motion::rise() {
   if (stage_ == Stage::rising) return;
   if (!on_seat()) refuse("rising", stage_);
   rest();
+  for (MinJerk* motion : {&sway_, &head_turn_}) {
+    if (!rests_at(*motion, 0.0)) motion->move_to(0.0, ticks(fidget_s));
+  }
   stage_ = Stage::rising;
 }
 
@@ -179,6 +183,16 @@ void Motion::tilt_spine(double radians) {
   const double target = std::clamp(radians, backmost_tilt, foremost_tilt);
   const double seconds = tilt_s * std::sqrt(std::abs(target - tilt_.value()) / (15 * degree));
   tilt_.move_to(target, ticks(std::max(seconds, shortest_tilt_s)));
+}
+
+void Motion::sway(double radians) {
+  if (stage_ != Stage::seated) refuse("swaying", stage_);
+  sway_.move_to(radians, ticks(fidget_s));
+}
+
+void Motion::turn_head(double radians) {
+  if (stage_ != Stage::seated) refuse("turning the head", stage_);
+  head_turn_.move_to(radians, ticks(fidget_s));
 }
 
 void Motion::limit_speed(double metres_per_second) { speed_limit_m_s_ = std::max(0.0, metres_per_second); }
@@ -220,7 +234,8 @@ void Motion::advance_on_track() {
 }
 
 void Motion::advance_on_seat() noexcept {
-  for (MinJerk* motion : {&fall_, &slide_m_, &tilt_, &reach_, &hand_offset_left_over_m_}) motion->advance();
+  for (MinJerk* motion : {&fall_, &slide_m_, &tilt_, &sway_, &head_turn_, &reach_, &hand_offset_left_over_m_})
+    motion->advance();
   ++work_tick_;
   const auto slide_to = [this](double target) {
     const double seconds = 1.875 * std::abs(target - slide_m_.value()) / sliding_speed_m_s;  // minimum jerk's peak
@@ -231,7 +246,8 @@ void Motion::advance_on_seat() noexcept {
     fall_.move_to(1.0, ticks(fall_s));
     if (rests_at(fall_, 1.0)) slide_to(seat_slide);
     if (rests_at(fall_, 1.0) && rests_at(slide_m_, seat_slide)) stage_ = Stage::seated;
-  } else if (stage_ == Stage::rising && rests_at(reach_, 0.0) && rests_at(tilt_, 0.0)) {
+  } else if (stage_ == Stage::rising && rests_at(reach_, 0.0) && rests_at(tilt_, 0.0) && rests_at(sway_, 0.0) &&
+             rests_at(head_turn_, 0.0)) {
     slide_to(0.0);
     if (rests_at(slide_m_, 0.0)) fall_.move_to(0.0, ticks(fall_s));
     if (rests_at(fall_, 0.0)) come_to_stand(stand_, stand_feet_);

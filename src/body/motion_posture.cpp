@@ -12,6 +12,9 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 constexpr double furthest_extension = 0.998;  // of a stretched leg that stands off to the side; assumed (0.995-1)
+/// Within the spine's limits; tilts alone are within them already.
+double swayed(double tilt) { return std::clamp(tilt, -20 * pi / 180, 50 * pi / 180); }
+
 constexpr double lean_while_falling = 25 * pi / 180;  // assumed (15-40 degrees), at half way
 
 double height_over(double leg_m, double horizontal_m) {
@@ -56,7 +59,7 @@ double Motion::hip_height_m(const Placement& pelvis, const Feet& feet) const noe
 }
 
 double Motion::spine_tilt() const noexcept {
-  if (fall_.settled()) return tilt_.value();
+  if (fall_.settled()) return sway_.value() == 0.0 ? tilt_.value() : swayed(tilt_.value() + sway_.value());
   const double s = std::sin(pi * std::clamp(fall_.value(), 0.0, 1.0));
   return tilt_.value() + lean_while_falling * s * s;
 }
@@ -80,6 +83,7 @@ Outline Motion::outline() const noexcept {
   outline.spine_tilt = spine_tilt();
   outline.fall = std::clamp(fall_.value(), 0.0, 1.0);
   outline.reach = std::clamp(reach_.value(), 0.0, 1.0);
+  outline.head_turn = head_turn_.value();
   if (outline.fall > 0.0) outline.thigh_angle = seating_.thigh_angle(1.0);
   if (outline.reach > 0.0) {
     const double thighs = outline.hip_height_m + humanoid_.radius_m(Part::left_thigh);
@@ -118,6 +122,7 @@ Posture posture_of(const Humanoid& humanoid, const Outline& outline) noexcept {
   pose.world_from_hips = {rotation_from_heading(outline.pelvis.heading),
                           Vec3(outline.pelvis.position.x, outline.hip_height_m, outline.pelvis.position.y)};
   pose.spine_tilt = outline.spine_tilt;
+  pose.head_turn = outline.head_turn;
   const double ankle_height = outline.floor_height_m + humanoid.measures().ankle_height_m;
   for (std::size_t side : {0U, 1U}) {
     const Footstep& foot = outline.feet[side];

@@ -40,6 +40,15 @@ double head_centre(const Humanoid& humanoid) {
   return m.stature_m - humanoid.radius_m(Part::head) - m.hip_height_m;
 }
 
+/// The head turns about an axis that runs through the neck, a little behind its middle.
+Frame world_from_head(const Humanoid& humanoid, const Frame& torso, double turn) {
+  const Vec3 centre(0, head_centre(humanoid), 0);
+  if (turn == 0.0) return {torso.rotation, torso * centre};
+  const double ahead = 0.016 * humanoid.measures().stature_m;  // assumed (0.01-0.03): 3 cm
+  const Quat turned = rotation_from_heading(turn);
+  return torso * Frame{turned, centre + Vec3(0, 0, ahead) + turned * Vec3(0, 0, -ahead)};
+}
+
 void put_arm(const Measures& m, const Frame& torso, const ArmPose& arm, std::size_t side, Posture& posture) {
   const Frame upper{glm::normalize(torso.rotation * arm.torso_from_upper_arm), torso * shoulder(m, side)};
   const Frame lower{glm::normalize(upper.rotation * glm::angleAxis(arm.elbow_flexion, x_axis)),
@@ -95,7 +104,7 @@ Posture posture_of(const Humanoid& humanoid, const Pose& pose) noexcept {
   Posture posture;
   posture[at(Part::pelvis)] = {glm::normalize(hips.rotation * hips_from_pelvis()), hips.origin};
   posture[at(Part::torso)] = {torso.rotation, torso * Vec3(0, torso_centre(humanoid), 0)};
-  posture[at(Part::head)] = {torso.rotation, torso * Vec3(0, head_centre(humanoid), 0)};
+  posture[at(Part::head)] = world_from_head(humanoid, torso, pose.head_turn);
   for (std::size_t side : {0U, 1U}) {
     put_arm(m, torso, pose.arms[side], side, posture);
     put_leg(m, hips, pose.world_from_ankle[side], side, posture);

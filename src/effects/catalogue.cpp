@@ -12,7 +12,12 @@ namespace pirsim::effects {
 // make of it, and the books.
 const std::vector<const Effect*>& catalogue() {
   static const std::vector<const Effect*> effects{
-      &false_triggers(), &trigger_bursts(), &missed_triggers(), &dead_time(), &pulse_stretching(), &clock_lag(),
+      &seats_shifted(),   &mirrored_room(),   &missing_occluder(), &second_person(),    &seat_shift(),
+      &seat_scatter(),    &body_size(),       &sensor_yaw(),       &sensor_tilt(),      &sensor_height(),
+      &arm_motion(),      &trunk_tilt(),      &fidgeting(),        &thermal_contrast(), &range_scale(),
+      &soft_zone_edges(), &wall_reflection(), &dual_polarity(),    &warm_chair(),       &false_triggers(),
+      &trigger_bursts(),  &missed_triggers(), &dead_time(),        &pulse_stretching(), &clock_lag(),
+      &dead_sensor(),     &labels_swapped(),
   };
   return effects;
 }

@@ -52,6 +52,7 @@ const Effect& clock_lag() {
                .stage = "electronics",
                .summary = "Rows are stamped late by a fixed time that may grow: the logger's clock is another one.",
                .fingerprint = "the peak after a change of posture moves in its cycle; sums hardly change",
+               .confused_with = {"trunk_tilt", "arm_motion"},
                .parameters = {{.name = "lag_s",
                                .unit = "s",
                                .off = 0.0,

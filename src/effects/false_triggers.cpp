@@ -46,7 +46,7 @@ const Effect& false_triggers() {
                .stage = "environment",
                .summary = "Sensors trigger at random moments without anybody's doing, at one rate.",
                .fingerprint = "silent cells come alive, all by the same amount; single ones, at any moment",
-               .confused_with = {"trigger_bursts"},
+               .confused_with = {"trigger_bursts", "fidgeting", "soft_zone_edges"},
                .parameters = {{.name = "rate_per_s",
                                .unit = "1/s",
                                .off = 0.0,

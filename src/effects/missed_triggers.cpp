@@ -46,7 +46,7 @@ const Effect& missed_triggers() {
                .stage = "electronics",
                .summary = "A window's triggers are lost altogether, with one probability, independently.",
                .fingerprint = "all cells scaled by the same factor; isolated zeros",
-               .confused_with = {"dead_time"},
+               .confused_with = {"dead_time", "thermal_contrast", "dead_sensor"},
                .parameters = {{.name = "probability",
                                .unit = "",
                                .off = 0.0,

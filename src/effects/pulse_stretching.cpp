@@ -53,7 +53,7 @@ const Effect& pulse_stretching() {
                .stage = "electronics",
                .summary = "A sensor's output stays high for a while after each trigger, across the poll.",
                .fingerprint = "runs of ones are longer, gaps shorter; cells with much scattered activity rise most",
-               .confused_with = {"dead_time"},
+               .confused_with = {"dead_time", "fidgeting"},
                .parameters = {{.name = "hold_s",
                                .unit = "s",
                                .off = 0.0,

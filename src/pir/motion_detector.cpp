@@ -30,12 +30,12 @@ void MotionDetector::add_channels(const ZoneSet& zones, ZoneSet& channels) const
 }
 
 void MotionDetector::mark(std::span<const ZoneSet::Word> before, std::span<const ZoneSet::Word> after,
-                          std::span<std::uint8_t> bits) const noexcept {
+                          std::span<const ZoneSet::Word> watched, std::span<std::uint8_t> bits) const noexcept {
   for (std::size_t i = 0; i < before.size(); ++i) {
     const ZoneSet::Word changed = before[i] ^ after[i];
     if (changed == 0) continue;
     for (std::size_t sensor = 0; sensor < n_sensors_; ++sensor) {
-      if ((changed & sensor_masks_[sensor * before.size() + i]) != 0) bits[sensor] |= 1U;
+      if ((changed & watched[sensor * before.size() + i]) != 0) bits[sensor] |= 1U;
     }
   }
 }

@@ -40,7 +40,8 @@ Actor::Actor(const Model& model, std::uint32_t run, std::uint32_t person)
     : person_(&model.trial_of(run).people[person]),
       index_(person),
       tilt_stream_({model.script().seed, run, person, Purpose::spine_tilt}),
-      scatter_stream_({model.script().seed, run, person, Purpose::seat_scatter}) {}
+      scatter_stream_({model.script().seed, run, person, Purpose::seat_scatter}),
+      fidget_stream_({model.script().seed, run, person, Purpose::fidgeting}) {}
 
 std::string_view Actor::current_phase() const noexcept {
   if (!done() && begun_ && !action().phase.empty()) return action().phase;
@@ -63,6 +64,7 @@ void Actor::advance(const Model& model, std::int64_t tick, std::span<const Prese
   carry_on(model, tick - 1, others);
   if (motion_) {
     keep_distance(model, others, n_before);
+    if (motion_->stage() == Stage::seated) fidget(model);
     motion_->advance();
   }
   phase_ = current_phase();
@@ -164,6 +166,9 @@ void Actor::plan_sitting() {
   // Drawn whether used or not, so that a scatter of zero leaves every other draw where it was.
   const double dx = scatter_stream_.normal(), dz = scatter_stream_.normal(), turn = scatter_stream_.normal();
   place.world_from_seat.origin += scatter.position_sd_m * Vec3(dx, 0, dz);
+  if (person().spec.seat_shift_m != 0.0) {
+    place.world_from_seat.origin += person().spec.seat_shift_m * seat.place.world_from_seat.forward();
+  }
   if (scatter.heading_sd_deg > 0.0) {
     place.world_from_seat.rotation =
         rotation_from_heading(radians(scatter.heading_sd_deg * turn)) * place.world_from_seat.rotation;
@@ -195,6 +200,18 @@ void Actor::work(const Model& model, const action::Work& work, std::int64_t now)
   if (since % std::max<std::int64_t>(1, ticks(work.tilt_every_s, model)) != 0) return;
   const auto choice = tilt_stream_.index(static_cast<std::uint32_t>(work.tilt_choices_deg.size()));
   motion_->tilt_spine(radians(work.tilt_choices_deg[choice]));
+}
+
+void Actor::fidget(const Model& model) {
+  const FidgetSpec& fidgeting = person().spec.fidgeting;
+  if (fidgeting.rate_per_s <= 0.0) return;
+  if (fidget_stream_.uniform() >= -std::expm1(-fidgeting.rate_per_s * model.tick_s())) return;
+  const double way = 2.0 * fidget_stream_.uniform() - 1.0;
+  if (fidget_stream_.index(2) == 0) {
+    motion_->sway(radians(fidgeting.tilt_deg) * way);
+  } else {
+    motion_->turn_head(radians(fidgeting.turn_deg) * way);
+  }
 }
 
 Actor::Progress Actor::carry_out_first(const Model& model, std::span<const Presence> others) {

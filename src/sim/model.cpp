@@ -7,6 +7,7 @@
 #include "pirsim/pir/optics.hpp"
 #include "sim/lookout.hpp"
 #include "sim/plan_people.hpp"
+#include "sim/reflections.hpp"
 
 namespace pirsim {
 
@@ -65,14 +66,21 @@ Model compile(SceneSpec scene, ScriptSpec script, const CompileOptions& options)
   model.idle_lookouts_ = std::make_shared<Model::Pool>();
   model.room_ = std::make_unique<rt::Room>(model.scene_.meshes);
   model.rated_ = std::make_unique<RayBundle>();
+  const std::vector<double> levels = pir::edge_levels(altered.sensing.edge_sigma_deg);
   for (const SensorSpec& sensor : model.scene_.sensors) {
-    pir::append(*model.rated_, sensor, model.scene_.sensor_models.at(sensor.model), altered.sensing.rays_per_zone);
+    pir::append(*model.rated_, sensor, model.scene_.sensor_models.at(sensor.model), altered.sensing.rays_per_zone,
+                levels);
   }
+  sim::add_reflections(*model.rated_, *model.room_, model.scene_.meshes, altered.sensing.reflections);
   model.clipped_ = std::make_unique<RayBundle>(*model.rated_);
   model.room_->clip(*model.clipped_);
   model.detector_ = std::make_unique<pir::MotionDetector>(*model.rated_, altered.sensing.change_per);
+  model.edge_draw_ = pir::EdgeDraw(*model.detector_, levels.size(), altered.sensing.ticks_per_window);
+  if (altered.sensing.dual_polarity) {
+    model.polarity_.emplace(model.scene_, *altered.sensing.dual_polarity, levels.size(), model.tick_s());
+  }
   model.pipeline_ = effects::Pipeline(model.script_.effects, {model.scene_, altered.sensing, *model.clipped_});
-  model.trials_ = sim::plan_people(model.scene_, altered, *model.room_);
+  model.trials_ = sim::plan_people(model.scene_, altered, model.script_, *model.room_);
   return model;
 }
 

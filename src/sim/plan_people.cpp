@@ -119,20 +119,26 @@ class Rehearsal {
 
 }  // namespace
 
-std::vector<TrialModel> plan_people(const SceneSpec& scene, const ScriptSpec& script, const rt::Room& room) {
-  check_actions(scene, script);
+namespace {
+
+std::vector<TrialModel> plan_among_solids(const SceneSpec& scene, const ScriptSpec& script,
+                                          const ScriptSpec& as_written, const rt::Room& room) {
   std::map<double, std::shared_ptr<const body::WalkableFloor>> floors;  // by clearance
   std::vector<TrialModel> trials;
   Diagnostics diagnostics;
   for (const TrialSpec& trial : script.trials) {
     TrialModel& planned = trials.emplace_back();
     planned.id = trial.id;
+    const std::vector<PersonSpec>& written = as_written.trials[trials.size() - 1].people;
     for (const PersonSpec& spec : trial.people) {
       body::Humanoid humanoid(spec);
-      auto& floor = floors[humanoid.clearance_radius_m()];
+      double clearance_m = humanoid.clearance_radius_m();
+      if (planned.people.size() < written.size()) {
+        clearance_m = std::min(clearance_m, body::Humanoid(written[planned.people.size()]).clearance_radius_m());
+      }
+      auto& floor = floors[clearance_m];
       if (!floor) {
-        floor = std::make_shared<const body::WalkableFloor>(scene.floor, scene.entrances, scene.meshes,
-                                                            humanoid.clearance_radius_m());
+        floor = std::make_shared<const body::WalkableFloor>(scene.floor, scene.entrances, scene.meshes, clearance_m);
       }
       PersonModel& person = planned.people.emplace_back(PersonModel{spec, humanoid, floor, {}});
       Rehearsal(scene, room, person, diagnostics).run();
@@ -140,6 +146,18 @@ std::vector<TrialModel> plan_people(const SceneSpec& scene, const ScriptSpec& sc
   }
   diagnostics.throw_if_errors(ErrorCode::infeasible);
   return trials;
+}
+
+}  // namespace
+
+std::vector<TrialModel> plan_people(const SceneSpec& scene, const ScriptSpec& script, const ScriptSpec& as_written,
+                                    const rt::Room& room) {
+  check_actions(scene, script);
+  const auto is_screen = [](const TriMesh& mesh) { return mesh.solidity == Solidity::screen; };
+  if (std::ranges::none_of(scene.meshes, is_screen)) return plan_among_solids(scene, script, as_written, room);
+  SceneSpec solid = scene;
+  std::erase_if(solid.meshes, is_screen);
+  return plan_among_solids(solid, script, as_written, rt::Room(solid.meshes));
 }
 
 }  // namespace pirsim::sim

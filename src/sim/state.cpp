@@ -31,6 +31,8 @@ State::State(const Model& model, std::uint32_t run)
       zones_(model.detector().n_zones()),
       channels_(model.detector().n_channels()),
       previous_channels_(channels_),
+      edge_draw_(model.edge_draw()),
+      polarity_(model.polarity()),
       pipeline_(model.pipeline()),
       triggers_(model.scene().sensors.size(), 0),
       bits_(triggers_),
@@ -39,6 +41,7 @@ State::State(const Model& model, std::uint32_t run)
   for (std::uint32_t person = 0; person < trial.people.size(); ++person) actors_.emplace_back(model, run, person);
   presences_.resize(actors_.size());
   seated_.resize(actors_.size(), 0);
+  edge_draw_.begin_run(model.script().seed, run);
   pipeline_.begin_run(model.script().seed, run);
   sample_.replicate = model.replicate_of(run);
   sample_.trial = trial.id;
@@ -56,6 +59,8 @@ State::State(const State& other)
       previous_channels_(other.previous_channels_),
       seated_(other.seated_),
       seats_left_(other.seats_left_),
+      edge_draw_(other.edge_draw_),
+      polarity_(other.polarity_),
       pipeline_(other.pipeline_),
       triggers_(other.triggers_),
       bits_(other.bits_),
@@ -111,7 +116,9 @@ void State::look(const Model& model) {
   std::swap(channels_, previous_channels_);
   lookout_->look(actors_, zones_, channels_);
   std::ranges::fill(triggers_, std::uint8_t{0});
-  model.detector().mark(previous_channels_.words(), channels_.words(), triggers_);
+  if (polarity_) return polarity_->tick(zones_, triggers_);
+  edge_draw_.tick();
+  model.detector().mark(previous_channels_.words(), channels_.words(), edge_draw_.watched(), triggers_);
 }
 
 bool step_tick(const Model& model, State& state) {
@@ -131,7 +138,9 @@ bool step_tick(const Model& model, State& state) {
   sample.bits = state.bits_;
   state.pipeline_.apply(sample);
   std::ranges::fill(state.bits_, std::uint8_t{0});
-  state.finished_ = std::ranges::all_of(state.actors_, &Actor::done);
+  state.finished_ = std::ranges::all_of(state.actors_, [](const Actor& actor) {
+    return actor.done() || actor.person().spec.role == PersonRole::bystander;
+  });
   return true;
 }
 

@@ -80,14 +80,30 @@ void ChangeLogic::prepare(std::span<const ZoneSet> sets) {
   }
 }
 
-void ChangeLogic::begin_run(std::uint64_t, std::uint32_t) {}
+void ChangeLogic::begin_run(std::uint64_t seed, std::uint32_t run) { edge_draw_.begin_run(seed, run); }
 
 void ChangeLogic::tick(std::uint32_t before, std::uint32_t after, std::span<std::uint8_t> triggers) noexcept {
-  if (before != after) detector_.mark(channels_[before].words(), channels_[after].words(), triggers);
+  edge_draw_.tick();
+  if (before == after) return;
+  detector_.mark(channels_[before].words(), channels_[after].words(), edge_draw_.watched(), triggers);
+}
+
+void PolarityLogic::prepare(std::span<const ZoneSet> sets) {
+  const std::size_t n = detector_.n_sensors();
+  sums_.assign(sets.size() * n, 0.0);
+  for (std::size_t i = 0; i < sets.size(); ++i) detector_.add_up(sets[i], std::span(sums_).subspan(i * n, n));
+}
+
+void PolarityLogic::begin_run(std::uint64_t, std::uint32_t) { detector_.begin_run(); }
+
+void PolarityLogic::tick(std::uint32_t, std::uint32_t after, std::span<std::uint8_t> triggers) noexcept {
+  const std::size_t n = detector_.n_sensors();
+  detector_.tick(std::span<const double>(sums_).subspan(after * n, n), triggers);
 }
 
 std::unique_ptr<DetectorLogic> make_logic(const Model& model) {
-  return std::make_unique<ChangeLogic>(model.detector());
+  if (model.polarity()) return std::make_unique<PolarityLogic>(*model.polarity());
+  return std::make_unique<ChangeLogic>(model.detector(), model.edge_draw());
 }
 
 RunResult emit(const ZoneTracks& tracks, std::size_t index, DetectorLogic& detector, std::uint64_t seed,

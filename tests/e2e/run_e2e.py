@@ -63,6 +63,25 @@ class CommandLine(unittest.TestCase):
 
 
 class Hostile(unittest.TestCase):
+    def test_effects_are_listed_without_a_room_and_one_is_told_in_full(self):
+        listed = [line.split()[0] for line in pirsim("effects").stdout.splitlines()]
+        table = rows(pirsim("effects", "--format", "csv").stdout)
+        self.assertEqual(listed, list(dict.fromkeys(row["effect"] for row in table)))
+        self.assertGreater(len(listed), 20)
+        for effect in listed:
+            self.assertIn("fingerprint:", pirsim("effects", effect).stdout)
+        self.assertIn("did you mean 'dead_time'?", pirsim("effects", "dead_tyme", code=2).stderr)
+
+    def test_effects_of_a_script_are_kept_as_written_and_unknown_ones_refused(self):
+        effects = ("--set", "effects=[{sensor_yaw: {yaw_deg: 3, sensor: PIR2}}, dead_time: {dead_s: 2}]")
+        with tempfile.TemporaryDirectory() as folder:
+            text = study(*effects, "--print-config").stdout
+            self.assertIn("yaw_deg: 3", text)
+            path = write(folder, "resolved.yaml", text)
+            self.assertEqual(pirsim("--scene", "none", "--script", path, "--print-config").stdout, text)
+        refused = study("--set", "effects=[dead_tyme]", "--print-config", code=3).stderr
+        self.assertIn("did you mean 'dead_time'?", refused)
+
     def test_every_hostile_script_is_refused_with_its_place(self):
         files = sorted((HERE / "hostile" / "scripts").glob("*.yaml"))
         self.assertGreaterEqual(len(files), 10)
@@ -118,6 +137,16 @@ class MainJob(unittest.TestCase):
     def test_the_reference_tracer_gives_the_same_bytes(self):
         args = ("--replicates", 1, "-q", "--set", "trials.for_each.seat=[S1, S6]", "--set", "sensing.tick_rate_hz=10")
         self.assertEqual(study(*args, "--tracer", "reference").stdout, study(*args).stdout)
+
+    def test_tracers_agree_with_nested_zones_reflections_and_screens_too(self):
+        effects = ("effects=[{soft_zone_edges: {sigma_deg: 1}}, {wall_reflection: {coefficient: 0.9, wall: wall left}},"
+                   " missing_occluder]")
+        args = ("--replicates", 1, "-q", "--set", "trials.for_each.seat=[S1, S6]", "--set", "sensing.tick_rate_hz=10",
+                "--set", effects)
+        direct = study(*args).stdout
+        self.assertEqual(study(*args, "--tracer", "reference").stdout, direct)
+        self.assertEqual(study(*args, "--tracer", "embree").stdout, direct)
+        self.assertNotEqual(study(*args[:-2]).stdout, direct)
 
     def test_files_and_manifest_agree_with_stdout_and_the_zones_with_the_bits(self):
         with tempfile.TemporaryDirectory() as folder:

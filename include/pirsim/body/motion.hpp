@@ -33,6 +33,7 @@ struct Outline {
   double thigh_angle = 0.0;     ///< when seated; 0 while fall is 0
   double table_height_m = 0.0;  ///< what the forearms rest on; 0 while reach is 0, as the next
   double hand_offset_m = 0.0;   ///< of the left hand ahead of its base place
+  double head_turn = 0.0;       ///< to the left
   bool operator==(const Outline&) const = default;
 };
 [[nodiscard]] Posture posture_of(const Humanoid& humanoid, const Outline& outline) noexcept;
@@ -57,6 +58,9 @@ class Motion {
   void work(const DeskWork& work);       ///< from seated: forearms to the table, then oscillating
   void rest();                           ///< ends desk work: arms and spine come to rest
   void tilt_spine(double radians);       ///< target of the spine's tilt, positive forward; only while seated
+  // Beside what else spine and head do, while seated; both end with rising.
+  void sway(double radians);       ///< target of a further tilt of the spine, positive forward
+  void turn_head(double radians);  ///< target, positive to the left
   /// Upper bound of the walking speed from now on (m/s); 0 lets a walker wait on the spot.
   void limit_speed(double metres_per_second);
 
@@ -127,7 +131,8 @@ class Motion {
   Seating seating_;
   MinJerk fall_;  ///< 0 standing, 1 at the seat's height
   MinJerk slide_m_;
-  MinJerk tilt_;   ///< of the spine, beyond what falling and rising need
+  MinJerk tilt_;  ///< of the spine, beyond what falling and rising need
+  MinJerk sway_, head_turn_;
   MinJerk reach_;  ///< of the arms: 0 on the thighs, 1 on the table
   DeskWork work_;
   std::int64_t work_tick_ = 0;

@@ -19,6 +19,7 @@ struct ArmPose {
 struct Pose {
   Frame world_from_hips;                  ///< upright; origin midway between the hip joints
   double spine_tilt = 0.0;                ///< radians about the hips' axis, positive forward
+  double head_turn = 0.0;                 ///< radians about the neck, positive to the left
   std::array<Frame, 2> world_from_ankle;  ///< origin in the ankle joint, facing as the foot does
   std::array<ArmPose, 2> arms;
 };

@@ -56,9 +56,9 @@ struct EffectInfo {
   std::string stage;        ///< where it acts: placement, body, optics, detector, environment, electronics, books
   std::string summary;      ///< one sentence
   std::string fingerprint;  ///< what it does to the data
-  std::vector<std::string> confused_with;  ///< other entries with a like fingerprint
-  std::vector<ParameterInfo> parameters;   ///< the first is the one that names its strength
-  std::vector<ChoiceInfo> choices;
+  std::vector<std::string> confused_with{};  ///< other entries with a like fingerprint
+  std::vector<ParameterInfo> parameters{};   ///< the first is the one that names its strength
+  std::vector<ChoiceInfo> choices{};
   Reach reach = Reach::geometry;
 };
 

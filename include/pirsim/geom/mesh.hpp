@@ -11,11 +11,17 @@
 
 namespace pirsim {
 
+enum class Solidity {
+  solid,  ///< hides from sensors and must be walked round
+  screen  ///< hides, but nobody minds it: stands for what people move with them, a chair's back
+};
+
 /// Indexed triangles. positions: (n_vertices) world metres; triangles: (n_triangles x 3) indices.
 struct TriMesh {
   std::string name;
   std::vector<Vec3> positions;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::array<std::uint32_t, 3>> triangles{};
+  Solidity solidity = Solidity::solid;
 };
 
 /// What clean-up found in a mesh.

@@ -24,7 +24,14 @@ class MotionDetector {
   void add_channels(const ZoneSet& zones, ZoneSet& channels) const noexcept;
   /// bits[s] |= 1 where a channel of sensor s differs. before, after: of n_channels, as words; bits: (n_sensors).
   void mark(std::span<const ZoneSet::Word> before, std::span<const ZoneSet::Word> after,
-            std::span<std::uint8_t> bits) const noexcept;
+            std::span<std::uint8_t> bits) const noexcept {
+    mark(before, after, sensor_masks_, bits);
+  }
+  /// The same where only some channels are watched. watched: (n_sensors x words of a channel set).
+  void mark(std::span<const ZoneSet::Word> before, std::span<const ZoneSet::Word> after,
+            std::span<const ZoneSet::Word> watched, std::span<std::uint8_t> bits) const noexcept;
+  /// Every sensor's channels: (n_sensors x words of a channel set).
+  [[nodiscard]] std::span<const ZoneSet::Word> sensor_masks() const noexcept { return sensor_masks_; }
 
  private:
   std::size_t n_channels_ = 0;

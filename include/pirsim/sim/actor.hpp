@@ -91,6 +91,7 @@ class Actor {
   void plan_leaving(const EntranceSpec& door);
   void plan_sitting();
   void work(const Model& model, const action::Work& work, std::int64_t now);
+  void fidget(const Model& model);
   void carry_on(const Model& model, std::int64_t now, std::span<const Presence> others);
   void finish_action();
   [[nodiscard]] std::string_view current_phase() const noexcept;
@@ -135,6 +136,7 @@ class Actor {
   int blocked_ticks_ = 0;  ///< for how long others have been in the way
   Stream tilt_stream_;
   Stream scatter_stream_;
+  Stream fidget_stream_;
 };
 
 }  // namespace pirsim

@@ -12,7 +12,9 @@
 #include "pirsim/body/walkable_floor.hpp"
 #include "pirsim/effects/stage.hpp"
 #include "pirsim/geom/ray_bundle.hpp"
+#include "pirsim/pir/edge_draw.hpp"
 #include "pirsim/pir/motion_detector.hpp"
+#include "pirsim/pir/polarity_detector.hpp"
 #include "pirsim/rt/room.hpp"
 #include "pirsim/rt/tracer.hpp"
 #include "pirsim/schema/scene_spec.hpp"
@@ -74,6 +76,10 @@ class Model {
   [[nodiscard]] std::vector<std::string> columns() const;
   /// Which channels of which sensors are watched for changes.
   [[nodiscard]] const pir::MotionDetector& detector() const noexcept { return *detector_; }
+  /// Which of a channel's nested copies decide, before any run.
+  [[nodiscard]] const pir::EdgeDraw& edge_draw() const noexcept { return edge_draw_; }
+  /// Takes the place of the detector of changes, if the script's effects say so.
+  [[nodiscard]] const std::optional<pir::PolarityDetector>& polarity() const noexcept { return polarity_; }
   /// What the script's effects do to triggers and rows, before any run.
   [[nodiscard]] const effects::Pipeline& pipeline() const noexcept { return pipeline_; }
   [[nodiscard]] std::unique_ptr<rt::Tracer> make_tracer() const;
@@ -91,6 +97,8 @@ class Model {
   std::unique_ptr<RayBundle> clipped_;
   rt::TracerKind tracer_ = rt::fastest_tracer;
   std::unique_ptr<pir::MotionDetector> detector_;
+  pir::EdgeDraw edge_draw_;
+  std::optional<pir::PolarityDetector> polarity_;
   effects::Pipeline pipeline_;
   struct Pool;
   std::shared_ptr<Pool> idle_lookouts_;  ///< not part of what a Model is: memory that runs hand on

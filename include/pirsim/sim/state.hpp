@@ -57,6 +57,8 @@ class State {
   ZoneSet channels_, previous_channels_;  ///< of the Model's detector
   std::vector<std::uint8_t> seated_;      ///< (n_actors) 1 while seated
   std::vector<std::size_t> seats_left_;
+  pir::EdgeDraw edge_draw_;
+  std::optional<pir::PolarityDetector> polarity_;
   effects::Pipeline pipeline_;
   std::vector<std::uint8_t> triggers_;  ///< (n_sensors) at this tick
   std::vector<std::uint8_t> bits_;      ///< (n_sensors) triggers so far in this window

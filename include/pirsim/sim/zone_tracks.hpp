@@ -48,17 +48,33 @@ class DetectorLogic {
   virtual void tick(std::uint32_t before, std::uint32_t after, std::span<std::uint8_t> triggers) noexcept = 0;
 };
 
-/// The study's own: a change in a channel is motion; nothing random.
+/// A change in a channel is motion; random only where edges are soft.
 class ChangeLogic final : public DetectorLogic {
  public:
-  explicit ChangeLogic(pir::MotionDetector detector) : detector_(std::move(detector)) {}
+  explicit ChangeLogic(pir::MotionDetector detector) : ChangeLogic(detector, {detector, 1, 1}) {}
+  ChangeLogic(pir::MotionDetector detector, pir::EdgeDraw edge_draw)
+      : detector_(std::move(detector)), edge_draw_(std::move(edge_draw)) {}
   void prepare(std::span<const ZoneSet> sets) override;
   void begin_run(std::uint64_t seed, std::uint32_t run) override;
   void tick(std::uint32_t before, std::uint32_t after, std::span<std::uint8_t> triggers) noexcept override;
 
  private:
   pir::MotionDetector detector_;
+  pir::EdgeDraw edge_draw_;
   std::vector<ZoneSet> channels_;  ///< of each set
+};
+
+/// Zones with signs, filtered: see pir::PolarityDetector.
+class PolarityLogic final : public DetectorLogic {
+ public:
+  explicit PolarityLogic(pir::PolarityDetector detector) : detector_(std::move(detector)) {}
+  void prepare(std::span<const ZoneSet> sets) override;
+  void begin_run(std::uint64_t seed, std::uint32_t run) override;
+  void tick(std::uint32_t before, std::uint32_t after, std::span<std::uint8_t> triggers) noexcept override;
+
+ private:
+  pir::PolarityDetector detector_;
+  std::vector<double> sums_;  ///< (n_sets x n_sensors)
 };
 
 /// The detector that the Model's own runs have.

@@ -1,0 +1,42 @@
+#include <iostream>
+
+#include "app/commands.hpp"
+#include "app/session.hpp"
+#include "pirsim/effects/describe.hpp"
+#include "pirsim/io/csv_writer.hpp"
+
+namespace pirsim::app {
+namespace {
+
+/// A line a parameter.
+void print_csv(std::ostream& out, const effects::Effect& effect) {
+  const effects::EffectInfo& info = effect.info;
+  for (const effects::ParameterInfo& parameter : info.parameters) {
+    const bool is_strength = parameter.role == effects::Role::strength;
+    out << info.name << ',' << name(info.family) << ',' << info.stage << ',' << name(info.reach) << ','
+        << parameter.name << ',' << parameter.unit << ',' << (is_strength ? io::csv_number(parameter.off) : "") << ','
+        << io::csv_number(parameter.typical) << ',' << io::csv_number(parameter.low) << ','
+        << io::csv_number(parameter.high) << ',' << name(parameter.scale) << ',' << io::csv_field(parameter.source)
+        << ',' << io::csv_field(info.fingerprint) << '\n';
+  }
+}
+
+}  // namespace
+
+void list_effects(const EffectsOptions& options) {
+  std::vector<const effects::Effect*> chosen = effects::catalogue();
+  if (!options.name.empty()) chosen = {&effects::find(options.name)};
+  if (options.format == "csv") {
+    std::cout << "effect,family,stage,reach,parameter,unit,off,typical,low,high,scale,source,fingerprint\n";
+    for (const effects::Effect* effect : chosen) print_csv(std::cout, *effect);
+  } else if (options.format == "md") {
+    std::cout << effects::list_markdown();
+  } else if (!options.name.empty()) {
+    std::cout << effects::to_text(*chosen.front());
+  } else {
+    std::cout << effects::list_text();
+  }
+  require_written();
+}
+
+}  // namespace pirsim::app

@@ -1,0 +1,120 @@
+#include "pirsim/effects/describe.hpp"
+
+#include <array>
+#include <iomanip>
+#include <sstream>
+
+namespace pirsim::effects {
+namespace {
+
+std::string with_unit(double value, const std::string& unit) {
+  std::ostringstream out;
+  out << value << (unit.empty() ? "" : " ") << unit;
+  return out.str();
+}
+
+std::string range_of(const ParameterInfo& parameter) {
+  std::ostringstream out;
+  out << parameter.low;
+  if (parameter.low != parameter.high) out << " to " << parameter.high;
+  if (!parameter.unit.empty()) out << ' ' << parameter.unit;
+  if (parameter.scale == Scale::logarithmic) out << ", logarithmic";
+  return out.str();
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+std::string off_of(const ParameterInfo& parameter) {
+  return parameter.role == Role::detail ? "-" : with_unit(parameter.off, parameter.unit);
+}
+
+std::string values_of(const ChoiceInfo& choice) {
+  if (choice.kind == ChoiceKind::sensor) return "a sensor's name";
+  if (choice.kind == ChoiceKind::mesh) return "a mesh's name";
+  return joined(choice.words);
+}
+
+std::string in_script(const Effect& effect) {
+  std::ostringstream out;
+  out << "- " << effect.info.name << ": {";
+  std::string separator;
+  for (const ParameterInfo& parameter : effect.info.parameters) {
+    if (parameter.role == Role::detail) continue;
+    out << separator << parameter.name << ": " << parameter.typical;
+    separator = ", ";
+  }
+  out << '}';
+  return out.str();
+}
+
+void add_markdown(std::ostream& out, const Effect& effect) {
+  const EffectInfo& info = effect.info;
+  out << "### " << info.name << '\n' << info.summary << "\n\n";
+  out << "Fingerprint: " << info.fingerprint << ".\n";
+  if (!info.confused_with.empty()) out << "Easily taken for: " << joined(info.confused_with) << ".\n";
+  out << "Stage: " << info.stage << "; reach: " << name(info.reach) << ".\n\n";
+  out << "| parameter | off | typical | prior | source |\n|---|---|---|---|---|\n";
+  for (const ParameterInfo& parameter : info.parameters) {
+    out << "| `" << parameter.name << "` | " << off_of(parameter) << " | "
+        << with_unit(parameter.typical, parameter.unit) << " | " << range_of(parameter) << " | " << parameter.source
+        << " |\n";
+  }
+  for (const ChoiceInfo& choice : info.choices) {
+    out << "| `" << choice.name << "` | - | " << choice.otherwise << " | " << values_of(choice) << " | |\n";
+  }
+  out << '\n';
+}
+
+}  // namespace
+
+std::string list_text() {
+  std::ostringstream out;
+  for (const Effect* effect : catalogue()) {
+    out << std::left << std::setw(18) << effect->info.name << std::setw(13) << name(effect->info.family);
+    const ParameterInfo& strength = effect->info.parameters.front();
+    const std::string range = range_of(strength);
+    out << std::setw(46)
+        << (strength.name + " (off " + off_of(strength) + "; " + range.substr(0, range.find(',')) + ")")
+        << effect->info.summary << '\n';
+  }
+  return out.str();
+}
+
+std::string to_text(const Effect& effect) {
+  const EffectInfo& info = effect.info;
+  std::ostringstream out;
+  out << info.name << " (" << name(info.family) << ")\n" << info.summary << "\n\n";
+  out << "fingerprint:      " << info.fingerprint << '\n';
+  out << "easily taken for: " << joined(info.confused_with) << '\n';
+  out << "acts in:          " << info.stage << " (" << name(info.reach) << ")\n\nparameters:\n";
+  for (const ParameterInfo& parameter : info.parameters) {
+    out << "  " << std::left << std::setw(16) << parameter.name << "off " << std::setw(8) << off_of(parameter)
+        << "typical " << std::setw(10) << with_unit(parameter.typical, parameter.unit) << "prior "
+        << range_of(parameter) << "\n                  source: " << parameter.source << '\n';
+  }
+  for (const ChoiceInfo& choice : info.choices) {
+    out << "  " << std::left << std::setw(16) << choice.name << values_of(choice) << " (else: " << choice.otherwise
+        << ")\n";
+  }
+  out << "\nin a script:\n  effects:\n    " << in_script(effect) << '\n';
+  return out.str();
+}
+
+std::string list_markdown() {
+  std::ostringstream out;
+  constexpr std::array families{Family::optics,      Family::person,      Family::mounting, Family::occlusion,
+                                Family::electronics, Family::environment, Family::motion,   Family::data};
+  for (const Family family : families) {
+    out << "## " << name(family) << '\n';
+    for (const Effect* effect : catalogue()) {
+      if (effect->info.family == family) add_markdown(out, *effect);
+    }
+  }
+  return out.str();
+}
+
+}  // namespace pirsim::effects

@@ -1,0 +1,63 @@
+// People move though the script says nothing of it.
+#include "effects/entries.hpp"
+#include "effects/kit.hpp"
+#include "effects/parameter.hpp"
+
+namespace pirsim::effects {
+namespace {
+
+void alter(SceneSpec&, ScriptSpec& script, const EffectSpec& effect) {
+  for (TrialSpec& trial : script.trials) {
+    for (PersonSpec& person : trial.people) {
+      person.fidgeting = {effect.parameters.at("rate_per_s"), effect.parameters.at("tilt_deg"),
+                          effect.parameters.at("turn_deg")};
+    }
+  }
+}
+
+}  // namespace
+
+const Effect& fidgeting() {
+  static const Effect effect{
+      .info = {.name = "fidgeting",
+               .family = Family::motion,
+               .stage = "body",
+               .summary = "Who sits leans a little or turns the head at random moments.",
+               .fingerprint = "activity without the arms' phase, where a sensor sees head or trunk",
+               .confused_with = {"false_triggers", "soft_zone_edges", "pulse_stretching"},
+               .parameters = {{.name = "rate_per_s",
+                               .unit = "1/s",
+                               .off = 0.0,
+                               .typical = 0.1,
+                               .low = 0.01,
+                               .high = 0.5,
+                               .least = 0.0,
+                               .most = 5.0,
+                               .scale = Scale::logarithmic,
+                               .source = "assumed: of moves, a Poisson process"},
+                              {.name = "tilt_deg",
+                               .unit = "deg",
+                               .role = Role::detail,
+                               .off = 4.0,
+                               .typical = 4.0,
+                               .low = 1.0,
+                               .high = 10.0,
+                               .least = 0.0,
+                               .most = 15.0,
+                               .source = "assumed: the trunk moves to within so much of its scripted tilt"},
+                              {.name = "turn_deg",
+                               .unit = "deg",
+                               .role = Role::detail,
+                               .off = 40.0,
+                               .typical = 40.0,
+                               .low = 10.0,
+                               .high = 70.0,
+                               .least = 0.0,
+                               .most = 80.0,
+                               .source = "assumed: the head turns to within so much of straight ahead"}},
+               .reach = Reach::geometry},
+      .alter = alter};
+  return effect;
+}
+
+}  // namespace pirsim::effects

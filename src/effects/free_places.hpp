@@ -1,0 +1,14 @@
+// Where in a room something more has its place.
+#pragma once
+
+#include <vector>
+
+#include "pirsim/schema/scene_spec.hpp"
+
+namespace pirsim::effects {
+
+/// Points of a grid on the floor with `clear_m` to everything solid below a person's height, to seats and to
+/// entrances; the one farthest from all seats first. Empty in a room without such a place.
+[[nodiscard]] std::vector<Vec2> free_places(const SceneSpec& scene, double clear_m);
+
+}  // namespace pirsim::effects

@@ -1,0 +1,115 @@
+// Something hides people that the plan leaves out.
+#include "effects/entries.hpp"
+#include "effects/free_places.hpp"
+#include "effects/kit.hpp"
+#include "effects/parameter.hpp"
+
+namespace pirsim::effects {
+namespace {
+
+constexpr double behind_m = 0.17;  // assumed (0.15-0.25): a chair's back behind the middle of the pelvis
+constexpr double thick_m = 0.03;   // assumed
+
+/// A closed box; people walk through it, rays don't.
+TriMesh screen(const std::string& name, const Frame& world_from_box, const Vec3& half_extents) {
+  TriMesh mesh;
+  mesh.name = name;
+  mesh.solidity = Solidity::screen;
+  for (std::uint32_t corner = 0; corner < 8; ++corner) {
+    const Vec3 sign((corner & 1U) != 0 ? 1 : -1, (corner & 2U) != 0 ? 1 : -1, (corner & 4U) != 0 ? 1 : -1);
+    mesh.positions.push_back(world_from_box * (sign * half_extents));
+  }
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+bool is_box(const EffectSpec& effect) {
+  const auto what = effect.choices.find("what");
+  return what != effect.choices.end() && what->second == "box";
+}
+
+void alter(SceneSpec& scene, ScriptSpec&, const EffectSpec& effect) {
+  const double half_height = 0.5 * effect.parameters.at("height_m"), half_width = 0.5 * effect.parameters.at("width_m");
+  if (is_box(effect)) {
+    const Frame middle{Quat(1, 0, 0, 0), Vec3(effect.parameters.at("x_m"), scene.floor.height_m() + half_height,
+                                              effect.parameters.at("z_m"))};
+    scene.meshes.push_back(screen("missing box", middle, {half_width, half_height, half_width}));
+    return;
+  }
+  for (const SeatSpec& seat : scene.seats) {
+    const Frame middle = seat.world_from_seat * Frame{Quat(1, 0, 0, 0), Vec3(0, half_height, behind_m)};
+    scene.meshes.push_back(screen("back of " + seat.id, middle, {half_width, half_height, 0.5 * thick_m}));
+  }
+}
+
+void draw(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec&, Stream& stream) {
+  const double width = effect.parameters.at("width_m"), u = stream.uniform();
+  const std::vector<Vec2> places = free_places(scene, 0.5 * width);
+  if (!is_box(effect) || places.empty()) {
+    effect.choices["what"] = "chair_backs";
+    return;
+  }
+  const Vec2 place = places[stream.index(static_cast<std::uint32_t>(places.size()))];
+  effect.parameters["x_m"] = place.x;
+  effect.parameters["z_m"] = place.y;
+  effect.parameters["height_m"] = 1.0 + u;  // assumed: a plant, a screen on a stand, a pillar's lower part
+}
+
+}  // namespace
+
+const Effect& missing_occluder() {
+  static const Effect effect{
+      .info = {.name = "missing_occluder",
+               .family = Family::occlusion,
+               .stage = "placement",
+               .summary = "Chair backs at all seats, or a box somewhere, hide people; nobody has to walk round them.",
+               .fingerprint = "some pairs of seat and sensor fall silent, the others stay as they are",
+               .confused_with = {"thermal_contrast", "range_scale"},
+               .parameters = {{.name = "height_m",
+                               .unit = "m",
+                               .off = 0.0,
+                               .typical = 0.45,
+                               .low = 0.2,
+                               .high = 0.7,
+                               .least = 0.0,
+                               .most = 5.0,
+                               .source = "assumed: of a chair's back above the seat; of a box above the floor (1-2)"},
+                              {.name = "width_m",
+                               .unit = "m",
+                               .role = Role::detail,
+                               .off = 0.45,
+                               .typical = 0.45,
+                               .low = 0.35,
+                               .high = 0.6,
+                               .least = 0.01,
+                               .most = 20.0,
+                               .source = "assumed: a box is as deep as wide"},
+                              {.name = "x_m",
+                               .unit = "m",
+                               .role = Role::detail,
+                               .off = 0.0,
+                               .typical = 0.0,
+                               .low = -50.0,
+                               .high = 50.0,
+                               .least = -1e4,
+                               .most = 1e4,
+                               .source = "assumed: of a box, a free place"},
+                              {.name = "z_m",
+                               .unit = "m",
+                               .role = Role::detail,
+                               .off = 0.0,
+                               .typical = 0.0,
+                               .low = -50.0,
+                               .high = 50.0,
+                               .least = -1e4,
+                               .most = 1e4,
+                               .source = "assumed: of a box, a free place"}},
+               .choices = {{"what", ChoiceKind::word, {"chair_backs", "box"}, "chair backs"}},
+               .reach = Reach::geometry},
+      .alter = alter,
+      .draw = draw};
+  return effect;
+}
+
+}  // namespace pirsim::effects

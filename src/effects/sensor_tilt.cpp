@@ -1,0 +1,35 @@
+// A sensor looks further down than drawn, or less far.
+#include "pirsim/core/units.hpp"
+
+#include "effects/entries.hpp"
+#include "effects/kit.hpp"
+#include "effects/parameter.hpp"
+
+namespace pirsim::effects {
+namespace {
+
+void alter(SceneSpec& scene, ScriptSpec&, const EffectSpec& effect) {
+  for (const std::uint32_t i : sensors_of(effect, scene)) {
+    Frame& frame = scene.sensors[i].world_from_sensor;
+    frame.rotation =
+        glm::normalize(frame.rotation * glm::angleAxis(-radians(effect.parameters.at("tilt_deg")), Vec3(1, 0, 0)));
+  }
+}
+
+}  // namespace
+
+const Effect& sensor_tilt() {
+  static const Effect effect{.info = {.name = "sensor_tilt",
+                                      .family = Family::mounting,
+                                      .stage = "placement",
+                                      .summary = "Sensors look further down (positive) or up than drawn.",
+                                      .fingerprint = "near and far seats change oppositely",
+                                      .confused_with = {"sensor_height", "seat_shift", "sensor_yaw"},
+                                      .parameters = {offset("tilt_deg", "deg", 6.0, 2.0, 90.0, "assumed: by eye")},
+                                      .choices = {sensor_choice()},
+                                      .reach = Reach::geometry},
+                             .alter = alter};
+  return effect;
+}
+
+}  // namespace pirsim::effects

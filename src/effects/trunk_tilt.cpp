@@ -1,0 +1,39 @@
+// The trunk doesn't keep to the script.
+#include "effects/entries.hpp"
+#include "effects/kit.hpp"
+#include "effects/parameter.hpp"
+
+namespace pirsim::effects {
+namespace {
+
+void alter(SceneSpec&, ScriptSpec& script, const EffectSpec& effect) {
+  for (TrialSpec& trial : script.trials) {
+    for (PersonSpec& person : trial.people) {
+      for (ScriptedAction& scripted : person.actions) {
+        auto* work = std::get_if<action::Work>(&scripted.what);
+        if (work == nullptr) continue;
+        for (double& tilt : work->tilt_choices_deg) tilt *= effect.parameters.at("amplitude_scale");
+        work->tilt_every_s *= effect.parameters.at("period_scale");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+const Effect& trunk_tilt() {
+  static const Effect effect{
+      .info = {.name = "trunk_tilt",
+               .family = Family::motion,
+               .stage = "body",
+               .summary = "Trunks tilt further or less far, more often or less often than the script says.",
+               .fingerprint = "the peak at every change of posture grows, shrinks or moves",
+               .confused_with = {"arm_motion", "clock_lag", "fidgeting"},
+               .parameters = {factor("amplitude_scale", 0.3, 1.8, 0.6, "assumed"),
+                              factor("period_scale", 0.7, 1.4, 1.0, "assumed")},
+               .reach = Reach::geometry},
+      .alter = alter};
+  return effect;
+}
+
+}  // namespace pirsim::effects

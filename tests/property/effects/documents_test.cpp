@@ -1,0 +1,49 @@
+// The documents say what the code says.
+#include <fstream>
+#include <sstream>
+
+#include "pirsim/effects/describe.hpp"
+#include "property/effects/warm_up.cpp"
+#include "support/catch.hpp"
+#include "support/effects.hpp"
+
+using namespace pirsim;
+using namespace pirsim::test;
+
+namespace {
+
+std::string text_of(const std::string& file) {
+  std::ifstream in(std::filesystem::path(PIRSIM_TESTS_DIR) / ".." / file);
+  REQUIRE(in);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+TEST_CASE("docs/effects.md ends with the catalogue as the program lists it") {
+  const std::string document = text_of("docs/effects.md"), list = effects::list_markdown();
+  REQUIRE(document.size() > list.size());
+  CHECK(document.substr(document.size() - list.size()) == list);
+}
+
+TEST_CASE("the how-to shows the file that is compiled and tested here") {
+  const std::string document = text_of("docs/howto/add_an_effect.md");
+  CHECK_THAT(document, contains("```cpp\n" + text_of("tests/property/effects/warm_up.cpp") + "```\n"));
+}
+
+TEST_CASE("the effect of the how-to silences the first seconds and nothing after them") {
+  const Model model = compile(shipped_scene("meeting_room.gltf"), short_study_a());
+  const EffectSpec spec = effects::resolved(effects::warm_up(), {"warm_up", {{"duration_s", 12.0}}, {}, {}});
+  effects::Pipeline pipeline;
+  pipeline.add(effects::warm_up().info.reach == effects::Reach::triggers
+                   ? effects::warm_up().make_stage(spec, {model.scene(), model.script().sensing, model.clipped_rays()})
+                   : nullptr);
+  pipeline.begin_run(1, 0);
+  for (std::int64_t tick = 1; tick <= 1000; ++tick) {
+    std::vector<std::uint8_t> triggers(5, 1);
+    pipeline.tick(tick, triggers);
+    REQUIRE(std::ranges::count(triggers, std::uint8_t{1}) == (tick <= 600 ? 0 : 5));
+  }
+}

@@ -1,0 +1,94 @@
+// Warm chairs and fidgeting: rates against closed forms.
+#include <cmath>
+
+#include "pirsim/core/units.hpp"
+#include "pirsim/sim/state.hpp"
+#include "pirsim/sim/zone_tracks.hpp"
+#include "support/catch.hpp"
+#include "support/effects.hpp"
+
+using namespace pirsim;
+using namespace pirsim::test;
+
+namespace {
+
+EffectSpec effect(const std::string& name, std::map<std::string, double, std::less<>> parameters) {
+  return {name, std::move(parameters), {}, {}};
+}
+
+/// Triggers of every sensor in `seconds` after a seat was left, summed over runs.
+std::vector<double> after_leaving(const Model& model, std::size_t seat, double rate_per_s, double decay_s, int runs,
+                                  int seconds) {
+  effects::Pipeline pipeline =
+      sim::make_pipeline(model, std::vector{effect("warm_chair", {{"rate_per_s", rate_per_s}, {"decay_s", decay_s}})});
+  std::vector<double> counts(model.scene().sensors.size(), 0.0);
+  for (int run = 0; run < runs; ++run) {
+    pipeline.begin_run(1, static_cast<std::uint32_t>(run));
+    pipeline.seat_left(seat);
+    for (int tick = 1; tick <= 50 * seconds; ++tick) {
+      std::vector<std::uint8_t> triggers(counts.size(), 0);
+      pipeline.tick(tick, triggers);
+      for (std::size_t s = 0; s < counts.size(); ++s) counts[s] += triggers[s];
+    }
+  }
+  return counts;
+}
+
+}  // namespace
+
+TEST_CASE("a warm chair triggers those who see it as often as its decaying rate says and nobody else") {
+  SceneSpec scene = shipped_scene("meeting_room.gltf");
+  scene.sensors[1].world_from_sensor.rotation =
+      rotation_from_heading(pi) * scene.sensors[1].world_from_sensor.rotation;  // looks into the wall
+  const Model model = compile(scene, short_study_a());
+  const double rate = 0.2, decay_s = 60.0;
+  const int runs = 100, seconds = 90;
+  // Of S9, which some sensors see.
+  const auto counts = after_leaving(model, 8, rate, decay_s, runs, seconds);
+  const double expected = runs * rate * decay_s * (1.0 - std::exp(-seconds / decay_s));  // 932
+  int seeing = 0;
+  for (const double count : counts) {
+    if (count == 0.0) continue;
+    ++seeing;
+    CHECK(std::abs(count - expected) < 4.0 * std::sqrt(expected));
+    CHECK_FALSE(std::abs(count - runs * rate * seconds) < 4.0 * std::sqrt(expected));  // must fail: no decay
+  }
+  CHECK(seeing > 0);
+  CHECK(counts[1] == 0.0);
+}
+
+TEST_CASE("who fidgets moves at the given rate within the given angles and who doesn't sits still") {
+  const double rate = 0.1, minutes = 60;
+  ScriptSpec script = script_of(
+      {person("anna", {act(action::Enter{"door"}), act(action::Sit{"S4"}), act(action::Wait{60.0 * minutes})})});
+  script.effects = {effect("fidgeting", {{"rate_per_s", rate}, {"tilt_deg", 5.0}, {"turn_deg", 30.0}})};
+  const Model model = compile(shipped_scene("meeting_room.gltf"), script);
+  State state(model, 0);
+  body::Outline last;
+  int moves = 0, still_ticks = 2, seated_ticks = 0;
+  double furthest_tilt = 0, furthest_turn = 0;
+  while (!state.finished()) {
+    step_tick(model, state);
+    const Actor& actor = state.actors()[0];
+    if (!actor.present() || actor.motion().stage() != body::Stage::seated) continue;
+    ++seated_ticks;
+    const body::Outline now = actor.motion().outline();
+    furthest_tilt = std::max(furthest_tilt, std::abs(now.spine_tilt));
+    furthest_turn = std::max(furthest_turn, std::abs(now.head_turn));
+    if (now == last) {
+      ++still_ticks;
+    } else {
+      if (still_ticks > 1) ++moves;
+      still_ticks = 0;
+    }
+    last = now;
+  }
+  // A move of 0.6 s hides those that begin before it has ended.
+  const double seconds = seated_ticks * 0.02, expected = rate * seconds * std::exp(-rate * 0.6);
+  CHECK(std::abs(moves - expected) < 4.0 * std::sqrt(expected));
+  CHECK_FALSE(std::abs(moves - 1.5 * expected) < 4.0 * std::sqrt(expected));  // must fail
+  CHECK(degrees(furthest_tilt) <= 5.0 + 1e-6);
+  CHECK(degrees(furthest_tilt) > 4.5);
+  CHECK(degrees(furthest_turn) <= 30.0 + 1e-6);
+  CHECK(degrees(furthest_turn) > 27.0);
+}

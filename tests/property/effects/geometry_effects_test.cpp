@@ -1,0 +1,258 @@
+// Effects on people, mounting, occlusion and books, each against something that doesn't use its code.
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "pirsim/core/units.hpp"
+#include "pirsim/sim/state.hpp"
+#include "support/catch.hpp"
+#include "support/effects.hpp"
+
+using namespace pirsim;
+using namespace pirsim::test;
+
+namespace {
+
+EffectSpec effect(const std::string& name, std::map<std::string, double, std::less<>> parameters,
+                  std::map<std::string, std::string, std::less<>> choices = {}) {
+  return {name, std::move(parameters), std::move(choices), {}};
+}
+Model meeting_room(std::vector<EffectSpec> effects, int replicates = 1) {
+  return compile(shipped_scene("meeting_room.gltf"), with(short_study_a(replicates), std::move(effects)));
+}
+
+/// Goes on until the first person sits.
+State seated(const Model& model, std::uint32_t run) {
+  State state(model, run);
+  while (!state.actors().front().present() || state.actors().front().motion().stage() != body::Stage::seated) {
+    step_tick(model, state);
+  }
+  return state;
+}
+Vec2 where_seated(const Model& model, std::uint32_t run) {
+  return seated(model, run).actors().front().motion().position();
+}
+Vec2 place_of(const Model& model, const std::string& id) {
+  return floor_point(std::ranges::find(model.scene().seats, id, &SeatSpec::id)->world_from_seat.origin);
+}
+
+std::size_t rays_of(const RayBundle& rays, std::size_t sensor) {
+  return rays.zone_rays_begin[rays.cluster_zones_begin[rays.sensor_clusters_begin[sensor]]];
+}
+
+}  // namespace
+
+TEST_CASE("a yawed sensor's rays are turned about the vertical through it: one sensor and no other") {
+  const Model plain = meeting_room({}),
+              yawed = meeting_room({effect("sensor_yaw", {{"yaw_deg", 5.0}}, {{"sensor", "PIR2"}})});
+  const std::size_t begin = rays_of(plain.rated_rays(), 1), end = rays_of(plain.rated_rays(), 2);
+  const double c = std::cos(radians(5.0)), s = std::sin(radians(5.0));
+  for (std::size_t i = 0; i < plain.rated_rays().rays.size(); ++i) {
+    const Ray &before = plain.rated_rays().rays[i], &after = yawed.rated_rays().rays[i];
+    REQUIRE(after.origin == before.origin);
+    const Vec3 d(before.direction);
+    // Turning left, seen from above, takes -Z to -X.
+    const Vec3 expected = i < begin || i >= end ? d : Vec3(c * d.x + s * d.z, d.y, -s * d.x + c * d.z);
+    REQUIRE(glm::distance(Vec3(after.direction), expected) < 1e-6);
+  }
+}
+
+TEST_CASE("a tilted sensor looks so much further down and a raised one looks from so much higher") {
+  const Model plain = meeting_room({}), tilted = meeting_room({effect("sensor_tilt", {{"tilt_deg", 4.0}})}),
+              raised = meeting_room({effect("sensor_height", {{"height_m", 0.2}})});
+  for (std::size_t i = 0; i < plain.scene().sensors.size(); ++i) {
+    const auto down_deg = [&](const Model& model) {
+      return degrees(std::asin(-model.scene().sensors[i].world_from_sensor.forward().y));
+    };
+    CHECK(down_deg(tilted) == Approx(down_deg(plain) + 4.0));
+    CHECK(down_deg(raised) == down_deg(plain));
+    const Vec3 up =
+        raised.scene().sensors[i].world_from_sensor.origin - plain.scene().sensors[i].world_from_sensor.origin;
+    CHECK(glm::distance(up, Vec3(0, 0.2, 0)) < 1e-12);
+  }
+}
+
+TEST_CASE("a shifted seat is taken so far forward of where it is drawn") {
+  for (const double forward_m : {0.1, -0.1}) {
+    const Model model = meeting_room({effect("seat_shift", {{"forward_m", forward_m}})});
+    for (std::uint32_t run = 0; run < 2; ++run) {
+      const SeatSpec& seat = *std::ranges::find(model.scene().seats, model.trial_of(run).id, &SeatSpec::id);
+      const Vec3 expected = seat.world_from_seat * Vec3(0, 0, -forward_m);
+      CHECK(glm::distance(where_seated(model, run), floor_point(expected)) < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("scattered seats are taken with the scatter's spread") {
+  const double sd = 0.05;
+  const Model model = meeting_room({effect("seat_scatter", {{"position_sd_m", sd}, {"heading_sd_deg", 0.0}})}, 150);
+  double squares = 0;
+  for (std::uint32_t run = 0; run < model.n_runs(); ++run) {
+    const Vec2 off = where_seated(model, run) - place_of(model, model.trial_of(run).id);
+    squares += glm::dot(off, off);
+  }
+  const double n = 2.0 * model.n_runs(), variance = squares / n, standard_error = sd * sd * std::sqrt(2.0 / n);
+  CHECK(std::abs(variance - sd * sd) < 4.0 * standard_error);
+  CHECK_FALSE(std::abs(variance - 1.5 * sd * sd) < 4.0 * standard_error);  // must fail
+}
+
+TEST_CASE("a scaled body has scaled lengths") {
+  const Model plain = meeting_room({}), small = meeting_room({effect("body_size", {{"scale", 0.8}})});
+  const auto head_m = [](const Model& model) {
+    return model.trials()[0].people[0].humanoid.measures().shoulder_height_m;
+  };
+  CHECK(head_m(small) == Approx(0.8 * head_m(plain)));
+}
+
+TEST_CASE("four times the contrast reaches twice as far and is the same as a scaled range") {
+  const Model plain = meeting_room({}), warm = meeting_room({effect("thermal_contrast", {{"delta_t_k", 16.0}})}),
+              far = meeting_room({effect("range_scale", {{"scale", 2.0}})});
+  for (std::size_t i = 0; i < plain.rated_rays().range.size(); ++i) {
+    REQUIRE(warm.rated_rays().range[i] == 2.0F * plain.rated_rays().range[i]);
+    REQUIRE(far.rated_rays().range[i] == warm.rated_rays().range[i]);
+  }
+}
+
+TEST_CASE("chair backs cut rays where boxes behind the seats stand and nobody walks otherwise than before") {
+  const Model plain = meeting_room({}), backs = meeting_room({effect("missing_occluder", {{"height_m", 0.5}})});
+  std::size_t cut = 0;
+  for (std::size_t i = 0; i < plain.clipped_rays().rays.size(); ++i) {
+    float expected = plain.clipped_rays().range[i];
+    for (const SeatSpec& seat : plain.scene().seats) {
+      const Box back{Vec3(0.225, 0.25, 0.015)};
+      const PosedShape box = place(back, seat.world_from_seat * Frame{Quat(1, 0, 0, 0), Vec3(0, 0.25, 0.17)});
+      expected = entry_distance(plain.clipped_rays().rays[i], box, expected).value_or(expected);
+    }
+    cut += expected < plain.clipped_rays().range[i] ? 1 : 0;
+    REQUIRE(backs.clipped_rays().range[i] == Approx(expected).margin(2e-3));
+  }
+  CHECK(cut > 20);
+  State a(plain, 0), b(backs, 0);
+  while (!a.finished()) {
+    step_tick(plain, a);
+    step_tick(backs, b);
+    REQUIRE(a.actors()[0].present() == b.actors()[0].present());
+    if (a.actors()[0].present()) REQUIRE(a.actors()[0].motion().outline() == b.actors()[0].motion().outline());
+  }
+}
+
+TEST_CASE("a mirrored room looks to its sensors as the room does to mirrored sensors") {
+  for (const std::string across : {"x", "z"}) {
+    const Model plain = meeting_room({});
+    SceneSpec scene = plain.scene();
+    ScriptSpec script = with(short_study_a(), {effect("mirrored_room", {{"mirrored", 1.0}}, {{"across", across}})});
+    effects::alter(scene, script);
+    const rt::Room room(scene.meshes);
+    const FloorArea& floor = plain.scene().floor;
+    const auto mirrored = [&](Vec3f p, bool is_point) {
+      if (across == "x") p.x = (is_point ? static_cast<float>(floor.lower().x + floor.upper().x) : 0.0F) - p.x;
+      if (across == "z") p.z = (is_point ? static_cast<float>(floor.lower().y + floor.upper().y) : 0.0F) - p.z;
+      return p;
+    };
+    std::size_t differing = 0;
+    for (std::size_t i = 0; i < plain.rated_rays().rays.size(); i += 7) {
+      const Ray& ray = plain.rated_rays().rays[i];
+      const auto here = room.first_hit(ray, 50.0F);
+      const auto there = plain.room().first_hit({mirrored(ray.origin, true), mirrored(ray.direction, false)}, 50.0F);
+      REQUIRE(here.has_value() == there.has_value());
+      if (here) REQUIRE(here->distance == Approx(there->distance).margin(1e-4));
+      const auto before = plain.room().first_hit(ray, 50.0F);
+      if (here && before && std::abs(here->distance - before->distance) > 1e-3F) ++differing;
+    }
+    CHECK(differing > 0);
+    // Seats face the mirrored way; twice is as before.
+    effects::alter(scene, script);
+    for (std::size_t i = 0; i < scene.seats.size(); ++i) {
+      const Frame &once_more = scene.seats[i].world_from_seat, &first = plain.scene().seats[i].world_from_seat;
+      CHECK(glm::distance(once_more.origin, first.origin) < 1e-9);
+      CHECK(glm::distance(once_more.forward(), first.forward()) < 1e-9);
+    }
+  }
+}
+
+TEST_CASE("with seats shifted by one everybody sits on the next and the last on the first") {
+  const Model plain = meeting_room({}), shifted = meeting_room({effect("seats_shifted", {{"places", 1.0}})});
+  CHECK(place_of(shifted, "S1") == place_of(plain, "S2"));
+  CHECK(place_of(shifted, "S10") == place_of(plain, "S1"));
+  CHECK(glm::distance(where_seated(shifted, 0), place_of(plain, "S5")) < 1e-6);  // trial S4
+}
+
+TEST_CASE("swapped labels swap two columns and a dead sensor's column is empty") {
+  const auto plain = results_of(meeting_room({}));
+  const auto swapped =
+      results_of(meeting_room({effect("labels_swapped", {{"swapped", 1.0}}, {{"sensor", "PIR2"}, {"other", "PIR5"}})}));
+  const auto dead = results_of(meeting_room({effect("dead_sensor", {{"loss", 1.0}}, {{"sensor", "PIR4"}})}));
+  int ones = 0;
+  for (std::size_t run = 0; run < plain.size(); ++run) {
+    for (std::size_t i = 0; i < plain[run].samples.size(); ++i) {
+      auto bits = plain[run].samples[i].bits;
+      ones += bits[3];
+      auto without_fourth = bits;
+      without_fourth[3] = 0;
+      REQUIRE(dead[run].samples[i].bits == without_fourth);
+      std::swap(bits[1], bits[4]);
+      REQUIRE(swapped[run].samples[i].bits == bits);
+    }
+  }
+  CHECK(ones > 0);
+}
+
+TEST_CASE("a dying sensor keeps the share of its ones that it doesn't lose") {
+  Sample row;
+  row.time_s = 10.0;
+  const SceneSpec scene = shipped_scene("meeting_room.gltf");
+  effects::Pipeline pipeline(std::vector{effect("dead_sensor", {{"loss", 0.6}, {"from_s", 5.0}}, {{"sensor", "PIR1"}})},
+                             {scene, {}, {}});
+  pipeline.begin_run(1, 0);
+  const int n = 20000;
+  int kept = 0;
+  for (int i = 0; i < n; ++i) {
+    row.bits.assign(5, 1);
+    pipeline.apply(row);
+    kept += row.bits[0];
+    REQUIRE(row.bits[1] == 1);
+  }
+  const double standard_error = std::sqrt(0.24 * n);
+  CHECK(std::abs(kept - 0.4 * n) < 4.0 * standard_error);
+  CHECK_FALSE(std::abs(kept - 0.43 * n) < 4.0 * standard_error);  // must fail
+  row.time_s = 5.0;
+  row.bits.assign(5, 1);
+  pipeline.apply(row);
+  CHECK(row.bits[0] == 1);
+}
+
+TEST_CASE("scaled arm and trunk motion is the script with the scaled numbers") {
+  const auto scripted = [](const std::vector<std::string>& more) {
+    std::vector<std::string> overrides{"trials.for_each.seat=[S4, S10]", "replicates=1",
+                                       "people.0.actions.3.work.duration_s=35"};
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    return results_of(compile(shipped_scene("meeting_room.gltf"), shipped_script("studyA.yaml", overrides)));
+  };
+  const std::string work = "people.0.actions.3.work.";
+  CHECK(same_rows(results_of(meeting_room({effect("arm_motion", {{"amplitude_scale", 0.5}, {"period_scale", 1.5}})})),
+                  scripted({work + "arm_amplitude_m=0.05", work + "arm_period_s=4.5"})));
+  CHECK(same_rows(results_of(meeting_room({effect("trunk_tilt", {{"amplitude_scale", 0.5}, {"period_scale", 0.5}})})),
+                  scripted({work + "tilt_choices_deg=[-7.5, 0, 7.5]", work + "tilt_every_s=15"})));
+}
+
+TEST_CASE("a second person is counted beside the first and doesn't keep the run going") {
+  const auto plain = results_of(meeting_room({})), two = results_of(meeting_room({effect("second_person", {})}));
+  for (std::size_t run = 0; run < plain.size(); ++run) {
+    REQUIRE(two[run].samples.size() == plain[run].samples.size());
+    for (std::size_t i = 0; i < plain[run].samples.size(); ++i) {
+      REQUIRE(two[run].samples[i].people == plain[run].samples[i].people + 1);
+      REQUIRE(two[run].samples[i].phase == plain[run].samples[i].phase);
+    }
+  }
+  const Model given = meeting_room(
+      {effect("second_person", {{"x_m", 1.2}, {"z_m", -2.0}, {"path_m", 1.0}, {"every_s", 2.0}, {"heading_deg", 0.0}},
+              {{"place", "given"}})});
+  State state(given, 0);
+  double nearest = 10, farthest = 0;
+  while (step(given, state)) {
+    const double z = state.actors()[1].motion().position().y;
+    nearest = std::min(nearest, std::abs(z + 2.0));
+    farthest = std::max(farthest, std::abs(z + 2.0));
+  }
+  CHECK(nearest < 1e-6);
+  CHECK(farthest == Approx(1.0).margin(1e-6));
+}
