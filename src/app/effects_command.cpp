@@ -1,6 +1,7 @@
 #include <iostream>
 
 #include "app/commands.hpp"
+#include "app/row_output.hpp"
 #include "app/session.hpp"
 #include "pirsim/effects/describe.hpp"
 #include "pirsim/io/csv_writer.hpp"

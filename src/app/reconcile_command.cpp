@@ -3,6 +3,7 @@
 
 #include "app/commands.hpp"
 #include "app/progress.hpp"
+#include "app/row_output.hpp"
 #include "app/session.hpp"
 #include "pirsim/core/version.hpp"
 #include "pirsim/io/nuisance_reader.hpp"

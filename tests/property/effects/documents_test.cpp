@@ -6,6 +6,7 @@
 #include "property/effects/warm_up.cpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
+#include "support/paths.hpp"
 
 using namespace pirsim;
 using namespace pirsim::test;
@@ -13,7 +14,7 @@ using namespace pirsim::test;
 namespace {
 
 std::string text_of(const std::string& file) {
-  std::ifstream in(std::filesystem::path(PIRSIM_TESTS_DIR) / ".." / file);
+  std::ifstream in(tests_dir() / ".." / file);
   REQUIRE(in);
   std::ostringstream text;
   text << in.rdbuf();
