@@ -32,7 +32,6 @@ THIRD_PARTY = {
     "stb": {"io"},
     "zlib": {"io"},
     "zstd": {"io"},
-    "openssl": {"io"},
     "OpenMesh": {"geom"},
     "oneapi": {"core"},
     "tbb": {"core"},

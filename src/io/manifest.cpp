@@ -2,10 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "io/posix_file.hpp"
 #include "io/text_input.hpp"
+#include "pirsim/core/digest.hpp"
 #include "pirsim/core/error.hpp"
 #include "pirsim/io/atomic_file.hpp"
-#include "pirsim/io/sha256.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -93,6 +94,18 @@ std::vector<std::string> differences(const Provenance& one, const Provenance& ot
   if (found.empty() && one.resolved_script != other.resolved_script) found.emplace_back("resolved script");
   return found;
 }
+
+namespace {
+
+std::string sha256_of_file(const std::filesystem::path& file) {
+  PosixFile input(file, PosixFile::Mode::read);
+  Sha256 hash;
+  std::string block(1U << 18U, '\0');
+  while (const std::size_t n = input.read(block.data(), block.size())) hash.add({block.data(), n});
+  return hash.hex();
+}
+
+}  // namespace
 
 std::vector<HashedFile> hashed(const std::vector<std::string>& files) {
   std::vector<HashedFile> result;

@@ -9,10 +9,10 @@
 
 #include "io/output_path.hpp"
 #include "io/posix_file.hpp"
+#include "pirsim/core/digest.hpp"
 #include "pirsim/core/error.hpp"
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/compression.hpp"
-#include "pirsim/io/sha256.hpp"
 
 namespace pirsim::io {
 namespace {

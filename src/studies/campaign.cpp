@@ -5,11 +5,11 @@
 #include <optional>
 #include <utility>
 
+#include "pirsim/core/digest.hpp"
 #include "pirsim/core/error.hpp"
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/compression.hpp"
 #include "pirsim/io/row_file.hpp"
-#include "pirsim/io/sha256.hpp"
 #include "pirsim/studies/shards.hpp"
 
 namespace pirsim::studies {
@@ -30,7 +30,7 @@ struct Entry {
 std::string digest(const io::Provenance& provenance) {
   io::Manifest only;
   only.provenance = provenance;
-  io::Sha256 hash;
+  Sha256 hash;
   hash.add(io::to_json(only, -1));
   return hash.hex();
 }
@@ -140,7 +140,7 @@ class Merger {
 
   void add(const Entry& entry) {
     io::DataReader reader(entry.file);
-    io::Sha256 hash;
+    Sha256 hash;
     std::uint64_t bytes = 0;
     std::string header;
     bool in_header = true;
@@ -192,7 +192,7 @@ class Merger {
   io::DataWriter writer_;
   std::string buffer_ = std::string(1U << 18U, '\0');
   std::string header_;
-  io::Sha256 hash_;
+  Sha256 hash_;
   std::uint64_t bytes_ = 0;
 };
 

@@ -4,8 +4,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "pirsim/core/digest.hpp"
 #include "pirsim/core/error.hpp"
-#include "pirsim/io/sha256.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -68,7 +68,7 @@ TEST_CASE("a file of rows appears with its manifest and nothing else", "[io][row
     work(file, Start::anew);
     CHECK(files_in(folder.path()) == 2);
     const io::Manifest manifest = io::read_manifest(io::manifest_path(file));
-    io::Sha256 hash;
+    Sha256 hash;
     hash.add(whole());
     CHECK(manifest.sha256 == hash.hex());
     CHECK(manifest.bytes == whole().size());

@@ -1,6 +1,5 @@
 #include "pirsim/reconcile/measured.hpp"
 
-#include "pirsim/core/digest.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;
@@ -32,11 +31,6 @@ std::string refusal(const std::string& text) {
 }
 
 }  // namespace
-
-TEST_CASE("SHA-256 of the standard's examples", "[digest]") {
-  CHECK(sha256("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  CHECK(sha256("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-}
 
 TEST_CASE("measured rows in pirsim's own format keep their bits and their main part", "[measured]") {
   const Measured measured = parse_measured(header + rows("S2", 40) + rows("S1", 40, "1,0"), "m.csv", two_by_two());
