@@ -27,10 +27,10 @@ Eigen::Map<const Eigen::VectorX<T>> as_eigen(std::span<const T> values) {
   return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 
-template <typename Derived>
-Matrix<double> to_matrix(const Eigen::MatrixBase<Derived>& from) {
-  Matrix<double> to(static_cast<std::size_t>(from.rows()), static_cast<std::size_t>(from.cols()));
-  as_eigen(to) = from;
+template <typename T = double, typename Derived>
+Matrix<T> to_matrix(const Eigen::MatrixBase<Derived>& from) {
+  Matrix<T> to(static_cast<std::size_t>(from.rows()), static_cast<std::size_t>(from.cols()));
+  as_eigen(to) = from.template cast<T>();
   return to;
 }
 

@@ -93,7 +93,7 @@ TEST_CASE("the envelope test's p is that of the definition of extreme rank lengt
 }
 
 TEST_CASE("the envelope test refuses a true model in 5 of 100 studies - with ties too", "[stats]") {
-  constexpr int studies = 3000;
+  constexpr int studies = 1500;
   const double standard_error = std::sqrt(0.05 * 0.95 / studies);
   CHECK(std::abs(refusals(PointwiseRank::random_ties, 0.0, studies) - 0.05) < 3 * standard_error);
   CHECK(std::abs(refusals(PointwiseRank::continuous, 0.0, studies) - 0.05) < 3 * standard_error);

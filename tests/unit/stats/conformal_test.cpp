@@ -1,0 +1,135 @@
+#include "pirsim/stats/conformal.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <vector>
+
+#include "pirsim/core/error.hpp"
+#include "pirsim/core/random.hpp"
+#include "support/catch.hpp"
+
+using namespace pirsim;
+using namespace pirsim::stats;
+
+namespace {
+
+struct Labelled {
+  Matrix<float> features;
+  std::vector<int> labels;
+};
+
+/// 30 columns. Class k in {0, 1, 2} moves columns 2 k and 2 k + 1 by a random
+/// strength from 0 to 4, so that weak ones look alike; class 3 is in no
+/// catalogue: it moves columns 20 to 22 by 4.
+Labelled draw(std::size_t rows_per_class, std::initializer_list<int> classes, std::uint32_t study) {
+  Stream stream({81, study, 0, Purpose::test});
+  Labelled drawn{Matrix<float>(rows_per_class * classes.size(), 30), {}};
+  std::size_t row = 0;
+  for (const int label : classes) {
+    for (std::size_t i = 0; i < rows_per_class; ++i, ++row) {
+      const double strength = 4.0 * stream.uniform();
+      for (float& value : drawn.features.row(row)) value = static_cast<float>(stream.normal());
+      for (std::size_t c = 0; c < 3; ++c) {
+        if (label == 3) drawn.features(row, 20 + c) += 4.0F;
+        if (label < 3 && c < 2)
+          drawn.features(row, static_cast<std::size_t>(2 * label) + c) += static_cast<float>(strength);
+      }
+      drawn.labels.push_back(label);
+    }
+  }
+  return drawn;
+}
+
+ConformalClassifier fit(std::uint32_t study, unsigned threads = 0) {
+  const Labelled table = draw(400, {0, 1, 2}, study);
+  return ConformalClassifier::fit(
+      table.features, table.labels, 3,
+      {.trees = {.trees = 60, .threads = threads}, .shapes = {.subspace = 4, .threads = threads}, .threads = threads});
+}
+
+}  // namespace
+
+TEST_CASE("a conformal p counts the scores that are as strange", "[stats]") {
+  const std::vector<double> calibration{1, 2, 3, 3};
+  CHECK(conformal_p(calibration, 3.0) == Approx(3.0 / 5));
+  CHECK(conformal_p(calibration, 9.0) == Approx(1.0 / 5));
+  CHECK(conformal_p(calibration, 0.0) == 1.0);
+  CHECK(prediction_set(std::vector<double>{0.05, 0.2, 0.051}, 0.05) == std::vector<std::size_t>{1, 2});
+}
+
+TEST_CASE("a split takes its share of every class and no row twice", "[stats]") {
+  std::vector<int> labels;
+  for (int i = 0; i < 90; ++i) labels.push_back(i % 3 == 0 ? 1 : 0);
+  const Split split = split_by_class(labels, 0.4, 3);
+  CHECK(std::count_if(split.calibration.begin(), split.calibration.end(), [&](auto r) { return labels[r] == 1; }) ==
+        12);
+  CHECK(split.calibration.size() == 36);
+  std::vector<std::size_t> all = split.fitting;
+  all.insert(all.end(), split.calibration.begin(), split.calibration.end());
+  std::sort(all.begin(), all.end());
+  for (std::size_t row = 0; row < 90; ++row) CHECK(all[row] == row);
+  CHECK(split.fitting != split_by_class(labels, 0.4, 4).fitting);
+}
+
+TEST_CASE(
+    "the true class is refused as rarely as its p says and another kind "
+    "of row is refused by all",
+    "[stats]") {
+  // Given one calibration set of 160 rows a class the level itself varies by
+  // sqrt(.1 x .9 / 160) = 0.024, and the share of 900 rows by 0.010; three
+  // tables average: 0.014 + 0.006.
+  double wrongly = 0.0, relative_only = 0.0, aliens_refused = 0.0, aliens_refused_by_margin = 0.0;
+  for (std::uint32_t study = 0; study < 3; ++study) {
+    const ConformalClassifier classifier = fit(10 * study);
+    const Labelled known = draw(300, {0, 1, 2}, 10 * study + 1), alien = draw(300, {3}, 10 * study + 2);
+    const auto of_known = classifier.classify(known.features);
+    for (std::size_t r = 0; r < of_known.size(); ++r) {
+      const auto own = static_cast<std::size_t>(known.labels[r]);
+      wrongly += of_known[r].p[own] <= 0.1 ? 1.0 / 2700 : 0.0;
+      relative_only += of_known[r].p_relative[own] <= 0.1 ? 1.0 / 2700 : 0.0;
+    }
+    for (const Classification& one : classifier.classify(alien.features)) {
+      aliens_refused += prediction_set(one.p, 0.1).empty() ? 1.0 / 900 : 0.0;
+      aliens_refused_by_margin += prediction_set(one.p_relative, 0.1).empty() ? 1.0 / 900 : 0.0;
+    }
+  }
+  CHECK(wrongly < 0.1 + 3 * 0.015);
+  CHECK(wrongly > 0.02);
+  CHECK(std::abs(relative_only - 0.1) < 3 * 0.015);
+  // Columns 20 to 22 are 3 sd off: chi-squared of 27 over 30, four-sigma with 3
+  // columns known.
+  CHECK(aliens_refused > 0.8);
+  CHECK(aliens_refused_by_margin < 0.3);
+}
+
+TEST_CASE(
+    "calibrated probabilities of rows never seen are right as often as "
+    "they say",
+    "[stats]") {
+  const ConformalClassifier classifier = fit(5);
+  const Labelled fresh = draw(1000, {0, 1, 2}, 6);
+  Matrix<double> probabilities(fresh.features.rows(), 3);
+  const auto all = classifier.classify(fresh.features);
+  for (std::size_t r = 0; r < all.size(); ++r)
+    std::copy(all[r].probabilities.begin(), all[r].probabilities.end(), probabilities.row(r).begin());
+  CHECK(reliability(probabilities, fresh.labels).expected_calibration_error < 0.05);
+}
+
+TEST_CASE(
+    "a conformal classifier is the same for any number of threads and "
+    "comes back from its bytes",
+    "[stats]") {
+  const ConformalClassifier classifier = fit(7, 1);
+  CHECK(classifier == fit(7, 3));
+  std::stringstream bytes;
+  BinaryWriter writer(bytes, "classifier", 1);
+  classifier.write(writer);
+  writer.finish();
+  BinaryReader reader(bytes, "classifier", 1);
+  const ConformalClassifier read = ConformalClassifier::read(reader);
+  reader.finish();
+  CHECK(read == classifier);
+  const Labelled row = draw(1, {1}, 8);
+  CHECK(read.classify(row.features.row(0)).p == classifier.classify(row.features.row(0)).p);
+}
