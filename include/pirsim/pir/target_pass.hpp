@@ -1,0 +1,32 @@
+// The data sheets' test of detection: a warm plate passes a facet's zones.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "pirsim/schema/sensor_model_spec.hpp"
+
+namespace pirsim::pir {
+
+/// An upright plate that faces the sensor and moves sideways through the middle of the facet's first zone (and so
+/// through the one beside it). Defaults quoted from Panasonic's data sheet but for the background (`assumed`; 0 to 30).
+struct TargetPass {
+  double distance_m = 12.0;
+  double speed_m_s = 1.0;
+  double temperature_difference_k = 4.0;
+  double background_c = 20.0;
+  double width_m = 0.25;
+  double height_m = 0.7;
+};
+
+/// Power that the facet model.clusters[cluster] with an aperture of `aperture_m2` brings to the element beyond the
+/// background's, watts, one value a tick: from before the plate touches a zone until it has left all (zeros at both
+/// ends). `rays_per_zone` as in zone_quadrature().
+[[nodiscard]] std::vector<double> target_power(const SensorModelSpec& model, std::size_t cluster,
+                                               const TargetPass& pass, double aperture_m2, double tick_s,
+                                               int rays_per_zone = 2048);
+
+/// The facet of a lens step that looks most nearly ahead; the one that rated distances are taken to hold for.
+[[nodiscard]] std::size_t reference_facet(const SensorModelSpec& model, int lens_step);
+
+}  // namespace pirsim::pir
