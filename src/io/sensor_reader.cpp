@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/detector_reader.hpp"
 #include "io/yaml_map.hpp"
 
 namespace pirsim::io {
@@ -152,20 +153,25 @@ ClusterSpec read_cluster(const YamlNode& node, const std::optional<double>& rang
 }
 
 const std::vector<std::string>& sourced_keys() {
-  static const std::vector<std::string> keys{"plane_m",
-                                             "half_spacing_ratio",
-                                             "half_diagonal_ratio",
-                                             "range_m",
-                                             "lens_step",
-                                             "polarity",
-                                             "x_m",
-                                             "y_m",
-                                             "zone_side_m",
-                                             "pitch_m",
-                                             "missing",
-                                             "corners_m",
-                                             "blur_deg",
-                                             "aperture_mm2"};
+  static const std::vector<std::string> keys = [] {
+    std::vector<std::string> all{"plane_m",
+                                 "half_spacing_ratio",
+                                 "half_diagonal_ratio",
+                                 "range_m",
+                                 "lens_step",
+                                 "polarity",
+                                 "x_m",
+                                 "y_m",
+                                 "zone_side_m",
+                                 "pitch_m",
+                                 "missing",
+                                 "corners_m",
+                                 "blur_deg",
+                                 "aperture_mm2"};
+    const std::vector<std::string>& detector = sourced_detector_keys();
+    all.insert(all.end(), detector.begin(), detector.end());
+    return all;
+  }();
   return keys;
 }
 
@@ -245,6 +251,7 @@ SensorModelSpec read_sensor_model(const std::filesystem::path& path) {
   model.response =
       map.choice<Response>("response", model.response, {{"zones", Response::zones}, {"analog", Response::analog}});
   model.optics = read_optics(map.child("optics"), faults);
+  model.detector = read_detector(map);
   if (map.has("facets") == map.has("clusters")) {
     faults.error(map.where(), "sensor: expected either 'facets' or 'clusters'");
   }

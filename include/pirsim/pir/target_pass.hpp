@@ -19,9 +19,26 @@ struct TargetPass {
   double height_m = 0.7;
 };
 
-/// Power that the facet model.clusters[cluster] with an aperture of `aperture_m2` brings to the element beyond the
-/// background's, watts, one value a tick: from before the plate touches a zone until it has left all (zeros at both
-/// ends). `rays_per_zone` as in zone_quadrature().
+/// One facet as a passing plate sees it.
+class PassedFacet {
+ public:
+  /// rays_per_zone as in zone_quadrature(): at least some hundred should meet the plate.
+  PassedFacet(const SensorModelSpec& model, std::size_t cluster, int rays_per_zone = 2048);
+
+  /// Power that the facet with an aperture of `aperture_m2` brings to the element beyond the background's, watts, one
+  /// value a tick: from before the plate touches a zone until it has left all (zeros at both ends).
+  [[nodiscard]] std::vector<double> power(const TargetPass& pass, double aperture_m2, double tick_s) const;
+
+ private:
+  struct Spot {
+    Vec2 tangent{0.0};       ///< from the facet's axis, x the way of the plate, y up
+    double weight_sr = 0.0;  ///< signed by the zone's polarity
+  };
+  std::vector<Spot> spots_;      ///< in the order of x
+  double middle_tangent_ = 0.0;  ///< y of the first zone's middle
+};
+
+/// The same for a single pass.
 [[nodiscard]] std::vector<double> target_power(const SensorModelSpec& model, std::size_t cluster,
                                                const TargetPass& pass, double aperture_m2, double tick_s,
                                                int rays_per_zone = 2048);

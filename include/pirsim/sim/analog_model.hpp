@@ -9,15 +9,12 @@
 
 namespace pirsim::sim {
 
-/// One make of sensor: its electronics and its facets' apertures, calibrated together: the data sheet's target is just
-/// detected at the rated distance of each lens step's reference facet. The first step's aperture is data, the others'
-/// follow.
+/// One make of sensor, calibrated by its rated distances (pir::calibrate).
 struct CalibratedSensor {
   pir::Detector detector;
   pir::AnalogFilter silent_filter;   ///< the detector's element and amplifier, without noise
   std::vector<double> apertures_m2;  ///< (n_clusters)
 };
-[[nodiscard]] CalibratedSensor calibrate(const SensorModelSpec& model, double tick_s);
 
 class AnalogModel {
  public:

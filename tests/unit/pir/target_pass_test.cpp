@@ -8,6 +8,7 @@
 #include "pirsim/pir/planck.hpp"
 #include "pirsim/pir/zone_quadrature.hpp"
 #include "support/catch.hpp"
+#include "support/paths.hpp"
 
 using namespace pirsim;
 using pir::target_power;
@@ -17,9 +18,7 @@ namespace {
 
 constexpr double tick_s = 0.01, aperture_m2 = 20e-6;
 
-SensorModelSpec wall_lens() {
-  return io::read_sensor_model(std::filesystem::path(PIRSIM_DATA_DIR) / "sensors/EKMC1604111.yaml");
-}
+SensorModelSpec wall_lens() { return io::read_sensor_model(test::data_dir() / "sensors/EKMC1604111.yaml"); }
 
 /// Of the plate and one zone alone.
 SensorModelSpec one_zone() {

@@ -6,6 +6,7 @@
 #include "pirsim/core/units.hpp"
 #include "pirsim/io/sensor_reader.hpp"
 #include "support/catch.hpp"
+#include "support/paths.hpp"
 
 using namespace pirsim;
 using pir::solid_angle_sr;
@@ -14,9 +15,7 @@ using pir::zone_quadrature;
 
 namespace {
 
-SensorModelSpec wall_lens() {
-  return io::read_sensor_model(std::filesystem::path(PIRSIM_DATA_DIR) / "sensors/EKMC1604111.yaml");
-}
+SensorModelSpec wall_lens() { return io::read_sensor_model(test::data_dir() / "sensors/EKMC1604111.yaml"); }
 
 /// A rectangular zone straight ahead.
 struct AheadZone {
