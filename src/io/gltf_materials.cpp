@@ -30,10 +30,12 @@ std::optional<double> temperature_of(const json& mark, const GltfDocument& docum
 }  // namespace
 
 std::vector<std::optional<double>> material_temperatures_c(const GltfDocument& document, Diagnostics& remarks) {
-  std::vector<std::optional<double>> temperatures(document.model.materials.size());
   const json& root = document.text.root();
-  const auto materials = root.find("materials");
-  for (std::size_t i = 0; materials != root.end() && i < temperatures.size(); ++i) {
+  const auto materials = root.find("materials");  // of the text: the model is read without them
+  if (materials == root.end() || !materials->is_array()) return {};
+  std::vector<std::optional<double>> temperatures(materials->size());
+  for (std::size_t i = 0; i < temperatures.size(); ++i) {
+    if (!(*materials)[i].is_object()) continue;
     const auto extras = (*materials)[i].find("extras");
     if (extras == (*materials)[i].end() || !extras->is_object() || !extras->contains("pirsim")) continue;
     const json& given = (*extras)["pirsim"];
