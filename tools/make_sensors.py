@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
-"""Writes data/sensors/<lens>.yaml from data/sensors/lens_library.json. Run it after the library changes."""
+"""Writes data/sensors/<lens>.yaml: Panasonic's lenses from data/sensors/lens_library.json, and a dual element behind a
+dome lens from the numbers below. Run it after the library or these numbers change."""
 import json
+import math
 import pathlib
 
 SENSORS = pathlib.Path(__file__).resolve().parent.parent / "data" / "sensors"
@@ -28,7 +30,7 @@ def sources_of(name, lens):
         if any("missing_element" in facet for facet in lens["facets"]):
             sources["missing"] = DRAWING + "three of the four zones are drawn"
     sources["polarity"] = "assumed: neighbours on the quad differ; considered: checkerboard, all the same"
-    return sources
+    return sources | detector_sources(PAPIRS_DETECTOR)
 
 
 RANGES_M = {
@@ -43,6 +45,39 @@ RANGES_M = {
     "AMN31111": (5, "assumed: as lens 01, which is drawn on the same plane, range considered 3 to 8 m"),
     "AMN33111": (5, "assumed: the plane on which the zones are drawn, range considered 5 to 10 m"),
 }
+
+
+QUOTED_ANALOG = "quoted: data sheet of the analogue sibling EKMC26, "
+REFERENCE_DESIGNS = "Texas Instruments' reference designs TIDA-010027 (0.3 to 6.5 Hz) and TIDA-00489 (0.7 to 10.6 Hz)"
+# Keys of a detector, their values and where they come from; docs/physics/analog.md explains them.
+PAPIRS_DETECTOR = {
+    "element": {
+        "thermal_s": (0.15, "assumed: nobody says; range considered 0.05 to 1"),
+        "electrical_s": (1.0, "assumed: nobody says; range considered 0.3 to 3"),
+    },
+    "amplifier": {
+        "low_hz": (0.3, "assumed: as in " + REFERENCE_DESIGNS + "; range considered 0.3 to 0.7"),
+        "high_hz": (6.5, "assumed: as in " + REFERENCE_DESIGNS + "; range considered 6.5 to 10.6"),
+        "order": (2, "assumed: two equal amplifier stages, as in TIDA-00489; considered: 1 to 3"),
+        "noise_v_pp": (0.08, QUOTED_ANALOG + "steady noise 80 mVpp, at most 150 mVpp"),
+        "offset_v": (1.1, QUOTED_ANALOG + "1.0 to 1.2 V"),
+        "lowest_v": (0.2, QUOTED_ANALOG + "saturates at 0.2 V or less"),
+        "highest_v": (1.9, QUOTED_ANALOG + "saturates at 1.9 V or more"),
+    },
+    "comparator": {
+        "positive_v": (0.45, "assumed: half of what the output can swing; range considered 0.2 to 0.6"),
+        "negative_v": (0.45, "assumed: half of what the output can swing; range considered 0.2 to 0.6"),
+    },
+}
+
+
+def detector_sources(detector):
+    return {key: source for block in detector.values() for key, (_, source) in block.items()}
+
+
+def detector_lines(detector):
+    for name, block in detector.items():
+        yield name + ": {" + ", ".join(f"{key}: {value}" for key, (value, _) in block.items()) + "}"
 
 
 def pitch_source(lens):
@@ -76,13 +111,81 @@ def yaml_of(name, lens):
         lines += ["layout: diamond", "half_spacing_ratio: 0.0707", "half_diagonal_ratio: 0.0424"]
     else:
         lines += ["layout: square", f"range_m: {float(RANGES_M[name][0])}"]
-    lines += ["polarity: checkerboard", "sources:"]
+    lines += ["polarity: checkerboard", *detector_lines(PAPIRS_DETECTOR), "sources:"]
     lines += [f'  {key}: "{text}"' for key, text in sources_of(name, lens).items()]
     lines += ["facets:"] + [facet_line(facet, lens) for facet in lens["facets"]]
     return "\n".join(lines) + "\n"
 
 
+# A dual element (two strips side by side, of opposite sign) behind a dome of small lenses, as in cheap modules.
+DOME_FOCAL_MM = 12.0
+DOME_ELEMENTS_MM = [((0.5, 1.5), 1), ((-1.5, -0.5), -1)]  # from, to along x, and the sign
+DOME_ELEMENT_HALF_HEIGHT_MM = 1.0
+DOME_RINGS = [(0.0, 1), (17.0, 6), (34.0, 10), (51.0, 12)]  # degrees off the axis, facets
+DUAL = "assumed: a generic dual element, two strips of 2 x 1 mm with a gap of 1 mm; "
+DOME = "assumed: a generic dome lens, focal length 12 mm (8 to 25), 29 facets in rings at 0, 17, 34 and 51 degrees; "
+MODULE = "assumed: as in cheap modules with a BISS0001 or a like circuit, 3.3 V; "
+DUAL_DETECTOR = {
+    "element": {
+        "thermal_s": (0.2, "assumed: nobody says; range considered 0.05 to 1"),
+        "electrical_s": (2.0, "assumed: nobody says; range considered 0.3 to 3"),
+    },
+    "amplifier": {
+        "low_hz": (0.7, "assumed: as in " + REFERENCE_DESIGNS + "; range considered 0.3 to 0.7"),
+        "high_hz": (10.6, "assumed: as in " + REFERENCE_DESIGNS + "; range considered 6.5 to 10.6"),
+        "order": (2, "assumed: two equal amplifier stages, as in TIDA-00489; considered: 1 to 3"),
+        "noise_v_pp": (0.2, MODULE + "range considered 0.1 to 0.4"),
+        "offset_v": (1.65, MODULE + "half of the supply"),
+        "lowest_v": (0.1, MODULE + "the supply's rail"),
+        "highest_v": (3.2, MODULE + "the supply's rail"),
+    },
+    "comparator": {
+        "positive_v": (0.66, "inferred: 0.7 of the supply (BISS0001 data sheet), assumed to be 3.3 V, less the offset"),
+        "negative_v": (0.66, "inferred: the offset less 0.3 of the supply (BISS0001 data sheet), assumed to be 3.3 V"),
+        "pulse_count": (2, "assumed: to suppress lone disturbances; considered: 1 to 4"),
+        "pulse_window_s": (4.0, "assumed: range considered 2 to 8"),
+        "pulse_signs": ("alternating", "assumed: as digital detectors offer; considered: any, alternating"),
+        "hold_s": (5.0, "assumed: adjustable on such modules, range considered 0.5 to 300"),
+        "blind_s": (2.5, "assumed: the BISS0001's inhibit time, set by two parts; range considered 0.5 to 5"),
+    },
+}
+
+
+def dome_zone(facet, left, right):
+    """Corners, on the plane 1 m ahead, of what a strip of the element sees through the middle of a facet."""
+    corners = []
+    for x, y in ((left, -1), (right, -1), (right, 1), (left, 1)):
+        # A point of the element looks through the facet's middle: x to the right, y up, forward.
+        ray = (facet[0] - x, facet[1] - y * DOME_ELEMENT_HALF_HEIGHT_MM, facet[2])
+        corners.append(f"[{ray[0] / ray[2] + 0.0:.4f}, {ray[1] / ray[2] + 0.0:.4f}]")
+    return "[" + ", ".join(corners) + "]"
+
+
+def dome_cluster(off_axis_deg, turn_deg):
+    off_axis, turn = math.radians(off_axis_deg), math.radians(turn_deg)
+    sideways = DOME_FOCAL_MM * math.sin(off_axis)
+    facet = (sideways * math.cos(turn), sideways * math.sin(turn), DOME_FOCAL_MM * math.cos(off_axis))
+    return ["  - zones:"] + [f"      - {{corners_m: {dome_zone(facet, *strip)}, polarity: {sign}}}"
+                             for strip, sign in DOME_ELEMENTS_MM]
+
+
+def dome_yaml():
+    sources = {"plane_m": "assumed: any plane will do", "range_m": "assumed: range considered 3 to 7 m",
+               "corners_m": DOME + "each strip seen from the middle of the facet",
+               "polarity": DUAL + "wired in opposition"}
+    sources |= detector_sources(DUAL_DETECTOR)
+    lines = ["# Written by tools/make_sensors.py; the format is docs/formats/sensor.md.", "id: DUAL_DOME",
+             "description: a generic dual element behind a dome lens, 58 zones; all assumed", "plane_m: 1.0",
+             "range_m: 5.0", *detector_lines(DUAL_DETECTOR), "sources:"]
+    lines += [f'  {key}: "{text}"' for key, text in sources.items()] + ["clusters:"]
+    for off_axis_deg, facets in DOME_RINGS:
+        for i in range(facets):
+            lines += dome_cluster(off_axis_deg, (i + 0.5) * 360.0 / facets)
+    return "\n".join(lines) + "\n"
+
+
 def main():
+    (SENSORS / "DUAL_DOME.yaml").write_text(dome_yaml())
     library = json.loads((SENSORS / "lens_library.json").read_text())
     for name, lens in library.items():
         if name.startswith("_"):

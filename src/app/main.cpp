@@ -70,6 +70,10 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->option_text("FILE");
   command.add_option("--zones", options.zones, "every zone's activity at every tick, .csv, .csv.gz or .csv.zst")
       ->option_text("FILE");
+  command
+      .add_option("--trace", options.trace,
+                  "analog sensors' power, signal and what is behind it at every tick, .csv, .csv.gz or .csv.zst")
+      ->option_text("FILE");
   command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
   command
       .add_option("--shard", options.shard,

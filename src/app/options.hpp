@@ -26,6 +26,7 @@ struct RunOptions {
   std::filesystem::path output;   ///< .csv, .csv.gz or .csv.zst; of a shard its folder; empty: standard output
   std::filesystem::path summary;  ///< .csv or .md
   std::filesystem::path zones;    ///< .csv, .csv.gz or .csv.zst
+  std::filesystem::path trace;    ///< the same
   std::filesystem::path report;   ///< .html
   std::string shard;              ///< "3/100", "auto"; empty: the whole study
   std::string format = ".csv";    ///< ending of a shard's file

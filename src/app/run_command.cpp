@@ -59,19 +59,18 @@ studies::Summary make_summary(const Model& model, const RunOptions& options) {
   return {trials, sensor_ids(model), measured};
 }
 
-/// Zones of all runs, compressed by the ending of the file's name.
-class ZoneOutput {
+/// Lines of all runs, compressed by the ending of the file's name.
+class LineOutput {
  public:
-  ZoneOutput(const std::filesystem::path& file, const Model& model)
-      : file_(file),
-        writer_(file_.stream(), io::compression_of(file)),
-        csv_(lines_, sensor_ids(model), first_zones(model)) {}
+  explicit LineOutput(const std::filesystem::path& file)
+      : file_(file), writer_(file_.stream(), io::compression_of(file)) {}
 
-  void add(const RunResult& result) {
-    for (std::size_t i = 0; i < result.zones.size(); ++i) {
-      csv_.write(result.replicate, result.trial, static_cast<std::int64_t>(i) + 1, result.zones[i]);
-    }
-    pass_on();
+  /// What is written here is in the file after the next pass_on().
+  [[nodiscard]] std::ostream& lines() { return lines_; }
+  void pass_on() {
+    writer_.write(lines_.view());
+    lines_.str({});
+    if (!file_.stream()) file_.commit();  // says why it can't be written
   }
   void commit() {
     pass_on();
@@ -80,16 +79,47 @@ class ZoneOutput {
   }
 
  private:
-  void pass_on() {
-    writer_.write(lines_.view());
-    lines_.str({});
-    if (!file_.stream()) file_.commit();  // says why it can't be written
-  }
-
   io::AtomicFile file_;
   io::DataWriter writer_;
   std::ostringstream lines_;
+};
+
+/// Zones of all runs.
+class ZoneOutput {
+ public:
+  ZoneOutput(const std::filesystem::path& file, const Model& model)
+      : output_(file), csv_(output_.lines(), sensor_ids(model), first_zones(model)) {}
+
+  void add(const RunResult& result) {
+    for (std::size_t i = 0; i < result.zones.size(); ++i) {
+      csv_.write(result.replicate, result.trial, static_cast<std::int64_t>(i) + 1, result.zones[i]);
+    }
+    output_.pass_on();
+  }
+  void commit() { output_.commit(); }
+
+ private:
+  LineOutput output_;
   io::ZoneCsvWriter csv_;
+};
+
+/// Signals of all runs and what is behind them.
+class TraceOutput {
+ public:
+  TraceOutput(const std::filesystem::path& file, const Model& model)
+      : output_(file), csv_(output_.lines(), sensor_ids(model), model.script().sensing.tick_rate_hz) {
+    if (model.analog() == nullptr) throw Error(ErrorCode::usage, "--trace: no sensor has an analog response");
+  }
+
+  void add(const RunResult& result) {
+    for (const TraceRow& row : result.trace) csv_.write(result.replicate, result.trial, row);
+    output_.pass_on();
+  }
+  void commit() { output_.commit(); }
+
+ private:
+  LineOutput output_;
+  io::TraceCsvWriter csv_;
 };
 
 /// The outputs that need all runs at once; nothing of them is left if the study ends early.
@@ -98,11 +128,13 @@ class WholeStudyOutputs {
   WholeStudyOutputs(const Model& model, const Inputs& inputs, const RunOptions& options)
       : inputs_(inputs), options_(options), summary_(make_summary(model, options)), report_(model), model_(model) {
     if (!options.zones.empty()) zones_.emplace(options.zones, model);
+    if (!options.trace.empty()) trace_.emplace(options.trace, model);
     if (!options.summary.empty()) summary_file_.emplace(options.summary);
     if (!options.report.empty()) report_file_.emplace(options.report);
   }
   void add(const RunResult& result) {
     if (zones_) zones_->add(result);
+    if (trace_) trace_->add(result);
     studies::RunCounts counts(model_.scene().sensors.size(), model_.script().summary);
     for (const Sample& sample : result.samples) counts.add(sample);
     summary_.add_run(result.trial, counts.counts());
@@ -110,6 +142,7 @@ class WholeStudyOutputs {
   }
   void commit() {
     if (zones_) zones_->commit();
+    if (trace_) trace_->commit();
     if (summary_file_) write_summary(summary_, *summary_file_, options_, model_.script().name, inputs_.verbosity);
     if (report_file_) write_page(*report_file_, report_.finish(summary_), inputs_);
   }
@@ -121,11 +154,12 @@ class WholeStudyOutputs {
   studies::StudyReport report_;
   const Model& model_;
   std::optional<ZoneOutput> zones_;
+  std::optional<TraceOutput> trace_;
   std::optional<io::AtomicFile> summary_file_, report_file_;
 };
 
 bool has_whole_study_outputs(const RunOptions& options) {
-  return !options.summary.empty() || !options.zones.empty() || !options.report.empty();
+  return !options.summary.empty() || !options.zones.empty() || !options.trace.empty() || !options.report.empty();
 }
 
 void check_options(const Inputs& inputs, const RunOptions& options) {
@@ -134,6 +168,7 @@ void check_options(const Inputs& inputs, const RunOptions& options) {
   std::vector<NamedOutput> outputs{{"-o", rows, table_endings()},
                                    {"--summary", options.summary, {".csv", ".md"}},
                                    {"--zones", options.zones, table_endings()},
+                                   {"--trace", options.trace, table_endings()},
                                    {"--report", options.report, {".html"}}};
   if (!rows.empty()) outputs.push_back({"the manifest of -o", io::manifest_path(rows), {".json"}});
   check_outputs(outputs, inputs);
@@ -150,7 +185,8 @@ void check_options(const Inputs& inputs, const RunOptions& options) {
                                       "' is no regular file, its rows can't be gone on with");
   }
   if (has_whole_study_outputs(options)) {
-    throw Error(ErrorCode::usage, std::string(partial) + " goes with none of --summary, --zones and --report: they " +
+    throw Error(ErrorCode::usage, std::string(partial) +
+                                      " goes with none of --summary, --zones, --trace and --report: they " +
                                       "need all runs at once");
   }
 }
@@ -194,6 +230,7 @@ void run(const Inputs& inputs, const RunOptions& options) {
   StudyOptions study;
   study.threads = options.threads;
   study.record = options.zones.empty() ? Record::samples : Record::samples_and_zones;
+  study.trace = options.trace.empty() ? Trace::none : Trace::signals;
   study.runs = rows->missing_runs();
   study.goes_on = [&] { return !(stop && stop->was_made()) && !out_of_time(); };
   try {

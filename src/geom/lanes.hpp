@@ -18,6 +18,7 @@ using Pack = __m512;
 using PackMask = __mmask16;
 inline Pack broadcast(float x) noexcept { return _mm512_set1_ps(x); }
 inline Pack load(const float* from) noexcept { return _mm512_loadu_ps(from); }
+inline void store(Pack a, float* to) noexcept { _mm512_storeu_ps(to, a); }
 inline PackMask less(Pack a, Pack b) noexcept { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
 inline PackMask less_equal(Pack a, Pack b) noexcept { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
 inline PackMask equal(Pack a, Pack b) noexcept { return _mm512_cmp_ps_mask(a, b, _CMP_EQ_OQ); }
@@ -34,6 +35,7 @@ using Pack = __m256;
 using PackMask = __m256;
 inline Pack broadcast(float x) noexcept { return _mm256_set1_ps(x); }
 inline Pack load(const float* from) noexcept { return _mm256_loadu_ps(from); }
+inline void store(Pack a, float* to) noexcept { _mm256_storeu_ps(to, a); }
 inline PackMask less(Pack a, Pack b) noexcept { return _mm256_cmp_ps(a, b, _CMP_LT_OQ); }
 inline PackMask less_equal(Pack a, Pack b) noexcept { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
 inline PackMask equal(Pack a, Pack b) noexcept { return _mm256_cmp_ps(a, b, _CMP_EQ_OQ); }
@@ -50,6 +52,7 @@ using Pack = __m128;
 using PackMask = __m128;
 inline Pack broadcast(float x) noexcept { return _mm_set1_ps(x); }
 inline Pack load(const float* from) noexcept { return _mm_loadu_ps(from); }
+inline void store(Pack a, float* to) noexcept { _mm_storeu_ps(to, a); }
 inline PackMask less(Pack a, Pack b) noexcept { return _mm_cmplt_ps(a, b); }
 inline PackMask less_equal(Pack a, Pack b) noexcept { return _mm_cmple_ps(a, b); }
 inline PackMask equal(Pack a, Pack b) noexcept { return _mm_cmpeq_ps(a, b); }
@@ -66,6 +69,7 @@ using Pack = float;
 using PackMask = bool;
 inline Pack broadcast(float x) noexcept { return x; }
 inline Pack load(const float* from) noexcept { return *from; }
+inline void store(Pack a, float* to) noexcept { *to = a; }
 inline PackMask less(Pack a, Pack b) noexcept { return a < b; }
 inline PackMask less_equal(Pack a, Pack b) noexcept { return a <= b; }
 inline PackMask equal(Pack a, Pack b) noexcept { return a == b; }

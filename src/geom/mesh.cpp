@@ -128,6 +128,7 @@ double twice_signed_area(const std::vector<Vec2>& loop) {
 CleanMesh clean(const TriMesh& mesh, double tolerance_m) {
   CleanMesh result;
   result.mesh.name = mesh.name;
+  result.mesh.temperature_c = mesh.temperature_c;
   PointGrid grid(tolerance_m);
   std::vector<std::uint32_t> welded;
   welded.reserve(mesh.positions.size());

@@ -26,6 +26,7 @@ XShapesSpec read_x_shapes(const YamlNode& node, Diagnostics& faults) {
   target.heights_m = map.numbers("heights_m", target.heights_m, {.min = 0.0, .max = 10.0});
   target.bar_length_m = map.number("bar_length_m", target.bar_length_m, {.above = 0.0, .max = 5.0});
   target.bar_width_m = map.number("bar_width_m", target.bar_width_m, {.above = 0.0, .max = 1.0});
+  target.temperature_c = map.number("temperature_c", target.temperature_c, {.min = -50.0, .max = 200.0});
   if (target.bar_width_m > target.bar_length_m) {
     faults.error(map.where("bar_width_m"), "bar_width_m: a bar can't be wider than it is long");
   }

@@ -50,4 +50,17 @@ void ZoneCsvWriter::write(int replicate, std::string_view trial, std::int64_t ti
   }
 }
 
+TraceCsvWriter::TraceCsvWriter(std::ostream& out, std::vector<std::string> sensors, int tick_rate_hz)
+    : out_(out), sensors_(std::move(sensors)), tick_rate_hz_(tick_rate_hz) {
+  out_ << "replicate,trial,time_s,sensor,power_w,signal_v,output,zone,person,part,share_v\n";
+}
+
+void TraceCsvWriter::write(int replicate, std::string_view trial, const TraceRow& row) {
+  std::string line = std::to_string(replicate) + ',' + csv_field(trial) + ',';
+  line += csv_number(static_cast<double>(row.tick) / tick_rate_hz_) + ',' + csv_field(sensors_[row.sensor]) + ',';
+  line += csv_number(row.power_w) + ',' + csv_number(row.signal_v) + ',' + std::to_string(row.output) + ',';
+  if (!row.part.empty()) line += std::to_string(row.zone + 1);
+  out_ << line << ',' << csv_field(row.person) << ',' << row.part << ',' << csv_number(row.share_v) << '\n';
+}
+
 }  // namespace pirsim::io

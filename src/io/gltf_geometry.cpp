@@ -19,18 +19,23 @@ std::array<std::size_t, 3> corners(int mode, std::size_t t) {
 
 class MeshReader {
  public:
-  MeshReader(const GltfDocument& document, int mesh, GeometryBudget& budget, Diagnostics& remarks)
-      : document_(document), mesh_(mesh), budget_(budget), remarks_(remarks), accessors_(document, remarks) {
-    result_.name = mesh_label(document.model, mesh);
-  }
+  MeshReader(const GltfDocument& document, int mesh, std::span<const std::optional<double>> temperatures_c,
+             GeometryBudget& budget, Diagnostics& remarks)
+      : document_(document),
+        mesh_(mesh),
+        temperatures_c_(temperatures_c),
+        budget_(budget),
+        remarks_(remarks),
+        accessors_(document, remarks),
+        name_(mesh_label(document.model, mesh)) {}
 
-  TriMesh read() {
+  std::vector<TriMesh> read() {
     const tinygltf::Mesh& given = document_.model.meshes[static_cast<std::size_t>(mesh_)];
     for (std::size_t i = 0; i < given.primitives.size(); ++i) {
       const std::string pointer = "/meshes/" + std::to_string(mesh_) + "/primitives/" + std::to_string(i);
       add_primitive(given.primitives[i], pointer);
     }
-    return std::move(result_);
+    return std::move(parts_);
   }
 
  private:
@@ -75,11 +80,12 @@ class MeshReader {
     if (n_corners < 3 || (is_list && n_corners % 3 != 0)) {
       return error(pointer, std::to_string(n_corners) + " corners don't make whole triangles");
     }
-    const auto base = static_cast<std::uint32_t>(result_.positions.size());
-    result_.positions.insert(result_.positions.end(), vertices.begin(), vertices.end());
+    TriMesh& part = part_of(primitive);
+    const auto base = static_cast<std::uint32_t>(part.positions.size());
+    part.positions.insert(part.positions.end(), vertices.begin(), vertices.end());
     const std::size_t n_triangles = is_list ? n_corners / 3 : n_corners - 2;
     for (std::size_t t = 0; t < n_triangles; ++t) {
-      auto& triangle = result_.triangles.emplace_back();
+      auto& triangle = part.triangles.emplace_back();
       const auto corner = corners(primitive.mode, t);
       for (std::size_t k = 0; k < 3; ++k) {
         triangle[k] = base + (primitive.indices >= 0 ? indices[corner[k]] : static_cast<std::uint32_t>(corner[k]));
@@ -87,19 +93,33 @@ class MeshReader {
     }
   }
 
+  TriMesh& part_of(const tinygltf::Primitive& primitive) {
+    const auto material = static_cast<std::size_t>(primitive.material);  // -1, for none, becomes the largest
+    const auto temperature_c = material < temperatures_c_.size() ? temperatures_c_[material] : std::nullopt;
+    const auto known = std::find_if(parts_.begin(), parts_.end(),
+                                    [&](const TriMesh& part) { return part.temperature_c == temperature_c; });
+    if (known != parts_.end()) return *known;
+    TriMesh& part = parts_.emplace_back();
+    part.name = name_;
+    part.temperature_c = temperature_c;
+    return part;
+  }
+
   void error(const std::string& pointer, const std::string& message) {
-    remarks_.error(document_.text.where(pointer), result_.name + ": " + message);
+    remarks_.error(document_.text.where(pointer), name_ + ": " + message);
   }
   void warn(const std::string& pointer, const std::string& message) {
-    remarks_.warning(document_.text.where(pointer), result_.name + ": " + message);
+    remarks_.warning(document_.text.where(pointer), name_ + ": " + message);
   }
 
   const GltfDocument& document_;
   int mesh_;
+  std::span<const std::optional<double>> temperatures_c_;
   GeometryBudget& budget_;
   Diagnostics& remarks_;
   AccessorReader accessors_;
-  TriMesh result_;
+  std::string name_;
+  std::vector<TriMesh> parts_;
 };
 
 }  // namespace
@@ -111,11 +131,30 @@ bool GeometryBudget::take(std::size_t elements) noexcept {
 }
 
 TriMesh read_mesh(const GltfDocument& document, int mesh, GeometryBudget& budget, Diagnostics& remarks) {
-  return MeshReader(document, mesh, budget, remarks).read();
+  return joined(MeshReader(document, mesh, {}, budget, remarks).read());
+}
+
+std::vector<TriMesh> read_mesh_parts(const GltfDocument& document, int mesh,
+                                     std::span<const std::optional<double>> temperatures_c, GeometryBudget& budget,
+                                     Diagnostics& remarks) {
+  return MeshReader(document, mesh, temperatures_c, budget, remarks).read();
+}
+
+TriMesh joined(const std::vector<TriMesh>& parts) {
+  if (parts.empty()) return {};
+  TriMesh whole = parts.front();
+  if (parts.size() > 1) whole.temperature_c.reset();
+  for (auto part = parts.begin() + 1; part != parts.end(); ++part) {
+    const auto base = static_cast<std::uint32_t>(whole.positions.size());
+    whole.positions.insert(whole.positions.end(), part->positions.begin(), part->positions.end());
+    for (const auto& [a, b, c] : part->triangles) whole.triangles.push_back({base + a, base + b, base + c});
+  }
+  return whole;
 }
 
 TriMesh transformed(const TriMesh& mesh, const glm::dmat4& transform, std::string name) {
-  TriMesh result{std::move(name), mesh.positions, mesh.triangles};
+  TriMesh result = mesh;
+  result.name = std::move(name);
   for (Vec3& p : result.positions) p = Vec3(transform * glm::dvec4(p, 1.0));
   if (glm::determinant(glm::dmat3(transform)) < 0.0) {
     for (auto& triangle : result.triangles) std::swap(triangle[1], triangle[2]);  // mirroring turns the triangles over

@@ -3,7 +3,10 @@
 
 #include <cstddef>
 #include <glm/mat4x4.hpp>
+#include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "io/gltf_document.hpp"
 #include "pirsim/geom/mesh.hpp"
@@ -25,6 +28,13 @@ class GeometryBudget {
 /// All triangles of a mesh in its own frame. Faults name the mesh and stand at the accessor or primitive; what isn't
 /// triangles is left out with a warning.
 [[nodiscard]] TriMesh read_mesh(const GltfDocument& document, int mesh, GeometryBudget& budget, Diagnostics& remarks);
+
+/// The same in parts that are equally warm, in the order in which they come; temperatures_c: (n_materials).
+[[nodiscard]] std::vector<TriMesh> read_mesh_parts(const GltfDocument& document, int mesh,
+                                                   std::span<const std::optional<double>> temperatures_c,
+                                                   GeometryBudget& budget, Diagnostics& remarks);
+/// All triangles of the parts; without a temperature if there are several.
+[[nodiscard]] TriMesh joined(const std::vector<TriMesh>& parts);
 
 /// The mesh moved, scaled or mirrored, under a new name; its triangles stay counter-clockwise seen from outside.
 [[nodiscard]] TriMesh transformed(const TriMesh& mesh, const glm::dmat4& transform, std::string name);

@@ -4,6 +4,8 @@
 #include <cctype>
 #include <utility>
 
+#include "io/gltf_materials.hpp"
+
 namespace pirsim::io::detail {
 namespace {
 
@@ -24,14 +26,15 @@ class MarkupReader {
     if (type == "seat") result = seat();
     if (type == "entrance") result = entrance();
     if (type == "floor") result = floor();
+    if (type == "surface") result = surface();
     if (type == "ignore") result = ignore();
     if (!result) error("/type", "unknown type '" + type + "'" + did_you_mean(type, types()) + "; " + types_told());
     return faulty_ ? std::nullopt : result;
   }
 
  private:
-  static std::vector<std::string> types() { return {"sensor", "seat", "entrance", "floor", "ignore"}; }
-  static std::string types_told() { return "known are sensor, seat, entrance, floor and ignore"; }
+  static std::vector<std::string> types() { return {"sensor", "seat", "entrance", "floor", "surface", "ignore"}; }
+  static std::string types_told() { return "known are sensor, seat, entrance, floor, surface and ignore"; }
 
   mark::Sensor sensor() {
     only({"type", "id", "model"});
@@ -60,6 +63,13 @@ class MarkupReader {
     const bool has_mesh = document_.model.nodes[static_cast<std::size_t>(node_)].mesh >= 0;
     if (!result.polygon && !has_mesh) error("", "a floor needs a mesh at its node, or 'polygon_xz_m'");
     return result;
+  }
+  mark::Surface surface() {
+    only({"type", "temperature_c"});
+    if (!value_.contains("temperature_c")) error("", "surface without 'temperature_c'");
+    if (document_.model.nodes[static_cast<std::size_t>(node_)].mesh < 0)
+      error("", "a surface needs a mesh at its node");
+    return {number("temperature_c", 0.0, coldest_surface_c, hottest_surface_c, "degrees Celsius")};
   }
   mark::Ignore ignore() {
     only({"type"});
@@ -90,12 +100,12 @@ class MarkupReader {
     return text;
   }
 
-  double number(const char* key, double otherwise, double least, double most) {
+  double number(const char* key, double otherwise, double least, double most, const std::string& unit = "metres") {
     if (!value_.contains(key)) return otherwise;
     if (value_[key].is_number() && value_[key] >= least && value_[key] <= most) return value_[key].get<double>();
     const auto told = [](double v) { return json(v).dump(); };
     error(std::string("/") + key,
-          std::string("'") + key + "' must be a number of metres from " + told(least) + " to " + told(most));
+          std::string("'") + key + "' must be a number of " + unit + " from " + told(least) + " to " + told(most));
     return otherwise;
   }
 

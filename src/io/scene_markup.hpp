@@ -28,10 +28,14 @@ struct Floor {
   std::optional<std::vector<Vec2>> polygon;  ///< in the node's local XZ; otherwise the outline of the node's mesh
   Occludes occludes = Occludes::yes;
 };
+/// Says something of the node's mesh.
+struct Surface {
+  double temperature_c = 0.0;
+};
 struct Ignore {};
 }  // namespace mark
 
-using Markup = std::variant<mark::Sensor, mark::Seat, mark::Entrance, mark::Floor, mark::Ignore>;
+using Markup = std::variant<mark::Sensor, mark::Seat, mark::Entrance, mark::Floor, mark::Surface, mark::Ignore>;
 
 /// JSON pointer of a node's markup.
 [[nodiscard]] std::string markup_pointer(int node);

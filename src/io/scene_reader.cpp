@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "io/gltf_geometry.hpp"
+#include "io/gltf_materials.hpp"
 #include "io/gltf_nodes.hpp"
 #include "io/scene_floor.hpp"
 #include "io/scene_markup.hpp"
@@ -29,6 +30,7 @@ class SceneBuilder {
 
   SceneSpec build() {
     warn_of_what_is_left_out();
+    temperatures_c_ = material_temperatures_c(document_, remarks_);
     for (const PlacedNode& placed : place_nodes(document_, remarks_)) {
       add_node(placed);
       if (too_many_faults()) break;
@@ -70,8 +72,7 @@ class SceneBuilder {
     const auto markup = read_markup(document_, placed.node, remarks_);
     if (markup && std::holds_alternative<mark::Ignore>(*markup)) return;
     if (const int mesh = document_.model.nodes[static_cast<std::size_t>(placed.node)].mesh; mesh >= 0) {
-      add_mesh(placed, mesh,
-               markup && std::holds_alternative<mark::Floor>(*markup) ? &std::get<mark::Floor>(*markup) : nullptr);
+      add_mesh(placed, mesh, markup ? &*markup : nullptr);
     }
     if (!markup) return;
     if (const auto* sensor = std::get_if<mark::Sensor>(&*markup)) add_sensor(placed, *sensor);
@@ -80,20 +81,17 @@ class SceneBuilder {
     if (const auto* floor = std::get_if<mark::Floor>(&*markup); floor && floor->polygon) add_polygon(placed, *floor);
   }
 
-  void add_mesh(const PlacedNode& placed, int mesh, const mark::Floor* floor) {
+  void add_mesh(const PlacedNode& placed, int mesh, const Markup* markup) {
+    const auto* floor = std::get_if<mark::Floor>(markup);
+    const auto* surface = std::get_if<mark::Surface>(markup);
     const auto [known, is_first] = meshes_.try_emplace(mesh);
-    if (is_first) known->second = read_mesh(document_, mesh, budget_, remarks_);
-    const TriMesh& local = known->second;
-    if (local.triangles.empty()) return;
-    if (!budget_.take(local.positions.size() + local.triangles.size())) {
+    if (is_first) known->second = read_mesh_parts(document_, mesh, temperatures_c_, budget_, remarks_);
+    const TriMesh whole = joined(known->second);
+    if (whole.triangles.empty()) return;
+    if (!budget_.take(whole.positions.size() + whole.triangles.size())) {
       return node_error(placed.node, "/mesh", "the copies of its mesh make the scene too large");
     }
-    const auto& node = document_.model.nodes[static_cast<std::size_t>(placed.node)];
-    const auto& given = document_.model.meshes[static_cast<std::size_t>(mesh)];
-    const std::string name = !node.name.empty()    ? node.name
-                             : !given.name.empty() ? given.name
-                                                   : "mesh " + std::to_string(mesh);
-    const TriMesh world = transformed(local, placed.world_from_node, name);
+    const TriMesh world = transformed(whole, placed.world_from_node, name_of(placed.node, mesh));
     for (const Vec3& p : world.positions) {
       if (std::abs(p.x) <= world_limit_m && std::abs(p.y) <= world_limit_m && std::abs(p.z) <= world_limit_m) continue;
       return node_error(placed.node, "/mesh", "its mesh reaches more than 100 km from the origin");
@@ -102,7 +100,22 @@ class SceneBuilder {
     if (is_first) warn_of_audit(cleaned.audit, placed.node, mesh);
     if (floor && !floor->polygon)
       floor_.add_mesh(cleaned.mesh, markup_place(placed.node), node_label(document_.model, placed.node));
-    if (!floor || floor->occludes == mark::Occludes::yes) spec_.meshes.push_back(std::move(cleaned.mesh));
+    if (floor && floor->occludes == mark::Occludes::no) return;
+    if (surface) cleaned.mesh.temperature_c = surface->temperature_c;
+    if (surface || known->second.size() == 1) {
+      spec_.meshes.push_back(std::move(cleaned.mesh));
+    } else {
+      for (const TriMesh& part : known->second) {
+        spec_.meshes.push_back(clean(transformed(part, placed.world_from_node, world.name)).mesh);
+      }
+    }
+  }
+
+  std::string name_of(int node_index, int mesh) const {
+    const auto& node = document_.model.nodes[static_cast<std::size_t>(node_index)];
+    if (!node.name.empty()) return node.name;
+    const auto& given = document_.model.meshes[static_cast<std::size_t>(mesh)];
+    return !given.name.empty() ? given.name : "mesh " + std::to_string(mesh);
   }
 
   void warn_of_audit(const MeshAudit& audit, int node, int mesh) {
@@ -199,7 +212,8 @@ class SceneBuilder {
   GeometryBudget budget_;
   FloorBuilder floor_;
   SceneSpec spec_;
-  std::map<int, TriMesh> meshes_;                           ///< in their own frames, by index
+  std::vector<std::optional<double>> temperatures_c_;       ///< (n_materials)
+  std::map<int, std::vector<TriMesh>> meshes_;              ///< in their own frames, by index, in equally warm parts
   std::map<std::string, Where> model_places_;               ///< where each sensor model is first named
   std::map<std::pair<std::string, std::string>, int> ids_;  ///< (type, id) to node
 };

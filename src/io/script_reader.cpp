@@ -1,5 +1,6 @@
 #include "pirsim/io/script_reader.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <set>
@@ -9,6 +10,7 @@
 #include "io/effect_reader.hpp"
 #include "io/sensing_reader.hpp"
 #include "io/yaml_map.hpp"
+#include "pirsim/schema/body_part_names.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -28,6 +30,30 @@ SummarySpec read_summary(const std::optional<YamlNode>& node, Diagnostics& fault
   return summary;
 }
 
+WarmthSpec read_warmth(const std::optional<YamlNode>& node, Diagnostics& faults) {
+  WarmthSpec warmth;
+  if (!node) return warmth;
+  constexpr NumberRange surface{.min = -50.0, .max = 60.0};
+  const std::vector<std::string> parts(body_part_names.begin(), body_part_names.end());
+  YamlMap map(*node, faults, "warmth");
+  warmth.skin_c = map.number("skin_c", warmth.skin_c, surface);
+  warmth.clothing_clo = map.number("clothing_clo", warmth.clothing_clo, {.min = 0.0, .max = 10.0});
+  warmth.bare = map.texts("bare", warmth.bare);
+  for (const std::string& part : warmth.bare) {
+    if (std::ranges::find(parts, part) != parts.end()) continue;
+    faults.error(map.where("bare"), "bare: no part of the body is called '" + part + "'" + did_you_mean(part, parts));
+  }
+  if (const auto child = map.child("parts_c")) {
+    YamlMap known(*child, faults, "parts_c");
+    for (const std::string& part : parts) {
+      if (const auto temperature = known.optional_number(part, surface)) warmth.parts_c[part] = *temperature;
+    }
+    known.finish();
+  }
+  map.finish();
+  return warmth;
+}
+
 PersonSpec read_person(const YamlNode& node, BodyMeshReader& body_meshes, Diagnostics& faults) {
   YamlMap map(node, faults, "person");
   PersonSpec person;
@@ -43,6 +69,7 @@ PersonSpec read_person(const YamlNode& node, BodyMeshReader& body_meshes, Diagno
   }
   person.body_mesh_file = map.text("body_mesh");
   person.body_meshes = body_meshes.read(person.body_mesh_file, map.where("body_mesh"), faults);
+  person.warmth = read_warmth(map.child("warmth"), faults);
   for (const YamlNode& action : map.list("actions")) person.actions.push_back(read_action(action, faults));
   map.finish();
   return person;

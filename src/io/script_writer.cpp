@@ -63,6 +63,10 @@ YAML::Node write(const PersonSpec& person) {
   node["seat_scatter"]["position_sd_m"] = number(person.seat_scatter.position_sd_m);
   node["seat_scatter"]["heading_sd_deg"] = number(person.seat_scatter.heading_sd_deg);
   if (!person.body_mesh_file.empty()) node["body_mesh"] = person.body_mesh_file;
+  node["warmth"]["skin_c"] = number(person.warmth.skin_c);
+  node["warmth"]["clothing_clo"] = number(person.warmth.clothing_clo);
+  node["warmth"]["bare"] = person.warmth.bare;
+  for (const auto& [part, temperature] : person.warmth.parts_c) node["warmth"]["parts_c"][part] = number(temperature);
   node["actions"] = YAML::Node(YAML::NodeType::Sequence);
   for (const ScriptedAction& action : person.actions) node["actions"].push_back(write(action));
   return node;
@@ -74,6 +78,10 @@ YAML::Node write(const SensingSpec& sensing) {
   node["window_s"] = number(static_cast<double>(sensing.ticks_per_window) / sensing.tick_rate_hz);
   node["rays_per_zone"] = static_cast<int>(sensing.rays_per_zone);
   node["change_per"] = sensing.change_per == ChangePer::cluster ? "cluster" : "beam";
+  node["reader"] = sensing.reader == Reader::in_step ? "in_step" : "free_running";
+  if (sensing.response) node["response"] = *sensing.response == Response::analog ? "analog" : "zones";
+  node["ambient_c"] = number(sensing.ambient_c);
+  node["analog_rays_per_zone"] = sensing.analog_rays_per_zone;
   return node;
 }
 

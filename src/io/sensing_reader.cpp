@@ -23,6 +23,13 @@ SensingSpec read_sensing(const std::optional<YamlNode>& node, Diagnostics& fault
       {{"1", RaysPerZone::one}, {"5", RaysPerZone::five}, {"9", RaysPerZone::nine}, {"16", RaysPerZone::sixteen}});
   sensing.change_per = map.choice<ChangePer>("change_per", sensing.change_per,
                                              {{"cluster", ChangePer::cluster}, {"beam", ChangePer::beam}});
+  sensing.reader = map.choice<Reader>("reader", sensing.reader,
+                                      {{"in_step", Reader::in_step}, {"free_running", Reader::free_running}});
+  sensing.response = map.choice<std::optional<Response>>("response", sensing.response,
+                                                         {{"zones", Response::zones}, {"analog", Response::analog}});
+  sensing.ambient_c = map.number("ambient_c", sensing.ambient_c, {.min = -50.0, .max = 60.0});
+  sensing.analog_rays_per_zone =
+      map.integer("analog_rays_per_zone", sensing.analog_rays_per_zone, {.min = 1, .max = 10000});
   map.finish();
   return sensing;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/detector_reader.hpp"
 #include "io/yaml_map.hpp"
 
 namespace pirsim::io {
@@ -152,18 +153,25 @@ ClusterSpec read_cluster(const YamlNode& node, const std::optional<double>& rang
 }
 
 const std::vector<std::string>& sourced_keys() {
-  static const std::vector<std::string> keys{"plane_m",
-                                             "half_spacing_ratio",
-                                             "half_diagonal_ratio",
-                                             "range_m",
-                                             "lens_step",
-                                             "polarity",
-                                             "x_m",
-                                             "y_m",
-                                             "zone_side_m",
-                                             "pitch_m",
-                                             "missing",
-                                             "corners_m"};
+  static const std::vector<std::string> keys = [] {
+    std::vector<std::string> all{"plane_m",
+                                 "half_spacing_ratio",
+                                 "half_diagonal_ratio",
+                                 "range_m",
+                                 "lens_step",
+                                 "polarity",
+                                 "x_m",
+                                 "y_m",
+                                 "zone_side_m",
+                                 "pitch_m",
+                                 "missing",
+                                 "corners_m",
+                                 "blur_deg",
+                                 "aperture_mm2"};
+    const std::vector<std::string>& detector = sourced_detector_keys();
+    all.insert(all.end(), detector.begin(), detector.end());
+    return all;
+  }();
   return keys;
 }
 
@@ -204,6 +212,16 @@ void check_sources(YamlMap& map, const YamlNode& root) {
   }
 }
 
+OpticsSpec read_optics(const std::optional<YamlNode>& node, Diagnostics& faults) {
+  OpticsSpec optics;
+  if (!node) return optics;
+  YamlMap map(*node, faults, "optics");
+  optics.blur_deg = map.number("blur_deg", optics.blur_deg, {.min = 0.0, .max = 10.0});
+  optics.aperture_mm2 = map.number("aperture_mm2", optics.aperture_mm2, {.above = 0.0, .max = 1000.0});
+  map.finish();
+  return optics;
+}
+
 FacetLaw read_law(YamlMap& map, double plane_m, const std::optional<double>& range_m) {
   FacetLaw law;
   law.plane_m = plane_m;
@@ -230,6 +248,10 @@ SensorModelSpec read_sensor_model(const std::filesystem::path& path) {
   model.description = map.text("description");
   model.plane_m = map.required_number("plane_m", positive);
   const std::optional<double> range_m = map.optional_number("range_m", positive);
+  model.response =
+      map.choice<Response>("response", model.response, {{"zones", Response::zones}, {"analog", Response::analog}});
+  model.optics = read_optics(map.child("optics"), faults);
+  model.detector = read_detector(map);
   if (map.has("facets") == map.has("clusters")) {
     faults.error(map.where(), "sensor: expected either 'facets' or 'clusters'");
   }

@@ -5,15 +5,18 @@
 namespace pirsim::pir {
 
 WindowReader::WindowReader(std::vector<std::int32_t> lead_ticks, std::int32_t ticks_per_window)
-    : lead_ticks_(std::move(lead_ticks)),
-      ticks_per_window_(ticks_per_window),
-      latches_(lead_ticks_.size(), 0),
-      readings_(lead_ticks_.size(), 0) {}
+    : ticks_per_window_(ticks_per_window),
+      ticks_left_(std::move(lead_ticks)),
+      latches_(ticks_left_.size(), 0),
+      readings_(ticks_left_.size(), 0) {
+  for (std::int32_t& ticks : ticks_left_) ticks = ticks_per_window - ticks;
+}
 
-void WindowReader::advance(std::int64_t tick, std::span<const std::uint8_t> triggers) noexcept {
+void WindowReader::advance(std::span<const std::uint8_t> triggers) noexcept {
   for (std::size_t sensor = 0; sensor < latches_.size(); ++sensor) {
     if (triggers[sensor] != 0) latches_[sensor] = 1;
-    if ((tick + lead_ticks_[sensor]) % ticks_per_window_ == 0) {
+    if (--ticks_left_[sensor] == 0) {
+      ticks_left_[sensor] = ticks_per_window_;
       readings_[sensor] = std::exchange(latches_[sensor], std::uint8_t{0});
     }
   }

@@ -6,6 +6,8 @@
 #include <glm/geometric.hpp>
 #include <numeric>
 
+#include "rt/device.hpp"
+
 namespace pirsim::rt {
 namespace {
 
@@ -17,12 +19,15 @@ void copy_bits(const Solid& solid, std::uint32_t* to) noexcept {
 }
 
 /// For solids that have no test of many rays at a time.
-PackHits met_one_by_one(const RayPack& pack, const PosedShape& solid) noexcept {
+PackHits enter_one_by_one(const RayPack& pack, const PosedShape& solid, float* distances) noexcept {
   unsigned int hits = 0;
   for (unsigned int i = 0; i < pack_size; ++i) {
     const Ray ray{Vec3f(pack.origin_x[i], pack.origin_y[i], pack.origin_z[i]),
                   Vec3f(pack.direction_x[i], pack.direction_y[i], pack.direction_z[i])};
-    if (entry_distance(ray, solid, pack.range[i])) hits |= 1U << i;
+    const auto distance = entry_distance(ray, solid, pack.range[i]);
+    if (!distance) continue;
+    hits |= 1U << i;
+    distances[i] = *distance;
   }
   return static_cast<PackHits>(hits);
 }
@@ -38,6 +43,9 @@ DirectTracer::DirectTracer(const TracerSetup& setup, const RayKernel& kernel)
       near_solid_(packs_.size()),
       hits_(packs_.size()),
       all_(packs_.size()),
+      distances_(packs_.size() * pack_size),
+      nearest_(setup.clipped->rays.size(), unlimited),
+      first_met_(setup.clipped->rays.size()),
       zones_(setup.clipped->n_zones()) {
   std::iota(all_.begin(), all_.end(), 0U);
   for (const Ray& ray : setup.clipped->rays) farthest_m_ = std::max(farthest_m_, glm::length(ray.origin));
@@ -53,7 +61,6 @@ DirectTracer::Key DirectTracer::key_of(const PosedShape& solid) noexcept {
 
 void DirectTracer::find_moved(std::span<const PosedShape> solids, Memory& memory) {
   memory.slots.resize(solids.size());
-  memory.hits.resize(solids.size() * n_words_);
   moved_.clear();
   left_.clear();
   for (std::size_t i = 0; i < solids.size(); ++i) {
@@ -70,6 +77,7 @@ void DirectTracer::add(std::size_t person, std::span<const PosedShape> solids, Z
   if (people_.size() <= person) people_.resize(person + 1);
   Memory& memory = people_[person];
   find_moved(solids, memory);
+  memory.hits.resize(solids.size() * n_words_);
   if (!left_.empty()) gather(solids, memory);
   for (const std::uint32_t i : moved_) find_zones(solids[i], memory.slots[i].near, &memory.hits[i * n_words_]);
   for (std::size_t i = 0; i < solids.size(); ++i) zones.add({&memory.hits[i * n_words_], n_words_});
@@ -126,7 +134,52 @@ void DirectTracer::meet(const PosedShape& solid, const Ball& ball, std::span<con
   } else if (const auto* box = std::get_if<PosedBox>(&solid)) {
     kernel_.meet_box(packs.data(), picked.data(), n, *box, ball, hits_.data());
   } else {
-    for (std::size_t k = 0; k < n; ++k) hits_[k] = met_one_by_one(packs[picked[k]], solid);
+    for (std::size_t k = 0; k < n; ++k) hits_[k] = enter_one_by_one(packs[picked[k]], solid, distances_.data());
+  }
+}
+
+void DirectTracer::enter(const PosedShape& solid, const NearRays& near, std::vector<Entry>& entries) {
+  entries.clear();
+  const std::span<const RayPack> packs = near.packs();
+  if (packs.empty()) return;
+  const Ball ball = ball_around(solid);
+  const std::size_t n = packs.size();
+  float* const distances = distances_.data();
+  if (const auto* sphere = std::get_if<PosedSphere>(&solid)) {
+    kernel_.enter_sphere(packs.data(), all_.data(), n, *sphere, ball, hits_.data(), distances);
+  } else if (const auto* capsule = std::get_if<PosedCapsule>(&solid)) {
+    kernel_.enter_capsule(packs.data(), all_.data(), n, *capsule, ball, hits_.data(), distances);
+  } else if (const auto* box = std::get_if<PosedBox>(&solid)) {
+    kernel_.enter_box(packs.data(), all_.data(), n, *box, ball, hits_.data(), distances);
+  } else {
+    for (std::size_t k = 0; k < n; ++k) hits_[k] = enter_one_by_one(packs[k], solid, distances + k * pack_size);
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    for (unsigned int hits = hits_[k]; hits != 0; hits &= hits - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(hits));
+      entries.push_back({packs[k].ray[i], distances[k * pack_size + i]});
+    }
+  }
+}
+
+void DirectTracer::find_first(std::span<const PosedShape> solids, std::vector<Meeting>& met) {
+  find_moved(solids, everybody_);
+  if (entries_.size() < solids.size()) entries_.resize(solids.size());
+  if (!left_.empty()) gather(solids, everybody_);
+  for (const std::uint32_t i : moved_) enter(solids[i], everybody_.slots[i].near, entries_[i]);
+  met_rays_.clear();
+  for (std::uint32_t i = 0; i < solids.size(); ++i) {
+    for (const auto& [ray, distance] : entries_[i]) {
+      if (distance >= nearest_[ray]) continue;  // in a tie the lower index stays
+      if (nearest_[ray] == unlimited) met_rays_.push_back(ray);
+      nearest_[ray] = distance;
+      first_met_[ray] = i;
+    }
+  }
+  met.clear();
+  for (const std::uint32_t ray : met_rays_) {
+    met.push_back({ray, first_met_[ray]});
+    nearest_[ray] = unlimited;
   }
 }
 

@@ -21,6 +21,7 @@ class DirectTracer final : public Tracer {
   explicit DirectTracer(const TracerSetup& setup, const RayKernel& kernel = best_ray_kernel());
   void trace(std::span<const PosedShape> solids, std::span<std::uint8_t> zones) override;
   void add(std::size_t person, std::span<const PosedShape> solids, ZoneSet& zones) override;
+  void find_first(std::span<const PosedShape> solids, std::vector<Meeting>& met) override;
 
  private:
   /// Of the packs around one solid; more are allocated when they are needed.
@@ -36,6 +37,10 @@ class DirectTracer final : public Tracer {
     std::vector<Slot> slots;  ///< (n_solids)
     std::vector<ZoneSet::Word> hits;
   };
+  struct Entry {
+    std::uint32_t ray;
+    float distance;  ///< metres
+  };
 
   [[nodiscard]] static Key key_of(const PosedShape& solid) noexcept;
   void find_moved(std::span<const PosedShape> solids, Memory& memory);
@@ -46,6 +51,7 @@ class DirectTracer final : public Tracer {
             std::span<const std::uint32_t> picked) noexcept;
   void find_zones(const PosedShape& solid, const NearRays& near, ZoneSet::Word* zones);
   [[nodiscard]] float slack_m(const PosedShape& solid) const noexcept;
+  void enter(const PosedShape& solid, const NearRays& near, std::vector<Entry>& entries);
 
   const RayKernel& kernel_;
   std::size_t n_words_;      ///< of a set of all zones
@@ -53,6 +59,8 @@ class DirectTracer final : public Tracer {
   std::vector<RayPack> packs_;
   std::vector<ConeBlock> cones_;  ///< of packs_
   std::vector<Memory> people_;
+  Memory everybody_;                         ///< of find_first(), which knows no people; without zones
+  std::vector<std::vector<Entry>> entries_;  ///< (n_solids) rays that meet each
   // Scratch.
   std::vector<std::uint32_t> moved_;        ///< indices of solids
   std::vector<std::uint32_t> left_;         ///< those of them that have left the rays gathered for them
@@ -62,7 +70,11 @@ class DirectTracer final : public Tracer {
   std::vector<ConeBlock> near_person_cones_;
   std::vector<std::uint32_t> near_solid_;
   std::vector<PackHits> hits_;
-  std::vector<std::uint32_t> all_;  ///< 0, 1, 2, ...: indices of gathered packs
+  std::vector<std::uint32_t> all_;        ///< 0, 1, 2, ...: indices of gathered packs
+  std::vector<float> distances_;          ///< (n_packs x pack_size)
+  std::vector<float> nearest_;            ///< (n_rays) infinite between calls
+  std::vector<std::uint32_t> first_met_;  ///< (n_rays) solid at the nearest distance
+  std::vector<std::uint32_t> met_rays_;
   ZoneSet zones_;
 };
 

@@ -1,9 +1,12 @@
-// One Embree instance per solid, moved with it; each zone asks for any solid before the room and stops at the first.
+// One Embree instance per solid, moved with it; each zone asks for any solid before the room and stops at the first, or
+// each ray asks for the nearest.
 // Embree leaves out the solids that a ray can't meet; whether it does meet one of the rest is decided by
 // entry_distance() with the ray as it is in the world (docs/adr/0001-shared-ray-tests.md).
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <vector>
 
 #include "rt/room_impl.hpp"
@@ -49,10 +52,11 @@ Transform cube_transform(const PosedShape& shape) noexcept {
   return around(box.centre, box.axes, box.half_extents);
 }
 
-struct AnySolidQuery : QueryContext {
-  Ray ray;  ///< in the world
-  float range = 0.0F;
+struct SolidQuery : QueryContext {
+  Ray ray;             ///< in the world
+  float range = 0.0F;  ///< of the ray, or the nearest distance found so far
   std::span<const PosedShape> solids;
+  std::optional<std::uint32_t> nearest;  ///< solid found so far
 };
 
 void bound_cube(const RTCBoundsFunctionArguments* arguments) {
@@ -61,10 +65,23 @@ void bound_cube(const RTCBoundsFunctionArguments* arguments) {
 
 void meet_solid(const RTCOccludedFunctionNArguments* arguments) {
   if (arguments->valid[0] == 0) return;
-  const auto& query = *static_cast<const AnySolidQuery*>(arguments->context);
+  const auto& query = *static_cast<const SolidQuery*>(arguments->context);
   const PosedShape& solid = query.solids[query.instID[0]];
   if (!entry_distance(query.ray, solid, query.range)) return;
   RTCRayN_tfar(arguments->ray, arguments->N, 0) = -unlimited;  // Embree's sign for "occluded"
+}
+
+/// Takes the solid if it is entered before what was found, or as early and of a lower index.
+void offer_solid(const RTCIntersectFunctionNArguments* arguments) {
+  if (arguments->valid[0] == 0) return;
+  auto& query = *static_cast<SolidQuery*>(arguments->context);
+  const std::uint32_t index = query.instID[0];
+  const float reach = query.nearest ? std::nextafter(query.range, unlimited) : query.range;
+  const auto distance = entry_distance(query.ray, query.solids[index], reach);
+  if (!distance || (query.nearest && *distance == query.range && index > *query.nearest)) return;
+  query.range = *distance;
+  query.nearest = index;
+  RTCRayN_tfar(RTCRayHitN_RayN(arguments->rayhit, arguments->N), arguments->N, 0) = *distance;
 }
 
 class EmbreeTracer final : public Tracer {
@@ -80,6 +97,7 @@ class EmbreeTracer final : public Tracer {
     rtcSetGeometryUserPrimitiveCount(cube.get(), 1);
     rtcSetGeometryBoundsFunction(cube.get(), bound_cube, nullptr);
     rtcSetGeometryOccludedFunction(cube.get(), meet_solid);
+    rtcSetGeometryIntersectFunction(cube.get(), offer_solid);
     rtcCommitGeometry(cube.get());
     rtcAttachGeometry(cube_.get(), cube.get());
     commit(device_, cube_.get());
@@ -90,10 +108,25 @@ class EmbreeTracer final : public Tracer {
     find_candidates(solids);
     if (candidates_.empty()) return;
     move_instances(solids);
-    AnySolidQuery query;
+    SolidQuery query;
     initialise(query);
     query.solids = solids;
     for (const std::size_t zone : candidates_) zones[zone] = sees_solid(query, zone);
+  }
+
+  void find_first(std::span<const PosedShape> solids, std::vector<Meeting>& met) override {
+    met.clear();
+    find_candidates(solids);
+    if (candidates_.empty()) return;
+    move_instances(solids);
+    SolidQuery query;
+    initialise(query);
+    query.solids = solids;
+    for (const std::size_t zone : candidates_) {
+      for (std::uint32_t i = bundle_.zone_rays_begin[zone]; i < bundle_.zone_rays_begin[zone + 1]; ++i) {
+        if (const auto solid = first_solid(query, i)) met.push_back({i, *solid});
+      }
+    }
   }
 
  private:
@@ -158,7 +191,7 @@ class EmbreeTracer final : public Tracer {
     return true;
   }
 
-  [[nodiscard]] bool sees_solid(AnySolidQuery& query, std::size_t zone) const noexcept {
+  [[nodiscard]] bool sees_solid(SolidQuery& query, std::size_t zone) const noexcept {
     for (std::uint32_t i = bundle_.zone_rays_begin[zone]; i < bundle_.zone_rays_begin[zone + 1]; ++i) {
       query.ray = bundle_.rays[i];
       query.range = bundle_.range[i];
@@ -167,6 +200,15 @@ class EmbreeTracer final : public Tracer {
       if (ray.tfar < 0.0F) return true;
     }
     return false;
+  }
+
+  [[nodiscard]] std::optional<std::uint32_t> first_solid(SolidQuery& query, std::uint32_t ray) const noexcept {
+    query.ray = bundle_.rays[ray];
+    query.range = bundle_.range[ray];
+    query.nearest.reset();
+    RTCRayHit nearest = embree_ray_hit(query.ray, query.range);
+    closest_hit(scene_.get(), query, nearest);
+    return query.nearest;
   }
 
   RTCDevice device_;

@@ -39,6 +39,7 @@ struct Grown {
 void copy_ray(const RayPack& from, std::size_t i, RayPack& to, std::size_t k) noexcept {
   for (const auto column : ray_columns) (to.*column)[k] = (from.*column)[i];
   to.zone[k] = from.zone[i];
+  to.ray[k] = from.ray[i];
 }
 
 constexpr float infinite = std::numeric_limits<float>::infinity();

@@ -28,6 +28,13 @@ struct RayKernel {
                        const Ball& around, PackHits* hits) noexcept;
   void (*meet_box)(const RayPack* rays, const std::uint32_t* picked, std::size_t n, const PosedBox& solid,
                    const Ball& around, PackHits* hits) noexcept;
+  /// The same, and where the rays enter: distances: (n x pack_size), metres, of rays that meet the solid.
+  void (*enter_sphere)(const RayPack* rays, const std::uint32_t* picked, std::size_t n, const PosedSphere& solid,
+                       const Ball& around, PackHits* hits, float* distances) noexcept;
+  void (*enter_capsule)(const RayPack* rays, const std::uint32_t* picked, std::size_t n, const PosedCapsule& solid,
+                        const Ball& around, PackHits* hits, float* distances) noexcept;
+  void (*enter_box)(const RayPack* rays, const std::uint32_t* picked, std::size_t n, const PosedBox& solid,
+                    const Ball& around, PackHits* hits, float* distances) noexcept;
 };
 
 /// Fastest first; the last is available everywhere.

@@ -4,7 +4,6 @@
 namespace pirsim::rt {
 
 extern const RayKernel ray_kernel_avx2;
-const RayKernel ray_kernel_avx2{
-    "avx2", [] { return __builtin_cpu_supports("avx2") != 0; }, cull, meet_sphere, meet_capsule, meet_box};
+const RayKernel ray_kernel_avx2 = make_kernel("avx2", [] { return __builtin_cpu_supports("avx2") != 0; });
 
 }  // namespace pirsim::rt

@@ -4,7 +4,6 @@
 namespace pirsim::rt {
 
 extern const RayKernel ray_kernel_avx512;
-const RayKernel ray_kernel_avx512{
-    "avx512f", [] { return __builtin_cpu_supports("avx512f") != 0; }, cull, meet_sphere, meet_capsule, meet_box};
+const RayKernel ray_kernel_avx512 = make_kernel("avx512f", [] { return __builtin_cpu_supports("avx512f") != 0; });
 
 }  // namespace pirsim::rt

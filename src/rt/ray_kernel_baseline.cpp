@@ -4,6 +4,6 @@
 namespace pirsim::rt {
 
 extern const RayKernel ray_kernel_baseline;
-const RayKernel ray_kernel_baseline{"baseline", [] { return true; }, cull, meet_sphere, meet_capsule, meet_box};
+const RayKernel ray_kernel_baseline = make_kernel("baseline", [] { return true; });
 
 }  // namespace pirsim::rt

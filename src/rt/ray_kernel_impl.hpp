@@ -59,14 +59,33 @@ inline Mask passes_near(const Vector& offset, const Vector& direction, const Vec
   return (apart * apart <= reach * reach * square) | (square < Lanes(1e-4F));
 }
 
-template <typename Cull, typename Test>
-inline void meet(const RayPack* rays, const std::uint32_t* picked, std::size_t n, const Ball& around, PackHits* hits,
-                 const Cull& may_meet, const Test& inside_solid) noexcept {
-  const Vector centre = vector_of(around.centre);
-  const float reach = around.radius * (1.0F + relative_margin) + ball_margin;
+/// Forgets where rays enter, or notes it.
+struct HitsOnly {
+  void operator()(std::size_t, Lanes) const noexcept {}
+};
+struct Distances {
+  float* to;
+  void operator()(std::size_t ray, Lanes distance) const noexcept { ray_tests::store(distance.value, to + ray); }
+};
+
+/// What all solids have in common: which rays, the ball around the solid, where the answers go.
+template <typename Note>
+struct Query {
+  const RayPack* rays;
+  const std::uint32_t* picked;
+  std::size_t n;
+  const Ball& around;
+  PackHits* hits;
+  Note note;
+};
+
+template <typename Note, typename Cull, typename Test>
+inline void meet(const Query<Note>& query, const Cull& may_meet, const Test& inside_solid) noexcept {
+  const Vector centre = vector_of(query.around.centre);
+  const float reach = query.around.radius * (1.0F + relative_margin) + ball_margin;
   const Lanes margin(reach), share(relative_margin);
-  for (std::size_t k = 0; k < n; ++k) {
-    const RayPack& pack = rays[picked[k]];
+  for (std::size_t k = 0; k < query.n; ++k) {
+    const RayPack& pack = query.rays[query.picked[k]];
     unsigned int found = 0;
     for (std::size_t lane = 0; lane < pack_size; lane += n_lanes) {
       const Vector origin = load(pack.origin_x, pack.origin_y, pack.origin_z, lane);
@@ -77,30 +96,32 @@ inline void meet(const RayPack* rays, const std::uint32_t* picked, std::size_t n
       const Mask is_near = (dot(near.offset, near.offset) <= wide * wide) & (near.distance - wide <= range) &
                            may_meet(near.offset, direction, slack);
       if (bits(is_near) == 0) continue;
-      found |= bits(ray_tests::is_hit(inside_solid(origin, direction), range)) << lane;
+      const Interval inside = inside_solid(origin, direction);
+      found |= bits(ray_tests::is_hit(inside, range)) << lane;
+      query.note(k * pack_size + lane, ray_tests::entry(inside));
     }
-    hits[k] = static_cast<PackHits>(found);
+    query.hits[k] = static_cast<PackHits>(found);
   }
 }
 
 inline Mask any_ray(const Vector&, const Vector&, Lanes slack) noexcept { return slack >= Lanes(0.0F); }
 
-[[gnu::flatten]] void meet_sphere(const RayPack* rays, const std::uint32_t* picked, std::size_t n,
-                                  const PosedSphere& solid, const Ball& around, PackHits* hits) noexcept {
+template <typename Note>
+inline void meet_solid(const PosedSphere& solid, const Query<Note>& query) noexcept {
   const Vector centre = vector_of(solid.centre);
   const Lanes radius(solid.radius);
-  meet(rays, picked, n, around, hits, any_ray, [&](const Vector& origin, const Vector& direction) {
+  meet(query, any_ray, [&](const Vector& origin, const Vector& direction) {
     return ray_tests::sphere(origin, direction, centre, radius);
   });
 }
 
-[[gnu::flatten]] void meet_capsule(const RayPack* rays, const std::uint32_t* picked, std::size_t n,
-                                   const PosedCapsule& solid, const Ball& around, PackHits* hits) noexcept {
+template <typename Note>
+inline void meet_solid(const PosedCapsule& solid, const Query<Note>& query) noexcept {
   const auto axis = ray_tests::capsule_axis(vector_of(solid.a), vector_of(solid.b));
   const Lanes radius(solid.radius);
   const Lanes reach(solid.radius * (1.0F + relative_margin) + ball_margin);
   meet(
-      rays, picked, n, around, hits,
+      query,
       [&](const Vector& offset, const Vector& direction, Lanes slack) {
         return passes_near(offset, direction, axis.axis, reach + slack);
       },
@@ -109,13 +130,37 @@ inline Mask any_ray(const Vector&, const Vector&, Lanes slack) noexcept { return
       });
 }
 
-[[gnu::flatten]] void meet_box(const RayPack* rays, const std::uint32_t* picked, std::size_t n, const PosedBox& solid,
-                               const Ball& around, PackHits* hits) noexcept {
+template <typename Note>
+inline void meet_solid(const PosedBox& solid, const Query<Note>& query) noexcept {
   const Vector centre = vector_of(solid.centre), half_extents = vector_of(solid.half_extents);
   const std::array<Vector, 3> axes{vector_of(solid.axes[0]), vector_of(solid.axes[1]), vector_of(solid.axes[2])};
-  meet(rays, picked, n, around, hits, any_ray, [&](const Vector& origin, const Vector& direction) {
+  meet(query, any_ray, [&](const Vector& origin, const Vector& direction) {
     return ray_tests::box(origin, direction, centre, axes, half_extents);
   });
+}
+
+template <typename Solid>
+[[gnu::flatten]] void meet_one(const RayPack* rays, const std::uint32_t* picked, std::size_t n, const Solid& solid,
+                               const Ball& around, PackHits* hits) noexcept {
+  meet_solid(solid, Query<HitsOnly>{rays, picked, n, around, hits, {}});
+}
+template <typename Solid>
+[[gnu::flatten]] void enter_one(const RayPack* rays, const std::uint32_t* picked, std::size_t n, const Solid& solid,
+                                const Ball& around, PackHits* hits, float* distances) noexcept {
+  meet_solid(solid, Query<Distances>{rays, picked, n, around, hits, {distances}});
+}
+
+/// The kernel of the including file's instruction set.
+constexpr RayKernel make_kernel(std::string_view name, bool (*is_available)()) noexcept {
+  return {name,
+          is_available,
+          cull,
+          meet_one<PosedSphere>,
+          meet_one<PosedCapsule>,
+          meet_one<PosedBox>,
+          enter_one<PosedSphere>,
+          enter_one<PosedCapsule>,
+          enter_one<PosedBox>};
 }
 
 }  // namespace

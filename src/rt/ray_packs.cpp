@@ -80,6 +80,7 @@ std::vector<RayPack> pack_rays(const RayBundle& bundle) {
         const bool is_missing = k + i >= order.size();
         const std::uint32_t ray = is_missing ? order.back() : order[k + i];
         set(pack, i, bundle.rays[ray], is_missing ? -1.0F : bundle.range[ray], zones[ray]);
+        pack.ray[i] = ray;
       }
     }
   }

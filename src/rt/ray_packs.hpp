@@ -19,6 +19,7 @@ struct alignas(64) RayPack {
   Column direction_x, direction_y, direction_z;
   Column range;
   std::uint32_t zone[pack_size];  ///< that the ray belongs to
+  std::uint32_t ray[pack_size];   ///< its index in the bundle
 };
 
 /// Cones as in view_cones.hpp, sixteen at a time; nothing touches those that are missing to a full block.

@@ -1,6 +1,7 @@
 // The plain way, which the others are measured against: at each tick a new scene of all triangles and all solids,
 // and for every ray the nearest hit within the rated range. No ray is cut at the room, no zone is left early.
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "rt/room_impl.hpp"
@@ -33,8 +34,16 @@ class ReferenceTracer final : public Tracer {
     std::fill(zones.begin(), zones.end(), std::uint8_t{0});
     for (std::size_t zone = 0; zone < rated_.n_zones(); ++zone) {
       for (std::uint32_t i = rated_.zone_rays_begin[zone]; i < rated_.zone_rays_begin[zone + 1]; ++i) {
-        if (sees_solid(scene.get(), rated_.rays[i], rated_.range[i])) zones[zone] = 1;
+        if (first_solid(scene.get(), i)) zones[zone] = 1;
       }
+    }
+  }
+
+  void find_first(std::span<const PosedShape> solids, std::vector<Meeting>& met) override {
+    const SceneHandle scene = build(solids);
+    met.clear();
+    for (std::uint32_t i = 0; i < rated_.rays.size(); ++i) {
+      if (const auto solid = first_solid(scene.get(), i)) met.push_back({i, *solid});
     }
   }
 
@@ -57,13 +66,14 @@ class ReferenceTracer final : public Tracer {
     return scene;
   }
 
-  /// Solids come after the room's meshes.
-  [[nodiscard]] bool sees_solid(RTCScene scene, const Ray& ray, float range) const noexcept {
+  /// What the ray meets first, if that is a solid: they come after the room's meshes.
+  [[nodiscard]] std::optional<std::uint32_t> first_solid(RTCScene scene, std::uint32_t ray) const noexcept {
     QueryContext context;
     initialise(context);
-    RTCRayHit nearest = embree_ray_hit(ray, range);
+    RTCRayHit nearest = embree_ray_hit(rated_.rays[ray], rated_.range[ray]);
     closest_hit(scene, context, nearest);
-    return nearest.hit.geomID != RTC_INVALID_GEOMETRY_ID && nearest.hit.geomID >= room_.n_meshes();
+    const bool is_solid = nearest.hit.geomID != RTC_INVALID_GEOMETRY_ID && nearest.hit.geomID >= room_.n_meshes();
+    return is_solid ? std::optional(nearest.hit.geomID - room_.n_meshes()) : std::nullopt;
   }
 
   const Room::Impl& room_;

@@ -11,6 +11,7 @@ Lookout::Lookout(const Model& model)
       kind_(model.tracer()),
       tracer_(model.make_tracer()),
       memory_(ZoneSet(detector_.n_zones()).words().size() + ZoneSet(detector_.n_channels()).words().size()),
+      power_meter_(model.analog() != nullptr ? std::make_unique<PowerMeter>(model) : nullptr),
       activity_(detector_.n_zones()),
       person_zones_(detector_.n_zones()),
       person_channels_(detector_.n_channels()) {}

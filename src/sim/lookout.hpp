@@ -10,6 +10,7 @@
 #include "pirsim/sim/actor.hpp"
 #include "pirsim/sim/model.hpp"
 #include "sim/posture_memory.hpp"
+#include "sim/power_meter.hpp"
 
 namespace pirsim::sim {
 
@@ -19,6 +20,10 @@ class Lookout {
   explicit Lookout(const Model& model);
   /// zones and channels (of the Model's detector) are overwritten.
   void look(const std::vector<Actor>& actors, ZoneSet& zones, ZoneSet& channels);
+  /// Only if there are analog sensors; powers: (n_sensors) overwritten.
+  void measure(const std::vector<Actor>& actors, std::span<PowerSteps> powers) {
+    power_meter_->measure(actors, powers);
+  }
 
  private:
   void look_at_all(const std::vector<Actor>& actors, ZoneSet& zones, ZoneSet& channels);
@@ -28,6 +33,7 @@ class Lookout {
   rt::TracerKind kind_;
   std::unique_ptr<rt::Tracer> tracer_;
   PostureMemory memory_;
+  std::unique_ptr<PowerMeter> power_meter_;
   // Scratch.
   std::vector<PosedShape> solids_;
   ZoneActivity activity_;

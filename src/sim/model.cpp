@@ -37,6 +37,10 @@ std::unique_ptr<rt::Tracer> Model::make_tracer() const {
   return rt::make_tracer(tracer_, {room_.get(), rated_.get(), clipped_.get()});
 }
 
+std::unique_ptr<rt::Tracer> Model::make_power_tracer() const {
+  return rt::make_tracer(tracer_, {room_.get(), &analog_->power().rays().bundle, &analog_->power().clipped()});
+}
+
 std::shared_ptr<sim::Lookout> Model::borrow_lookout() const {
   std::unique_ptr<sim::Lookout> lookout;
   {
@@ -81,6 +85,9 @@ Model compile(SceneSpec scene, ScriptSpec script, const CompileOptions& options)
   }
   model.pipeline_ = effects::Pipeline(model.script_.effects, {model.scene_, altered.sensing, *model.clipped_});
   model.trials_ = sim::plan_people(model.scene_, altered, model.script_, *model.room_);
+  if (sim::AnalogModel::is_needed(model.scene_, altered.sensing)) {
+    model.analog_ = std::make_unique<sim::AnalogModel>(model.scene_, altered.sensing, *model.room_);
+  }
   return model;
 }
 

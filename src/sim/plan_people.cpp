@@ -140,7 +140,8 @@ std::vector<TrialModel> plan_among_solids(const SceneSpec& scene, const ScriptSp
       if (!floor) {
         floor = std::make_shared<const body::WalkableFloor>(scene.floor, scene.entrances, scene.meshes, clearance_m);
       }
-      PersonModel& person = planned.people.emplace_back(PersonModel{spec, humanoid, floor, {}});
+      PersonModel& person = planned.people.emplace_back(
+          PersonModel{spec, humanoid, floor, {}, radiance_of(spec.warmth, script.sensing.ambient_c)});
       Rehearsal(scene, room, person, diagnostics).run();
     }
   }

@@ -34,8 +34,10 @@ State::State(const Model& model, std::uint32_t run)
       edge_draw_(model.edge_draw()),
       polarity_(model.polarity()),
       pipeline_(model.pipeline()),
+      analog_(model, run),
       triggers_(model.scene().sensors.size(), 0),
-      bits_(triggers_),
+      reader_(sim::make_reader(model.script().sensing.reader, triggers_.size(), model.script().sensing.ticks_per_window,
+                               model.script().seed, run)),
       lookout_(model.borrow_lookout()) {
   const TrialModel& trial = model.trial_of(run);
   for (std::uint32_t person = 0; person < trial.people.size(); ++person) actors_.emplace_back(model, run, person);
@@ -62,8 +64,9 @@ State::State(const State& other)
       edge_draw_(other.edge_draw_),
       polarity_(other.polarity_),
       pipeline_(other.pipeline_),
+      analog_(other.analog_),
       triggers_(other.triggers_),
-      bits_(other.bits_),
+      reader_(other.reader_),
       sample_(other.sample_),
       lookout_(other.model_->borrow_lookout()) {}
 
@@ -116,9 +119,16 @@ void State::look(const Model& model) {
   std::swap(channels_, previous_channels_);
   lookout_->look(actors_, zones_, channels_);
   std::ranges::fill(triggers_, std::uint8_t{0});
-  if (polarity_) return polarity_->tick(zones_, triggers_);
-  edge_draw_.tick();
-  model.detector().mark(previous_channels_.words(), channels_.words(), edge_draw_.watched(), triggers_);
+  if (polarity_) {
+    polarity_->tick(zones_, triggers_);
+  } else {
+    edge_draw_.tick();
+    model.detector().mark(previous_channels_.words(), channels_.words(), edge_draw_.watched(), triggers_);
+  }
+  if (model.analog() != nullptr) {
+    lookout_->measure(actors_, analog_.powers());
+    analog_.tick(*model.analog(), triggers_);
+  }
 }
 
 bool step_tick(const Model& model, State& state) {
@@ -127,7 +137,7 @@ bool step_tick(const Model& model, State& state) {
   state.note_seats_left(model);
   state.look(model);
   for (const std::size_t seat : state.seats_left_) state.pipeline_.seat_left(seat);
-  sim::add_triggers(state.pipeline_, state.tick_, state.triggers_, state.bits_);
+  sim::add_triggers(state.pipeline_, state.tick_, state.triggers_, state.reader_);
   const int window = model.script().sensing.ticks_per_window;
   if (state.tick_ % window != 0) return false;
 
@@ -135,9 +145,8 @@ bool step_tick(const Model& model, State& state) {
   sample.time_s = static_cast<double>(state.tick_) / model.script().sensing.tick_rate_hz;
   sample.phase = state.actors_.empty() ? "outside" : state.actors_.front().phase();
   sample.people = people_on_floor(model, state.actors_);
-  sample.bits = state.bits_;
+  sample.bits.assign(state.reader_.readings().begin(), state.reader_.readings().end());
   state.pipeline_.apply(sample);
-  std::ranges::fill(state.bits_, std::uint8_t{0});
   state.finished_ = std::ranges::all_of(state.actors_, [](const Actor& actor) {
     return actor.done() || actor.person().spec.role == PersonRole::bystander;
   });

@@ -35,7 +35,7 @@ struct TracedRun {
 };
 
 TracedRun trace_run(const Model& model, std::uint32_t run) {
-  TracedRun traced{{{run, model.replicate_of(run), model.trial_of(run).id, {}, {}}, {}, {}}, {}};
+  TracedRun traced{{{run, model.replicate_of(run), model.trial_of(run).id, {}, {}, {}}, {}, {}}, {}};
   Numbering numbering(model.detector().n_zones());
   State state(model, run);
   ZoneSet last(model.detector().n_zones());
@@ -56,9 +56,13 @@ TracedRun trace_run(const Model& model, std::uint32_t run) {
 }  // namespace
 
 ZoneTracks trace(const Model& model, std::span<const std::uint32_t> runs, unsigned threads) {
+  if (model.analog() != nullptr) {
+    throw Error(ErrorCode::usage, "zones alone don't tell what sensors with an analog response do");
+  }
   ZoneTracks tracks;
   tracks.n_sensors = model.scene().sensors.size();
   tracks.ticks_per_window = model.script().sensing.ticks_per_window;
+  tracks.reader = model.script().sensing.reader;
   Numbering numbering(model.detector().n_zones());
   ordered_parallel<TracedRun>(
       runs.size(), threads, [&](std::size_t i) { return trace_run(model, runs[i]); },
@@ -114,11 +118,11 @@ RunResult emit(const ZoneTracks& tracks, std::size_t index, DetectorLogic& detec
   pipeline.begin_run(seed, result.run);
   detector.begin_run(seed, result.run);
   std::vector<std::uint8_t> triggers(tracks.n_sensors);
+  pir::WindowReader reader = make_reader(tracks.reader, tracks.n_sensors, tracks.ticks_per_window, seed, result.run);
   auto left = track.seats_left.begin();
   std::uint32_t before = 0;
   std::int64_t tick = 0;
   for (Sample& sample : result.samples) {
-    sample.bits.assign(tracks.n_sensors, 0);
     for (int i = 0; i < tracks.ticks_per_window; ++i) {
       const std::uint32_t after = track.sets[static_cast<std::size_t>(tick)];
       ++tick;
@@ -126,8 +130,9 @@ RunResult emit(const ZoneTracks& tracks, std::size_t index, DetectorLogic& detec
       detector.tick(before, after, triggers);
       before = after;
       for (; left != track.seats_left.end() && left->tick == tick; ++left) pipeline.seat_left(left->seat);
-      add_triggers(pipeline, tick, triggers, sample.bits);
+      add_triggers(pipeline, tick, triggers, reader);
     }
+    sample.bits.assign(reader.readings().begin(), reader.readings().end());
     pipeline.apply(sample);
   }
   return result;

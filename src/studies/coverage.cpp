@@ -7,6 +7,7 @@
 
 #include "pirsim/core/parallel.hpp"
 #include "pirsim/pir/optics.hpp"
+#include "pirsim/pir/planck.hpp"
 #include "studies/cross_tracer.hpp"
 
 namespace pirsim::studies {
@@ -52,7 +53,9 @@ class SquareCounter {
         rays_(study.clipped_rays()),
         n_poses_(study.target().n_poses()),
         active_(padded(n_poses_)),
-        changed_(n_poses_) {
+        changed_(n_poses_),
+        powers_(n_poses_),
+        radiance_(pir::band_radiance(pir::kelvin(study.spec().target.temperature_c))) {
     for (const TurningCross& cross : study.target().crosses()) {
       Posed& posed = posed_.emplace_back();
       for (const auto& rotation : cross.rotation) posed.half_axes.push_back(half_axes(cross.bar, rotation));
@@ -64,7 +67,10 @@ class SquareCounter {
   void count(const Vec2& point, std::span<MotionCount> counts) {
     foot_ = {point.x, study_.scene().floor.height_m(), point.y};
     for (Posed& posed : posed_) posed.up_to_date = 0;
-    for (std::size_t sensor = 0; sensor < counts.size(); ++sensor) counts[sensor] = count_motion(sensor);
+    for (std::size_t sensor = 0; sensor < counts.size(); ++sensor) {
+      const bool is_analog = study_.analog() != nullptr && study_.analog()->sensors()[sensor];
+      counts[sensor] = is_analog ? count_outputs(sensor) : count_motion(sensor);
+    }
   }
 
  private:
@@ -93,12 +99,7 @@ class SquareCounter {
   bool mark_changes(std::uint32_t first, std::uint32_t last) {
     bool near = false;
     for (auto i = rays_.zone_rays_begin[first]; i < rays_.zone_rays_begin[last]; ++i) {
-      for (std::size_t k = 0; k < posed_.size(); ++k) {
-        const TurningCross& cross = study_.target().crosses()[k];
-        if (!may_meet(rays_.rays[i], rays_.range[i], foot_ + cross.middle, cross.reach_m)) continue;
-        if (!std::exchange(near, true)) std::ranges::fill(active_, 0);
-        for (const BarPoses& bar : posed(k)) mark_active(rays_.rays[i], rays_.range[i], bar, active_);
-      }
+      mark_poses(rays_.rays[i], rays_.range[i], near);
     }
     if (!near) return false;
     for (std::size_t pose = 0; pose < n_poses_; ++pose) {
@@ -106,6 +107,63 @@ class SquareCounter {
       if (active_[pose] != active_[before]) changed_[pose] = 1;
     }
     return true;
+  }
+
+  /// Adds the poses in which the ray meets a cross to those marked; the first ray that comes near (`near`, which is
+  /// then set) begins anew.
+  void mark_poses(const Ray& ray, float range, bool& near) {
+    for (std::size_t k = 0; k < posed_.size(); ++k) {
+      const TurningCross& cross = study_.target().crosses()[k];
+      if (!may_meet(ray, range, foot_ + cross.middle, cross.reach_m)) continue;
+      if (!std::exchange(near, true)) std::ranges::fill(active_, 0);
+      for (const BarPoses& bar : posed(k)) mark_active(ray, range, bar, active_);
+    }
+  }
+
+  /// Windows in which an analog sensor's output was on. All crosses are equally warm, so that it doesn't matter which
+  /// of them a ray meets first.
+  MotionCount count_outputs(std::size_t sensor) {
+    const sim::PowerModel& power = study_.analog()->power();
+    const RayBundle& rays = power.clipped();
+    const auto first_ray = [&](std::size_t s) {
+      return rays.zone_rays_begin[rays.cluster_zones_begin[rays.sensor_clusters_begin[s]]];
+    };
+    std::ranges::fill(powers_, sim::PowerSteps{0});
+    bool any = false;
+    for (auto i = first_ray(sensor); i < first_ray(sensor + 1); ++i) {
+      bool near = false;
+      mark_poses(rays.rays[i], rays.range[i], near);
+      if (!near) continue;
+      any = true;
+      const sim::PowerSteps step = power.power(i, radiance_);
+      for (std::size_t pose = 0; pose < n_poses_; ++pose) powers_[pose] += active_[pose] != 0 ? step : 0;
+    }
+    return any ? count_windows_with_output(sensor) : MotionCount{0};
+  }
+
+  MotionCount count_windows_with_output(std::size_t sensor) const {
+    const SensingSpec& sensing = study_.spec().sensing;
+    const SceneSpec& scene = study_.scene();
+    const pir::AnalogFilter& filter = study_.analog()->sensors()[sensor]->silent_filter;
+    const pir::Comparator comparator(scene.sensor_models.at(scene.sensors[sensor].model).detector.comparator,
+                                     1.0 / sensing.tick_rate_hz);
+    const auto watts = [&](std::size_t pose) { return static_cast<double>(powers_[pose]) * sim::watts_per_step; };
+    pir::AnalogFilter::Sections sections = filter.at_rest(watts(0));
+    pir::Comparator::State state;
+    MotionCount count = 0;
+    std::size_t pose = 0;
+    for (int window = 0; window < study_.n_windows(); ++window) {
+      bool motion = false;
+      for (int tick = 0; tick < sensing.ticks_per_window; ++tick) {
+        const double before_w = watts(pose);
+        if (++pose == n_poses_) pose = 0;
+        filter.advance(sections, before_w, watts(pose), 0.0);
+        comparator.advance(state, filter.output(sections));
+        motion |= state.on;
+      }
+      count = static_cast<MotionCount>(count + (motion ? 1 : 0));
+    }
+    return count;
   }
 
   const std::vector<BarPoses>& posed(std::size_t k) {
@@ -139,8 +197,10 @@ class SquareCounter {
   std::size_t n_poses_;
   Vec3 foot_{0.0};
   std::vector<Posed> posed_;
-  std::vector<std::uint8_t> active_;   ///< (padded n_poses)
-  std::vector<std::uint8_t> changed_;  ///< (n_poses) from the pose before to this one
+  std::vector<std::uint8_t> active_;     ///< (padded n_poses)
+  std::vector<std::uint8_t> changed_;    ///< (n_poses) from the pose before to this one
+  std::vector<sim::PowerSteps> powers_;  ///< (n_poses)
+  double radiance_;                      ///< of the crosses, W m^-2 sr^-1
 };
 
 }  // namespace
@@ -158,6 +218,9 @@ CoverageStudy::CoverageStudy(SceneSpec scene, CoverageSpec spec)
   }
   clipped_ = rated_;
   room_->clip(clipped_);
+  if (sim::AnalogModel::is_needed(scene_, spec_.sensing)) {
+    analog_ = std::make_unique<sim::AnalogModel>(scene_, spec_.sensing, *room_);
+  }
 }
 
 std::vector<MotionCount> CoverageStudy::counts_at(const Vec2& point) const {

@@ -64,6 +64,37 @@ std::string header(const CoverageStudy& study) {
   return "pirsim coverage rows of study " + std::to_string(fingerprint(study));
 }
 
+void add_detector(Hash& hash, const DetectorSpec& detector) {
+  const auto& [element, amplifier, comparator] = detector;
+  for (const double value : {element.thermal_s, element.electrical_s, amplifier.low_hz, amplifier.high_hz,
+                             amplifier.volts_per_watt.value_or(0.0), comparator.positive_v, comparator.negative_v,
+                             comparator.pulse_window_s, comparator.hold_s, comparator.blind_s}) {
+    hash.add(value);
+  }
+  hash.add(amplifier.order);
+  hash.add(comparator.pulse_count);
+  hash.add(comparator.pulse_signs);
+}
+
+/// What only the physical response depends on.
+void add_analog(Hash& hash, const CoverageStudy& study) {
+  if (study.analog() == nullptr) return;
+  const sim::PowerModel& power = study.analog()->power();
+  for (std::uint32_t i = 0; i < power.clipped().rays.size(); ++i) {
+    hash.add(power.clipped().rays[i].direction);
+    hash.add(power.clipped().range[i]);
+    hash.add(power.rays().weights[i]);
+    hash.add(power.background(i));
+  }
+  for (std::size_t i = 0; i < power.n_sensors(); ++i) {
+    if (!study.analog()->sensors()[i]) continue;
+    hash.add(i);
+    add_detector(hash, study.scene().sensor_models.at(study.scene().sensors[i].model).detector);
+  }
+  hash.add(study.spec().target.temperature_c);
+  hash.add(study.spec().sensing.tick_rate_hz);
+}
+
 }  // namespace
 
 std::uint64_t fingerprint(const CoverageStudy& study) {
@@ -100,6 +131,7 @@ std::uint64_t fingerprint(const CoverageStudy& study) {
   hash.add(study.n_windows());
   hash.add(study.spec().sensing.ticks_per_window);
   hash.add(study.spec().sensing.change_per);
+  add_analog(hash, study);
   return hash.value();
 }
 

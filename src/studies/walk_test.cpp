@@ -8,6 +8,7 @@
 #include "pirsim/core/units.hpp"
 #include "pirsim/pir/motion_detector.hpp"
 #include "pirsim/pir/optics.hpp"
+#include "pirsim/sim/analog_model.hpp"
 
 namespace pirsim::studies {
 namespace {
@@ -27,6 +28,9 @@ WalkTest::WalkTest(SceneSpec scene, WalkTestSpec spec)
       humanoid_(spec_.person),
       floor_(scene_.floor, {}, scene_.meshes, humanoid_.clearance_radius_m()),
       room_(scene_.meshes) {
+  if (sim::AnalogModel::is_needed(scene_, spec_.sensing)) {
+    throw Error(ErrorCode::input, "a walk test knows hard zones only; ask for them by sensing.response: zones");
+  }
   for (const SensorSpec& sensor : scene_.sensors) {
     pir::append(rated_, sensor, scene_.sensor_models.at(sensor.model), spec_.sensing.rays_per_zone);
   }

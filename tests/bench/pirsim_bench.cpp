@@ -1,6 +1,7 @@
 // How fast whole studies run, as CSV: benchmark,case,value,unit. What stands in a case tells what is measured; the
 // machine is described by the first lines. docs/performance.md explains the numbers.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <chrono>
 #include <ctime>
@@ -95,6 +96,27 @@ struct Phase {
   int n_ticks;
 };
 constexpr Phase phases[] = {{"walking", 150}, {"sitting_down", 60}, {"working", 8000}};
+
+/// What the physical response costs beside the hard zones.
+void responses() {
+  for (const Phase& phase : phases) {
+    std::array<double, 2> fresh{}, known{};
+    for (const bool analog : {false, true}) {
+      const std::vector<std::string> overrides{analog ? "sensing.response=analog" : "sensing.response=zones"};
+      const Model model = study_a(rt::TracerKind::direct, overrides);
+      fresh[analog] = least(3, [&] {
+        const Model first = study_a(rt::TracerKind::direct, overrides);
+        return tick_ns(first, at_phase(first, 3, phase.name), phase.n_ticks);
+      });
+      known[analog] = least(5, [&] { return tick_ns(model, at_phase(model, 3, phase.name), phase.n_ticks); });
+    }
+    const std::string name(phase.name);
+    report("response", name + ", analog, first run", fresh[1], "ns");
+    report("response", name + ", analog, postures known", known[1], "ns");
+    report("response", name + ", analog to zones, first run", fresh[1] / fresh[0], "1");
+    report("response", name + ", analog to zones, postures known", known[1] / known[0], "1");
+  }
+}
 
 void ticks_by_phase() {
   const Model direct = study_a(rt::TracerKind::direct);
@@ -339,7 +361,7 @@ int main(int argc, char** argv) {
   for (const Section& section :
        {Section{"start-up", start_up}, Section{"first", first_runs}, Section{"anew", postures_anew},
         Section{"limit", limit}, Section{"people", people}, Section{"known", people_known},
-        Section{"ticks", ticks_by_phase}, Section{"runs", runs_per_second}}) {
+        Section{"ticks", ticks_by_phase}, Section{"responses", responses}, Section{"runs", runs_per_second}}) {
     if (wanted.empty() || wanted == section.name) section.run();
   }
 }

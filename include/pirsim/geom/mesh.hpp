@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct TriMesh {
   std::vector<Vec3> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles{};
   Solidity solidity = Solidity::solid;
+  std::optional<double> temperature_c = std::nullopt;  ///< of its surface, where it differs from the room's
 };
 
 /// What clean-up found in a mesh.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pirsim/schema/sample.hpp"
+#include "pirsim/schema/trace_row.hpp"
 
 namespace pirsim::io {
 
@@ -39,6 +40,18 @@ class ZoneCsvWriter {
   std::ostream& out_;
   std::vector<std::string> sensors_;
   std::vector<std::size_t> zones_begin_;
+};
+
+/// What analog sensors received, made of it and why: one line a tick and sensor.
+class TraceCsvWriter {
+ public:
+  TraceCsvWriter(std::ostream& out, std::vector<std::string> sensors, int tick_rate_hz);
+  void write(int replicate, std::string_view trial, const TraceRow& row);
+
+ private:
+  std::ostream& out_;
+  std::vector<std::string> sensors_;
+  int tick_rate_hz_;
 };
 
 }  // namespace pirsim::io

@@ -18,15 +18,15 @@ class WindowReader {
   /// lead_ticks: (n_sensors) ticks before the end of a row at which a sensor is read, each in [0, ticks_per_window).
   WindowReader(std::vector<std::int32_t> lead_ticks, std::int32_t ticks_per_window);
 
-  /// Tick `tick` (from 1 on) has ended; triggers: (n_sensors), not 0 where the output was on.
-  void advance(std::int64_t tick, std::span<const std::uint8_t> triggers) noexcept;
+  /// One tick more has ended; triggers: (n_sensors), not 0 where the output was on.
+  void advance(std::span<const std::uint8_t> triggers) noexcept;
   /// (n_sensors) what was read last: 1 for motion, at first 0.
   [[nodiscard]] std::span<const std::uint8_t> readings() const noexcept { return readings_; }
   bool operator==(const WindowReader&) const = default;
 
  private:
-  std::vector<std::int32_t> lead_ticks_;
   std::int32_t ticks_per_window_;
+  std::vector<std::int32_t> ticks_left_;  ///< (n_sensors) until the sensor is read
   std::vector<std::uint8_t> latches_, readings_;
 };
 

@@ -21,6 +21,7 @@ struct XShapesSpec {
   std::vector<double> heights_m{1.0, 0.25};  ///< of the crosses' middles over the floor
   double bar_length_m = 0.40;                ///< from tip to tip, caps included
   double bar_width_m = 0.07;                 ///< diameter
+  double temperature_c = 33.5;               ///< for the analog response (`assumed`: as skin; 24 to 36.9 tried)
   std::vector<TurnSpec> turns{{{0.0, 1.0, 0.0}, 100.0}, {{0.0, 0.0, 1.0}, 100.0}};
 };
 

@@ -12,6 +12,7 @@
 #include "pirsim/geom/frame.hpp"
 #include "pirsim/geom/shapes.hpp"
 #include "pirsim/schema/effect_spec.hpp"
+#include "pirsim/schema/response_spec.hpp"
 
 namespace pirsim {
 
@@ -31,11 +32,22 @@ struct DualPolaritySpec {
   double low_pass_hz = 7.0;
 };
 
+/// When in a window each sensor is asked whether it has triggered since it was last asked.
+enum class Reader {
+  in_step,      ///< all at the window's end: a row tells its own window
+  free_running  ///< each at a moment of its own, drawn once a run: as hardware that isn't in step with the rows
+};
+
 struct SensingSpec {
   int tick_rate_hz = 50;
   int ticks_per_window = 50;  ///< a row and its bits cover this many ticks
   RaysPerZone rays_per_zone = RaysPerZone::five;
   ChangePer change_per = ChangePer::cluster;
+  Reader reader = Reader::in_step;
+  std::optional<Response> response;  ///< of all sensors; otherwise each its own
+  double ambient_c = 20.0;           ///< of surfaces and of the air, where the scene says nothing else
+  /// Rays of a zone in the physical response (docs/physics/analog.md has the convergence).
+  int analog_rays_per_zone = 34;
   // Set by effects alone.
   double edge_sigma_deg = 0.0;  ///< how soft the edges of zones are; 0: hard
   std::vector<ReflectionSpec> reflections;
@@ -119,6 +131,16 @@ struct ScriptedAction {
 /// Meshes by the name of the body part (schema/body_part_names.hpp) that they stand for, in that part's frame.
 using BodyMeshes = std::map<std::string, MeshSolid, std::less<>>;
 
+/// How warm a person's surface is, for the physical response.
+struct WarmthSpec {
+  double skin_c = 33.5;  ///< 33.5 to 36.9
+  /// Insulation of what covers the parts that aren't bare, clo: 0.5 light summer, 1 a suit (`assumed`; 0 to 2 tried).
+  double clothing_clo = 1.0;
+  /// Parts that show skin (`assumed`; the head alone tried as well).
+  std::vector<std::string> bare{"head", "left_forearm", "right_forearm"};
+  std::map<std::string, double> parts_c;  ///< surface temperatures that are known, by part
+};
+
 /// A person; lengths follow from stature by the fractions of Drillis & Contini (1966).
 struct PersonSpec {
   std::string id;
@@ -131,6 +153,7 @@ struct PersonSpec {
   PersonRole role = PersonRole::subject;
   std::string body_mesh_file;  ///< glTF, or empty; relative to the script
   BodyMeshes body_meshes;      ///< what was read from it: parts without a mesh stay primitive solids
+  WarmthSpec warmth;
   std::vector<ScriptedAction> actions;
 };
 

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "pirsim/geom/frame.hpp"
+#include "pirsim/schema/detector_spec.hpp"
+#include "pirsim/schema/response_spec.hpp"
 
 namespace pirsim {
 
@@ -30,6 +32,9 @@ struct SensorModelSpec {
   std::string description;
   double plane_m = 1.0;  ///< distance of the plane on which the zones are drawn
   std::vector<ClusterSpec> clusters;
+  Response response = Response::zones;
+  OpticsSpec optics;
+  DetectorSpec detector;  ///< electronics, for the physical response
 };
 
 }  // namespace pirsim

@@ -19,6 +19,7 @@
 #include "pirsim/rt/tracer.hpp"
 #include "pirsim/schema/scene_spec.hpp"
 #include "pirsim/schema/script_spec.hpp"
+#include "pirsim/sim/analog_model.hpp"
 
 namespace pirsim {
 namespace sim {
@@ -41,6 +42,7 @@ struct PersonModel {
   /// Is there room to stand, facing so, with the clearance radius to the sides and half_depth_m before and behind?
   [[nodiscard]] bool can_stand(const Vec2& place, const Vec2& facing, double half_depth_m) const noexcept;
   std::vector<SeatPlan> seats;  ///< (n_actions) of the sit actions; empty plans for the others
+  sim::BodyRadiance radiance{};
 };
 
 struct TrialModel {
@@ -83,6 +85,10 @@ class Model {
   /// What the script's effects do to triggers and rows, before any run.
   [[nodiscard]] const effects::Pipeline& pipeline() const noexcept { return pipeline_; }
   [[nodiscard]] std::unique_ptr<rt::Tracer> make_tracer() const;
+  /// The sensors that answer physically, or null if none does.
+  [[nodiscard]] const sim::AnalogModel* analog() const noexcept { return analog_.get(); }
+  /// Of the analog sensors' rays; only if there are any.
+  [[nodiscard]] std::unique_ptr<rt::Tracer> make_power_tracer() const;
   /// Of one's own for as long as one holds it; goes back, with what it remembers, for others to use. Safe to call from
   /// any thread.
   [[nodiscard]] std::shared_ptr<sim::Lookout> borrow_lookout() const;
@@ -100,6 +106,7 @@ class Model {
   pir::EdgeDraw edge_draw_;
   std::optional<pir::PolarityDetector> polarity_;
   effects::Pipeline pipeline_;
+  std::unique_ptr<sim::AnalogModel> analog_;
   struct Pool;
   std::shared_ptr<Pool> idle_lookouts_;  ///< not part of what a Model is: memory that runs hand on
 };

@@ -9,8 +9,10 @@
 
 #include "pirsim/effects/stage.hpp"
 #include "pirsim/geom/ray_bundle.hpp"
+#include "pirsim/pir/window_reader.hpp"
 #include "pirsim/schema/sample.hpp"
 #include "pirsim/sim/actor.hpp"
+#include "pirsim/sim/analog_state.hpp"
 #include "pirsim/sim/model.hpp"
 
 namespace pirsim {
@@ -34,6 +36,8 @@ class State {
   [[nodiscard]] const ZoneSet& zones() const noexcept { return zones_; }
   /// Indices (into scene().seats) of the seats from which somebody rose in the step to this tick.
   [[nodiscard]] const std::vector<std::size_t>& seats_left() const noexcept { return seats_left_; }
+  /// Powers and signals of the analog sensors at the current tick; empty where there are none.
+  [[nodiscard]] const sim::AnalogState& analog() const noexcept { return analog_; }
   /// The reading at the end of the last whole window.
   [[nodiscard]] const Sample& sample() const noexcept { return sample_; }
   /// Every person has carried out all actions and the last window is complete.
@@ -60,8 +64,9 @@ class State {
   pir::EdgeDraw edge_draw_;
   std::optional<pir::PolarityDetector> polarity_;
   effects::Pipeline pipeline_;
+  sim::AnalogState analog_;
   std::vector<std::uint8_t> triggers_;  ///< (n_sensors) at this tick
-  std::vector<std::uint8_t> bits_;      ///< (n_sensors) triggers so far in this window
+  pir::WindowReader reader_;
   Sample sample_;
   std::vector<Presence> others_;           ///< scratch
   std::shared_ptr<sim::Lookout> lookout_;  ///< scratch; a copy of the State borrows its own

@@ -31,6 +31,7 @@ struct ZoneTracks {
   std::vector<ZoneTrack> runs;
   std::size_t n_sensors = 0;
   int ticks_per_window = 50;
+  Reader reader = Reader::in_step;
 };
 
 /// Follows the given runs of a study on up to `threads` threads (0: all cores), with 4 bytes a tick and run.

@@ -11,6 +11,7 @@
 #include "pirsim/rt/room.hpp"
 #include "pirsim/schema/coverage_spec.hpp"
 #include "pirsim/schema/scene_spec.hpp"
+#include "pirsim/sim/analog_model.hpp"
 #include "pirsim/studies/floor_grid.hpp"
 #include "pirsim/studies/turning_target.hpp"
 
@@ -33,6 +34,8 @@ class CoverageStudy {
   [[nodiscard]] const rt::Room& room() const noexcept { return *room_; }
   [[nodiscard]] const RayBundle& rated_rays() const noexcept { return rated_; }
   [[nodiscard]] const RayBundle& clipped_rays() const noexcept { return clipped_; }
+  /// The sensors that answer physically, or null if none does. Their noise is left out: the same square gives the same.
+  [[nodiscard]] const sim::AnalogModel* analog() const noexcept { return analog_.get(); }
   [[nodiscard]] int n_windows() const noexcept { return n_windows_; }
   [[nodiscard]] const std::vector<TriMesh>& taken_out() const noexcept { return taken_out_; }
 
@@ -50,6 +53,7 @@ class CoverageStudy {
   TurningTarget target_;
   std::unique_ptr<rt::Room> room_;
   RayBundle rated_, clipped_;
+  std::unique_ptr<sim::AnalogModel> analog_;
 };
 
 struct CoverageMap {

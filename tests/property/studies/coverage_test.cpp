@@ -8,6 +8,7 @@
 #include "pirsim/io/sensor_reader.hpp"
 #include "pirsim/pir/motion_detector.hpp"
 #include "pirsim/pir/optics.hpp"
+#include "pirsim/pir/planck.hpp"
 #include "support/catch.hpp"
 #include "support/random_scene.hpp"
 #include "support/shipped.hpp"
@@ -259,4 +260,69 @@ TEST_CASE("what is taken out of the room no longer hides anything, and a wrong n
   CHECK(run_coverage(study).counts == open.counts);
   spec.without = {"scren"};
   CHECK_THROWS_AS(CoverageStudy(symmetric_hall({screen}), spec), Error);
+}
+
+namespace {
+
+/// Power by a tracer at every tick, then filter and comparator.
+std::vector<MotionCount> plain_analog_counts(const CoverageStudy& study, const Vec2& point) {
+  const sim::PowerModel& power = study.analog()->power();
+  const auto tracer = rt::make_tracer(rt::TracerKind::embree, {&study.room(), &power.rays().bundle, &power.clipped()});
+  const double tick_s = 1.0 / study.spec().sensing.tick_rate_hz;
+  const double radiance = pir::band_radiance(pir::kelvin(study.spec().target.temperature_c));
+  const Vec3 foot(point.x, study.scene().floor.height_m(), point.y);
+  std::vector<rt::Meeting> met;
+  const auto watts_at = [&](std::int64_t tick) {
+    tracer->find_first(study.target().solids(foot, tick), met);
+    std::vector<sim::PowerSteps> steps(power.n_sensors(), 0);
+    for (const rt::Meeting& each : met) steps[power.sensor_of(each.ray)] += power.power(each.ray, radiance);
+    std::vector<double> watts;
+    for (const sim::PowerSteps step : steps) watts.push_back(static_cast<double>(step) * sim::watts_per_step);
+    return watts;
+  };
+  DetectorSpec silent = study.scene().sensor_models.begin()->second.detector;
+  silent.amplifier.noise_v_pp = 0.0;
+  std::vector<pir::AnalogFilter::Sections> sections;
+  std::vector<pir::Comparator::State> states(power.n_sensors());
+  const pir::Comparator comparator(silent.comparator, tick_s);
+  std::vector<double> before = watts_at(0);
+  for (std::size_t s = 0; s < before.size(); ++s) {
+    sections.push_back(study.analog()->sensors()[s]->silent_filter.at_rest(before[s]));
+  }
+  std::vector<MotionCount> counts(before.size(), 0);
+  std::int64_t tick = 0;
+  for (int window = 0; window < study.n_windows(); ++window) {
+    std::vector<MotionCount> motion(before.size(), 0);
+    for (int i = 0; i < study.spec().sensing.ticks_per_window; ++i) {
+      const std::vector<double> now = watts_at(++tick);
+      for (std::size_t s = 0; s < now.size(); ++s) {
+        const pir::AnalogFilter& filter = study.analog()->sensors()[s]->silent_filter;
+        filter.advance(sections[s], before[s], now[s], 0.0);
+        comparator.advance(states[s], filter.output(sections[s]));
+        if (states[s].on) motion[s] = 1;
+      }
+      before = now;
+    }
+    for (std::size_t s = 0; s < motion.size(); ++s) counts[s] = static_cast<MotionCount>(counts[s] + motion[s]);
+  }
+  return counts;
+}
+
+}  // namespace
+
+TEST_CASE("random squares count the same outputs of analog sensors as a tracer does tick by tick", "[coverage]") {
+  const CoverageStudy study(test::shipped_scene("meeting_room.gltf"),
+                            study_b({"duration_s=6", "sensing.response=analog", "sensing.analog_rays_per_zone=5"}));
+  Draw draw(717);
+  int seen = 0;
+  for (int i = 0; i < 12; ++i) {
+    const auto column = draw.index(static_cast<std::uint32_t>(study.grid().n_columns()));
+    const auto row = draw.index(static_cast<std::uint32_t>(study.grid().n_rows()));
+    const Vec2 centre = study.grid().centre(column, row);
+    const std::vector<MotionCount> counts = study.counts_at(centre);
+    INFO("square at " << centre.x << ", " << centre.y);
+    CHECK(counts == plain_analog_counts(study, centre));
+    for (const auto count : counts) seen += count > 0 ? 1 : 0;
+  }
+  CHECK(seen > 5);
 }

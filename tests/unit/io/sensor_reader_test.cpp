@@ -126,7 +126,7 @@ TEST_CASE("every lens file has the catalogue's number of zones, symmetric about 
   const std::map<std::string, std::size_t> zones{{"EKMC1601111", 64},  {"EKMC1603111", 92}, {"EKMC1604111", 68},
                                                  {"EKMC1606111", 128}, {"EKMC1607111", 32}, {"EKMC1691111", 112},
                                                  {"EKMC1693111", 84},  {"AMN31111", 64},    {"AMN32111", 104},
-                                                 {"AMN33111", 24},     {"AMN34111", 80}};
+                                                 {"AMN33111", 24},     {"AMN34111", 80},    {"DUAL_DOME", 58}};
   const auto is_lens = [](const auto& entry) { return entry.path().extension() == ".yaml"; };
   const auto files = std::filesystem::directory_iterator(sensors);
   CHECK(std::count_if(begin(files), end(files), is_lens) == static_cast<std::ptrdiff_t>(zones.size()));
@@ -196,4 +196,42 @@ TEST_CASE("faults of a sensor file are told with line and column", "[sensor]") {
             .find("f:2:1: error: 'plane_m' has no entry under 'sources'") == 0);
   CHECK(refusal_of("id: X\nplane_m: 2\nsources: {plane_m: 'guess: 2'}\nclusters: []\n")
             .find("expected 'quoted:', 'measured:', 'inferred:' or 'assumed:' in front") != std::string::npos);
+}
+
+TEST_CASE("a file's element, amplifier and comparator are read and what it leaves out keeps its default", "[sensor]") {
+  const std::string zones =
+      "id: X\nplane_m: 2\nrange_m: 4\nclusters:\n  - zones:\n    - corners_m: [[0, 0], [1, 0], [1, 1], [0, 1]]\n";
+  const std::string sources = "sources: {plane_m: 'assumed: a', range_m: 'assumed: b', corners_m: 'assumed: c'";
+  const auto model = model_of(zones +
+                              "element: {thermal_s: 0.5}\namplifier: {order: 3, volts_per_watt: 2e6}\n"
+                              "comparator: {pulse_count: 2, pulse_window_s: 3, pulse_signs: alternating, hold_s: 7}\n" +
+                              sources +
+                              ", thermal_s: 'assumed: d', order: 'assumed: e', volts_per_watt: 'measured: f', "
+                              "pulse_count: 'quoted: g', pulse_window_s: 'quoted: h', pulse_signs: 'quoted: i', "
+                              "hold_s: 'quoted: j'}\n");
+  CHECK(model.detector.element.thermal_s == 0.5);
+  CHECK(model.detector.element.electrical_s == ElementSpec{}.electrical_s);
+  CHECK(model.detector.amplifier.order == 3);
+  CHECK(model.detector.amplifier.volts_per_watt == 2e6);
+  CHECK(model.detector.comparator.pulse_signs == PulseSigns::alternating);
+  CHECK(model.detector.comparator.hold_s == 7.0);
+  CHECK(model.detector.comparator.blind_s == 0.0);
+  CHECK(refusal_of(zones + "element: {thermal_s: 0.5}\n" + sources + "}\n") ==
+        "f:7:11: error: 'thermal_s' has no entry under 'sources'");
+}
+
+TEST_CASE("detectors that could never work are refused with their place", "[sensor]") {
+  const std::string zones =
+      "id: X\nplane_m: 2\nrange_m: 4\nclusters:\n  - zones:\n    - corners_m: [[0, 0], [1, 0], [1, 1], [0, 1]]\n"
+      "sources: {plane_m: 'assumed: a', range_m: 'assumed: b', corners_m: 'assumed: c', low_hz: 'assumed: d', "
+      "high_hz: 'assumed: d', pulse_count: 'assumed: d', positive_v: 'assumed: d', offset_v: 'assumed: d'}\n";
+  CHECK(refusal_of(zones + "amplifier: {low_hz: 3, high_hz: 2}\n") ==
+        "f:8:33: error: amplifier: expected high_hz above low_hz");
+  CHECK(refusal_of(zones + "amplifier: {offset_v: 0.2}\n") ==
+        "f:8:23: error: amplifier: expected offset_v between lowest_v and highest_v");
+  CHECK(refusal_of(zones + "comparator: {pulse_count: 2}\n") ==
+        "f:8:27: error: comparator: several pulses need a pulse_window_s");
+  CHECK(refusal_of(zones + "comparator: {positive_v: 0.8}\n") ==
+        "f:8:13: error: comparator: the output saturates before it reaches a threshold");
+  CHECK(refusal_of(zones + "comparator: {hold: 2}\n").find("hold_s") != std::string::npos);
 }

@@ -16,7 +16,7 @@ std::vector<int> rows_after_trigger(std::int32_t lead, std::int64_t trigger_tick
   std::vector<int> read;
   for (std::int64_t tick = 1; tick <= 5 * rows; ++tick) {
     const std::array<std::uint8_t, 1> trigger{static_cast<std::uint8_t>(tick == trigger_tick)};
-    reader.advance(tick, trigger);
+    reader.advance(trigger);
     if (tick % 5 == 0) read.push_back(reader.readings()[0]);
   }
   return read;

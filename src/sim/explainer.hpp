@@ -1,0 +1,42 @@
+// Why does an analog sensor's signal stand where it does?
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "pirsim/pir/analog_filter.hpp"
+#include "pirsim/schema/trace_row.hpp"
+#include "pirsim/sim/state.hpp"
+#include "sim/power_meter.hpp"
+
+namespace pirsim::sim {
+
+/// Follows one run tick by tick. Gives every zone and body part an element and amplifier of its own: they are linear.
+class Explainer {
+ public:
+  explicit Explainer(const Model& model);
+  /// After each step_tick(), from the first on; appends one row an analog sensor.
+  void explain(const State& state, std::vector<TraceRow>& rows);
+
+ private:
+  /// Zone of the bundle, person, part.
+  using Source = std::tuple<std::uint32_t, std::uint32_t, body::Part>;
+  struct Share {
+    pir::AnalogFilter::Sections sections{};
+    double before_w = 0.0, now_w = 0.0;
+  };
+
+  void advance();
+  [[nodiscard]] std::uint32_t sensor_of(std::uint32_t zone) const;
+
+  const Model& model_;
+  PowerMeter meter_;
+  std::vector<std::optional<pir::AnalogFilter>> filters_;  ///< (n_sensors) without noise
+  std::vector<std::uint32_t> zone_of_ray_;
+  std::map<Source, Share> shares_;  ///< of all that ever brought power
+  std::vector<PowerShare> met_;     ///< scratch
+};
+
+}  // namespace pirsim::sim

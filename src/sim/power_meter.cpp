@@ -1,0 +1,71 @@
+#include "sim/power_meter.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "pirsim/sim/state.hpp"
+
+namespace pirsim::sim {
+
+PowerMeter::PowerMeter(const Model& model)
+    : power_(model.analog()->power()),
+      kind_(model.tracer()),
+      tracer_(model.make_power_tracer()),
+      memory_(power_.n_sensors()),
+      row_(power_.n_sensors()) {}
+
+void PowerMeter::measure(const std::vector<Actor>& actors, std::span<PowerSteps> powers) {
+  std::ranges::fill(powers, PowerSteps{0});
+  const auto n_present = std::ranges::count_if(actors, &Actor::present);
+  // People hide one another, so only who is alone is remembered. The slow tracers are there to be compared with.
+  if (n_present != 1 || kind_ != rt::TracerKind::direct) {
+    if (n_present > 0) add(actors, powers);
+    return;
+  }
+  const auto alone = std::ranges::find_if(actors, &Actor::present);
+  const Actor& actor = *alone;
+  const auto person = static_cast<std::size_t>(alone - actors.begin());
+  memory_.make_room_for(actors.size());
+  if (const auto known = memory_.find(person, &actor.person().humanoid, actor.motion().outline()); !known.empty()) {
+    std::ranges::transform(known, powers.begin(),
+                           [](PostureMemory::Word word) { return std::bit_cast<PowerSteps>(word); });
+    return;
+  }
+  add(actors, powers);
+  std::ranges::transform(powers, row_.begin(),
+                         [](PowerSteps power) { return std::bit_cast<PostureMemory::Word>(power); });
+  memory_.remember(person, row_);
+}
+
+void PowerMeter::add(const std::vector<Actor>& actors, std::span<PowerSteps> powers) {
+  trace(actors);
+  for (const auto& [ray, solid] : met_) {
+    const BodyRadiance& radiance = *radiances_[solid / body::n_parts];
+    powers[power_.sensor_of(ray)] += power_.power(ray, radiance[solid % body::n_parts]);
+  }
+}
+
+void PowerMeter::explain(const std::vector<Actor>& actors, std::vector<PowerShare>& shares) {
+  trace(actors);
+  shares.clear();
+  for (const auto& [ray, solid] : met_) {
+    const std::size_t person = solid / body::n_parts, part = solid % body::n_parts;
+    shares.push_back(
+        {ray, people_[person], static_cast<body::Part>(part), power_.power(ray, (*radiances_[person])[part])});
+  }
+}
+
+void PowerMeter::trace(const std::vector<Actor>& actors) {
+  solids_.clear();
+  radiances_.clear();
+  people_.clear();
+  for (std::uint32_t i = 0; i < actors.size(); ++i) {
+    if (!actors[i].present()) continue;
+    append_solids(actors[i], solids_);
+    radiances_.push_back(&actors[i].person().radiance);
+    people_.push_back(i);
+  }
+  tracer_->find_first(solids_, met_);
+}
+
+}  // namespace pirsim::sim

@@ -1,0 +1,49 @@
+// The power that each sensor receives at a tick, with the memory that makes it fast.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "pirsim/rt/tracer.hpp"
+#include "pirsim/sim/actor.hpp"
+#include "pirsim/sim/model.hpp"
+#include "pirsim/sim/power_model.hpp"
+#include "sim/posture_memory.hpp"
+
+namespace pirsim::sim {
+
+/// Part of the power of one sensor, as far as one zone and one person's part bring it.
+struct PowerShare {
+  std::uint32_t ray = 0;
+  std::uint32_t person = 0;  ///< index of the actor
+  body::Part part = body::Part::pelvis;
+  PowerSteps power = 0;
+};
+
+/// Belongs to one thread at a time and to one Model; what it has measured before changes no result.
+class PowerMeter {
+ public:
+  explicit PowerMeter(const Model& model);
+  /// powers: (n_sensors) overwritten.
+  void measure(const std::vector<Actor>& actors, std::span<PowerSteps> powers);
+  /// Ray by ray, without memory.
+  void explain(const std::vector<Actor>& actors, std::vector<PowerShare>& shares);
+
+ private:
+  void add(const std::vector<Actor>& actors, std::span<PowerSteps> powers);
+  void trace(const std::vector<Actor>& actors);
+
+  const PowerModel& power_;
+  rt::TracerKind kind_;
+  std::unique_ptr<rt::Tracer> tracer_;
+  PostureMemory memory_;
+  // Scratch.
+  std::vector<PosedShape> solids_;
+  std::vector<const BodyRadiance*> radiances_;  ///< (n_people in the scene)
+  std::vector<std::uint32_t> people_;           ///< likewise: indices of actors
+  std::vector<rt::Meeting> met_;
+  std::vector<PostureMemory::Word> row_;
+};
+
+}  // namespace pirsim::sim

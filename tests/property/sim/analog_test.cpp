@@ -1,0 +1,203 @@
+// The physical response from people to powers, on the shipped meeting room.
+#include <algorithm>
+#include <cmath>
+
+#include "pirsim/pir/planck.hpp"
+#include "pirsim/sim/state.hpp"
+#include "support/catch.hpp"
+#include "support/fine_mesh.hpp"
+#include "support/shipped.hpp"
+
+using namespace pirsim;
+using pirsim::test::act;
+using pirsim::test::shipped_scene;
+
+namespace {
+
+using Powers = std::vector<std::vector<sim::PowerSteps>>;  ///< (n_ticks x n_sensors)
+
+ScriptSpec walkers(int n_people) {
+  std::vector<PersonSpec> people;
+  const std::vector<std::pair<Vec2, Vec2>> ways{{{1.0, -0.6}, {2.2, -3.6}}, {{6.0, -3.6}, {5.2, -0.8}}};
+  for (int i = 0; i < n_people; ++i) {
+    const auto& [from, to] = ways[static_cast<std::size_t>(i)];
+    people.push_back(test::person("p" + std::to_string(i), {act(action::Appear{from, 0.0}), act(action::Walk{{to}})}));
+  }
+  ScriptSpec script = test::script_of(people);
+  script.sensing.response = Response::analog;
+  return script;
+}
+
+Powers powers_of(const SceneSpec& scene, const ScriptSpec& script, rt::TracerKind kind = rt::fastest_tracer) {
+  const Model model = compile(scene, script, {kind});
+  State state(model, 0);
+  Powers powers;
+  while (!state.finished()) {
+    step_tick(model, state);
+    powers.emplace_back(state.analog().powers().begin(), state.analog().powers().end());
+  }
+  return powers;
+}
+
+double sum_of_squares(const Powers& powers) {
+  double sum = 0.0;
+  for (const auto& row : powers) {
+    for (const sim::PowerSteps power : row) sum += std::pow(static_cast<double>(power) * sim::watts_per_step * 1e9, 2);
+  }
+  return sum;
+}
+
+/// Of bare skin before a background.
+double contrast(double background_c) {
+  return pir::band_radiance(pir::kelvin(WarmthSpec{}.skin_c)) - pir::band_radiance(pir::kelvin(background_c));
+}
+
+/// Every power is `ratio` times what it was, but for a step of rounding a ray.
+void check_ratio(const Powers& now, const Powers& before, double ratio) {
+  REQUIRE(now.size() == before.size());
+  REQUIRE(sum_of_squares(before) > 0.0);
+  for (std::size_t tick = 0; tick < now.size(); ++tick) {
+    for (std::size_t sensor = 0; sensor < now[tick].size(); ++sensor) {
+      REQUIRE(std::abs(static_cast<double>(now[tick][sensor]) - ratio * static_cast<double>(before[tick][sensor])) <
+              1e4);
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("in a room where everything is equally warm no sensor receives any power", "[sim][analog]") {
+  const SceneSpec scene = shipped_scene("meeting_room.gltf");
+  ScriptSpec script = walkers(2);
+  script.sensing.ambient_c = 31.0;
+  for (PersonSpec& person : script.trials[0].people) person.warmth.skin_c = 31.0;
+  const Powers furnace = powers_of(scene, script);
+  CHECK(std::ranges::all_of(furnace, [](const auto& row) { return std::ranges::count(row, 0) == 5; }));
+  script.trials[0].people[0].warmth.skin_c = 31.5;
+  CHECK(sum_of_squares(powers_of(scene, script)) > 0.0);
+}
+
+TEST_CASE("the sign of the power changes as the room gets warmer than its people", "[sim][analog]") {
+  const SceneSpec scene = shipped_scene("meeting_room.gltf");
+  ScriptSpec script = walkers(1);
+  double before = 1e300;
+  for (const double ambient_c : {15.0, 20.0, 25.0, 30.0, 33.0}) {
+    script.sensing.ambient_c = ambient_c;
+    const double now = sum_of_squares(powers_of(scene, script));
+    CHECK(now < before);
+    before = now;
+  }
+  script.trials[0].people[0].warmth.clothing_clo = 0.0;
+  script.sensing.ambient_c = 20.0;
+  const Powers cool = powers_of(scene, script);
+  script.sensing.ambient_c = 40.0;
+  check_ratio(powers_of(scene, script), cool, contrast(40.0) / contrast(20.0));
+}
+
+TEST_CASE("swapping the polarity of all zones negates every power", "[sim][analog]") {
+  const SceneSpec scene = shipped_scene("meeting_room.gltf");
+  SceneSpec swapped = scene;
+  for (auto& [id, model] : swapped.sensor_models) {
+    for (ClusterSpec& cluster : model.clusters) {
+      for (ZoneSpec& zone : cluster.zones) zone.polarity = -zone.polarity;
+    }
+  }
+  const Powers powers = powers_of(scene, walkers(1)), negative = powers_of(swapped, walkers(1));
+  REQUIRE(powers.size() == negative.size());
+  CHECK(sum_of_squares(powers) > 0.0);
+  for (std::size_t tick = 0; tick < powers.size(); ++tick) {
+    for (std::size_t sensor = 0; sensor < 5; ++sensor) REQUIRE(powers[tick][sensor] == -negative[tick][sensor]);
+  }
+}
+
+TEST_CASE("warm surfaces are the background before which people are seen", "[sim][analog]") {
+  const SceneSpec scene = shipped_scene("meeting_room.gltf");
+  SceneSpec heated = scene;
+  for (TriMesh& mesh : heated.meshes) mesh.temperature_c = 60.0;
+  ScriptSpec script = walkers(1);
+  script.trials[0].people[0].warmth.clothing_clo = 0.0;
+  check_ratio(powers_of(heated, script), powers_of(scene, script), contrast(60.0) / contrast(20.0));
+}
+
+TEST_CASE("all tracers give the same powers and signals of two people one of whom is a mesh", "[sim][analog]") {
+  const SceneSpec scene = shipped_scene("meeting_room.gltf");
+  ScriptSpec script = walkers(2);
+  script.sensing.analog_rays_per_zone = 13;
+  script.trials[0].people[1].body_meshes["torso"] =
+      testing::mesh_solid(testing::box_mesh({-0.2, -0.25, -0.12}, {0.2, 0.25, 0.12}));
+  for (PersonSpec& person : script.trials[0].people) person.actions[1] = act(action::Wait{1.0});
+  script.trials[0].people[0].actions.push_back(act(action::Walk{{{2.0, -0.8}}}));
+  std::vector<RunResult> results;
+  std::vector<Powers> powers;
+  for (const auto kind : {rt::TracerKind::reference, rt::TracerKind::embree, rt::TracerKind::direct}) {
+    powers.push_back(powers_of(scene, script, kind));
+    results.push_back(run_once(compile(scene, script, {kind}), 0));
+  }
+  CHECK(sum_of_squares(powers[0]) > 0.0);
+  CHECK(powers[1] == powers[0]);
+  CHECK(powers[2] == powers[0]);
+  CHECK(results[1].samples == results[0].samples);
+  CHECK(results[2].samples == results[0].samples);
+}
+
+TEST_CASE("a copied state with analog sensors goes on as the original does", "[sim][analog]") {
+  const Model model = compile(shipped_scene("meeting_room.gltf"), walkers(2));
+  State state(model, 0);
+  for (int i = 0; i < 70; ++i) step_tick(model, state);
+  State copy = state;
+  while (!state.finished()) {
+    step_tick(model, state);
+    step_tick(model, copy);
+    REQUIRE(copy.sample() == state.sample());
+    for (std::size_t i = 0; i < 5; ++i) REQUIRE(copy.analog().detectors()[i] == state.analog().detectors()[i]);
+  }
+}
+
+TEST_CASE("a free-running reader tells the same triggers as one in step and at most one row later", "[sim][analog]") {
+  const SceneSpec scene = shipped_scene("meeting_room.gltf");
+  ScriptSpec script = walkers(1);
+  const RunResult in_step = run_once(compile(scene, script), 0);
+  script.sensing.reader = Reader::free_running;
+  const RunResult late = run_once(compile(scene, script), 0);
+  REQUIRE(late.samples.size() == in_step.samples.size());
+  CHECK(late.samples != in_step.samples);
+  for (std::size_t row = 0; row < late.samples.size(); ++row) {
+    for (std::size_t sensor = 0; sensor < 5; ++sensor) {
+      if (late.samples[row].bits[sensor] == 0) continue;
+      CHECK((in_step.samples[row].bits[sensor] != 0 || (row > 0 && in_step.samples[row - 1].bits[sensor] != 0)));
+    }
+  }
+}
+
+TEST_CASE("a trace explains every output and its shares stay within the signal's sum", "[sim][analog]") {
+  const Model model = compile(shipped_scene("meeting_room.gltf"), walkers(2));
+  const RunResult plain = run_once(model, 0);
+  const RunResult traced = run_once(model, 0, Record::samples, Trace::signals);
+  CHECK(traced.samples == plain.samples);
+  CHECK(plain.trace.empty());
+  REQUIRE(traced.trace.size() % 5 == 0);
+  std::size_t n_on = 0;
+  for (const TraceRow& row : traced.trace) {
+    if (row.output == 0) continue;
+    ++n_on;
+    CHECK((row.person == "p0" || row.person == "p1"));
+    CHECK_FALSE(row.part.empty());
+    CHECK(row.zone < 68);
+    CHECK(std::abs(row.share_v) > 0.02);  // noise alone doesn't reach a threshold
+  }
+  CHECK(n_on > 50);
+}
+
+TEST_CASE("zones decide unless a sensor or the study asks for the physical response", "[sim][analog]") {
+  SceneSpec scene = shipped_scene("meeting_room.gltf");
+  ScriptSpec script = walkers(1);
+  const RunResult analog = run_once(compile(scene, script), 0);
+  script.sensing.response.reset();
+  const RunResult zones = run_once(compile(scene, script), 0);
+  CHECK(compile(scene, script).analog() == nullptr);
+  CHECK(analog.samples != zones.samples);
+  scene.sensor_models.begin()->second.response = Response::analog;
+  CHECK(run_once(compile(scene, script), 0).samples == analog.samples);
+  script.sensing.response = Response::zones;
+  CHECK(run_once(compile(scene, script), 0).samples == zones.samples);
+}
