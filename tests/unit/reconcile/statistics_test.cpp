@@ -1,4 +1,5 @@
 #include "pirsim/reconcile/statistics.hpp"
+#include "pirsim/core/random.hpp"
 
 #include <cmath>
 
