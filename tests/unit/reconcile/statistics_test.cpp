@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "pirsim/core/random.hpp"
+
 #include "support/catch.hpp"
 
 using namespace pirsim;
