@@ -1,5 +1,4 @@
 #include "pirsim/reconcile/statistics.hpp"
-#include "pirsim/core/random.hpp"
 
 #include <cmath>
 
