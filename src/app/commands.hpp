@@ -15,6 +15,7 @@ void status(const CampaignOptions& options);
 void merge(const CampaignOptions& options);
 void reconcile_data(const Inputs& inputs, const ReconcileOptions& options);
 void list_effects(const EffectsOptions& options);
+void reconcile_selftest(const Inputs& inputs, const ReconcileOptions& options, const SelftestOptions& selftest);
 void export_gltf(const Inputs& inputs, const ExportOptions& options);
 
 }  // namespace pirsim::app

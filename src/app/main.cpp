@@ -170,9 +170,7 @@ void add_campaign_options(CLI::App& command, CampaignOptions& options) {
 }
 
 void add_reconcile_options(CLI::App& command, ReconcileOptions& options) {
-  command.add_option("--measured", options.measured, "rows or sums from the real room, CSV")
-      ->option_text("FILE")
-      ->required();
+  command.add_option("--measured", options.measured, "rows or sums from the real room, CSV")->option_text("FILE");
   command.add_option("-o,--out", options.output, "folder for report and patched script (default: reconcile)")
       ->option_text("DIR");
   command.add_option("--table", options.table, "folder that keeps the reference table (default: DIR/table)")
@@ -191,6 +189,19 @@ void add_reconcile_options(CLI::App& command, ReconcileOptions& options) {
   command.add_option("--analysis-seed", options.seed, "of everything random in the analysis (default: 1)")
       ->option_text("N");
   command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
+}
+
+void add_selftest_options(CLI::App& command, SelftestOptions& options) {
+  command.add_option("--data", options.kind, "what is planted in: series or sums (default: series)")
+      ->option_text("KIND")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, SelftestOptions::Kind>{
+          {"series", SelftestOptions::Kind::series}, {"sums", SelftestOptions::Kind::sums}}));
+  command.add_option("--runs", options.runs, "runs of every trial (default: 1)")
+      ->option_text("N")
+      ->check(CLI::Range(1, 100));
+  command.add_option("--nulls", options.nulls, "datasets with nothing hidden (default: 60)")->option_text("N");
+  command.add_option("--planted", options.planted, "datasets of every effect and strength (default: 10)")
+      ->option_text("N");
 }
 
 std::string version_text() {
@@ -213,6 +224,7 @@ int run_command_line(int argc, char** argv) {
   PlacementOptions placement_options;
   ReconcileOptions reconcile_options;
   EffectsOptions effects_options;
+  SelftestOptions selftest_options;
   add_inputs(app, inputs);
   add_run_options(app, run_options);
   CLI::App* run_command = app.add_subcommand("run", "run the study (the default)");
@@ -252,6 +264,12 @@ int run_command_line(int argc, char** argv) {
       app.add_subcommand("reconcile", "where model and measurement disagree, and which effect is missing");
   add_inputs(*reconcile_command, inputs);
   add_reconcile_options(*reconcile_command, reconcile_options);
+  reconcile_command->require_subcommand(0, 1);
+  CLI::App* selftest_command =
+      reconcile_command->add_subcommand("selftest", "hide effects in simulated data and see which are found");
+  add_inputs(*selftest_command, inputs);
+  add_reconcile_options(*selftest_command, reconcile_options);
+  add_selftest_options(*selftest_command, selftest_options);
 
   try {
     app.parse(argc, argv);
@@ -279,6 +297,8 @@ int run_command_line(int argc, char** argv) {
     coverage(inputs, coverage_options);
   } else if (*walk_test_command) {
     walk_test(inputs, walk_test_options);
+  } else if (*selftest_command) {
+    reconcile_selftest(inputs, reconcile_options, selftest_options);
   } else if (*reconcile_command) {
     reconcile_data(inputs, reconcile_options);
   } else if (*placements_command) {

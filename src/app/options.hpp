@@ -86,6 +86,12 @@ struct EffectsOptions {
   std::string format = "text";
 };
 
+struct SelftestOptions {
+  enum class Kind { series, sums } kind = Kind::series;
+  int runs = 1;
+  std::uint32_t nulls = 60, planted = 10;
+};
+
 struct ExportOptions {
   std::filesystem::path output = "run.glb";
   std::string trial;

@@ -11,6 +11,7 @@
 #include "pirsim/reconcile/measured.hpp"
 #include "pirsim/reconcile/outputs.hpp"
 #include "pirsim/reconcile/reconcile.hpp"
+#include "pirsim/reconcile/selftest.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -37,9 +38,56 @@ reconcile::Settings settings_of(const ReconcileOptions& options) {
   return settings;
 }
 
+/// Tells stages and progress on standard error.
+class Teller {
+ public:
+  explicit Teller(Verbosity verbosity) : verbosity_(verbosity) {}
+  [[nodiscard]] reconcile::Observer observer() {
+    reconcile::Observer observer;
+    observer.stage = [this](const std::string& stage) {
+      progress_.reset();
+      told_ = 0;
+      if (verbosity_ != Verbosity::quiet) std::cerr << stage << " ...\n";
+    };
+    observer.progress = [this](std::uint32_t done, std::uint32_t total) {
+      if (!progress_) progress_.emplace(total, verbosity_, "worlds");
+      for (; told_ < done; ++told_) progress_->run_finished();
+    };
+    return observer;
+  }
+  void finish() { progress_.reset(); }
+
+ private:
+  Verbosity verbosity_;
+  std::optional<Progress> progress_;
+  std::uint32_t told_ = 0;
+};
+
 }  // namespace
 
+void reconcile_selftest(const Inputs& inputs, const ReconcileOptions& options, const SelftestOptions& selftest) {
+  const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
+  const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
+  const auto kind = selftest.kind == SelftestOptions::Kind::series ? reconcile::Measured::Kind::series
+                                                                   : reconcile::Measured::Kind::sums;
+  Teller teller(inputs.verbosity);
+  const reconcile::SelftestResult result = reconcile::selftest(
+      scene, script, {settings_of(options), kind, selftest.runs, selftest.nulls, selftest.planted}, teller.observer());
+  teller.finish();
+  std::cout << reconcile::to_markdown(result);
+  require_written();
+  std::error_code unknown;
+  std::filesystem::create_directories(options.output, unknown);
+  io::AtomicFile cases(options.output / "selftest.csv"), text(options.output / "selftest.md");
+  cases.stream() << reconcile::to_csv(result);
+  text.stream() << reconcile::to_markdown(result);
+  cases.commit();
+  text.commit();
+}
+
 void reconcile_data(const Inputs& inputs, const ReconcileOptions& options) {
+  if (options.measured.empty())
+    throw Error(ErrorCode::usage, "--measured FILE is missing; see pirsim reconcile --help");
   const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
@@ -50,19 +98,9 @@ void reconcile_data(const Inputs& inputs, const ReconcileOptions& options) {
   }
   const reconcile::Settings settings = settings_of(options);
 
-  std::optional<Progress> progress;
-  std::uint32_t told = 0;
-  reconcile::Observer observer;
-  observer.stage = [&](const std::string& stage) {
-    progress.reset();
-    if (inputs.verbosity != Verbosity::quiet) std::cerr << stage << " ...\n";
-  };
-  observer.progress = [&](std::uint32_t done, std::uint32_t total) {
-    if (!progress) progress.emplace(total, inputs.verbosity, "worlds");
-    for (; told < done; ++told) progress->run_finished();
-  };
-  const reconcile::Outcome outcome = reconcile::reconcile(scene, script, measured, settings, observer);
-  progress.reset();
+  Teller teller(inputs.verbosity);
+  const reconcile::Outcome outcome = reconcile::reconcile(scene, script, measured, settings, teller.observer());
+  teller.finish();
   std::cout << outcome.sentence << '\n';
   require_written();
   reconcile::write_outputs(options.output, outcome, measured, script, settings,

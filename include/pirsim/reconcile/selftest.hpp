@@ -1,0 +1,68 @@
+// Does the workflow find what was hidden? Effects are planted in simulated data that no table has seen.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pirsim/reconcile/reconcile.hpp"
+#include "pirsim/stats/intervals.hpp"
+
+namespace pirsim::reconcile {
+
+struct SelftestSettings {
+  Settings analysis;
+  Measured::Kind kind = Measured::Kind::series;
+  int n_replicates = 1;          ///< runs of every trial in a planted dataset
+  std::uint32_t n_nulls = 60;    ///< datasets with nothing hidden
+  std::uint32_t n_planted = 10;  ///< datasets of every effect and strength
+};
+
+enum class Strength { none, weak, medium, strong };  ///< thirds of the prior, by distance from off
+[[nodiscard]] std::string_view name(Strength strength) noexcept;
+
+/// One dataset and what became of it.
+struct PlantedCase {
+  std::string truth;  ///< "nothing" or an effect
+  Strength strength = Strength::none;
+  EffectSpec effect;
+  Verdict verdict = Verdict::no_disagreement;
+  std::vector<std::string> named;
+  std::string likeliest;         ///< entry with the greatest probability
+  double p = 1.0;                ///< of the global test
+  std::size_t n_parameters = 0;  ///< fitted, if the right effect was named
+  std::size_t n_covered = 0;     ///< of them, whose interval holds the truth
+};
+
+/// A share with its exact 95 % interval.
+struct Rate {
+  std::string what;
+  std::size_t hits = 0, of = 0;
+  stats::Interval interval;  ///< empty (0 to 1) without any case
+  [[nodiscard]] double value() const noexcept {
+    return of == 0 ? 0.0 : static_cast<double>(hits) / static_cast<double>(of);
+  }
+};
+
+struct SelftestResult {
+  std::vector<PlantedCase> cases;
+  std::vector<std::string> entries;  ///< of the table, nothing first
+  double calibration_error = 0.0;
+};
+
+[[nodiscard]] SelftestResult selftest(const SceneSpec& scene, const ScriptSpec& script,
+                                      const SelftestSettings& settings, const Observer& observer = {});
+
+/// The design's rates: alarms and names on nulls, power, right name, right family, wrong name, truth in the set,
+/// coverage.
+[[nodiscard]] std::vector<Rate> rates_of(const SelftestResult& result);
+/// Of one effect and strength: how often a disagreement is seen, and how often the effect is then in the set.
+[[nodiscard]] std::vector<Rate> power_of(const SelftestResult& result, const std::string& effect);
+/// (n_entries x n_entries) row: truth, column: likeliest entry; shares of the row, of cases with a disagreement.
+[[nodiscard]] std::vector<std::vector<double>> confusion_of(const SelftestResult& result);
+
+[[nodiscard]] std::string to_markdown(const SelftestResult& result);
+[[nodiscard]] std::string to_csv(const SelftestResult& result);  ///< a row a case
+
+}  // namespace pirsim::reconcile

@@ -1,0 +1,69 @@
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "pirsim/io/csv_writer.hpp"
+#include "pirsim/reconcile/selftest.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+std::string share(const Rate& rate) {
+  if (rate.of == 0) return "no case";
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(3) << rate.value() << " (" << rate.interval.low << "-" << rate.interval.high
+      << ", " << rate.hits << " of " << rate.of << ")";
+  return out.str();
+}
+
+}  // namespace
+
+std::string to_markdown(const SelftestResult& result) {
+  std::ostringstream out;
+  out << "| how often | share (95 % interval) |\n|---|---|\n";
+  for (const Rate& rate : rates_of(result)) out << "| " << rate.what << " | " << share(rate) << " |\n";
+  out << "| calibration error of the probabilities | " << std::fixed << std::setprecision(3) << result.calibration_error
+      << " |\n\n| effect |";
+  for (const char* strength : {"weak", "medium", "strong"}) out << ' ' << strength << ": seen | and in the set |";
+  out << "\n|---|---|---|---|---|---|---|\n";
+  for (std::size_t entry = 1; entry < result.entries.size(); ++entry) {
+    out << "| " << result.entries[entry] << " |";
+    for (const Rate& rate : power_of(result, result.entries[entry])) {
+      out << ' ' << std::setprecision(2) << rate.value() << " |";
+    }
+    out << '\n';
+  }
+  out << "\nConfusion: of the cases with a disagreement, the share in which the column's entry is the likeliest; "
+         "less than 0.05 left out.\n\n| hidden | taken for |\n|---|---|\n";
+  const auto confusion = confusion_of(result);
+  for (std::size_t row = 0; row < confusion.size(); ++row) {
+    out << "| " << result.entries[row] << " |";
+    std::string list;
+    for (std::size_t column = 0; column < confusion.size(); ++column) {
+      if (confusion[row][column] < 0.05) continue;
+      std::ostringstream one;
+      one << std::fixed << std::setprecision(2) << confusion[row][column];
+      list += (list.empty() ? " " : ", ") + result.entries[column] + " " + one.str();
+    }
+    out << list << " |\n";
+  }
+  return out.str();
+}
+
+std::string to_csv(const SelftestResult& result) {
+  std::ostringstream out;
+  out << "truth,strength,verdict,named,likeliest,p,parameters,covered,hidden\n";
+  for (const PlantedCase& c : result.cases) {
+    std::string named, hidden;
+    for (const std::string& effect : c.named) named += (named.empty() ? "" : " ") + effect;
+    for (const auto& [parameter, value] : c.effect.parameters) {
+      hidden += (hidden.empty() ? "" : " ") + parameter + "=" + io::csv_number(value);
+    }
+    for (const auto& [choice, value] : c.effect.choices) hidden += " " + choice + "=" + value;
+    out << c.truth << ',' << name(c.strength) << ',' << name(c.verdict) << ',' << named << ',' << c.likeliest << ','
+        << io::csv_number(c.p) << ',' << c.n_parameters << ',' << c.n_covered << ',' << io::csv_field(hidden) << '\n';
+  }
+  return out.str();
+}
+
+}  // namespace pirsim::reconcile

@@ -1,0 +1,124 @@
+#include "pirsim/reconcile/statistics.hpp"
+
+#include <cmath>
+
+#include "support/catch.hpp"
+
+using namespace pirsim;
+using namespace pirsim::reconcile;
+
+namespace {
+
+const StudyFrame frame{{"S1"}, {"PIR1"}, {}, 1.0};
+
+ScriptSpec one_trial() {
+  ScriptSpec script;
+  script.trials = {{"S1", {}}};
+  return script;
+}
+
+Series series_from(const std::string& bits) {
+  Series series{0, 1, 0, bits.size(), {}};
+  for (const char bit : bits) series.bits.push_back(bit == '?' ? unknown_bit : static_cast<std::uint8_t>(bit - '0'));
+  return series;
+}
+
+/// The statistics of one sensor's bits, of which the base model expects as much as `expected` has.
+std::vector<float> statistics(const std::string& bits, const std::string& expected) {
+  const std::vector<Series> base{series_from(expected)}, data{series_from(bits)};
+  const Profile profile = profile_of(frame, one_trial(), base);
+  DataShape shape = full_shape(frame, Measured::Kind::series, 1, base);
+  if (bits.find('?') != std::string::npos) {
+    for (const char bit : bits) shape.runs[0].unknown.push_back(bit == '?' ? 1 : 0);
+  }
+  return statistics_of(frame, shape, profile, data);
+}
+
+float of(const std::vector<float>& values, CellStatistic statistic) {
+  return values[cell_index(frame, 0, 0, statistic)];
+}
+
+}  // namespace
+
+TEST_CASE("statistics of bits counted by hand", "[statistics]") {
+  //                            0         1
+  //                            0123456789012345
+  const auto s = statistics("0110100111000100", "0000000000000000");
+  CHECK(of(s, CellStatistic::seconds) == 7.0F);
+  CHECK(of(s, CellStatistic::silent_seconds) == 7.0F);
+  CHECK(of(s, CellStatistic::half_difference) == 4.0F - 3.0F);
+  CHECK(of(s, CellStatistic::onsets) == 4.0F);
+  CHECK(of(s, CellStatistic::longest_run) == 3.0F);
+  CHECK(of(s, CellStatistic::isolated) == 2.0F);
+  CHECK(of(s, CellStatistic::single_gaps) == 1.0F);
+  CHECK(of(s, CellStatistic::double_gaps) == 1.0F);
+  CHECK(of(s, CellStatistic::longest_gap) == 3.0F);
+  CHECK(of(s, CellStatistic::again_after_1) == Approx(3.0 / 7.0));
+  CHECK(of(s, CellStatistic::again_after_2) == Approx(2.0 / 7.0));
+}
+
+TEST_CASE("unknown readings count neither as motion nor as none", "[statistics]") {
+  const auto s = statistics("01?01??10", "000000000");
+  CHECK(of(s, CellStatistic::seconds) == 3.0F);
+  CHECK(of(s, CellStatistic::isolated) == 0.0F);
+  CHECK(of(s, CellStatistic::onsets) == 2.0F);
+  CHECK(of(s, CellStatistic::again_after_1) == 0.0F);
+}
+
+TEST_CASE("a periodic sensor stands out in the periodogram and chance does not", "[statistics]") {
+  std::string periodic, scattered;
+  Stream stream({7, 0, 0, Purpose::test});
+  for (int i = 0; i < 180; ++i) {
+    periodic += i % 15 == 0 ? '1' : '0';
+    scattered += stream.uniform() < 1.0 / 15.0 ? '1' : '0';
+  }
+  const std::string none(180, '0');
+  CHECK(of(statistics(periodic, none), CellStatistic::period_power) == Approx(12.0 * 12.0 / (12.0 * 168.0 / 180.0)));
+  CHECK(of(statistics(scattered, none), CellStatistic::period_power) < 8.0F);
+}
+
+TEST_CASE("motion that keeps to the arm's cycle is told from motion that does not", "[statistics]") {
+  std::string with, without;
+  for (int i = 0; i < 180; ++i) {
+    with += i % 3 == 0 ? '1' : '0';
+    without += '1';
+  }
+  const std::string none(180, '0');
+  CHECK(of(statistics(with, none), CellStatistic::cycle_strength) == Approx(1.0));
+  CHECK(of(statistics(without, none), CellStatistic::cycle_strength) == Approx(0.0).margin(1e-6));
+}
+
+TEST_CASE("motion that comes late shows at its lag", "[statistics]") {
+  std::string expected(180, '0'), late(180, '0');
+  for (const std::size_t at : {10U, 47U, 100U, 131U}) {
+    expected[at] = '1';
+    late[at + 3] = '1';
+  }
+  const auto s = statistics(late, expected);
+  const auto lag = [&](TrialStatistic which) { return s[trial_index(frame, 0, which)]; };
+  CHECK(lag(TrialStatistic::lag_3) > 3.5F);
+  CHECK(lag(TrialStatistic::lag_0) < 0.0F);
+  CHECK(lag(TrialStatistic::lag_2) < 0.0F);
+  CHECK(of(s, CellStatistic::agreement) < 0.0F);
+  CHECK(of(statistics(expected, expected), CellStatistic::agreement) == Approx(1.0));
+}
+
+TEST_CASE("sums give seconds and nothing else", "[statistics]") {
+  Measured measured;
+  measured.kind = Measured::Kind::sums;
+  measured.sums = {{0, 0, 1, 12.0}, {0, 0, 2, 16.0}};
+  const std::vector<Series> pilot{series_from("0101")};
+  const DataShape shape = shape_of(frame, measured, pilot);
+  const auto s = statistics_of(frame, shape, profile_of(frame, one_trial(), pilot), measured);
+  CHECK(of(s, CellStatistic::seconds) == 14.0F);
+  CHECK(of(s, CellStatistic::run_variance) == 8.0F);
+  CHECK(std::isnan(of(s, CellStatistic::onsets)));
+  CHECK(std::isnan(s[trial_index(frame, 0, TrialStatistic::lag_0)]));
+  // Simulated data are made to tell as little.
+  std::vector<Series> runs{series_from("0111"), series_from("0001")};
+  runs[1].replicate = 2;
+  const auto simulated = statistics_of(frame, shape, profile_of(frame, one_trial(), pilot), runs);
+  CHECK(of(simulated, CellStatistic::seconds) == 2.0F);
+  CHECK(of(simulated, CellStatistic::run_variance) == 2.0F);
+  CHECK(std::isnan(of(simulated, CellStatistic::onsets)));
+}

@@ -1,0 +1,206 @@
+// The loop on a shortened Study A: three seats, half a minute of work each.
+#include <algorithm>
+#include <set>
+
+#include "pirsim/core/digest.hpp"
+#include "pirsim/effects/catalogue.hpp"
+#include "pirsim/io/script_reader.hpp"
+#include "pirsim/reconcile/analyst.hpp"
+#include "pirsim/reconcile/outputs.hpp"
+#include "pirsim/reconcile/reconcile.hpp"
+#include "support/catch.hpp"
+#include "support/shipped.hpp"
+#include "support/temporary_folder.hpp"
+
+using namespace pirsim;
+using namespace pirsim::reconcile;
+
+namespace {
+
+ScriptSpec short_study() {
+  ScriptSpec script = test::shipped_script("studyA.yaml");
+  script.replicates = 1;
+  std::erase_if(script.trials, [](const TrialSpec& t) { return t.id != "S1" && t.id != "S4" && t.id != "S8"; });
+  for (TrialSpec& trial : script.trials) {
+    for (ScriptedAction& action : trial.people.front().actions) {
+      if (auto* work = std::get_if<action::Work>(&action.what)) work->duration_s = 60.0;
+    }
+  }
+  return script;
+}
+
+Settings quick() {
+  Settings settings;
+  settings.table = {60, 2, 60, 60, 0, {"false_triggers", "missed_triggers", "pulse_stretching"}};
+  settings.trees = 60;
+  settings.verify_worlds = 20;
+  return settings;
+}
+
+const Laboratory& laboratory() {
+  static const Laboratory lab = make_laboratory(test::shipped_scene("meeting_room.gltf"), short_study(), quick(),
+                                                [](const StudyFrame& frame, std::span<const Series> pilot) {
+                                                  return full_shape(frame, Measured::Kind::series, 1, pilot);
+                                                });
+  return lab;
+}
+
+const Analyst& analyst() {
+  static const Analyst one(laboratory().frame, laboratory().knowledge, laboratory().table,
+                           all_trials(laboratory().frame), {0.05, 1, 0, 60});
+  return one;
+}
+
+std::vector<float> planted(std::uint32_t world, const std::vector<EffectSpec>& effects) {
+  const Laboratory& lab = laboratory();
+  const SimulatedWorld fresh(lab.source, lab.frame, 500000 + world, 1);
+  return statistics_of(lab.frame, lab.shape, lab.table.profile, *fresh.with_effects(effects, 0, 1));
+}
+
+const EffectSpec many_false_triggers{"false_triggers", {{"rate_per_s", 0.05}}, {}, {}};
+
+}  // namespace
+
+TEST_CASE("a world is a pure function of seed and index and stays within the nuisance", "[reconcile]") {
+  const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
+  const ScriptSpec script = short_study();
+  const World a = draw_world(scene, script, {}, 3, 17), b = draw_world(scene, script, {}, 3, 17);
+  const World other = draw_world(scene, script, {}, 3, 18), again = draw_world(scene, script, {}, 3, 17, 1);
+  CHECK(a.scene.seats[0].world_from_seat == b.scene.seats[0].world_from_seat);
+  CHECK(a.script.seed == b.script.seed);
+  CHECK(a.script.seed != other.script.seed);
+  CHECK(a.script.seed != again.script.seed);
+  CHECK(a.script.seed != script.seed);
+  for (std::size_t i = 0; i < scene.seats.size(); ++i) {
+    const Vec3 moved = a.scene.seats[i].world_from_seat.origin - scene.seats[i].world_from_seat.origin;
+    CHECK(std::abs(moved.x) <= 0.04);
+    CHECK(std::abs(moved.z) <= 0.04);
+    CHECK(moved.y == 0.0);
+  }
+  // One person, one body: the same in every trial.
+  for (const TrialSpec& trial : a.script.trials) {
+    CHECK(trial.people.front().stature_m == a.script.trials.front().people.front().stature_m);
+  }
+  const World exact = draw_world(scene, script, {0, 0, 0, 0, 0}, 3, 17);
+  CHECK(exact.scene.seats[2].world_from_seat == scene.seats[2].world_from_seat);
+  CHECK(exact.script.trials[0].people[0].stature_m == script.trials[0].people[0].stature_m);
+}
+
+TEST_CASE("effects on a remembered world give what a study with them gives", "[reconcile]") {
+  const Laboratory& lab = laboratory();
+  const SimulatedWorld world(lab.source, lab.frame, 5, 1);
+  ScriptSpec script = world.world().script;
+  script.effects = {many_false_triggers};
+  const Model model = compile(world.world().scene, script);
+  const auto data = world.with_effects(script.effects, 0, 1);
+  REQUIRE(data->size() == 3);
+  for (std::uint32_t run = 0; run < 3; ++run) {
+    const RunResult result = run_once(model, run);
+    CHECK((*data)[run] == *series_of(lab.frame, 1, result.trial, result.samples));
+  }
+}
+
+TEST_CASE("a table goes on where it was interrupted and refuses another study's chunks", "[reconcile]") {
+  const Laboratory& lab = laboratory();
+  const TemporaryFolder folder;
+  const TableSettings settings{30, 1, 30, 30, 0, {"false_triggers"}};
+  const auto make = [&](const WorldSource& source) {
+    return make_reference_table(source, lab.frame, lab.shape, lab.table.profile, settings, folder.path() / "t");
+  };
+  const ReferenceTable first = make(lab.source);
+  std::filesystem::remove(folder.path() / "t" / "worlds_0001.bin");
+  const ReferenceTable again = make(lab.source);
+  // NaN differs from itself: compare bytes.
+  const auto bytes = [](const ReferenceTable& t) {
+    return sha256({reinterpret_cast<const char*>(t.statistics.values().data()), t.statistics.values().size_bytes()});
+  };
+  CHECK(bytes(first) == bytes(again));
+  CHECK(first.rows.size() == 60);
+  WorldSource other = lab.source;
+  other.nuisance.seat_position_m = 0.05;
+  CHECK_THROWS_WITH(make(other), contains("holds the reference table of another"));
+}
+
+TEST_CASE("a planted effect is located and named and nothing is not", "[reconcile]") {
+  const Outcome found = analyst().analyse(planted(1, {many_false_triggers}));
+  CHECK(found.verdict == Verdict::named);
+  REQUIRE_FALSE(found.named.empty());
+  CHECK(found.named.front() == "false_triggers");
+  CHECK(found.fits.at(0).parameters.at(0).interval.contains(0.05));
+  // Of 20 datasets without an effect at most 5 may differ at the 5 % level: P(6 or more) = 0.0003.
+  int alarms = 0;
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    alarms += analyst().analyse(planted(100 + i, {})).verdict == Verdict::no_disagreement ? 0 : 1;
+  }
+  CHECK(alarms <= 5);
+}
+
+TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile]") {
+  ReferenceTable shuffled = laboratory().table;
+  Stream stream({5, 0, 0, Purpose::test});
+  std::vector<std::uint32_t> entries;
+  for (const TableRow& row : shuffled.rows) entries.push_back(row.entry);
+  for (std::size_t i = entries.size(); i > 1; --i) {
+    std::swap(entries[i - 1], entries[stream.index(static_cast<std::uint32_t>(i))]);
+  }
+  for (std::size_t i = 0; i < entries.size(); ++i) shuffled.rows[i].entry = entries[i];
+  const FeatureMap& map = analyst().map();
+  const Namer honest(laboratory().table, map, {60, 1, 0}), confused(shuffled, map, {60, 1, 0});
+  int right_by_honest = 0, right_by_confused = 0;
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    const std::vector<float> data = planted(200 + i, {many_false_triggers});
+    right_by_honest += honest.probabilities(data)[1] > 0.9 ? 1 : 0;
+    right_by_confused += confused.probabilities(data)[1] > 0.9 ? 1 : 0;
+  }
+  CHECK(right_by_honest >= 9);
+  CHECK(right_by_confused <= 1);
+}
+
+TEST_CASE("folds follow from the data alone and hold out every trial once", "[reconcile]") {
+  const std::string digest = sha256("some data"), other = sha256("other data");
+  const auto folds = folds_of(digest, 10, 5);
+  CHECK(folds == folds_of(digest, 10, 5));
+  CHECK(folds != folds_of(other, 10, 5));
+  for (std::size_t f = 0; f < 5; ++f) CHECK(std::ranges::count(folds, f) == 2);
+}
+
+TEST_CASE("a held-out trial has no part in features and names", "[reconcile]") {
+  const Laboratory& lab = laboratory();
+  std::vector<float> data = planted(300, {many_false_triggers});
+  const Analyst without(lab.frame, lab.knowledge, lab.table, {0, 2}, {0.05, 1, 0, 30});
+  const auto before = without.map().features(data);
+  for (std::size_t sensor = 0; sensor < lab.frame.sensors.size(); ++sensor) {
+    for (std::size_t k = 0; k < n_cell_statistics; ++k) {
+      data[cell_index(lab.frame, 1, sensor, static_cast<CellStatistic>(k))] += 50.0F;
+    }
+  }
+  CHECK(without.map().features(data) == before);
+  CHECK(analyst().map().features(data) != analyst().map().features(planted(300, {many_false_triggers})));
+}
+
+TEST_CASE("the whole loop writes a patched script that runs and closes the gap", "[reconcile]") {
+  const TemporaryFolder folder;
+  const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
+  ScriptSpec hidden = short_study();
+  hidden.seed = 99;
+  hidden.effects = {many_false_triggers};
+  const Model model = compile(scene, hidden);
+  Measured measured;
+  measured.digest = sha256("hidden");
+  run_study(model, {}, [&](const RunResult& result) {
+    measured.runs.push_back(*series_of(laboratory().frame, 1, result.trial, result.samples));
+  });
+  const Settings settings = quick();
+  const Outcome outcome = reconcile::reconcile(scene, short_study(), measured, settings);
+  CHECK(outcome.verdict == Verdict::named);
+  REQUIRE(outcome.verification);
+  CHECK(outcome.verification->after.energy_score < outcome.verification->before.energy_score);
+  CHECK(outcome.verification->share_closed > 0.7);
+  CHECK(outcome.candidates.size() == 3);
+  for (const Candidate& candidate : outcome.candidates) CHECK_FALSE(candidate.reason.empty());
+  write_outputs(folder.path(), outcome, measured, short_study(), settings, {"p", "s", "t", "m"});
+  const ScriptSpec patched_script = io::read_script(folder.path() / "script_patched.yaml");
+  REQUIRE(patched_script.effects.size() == 1);
+  CHECK(patched_script.effects[0].name == "false_triggers");
+  CHECK(compile(scene, patched_script).pipeline().size() == 1);
+}
