@@ -63,13 +63,15 @@ void Namer::train(const ReferenceTable& table, const NamerSettings& settings) {
   for (std::size_t entry = 0; entry < names_.size(); ++entry) {
     const std::vector<std::size_t> own = one_a_world(table, entry, Part::training);
     if (own.size() < fewest_datasets) {
-      throw Error(ErrorCode::infeasible, "reconcile: people could get about in too few worlds with '" + names_[entry] +
-                                             "' (" + std::to_string(own.size()) + "): simulate more worlds");
+      if (entry > 0) continue;
+      throw Error(ErrorCode::infeasible, "reconcile: people could get about in too few worlds of the plain model (" +
+                                             std::to_string(own.size()) + "): simulate more worlds");
     }
     rows.insert(rows.end(), own.begin(), own.end());
-    labels.insert(labels.end(), own.size(), static_cast<int>(entry));
+    labels.insert(labels.end(), own.size(), static_cast<int>(trained_.size()));
+    trained_.push_back(entry);
   }
-  const auto n_classes = static_cast<int>(names_.size());
+  const auto n_classes = static_cast<int>(trained_.size());
   const stats::Matrix<float> features = map_->features(table.statistics.select_rows(rows), threads_);
   discriminant_ = stats::Discriminant::fit(features, labels, n_classes);
   const stats::Matrix<double> projections = discriminant_.project(features, threads_);
@@ -78,7 +80,7 @@ void Namer::train(const ReferenceTable& table, const NamerSettings& settings) {
     std::ranges::copy(features.row(row), all.row(row).begin());
     std::ranges::transform(projections.row(row), all.row(row).begin() + static_cast<std::ptrdiff_t>(features.columns()),
                            [](double value) { return static_cast<float>(value); });
-    EntryModel& model = entries_[static_cast<std::size_t>(labels[row])];
+    EntryModel& model = entries_[trained_[static_cast<std::size_t>(labels[row])]];
     model.features.append_row(features.row(row));
     model.projections.append_row(projections.row(row));
   }
@@ -90,8 +92,11 @@ Namer::Judged Namer::look_at_features(std::vector<float> features) const {
   data.projection = discriminant_.project(data.features);
   const std::vector<std::vector<double>> sources{trees_.probabilities(joined(data.features, data.projection)),
                                                  discriminant_.probabilities(data.features)};
-  data.log_probabilities = pool_.combine(sources);
-  for (double& p : data.log_probabilities) p = std::log(std::max(p, least_probability));
+  const std::vector<double> of_classes = pool_.combine(sources);
+  data.log_probabilities.assign(names_.size(), std::log(least_probability));
+  for (std::size_t c = 0; c < of_classes.size(); ++c) {
+    data.log_probabilities[trained_[c]] = std::log(std::max(of_classes[c], least_probability));
+  }
   return data;
 }
 
@@ -142,13 +147,13 @@ double Namer::absolute_score(const EntryModel& model, const std::vector<double>&
 void Namer::calibrate(const ReferenceTable& table) {
   std::vector<std::size_t> rows;
   std::vector<int> labels;
-  for (std::size_t entry = 0; entry < names_.size(); ++entry) {
-    const std::vector<std::size_t> own = one_a_world(table, entry, Part::calibration);
+  for (std::size_t c = 0; c < trained_.size(); ++c) {
+    const std::vector<std::size_t> own = one_a_world(table, trained_[c], Part::calibration);
     rows.insert(rows.end(), own.begin(), own.end());
-    labels.insert(labels.end(), own.size(), static_cast<int>(entry));
+    labels.insert(labels.end(), own.size(), static_cast<int>(c));
   }
   const stats::Matrix<float> features = map_->features(table.statistics.select_rows(rows), threads_);
-  std::vector<stats::Matrix<double>> sources(2, stats::Matrix<double>(rows.size(), names_.size()));
+  std::vector<stats::Matrix<double>> sources(2, stats::Matrix<double>(rows.size(), trained_.size()));
   std::vector<std::vector<double>> far(rows.size());
   ordered_parallel<int>(
       rows.size(), threads_,
@@ -157,13 +162,13 @@ void Namer::calibrate(const ReferenceTable& table) {
         data.projection = discriminant_.project(data.features);
         std::ranges::copy(trees_.probabilities(joined(data.features, data.projection)), sources[0].row(i).begin());
         std::ranges::copy(discriminant_.probabilities(data.features), sources[1].row(i).begin());
-        far[i] = distances(entries_[static_cast<std::size_t>(labels[i])], data);
+        far[i] = distances(entries_[trained_[static_cast<std::size_t>(labels[i])]], data);
         return 0;
       },
       [](int&) {});
   pool_ = stats::LogPool::fit(sources, labels);
 
-  stats::Matrix<double> pooled(rows.size(), names_.size());
+  stats::Matrix<double> pooled(rows.size(), trained_.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::vector<std::vector<double>> both{{sources[0].row(i).begin(), sources[0].row(i).end()},
                                                 {sources[1].row(i).begin(), sources[1].row(i).end()}};
@@ -171,16 +176,16 @@ void Namer::calibrate(const ReferenceTable& table) {
     std::ranges::copy(p, pooled.row(i).begin());
     std::vector<double> logs;
     for (const double value : p) logs.push_back(std::log(std::max(value, least_probability)));
-    const auto entry = static_cast<std::size_t>(labels[i]);
-    entries_[entry].relative.push_back(margin(logs, entry));
+    const auto c = static_cast<std::size_t>(labels[i]);
+    entries_[trained_[c]].relative.push_back(margin(logs, c));
   }
   reliability_ = stats::reliability(pooled, labels);
 
-  for (std::size_t entry = 0; entry < entries_.size(); ++entry) {
-    EntryModel& model = entries_[entry];
+  for (std::size_t c = 0; c < trained_.size(); ++c) {
+    EntryModel& model = entries_[trained_[c]];
     std::vector<std::vector<double>> own(3);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (labels[i] != static_cast<int>(entry)) continue;
+      if (labels[i] != static_cast<int>(c)) continue;
       for (std::size_t d = 0; d < own.size(); ++d) own[d].push_back(far[i][d]);
     }
     if (own[0].size() < fewest_datasets) continue;

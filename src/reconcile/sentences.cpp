@@ -87,6 +87,7 @@ std::string reason_of(const Candidate& candidate, double alpha) {
            "), and no other effect explains them so "
            "much better that it can be ruled out.";
   }
+  if (score.p == 0.0) return "Dropped: it could hardly be simulated in this room.";
   const bool relative = 2.0 * score.p_relative <= alpha, absolute = 2.0 * score.p_absolute <= alpha;
   std::string text = "Dropped: ";
   if (relative)

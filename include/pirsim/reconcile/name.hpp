@@ -67,6 +67,7 @@ class Namer {
 
   const FeatureMap* map_;
   std::vector<std::string> names_;
+  std::vector<std::size_t> trained_;  ///< entries with datasets enough: the classifiers' classes
   stats::Discriminant discriminant_;
   stats::ExtraTrees trees_;
   stats::LogPool pool_;
