@@ -28,7 +28,8 @@ reconcile::Settings settings_of(const ReconcileOptions& options) {
   settings.seed = options.seed;
   settings.threads = options.threads;
   const auto scaled = [&](std::uint32_t n) {
-    return std::max(60U, static_cast<std::uint32_t>(static_cast<double>(n) * options.budget));
+    return std::max(reconcile::fewest_datasets_to_refuse,
+                    static_cast<std::uint32_t>(static_cast<double>(n) * options.budget));
   };
   settings.table.threads = options.threads;
   settings.table.n_worlds = scaled(settings.table.n_worlds);

@@ -54,7 +54,7 @@ Verification verified(const Laboratory& lab, std::span<const float> observed, co
 
 /// A table for the second look: what is left to be found is found in a third of the datasets.
 Settings smaller(Settings settings, const std::string& effect) {
-  const auto third = [](std::uint32_t n) { return std::max(60U, n / 3); };
+  const auto third = [](std::uint32_t n) { return std::max(fewest_datasets_to_refuse, n / 3); };
   settings.table.n_worlds = third(settings.table.n_worlds);
   settings.table.n_remembered = third(settings.table.n_remembered);
   settings.table.n_traced = third(settings.table.n_traced);

@@ -24,6 +24,10 @@ struct TableSettings {
   bool operator==(const TableSettings&) const = default;
 };
 
+/// Two fifths calibrate, and two tests are combined: with fewer datasets of an entry no p-value reaches 0.05, so that
+/// nothing could ever be ruled out.
+inline constexpr std::uint32_t fewest_datasets_to_refuse = 110;
+
 /// One simulated dataset. The same world gives the same room and people for every entry.
 struct TableRow {
   std::uint32_t entry = 0;  ///< 0: nothing; else 1 + index into ReferenceTable::effects

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "pirsim/core/random.hpp"
+
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "pirsim/core/digest.hpp"
+#include "pirsim/core/random.hpp"
 #include "pirsim/effects/catalogue.hpp"
 #include "pirsim/io/script_reader.hpp"
 #include "pirsim/reconcile/analyst.hpp"
@@ -31,7 +32,7 @@ ScriptSpec short_study() {
 
 Settings quick() {
   Settings settings;
-  settings.table = {60, 2, 60, 60, 0, {"false_triggers", "missed_triggers", "pulse_stretching"}};
+  settings.table = {110, 1, 110, 110, 0, {"false_triggers", "missed_triggers", "pulse_stretching"}};
   settings.trees = 60;
   settings.verify_worlds = 20;
   return settings;
