@@ -147,14 +147,14 @@ TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile]") {
   for (std::size_t i = 0; i < entries.size(); ++i) shuffled.rows[i].entry = entries[i];
   const FeatureMap& map = analyst().map();
   const Namer honest(laboratory().table, map, {60, 1, 0}), confused(shuffled, map, {60, 1, 0});
-  int right_by_honest = 0, right_by_confused = 0;
+  double sure_of_truth = 0.0, sure_of_truth_when_confused = 0.0;  // chance is a quarter
   for (std::uint32_t i = 0; i < 10; ++i) {
     const std::vector<float> data = planted(200 + i, {many_false_triggers});
-    right_by_honest += honest.probabilities(data)[1] > 0.9 ? 1 : 0;
-    right_by_confused += confused.probabilities(data)[1] > 0.9 ? 1 : 0;
+    sure_of_truth += honest.probabilities(data)[1] / 10.0;
+    sure_of_truth_when_confused += confused.probabilities(data)[1] / 10.0;
   }
-  CHECK(right_by_honest >= 9);
-  CHECK(right_by_confused <= 1);
+  CHECK(sure_of_truth > 0.75);
+  CHECK(sure_of_truth_when_confused < 0.5);
 }
 
 TEST_CASE("folds follow from the data alone and hold out every trial once", "[reconcile]") {
