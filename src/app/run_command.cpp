@@ -214,7 +214,9 @@ void run(const Inputs& inputs, const RunOptions& options) {
   }
   check_options(inputs, options);
   const Model model = load(inputs);
-  tell(studies::warnings(studies::look_around(model), model.scene().name), inputs.verbosity);
+  if (inputs.verbosity != Verbosity::quiet) {
+    tell(studies::warnings(studies::look_around(model), model.scene().name), inputs.verbosity);
+  }
 
   // Rows that only go to a stream can end anywhere, as by Ctrl-C.
   std::optional<StopRequest> stop;

@@ -11,6 +11,7 @@
 #include "body/grid_search.hpp"
 #include "body/taut_way.hpp"
 #include "body/way_memory.hpp"
+#include "pirsim/core/error.hpp"
 
 namespace pirsim::body {
 namespace {
@@ -18,6 +19,7 @@ namespace {
 constexpr double cell_m = WalkableFloor::cell_m;
 constexpr double solid_from_m = 0.1;  ///< above the floor: a walker steps over what is lower
 constexpr double solid_to_m = 2.0;    ///< above the floor: a walker passes under what is higher
+constexpr double max_cells = 2.5e7;   ///< assumed: an airport's hall of 1.2 km x 200 m just fits, in some 300 MB
 constexpr double lead_m = 0.5;        ///< how far a start or goal may be from a walkable cell
 /// How far the strip of an entrance reaches into the room. assumed: more than the depth of a door's reveal (0.1-0.5).
 constexpr double strip_inside_m = 0.5;
@@ -103,6 +105,11 @@ void WalkableFloor::Impl::lay_grid(const FloorArea& floor, std::span<const Entra
   if (!finite(least) || !finite(most)) return;
   // The grid is centred on what it covers, so that a mirrored room has a mirrored grid.
   const Vec2 cells = glm::max(glm::ceil((most - least) / cell_m - rounding_m), Vec2(1.0));
+  if (cells.x * cells.y > max_cells) {
+    const auto whole = [](double metres) { return std::to_string(std::llround(metres)); };
+    throw Error(ErrorCode::infeasible, "the floor and its entrances span " + whole(most.x - least.x) + " m x " +
+                                           whole(most.y - least.y) + " m: too large to find ways on");
+  }
   lower = 0.5 * (least + most) - 0.5 * cell_m * cells;
   grid.columns = static_cast<int>(cells.x);
   grid.rows = static_cast<int>(cells.y);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -22,6 +23,23 @@ std::vector<Issue> only(Issue issue) {
   std::vector<Issue> issues;
   issues.push_back(std::move(issue));
   return issues;
+}
+
+std::vector<Issue> of_severity(const std::vector<Issue>& issues, Severity severity) {
+  std::vector<Issue> result;
+  std::copy_if(issues.begin(), issues.end(), std::back_inserter(result),
+               [&](const Issue& issue) { return issue.severity == severity; });
+  return result;
+}
+
+/// A file made to annoy has millions of faults, which nobody reads.
+void add(std::vector<Issue>& issues, Issue issue) {
+  constexpr std::ptrdiff_t most = 100;
+  const auto told =
+      std::count_if(issues.begin(), issues.end(), [&](const Issue& other) { return other.severity == issue.severity; });
+  if (told > most) return;
+  if (told == most) issue = {issue.severity, {issue.where.file, 0, 0}, "there are more like these"};
+  issues.push_back(std::move(issue));
 }
 
 /// Levenshtein distance, letters compared without case.
@@ -61,32 +79,26 @@ Error::Error(ErrorCode code, Where where, std::string message)
 Error::Error(ErrorCode code, std::string message) : Error(code, Where{}, std::move(message)) {}
 
 void Diagnostics::error(Where where, std::string message) {
-  issues_.push_back({Severity::error, std::move(where), std::move(message)});
+  add(issues_, {Severity::error, std::move(where), std::move(message)});
 }
 void Diagnostics::warning(Where where, std::string message) {
-  issues_.push_back({Severity::warning, std::move(where), std::move(message)});
+  add(issues_, {Severity::warning, std::move(where), std::move(message)});
 }
 void Diagnostics::throw_if_errors(ErrorCode code) const {
-  if (!has_errors()) return;
-  std::vector<Issue> errors;
-  std::copy_if(issues_.begin(), issues_.end(), std::back_inserter(errors),
-               [](const Issue& issue) { return issue.severity == Severity::error; });
-  throw Error(code, std::move(errors));
+  if (has_errors()) throw Error(code, of_severity(issues_, Severity::error));
 }
 bool Diagnostics::has_errors() const noexcept {
   return std::any_of(issues_.begin(), issues_.end(), [](const Issue& i) { return i.severity == Severity::error; });
 }
-std::vector<Issue> Diagnostics::warnings() const {
-  std::vector<Issue> result;
-  std::copy_if(issues_.begin(), issues_.end(), std::back_inserter(result),
-               [](const Issue& issue) { return issue.severity == Severity::warning; });
-  return result;
-}
+std::vector<Issue> Diagnostics::warnings() const { return of_severity(issues_, Severity::warning); }
 
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
+  constexpr std::size_t longest = 100;  // no name that anybody means; and the time grows with the product of lengths
+  if (name.size() > longest) return {};
   std::size_t best = std::numeric_limits<std::size_t>::max();
   const std::string* nearest = nullptr;
   for (const std::string& candidate : candidates) {
+    if (candidate.size() > longest) continue;
     if (const std::size_t distance = edit_distance(name, candidate); distance < best) {
       best = distance;
       nearest = &candidate;

@@ -66,6 +66,7 @@ class CsvParser {
   std::vector<CsvTable::Field> read_record() {
     std::vector<CsvTable::Field> record;
     while (true) {
+      if (record.size() == max_fields) refuse(line_, column_, "more than " + std::to_string(max_fields) + " fields");
       record.push_back(read_field());
       if (at_line_end()) break;
       advance();  // the comma
@@ -116,6 +117,8 @@ class CsvParser {
     faults_.error({file_, record.front().line, record.front().column},
                   "expected " + std::to_string(table.header_.size()) + " fields, got " + std::to_string(record.size()));
   }
+
+  static constexpr std::size_t max_fields = 10'000;  // assumed: a column a sensor makes some tens
 
   std::string_view text_;
   std::string file_;

@@ -9,6 +9,8 @@ namespace pirsim::io::detail {
 namespace {
 
 constexpr int max_nesting = 100;  // assumed: glTF itself needs about 6; libraries recurse over their JSON
+// assumed: a scene of 100,000 nodes has 2 million; in memory a value may take a kilobyte (an empty node in tinygltf)
+constexpr std::size_t max_values = 4'000'000;
 
 /// Offset of the quote that closes the string opened at `quote`, or the end of the text.
 std::size_t end_of_string(std::string_view text, std::size_t quote) {
@@ -139,7 +141,7 @@ std::string plain_message(std::string message) {
 
 JsonText::JsonText(std::string file, std::string text, Places places)
     : file_(std::move(file)), text_(std::move(text)), places_(places) {
-  refuse_deep_nesting();
+  if (const auto excess = excess_of_json(text_)) throw Error(ErrorCode::input, at(excess->offset), excess->what);
   try {
     root_ = nlohmann::json::parse(text_);
   } catch (const nlohmann::json::parse_error& fault) {
@@ -153,19 +155,24 @@ JsonText::JsonText(std::string file, std::string text, Places places)
   }
 }
 
-void JsonText::refuse_deep_nesting() const {
+std::optional<JsonExcess> excess_of_json(std::string_view text) {
   int depth = 0;
-  for (std::size_t i = 0; i < text_.size(); ++i) {
-    if (text_[i] == '"') {
-      i = end_of_string(text_, i);
-    } else if (text_[i] == '{' || text_[i] == '[') {
-      if (++depth > max_nesting) {
-        throw Error(ErrorCode::input, at(i), "JSON nested deeper than " + std::to_string(max_nesting) + " levels");
-      }
-    } else if (text_[i] == '}' || text_[i] == ']') {
+  std::size_t values = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') {
+      i = end_of_string(text, i);
+    } else if (c == '{' || c == '[') {
+      ++values;
+      if (++depth > max_nesting) return {{i, "JSON nested deeper than " + std::to_string(max_nesting) + " levels"}};
+    } else if (c == '}' || c == ']') {
       --depth;
+    } else if (c == ',') {
+      ++values;
     }
+    if (values > max_values) return {{i, "JSON of more than " + std::to_string(max_values) + " values"}};
   }
+  return std::nullopt;
 }
 
 std::size_t JsonText::offset_of_number(std::string_view number) const {

@@ -2,12 +2,21 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "pirsim/core/error.hpp"
 
 namespace pirsim::io::detail {
+
+/// What no scene needs and would exhaust stack or memory.
+struct JsonExcess {
+  std::size_t offset = 0;
+  std::string what;
+};
+/// To be asked before parsing: too many levels or values, if there are.
+[[nodiscard]] std::optional<JsonExcess> excess_of_json(std::string_view text);
 
 /// Places are found by scanning the text again: they are wanted only for the few values that a message is about.
 class JsonText {
@@ -27,7 +36,6 @@ class JsonText {
   enum class Target { value, key };
   [[nodiscard]] Where find(std::string_view pointer, Target target) const;
   [[nodiscard]] Where at(std::size_t offset) const;
-  void refuse_deep_nesting() const;
   [[nodiscard]] std::size_t offset_of_number(std::string_view number) const;
 
   std::string file_;

@@ -9,6 +9,9 @@ namespace {
 
 constexpr double flatness_m = 0.01;  // assumed: less than any step one could trip over
 
+constexpr double world_limit_m = 1e5;        // as for nodes
+constexpr std::size_t max_corners = 10'000;  // assumed: a scanned floor has some hundred; every pair is compared
+
 using Loop = std::vector<Vec2>;
 
 /// Twice the signed area of a triangle.
@@ -92,6 +95,17 @@ void FloorBuilder::add_polygon(const std::vector<Vec3>& corners, const Where& wh
 }
 
 void FloorBuilder::add(Part part) {
+  for (const Loop& loop : part.loops) {
+    n_corners_ += loop.size();
+    if (n_corners_ > max_corners) {
+      return faults_.error(
+          part.where, part.label + ": the floor's outline has more than " + std::to_string(max_corners) + " corners");
+    }
+    for (const Vec2& p : loop) {
+      if (std::abs(p.x) <= world_limit_m && std::abs(p.y) <= world_limit_m) continue;
+      return faults_.error(part.where, part.label + ": the floor reaches more than 100 km from the origin");
+    }
+  }
   for (const Loop& loop : part.loops) {
     if (cross(loop, loop)) return faults_.error(part.where, part.label + ": the outline of the floor crosses itself");
   }

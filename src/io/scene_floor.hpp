@@ -34,6 +34,7 @@ class FloorBuilder {
 
   Diagnostics& faults_;
   std::vector<Part> parts_;
+  std::size_t n_corners_ = 0;
 };
 
 }  // namespace pirsim::io::detail

@@ -152,7 +152,12 @@ std::optional<Markup> read_markup(const GltfDocument& document, int node, Diagno
   const json& value = (*extras)["pirsim"];
   if (!value.is_string()) return MarkupReader(document, node, value, remarks).read();
   // Editors such as Blender offer texts as custom properties, so the object may come as one.
-  const json parsed = json::parse(value.get<std::string>(), nullptr, false);
+  const auto text = value.get<std::string>();
+  if (const auto excess = excess_of_json(text)) {
+    remarks.error(document.text.where(markup_pointer(node)), node_label(document.model, node) + ": " + excess->what);
+    return std::nullopt;
+  }
+  const json parsed = json::parse(text, nullptr, false);
   return MarkupReader(document, node, parsed, remarks).read();
 }
 

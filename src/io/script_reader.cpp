@@ -1,6 +1,8 @@
 #include "pirsim/io/script_reader.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <set>
 
 #include "io/action_reader.hpp"
@@ -16,6 +18,7 @@ namespace {
 using detail::BodyMeshReader;
 
 constexpr int format_version = 1;
+constexpr std::size_t max_trials = 20'000;  // assumed: each is written out in memory, some 10 kB; 200 is a large study
 
 SummarySpec read_summary(const std::optional<YamlNode>& node, Diagnostics& faults) {
   SummarySpec summary;
@@ -92,6 +95,10 @@ std::vector<Variables> combinations(const std::optional<YamlNode>& for_each, Dia
   const std::vector<YamlNode> values = for_each->items();
   for (std::size_t i = 0; i < keys.size(); ++i) {
     std::vector<Variables> extended;
+    if (result.size() * values[i].items().size() > max_trials) {
+      faults.error(keys[i].where, "for_each: more than " + std::to_string(max_trials) + " combinations");
+      return result;
+    }
     for (const Variables& variables : result) {
       for (const YamlNode& value : values[i].items()) {
         extended.push_back(variables);
@@ -169,6 +176,10 @@ ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::s
   BodyMeshReader body_meshes(file.parent_path());
   script.trials = read_trials(map.child("trials"), map.list("people"), body_meshes, faults);
   script.effects = read_effects(map.list("effects"), faults);
+  if (script.trials.size() * static_cast<std::size_t>(script.replicates) > std::numeric_limits<std::uint32_t>::max()) {
+    faults.error(map.where("replicates"), "trials times replicates are more than " +
+                                              std::to_string(std::numeric_limits<std::uint32_t>::max()) + " runs");
+  }
   map.finish();
   faults.throw_if_errors();
   script.files = body_meshes.files();

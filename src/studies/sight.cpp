@@ -1,11 +1,14 @@
 #include "pirsim/studies/sight.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "pirsim/body/motion.hpp"
 
 namespace pirsim::studies {
 namespace {
+
+constexpr double buried_m = 0.5;  // assumed: 0.3 to 1 m would do; walls are thinner, and nobody comes so near
 
 /// Traces single postures and tells which sensors have an active zone.
 class Onlooker {
@@ -99,6 +102,12 @@ std::vector<Issue> warnings(const SightReport& report, const std::string& scene)
   Diagnostics remarks;
   for (const SensorSight& sight : report.sensors) {
     if (!sight.sees_nothing()) continue;
+    if (sight.rays > 0 && sight.longest_m < buried_m) {
+      remarks.warning({scene, 0, 0}, "sensor '" + sight.sensor + "' can see NOBODY: all of its rays end within " +
+                                         std::to_string(std::lround(std::ceil(100.0 * sight.longest_m))) +
+                                         " cm (is it inside a wall, or right before one?)");
+      continue;
+    }
     remarks.warning({scene, 0, 0}, "sensor '" + sight.sensor +
                                        "' can see NOBODY: no zone reaches a standing or seated person anywhere on the "
                                        "floor area (does it look at a wall, along -Z of its node?)");

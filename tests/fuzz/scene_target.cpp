@@ -1,0 +1,32 @@
+// Rooms: glTF as JSON and as .glb, with markup. What is accepted is finite, in range, and closed in itself.
+#include <cmath>
+
+#include "fuzz_target.hpp"
+#include "pirsim/io/scene_reader.hpp"
+
+namespace {
+
+void check(const pirsim::SceneSpec& scene) {
+  for (const pirsim::TriMesh& mesh : scene.meshes) {
+    for (const pirsim::Vec3& p : mesh.positions) {
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) std::abort();
+    }
+    for (const auto& triangle : mesh.triangles) {
+      for (int corner = 0; corner < 3; ++corner) {
+        if (triangle[corner] >= mesh.positions.size()) std::abort();
+      }
+    }
+  }
+  for (const pirsim::SensorSpec& sensor : scene.sensors) {
+    if (!scene.sensor_models.contains(sensor.model)) std::abort();
+  }
+  if (scene.floor.empty()) std::abort();
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return pirsim::test::read_as_file(data, size, ".gltf", [](const std::filesystem::path& file) {
+    check(pirsim::io::read_scene(file, {{}, {PIRSIM_DATA_DIR}}));
+  });
+}

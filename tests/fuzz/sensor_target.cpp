@@ -1,0 +1,20 @@
+// Sensor models. What is accepted has zones with finite corners and ranges above zero.
+#include <cmath>
+
+#include "fuzz_target.hpp"
+#include "pirsim/io/sensor_reader.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return pirsim::test::read_as_file(data, size, ".yaml", [](const std::filesystem::path& file) {
+    const pirsim::SensorModelSpec model = pirsim::io::read_sensor_model(file);
+    if (model.clusters.empty() || !(model.plane_m > 0.0)) std::abort();
+    for (const pirsim::ClusterSpec& cluster : model.clusters) {
+      if (!(cluster.range_m > 0.0) || !std::isfinite(cluster.range_m)) std::abort();
+      for (const pirsim::ZoneSpec& zone : cluster.zones) {
+        for (const pirsim::Vec2& corner : zone.corners) {
+          if (!std::isfinite(corner.x) || !std::isfinite(corner.y)) std::abort();
+        }
+      }
+    }
+  });
+}
