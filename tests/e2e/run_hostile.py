@@ -191,13 +191,14 @@ class Hostile(unittest.TestCase):
 
     def test_a_sensor_of_impossible_range_is_refused_at_its_line(self):
         text = (DATA / "sensors" / "EKMC1604111.yaml").read_text()
-        line = 1 + text[:text.index("lens_step: 1, range_m: 12}")].count("\n")
         (self.folder / "lenses").mkdir()
         for value in ("-12", "0", ".nan", ".inf", "1e9", "far"):
             (self.folder / "lenses" / "EKMC1604111.yaml").write_text(
                 text.replace("lens_step: 1, range_m: 12}", f"lens_step: 1, range_m: {value}}}", 1))
             told = self.pirsim(sensors=self.folder / "lenses", code=3)
-            self.assertRegex(told, rf"EKMC1604111.yaml:{line}:53: error: .*range_m: expected a finite number")
+            before = text[:text.index("lens_step: 1, range_m: 12}") + len("lens_step: 1, range_m: ")]
+            place = f"{before.count(chr(10)) + 1}:{len(before) - before.rfind(chr(10))}"
+            self.assertRegex(told, rf"EKMC1604111.yaml:{place}: error: .*range_m: expected a finite number")
 
 
 if __name__ == "__main__":
