@@ -110,6 +110,35 @@ TEST_CASE("swapping the polarity of all zones negates every power", "[sim][analo
   }
 }
 
+TEST_CASE("zones superpose: what two halves of every facet receive adds up to the whole", "[sim][analog]") {
+  SceneSpec whole = shipped_scene("meeting_room.gltf");
+  // Of the first lens step alone: the apertures of the others are fitted to whole facets.
+  for (auto& [id, model] : whole.sensor_models) {
+    std::erase_if(model.clusters, [](const ClusterSpec& cluster) { return cluster.lens_step != 1; });
+  }
+  std::vector<SceneSpec> halves(2, whole);
+  for (std::size_t half = 0; half < 2; ++half) {
+    for (auto& [id, model] : halves[half].sensor_models) {
+      for (ClusterSpec& cluster : model.clusters) {
+        REQUIRE(cluster.zones.size() == 4);
+        const auto middle = cluster.zones.begin() + 2;
+        cluster.zones = half == 0 ? std::vector<ZoneSpec>(cluster.zones.begin(), middle)
+                                  : std::vector<ZoneSpec>(middle, cluster.zones.end());
+      }
+    }
+  }
+  const Powers all = powers_of(whole, walkers(1)), one = powers_of(halves[0], walkers(1)),
+               other = powers_of(halves[1], walkers(1));
+  REQUIRE(all.size() == one.size());
+  CHECK(sum_of_squares(one) > 0.0);
+  CHECK(sum_of_squares(other) > 0.0);
+  for (std::size_t tick = 0; tick < all.size(); ++tick) {
+    for (std::size_t sensor = 0; sensor < 5; ++sensor) {
+      REQUIRE(all[tick][sensor] == one[tick][sensor] + other[tick][sensor]);
+    }
+  }
+}
+
 TEST_CASE("warm surfaces are the background before which people are seen", "[sim][analog]") {
   const SceneSpec scene = shipped_scene("meeting_room.gltf");
   SceneSpec heated = scene;
