@@ -14,6 +14,8 @@ void placements(const Inputs& inputs, const PlacementOptions& options);
 void status(const CampaignOptions& options);
 void merge(const CampaignOptions& options);
 void reconcile_data(const Inputs& inputs, const ReconcileOptions& options);
+void seal_challenge(const Inputs& inputs, const SealOptions& options);
+void open_challenge(const OpenOptions& options);
 void list_effects(const EffectsOptions& options);
 void reconcile_selftest(const Inputs& inputs, const ReconcileOptions& options, const SelftestOptions& selftest);
 void export_gltf(const Inputs& inputs, const ExportOptions& options);

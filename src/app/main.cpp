@@ -204,6 +204,34 @@ void add_selftest_options(CLI::App& command, SelftestOptions& options) {
       ->option_text("N");
 }
 
+void add_seal_options(CLI::App& command, SealOptions& options) {
+  using reconcile::Hidden;
+  const std::map<std::string, Hidden> kinds{{"any", Hidden::any},
+                                            {"nothing", Hidden::nothing},
+                                            {"one", Hidden::one},
+                                            {"two", Hidden::two},
+                                            {"alien", Hidden::alien}};
+  command.add_option("-o,--out", options.output, "folder for data and hash (default: challenge)")->option_text("DIR");
+  command.add_option("--answer", options.answer, "where the sealed answer goes, JSON; keep it secret")
+      ->option_text("FILE");
+  command.add_option("--nuisance", options.nuisance, "what is uncertain about the room, YAML; or none")
+      ->option_text("FILE");
+  command.add_option("--hide", options.hidden, "any, nothing, one, two or alien (default: any)")
+      ->option_text("KIND")
+      ->transform(CLI::CheckedTransformer(kinds));
+  command.add_option("--runs", options.runs, "runs of every trial (default: 1)")
+      ->option_text("N")
+      ->check(CLI::Range(1, 100));
+  command.add_option("--secret-seed", options.secret_seed, "of everything drawn (default: from the system)")
+      ->option_text("N");
+}
+
+void add_open_options(CLI::App& command, OpenOptions& options) {
+  command.add_option("--answer", options.answer, "the sealed answer")->option_text("FILE")->required();
+  command.add_option("--commitment", options.commitment, "the published hash")->option_text("FILE")->required();
+  command.add_option("--report", options.report, "report.json to be scored")->option_text("FILE")->required();
+}
+
 std::string version_text() {
   return "pirsim " + version() + " (" + git_revision() + "), " + compiler() + ", Embree " + rt::embree_version() + " " +
          rt::instruction_set();
@@ -223,6 +251,8 @@ int run_command_line(int argc, char** argv) {
   WalkTestOptions walk_test_options;
   PlacementOptions placement_options;
   ReconcileOptions reconcile_options;
+  SealOptions seal_options;
+  OpenOptions open_options;
   EffectsOptions effects_options;
   SelftestOptions selftest_options;
   add_inputs(app, inputs);
@@ -270,6 +300,11 @@ int run_command_line(int argc, char** argv) {
   add_inputs(*selftest_command, inputs);
   add_reconcile_options(*selftest_command, reconcile_options);
   add_selftest_options(*selftest_command, selftest_options);
+  CLI::App* seal_command = reconcile_command->add_subcommand("seal", "hide something in data, to be found blindly");
+  add_inputs(*seal_command, inputs);
+  add_seal_options(*seal_command, seal_options);
+  CLI::App* open_command = reconcile_command->add_subcommand("open", "score a report against the sealed answer");
+  add_open_options(*open_command, open_options);
 
   try {
     app.parse(argc, argv);
@@ -279,6 +314,10 @@ int run_command_line(int argc, char** argv) {
   }
   if (*status_command || *merge_command) {
     *status_command ? status(campaign_options) : merge(campaign_options);
+    return 0;
+  }
+  if (*open_command) {
+    open_challenge(open_options);
     return 0;
   }
   if (*effects_command) {
@@ -299,6 +338,9 @@ int run_command_line(int argc, char** argv) {
     walk_test(inputs, walk_test_options);
   } else if (*selftest_command) {
     reconcile_selftest(inputs, reconcile_options, selftest_options);
+
+  } else if (*seal_command) {
+    seal_challenge(inputs, seal_options);
   } else if (*reconcile_command) {
     reconcile_data(inputs, reconcile_options);
   } else if (*placements_command) {

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "pirsim/reconcile/seal.hpp"
+
 namespace pirsim::app {
 
 enum class Verbosity { quiet, normal, verbose };
@@ -79,6 +81,19 @@ struct ReconcileOptions {
   double budget = 1.0;  ///< times the usual number of simulated datasets
   std::uint64_t seed = 1;
   unsigned threads = 0;
+};
+
+struct SealOptions {
+  std::filesystem::path output = "challenge";  ///< folder of what may be published
+  std::filesystem::path answer;                ///< what must be kept secret
+  std::string nuisance;                        ///< file, "none", or empty: the usual
+  reconcile::Hidden hidden = reconcile::Hidden::any;
+  int runs = 1;
+  std::optional<std::uint64_t> secret_seed;
+};
+
+struct OpenOptions {
+  std::filesystem::path answer, commitment, report;
 };
 
 struct EffectsOptions {

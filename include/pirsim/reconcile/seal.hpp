@@ -1,0 +1,59 @@
+// A blind challenge: something is hidden in simulated data, what it is gets sealed, and a verdict is scored later.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pirsim/reconcile/nuisance.hpp"
+#include "pirsim/schema/sample.hpp"
+
+namespace pirsim::reconcile {
+
+/// What may be hidden.
+enum class Hidden {
+  any,      ///< one of the following: one 55 %, the others 15 % each (assumed)
+  nothing,  ///< the plain model with nuisance
+  one,      ///< an effect of the catalogue, from its prior
+  two,      ///< two different ones
+  alien     ///< something that the catalogue lacks
+};
+[[nodiscard]] std::string_view name(Hidden hidden) noexcept;
+
+struct SealSettings {
+  NuisanceSpec nuisance;
+  Hidden hidden = Hidden::any;
+  int n_replicates = 1;           ///< runs of every trial
+  std::uint64_t secret_seed = 0;  ///< everything that is drawn follows from it
+  std::string salt;               ///< so that answers can't be found by trying all; kept in the answer
+};
+
+struct Challenge {
+  std::string rows;        ///< CSV as docs/formats/rows.md has it, without a manifest: that would tell seed and effects
+  std::string answer;      ///< JSON, to be kept secret; holds the rows' SHA-256 too
+  std::string commitment;  ///< SHA-256 of the answer's bytes, to be published
+};
+/// Throws Error(infeasible) if no attempt gives a room that people can get about in.
+[[nodiscard]] Challenge seal(const SceneSpec& scene, const ScriptSpec& script, const SealSettings& settings);
+
+enum class Mark {
+  exact,   ///< these effects and no other; or rightly nothing, or rightly none in the catalogue
+  family,  ///< other effects of the same families
+  one_of,  ///< the truth is among several that could not be told apart
+  part,    ///< one of two was named, and nothing else
+  wrong,   ///< something else was named
+  none     ///< nothing was named, though something of the catalogue or an alien was there
+};
+[[nodiscard]] std::string_view name(Mark mark) noexcept;
+
+struct Score {
+  Mark mark = Mark::none;
+  std::vector<std::string> hidden;  ///< effects, or the alien's name
+  std::string sentence;             ///< the score for a reader
+};
+/// answer: the sealed file's bytes; report: of report.json. Throws Error(input): the answer isn't the one committed to,
+/// the report is about other data, or one of them can't be read.
+[[nodiscard]] Score open_answer(std::string_view answer, std::string_view commitment, std::string_view report);
+
+}  // namespace pirsim::reconcile

@@ -1,0 +1,83 @@
+#include <fstream>
+#include <iomanip>
+#include <iostream>
+#include <random>
+#include <sstream>
+
+#include "app/commands.hpp"
+#include "app/row_output.hpp"
+#include "app/session.hpp"
+#include "pirsim/io/nuisance_reader.hpp"
+#include "pirsim/io/script_reader.hpp"
+#include "pirsim/reconcile/seal.hpp"
+
+namespace pirsim::app {
+namespace {
+
+constexpr std::size_t digest_digits = 64;
+
+/// What nobody can foresee: from the system, unless the user gives a secret of their own.
+std::uint64_t secret_word() {
+  std::random_device source;
+  return (static_cast<std::uint64_t>(source()) << 32U) | source();
+}
+
+std::string new_salt() {
+  std::ostringstream text;
+  text << std::hex << std::setfill('0') << std::setw(16) << secret_word() << std::setw(16) << secret_word();
+  return text.str();
+}
+
+std::string read_text(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  if (!in || !(text << in.rdbuf())) throw Error(ErrorCode::io, file.string() + ": cannot be read");
+  return text.str();
+}
+
+void write_text(const std::filesystem::path& file, const std::string& text) {
+  io::AtomicFile out(file);
+  out.stream() << text;
+  out.commit();
+}
+
+}  // namespace
+
+void seal_challenge(const Inputs& inputs, const SealOptions& options) {
+  if (options.answer.empty())
+    throw Error(ErrorCode::usage, "--answer FILE is missing; see pirsim reconcile seal --help");
+  const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
+  const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
+  tell(scene.warnings, inputs.verbosity);
+  tell(script.warnings, inputs.verbosity);
+  reconcile::SealSettings settings;
+  if (options.nuisance == "none") {
+    settings.nuisance = {0.0, 0.0, 0.0, 0.0, 0.0};
+  } else if (!options.nuisance.empty()) {
+    settings.nuisance = io::read_nuisance(options.nuisance);
+  }
+  settings.hidden = options.hidden;
+  settings.n_replicates = options.runs;
+  settings.secret_seed = options.secret_seed ? *options.secret_seed : secret_word();
+  settings.salt = new_salt();
+  const reconcile::Challenge challenge = reconcile::seal(scene, script, settings);
+  std::error_code unknown;
+  std::filesystem::create_directories(options.output, unknown);
+  write_text(options.answer, challenge.answer);
+  write_text(options.output / "measured.csv", challenge.rows);
+  // as sha256sum -c reads it
+  write_text(options.output / "commitment.sha256",
+             challenge.commitment + "  " + options.answer.filename().string() + '\n');
+  std::cout << challenge.commitment << '\n';
+  require_written();
+}
+
+void open_challenge(const OpenOptions& options) {
+  const std::string published = read_text(options.commitment).substr(0, digest_digits);
+  const reconcile::Score score =
+      reconcile::open_answer(read_text(options.answer), published, read_text(options.report));
+  std::cout << score.sentence << '\n';
+  require_written();
+}
+
+}  // namespace pirsim::app

@@ -1,0 +1,18 @@
+// Faults that the catalogue lacks on purpose, to see whether they are called by a wrong name.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pirsim/core/random.hpp"
+#include "pirsim/schema/sample.hpp"
+
+namespace pirsim::reconcile {
+
+struct Alien {
+  std::string name;
+  void (*apply)(std::vector<Sample>& rows, std::size_t sensor, Stream& stream);  ///< to the rows of one run
+};
+[[nodiscard]] const std::vector<Alien>& aliens();
+
+}  // namespace pirsim::reconcile

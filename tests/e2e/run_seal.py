@@ -1,0 +1,98 @@
+#!/usr/bin/env python3
+"""A blind challenge as two people play it: one seals, the other analyses, both see the score.
+
+Usage: run_seal.py PIRSIM DATA_DIRECTORY
+"""
+import hashlib
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+
+def main():
+    pirsim, data = sys.argv[1], pathlib.Path(sys.argv[2])
+    study = ["--scene", str(data / "rooms/meeting_room.gltf"), "--script", str(data / "studies/studyA.yaml")]
+
+    def call(*words, code=0):
+        result = subprocess.run([pirsim, "reconcile", *map(str, words)], capture_output=True, text=True)
+        assert result.returncode == code, (words, result.returncode, result.stdout, result.stderr)
+        return result
+
+    def sealed(folder, kind, seed):
+        call("seal", *study, "--hide", kind, "--secret-seed", seed, "-o", folder / "public", "--answer",
+             folder / "answer.json")
+        return json.loads((folder / "answer.json").read_text())
+
+    def opened(folder, verdict, effects, code=0, digest=None):
+        digest = digest or hashlib.sha256((folder / "public/measured.csv").read_bytes()).hexdigest()
+        (folder / "report.json").write_text(json.dumps(
+            {"pirsim_reconcile_report": 1, "verdict": verdict, "effects": effects, "measured": {"sha256": digest}}))
+        return call("open", "--answer", folder / "answer.json", "--commitment", folder / "public/commitment.sha256",
+                    "--report", folder / "report.json", code=code)
+
+    with tempfile.TemporaryDirectory() as name:
+        one, two = pathlib.Path(name) / "one", pathlib.Path(name) / "two"
+        one.mkdir()
+        two.mkdir()
+        answer = sealed(one, "one", 7)
+        effect = answer["effects"][0]["name"]
+
+        # The hash is that of the answer's bytes by another implementation; what is published tells nothing else.
+        published = (one / "public/commitment.sha256").read_text()
+        assert published.split() == [hashlib.sha256((one / "answer.json").read_bytes()).hexdigest(), "answer.json"]
+        assert sorted(f.name for f in (one / "public").iterdir()) == ["commitment.sha256", "measured.csv"]
+        rows = (one / "public/measured.csv").read_text()
+        assert effect not in rows and answer["salt"] not in rows
+        assert answer["measured_sha256"] == hashlib.sha256(rows.encode()).hexdigest()
+        plain = subprocess.run([pirsim, *study, "--set", "replicates=1"], capture_output=True, text=True, check=True)
+        assert rows.splitlines()[0] == plain.stdout.splitlines()[0]
+
+        # Same secret: same data and effect, but another salt, so another hash.
+        again = sealed(two, "one", 7)
+        assert (two / "public/measured.csv").read_text() == rows
+        assert again["effects"] == answer["effects"] and again["salt"] != answer["salt"]
+        assert (two / "public/commitment.sha256").read_text() != published
+
+        # Marks.
+        other = "clock_lag" if effect != "clock_lag" else "body_size"
+        assert opened(one, "named", [effect]).stdout.startswith("exact:")
+        assert opened(one, "one-of", [effect, other]).stdout.startswith("one-of:")
+        assert opened(one, "named", ["labels_swapped" if effect != "labels_swapped" else "body_size"]).stdout.split(
+            ":")[0] in ("wrong", "family")
+        assert opened(one, "several", [effect, other]).stdout.split(":")[0] in ("wrong", "family")
+        assert opened(one, "none-in-catalogue", []).stdout.startswith("none:")
+        assert "other data" in opened(one, "named", [effect], code=3, digest="0" * 64).stderr
+
+        # Whoever changes the answer afterwards is found out, whatever they change.
+        honest = (one / "answer.json").read_text()
+        for old, new in ((effect, other), (answer["salt"], "0" * 32), ("}\n", "}\n\n")):
+            assert old in honest
+            (one / "answer.json").write_text(honest.replace(old, new))
+            assert "committed" in opened(one, "named", [effect], code=3).stderr
+        (one / "answer.json").write_text(honest)
+        opened(one, "named", [effect])
+
+        alien = sealed(two, "alien", 3)
+        assert alien["effects"] == [] and alien["alien"]["name"]
+        assert opened(two, "none-in-catalogue", []).stdout.startswith("exact:")
+        assert opened(two, "named", ["clock_lag"]).stdout.startswith("wrong:")
+        assert opened(two, "no-disagreement", []).stdout.startswith("none:")
+        pair = sealed(two, "two", 5)
+        names = [e["name"] for e in pair["effects"]]
+        assert len(set(names)) == 2
+        assert opened(two, "several", names).stdout.startswith("exact:")
+        assert opened(two, "named", names[:1]).stdout.startswith("part:")
+        assert sealed(two, "nothing", 5)["effects"] == []
+        assert opened(two, "no-disagreement", []).stdout.startswith("exact:")
+        assert opened(two, "named", ["clock_lag"]).stdout.startswith("wrong:")
+
+        # The analysis has no way to be told of an answer, and takes it for no data.
+        assert call(*study, "--measured", one / "answer.json", "-o", pathlib.Path(name) / "out", code=3)
+        call(*study, "--measured", one / "public/measured.csv", "--answer", one / "answer.json", code=2)
+        call("seal", *study, "-o", one / "x", code=2)
+
+
+if __name__ == "__main__":
+    main()
