@@ -338,7 +338,6 @@ int run_command_line(int argc, char** argv) {
     walk_test(inputs, walk_test_options);
   } else if (*selftest_command) {
     reconcile_selftest(inputs, reconcile_options, selftest_options);
-
   } else if (*seal_command) {
     seal_challenge(inputs, seal_options);
   } else if (*reconcile_command) {

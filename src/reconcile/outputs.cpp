@@ -6,6 +6,7 @@
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/csv_writer.hpp"
 #include "pirsim/io/script_reader.hpp"
+#include "pirsim/reconcile/report_page.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -175,6 +176,9 @@ void write_outputs(const std::filesystem::path& folder, const Outcome& outcome, 
   std::string trail;
   for (const std::string& line : outcome.trail) trail += line + '\n';
   write(folder / "trail.log", trail);
+  io::Report page = report_page(outcome, settings.alpha);
+  page.footer = provenance.program + ", " + provenance.scene + ", " + provenance.script + ", " + provenance.measured;
+  write(folder / "report.html", io::to_html(page));
   write(folder / "report.json", to_json(outcome, measured, settings, provenance));
 }
 

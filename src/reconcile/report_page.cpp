@@ -63,7 +63,9 @@ io::ReportSection where(const Outcome& outcome, double alpha) {
 io::ReportSection envelope(const Location& location, double alpha) {
   io::ReportSection section{"Seen as a whole", {}, {}, {}};
   section.paragraphs = {
-      "Each line is a number taken from the data that lies outside the range of all the model's runs taken together. "
+      "Each line is a number taken from the data, scaled so that all can be compared, that lies outside the range of "
+      "all "
+      "the model's runs taken together. "
       "If the model were right, this page would show any such line in " +
       percent(alpha) + " of cases only."};
   io::Table table{{"what", "measured", "lowest", "usual", "highest"}, {}};

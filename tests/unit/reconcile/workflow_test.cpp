@@ -1,5 +1,7 @@
 // The loop on a shortened Study A: three seats, half a minute of work each.
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <set>
 
 #include "pirsim/core/digest.hpp"
@@ -204,4 +206,8 @@ TEST_CASE("the whole loop writes a patched script that runs and closes the gap",
   REQUIRE(patched_script.effects.size() == 1);
   CHECK(patched_script.effects[0].name == "false_triggers");
   CHECK(compile(scene, patched_script).pipeline().size() == 1);
+  std::ifstream page_file(folder.path() / "report.html");
+  const std::string page{std::istreambuf_iterator<char>(page_file), {}};
+  CHECK_THAT(page, contains(outcome.sentence) && contains("Does it help"));
+  for (const Candidate& candidate : outcome.candidates) CHECK_THAT(page, contains(candidate.score.entry));
 }
