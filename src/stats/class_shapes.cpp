@@ -142,16 +142,10 @@ Strangeness ClassShapes::strangeness(std::span<const float> features, std::size_
   const Eigen::VectorXf residual = off.cast<float>() - as_eigen(shape.directions).transpose() * place -
                                    as_eigen(shape.bend).transpose() * bend.cast<float>();
   const Eigen::VectorXf pulled = as_eigen(shape.precision) * residual;
-  const Eigen::ArrayXd spreads = residual.cast<double>().array() / vector(shape.residual_sd).array();
   Strangeness strangeness;
-  strangeness.inside = (place.cast<double>().array() / vector(shape.spread).array()).square().sum();
   strangeness.neighbour = mean_distance_to_nearest(shape.members, place, neighbours_);
-  strangeness.residual = spreads.square().mean();
   strangeness.mahalanobis = static_cast<double>(residual.dot(pulled));
-  strangeness.largest = spreads.abs().maxCoeff();
-  // What the others don't foretell of entry j is (P r)_j / P_jj, with variance 1 / P_jj.
-  strangeness.unexplained =
-      static_cast<double>((pulled.array().abs() / as_eigen(shape.precision).diagonal().array().sqrt()).maxCoeff());
+  strangeness.largest = (residual.cast<double>().array() / vector(shape.residual_sd).array()).abs().maxCoeff();
   return strangeness;
 }
 

@@ -12,8 +12,6 @@
 namespace pirsim::stats {
 namespace {
 
-constexpr std::size_t n_measures = std::tuple_size_v<decltype(Strangeness{}.values())>;
-
 /// How much likelier the best other class is than class k, in log odds.
 double margin(std::span<const double> probabilities, std::size_t k) {
   constexpr double floor = 1e-300;
@@ -44,14 +42,39 @@ std::vector<int> select(std::span<const int> labels, std::span<const std::size_t
   return selected;
 }
 
-/// p of the row's strangeness among the calibration rows': one test of all
-/// measures together.
-double absolute_p(const Matrix<double>& calibration, const Strangeness& strangeness) {
-  Matrix<double> rows(calibration.rows() + 1, n_measures);
-  const auto own = strangeness.values();
-  std::copy(own.begin(), own.end(), rows.row(0).begin());
-  std::copy(calibration.values().begin(), calibration.values().end(), rows.row(0).data() + n_measures);
+/// p of the row's strangeness among the calibration rows': one test of all measures together.
+double absolute_p(const Matrix<double>& calibration, std::span<const double> strangeness) {
+  Matrix<double> rows;
+  rows.append_row(strangeness);
+  for (std::size_t row = 0; row < calibration.rows(); ++row) rows.append_row(calibration.row(row));
   return extremeness(rows, {.rank = PointwiseRank::continuous, .alternative = Alternative::greater, .threads = 1})[0];
+}
+
+std::vector<float> pick(std::span<const float> features, std::span<const std::size_t> columns) {
+  std::vector<float> picked;
+  for (const std::size_t column : columns) picked.push_back(features[column]);
+  return picked;
+}
+
+Matrix<float> pick(const Matrix<float>& features, std::span<const std::size_t> columns) {
+  Matrix<float> picked(features.rows(), columns.size());
+  for (std::size_t row = 0; row < features.rows(); ++row)
+    for (std::size_t i = 0; i < columns.size(); ++i) picked(row, i) = features(row, columns[i]);
+  return picked;
+}
+
+std::vector<std::vector<std::size_t>> checked_blocks(std::vector<std::vector<std::size_t>> blocks,
+                                                     std::size_t columns) {
+  if (blocks.empty()) {
+    blocks.emplace_back(columns);
+    std::iota(blocks[0].begin(), blocks[0].end(), std::size_t{0});
+  }
+  for (const auto& block : blocks) {
+    require(!block.empty(), "classes: a block without columns");
+    for (const std::size_t column : block)
+      require(column < columns, "classes: a block names a column that isn't there");
+  }
+  return blocks;
 }
 
 }  // namespace
@@ -101,7 +124,9 @@ ConformalClassifier ConformalClassifier::fit(const Matrix<float>& features, std:
   {
     const Matrix<float> fitting = features.select_rows(split.fitting);
     fitted.discriminant_ = Discriminant::fit(fitting, fitting_labels, n_classes);
-    fitted.shapes_ = ClassShapes::fit(fitting, fitting_labels, n_classes, settings.shapes);
+    fitted.blocks_ = checked_blocks(settings.blocks, features.columns());
+    for (const auto& block : fitted.blocks_)
+      fitted.shapes_.push_back(ClassShapes::fit(pick(fitting, block), fitting_labels, n_classes, settings.shapes));
     fitted.trees_ =
         ExtraTrees::fit(with_coordinates(fitting, fitted.discriminant_), fitting_labels, n_classes, settings.trees);
   }
@@ -115,18 +140,26 @@ std::array<std::vector<double>, 2> ConformalClassifier::sources(std::span<const 
   return {trees_.probabilities(with_coordinates(features, discriminant_)), discriminant_.probabilities(features)};
 }
 
+std::vector<double> ConformalClassifier::strangeness(std::span<const float> features, std::size_t k) const {
+  std::vector<double> all;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const auto measures = shapes_[b].strangeness(pick(features, blocks_[b]), k).values();
+    all.insert(all.end(), measures.begin(), measures.end());
+  }
+  return all;
+}
+
 void ConformalClassifier::calibrate(const Matrix<float>& features, std::span<const int> labels, unsigned threads) {
   const auto classes = static_cast<std::size_t>(n_classes());
-  // Per row the two sources' probabilities and the strangeness for its own
-  // class.
+  const std::size_t n_measures = strangeness(features.row(0), 0).size();
+  // Per row the two sources' probabilities and the strangeness for its own class.
   const Matrix<double> found =
       detail::map_rows(features.rows(), 2 * classes + n_measures, threads, [&](std::size_t row) {
         const auto both = sources(features.row(row));
         std::vector<double> values = both[0];
         values.insert(values.end(), both[1].begin(), both[1].end());
-        const auto own = shapes_.strangeness(features.row(row), static_cast<std::size_t>(labels[row]));
-        const auto measures = own.values();
-        values.insert(values.end(), measures.begin(), measures.end());
+        const auto own = strangeness(features.row(row), static_cast<std::size_t>(labels[row]));
+        values.insert(values.end(), own.begin(), own.end());
         return values;
       });
   std::array<Matrix<double>, 2> tables{Matrix<double>(features.rows(), classes),
@@ -157,7 +190,7 @@ Classification ConformalClassifier::classify(std::span<const float> features) co
   result.probabilities = pool_.combine(sources(features));
   for (std::size_t k = 0; k < result.probabilities.size(); ++k) {
     result.p_relative.push_back(conformal_p(margins_[k], margin(result.probabilities, k)));
-    result.p_absolute.push_back(absolute_p(strangeness_[k], shapes_.strangeness(features, k)));
+    result.p_absolute.push_back(absolute_p(strangeness_[k], strangeness(features, k)));
     result.p.push_back(std::min(1.0, 2.0 * std::min(result.p_relative[k], result.p_absolute[k])));
   }
   return result;
@@ -175,7 +208,11 @@ void ConformalClassifier::write(BinaryWriter& out) const {
   discriminant_.write(out);
   trees_.write(out);
   out.write(pool_.weights());
-  shapes_.write(out);
+  out.write(static_cast<std::uint64_t>(blocks_.size()));
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    out.write(std::vector<std::uint64_t>(blocks_[b].begin(), blocks_[b].end()));
+    shapes_[b].write(out);
+  }
   out.write(std::vector<std::uint64_t>(calibration_rows_.begin(), calibration_rows_.end()));
   out.write(probabilities_);
   out.write(static_cast<std::uint64_t>(margins_.size()));
@@ -190,7 +227,12 @@ ConformalClassifier ConformalClassifier::read(BinaryReader& in) {
   read.discriminant_ = Discriminant::read(in);
   read.trees_ = ExtraTrees::read(in);
   read.pool_ = LogPool(in.read_vector<double>());
-  read.shapes_ = ClassShapes::read(in);
+  const auto blocks = in.read<std::uint64_t>();
+  for (std::uint64_t b = 0; b < blocks; ++b) {
+    const auto columns = in.read_vector<std::uint64_t>();
+    read.blocks_.emplace_back(columns.begin(), columns.end());
+    read.shapes_.push_back(ClassShapes::read(in));
+  }
   const auto rows = in.read_vector<std::uint64_t>();
   read.calibration_rows_.assign(rows.begin(), rows.end());
   read.probabilities_ = in.read_matrix<double>();

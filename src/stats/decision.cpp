@@ -59,7 +59,8 @@ Decision decide(double null_p, std::span<const Candidate> singles, std::span<con
   if (null_p > alpha) return {};
   std::vector<std::size_t> kept = survivors(singles, alpha);
   if (!kept.empty()) {
-    const Verdict verdict = kept.size() == 1 ? Verdict::named : Verdict::one_of;
+    const bool single = kept.size() == 1 && !singles[kept[0]].effects.empty();
+    const Verdict verdict = single ? Verdict::named : Verdict::one_of;
     return describe(verdict, singles, std::move(kept), families);
   }
   kept = survivors(combinations, alpha);

@@ -1,5 +1,4 @@
-// Can this class have made this row at all: several distances of a row from the
-// rows a class is known to make.
+// Can this class have made this row at all: several distances of a row from the rows a class is known to make.
 #pragma once
 
 #include <array>
@@ -13,8 +12,8 @@
 namespace pirsim::stats {
 
 struct ClassShapesSettings {
-  std::size_t subspace = 20;   ///< directions in which a class is taken to vary; fewer for a class with few rows
-  std::size_t curved = 3;      ///< of these, the first ones along which its other features may bend (squares, products)
+  std::size_t subspace = 10;   ///< directions in which a class is taken to vary; fewer for a class with few rows
+  std::size_t curved = 4;      ///< of these, the first ones along which its other features may bend (squares, products)
   std::size_t neighbours = 5;  ///< of the class, whose mean distance counts
   std::uint64_t seed = 0;      ///< of the random projections that find the directions
   unsigned threads = 0;        ///< 0: all cores; never changes the result
@@ -23,15 +22,10 @@ struct ClassShapesSettings {
 /// Great means strange; compare with the same measure of rows that the class did make and that weren't fitted on
 /// (conformal_p), never across classes or measures.
 struct Strangeness {
-  double inside = 0.0;       ///< squared Mahalanobis distance within the class's directions (Hotelling's T squared)
   double neighbour = 0.0;    ///< mean distance to the nearest rows of the class, within its directions
-  double residual = 0.0;     ///< mean square of what the curved directions leave over, in standard deviations
-  double mahalanobis = 0.0;  ///< squared distance of that residual under its shrunk covariance
-  double largest = 0.0;      ///< greatest entry of that residual in standard deviations
-  double unexplained = 0.0;  ///< greatest entry less what the other entries foretell, in standard deviations
-  [[nodiscard]] std::array<double, 6> values() const noexcept {
-    return {inside, neighbour, residual, mahalanobis, largest, unexplained};
-  }
+  double mahalanobis = 0.0;  ///< squared distance from the curved directions under the residuals' shrunk covariance
+  double largest = 0.0;      ///< greatest entry of that residual in its standard deviations
+  [[nodiscard]] std::array<double, 3> values() const noexcept { return {neighbour, mahalanobis, largest}; }
 };
 
 /// Each class by itself: its mean and standard deviations, the directions in which it varies most, how it bends along

@@ -1,5 +1,4 @@
-// Which classes can't be ruled out: p-values that hold whatever the classifier,
-// from rows kept for calibration.
+// Which classes can't be ruled out: p-values that hold whatever the classifier, from rows kept for calibration.
 #pragma once
 
 #include <array>
@@ -14,27 +13,26 @@
 
 namespace pirsim::stats {
 
-/// Share of the calibration scores and the score itself that are at least as
-/// great (strange) as the score. If the score and the calibration scores are
-/// exchangeable, P(p <= a) <= a. Ref: [Vovk2005]
+/// Share of the calibration scores and the score itself that are at least as great (strange) as the score. If the score
+/// and the calibration scores are exchangeable, P(p <= a) <= a. Ref: [Vovk2005]
 [[nodiscard]] double conformal_p(std::span<const double> calibration, double score);
 
 /// Indices whose p exceeds alpha.
 [[nodiscard]] std::vector<std::size_t> prediction_set(std::span<const double> p, double alpha);
 
-/// Indices of rows, each class split alike: the first part for fitting, the
-/// second for calibration.
+/// Indices of rows, each class split alike: the first part for fitting, the second for calibration.
 struct Split {
   std::vector<std::size_t> fitting, calibration;  ///< ascending
 };
-/// calibration_share in (0, 1); at least one row of each class goes to either
-/// part.
+/// calibration_share in (0, 1); at least one row of each class goes to either part.
 [[nodiscard]] Split split_by_class(std::span<const int> labels, double calibration_share, std::uint64_t seed);
 
 struct ConformalSettings {
-  ExtraTreesSettings trees;  ///< grown on the features and the discriminant's
-                             ///< coordinates. Ref: [Pudlo2016]
+  ExtraTreesSettings trees;  ///< grown on the features and the discriminant's coordinates. Ref: [Pudlo2016]
   ClassShapesSettings shapes;
+  /// Columns whose shapes are looked at together, each block by itself: {} or all columns as one. A block of sums over
+  /// many cells sees a small change that all cells share, which drowns among the cells themselves.
+  std::vector<std::vector<std::size_t>> blocks = {};
   double calibration_share = 0.4;
   std::uint64_t seed = 0;  ///< of the split
   unsigned threads = 0;    ///< 0: all cores; never changes the result
@@ -44,27 +42,23 @@ struct ConformalSettings {
 struct Classification {
   std::vector<double> probabilities;  ///< calibrated, classes equally likely beforehand
   std::vector<double> p_relative;     ///< of the margin of the best other class over this one
-  std::vector<double> p_absolute;     ///< of the class's own strangeness: can it
-                                      ///< make this row at all
+  std::vector<double> p_absolute;     ///< of the class's own strangeness: can it make this row at all
   std::vector<double> p;              ///< min(1, 2 min(p_relative, p_absolute)): both tests in one
 };
 
-/// Trees and a discriminant, pooled and calibrated, and the shapes of the
-/// classes. For a row that class k made, P(p[k] <= a) <= a for each k, up to
-/// the two pool weights being fitted on the calibration rows.
+/// Trees and a discriminant, pooled and calibrated, and the shapes of the classes. For a row that class k made, P(p[k]
+/// <= a) <= a for each k, up to the two pool weights being fitted on the calibration rows.
 class ConformalClassifier {
  public:
   ConformalClassifier() = default;
-  /// features: (n_rows x n_columns), finite; labels: (n_rows) in [0,
-  /// n_classes), each class ten times or more.
+  /// features: (n_rows x n_columns), finite; labels: (n_rows) in [0, n_classes), each class ten times or more.
   [[nodiscard]] static ConformalClassifier fit(const Matrix<float>& features, std::span<const int> labels,
                                                int n_classes, const ConformalSettings& settings = {});
   [[nodiscard]] Classification classify(std::span<const float> features) const;
   /// One a row.
   [[nodiscard]] std::vector<Classification> classify(const Matrix<float>& features, unsigned threads = 0) const;
 
-  /// The rows that were kept for calibration, out of those given to fit(): for
-  /// reliability() and error rates.
+  /// The rows that were kept for calibration, out of those given to fit(): for reliability() and error rates.
   [[nodiscard]] const std::vector<std::size_t>& calibration_rows() const noexcept { return calibration_rows_; }
   /// (n_calibration_rows x n_classes) their calibrated probabilities.
   [[nodiscard]] const Matrix<double>& calibration_probabilities() const noexcept { return probabilities_; }
@@ -79,16 +73,19 @@ class ConformalClassifier {
 
  private:
   [[nodiscard]] std::array<std::vector<double>, 2> sources(std::span<const float> features) const;
+  /// (n_blocks x measures, one after another) of the row for class k.
+  [[nodiscard]] std::vector<double> strangeness(std::span<const float> features, std::size_t k) const;
   void calibrate(const Matrix<float>& features, std::span<const int> labels, unsigned threads);
 
   Discriminant discriminant_;
   ExtraTrees trees_;
   LogPool pool_;
-  ClassShapes shapes_;
+  std::vector<std::vector<std::size_t>> blocks_;
+  std::vector<ClassShapes> shapes_;  ///< per block
   std::vector<std::size_t> calibration_rows_;
   Matrix<double> probabilities_;
   std::vector<std::vector<double>> margins_;  ///< per class, of its calibration rows
-  std::vector<Matrix<double>> strangeness_;   ///< per class (its calibration rows x measures)
+  std::vector<Matrix<double>> strangeness_;   ///< per class (its calibration rows x blocks x measures)
 };
 
 }  // namespace pirsim::stats

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 #include <vector>
 
@@ -19,9 +20,8 @@ struct Labelled {
   std::vector<int> labels;
 };
 
-/// 30 columns. Class k in {0, 1, 2} moves columns 2 k and 2 k + 1 by a random
-/// strength from 0 to 4, so that weak ones look alike; class 3 is in no
-/// catalogue: it moves columns 20 to 22 by 4.
+/// 30 columns. Class k in {0, 1, 2} moves columns 2 k and 2 k + 1 by a random strength from 0 to 4, so that weak ones
+/// look alike; class 3 is in no catalogue: it moves columns 20 to 22 by 4.
 Labelled draw(std::size_t rows_per_class, std::initializer_list<int> classes, std::uint32_t study) {
   Stream stream({81, study, 0, Purpose::test});
   Labelled drawn{Matrix<float>(rows_per_class * classes.size(), 30), {}};
@@ -76,9 +76,8 @@ TEST_CASE(
     "the true class is refused as rarely as its p says and another kind "
     "of row is refused by all",
     "[stats]") {
-  // Given one calibration set of 160 rows a class the level itself varies by
-  // sqrt(.1 x .9 / 160) = 0.024, and the share of 900 rows by 0.010; three
-  // tables average: 0.014 + 0.006.
+  // Given one calibration set of 160 rows a class the level itself varies by sqrt(.1 x .9 / 160) = 0.024, and the share
+  // of 900 rows by 0.010; three tables average: 0.014 + 0.006.
   double wrongly = 0.0, relative_only = 0.0, aliens_refused = 0.0, aliens_refused_by_margin = 0.0;
   for (std::uint32_t study = 0; study < 3; ++study) {
     const ConformalClassifier classifier = fit(10 * study);
@@ -97,8 +96,7 @@ TEST_CASE(
   CHECK(wrongly < 0.1 + 3 * 0.015);
   CHECK(wrongly > 0.02);
   CHECK(std::abs(relative_only - 0.1) < 3 * 0.015);
-  // Columns 20 to 22 are 3 sd off: chi-squared of 27 over 30, four-sigma with 3
-  // columns known.
+  // Columns 20 to 22 are 3 sd off: chi-squared of 27 over 30, four-sigma with 3 columns known.
   CHECK(aliens_refused > 0.8);
   CHECK(aliens_refused_by_margin < 0.3);
 }
@@ -132,4 +130,35 @@ TEST_CASE(
   CHECK(read == classifier);
   const Labelled row = draw(1, {1}, 8);
   CHECK(read.classify(row.features.row(0)).p == classifier.classify(row.features.row(0)).p);
+}
+
+TEST_CASE("a small change of every column is strange where a block holds their sum", "[stats]") {
+  // 40 columns of unit noise and their sum; the alien moves each by half a standard deviation, the sum by 3.2 of them.
+  Stream stream({82, 0, 0, Purpose::test});
+  const auto draw_rows = [&](std::size_t rows, float change) {
+    Matrix<float> drawn(rows, 41);
+    for (std::size_t r = 0; r < rows; ++r) {
+      for (std::size_t c = 0; c < 40; ++c) {
+        drawn(r, c) = static_cast<float>(stream.normal()) + change;
+        drawn(r, 40) += drawn(r, c);
+      }
+    }
+    return drawn;
+  };
+  Matrix<float> table = draw_rows(600, 0.0F);
+  std::vector<int> labels;
+  for (std::size_t r = 0; r < table.rows(); ++r) {
+    labels.push_back(r % 2 == 0 ? 0 : 1);
+    table(r, 0) += 4.0F * static_cast<float>(labels.back());
+  }
+  std::vector<std::size_t> cells(40);
+  std::iota(cells.begin(), cells.end(), std::size_t{0});
+  const auto refused = [&](std::vector<std::vector<std::size_t>> blocks) {
+    const auto classifier = ConformalClassifier::fit(table, labels, 2, {.trees = {.trees = 20}, .blocks = blocks});
+    const auto found = classifier.classify(draw_rows(200, 0.5F));
+    return std::count_if(found.begin(), found.end(), [](const auto& one) { return one.p_absolute[0] <= 0.05; }) / 200.0;
+  };
+  CHECK(refused({cells, {40}}) > 0.6);
+  CHECK(refused({cells}) < 0.4);
+  CHECK_THROWS_AS(refused({{41}}), Error);
 }

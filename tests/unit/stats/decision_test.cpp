@@ -38,3 +38,11 @@ TEST_CASE("combinations are looked at only when no single effect survives", "[st
   CHECK(decide(0.001, singles(0.0, 0.0, 0.0), {}, families, 0.05).verdict == Verdict::none_in_catalogue);
   CHECK_THROWS_AS(decide(0.5, std::vector<Candidate>{{{3}, 0.1}}, {}, families, 0.05), pirsim::Error);
 }
+
+TEST_CASE("no effect is named while the model as it is can't be ruled out", "[stats]") {
+  std::vector<Candidate> candidates = singles(0.4, 0.0, 0.0);
+  candidates.push_back({{}, 0.2});
+  CHECK(decide(0.04, candidates, pairs, families, 0.05) == Decision{Verdict::one_of, {0, 3}, {}, 7});
+  candidates[0].p = 0.0;
+  CHECK(decide(0.04, candidates, pairs, families, 0.05) == Decision{Verdict::one_of, {3}, {}, std::nullopt});
+}
