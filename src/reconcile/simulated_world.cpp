@@ -24,22 +24,22 @@ void add_series(const StudyFrame& frame, const RunResult& result, int first, std
 
 struct SimulatedWorld::Traced {
   Traced(const World& world, const StudyFrame& /*frame*/)
-      : model(compile(world.scene, world.script)), logic(model.detector()) {
+      : model(compile(world.scene, world.script)), logic(sim::make_logic(model)) {
     tracks = sim::trace(model, all_runs(model), 1);
-    logic.prepare(tracks.sets);
+    logic->prepare(tracks.sets);
   }
   [[nodiscard]] std::vector<Series> emit(const StudyFrame& frame, const effects::Pipeline& pipeline, int first, int n) {
     std::vector<Series> data;
     for (std::size_t i = 0; i < tracks.runs.size(); ++i) {
       const int replicate = tracks.runs[i].rows.replicate;
       if (replicate <= first || replicate > first + n) continue;
-      add_series(frame, sim::emit(tracks, i, logic, model.script().seed, pipeline), first, data);
+      add_series(frame, sim::emit(tracks, i, *logic, model.script().seed, pipeline), first, data);
     }
     return data;
   }
 
   Model model;
-  sim::ChangeLogic logic;
+  std::unique_ptr<sim::DetectorLogic> logic;
   sim::ZoneTracks tracks;
 };
 
