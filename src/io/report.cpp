@@ -1,16 +1,17 @@
 #include "pirsim/io/report.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "io/chart_json.hpp"
 #include "io/page_texts.hpp"
-#include "pirsim/core/units.hpp"
 #include "pirsim/io/atomic_file.hpp"
 
 namespace pirsim::io {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = detail::ChartJson;
 
 std::string escaped(const std::string& text) {
   std::string result;
@@ -35,65 +36,6 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-Json polygons(const std::vector<std::vector<Vec2>>& loops) {
-  Json result = Json::array();
-  for (const auto& loop : loops) {
-    Json points = Json::array();
-    for (const Vec2& p : loop) points.push_back({p.x, p.y});
-    if (!points.empty()) result.push_back(std::move(points));
-  }
-  return result;
-}
-
-/// Whole numbers without a decimal point: maps are large.
-Json number(double value) {
-  const auto whole = static_cast<long long>(value);
-  return static_cast<double>(whole) == value ? Json(whole) : Json(value);
-}
-
-Json to_json(const MapChart& chart) {
-  Json json{{"kind", "map"},
-            {"label", chart.label},
-            {"unit", chart.unit},
-            {"x0", chart.lower.x},
-            {"z0", chart.lower.y},
-            {"spacing_m", chart.spacing_m},
-            {"columns", chart.columns},
-            {"rows", chart.rows},
-            {"max", chart.max},
-            {"outline", polygons(chart.outline)},
-            {"dashed", polygons(chart.dashed)}};
-  Json values = Json::array();
-  for (const auto& value : chart.values) values.push_back(value ? number(*value) : Json(nullptr));
-  json["values"] = std::move(values);
-  json["markers"] = Json::array();
-  for (const MapChart::Marker& marker : chart.markers) {
-    // Vega turns clockwise, and z runs down the page.
-    json["markers"].push_back({{"label", marker.label},
-                               {"x", marker.point.x},
-                               {"z", marker.point.y},
-                               {"angle_deg", -degrees(marker.heading)}});
-  }
-  return json;
-}
-
-Json to_json(const HistogramChart& chart) {
-  Json json{{"kind", "histogram"}, {"label", chart.label}, {"unit", chart.unit}, {"values", chart.values}};
-  json["real"] = chart.real ? Json(*chart.real) : Json(nullptr);
-  return json;
-}
-
-Json to_json(const SeriesChart& chart) {
-  Json json{{"kind", "series"}, {"window_s", chart.window_s}, {"end_s", chart.end_s}};
-  json["rows"] = Json::array();
-  for (const auto& row : chart.rows) json["rows"].push_back({{"name", row.name}, {"times_s", row.times_s}});
-  json["phases"] = Json::array();
-  for (const auto& phase : chart.phases) {
-    json["phases"].push_back({{"name", phase.name}, {"from_s", phase.from_s}, {"to_s", phase.to_s}});
-  }
-  return json;
-}
-
 /// JSON inside a script element must not end it.
 std::string inlined(const Json& json) {
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -105,13 +47,23 @@ void write_paragraphs(std::ostream& out, const std::vector<std::string>& paragra
   for (const std::string& paragraph : paragraphs) out << "<p>" << escaped(paragraph) << "</p>\n";
 }
 
+constexpr std::size_t longest_number = 30;  ///< longer cells are prose: left-aligned and wrapped
+
 void write_table(std::ostream& out, const Table& table) {
+  const auto has_words = [&](std::size_t column) {
+    return std::ranges::any_of(
+        table.rows, [&](const auto& row) { return column < row.size() && row[column].size() > longest_number; });
+  };
   out << "<div class=\"table\"><table><thead><tr>";
-  for (const std::string& heading : table.headings) out << "<th scope=\"col\">" << escaped(heading) << "</th>";
+  for (std::size_t i = 0; i < table.headings.size(); ++i) {
+    out << "<th scope=\"col\"" << (has_words(i) ? " class=\"words\">" : ">") << escaped(table.headings[i]) << "</th>";
+  }
   out << "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
     out << "<tr>";
-    for (const std::string& cell : row) out << "<td>" << escaped(cell) << "</td>";
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      out << (has_words(i) ? "<td class=\"words\">" : "<td>") << escaped(row[i]) << "</td>";
+    }
     out << "</tr>\n";
   }
   out << "</tbody></table></div>\n";
@@ -121,7 +73,7 @@ void write_table(std::ostream& out, const Table& table) {
 void write_charts(std::ostream& out, const ReportSection& section, Json& charts) {
   std::string open_kind;
   for (const auto& chart : section.charts) {
-    Json json = std::visit([](const auto& c) { return to_json(c); }, chart);
+    Json json = detail::to_json(chart);
     const auto kind = json["kind"].get<std::string>();
     if (kind != open_kind) {
       if (!open_kind.empty()) out << "</div>\n";
@@ -149,6 +101,7 @@ std::string to_html(const Report& report) {
       << "<title>" << escaped(report.title) << "</title>\n<style>\n"
       << detail::report_style() << "</style>\n</head>\n<body>\n"
       << "<h1>" << escaped(report.title) << "</h1>\n";
+  if (!report.finding.empty()) out << "<p class=\"lead\">" << escaped(report.finding) << "</p>\n";
   write_paragraphs(out, report.paragraphs);
   if (report.sections.size() > 2) {
     out << "<nav>";

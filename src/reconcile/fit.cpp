@@ -129,7 +129,12 @@ FittedEffect fit_from_table(const ReferenceTable& table, const FeatureMap& map, 
         widening_of(held_back, held_back_guesses, posterior, p, observed_guess[p], settings.confidence);
     const stats::Interval flat = posterior.interval(p, settings.confidence, widening);
     FittedParameter parameter{info.name, info.unit, from_flat(info, posterior.quantile(p, 0.5)),
-                              {},        info.off,  info.role == effects::Role::strength};
+                              {},        info.off,  info.role == effects::Role::strength,
+                              {}};
+    for (int i = 0; i < 20; ++i) {
+      const double middle = posterior.quantile(p, 0.5), value = posterior.quantile(p, (i + 0.5) / 20.0);
+      parameter.equally_likely.push_back(from_flat(info, middle + widening * (value - middle)));
+    }
     parameter.interval = {from_flat(info, flat.low), from_flat(info, flat.high)};
     if (parameter.is_strength) {
       any_strength = true;

@@ -59,6 +59,7 @@ Json to_json(const FittedEffect& fitted) {
                           {"unit", p.unit},
                           {"value", p.value},
                           {"interval_90", {p.interval.low, p.interval.high}},
+                          {"equally_likely", p.equally_likely},
                           {"off", p.is_strength ? Json(p.off) : Json()}});
   }
   Json choices = Json::object();

@@ -10,14 +10,6 @@
 namespace pirsim::reconcile {
 namespace {
 
-std::string listed(const std::vector<std::string>& names, const std::string& last) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == names.size() ? " " + last + " " : ", ") + names[i];
-  }
-  return text;
-}
-
 std::string common_family(const std::vector<std::string>& effects) {
   std::string family;
   for (const std::string& effect : effects) {
@@ -36,6 +28,33 @@ std::string where(const Outcome& outcome, double alpha) {
 }
 
 }  // namespace
+
+std::string joined(const std::vector<std::string>& names, const std::string& last) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 == names.size() ? " " + last + " " : ", ") + names[i];
+  }
+  return text;
+}
+
+std::string next_step(const Outcome& outcome) {
+  switch (outcome.verdict) {
+    case Verdict::no_disagreement:
+      return "What to do next: nothing, unless smaller differences matter; more runs make the experiment sharper.";
+    case Verdict::named:
+    case Verdict::several:
+      return "What to do next: run script_patched.yaml, the same script with what was found put in, and see below "
+             "whether it comes closer to trials that it was not fitted on.";
+    case Verdict::one_of:
+      return "What to do next: measure more before one of them is put in; pirsim reconcile plan tells which "
+             "measurement "
+             "separates them best.";
+    case Verdict::none_in_catalogue:
+      break;
+  }
+  return "What to do next: look at the cells and numbers marked below; a new effect is one file of the catalogue "
+         "(docs/howto/add_an_effect.md).";
+}
 
 std::string short_number(double value) {
   std::ostringstream out;
@@ -67,12 +86,12 @@ std::string verdict_sentence(const Outcome& outcome, double alpha) {
              ", and no other effect of the catalogue explains the data.";
     case Verdict::one_of: {
       const std::string family = common_family(outcome.named);
-      return "The model lacks one of " + listed(outcome.named, "or") +
+      return "The model lacks one of " + joined(outcome.named, "or") +
              (family.empty() ? std::string() : " (all of the family " + family + ")") +
              ", which these data can't tell apart: " + where(outcome, alpha) + ".";
     }
     case Verdict::several:
-      return "The model lacks " + listed(outcome.named, "and") + " together: " + where(outcome, alpha) + ".";
+      return "The model lacks " + joined(outcome.named, "and") + " together: " + where(outcome, alpha) + ".";
     case Verdict::none_in_catalogue:
       break;
   }

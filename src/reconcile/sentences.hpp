@@ -10,6 +10,10 @@ namespace pirsim::reconcile {
 [[nodiscard]] std::string verdict_sentence(const Outcome& outcome, double alpha);
 [[nodiscard]] std::string reason_of(const Candidate& candidate, double alpha);
 [[nodiscard]] std::string in_words(const FittedEffect& fitted);
+/// What a reader may do with the verdict.
+[[nodiscard]] std::string next_step(const Outcome& outcome);
+/// "a, b or c"
+[[nodiscard]] std::string joined(const std::vector<std::string>& names, const std::string& last);
 /// Three significant digits.
 [[nodiscard]] std::string short_number(double value);
 

@@ -18,7 +18,8 @@ struct FittedParameter {
   double value = 0.0;
   stats::Interval interval;  ///< 90 %, nuisance included
   double off = 0.0;
-  bool is_strength = true;  ///< has an `off` at which nothing happens
+  bool is_strength = true;             ///< has an `off` at which nothing happens
+  std::vector<double> equally_likely;  ///< quantiles in the middles of twenty equal parts, ascending
 };
 
 struct FittedEffect {

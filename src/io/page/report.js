@@ -124,6 +124,194 @@
     };
   }
 
+  // Long texts beside or below a chart: how much room they need.
+  const longest = (texts, least, most) => Math.min(most, Math.max(least, ...texts.map((t) => 6.6 * t.length)));
+  const ink = (dark) => (dark ? "#ffffff" : "#1b1f24");
+
+  // Numbers in coloured squares. Dark squares carry light ink; framed ones stand out.
+  function grid(chart, width) {
+    const named = longest(chart.rows, 20, 170), inner = width - named - 112;
+    const dense = chart.columns.length > 8, step = dense ? 21 : 27;
+    const squares = chart.cells.map((cell, i) => Object.assign({ row: chart.rows[Math.floor(i / chart.columns.length)],
+      column: chart.columns[i % chart.columns.length] }, cell));
+    const two = chart.colours === "about_zero";
+    squares.forEach((cell) => {
+      const share = cell.v === null ? 0 : Math.abs(cell.v) / chart.max;
+      cell.ink = cell.v === null ? css("--faint") : ink(share > (two ? 0.75 : 0.55));
+      cell.tip = cell.row + ", " + cell.column + (cell.hint ? "\n" + cell.hint : "");
+    });
+    const box = { x: { scale: "x", field: "column" }, y: { scale: "y", field: "row" },
+      width: { scale: "x", band: 1 }, height: { scale: "y", band: 1 } };
+    return {
+      width: inner, height: step * chart.rows.length, padding: 4,
+      data: [{ name: "squares", values: squares.filter((cell) => cell.v !== null) },
+        { name: "texts", values: squares.filter((cell) => cell.text) },
+        { name: "framed", values: squares.filter((cell) => cell.framed) }],
+      scales: [
+        { name: "x", type: "band", domain: chart.columns, range: "width", padding: 0.04 },
+        { name: "y", type: "band", domain: chart.rows, range: "height", padding: 0.04 },
+        { name: "colour", type: "linear", domain: [two ? -chart.max : 0, chart.max], clamp: true,
+          range: { scheme: two ? "blueorange" : "blues" } },
+      ],
+      axes: [axis("x", "top", chart.column_label || null, dense ? { labelAngle: -60, labelAlign: "left", ticks: false,
+        domain: false, labelOverlap: false, labelLimit: 150 } : { ticks: false, domain: false }),
+        axis("y", "left", chart.row_label || null, { ticks: false, domain: false, labelLimit: 170, labelOverlap: false })],
+      legends: [{ fill: "colour", title: chart.label, type: "gradient", gradientLength: Math.min(step * chart.rows.length, 200),
+        labelColor: css("--text"), titleColor: css("--text"), titleFontWeight: "normal", titleLimit: 104 }],
+      marks: [
+        { type: "rect", from: { data: "squares" }, encode: { enter: Object.assign({
+          fill: { scale: "colour", field: "v" }, tooltip: { field: "tip" } }, box) } },
+        { type: "rect", from: { data: "framed" }, interactive: false, encode: { enter: Object.assign({
+          stroke: { value: css("--text") }, strokeWidth: { value: 2.5 } }, box) } },
+        { type: "text", from: { data: "texts" }, interactive: false, encode: { enter: {
+          x: { scale: "x", field: "column", band: 0.5 }, y: { scale: "y", field: "row", band: 0.5 },
+          text: { field: "text" }, align: { value: "center" }, baseline: { value: "middle" }, fill: { field: "ink" },
+          fontSize: { value: dense ? 10 : 12 }, fontWeight: { signal: "datum.framed ? 'bold' : 'normal'" } } } },
+      ],
+    };
+  }
+
+  // The band is the same for all points, so that being outside can be seen at a glance.
+  function band(chart, width) {
+    const named = longest(chart.rows.map((row) => row.name), 60, Math.min(330, 0.5 * width)), inner = width - named - 34;
+    const points = chart.rows.flatMap((row) => row.points.map((p) => Object.assign({ row: row.name,
+      x: Math.max(-chart.limit, Math.min(chart.limit, p.at)), far: Math.abs(p.at) > chart.limit }, p)));
+    points.sort((a, b) => a.outside - b.outside);
+    const words = [{ x: -chart.limit, text: "\u2190 " + chart.low, align: "left" },
+      { x: 0, text: "the model", align: "center" }, { x: chart.limit, text: chart.high + " \u2192", align: "right" }];
+    const height = 21 * chart.rows.length;
+    return {
+      width: inner, height, padding: { left: 4, right: 10, top: 22, bottom: 4 },
+      data: [{ name: "points", values: points }, { name: "words", values: words }],
+      scales: [
+        { name: "x", type: "linear", domain: [-chart.limit, chart.limit], range: "width", nice: false, zero: false },
+        { name: "y", type: "point", domain: chart.rows.map((row) => row.name), range: "height", padding: 0.6 },
+      ],
+      axes: [axis("x", "bottom", chart.label, { values: [-4, -3, -2, -1, 0, 1, 2, 3, 4] }),
+        axis("y", "left", null, { ticks: false, domain: false, grid: true, gridColor: css("--rule"), labelLimit: named,
+          labelPadding: 9, labelOverlap: false })],
+      marks: [
+        { type: "rect", interactive: false, encode: { enter: { x: { scale: "x", value: -1 }, x2: { scale: "x", value: 1 },
+          y: { value: 0 }, y2: { signal: "height" }, fill: { value: css("--bar") }, fillOpacity: { value: 0.32 } } } },
+        { type: "text", from: { data: "words" }, interactive: false, encode: { enter: { x: { scale: "x", field: "x" },
+          y: { value: -8 }, text: { field: "text" }, align: { field: "align" }, fill: { value: css("--faint") },
+          fontSize: { value: 12 } } } },
+        { type: "symbol", from: { data: "points" }, encode: { enter: { x: { scale: "x", field: "x" },
+          y: { scale: "y", field: "row" }, size: { signal: "datum.outside ? 75 : 34" },
+          shape: { signal: "datum.far ? (datum.at > 0 ? 'triangle-right' : 'triangle-left') : 'circle'" },
+          fill: { signal: "datum.outside ? '" + css("--real") + "' : '" + css("--text") + "'" },
+          fillOpacity: { signal: "datum.outside ? 0.9 : 0.45" }, tooltip: { field: "hint" } } } },
+      ],
+    };
+  }
+
+  function bars(chart, width) {
+    const named = longest(chart.bars.map((bar) => bar.name), 40, 0.45 * width);
+    const after = longest(chart.bars.map((bar) => bar.text), 10, 0.3 * width), inner = width - named - after - 20;
+    const most = Math.max(1e-9, ...chart.bars.map((bar) => Math.max(bar.v, bar.high === null ? 0 : bar.high)));
+    const least = Math.min(0, ...chart.bars.map((bar) => Math.min(bar.v, bar.low === null ? 0 : bar.low)));
+    const bars = chart.bars.map((bar) => Object.assign({}, bar, { tip: bar.name + "\n" + (bar.hint || bar.text),
+      end: Math.max(bar.v, bar.high === null ? bar.v : bar.high, 0),
+      colour: bar.weight === "strong" ? css("--mark") : css("--bar"), opacity: bar.weight === "faint" ? 0.45 : 1 }));
+    return {
+      width: inner, height: 24 * bars.length, padding: { left: 4, right: after, top: 4, bottom: 4 },
+      data: [{ name: "bars", values: bars }, { name: "ranges", values: bars.filter((bar) => bar.low !== null) }],
+      scales: [
+        { name: "x", type: "linear", domain: [least, most], range: "width", nice: false, zero: true },
+        { name: "y", type: "band", domain: bars.map((bar) => bar.name), range: "height", padding: 0.22 },
+      ],
+      axes: [axis("x", "bottom", chart.label, { tickCount: 5 }),
+        axis("y", "left", null, { ticks: false, labelLimit: named, labelOverlap: false })],
+      marks: [
+        { type: "rect", from: { data: "bars" }, encode: { enter: { x: { scale: "x", value: least }, x2: { scale: "x", value: most },
+          y: { scale: "y", field: "name" }, height: { scale: "y", band: 1 }, fill: { value: "#000000" }, fillOpacity: { value: 0 },
+          tooltip: { field: "tip" } } } },
+        { type: "rect", from: { data: "bars" }, interactive: false, encode: { enter: { x: { scale: "x", value: 0 },
+          x2: { scale: "x", field: "v" }, y: { scale: "y", field: "name" }, height: { scale: "y", band: 1 },
+          fill: { field: "colour" }, fillOpacity: { field: "opacity" } } } },
+        { type: "rule", from: { data: "ranges" }, interactive: false, encode: { enter: { x: { scale: "x", field: "low" },
+          x2: { scale: "x", field: "high" }, y: { scale: "y", field: "name", band: 0.5 }, stroke: { value: css("--text") },
+          strokeWidth: { value: 2 } } } },
+        { type: "text", from: { data: "bars" }, interactive: false, encode: { enter: { x: { scale: "x", field: "end", offset: 6 },
+          y: { scale: "y", field: "name", band: 0.5 }, text: { field: "text" }, baseline: { value: "middle" },
+          fill: { value: css("--text") }, fontSize: { value: 11 },
+          fontWeight: { signal: "datum.weight === 'strong' ? 'bold' : 'normal'" } } } },
+      ],
+    };
+  }
+
+  // Each dot stands for the same probability; dots that would overlap are stacked.
+  function dots(chart, width) {
+    const inner = width - 30, size = Math.max(8, Math.min(15, inner / 32));
+    const flat = (v) => (chart.log ? Math.log(v) : v), [from, to] = chart.axis.map(flat), n = Math.floor(inner / size);
+    const heights = {}, points = chart.values.map((v) => {
+      const bin = Math.max(0, Math.min(n - 1, Math.floor((flat(v) - from) / (to - from) * n)));
+      heights[bin] = (heights[bin] || 0) + 1;
+      return { x: (bin + 0.5) * inner / n, level: heights[bin], v };
+    });
+    const tallest = Math.max(3, ...Object.values(heights)), height = size * (tallest + 1.6);
+    const inside = chart.reference !== null && chart.reference >= chart.axis[0] && chart.reference <= chart.axis[1];
+    const tip = "'1 of " + chart.values.length + " equally likely values: ' + format(datum.v, '.3') + ' " + chart.label + "'";
+    const marks = [
+      { type: "rect", encode: { enter: { x: { scale: "x", value: chart.low }, x2: { scale: "x", value: chart.high },
+        y: { value: 0 }, y2: { signal: "height" }, fill: { value: css("--mark") }, fillOpacity: { value: 0.14 },
+        tooltip: { value: "90 %: " + Number(chart.low.toPrecision(3)) + " to " + Number(chart.high.toPrecision(3)) } } } },
+      { type: "symbol", from: { data: "points" }, encode: { enter: { x: { field: "x" },
+        y: { signal: "height - (datum.level - 0.5) * " + size }, size: { value: 0.62 * size * size },
+        fill: { value: css("--mark") }, tooltip: { signal: tip } } } },
+    ];
+    if (inside) {
+      const right = flat(chart.reference) > 0.5 * (from + to);
+      marks.push({ type: "rule", interactive: false, encode: { enter: { x: { scale: "x", value: chart.reference },
+        y: { value: 0 }, y2: { signal: "height" }, stroke: { value: css("--real") }, strokeWidth: { value: 2 },
+        strokeDash: { value: [5, 3] } } } });
+      marks.push({ type: "text", interactive: false, encode: { enter: { x: { scale: "x", value: chart.reference, offset: right ? -5 : 5 },
+        y: { value: 11 }, text: { value: chart.reference_label }, align: { value: right ? "right" : "left" },
+        fill: { value: css("--real") }, fontSize: { value: 11 } } } });
+    }
+    return {
+      width: inner, height, padding: { left: 8, right: 12, top: 4, bottom: 4 }, data: [{ name: "points", values: points }],
+      scales: [{ name: "x", type: chart.log ? "log" : "linear", domain: chart.axis, range: "width", nice: false, zero: false }],
+      axes: [axis("x", "bottom", chart.label, { tickCount: 6, format: "~g" })], marks,
+    };
+  }
+
+  function lines(chart, width) {
+    const small = width < 340, inner = width - 62, height = Math.min(300, Math.round((small ? 0.5 : 0.6) * inner));
+    const points = chart.points.map((p) => Object.assign({ tip: (chart.names.length > 1 ? p.line + "\n" : "") + (p.hint || p.y) }, p));
+    const colour = { scale: "colour", field: "line" }, at = { x: { scale: "x", field: "x" } };
+    const marks = [];
+    if (chart.diagonal) {
+      marks.push({ type: "rule", interactive: false, encode: { enter: { x: { scale: "x", value: chart.x[0] },
+        x2: { scale: "x", value: chart.x[1] }, y: { scale: "y", value: chart.y[0] }, y2: { scale: "y", value: chart.y[1] },
+        stroke: { value: css("--faint") }, strokeDash: { value: [5, 4] } } } });
+    }
+    marks.push({ type: "group", interactive: false, from: { facet: { name: "one line", data: "points", groupby: "line" } },
+      marks: [{ type: "line", interactive: false, from: { data: "one line" }, encode: { enter: Object.assign({
+        y: { scale: "y", field: "y" }, stroke: colour, strokeWidth: { value: 2 } }, at) } }] });
+    marks.push({ type: "rule", interactive: false, from: { data: "ranges" }, encode: { enter: Object.assign({
+      y: { scale: "y", field: "low" }, y2: { scale: "y", field: "high" }, stroke: colour, strokeWidth: { value: 1.5 },
+      strokeOpacity: { value: 0.6 } }, at) } });
+    marks.push({ type: "symbol", from: { data: "points" }, encode: { enter: Object.assign({ y: { scale: "y", field: "y" },
+      size: { value: 60 }, fill: colour, tooltip: { field: "tip" } }, at) } });
+    const names = chart.x_names.length > 0, ticks = chart.x_names.map((name, i) => i + 1);
+    return {
+      width: inner, height, padding: 4,
+      data: [{ name: "points", values: points }, { name: "ranges", values: points.filter((p) => p.low !== null) }],
+      scales: [
+        { name: "x", type: "linear", domain: chart.x, range: "width", nice: false, zero: false },
+        { name: "y", type: "linear", domain: chart.y, range: "height", nice: false, zero: false },
+        { name: "colour", type: "ordinal", domain: chart.names, range: [css("--mark"), css("--real"), css("--bar"), "#9a6700"] },
+      ],
+      axes: [axis("x", "bottom", chart.x_label || null, names ? { values: ticks, encode: { labels: { update: {
+        text: { signal: JSON.stringify(chart.x_names) + "[datum.value - 1]" } } } } } : { tickCount: 5 }),
+        axis("y", "left", chart.y_label || null, { tickCount: small ? 3 : 5 })],
+      legends: chart.names.length > 1 ? [{ fill: "colour", orient: "bottom", symbolType: "circle", labelColor: css("--text"),
+        labelLimit: inner, columns: small ? 1 : 2 }] : [],
+      marks,
+    };
+  }
+
   function showTip(handler, event, item, value) {
     if (value === null || value === undefined || value === "") { tip.style.visibility = "hidden"; return; }
     tip.textContent = value;
@@ -133,7 +321,7 @@
     tip.style.top = Math.max(4, event.clientY - tip.offsetHeight - 10) + "px";
   }
 
-  const makers = { map, histogram, series }, views = new Map();
+  const makers = { map, histogram, series, grid, band, bars, dots, lines }, views = new Map();
   function draw(place) {
     const chart = charts[Number(place.dataset.chart)];
     const width = Math.floor(place.clientWidth) - 8;

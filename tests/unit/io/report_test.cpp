@@ -63,3 +63,30 @@ TEST_CASE("gnuplot gets quotes doubled, and no value off the floor", "[report]")
   CHECK(count(program, "0.25 0.25 3\n") == 1);
   CHECK(count(program, "0.75 0.25 NaN\n") == 1);
 }
+
+TEST_CASE("a grid goes into the page square by square with its colours", "[report]") {
+  GridChart chart;
+  chart.rows = {"S1"};
+  chart.columns = {"PIR1", "PIR2"};
+  chart.colours = GridChart::Colours::about_zero;
+  chart.max = 9;
+  chart.cells = {{-9.0, "-9", "measured 0 s", GridChart::Mark::framed},
+                 {{}, "not measured", "", GridChart::Mark::none}};
+  Report report;
+  report.sections = {{"grid", {}, {}, {chart}}};
+  const std::string html = to_html(report);
+  CHECK(count(html, "<div class=\"charts grid\">") == 1);
+  CHECK(count(html, R"({"v":-9,"text":"-9","hint":"measured 0 s","framed":true})") == 1);
+  CHECK(count(html, R"({"v":null,"text":"not measured","hint":"","framed":false})") == 1);
+  CHECK(count(html, R"("colours":"about_zero","max":9)") == 1);
+}
+
+TEST_CASE("a finding is set off below the title and long cells are prose", "[report]") {
+  Report report;
+  report.finding = "a < b";
+  report.sections = {{"t", {}, {{{"n", "why"}, {{"1", std::string(31, 'x')}, {"2", "y"}}}}, {}}};
+  const std::string html = to_html(report);
+  CHECK(count(html, "<p class=\"lead\">a &lt; b</p>") == 1);
+  CHECK(count(html, "<td class=\"words\">") == 2);
+  CHECK(count(html, "<th scope=\"col\" class=\"words\">why") == 1);
+}
