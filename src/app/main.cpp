@@ -192,16 +192,25 @@ void add_reconcile_options(CLI::App& command, ReconcileOptions& options) {
 }
 
 void add_selftest_options(CLI::App& command, SelftestOptions& options) {
+  using Kind = reconcile::Measured::Kind;
+  using reconcile::LeaveOut;
   command.add_option("--data", options.kind, "what is planted in: series or sums (default: series)")
       ->option_text("KIND")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, SelftestOptions::Kind>{
-          {"series", SelftestOptions::Kind::series}, {"sums", SelftestOptions::Kind::sums}}));
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Kind>{{"series", Kind::series}, {"sums", Kind::sums}}));
   command.add_option("--runs", options.runs, "runs of every trial (default: 1)")
       ->option_text("N")
       ->check(CLI::Range(1, 100));
   command.add_option("--nulls", options.nulls, "datasets with nothing hidden (default: 60)")->option_text("N");
   command.add_option("--planted", options.planted, "datasets of every effect and strength (default: 10)")
       ->option_text("N");
+  command.add_option("--beyond", options.beyond, "of every effect, stronger than any in the table (default: 0)")
+      ->option_text("N");
+  command.add_option("--pairs", options.pairs, "datasets with two effects (default: 0)")->option_text("N");
+  command.add_option("--aliens", options.aliens, "of every fault that no catalogue has (default: 0)")->option_text("N");
+  command.add_option("--leave-out", options.leave_out, "none, or each: judge by catalogues that lack the effect, too")
+      ->option_text("HOW")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, LeaveOut>{{"none", LeaveOut::none}, {"each", LeaveOut::each}}));
 }
 
 void add_seal_options(CLI::App& command, SealOptions& options) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pirsim/reconcile/seal.hpp"
+#include "pirsim/reconcile/selftest.hpp"
 
 namespace pirsim::app {
 
@@ -102,9 +103,10 @@ struct EffectsOptions {
 };
 
 struct SelftestOptions {
-  enum class Kind { series, sums } kind = Kind::series;
+  reconcile::Measured::Kind kind = reconcile::Measured::Kind::series;
   int runs = 1;
-  std::uint32_t nulls = 60, planted = 10;
+  std::uint32_t nulls = 60, planted = 10, beyond = 0, pairs = 0, aliens = 0;
+  reconcile::LeaveOut leave_out = reconcile::LeaveOut::none;
 };
 
 struct ExportOptions {

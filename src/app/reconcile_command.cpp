@@ -69,11 +69,11 @@ class Teller {
 void reconcile_selftest(const Inputs& inputs, const ReconcileOptions& options, const SelftestOptions& selftest) {
   const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
-  const auto kind = selftest.kind == SelftestOptions::Kind::series ? reconcile::Measured::Kind::series
-                                                                   : reconcile::Measured::Kind::sums;
+  reconcile::SelftestSettings settings{settings_of(options), selftest.kind,   selftest.runs,   selftest.nulls,
+                                       selftest.planted,     selftest.beyond, selftest.pairs, selftest.aliens,
+                                       selftest.leave_out,   options.output / "planted"};
   Teller teller(inputs.verbosity);
-  const reconcile::SelftestResult result = reconcile::selftest(
-      scene, script, {settings_of(options), kind, selftest.runs, selftest.nulls, selftest.planted}, teller.observer());
+  const reconcile::SelftestResult result = reconcile::selftest(scene, script, settings, teller.observer());
   teller.finish();
   std::cout << reconcile::to_markdown(result);
   require_written();

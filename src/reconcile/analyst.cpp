@@ -27,7 +27,8 @@ Analyst::Analyst(const StudyFrame& frame, const std::vector<CellKnowledge>& know
       settings_(settings),
       map_(frame, knowledge, table.statistics.select_rows(rows_of(table, 0, Part::training)), std::move(trials)),
       plain_(table.statistics.select_rows(rows_of(table, 0, Part::all))),
-      namer_(std::make_unique<Namer>(table, map_, NamerSettings{settings.trees, settings.seed, settings.threads})) {}
+      plain_reference_(std::make_unique<stats::EnvelopeReference>(envelope_entries(map_, plain_, settings.threads))),
+      namer_(std::make_unique<Namer>(table, map_, NamerSettings{settings.trees, settings.seed, settings.threads, settings.left_out})) {}
 
 FittedEffect Analyst::fit(std::size_t entry, std::span<const float> measured) const {
   return fit_from_table(table_, map_, entry, measured, {settings_.seed, settings_.threads, 0.9});
@@ -42,54 +43,68 @@ std::size_t Analyst::likeliest(std::span<const float> measured, const std::funct
   return best;
 }
 
+Judgement Analyst::judge(std::span<const float> measured) const {
+  Judgement judgement;
+  judgement.p = plain_reference_->p(envelope_entries(map_, measured));
+  judgement.scores = namer_->judge(measured);
+  std::vector<stats::Candidate> singles{{{}, judgement.scores.front().p}};
+  std::vector<int> families;
+  for (std::size_t entry = 1; entry < judgement.scores.size(); ++entry) {
+    singles.push_back({{entry - 1}, judgement.scores[entry].p});
+    families.push_back(static_cast<int>(effects::find(judgement.scores[entry].entry).info.family));
+  }
+  judgement.decision = stats::decide(judgement.p, singles, {}, families, settings_.alpha);
+  return judgement;
+}
+
 Outcome Analyst::analyse(std::span<const float> measured) const {
+  const Judgement judgement = judge(measured);
   Outcome outcome;
+  outcome.verdict = judgement.decision.verdict;
   outcome.location = locate(frame_, map_, plain_, measured, {settings_.alpha, settings_.seed, settings_.threads});
   outcome.trail.push_back("global test: p " + short_number(outcome.location.p));
-  const std::vector<EntryScore> scores = namer_->judge(measured);
-  outcome.nothing = scores.front();
+  outcome.nothing = judgement.scores.front();
   outcome.calibration_error = namer_->reliability().expected_calibration_error;
-  const bool differs = outcome.location.p <= settings_.alpha;
-  std::vector<std::size_t> kept;
-  for (std::size_t entry = 1; entry < scores.size(); ++entry) {
-    Candidate candidate{scores[entry], std::string(name(effects::find(scores[entry].entry).info.family)), false, {}};
-    candidate.kept = differs && candidate.score.p > settings_.alpha;
+  const bool differs = outcome.verdict != Verdict::no_disagreement;
+  for (std::size_t entry = 1; entry < judgement.scores.size(); ++entry) {
+    const EntryScore& score = judgement.scores[entry];
+    Candidate candidate{score, std::string(name(effects::find(score.entry).info.family)), false, {}};
+    candidate.kept = differs && std::ranges::find(judgement.decision.kept, entry) != judgement.decision.kept.end();
     candidate.reason = differs ? reason_of(candidate, settings_.alpha) : "Not looked for: there is no disagreement.";
-    if (candidate.kept) kept.push_back(entry);
     outcome.candidates.push_back(std::move(candidate));
-  }
-  if (differs) {
-    outcome.telling_features = namer_->telling_features(8);
-    decide(outcome, std::move(kept), measured);
   }
   std::ranges::stable_sort(outcome.candidates, [](const Candidate& a, const Candidate& b) {
     if (a.kept != b.kept) return a.kept;
     return a.score.probability > b.score.probability;
   });
-  for (const Candidate& candidate : outcome.candidates) {
-    if (candidate.kept) outcome.named.push_back(candidate.score.entry);
+  if (differs) {
+    outcome.telling_features = namer_->telling_features(8);
+    fit_named(outcome, measured);
+    std::string set = outcome.nothing.p > settings_.alpha ? " nothing" : "";
+    for (const std::string& effect : outcome.named) set += " " + effect;
+    outcome.trail.push_back("entries that can have made the data:" + (set.empty() ? " none" : set));
   }
   outcome.sentence = verdict_sentence(outcome, settings_.alpha);
   return outcome;
 }
 
-void Analyst::decide(Outcome& outcome, std::vector<std::size_t> kept, std::span<const float> measured) const {
-  std::erase_if(kept, [&](std::size_t entry) {
-    if (kept.size() > 1) return false;
-    FittedEffect fitted = fit(entry, measured);
-    if (!fitted.includes_off) {
+/// Fits the effect that a name was given to, and withdraws the name if its strength may as well be none.
+void Analyst::fit_named(Outcome& outcome, std::span<const float> measured) const {
+  if (outcome.verdict == Verdict::named) {
+    Candidate& candidate = outcome.candidates.front();
+    FittedEffect fitted = fit(entry_of(table_, candidate.score.entry), measured);
+    if (fitted.includes_off) {
+      outcome.trail.push_back("the interval of " + candidate.score.entry + " includes off: the name is withdrawn");
+      candidate.kept = false;
+      candidate.reason = "Withdrawn: its strength may as well be none.";
+      outcome.verdict = Verdict::none_in_catalogue;
+    } else {
       outcome.fits.push_back(std::move(fitted));
-      return false;
     }
-    outcome.trail.push_back("the interval of " + table_.entry_name(entry) + " includes off: the name is withdrawn");
-    outcome.candidates[entry - 1].kept = false;
-    outcome.candidates[entry - 1].reason = "Withdrawn: its strength may as well be none.";
-    return true;
-  });
-  outcome.verdict = kept.empty() ? Verdict::none_in_catalogue : kept.size() == 1 ? Verdict::named : Verdict::one_of;
-  std::string set;
-  for (const std::size_t entry : kept) set += " " + table_.entry_name(entry);
-  outcome.trail.push_back("entries that can have made the data:" + (set.empty() ? " none" : set));
+  }
+  for (const Candidate& candidate : outcome.candidates) {
+    if (candidate.kept) outcome.named.push_back(candidate.score.entry);
+  }
 }
 
 }  // namespace pirsim::reconcile

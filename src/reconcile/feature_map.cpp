@@ -65,7 +65,15 @@ struct FeatureMap::Writer {
   std::vector<float> values;
   std::vector<std::string>* names = nullptr;
   std::vector<std::size_t>* envelope = nullptr;
+  std::vector<std::vector<std::size_t>>* blocks = nullptr;
 
+  /// What has been added since the last block was ended is one.
+  void end_block() {
+    if (blocks == nullptr || values.size() == ended) return;
+    blocks->emplace_back(values.size() - ended);
+    std::iota(blocks->back().begin(), blocks->back().end(), ended);
+    ended = values.size();
+  }
   /// Whatever is added next is part of the global test.
   void test_next() {
     if (envelope != nullptr) envelope->push_back(values.size());
@@ -75,6 +83,9 @@ struct FeatureMap::Writer {
     values.push_back(static_cast<float>(value));
     if (names != nullptr) names->push_back(name());
   }
+
+ private:
+  std::size_t ended = 0;  ///< number of values in blocks
 };
 
 FeatureMap::FeatureMap(const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge,
@@ -83,7 +94,10 @@ FeatureMap::FeatureMap(const StudyFrame& frame, const std::vector<CellKnowledge>
   for (const float value : plain.row(0)) known_.push_back(std::isnan(value) ? 0 : 1);
   learn_scales(plain);
   learn_covariates(knowledge);
-  Writer writer{{}, &names_, &envelope_columns_};
+  Writer writer;
+  writer.names = &names_;
+  writer.envelope = &envelope_columns_;
+  writer.blocks = &blocks_;
   write_all(plain.row(0), writer);
 }
 
@@ -333,10 +347,15 @@ void FeatureMap::write_permutations(std::span<const float> statistics, Writer& o
 void FeatureMap::write_all(std::span<const float> statistics, Writer& out) const {
   const Scaled data = scaled(statistics);
   write_cells(data, out);
+  out.end_block();
   write_sensors(data, out);
+  out.end_block();
   write_trials(data, out);
+  out.end_block();
   write_contrasts(data, out);
+  out.end_block();
   write_permutations(statistics, out);
+  out.end_block();
 }
 
 std::vector<float> FeatureMap::features(std::span<const float> statistics) const {

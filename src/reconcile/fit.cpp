@@ -42,7 +42,7 @@ Training training_of(const ReferenceTable& table, const FeatureMap& map, std::si
   data.parameters = stats::Matrix<double>(data.rows.size(), infos.size());
   for (std::size_t i = 0; i < data.rows.size(); ++i) {
     for (std::size_t p = 0; p < infos.size(); ++p) {
-      data.parameters(i, p) = to_flat(*infos[p], table.rows[data.rows[i]].effect.parameters.at(infos[p]->name));
+      data.parameters(i, p) = to_flat(*infos[p], table.rows[data.rows[i]].effects.front().parameters.at(infos[p]->name));
     }
   }
   return data;
@@ -62,7 +62,7 @@ void choose(const ReferenceTable& table, const Training& data, const std::vector
   std::ranges::sort(near);
   near.resize(std::min<std::size_t>(near.size(), 9));
   std::map<std::map<std::string, std::string, std::less<>>, std::size_t> votes;
-  for (const auto& [distance, row] : near) ++votes[table.rows[row].effect.choices];
+  for (const auto& [distance, row] : near) ++votes[table.rows[row].effects.front().choices];
   const auto most = std::ranges::max_element(votes, {}, [](const auto& vote) { return vote.second; });
   if (most != votes.end()) effect.choices = most->first;
 }

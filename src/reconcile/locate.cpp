@@ -33,22 +33,33 @@ std::vector<std::size_t> rows_of(const ReferenceTable& table, std::size_t entry,
   return rows;
 }
 
+std::size_t entry_of(const ReferenceTable& table, const std::string& effect) {
+  return 1 + static_cast<std::size_t>(std::ranges::find(table.effects, effect) - table.effects.begin());
+}
+
+std::vector<double> envelope_entries(const FeatureMap& map, std::span<const float> statistics) {
+  const std::vector<float> features = map.features(statistics);
+  std::vector<double> entries;
+  for (const std::size_t column : map.envelope_columns()) entries.push_back(static_cast<double>(features[column]));
+  return entries;
+}
+
+stats::Matrix<double> envelope_entries(const FeatureMap& map, const stats::Matrix<float>& statistics,
+                                       unsigned threads) {
+  const stats::Matrix<float> features = map.features(statistics, threads);
+  const std::vector<std::size_t>& columns = map.envelope_columns();
+  stats::Matrix<double> entries(statistics.rows(), columns.size());
+  for (std::size_t row = 0; row < statistics.rows(); ++row) {
+    for (std::size_t i = 0; i < columns.size(); ++i) entries(row, i) = static_cast<double>(features(row, columns[i]));
+  }
+  return entries;
+}
+
 Location locate(const StudyFrame& frame, const FeatureMap& map, const stats::Matrix<float>& plain,
                 std::span<const float> measured, const LocateSettings& settings) {
-  const std::vector<std::size_t> columns = map.envelope_columns();
-  const auto picked = [&](const std::vector<float>& features) {
-    std::vector<double> values;
-    for (const std::size_t column : columns) values.push_back(static_cast<double>(features[column]));
-    return values;
-  };
-  const stats::Matrix<float> features = map.features(plain, settings.threads);
-  stats::Matrix<double> simulated(plain.rows(), columns.size());
-  for (std::size_t row = 0; row < plain.rows(); ++row) {
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      simulated(row, i) = static_cast<double>(features(row, columns[i]));
-    }
-  }
-  const std::vector<double> observed = picked(map.features(measured));
+  const std::vector<std::size_t>& columns = map.envelope_columns();
+  const stats::Matrix<double> simulated = envelope_entries(map, plain, settings.threads);
+  const std::vector<double> observed = envelope_entries(map, measured);
   const stats::GlobalEnvelope test =
       stats::global_envelope_test(observed, simulated,
                                   {settings.alpha, stats::PointwiseRank::continuous, stats::Alternative::two_sided,

@@ -10,7 +10,6 @@
 namespace pirsim::reconcile {
 namespace {
 
-constexpr std::uint32_t worlds_per_chunk = 25;
 constexpr std::uint32_t entries_per_attempt = 4096;  ///< keeps the streams of attempts apart
 
 /// Simulates the datasets of single worlds.
@@ -44,7 +43,7 @@ class WorldJob {
           effects::draw_from_prior(*effects_[e], world.world().scene, world.world().script, stream);
       const auto data = world.with_effects(std::span(&effect, 1), 0, shape_.n_replicates);
       if (!data) continue;
-      add(chunk, {e + 1, index, effect}, *data);
+      add(chunk, {e + 1, index, {effect}}, *data);
       return;
     }
     ++chunk.n_left_out;
@@ -61,14 +60,6 @@ class WorldJob {
   const TableSettings& settings_;
   std::vector<const effects::Effect*> effects_;
 };
-
-void append(TableChunk& chunk, TableChunk& more) {
-  chunk.n_left_out += more.n_left_out;
-  for (std::size_t i = 0; i < more.rows.size(); ++i) {
-    chunk.rows.push_back(std::move(more.rows[i]));
-    chunk.statistics.append_row(std::as_const(more.statistics).row(i));
-  }
-}
 
 }  // namespace
 
@@ -95,20 +86,8 @@ ReferenceTable make_reference_table(const WorldSource& source, const StudyFrame&
   table.effects = settings.entries;
   table.profile = profile;
   table.n_worlds = settings.n_worlds;
-  TableChunk all;
-  for (std::uint32_t first = 0; first < settings.n_worlds; first += worlds_per_chunk) {
-    const std::uint32_t n = std::min(worlds_per_chunk, settings.n_worlds - first);
-    std::optional<TableChunk> chunk = store.find(first / worlds_per_chunk);
-    if (!chunk) {
-      chunk.emplace();
-      ordered_parallel<TableChunk>(
-          n, settings.threads, [&](std::size_t i) { return job.run(first + static_cast<std::uint32_t>(i)); },
-          [&](TableChunk& one) { append(*chunk, one); });
-      store.keep(first / worlds_per_chunk, *chunk);
-    }
-    append(all, *chunk);
-    if (progress.worlds) progress.worlds(first + n, settings.n_worlds);
-  }
+  TableChunk all = collect(store, settings.n_worlds, settings.threads,
+                           [&](std::uint32_t index) { return job.run(index); }, progress);
   table.rows = std::move(all.rows);
   table.statistics = std::move(all.statistics);
   table.n_left_out = all.n_left_out;

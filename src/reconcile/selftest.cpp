@@ -2,64 +2,21 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "pirsim/core/parallel.hpp"
 #include "pirsim/effects/catalogue.hpp"
 #include "pirsim/reconcile/analyst.hpp"
+#include "reconcile/planting.hpp"
 
 namespace pirsim::reconcile {
 namespace {
 
-constexpr std::uint32_t first_planted_world = 1U << 25U;  ///< worlds that no table has seen
-constexpr std::uint32_t most_draws = 200;                 ///< for parameters of the strength wanted
-
-/// Distance from off in [0, 1] of what the prior allows, on the scale on which the prior is flat.
-double strength_of(const effects::ParameterInfo& info, double value) {
-  const auto flat = [&](double v) {
-    return info.scale == effects::Scale::logarithmic ? std::log(std::clamp(v, info.low, info.high)) : v;
-  };
-  const double off = flat(std::clamp(info.off, info.low, info.high));
-  const double most = std::max(flat(info.high) - off, off - flat(info.low));
-  return most > 0.0 ? std::abs(flat(value) - off) / most : 0.5;
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
 }
 
-bool has_strength(const effects::Effect& effect, const EffectSpec& spec, Strength wanted) {
-  if (effect.info.parameters.empty()) return true;
-  const effects::ParameterInfo& first = effect.info.parameters.front();
-  if (first.low == first.high) return true;
-  const double third = 3.0 * strength_of(first, spec.parameters.at(first.name));
-  const auto which = static_cast<Strength>(1 + std::min(2, static_cast<int>(third)));
-  return which == wanted;
-}
-
-/// What is to be planted: in the order of the result.
-struct Plan {
-  const effects::Effect* effect = nullptr;  ///< null: nothing
-  Strength strength = Strength::none;
-};
-
-std::vector<Plan> plans_of(const Laboratory& lab, const SelftestSettings& settings) {
-  std::vector<Plan> plans(settings.n_nulls);
-  for (const std::string& name : lab.table.effects) {
-    for (const Strength strength : {Strength::weak, Strength::medium, Strength::strong}) {
-      plans.insert(plans.end(), settings.n_planted, Plan{&effects::find(name), strength});
-    }
-  }
-  return plans;
-}
-
-std::optional<std::vector<Series>> plant(const SimulatedWorld& world, const Plan& plan, std::uint64_t seed,
-                                         std::uint32_t index, int n_replicates, EffectSpec& effect) {
-  if (plan.effect == nullptr) return world.plain(0, n_replicates);
-  for (std::uint32_t draw = 0; draw < most_draws; ++draw) {
-    Stream stream({seed, index, draw, Purpose::sealed_answer});
-    effect = effects::draw_from_prior(*plan.effect, world.world().scene, world.world().script, stream);
-    if (!has_strength(*plan.effect, effect, plan.strength)) continue;
-    auto data = world.with_effects(std::span(&effect, 1), 0, n_replicates);
-    if (data) return data;
-  }
-  return std::nullopt;
+bool is_named(const PlantedCase& c, const std::string& effect) {
+  return c.verdict == Verdict::named && c.named.front() == effect;
 }
 
 void check_coverage(const FittedEffect& fitted, const EffectSpec& truth, PlantedCase& result) {
@@ -69,25 +26,49 @@ void check_coverage(const FittedEffect& fitted, const EffectSpec& truth, Planted
   }
 }
 
-std::optional<PlantedCase> run_case(const Laboratory& lab, const Analyst& analyst, const Plan& plan,
-                                    const SelftestSettings& settings, std::uint32_t index) {
-  const SimulatedWorld world(lab.source, lab.frame, first_planted_world + index, settings.n_replicates);
+PlantedCase judged(const Laboratory& lab, const Analyst& analyst, const Planted& planted, CaseKind kind) {
+  const Judgement judgement = analyst.judge(planted.statistics);
   PlantedCase result;
-  const auto data = plant(world, plan, settings.analysis.seed, index, settings.n_replicates, result.effect);
-  if (!data) return std::nullopt;
-  const Outcome outcome = analyst.analyse(statistics_of(lab.frame, lab.shape, lab.table.profile, *data));
-  result.truth = plan.effect == nullptr ? "nothing" : plan.effect->info.name;
-  result.strength = plan.strength;
-  result.verdict = outcome.verdict;
-  result.named = outcome.named;
-  result.p = outcome.location.p;
-  const auto best = std::ranges::max_element(outcome.candidates, {}, [](const auto& c) { return c.score.probability; });
-  const bool nothing = best == outcome.candidates.end() || outcome.nothing.probability >= best->score.probability;
-  result.likeliest = nothing ? "nothing" : best->score.entry;
-  if (result.verdict == Verdict::named && result.named.front() == result.truth) {
-    check_coverage(outcome.fits.front(), result.effect, result);
+  result.kind = kind;
+  result.truth = planted.truth();
+  result.strength = planted.strength;
+  result.effects = planted.effects;
+  result.verdict = judgement.decision.verdict;
+  for (const std::size_t entry : judgement.decision.kept) {
+    if (entry > 0) result.named.push_back(lab.table.entry_name(entry));
+  }
+  result.p = judgement.p;
+  for (const EntryScore& score : judgement.scores) result.probabilities.push_back(score.probability);
+  const auto best = std::ranges::max_element(judgement.scores, {}, &EntryScore::probability);
+  result.likeliest = best->entry;
+  if (result.verdict != Verdict::named) return result;
+  const FittedEffect fitted = analyst.fit(entry_of(lab.table, result.named.front()), planted.statistics);
+  if (fitted.includes_off) {
+    result.verdict = Verdict::none_in_catalogue;
+    result.named.clear();
+  } else if (kind == CaseKind::one && is_named(result, result.truth)) {
+    check_coverage(fitted, planted.effects.front(), result);
   }
   return result;
+}
+
+void judge_all(const Laboratory& lab, const Analyst& analyst, const std::vector<const Planted*>& planted,
+               std::optional<CaseKind> kind, unsigned threads, std::vector<PlantedCase>& cases) {
+  ordered_parallel<PlantedCase>(
+      planted.size(), threads,
+      [&](std::size_t i) { return judged(lab, analyst, *planted[i], kind.value_or(planted[i]->kind)); },
+      [&](PlantedCase& one) { cases.push_back(std::move(one)); });
+}
+
+stats::Reliability reliability_of(const SelftestResult& result) {
+  stats::Matrix<double> probabilities;
+  std::vector<int> labels;
+  for (const PlantedCase& c : result.cases) {
+    if (c.kind != CaseKind::one) continue;
+    probabilities.append_row(std::span<const double>(c.probabilities));
+    labels.push_back(static_cast<int>(std::ranges::find(result.entries, c.truth) - result.entries.begin()));
+  }
+  return labels.empty() ? stats::Reliability{} : stats::reliability(probabilities, labels);
 }
 
 bool family_is(const std::vector<std::string>& effects, const std::string& truth) {
@@ -118,14 +99,89 @@ class Counter {
   Rate rate_;
 };
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::ranges::find(names, name) != names.end();
+void count_nulls(const SelftestResult& result, std::vector<Rate>& rates) {
+  Counter alarm("a disagreement although nothing is hidden"), named("a name although nothing is hidden");
+  for (const PlantedCase& c : result.cases) {
+    if (c.kind != CaseKind::nothing) continue;
+    alarm.count(c.seen());
+    named.count(c.verdict == Verdict::named);
+  }
+  rates.insert(rates.end(), {alarm.rate(), named.rate()});
+}
+
+void count_planted(const SelftestResult& result, std::vector<Rate>& rates) {
+  Counter power("a disagreement seen"), exact("exactly the right name, given a disagreement"),
+      named("a name, given a disagreement"), right("the right name, given a name"),
+      family("the right family, given a disagreement"), wrong("one wrong name"),
+      in_set("the truth in the set, given a disagreement"), none("none in the catalogue, given a disagreement"),
+      coverage("parameters within their 90 % intervals");
+  for (const PlantedCase& c : result.cases) {
+    if (c.kind != CaseKind::one) continue;
+    power.count(c.seen());
+    wrong.count(c.verdict == Verdict::named && !is_named(c, c.truth));
+    coverage.add(c.n_covered, c.n_parameters);
+    if (!c.seen()) continue;
+    exact.count(is_named(c, c.truth));
+    named.count(c.verdict == Verdict::named);
+    if (c.verdict == Verdict::named) right.count(is_named(c, c.truth));
+    family.count(family_is(c.named, c.truth));
+    in_set.count(contains(c.named, c.truth));
+    none.count(c.verdict == Verdict::none_in_catalogue);
+  }
+  rates.insert(rates.end(), {power.rate(), exact.rate(), family.rate(), named.rate(), right.rate(), wrong.rate(),
+                             in_set.rate(), none.rate(), coverage.rate()});
+}
+
+void count_strangers(const SelftestResult& result, CaseKind kind, const std::string& who, std::vector<Rate>& rates) {
+  Counter seen(who + ": a disagreement seen"), none(who + ": called none in the catalogue, given a disagreement"),
+      misnamed(who + ": called by one name");
+  for (const PlantedCase& c : result.cases) {
+    if (c.kind != kind) continue;
+    seen.count(c.seen());
+    misnamed.count(c.verdict == Verdict::named);
+    if (c.seen()) none.count(c.verdict == Verdict::none_in_catalogue);
+  }
+  if (seen.rate().of > 0) rates.insert(rates.end(), {seen.rate(), none.rate(), misnamed.rate()});
+}
+
+void count_beyond(const SelftestResult& result, std::vector<Rate>& rates) {
+  Counter exact("beyond the prior: exactly the right name, given a disagreement"),
+      wrong("beyond the prior: one wrong name");
+  for (const PlantedCase& c : result.cases) {
+    if (c.kind != CaseKind::beyond_prior) continue;
+    wrong.count(c.verdict == Verdict::named && !is_named(c, c.truth));
+    if (c.seen()) exact.count(is_named(c, c.truth));
+  }
+  if (wrong.rate().of > 0) rates.insert(rates.end(), {exact.rate(), wrong.rate()});
+}
+
+void count_pairs(const SelftestResult& result, std::vector<Rate>& rates) {
+  Counter one("two effects, first look: one or both in the set, given a disagreement"),
+      none("two effects, first look: no single effect will do, given a disagreement"),
+      wrong("two effects, first look: one wrong name");
+  for (const PlantedCase& c : result.cases) {
+    if (c.kind != CaseKind::two) continue;
+    const auto is_hidden = [&](const std::string& name) {
+      return std::ranges::any_of(c.effects, [&](const EffectSpec& effect) { return effect.name == name; });
+    };
+    const bool any = std::ranges::any_of(c.named, is_hidden);
+    wrong.count(c.verdict == Verdict::named && !any);
+    if (!c.seen()) continue;
+    one.count(any);
+    none.count(c.verdict == Verdict::none_in_catalogue);
+  }
+  if (wrong.rate().of > 0) rates.insert(rates.end(), {one.rate(), none.rate(), wrong.rate()});
 }
 
 }  // namespace
 
+std::string_view name(CaseKind kind) noexcept {
+  constexpr std::array<std::string_view, 6> names{"nothing", "one", "beyond_prior", "left_out", "two", "alien"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
 std::string_view name(Strength strength) noexcept {
-  constexpr std::array<std::string_view, 4> names{"none", "weak", "medium", "strong"};
+  constexpr std::array<std::string_view, 5> names{"none", "weak", "medium", "strong", "beyond"};
   return names[static_cast<std::size_t>(strength)];
 }
 
@@ -137,51 +193,51 @@ SelftestResult selftest(const SceneSpec& scene, const ScriptSpec& script, const 
         return full_shape(frame, settings.kind, settings.n_replicates, pilot);
       },
       observer);
-  if (observer.stage) observer.stage("training");
+  const auto begin = [&](const char* stage) {
+    if (observer.stage) observer.stage(stage);
+  };
+  begin("planted datasets");
+  const std::vector<Planted> planted = plant(lab, settings, {observer.progress});
+  begin("training");
   const Settings& analysis = settings.analysis;
-  const Analyst analyst(lab.frame, lab.knowledge, lab.table, all_trials(lab.frame),
-                        {analysis.alpha, analysis.seed, analysis.threads, analysis.trees});
-  if (observer.stage) observer.stage("planted datasets");
-  const std::vector<Plan> plans = plans_of(lab, settings);
+  AnalystSettings of_analyst{analysis.alpha, analysis.seed, analysis.threads, analysis.trees, {}};
   SelftestResult result;
   for (std::size_t entry = 0; entry < lab.table.n_entries(); ++entry)
     result.entries.push_back(lab.table.entry_name(entry));
-  result.calibration_error = analyst.namer().reliability().expected_calibration_error;
-  std::uint32_t done = 0;
-  ordered_parallel<std::optional<PlantedCase>>(
-      plans.size(), analysis.threads,
-      [&](std::size_t i) { return run_case(lab, analyst, plans[i], settings, static_cast<std::uint32_t>(i)); },
-      [&](std::optional<PlantedCase>& planted) {
-        if (planted) result.cases.push_back(std::move(*planted));
-        if (observer.progress) observer.progress(++done, static_cast<std::uint32_t>(plans.size()));
-      });
+  {
+    const Analyst analyst(lab.frame, lab.knowledge, lab.table, all_trials(lab.frame), of_analyst);
+    begin("judging");
+    std::vector<const Planted*> all;
+    for (const Planted& one : planted) all.push_back(&one);
+    judge_all(lab, analyst, all, {}, analysis.threads, result.cases);
+  }
+  if (settings.leave_out == LeaveOut::each) {
+    begin("judging by catalogues that lack the effect");
+    std::uint32_t done = 0;
+    for (const std::string& effect : lab.table.effects) {
+      std::vector<const Planted*> own;
+      for (const Planted& one : planted) {
+        if (one.kind == CaseKind::one && one.effects.front().name == effect) own.push_back(&one);
+      }
+      of_analyst.left_out = effect;
+      const Analyst analyst(lab.frame, lab.knowledge, lab.table, all_trials(lab.frame), of_analyst);
+      judge_all(lab, analyst, own, CaseKind::left_out, analysis.threads, result.cases);
+      if (observer.progress) observer.progress(++done, static_cast<std::uint32_t>(lab.table.effects.size()));
+    }
+  }
+  result.reliability = reliability_of(result);
   return result;
 }
 
 std::vector<Rate> rates_of(const SelftestResult& result) {
-  Counter alarm("a disagreement although nothing is hidden"), null_name("a name although nothing is hidden"),
-      power("a disagreement seen"), exact("exactly the right name, given a disagreement"),
-      family("the right family, given a disagreement"), wrong("one wrong name"),
-      in_set("the truth in the set, given a disagreement"), none("none in the catalogue, given a disagreement"),
-      coverage("parameters within their 90 % intervals");
-  for (const PlantedCase& c : result.cases) {
-    const bool seen = c.verdict != Verdict::no_disagreement;
-    if (c.truth == "nothing") {
-      alarm.count(seen);
-      null_name.count(c.verdict == Verdict::named);
-      continue;
-    }
-    power.count(seen);
-    wrong.count(c.verdict == Verdict::named && c.named.front() != c.truth);
-    coverage.add(c.n_covered, c.n_parameters);
-    if (!seen) continue;
-    exact.count(c.verdict == Verdict::named && c.named.front() == c.truth);
-    family.count(family_is(c.named, c.truth));
-    in_set.count(contains(c.named, c.truth));
-    none.count(c.verdict == Verdict::none_in_catalogue);
-  }
-  return {alarm.rate(), null_name.rate(), power.rate(), exact.rate(),   family.rate(),
-          wrong.rate(), in_set.rate(),    none.rate(),  coverage.rate()};
+  std::vector<Rate> rates;
+  count_nulls(result, rates);
+  count_planted(result, rates);
+  count_strangers(result, CaseKind::left_out, "an effect that the catalogue lacks", rates);
+  count_strangers(result, CaseKind::alien, "an alien", rates);
+  count_beyond(result, rates);
+  count_pairs(result, rates);
+  return rates;
 }
 
 std::vector<Rate> power_of(const SelftestResult& result, const std::string& effect) {
@@ -189,8 +245,8 @@ std::vector<Rate> power_of(const SelftestResult& result, const std::string& effe
   for (const Strength strength : {Strength::weak, Strength::medium, Strength::strong}) {
     Counter seen(std::string(name(strength)) + ": seen"), found(std::string(name(strength)) + ": seen and in the set");
     for (const PlantedCase& c : result.cases) {
-      if (c.truth != effect || c.strength != strength) continue;
-      seen.count(c.verdict != Verdict::no_disagreement);
+      if (c.kind != CaseKind::one || c.truth != effect || c.strength != strength) continue;
+      seen.count(c.seen());
       found.count(contains(c.named, effect));
     }
     rates.push_back(seen.rate());
@@ -206,8 +262,9 @@ std::vector<std::vector<double>> confusion_of(const SelftestResult& result) {
     return static_cast<std::size_t>(std::ranges::find(result.entries, entry) - result.entries.begin());
   };
   for (const PlantedCase& c : result.cases) {
-    if (c.truth != "nothing" && c.verdict == Verdict::no_disagreement) continue;
-    shares[index(c.truth)][index(c.likeliest)] += 1.0;
+    if (c.kind == CaseKind::nothing || (c.kind == CaseKind::one && c.seen())) {
+      shares[index(c.truth)][index(c.likeliest)] += 1.0;
+    }
   }
   for (std::vector<double>& row : shares) {
     double sum = 0.0;

@@ -22,7 +22,7 @@ std::string to_markdown(const SelftestResult& result) {
   std::ostringstream out;
   out << "| how often | share (95 % interval) |\n|---|---|\n";
   for (const Rate& rate : rates_of(result)) out << "| " << rate.what << " | " << share(rate) << " |\n";
-  out << "| calibration error of the probabilities | " << std::fixed << std::setprecision(3) << result.calibration_error
+  out << "| calibration error of the probabilities | " << std::fixed << std::setprecision(3) << result.reliability.expected_calibration_error
       << " |\n\n| effect |";
   for (const char* strength : {"weak", "medium", "strong"}) out << ' ' << strength << ": seen | and in the set |";
   out << "\n|---|---|---|---|---|---|---|\n";
@@ -52,15 +52,17 @@ std::string to_markdown(const SelftestResult& result) {
 
 std::string to_csv(const SelftestResult& result) {
   std::ostringstream out;
-  out << "truth,strength,verdict,named,likeliest,p,parameters,covered,hidden\n";
+  out << "kind,truth,strength,verdict,named,likeliest,p,parameters,covered,hidden\n";
   for (const PlantedCase& c : result.cases) {
     std::string named, hidden;
     for (const std::string& effect : c.named) named += (named.empty() ? "" : " ") + effect;
-    for (const auto& [parameter, value] : c.effect.parameters) {
-      hidden += (hidden.empty() ? "" : " ") + parameter + "=" + io::csv_number(value);
+    for (const EffectSpec& effect : c.effects) {
+      for (const auto& [parameter, value] : effect.parameters) {
+        hidden += (hidden.empty() ? "" : " ") + parameter + "=" + io::csv_number(value);
+      }
+      for (const auto& [choice, value] : effect.choices) hidden += " " + choice + "=" + value;
     }
-    for (const auto& [choice, value] : c.effect.choices) hidden += " " + choice + "=" + value;
-    out << c.truth << ',' << name(c.strength) << ',' << name(c.verdict) << ',' << named << ',' << c.likeliest << ','
+    out << name(c.kind) << ',' << c.truth << ',' << name(c.strength) << ',' << name(c.verdict) << ',' << named << ',' << c.likeliest << ','
         << io::csv_number(c.p) << ',' << c.n_parameters << ',' << c.n_covered << ',' << io::csv_field(hidden) << '\n';
   }
   return out.str();

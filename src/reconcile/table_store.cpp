@@ -1,8 +1,11 @@
 #include "reconcile/table_store.hpp"
 
+#include <algorithm>
 #include <fstream>
+#include <utility>
 
 #include "pirsim/core/error.hpp"
+#include "pirsim/core/parallel.hpp"
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/stats/binary.hpp"
 
@@ -10,7 +13,8 @@ namespace pirsim::reconcile {
 namespace {
 
 constexpr std::string_view kind = "pirsim reference table";
-constexpr std::uint32_t format = 1;
+constexpr std::uint32_t format = 2;
+constexpr std::uint32_t items_per_chunk = 25;
 
 void write(stats::BinaryWriter& out, const EffectSpec& effect) {
   out.write(std::string_view(effect.name));
@@ -38,6 +42,14 @@ EffectSpec read_effect(stats::BinaryReader& in) {
     effect.choices[name] = in.read_text();
   }
   return effect;
+}
+
+void append(TableChunk& chunk, TableChunk& more) {
+  chunk.n_left_out += more.n_left_out;
+  for (std::size_t i = 0; i < more.rows.size(); ++i) {
+    chunk.rows.push_back(std::move(more.rows[i]));
+    chunk.statistics.append_row(std::as_const(more.statistics).row(i));
+  }
 }
 
 }  // namespace
@@ -75,7 +87,7 @@ std::optional<TableChunk> TableStore::find(std::uint32_t number) const {
     TableRow row;
     row.entry = in.read<std::uint32_t>();
     row.world = in.read<std::uint32_t>();
-    row.effect = read_effect(in);
+    for (auto m = in.read<std::uint32_t>(); m > 0; --m) row.effects.push_back(read_effect(in));
     chunk.rows.push_back(std::move(row));
   }
   chunk.statistics = in.read_matrix<float>();
@@ -92,11 +104,31 @@ void TableStore::keep(std::uint32_t number, const TableChunk& chunk) const {
   for (const TableRow& row : chunk.rows) {
     out.write(row.entry);
     out.write(row.world);
-    write(out, row.effect);
+    out.write(static_cast<std::uint32_t>(row.effects.size()));
+    for (const EffectSpec& effect : row.effects) write(out, effect);
   }
   out.write(chunk.statistics);
   out.finish();
   file_out.commit();
+}
+
+TableChunk collect(const TableStore& store, std::uint32_t n_items, unsigned threads, const ItemJob& job,
+                   const TableProgress& progress) {
+  TableChunk all;
+  for (std::uint32_t first = 0; first < n_items; first += items_per_chunk) {
+    const std::uint32_t n = std::min(items_per_chunk, n_items - first);
+    std::optional<TableChunk> chunk = store.find(first / items_per_chunk);
+    if (!chunk) {
+      chunk.emplace();
+      ordered_parallel<TableChunk>(
+          n, threads, [&](std::size_t i) { return job(first + static_cast<std::uint32_t>(i)); },
+          [&](TableChunk& one) { append(*chunk, one); });
+      store.keep(first / items_per_chunk, *chunk);
+    }
+    append(all, *chunk);
+    if (progress.worlds) progress.worlds(first + n, n_items);
+  }
+  return all;
 }
 
 }  // namespace pirsim::reconcile

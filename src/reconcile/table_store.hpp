@@ -1,9 +1,10 @@
-// A reference table on disk: a folder with the key of what it depends on and chunks of finished worlds. Private to
+// Simulated datasets on disk: a folder with the key of what they depend on and chunks of finished worlds. Private to
 // reconcile.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,5 +32,12 @@ class TableStore {
   [[nodiscard]] std::filesystem::path file(std::uint32_t number) const;
   std::filesystem::path folder_;
 };
+
+/// Simulates item `index` (a world) with all of its datasets.
+using ItemJob = std::function<TableChunk(std::uint32_t index)>;
+/// All datasets of items 0 to n_items - 1, in order: those that aren't in the store are simulated, on several threads,
+/// and kept there some items at a time.
+[[nodiscard]] TableChunk collect(const TableStore& store, std::uint32_t n_items, unsigned threads, const ItemJob& job,
+                                 const TableProgress& progress);
 
 }  // namespace pirsim::reconcile

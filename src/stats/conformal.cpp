@@ -116,9 +116,8 @@ Split split_by_class(std::span<const int> labels, double calibration_share, std:
 }
 
 ConformalClassifier ConformalClassifier::fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
-                                             const ConformalSettings& settings) {
+                                             const Split& split, const ConformalSettings& settings) {
   require(labels.size() == features.rows(), "classes: rows and labels differ in number");
-  Split split = split_by_class(labels, settings.calibration_share, settings.seed);
   const std::vector<int> fitting_labels = select(labels, split.fitting);
   ConformalClassifier fitted;
   {
@@ -130,7 +129,7 @@ ConformalClassifier ConformalClassifier::fit(const Matrix<float>& features, std:
     fitted.trees_ =
         ExtraTrees::fit(with_coordinates(fitting, fitted.discriminant_), fitting_labels, n_classes, settings.trees);
   }
-  fitted.calibration_rows_ = std::move(split.calibration);
+  fitted.calibration_rows_ = split.calibration;
   fitted.calibrate(features.select_rows(fitted.calibration_rows_), select(labels, fitted.calibration_rows_),
                    settings.threads);
   return fitted;
@@ -185,9 +184,13 @@ void ConformalClassifier::calibrate(const Matrix<float>& features, std::span<con
   }
 }
 
+std::vector<double> ConformalClassifier::probabilities(std::span<const float> features) const {
+  return pool_.combine(sources(features));
+}
+
 Classification ConformalClassifier::classify(std::span<const float> features) const {
   Classification result;
-  result.probabilities = pool_.combine(sources(features));
+  result.probabilities = probabilities(features);
   for (std::size_t k = 0; k < result.probabilities.size(); ++k) {
     result.p_relative.push_back(conformal_p(margins_[k], margin(result.probabilities, k)));
     result.p_absolute.push_back(absolute_p(strangeness_[k], strangeness(features, k)));

@@ -7,6 +7,7 @@
 
 #include "pirsim/core/parallel.hpp"
 #include "pirsim/core/random.hpp"
+#include "stats/pointwise_rank.hpp"
 #include "stats/require.hpp"
 
 namespace pirsim::stats {
@@ -17,26 +18,6 @@ struct ColumnRanks {
   std::vector<double> from_below;  ///< (n_rows)
   double top = 0.0;
 };
-
-/// Calls use(begin, end) for every run of equal values.
-template <typename Use>
-void for_each_tie(const std::vector<double>& sorted, const Use& use) {
-  for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
-    while (end < sorted.size() && sorted[end] == sorted[begin]) ++end;
-    use(begin, end);
-  }
-}
-
-/// Place of sorted[i] between its neighbours, in (0, n). Ref: [Hahn2015] in the form of [Myllymaki2024].
-double continuous_rank(const std::vector<double>& sorted, std::size_t i) {
-  const std::size_t last = sorted.size() - 1;
-  if (i == 0) return std::exp(-(sorted[1] - sorted[0]) / (sorted[last] - sorted[1]));
-  if (i == last) {
-    return static_cast<double>(last + 1) -
-           std::exp(-(sorted[last] - sorted[last - 1]) / (sorted[last - 1] - sorted[0]));
-  }
-  return static_cast<double>(i) + (sorted[i] - sorted[i - 1]) / (sorted[i + 1] - sorted[i - 1]);
-}
 
 ColumnRanks rank_column(const std::vector<double>& values, PointwiseRank kind, Stream stream) {
   const std::size_t n = values.size();
@@ -51,15 +32,12 @@ ColumnRanks rank_column(const std::vector<double>& values, PointwiseRank kind, S
   std::vector<double> sorted(n);
   for (std::size_t i = 0; i < n; ++i) sorted[i] = values[order[i]];
 
-  ColumnRanks ranks{std::vector<double>(n), kind == PointwiseRank::continuous ? double(n) : double(n + 1)};
-  for_each_tie(sorted, [&](std::size_t begin, std::size_t end) {
+  ColumnRanks ranks{std::vector<double>(n), detail::top_rank(kind, n)};
+  detail::for_each_tie(sorted, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      double rank = static_cast<double>(i + 1);
-      if (kind == PointwiseRank::middle_ties) rank = 0.5 * static_cast<double>(begin + 1 + end);
-      // Of a tied pair the formula of continuous_rank gives the middle too, except at an end.
-      if (kind == PointwiseRank::continuous)
-        rank = end - begin > 1 ? 0.5 * static_cast<double>(begin + end) : continuous_rank(sorted, i);
-      ranks.from_below[order[i]] = rank;
+      ranks.from_below[order[i]] = kind == PointwiseRank::random_ties
+                                       ? static_cast<double>(i + 1)
+                                       : detail::shared_rank(kind, sorted, sorted.size(), begin, end);
     }
   });
   return ranks;

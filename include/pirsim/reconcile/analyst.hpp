@@ -1,6 +1,7 @@
 // LOCATE, NAME and FIT with one reference table, ready for any number of datasets.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "pirsim/reconcile/outcome.hpp"
 #include "pirsim/reconcile/reference_table.hpp"
+#include "pirsim/stats/envelope.hpp"
 
 namespace pirsim::reconcile {
 
@@ -16,6 +18,14 @@ struct AnalystSettings {
   std::uint64_t seed = 1;
   unsigned threads = 0;
   std::size_t trees = 300;
+  std::string left_out = {};  ///< effect of the table that is not to be a candidate; empty: none
+};
+
+/// What the tests say, before anything is fitted.
+struct Judgement {
+  double p = 1.0;                  ///< of the global test
+  std::vector<EntryScore> scores;  ///< (n_entries) nothing first
+  stats::Decision decision;        ///< effects are numbered as the table's, from 0
 };
 
 /// Learns from the table's datasets, of the given trials only. Immutable.
@@ -25,7 +35,9 @@ class Analyst {
   Analyst(const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge, const ReferenceTable& table,
           std::vector<std::size_t> trials, const AnalystSettings& settings);
 
-  /// Verdict without verification, for statistics of the table's shape. Without a disagreement no name is looked for.
+  /// LOCATE's p and NAME, and what they decide. Without a disagreement no name is looked for.
+  [[nodiscard]] Judgement judge(std::span<const float> measured) const;
+  /// Verdict without verification, for statistics of the table's shape.
   [[nodiscard]] Outcome analyse(std::span<const float> measured) const;
   /// The entry that fits best (at least 1), whatever the tests say, among those for which `wanted` holds; 0 if none.
   [[nodiscard]] std::size_t likeliest(std::span<const float> measured,
@@ -35,13 +47,14 @@ class Analyst {
   [[nodiscard]] const Namer& namer() const noexcept { return *namer_; }
 
  private:
-  void decide(Outcome& outcome, std::vector<std::size_t> kept, std::span<const float> measured) const;
+  void fit_named(Outcome& outcome, std::span<const float> measured) const;
 
   const StudyFrame& frame_;
   const ReferenceTable& table_;
   AnalystSettings settings_;
   FeatureMap map_;
   stats::Matrix<float> plain_;
+  std::unique_ptr<const stats::EnvelopeReference> plain_reference_;  ///< of what the global test looks at
   std::unique_ptr<const Namer> namer_;
 };
 

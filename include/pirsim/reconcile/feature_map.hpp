@@ -34,6 +34,8 @@ class FeatureMap {
   /// What the global test looks at: first the cells' seconds, by trial, then sensor; then the sensors' means and the
   /// means and sizes over all cells.
   [[nodiscard]] const std::vector<std::size_t>& envelope_columns() const noexcept { return envelope_columns_; }
+  /// Columns of one kind each: cells, sensors, trials, contrasts over all cells, likeness to permuted rooms.
+  [[nodiscard]] const std::vector<std::vector<std::size_t>>& blocks() const noexcept { return blocks_; }
   [[nodiscard]] std::vector<float> features(std::span<const float> statistics) const;
   [[nodiscard]] stats::Matrix<float> features(const stats::Matrix<float>& statistics, unsigned threads = 0) const;
 
@@ -62,6 +64,7 @@ class FeatureMap {
   std::vector<std::vector<double>> covariates_;  ///< (n_covariates x n_cells) mean 0, variance 1 over known cells
   std::vector<std::string> names_;
   std::vector<std::size_t> envelope_columns_;
+  std::vector<std::vector<std::size_t>> blocks_;
 };
 
 }  // namespace pirsim::reconcile

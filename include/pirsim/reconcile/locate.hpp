@@ -45,8 +45,15 @@ struct LocateSettings {
 [[nodiscard]] Location locate(const StudyFrame& frame, const FeatureMap& map, const stats::Matrix<float>& plain,
                               std::span<const float> measured, const LocateSettings& settings);
 
+/// What the global test looks at: (n_envelope_entries) of a dataset, (n_datasets x n_envelope_entries) of many.
+[[nodiscard]] std::vector<double> envelope_entries(const FeatureMap& map, std::span<const float> statistics);
+[[nodiscard]] stats::Matrix<double> envelope_entries(const FeatureMap& map, const stats::Matrix<float>& statistics,
+                                                     unsigned threads);
+
 /// Statistics of the datasets of one entry, all or those of training or calibration worlds.
 enum class Part { all, training, calibration };
 [[nodiscard]] std::vector<std::size_t> rows_of(const ReferenceTable& table, std::size_t entry, Part part);
+/// Of an effect that is in the table.
+[[nodiscard]] std::size_t entry_of(const ReferenceTable& table, const std::string& effect);
 
 }  // namespace pirsim::reconcile

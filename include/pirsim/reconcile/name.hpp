@@ -9,8 +9,7 @@
 #include "pirsim/reconcile/feature_map.hpp"
 #include "pirsim/reconcile/reference_table.hpp"
 #include "pirsim/stats/calibration.hpp"
-#include "pirsim/stats/discriminant.hpp"
-#include "pirsim/stats/extra_trees.hpp"
+#include "pirsim/stats/conformal.hpp"
 
 namespace pirsim::reconcile {
 
@@ -27,12 +26,13 @@ struct NamerSettings {
   std::size_t trees = 300;
   std::uint64_t seed = 0;
   unsigned threads = 0;
+  std::string left_out = {};  ///< effect that is not to be a candidate; empty: none
 };
 
 /// Trained on the training worlds of a table, calibrated on the others.
 class Namer {
  public:
-  /// Entries without enough datasets are never candidates: their p is 0.
+  /// map must outlive it. Entries without enough datasets are never candidates: their p is 0.
   Namer(const ReferenceTable& table, const FeatureMap& map, const NamerSettings& settings);
 
   /// (n_entries) of a dataset's statistics; nothing first.
@@ -45,35 +45,11 @@ class Namer {
   [[nodiscard]] std::vector<std::string> telling_features(std::size_t n) const;
 
  private:
-  struct Distances;
-  /// An entry's training datasets, to be near to, and what is usual for its calibration datasets.
-  struct EntryModel {
-    stats::Matrix<float> features;      ///< (n x n_features) of training
-    stats::Matrix<double> projections;  ///< (n x n_directions) of training
-    std::vector<double> relative;       ///< (n_calibration) sorted scores
-    std::vector<double> absolute;
-    std::vector<double> usual, spread;  ///< (n_distances) over calibration datasets
-  };
-  struct Judged {
-    std::vector<float> features;
-    std::vector<double> projection, log_probabilities;
-  };
-  [[nodiscard]] Judged look_at(std::span<const float> statistics) const;
-  [[nodiscard]] Judged look_at_features(std::vector<float> features) const;
-  [[nodiscard]] std::vector<double> distances(const EntryModel& model, const Judged& data) const;
-  [[nodiscard]] double absolute_score(const EntryModel& model, const std::vector<double>& distances) const;
-  void train(const ReferenceTable& table, const NamerSettings& settings);
-  void calibrate(const ReferenceTable& table);
-
   const FeatureMap* map_;
-  std::vector<std::string> names_;
-  std::vector<std::size_t> trained_;  ///< entries with datasets enough: the classifiers' classes
-  stats::Discriminant discriminant_;
-  stats::ExtraTrees trees_;
-  stats::LogPool pool_;
+  std::vector<std::string> names_;    ///< of all entries
+  std::vector<std::size_t> entries_;  ///< those with datasets enough: the classifier's classes
+  stats::ConformalClassifier classifier_;
   stats::Reliability reliability_;
-  std::vector<EntryModel> entries_;
-  unsigned threads_ = 0;
 };
 
 }  // namespace pirsim::reconcile

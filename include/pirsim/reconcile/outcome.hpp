@@ -10,10 +10,11 @@
 #include "pirsim/reconcile/locate.hpp"
 #include "pirsim/reconcile/name.hpp"
 #include "pirsim/reconcile/verify.hpp"
+#include "pirsim/stats/decision.hpp"
 
 namespace pirsim::reconcile {
 
-enum class Verdict { no_disagreement, named, one_of, several, none_in_catalogue };
+using stats::Verdict;
 [[nodiscard]] std::string_view name(Verdict verdict) noexcept;
 
 /// What became of one entry of the catalogue.
@@ -30,7 +31,8 @@ struct Outcome {
   Location location;
   std::vector<Candidate> candidates;  ///< most probable first; without `nothing`
   EntryScore nothing;                 ///< how well the plain model fits
-  std::vector<std::string> named;     ///< effects put into the model, or those that can't be told apart
+  std::vector<std::string> named;     ///< effects put into the model, or those that can't be told apart; of `one_of`
+                                      ///< the plain model is one more if nothing.p exceeds the level
   std::vector<FittedEffect> fits;     ///< of the effects that were put in
   std::optional<Verification> verification;
   std::vector<std::string> telling_features;

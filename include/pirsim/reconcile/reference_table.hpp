@@ -18,7 +18,7 @@ struct TableSettings {
   std::uint32_t n_worlds = 1250;      ///< of the plain model
   int plain_per_world = 4;            ///< datasets of the plain model in each world: other runs, the same room
   std::uint32_t n_remembered = 1000;  ///< datasets of an effect that acts on remembered zones
-  std::uint32_t n_traced = 640;       ///< datasets of an effect that needs new tracing
+  std::uint32_t n_traced = 400;       ///< datasets of an effect that needs new tracing
   unsigned threads = 0;               ///< 0: all cores; never changes the table
   std::vector<std::string> entries;   ///< names of effects; empty: the whole catalogue
   bool operator==(const TableSettings&) const = default;
@@ -32,7 +32,7 @@ inline constexpr std::uint32_t fewest_datasets_to_refuse = 110;
 struct TableRow {
   std::uint32_t entry = 0;  ///< 0: nothing; else 1 + index into ReferenceTable::effects
   std::uint32_t world = 0;
-  EffectSpec effect;  ///< as drawn; empty name for nothing
+  std::vector<EffectSpec> effects;  ///< as drawn; none for nothing
 };
 
 class ReferenceTable {

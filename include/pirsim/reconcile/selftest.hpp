@@ -2,37 +2,63 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "pirsim/reconcile/reconcile.hpp"
+#include "pirsim/stats/calibration.hpp"
 #include "pirsim/stats/intervals.hpp"
 
 namespace pirsim::reconcile {
 
+enum class LeaveOut {
+  none,
+  each  ///< judge the datasets with one effect a second time, by a catalogue that lacks it
+};
+
 struct SelftestSettings {
   Settings analysis;
   Measured::Kind kind = Measured::Kind::series;
-  int n_replicates = 1;          ///< runs of every trial in a planted dataset
-  std::uint32_t n_nulls = 60;    ///< datasets with nothing hidden
-  std::uint32_t n_planted = 10;  ///< datasets of every effect and strength
+  int n_replicates = 1;                  ///< runs of every trial in a planted dataset
+  std::uint32_t n_nulls = 60;            ///< datasets with nothing hidden
+  std::uint32_t n_planted = 10;          ///< datasets of every effect and strength
+  std::uint32_t n_beyond = 0;            ///< of every effect, stronger than its prior, in rooms wider than theirs
+  std::uint32_t n_pairs = 0;             ///< datasets with two effects
+  std::uint32_t n_aliens = 0;            ///< of every alien
+  LeaveOut leave_out = LeaveOut::none;
+  std::filesystem::path planted_folder = {};  ///< keeps finished datasets; empty: none
 };
 
-enum class Strength { none, weak, medium, strong };  ///< thirds of the prior, by distance from off
+/// What is hidden in a dataset, and from whom.
+enum class CaseKind {
+  nothing,
+  one,           ///< effect of the catalogue, strength from its prior
+  beyond_prior,  ///< stronger than any in the table, in a room drawn from a wider nuisance
+  left_out,      ///< effect that the catalogue lacks when this dataset is judged
+  two,           ///< effects together
+  alien          ///< something that no catalogue has
+};
+enum class Strength { none, weak, medium, strong, beyond };  ///< thirds of the prior, by distance from off
+[[nodiscard]] std::string_view name(CaseKind kind) noexcept;
 [[nodiscard]] std::string_view name(Strength strength) noexcept;
 
 /// One dataset and what became of it.
 struct PlantedCase {
-  std::string truth;  ///< "nothing" or an effect
+  CaseKind kind = CaseKind::nothing;
+  std::string truth;  ///< "nothing", an effect, an alien, or "one + another"
   Strength strength = Strength::none;
-  EffectSpec effect;
+  std::vector<EffectSpec> effects;
   Verdict verdict = Verdict::no_disagreement;
-  std::vector<std::string> named;
-  std::string likeliest;         ///< entry with the greatest probability
-  double p = 1.0;                ///< of the global test
-  std::size_t n_parameters = 0;  ///< fitted, if the right effect was named
-  std::size_t n_covered = 0;     ///< of them, whose interval holds the truth
+  std::vector<std::string> named;     ///< or not to be told apart
+  std::string likeliest;              ///< entry with the greatest probability
+  std::vector<double> probabilities;  ///< (n_entries) as SelftestResult::entries
+  double p = 1.0;                     ///< of the global test
+  std::size_t n_parameters = 0;       ///< fitted, if the right effect was named
+  std::size_t n_covered = 0;          ///< of them, whose interval holds the truth
+
+  [[nodiscard]] bool seen() const noexcept { return verdict != Verdict::no_disagreement; }
 };
 
 /// A share with its exact 95 % interval.
@@ -48,14 +74,14 @@ struct Rate {
 struct SelftestResult {
   std::vector<PlantedCase> cases;
   std::vector<std::string> entries;  ///< of the table, nothing first
-  double calibration_error = 0.0;
+  stats::Reliability reliability;    ///< of the probabilities, over the cases of the kind `one`
 };
 
 [[nodiscard]] SelftestResult selftest(const SceneSpec& scene, const ScriptSpec& script,
                                       const SelftestSettings& settings, const Observer& observer = {});
 
 /// The design's rates: alarms and names on nulls, power, right name, right family, wrong name, truth in the set,
-/// coverage.
+/// coverage; what becomes of effects that the catalogue lacks, of pairs and of strengths beyond the prior.
 [[nodiscard]] std::vector<Rate> rates_of(const SelftestResult& result);
 /// Of one effect and strength: how often a disagreement is seen, and how often the effect is then in the set.
 [[nodiscard]] std::vector<Rate> power_of(const SelftestResult& result, const std::string& effect);

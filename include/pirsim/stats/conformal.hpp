@@ -33,9 +33,7 @@ struct ConformalSettings {
   /// Columns whose shapes are looked at together, each block by itself: {} or all columns as one. A block of sums over
   /// many cells sees a small change that all cells share, which drowns among the cells themselves.
   std::vector<std::vector<std::size_t>> blocks = {};
-  double calibration_share = 0.4;
-  std::uint64_t seed = 0;  ///< of the split
-  unsigned threads = 0;    ///< 0: all cores; never changes the result
+  unsigned threads = 0;  ///< 0: all cores; never changes the result
 };
 
 /// What is said of one row; each list is (n_classes).
@@ -51,10 +49,15 @@ struct Classification {
 class ConformalClassifier {
  public:
   ConformalClassifier() = default;
-  /// features: (n_rows x n_columns), finite; labels: (n_rows) in [0, n_classes), each class ten times or more.
+  /// features: (n_rows x n_columns), finite; labels: (n_rows) in [0, n_classes); each class ten times or more among the
+  /// fitting rows and once or more among the calibration rows. Rows that depend on each other must be on one side of
+  /// the split.
   [[nodiscard]] static ConformalClassifier fit(const Matrix<float>& features, std::span<const int> labels,
-                                               int n_classes, const ConformalSettings& settings = {});
+                                               int n_classes, const Split& split,
+                                               const ConformalSettings& settings = {});
   [[nodiscard]] Classification classify(std::span<const float> features) const;
+  /// (n_classes) as in classify(), without the tests.
+  [[nodiscard]] std::vector<double> probabilities(std::span<const float> features) const;
   /// One a row.
   [[nodiscard]] std::vector<Classification> classify(const Matrix<float>& features, unsigned threads = 0) const;
 

@@ -44,6 +44,24 @@ struct GlobalEnvelope {
 [[nodiscard]] GlobalEnvelope global_envelope_test(std::span<const double> observed, const Matrix<double>& simulated,
                                                   const EnvelopeSettings& settings = {});
 
+/// The p of global_envelope_test() for many observed rows and one set of simulated ones: two-sided, without random ties.
+/// What doesn't depend on the observed row is done once; a row then costs one pass over the table.
+class EnvelopeReference {
+ public:
+  /// simulated: (n_simulated x n_entries), finite, two rows or more. Throws Error(usage) otherwise.
+  explicit EnvelopeReference(Matrix<double> simulated, PointwiseRank rank = PointwiseRank::continuous);
+  [[nodiscard]] double p(std::span<const double> observed) const;  ///< of (n_entries) finite numbers
+
+ private:
+  struct Column;
+  [[nodiscard]] Column insert(std::size_t entry, double observed) const;
+
+  Matrix<double> simulated_;
+  Matrix<double> sorted_;      ///< (n_entries x n_simulated) values of each entry
+  Matrix<double> from_below_;  ///< (n_simulated x n_entries) ranks among the simulated rows
+  PointwiseRank rank_;
+};
+
 /// p of every row among all rows (n_rows): the share of rows at least as extreme as it, itself counted.
 [[nodiscard]] std::vector<double> extremeness(const Matrix<double>& rows, const EnvelopeSettings& settings = {});
 

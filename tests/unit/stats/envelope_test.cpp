@@ -172,3 +172,23 @@ TEST_CASE("the envelope test gives the same for any number of threads and refuse
   CHECK_THROWS_AS(global_envelope_test(std::vector<double>(6, std::nan("")), rows), Error);
   CHECK_THROWS_AS(global_envelope_test(rows.row(0), Matrix<double>(0, 6)), Error);
 }
+
+TEST_CASE("a reference for many observed rows gives the p of the whole envelope test", "[stats]") {
+  for (const double coarse : {0.0, 0.4, 1.5}) {
+    for (std::uint32_t study = 0; study < 60; ++study) {
+      const Matrix<double> rows = draw_rows(30 + study, 7, study, coarse);
+      const Matrix<double> simulated = without_first(rows);
+      std::vector<double> observed(rows.row(0).begin(), rows.row(0).end());
+      if (study % 3 == 1) observed[study % 7] += 5.0;                    // outside all
+      if (study % 3 == 2) observed[study % 7] = simulated(2, study % 7);  // tied with one
+      for (const PointwiseRank rank : {PointwiseRank::continuous, PointwiseRank::middle_ties}) {
+        CAPTURE(coarse, study);
+        CHECK(EnvelopeReference(simulated, rank).p(observed) ==
+              global_envelope_test(observed, simulated, {.rank = rank}).p);
+      }
+    }
+  }
+  const EnvelopeReference reference(draw_rows(20, 3, 1, 0.0));
+  CHECK_THROWS_AS(reference.p(std::vector<double>{1.0}), Error);
+  CHECK_THROWS_AS(EnvelopeReference(draw_rows(20, 3, 1, 0.0), PointwiseRank::random_ties), Error);
+}

@@ -43,7 +43,8 @@ struct Study {
         labels.push_back(effect);
       }
     }
-    classifier = ConformalClassifier::fit(features, relabel(labels), toy::n_known,
+    labels = relabel(labels);
+    classifier = ConformalClassifier::fit(features, labels, toy::n_known, split_by_class(labels, 0.4, 0),
                                           {.trees = {.trees = 60}, .blocks = toy::blocks()});
   }
 
