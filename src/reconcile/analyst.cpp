@@ -95,9 +95,8 @@ void Analyst::fit_named(Outcome& outcome, std::span<const float> measured) const
     FittedEffect fitted = fit(entry_of(table_, candidate.score.entry), measured);
     if (fitted.includes_off) {
       outcome.trail.push_back("the interval of " + candidate.score.entry + " includes off: the name is withdrawn");
-      candidate.kept = false;
-      candidate.reason = "Withdrawn: its strength may as well be none.";
-      outcome.verdict = Verdict::none_in_catalogue;
+      candidate.reason = "Kept, but not named: its strength may as well be none.";
+      outcome.verdict = Verdict::one_of;
     } else {
       outcome.fits.push_back(std::move(fitted));
     }

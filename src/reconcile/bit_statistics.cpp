@@ -25,6 +25,7 @@ void add_counts(const BitSeries& series, double window_s, CellValues& values) {
     if (series.busy[i] != 0) at(values, CellStatistic::busy_seconds) += window_s;
     if (series.expected[i] < silent_below) at(values, CellStatistic::silent_seconds) += window_s;
     at(values, CellStatistic::half_difference) += 2 * i < n ? window_s : -window_s;
+    values[static_cast<std::size_t>(CellStatistic::sixth_1) + 6 * i / n] += window_s;
   }
 }
 

@@ -141,7 +141,9 @@ void FeatureMap::learn_scales(const stats::Matrix<float>& plain) {
     for (std::size_t i = first; i < last; i += step) scale_[i] = std::sqrt(square[i] + 0.04 * mean * mean);
   };
   for (std::size_t k = 0; k < n_cell_statistics; ++k) set_scales(k, n_cell_statistics, in_cells);
-  for (std::size_t k = 0; k < n_trial_statistics; ++k) set_scales(in_cells + k, n_trial_statistics, n);
+  const std::size_t in_trials = in_cells + frame_.trials.size() * n_trial_statistics;
+  for (std::size_t k = 0; k < n_trial_statistics; ++k) set_scales(in_cells + k, n_trial_statistics, in_trials);
+  for (std::size_t k = 0; k < n_pairs(frame_); ++k) set_scales(in_trials + k, n_pairs(frame_), n);
 }
 
 void FeatureMap::learn_covariates(const std::vector<CellKnowledge>& knowledge) {
@@ -235,11 +237,37 @@ void FeatureMap::write_trials(const Scaled& data, Writer& out) const {
     }
     if (count == 0.0) continue;
     const auto label = [&](const char* which) {
-      return std::string(which) + std::string(name(static_cast<TrialStatistic>(k)));
+      return which + name(static_cast<TrialStatistic>(k));
     };
     out.add(sum / count, [&] { return label("mean "); });
     out.add(std::sqrt(squares / count), [&] { return label("size of "); });
   }
+}
+
+void FeatureMap::write_pairs(const Scaled& data, Writer& out) const {
+  const std::size_t n = frame_.sensors.size();
+  std::vector<double> means;
+  for (std::size_t first = 0; first < n; ++first) {
+    for (std::size_t second = 0; second < n; ++second) {
+      if (first == second) continue;
+      double sum = 0.0, count = 0.0;
+      for (const std::size_t trial : trials_) {
+        const std::size_t i = pair_index(frame_, trial, first, second);
+        if (known_[i] == 0) continue;
+        sum += data.values[i];
+        count += 1.0;
+      }
+      if (count == 0.0) continue;
+      means.push_back(sum / count);
+      out.test_next();
+      out.add(means.back(), [&] { return frame_.sensors[first] + " together with " + frame_.sensors[second]; });
+    }
+  }
+  if (means.size() < 2) return;
+  std::ranges::sort(means);
+  out.add(means.back(), [] { return std::string("most together"); });
+  out.add(means.back() - means[means.size() - 2], [] { return std::string("most less second most together"); });
+  out.add(means.front(), [] { return std::string("least together"); });
 }
 
 void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
@@ -351,6 +379,8 @@ void FeatureMap::write_all(std::span<const float> statistics, Writer& out) const
   write_sensors(data, out);
   out.end_block();
   write_trials(data, out);
+  out.end_block();
+  write_pairs(data, out);
   out.end_block();
   write_contrasts(data, out);
   out.end_block();

@@ -12,14 +12,6 @@ namespace {
 constexpr std::size_t fewest_training = 20;  ///< datasets of an entry: fewer have no shape
 constexpr std::size_t fewest_calibration = 10;
 
-/// Of several plain datasets in a world only the first trains and calibrates: the others share its room.
-std::vector<std::size_t> one_a_world(const ReferenceTable& table, std::size_t entry, Part part) {
-  std::vector<std::size_t> rows = rows_of(table, entry, part);
-  const auto same = std::ranges::unique(rows, {}, [&](std::size_t row) { return table.rows[row].world; });
-  rows.erase(same.begin(), same.end());
-  return rows;
-}
-
 /// Rows of the table with their classes, split by world.
 struct Labelled {
   std::vector<std::size_t> rows;
@@ -42,8 +34,8 @@ Namer::Namer(const ReferenceTable& table, const FeatureMap& map, const NamerSett
   for (std::size_t entry = 0; entry < table.n_entries(); ++entry) {
     names_.push_back(table.entry_name(entry));
     if (names_.back() == settings.left_out) continue;
-    const std::vector<std::size_t> training = one_a_world(table, entry, Part::training);
-    const std::vector<std::size_t> calibration = one_a_world(table, entry, Part::calibration);
+    const std::vector<std::size_t> training = rows_of(table, entry, Part::training);
+    const std::vector<std::size_t> calibration = rows_of(table, entry, Part::calibration);
     if (training.size() < fewest_training || calibration.size() < fewest_calibration) {
       if (entry > 0) continue;
       throw Error(ErrorCode::infeasible, "reconcile: people could get about in too few worlds of the plain model (" +

@@ -112,9 +112,7 @@ class PlantingJob {
       auto data = world.with_effects(*effects, 0, settings_.n_replicates);
       if (!data) continue;
       if (plan.alien != nullptr) invade(*plan.alien, lab_.frame, *data, stream);
-      chunk.rows.push_back({index, first_planted_world + index, *effects});
-      chunk.statistics.append_row(
-          std::span<const float>(statistics_of(lab_.frame, lab_.shape, lab_.table.profile, *data)));
+      chunk.datasets.push_back({{index, first_planted_world + index, *effects}, std::move(*data)});
       return chunk;
     }
     ++chunk.n_left_out;
@@ -168,14 +166,21 @@ std::string Planted::truth() const {
 std::vector<Planted> plant(const Laboratory& lab, const SelftestSettings& settings, const TableProgress& progress) {
   const PlantingJob job(lab, settings);
   const TableStore store(settings.planted_folder, key_of(lab, settings));
-  const TableChunk all = collect(store, static_cast<std::uint32_t>(job.plans().size()), settings.analysis.threads,
-                                 [&](std::uint32_t index) { return job.run(index); }, progress);
   std::vector<Planted> planted;
-  for (std::size_t i = 0; i < all.rows.size(); ++i) {
-    const Plan& plan = job.plans()[all.rows[i].entry];
-    const auto statistics = all.statistics.row(i);
-    planted.push_back({plan.kind, plan.strength, plan.alien == nullptr ? "" : plan.alien->name, all.rows[i].effects,
-                       {statistics.begin(), statistics.end()}});
+  stats::Matrix<float> statistics;
+  for_each_chunk(store, static_cast<std::uint32_t>(job.plans().size()), settings.analysis.threads,
+                 [&](std::uint32_t index) { return job.run(index); }, progress, [&](TableChunk& chunk) {
+                   append_statistics(lab.frame, lab.shape, lab.table.profile, chunk, settings.analysis.threads,
+                                     statistics);
+                   for (SimulatedDataset& dataset : chunk.datasets) {
+                     const Plan& plan = job.plans()[dataset.row.entry];
+                     planted.push_back({plan.kind, plan.strength, plan.alien == nullptr ? "" : plan.alien->name,
+                                        std::move(dataset.row.effects), {}});
+                   }
+                 });
+  for (std::size_t i = 0; i < planted.size(); ++i) {
+    const auto row = std::as_const(statistics).row(i);
+    planted[i].statistics.assign(row.begin(), row.end());
   }
   return planted;
 }

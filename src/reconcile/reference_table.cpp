@@ -15,17 +15,15 @@ constexpr std::uint32_t entries_per_attempt = 4096;  ///< keeps the streams of a
 /// Simulates the datasets of single worlds.
 class WorldJob {
  public:
-  WorldJob(const WorldSource& source, const StudyFrame& frame, const DataShape& shape, const Profile& profile,
-           const TableSettings& settings)
-      : source_(source), frame_(frame), shape_(shape), profile_(profile), settings_(settings) {
+  WorldJob(const WorldSource& source, const StudyFrame& frame, int n_replicates, const TableSettings& settings)
+      : source_(source), frame_(frame), n_replicates_(n_replicates), settings_(settings) {
     for (const std::string& entry : settings.entries) effects_.push_back(&effects::find(entry));
   }
 
   [[nodiscard]] TableChunk run(std::uint32_t index) const {
     TableChunk chunk;
-    const int n = shape_.n_replicates;
-    const SimulatedWorld world(source_, frame_, index, n * settings_.plain_per_world);
-    for (int i = 0; i < settings_.plain_per_world; ++i) add(chunk, {0, index, {}}, world.plain(i * n, n));
+    const SimulatedWorld world(source_, frame_, index, n_replicates_);
+    chunk.datasets.push_back({{0, index, {}}, world.plain(0, n_replicates_)});
     for (std::uint32_t e = 0; e < effects_.size(); ++e) {
       if (index < n_datasets(*effects_[e])) add_effect(chunk, world, index, e);
     }
@@ -41,22 +39,17 @@ class WorldJob {
       Stream stream({source_.seed, index, e + attempt * entries_per_attempt, Purpose::reference_parameters});
       const EffectSpec effect =
           effects::draw_from_prior(*effects_[e], world.world().scene, world.world().script, stream);
-      const auto data = world.with_effects(std::span(&effect, 1), 0, shape_.n_replicates);
+      auto data = world.with_effects(std::span(&effect, 1), 0, n_replicates_);
       if (!data) continue;
-      add(chunk, {e + 1, index, {effect}}, *data);
+      chunk.datasets.push_back({{e + 1, index, {effect}}, std::move(*data)});
       return;
     }
     ++chunk.n_left_out;
   }
-  void add(TableChunk& chunk, TableRow row, const std::vector<Series>& data) const {
-    chunk.rows.push_back(std::move(row));
-    chunk.statistics.append_row(std::span<const float>(statistics_of(frame_, shape_, profile_, data)));
-  }
 
   const WorldSource& source_;
   const StudyFrame& frame_;
-  const DataShape& shape_;
-  const Profile& profile_;
+  int n_replicates_;
   const TableSettings& settings_;
   std::vector<const effects::Effect*> effects_;
 };
@@ -80,17 +73,18 @@ ReferenceTable make_reference_table(const WorldSource& source, const StudyFrame&
   if (settings.entries.empty()) {
     for (const effects::Effect* effect : effects::catalogue()) settings.entries.push_back(effect->info.name);
   }
-  const TableStore store(folder, table_key(source, frame, shape, settings));
-  const WorldJob job(source, frame, shape, profile, settings);
+  const TableStore store(folder, table_key(source, frame, shape.n_replicates, settings));
+  const WorldJob job(source, frame, shape.n_replicates, settings);
   ReferenceTable table;
   table.effects = settings.entries;
   table.profile = profile;
   table.n_worlds = settings.n_worlds;
-  TableChunk all = collect(store, settings.n_worlds, settings.threads,
-                           [&](std::uint32_t index) { return job.run(index); }, progress);
-  table.rows = std::move(all.rows);
-  table.statistics = std::move(all.statistics);
-  table.n_left_out = all.n_left_out;
+  for_each_chunk(store, settings.n_worlds, settings.threads, [&](std::uint32_t index) { return job.run(index); },
+                 progress, [&](TableChunk& chunk) {
+                   append_statistics(frame, shape, profile, chunk, settings.threads, table.statistics);
+                   for (SimulatedDataset& dataset : chunk.datasets) table.rows.push_back(std::move(dataset.row));
+                   table.n_left_out += chunk.n_left_out;
+                 });
   return table;
 }
 

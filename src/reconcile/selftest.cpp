@@ -44,8 +44,7 @@ PlantedCase judged(const Laboratory& lab, const Analyst& analyst, const Planted&
   if (result.verdict != Verdict::named) return result;
   const FittedEffect fitted = analyst.fit(entry_of(lab.table, result.named.front()), planted.statistics);
   if (fitted.includes_off) {
-    result.verdict = Verdict::none_in_catalogue;
-    result.named.clear();
+    result.verdict = Verdict::one_of;
   } else if (kind == CaseKind::one && is_named(result, result.truth)) {
     check_coverage(fitted, planted.effects.front(), result);
   }

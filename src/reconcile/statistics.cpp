@@ -13,11 +13,13 @@ constexpr float nothing_known = std::numeric_limits<float>::quiet_NaN();
 constexpr double busy_share = 0.12;  ///< of the rows
 
 constexpr std::array<std::string_view, n_cell_statistics> cell_names{
-    "seconds",       "busy_seconds",  "silent_seconds", "half_difference",   "onsets",        "longest_run",
+    "seconds",       "busy_seconds",  "silent_seconds", "half_difference",   "sixth_1", "sixth_2", "sixth_3", "sixth_4", "sixth_5", "sixth_6", "onsets",        "longest_run",
     "isolated",      "single_gaps",   "double_gaps",    "again_after_1",     "again_after_2", "again_after_3",
     "again_after_4", "again_after_6", "longest_gap",    "dispersion",        "period_power",  "cycle_strength",
     "agreement",     "lead_seconds",  "tail_seconds",   "late_tail_seconds", "run_variance"};
-constexpr std::array<std::string_view, n_trial_statistics> trial_names{
+constexpr auto first_slice = static_cast<std::size_t>(TrialStatistic::slice_1);
+constexpr std::size_t n_slices = n_trial_statistics - first_slice;
+constexpr std::array<std::string_view, first_slice> trial_names{
     "lag_minus_4", "lag_minus_2", "lag_minus_1", "lag_0",      "lag_1",      "lag_2",        "lag_3",       "lag_5",
     "lag_8",       "lag_11",      "lag_15",      "any_active", "two_active", "three_active", "coactivation"};
 constexpr std::array<int, 11> lags{-4, -2, -1, 0, 1, 2, 3, 5, 8, 11, 15};
@@ -55,7 +57,11 @@ double seconds_between(const Series& run, std::size_t begin, std::size_t end, st
 class TrialStatistics {
  public:
   TrialStatistics(const StudyFrame& frame, const Profile::Trial& profile)
-      : frame_(frame), profile_(profile), cells_(frame.sensors.size()), seconds_(frame.sensors.size()) {}
+      : frame_(frame),
+        profile_(profile),
+        cells_(frame.sensors.size()),
+        seconds_(frame.sensors.size()),
+        pairs_(n_pairs(frame), 0.0) {}
 
   void add(const Series& run, const DataShape::Run& shape, Measured::Kind kind) {
     const std::vector<std::uint8_t> bits = main_bits(run, shape, frame_.sensors.size());
@@ -76,8 +82,12 @@ class TrialStatistics {
         out[cell_index(frame_, trial, sensor, statistic)] = static_cast<float>(value_of(sensor, statistic));
       }
     }
-    for (std::size_t i = 0; shape.kind == Measured::Kind::series && i < n_trial_statistics; ++i) {
+    if (shape.kind != Measured::Kind::series) return;
+    for (std::size_t i = 0; i < n_trial_statistics; ++i) {
       out[trial_index(frame_, trial, static_cast<TrialStatistic>(i))] = static_cast<float>(trial_[i] / n_runs_);
+    }
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      out[pair_index(frame_, trial, 0, 1) + i] = static_cast<float>(pairs_[i] / n_runs_);
     }
   }
 
@@ -128,7 +138,9 @@ class TrialStatistics {
       if (bits[i] != 1) continue;
       active[i / n] += 1.0;
       share[i % n] += 1.0 / static_cast<double>(n_rows);
+      trial_[first_slice + i / n * n_slices / n_rows] += frame_.window_s;
     }
+    add_pairs(bits, share);
     add_lags(active);
     const auto with_at_least = [&](double least) {
       return static_cast<double>(std::ranges::count_if(active, [&](double a) { return a >= least; }));
@@ -143,6 +155,25 @@ class TrialStatistics {
     }
     for (const double a : active) variance += (a - mean) * (a - mean) / static_cast<double>(n_rows);
     trial_[static_cast<std::size_t>(TrialStatistic::coactivation)] += variance / (independent + 0.01);
+  }
+
+  /// Without motion of the second sensor, the share that chance would give.
+  void add_pairs(const std::vector<std::uint8_t>& bits, const std::vector<double>& share) {
+    const std::size_t n = share.size();
+    std::vector<double> both(n * n, 0.0);
+    for (std::size_t row = 0; row < bits.size(); row += n) {
+      for (std::size_t second = 0; second < n; ++second) {
+        if (bits[row + second] != 1) continue;
+        for (std::size_t first = 0; first < n; ++first) both[first * n + second] += bits[row + first] == 1 ? 1.0 : 0.0;
+      }
+    }
+    std::size_t pair = 0;
+    for (std::size_t first = 0; first < n; ++first) {
+      for (std::size_t second = 0; second < n; ++second) {
+        if (first == second) continue;
+        pairs_[pair++] += (both[first * n + second] + share[first]) / (both[second * n + second] + 1.0);
+      }
+    }
   }
 
   void add_lags(const std::vector<double>& active) {
@@ -162,6 +193,7 @@ class TrialStatistics {
   std::vector<CellValues> cells_;             ///< (n_sensors) sums over runs
   std::vector<std::vector<double>> seconds_;  ///< (n_sensors x n_runs)
   std::array<double, n_trial_statistics> trial_{};
+  std::vector<double> pairs_;  ///< (n_pairs) sums over runs
   bool lead_known_ = true, tail_known_ = true;
   int n_runs_ = 0;
 };
@@ -189,10 +221,13 @@ DataShape::Run shape_of_run(const Series& run, std::size_t n_sensors) {
 }  // namespace
 
 std::string_view name(CellStatistic statistic) noexcept { return cell_names[static_cast<std::size_t>(statistic)]; }
-std::string_view name(TrialStatistic statistic) noexcept { return trial_names[static_cast<std::size_t>(statistic)]; }
+std::string name(TrialStatistic statistic) {
+  const auto index = static_cast<std::size_t>(statistic);
+  return index < first_slice ? std::string(trial_names[index]) : "slice_" + std::to_string(index - first_slice + 1);
+}
 
 std::size_t n_statistics(const StudyFrame& frame) noexcept {
-  return frame.n_cells() * n_cell_statistics + frame.trials.size() * n_trial_statistics;
+  return frame.n_cells() * n_cell_statistics + frame.trials.size() * (n_trial_statistics + n_pairs(frame));
 }
 
 DataShape full_shape(const StudyFrame& frame, Measured::Kind kind, int n_replicates, std::span<const Series> pilot) {

@@ -90,20 +90,6 @@ void add(Fingerprint& print, const NuisanceSpec& nuisance) {
   }
 }
 
-void add(Fingerprint& print, const DataShape& shape) {
-  print.add_number(shape.kind);
-  print.add_number(shape.n_replicates);
-  for (const DataShape::Run& run : shape.runs) {
-    print.add_number(run.trial);
-    print.add_number(run.replicate);
-    print.add_number(run.n_main);
-    print.add_number(run.has_lead);
-    print.add_number(run.has_tail);
-    print.add(std::string_view(reinterpret_cast<const char*>(run.unknown.data()), run.unknown.size()));
-  }
-  for (const std::uint8_t known : shape.known_cells) print.add_number(known);
-}
-
 void add_catalogue(Fingerprint& print, const std::vector<std::string>& entries) {
   for (const std::string& entry : entries) {
     const effects::EffectInfo& info = effects::find(entry).info;
@@ -119,7 +105,7 @@ void add_catalogue(Fingerprint& print, const std::vector<std::string>& entries) 
 
 }  // namespace
 
-std::string table_key(const WorldSource& source, const StudyFrame& frame, const DataShape& shape,
+std::string table_key(const WorldSource& source, const StudyFrame& frame, int n_replicates,
                       const TableSettings& settings) {
   Fingerprint print;
   print.add(version());
@@ -131,11 +117,10 @@ std::string table_key(const WorldSource& source, const StudyFrame& frame, const 
   print.add(io::to_yaml(script));
   add(print, source.nuisance);
   print.add_number(source.seed);
-  add(print, shape);
+  print.add_number(n_replicates);
   for (const auto n : {settings.n_worlds, settings.n_remembered, settings.n_traced}) print.add_number(n);
-  print.add_number(settings.plain_per_world);
   add_catalogue(print, settings.entries);
-  print.add_number(n_statistics(frame));
+  for (const std::string& phase : frame.counted_phases) print.add(phase);
   return print.digest();
 }
 

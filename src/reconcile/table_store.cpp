@@ -44,12 +44,34 @@ EffectSpec read_effect(stats::BinaryReader& in) {
   return effect;
 }
 
+/// Eight bits a byte; simulated data know all of them.
+void write(stats::BinaryWriter& out, const Series& run) {
+  out.write(static_cast<std::uint32_t>(run.trial));
+  out.write(static_cast<std::int32_t>(run.replicate));
+  for (const std::size_t n : {run.main_begin, run.main_end, run.bits.size()}) out.write(static_cast<std::uint32_t>(n));
+  std::vector<std::uint8_t> packed((run.bits.size() + 7) / 8, 0);
+  for (std::size_t i = 0; i < run.bits.size(); ++i) {
+    if (run.bits[i] == 1) packed[i / 8] = static_cast<std::uint8_t>(packed[i / 8] | 1U << i % 8);
+  }
+  out.write(packed);
+}
+
+Series read_series(stats::BinaryReader& in) {
+  Series run;
+  run.trial = in.read<std::uint32_t>();
+  run.replicate = in.read<std::int32_t>();
+  run.main_begin = in.read<std::uint32_t>();
+  run.main_end = in.read<std::uint32_t>();
+  const auto n = in.read<std::uint32_t>();
+  const auto packed = in.read_vector<std::uint8_t>();
+  if (packed.size() != (n + 7U) / 8U) throw Error(ErrorCode::input, "reference table: is damaged: an impossible size");
+  for (std::uint32_t i = 0; i < n; ++i) run.bits.push_back(packed[i / 8] >> i % 8 & 1U);
+  return run;
+}
+
 void append(TableChunk& chunk, TableChunk& more) {
   chunk.n_left_out += more.n_left_out;
-  for (std::size_t i = 0; i < more.rows.size(); ++i) {
-    chunk.rows.push_back(std::move(more.rows[i]));
-    chunk.statistics.append_row(std::as_const(more.statistics).row(i));
-  }
+  std::ranges::move(more.datasets, std::back_inserter(chunk.datasets));
 }
 
 }  // namespace
@@ -64,7 +86,7 @@ TableStore::TableStore(std::filesystem::path folder, const std::string& key) : f
     std::ifstream(key_file) >> known;
     if (known == key) return;
     throw Error(ErrorCode::input, {key_file.string(), 0, 0},
-                "this folder holds the reference table of another scene, script, nuisance, shape of data or build: "
+                "this folder holds simulated datasets of another scene, script, nuisance, number of runs or build: "
                 "remove it or name another folder with --table");
   }
   io::AtomicFile out(key_file);
@@ -84,13 +106,13 @@ std::optional<TableChunk> TableStore::find(std::uint32_t number) const {
   TableChunk chunk;
   chunk.n_left_out = in.read<std::uint32_t>();
   for (auto n = in.read<std::uint32_t>(); n > 0; --n) {
-    TableRow row;
-    row.entry = in.read<std::uint32_t>();
-    row.world = in.read<std::uint32_t>();
-    for (auto m = in.read<std::uint32_t>(); m > 0; --m) row.effects.push_back(read_effect(in));
-    chunk.rows.push_back(std::move(row));
+    SimulatedDataset dataset;
+    dataset.row.entry = in.read<std::uint32_t>();
+    dataset.row.world = in.read<std::uint32_t>();
+    for (auto m = in.read<std::uint32_t>(); m > 0; --m) dataset.row.effects.push_back(read_effect(in));
+    for (auto m = in.read<std::uint32_t>(); m > 0; --m) dataset.runs.push_back(read_series(in));
+    chunk.datasets.push_back(std::move(dataset));
   }
-  chunk.statistics = in.read_matrix<float>();
   in.finish();
   return chunk;
 }
@@ -100,21 +122,21 @@ void TableStore::keep(std::uint32_t number, const TableChunk& chunk) const {
   io::AtomicFile file_out(file(number));
   stats::BinaryWriter out(file_out.stream(), kind, format);
   out.write(chunk.n_left_out);
-  out.write(static_cast<std::uint32_t>(chunk.rows.size()));
-  for (const TableRow& row : chunk.rows) {
-    out.write(row.entry);
-    out.write(row.world);
-    out.write(static_cast<std::uint32_t>(row.effects.size()));
-    for (const EffectSpec& effect : row.effects) write(out, effect);
+  out.write(static_cast<std::uint32_t>(chunk.datasets.size()));
+  for (const SimulatedDataset& dataset : chunk.datasets) {
+    out.write(dataset.row.entry);
+    out.write(dataset.row.world);
+    out.write(static_cast<std::uint32_t>(dataset.row.effects.size()));
+    for (const EffectSpec& effect : dataset.row.effects) write(out, effect);
+    out.write(static_cast<std::uint32_t>(dataset.runs.size()));
+    for (const Series& run : dataset.runs) write(out, run);
   }
-  out.write(chunk.statistics);
   out.finish();
   file_out.commit();
 }
 
-TableChunk collect(const TableStore& store, std::uint32_t n_items, unsigned threads, const ItemJob& job,
-                   const TableProgress& progress) {
-  TableChunk all;
+void for_each_chunk(const TableStore& store, std::uint32_t n_items, unsigned threads, const ItemJob& job,
+                    const TableProgress& progress, const std::function<void(TableChunk&)>& use) {
   for (std::uint32_t first = 0; first < n_items; first += items_per_chunk) {
     const std::uint32_t n = std::min(items_per_chunk, n_items - first);
     std::optional<TableChunk> chunk = store.find(first / items_per_chunk);
@@ -125,10 +147,17 @@ TableChunk collect(const TableStore& store, std::uint32_t n_items, unsigned thre
           [&](TableChunk& one) { append(*chunk, one); });
       store.keep(first / items_per_chunk, *chunk);
     }
-    append(all, *chunk);
+    use(*chunk);
     if (progress.worlds) progress.worlds(first + n, n_items);
   }
-  return all;
+}
+
+void append_statistics(const StudyFrame& frame, const DataShape& shape, const Profile& profile, const TableChunk& chunk,
+                       unsigned threads, stats::Matrix<float>& statistics) {
+  ordered_parallel<std::vector<float>>(
+      chunk.datasets.size(), threads,
+      [&](std::size_t i) { return statistics_of(frame, shape, profile, chunk.datasets[i].runs); },
+      [&](std::vector<float>& row) { statistics.append_row(std::span<const float>(row)); });
 }
 
 }  // namespace pirsim::reconcile

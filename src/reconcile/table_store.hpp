@@ -13,10 +13,15 @@
 
 namespace pirsim::reconcile {
 
+/// The runs of one dataset as they were simulated: statistics are taken when they are needed, so that data with other
+/// gaps, and other statistics, need no new simulation.
+struct SimulatedDataset {
+  TableRow row;
+  std::vector<Series> runs;
+};
 /// Datasets of some worlds that follow each other.
 struct TableChunk {
-  std::vector<TableRow> rows;
-  stats::Matrix<float> statistics;
+  std::vector<SimulatedDataset> datasets;
   std::uint32_t n_left_out = 0;
 };
 
@@ -35,9 +40,13 @@ class TableStore {
 
 /// Simulates item `index` (a world) with all of its datasets.
 using ItemJob = std::function<TableChunk(std::uint32_t index)>;
-/// All datasets of items 0 to n_items - 1, in order: those that aren't in the store are simulated, on several threads,
-/// and kept there some items at a time.
-[[nodiscard]] TableChunk collect(const TableStore& store, std::uint32_t n_items, unsigned threads, const ItemJob& job,
-                                 const TableProgress& progress);
+/// Calls use(chunk) for the datasets of items 0 to n_items - 1, in order: those that aren't in the store are simulated,
+/// on several threads, and kept there.
+void for_each_chunk(const TableStore& store, std::uint32_t n_items, unsigned threads, const ItemJob& job,
+                    const TableProgress& progress, const std::function<void(TableChunk&)>& use);
+
+/// A row a dataset.
+void append_statistics(const StudyFrame& frame, const DataShape& shape, const Profile& profile, const TableChunk& chunk,
+                       unsigned threads, stats::Matrix<float>& statistics);
 
 }  // namespace pirsim::reconcile

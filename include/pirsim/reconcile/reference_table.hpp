@@ -15,8 +15,7 @@
 namespace pirsim::reconcile {
 
 struct TableSettings {
-  std::uint32_t n_worlds = 1250;      ///< of the plain model
-  int plain_per_world = 4;            ///< datasets of the plain model in each world: other runs, the same room
+  std::uint32_t n_worlds = 1500;      ///< of the plain model, a dataset each
   std::uint32_t n_remembered = 1000;  ///< datasets of an effect that acts on remembered zones
   std::uint32_t n_traced = 400;       ///< datasets of an effect that needs new tracing
   unsigned threads = 0;               ///< 0: all cores; never changes the table
@@ -67,8 +66,10 @@ struct TableProgress {
 [[nodiscard]] std::vector<Series> pilot_runs(const WorldSource& source, const StudyFrame& frame, std::uint32_t n_worlds,
                                              unsigned threads);
 
-/// Everything that a table depends on, as a digest: scene, script, nuisance, shape, settings, catalogue, build.
-[[nodiscard]] std::string table_key(const WorldSource& source, const StudyFrame& frame, const DataShape& shape,
+/// Everything that a table's simulated datasets depend on, as a digest: scene, script, nuisance, runs of every trial,
+/// settings, catalogue, build.
+[[nodiscard]] std::string table_key(const WorldSource& source, const StudyFrame& frame, int n_replicates,
                                     const TableSettings& settings);
+
 
 }  // namespace pirsim::reconcile

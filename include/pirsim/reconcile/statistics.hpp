@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -52,6 +53,12 @@ enum class CellStatistic : std::uint8_t {
   busy_seconds,     ///< of them, in rows where much motion is expected: changes of posture
   silent_seconds,   ///< in rows where this sensor is expected to be silent
   half_difference,  ///< first half less second half
+  sixth_1,          ///< seconds in the first sixth of the time
+  sixth_2,
+  sixth_3,
+  sixth_4,
+  sixth_5,
+  sixth_6,
   onsets,           ///< motion after none
   longest_run,      ///< rows with motion in a row
   isolated,         ///< single rows with motion
@@ -90,15 +97,20 @@ enum class TrialStatistic : std::uint8_t {
   two_active,
   three_active,
   coactivation,  ///< variance of the number of active sensors, against independent ones
+  slice_1,       ///< seconds of all sensors in the first of eighteen parts of the time
+  slice_18 = slice_1 + 17,
   count
 };
 inline constexpr std::size_t n_cell_statistics = static_cast<std::size_t>(CellStatistic::count);
 inline constexpr std::size_t n_trial_statistics = static_cast<std::size_t>(TrialStatistic::count);
 [[nodiscard]] std::string_view name(CellStatistic statistic) noexcept;
-[[nodiscard]] std::string_view name(TrialStatistic statistic) noexcept;
+[[nodiscard]] std::string name(TrialStatistic statistic);
 
-/// All statistics of a dataset: (n_cells x n_cell_statistics) by trial, then sensor; then (n_trials x
-/// n_trial_statistics). NaN where the shape knows nothing. Of sums there is only CellStatistic::seconds.
+/// Besides there is one number per trial and ordered pair of sensors: the share of the second one's rows with motion in
+/// which the first one has motion too.
+///
+/// All statistics of a dataset: (n_cells x n_cell_statistics) by trial, then sensor; (n_trials x n_trial_statistics);
+/// (n_trials x n_pairs). NaN where the shape knows nothing. Of sums there is only CellStatistic::seconds.
 [[nodiscard]] std::size_t n_statistics(const StudyFrame& frame) noexcept;
 [[nodiscard]] inline std::size_t cell_index(const StudyFrame& frame, std::size_t trial, std::size_t sensor,
                                             CellStatistic statistic) noexcept {
@@ -107,6 +119,16 @@ inline constexpr std::size_t n_trial_statistics = static_cast<std::size_t>(Trial
 [[nodiscard]] inline std::size_t trial_index(const StudyFrame& frame, std::size_t trial,
                                              TrialStatistic statistic) noexcept {
   return frame.n_cells() * n_cell_statistics + trial * n_trial_statistics + static_cast<std::size_t>(statistic);
+}
+/// Ordered pairs of different sensors.
+[[nodiscard]] inline std::size_t n_pairs(const StudyFrame& frame) noexcept {
+  return frame.sensors.size() * (frame.sensors.size() - 1);
+}
+/// first != second.
+[[nodiscard]] inline std::size_t pair_index(const StudyFrame& frame, std::size_t trial, std::size_t first,
+                                            std::size_t second) noexcept {
+  return frame.n_cells() * n_cell_statistics + frame.trials.size() * n_trial_statistics + trial * n_pairs(frame) +
+         first * (frame.sensors.size() - 1) + (second < first ? second : second - 1);
 }
 
 /// Of simulated or measured series; runs that the shape doesn't have are left out.

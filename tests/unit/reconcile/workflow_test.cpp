@@ -34,7 +34,7 @@ ScriptSpec short_study() {
 
 Settings quick() {
   Settings settings;
-  settings.table = {110, 1, 110, 110, 0, {"false_triggers", "missed_triggers", "pulse_stretching"}};
+  settings.table = {110, 110, 110, 0, {"false_triggers", "missed_triggers", "pulse_stretching"}};
   settings.trees = 60;
   settings.verify_worlds = 20;
   return settings;
@@ -106,7 +106,7 @@ TEST_CASE("effects on a remembered world give what a study with them gives", "[r
 TEST_CASE("a table goes on where it was interrupted and refuses another study's chunks", "[reconcile]") {
   const Laboratory& lab = laboratory();
   const TemporaryFolder folder;
-  const TableSettings settings{30, 1, 30, 30, 0, {"false_triggers"}};
+  const TableSettings settings{30, 30, 30, 0, {"false_triggers"}};
   const auto make = [&](const WorldSource& source) {
     return make_reference_table(source, lab.frame, lab.shape, lab.table.profile, settings, folder.path() / "t");
   };
