@@ -209,8 +209,8 @@ void add_selftest_options(CLI::App& command, SelftestOptions& options) {
   command.add_option("--aliens", options.aliens, "of every fault that no catalogue has (default: 0)")->option_text("N");
   command.add_option("--leave-out", options.leave_out, "none, or each: judge by catalogues that lack the effect, too")
       ->option_text("HOW")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, LeaveOut>{{"none", LeaveOut::none}, {"each", LeaveOut::each}}));
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, LeaveOut>{{"none", LeaveOut::none}, {"each", LeaveOut::each}}));
 }
 
 void add_seal_options(CLI::App& command, SealOptions& options) {

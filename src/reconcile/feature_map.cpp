@@ -236,9 +236,7 @@ void FeatureMap::write_trials(const Scaled& data, Writer& out) const {
       count += 1.0;
     }
     if (count == 0.0) continue;
-    const auto label = [&](const char* which) {
-      return which + name(static_cast<TrialStatistic>(k));
-    };
+    const auto label = [&](const char* which) { return which + name(static_cast<TrialStatistic>(k)); };
     out.add(sum / count, [&] { return label("mean "); });
     out.add(std::sqrt(squares / count), [&] { return label("size of "); });
   }

@@ -42,7 +42,8 @@ Training training_of(const ReferenceTable& table, const FeatureMap& map, std::si
   data.parameters = stats::Matrix<double>(data.rows.size(), infos.size());
   for (std::size_t i = 0; i < data.rows.size(); ++i) {
     for (std::size_t p = 0; p < infos.size(); ++p) {
-      data.parameters(i, p) = to_flat(*infos[p], table.rows[data.rows[i]].effects.front().parameters.at(infos[p]->name));
+      data.parameters(i, p) =
+          to_flat(*infos[p], table.rows[data.rows[i]].effects.front().parameters.at(infos[p]->name));
     }
   }
   return data;

@@ -56,8 +56,8 @@ Namer::Namer(const ReferenceTable& table, const FeatureMap& map, const NamerSett
   conformal.shapes.threads = settings.threads;
   conformal.blocks = map.blocks();
   conformal.threads = settings.threads;
-  classifier_ = stats::ConformalClassifier::fit(features, data.labels, static_cast<int>(entries_.size()), data.split,
-                                                conformal);
+  classifier_ =
+      stats::ConformalClassifier::fit(features, data.labels, static_cast<int>(entries_.size()), data.split, conformal);
   std::vector<int> labels;
   for (const std::size_t row : data.split.calibration) labels.push_back(data.labels[row]);
   reliability_ = stats::reliability(classifier_.calibration_probabilities(), labels);

@@ -1,12 +1,12 @@
-#include "reconcile/planting.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "pirsim/core/digest.hpp"
 #include "pirsim/effects/catalogue.hpp"
+#include "pirsim/reconcile/selftest.hpp"
 #include "reconcile/aliens.hpp"
+#include "reconcile/table_store.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -49,7 +49,8 @@ void push_beyond(const effects::Effect& effect, EffectSpec& spec) {
   const effects::ParameterInfo& first = effect.info.parameters.front();
   double& value = spec.parameters.at(first.name);
   const double end = value >= first.off ? first.high : first.low;
-  const double natural = first.scale == effects::Scale::logarithmic ? first.high * beyond : first.off + beyond * (end - first.off);
+  const double natural =
+      first.scale == effects::Scale::logarithmic ? first.high * beyond : first.off + beyond * (end - first.off);
   value = std::clamp(first.scale == effects::Scale::whole ? std::round(natural) : natural, first.least, first.most);
 }
 
@@ -93,8 +94,8 @@ class PlantingJob {
   PlantingJob(const Laboratory& lab, const SelftestSettings& settings)
       : lab_(lab), settings_(settings), plans_(plans_of(lab, settings)), wide_source_(lab.source) {
     NuisanceSpec& wide = wide_source_.nuisance;
-    for (double* width : {&wide.seat_position_m, &wide.sensor_yaw_deg, &wide.sensor_tilt_deg, &wide.body_size,
-                          &wide.arm_amplitude}) {
+    for (double* width :
+         {&wide.seat_position_m, &wide.sensor_yaw_deg, &wide.sensor_tilt_deg, &wide.body_size, &wide.arm_amplitude}) {
       *width *= beyond;
     }
   }
@@ -147,9 +148,9 @@ class PlantingJob {
 
 std::string key_of(const Laboratory& lab, const SelftestSettings& settings) {
   std::string text = "planted in " + lab.key;
-  for (const std::uint64_t n : {std::uint64_t{settings.n_nulls}, std::uint64_t{settings.n_planted},
-                                std::uint64_t{settings.n_beyond}, std::uint64_t{settings.n_pairs},
-                                std::uint64_t{settings.n_aliens}, settings.analysis.seed}) {
+  for (const std::uint64_t n :
+       {std::uint64_t{settings.n_nulls}, std::uint64_t{settings.n_planted}, std::uint64_t{settings.n_beyond},
+        std::uint64_t{settings.n_pairs}, std::uint64_t{settings.n_aliens}, settings.analysis.seed}) {
     text += ' ' + std::to_string(n);
   }
   return sha256(text);
@@ -163,21 +164,26 @@ std::string Planted::truth() const {
   return text.empty() ? "nothing" : text;
 }
 
-std::vector<Planted> plant(const Laboratory& lab, const SelftestSettings& settings, const TableProgress& progress) {
+std::vector<Planted> plant(const Laboratory& lab, const SelftestSettings& settings, const Observer& observer) {
+  if (observer.stage) observer.stage("planted datasets");
   const PlantingJob job(lab, settings);
   const TableStore store(settings.planted_folder, key_of(lab, settings));
   std::vector<Planted> planted;
   stats::Matrix<float> statistics;
-  for_each_chunk(store, static_cast<std::uint32_t>(job.plans().size()), settings.analysis.threads,
-                 [&](std::uint32_t index) { return job.run(index); }, progress, [&](TableChunk& chunk) {
-                   append_statistics(lab.frame, lab.shape, lab.table.profile, chunk, settings.analysis.threads,
-                                     statistics);
-                   for (SimulatedDataset& dataset : chunk.datasets) {
-                     const Plan& plan = job.plans()[dataset.row.entry];
-                     planted.push_back({plan.kind, plan.strength, plan.alien == nullptr ? "" : plan.alien->name,
-                                        std::move(dataset.row.effects), {}});
-                   }
-                 });
+  for_each_chunk(
+      store, static_cast<std::uint32_t>(job.plans().size()), settings.analysis.threads,
+      [&](std::uint32_t index) { return job.run(index); }, {observer.progress},
+      [&](TableChunk& chunk) {
+        append_statistics(lab.frame, lab.shape, lab.table.profile, chunk, settings.analysis.threads, statistics);
+        for (SimulatedDataset& dataset : chunk.datasets) {
+          const Plan& plan = job.plans()[dataset.row.entry];
+          planted.push_back({plan.kind,
+                             plan.strength,
+                             plan.alien == nullptr ? "" : plan.alien->name,
+                             std::move(dataset.row.effects),
+                             {}});
+        }
+      });
   for (std::size_t i = 0; i < planted.size(); ++i) {
     const auto row = std::as_const(statistics).row(i);
     planted[i].statistics.assign(row.begin(), row.end());

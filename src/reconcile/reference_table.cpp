@@ -79,12 +79,13 @@ ReferenceTable make_reference_table(const WorldSource& source, const StudyFrame&
   table.effects = settings.entries;
   table.profile = profile;
   table.n_worlds = settings.n_worlds;
-  for_each_chunk(store, settings.n_worlds, settings.threads, [&](std::uint32_t index) { return job.run(index); },
-                 progress, [&](TableChunk& chunk) {
-                   append_statistics(frame, shape, profile, chunk, settings.threads, table.statistics);
-                   for (SimulatedDataset& dataset : chunk.datasets) table.rows.push_back(std::move(dataset.row));
-                   table.n_left_out += chunk.n_left_out;
-                 });
+  for_each_chunk(
+      store, settings.n_worlds, settings.threads, [&](std::uint32_t index) { return job.run(index); }, progress,
+      [&](TableChunk& chunk) {
+        append_statistics(frame, shape, profile, chunk, settings.threads, table.statistics);
+        for (SimulatedDataset& dataset : chunk.datasets) table.rows.push_back(std::move(dataset.row));
+        table.n_left_out += chunk.n_left_out;
+      });
   return table;
 }
 

@@ -6,7 +6,6 @@
 #include "pirsim/core/parallel.hpp"
 #include "pirsim/effects/catalogue.hpp"
 #include "pirsim/reconcile/analyst.hpp"
-#include "reconcile/planting.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -184,6 +183,38 @@ std::string_view name(Strength strength) noexcept {
   return names[static_cast<std::size_t>(strength)];
 }
 
+SelftestResult judge(const Laboratory& lab, const std::vector<Planted>& planted, const SelftestSettings& settings,
+                     const Observer& observer) {
+  const auto begin = [&](const char* stage) {
+    if (observer.stage) observer.stage(stage);
+  };
+  const Settings& analysis = settings.analysis;
+  const auto analyst_without = [&](const std::string& effect) {
+    return Analyst(lab.frame, lab.knowledge, lab.table, all_trials(lab.frame),
+                   {analysis.alpha, analysis.seed, analysis.threads, analysis.trees, effect});
+  };
+  SelftestResult result;
+  for (std::size_t entry = 0; entry < lab.table.n_entries(); ++entry)
+    result.entries.push_back(lab.table.entry_name(entry));
+  begin("judging");
+  std::vector<const Planted*> all;
+  for (const Planted& one : planted) all.push_back(&one);
+  judge_all(lab, analyst_without(""), all, {}, analysis.threads, result.cases);
+  result.reliability = reliability_of(result);
+  if (settings.leave_out == LeaveOut::none) return result;
+  begin("judging by catalogues that lack the effect");
+  std::uint32_t done = 0;
+  for (const std::string& effect : lab.table.effects) {
+    std::vector<const Planted*> own;
+    for (const Planted& one : planted) {
+      if (one.kind == CaseKind::one && one.effects.front().name == effect) own.push_back(&one);
+    }
+    judge_all(lab, analyst_without(effect), own, CaseKind::left_out, analysis.threads, result.cases);
+    if (observer.progress) observer.progress(++done, static_cast<std::uint32_t>(lab.table.effects.size()));
+  }
+  return result;
+}
+
 SelftestResult selftest(const SceneSpec& scene, const ScriptSpec& script, const SelftestSettings& settings,
                         const Observer& observer) {
   const Laboratory lab = make_laboratory(
@@ -192,40 +223,7 @@ SelftestResult selftest(const SceneSpec& scene, const ScriptSpec& script, const 
         return full_shape(frame, settings.kind, settings.n_replicates, pilot);
       },
       observer);
-  const auto begin = [&](const char* stage) {
-    if (observer.stage) observer.stage(stage);
-  };
-  begin("planted datasets");
-  const std::vector<Planted> planted = plant(lab, settings, {observer.progress});
-  begin("training");
-  const Settings& analysis = settings.analysis;
-  AnalystSettings of_analyst{analysis.alpha, analysis.seed, analysis.threads, analysis.trees, {}};
-  SelftestResult result;
-  for (std::size_t entry = 0; entry < lab.table.n_entries(); ++entry)
-    result.entries.push_back(lab.table.entry_name(entry));
-  {
-    const Analyst analyst(lab.frame, lab.knowledge, lab.table, all_trials(lab.frame), of_analyst);
-    begin("judging");
-    std::vector<const Planted*> all;
-    for (const Planted& one : planted) all.push_back(&one);
-    judge_all(lab, analyst, all, {}, analysis.threads, result.cases);
-  }
-  if (settings.leave_out == LeaveOut::each) {
-    begin("judging by catalogues that lack the effect");
-    std::uint32_t done = 0;
-    for (const std::string& effect : lab.table.effects) {
-      std::vector<const Planted*> own;
-      for (const Planted& one : planted) {
-        if (one.kind == CaseKind::one && one.effects.front().name == effect) own.push_back(&one);
-      }
-      of_analyst.left_out = effect;
-      const Analyst analyst(lab.frame, lab.knowledge, lab.table, all_trials(lab.frame), of_analyst);
-      judge_all(lab, analyst, own, CaseKind::left_out, analysis.threads, result.cases);
-      if (observer.progress) observer.progress(++done, static_cast<std::uint32_t>(lab.table.effects.size()));
-    }
-  }
-  result.reliability = reliability_of(result);
-  return result;
+  return judge(lab, plant(lab, settings, observer), settings, observer);
 }
 
 std::vector<Rate> rates_of(const SelftestResult& result) {

@@ -22,8 +22,8 @@ std::string to_markdown(const SelftestResult& result) {
   std::ostringstream out;
   out << "| how often | share (95 % interval) |\n|---|---|\n";
   for (const Rate& rate : rates_of(result)) out << "| " << rate.what << " | " << share(rate) << " |\n";
-  out << "| calibration error of the probabilities | " << std::fixed << std::setprecision(3) << result.reliability.expected_calibration_error
-      << " |\n\n| effect |";
+  out << "| calibration error of the probabilities | " << std::fixed << std::setprecision(3)
+      << result.reliability.expected_calibration_error << " |\n\n| effect |";
   for (const char* strength : {"weak", "medium", "strong"}) out << ' ' << strength << ": seen | and in the set |";
   out << "\n|---|---|---|---|---|---|---|\n";
   for (std::size_t entry = 1; entry < result.entries.size(); ++entry) {
@@ -62,8 +62,9 @@ std::string to_csv(const SelftestResult& result) {
       }
       for (const auto& [choice, value] : effect.choices) hidden += " " + choice + "=" + value;
     }
-    out << name(c.kind) << ',' << c.truth << ',' << name(c.strength) << ',' << name(c.verdict) << ',' << named << ',' << c.likeliest << ','
-        << io::csv_number(c.p) << ',' << c.n_parameters << ',' << c.n_covered << ',' << io::csv_field(hidden) << '\n';
+    out << name(c.kind) << ',' << c.truth << ',' << name(c.strength) << ',' << name(c.verdict) << ',' << named << ','
+        << c.likeliest << ',' << io::csv_number(c.p) << ',' << c.n_parameters << ',' << c.n_covered << ','
+        << io::csv_field(hidden) << '\n';
   }
   return out.str();
 }

@@ -13,7 +13,8 @@ constexpr float nothing_known = std::numeric_limits<float>::quiet_NaN();
 constexpr double busy_share = 0.12;  ///< of the rows
 
 constexpr std::array<std::string_view, n_cell_statistics> cell_names{
-    "seconds",       "busy_seconds",  "silent_seconds", "half_difference",   "sixth_1", "sixth_2", "sixth_3", "sixth_4", "sixth_5", "sixth_6", "onsets",        "longest_run",
+    "seconds",       "busy_seconds",  "silent_seconds", "half_difference",   "sixth_1",       "sixth_2",
+    "sixth_3",       "sixth_4",       "sixth_5",        "sixth_6",           "onsets",        "longest_run",
     "isolated",      "single_gaps",   "double_gaps",    "again_after_1",     "again_after_2", "again_after_3",
     "again_after_4", "again_after_6", "longest_gap",    "dispersion",        "period_power",  "cycle_strength",
     "agreement",     "lead_seconds",  "tail_seconds",   "late_tail_seconds", "run_variance"};

@@ -77,9 +77,9 @@ EnvelopeReference::Column EnvelopeReference::insert(std::size_t entry, double ob
   const auto special = [&](std::size_t i) {
     const std::size_t shift = i < lower ? 0 : 1;
     const auto tied = std::ranges::equal_range(sorted, sorted[i]);
-    return Column::Special{sorted[i], detail::shared_rank(rank_, all, n,
-                                                          static_cast<std::size_t>(tied.begin() - sorted.begin()) + shift,
-                                                          static_cast<std::size_t>(tied.end() - sorted.begin()) + shift)};
+    return Column::Special{
+        sorted[i], detail::shared_rank(rank_, all, n, static_cast<std::size_t>(tied.begin() - sorted.begin()) + shift,
+                                       static_cast<std::size_t>(tied.end() - sorted.begin()) + shift)};
   };
   if (lower > 0) {
     column.first = special(0);
@@ -111,7 +111,8 @@ double EnvelopeReference::p(std::span<const double> observed) const {
   std::vector<double> ranks(observed.size());
   for (std::size_t r = 0; r < simulated_.rows(); ++r) {
     double smallest = top;
-    for (std::size_t c = 0; c < observed.size() && smallest >= own[0]; ++c) smallest = std::min(smallest, rank_of(r, c));
+    for (std::size_t c = 0; c < observed.size() && smallest >= own[0]; ++c)
+      smallest = std::min(smallest, rank_of(r, c));
     if (smallest > own[0]) continue;
     if (smallest == own[0]) {
       for (std::size_t c = 0; c < observed.size(); ++c) ranks[c] = rank_of(r, c);

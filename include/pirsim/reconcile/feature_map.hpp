@@ -34,7 +34,8 @@ class FeatureMap {
   /// What the global test looks at: first the cells' seconds, by trial, then sensor; then the sensors' means and the
   /// means and sizes over all cells.
   [[nodiscard]] const std::vector<std::size_t>& envelope_columns() const noexcept { return envelope_columns_; }
-  /// Columns of one kind each: cells, sensors, trials, pairs of sensors, contrasts over all cells, likeness to permuted rooms.
+  /// Columns of one kind each: cells, sensors, trials, pairs of sensors, contrasts over all cells, likeness to permuted
+  /// rooms.
   [[nodiscard]] const std::vector<std::vector<std::size_t>>& blocks() const noexcept { return blocks_; }
   [[nodiscard]] std::vector<float> features(std::span<const float> statistics) const;
   [[nodiscard]] stats::Matrix<float> features(const stats::Matrix<float>& statistics, unsigned threads = 0) const;

@@ -22,8 +22,8 @@ struct Provenance {
 /// The script with the named effects added, which plain `pirsim` runs.
 [[nodiscard]] ScriptSpec patched(const ScriptSpec& script, const Outcome& outcome);
 
-/// report.json, report.html, where.csv, candidates.csv, script_patched.yaml (if an effect was named) and trail.log, each complete
-/// or not at all; the folder is made. Throws Error(io).
+/// report.json, report.html, where.csv, candidates.csv, script_patched.yaml (if an effect was named) and trail.log,
+/// each complete or not at all; the folder is made. Throws Error(io).
 void write_outputs(const std::filesystem::path& folder, const Outcome& outcome, const Measured& measured,
                    const ScriptSpec& script, const Settings& settings, const Provenance& provenance);
 

@@ -71,5 +71,4 @@ struct TableProgress {
 [[nodiscard]] std::string table_key(const WorldSource& source, const StudyFrame& frame, int n_replicates,
                                     const TableSettings& settings);
 
-
 }  // namespace pirsim::reconcile

@@ -21,12 +21,12 @@ enum class LeaveOut {
 struct SelftestSettings {
   Settings analysis;
   Measured::Kind kind = Measured::Kind::series;
-  int n_replicates = 1;                  ///< runs of every trial in a planted dataset
-  std::uint32_t n_nulls = 60;            ///< datasets with nothing hidden
-  std::uint32_t n_planted = 10;          ///< datasets of every effect and strength
-  std::uint32_t n_beyond = 0;            ///< of every effect, stronger than its prior, in rooms wider than theirs
-  std::uint32_t n_pairs = 0;             ///< datasets with two effects
-  std::uint32_t n_aliens = 0;            ///< of every alien
+  int n_replicates = 1;          ///< runs of every trial in a planted dataset
+  std::uint32_t n_nulls = 60;    ///< datasets with nothing hidden
+  std::uint32_t n_planted = 10;  ///< datasets of every effect and strength
+  std::uint32_t n_beyond = 0;    ///< of every effect, stronger than its prior, in rooms wider than theirs
+  std::uint32_t n_pairs = 0;     ///< datasets with two effects
+  std::uint32_t n_aliens = 0;    ///< of every alien
   LeaveOut leave_out = LeaveOut::none;
   std::filesystem::path planted_folder = {};  ///< keeps finished datasets; empty: none
 };
@@ -43,6 +43,17 @@ enum class CaseKind {
 enum class Strength { none, weak, medium, strong, beyond };  ///< thirds of the prior, by distance from off
 [[nodiscard]] std::string_view name(CaseKind kind) noexcept;
 [[nodiscard]] std::string_view name(Strength strength) noexcept;
+
+/// A dataset in which something is hidden, made to see whether it is found.
+struct Planted {
+  CaseKind kind = CaseKind::nothing;
+  Strength strength = Strength::none;
+  std::string alien;                ///< name; empty without one
+  std::vector<EffectSpec> effects;  ///< as drawn
+  std::vector<float> statistics;    ///< (n_statistics)
+
+  [[nodiscard]] std::string truth() const;  ///< effects and alien in words; "nothing"
+};
 
 /// One dataset and what became of it.
 struct PlantedCase {
@@ -77,6 +88,13 @@ struct SelftestResult {
   stats::Reliability reliability;    ///< of the probabilities, over the cases of the kind `one`
 };
 
+/// What the settings ask for, in worlds that no table has seen; those in which people can't get about are missing.
+[[nodiscard]] std::vector<Planted> plant(const Laboratory& lab, const SelftestSettings& settings,
+                                         const Observer& observer = {});
+/// What a laboratory's table says of them.
+[[nodiscard]] SelftestResult judge(const Laboratory& lab, const std::vector<Planted>& planted,
+                                   const SelftestSettings& settings, const Observer& observer = {});
+/// Both, with a laboratory for full data of the settings' kind.
 [[nodiscard]] SelftestResult selftest(const SceneSpec& scene, const ScriptSpec& script,
                                       const SelftestSettings& settings, const Observer& observer = {});
 

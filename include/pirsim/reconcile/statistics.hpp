@@ -59,12 +59,12 @@ enum class CellStatistic : std::uint8_t {
   sixth_4,
   sixth_5,
   sixth_6,
-  onsets,           ///< motion after none
-  longest_run,      ///< rows with motion in a row
-  isolated,         ///< single rows with motion
-  single_gaps,      ///< single rows without
-  double_gaps,      ///< two rows without
-  again_after_1,    ///< share of the rows with motion that are followed by motion so many rows later
+  onsets,         ///< motion after none
+  longest_run,    ///< rows with motion in a row
+  isolated,       ///< single rows with motion
+  single_gaps,    ///< single rows without
+  double_gaps,    ///< two rows without
+  again_after_1,  ///< share of the rows with motion that are followed by motion so many rows later
   again_after_2,
   again_after_3,
   again_after_4,

@@ -28,8 +28,8 @@ struct Split {
 [[nodiscard]] Split split_by_class(std::span<const int> labels, double calibration_share, std::uint64_t seed);
 
 struct ConformalSettings {
-  ExtraTreesSettings trees;  ///< grown on the features and the discriminant's coordinates. Ref: [Pudlo2016]
-  ClassShapesSettings shapes;
+  ExtraTreesSettings trees = {};  ///< grown on the features and the discriminant's coordinates. Ref: [Pudlo2016]
+  ClassShapesSettings shapes = {};
   /// Columns whose shapes are looked at together, each block by itself: {} or all columns as one. A block of sums over
   /// many cells sees a small change that all cells share, which drowns among the cells themselves.
   std::vector<std::vector<std::size_t>> blocks = {};

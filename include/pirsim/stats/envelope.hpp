@@ -44,8 +44,8 @@ struct GlobalEnvelope {
 [[nodiscard]] GlobalEnvelope global_envelope_test(std::span<const double> observed, const Matrix<double>& simulated,
                                                   const EnvelopeSettings& settings = {});
 
-/// The p of global_envelope_test() for many observed rows and one set of simulated ones: two-sided, without random ties.
-/// What doesn't depend on the observed row is done once; a row then costs one pass over the table.
+/// The p of global_envelope_test() for many observed rows and one set of simulated ones: two-sided, without random
+/// ties. What doesn't depend on the observed row is done once; a row then costs one pass over the table.
 class EnvelopeReference {
  public:
   /// simulated: (n_simulated x n_entries), finite, two rows or more. Throws Error(usage) otherwise.

@@ -105,6 +105,30 @@ TEST_CASE("motion that comes late shows at its lag", "[statistics]") {
   CHECK(of(statistics(expected, expected), CellStatistic::agreement) == Approx(1.0));
 }
 
+TEST_CASE("motion is told by the sixth and the eighteenth of the time in which it is", "[statistics]") {
+  const auto s = statistics("110000000000000100", "000000000000000000");
+  CHECK(of(s, CellStatistic::sixth_1) == 2.0F);
+  CHECK(of(s, CellStatistic::sixth_2) == 0.0F);
+  CHECK(of(s, CellStatistic::sixth_6) == 1.0F);
+  const auto slice = [&](std::size_t n) { return s[trial_index(frame, 0, TrialStatistic::slice_1) + n - 1]; };
+  CHECK(slice(1) == 1.0F);
+  CHECK(slice(2) == 1.0F);
+  CHECK(slice(3) == 0.0F);
+  CHECK(slice(16) == 1.0F);
+  CHECK(name(TrialStatistic::slice_18) == "slice_18");
+}
+
+TEST_CASE("a sensor that repeats another shows in the pair and not the other way round", "[statistics]") {
+  const StudyFrame two{{"S1"}, {"A", "B"}, {}, 1.0};
+  // A moves in rows 0 to 3, B in rows 0 and 1 of eight.
+  const std::vector<Series> runs{{0, 1, 0, 8, {1, 1, 1, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0}}};
+  const auto s =
+      statistics_of(two, full_shape(two, Measured::Kind::series, 1, runs), profile_of(two, one_trial(), runs), runs);
+  CHECK(s[pair_index(two, 0, 0, 1)] == Approx((2.0 + 0.5) / (2.0 + 1.0)));   // A while B moves
+  CHECK(s[pair_index(two, 0, 1, 0)] == Approx((2.0 + 0.25) / (4.0 + 1.0)));  // B while A moves
+  CHECK(pair_index(two, 0, 1, 0) + 1 == n_statistics(two));
+}
+
 TEST_CASE("sums give seconds and nothing else", "[statistics]") {
   Measured measured;
   measured.kind = Measured::Kind::sums;

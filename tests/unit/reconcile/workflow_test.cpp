@@ -34,7 +34,7 @@ ScriptSpec short_study() {
 
 Settings quick() {
   Settings settings;
-  settings.table = {110, 110, 110, 0, {"false_triggers", "missed_triggers", "pulse_stretching"}};
+  settings.table = {250, 250, 250, 0, {"false_triggers", "missed_triggers", "pulse_stretching"}};
   settings.trees = 60;
   settings.verify_worlds = 20;
   return settings;
@@ -121,7 +121,7 @@ TEST_CASE("a table goes on where it was interrupted and refuses another study's 
   CHECK(first.rows.size() == 60);
   WorldSource other = lab.source;
   other.nuisance.seat_position_m = 0.05;
-  CHECK_THROWS_WITH(make(other), contains("holds the reference table of another"));
+  CHECK_THROWS_WITH(make(other), contains("holds simulated datasets of another"));
 }
 
 TEST_CASE("a planted effect is located and named and nothing is not", "[reconcile]") {

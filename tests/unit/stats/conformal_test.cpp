@@ -154,9 +154,11 @@ TEST_CASE("a small change of every column is strange where a block holds their s
   std::vector<std::size_t> cells(40);
   std::iota(cells.begin(), cells.end(), std::size_t{0});
   const auto refused = [&](std::vector<std::vector<std::size_t>> blocks) {
-    const auto classifier = ConformalClassifier::fit(table, labels, 2, split_by_class(labels, 0.4, 0), {.trees = {.trees = 20}, .blocks = blocks});
+    const auto classifier = ConformalClassifier::fit(table, labels, 2, split_by_class(labels, 0.4, 0),
+                                                     {.trees = {.trees = 20}, .blocks = blocks});
     const auto found = classifier.classify(draw_rows(200, 0.5F));
-    return std::count_if(found.begin(), found.end(), [](const auto& one) { return one.p_absolute[0] <= 0.05; }) / 200.0;
+    const auto n = std::count_if(found.begin(), found.end(), [](const auto& one) { return one.p_absolute[0] <= 0.05; });
+    return static_cast<double>(n) / 200.0;
   };
   CHECK(refused({cells, {40}}) > 0.6);
   CHECK(refused({cells}) < 0.4);
