@@ -29,7 +29,8 @@ Analyst::Analyst(const StudyFrame& frame, const std::vector<CellKnowledge>& know
       plain_(table.statistics.select_rows(rows_of(table, 0, Part::all))),
       plain_reference_(std::make_unique<stats::EnvelopeReference>(envelope_entries(map_, plain_, settings.threads))),
       namer_(std::make_unique<Namer>(
-          table, map_, NamerSettings{settings.trees, settings.seed, settings.threads, settings.left_out})) {}
+          table, map_, *plain_reference_,
+          NamerSettings{settings.alpha, settings.trees, settings.seed, settings.threads, settings.left_out})) {}
 
 FittedEffect Analyst::fit(std::size_t entry, std::span<const float> measured) const {
   return fit_from_table(table_, map_, entry, measured, {settings_.seed, settings_.threads, 0.9});

@@ -12,6 +12,10 @@ namespace pirsim::reconcile {
 namespace {
 
 /// Statistics whose means over the sensors of a trial are looked at one by one.
+constexpr auto n_told_of_cells = static_cast<std::size_t>(CellStatistic::sixth_1);
+constexpr auto n_told_of_trials = static_cast<std::size_t>(TrialStatistic::slice_1);
+constexpr std::size_t n_sixths = n_cell_statistics - n_told_of_cells;
+constexpr std::size_t n_slices = n_trial_statistics - n_told_of_trials;
 constexpr std::array told_by_trial{CellStatistic::seconds,       CellStatistic::half_difference,
                                    CellStatistic::onsets,        CellStatistic::isolated,
                                    CellStatistic::again_after_1, CellStatistic::agreement,
@@ -187,7 +191,7 @@ void FeatureMap::write_cells(const Scaled& data, Writer& out) const {
 }
 
 void FeatureMap::write_sensors(const Scaled& data, Writer& out) const {
-  for (std::size_t k = 0; k < n_cell_statistics; ++k) {
+  for (std::size_t k = 0; k < n_told_of_cells; ++k) {
     std::vector<double> means;
     for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
       double sum = 0.0, count = 0.0;
@@ -199,15 +203,12 @@ void FeatureMap::write_sensors(const Scaled& data, Writer& out) const {
       if (count == 0.0) continue;
       means.push_back(sum / count);
       out.test_next();
-      out.add(means.back(),
-              [&] { return frame_.sensors[sensor] + " " + std::string(name(static_cast<CellStatistic>(k))); });
+      out.add(means.back(), [&] { return frame_.sensors[sensor] + " " + name(static_cast<CellStatistic>(k)); });
     }
     if (std::ranges::find(told_in_order, static_cast<CellStatistic>(k)) == told_in_order.end()) continue;
     if (means.size() < 3) continue;
     std::ranges::sort(means);
-    const auto label = [&](const char* which) {
-      return std::string(which) + std::string(name(static_cast<CellStatistic>(k)));
-    };
+    const auto label = [&](const char* which) { return which + name(static_cast<CellStatistic>(k)); };
     out.add(means[means.size() - 1] - means[means.size() - 2], [&] { return label("first less second sensor: "); });
     out.add(means[1] - means[0], [&] { return label("last but one less last sensor: "); });
     out.add(means.back() - means.front(), [&] { return label("first less last sensor: "); });
@@ -223,10 +224,10 @@ void FeatureMap::write_trials(const Scaled& data, Writer& out) const {
         sum += data.values[cell_index(frame_, trial, sensor, statistic)];
         count += 1.0;
       }
-      if (count > 0.0) out.add(sum / count, [&] { return frame_.trials[trial] + " " + std::string(name(statistic)); });
+      if (count > 0.0) out.add(sum / count, [&] { return frame_.trials[trial] + " " + name(statistic); });
     }
   }
-  for (std::size_t k = 0; k < n_trial_statistics; ++k) {
+  for (std::size_t k = 0; k < n_told_of_trials; ++k) {
     double sum = 0.0, squares = 0.0, count = 0.0;
     for (const std::size_t trial : trials_) {
       const std::size_t i = trial_index(frame_, trial, static_cast<TrialStatistic>(k));
@@ -242,34 +243,76 @@ void FeatureMap::write_trials(const Scaled& data, Writer& out) const {
   }
 }
 
-void FeatureMap::write_pairs(const Scaled& data, Writer& out) const {
-  const std::size_t n = frame_.sensors.size();
-  std::vector<double> means;
-  for (std::size_t first = 0; first < n; ++first) {
-    for (std::size_t second = 0; second < n; ++second) {
-      if (first == second) continue;
-      double sum = 0.0, count = 0.0;
-      for (const std::size_t trial : trials_) {
-        const std::size_t i = pair_index(frame_, trial, first, second);
-        if (known_[i] == 0) continue;
-        sum += data.values[i];
-        count += 1.0;
-      }
-      if (count == 0.0) continue;
-      means.push_back(sum / count);
+/// Sum of a statistic over the trials; NaN if it is known in none.
+double FeatureMap::total(std::span<const float> statistics,
+                         const std::function<std::size_t(std::size_t)>& index) const {
+  double sum = 0.0, count = 0.0;
+  for (const std::size_t trial : trials_) {
+    const std::size_t i = index(trial);
+    if (known_[i] == 0 || std::isnan(statistics[i])) continue;
+    sum += static_cast<double>(statistics[i]);
+    count += 1.0;
+  }
+  return count > 0.0 ? sum : std::nan("");
+}
+
+/// How motion spreads over the time, whatever there is of it: logarithms of shares, of all sensors and of each.
+void FeatureMap::write_time(std::span<const float> statistics, Writer& out) const {
+  const auto write_shares = [&](std::size_t n, const auto& part, const std::string& whose) {
+    std::vector<double> totals;
+    for (std::size_t k = 0; k < n; ++k) totals.push_back(part(k));
+    if (std::isnan(totals.front())) return;
+    const double all = std::accumulate(totals.begin(), totals.end(), 0.0) + static_cast<double>(n);
+    for (std::size_t k = 0; k < n; ++k) {
       out.test_next();
-      out.add(means.back(), [&] { return frame_.sensors[first] + " together with " + frame_.sensors[second]; });
+      out.add(std::log((totals[k] + 1.0) / all),
+              [&] { return whose + ", part " + std::to_string(k + 1) + " of " + std::to_string(n) + " of the time"; });
+    }
+  };
+  write_shares(
+      n_slices,
+      [&](std::size_t k) {
+        return total(statistics,
+                     [&](std::size_t trial) { return trial_index(frame_, trial, TrialStatistic::slice_1) + k; });
+      },
+      "all sensors");
+  for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+    write_shares(
+        n_sixths,
+        [&](std::size_t k) {
+          return total(statistics, [&](std::size_t trial) {
+            return cell_index(frame_, trial, sensor, CellStatistic::sixth_1) + k;
+          });
+        },
+        frame_.sensors[sensor]);
+  }
+}
+
+/// How much oftener than not a sensor moves while another does: logarithms of odds over all trials.
+void FeatureMap::write_pairs(std::span<const float> statistics, Writer& out) const {
+  std::vector<double> odds;
+  for (std::size_t first = 0; first < frame_.sensors.size(); ++first) {
+    for (std::size_t second = 0; second < frame_.sensors.size(); ++second) {
+      if (first == second) continue;
+      const double alone =
+          total(statistics, [&](std::size_t trial) { return pair_index(frame_, trial, first, second); });
+      if (std::isnan(alone)) continue;
+      const double rows =
+          total(statistics,
+                [&](std::size_t trial) { return cell_index(frame_, trial, second, CellStatistic::seconds); }) /
+          frame_.window_s;
+      odds.push_back(std::log((rows - alone + 0.5) / (alone + 0.5)));
+      out.test_next();
+      out.add(odds.back(), [&] { return frame_.sensors[first] + " while " + frame_.sensors[second] + " moves"; });
     }
   }
-  if (means.size() < 2) return;
-  std::ranges::sort(means);
-  out.add(means.back(), [] { return std::string("most together"); });
-  out.add(means.back() - means[means.size() - 2], [] { return std::string("most less second most together"); });
-  out.add(means.front(), [] { return std::string("least together"); });
+  if (odds.empty()) return;
+  out.add(*std::ranges::max_element(odds), [] { return std::string("most together"); });
+  out.add(*std::ranges::min_element(odds), [] { return std::string("least together"); });
 }
 
 void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
-  for (std::size_t k = 0; k < n_cell_statistics; ++k) {
+  for (std::size_t k = 0; k < n_told_of_cells; ++k) {
     double count = 0.0, sum = 0.0, size = 0.0, greatest = -1e9, least = 1e9;
     std::vector<double> slopes(covariates_.size(), 0.0);
     for (const std::size_t trial : trials_) {
@@ -286,8 +329,8 @@ void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
       }
     }
     if (count == 0.0) continue;
-    const std::string_view statistic = name(static_cast<CellStatistic>(k));
-    const auto label = [&](std::string_view which) { return std::string(which) + " " + std::string(statistic); };
+    const std::string statistic = name(static_cast<CellStatistic>(k));
+    const auto label = [&](std::string_view which) { return std::string(which) + " " + statistic; };
     out.test_next();
     out.add(sum / count, [&] { return label("mean"); });
     out.test_next();
@@ -378,7 +421,9 @@ void FeatureMap::write_all(std::span<const float> statistics, Writer& out) const
   out.end_block();
   write_trials(data, out);
   out.end_block();
-  write_pairs(data, out);
+  write_time(statistics, out);
+  out.end_block();
+  write_pairs(statistics, out);
   out.end_block();
   write_contrasts(data, out);
   out.end_block();

@@ -86,9 +86,13 @@ std::string verdict_sentence(const Outcome& outcome, double alpha) {
              ", and no other effect of the catalogue explains the data.";
     case Verdict::one_of: {
       const std::string family = common_family(outcome.named);
-      return "The model lacks one of " + joined(outcome.named, "or") +
-             (family.empty() ? std::string() : " (all of the family " + family + ")") +
-             ", which these data can't tell apart: " + where(outcome, alpha) + ".";
+      const bool weak = outcome.nothing.p > alpha || outcome.named.size() < 2;
+      if (outcome.named.empty())
+        return "Model and measurement differ, but so little that nothing can be named: " + where(outcome, alpha) + ".";
+      return (outcome.named.size() == 1 ? "The model may lack " : "The model lacks one of ") +
+             joined(outcome.named, "or") + (family.empty() ? std::string() : " (of the family " + family + ")") +
+             (weak ? ", or nothing: the disagreement is weak" : ", which these data can't tell apart") + ": " +
+             where(outcome, alpha) + ".";
     }
     case Verdict::several:
       return "The model lacks " + joined(outcome.named, "and") + " together: " + where(outcome, alpha) + ".";

@@ -12,9 +12,9 @@ namespace {
 constexpr float nothing_known = std::numeric_limits<float>::quiet_NaN();
 constexpr double busy_share = 0.12;  ///< of the rows
 
-constexpr std::array<std::string_view, n_cell_statistics> cell_names{
-    "seconds",       "busy_seconds",  "silent_seconds", "half_difference",   "sixth_1",       "sixth_2",
-    "sixth_3",       "sixth_4",       "sixth_5",        "sixth_6",           "onsets",        "longest_run",
+constexpr auto first_sixth = static_cast<std::size_t>(CellStatistic::sixth_1);
+constexpr std::array<std::string_view, first_sixth> cell_names{
+    "seconds",       "busy_seconds",  "silent_seconds", "half_difference",   "onsets",        "longest_run",
     "isolated",      "single_gaps",   "double_gaps",    "again_after_1",     "again_after_2", "again_after_3",
     "again_after_4", "again_after_6", "longest_gap",    "dispersion",        "period_power",  "cycle_strength",
     "agreement",     "lead_seconds",  "tail_seconds",   "late_tail_seconds", "run_variance"};
@@ -141,7 +141,7 @@ class TrialStatistics {
       share[i % n] += 1.0 / static_cast<double>(n_rows);
       trial_[first_slice + i / n * n_slices / n_rows] += frame_.window_s;
     }
-    add_pairs(bits, share);
+    add_pairs(bits);
     add_lags(active);
     const auto with_at_least = [&](double least) {
       return static_cast<double>(std::ranges::count_if(active, [&](double a) { return a >= least; }));
@@ -158,21 +158,15 @@ class TrialStatistics {
     trial_[static_cast<std::size_t>(TrialStatistic::coactivation)] += variance / (independent + 0.01);
   }
 
-  /// Without motion of the second sensor, the share that chance would give.
-  void add_pairs(const std::vector<std::uint8_t>& bits, const std::vector<double>& share) {
-    const std::size_t n = share.size();
-    std::vector<double> both(n * n, 0.0);
+  void add_pairs(const std::vector<std::uint8_t>& bits) {
+    const std::size_t n = frame_.sensors.size();
     for (std::size_t row = 0; row < bits.size(); row += n) {
-      for (std::size_t second = 0; second < n; ++second) {
-        if (bits[row + second] != 1) continue;
-        for (std::size_t first = 0; first < n; ++first) both[first * n + second] += bits[row + first] == 1 ? 1.0 : 0.0;
-      }
-    }
-    std::size_t pair = 0;
-    for (std::size_t first = 0; first < n; ++first) {
-      for (std::size_t second = 0; second < n; ++second) {
-        if (first == second) continue;
-        pairs_[pair++] += (both[first * n + second] + share[first]) / (both[second * n + second] + 1.0);
+      std::size_t pair = 0;
+      for (std::size_t first = 0; first < n; ++first) {
+        for (std::size_t second = 0; second < n; ++second) {
+          if (first == second) continue;
+          pairs_[pair++] += bits[row + second] == 1 && bits[row + first] == 0 ? 1.0 : 0.0;
+        }
       }
     }
   }
@@ -221,7 +215,10 @@ DataShape::Run shape_of_run(const Series& run, std::size_t n_sensors) {
 
 }  // namespace
 
-std::string_view name(CellStatistic statistic) noexcept { return cell_names[static_cast<std::size_t>(statistic)]; }
+std::string name(CellStatistic statistic) {
+  const auto index = static_cast<std::size_t>(statistic);
+  return index < first_sixth ? std::string(cell_names[index]) : "sixth_" + std::to_string(index - first_sixth + 1);
+}
 std::string name(TrialStatistic statistic) {
   const auto index = static_cast<std::size_t>(statistic);
   return index < first_slice ? std::string(trial_names[index]) : "slice_" + std::to_string(index - first_slice + 1);

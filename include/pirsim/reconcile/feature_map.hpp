@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,8 +35,8 @@ class FeatureMap {
   /// What the global test looks at: first the cells' seconds, by trial, then sensor; then the sensors' means and the
   /// means and sizes over all cells.
   [[nodiscard]] const std::vector<std::size_t>& envelope_columns() const noexcept { return envelope_columns_; }
-  /// Columns of one kind each: cells, sensors, trials, pairs of sensors, contrasts over all cells, likeness to permuted
-  /// rooms.
+  /// Columns of one kind each: cells, sensors, trials, time, pairs of sensors, contrasts over all cells, likeness to
+  /// permuted rooms.
   [[nodiscard]] const std::vector<std::vector<std::size_t>>& blocks() const noexcept { return blocks_; }
   [[nodiscard]] std::vector<float> features(std::span<const float> statistics) const;
   [[nodiscard]] stats::Matrix<float> features(const stats::Matrix<float>& statistics, unsigned threads = 0) const;
@@ -49,10 +50,13 @@ class FeatureMap {
   void write_cells(const Scaled& data, Writer& out) const;
   void write_sensors(const Scaled& data, Writer& out) const;
   void write_trials(const Scaled& data, Writer& out) const;
-  void write_pairs(const Scaled& data, Writer& out) const;
+  void write_time(std::span<const float> statistics, Writer& out) const;
+  void write_pairs(std::span<const float> statistics, Writer& out) const;
   void write_contrasts(const Scaled& data, Writer& out) const;
   void write_permutations(std::span<const float> statistics, Writer& out) const;
   void write_all(std::span<const float> statistics, Writer& out) const;
+  [[nodiscard]] double total(std::span<const float> statistics,
+                             const std::function<std::size_t(std::size_t trial)>& index) const;
   [[nodiscard]] bool known(std::size_t trial, std::size_t sensor, std::size_t statistic) const;
   [[nodiscard]] double likeness(std::span<const double> values, std::span<const std::size_t> trial_order,
                                 std::span<const std::size_t> sensor_order) const;

@@ -10,6 +10,7 @@
 #include "pirsim/reconcile/reference_table.hpp"
 #include "pirsim/stats/calibration.hpp"
 #include "pirsim/stats/conformal.hpp"
+#include "pirsim/stats/envelope.hpp"
 
 namespace pirsim::reconcile {
 
@@ -23,17 +24,22 @@ struct EntryScore {
 };
 
 struct NamerSettings {
+  double alpha = 0.05;  ///< level of the global test
   std::size_t trees = 300;
   std::uint64_t seed = 0;
   unsigned threads = 0;
   std::string left_out = {};  ///< effect that is not to be a candidate; empty: none
 };
 
-/// Trained on the training worlds of a table, calibrated on the others.
+/// Trained on the training worlds of a table, calibrated on the others. Names are given only where the global test sees
+/// a disagreement, so an effect is calibrated on those of its datasets in which the test sees one: weak datasets, which
+/// look like anything, would make every effect hard to rule out.
 class Namer {
  public:
-  /// map must outlive it. Entries without enough datasets are never candidates: their p is 0.
-  Namer(const ReferenceTable& table, const FeatureMap& map, const NamerSettings& settings);
+  /// map must outlive it; plain: what the global test compares with. Entries without enough datasets are never
+  /// candidates: their p is 0.
+  Namer(const ReferenceTable& table, const FeatureMap& map, const stats::EnvelopeReference& plain,
+        const NamerSettings& settings);
 
   /// (n_entries) of a dataset's statistics; nothing first.
   [[nodiscard]] std::vector<EntryScore> judge(std::span<const float> statistics) const;

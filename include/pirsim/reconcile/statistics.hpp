@@ -53,18 +53,12 @@ enum class CellStatistic : std::uint8_t {
   busy_seconds,     ///< of them, in rows where much motion is expected: changes of posture
   silent_seconds,   ///< in rows where this sensor is expected to be silent
   half_difference,  ///< first half less second half
-  sixth_1,          ///< seconds in the first sixth of the time
-  sixth_2,
-  sixth_3,
-  sixth_4,
-  sixth_5,
-  sixth_6,
-  onsets,         ///< motion after none
-  longest_run,    ///< rows with motion in a row
-  isolated,       ///< single rows with motion
-  single_gaps,    ///< single rows without
-  double_gaps,    ///< two rows without
-  again_after_1,  ///< share of the rows with motion that are followed by motion so many rows later
+  onsets,           ///< motion after none
+  longest_run,      ///< rows with motion in a row
+  isolated,         ///< single rows with motion
+  single_gaps,      ///< single rows without
+  double_gaps,      ///< two rows without
+  again_after_1,    ///< share of the rows with motion that are followed by motion so many rows later
   again_after_2,
   again_after_3,
   again_after_4,
@@ -78,6 +72,8 @@ enum class CellStatistic : std::uint8_t {
   tail_seconds,       ///< after it
   late_tail_seconds,  ///< in the second half of that
   run_variance,       ///< of the seconds, from run to run
+  sixth_1,            ///< seconds in the first sixth of the time
+  sixth_6 = sixth_1 + 5,
   count
 };
 /// Per trial, over all sensors.
@@ -103,11 +99,11 @@ enum class TrialStatistic : std::uint8_t {
 };
 inline constexpr std::size_t n_cell_statistics = static_cast<std::size_t>(CellStatistic::count);
 inline constexpr std::size_t n_trial_statistics = static_cast<std::size_t>(TrialStatistic::count);
-[[nodiscard]] std::string_view name(CellStatistic statistic) noexcept;
+[[nodiscard]] std::string name(CellStatistic statistic);
 [[nodiscard]] std::string name(TrialStatistic statistic);
 
-/// Besides there is one number per trial and ordered pair of sensors: the share of the second one's rows with motion in
-/// which the first one has motion too.
+/// Besides there is one number per trial and ordered pair of sensors: rows in which the second one has motion and the
+/// first one has none, mean over runs.
 ///
 /// All statistics of a dataset: (n_cells x n_cell_statistics) by trial, then sensor; (n_trials x n_trial_statistics);
 /// (n_trials x n_pairs). NaN where the shape knows nothing. Of sums there is only CellStatistic::seconds.

@@ -108,7 +108,7 @@ TEST_CASE("motion that comes late shows at its lag", "[statistics]") {
 TEST_CASE("motion is told by the sixth and the eighteenth of the time in which it is", "[statistics]") {
   const auto s = statistics("110000000000000100", "000000000000000000");
   CHECK(of(s, CellStatistic::sixth_1) == 2.0F);
-  CHECK(of(s, CellStatistic::sixth_2) == 0.0F);
+  CHECK(of(s, static_cast<CellStatistic>(static_cast<int>(CellStatistic::sixth_1) + 1)) == 0.0F);
   CHECK(of(s, CellStatistic::sixth_6) == 1.0F);
   const auto slice = [&](std::size_t n) { return s[trial_index(frame, 0, TrialStatistic::slice_1) + n - 1]; };
   CHECK(slice(1) == 1.0F);
@@ -124,8 +124,8 @@ TEST_CASE("a sensor that repeats another shows in the pair and not the other way
   const std::vector<Series> runs{{0, 1, 0, 8, {1, 1, 1, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0}}};
   const auto s =
       statistics_of(two, full_shape(two, Measured::Kind::series, 1, runs), profile_of(two, one_trial(), runs), runs);
-  CHECK(s[pair_index(two, 0, 0, 1)] == Approx((2.0 + 0.5) / (2.0 + 1.0)));   // A while B moves
-  CHECK(s[pair_index(two, 0, 1, 0)] == Approx((2.0 + 0.25) / (4.0 + 1.0)));  // B while A moves
+  CHECK(s[pair_index(two, 0, 0, 1)] == 0.0F);  // B never moves without A
+  CHECK(s[pair_index(two, 0, 1, 0)] == 2.0F);
   CHECK(pair_index(two, 0, 1, 0) + 1 == n_statistics(two));
 }
 

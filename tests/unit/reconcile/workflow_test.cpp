@@ -148,7 +148,10 @@ TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile]") {
   }
   for (std::size_t i = 0; i < entries.size(); ++i) shuffled.rows[i].entry = entries[i];
   const FeatureMap& map = analyst().map();
-  const Namer honest(laboratory().table, map, {60, 1, 0}), confused(shuffled, map, {60, 1, 0});
+  const stats::EnvelopeReference plain(
+      envelope_entries(map, laboratory().table.statistics.select_rows(rows_of(laboratory().table, 0, Part::all)), 0));
+  const Namer honest(laboratory().table, map, plain, {0.05, 60, 1, 0}),
+      confused(shuffled, map, plain, {0.05, 60, 1, 0});
   double sure_of_truth = 0.0, sure_of_truth_when_confused = 0.0;  // chance is a quarter
   for (std::uint32_t i = 0; i < 10; ++i) {
     const std::vector<float> data = planted(200 + i, {many_false_triggers});
