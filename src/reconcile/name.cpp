@@ -18,8 +18,8 @@ constexpr double least_probability = 1e-6;
 /// Of several plain datasets in a world only the first trains and calibrates: the others share its room.
 std::vector<std::size_t> one_a_world(const ReferenceTable& table, std::size_t entry, Part part) {
   std::vector<std::size_t> rows = rows_of(table, entry, part);
-  const auto same = std::ranges::unique(rows, {}, [&](std::size_t row) { return table.rows[row].world; });
-  rows.erase(same.begin(), same.end());
+  const auto same_world = [&](std::size_t a, std::size_t b) { return table.rows[a].world == table.rows[b].world; };
+  rows.erase(std::unique(rows.begin(), rows.end(), same_world), rows.end());  // clang 14 lacks std::ranges::unique
   return rows;
 }
 
