@@ -84,6 +84,23 @@ class Shards(unittest.TestCase):
                 self.assertEqual((folder / "all.csv").read_bytes(), self.bytes)
                 self.assertEqual(json.loads((folder / "all.csv.json").read_text()), self.manifest)
 
+    def test_a_merged_summary_is_the_one_that_a_single_process_writes(self):
+        script = DATA / "studies" / "studyA.yaml"
+        with scratch() as folder:
+            for ending in (".csv", ".md"):
+                study("--summary", folder / f"one{ending}")
+                call([PIRSIM, "merge", self.shards, "-o", folder / "all.csv.gz", "--summary", folder / f"all{ending}",
+                      "--script", script])
+                self.assertEqual((folder / f"all{ending}").read_text(), (folder / f"one{ending}").read_text())
+            before = names(folder)
+            merge = [PIRSIM, "merge", self.shards, "-o", folder / "b.csv", "--summary", folder / "b.md"]
+            self.assertIn("--script", call(merge, 2).stderr)
+            self.assertIn("isn't the script of these", call([*merge, "--script", DATA / "studies/office.yaml"], 3).stderr)
+            self.assertIn("isn't the script of these",
+                          call([*merge, "--script", script, "--set", "sensing.rays_per_zone=9"], 3).stderr)
+            self.assertIn("are one file", call([*merge[:-1], folder / "b.csv", "--script", script], 2).stderr)
+            self.assertEqual(names(folder), before)
+
     def test_compressed_files_are_read_by_the_usual_tools(self):
         with scratch() as folder:
             for ending in ("gz", "zst"):
