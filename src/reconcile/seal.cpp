@@ -138,8 +138,10 @@ std::string_view name(Mark mark) noexcept {
 Challenge seal(const SceneSpec& scene, const ScriptSpec& script, const SealSettings& settings) {
   for (std::uint32_t attempt = 0;; ++attempt) {
     Stream stream({settings.secret_seed, 0, attempt, Purpose::sealed_answer});
+    const std::uint64_t world_seed = (std::uint64_t{stream.next_u32()} << 32U) | stream.next_u32();
     const Answer answer = draw_answer(scene, script, settings.hidden, stream);
-    World world = draw_world(scene, script, settings.nuisance, settings.secret_seed, 0, attempt);
+    // Not from the secret itself: an analysis that happens to have the same seed would simulate this very world.
+    World world = draw_world(scene, script, settings.nuisance, world_seed, 0, attempt);
     world.script.replicates = settings.n_replicates;
     world.script.effects.insert(world.script.effects.end(), answer.effects.begin(), answer.effects.end());
     try {
