@@ -45,7 +45,8 @@ Answer draw_answer(const SceneSpec& scene, const ScriptSpec& script, Hidden want
   const std::size_t n = answer.kind == Hidden::one ? 1 : answer.kind == Hidden::two ? 2 : 0;
   while (answer.effects.size() < n) {
     const effects::Effect& effect = *catalogue[stream.index(static_cast<std::uint32_t>(catalogue.size()))];
-    if (n == 2 && !answer.effects.empty() && answer.effects.front().name == effect.info.name) continue;
+    const auto is_it = [&](const EffectSpec& there) { return there.name == effect.info.name; };
+    if (std::ranges::any_of(answer.effects, is_it) || std::ranges::any_of(script.effects, is_it)) continue;
     answer.effects.push_back(effects::draw_from_prior(effect, scene, script, stream));
   }
   return answer;

@@ -29,6 +29,8 @@ people:
       - enter: door
       - sit: ${seat}
       - work: {duration_s: 16, arm_amplitude_m: 0.1, arm_period_s: 3, tilt_choices_deg: [-15, 0, 15], tilt_every_s: 8}
+effects:
+  - sensor_tilt: {tilt_deg: 1}  # known already: neither hidden nor looked for
 """
 SMALLEST = 0.05  # of the budget
 
