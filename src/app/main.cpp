@@ -169,6 +169,16 @@ void add_campaign_options(CLI::App& command, CampaignOptions& options) {
       "-q,--quiet", [&] { options.verbosity = Verbosity::quiet; }, "errors only");
 }
 
+void add_merge_options(CLI::App& command, CampaignOptions& options) {
+  command.add_option("-o,--output", options.output, "rows, .csv, .csv.gz or .csv.zst")->option_text("FILE");
+  command.add_option("--summary", options.summary, "table of sums per trial and sensor, .csv or .md; needs --script")
+      ->option_text("FILE");
+  command.add_option("--script", options.script, "that of the shards, for the summary")->option_text("FILE");
+  command.add_option("--set", options.overrides, "as for the shards")
+      ->option_text("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
 void add_reconcile_options(CLI::App& command, ReconcileOptions& options) {
   command.add_option("--measured", options.measured, "rows or sums from the real room, CSV")->option_text("FILE");
   command.add_option("-o,--out", options.output, "folder for report and patched script (default: reconcile)")
@@ -296,8 +306,7 @@ int run_command_line(int argc, char** argv) {
   add_campaign_options(*status_command, campaign_options);
   CLI::App* merge_command = app.add_subcommand("merge", "shards to one file, the same as of one process");
   add_campaign_options(*merge_command, campaign_options);
-  merge_command->add_option("-o,--output", campaign_options.output, "rows, .csv, .csv.gz or .csv.zst")
-      ->option_text("FILE");
+  add_merge_options(*merge_command, campaign_options);
 
   CLI::App* reconcile_command =
       app.add_subcommand("reconcile", "where model and measurement disagree, and which effect is missing");

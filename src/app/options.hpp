@@ -67,8 +67,11 @@ struct PlacementOptions {
 };
 
 struct CampaignOptions {
-  std::filesystem::path folder;  ///< with shards
-  std::filesystem::path output;  ///< of merge
+  std::filesystem::path folder;        ///< with shards
+  std::filesystem::path output;        ///< of merge
+  std::filesystem::path summary;       ///< of merge
+  std::filesystem::path script;        ///< for the summary
+  std::vector<std::string> overrides;  ///< of the script
   Verbosity verbosity = Verbosity::normal;
 };
 

@@ -10,10 +10,10 @@
 #include "app/row_output.hpp"
 #include "app/session.hpp"
 #include "app/stop_request.hpp"
+#include "app/summary_output.hpp"
 #include "pirsim/effects/catalogue.hpp"
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/compression.hpp"
-#include "pirsim/io/csv_reader.hpp"
 #include "pirsim/io/csv_writer.hpp"
 #include "pirsim/io/manifest.hpp"
 #include "pirsim/io/script_reader.hpp"
@@ -38,24 +38,11 @@ std::vector<std::size_t> first_zones(const Model& model) {
   return begins;
 }
 
-void write_summary(const studies::Summary& summary, io::AtomicFile& file, const RunOptions& options,
-                   const std::string& title, Verbosity verbosity) {
-  const bool is_document = options.summary.extension() == ".md";
-  if (is_document) file.stream() << "# " << title << ": seconds with motion\n\n";
-  file.stream() << (is_document ? studies::to_markdown(summary) : studies::to_csv(summary));
-  file.commit();
-  if (verbosity != Verbosity::quiet) std::cerr << studies::to_text(summary);
-}
-
 studies::Summary make_summary(const Model& model, const RunOptions& options) {
   std::vector<std::string> trials;
   for (const TrialModel& trial : model.trials()) trials.push_back(trial.id);
-  const SummarySpec& spec = model.script().summary;
-  std::vector<MeasuredCell> measured;
   const bool compared = !options.summary.empty() || !options.report.empty();
-  if (compared && !spec.reference_file.empty()) {
-    measured = io::read_measured_cells(std::filesystem::path(model.script().directory) / spec.reference_file);
-  }
+  const std::vector<MeasuredCell> measured = compared ? measured_cells(model.script()) : std::vector<MeasuredCell>{};
   return {trials, sensor_ids(model), measured};
 }
 
@@ -143,7 +130,8 @@ class WholeStudyOutputs {
   void commit() {
     if (zones_) zones_->commit();
     if (trace_) trace_->commit();
-    if (summary_file_) write_summary(summary_, *summary_file_, options_, model_.script().name, inputs_.verbosity);
+    if (summary_file_)
+      write_summary(summary_, *summary_file_, options_.summary, model_.script().name, inputs_.verbosity);
     if (report_file_) write_page(*report_file_, report_.finish(summary_), inputs_);
   }
 

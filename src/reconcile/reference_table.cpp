@@ -73,6 +73,10 @@ ReferenceTable make_reference_table(const WorldSource& source, const StudyFrame&
   if (settings.entries.empty()) {
     for (const effects::Effect* effect : effects::catalogue()) settings.entries.push_back(effect->info.name);
   }
+  // What the script has is not looked for a second time: two of a kind on one sensor are refused.
+  std::erase_if(settings.entries, [&](const std::string& entry) {
+    return std::ranges::find(source.script.effects, entry, &EffectSpec::name) != source.script.effects.end();
+  });
   const TableStore store(folder, table_key(source, frame, shape.n_replicates, settings));
   const WorldJob job(source, frame, shape.n_replicates, settings);
   ReferenceTable table;

@@ -45,7 +45,8 @@ Answer draw_answer(const SceneSpec& scene, const ScriptSpec& script, Hidden want
   const std::size_t n = answer.kind == Hidden::one ? 1 : answer.kind == Hidden::two ? 2 : 0;
   while (answer.effects.size() < n) {
     const effects::Effect& effect = *catalogue[stream.index(static_cast<std::uint32_t>(catalogue.size()))];
-    if (n == 2 && !answer.effects.empty() && answer.effects.front().name == effect.info.name) continue;
+    const auto is_it = [&](const EffectSpec& there) { return there.name == effect.info.name; };
+    if (std::ranges::any_of(answer.effects, is_it) || std::ranges::any_of(script.effects, is_it)) continue;
     answer.effects.push_back(effects::draw_from_prior(effect, scene, script, stream));
   }
   return answer;
@@ -138,8 +139,10 @@ std::string_view name(Mark mark) noexcept {
 Challenge seal(const SceneSpec& scene, const ScriptSpec& script, const SealSettings& settings) {
   for (std::uint32_t attempt = 0;; ++attempt) {
     Stream stream({settings.secret_seed, 0, attempt, Purpose::sealed_answer});
+    const std::uint64_t world_seed = (std::uint64_t{stream.next_u32()} << 32U) | stream.next_u32();
     const Answer answer = draw_answer(scene, script, settings.hidden, stream);
-    World world = draw_world(scene, script, settings.nuisance, settings.secret_seed, 0, attempt);
+    // Not from the secret itself: an analysis that happens to have the same seed would simulate this very world.
+    World world = draw_world(scene, script, settings.nuisance, world_seed, 0, attempt);
     world.script.replicates = settings.n_replicates;
     world.script.effects.insert(world.script.effects.end(), answer.effects.begin(), answer.effects.end());
     try {

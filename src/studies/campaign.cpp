@@ -136,7 +136,8 @@ std::vector<Entry> survey(const fs::path& folder) {
 /// Copies the rows of one shard, its header only if it is the first, and checks hash and header.
 class Merger {
  public:
-  Merger(io::AtomicFile& file, io::Compression compression) : file_(file), writer_(file.stream(), compression) {}
+  Merger(io::AtomicFile& file, io::Compression compression, const Sink& sink)
+      : file_(file), writer_(file.stream(), compression), sink_(sink) {}
 
   void add(const Entry& entry) {
     io::DataReader reader(entry.file);
@@ -184,12 +185,14 @@ class Merger {
   void write(std::string_view part) {
     hash_.add(part);
     bytes_ += part.size();
+    if (sink_) sink_(part);
     writer_.write(part);
     if (!file_.stream()) file_.commit();  // says why it can't be written
   }
 
   io::AtomicFile& file_;
   io::DataWriter writer_;
+  const Sink& sink_;
   std::string buffer_ = std::string(1U << 18U, '\0');
   std::string header_;
   Sha256 hash_;
@@ -249,7 +252,14 @@ std::string to_text(const std::vector<ShardReport>& shards) {
   return text + std::to_string(done) + " of " + std::to_string(shards.size()) + " shards are done\n";
 }
 
-io::Manifest merge_campaign(const fs::path& folder, const fs::path& output) {
+io::Provenance campaign_provenance(const fs::path& folder) {
+  for (const Entry& entry : survey(folder)) {
+    if (entry.report.state == State::done) return io::read_manifest(io::manifest_path(entry.file)).provenance;
+  }
+  throw Error(ErrorCode::input, Where{folder.string()}, "no shard is finished");
+}
+
+io::Manifest merge_campaign(const fs::path& folder, const fs::path& output, const Sink& sink) {
   const std::vector<Entry> entries = survey(folder);
   Diagnostics faults;
   for (const Entry& entry : entries) {
@@ -265,7 +275,7 @@ io::Manifest merge_campaign(const fs::path& folder, const fs::path& output) {
   manifest.rows = 0;
   const fs::path side_car = io::manifest_path(output);
   io::AtomicFile file(output);
-  Merger merger(file, io::compression_of(output));
+  Merger merger(file, io::compression_of(output), sink);
   std::uint32_t next_run = 0;
   for (const Entry& entry : entries) {
     if (entry.brief.runs.first != std::exchange(next_run, entry.brief.runs.end)) {

@@ -84,6 +84,23 @@ class Shards(unittest.TestCase):
                 self.assertEqual((folder / "all.csv").read_bytes(), self.bytes)
                 self.assertEqual(json.loads((folder / "all.csv.json").read_text()), self.manifest)
 
+    def test_a_merged_summary_is_the_one_that_a_single_process_writes(self):
+        script = DATA / "studies" / "studyA.yaml"
+        with scratch() as folder:
+            for ending in (".csv", ".md"):
+                study("--summary", folder / f"one{ending}")
+                call([PIRSIM, "merge", self.shards, "-o", folder / "all.csv.gz", "--summary", folder / f"all{ending}",
+                      "--script", script])
+                self.assertEqual((folder / f"all{ending}").read_text(), (folder / f"one{ending}").read_text())
+            before = names(folder)
+            merge = [PIRSIM, "merge", self.shards, "-o", folder / "b.csv", "--summary", folder / "b.md"]
+            self.assertIn("--script", call(merge, 2).stderr)
+            self.assertIn("isn't the script of these", call([*merge, "--script", DATA / "studies/office.yaml"], 3).stderr)
+            self.assertIn("isn't the script of these",
+                          call([*merge, "--script", script, "--set", "sensing.rays_per_zone=9"], 3).stderr)
+            self.assertIn("are one file", call([*merge[:-1], folder / "b.csv", "--script", script], 2).stderr)
+            self.assertEqual(names(folder), before)
+
     def test_compressed_files_are_read_by_the_usual_tools(self):
         with scratch() as folder:
             for ending in ("gz", "zst"):
@@ -384,6 +401,66 @@ class FailingCalls(unittest.TestCase):
             result = subprocess.run(arguments(replicates=1), stdout=full, stderr=subprocess.PIPE, text=True)
         self.assertEqual(result.returncode, 4)
         self.assertIn("standard output can't be written", result.stderr)
+
+
+class PlainMachine(unittest.TestCase):
+    """tools/run_shards, for real."""
+
+    def test_shards_of_which_one_dies_are_gone_on_with_and_merged(self):
+        with scratch() as folder:
+            study("-o", folder / "one.csv")
+            mortal = folder / "mortal"  # the third shard is killed once it has begun
+            mortal.write_text(f"""#!/bin/sh
+if [ "$1" = --scene ] && [ -z "${{*##* 3/5 *}}" ] && [ ! -e {folder}/died ]; then
+  touch {folder}/died
+  kill -9 $$
+fi
+exec {PIRSIM} "$@"
+""")
+            mortal.chmod(0o755)
+            run_shards = [DATA.parent / "tools" / "run_shards", "-n", 5, "-j", 2, "-o", folder / "out", "-p", mortal,
+                          "--", *arguments()[1:]]
+            first = call(run_shards, 75)
+            self.assertIn("shards 3 are left", first.stderr)
+            self.assertNotIn("all.csv", names(folder / "out"))
+            call(run_shards)
+            self.assertEqual((folder / "out/all.csv").read_bytes(), (folder / "one.csv").read_bytes())
+            call(run_shards)  # nothing is left to do
+            self.assertEqual((folder / "out/all.csv").read_bytes(), (folder / "one.csv").read_bytes())
+
+    def test_what_is_missing_is_told(self):
+        tool = DATA.parent / "tools" / "run_shards"
+        for words, message in ((("-o", "x", "--", "--scene"), "-n N"), (("-n", 0, "-o", "x", "--", "y"), "-n N"),
+                               (("-n", 2, "--", "y"), "-o DIR"), (("-n", 2, "-o", "x"), "after --")):
+            self.assertIn(message, call([tool, *words], 2).stderr)
+
+
+class Memory(unittest.TestCase):
+    def peak_mb(self, command):
+        process = subprocess.Popen(list(map(str, command)), stderr=subprocess.DEVNULL)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = status  # is waited for
+        self.assertEqual(status, 0)
+        return usage.ru_maxrss / 1024
+
+    def test_merging_twenty_times_as_much_takes_no_more_memory(self):
+        if "PIRSIM_NO_FAILING_MALLOC" in os.environ:
+            self.skipTest("the sanitizers keep what was freed")
+        with scratch() as folder:
+            (folder / "wait.yaml").write_text("""pirsim_script: 1
+name: A long wait
+sensing: {tick_rate_hz: 1, rays_per_zone: 1}
+people: [{id: one, stature_m: 1.8, mass_kg: 80, actions: [{enter: door}, {wait_s: 100000}]}]
+""")
+            peaks = []
+            for runs in (1, 20):
+                base = [PIRSIM, "--scene", DATA / "rooms/meeting_room.gltf", "--script", folder / "wait.yaml", "-q",
+                        "--replicates", 2 * runs]
+                for i in (1, 2):
+                    call([*base, "--shard", f"{i}/2", "-o", folder / f"of_{runs}"])
+                peaks.append(self.peak_mb([PIRSIM, "merge", folder / f"of_{runs}", "-o", folder / f"{runs}.csv"]))
+                self.assertGreater((folder / f"{runs}.csv").stat().st_size, 5e6 * runs)
+            self.assertLess(peaks[1], peaks[0] + 4)
 
 
 class Options(unittest.TestCase):

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pirsim/io/manifest.hpp"
@@ -33,7 +35,12 @@ struct ShardReport {
 
 /// Writes to `output` (.csv, .csv.gz or .csv.zst) and its manifest the very bytes that one process would have written.
 /// Streams in bounded memory; the output appears only if every shard is there, once, made by one build from one spec,
-/// and has the hash of its manifest. Throws Error: io, input (all that is wrong).
-io::Manifest merge_campaign(const std::filesystem::path& folder, const std::filesystem::path& output);
+/// and has the hash of its manifest. `sink` gets the same bytes on their way, before compression. Throws Error: io,
+/// input (all that is wrong).
+using Sink = std::function<void(std::string_view)>;
+io::Manifest merge_campaign(const std::filesystem::path& folder, const std::filesystem::path& output,
+                            const Sink& sink = {});
+/// What all shards were made from: that of the first finished one. Throws Error: io, input.
+[[nodiscard]] io::Provenance campaign_provenance(const std::filesystem::path& folder);
 
 }  // namespace pirsim::studies

@@ -1,0 +1,82 @@
+#include "pirsim/studies/row_tally.hpp"
+
+#include <array>
+#include <utility>
+
+#include "pirsim/core/error.hpp"
+
+namespace pirsim::studies {
+namespace {
+
+constexpr std::array<std::string_view, 5> first_columns{"replicate", "trial", "time_s", "phase", "people"};
+enum Column : std::size_t { replicate, trial, time_s, phase };
+
+}  // namespace
+
+RowTally::RowTally(std::vector<std::string> trials, SummarySpec spec, std::vector<MeasuredCell> measured)
+    : trials_(std::move(trials)), spec_(std::move(spec)), measured_(std::move(measured)) {}
+
+void RowTally::add(std::string_view bytes) {
+  for (const char c : bytes) {
+    if (c == '"') {
+      if (quotes_ == Quotes::closed) fields_.back() += c;  // the second of two
+      quotes_ = quotes_ == Quotes::open ? Quotes::closed : Quotes::open;
+    } else if (quotes_ != Quotes::open && (c == ',' || c == '\n')) {
+      quotes_ = Quotes::none;
+      if (c == '\n') {
+        end_line();
+      } else {
+        fields_.emplace_back();
+      }
+    } else {
+      fields_.back() += c;
+    }
+  }
+}
+
+void RowTally::end_line() {
+  ++n_lines_;
+  if (!summary_) {
+    take_header();
+  } else {
+    if (fields_.size() != first_columns.size() + row_.bits.size()) {
+      throw Error(ErrorCode::input, "line " + std::to_string(n_lines_) + " of the rows has too few or too many fields");
+    }
+    if (fields_[replicate] != replicate_ || fields_[trial] != trial_) {
+      end_run();
+      replicate_ = fields_[replicate];
+      trial_ = fields_[trial];
+    }
+    row_.phase = fields_[phase];
+    for (std::size_t i = 0; i < row_.bits.size(); ++i) row_.bits[i] = fields_[first_columns.size() + i] == "1" ? 1 : 0;
+    counts_->add(row_);
+  }
+  fields_.assign(1, {});
+}
+
+void RowTally::take_header() {
+  if (fields_.size() < first_columns.size() ||
+      !std::equal(first_columns.begin(), first_columns.end(), fields_.begin())) {
+    throw Error(ErrorCode::input, "the rows don't begin with the header of a study's rows");
+  }
+  const std::vector<std::string> sensors(fields_.begin() + first_columns.size(), fields_.end());
+  summary_.emplace(trials_, sensors, std::move(measured_));
+  counts_.emplace(sensors.size(), spec_);
+  row_.bits.resize(sensors.size());
+}
+
+void RowTally::end_run() {
+  if (!replicate_.empty()) summary_->add_run(trial_, counts_->counts());
+  counts_->reset();
+}
+
+const Summary& RowTally::finish() {
+  if (!summary_ || fields_.size() != 1 || !fields_.front().empty()) {
+    throw Error(ErrorCode::input, "the rows end within a line");
+  }
+  end_run();
+  replicate_.clear();
+  return *summary_;
+}
+
+}  // namespace pirsim::studies

@@ -1,0 +1,48 @@
+#include "pirsim/reconcile/seal.hpp"
+
+#include <sstream>
+
+#include "pirsim/io/csv_writer.hpp"
+#include "pirsim/reconcile/simulated_world.hpp"
+#include "pirsim/sim/study.hpp"
+#include "support/catch.hpp"
+#include "support/shipped.hpp"
+
+using namespace pirsim;
+using namespace pirsim::reconcile;
+
+namespace {
+
+ScriptSpec one_seat() {
+  ScriptSpec script = test::shipped_script("studyA.yaml");
+  script.replicates = 1;
+  std::erase_if(script.trials, [](const TrialSpec& t) { return t.id != "S4"; });
+  for (ScriptedAction& action : script.trials.front().people.front().actions) {
+    if (auto* work = std::get_if<action::Work>(&action.what)) work->duration_s = 30.0;
+  }
+  return script;
+}
+
+std::string rows_of(const World& world) {
+  const Model model = compile(world.scene, world.script);
+  std::ostringstream text;
+  io::CsvWriter csv(text, model.columns());
+  run_study(model, {.threads = 1}, [&](const RunResult& result) {
+    for (const Sample& row : result.samples) csv.write(row);
+  });
+  return text.str();
+}
+
+}  // namespace
+
+TEST_CASE("a challenge is none of the worlds that an analysis with the same seed simulates", "[reconcile][seal]") {
+  const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
+  const ScriptSpec script = one_seat();
+  constexpr std::uint64_t seed = 1;  // the analysis' own, which somebody may well take for a secret
+  const Challenge challenge = seal(scene, script, {{}, Hidden::nothing, 1, seed, "salt"});
+  CHECK(challenge.rows == seal(scene, script, {{}, Hidden::nothing, 1, seed, "pepper"}).rows);
+  CHECK(challenge.rows != seal(scene, script, {{}, Hidden::nothing, 1, seed + 1, "salt"}).rows);
+  for (std::uint32_t index = 0; index < 3; ++index) {
+    CHECK(challenge.rows != rows_of(draw_world(scene, script, {}, seed, index, 0)));
+  }
+}
