@@ -294,14 +294,18 @@ void FeatureMap::write_pairs(std::span<const float> statistics, Writer& out) con
   for (std::size_t first = 0; first < frame_.sensors.size(); ++first) {
     for (std::size_t second = 0; second < frame_.sensors.size(); ++second) {
       if (first == second) continue;
-      const double alone =
-          total(statistics, [&](std::size_t trial) { return pair_index(frame_, trial, first, second); });
-      if (std::isnan(alone)) continue;
-      const double rows =
-          total(statistics,
-                [&](std::size_t trial) { return cell_index(frame_, trial, second, CellStatistic::seconds); }) /
-          frame_.window_s;
-      odds.push_back(std::log((rows - alone + 0.5) / (alone + 0.5)));
+      double together = 0.0, alone = 0.0, count = 0.0;
+      for (const std::size_t trial : trials_) {
+        if (!known(trial, first, 0) || !known(trial, second, 0)) continue;
+        const auto without = static_cast<double>(statistics[pair_index(frame_, trial, first, second)]);
+        const auto seconds = static_cast<double>(statistics[cell_index(frame_, trial, second, CellStatistic::seconds)]);
+        if (std::isnan(without) || std::isnan(seconds)) continue;
+        together += std::max(0.0, seconds / frame_.window_s - without);
+        alone += without;
+        count += 1.0;
+      }
+      if (count == 0.0 || known_[pair_index(frame_, trials_.front(), first, second)] == 0) continue;
+      odds.push_back(std::log((together + 0.5) / (alone + 0.5)));
       out.test_next();
       out.add(odds.back(), [&] { return frame_.sensors[first] + " while " + frame_.sensors[second] + " moves"; });
     }

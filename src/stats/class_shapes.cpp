@@ -46,7 +46,7 @@ Eigen::MatrixXd take_off_bend(const Eigen::MatrixXd& places, std::span<const dou
                               Eigen::MatrixXd& residuals) {
   Eigen::MatrixXd design(places.rows(), products(places.row(0), spread, curved).size());
   for (Eigen::Index r = 0; r < places.rows(); ++r) design.row(r) = products(places.row(r), spread, curved);
-  const Eigen::MatrixXd bend = design.householderQr().solve(residuals);
+  const Eigen::MatrixXd bend = design.completeOrthogonalDecomposition().solve(residuals);
   residuals -= design * bend;
   return bend;
 }

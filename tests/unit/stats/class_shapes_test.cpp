@@ -103,3 +103,17 @@ TEST_CASE("class shapes refuse too few rows and rows of another length", "[stats
   const ClassShapes shapes = ClassShapes::fit(table.features, table.labels, 2);
   CHECK_THROWS_AS(shapes.strangeness(std::vector<float>(3, 0.0F), 0), Error);
 }
+
+TEST_CASE("a class whose rows are all the same is strange to any other row", "[stats]") {
+  Matrix<float> rows(60, 12);
+  std::vector<int> labels(60, 0);
+  Stream stream({8, 0, 0, Purpose::test});
+  for (std::size_t r = 30; r < 60; ++r) {
+    labels[r] = 1;
+    for (float& value : rows.row(r)) value = static_cast<float>(stream.normal());
+  }
+  const ClassShapes shapes = ClassShapes::fit(rows, labels, 2, {.subspace = 3});
+  for (const double value : shapes.strangeness(std::as_const(rows).row(0), 0).values()) CHECK(std::isfinite(value));
+  CHECK(shapes.strangeness(std::as_const(rows).row(40), 0).mahalanobis >
+        shapes.strangeness(std::as_const(rows).row(0), 0).mahalanobis + 1.0);
+}
