@@ -187,6 +187,11 @@ void add_reconcile_options(CLI::App& command, ReconcileOptions& options) {
       ->option_text("DIR");
   command.add_option("--nuisance", options.nuisance, "what is uncertain about the room, YAML; or none")
       ->option_text("FILE");
+  command
+      .add_option("--holdout", options.holdout,
+                  "share (0.3) or names (S3,S8) of trials kept from naming and fitting, to be judged on "
+                  "(default: every trial once, in folds)")
+      ->option_text("TRIALS");
   command.add_option("--alpha", options.alpha, "level of the tests (default: 0.05)")
       ->option_text("P")
       ->check(CLI::Range(0.001, 0.5));

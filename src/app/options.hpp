@@ -80,6 +80,7 @@ struct ReconcileOptions {
   std::filesystem::path output = "reconcile";  ///< folder
   std::filesystem::path table;                 ///< folder of the reference table; empty: in the output folder
   std::string nuisance;                        ///< file, "none", or empty: the usual
+  std::string holdout;                         ///< share or names of trials to be judged on; empty: folds
   double alpha = 0.05;
   int max_effects = 3;
   double budget = 1.0;  ///< times the usual number of simulated datasets

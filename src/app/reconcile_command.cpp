@@ -93,11 +93,13 @@ void reconcile_data(const Inputs& inputs, const ReconcileOptions& options) {
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
   tell(script.warnings, inputs.verbosity);
-  const reconcile::Measured measured = reconcile::read_measured(options.measured, reconcile::frame_of(scene, script));
+  const reconcile::StudyFrame frame = reconcile::frame_of(scene, script);
+  const reconcile::Measured measured = reconcile::read_measured(options.measured, frame);
   if (inputs.verbosity != Verbosity::quiet) {
     for (const std::string& note : measured.notes) std::cerr << note << '\n';
   }
-  const reconcile::Settings settings = settings_of(options);
+  reconcile::Settings settings = settings_of(options);
+  settings.holdout = reconcile::holdout_of(options.holdout, frame, measured.digest);
 
   Teller teller(inputs.verbosity);
   const reconcile::Outcome outcome = reconcile::reconcile(scene, script, measured, settings, teller.observer());

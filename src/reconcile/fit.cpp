@@ -3,62 +3,33 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
-#include "pirsim/effects/catalogue.hpp"
 #include "pirsim/reconcile/locate.hpp"
-#include "pirsim/stats/posterior.hpp"
+#include "reconcile/entry_guess.hpp"
 
 namespace pirsim::reconcile {
 namespace {
 
 using effects::ParameterInfo;
-using effects::Scale;
 
-/// Parameters are guessed on the scale on which their prior is flat.
-double to_flat(const ParameterInfo& info, double value) {
-  return info.scale == Scale::logarithmic ? std::log(value) : value;
-}
-double from_flat(const ParameterInfo& info, double value) {
-  const double natural = info.scale == Scale::logarithmic ? std::exp(value) : value;
-  const double rounded = info.scale == Scale::whole ? std::round(natural) : natural;
-  return std::clamp(rounded, info.least, info.most);
-}
-
-bool varies(const ParameterInfo& info) { return info.low < info.high; }
-
-/// The datasets of one entry with their parameters on flat scales.
-struct Training {
-  stats::Matrix<double> features;    ///< (n x n_features)
-  stats::Matrix<double> parameters;  ///< (n x n_parameters)
-  std::vector<std::size_t> rows;     ///< of the table
-};
-
-Training training_of(const ReferenceTable& table, const FeatureMap& map, std::size_t entry, Part part,
-                     const std::vector<const ParameterInfo*>& infos, unsigned threads) {
-  Training data{{}, {}, rows_of(table, entry, part)};
-  const stats::Matrix<float> features = map.features(table.statistics.select_rows(data.rows), threads);
-  data.features = stats::Matrix<double>(features.rows(), features.columns());
-  std::ranges::copy(features.values(), data.features.values().begin());
-  data.parameters = stats::Matrix<double>(data.rows.size(), infos.size());
-  for (std::size_t i = 0; i < data.rows.size(); ++i) {
-    for (std::size_t p = 0; p < infos.size(); ++p) {
-      data.parameters(i, p) =
-          to_flat(*infos[p], table.rows[data.rows[i]].effects.front().parameters.at(infos[p]->name));
-    }
-  }
-  return data;
-}
+constexpr double accepted_share = 0.3;
+constexpr std::size_t fewest_accepted = 40;    ///< or all, in a small table
+constexpr std::size_t fewest_neighbours = 80;  ///< whose intervals are tried; or all
 
 /// The choices that are most frequent among the datasets whose features lie nearest to the measured ones.
-void choose(const ReferenceTable& table, const Training& data, const std::vector<double>& measured,
+void choose(const ReferenceTable& table, const FeatureMap& map, std::size_t entry, std::span<const float> measured,
             EffectSpec& effect) {
+  const std::vector<std::size_t> rows = rows_of(table, entry, Part::training);
   std::vector<std::pair<double, std::size_t>> near;
-  for (std::size_t i = 0; i < data.rows.size(); ++i) {
+  for (const std::size_t row : rows) {
+    const std::vector<float> features = map.features(table.statistics.row(row));
     double squares = 0.0;
     for (std::size_t f = 0; f < measured.size(); ++f) {
-      squares += (data.features(i, f) - measured[f]) * (data.features(i, f) - measured[f]);
+      const double d = static_cast<double>(features[f]) - static_cast<double>(measured[f]);
+      squares += d * d;
     }
-    near.emplace_back(squares, data.rows[i]);
+    near.emplace_back(squares, row);
   }
   std::ranges::sort(near);
   near.resize(std::min<std::size_t>(near.size(), 9));
@@ -68,73 +39,89 @@ void choose(const ReferenceTable& table, const Training& data, const std::vector
   if (most != votes.end()) effect.choices = most->first;
 }
 
-std::vector<stats::Interval> bounds_of(const std::vector<const ParameterInfo*>& infos) {
-  std::vector<stats::Interval> bounds;
-  for (const ParameterInfo* info : infos) bounds.push_back({to_flat(*info, info->low), to_flat(*info, info->high)});
-  return bounds;
+/// The posterior at a guess, from the held-back datasets but one (or all, if `without` is none of them).
+stats::AbcPosterior posterior_of(const EntryGuess& entry, std::span<const double> guess, std::size_t without) {
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < entry.guesses().rows(); ++row) {
+    if (row != without) rows.push_back(row);
+  }
+  const auto n = static_cast<double>(rows.size());
+  const double share = std::clamp(static_cast<double>(fewest_accepted) / n, accepted_share, 1.0);
+  return stats::abc_posterior(entry.parameters().select_rows(rows), entry.guesses().select_rows(rows), guess,
+                              {share, entry.bounds()});
 }
 
-/// How much an interval must be stretched about its median so that `confidence` of the held-back datasets near the
-/// measured one lie in theirs.
-double widening_of(const Training& held_back, const stats::Matrix<double>& guesses,
-                   const stats::AbcPosterior& posterior, std::size_t parameter, double observed_guess,
-                   double confidence) {
-  const stats::Interval interval = posterior.interval(parameter, confidence);
-  const double half = 0.5 * (interval.high - interval.low);
-  if (half <= 0.0 || held_back.rows.empty()) return 1.0;
-  std::vector<std::pair<double, double>> misses;  // distance of the guess, error of the guess
-  for (std::size_t i = 0; i < held_back.rows.size(); ++i) {
-    misses.emplace_back(std::abs(guesses(i, parameter) - observed_guess),
-                        std::abs(held_back.parameters(i, parameter) - guesses(i, parameter)));
+/// Held-back datasets whose guesses lie nearest to the measured one, by the guesses' own scatter.
+std::vector<std::size_t> neighbours_of(const EntryGuess& entry, std::span<const double> guess) {
+  const stats::Matrix<double>& guesses = entry.guesses();
+  std::vector<std::pair<double, std::size_t>> near(guesses.rows());
+  for (std::size_t i = 0; i < near.size(); ++i) near[i].second = i;
+  for (std::size_t p = 0; p < guess.size(); ++p) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < guesses.rows(); ++i) values.push_back(guesses(i, p));
+    const double scatter = stats::quantile(values, 0.84) - stats::quantile(values, 0.16) + 1e-12;
+    for (std::size_t i = 0; i < near.size(); ++i) near[i].first += std::pow((guesses(i, p) - guess[p]) / scatter, 2);
   }
-  std::ranges::sort(misses);
-  misses.resize(std::max<std::size_t>(20, misses.size() / 4) < misses.size()
-                    ? std::max<std::size_t>(20, misses.size() / 4)
-                    : misses.size());
-  std::vector<double> errors;
-  for (const auto& [distance, error] : misses) errors.push_back(error);
-  return std::max(1.0, stats::quantile(errors, confidence) / half);
+  std::ranges::sort(near);
+  near.resize(std::min(near.size(), std::max(fewest_neighbours, near.size() / 4)));
+  std::vector<std::size_t> rows;
+  for (const auto& [distance, row] : near) rows.push_back(row);
+  return rows;
+}
+
+/// How far beyond its interval's ends, as a share of the way from the median, a known truth lies.
+double reach(const stats::AbcPosterior& posterior, std::size_t parameter, double confidence, double truth) {
+  const stats::Interval interval = posterior.interval(parameter, confidence);
+  const double median = posterior.quantile(parameter, 0.5);
+  const double half = truth < median ? median - interval.low : interval.high - median;
+  return std::abs(truth - median) / std::max(half, 1e-12);
+}
+
+/// (n_parameters) By how much intervals must be stretched about their medians so that of held-back datasets near the
+/// measured one `confidence` lie in theirs: a conformal interval, the posterior being the measure of strangeness.
+std::vector<double> widening_of(const EntryGuess& entry, std::span<const double> guess, double confidence) {
+  std::vector<std::vector<double>> reaches(guess.size());
+  for (const std::size_t row : neighbours_of(entry, guess)) {
+    const stats::AbcPosterior own = posterior_of(entry, entry.guesses().row(row), row);
+    for (std::size_t p = 0; p < guess.size(); ++p)
+      reaches[p].push_back(reach(own, p, confidence, entry.parameters()(row, p)));
+  }
+  std::vector<double> widening;
+  for (std::vector<double>& values : reaches) {
+    std::ranges::sort(values);
+    const auto rank = static_cast<std::size_t>(std::ceil(confidence * static_cast<double>(values.size() + 1)));
+    widening.push_back(values[std::min(rank, values.size()) - 1]);
+  }
+  return widening;
 }
 
 }  // namespace
 
 FittedEffect fit_from_table(const ReferenceTable& table, const FeatureMap& map, std::size_t entry,
                             std::span<const float> measured, const FitSettings& settings) {
-  const effects::Effect& effect = effects::find(table.effects[entry - 1]);
-  std::vector<const ParameterInfo*> infos;
   FittedEffect fitted;
-  fitted.effect.name = effect.info.name;
-  for (const ParameterInfo& info : effect.info.parameters) {
-    if (varies(info))
-      infos.push_back(&info);
-    else
-      fitted.effect.parameters[info.name] = info.low;
-  }
-  const Training training = training_of(table, map, entry, Part::training, infos, settings.threads);
-  const Training held_back = training_of(table, map, entry, Part::calibration, infos, settings.threads);
+  fitted.effect.name = table.entry_name(entry);
+  for (const ParameterInfo& info : effects::find(fitted.effect.name).info.parameters)
+    fitted.effect.parameters[info.name] = info.low;  // of those that don't vary
   const std::vector<float> features = map.features(measured);
-  const std::vector<double> observed(features.begin(), features.end());
-  choose(table, training, observed, fitted.effect);
-  if (infos.empty()) return fitted;
+  choose(table, map, entry, features, fitted.effect);
+  const EntryGuess guess(table, map, entry, settings.threads);
+  if (guess.infos().empty()) return fitted;
 
-  const auto guess = stats::ParameterGuess::fit(training.features, training.parameters);
-  const std::vector<double> observed_guess = guess.guess(observed);
-  const auto posterior = stats::abc_posterior(training.parameters, guess.guess(training.features), observed_guess,
-                                              {0.3, bounds_of(infos)});
-  const stats::Matrix<double> held_back_guesses = guess.guess(held_back.features);
+  const std::vector<double> observed = guess.of(features);
+  const stats::AbcPosterior posterior = posterior_of(guess, observed, guess.guesses().rows());
+  const std::vector<double> widening = widening_of(guess, observed, settings.confidence);
   fitted.includes_off = true;
   bool any_strength = false;
-  for (std::size_t p = 0; p < infos.size(); ++p) {
-    const ParameterInfo& info = *infos[p];
-    const double widening =
-        widening_of(held_back, held_back_guesses, posterior, p, observed_guess[p], settings.confidence);
-    const stats::Interval flat = posterior.interval(p, settings.confidence, widening);
+  for (std::size_t p = 0; p < guess.infos().size(); ++p) {
+    const ParameterInfo& info = *guess.infos()[p];
+    const stats::Interval flat = posterior.interval(p, settings.confidence, widening[p]);
     FittedParameter parameter{info.name, info.unit, from_flat(info, posterior.quantile(p, 0.5)),
                               {},        info.off,  info.role == effects::Role::strength,
                               {}};
     for (int i = 0; i < 20; ++i) {
       const double middle = posterior.quantile(p, 0.5), value = posterior.quantile(p, (i + 0.5) / 20.0);
-      parameter.equally_likely.push_back(from_flat(info, middle + widening * (value - middle)));
+      parameter.equally_likely.push_back(from_flat(info, middle + widening[p] * (value - middle)));
     }
     parameter.interval = {from_flat(info, flat.low), from_flat(info, flat.high)};
     if (parameter.is_strength) {

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "io/text_input.hpp"
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/csv_writer.hpp"
 #include "pirsim/io/script_reader.hpp"
@@ -85,10 +86,30 @@ Json to_json(const Verification& v) {
           {"after", to_json(v.after)},
           {"noise_floor", v.noise_floor},
           {"gain_95", {v.gain.low, v.gain.high}},
+          {"trials", v.n_trials},
+          {"trials_better", v.n_better},
+          {"sign_p", v.sign_p},
           {"share_closed", v.share_closed},
           {"placebo", {{"effect", v.placebo_effect}, {"energy_score", v.placebo}}},
           {"shrunk", v.shrunk},
+          {"plain_model_refused", v.refused},
           {"closed", v.closed}};
+}
+
+Json to_json(const Residuals& residuals) {
+  Json drivers = Json::array();
+  for (const ResidualDriver& driver : residuals.drivers) {
+    drivers.push_back({{"who", driver.who},
+                       {"when", driver.when},
+                       {"what", driver.what},
+                       {"log_odds", driver.log_odds},
+                       {"standard_error", driver.standard_error},
+                       {"z", driver.z},
+                       {"p", driver.p}});
+  }
+  return {{"sentence", residuals.sentence},
+          {"drivers", drivers},
+          {"nearest_family", {{"family", residuals.nearest_family}, {"probability", residuals.family_probability}}}};
 }
 
 void write(const std::filesystem::path& file, const std::string& text) {
@@ -130,7 +151,12 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
   json["nothing"] = to_json(outcome.nothing);
   json["candidates"] = candidates;
   json["fits"] = fits;
+  Json looks = Json::array();
+  for (const Look& look : outcome.looks)
+    looks.push_back({{"put_in", look.put_in}, {"level", look.level}, {"p", look.p}});
+  json["looks"] = looks;
   json["verification"] = outcome.verification ? to_json(*outcome.verification) : Json();
+  json["residuals"] = outcome.residuals ? to_json(*outcome.residuals) : Json();
   json["telling_features"] = outcome.telling_features;
   json["calibration_error"] = outcome.calibration_error;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
@@ -159,6 +185,24 @@ std::string candidates_csv(const Outcome& outcome) {
   return out.str();
 }
 
+namespace {
+
+/// What is in the folder's trail already; it is never overwritten.
+std::string earlier_trail(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "trail.log";
+  return std::filesystem::exists(file) ? io::read_text_file(file) : std::string();
+}
+
+/// Each analysis begins its trail with the data's digest.
+std::size_t times_analysed(const std::string& trail, const std::string& digest) {
+  std::size_t times = 0;
+  std::istringstream lines(trail);
+  for (std::string line; std::getline(lines, line);) times += line.starts_with("data " + digest) ? 1 : 0;
+  return times;
+}
+
+}  // namespace
+
 ScriptSpec patched(const ScriptSpec& script, const Outcome& outcome) {
   ScriptSpec with = script;
   for (const FittedEffect& fitted : outcome.fits) with.effects.push_back(fitted.effect);
@@ -174,8 +218,11 @@ void write_outputs(const std::filesystem::path& folder, const Outcome& outcome, 
   if (outcome.verdict == Verdict::named || outcome.verdict == Verdict::several) {
     write(folder / "script_patched.yaml", io::to_yaml(patched(script, outcome)));
   }
-  std::string trail;
+  std::string trail = earlier_trail(folder);
+  const std::size_t before = times_analysed(trail, measured.digest);
+  if (!trail.empty()) trail += '\n';
   for (const std::string& line : outcome.trail) trail += line + '\n';
+  trail += "these data were analysed " + std::to_string(before) + " times before in this folder\n";
   write(folder / "trail.log", trail);
   io::Report page = report_page(outcome, settings.alpha);
   page.footer = provenance.program + ", " + provenance.scene + ", " + provenance.script + ", " + provenance.measured;

@@ -8,9 +8,13 @@
 namespace pirsim::reconcile {
 namespace {
 
-std::vector<std::uint32_t> all_runs(const Model& model) {
+/// Of these trials; none given: of all.
+std::vector<std::uint32_t> runs_of(const Model& model, std::span<const std::size_t> trials) {
   std::vector<std::uint32_t> runs;
-  for (std::uint32_t run = 0; run < model.n_runs(); ++run) runs.push_back(run);
+  const std::size_t n_trials = model.script().trials.size();
+  for (std::uint32_t run = 0; run < model.n_runs(); ++run) {
+    if (trials.empty() || std::ranges::find(trials, run % n_trials) != trials.end()) runs.push_back(run);
+  }
   return runs;
 }
 
@@ -23,9 +27,9 @@ void add_series(const StudyFrame& frame, const RunResult& result, int first, std
 }  // namespace
 
 struct SimulatedWorld::Traced {
-  Traced(const World& world, const StudyFrame& /*frame*/)
+  explicit Traced(const World& world, std::span<const std::size_t> trials = {})
       : model(compile(world.scene, world.script)), logic(sim::make_logic(model)) {
-    tracks = sim::trace(model, all_runs(model), 1);
+    tracks = sim::trace(model, runs_of(model, trials), 1);
     logic->prepare(tracks.sets);
   }
   [[nodiscard]] std::vector<Series> emit(const StudyFrame& frame, const effects::Pipeline& pipeline, int first, int n) {
@@ -49,7 +53,7 @@ SimulatedWorld::SimulatedWorld(const WorldSource& source, const StudyFrame& fram
     world_ = draw_world(source.scene, source.script, source.nuisance, source.seed, index, attempt);
     world_.script.replicates = n_runs;
     try {
-      traced_ = std::make_unique<Traced>(world_, frame);
+      traced_ = std::make_unique<Traced>(world_);
       return;
     } catch (const Error& error) {
       if (error.code() != ErrorCode::infeasible || attempt + 1 == most_attempts) throw;
@@ -67,19 +71,23 @@ std::vector<Series> SimulatedWorld::with(std::span<const EffectSpec> more, int f
   return traced_->emit(*frame_, sim::make_pipeline(traced_->model, all), first, n);
 }
 
-std::vector<Series> SimulatedWorld::anew(std::span<const EffectSpec> more, int n) const {
+std::vector<Series> SimulatedWorld::anew(std::span<const EffectSpec> more, int n,
+                                         std::span<const std::size_t> trials) const {
   World altered = world_;
   altered.script.effects.insert(altered.script.effects.end(), more.begin(), more.end());
   altered.script.replicates = n;
-  Traced traced(altered, *frame_);
+  Traced traced(altered, trials);
   return traced.emit(*frame_, traced.model.pipeline(), 0, n);
 }
 
-std::optional<std::vector<Series>> SimulatedWorld::with_effects(std::span<const EffectSpec> more, int first,
-                                                                int n) const {
-  if (acts_on_remembered_zones(more)) return with(more, first, n);
+std::optional<std::vector<Series>> SimulatedWorld::with_effects(std::span<const EffectSpec> more, int first, int n,
+                                                                std::span<const std::size_t> trials) const {
   try {
-    return anew(more, n);
+    auto data = acts_on_remembered_zones(more) ? with(more, first, n) : anew(more, n, trials);
+    std::erase_if(data, [&](const Series& run) {
+      return !trials.empty() && std::ranges::find(trials, run.trial) == trials.end();
+    });
+    return data;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::infeasible) throw;
     return std::nullopt;

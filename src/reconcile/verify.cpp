@@ -1,80 +1,146 @@
 #include "pirsim/reconcile/verify.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <map>
-#include <numeric>
+#include <set>
+#include <sstream>
 
 #include "pirsim/core/parallel.hpp"
 #include "pirsim/effects/catalogue.hpp"
 #include "pirsim/reconcile/analyst.hpp"
-#include "pirsim/stats/envelope.hpp"
+#include "pirsim/reconcile/reconcile.hpp"
 #include "pirsim/stats/scores.hpp"
 
 namespace pirsim::reconcile {
 namespace {
 
 constexpr std::uint32_t first_verify_world = 1U << 24U;  ///< worlds that no table has seen
-constexpr std::size_t most_members = 200;                ///< of an ensemble
+constexpr std::size_t most_own_scores = 40;              ///< members whose distance to the others makes the noise floor
+constexpr double sign_level = 0.05;                      ///< of ten trials nine must be better
 
-using Patch = std::vector<EffectSpec>;  ///< empty: the plain model
+using Patch = std::vector<EffectSpec>;
 
-/// Datasets of several patched models in the same worlds.
-std::vector<stats::Matrix<float>> simulate(const WorldSource& source, const StudyFrame& frame, const DataShape& shape,
-                                           const Profile& profile, const std::vector<Patch>& patches,
-                                           const VerifySettings& settings) {
-  using Rows = std::vector<std::vector<float>>;  // of one world, empty where people couldn't get about
-  std::vector<stats::Matrix<float>> all(patches.size());
-  ordered_parallel<Rows>(
-      settings.n_worlds, settings.threads,
-      [&](std::size_t i) {
-        const SimulatedWorld world(source, frame, first_verify_world + static_cast<std::uint32_t>(i),
-                                   shape.n_replicates);
-        Rows rows;
-        for (const Patch& patch : patches) {
-          const auto data = world.with_effects(patch, 0, shape.n_replicates);
-          rows.push_back(data ? statistics_of(frame, shape, profile, *data) : std::vector<float>{});
-        }
-        return rows;
-      },
-      [&](Rows& rows) {
-        for (std::size_t p = 0; p < rows.size(); ++p) {
-          if (!rows[p].empty()) all[p].append_row(std::span<const float>(rows[p]));
-        }
-      });
-  return all;
+/// What a fold found without its trials.
+struct FoldPatches {
+  Patch patch, placebo;
+  std::string names, placebo_name;
+};
+
+std::vector<std::size_t> all_but(const std::vector<std::size_t>& held_out, const std::vector<std::size_t>& all) {
+  std::vector<std::size_t> others;
+  std::ranges::set_difference(all, held_out, std::back_inserter(others));
+  return others;
 }
 
-/// What one trial's data look like: scaled features that the global test looks at.
-class TrialView {
+/// Finds effects again, step by step, with the given trials only.
+class FoldSearch {
  public:
-  TrialView(const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge, const stats::Matrix<float>& plain,
-            std::size_t trial)
-      : map_(frame, knowledge, plain, {trial}) {}
-  [[nodiscard]] bool empty() const { return map_.envelope_columns().empty(); }
-  [[nodiscard]] std::vector<double> look(std::span<const float> statistics) const {
-    const std::vector<float> features = map_.features(statistics);
-    std::vector<double> values;
-    for (const std::size_t column : map_.envelope_columns()) values.push_back(static_cast<double>(features[column]));
-    return values;
+  FoldSearch(std::span<const PutIn> steps, std::span<const std::string> rivals, const VerifySettings& settings)
+      : steps_(steps), settings_(settings) {
+    for (const PutIn& step : steps) families_.insert(effects::find(step.effect).info.family);
+    for (const std::string& rival : rivals) families_.insert(effects::find(rival).info.family);
   }
-  [[nodiscard]] stats::Matrix<double> look(const stats::Matrix<float>& datasets) const {
-    stats::Matrix<double> all;
-    for (std::size_t row = 0; row < std::min(datasets.rows(), most_members); ++row) {
-      all.append_row(std::span<const double>(look(datasets.row(row))));
+
+  [[nodiscard]] FoldPatches search(const std::vector<std::size_t>& trials) const {
+    FoldPatches found;
+    for (const PutIn& step : steps_) {
+      const Analyst analyst = analyst_of(step, trials);
+      const std::size_t best = analyst.likeliest(step.observed, [](std::size_t) { return true; });
+      if (best == 0) break;
+      if (found.patch.empty()) find_placebo(step, analyst, found);
+      found.patch.push_back(analyst.fit(best, step.observed).effect);
+      const std::string name = step.lab->table.entry_name(best);
+      found.names += (found.names.empty() ? "" : " + ") + name;
+      if (name != step.effect) break;  // the later tables are of another model
+    }
+    if (found.names.empty()) found.names = "nothing";
+    return found;
+  }
+
+ private:
+  [[nodiscard]] Analyst analyst_of(const PutIn& step, const std::vector<std::size_t>& trials) const {
+    return {step.lab->frame,
+            step.lab->knowledge,
+            step.lab->table,
+            trials,
+            {settings_.alpha, settings_.seed, settings_.threads, settings_.trees}};
+  }
+  void find_placebo(const PutIn& step, const Analyst& analyst, FoldPatches& found) const {
+    const ReferenceTable& table = step.lab->table;
+    const std::size_t other = analyst.likeliest(step.observed, [&](std::size_t entry) {
+      return !families_.contains(effects::find(table.entry_name(entry)).info.family);
+    });
+    if (other == 0) return;
+    found.placebo = {analyst.fit(other, step.observed).effect};
+    found.placebo_name = table.entry_name(other);
+  }
+
+  std::span<const PutIn> steps_;
+  VerifySettings settings_;
+  std::set<effects::Family> families_;
+};
+
+/// Datasets of the same worlds (n_worlds x n_statistics): of the plain model, and with each fold's patch or placebo in
+/// the trials that the fold holds out. Worlds in which people can't get about with a patch are left out.
+struct Ensembles {
+  stats::Matrix<float> before, after, placebo;
+};
+
+class Simulation {
+ public:
+  Simulation(const Laboratory& lab, const Folds& folds, const std::vector<FoldPatches>& found)
+      : lab_(lab), folds_(folds), found_(found) {}
+
+  [[nodiscard]] Ensembles run(const VerifySettings& settings) const {
+    using Rows = std::vector<std::vector<float>>;  // before, after, placebo
+    Ensembles all;
+    ordered_parallel<Rows>(
+        settings.n_worlds, settings.threads,
+        [&](std::size_t i) -> Rows {
+          const SimulatedWorld world(lab_.source, lab_.frame, first_verify_world + static_cast<std::uint32_t>(i),
+                                     lab_.shape.n_replicates);
+          const auto after = patched(world, &FoldPatches::patch), placebo = patched(world, &FoldPatches::placebo);
+          if (!after || !placebo) return {};
+          return {statistics_of(world.plain(0, lab_.shape.n_replicates)), statistics_of(*after),
+                  statistics_of(*placebo)};
+        },
+        [&](Rows& rows) {
+          if (rows.empty()) return;
+          all.before.append_row(std::span<const float>(rows[0]));
+          all.after.append_row(std::span<const float>(rows[1]));
+          all.placebo.append_row(std::span<const float>(rows[2]));
+        });
+    if (all.after.rows() < 2) {
+      throw Error(ErrorCode::infeasible, "reconcile: people can hardly get about in the patched model");
     }
     return all;
   }
 
  private:
-  FeatureMap map_;
+  [[nodiscard]] std::vector<float> statistics_of(const std::vector<Series>& runs) const {
+    return reconcile::statistics_of(lab_.frame, lab_.shape, lab_.table.profile, runs);
+  }
+  [[nodiscard]] std::optional<std::vector<Series>> patched(const SimulatedWorld& world,
+                                                           Patch FoldPatches::*which) const {
+    std::vector<Series> all;
+    for (std::size_t f = 0; f < folds_.size(); ++f) {
+      auto own = world.with_effects(found_[f].*which, 0, lab_.shape.n_replicates, folds_[f]);
+      if (!own) return std::nullopt;
+      std::ranges::move(*own, std::back_inserter(all));
+    }
+    return all;
+  }
+
+  const Laboratory& lab_;
+  const Folds& folds_;
+  const std::vector<FoldPatches>& found_;
 };
 
 /// Mean energy score of an ensemble's own members, each against the others.
 double own_score(const stats::Matrix<double>& ensemble) {
   double sum = 0.0;
-  constexpr std::size_t tried = 20;
-  const std::size_t n = std::min(tried, ensemble.rows());
+  const std::size_t n = std::min(most_own_scores, ensemble.rows());
   for (std::size_t i = 0; i < n; ++i) {
     std::vector<std::size_t> others;
     for (std::size_t row = 0; row < ensemble.rows(); ++row) {
@@ -101,117 +167,150 @@ void add_cells(const StudyFrame& frame, const stats::Matrix<float>& ensemble, st
   }
 }
 
-/// p of the global test over held-out trials, each foretold by the model of its fold.
-double global_p(const std::vector<stats::Matrix<double>>& ensembles, const std::vector<std::vector<double>>& observed,
-                std::uint64_t seed, unsigned threads) {
-  std::size_t n = most_members;
-  for (const auto& ensemble : ensembles) n = std::min(n, ensemble.rows());
-  stats::Matrix<double> joined;
-  for (std::size_t row = 0; row < n; ++row) {
-    std::vector<double> values;
-    for (const auto& ensemble : ensembles)
-      values.insert(values.end(), ensemble.row(row).begin(), ensemble.row(row).end());
-    joined.append_row(std::span<const double>(values));
-  }
-  std::vector<double> real;
-  for (const auto& values : observed) real.insert(real.end(), values.begin(), values.end());
-  return stats::global_envelope_test(
-             real, joined, {0.05, stats::PointwiseRank::continuous, stats::Alternative::two_sided, seed, threads})
-      .p;
-}
+/// Scores of the held-out trials, one after the other.
+class Judge {
+ public:
+  Judge(const PutIn& plain, const Ensembles& ensembles, const VerifySettings& settings)
+      : lab_(*plain.lab),
+        measured_(plain.observed),
+        ensembles_(ensembles),
+        settings_(settings),
+        scales_(lab_.table.statistics.select_rows(rows_of(lab_.table, 0, Part::training))) {}
 
-void finish(Gap& gap, std::size_t n_trials) {
-  gap.energy_score /= static_cast<double>(n_trials);
-  if (gap.n_cells > 0) gap.area_s /= static_cast<double>(gap.n_cells);
-}
+  void add_trial(std::size_t trial, Verification& result) {
+    const FeatureMap map(lab_.frame, lab_.knowledge, scales_, {trial});
+    if (map.envelope_columns().empty()) return;
+    const auto entries = [&](const stats::Matrix<float>& all) { return envelope_entries(map, all, settings_.threads); };
+    const std::vector<double> real = envelope_entries(map, measured_);
+    const stats::Matrix<double> after = entries(ensembles_.after);
+    const double score_before = stats::energy_score(entries(ensembles_.before), real);
+    const double score_after = stats::energy_score(after, real);
+    result.before.energy_score += score_before;
+    result.after.energy_score += score_after;
+    result.placebo += stats::energy_score(entries(ensembles_.placebo), real);
+    result.noise_floor += own_score(after);
+    drops_.push_back(score_before - score_after);
+    add_cells(lab_.frame, ensembles_.before, measured_, trial, result.before);
+    add_cells(lab_.frame, ensembles_.after, measured_, trial, result.after);
+  }
+
+  /// Means, intervals and tests over all trials that were added.
+  void sum_up(const std::vector<std::size_t>& held_out, Verification& result) const {
+    const auto n = static_cast<double>(drops_.size());
+    for (double* sum : {&result.before.energy_score, &result.after.energy_score, &result.placebo, &result.noise_floor})
+      *sum /= n;
+    for (Gap* gap : {&result.before, &result.after})
+      gap->area_s /= static_cast<double>(std::max<std::size_t>(1, gap->n_cells));
+    const FeatureMap map(lab_.frame, lab_.knowledge, scales_, held_out);
+    const auto p = [&](const stats::Matrix<float>& ensemble) {
+      return locate(lab_.frame, map, ensemble, measured_, {settings_.alpha, settings_.seed, settings_.threads}).p;
+    };
+    result.before.p = p(ensembles_.before);
+    result.after.p = p(ensembles_.after);
+    result.n_trials = drops_.size();
+    result.n_better = static_cast<std::size_t>(std::ranges::count_if(drops_, [](double d) { return d > 0.0; }));
+    const auto worse = std::ranges::count_if(drops_, [](double d) { return d < 0.0; });
+    result.sign_p = stats::sign_test_greater(result.n_better, static_cast<std::size_t>(worse));
+    const double closable = result.before.energy_score - result.noise_floor;
+    if (closable > 0.0) result.share_closed = (result.before.energy_score - result.after.energy_score) / closable;
+    if (drops_.size() > 1) result.gain = interval_of_gain();
+  }
+
+ private:
+  [[nodiscard]] stats::Interval interval_of_gain() const {
+    const auto mean = [&](std::span<const std::size_t> blocks) {
+      double sum = 0.0;
+      for (const std::size_t block : blocks) sum += drops_[block] / static_cast<double>(blocks.size());
+      return sum;
+    };
+    return stats::block_bootstrap(drops_.size(), mean,
+                                  {0.95, 2000, stats::BootstrapKind::bca, settings_.seed, settings_.threads});
+  }
+
+  const Laboratory& lab_;
+  std::span<const float> measured_;
+  const Ensembles& ensembles_;
+  const VerifySettings& settings_;
+  stats::Matrix<float> scales_;
+  std::vector<double> drops_;
+};
 
 }  // namespace
 
-std::vector<std::size_t> folds_of(std::string_view digest, std::size_t n_trials, std::size_t n_folds) {
+Folds folds_of(std::string_view digest, std::vector<std::size_t> trials, std::size_t n_folds) {
   std::uint64_t seed = 0;
   for (const char c : digest.substr(0, 16)) {
     seed = seed * 16 + static_cast<std::uint64_t>(c <= '9' ? c - '0' : c - 'a' + 10);
   }
   Stream stream({seed, 0, 0, Purpose::analysis});
-  std::vector<std::size_t> order(n_trials), folds(n_trials);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  for (std::size_t i = n_trials; i > 1; --i)
-    std::swap(order[i - 1], order[stream.index(static_cast<std::uint32_t>(i))]);
-  for (std::size_t i = 0; i < n_trials; ++i) folds[order[i]] = i % n_folds;
+  for (std::size_t i = trials.size(); i > 1; --i)
+    std::swap(trials[i - 1], trials[stream.index(static_cast<std::uint32_t>(i))]);
+  Folds folds(std::min(n_folds, trials.size()));
+  for (std::size_t i = 0; i < trials.size(); ++i) folds[i % folds.size()].push_back(trials[i]);
+  for (auto& fold : folds) std::ranges::sort(fold);
   return folds;
 }
 
-Verification verify(const WorldSource& source, const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge,
-                    const DataShape& shape, const ReferenceTable& table, std::span<const float> measured,
-                    const Outcome& outcome, const VerifySettings& settings) {
-  Verification result;
-  const std::size_t n_trials = frame.trials.size();
-  if (n_trials < 2) return result;  // nothing can be held out
-  result.n_folds = std::min(settings.n_folds, n_trials);
-  const std::vector<std::size_t> fold_of = folds_of(settings.digest, n_trials, result.n_folds);
-  const auto family = [&](std::size_t entry) { return effects::find(table.effects[entry - 1]).info.family; };
-  const effects::Family named_family = effects::find(outcome.named.front()).info.family;
-
-  std::vector<Patch> patches{{}};  // the plain model, then patch and placebo of every fold
-  for (std::size_t f = 0; f < result.n_folds; ++f) {
-    std::vector<std::size_t> trials;
-    for (std::size_t t = 0; t < n_trials; ++t) {
-      if (fold_of[t] != f) trials.push_back(t);
+std::vector<std::size_t> holdout_of(const std::string& asked, const StudyFrame& frame, std::string_view digest) {
+  if (asked.empty()) return {};
+  constexpr std::size_t fewest = 2;
+  std::vector<std::size_t> trials;
+  double share = 0.0;
+  const auto [end, fault] = std::from_chars(asked.data(), asked.data() + asked.size(), share);
+  if (fault == std::errc() && end == asked.data() + asked.size() && share > 0.0 && share < 1.0) {
+    const auto n = static_cast<std::size_t>(std::lround(share * static_cast<double>(frame.trials.size())));
+    for (const auto& fold : folds_of(digest, all_trials(frame), frame.trials.size())) {
+      if (trials.size() < std::max(n, fewest)) trials.push_back(fold.front());
     }
-    const Analyst analyst(frame, knowledge, table, trials,
-                          {settings.alpha, settings.seed, settings.threads, settings.trees});
-    const std::size_t best = analyst.likeliest(measured, [](std::size_t) { return true; });
-    const std::size_t other = analyst.likeliest(measured, [&](std::size_t e) { return family(e) != named_family; });
-    result.names.push_back(table.entry_name(best));
-    patches.push_back(best == 0 ? Patch{} : Patch{analyst.fit(best, measured).effect});
-    patches.push_back(other == 0 ? Patch{} : Patch{analyst.fit(other, measured).effect});
-    if (f == 0 && other != 0) result.placebo_effect = table.entry_name(other);
+  } else {
+    std::istringstream names(asked);
+    for (std::string name; std::getline(names, name, ',');) {
+      const auto known = std::ranges::find(frame.trials, name);
+      if (known == frame.trials.end()) {
+        throw Error(ErrorCode::usage, "--holdout: '" + name +
+                                          "' is neither a trial of the study nor a share between 0 " + "and 1" +
+                                          did_you_mean(name, frame.trials));
+      }
+      trials.push_back(static_cast<std::size_t>(known - frame.trials.begin()));
+    }
   }
-  const auto ensembles = simulate(source, frame, shape, table.profile, patches, settings);
+  std::ranges::sort(trials);
+  const auto twice = std::ranges::unique(trials);
+  trials.erase(twice.begin(), twice.end());
+  if (trials.size() < fewest || trials.size() + fewest > frame.trials.size()) {
+    throw Error(ErrorCode::usage, "--holdout: of " + std::to_string(frame.trials.size()) + " trials, " +
+                                      std::to_string(trials.size()) + " would be held out; two or more must be, and " +
+                                      "two or more left");
+  }
+  return trials;
+}
 
-  std::vector<double> drops;
-  std::vector<stats::Matrix<double>> seen_before, seen_after;
-  std::vector<std::vector<double>> seen_real;
-  const stats::Matrix<float> plain = table.statistics.select_rows(rows_of(table, 0, Part::training));
-  for (std::size_t t = 0; t < n_trials; ++t) {
-    const TrialView view(frame, knowledge, plain, t);
-    if (view.empty()) continue;
-    const auto& after = ensembles[1 + 2 * fold_of[t]];
-    const auto& placebo = ensembles[2 + 2 * fold_of[t]];
-    const std::vector<double> real = view.look(measured);
-    seen_before.push_back(view.look(ensembles[0]));
-    seen_after.push_back(view.look(after));
-    seen_real.push_back(real);
-    const double score_before = stats::energy_score(seen_before.back(), real);
-    const double score_after = stats::energy_score(seen_after.back(), real);
-    result.before.energy_score += score_before;
-    result.after.energy_score += score_after;
-    result.placebo += stats::energy_score(view.look(placebo), real);
-    result.noise_floor += own_score(seen_after.back());
-    drops.push_back(score_before - score_after);
-    add_cells(frame, ensembles[0], measured, t, result.before);
-    add_cells(frame, after, measured, t, result.after);
+Verification verify(std::span<const PutIn> steps, std::span<const std::string> rivals, const Folds& folds,
+                    const VerifySettings& settings) {
+  Verification result;
+  result.n_folds = folds.size();
+  const PutIn& plain = steps.front();
+  const FoldSearch search(steps, rivals, settings);
+  const std::vector<std::size_t> all = all_trials(plain.lab->frame);
+  std::vector<FoldPatches> found;
+  std::vector<std::size_t> held_out;
+  for (const auto& fold : folds) {
+    found.push_back(search.search(all_but(fold, all)));
+    result.names.push_back(found.back().names);
+    result.patches.push_back(found.back().patch);
+    if (result.placebo_effect.empty()) result.placebo_effect = found.back().placebo_name;
+    held_out.insert(held_out.end(), fold.begin(), fold.end());
   }
-  finish(result.before, drops.size());
-  finish(result.after, drops.size());
-  result.placebo /= static_cast<double>(drops.size());
-  result.noise_floor /= static_cast<double>(drops.size());
-  result.before.p = global_p(seen_before, seen_real, settings.seed, settings.threads);
-  result.after.p = global_p(seen_after, seen_real, settings.seed, settings.threads);
-  if (drops.size() > 1) {
-    result.gain = stats::block_bootstrap(drops.size(),
-                                         [&](std::span<const std::size_t> blocks) {
-                                           double sum = 0.0;
-                                           for (const std::size_t block : blocks)
-                                             sum += drops[block] / static_cast<double>(blocks.size());
-                                           return sum;
-                                         },
-                                         {0.95, 2000, stats::BootstrapKind::bca, settings.seed, settings.threads});
-  }
-  const double closable = result.before.energy_score - result.noise_floor;
-  if (closable > 0.0) result.share_closed = (result.before.energy_score - result.after.energy_score) / closable;
-  result.shrunk = result.gain.low > 0.0 && result.placebo > result.after.energy_score;
-  result.closed = result.shrunk && result.after.p > settings.alpha;
+  std::ranges::sort(held_out);
+  const Ensembles ensembles = Simulation(*plain.lab, folds, found).run(settings);
+  Judge judge(plain, ensembles, settings);
+  for (const std::size_t trial : held_out) judge.add_trial(trial, result);
+  judge.sum_up(held_out, result);
+  const bool enough_signs =
+      plain.lab->shape.kind == Measured::Kind::series || result.sign_p <= sign_level;  // sums tell little a trial
+  result.shrunk = result.gain.low > 0.0 && result.placebo > result.after.energy_score && enough_signs;
+  result.refused = result.before.p <= settings.alpha;
+  result.closed = result.shrunk && result.refused && result.after.p > settings.alpha;
   return result;
 }
 

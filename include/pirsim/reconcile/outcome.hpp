@@ -9,6 +9,7 @@
 #include "pirsim/reconcile/fit.hpp"
 #include "pirsim/reconcile/locate.hpp"
 #include "pirsim/reconcile/name.hpp"
+#include "pirsim/reconcile/residuals.hpp"
 #include "pirsim/reconcile/verify.hpp"
 #include "pirsim/stats/decision.hpp"
 
@@ -25,6 +26,13 @@ struct Candidate {
   std::string reason;  ///< why it was kept or dropped, as a sentence
 };
 
+/// A look at the measured data with some effects put into the model.
+struct Look {
+  std::vector<std::string> put_in;
+  double level = 0.05;  ///< of the global test; halved with every effect
+  double p = 1.0;       ///< of the global test
+};
+
 struct Outcome {
   Verdict verdict = Verdict::no_disagreement;
   std::string sentence;  ///< the verdict for a reader
@@ -34,7 +42,9 @@ struct Outcome {
   std::vector<std::string> named;     ///< effects put into the model, or those that can't be told apart; of `one_of`
                                       ///< the plain model is one more if nothing.p exceeds the level
   std::vector<FittedEffect> fits;     ///< of the effects that were put in
+  std::vector<Look> looks;            ///< with the effects put in, one after the other
   std::optional<Verification> verification;
+  std::optional<Residuals> residuals;  ///< if nothing fits and the data are series
   std::vector<std::string> telling_features;
   double calibration_error = 0.0;
   std::string table_key;

@@ -24,6 +24,7 @@ struct Settings {
   std::filesystem::path table_folder;  ///< empty: the table is not kept
   std::size_t trees = 300;
   std::uint32_t verify_worlds = 100;  ///< simulated with each patched model
+  std::vector<std::size_t> holdout;   ///< trials (ascending) kept from naming and fitting, to be judged on; none: folds
 };
 
 /// What a caller may tell its user while it waits.

@@ -37,15 +37,16 @@ class SimulatedWorld {
   [[nodiscard]] const World& world() const noexcept { return world_; }
   /// The model as it is: runs first + 1 to first + n of every trial, numbered from 1.
   [[nodiscard]] std::vector<Series> plain(int first, int n) const { return with({}, first, n); }
-  /// With more effects, in the same world: bit for bit what a study with all of them gives. None if people can't get
-  /// about in it.
-  [[nodiscard]] std::optional<std::vector<Series>> with_effects(std::span<const EffectSpec> more, int first,
-                                                                int n) const;
+  /// With more effects, in the same world: bit for bit what a study with all of them gives, of these trials (none
+  /// given: all). None if people can't get about in it.
+  [[nodiscard]] std::optional<std::vector<Series>> with_effects(std::span<const EffectSpec> more, int first, int n,
+                                                                std::span<const std::size_t> trials = {}) const;
 
  private:
   struct Traced;
   [[nodiscard]] std::vector<Series> with(std::span<const EffectSpec> more, int first, int n) const;
-  [[nodiscard]] std::vector<Series> anew(std::span<const EffectSpec> more, int n) const;
+  [[nodiscard]] std::vector<Series> anew(std::span<const EffectSpec> more, int n,
+                                         std::span<const std::size_t> trials) const;
 
   const StudyFrame* frame_;
   World world_;

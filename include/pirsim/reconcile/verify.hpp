@@ -3,26 +3,26 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "pirsim/reconcile/feature_map.hpp"
-#include "pirsim/reconcile/reference_table.hpp"
-#include "pirsim/reconcile/simulated_world.hpp"
-#include "pirsim/reconcile/statistics.hpp"
+#include "pirsim/schema/effect_spec.hpp"
 #include "pirsim/stats/intervals.hpp"
 
 namespace pirsim::reconcile {
 
+struct Laboratory;
+struct StudyFrame;
+
 /// How far a model lies from data, summed up over held-out trials.
 struct Gap {
-  double energy_score = 0.0;      ///< of the cells' scaled seconds, mean over trials
+  double energy_score = 0.0;      ///< of what the global test looks at in one trial, mean over trials
   double area_s = 0.0;            ///< mean absolute difference of measured and simulated seconds, mean over cells
   std::size_t cells_outside = 0;  ///< of the model's 95 % band
   std::size_t n_cells = 0;
-  double p = 1.0;  ///< of the global test on the held-out trials
+  double p = 1.0;  ///< of the global test on the held-out trials together
 };
 
 struct Verification {
@@ -31,32 +31,49 @@ struct Verification {
   double noise_floor = 0.0;        ///< energy score of the patched model's own datasets
   stats::Interval gain;            ///< 95 % of the mean drop in energy score per trial, over trials
   double share_closed = 0.0;       ///< (before - after) / (before - noise floor)
+  std::size_t n_trials = 0;        ///< held out and measured
+  std::size_t n_better = 0;        ///< of them, foretold better by the patched model
+  double sign_p = 1.0;             ///< that so many are better by chance
   double placebo = 0.0;            ///< energy score after the best effect of another family, or 0 without one
   std::string placebo_effect;      ///< its name
-  std::vector<std::string> names;  ///< what each fold found, or "nothing"
-  bool shrunk = false;             ///< the interval excludes 0 and the placebo does less
-  bool closed = false;             ///< and the patched model passes the global test on the held-out trials
+  std::vector<std::string> names;  ///< what each fold found, effects joined by " + "
+  std::vector<std::vector<EffectSpec>> patches;  ///< with the parameters that each fold's other trials gave
+  bool shrunk = false;   ///< the interval excludes 0 and the placebo does less; of sums, sign_p <= 0.05 too
+  bool refused = false;  ///< the plain model fails the global test on the held-out trials
+  bool closed = false;   ///< shrunk, the plain model is refused there and the patched one is not
 };
 
 struct VerifySettings {
-  std::string digest;  ///< of the data: fixes the folds before anything is named
   double alpha = 0.05;
   std::uint64_t seed = 0;
   unsigned threads = 0;
   std::uint32_t n_worlds = 100;  ///< simulated with each patched model
-  std::size_t n_folds = 5;
   std::size_t trees = 100;
 };
 
-struct Outcome;
+/// One effect put into the model: where it was found, and by which data.
+struct PutIn {
+  const Laboratory* lab = nullptr;  ///< of the model with all effects before this one
+  std::span<const float> observed;  ///< statistics of the measured data in that laboratory
+  std::string effect;
+};
 
-/// Naming and fitting are repeated in every fold without its trials, and judged on them.
-[[nodiscard]] Verification verify(const WorldSource& source, const StudyFrame& frame,
-                                  const std::vector<CellKnowledge>& knowledge, const DataShape& shape,
-                                  const ReferenceTable& table, std::span<const float> measured, const Outcome& outcome,
+/// Trials (indices, ascending) that are held out together; those of no fold are never judged.
+using Folds = std::vector<std::vector<std::size_t>>;
+
+/// Naming and fitting are repeated in every fold without its trials, step by step, and all effects together are judged
+/// on them against the plain model, that of the first step. What is not repeated is the simulation of the later steps'
+/// tables: they hold the earlier effects as all trials gave them. A fold that finds another effect than was put in
+/// stops there. `rivals`: effects that explain the data as well; none of their families is taken for a placebo.
+[[nodiscard]] Verification verify(std::span<const PutIn> steps, std::span<const std::string> rivals, const Folds& folds,
                                   const VerifySettings& settings);
 
-/// Which fold each trial is held out in (n_trials), from the digest alone.
-[[nodiscard]] std::vector<std::size_t> folds_of(std::string_view digest, std::size_t n_trials, std::size_t n_folds);
+/// Folds of about the same size over the given trials, from the data's digest alone: fixed before anything is named.
+[[nodiscard]] Folds folds_of(std::string_view digest, std::vector<std::size_t> trials, std::size_t n_folds);
+
+/// Which trials (ascending) `asked` means: a share of them, "0.3", drawn by the data's digest, or names, "S3,S8";
+/// empty: none. Throws Error(usage): an unknown trial, or fewer than two trials held out or left.
+[[nodiscard]] std::vector<std::size_t> holdout_of(const std::string& asked, const StudyFrame& frame,
+                                                  std::string_view digest);
 
 }  // namespace pirsim::reconcile

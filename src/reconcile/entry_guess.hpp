@@ -1,0 +1,40 @@
+// What the datasets of one entry of the table say about its parameters.
+#pragma once
+
+#include <vector>
+
+#include "pirsim/effects/catalogue.hpp"
+#include "pirsim/reconcile/feature_map.hpp"
+#include "pirsim/reconcile/reference_table.hpp"
+#include "pirsim/stats/posterior.hpp"
+
+namespace pirsim::reconcile {
+
+/// Parameters are guessed on the scale on which their prior is flat.
+[[nodiscard]] double to_flat(const effects::ParameterInfo& info, double value);
+/// Whole where it must be, and within what is accepted.
+[[nodiscard]] double from_flat(const effects::ParameterInfo& info, double value);
+
+/// A linear guess of the parameters that vary, learnt from the training datasets and made of the held-back ones, whose
+/// guesses err as that of measured data does.
+class EntryGuess {
+ public:
+  /// features of the map over all datasets of the entry; entry: 1 or more.
+  EntryGuess(const ReferenceTable& table, const FeatureMap& map, std::size_t entry, unsigned threads);
+
+  [[nodiscard]] const std::vector<const effects::ParameterInfo*>& infos() const noexcept { return infos_; }
+  [[nodiscard]] std::vector<stats::Interval> bounds() const;
+  /// (n_parameters) of a dataset's features, flat.
+  [[nodiscard]] std::vector<double> of(std::span<const float> features) const;
+  [[nodiscard]] const stats::Matrix<double>& parameters() const noexcept {
+    return parameters_;
+  }                                                                                         ///< (n x n_parameters)
+  [[nodiscard]] const stats::Matrix<double>& guesses() const noexcept { return guesses_; }  ///< (n x n_parameters)
+
+ private:
+  std::vector<const effects::ParameterInfo*> infos_;
+  stats::ParameterGuess guess_;
+  stats::Matrix<double> parameters_, guesses_;  ///< of the held-back datasets
+};
+
+}  // namespace pirsim::reconcile

@@ -1,0 +1,240 @@
+#include "reconcile/loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pirsim/core/digest.hpp"
+#include "pirsim/core/parallel.hpp"
+#include "pirsim/io/script_reader.hpp"
+#include "reconcile/sentences.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+constexpr std::uint32_t first_check_world = 1U << 23U;  ///< worlds that no table has seen
+constexpr int datasets_per_world = 4;                   ///< where zones are remembered
+constexpr std::size_t n_folds = 5;
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : " + ") + name;
+  return text;
+}
+
+/// The i-th n runs of every trial, numbered from 1.
+std::vector<Series> part_of(const std::vector<Series>& runs, int i, int n) {
+  std::vector<Series> part;
+  for (const Series& run : runs) {
+    if (run.replicate <= i * n || run.replicate > (i + 1) * n) continue;
+    part.push_back(run);
+    part.back().replicate -= i * n;
+  }
+  return part;
+}
+
+/// Statistics of datasets of the model with a patch, in worlds of their own.
+stats::Matrix<float> simulate(const Laboratory& lab, const std::vector<EffectSpec>& patch, std::uint32_t n_worlds,
+                              unsigned threads) {
+  const int n = lab.shape.n_replicates, per_world = acts_on_remembered_zones(patch) ? datasets_per_world : 1;
+  using Rows = std::vector<std::vector<float>>;
+  stats::Matrix<float> all;
+  ordered_parallel<Rows>(
+      n_worlds, threads,
+      [&](std::size_t i) {
+        const SimulatedWorld world(lab.source, lab.frame, first_check_world + static_cast<std::uint32_t>(i),
+                                   n * per_world);
+        const auto data = world.with_effects(patch, 0, n * per_world);
+        Rows rows;
+        for (int d = 0; data && d < per_world; ++d)
+          rows.push_back(statistics_of(lab.frame, lab.shape, lab.table.profile, part_of(*data, d, n)));
+        return rows;
+      },
+      [&](const Rows& rows) {
+        for (const auto& row : rows) all.append_row(std::span<const float>(row));
+      });
+  return all;
+}
+
+std::vector<std::size_t> measured_trials(const Laboratory& lab) {
+  std::vector<std::size_t> trials;
+  const std::size_t n_sensors = lab.frame.sensors.size();
+  for (std::size_t t = 0; t < lab.frame.trials.size(); ++t) {
+    const auto cells = std::span(lab.shape.known_cells).subspan(t * n_sensors, n_sensors);
+    if (std::ranges::any_of(cells, [](std::uint8_t known) { return known != 0; })) trials.push_back(t);
+  }
+  return trials;
+}
+
+}  // namespace
+
+Outcome Loop::run() {
+  const Step& first = look(settings_, settings_.alpha);
+  outcome_ = first.outcome;
+  tell_first(first);
+  const bool named = outcome_.verdict == Verdict::named;
+  const bool worth_a_try = outcome_.verdict == Verdict::none_in_catalogue && settings_.max_effects > 1;
+  if (named || worth_a_try) {
+    put_in_.push_back(named ? outcome_.fits.front() : first.best);
+    put_in_more();
+    conclude();
+  }
+  if (outcome_.verdict == Verdict::none_in_catalogue) explain();
+  verify_effects();
+  return std::move(outcome_);
+}
+
+void Loop::explain() {
+  if (measured_.kind != Measured::Kind::series) {
+    outcome_.trail.push_back("sums don't tell when motion was seen: the residuals are not looked into");
+    return;
+  }
+  begin("what the residuals follow");
+  outcome_.residuals =
+      explain_residuals(steps_.front().lab, measured_, outcome_.candidates, {settings_.alpha, settings_.threads});
+  outcome_.sentence += " " + outcome_.residuals->sentence;
+  outcome_.trail.push_back("residuals: " + outcome_.residuals->sentence);
+}
+
+const Loop::Step& Loop::look(const Settings& settings, double level) {
+  ScriptSpec script = script_;
+  for (const FittedEffect& effect : put_in_) script.effects.push_back(effect.effect);
+  Step& step = steps_.emplace_back();
+  step.lab = make_laboratory(
+      scene_, script, settings,
+      [&](const StudyFrame& frame, std::span<const Series> pilot) { return shape_of(frame, measured_, pilot); },
+      observer_);
+  step.observed = statistics_of(step.lab.frame, step.lab.shape, step.lab.table.profile, measured_);
+  begin("where they differ, and which effects can have made the data");
+  const Analyst analyst(step.lab.frame, step.lab.knowledge, step.lab.table, training_trials(),
+                        {level, settings_.seed, settings_.threads, settings_.trees});
+  step.outcome = analyst.analyse(step.observed);
+  step.likeliest = analyst.likeliest(step.observed, [](std::size_t) { return true; });
+  if (step.likeliest > 0) step.best = analyst.fit(step.likeliest, step.observed);
+  return step;
+}
+
+void Loop::tell_first(const Step& first) {
+  const Laboratory& lab = first.lab;
+  std::vector<std::string> trail{"data " + measured_.digest + ", analysis seed " + std::to_string(settings_.seed)};
+  for (const std::string& note : measured_.notes) trail.push_back("data: " + note);
+  std::string held_out;
+  for (const std::size_t trial : settings_.holdout) held_out += " " + lab.frame.trials[trial];
+  if (!held_out.empty()) trail.push_back("held out from naming and fitting:" + held_out);
+  trail.push_back("table " + lab.key + ": " + std::to_string(lab.table.rows.size()) + " datasets, " +
+                  std::to_string(lab.table.n_left_out) + " left out because people couldn't get about");
+  outcome_.trail.insert(outcome_.trail.begin(), trail.begin(), trail.end());
+  outcome_.table_key = lab.key;
+}
+
+/// Fewer datasets: what is left to be found is found in a third of them. Kept beside the first table.
+Settings Loop::with_all(double level) const {
+  Settings settings = settings_;
+  const auto third = [](std::uint32_t n) { return std::max(fewest_datasets_to_refuse, n / 3); };
+  settings.alpha = level;
+  settings.table.n_worlds = third(settings.table.n_worlds);
+  settings.table.n_remembered = third(settings.table.n_remembered);
+  settings.table.n_traced = third(settings.table.n_traced);
+  if (settings.table_folder.empty()) return settings;
+  ScriptSpec only;  // other data give another strength, and so another table
+  only.effects = patch();
+  settings.table_folder += "_with";
+  for (const FittedEffect& effect : put_in_) settings.table_folder += "_" + effect.effect.name;
+  settings.table_folder += "_" + sha256(io::to_yaml(only)).substr(0, 8);
+  return settings;
+}
+
+void Loop::put_in_more() {
+  for (;;) {
+    const double level = settings_.alpha * std::pow(0.5, static_cast<double>(put_in_.size()));
+    const double p = p_with_all();
+    passes_ = p > level;
+    outcome_.looks.push_back({names(), level, p});
+    outcome_.trail.push_back("with " + joined(names()) + " put in, at level " + short_number(level) + ": p " +
+                             short_number(p));
+    if (passes_ || static_cast<int>(put_in_.size()) >= settings_.max_effects) return;
+    const std::size_t n_asked = settings_.table.entries.size();  // 0: the whole catalogue
+    if (n_asked != 0 && put_in_.size() >= n_asked) return;
+    begin("what is missing beside " + joined(names()));
+    const Step& more = look(with_all(level), level);
+    outcome_.trail.push_back("looked for more: " + std::string(name(more.outcome.verdict)));
+    if (more.outcome.verdict != Verdict::named) return;
+    put_in_.push_back(more.outcome.fits.front());
+  }
+}
+
+/// One effect that was named stands; that two or more together made the data is said if the first of them was named by
+/// itself, or if the model with all of them passes.
+void Loop::conclude() {
+  if (put_in_.size() > 1 && (passes_ || outcome_.verdict == Verdict::named)) {
+    outcome_.verdict = Verdict::several;
+    outcome_.named = names();
+    outcome_.fits = put_in_;
+  } else if (outcome_.verdict == Verdict::none_in_catalogue) {
+    put_in_.clear();
+  }
+  outcome_.sentence = verdict_sentence(outcome_, settings_.alpha);
+  if (!passes_ && !put_in_.empty()) {
+    outcome_.sentence += " That is not all: the model with " + joined(names()) +
+                         " put in still differs from the data (p = " + short_number(outcome_.looks.back().p) + ").";
+  }
+}
+
+void Loop::verify_effects() {
+  if (outcome_.named.empty()) return;
+  const bool one_of = outcome_.verdict == Verdict::one_of;
+  std::vector<PutIn> steps;
+  const std::size_t n = one_of ? 1 : put_in_.size();
+  for (std::size_t i = 0; i < n; ++i)
+    steps.push_back({&steps_[i].lab, steps_[i].observed, one_of ? outcome_.named.front() : put_in_[i].effect.name});
+  const Laboratory& lab = steps_.front().lab;
+  const std::vector<std::size_t> trials = measured_trials(lab);
+  if (trials.size() < 2) {
+    outcome_.trail.push_back("one trial only: nothing can be held out");
+    return;
+  }
+  begin("does it help on held-out trials");
+  const bool sums = lab.shape.kind == Measured::Kind::sums;
+  const Folds folds = settings_.holdout.empty() ? folds_of(measured_.digest, trials, sums ? trials.size() : n_folds)
+                                                : Folds{settings_.holdout};
+  outcome_.verification = verify(steps, outcome_.named, folds,
+                                 {settings_.alpha, settings_.seed, settings_.threads, settings_.verify_worlds});
+  const Verification& v = *outcome_.verification;
+  outcome_.trail.push_back("held-out trials: energy score " + short_number(v.before.energy_score) + " before, " +
+                           short_number(v.after.energy_score) + " after, " + std::to_string(v.n_better) + " of " +
+                           std::to_string(v.n_trials) + " trials better; global test p " + short_number(v.before.p) +
+                           " before, " + short_number(v.after.p) + " after");
+  if (!v.refused)
+    outcome_.trail.push_back("the held-out trials alone don't refuse the plain model: too weak to call the gap closed");
+}
+
+double Loop::p_with_all() {
+  begin("does the model with " + joined(names()) + " put in pass");
+  const Step& plain = steps_.front();
+  const stats::Matrix<float> datasets =
+      simulate(plain.lab, patch(), std::max(settings_.verify_worlds, 20U), settings_.threads);
+  if (datasets.rows() < 2) return 0.0;
+  const FeatureMap map(plain.lab.frame, plain.lab.knowledge,
+                       plain.lab.table.statistics.select_rows(rows_of(plain.lab.table, 0, Part::training)),
+                       training_trials());
+  return locate(plain.lab.frame, map, datasets, plain.observed, {settings_.alpha, settings_.seed, settings_.threads}).p;
+}
+
+std::vector<std::string> Loop::names() const {
+  std::vector<std::string> all;
+  for (const FittedEffect& effect : put_in_) all.push_back(effect.effect.name);
+  return all;
+}
+
+std::vector<EffectSpec> Loop::patch() const {
+  std::vector<EffectSpec> all;
+  for (const FittedEffect& effect : put_in_) all.push_back(effect.effect);
+  return all;
+}
+
+std::vector<std::size_t> Loop::training_trials() const {
+  std::vector<std::size_t> trials;
+  std::ranges::set_difference(all_trials(steps_.front().lab.frame), settings_.holdout, std::back_inserter(trials));
+  return trials;
+}
+
+}  // namespace pirsim::reconcile

@@ -1,0 +1,172 @@
+// Held-out trials: what is fitted must not see them, and what is said about them must be earned.
+#include "pirsim/reconcile/verify.hpp"
+
+#include <algorithm>
+
+#include "pirsim/core/digest.hpp"
+#include "pirsim/core/random.hpp"
+#include "pirsim/reconcile/analyst.hpp"
+#include "pirsim/reconcile/reconcile.hpp"
+#include "support/catch.hpp"
+#include "support/short_study.hpp"
+
+using namespace pirsim;
+using namespace pirsim::reconcile;
+
+namespace {
+
+const EffectSpec false_triggers{"false_triggers", {{"rate_per_s", 0.05}}, {}, {}};
+const EffectSpec stretching{"pulse_stretching", {{"hold_s", 2.5}, {"spread", 0.0}}, {}, {}};
+const VerifySettings quick{0.05, 1, 0, 40, 40};
+
+Laboratory make(const std::vector<EffectSpec>& already, Measured::Kind kind) {
+  ScriptSpec script = test::short_study({"S1", "S2", "S4", "S6", "S8", "S10"}, 60.0);
+  script.effects = already;
+  Settings settings;
+  settings.table = {110, 110, 110, 0, {"false_triggers", "missed_triggers", "pulse_stretching"}};
+  return make_laboratory(
+      test::shipped_scene("meeting_room.gltf"), script, settings,
+      [&](const StudyFrame& frame, std::span<const Series> pilot) { return full_shape(frame, kind, 1, pilot); });
+}
+const Laboratory& plain_lab() {
+  static const Laboratory lab = make({}, Measured::Kind::series);
+  return lab;
+}
+
+/// The same data seen by any of the laboratories.
+std::vector<float> planted(const Laboratory& lab, std::uint32_t world, const std::vector<EffectSpec>& effects) {
+  const SimulatedWorld fresh(plain_lab().source, plain_lab().frame, 500000 + world, 1);
+  return statistics_of(lab.frame, lab.shape, lab.table.profile, *fresh.with_effects(effects, 0, 1));
+}
+Folds three_folds(const Laboratory& lab) { return folds_of(sha256("data"), all_trials(lab.frame), 3); }
+
+bool same(const std::vector<EffectSpec>& a, const std::vector<EffectSpec>& b) {
+  return std::ranges::equal(a, b, [](const EffectSpec& x, const EffectSpec& y) {
+    return x.name == y.name && x.parameters == y.parameters && x.choices == y.choices;
+  });
+}
+
+Laboratory shuffled(Laboratory lab) {
+  Stream stream({5, 0, 0, Purpose::test});
+  std::vector<TableRow>& rows = lab.table.rows;
+  for (std::size_t i = rows.size(); i > 1; --i) {
+    TableRow &a = rows[i - 1], &b = rows[stream.index(static_cast<std::uint32_t>(i))];
+    std::swap(a.entry, b.entry);
+    std::swap(a.effects, b.effects);
+  }
+  return lab;
+}
+
+}  // namespace
+
+TEST_CASE("a fold names and fits without its own trials", "[reconcile]") {
+  const Laboratory& lab = plain_lab();
+  std::vector<float> data = planted(lab, 1, {false_triggers});
+  const Folds folds = three_folds(lab);
+  const auto run = [&] { return verify(std::vector<PutIn>{{&lab, data, "false_triggers"}}, {}, folds, quick); };
+  const Verification before = run();
+  for (const std::size_t trial : folds[1]) {
+    for (std::size_t i = 0; i < lab.frame.sensors.size() * n_cell_statistics; ++i)
+      data[trial * lab.frame.sensors.size() * n_cell_statistics + i] *= 1.5F;
+    for (std::size_t i = 0; i < n_trial_statistics; ++i)
+      data[trial_index(lab.frame, trial, static_cast<TrialStatistic>(i))] *= 1.5F;
+  }
+  const Verification after = run();
+  CHECK(same(before.patches[1], after.patches[1]));
+  CHECK(before.names[1] == after.names[1]);
+  CHECK_FALSE(same(before.patches[0], after.patches[0]));  // which trains on the changed trials
+  CHECK_FALSE(same(before.patches[2], after.patches[2]));
+  CHECK(before.before.energy_score != after.before.energy_score);
+}
+
+TEST_CASE("with the planted effect held-out trials are foretold and with shuffled labels they are not", "[reconcile]") {
+  const Laboratory& lab = plain_lab();
+  const Laboratory confused = shuffled(lab);
+  double honest_share = 0.0, confused_share = 0.0;
+  for (std::uint32_t world = 10; world < 13; ++world) {
+    const std::vector<float> data = planted(lab, world, {false_triggers});
+    const Verification good = verify(std::vector<PutIn>{{&lab, data, "false_triggers"}}, {}, three_folds(lab), quick);
+    CHECK(good.shrunk);
+    CHECK(good.refused);
+    CHECK(good.n_trials == 6);
+    CHECK(good.n_better >= 5);
+    honest_share += good.share_closed / 3.0;
+    confused_share +=
+        verify(std::vector<PutIn>{{&confused, data, "false_triggers"}}, {}, three_folds(lab), quick).share_closed / 3.0;
+  }
+  CHECK(honest_share > 0.75);
+  CHECK(confused_share < 0.5);
+}
+
+TEST_CASE("nothing is closed where nothing was open", "[reconcile]") {
+  // The plain model is refused on its own data with a chance of 5 %: two of four or more with one of 1.4 %.
+  int refused = 0;
+  for (std::uint32_t world = 20; world < 24; ++world) {
+    const Laboratory& lab = plain_lab();
+    const std::vector<float> data = planted(lab, world, {});
+    const Verification v = verify(std::vector<PutIn>{{&lab, data, "false_triggers"}}, {}, three_folds(lab), quick);
+    CHECK((v.refused || !v.closed));
+    refused += v.refused ? 1 : 0;
+  }
+  CHECK(refused <= 1);
+}
+
+TEST_CASE("two effects are judged together and close more than one of them", "[reconcile]") {
+  const std::vector<EffectSpec> both{false_triggers, stretching};
+  const std::vector<float> data = planted(plain_lab(), 30, both);
+  const Analyst analyst(plain_lab().frame, plain_lab().knowledge, plain_lab().table, all_trials(plain_lab().frame),
+                        {0.05, 1, 0, 40});
+  const FittedEffect likeliest = analyst.fit(analyst.likeliest(data, [](std::size_t) { return true; }), data);
+  const std::string name = likeliest.effect.name,
+                    rest = name == "false_triggers" ? "pulse_stretching" : "false_triggers";
+  REQUIRE((name == "false_triggers" || name == "pulse_stretching"));
+  const Laboratory second = make({likeliest.effect}, Measured::Kind::series);
+  CHECK(second.table.n_entries() == 3);  // nothing and the two that are not in the model yet
+  const std::vector<float> again = planted(second, 30, both);
+  const PutIn first{&plain_lab(), data, name}, then{&second, again, rest};
+  const Folds folds = three_folds(plain_lab());
+  const Verification together = verify(std::vector<PutIn>{first, then}, {}, folds, quick);
+  const Verification alone = verify(std::vector<PutIn>{first}, {}, folds, quick);
+  CHECK(together.before.energy_score == alone.before.energy_score);  // the plain model's, in both
+  std::size_t found_again = 0;
+  for (std::size_t fold = 0; fold < folds.size(); ++fold) {
+    const bool same_first = alone.names[fold] == name;  // a fold that finds another effect first ends there
+    found_again += same_first ? 1 : 0;
+    CHECK(together.patches[fold].size() == (same_first ? 2 : 1));
+    CHECK_THAT(together.names[fold], contains(alone.names[fold]));
+  }
+  REQUIRE(found_again > 0);
+  CHECK(together.after.energy_score < alone.after.energy_score);
+  CHECK(together.share_closed > alone.share_closed);
+}
+
+TEST_CASE("of sums nearly all seats must be better", "[reconcile]") {
+  const Laboratory lab = make({}, Measured::Kind::sums);
+  const std::vector<float> data = planted(lab, 40, {stretching});
+  const auto one_out = folds_of(sha256("sums"), all_trials(lab.frame), 6);
+  const Verification all = verify(std::vector<PutIn>{{&lab, data, "pulse_stretching"}}, {}, one_out, quick);
+  CHECK(all.n_folds == 6);
+  CHECK(all.n_better == 6);
+  CHECK(all.sign_p == Approx(1.0 / 64.0));
+  CHECK(all.shrunk);
+  // The same seats, but only four are judged: 1 of 16 by chance is too much.
+  const Folds four(one_out.begin(), one_out.begin() + 4);
+  const Verification few = verify(std::vector<PutIn>{{&lab, data, "pulse_stretching"}}, {}, four, quick);
+  CHECK(few.n_trials == 4);
+  CHECK_FALSE(few.shrunk);
+}
+
+TEST_CASE("a holdout is a share drawn by the data or names of trials", "[reconcile]") {
+  const StudyFrame frame{{"S1", "S2", "S3", "S4", "S5", "S6", "S7", "S8", "S9", "S10"}, {"PIR1"}, {}, 1.0};
+  const std::string digest = sha256("some data"), other = sha256("other data");
+  CHECK(holdout_of("", frame, digest).empty());
+  CHECK(holdout_of("S8,S3,S8", frame, digest) == std::vector<std::size_t>{2, 7});
+  const auto three = holdout_of("0.3", frame, digest);
+  CHECK(three.size() == 3);
+  CHECK(std::ranges::is_sorted(three));
+  CHECK(three == holdout_of("0.3", frame, digest));
+  CHECK(three != holdout_of("0.3", frame, other));
+  CHECK_THROWS_WITH(holdout_of("S3,S11", frame, digest), contains("'S11'") && contains("S1"));
+  CHECK_THROWS_WITH(holdout_of("S3", frame, digest), contains("1 would be held out"));
+  CHECK_THROWS_WITH(holdout_of("0.95", frame, digest), contains("two or more left"));
+}
