@@ -18,6 +18,7 @@ void seal_challenge(const Inputs& inputs, const SealOptions& options);
 void open_challenge(const OpenOptions& options);
 void list_effects(const EffectsOptions& options);
 void reconcile_selftest(const Inputs& inputs, const ReconcileOptions& options, const SelftestOptions& selftest);
+void reconcile_plan(const Inputs& inputs, const ReconcileOptions& options, const PlanOptions& plan);
 void export_gltf(const Inputs& inputs, const ExportOptions& options);
 
 }  // namespace pirsim::app

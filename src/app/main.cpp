@@ -228,6 +228,19 @@ void add_selftest_options(CLI::App& command, SelftestOptions& options) {
           CLI::CheckedTransformer(std::map<std::string, LeaveOut>{{"none", LeaveOut::none}, {"each", LeaveOut::each}}));
 }
 
+void add_plan_options(CLI::App& command, PlanOptions& options) {
+  using Kind = reconcile::Measured::Kind;
+  command.add_option("--data", options.kind, "what is to be measured: series or sums (default: series)")
+      ->option_text("KIND")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Kind>{{"series", Kind::series}, {"sums", Kind::sums}}));
+  command.add_option("--runs", options.runs, "planned runs of every trial (default: 1)")
+      ->option_text("N")
+      ->check(CLI::Range(1, 100));
+  command.add_option("--effects", options.effects, "those to be told apart: a,b (default: the whole catalogue)")
+      ->option_text("NAMES")
+      ->delimiter(',');
+}
+
 void add_seal_options(CLI::App& command, SealOptions& options) {
   using reconcile::Hidden;
   const std::map<std::string, Hidden> kinds{{"any", Hidden::any},
@@ -279,6 +292,7 @@ int run_command_line(int argc, char** argv) {
   OpenOptions open_options;
   EffectsOptions effects_options;
   SelftestOptions selftest_options;
+  PlanOptions plan_options;
   add_inputs(app, inputs);
   add_run_options(app, run_options);
   CLI::App* run_command = app.add_subcommand("run", "run the study (the default)");
@@ -323,6 +337,11 @@ int run_command_line(int argc, char** argv) {
   add_inputs(*selftest_command, inputs);
   add_reconcile_options(*selftest_command, reconcile_options);
   add_selftest_options(*selftest_command, selftest_options);
+  CLI::App* plan_command =
+      reconcile_command->add_subcommand("plan", "before measuring: what could be told apart, and what to measure next");
+  add_inputs(*plan_command, inputs);
+  add_reconcile_options(*plan_command, reconcile_options);
+  add_plan_options(*plan_command, plan_options);
   CLI::App* seal_command = reconcile_command->add_subcommand("seal", "hide something in data, to be found blindly");
   add_inputs(*seal_command, inputs);
   add_seal_options(*seal_command, seal_options);
@@ -361,6 +380,8 @@ int run_command_line(int argc, char** argv) {
     walk_test(inputs, walk_test_options);
   } else if (*selftest_command) {
     reconcile_selftest(inputs, reconcile_options, selftest_options);
+  } else if (*plan_command) {
+    reconcile_plan(inputs, reconcile_options, plan_options);
   } else if (*seal_command) {
     seal_challenge(inputs, seal_options);
   } else if (*reconcile_command) {

@@ -88,6 +88,12 @@ struct ReconcileOptions {
   unsigned threads = 0;
 };
 
+struct PlanOptions {
+  reconcile::Measured::Kind kind = reconcile::Measured::Kind::series;
+  int runs = 1;
+  std::vector<std::string> effects;  ///< to be told apart; empty: the whole catalogue
+};
+
 struct SealOptions {
   std::filesystem::path output = "challenge";  ///< folder of what may be published
   std::filesystem::path answer;                ///< what must be kept secret

@@ -2,16 +2,20 @@
 #include <optional>
 
 #include "app/commands.hpp"
+#include "app/gnuplot_runner.hpp"
 #include "app/progress.hpp"
 #include "app/row_output.hpp"
 #include "app/session.hpp"
 #include "pirsim/core/version.hpp"
+#include "pirsim/effects/catalogue.hpp"
+#include "pirsim/io/gnuplot.hpp"
 #include "pirsim/io/nuisance_reader.hpp"
 #include "pirsim/io/script_reader.hpp"
 #include "pirsim/reconcile/measured.hpp"
 #include "pirsim/reconcile/outputs.hpp"
+#include "pirsim/reconcile/plan.hpp"
 #include "pirsim/reconcile/reconcile.hpp"
-#include "pirsim/reconcile/selftest.hpp"
+#include "pirsim/reconcile/selftest_page.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -64,6 +68,25 @@ class Teller {
   std::uint32_t told_ = 0;
 };
 
+std::string made_by(const Inputs& inputs) {
+  return "pirsim " + version() + " " + git_revision() + ", " + inputs.scene.filename().string() + ", " +
+         inputs.script.filename().string();
+}
+
+void draw_selftest(const std::filesystem::path& folder, const reconcile::SelftestResult& result, Verbosity verbosity) {
+  const bool drawn =
+      run_gnuplot(io::gnuplot_program(reconcile::confusion_chart(result), folder / "confusion.png")) &&
+      run_gnuplot(io::gnuplot_program(reconcile::power_grid(result), folder / "power.png")) &&
+      run_gnuplot(io::gnuplot_program(reconcile::reliability_chart(result), folder / "reliability.png")) &&
+      run_gnuplot(io::gnuplot_program(reconcile::coverage_chart(result), folder / "coverage.png"));
+  if (!drawn) {
+    tell({{Severity::warning,
+           {},
+           "not all pictures could be drawn: gnuplot (package gnuplot-nox) isn't there or failed"}},
+         verbosity);
+  }
+}
+
 }  // namespace
 
 void reconcile_selftest(const Inputs& inputs, const ReconcileOptions& options, const SelftestOptions& selftest) {
@@ -77,13 +100,24 @@ void reconcile_selftest(const Inputs& inputs, const ReconcileOptions& options, c
   teller.finish();
   std::cout << reconcile::to_markdown(result);
   require_written();
-  std::error_code unknown;
-  std::filesystem::create_directories(options.output, unknown);
-  io::AtomicFile cases(options.output / "selftest.csv"), text(options.output / "selftest.md");
-  cases.stream() << reconcile::to_csv(result);
-  text.stream() << reconcile::to_markdown(result);
-  cases.commit();
-  text.commit();
+  const reconcile::Geometry geometry =
+      options.nuisance == "none" ? reconcile::Geometry::known : reconcile::Geometry::uncertain;
+  reconcile::write_selftest(options.output, result, geometry, made_by(inputs));
+  draw_selftest(options.output, result, inputs.verbosity);
+}
+
+void reconcile_plan(const Inputs& inputs, const ReconcileOptions& options, const PlanOptions& plan) {
+  const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
+  const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
+  reconcile::PlanSettings settings{settings_of(options), plan.kind, plan.runs};
+  for (const std::string& effect : plan.effects)
+    settings.analysis.table.entries.push_back(effects::find(effect).info.name);
+  Teller teller(inputs.verbosity);
+  const reconcile::PlanResult result = reconcile::plan(scene, script, settings, teller.observer());
+  teller.finish();
+  std::cout << result.sentence << '\n';
+  require_written();
+  reconcile::write_plan(options.output, result, made_by(inputs));
 }
 
 void reconcile_data(const Inputs& inputs, const ReconcileOptions& options) {

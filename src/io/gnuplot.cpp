@@ -1,6 +1,8 @@
 #include "pirsim/io/gnuplot.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 
 #include "pirsim/io/csv_writer.hpp"
@@ -76,6 +78,114 @@ std::string gnuplot_program(const MapChart& chart, const std::filesystem::path& 
       << (chart.dashed.empty() ? "" : "$dashed with lines lw 2 dt 2 lc rgb 'white', ")
       << "$markers with vectors head filled size 0.1,25 lw 3 lc rgb '#ff4d6d', "
       << "$markers with points pt 7 ps 1.6 lc rgb '#ff4d6d'\n";
+  return out.str();
+}
+
+namespace {
+
+void write_head(std::ostream& out, const std::filesystem::path& png, const std::string& title, int width, int height) {
+  out << "set terminal pngcairo size " << width << ',' << height << " font 'sans,12'\nset output "
+      << quoted(png.string()) << "\nset title " << quoted(title) << " noenhanced font ',14'\nset tics out nomirror\n";
+}
+
+/// Names at 0, 1, 2, ...
+void write_tics(std::ostream& out, const std::string& axis, const std::vector<std::string>& names, int first,
+                const std::string& more) {
+  out << "set " << axis << "tics " << more << " (";
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    out << (i == 0 ? "" : ", ") << quoted(names[i]) << ' ' << first + static_cast<int>(i);
+  }
+  out << ") noenhanced\n";
+}
+
+std::string or_value(const std::optional<double>& limit, double value) { return csv_number(limit.value_or(value)); }
+
+}  // namespace
+
+std::string gnuplot_program(const GridChart& chart, const std::filesystem::path& png) {
+  const auto n_columns = static_cast<int>(chart.columns.size()), n_rows = static_cast<int>(chart.rows.size());
+  const int square = n_columns > 8 ? 30 : 60;
+  std::ostringstream out;
+  out << "$squares << END\n";
+  for (int i = 0; i < n_rows * n_columns; ++i) {
+    const auto& value = chart.cells[static_cast<std::size_t>(i)].value;
+    out << i % n_columns << ' ' << i / n_columns << ' ' << (value ? csv_number(*value) : "NaN") << '\n';
+  }
+  out << "END\n$texts << END\n";
+  for (int i = 0; i < n_rows * n_columns; ++i) {
+    const GridChart::Cell& cell = chart.cells[static_cast<std::size_t>(i)];
+    if (cell.text.empty() || !cell.value) continue;
+    const bool dark = std::abs(*cell.value) > 0.6 * chart.max;
+    std::string text = cell.text;
+    std::ranges::replace_if(
+        text, [](char c) { return c == '"' || c == '\n'; }, ' ');
+    out << i % n_columns << ' ' << i / n_columns << " \"" << text << "\" " << (dark ? "0xffffff" : "0x1b1f24") << '\n';
+  }
+  out << "END\n";
+  const int title_px = 11 * static_cast<int>(chart.title.size());
+  write_head(out, png, chart.title, std::max(title_px, square * n_columns + 330), std::max(260, 26 * n_rows + 190));
+  write_tics(out, "y", chart.rows, 0, "");
+  write_tics(out, "x", chart.columns, 0, n_columns > 8 ? "rotate by 60 right" : "");
+  out << "unset key\nset cblabel " << quoted(chart.label) << " noenhanced\nset xrange [-0.5:" << n_columns - 0.5
+      << "]\nset yrange [" << n_rows - 0.5 << ":-0.5]\n";
+  if (chart.colours == GridChart::Colours::about_zero) {
+    out << "set cbrange [" << csv_number(-chart.max) << ':' << csv_number(chart.max)
+        << "]\nset palette defined (-1 '#134b85', -0.5 '#83b9db', 0 '#f1efea', 0.5 '#fcc589', 1 '#994a0d')\n";
+  } else {
+    out << "set cbrange [0:" << csv_number(chart.max)
+        << "]\nset palette defined (0 '#f7fbff', 0.25 '#c6dbef', 0.5 '#6baed6', 0.75 '#2171b5', 1 '#08306b')\n";
+  }
+  out << "plot $squares using 1:2:3 with image, $texts using 1:2:3:4 with labels noenhanced textcolor rgb variable "
+         "font ',9'\n";
+  return out.str();
+}
+
+std::string gnuplot_program(const LineChart& chart, const std::filesystem::path& png) {
+  std::ostringstream out;
+  for (std::size_t i = 0; i < chart.lines.size(); ++i) {
+    out << "$line" << i << " << END\n";
+    for (const LineChart::Point& point : chart.lines[i].points) {
+      out << csv_number(point.x) << ' ' << csv_number(point.y) << ' ' << or_value(point.low, point.y) << ' '
+          << or_value(point.high, point.y) << '\n';
+    }
+    out << "END\n";
+  }
+  write_head(out, png, chart.title, 560, 460);
+  out << "set xlabel " << quoted(chart.x_label) << " noenhanced\nset ylabel " << quoted(chart.y_label)
+      << " noenhanced\nset xrange [" << csv_number(chart.x_low) << ':' << csv_number(chart.x_high) << "]\nset yrange ["
+      << csv_number(chart.y_low) << ':' << csv_number(chart.y_high) << "]\nset key "
+      << (chart.lines.size() > 1 ? "below" : "off") << '\n';
+  if (!chart.x_names.empty()) write_tics(out, "x", chart.x_names, 1, "");
+  constexpr const char* colours[] = {"#0969da", "#cf222e", "#8c959f", "#9a6700"};
+  out << "plot " << (chart.guide == LineChart::Guide::diagonal ? "x with lines dt 2 lc rgb '#57606a' notitle, " : "");
+  for (std::size_t i = 0; i < chart.lines.size(); ++i) {
+    out << (i == 0 ? "" : ", ") << "$line" << i << " using 1:2:3:4 with yerrorlines lw 1.6 pt 7 ps 0.9 lc rgb '"
+        << colours[i % std::size(colours)] << "' title " << quoted(chart.lines[i].name) << " noenhanced";
+  }
+  out << '\n';
+  return out.str();
+}
+
+std::string gnuplot_program(const BarChart& chart, const std::filesystem::path& png) {
+  std::ostringstream out;
+  std::vector<std::string> names;
+  double most = 0.0;
+  out << "$bars << END\n";
+  for (const BarChart::Bar& bar : chart.bars) {
+    out << names.size() << ' ' << csv_number(bar.value) << ' ' << or_value(bar.low, bar.value) << ' '
+        << or_value(bar.high, bar.value) << '\n';
+    most = std::max({most, bar.value, bar.high.value_or(bar.value)});
+    names.push_back(bar.name);
+  }
+  out << "END\n";
+  const auto n = static_cast<int>(names.size());
+  write_head(out, png, chart.title, 760, 26 * n + 130);
+  write_tics(out, "y", names, 0, "");
+  out << "unset key\nset xlabel " << quoted(chart.label) << " noenhanced\nset yrange [" << n - 0.5
+      << ":-0.5]\nset xrange [0:" << csv_number(most > 0.0 ? 1.02 * most : 1.0)
+      << "]\nset style fill solid\nplot $bars using (0.5*$2):1:(0.5*$2):(0.36) with boxxyerror lc rgb '#8c959f', $bars "
+         "using "
+         "2:1:3:4 with xerrorbars lw 1.6 pt 0 lc rgb '#1b1f24'\n";
   return out.str();
 }
 

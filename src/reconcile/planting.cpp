@@ -28,19 +28,12 @@ double to_flat(const effects::ParameterInfo& info, double value) {
   return info.scale == effects::Scale::logarithmic ? std::log(std::clamp(value, info.low, info.high)) : value;
 }
 
-/// Distance from off in [0, 1] of what the prior allows.
-double strength_of(const effects::ParameterInfo& info, double value) {
-  const double off = to_flat(info, std::clamp(info.off, info.low, info.high));
-  const double most = std::max(to_flat(info, info.high) - off, off - to_flat(info, info.low));
-  return most > 0.0 ? std::abs(to_flat(info, value) - off) / most : 0.5;
+bool comes_in_strengths(const effects::Effect& effect) {
+  return !effect.info.parameters.empty() && effect.info.parameters.front().low < effect.info.parameters.front().high;
 }
 
 bool has_strength(const effects::Effect& effect, const EffectSpec& spec, Strength wanted) {
-  if (effect.info.parameters.empty() || wanted == Strength::beyond) return true;
-  const effects::ParameterInfo& first = effect.info.parameters.front();
-  if (first.low == first.high) return true;
-  const double third = 3.0 * strength_of(first, spec.parameters.at(first.name));
-  return static_cast<Strength>(1 + std::min(2, static_cast<int>(third))) == wanted;
+  return wanted == Strength::beyond || !comes_in_strengths(effect) || strength_of(spec) == wanted;
 }
 
 /// Moves the strength to where the prior ends and beyond, on the side where it lies.
@@ -157,6 +150,17 @@ std::string key_of(const Laboratory& lab, const SelftestSettings& settings) {
 }
 
 }  // namespace
+
+Strength strength_of(const EffectSpec& spec) {
+  const effects::Effect& effect = effects::find(spec.name);
+  if (!comes_in_strengths(effect)) return Strength::medium;
+  const effects::ParameterInfo& first = effect.info.parameters.front();
+  const double off = to_flat(first, std::clamp(first.off, first.low, first.high));
+  const double most = std::max(to_flat(first, first.high) - off, off - to_flat(first, first.low));
+  const double distance =
+      std::abs(to_flat(first, spec.parameters.at(first.name)) - off) / most;  // of the prior, 0 to 1
+  return static_cast<Strength>(1 + std::min(2, static_cast<int>(3.0 * distance)));
+}
 
 std::string Planted::truth() const {
   std::string text = alien;

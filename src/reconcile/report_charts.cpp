@@ -85,6 +85,8 @@ std::string in_plain_words(const std::string& statistic) {
   if (const auto found = words.find(statistic); found != words.end()) return found->second;
   constexpr std::string_view again = "again_after_";
   if (statistic.starts_with(again)) return "motion again " + statistic.substr(again.size()) + " s later";
+  constexpr std::string_view sixth = "sixth_";
+  if (statistic.starts_with(sixth)) return "motion in part " + statistic.substr(sixth.size()) + " of 6";
   std::string text = statistic;
   std::ranges::replace(text, '_', ' ');
   return text;

@@ -10,6 +10,18 @@
 namespace pirsim::reconcile {
 namespace {
 
+std::string separated(const std::vector<std::string>& texts, const std::string& by) {
+  std::string all;
+  for (const std::string& text : texts) all += (all.empty() ? "" : by) + text;
+  return all;
+}
+
+std::string fingerprints_of(const std::vector<std::string>& named) {
+  std::vector<std::string> texts;
+  for (const std::string& effect : named) texts.push_back(effect + ": " + effects::find(effect).info.fingerprint);
+  return separated(texts, ". ");
+}
+
 std::string common_family(const std::vector<std::string>& effects) {
   std::string family;
   for (const std::string& effect : effects) {
@@ -46,9 +58,10 @@ std::string next_step(const Outcome& outcome) {
       return "What to do next: run script_patched.yaml, the same script with what was found put in, and see below "
              "whether it comes closer to trials that it was not fitted on.";
     case Verdict::one_of:
-      return "What to do next: measure more before one of them is put in; pirsim reconcile plan tells which "
-             "measurement "
-             "separates them best.";
+      return "What to do next: measure more before one of them is put in. pirsim reconcile plan --effects " +
+             separated(outcome.named, ",") +
+             " finds the measurement that separates them best. What each does to the data: " +
+             fingerprints_of(outcome.named) + ".";
     case Verdict::none_in_catalogue:
       break;
   }

@@ -42,14 +42,14 @@ def dump(chromium, page, width, folder):
     return re.sub(r"<script.*?</script>", "", result.stdout, flags=re.DOTALL)
 
 
-def check_page(chromium, page, expected, folder):
+def check_page(chromium, page, expected, folder, widths=(1400, 500)):
     text = page.read_text(encoding="utf-8")
     markup = re.sub(r"<script.*?</script>", "", text, flags=re.DOTALL)
     fetched = re.findall(r'(?:src|href)="(?!#|data:)[^"]*"|@import|url\(', markup)
     assert not fetched, f"{page.name} fetches {fetched}"
     pointed = folder / ("pointed_" + page.name)
     pointed.write_text(text.replace("</body>", POINTER + "</body>"), encoding="utf-8")
-    for width in (1400, 500):
+    for width in widths:
         dom = dump(chromium, pointed, width, folder)
         plots, canvases = dom.count('class="plot'), dom.count("<canvas")
         assert plots == canvases == expected, f"{page.name}, {width} wide: {canvases} of {plots} charts, not {expected}"

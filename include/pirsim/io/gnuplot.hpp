@@ -4,11 +4,14 @@
 #include <filesystem>
 #include <string>
 
-#include "pirsim/io/report.hpp"
+#include "pirsim/io/charts.hpp"
 
 namespace pirsim::io {
 
-/// A program that writes the map as a labelled PNG.
+/// Programs that write the chart as a labelled PNG. Texts are put in as they are, never as markup.
 [[nodiscard]] std::string gnuplot_program(const MapChart& chart, const std::filesystem::path& png);
+[[nodiscard]] std::string gnuplot_program(const GridChart& chart, const std::filesystem::path& png);
+[[nodiscard]] std::string gnuplot_program(const LineChart& chart, const std::filesystem::path& png);
+[[nodiscard]] std::string gnuplot_program(const BarChart& chart, const std::filesystem::path& png);
 
 }  // namespace pirsim::io

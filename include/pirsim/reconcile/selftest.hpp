@@ -43,6 +43,8 @@ enum class CaseKind {
 enum class Strength { none, weak, medium, strong, beyond };  ///< thirds of the prior, by distance from off
 [[nodiscard]] std::string_view name(CaseKind kind) noexcept;
 [[nodiscard]] std::string_view name(Strength strength) noexcept;
+/// By the parameter that names an effect's strength; medium for an effect that is there or not.
+[[nodiscard]] Strength strength_of(const EffectSpec& effect);
 
 /// A dataset in which something is hidden, made to see whether it is found.
 struct Planted {

@@ -150,8 +150,9 @@
       scales: [
         { name: "x", type: "band", domain: chart.columns, range: "width", padding: 0.04 },
         { name: "y", type: "band", domain: chart.rows, range: "height", padding: 0.04 },
-        { name: "colour", type: "linear", domain: [two ? -chart.max : 0, chart.max], clamp: true,
-          range: { scheme: two ? "blueorange" : "blues" } },
+        { name: "colour", type: "linear", clamp: true, zero: false,
+          domain: two ? [-chart.max, chart.max] : [0, 0.25, 0.5, 0.75, 1].map((share) => share * chart.max),
+          range: two ? { scheme: "blueorange" } : ["#f7fbff", "#c6dbef", "#6baed6", "#2171b5", "#08306b"] },
       ],
       axes: [axis("x", "top", chart.column_label || null, dense ? { labelAngle: -60, labelAlign: "left", ticks: false,
         domain: false, labelOverlap: false, labelLimit: 150 } : { ticks: false, domain: false }),

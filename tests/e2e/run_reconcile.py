@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""The README's worked example of `pirsim reconcile`, word for word but on a study of one seat and half a minute; then
+`plan` and `selftest` on the same; and all three pages in a browser, if there is one.
+
+Usage: run_reconcile.py PIRSIM SOURCE_DIRECTORY
+"""
+import csv
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from run_report_pages import check_page
+
+SHORT = ["--set", "trials.for_each.seat=[S1]", "--set", "people.0.actions.3.work.duration_s=30"]
+
+
+def readme_example(source):
+    """The commands between the fences below the heading."""
+    text = (source / "README.md").read_text(encoding="utf-8")
+    section = text.split("## What is the model missing?", 1)[1]
+    return re.search(r"```\n(.*?)```", section, flags=re.DOTALL).group(1)
+
+
+def run_example(pirsim, source, folder):
+    """On a short script in place of Study A and with the smallest table."""
+    shutil.copytree(source / "data", folder / "data")
+    config = subprocess.run([pirsim, "--scene", source / "data/rooms/meeting_room.gltf", "--script",
+                             source / "data/studies/studyA.yaml", *SHORT, "--print-config"], capture_output=True, text=True,
+                            check=True).stdout
+    (folder / "data/studies/studyA.yaml").write_text(config)
+    commands = re.sub(r"--budget [0-9.]+", "", readme_example(source))
+    commands = commands.replace("pirsim reconcile --scene", "pirsim reconcile --budget 0.05 --max-effects 1 --scene")
+    assert "--budget 0.05" in commands, commands
+    (folder / "bin").mkdir()
+    (folder / "bin/pirsim").symlink_to(pathlib.Path(pirsim).resolve())
+    environment = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}"}
+    result = subprocess.run(["bash", "-euo", "pipefail", "-c", commands], cwd=folder, env=environment, capture_output=True,
+                            text=True)
+    report = json.loads((folder / "found/report.json").read_text())
+    if report["verdict"] in ("named", "several"):
+        assert result.returncode == 0, result.stderr
+    else:  # nothing to put in: so little data may not tell
+        assert not (folder / "found/script_patched.yaml").exists()
+    assert report["sentence"] in result.stdout, result.stdout
+    assert report["where"]["p"] <= 1.0 and len(report["candidates"]) == 27
+    return report
+
+
+def main():
+    pirsim, source = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        report = run_example(pirsim, source, folder)
+        study = ["-q", "--scene", folder / "data/rooms/meeting_room.gltf", "--script", folder / "data/studies/studyA.yaml"]
+
+        def reconcile(command, *more):
+            return subprocess.run([pirsim, "reconcile", command, *study, "--budget", "0.05", *more], capture_output=True,
+                                  text=True, check=True).stdout
+
+        sentence = reconcile("plan", "--effects", "missed_triggers,false_triggers", "-o", folder / "plan").strip()
+        plan = json.loads((folder / "plan/plan.json").read_text())
+        assert plan["sentence"] == sentence and plan["entries"] == ["nothing", "missed_triggers", "false_triggers"]
+        designs = list(csv.DictReader((folder / "plan/plan.csv").open()))
+        assert [d["design"] for d in designs][:2] == ["as planned", "all again"], designs
+        assert {"slow walk", "empty room"} <= {d["design"] for d in designs}, (designs, plan["notes"])
+        assert abs(float(designs[0]["minutes"]) - 0.5) < 0.05, designs
+        # False triggers are counted best where nobody is; without anybody there is nothing to miss.
+        for row in plan["confusion"]:
+            assert abs(sum(row) - 1.0) < 1e-9, row
+
+        reconcile("selftest", "--nulls", "5", "--planted", "1", "--table", folder / "found/table", "-o", folder / "self")
+        assert "| a name although nothing is hidden | at most 0.01 |" in (folder / "self/targets.md").read_text()
+        if shutil.which("gnuplot"):
+            for picture in ("confusion", "power", "reliability"):
+                assert (folder / f"self/{picture}.png").read_bytes().startswith(b"\x89PNG"), picture
+
+        if chromium:
+            fits = sum(p["unit"] is not None for fit in report["fits"] for p in fit["parameters"])
+            differs = report["verdict"] != "no-disagreement"
+            verified = report["verification"] is not None
+            check_page(chromium, folder / "found/report.html", 2 + differs + fits + verified, folder)
+            check_page(chromium, folder / "plan/plan.html", 3, folder)
+            charts = (folder / "self/selftest.html").read_text().count("<figure>")
+            assert charts >= 27 + 2, charts
+            check_page(chromium, folder / "self/selftest.html", charts, folder, widths=(1400,))
+    print("reconcile: example, plan, self-test and their pages are whole")
+
+
+if __name__ == "__main__":
+    main()
