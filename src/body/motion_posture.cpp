@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
+#include "body/limbs.hpp"
 #include "pirsim/body/motion.hpp"
 
 namespace pirsim::body {
@@ -117,20 +118,27 @@ std::array<ArmPose, 2> arms_of(const Humanoid& humanoid, const Outline& outline,
 
 }  // namespace
 
-Posture posture_of(const Humanoid& humanoid, const Outline& outline) noexcept {
-  Pose pose;
-  pose.world_from_hips = {rotation_from_heading(outline.pelvis.heading),
-                          Vec3(outline.pelvis.position.x, outline.hip_height_m, outline.pelvis.position.y)};
+void update(Pose& pose, const Humanoid& humanoid, const Outline& outline, const Limbs& changed) noexcept {
+  if (changed.hips) {
+    pose.world_from_hips = {rotation_from_heading(outline.pelvis.heading),
+                            Vec3(outline.pelvis.position.x, outline.hip_height_m, outline.pelvis.position.y)};
+  }
   pose.spine_tilt = outline.spine_tilt;
   pose.head_turn = outline.head_turn;
   const double ankle_height = outline.floor_height_m + humanoid.measures().ankle_height_m;
   for (std::size_t side : {0U, 1U}) {
+    if (!changed.ankles[side]) continue;
     const Footstep& foot = outline.feet[side];
     pose.world_from_ankle[side] = {
         rotation_from_heading(foot.print.heading) * glm::angleAxis(foot.pitch, Vec3(1, 0, 0)),
         Vec3(foot.print.position.x, ankle_height + foot.lift_m, foot.print.position.y)};
   }
-  pose.arms = arms_of(humanoid, outline, pose);
+  if (changed.arms) pose.arms = arms_of(humanoid, outline, pose);
+}
+
+Posture posture_of(const Humanoid& humanoid, const Outline& outline) noexcept {
+  Pose pose;
+  update(pose, humanoid, outline, {});
   return posture_of(humanoid, pose);
 }
 

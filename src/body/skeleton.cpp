@@ -6,6 +6,7 @@
 #include <glm/mat3x3.hpp>
 #include <numbers>
 
+#include "body/limbs.hpp"
 #include "pirsim/body/two_bone_ik.hpp"
 
 namespace pirsim::body {
@@ -68,6 +69,9 @@ void put_leg(const Measures& m, const Frame& hips, const Frame& ankle, std::size
   const Vec3 right = glm::normalize(glm::cross(pole, hip - ankle.origin));
   posture[at(Part::left_thigh, side)] = {rotation_of(right, thigh_up), knee + 0.5 * m.thigh_m * thigh_up};
   posture[at(Part::left_shank, side)] = {rotation_of(right, shank_up), knee - 0.5 * m.shank_m * shank_up};
+}
+
+void put_foot(const Measures& m, const Frame& ankle, std::size_t side, Posture& posture) {
   const Vec3 ankle_to_centre(0, -0.5 * m.ankle_height_m, m.heel_m - 0.5 * m.foot_length_m);
   posture[at(Part::left_foot, side)] = {ankle.rotation, ankle * ankle_to_centre};
 }
@@ -97,18 +101,29 @@ ArmPose blend(const ArmPose& a, const ArmPose& b, double weight_of_b) noexcept {
   return {glm::normalize(sum), a.elbow_flexion + weight_of_b * (b.elbow_flexion - a.elbow_flexion)};
 }
 
-Posture posture_of(const Humanoid& humanoid, const Pose& pose) noexcept {
+void update(Posture& posture, const Humanoid& humanoid, const Pose& pose, const Limbs& changed) noexcept {
   const Measures& m = humanoid.measures();
   const Frame& hips = pose.world_from_hips;
-  const Frame torso = world_from_torso(pose);
-  Posture posture;
-  posture[at(Part::pelvis)] = {glm::normalize(hips.rotation * hips_from_pelvis()), hips.origin};
-  posture[at(Part::torso)] = {torso.rotation, torso * Vec3(0, torso_centre(humanoid), 0)};
-  posture[at(Part::head)] = world_from_head(humanoid, torso, pose.head_turn);
-  for (std::size_t side : {0U, 1U}) {
-    put_arm(m, torso, pose.arms[side], side, posture);
-    put_leg(m, hips, pose.world_from_ankle[side], side, posture);
+  const bool trunk = changed.hips || changed.spine;
+  if (changed.hips) posture[at(Part::pelvis)] = {glm::normalize(hips.rotation * hips_from_pelvis()), hips.origin};
+  if (trunk || changed.head || changed.arms) {
+    const Frame torso = world_from_torso(pose);
+    if (trunk) posture[at(Part::torso)] = {torso.rotation, torso * Vec3(0, torso_centre(humanoid), 0)};
+    if (trunk || changed.head) posture[at(Part::head)] = world_from_head(humanoid, torso, pose.head_turn);
+    for (std::size_t side : {0U, 1U}) {
+      if (trunk || changed.arms) put_arm(m, torso, pose.arms[side], side, posture);
+    }
   }
+  for (std::size_t side : {0U, 1U}) {
+    const Frame& ankle = pose.world_from_ankle[side];
+    if (changed.hips || changed.ankles[side]) put_leg(m, hips, ankle, side, posture);
+    if (changed.ankles[side]) put_foot(m, ankle, side, posture);
+  }
+}
+
+Posture posture_of(const Humanoid& humanoid, const Pose& pose) noexcept {
+  Posture posture;
+  update(posture, humanoid, pose, {});
   return posture;
 }
 

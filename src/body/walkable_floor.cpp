@@ -322,6 +322,8 @@ bool WalkableFloor::walkable(const Vec2& a, const Vec2& b, std::span<const Disc>
   return impl_->walkable(a, b, others);
 }
 
+double WalkableFloor::clearance_m() const noexcept { return impl_->clearance_m; }
+
 bool WalkableFloor::has_room(const Vec2& a, const Vec2& b, double clearance_m) const noexcept {
   return impl_->floor_along(a, b) && impl_->clear_of_obstacles(a, b, clearance_m);
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "pirsim/effects/catalogue.hpp"
-#include "pirsim/sim/zone_tracks.hpp"
+#include "pirsim/sim/trace_family.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -24,15 +24,13 @@ void add_series(const StudyFrame& frame, const RunResult& result, int first, std
   if (series) data.push_back(std::move(*series));
 }
 
-}  // namespace
-
-struct SimulatedWorld::Traced {
-  explicit Traced(const World& world, std::span<const std::size_t> trials = {})
-      : model(compile(world.scene, world.script)), logic(sim::make_logic(model)) {
-    tracks = sim::trace(model, runs_of(model, trials), 1);
+/// Zones as a Model's detector takes them.
+struct Emitter {
+  Emitter(const Model& of, const sim::ZoneTracks& from) : model(of), tracks(from), logic(sim::make_logic(of)) {
     logic->prepare(tracks.sets);
   }
-  [[nodiscard]] std::vector<Series> emit(const StudyFrame& frame, const effects::Pipeline& pipeline, int first, int n) {
+  [[nodiscard]] std::vector<Series> emit(const StudyFrame& frame, const effects::Pipeline& pipeline, int first,
+                                         int n) const {
     std::vector<Series> data;
     for (std::size_t i = 0; i < tracks.runs.size(); ++i) {
       const int replicate = tracks.runs[i].rows.replicate;
@@ -42,9 +40,20 @@ struct SimulatedWorld::Traced {
     return data;
   }
 
-  Model model;
+  const Model& model;
+  const sim::ZoneTracks& tracks;
   std::unique_ptr<sim::DetectorLogic> logic;
-  sim::ZoneTracks tracks;
+};
+
+}  // namespace
+
+struct SimulatedWorld::Traced {
+  explicit Traced(const World& world)
+      : model(compile(world.scene, world.script)), family(model, runs_of(model, {})), emitter(model, family.first()) {}
+
+  Model model;
+  sim::TraceFamily family;
+  Emitter emitter;
 };
 
 SimulatedWorld::SimulatedWorld(const WorldSource& source, const StudyFrame& frame, std::uint32_t index, int n_runs)
@@ -68,7 +77,7 @@ SimulatedWorld& SimulatedWorld::operator=(SimulatedWorld&&) noexcept = default;
 std::vector<Series> SimulatedWorld::with(std::span<const EffectSpec> more, int first, int n) const {
   std::vector<EffectSpec> all = world_.script.effects;
   all.insert(all.end(), more.begin(), more.end());
-  return traced_->emit(*frame_, sim::make_pipeline(traced_->model, all), first, n);
+  return traced_->emitter.emit(*frame_, sim::make_pipeline(traced_->model, all), first, n);
 }
 
 std::vector<Series> SimulatedWorld::anew(std::span<const EffectSpec> more, int n,
@@ -76,8 +85,9 @@ std::vector<Series> SimulatedWorld::anew(std::span<const EffectSpec> more, int n
   World altered = world_;
   altered.script.effects.insert(altered.script.effects.end(), more.begin(), more.end());
   altered.script.replicates = n;
-  Traced traced(altered, trials);
-  return traced.emit(*frame_, traced.model.pipeline(), 0, n);
+  const Model model = compile(altered.scene, altered.script, {.like = &traced_->model});
+  const sim::ZoneTracks tracks = traced_->family.trace(model, runs_of(model, trials));
+  return Emitter(model, tracks).emit(*frame_, model.pipeline(), 0, n);
 }
 
 std::optional<std::vector<Series>> SimulatedWorld::with_effects(std::span<const EffectSpec> more, int first, int n,

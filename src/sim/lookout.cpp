@@ -25,6 +25,7 @@ void Lookout::look(const std::vector<Actor>& actors, ZoneSet& zones, ZoneSet& ch
     return;
   }
   memory_.make_room_for(actors.size());
+  if (mannequins_.size() < actors.size()) mannequins_.resize(actors.size());
   const std::size_t n_zone_words = zones.words().size();
   for (std::size_t person = 0; person < actors.size(); ++person) {
     if (!actors[person].present()) continue;
@@ -48,11 +49,9 @@ std::span<const ZoneSet::Word> Lookout::row_of(std::size_t person, const Actor& 
   const body::Humanoid& humanoid = actor.person().humanoid;
   const body::Outline outline = actor.motion().outline();
   if (const auto known = memory_.find(person, &humanoid, outline); !known.empty()) return known;
-  solids_.clear();
-  append_solids(humanoid, body::posture_of(humanoid, outline), solids_);
   person_zones_.clear();
   person_channels_.clear();
-  tracer_->add(person, solids_, person_zones_);
+  tracer_->add(person, mannequins_[person].pose(humanoid, outline), person_zones_);
   detector_.add_channels(person_zones_, person_channels_);
   row_.clear();
   for (const ZoneSet* set : {&person_zones_, &person_channels_}) {

@@ -9,6 +9,7 @@
 #include "pirsim/rt/tracer.hpp"
 #include "pirsim/sim/actor.hpp"
 #include "pirsim/sim/model.hpp"
+#include "sim/mannequin.hpp"
 #include "sim/posture_memory.hpp"
 #include "sim/power_meter.hpp"
 
@@ -35,6 +36,7 @@ class Lookout {
   PostureMemory memory_;
   std::unique_ptr<PowerMeter> power_meter_;
   // Scratch.
+  std::vector<Mannequin> mannequins_;  ///< (n_people)
   std::vector<PosedShape> solids_;
   ZoneActivity activity_;
   ZoneSet person_zones_, person_channels_;

@@ -5,6 +5,7 @@
 
 #include "pirsim/effects/catalogue.hpp"
 #include "pirsim/pir/optics.hpp"
+#include "sim/alike.hpp"
 #include "sim/lookout.hpp"
 #include "sim/plan_people.hpp"
 #include "sim/reflections.hpp"
@@ -19,7 +20,7 @@ bool PersonModel::can_stand(const Vec2& place, const Vec2& facing, double half_d
 }
 
 std::uint32_t Model::n_runs() const noexcept {
-  return static_cast<std::uint32_t>(trials_.size()) * static_cast<std::uint32_t>(script_.replicates);
+  return static_cast<std::uint32_t>(trials().size()) * static_cast<std::uint32_t>(script_.replicates);
 }
 
 std::vector<std::string> Model::columns() const {
@@ -68,7 +69,10 @@ Model compile(SceneSpec scene, ScriptSpec script, const CompileOptions& options)
   effects::alter(model.scene_, altered);
   model.tracer_ = options.tracer;
   model.idle_lookouts_ = std::make_shared<Model::Pool>();
-  model.room_ = std::make_unique<rt::Room>(model.scene_.meshes);
+  const Model* like = options.like;
+  model.room_ = like != nullptr && sim::same_meshes(like->scene(), model.scene_)
+                    ? like->room_
+                    : std::make_shared<const rt::Room>(model.scene_.meshes);
   model.rated_ = std::make_unique<RayBundle>();
   const std::vector<double> levels = pir::edge_levels(altered.sensing.edge_sigma_deg);
   for (const SensorSpec& sensor : model.scene_.sensors) {
@@ -84,7 +88,10 @@ Model compile(SceneSpec scene, ScriptSpec script, const CompileOptions& options)
     model.polarity_.emplace(model.scene_, *altered.sensing.dual_polarity, levels.size(), model.tick_s());
   }
   model.pipeline_ = effects::Pipeline(model.script_.effects, {model.scene_, altered.sensing, *model.clipped_});
-  model.trials_ = sim::plan_people(model.scene_, altered, model.script_, *model.room_);
+  model.trials_ = like != nullptr && sim::same_people(*like, model.scene_, altered, model.script_)
+                      ? like->trials_
+                      : std::make_shared<const std::vector<TrialModel>>(
+                            sim::plan_people(model.scene_, altered, model.script_, *model.room_, like));
   if (sim::AnalogModel::is_needed(model.scene_, altered.sensing)) {
     model.analog_ = std::make_unique<sim::AnalogModel>(model.scene_, altered.sensing, *model.room_);
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "sim/alike.hpp"
 #include "sim/check_actions.hpp"
 
 namespace pirsim::sim {
@@ -121,9 +122,19 @@ class Rehearsal {
 
 namespace {
 
+using Floors = std::map<double, std::shared_ptr<const body::WalkableFloor>>;  // by clearance
+
+Floors floors_of(const Model* like, const SceneSpec& scene) {
+  Floors floors;
+  if (like == nullptr || !same_ground(like->scene(), scene)) return floors;
+  for (const TrialModel& trial : like->trials()) {
+    for (const PersonModel& person : trial.people) floors.try_emplace(person.floor->clearance_m(), person.floor);
+  }
+  return floors;
+}
+
 std::vector<TrialModel> plan_among_solids(const SceneSpec& scene, const ScriptSpec& script,
-                                          const ScriptSpec& as_written, const rt::Room& room) {
-  std::map<double, std::shared_ptr<const body::WalkableFloor>> floors;  // by clearance
+                                          const ScriptSpec& as_written, const rt::Room& room, Floors floors) {
   std::vector<TrialModel> trials;
   Diagnostics diagnostics;
   for (const TrialSpec& trial : script.trials) {
@@ -152,13 +163,15 @@ std::vector<TrialModel> plan_among_solids(const SceneSpec& scene, const ScriptSp
 }  // namespace
 
 std::vector<TrialModel> plan_people(const SceneSpec& scene, const ScriptSpec& script, const ScriptSpec& as_written,
-                                    const rt::Room& room) {
+                                    const rt::Room& room, const Model* like) {
   check_actions(scene, script);
   const auto is_screen = [](const TriMesh& mesh) { return mesh.solidity == Solidity::screen; };
-  if (std::ranges::none_of(scene.meshes, is_screen)) return plan_among_solids(scene, script, as_written, room);
+  if (std::ranges::none_of(scene.meshes, is_screen)) {
+    return plan_among_solids(scene, script, as_written, room, floors_of(like, scene));
+  }
   SceneSpec solid = scene;
   std::erase_if(solid.meshes, is_screen);
-  return plan_among_solids(solid, script, as_written, rt::Room(solid.meshes));
+  return plan_among_solids(solid, script, as_written, rt::Room(solid.meshes), floors_of(like, scene));
 }
 
 }  // namespace pirsim::sim

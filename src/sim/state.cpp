@@ -37,8 +37,7 @@ State::State(const Model& model, std::uint32_t run)
       analog_(model, run),
       triggers_(model.scene().sensors.size(), 0),
       reader_(sim::make_reader(model.script().sensing.reader, triggers_.size(), model.script().sensing.ticks_per_window,
-                               model.script().seed, run)),
-      lookout_(model.borrow_lookout()) {
+                               model.script().seed, run)) {
   const TrialModel& trial = model.trial_of(run);
   for (std::uint32_t person = 0; person < trial.people.size(); ++person) actors_.emplace_back(model, run, person);
   presences_.resize(actors_.size());
@@ -67,8 +66,7 @@ State::State(const State& other)
       analog_(other.analog_),
       triggers_(other.triggers_),
       reader_(other.reader_),
-      sample_(other.sample_),
-      lookout_(other.model_->borrow_lookout()) {}
+      sample_(other.sample_) {}
 
 State& State::operator=(const State& other) {
   State copy(other);
@@ -116,6 +114,7 @@ void State::note_seats_left(const Model& model) {
 
 /// From people to this tick's triggers, before any effect of environment or electronics.
 void State::look(const Model& model) {
+  if (!lookout_) lookout_ = model.borrow_lookout();
   std::swap(channels_, previous_channels_);
   lookout_->look(actors_, zones_, channels_);
   std::ranges::fill(triggers_, std::uint8_t{0});
@@ -131,13 +130,10 @@ void State::look(const Model& model) {
   }
 }
 
-bool step_tick(const Model& model, State& state) {
+bool move_tick(const Model& model, State& state) {
   ++state.tick_;
   state.move_people(model);
   state.note_seats_left(model);
-  state.look(model);
-  for (const std::size_t seat : state.seats_left_) state.pipeline_.seat_left(seat);
-  sim::add_triggers(state.pipeline_, state.tick_, state.triggers_, state.reader_);
   const int window = model.script().sensing.ticks_per_window;
   if (state.tick_ % window != 0) return false;
 
@@ -145,11 +141,21 @@ bool step_tick(const Model& model, State& state) {
   sample.time_s = static_cast<double>(state.tick_) / model.script().sensing.tick_rate_hz;
   sample.phase = state.actors_.empty() ? "outside" : state.actors_.front().phase();
   sample.people = people_on_floor(model, state.actors_);
-  sample.bits.assign(state.reader_.readings().begin(), state.reader_.readings().end());
-  state.pipeline_.apply(sample);
   state.finished_ = std::ranges::all_of(state.actors_, [](const Actor& actor) {
     return actor.done() || actor.person().spec.role == PersonRole::bystander;
   });
+  return true;
+}
+
+bool step_tick(const Model& model, State& state) {
+  const bool window_ended = move_tick(model, state);
+  state.look(model);
+  for (const std::size_t seat : state.seats_left_) state.pipeline_.seat_left(seat);
+  sim::add_triggers(state.pipeline_, state.tick_, state.triggers_, state.reader_);
+  if (!window_ended) return false;
+  Sample& sample = state.sample_;
+  sample.bits.assign(state.reader_.readings().begin(), state.reader_.readings().end());
+  state.pipeline_.apply(sample);
   return true;
 }
 

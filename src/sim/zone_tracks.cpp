@@ -1,32 +1,16 @@
 #include "pirsim/sim/zone_tracks.hpp"
 
 #include <algorithm>
-#include <map>
 
 #include "pirsim/core/parallel.hpp"
 #include "pirsim/effects/catalogue.hpp"
 #include "pirsim/sim/state.hpp"
 #include "sim/add_triggers.hpp"
+#include "sim/begin_tracks.hpp"
+#include "sim/set_numbering.hpp"
 
 namespace pirsim::sim {
 namespace {
-
-/// Numbers sets in the order in which they come.
-class Numbering {
- public:
-  explicit Numbering(std::size_t n_zones) { (void)number(ZoneSet(n_zones)); }
-
-  std::uint32_t number(const ZoneSet& set) {
-    const auto [known, is_new] = numbers_.try_emplace({set.words().begin(), set.words().end()}, sets_.size());
-    if (is_new) sets_.push_back(set);
-    return static_cast<std::uint32_t>(known->second);
-  }
-  [[nodiscard]] std::vector<ZoneSet>& sets() noexcept { return sets_; }
-
- private:
-  std::map<std::vector<ZoneSet::Word>, std::size_t> numbers_;
-  std::vector<ZoneSet> sets_;
-};
 
 /// A run with its own numbering of sets.
 struct TracedRun {
@@ -36,7 +20,7 @@ struct TracedRun {
 
 TracedRun trace_run(const Model& model, std::uint32_t run) {
   TracedRun traced{{{run, model.replicate_of(run), model.trial_of(run).id, {}, {}, {}}, {}, {}}, {}};
-  Numbering numbering(model.detector().n_zones());
+  SetNumbering numbering(model.detector().n_zones());
   State state(model, run);
   ZoneSet last(model.detector().n_zones());
   std::uint32_t number = 0;
@@ -56,14 +40,8 @@ TracedRun trace_run(const Model& model, std::uint32_t run) {
 }  // namespace
 
 ZoneTracks trace(const Model& model, std::span<const std::uint32_t> runs, unsigned threads) {
-  if (model.analog() != nullptr) {
-    throw Error(ErrorCode::usage, "zones alone don't tell what sensors with an analog response do");
-  }
-  ZoneTracks tracks;
-  tracks.n_sensors = model.scene().sensors.size();
-  tracks.ticks_per_window = model.script().sensing.ticks_per_window;
-  tracks.reader = model.script().sensing.reader;
-  Numbering numbering(model.detector().n_zones());
+  ZoneTracks tracks = begin_tracks(model);
+  SetNumbering numbering(model.detector().n_zones());
   ordered_parallel<TracedRun>(
       runs.size(), threads, [&](std::size_t i) { return trace_run(model, runs[i]); },
       [&](TracedRun& traced) {

@@ -30,6 +30,7 @@ class WalkableFloor {
   WalkableFloor(const FloorArea& floor, std::span<const EntranceSpec> entrances, std::span<const TriMesh> obstacles,
                 double clearance_m);
 
+  [[nodiscard]] double clearance_m() const noexcept;
   /// Is the point itself at a walkable place?
   [[nodiscard]] bool walkable(const Vec2& point) const noexcept;
   /// Can one walk straight from a to b, clear of `others`?

@@ -45,6 +45,7 @@ class State {
 
  private:
   friend bool step_tick(const Model& model, State& state);
+  friend bool move_tick(const Model& model, State& state);
   /// Fills others_ with everyone in the scene but the i-th person; how many of them come before in the script.
   std::size_t gather_others(std::size_t i);
   void move_people(const Model& model);
@@ -69,7 +70,7 @@ class State {
   pir::WindowReader reader_;
   Sample sample_;
   std::vector<Presence> others_;           ///< scratch
-  std::shared_ptr<sim::Lookout> lookout_;  ///< scratch; a copy of the State borrows its own
+  std::shared_ptr<sim::Lookout> lookout_;  ///< scratch, borrowed when first needed; a copy borrows its own
 };
 
 /// Appends the thirteen posed solids of a posture, or of a person if present, in the order of body::Part.
@@ -80,5 +81,8 @@ void append_solids(const Actor& actor, std::vector<PosedShape>& solids);
 bool step(const Model& model, State& state);
 /// Advances one tick; true if a window ended with it.
 bool step_tick(const Model& model, State& state);
+/// Advances people alone by a tick: nobody looks, so that zones and readings (the sample's bits) stay as they are. For
+/// a State of its own: once moved so it is of no use for stepping. True if a window ended with it.
+bool move_tick(const Model& model, State& state);
 
 }  // namespace pirsim

@@ -1,6 +1,8 @@
 // Random commands at random moments: every part stays continuous, and joints keep to a bounded speed.
+#include <bit>
 #include <vector>
 
+#include "body/poser.hpp"
 #include "pirsim/core/random.hpp"
 #include "support/body_checks.hpp"
 
@@ -114,6 +116,24 @@ TEST_CASE("random commands keep every part continuous, every joint in its limits
                   << name(static_cast<Part>(turning_part)) << " while " << name(turning_stage));
   CHECK(fastest < fastest_part_m_s);
   CHECK(fastest_turn < fastest_turn_rad_s);
+}
+
+TEST_CASE("postures that follow upon one another are worked out as single ones are: bit for bit", "[motion]") {
+  const auto bytes = [](const Posture& posture) { return std::bit_cast<std::array<char, sizeof posture>>(posture); };
+  std::array<int, n_parts> kept{};
+  for (std::uint32_t run = 0; run < 100; ++run) {
+    RandomCommands commands(run);
+    Motion motion(man(), {0, 0}, 0.0, 0.0, tick_s);
+    Poser poser(man());
+    for (int tick = 0; tick < 500; ++tick) {
+      commands.maybe_command(motion);
+      motion.advance();
+      const Posture& posture = poser.posture(motion.outline());
+      for (std::size_t i = 0; i < n_parts; ++i) kept[i] += (poser.renewed() >> i & 1U) == 0 ? 1 : 0;
+      REQUIRE(bytes(posture) == bytes(posture_of(man(), motion.outline())));
+    }
+  }
+  for (const int count : kept) CHECK(count > 1000);
 }
 
 TEST_CASE("the whole of Study A is sound for people of all sizes, and arms at work move at a bounded speed",

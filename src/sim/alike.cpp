@@ -1,0 +1,132 @@
+#include "sim/alike.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace pirsim::sim {
+namespace {
+
+// Structured bindings name every field, so that a new one doesn't compile until it stands here.
+auto fields(const TriMesh& mesh) {
+  const auto& [name, positions, triangles, solidity, temperature_c] = mesh;
+  return std::tie(name, positions, triangles, solidity, temperature_c);
+}
+auto fields(const EntranceSpec& entrance) {
+  const auto& [id, world_from_entrance, width_m, outside_m] = entrance;
+  return std::tie(id, world_from_entrance, width_m, outside_m);
+}
+auto fields(const SeatSpec& seat) {
+  const auto& [id, world_from_seat] = seat;
+  return std::tie(id, world_from_seat);
+}
+auto fields(const action::Wait& wait) {
+  const auto& [duration_s] = wait;
+  return std::tie(duration_s);
+}
+auto fields(const action::Appear& appear) {
+  const auto& [point, heading_deg] = appear;
+  return std::tie(point, heading_deg);
+}
+auto fields(const action::Enter& enter) {
+  const auto& [entrance] = enter;
+  return std::tie(entrance);
+}
+auto fields(const action::Walk& walk) {
+  const auto& [points] = walk;
+  return std::tie(points);
+}
+auto fields(const action::Sit& sit) {
+  const auto& [seat] = sit;
+  return std::tie(seat);
+}
+auto fields(const action::Work& work) {
+  const auto& [duration_s, arm_amplitude_m, arm_period_s, tilt_choices_deg, tilt_every_s] = work;
+  return std::tie(duration_s, arm_amplitude_m, arm_period_s, tilt_choices_deg, tilt_every_s);
+}
+auto fields(const action::Rise&) { return std::tuple<>(); }
+auto fields(const action::Leave& leave) {
+  const auto& [entrance] = leave;
+  return std::tie(entrance);
+}
+auto fields(const action::Turn& turn) {
+  const auto& [heading_deg] = turn;
+  return std::tie(heading_deg);
+}
+
+template <typename Spec>
+bool same(const Spec& a, const Spec& b) {
+  return fields(a) == fields(b);
+}
+
+/// But for where it stands in the script.
+bool same_action(const ScriptedAction& a, const ScriptedAction& b) {
+  const auto is_same = [&](const auto& what) {
+    const auto* other = std::get_if<std::decay_t<decltype(what)>>(&b.what);
+    return other != nullptr && same(what, *other);
+  };
+  return a.at_s == b.at_s && a.phase == b.phase && std::visit(is_same, a.what);
+}
+
+bool same_person(const PersonSpec& a, const PersonSpec& b) {
+  const auto parts = [](const PersonSpec& person) {
+    const auto& [id, stature_m, mass_kg, speed, scatter, seat_shift_m, fidgeting, role, file, meshes, warmth, actions] =
+        person;
+    const auto& [position_sd_m, heading_sd_deg] = scatter;
+    const auto& [rate_per_s, tilt_deg, turn_deg] = fidgeting;
+    const auto& [skin_c, clothing_clo, bare, parts_c] = warmth;
+    return std::tie(id, stature_m, mass_kg, speed, position_sd_m, heading_sd_deg, seat_shift_m, rate_per_s, tilt_deg,
+                    turn_deg, role, file, meshes, skin_c, clothing_clo, bare, parts_c);
+  };
+  return parts(a) == parts(b) && std::ranges::equal(a.actions, b.actions, same_action);
+}
+
+std::vector<const TriMesh*> solids(const SceneSpec& scene) {
+  std::vector<const TriMesh*> meshes;
+  for (const TriMesh& mesh : scene.meshes) {
+    if (mesh.solidity == Solidity::solid) meshes.push_back(&mesh);
+  }
+  return meshes;
+}
+
+bool same_floor(const FloorArea& a, const FloorArea& b) {
+  return a.loops() == b.loops() && a.height_m() == b.height_m();
+}
+
+/// Clearances are kept as the script is written.
+bool same_size(const PersonSpec& a, const PersonSpec& b) {
+  return a.stature_m == b.stature_m && a.mass_kg == b.mass_kg;
+}
+
+bool same_trial(const TrialModel& planned, const TrialSpec& trial, double ambient_c) {
+  return planned.id == trial.id &&
+         std::ranges::equal(planned.people, trial.people, [&](const PersonModel& a, const PersonSpec& b) {
+           return same_person(a.spec, b) && a.radiance == radiance_of(b.warmth, ambient_c);
+         });
+}
+
+}  // namespace
+
+bool same_meshes(const SceneSpec& a, const SceneSpec& b) {
+  return std::ranges::equal(a.meshes, b.meshes, same<TriMesh>);
+}
+
+bool same_ground(const SceneSpec& a, const SceneSpec& b) {
+  return same_floor(a.floor, b.floor) && std::ranges::equal(a.entrances, b.entrances, same<EntranceSpec>) &&
+         std::ranges::equal(solids(a), solids(b), [](const TriMesh* x, const TriMesh* y) { return same(*x, *y); });
+}
+
+bool same_people(const Model& like, const SceneSpec& scene, const ScriptSpec& script, const ScriptSpec& as_written) {
+  const ScriptSpec& other = like.script();
+  const auto same_sizes = [](const TrialSpec& a, const TrialSpec& b) {
+    return std::ranges::equal(a.people, b.people, same_size);
+  };
+  return other.seed == as_written.seed && other.sensing.tick_rate_hz == as_written.sensing.tick_rate_hz &&
+         other.sensing.ticks_per_window == as_written.sensing.ticks_per_window && same_ground(like.scene(), scene) &&
+         std::ranges::equal(like.scene().seats, scene.seats, same<SeatSpec>) &&
+         std::ranges::equal(other.trials, as_written.trials, same_sizes) &&
+         std::ranges::equal(like.trials(), script.trials, [&](const TrialModel& planned, const TrialSpec& trial) {
+           return same_trial(planned, trial, script.sensing.ambient_c);
+         });
+}
+
+}  // namespace pirsim::sim

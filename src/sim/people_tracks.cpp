@@ -1,0 +1,45 @@
+#include "sim/people_tracks.hpp"
+
+#include <algorithm>
+
+#include "pirsim/sim/state.hpp"
+
+namespace pirsim::sim {
+
+PeopleTrack Postures::follow(const Model& model, std::uint32_t run) {
+  State state(model, run);
+  const std::vector<Actor>& actors = state.actors();
+  PeopleTrack track{{{run, model.replicate_of(run), model.trial_of(run).id, {}, {}, {}}, {}, {}}, 0, actors.size(), {}};
+  std::vector<std::uint64_t> bodies;
+  for (const Actor& actor : actors) bodies.push_back(number_of(actor.person().humanoid));
+  index_.make_room_for(actors.size());
+  while (!state.finished()) {
+    if (move_tick(model, state)) track.rows.rows.samples.push_back(state.sample());
+    for (const std::size_t seat : state.seats_left()) track.rows.seats_left.push_back({state.tick(), seat});
+    for (std::uint32_t i = 0; i < actors.size(); ++i) track.postures.push_back(number_of(i, bodies[i], actors[i]));
+  }
+  track.n_ticks = static_cast<std::size_t>(state.tick());
+  return track;
+}
+
+void Postures::shrink(std::size_t n) noexcept {
+  index_.shrink(n);
+  people_.resize(std::min(n, people_.size()));
+}
+
+std::uint64_t Postures::number_of(const body::Humanoid& humanoid) {
+  const auto known = std::ranges::find(humanoids_, humanoid);
+  if (known != humanoids_.end()) return static_cast<std::uint64_t>(known - humanoids_.begin());
+  humanoids_.push_back(humanoid);
+  return humanoids_.size() - 1;
+}
+
+PostureIndex::Number Postures::number_of(std::uint32_t person, std::uint64_t body, const Actor& actor) {
+  if (!actor.present()) return 0;
+  const PostureIndex::Number known = index_.find(person, body, actor.motion().outline());
+  if (known != 0) return known;
+  people_.push_back(person);
+  return index_.remember(person);
+}
+
+}  // namespace pirsim::sim

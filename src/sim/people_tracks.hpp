@@ -1,0 +1,45 @@
+// What people do, apart from what any sensor sees of it.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "pirsim/sim/actor.hpp"
+#include "pirsim/sim/zone_tracks.hpp"
+#include "sim/posture_index.hpp"
+
+namespace pirsim::sim {
+
+/// One run.
+struct PeopleTrack {
+  ZoneTrack rows;  ///< all but the sets
+  std::size_t n_ticks = 0, n_people = 0;
+  std::vector<PostureIndex::Number> postures;  ///< (n_ticks x n_people); 0: not there
+};
+
+/// All postures of some studies, each once, in the order in which they came.
+class Postures {
+ public:
+  [[nodiscard]] PeopleTrack follow(const Model& model, std::uint32_t run);
+  [[nodiscard]] std::size_t size() const noexcept { return index_.size(); }
+  /// Forgets all but the first n.
+  void shrink(std::size_t n) noexcept;
+  /// Who stood so first, counted from 0: postures of one person follow upon one another.
+  [[nodiscard]] std::uint32_t person(PostureIndex::Number number) const noexcept { return people_[number - 1]; }
+  /// Lives as long as this.
+  [[nodiscard]] const body::Humanoid& humanoid(PostureIndex::Number number) const {
+    return humanoids_[index_.body(number)];
+  }
+  [[nodiscard]] body::Outline outline(PostureIndex::Number number) const noexcept { return index_.outline(number); }
+
+ private:
+  [[nodiscard]] std::uint64_t number_of(const body::Humanoid& humanoid);
+  [[nodiscard]] PostureIndex::Number number_of(std::uint32_t person, std::uint64_t body, const Actor& actor);
+
+  PostureIndex index_;
+  std::vector<std::uint32_t> people_;  ///< (n_postures)
+  std::deque<body::Humanoid> humanoids_;
+};
+
+}  // namespace pirsim::sim
