@@ -1,5 +1,6 @@
 #include "io/text_input.hpp"
 
+#include <array>
 #include <fstream>
 
 #include "pirsim/core/error.hpp"
@@ -15,10 +16,14 @@ std::string read_text_file(const std::filesystem::path& path) {
     const bool exists = std::filesystem::exists(path, ignored);
     throw Error(ErrorCode::io, where, exists ? "can't be read" : "no such file");
   }
-  std::string text(max_text_file_bytes + 1, '\0');  // one more than allowed, so that endless devices end too
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  // In blocks, since most files are small; one byte more than allowed, so that endless devices end too.
+  std::string text;
+  std::array<char, 1U << 16U> block;
+  while (text.size() <= max_text_file_bytes && file) {
+    file.read(block.data(), static_cast<std::streamsize>(block.size()));
+    text.append(block.data(), static_cast<std::size_t>(file.gcount()));
+  }
   if (file.bad()) throw Error(ErrorCode::io, where, "can't be read");
-  text.resize(static_cast<std::size_t>(file.gcount()));
   if (text.size() > max_text_file_bytes) throw Error(ErrorCode::input, where, "larger than 16 MB");
   return text;
 }
