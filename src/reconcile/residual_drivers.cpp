@@ -19,7 +19,8 @@ Who who(const Laboratory& lab, std::string name, bool any_seat,
   return one;
 }
 
-/// Adds what depends on the time since the main part began and on its length alone.
+/// Adds what depends on the time since the main part began and on its length alone. Weights have the mean 0 in each
+/// run, so that a seat or a sensor that sees more all the time isn't taken for a matter of time.
 class Times {
  public:
   explicit Times(const Laboratory& lab) : lab_(lab) {}
@@ -29,8 +30,13 @@ class Times {
     for (const Profile::Trial& trial : lab_.table.profile.trials) {
       when.weight.emplace_back();
       const double length_s = static_cast<double>(trial.n_main) * lab_.frame.window_s;
-      for (std::size_t row = 0; row < trial.n_main; ++row)
+      double mean = 0.0;
+      for (std::size_t row = 0; row < trial.n_main; ++row) {
         when.weight.back().push_back(weight((static_cast<double>(row) + 0.5) * lab_.frame.window_s, length_s));
+        mean += when.weight.back().back() / static_cast<double>(trial.n_main);
+      }
+      if (name.empty()) continue;  // always
+      for (double& w : when.weight.back()) w -= mean;
     }
     all.push_back(std::move(when));
   }

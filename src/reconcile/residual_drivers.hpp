@@ -18,7 +18,7 @@ struct Who {
 /// Weight of each row of a trial's main part.
 struct When {
   std::string name;                         ///< empty: always
-  bool is_wave = false;                     ///< rises and falls; others are 0 or 1
+  bool is_wave = false;                     ///< rises and falls; others have two values
   std::vector<std::vector<double>> weight;  ///< (n_trials x n_main)
 };
 enum class How { more, more_where_little, more_where_much, opposite, beside };

@@ -70,15 +70,6 @@ TEST_CASE("residuals name the sensor that says the opposite for a while", "[reco
   }
 }
 
-TEST_CASE("residuals name the sensor that picks up its neighbour", "[reconcile]") {
-  const Residuals found = explained(planted(2, alien("picked_up_neighbour", 0)));
-  INFO(found.sentence);
-  REQUIRE_FALSE(found.drivers.empty());
-  CHECK(found.drivers.front().who == laboratory().frame.sensors[0]);
-  CHECK(found.drivers.front().what == "motion whenever " + laboratory().frame.sensors[1] + " sees some");
-  CHECK(found.drivers.front().log_odds > 0.0);
-}
-
 TEST_CASE("residuals tell the seconds of each minute in which a sensor is triggered", "[reconcile]") {
   const Residuals found = explained(planted(4, [](std::vector<Sample>& rows, Stream& stream) {
     std::size_t begin = 0;
