@@ -92,9 +92,10 @@ void draw_selftest(const std::filesystem::path& folder, const reconcile::Selftes
 void reconcile_selftest(const Inputs& inputs, const ReconcileOptions& options, const SelftestOptions& selftest) {
   const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
-  reconcile::SelftestSettings settings{
-      settings_of(options), selftest.kind,  selftest.runs,   selftest.nulls,     selftest.planted,
-      selftest.beyond,      selftest.pairs, selftest.aliens, selftest.leave_out, options.output / "planted"};
+  reconcile::SelftestSettings settings{settings_of(options), selftest.kind,    selftest.runs,
+                                       selftest.nulls,       selftest.planted, selftest.beyond,
+                                       selftest.pairs,       selftest.aliens,  selftest.leave_out};
+  settings.planted_folder = settings.analysis.table_folder / "planted";
   Teller teller(inputs.verbosity);
   const reconcile::SelftestResult result = reconcile::selftest(scene, script, settings, teller.observer());
   teller.finish();
