@@ -81,8 +81,8 @@ struct WalkableFloor::Impl {
     return floor_along(a, b) && clear(a, b, others);
   }
   [[nodiscard]] std::vector<int> leads(const Vec2& point, std::span<const Disc> others) const;
-  /// find_way() where one can't go straight; parts: of `steps`.
-  [[nodiscard]] WayMemory::Way way_over(const StepGrid& steps, std::span<const int> parts, const Vec2& from,
+  /// find_way() where one can't go straight; labels: the parts of `grid_left`.
+  [[nodiscard]] WayMemory::Way way_over(const StepGrid& grid_left, std::span<const int> labels, const Vec2& from,
                                         const Vec2& to, std::span<const Disc> others) const;
   [[nodiscard]] std::vector<int> cells_near(const Vec2& point) const;
   [[nodiscard]] std::vector<double> mesh_distances(const Vec2& point) const;
@@ -328,18 +328,18 @@ bool WalkableFloor::has_room(const Vec2& a, const Vec2& b, double clearance_m) c
   return impl_->floor_along(a, b) && impl_->clear_of_obstacles(a, b, clearance_m);
 }
 
-WayMemory::Way WalkableFloor::Impl::way_over(const StepGrid& steps, std::span<const int> parts, const Vec2& from,
+WayMemory::Way WalkableFloor::Impl::way_over(const StepGrid& grid_left, std::span<const int> labels, const Vec2& from,
                                              const Vec2& to, std::span<const Disc> others) const {
   const std::vector<int> goals = leads(to, others);
   for (const int start : leads(from, others)) {
     const auto goal = std::find_if(goals.begin(), goals.end(), [&](int cell) {
-      return parts[static_cast<std::size_t>(cell)] == parts[static_cast<std::size_t>(start)];
+      return labels[static_cast<std::size_t>(cell)] == labels[static_cast<std::size_t>(start)];
     });
     if (goal == goals.end()) continue;
     // An end that isn't walkable keeps its lead; everything else is pulled tight.
     std::vector<Vec2> way;
     if (walkable(from, from, others)) way.push_back(from);
-    for (const int cell : shortest_way(steps, start, *goal)) way.push_back(centre(cell));
+    for (const int cell : shortest_way(grid_left, start, *goal)) way.push_back(centre(cell));
     if (walkable(to, to, others)) way.push_back(to);
     way = pulled_tight(std::move(way), [&](const Vec2& a, const Vec2& b) { return walkable(a, b, others); });
     if (way.front() != from) way.insert(way.begin(), from);

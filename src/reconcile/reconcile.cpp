@@ -27,7 +27,7 @@ Laboratory make_laboratory(const SceneSpec& scene, const ScriptSpec& script, con
   begin("reference table");
   lab.table = make_reference_table(lab.source, lab.frame, lab.shape, profile_of(lab.frame, script, pilot),
                                    settings.table, settings.table_folder, {observer.progress});
-  lab.key = table_key(lab.source, lab.frame, lab.shape.n_replicates, settings.table);
+  lab.key = lab.table.key;
   return lab;
 }
 

@@ -77,9 +77,10 @@ ReferenceTable make_reference_table(const WorldSource& source, const StudyFrame&
   std::erase_if(settings.entries, [&](const std::string& entry) {
     return std::ranges::find(source.script.effects, entry, &EffectSpec::name) != source.script.effects.end();
   });
-  const TableStore store(folder, table_key(source, frame, shape.n_replicates, settings));
-  const WorldJob job(source, frame, shape.n_replicates, settings);
   ReferenceTable table;
+  table.key = table_key(source, frame, shape.n_replicates, settings);
+  const TableStore store(folder, table.key);
+  const WorldJob job(source, frame, shape.n_replicates, settings);
   table.effects = settings.entries;
   table.profile = profile;
   table.n_worlds = settings.n_worlds;

@@ -113,7 +113,11 @@ io::Report report_page(const Outcome& outcome, double alpha) {
   report.paragraphs = {next_step(outcome)};
   report.sections = {where(outcome, alpha), envelope(outcome.location, alpha), candidates(outcome)};
   if (!outcome.fits.empty()) report.sections.push_back(strength(outcome.fits));
-  if (outcome.verification) report.sections.push_back(held_out(*outcome.verification, joined(outcome.named, "and")));
+  if (outcome.verification) {
+    const bool undecided = outcome.verdict == Verdict::one_of;
+    const std::string put_in = undecided ? "the likeliest of each fold" : joined(outcome.named, "and");
+    report.sections.push_back(held_out(*outcome.verification, put_in));
+  }
   if (outcome.verdict != Verdict::no_disagreement) report.sections.push_back(reasons(outcome));
   return report;
 }

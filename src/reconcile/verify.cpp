@@ -82,7 +82,7 @@ class FoldSearch {
 };
 
 /// Datasets of the same worlds (n_worlds x n_statistics): of the plain model, and with each fold's patch or placebo in
-/// the trials that the fold holds out. Worlds in which people can't get about with a patch are left out.
+/// the trials that the fold holds out. Worlds in which people can't get about with it are left out.
 struct Ensembles {
   stats::Matrix<float> before, after, placebo;
 };
@@ -100,10 +100,10 @@ class Simulation {
         [&](std::size_t i) -> Rows {
           const SimulatedWorld world(lab_.source, lab_.frame, first_verify_world + static_cast<std::uint32_t>(i),
                                      lab_.shape.n_replicates);
-          const auto after = patched(world, &FoldPatches::patch), placebo = patched(world, &FoldPatches::placebo);
-          if (!after || !placebo) return {};
+          const auto after = patched(world);
+          if (!after) return {};
           return {statistics_of(world.plain(0, lab_.shape.n_replicates)), statistics_of(*after),
-                  statistics_of(*placebo)};
+                  statistics_of(with_placebos(world))};
         },
         [&](Rows& rows) {
           if (rows.empty()) return;
@@ -121,12 +121,21 @@ class Simulation {
   [[nodiscard]] std::vector<float> statistics_of(const std::vector<Series>& runs) const {
     return reconcile::statistics_of(lab_.frame, lab_.shape, lab_.table.profile, runs);
   }
-  [[nodiscard]] std::optional<std::vector<Series>> patched(const SimulatedWorld& world,
-                                                           Patch FoldPatches::*which) const {
+  [[nodiscard]] std::optional<std::vector<Series>> patched(const SimulatedWorld& world) const {
     std::vector<Series> all;
     for (std::size_t f = 0; f < folds_.size(); ++f) {
-      auto own = world.with_effects(found_[f].*which, 0, lab_.shape.n_replicates, folds_[f]);
+      auto own = world.with_effects(found_[f].patch, 0, lab_.shape.n_replicates, folds_[f]);
       if (!own) return std::nullopt;
+      std::ranges::move(*own, std::back_inserter(all));
+    }
+    return all;
+  }
+  /// A placebo with which people can't get about explains nothing: the plain model is taken in that fold.
+  [[nodiscard]] std::vector<Series> with_placebos(const SimulatedWorld& world) const {
+    std::vector<Series> all;
+    for (std::size_t f = 0; f < folds_.size(); ++f) {
+      auto own = world.with_effects(found_[f].placebo, 0, lab_.shape.n_replicates, folds_[f]);
+      if (!own) own = world.with_effects({}, 0, lab_.shape.n_replicates, folds_[f]);
       std::ranges::move(*own, std::back_inserter(all));
     }
     return all;

@@ -36,6 +36,7 @@ struct TableRow {
 
 class ReferenceTable {
  public:
+  std::string key;                   ///< table_key() of what it depends on
   std::vector<std::string> effects;  ///< names of the entries from 1 on
   std::vector<TableRow> rows;        ///< by world, then entry
   stats::Matrix<float> statistics;   ///< (n_rows x n_statistics)
