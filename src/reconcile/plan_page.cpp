@@ -1,4 +1,3 @@
-#include <iomanip>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -12,8 +11,6 @@ namespace pirsim::reconcile {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string percent(double share) { return fixed(100.0 * share, 0) + " %"; }
 
 io::BarChart gain_chart(const PlanResult& result) {
   io::BarChart chart;

@@ -57,12 +57,6 @@ std::string place_of(const EnvelopeEntry& entry) {
 
 }  // namespace
 
-std::string fixed(double value, int digits) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(digits) << value;
-  return out.str() == "-0" ? "0" : out.str();
-}
-
 std::string in_plain_words(const std::string& statistic) {
   static const std::map<std::string, std::string> words{{"seconds", "seconds with motion"},
                                                         {"busy_seconds", "motion when people change posture"},

@@ -19,6 +19,5 @@ namespace pirsim::reconcile {
 
 /// A statistic's name for a reader who doesn't know the program.
 [[nodiscard]] std::string in_plain_words(const std::string& statistic);
-[[nodiscard]] std::string fixed(double value, int digits);
 
 }  // namespace pirsim::reconcile

@@ -1,23 +1,14 @@
 #include "pirsim/reconcile/selftest_page.hpp"
 
 #include <algorithm>
-#include <iomanip>
 #include <map>
-#include <sstream>
 
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/stats/intervals.hpp"
+#include "reconcile/sentences.hpp"
 
 namespace pirsim::reconcile {
 namespace {
-
-std::string fixed(double value, int digits) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(digits) << value;
-  return out.str();
-}
-
-std::string percent(double share) { return fixed(100.0 * share, 0) + " %"; }
 
 std::string with_interval(const Rate& rate) {
   if (rate.of == 0) return "no case";

@@ -75,6 +75,14 @@ std::string short_number(double value) {
   return out.str();
 }
 
+std::string fixed(double value, int digits) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(digits) << value;
+  return out.str() == "-0" ? "0" : out.str();
+}
+
+std::string percent(double share) { return fixed(100.0 * share, 0) + " %"; }
+
 std::string in_words(const FittedEffect& fitted) {
   std::string text = fitted.effect.name;
   std::string details;

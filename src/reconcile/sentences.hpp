@@ -16,5 +16,9 @@ namespace pirsim::reconcile {
 [[nodiscard]] std::string joined(const std::vector<std::string>& names, const std::string& last);
 /// Three significant digits.
 [[nodiscard]] std::string short_number(double value);
+/// So many digits after the point; never "-0".
+[[nodiscard]] std::string fixed(double value, int digits);
+/// Of a share: "12 %".
+[[nodiscard]] std::string percent(double share);
 
 }  // namespace pirsim::reconcile

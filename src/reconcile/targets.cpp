@@ -2,21 +2,15 @@
 
 #include <algorithm>
 #include <array>
-#include <iomanip>
 #include <map>
 #include <sstream>
 #include <utility>
 
 #include "pirsim/effects/catalogue.hpp"
+#include "reconcile/sentences.hpp"
 
 namespace pirsim::reconcile {
 namespace {
-
-std::string fixed(double value, int digits) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(digits) << value;
-  return out.str();
-}
 
 std::string bounds_of(const Target& target) {
   if (target.at_least > 0.0 && target.at_most < 1.0) {

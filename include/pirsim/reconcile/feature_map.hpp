@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -55,8 +56,8 @@ class FeatureMap {
   void write_contrasts(const Scaled& data, Writer& out) const;
   void write_permutations(std::span<const float> statistics, Writer& out) const;
   void write_all(std::span<const float> statistics, Writer& out) const;
-  [[nodiscard]] double total(std::span<const float> statistics,
-                             const std::function<std::size_t(std::size_t trial)>& index) const;
+  [[nodiscard]] std::optional<double> total(std::span<const float> statistics,
+                                            const std::function<std::size_t(std::size_t trial)>& index) const;
   [[nodiscard]] bool known(std::size_t trial, std::size_t sensor, std::size_t statistic) const;
   [[nodiscard]] double likeness(std::span<const double> values, std::span<const std::size_t> trial_order,
                                 std::span<const std::size_t> sensor_order) const;

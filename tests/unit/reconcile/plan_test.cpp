@@ -9,6 +9,7 @@
 #include "reconcile/longer_study.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
+#include "support/short_study.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace pirsim;
@@ -16,15 +17,7 @@ using namespace pirsim::reconcile;
 
 namespace {
 
-ScriptSpec one_seat() {
-  ScriptSpec script = test::shipped_script("studyA.yaml");
-  script.replicates = 1;
-  std::erase_if(script.trials, [](const TrialSpec& t) { return t.id != "S4"; });
-  for (ScriptedAction& action : script.trials.front().people.front().actions) {
-    if (auto* work = std::get_if<action::Work>(&action.what)) work->duration_s = 30.0;
-  }
-  return script;
-}
+ScriptSpec one_seat() { return test::short_study({"S4"}, 30.0); }
 
 PlanResult planned(const std::filesystem::path& table, unsigned threads) {
   PlanSettings settings;

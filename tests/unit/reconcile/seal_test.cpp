@@ -7,21 +7,14 @@
 #include "pirsim/sim/study.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
+#include "support/short_study.hpp"
 
 using namespace pirsim;
 using namespace pirsim::reconcile;
 
 namespace {
 
-ScriptSpec one_seat() {
-  ScriptSpec script = test::shipped_script("studyA.yaml");
-  script.replicates = 1;
-  std::erase_if(script.trials, [](const TrialSpec& t) { return t.id != "S4"; });
-  for (ScriptedAction& action : script.trials.front().people.front().actions) {
-    if (auto* work = std::get_if<action::Work>(&action.what)) work->duration_s = 30.0;
-  }
-  return script;
-}
+ScriptSpec one_seat() { return test::short_study({"S4"}, 30.0); }
 
 std::string rows_of(const World& world) {
   const Model model = compile(world.scene, world.script);

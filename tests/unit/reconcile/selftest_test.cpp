@@ -5,23 +5,14 @@
 #include "pirsim/reconcile/selftest.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
+#include "support/short_study.hpp"
 
 using namespace pirsim;
 using namespace pirsim::reconcile;
 
 namespace {
 
-ScriptSpec short_study() {
-  ScriptSpec script = test::shipped_script("studyA.yaml");
-  script.replicates = 1;
-  std::erase_if(script.trials, [](const TrialSpec& t) { return t.id != "S1" && t.id != "S4" && t.id != "S8"; });
-  for (TrialSpec& trial : script.trials) {
-    for (ScriptedAction& action : trial.people.front().actions) {
-      if (auto* work = std::get_if<action::Work>(&action.what)) work->duration_s = 60.0;
-    }
-  }
-  return script;
-}
+ScriptSpec short_study() { return test::short_study({"S1", "S4", "S8"}, 60.0); }
 
 SelftestSettings small() {
   SelftestSettings settings;

@@ -1,5 +1,6 @@
 // The loop on a shortened Study A: three seats, half a minute of work each.
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -13,6 +14,7 @@
 #include "pirsim/reconcile/reconcile.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
+#include "support/short_study.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace pirsim;
@@ -20,17 +22,7 @@ using namespace pirsim::reconcile;
 
 namespace {
 
-ScriptSpec short_study() {
-  ScriptSpec script = test::shipped_script("studyA.yaml");
-  script.replicates = 1;
-  std::erase_if(script.trials, [](const TrialSpec& t) { return t.id != "S1" && t.id != "S4" && t.id != "S8"; });
-  for (TrialSpec& trial : script.trials) {
-    for (ScriptedAction& action : trial.people.front().actions) {
-      if (auto* work = std::get_if<action::Work>(&action.what)) work->duration_s = 60.0;
-    }
-  }
-  return script;
-}
+ScriptSpec short_study() { return test::short_study({"S1", "S4", "S8"}, 60.0); }
 
 Settings quick() {
   Settings settings;
@@ -176,6 +168,14 @@ TEST_CASE("folds follow from the data alone and hold out every trial once", "[re
   std::ranges::sort(all);
   CHECK(all == trials);
   CHECK(folds_of(digest, {3, 4}, 5).size() == 2);
+}
+
+TEST_CASE("features keep their places in a dataset that lacks a trial", "[reconcile]") {
+  const Laboratory& lab = laboratory();
+  const FeatureMap map(lab.frame, lab.knowledge,
+                       lab.table.statistics.select_rows(rows_of(lab.table, 0, Part::training)), {1});
+  const std::vector<float> nothing_measured(n_statistics(lab.frame), std::nanf(""));
+  CHECK(map.features(nothing_measured).size() == map.names().size());
 }
 
 TEST_CASE("a held-out trial has no part in features and names", "[reconcile]") {
