@@ -139,7 +139,7 @@ void preview(const Inputs& inputs, const PreviewOptions& options) {
     }
   }
   // What sees the person is drawn last, over the rest.
-  std::ranges::stable_partition(beams, [&](const rt::Beam& beam) { return beam.colour == idle; });
+  std::stable_partition(beams.begin(), beams.end(), [&](const rt::Beam& beam) { return beam.colour == idle; });
   const double fov = radians(options.field_of_view_deg);
   rt::Camera camera = dolls_house_camera(model.scene(), fov, static_cast<double>(options.width) / options.height);
   const auto vec = [](const std::array<double, 3>& a) { return Vec3(a[0], a[1], a[2]); };

@@ -5,6 +5,8 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 namespace pirsim::detail {
 
@@ -25,13 +27,21 @@ void ordered_parallel(std::size_t count, unsigned threads,
       }
       return next++;
     };
-    tbb::parallel_pipeline(
-        4 * static_cast<std::size_t>(arena.max_concurrency()),
-        tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, take) &
-            tbb::make_filter<std::size_t, std::shared_ptr<void>>(tbb::filter_mode::parallel, produce) &
-            tbb::make_filter<std::shared_ptr<void>, void>(
-                tbb::filter_mode::serial_in_order,
-                [&](const std::shared_ptr<void>& result) { consume(result.get()); }));
+    // Results wait here and not in the pipeline, which forgets those under way when an exception ends it. They are
+    // consumed in order, so the indices alive lie side by side and no two share a slot.
+    const std::size_t n_alive = 4 * static_cast<std::size_t>(arena.max_concurrency());
+    std::vector<std::shared_ptr<void>> alive(n_alive);
+    const auto make = [&](std::size_t i) {
+      alive[i % n_alive] = produce(i);
+      return i;
+    };
+    const auto use = [&](std::size_t i) {
+      const std::shared_ptr<void> result = std::move(alive[i % n_alive]);
+      consume(result.get());
+    };
+    tbb::parallel_pipeline(n_alive, tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order, take) &
+                                        tbb::make_filter<std::size_t, std::size_t>(tbb::filter_mode::parallel, make) &
+                                        tbb::make_filter<std::size_t, void>(tbb::filter_mode::serial_in_order, use));
   });
 }
 

@@ -45,6 +45,11 @@ const Effect& find(std::string_view name) {
   throw Error(ErrorCode::usage, "'" + std::string(name) + "' is not an effect" + did_you_mean(name, names));
 }
 
+std::string judged_as(std::string_view name) {
+  const EffectInfo& info = find(name).info;
+  return info.same_as.empty() ? info.name : info.same_as;
+}
+
 bool is_off(const EffectSpec& effect) {
   const EffectSpec complete = resolved(find(effect.name), effect);
   return std::ranges::all_of(find(effect.name).info.parameters, [&](const ParameterInfo& parameter) {

@@ -51,11 +51,16 @@ std::string in_script(const Effect& effect) {
   return out.str();
 }
 
+std::string same_as_sentence(const EffectInfo& info) {
+  return "The same change of the model as " + info.same_as + ": reconcile judges both as one, by that name.";
+}
+
 void add_markdown(std::ostream& out, const Effect& effect) {
   const EffectInfo& info = effect.info;
   out << "### " << info.name << '\n' << info.summary << "\n\n";
   out << "Fingerprint: " << info.fingerprint << ".\n";
   if (!info.confused_with.empty()) out << "Easily taken for: " << joined(info.confused_with) << ".\n";
+  if (!info.same_as.empty()) out << same_as_sentence(info) << "\n";
   out << "Stage: " << info.stage << "; reach: " << name(info.reach) << ".\n\n";
   out << "| parameter | off | typical | prior | source |\n|---|---|---|---|---|\n";
   for (const ParameterInfo& parameter : info.parameters) {
@@ -90,6 +95,7 @@ std::string to_text(const Effect& effect) {
   out << info.name << " (" << name(info.family) << ")\n" << info.summary << "\n\n";
   out << "fingerprint:      " << info.fingerprint << '\n';
   out << "easily taken for: " << joined(info.confused_with) << '\n';
+  if (!info.same_as.empty()) out << "in data:          " << same_as_sentence(info) << '\n';
   out << "acts in:          " << info.stage << " (" << name(info.reach) << ")\n\nparameters:\n";
   for (const ParameterInfo& parameter : info.parameters) {
     out << "  " << std::left << std::setw(16) << parameter.name << "off " << std::setw(8) << off_of(parameter)

@@ -26,6 +26,7 @@ const Effect& thermal_contrast() {
                .summary = "People stand out from the background by another temperature than the rated 4 K.",
                .fingerprint = "far zones fall silent or reach further, by the square root of the contrast",
                .confused_with = {"range_scale", "missed_triggers", "body_size"},
+               .same_as = "range_scale",
                .parameters = {{.name = "delta_t_k",
                                .unit = "K",
                                .off = rated_k,

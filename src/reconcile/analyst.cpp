@@ -49,13 +49,13 @@ Judgement Analyst::judge(std::span<const float> measured) const {
   Judgement judgement;
   judgement.p = plain_reference_->p(envelope_entries(map_, measured));
   judgement.scores = namer_->judge(measured);
-  std::vector<stats::Candidate> singles{{{}, judgement.scores.front().p}};
+  std::vector<stats::Candidate> singles{{{}, judgement.scores.front().p, judgement.scores.front().probability}};
   std::vector<int> families;
   for (std::size_t entry = 1; entry < judgement.scores.size(); ++entry) {
-    singles.push_back({{entry - 1}, judgement.scores[entry].p});
+    singles.push_back({{entry - 1}, judgement.scores[entry].p, judgement.scores[entry].probability});
     families.push_back(static_cast<int>(effects::find(judgement.scores[entry].entry).info.family));
   }
-  judgement.decision = stats::decide(judgement.p, singles, {}, families, settings_.alpha);
+  judgement.decision = stats::decide(judgement.p, singles, {}, families, {settings_.alpha});
   return judgement;
 }
 
@@ -75,16 +75,17 @@ Outcome Analyst::analyse(std::span<const float> measured) const {
     candidate.reason = differs ? reason_of(candidate, settings_.alpha) : "Not looked for: there is no disagreement.";
     outcome.candidates.push_back(std::move(candidate));
   }
+  // The named one is the likeliest of those that are kept.
   std::ranges::stable_sort(outcome.candidates, [](const Candidate& a, const Candidate& b) {
     if (a.kept != b.kept) return a.kept;
     return a.score.probability > b.score.probability;
   });
   if (differs) {
     outcome.telling_features = namer_->telling_features(8);
-    fit_named(outcome, measured);
     std::string set = outcome.nothing.p > settings_.alpha ? " nothing" : "";
-    for (const std::string& effect : outcome.named) set += " " + effect;
+    for (const Candidate& candidate : outcome.candidates) set += candidate.kept ? " " + candidate.score.entry : "";
     outcome.trail.push_back("entries that can have made the data:" + (set.empty() ? " none" : set));
+    fit_named(outcome, measured);
   }
   outcome.sentence = verdict_sentence(outcome, settings_.alpha);
   return outcome;
@@ -103,8 +104,13 @@ void Analyst::fit_named(Outcome& outcome, std::span<const float> measured) const
       outcome.fits.push_back(std::move(fitted));
     }
   }
-  for (const Candidate& candidate : outcome.candidates) {
-    if (candidate.kept) outcome.named.push_back(candidate.score.entry);
+  for (Candidate& candidate : outcome.candidates) {
+    if (!candidate.kept) continue;
+    if (outcome.verdict != Verdict::named || outcome.named.empty()) {
+      outcome.named.push_back(candidate.score.entry);
+    } else {
+      candidate.reason = reason_of_unlikely(candidate, outcome.candidates.front());
+    }
   }
 }
 

@@ -35,8 +35,11 @@ class WorldJob {
     return effect.info.reach == effects::Reach::geometry ? settings_.n_traced : settings_.n_remembered;
   }
   void add_effect(TableChunk& chunk, const SimulatedWorld& world, std::uint32_t index, std::uint32_t e) const {
+    // What is drawn for an effect doesn't depend on which others are looked for.
+    const auto place =
+        static_cast<std::uint32_t>(std::ranges::find(effects::catalogue(), effects_[e]) - effects::catalogue().begin());
     for (std::uint32_t attempt = 0; attempt < most_attempts; ++attempt) {
-      Stream stream({source_.seed, index, e + attempt * entries_per_attempt, Purpose::reference_parameters});
+      Stream stream({source_.seed, index, place + attempt * entries_per_attempt, Purpose::reference_parameters});
       const EffectSpec effect =
           effects::draw_from_prior(*effects_[e], world.world().scene, world.world().script, stream);
       auto data = world.with_effects(std::span(&effect, 1), 0, n_replicates_);
@@ -71,7 +74,9 @@ ReferenceTable make_reference_table(const WorldSource& source, const StudyFrame&
                                     const std::filesystem::path& folder, const TableProgress& progress) {
   TableSettings settings = asked;
   if (settings.entries.empty()) {
-    for (const effects::Effect* effect : effects::catalogue()) settings.entries.push_back(effect->info.name);
+    for (const effects::Effect* effect : effects::catalogue()) {
+      if (effect->info.same_as.empty()) settings.entries.push_back(effect->info.name);
+    }
   }
   // What the script has is not looked for a second time: two of a kind on one sensor are refused.
   std::erase_if(settings.entries, [&](const std::string& entry) {

@@ -97,6 +97,13 @@ std::set<std::string> families_of(const std::set<std::string>& names) {
   return families;
 }
 
+template <typename Names>
+std::set<std::string> as_judged(const Names& names) {
+  std::set<std::string> judged;
+  for (const std::string& name : names) judged.insert(effects::judged_as(name));
+  return judged;
+}
+
 Mark mark_of_effects(const std::set<std::string>& truth, const std::string& verdict,
                      const std::set<std::string>& named) {
   if (named.empty()) return Mark::none;
@@ -175,7 +182,7 @@ Score open_answer(std::string_view answer, std::string_view commitment, std::str
     const Hidden kind = kind_name == "nothing" ? Hidden::nothing : kind_name == "alien" ? Hidden::alien : Hidden::one;
     const auto verdict = judged.at("verdict").get<std::string>();
     const auto named = judged.at("effects").get<std::vector<std::string>>();
-    score.mark = mark_of(kind, truth, verdict, {named.begin(), named.end()});
+    score.mark = mark_of(kind, as_judged(truth), verdict, as_judged(named));
     score.sentence = std::string(name(score.mark)) + ": hidden was " +
                      (score.hidden.empty() ? "nothing" : listed(score.hidden)) + ", the verdict was " + verdict +
                      (named.empty() ? "" : " (" + listed(named) + ")");

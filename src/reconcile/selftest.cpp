@@ -44,7 +44,10 @@ PlantedCase judged(const Laboratory& lab, const Analyst& analyst, const Planted&
   const FittedEffect fitted = analyst.fit(entry_of(lab.table, result.named.front()), planted.statistics);
   if (fitted.includes_off) {
     result.verdict = Verdict::one_of;
-  } else if (kind == CaseKind::one && is_named(result, result.truth)) {
+    return result;
+  }
+  result.named.resize(1);
+  if (kind == CaseKind::one && is_named(result, result.truth)) {
     check_coverage(fitted, planted.effects.front(), result);
   }
   return result;
@@ -58,11 +61,12 @@ void judge_all(const Laboratory& lab, const Analyst& analyst, const std::vector<
       [&](PlantedCase& one) { cases.push_back(std::move(one)); });
 }
 
+/// Of datasets with a disagreement: elsewhere no probability is told.
 stats::Reliability reliability_of(const SelftestResult& result) {
   stats::Matrix<double> probabilities;
   std::vector<int> labels;
   for (const PlantedCase& c : result.cases) {
-    if (c.kind != CaseKind::one) continue;
+    if (c.kind != CaseKind::one || !c.seen()) continue;
     probabilities.append_row(std::span<const double>(c.probabilities));
     labels.push_back(static_cast<int>(std::ranges::find(result.entries, c.truth) - result.entries.begin()));
   }

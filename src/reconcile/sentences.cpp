@@ -39,6 +39,17 @@ std::string where(const Outcome& outcome, double alpha) {
          " cells (trial x sensor) differ by themselves, p = " + short_number(outcome.location.p);
 }
 
+/// What else may have made the data beside the effect that is named.
+std::string rivals(const Outcome& outcome) {
+  std::vector<std::string> names;
+  for (const Candidate& candidate : outcome.candidates) {
+    if (candidate.kept && candidate.score.entry != outcome.named.front()) names.push_back(candidate.score.entry);
+  }
+  if (names.empty()) return ", and no other effect of the catalogue explains the data.";
+  return "; with probability " + short_number(outcome.candidates.front().score.probability) + " it is this one, " +
+         joined(names, "and") + " can't be ruled out.";
+}
+
 }  // namespace
 
 std::string joined(const std::vector<std::string>& names, const std::string& last) {
@@ -93,7 +104,11 @@ std::string in_words(const FittedEffect& fitted) {
   for (const auto& [choice, value] : fitted.effect.choices) {
     details += (details.empty() ? "" : ", ") + choice + " " + value;
   }
-  return details.empty() ? text : text + " with " + details;
+  if (!details.empty()) text += " with " + details;
+  for (const effects::Effect* other : effects::catalogue()) {
+    if (other->info.same_as == fitted.effect.name) text += " (or " + other->info.name + ", the same in the model)";
+  }
+  return text;
 }
 
 std::string verdict_sentence(const Outcome& outcome, double alpha) {
@@ -103,8 +118,7 @@ std::string verdict_sentence(const Outcome& outcome, double alpha) {
              short_number(outcome.location.p) + "); this experiment would hardly see differences below " +
              short_number(outcome.location.band_s) + " s a cell.";
     case Verdict::named:
-      return "The model lacks " + in_words(outcome.fits.back()) + ": " + where(outcome, alpha) +
-             ", and no other effect of the catalogue explains the data.";
+      return "The model lacks " + in_words(outcome.fits.back()) + ": " + where(outcome, alpha) + rivals(outcome);
     case Verdict::one_of: {
       const std::string family = common_family(outcome.named);
       const bool weak = outcome.nothing.p > alpha || outcome.named.size() < 2;
@@ -122,6 +136,11 @@ std::string verdict_sentence(const Outcome& outcome, double alpha) {
   }
   return "The model lacks something that is not in the catalogue: " + where(outcome, alpha) +
          ", and no effect of the catalogue reproduces the data.";
+}
+
+std::string reason_of_unlikely(const Candidate& candidate, const Candidate& named) {
+  return "Not ruled out (p " + short_number(candidate.score.p) + "), but much less likely than " + named.score.entry +
+         " (" + short_number(candidate.score.probability) + " against " + short_number(named.score.probability) + ").";
 }
 
 std::string reason_of(const Candidate& candidate, double alpha) {

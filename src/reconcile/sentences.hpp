@@ -9,6 +9,8 @@ namespace pirsim::reconcile {
 
 [[nodiscard]] std::string verdict_sentence(const Outcome& outcome, double alpha);
 [[nodiscard]] std::string reason_of(const Candidate& candidate, double alpha);
+/// Of one that isn't ruled out while another is named.
+[[nodiscard]] std::string reason_of_unlikely(const Candidate& candidate, const Candidate& named);
 [[nodiscard]] std::string in_words(const FittedEffect& fitted);
 /// What a reader may do with the verdict.
 [[nodiscard]] std::string next_step(const Outcome& outcome);

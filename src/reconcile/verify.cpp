@@ -284,8 +284,7 @@ std::vector<std::size_t> holdout_of(const std::string& asked, const StudyFrame& 
     }
   }
   std::ranges::sort(trials);
-  const auto twice = std::ranges::unique(trials);
-  trials.erase(twice.begin(), twice.end());
+  trials.erase(std::unique(trials.begin(), trials.end()), trials.end());
   if (trials.size() < fewest || trials.size() + fewest > frame.trials.size()) {
     throw Error(ErrorCode::usage, "--holdout: of " + std::to_string(frame.trials.size()) + " trials, " +
                                       std::to_string(trials.size()) + " would be held out; two or more must be, and " +

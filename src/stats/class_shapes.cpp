@@ -65,8 +65,6 @@ void describe_residuals(const Eigen::MatrixXd& residuals, ClassShapes::Shape& sh
   shape.precision = Matrix<float>(shrunk.covariance.rows(), shrunk.covariance.columns());
   as_eigen(shape.precision) =
       covariance.llt().solve(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols())).cast<float>();
-  const Eigen::VectorXd sd = covariance.diagonal().cwiseSqrt();
-  shape.residual_sd.assign(sd.begin(), sd.end());
 }
 
 ClassShapes::Shape fit_shape(const Matrix<float>& features, const Eigen::RowVectorXd& pooled_sd,
@@ -91,27 +89,16 @@ ClassShapes::Shape fit_shape(const Matrix<float>& features, const Eigen::RowVect
   for (Eigen::Index k = 0; k < count; ++k)
     shape.spread.push_back(std::max(1e-6, std::sqrt(places.col(k).squaredNorm() / n)));
   shape.directions = detail::to_matrix<float>(directions.transpose());
-  shape.members = detail::to_matrix<float>(places);
   shape.bend = detail::to_matrix<float>(take_off_bend(places, shape.spread, settings.curved, rows));
   describe_residuals(rows, shape);
   return shape;
-}
-
-double mean_distance_to_nearest(const Matrix<float>& members, const Eigen::VectorXf& place, std::size_t neighbours) {
-  const Eigen::VectorXf squares = (as_eigen(members).rowwise() - place.transpose()).rowwise().squaredNorm();
-  std::vector<float> nearest(squares.begin(), squares.end());
-  const std::size_t count = std::min(neighbours, nearest.size());
-  std::partial_sort(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(count), nearest.end());
-  double sum = 0.0;
-  for (std::size_t i = 0; i < count; ++i) sum += std::sqrt(static_cast<double>(nearest[i]));
-  return sum / static_cast<double>(count);
 }
 
 }  // namespace
 
 ClassShapes ClassShapes::fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
                              const ClassShapesSettings& settings) {
-  require(settings.subspace > 0 && settings.neighbours > 0, "class shapes: no direction or no neighbour");
+  require(settings.subspace > 0, "class shapes: no direction");
   detail::check_labelled(features, labels, n_classes, 10);
   const Eigen::MatrixXf all = as_eigen(features).rowwise() - as_eigen(features).colwise().mean();
   const Eigen::RowVectorXd pooled_sd =
@@ -119,7 +106,6 @@ ClassShapes ClassShapes::fit(const Matrix<float>& features, std::span<const int>
   std::vector<std::vector<std::size_t>> rows_of(static_cast<std::size_t>(n_classes));
   for (std::size_t row = 0; row < labels.size(); ++row) rows_of[static_cast<std::size_t>(labels[row])].push_back(row);
   ClassShapes fitted;
-  fitted.neighbours_ = settings.neighbours;
   fitted.curved_ = settings.curved;
   ordered_parallel<Shape>(
       rows_of.size(), settings.threads,
@@ -130,7 +116,7 @@ ClassShapes ClassShapes::fit(const Matrix<float>& features, std::span<const int>
   return fitted;
 }
 
-Strangeness ClassShapes::strangeness(std::span<const float> features, std::size_t class_index) const {
+double ClassShapes::strangeness(std::span<const float> features, std::size_t class_index) const {
   require(class_index < classes_.size(), "class shapes: no such class");
   const Shape& shape = classes_[class_index];
   require(features.size() == shape.mean.size(), "class shapes: another number of features than was fitted");
@@ -142,36 +128,7 @@ Strangeness ClassShapes::strangeness(std::span<const float> features, std::size_
   const Eigen::VectorXf residual = off.cast<float>() - as_eigen(shape.directions).transpose() * place -
                                    as_eigen(shape.bend).transpose() * bend.cast<float>();
   const Eigen::VectorXf pulled = as_eigen(shape.precision) * residual;
-  Strangeness strangeness;
-  strangeness.neighbour = mean_distance_to_nearest(shape.members, place, neighbours_);
-  strangeness.mahalanobis = static_cast<double>(residual.dot(pulled));
-  strangeness.largest = (residual.cast<double>().array() / vector(shape.residual_sd).array()).abs().maxCoeff();
-  return strangeness;
-}
-
-void ClassShapes::write(BinaryWriter& out) const {
-  out.write(static_cast<std::uint64_t>(neighbours_));
-  out.write(static_cast<std::uint64_t>(curved_));
-  out.write(static_cast<std::uint64_t>(classes_.size()));
-  for (const Shape& shape : classes_) {
-    for (const auto* list : {&shape.mean, &shape.scale, &shape.spread, &shape.residual_sd}) out.write(*list);
-    for (const auto* matrix : {&shape.directions, &shape.bend, &shape.precision, &shape.members}) out.write(*matrix);
-  }
-}
-
-ClassShapes ClassShapes::read(BinaryReader& in) {
-  ClassShapes fitted;
-  fitted.neighbours_ = in.read<std::uint64_t>();
-  fitted.curved_ = in.read<std::uint64_t>();
-  const auto n_classes = in.read<std::uint64_t>();
-  for (std::uint64_t k = 0; k < n_classes; ++k) {
-    Shape shape;
-    for (auto* list : {&shape.mean, &shape.scale, &shape.spread, &shape.residual_sd}) *list = in.read_vector<double>();
-    for (auto* matrix : {&shape.directions, &shape.bend, &shape.precision, &shape.members})
-      *matrix = in.read_matrix<float>();
-    fitted.classes_.push_back(std::move(shape));
-  }
-  return fitted;
+  return static_cast<double>(residual.dot(pulled));
 }
 
 }  // namespace pirsim::stats

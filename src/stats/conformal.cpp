@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
+#include "pirsim/core/parallel.hpp"
 #include "pirsim/core/random.hpp"
-#include "pirsim/stats/envelope.hpp"
+#include "pirsim/stats/intervals.hpp"
 #include "stats/require.hpp"
-#include "stats/row_blocks.hpp"
+#include "stats/softmax.hpp"
 
 namespace pirsim::stats {
 namespace {
@@ -21,16 +23,16 @@ double margin(std::span<const double> probabilities, std::size_t k) {
   return std::log(best_other) - std::log(std::max(probabilities[k], floor));
 }
 
-std::vector<float> with_coordinates(std::span<const float> features, const Discriminant& discriminant) {
+std::vector<float> with_coordinates(std::span<const float> features, std::span<const double> place) {
   std::vector<float> wide(features.begin(), features.end());
-  for (const double coordinate : discriminant.project(features)) wide.push_back(static_cast<float>(coordinate));
+  for (const double coordinate : place) wide.push_back(static_cast<float>(coordinate));
   return wide;
 }
 
-Matrix<float> with_coordinates(const Matrix<float>& features, const Discriminant& discriminant) {
-  Matrix<float> wide(features.rows(), features.columns() + discriminant.n_directions());
+Matrix<float> with_coordinates(const Matrix<float>& features, const Matrix<double>& places) {
+  Matrix<float> wide(features.rows(), features.columns() + places.columns());
   for (std::size_t row = 0; row < features.rows(); ++row) {
-    const std::vector<float> values = with_coordinates(features.row(row), discriminant);
+    const std::vector<float> values = with_coordinates(features.row(row), places.row(row));
     std::copy(values.begin(), values.end(), wide.row(row).begin());
   }
   return wide;
@@ -40,14 +42,6 @@ std::vector<int> select(std::span<const int> labels, std::span<const std::size_t
   std::vector<int> selected;
   for (const std::size_t row : rows) selected.push_back(labels[row]);
   return selected;
-}
-
-/// p of the row's strangeness among the calibration rows': one test of all measures together.
-double absolute_p(const Matrix<double>& calibration, std::span<const double> strangeness) {
-  Matrix<double> rows;
-  rows.append_row(strangeness);
-  for (std::size_t row = 0; row < calibration.rows(); ++row) rows.append_row(calibration.row(row));
-  return extremeness(rows, {.rank = PointwiseRank::continuous, .alternative = Alternative::greater, .threads = 1})[0];
 }
 
 std::vector<float> pick(std::span<const float> features, std::span<const std::size_t> columns) {
@@ -126,8 +120,9 @@ ConformalClassifier ConformalClassifier::fit(const Matrix<float>& features, std:
     fitted.blocks_ = checked_blocks(settings.blocks, features.columns());
     for (const auto& block : fitted.blocks_)
       fitted.shapes_.push_back(ClassShapes::fit(pick(fitting, block), fitting_labels, n_classes, settings.shapes));
-    fitted.trees_ =
-        ExtraTrees::fit(with_coordinates(fitting, fitted.discriminant_), fitting_labels, n_classes, settings.trees);
+    const Matrix<double> places = fitted.discriminant_.project(fitting, settings.threads);
+    fitted.layers_ = NormalLayers::fit(places, fitting_labels, n_classes, settings.layers);
+    fitted.trees_ = ExtraTrees::fit(with_coordinates(fitting, places), fitting_labels, n_classes, settings.trees);
   }
   fitted.calibration_rows_ = split.calibration;
   fitted.calibrate(features.select_rows(fitted.calibration_rows_), select(labels, fitted.calibration_rows_),
@@ -135,65 +130,86 @@ ConformalClassifier ConformalClassifier::fit(const Matrix<float>& features, std:
   return fitted;
 }
 
-std::array<std::vector<double>, 2> ConformalClassifier::sources(std::span<const float> features) const {
-  return {trees_.probabilities(with_coordinates(features, discriminant_)), discriminant_.probabilities(features)};
+ConformalClassifier::Evidence ConformalClassifier::evidence(std::span<const float> features) const {
+  const std::vector<double> place = discriminant_.project(features);
+  std::vector<double> log_densities = layers_.log_densities(place);
+  return {{trees_.probabilities(with_coordinates(features, place)), discriminant_.probabilities(features),
+           detail::softmax(log_densities)},
+          log_densities};
 }
 
-std::vector<double> ConformalClassifier::strangeness(std::span<const float> features, std::size_t k) const {
-  std::vector<double> all;
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    const auto measures = shapes_[b].strangeness(pick(features, blocks_[b]), k).values();
-    all.insert(all.end(), measures.begin(), measures.end());
-  }
-  return all;
+std::vector<double> ConformalClassifier::measures(std::span<const float> features, const Evidence& evidence,
+                                                  std::size_t k) const {
+  std::vector<double> measures;
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    measures.push_back(std::log(shapes_[b].strangeness(pick(features, blocks_[b]), k) + 1e-9));
+  measures.push_back(-evidence.log_densities[k]);
+  return measures;
+}
+
+double ConformalClassifier::strangeness(std::span<const double> measures, std::size_t k) const {
+  double strangest = -std::numeric_limits<double>::infinity();
+  for (std::size_t m = 0; m < measures.size(); ++m)
+    strangest = std::max(strangest, (measures[m] - scales_[k][m].median) / scales_[k][m].spread);
+  return strangest;
 }
 
 void ConformalClassifier::calibrate(const Matrix<float>& features, std::span<const int> labels, unsigned threads) {
   const auto classes = static_cast<std::size_t>(n_classes());
-  const std::size_t n_measures = strangeness(features.row(0), 0).size();
-  // Per row the two sources' probabilities and the strangeness for its own class.
-  const Matrix<double> found =
-      detail::map_rows(features.rows(), 2 * classes + n_measures, threads, [&](std::size_t row) {
-        const auto both = sources(features.row(row));
-        std::vector<double> values = both[0];
-        values.insert(values.end(), both[1].begin(), both[1].end());
-        const auto own = strangeness(features.row(row), static_cast<std::size_t>(labels[row]));
-        values.insert(values.end(), own.begin(), own.end());
-        return values;
-      });
-  std::array<Matrix<double>, 2> tables{Matrix<double>(features.rows(), classes),
-                                       Matrix<double>(features.rows(), classes)};
-  for (std::size_t row = 0; row < features.rows(); ++row)
-    for (std::size_t k = 0; k < 2 * classes; ++k) tables[k / classes](row, k % classes) = found(row, k);
+  struct Row {
+    Evidence evidence;
+    std::vector<double> measures;  ///< for its own class
+  };
+  std::vector<Row> rows;
+  ordered_parallel<Row>(
+      features.rows(), threads,
+      [&](std::size_t i) {
+        Row row{evidence(features.row(i)), {}};
+        row.measures = measures(features.row(i), row.evidence, static_cast<std::size_t>(labels[i]));
+        return row;
+      },
+      [&](Row& row) { rows.push_back(std::move(row)); });
+
+  std::array<Matrix<double>, n_sources> tables;
+  for (const Row& row : rows)
+    for (std::size_t s = 0; s < n_sources; ++s) tables[s].append_row(std::span<const double>(row.evidence.sources[s]));
   pool_ = LogPool::fit(tables, labels);
 
   margins_.assign(classes, {});
-  strangeness_.assign(classes, {});
-  probabilities_ = Matrix<double>(features.rows(), classes);
-  for (std::size_t row = 0; row < features.rows(); ++row) {
-    const auto own = static_cast<std::size_t>(labels[row]);
-    const auto both = found.row(row);
-    const std::array<std::vector<double>, 2> pair{
-        std::vector<double>(both.begin(), both.begin() + static_cast<std::ptrdiff_t>(classes)),
-        std::vector<double>(both.begin() + static_cast<std::ptrdiff_t>(classes),
-                            both.begin() + static_cast<std::ptrdiff_t>(2 * classes))};
-    const std::vector<double> pooled = pool_.combine(pair);
-    std::copy(pooled.begin(), pooled.end(), probabilities_.row(row).begin());
+  probabilities_ = {};
+  std::vector<Matrix<double>> measures_of(classes);  // per class (its calibration rows x measures)
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto own = static_cast<std::size_t>(labels[i]);
+    const std::vector<double> pooled = pool_.combine(rows[i].evidence.sources);
+    probabilities_.append_row(std::span<const double>(pooled));
     margins_[own].push_back(margin(pooled, own));
-    strangeness_[own].append_row(found.row(row).subspan(2 * classes));
+    measures_of[own].append_row(std::span<const double>(rows[i].measures));
+  }
+  strangeness_.assign(classes, {});
+  scales_.assign(classes, {});
+  for (std::size_t k = 0; k < classes; ++k) {
+    for (std::size_t m = 0; m < measures_of[k].columns(); ++m) {
+      std::vector<double> values;
+      for (std::size_t i = 0; i < measures_of[k].rows(); ++i) values.push_back(measures_of[k](i, m));
+      const double spread = 0.5 * (quantile(values, 0.84) - quantile(values, 0.16));
+      scales_[k].push_back({quantile(values, 0.5), std::max(spread, 1e-9)});
+    }
+    for (std::size_t i = 0; i < measures_of[k].rows(); ++i)
+      strangeness_[k].push_back(strangeness(measures_of[k].row(i), k));
   }
 }
 
 std::vector<double> ConformalClassifier::probabilities(std::span<const float> features) const {
-  return pool_.combine(sources(features));
+  return pool_.combine(evidence(features).sources);
 }
 
 Classification ConformalClassifier::classify(std::span<const float> features) const {
+  const Evidence found = evidence(features);
   Classification result;
-  result.probabilities = probabilities(features);
+  result.probabilities = pool_.combine(found.sources);
   for (std::size_t k = 0; k < result.probabilities.size(); ++k) {
     result.p_relative.push_back(conformal_p(margins_[k], margin(result.probabilities, k)));
-    result.p_absolute.push_back(absolute_p(strangeness_[k], strangeness(features, k)));
+    result.p_absolute.push_back(conformal_p(strangeness_[k], strangeness(measures(features, found, k), k)));
     result.p.push_back(std::min(1.0, 2.0 * std::min(result.p_relative[k], result.p_absolute[k])));
   }
   return result;
@@ -205,46 +221,6 @@ std::vector<Classification> ConformalClassifier::classify(const Matrix<float>& f
       features.rows(), threads, [&](std::size_t row) { return classify(features.row(row)); },
       [&](Classification& one) { all.push_back(std::move(one)); });
   return all;
-}
-
-void ConformalClassifier::write(BinaryWriter& out) const {
-  discriminant_.write(out);
-  trees_.write(out);
-  out.write(pool_.weights());
-  out.write(static_cast<std::uint64_t>(blocks_.size()));
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    out.write(std::vector<std::uint64_t>(blocks_[b].begin(), blocks_[b].end()));
-    shapes_[b].write(out);
-  }
-  out.write(std::vector<std::uint64_t>(calibration_rows_.begin(), calibration_rows_.end()));
-  out.write(probabilities_);
-  out.write(static_cast<std::uint64_t>(margins_.size()));
-  for (std::size_t k = 0; k < margins_.size(); ++k) {
-    out.write(margins_[k]);
-    out.write(strangeness_[k]);
-  }
-}
-
-ConformalClassifier ConformalClassifier::read(BinaryReader& in) {
-  ConformalClassifier read;
-  read.discriminant_ = Discriminant::read(in);
-  read.trees_ = ExtraTrees::read(in);
-  read.pool_ = LogPool(in.read_vector<double>());
-  const auto blocks = in.read<std::uint64_t>();
-  for (std::uint64_t b = 0; b < blocks; ++b) {
-    const auto columns = in.read_vector<std::uint64_t>();
-    read.blocks_.emplace_back(columns.begin(), columns.end());
-    read.shapes_.push_back(ClassShapes::read(in));
-  }
-  const auto rows = in.read_vector<std::uint64_t>();
-  read.calibration_rows_.assign(rows.begin(), rows.end());
-  read.probabilities_ = in.read_matrix<double>();
-  const auto classes = in.read<std::uint64_t>();
-  for (std::uint64_t k = 0; k < classes; ++k) {
-    read.margins_.push_back(in.read_vector<double>());
-    read.strangeness_.push_back(in.read_matrix<double>());
-  }
-  return read;
 }
 
 }  // namespace pirsim::stats

@@ -40,30 +40,40 @@ std::optional<int> one_family(std::span<const Candidate> candidates, std::span<c
   return family;
 }
 
+/// Puts the candidate that is to be named first; false if none is.
+bool find_name(std::span<const Candidate> singles, std::vector<std::size_t>& kept, double sure) {
+  const auto is_plain = [&](std::size_t i) { return singles[i].effects.empty(); };
+  if (std::ranges::any_of(kept, is_plain)) return false;
+  const auto likeliest = std::ranges::max_element(kept, {}, [&](std::size_t i) { return singles[i].probability; });
+  if (kept.size() > 1 && singles[*likeliest].probability < sure) return false;
+  std::rotate(kept.begin(), likeliest, likeliest + 1);
+  return true;
+}
+
 Decision describe(Verdict verdict, std::span<const Candidate> candidates, std::vector<std::size_t> kept,
                   std::span<const int> families) {
   Decision decision{verdict, std::move(kept), {}, {}};
-  decision.common = shared_effects(candidates, decision.kept);
-  decision.family = one_family(candidates, decision.kept, families);
+  const auto said = std::span(decision.kept).first(verdict == Verdict::named ? 1 : decision.kept.size());
+  decision.common = shared_effects(candidates, said);
+  decision.family = one_family(candidates, said, families);
   return decision;
 }
 
 }  // namespace
 
 Decision decide(double null_p, std::span<const Candidate> singles, std::span<const Candidate> combinations,
-                std::span<const int> families, double alpha) {
+                std::span<const int> families, const DecisionLevels& levels) {
   for (const auto candidates : {singles, combinations})
     for (const Candidate& candidate : candidates)
       for (const std::size_t effect : candidate.effects)
         require(effect < families.size(), "decide: an effect without a family");
-  if (null_p > alpha) return {};
-  std::vector<std::size_t> kept = survivors(singles, alpha);
+  if (null_p > levels.alpha) return {};
+  std::vector<std::size_t> kept = survivors(singles, levels.alpha);
   if (!kept.empty()) {
-    const bool single = kept.size() == 1 && !singles[kept[0]].effects.empty();
-    const Verdict verdict = single ? Verdict::named : Verdict::one_of;
+    const Verdict verdict = find_name(singles, kept, levels.sure) ? Verdict::named : Verdict::one_of;
     return describe(verdict, singles, std::move(kept), families);
   }
-  kept = survivors(combinations, alpha);
+  kept = survivors(combinations, levels.alpha);
   if (!kept.empty()) return describe(Verdict::several, combinations, std::move(kept), families);
   return {Verdict::none_in_catalogue, {}, {}, {}};
 }

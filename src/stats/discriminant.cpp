@@ -7,6 +7,7 @@
 #include "stats/groups.hpp"
 #include "stats/require.hpp"
 #include "stats/row_blocks.hpp"
+#include "stats/softmax.hpp"
 
 namespace pirsim::stats {
 namespace {
@@ -93,28 +94,7 @@ std::vector<double> Discriminant::log_densities(std::span<const float> features)
 }
 
 std::vector<double> Discriminant::probabilities(std::span<const float> features) const {
-  std::vector<double> shares = log_densities(features);
-  const double largest = *std::max_element(shares.begin(), shares.end());
-  double sum = 0.0;
-  for (double& share : shares) sum += share = std::exp(share - largest);
-  for (double& share : shares) share /= sum;
-  return shares;
-}
-
-void Discriminant::write(BinaryWriter& out) const {
-  out.write(centre_);
-  out.write(directions_);
-  out.write(class_means_);
-  out.write(shrinkage_);
-}
-
-Discriminant Discriminant::read(BinaryReader& in) {
-  Discriminant read;
-  read.centre_ = in.read_vector<double>();
-  read.directions_ = in.read_matrix<double>();
-  read.class_means_ = in.read_matrix<double>();
-  read.shrinkage_ = in.read<double>();
-  return read;
+  return detail::softmax(log_densities(features));
 }
 
 }  // namespace pirsim::stats

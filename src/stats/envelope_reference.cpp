@@ -76,10 +76,10 @@ EnvelopeReference::Column EnvelopeReference::insert(std::size_t entry, double ob
   /// Of the simulated value sorted[i], which differs from the observed one.
   const auto special = [&](std::size_t i) {
     const std::size_t shift = i < lower ? 0 : 1;
-    const auto tied = std::ranges::equal_range(sorted, sorted[i]);
+    const auto tied = std::equal_range(sorted.begin(), sorted.end(), sorted[i]);
     return Column::Special{
-        sorted[i], detail::shared_rank(rank_, all, n, static_cast<std::size_t>(tied.begin() - sorted.begin()) + shift,
-                                       static_cast<std::size_t>(tied.end() - sorted.begin()) + shift)};
+        sorted[i], detail::shared_rank(rank_, all, n, static_cast<std::size_t>(tied.first - sorted.begin()) + shift,
+                                       static_cast<std::size_t>(tied.second - sorted.begin()) + shift)};
   };
   if (lower > 0) {
     column.first = special(0);

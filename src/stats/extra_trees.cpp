@@ -63,36 +63,4 @@ Matrix<double> ExtraTrees::probabilities(const Matrix<float>& features, unsigned
                           [&](std::size_t row) { return probabilities(features.row(row)); });
 }
 
-void ExtraTrees::write(BinaryWriter& out) const {
-  out.write(n_classes_);
-  out.write(static_cast<std::uint64_t>(n_columns_));
-  out.write(importance_);
-  out.write(static_cast<std::uint64_t>(trees_.size()));
-  for (const Tree& tree : trees_) {
-    out.write(tree.column);
-    out.write(tree.threshold);
-    out.write(tree.next);
-    out.write(tree.classes);
-    out.write(tree.shares);
-  }
-}
-
-ExtraTrees ExtraTrees::read(BinaryReader& in) {
-  ExtraTrees forest;
-  forest.n_classes_ = in.read<int>();
-  forest.n_columns_ = in.read<std::uint64_t>();
-  forest.importance_ = in.read_vector<double>();
-  const auto trees = in.read<std::uint64_t>();
-  for (std::uint64_t i = 0; i < trees; ++i) {
-    Tree tree;
-    tree.column = in.read_vector<std::int32_t>();
-    tree.threshold = in.read_vector<float>();
-    tree.next = in.read_vector<std::uint32_t>();
-    tree.classes = in.read_vector<std::uint16_t>();
-    tree.shares = in.read_vector<float>();
-    forest.trees_.push_back(std::move(tree));
-  }
-  return forest;
-}
-
 }  // namespace pirsim::stats

@@ -35,7 +35,7 @@ std::vector<TriMesh> take_out(SceneSpec& scene, const CoverageSpec& spec) {
   const auto stays = [&](const TriMesh& mesh) {
     return std::ranges::none_of(spec.without, [&](const std::string& name) { return is_called(mesh, name); });
   };
-  const auto first_out = std::ranges::stable_partition(scene.meshes, stays).begin();
+  const auto first_out = std::stable_partition(scene.meshes.begin(), scene.meshes.end(), stays);
   std::vector<TriMesh> taken(std::make_move_iterator(first_out), std::make_move_iterator(scene.meshes.end()));
   scene.meshes.erase(first_out, scene.meshes.end());
   return taken;

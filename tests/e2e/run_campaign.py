@@ -223,8 +223,8 @@ class Stopping(unittest.TestCase):
             with scratch() as folder:
                 file, stops = folder / "rows.csv", 0
                 for attempt in range(40):
-                    code = self.interrupted(file, kind, 0.1 + 0.02 * attempt)
-                    if code == 0:
+                    code = self.interrupted(file, kind, self.seconds * (0.1 + 0.02 * attempt))
+                    if code == 0 or stops == 3:
                         break
                     if code == -kind:
                         continue  # before pirsim listened

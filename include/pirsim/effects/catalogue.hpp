@@ -57,6 +57,7 @@ struct EffectInfo {
   std::string summary;      ///< one sentence
   std::string fingerprint;  ///< what it does to the data
   std::vector<std::string> confused_with{};  ///< other entries with a like fingerprint
+  std::string same_as{};                     ///< another entry that changes the model in the same way; empty: none
   std::vector<ParameterInfo> parameters{};   ///< the first is the one that names its strength
   std::vector<ChoiceInfo> choices{};
   Reach reach = Reach::geometry;
@@ -76,6 +77,10 @@ struct Effect {
 [[nodiscard]] const std::vector<const Effect*>& catalogue();
 /// Throws Error(usage) with the nearest name.
 [[nodiscard]] const Effect& find(std::string_view name);
+
+/// The entry that stands for it where data are judged: no data tell entries apart that are the same change of the
+/// model.
+[[nodiscard]] std::string judged_as(std::string_view name);
 
 /// Every unknown name, sensor or mesh and every value out of bounds. The first is without a scene: names and bounds.
 void check(std::span<const EffectSpec> effects, Diagnostics& diagnostics);

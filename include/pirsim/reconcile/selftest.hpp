@@ -87,7 +87,7 @@ struct Rate {
 struct SelftestResult {
   std::vector<PlantedCase> cases;
   std::vector<std::string> entries;  ///< of the table, nothing first
-  stats::Reliability reliability;    ///< of the probabilities, over the cases of the kind `one`
+  stats::Reliability reliability;    ///< of the probabilities, over cases of the kind `one` with a disagreement
 };
 
 /// What the settings ask for, in worlds that no table has seen; those in which people can't get about are missing.

@@ -10,6 +10,7 @@
 #include "pirsim/stats/class_shapes.hpp"
 #include "pirsim/stats/discriminant.hpp"
 #include "pirsim/stats/extra_trees.hpp"
+#include "pirsim/stats/normal_layers.hpp"
 
 namespace pirsim::stats {
 
@@ -30,6 +31,7 @@ struct Split {
 struct ConformalSettings {
   ExtraTreesSettings trees = {};  ///< grown on the features and the discriminant's coordinates. Ref: [Pudlo2016]
   ClassShapesSettings shapes = {};
+  NormalLayersSettings layers = {};  ///< in the discriminant's coordinates
   /// Columns whose shapes are looked at together, each block by itself: {} or all columns as one. A block of sums over
   /// many cells sees a small change that all cells share, which drowns among the cells themselves.
   std::vector<std::vector<std::size_t>> blocks = {};
@@ -40,12 +42,13 @@ struct ConformalSettings {
 struct Classification {
   std::vector<double> probabilities;  ///< calibrated, classes equally likely beforehand
   std::vector<double> p_relative;     ///< of the margin of the best other class over this one
-  std::vector<double> p_absolute;     ///< of the class's own strangeness: can it make this row at all
+  std::vector<double> p_absolute;     ///< of the row's strangeness for the class: can it make this row at all
   std::vector<double> p;              ///< min(1, 2 min(p_relative, p_absolute)): both tests in one
 };
 
-/// Trees and a discriminant, pooled and calibrated, and the shapes of the classes. For a row that class k made, P(p[k]
-/// <= a) <= a for each k, up to the two pool weights being fitted on the calibration rows.
+/// Trees, a discriminant and layers of normal distributions in its coordinates, pooled and calibrated, and the shapes
+/// of the classes. For a row that class k made, P(p[k] <= a) <= a for each k, up to the three pool weights and the
+/// measures' medians and spreads being taken from the calibration rows.
 class ConformalClassifier {
  public:
   ConformalClassifier() = default;
@@ -67,28 +70,41 @@ class ConformalClassifier {
   [[nodiscard]] const Matrix<double>& calibration_probabilities() const noexcept { return probabilities_; }
   [[nodiscard]] const ExtraTrees& trees() const noexcept { return trees_; }
   [[nodiscard]] const Discriminant& discriminant() const noexcept { return discriminant_; }
-  [[nodiscard]] const LogPool& pool() const noexcept { return pool_; }  ///< weights of trees and discriminant
+  [[nodiscard]] const LogPool& pool() const noexcept { return pool_; }  ///< weights of trees, discriminant, layers
   [[nodiscard]] int n_classes() const noexcept { return trees_.n_classes(); }
 
-  void write(BinaryWriter& out) const;
-  [[nodiscard]] static ConformalClassifier read(BinaryReader& in);
   bool operator==(const ConformalClassifier&) const = default;
 
  private:
-  [[nodiscard]] std::array<std::vector<double>, 2> sources(std::span<const float> features) const;
-  /// (n_blocks x measures, one after another) of the row for class k.
-  [[nodiscard]] std::vector<double> strangeness(std::span<const float> features, std::size_t k) const;
+  static constexpr std::size_t n_sources = 3;
+  /// What the classifiers say of one row, and where it lies.
+  struct Evidence {
+    std::array<std::vector<double>, n_sources> sources;  ///< (n_classes) probabilities each
+    std::vector<double> log_densities;                   ///< (n_classes) of the layers
+  };
+  [[nodiscard]] Evidence evidence(std::span<const float> features) const;
+  /// (n_blocks + 1) of the row for class k: log distance from its shape by block, and how unlikely its layers make it.
+  [[nodiscard]] std::vector<double> measures(std::span<const float> features, const Evidence& evidence,
+                                             std::size_t k) const;
+  /// The strangest of these, each in the spreads of the class's own rows.
+  [[nodiscard]] double strangeness(std::span<const double> measures, std::size_t k) const;
   void calibrate(const Matrix<float>& features, std::span<const int> labels, unsigned threads);
 
   Discriminant discriminant_;
   ExtraTrees trees_;
+  NormalLayers layers_;
   LogPool pool_;
   std::vector<std::vector<std::size_t>> blocks_;
   std::vector<ClassShapes> shapes_;  ///< per block
   std::vector<std::size_t> calibration_rows_;
   Matrix<double> probabilities_;
   std::vector<std::vector<double>> margins_;  ///< per class, of its calibration rows
-  std::vector<Matrix<double>> strangeness_;   ///< per class (its calibration rows x blocks x measures)
+  /// How a class's own rows differ in one measure of strangeness.
+  struct Scale {
+    double median = 0.0, spread = 1.0;
+  };
+  std::vector<std::vector<Scale>> scales_;        ///< (n_classes x n_blocks + 1)
+  std::vector<std::vector<double>> strangeness_;  ///< per class, of its calibration rows: the strangest measure
 };
 
 }  // namespace pirsim::stats

@@ -4,7 +4,6 @@
 #include <span>
 #include <vector>
 
-#include "pirsim/stats/binary.hpp"
 #include "pirsim/stats/matrix.hpp"
 
 namespace pirsim::stats {
@@ -39,8 +38,6 @@ class Discriminant {
   [[nodiscard]] std::size_t n_directions() const noexcept { return directions_.rows(); }
   [[nodiscard]] double shrinkage() const noexcept { return shrinkage_; }
 
-  void write(BinaryWriter& out) const;
-  [[nodiscard]] static Discriminant read(BinaryReader& in);
   bool operator==(const Discriminant&) const = default;
 
  private:

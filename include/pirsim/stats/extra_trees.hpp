@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "pirsim/stats/binary.hpp"
 #include "pirsim/stats/matrix.hpp"
 
 namespace pirsim::stats {
@@ -36,8 +35,6 @@ class ExtraTrees {
   [[nodiscard]] const std::vector<double>& importance() const noexcept { return importance_; }
   [[nodiscard]] int n_classes() const noexcept { return n_classes_; }
 
-  void write(BinaryWriter& out) const;
-  [[nodiscard]] static ExtraTrees read(BinaryReader& in);
   bool operator==(const ExtraTrees&) const = default;
 
   /// One tree as arrays over its nodes; node 0 is the root.

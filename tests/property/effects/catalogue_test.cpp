@@ -144,6 +144,7 @@ TEST_CASE("entries are complete and refer to one another by name") {
     REQUIRE_FALSE(info.parameters.empty());
     CHECK(info.parameters.front().role == effects::Role::strength);
     for (const std::string& other : info.confused_with) CHECK(names.contains(other));
+    CHECK(effects::find(effects::judged_as(info.name)).info.same_as.empty());
     for (const effects::ParameterInfo& parameter : info.parameters) {
       INFO(parameter.name);
       CHECK_FALSE(parameter.source.empty());

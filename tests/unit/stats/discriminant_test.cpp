@@ -1,7 +1,6 @@
 #include "pirsim/stats/discriminant.hpp"
 
 #include <cmath>
-#include <sstream>
 #include <vector>
 
 #include "pirsim/core/error.hpp"
@@ -100,10 +99,4 @@ TEST_CASE("more columns than rows and columns without spread don't stop a discri
   CHECK(right == 40);
   CHECK_THROWS_AS(fitted.project(std::vector<float>(3, 0.0F)), Error);
   CHECK_THROWS_AS(Discriminant::fit(data.features, data.labels, 3), Error);
-
-  std::stringstream bytes;
-  BinaryWriter writer(bytes, "discriminant", 1);
-  fitted.write(writer);
-  BinaryReader reader(bytes, "discriminant", 1);
-  CHECK(Discriminant::read(reader) == fitted);
 }

@@ -60,7 +60,7 @@ struct Study {
       const Classification found = classifier.classify(drawn.row(row));
       std::vector<Candidate> singles{{{}, found.p[toy::nothing]}};
       for (std::size_t k = 1; k < toy::n_known; ++k) singles.push_back({{k}, found.p[k]});
-      const Decision decision = decide(p, singles, {}, families, alpha);
+      const Decision decision = decide(p, singles, {}, families, {alpha});
       const auto truth = static_cast<std::size_t>(effect);  // of nothing: index 0, the model as it is
       const bool kept = std::find(decision.kept.begin(), decision.kept.end(), truth) != decision.kept.end();
       rates.alarms += p <= alpha ? share : 0.0;
