@@ -71,9 +71,9 @@ ClassShapes::Shape fit_shape(const Matrix<float>& features, const Eigen::RowVect
                              const ClassShapesSettings& settings, std::uint32_t index) {
   Eigen::MatrixXd rows = as_eigen(features).cast<double>();
   const auto n = static_cast<double>(rows.rows());
-  // Directions beyond a quarter of the rows would follow their noise.
-  const Eigen::Index count = std::min<Eigen::Index>(
-      {static_cast<Eigen::Index>(settings.subspace), std::max<Eigen::Index>(1, rows.rows() / 4), rows.cols()});
+  // Directions beyond a quarter of the rows would follow their noise, beyond a quarter of the columns leave nothing.
+  const Eigen::Index count =
+      std::min<Eigen::Index>({static_cast<Eigen::Index>(settings.subspace), rows.rows() / 4, rows.cols() / 4});
   ClassShapes::Shape shape;
   const Eigen::RowVectorXd mean = rows.colwise().mean();
   rows.rowwise() -= mean;

@@ -142,15 +142,25 @@ std::vector<double> ConformalClassifier::measures(std::span<const float> feature
                                                   std::size_t k) const {
   std::vector<double> measures;
   for (std::size_t b = 0; b < blocks_.size(); ++b)
-    measures.push_back(std::log(shapes_[b].strangeness(pick(features, blocks_[b]), k) + 1e-9));
+    measures.push_back(std::cbrt(shapes_[b].strangeness(pick(features, blocks_[b]), k)));
   measures.push_back(-evidence.log_densities[k]);
   return measures;
 }
 
-double ConformalClassifier::strangeness(std::span<const double> measures, std::size_t k) const {
+ConformalClassifier::StrangestMeasure::StrangestMeasure(const Matrix<double>& rows) {
+  for (std::size_t m = 0; m < rows.columns(); ++m) {
+    std::vector<double> values;
+    for (std::size_t row = 0; row < rows.rows(); ++row) values.push_back(rows(row, m));
+    const double median = quantile(values, 0.5);
+    scales_.push_back({median, std::max(quantile(values, 0.95) - median, 1e-9)});
+  }
+  for (std::size_t row = 0; row < rows.rows(); ++row) known_.push_back(of(rows.row(row)));
+}
+
+double ConformalClassifier::StrangestMeasure::of(std::span<const double> measures) const {
   double strangest = -std::numeric_limits<double>::infinity();
   for (std::size_t m = 0; m < measures.size(); ++m)
-    strangest = std::max(strangest, (measures[m] - scales_[k][m].median) / scales_[k][m].spread);
+    strangest = std::max(strangest, (measures[m] - scales_[m].median) / scales_[m].reach);
   return strangest;
 }
 
@@ -185,18 +195,7 @@ void ConformalClassifier::calibrate(const Matrix<float>& features, std::span<con
     margins_[own].push_back(margin(pooled, own));
     measures_of[own].append_row(std::span<const double>(rows[i].measures));
   }
-  strangeness_.assign(classes, {});
-  scales_.assign(classes, {});
-  for (std::size_t k = 0; k < classes; ++k) {
-    for (std::size_t m = 0; m < measures_of[k].columns(); ++m) {
-      std::vector<double> values;
-      for (std::size_t i = 0; i < measures_of[k].rows(); ++i) values.push_back(measures_of[k](i, m));
-      const double spread = 0.5 * (quantile(values, 0.84) - quantile(values, 0.16));
-      scales_[k].push_back({quantile(values, 0.5), std::max(spread, 1e-9)});
-    }
-    for (std::size_t i = 0; i < measures_of[k].rows(); ++i)
-      strangeness_[k].push_back(strangeness(measures_of[k].row(i), k));
-  }
+  for (const Matrix<double>& own : measures_of) strangest_.emplace_back(own);
 }
 
 std::vector<double> ConformalClassifier::probabilities(std::span<const float> features) const {
@@ -209,7 +208,7 @@ Classification ConformalClassifier::classify(std::span<const float> features) co
   result.probabilities = pool_.combine(found.sources);
   for (std::size_t k = 0; k < result.probabilities.size(); ++k) {
     result.p_relative.push_back(conformal_p(margins_[k], margin(result.probabilities, k)));
-    result.p_absolute.push_back(conformal_p(strangeness_[k], strangeness(measures(features, found, k), k)));
+    result.p_absolute.push_back(strangest_[k].p(measures(features, found, k)));
     result.p.push_back(std::min(1.0, 2.0 * std::min(result.p_relative[k], result.p_absolute[k])));
   }
   return result;

@@ -30,15 +30,12 @@ class ClassShapes {
   [[nodiscard]] double strangeness(std::span<const float> features, std::size_t class_index) const;
   [[nodiscard]] std::size_t n_classes() const noexcept { return classes_.size(); }
 
-  bool operator==(const ClassShapes&) const = default;
-
   struct Shape {
     std::vector<double> mean, scale;  ///< (n_columns) of the features; scale is one over the standard deviation
     Matrix<float> directions;         ///< (n_directions x n_columns) orthonormal, of the standardised features
     std::vector<double> spread;       ///< (n_directions) standard deviations
     Matrix<float> bend;               ///< (1 + n_products x n_columns) see products()
     Matrix<float> precision;          ///< (n_columns x n_columns) inverse covariance of the residual
-    bool operator==(const Shape&) const = default;
   };
 
  private:

@@ -48,7 +48,7 @@ struct Classification {
 
 /// Trees, a discriminant and layers of normal distributions in its coordinates, pooled and calibrated, and the shapes
 /// of the classes. For a row that class k made, P(p[k] <= a) <= a for each k, up to the three pool weights and the
-/// measures' medians and spreads being taken from the calibration rows.
+/// measures' scales being taken from the calibration rows.
 class ConformalClassifier {
  public:
   ConformalClassifier() = default;
@@ -73,21 +73,34 @@ class ConformalClassifier {
   [[nodiscard]] const LogPool& pool() const noexcept { return pool_; }  ///< weights of trees, discriminant, layers
   [[nodiscard]] int n_classes() const noexcept { return trees_.n_classes(); }
 
-  bool operator==(const ConformalClassifier&) const = default;
-
  private:
   static constexpr std::size_t n_sources = 3;
+  /// A class's own rows by the strangest of several measures, each by how far it reaches upwards in these rows.
+  class StrangestMeasure {
+   public:
+    /// rows: (n_rows of the class x n_measures).
+    explicit StrangestMeasure(const Matrix<double>& rows);
+    [[nodiscard]] double p(std::span<const double> measures) const { return conformal_p(known_, of(measures)); }
+
+   private:
+    [[nodiscard]] double of(std::span<const double> measures) const;
+    struct Scale {
+      double median = 0.0, reach = 1.0;  ///< from the median to the 95 % quantile
+    };
+    std::vector<Scale> scales_;  ///< (n_measures)
+    std::vector<double> known_;  ///< (n_rows)
+  };
   /// What the classifiers say of one row, and where it lies.
   struct Evidence {
     std::array<std::vector<double>, n_sources> sources;  ///< (n_classes) probabilities each
     std::vector<double> log_densities;                   ///< (n_classes) of the layers
   };
   [[nodiscard]] Evidence evidence(std::span<const float> features) const;
-  /// (n_blocks + 1) of the row for class k: log distance from its shape by block, and how unlikely its layers make it.
+  /// (n_blocks + 1) of the row for class k: by block the cube root of its squared distance from the class's shape,
+  /// which has a tail as the normal distribution whatever the number of columns [WilsonHilferty1931], and how unlikely
+  /// the class's layers make it.
   [[nodiscard]] std::vector<double> measures(std::span<const float> features, const Evidence& evidence,
                                              std::size_t k) const;
-  /// The strangest of these, each in the spreads of the class's own rows.
-  [[nodiscard]] double strangeness(std::span<const double> measures, std::size_t k) const;
   void calibrate(const Matrix<float>& features, std::span<const int> labels, unsigned threads);
 
   Discriminant discriminant_;
@@ -99,12 +112,7 @@ class ConformalClassifier {
   std::vector<std::size_t> calibration_rows_;
   Matrix<double> probabilities_;
   std::vector<std::vector<double>> margins_;  ///< per class, of its calibration rows
-  /// How a class's own rows differ in one measure of strangeness.
-  struct Scale {
-    double median = 0.0, spread = 1.0;
-  };
-  std::vector<std::vector<Scale>> scales_;        ///< (n_classes x n_blocks + 1)
-  std::vector<std::vector<double>> strangeness_;  ///< per class, of its calibration rows: the strangest measure
+  std::vector<StrangestMeasure> strangest_;   ///< per class, of its calibration rows
 };
 
 }  // namespace pirsim::stats
