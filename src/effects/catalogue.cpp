@@ -50,6 +50,14 @@ std::string judged_as(std::string_view name) {
   return info.same_as.empty() ? info.name : info.same_as;
 }
 
+std::vector<std::string> twins_of(std::string_view name) {
+  std::vector<std::string> twins;
+  for (const Effect* effect : catalogue()) {
+    if (effect->info.same_as == name) twins.push_back(effect->info.name);
+  }
+  return twins;
+}
+
 bool is_off(const EffectSpec& effect) {
   const EffectSpec complete = resolved(find(effect.name), effect);
   return std::ranges::all_of(find(effect.name).info.parameters, [&](const ParameterInfo& parameter) {

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "io/text_input.hpp"
+#include "pirsim/effects/catalogue.hpp"
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/csv_writer.hpp"
 #include "pirsim/io/script_reader.hpp"
@@ -177,10 +178,15 @@ std::string where_csv(const Outcome& outcome) {
 std::string candidates_csv(const Outcome& outcome) {
   std::ostringstream out;
   out << "effect,family,kept,probability,p,p_relative,p_absolute,reason\n";
+  const auto write_row = [&](const std::string& entry, const Candidate& c, const std::string& reason) {
+    out << entry << ',' << c.family << ',' << (c.kept ? 1 : 0) << ',' << io::csv_number(c.score.probability) << ','
+        << io::csv_number(c.score.p) << ',' << io::csv_number(c.score.p_relative) << ','
+        << io::csv_number(c.score.p_absolute) << ',' << io::csv_field(reason) << '\n';
+  };
   for (const Candidate& c : outcome.candidates) {
-    out << c.score.entry << ',' << c.family << ',' << (c.kept ? 1 : 0) << ',' << io::csv_number(c.score.probability)
-        << ',' << io::csv_number(c.score.p) << ',' << io::csv_number(c.score.p_relative) << ','
-        << io::csv_number(c.score.p_absolute) << ',' << io::csv_field(c.reason) << '\n';
+    write_row(c.score.entry, c, c.reason);
+    for (const std::string& twin : effects::twins_of(c.score.entry))
+      write_row(twin, c, "Judged as " + c.score.entry + ", which changes the model in the same way.");
   }
   return out.str();
 }

@@ -105,9 +105,8 @@ std::string in_words(const FittedEffect& fitted) {
     details += (details.empty() ? "" : ", ") + choice + " " + value;
   }
   if (!details.empty()) text += " with " + details;
-  for (const effects::Effect* other : effects::catalogue()) {
-    if (other->info.same_as == fitted.effect.name) text += " (or " + other->info.name + ", the same in the model)";
-  }
+  for (const std::string& twin : effects::twins_of(fitted.effect.name))
+    text += " (or " + twin + ", the same in the model)";
   return text;
 }
 

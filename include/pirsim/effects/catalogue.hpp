@@ -81,6 +81,8 @@ struct Effect {
 /// The entry that stands for it where data are judged: no data tell entries apart that are the same change of the
 /// model.
 [[nodiscard]] std::string judged_as(std::string_view name);
+/// Names of the others that it stands for.
+[[nodiscard]] std::vector<std::string> twins_of(std::string_view name);
 
 /// Every unknown name, sensor or mesh and every value out of bounds. The first is without a scene: names and bounds.
 void check(std::span<const EffectSpec> effects, Diagnostics& diagnostics);

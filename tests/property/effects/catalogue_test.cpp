@@ -160,3 +160,23 @@ TEST_CASE("entries are complete and refer to one another by name") {
     CHECK((info.reach == Reach::triggers) == triggers);
   }
 }
+
+TEST_CASE("a contrast of temperature is a factor of all ranges, its square root") {
+  CHECK(effects::judged_as("thermal_contrast") == "range_scale");
+  CHECK(effects::judged_as("range_scale") == "range_scale");
+  CHECK(effects::twins_of("range_scale") == std::vector<std::string>{"thermal_contrast"});
+  const auto ranges_with = [](const EffectSpec& effect) {
+    SceneSpec scene = shipped_scene("meeting_room.gltf");
+    ScriptSpec script;
+    script.effects = {effect};
+    effects::alter(scene, script);
+    std::vector<double> ranges;
+    for (const auto& [id, model] : scene.sensor_models)
+      for (const ClusterSpec& cluster : model.clusters) ranges.push_back(cluster.range_m);
+    return ranges;
+  };
+  const std::vector<double> warm = ranges_with({"thermal_contrast", {{"delta_t_k", 9.0}}, {}, {}});
+  const std::vector<double> far = ranges_with({"range_scale", {{"scale", 1.5}}, {}, {}});
+  REQUIRE(warm.size() == far.size());
+  for (std::size_t i = 0; i < warm.size(); ++i) CHECK(warm[i] == Approx(far[i]));
+}
