@@ -59,6 +59,7 @@ class EnvelopeReference {
   Matrix<double> simulated_;
   Matrix<double> sorted_;      ///< (n_entries x n_simulated) values of each entry
   Matrix<double> from_below_;  ///< (n_simulated x n_entries) ranks among the simulated rows
+  std::vector<double> least_;  ///< (n_simulated) the least of their ranks, from below or above
   PointwiseRank rank_;
 };
 

@@ -179,8 +179,9 @@ TEST_CASE("a reference for many observed rows gives the p of the whole envelope 
       const Matrix<double> rows = draw_rows(30 + study, 7, study, coarse);
       const Matrix<double> simulated = without_first(rows);
       std::vector<double> observed(rows.row(0).begin(), rows.row(0).end());
-      if (study % 3 == 1) observed[study % 7] += 5.0;                     // outside all
-      if (study % 3 == 2) observed[study % 7] = simulated(2, study % 7);  // tied with one
+      if (study % 3 == 1) observed[study % 7] += 5.0;                        // outside all
+      if (study % 3 == 2) observed[study % 7] = simulated(2, study % 7);     // tied with one
+      if (study % 5 == 4) std::fill(observed.begin(), observed.end(), 0.1);  // in the middle of all
       for (const PointwiseRank rank : {PointwiseRank::continuous, PointwiseRank::middle_ties}) {
         CAPTURE(coarse, study);
         CHECK(EnvelopeReference(simulated, rank).p(observed) ==
