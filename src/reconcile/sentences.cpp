@@ -39,6 +39,16 @@ std::string where(const Outcome& outcome, double alpha) {
          " cells (trial x sensor) differ by themselves, p = " + short_number(outcome.location.p);
 }
 
+/// Why no name was given to the effects that are left.
+std::string doubt(const Outcome& outcome, double alpha) {
+  if (outcome.nothing.p > alpha) return ", or nothing: the disagreement is weak";
+  if (outcome.named.size() > 1) return ", which these data can't tell apart";
+  const double probability = outcome.candidates.front().score.probability;
+  if (probability >= stats::DecisionLevels{}.plausible) return ", but its strength may as well be none";
+  return ", the only effect of the catalogue that isn't ruled out, though not a likely one (probability " +
+         short_number(probability) + ")";
+}
+
 /// What else may have made the data beside the effect that is named.
 std::string rivals(const Outcome& outcome) {
   std::vector<std::string> names;
@@ -120,13 +130,11 @@ std::string verdict_sentence(const Outcome& outcome, double alpha) {
       return "The model lacks " + in_words(outcome.fits.back()) + ": " + where(outcome, alpha) + rivals(outcome);
     case Verdict::one_of: {
       const std::string family = common_family(outcome.named);
-      const bool weak = outcome.nothing.p > alpha || outcome.named.size() < 2;
       if (outcome.named.empty())
         return "Model and measurement differ, but so little that nothing can be named: " + where(outcome, alpha) + ".";
       return (outcome.named.size() == 1 ? "The model may lack " : "The model lacks one of ") +
              joined(outcome.named, "or") + (family.empty() ? std::string() : " (of the family " + family + ")") +
-             (weak ? ", or nothing: the disagreement is weak" : ", which these data can't tell apart") + ": " +
-             where(outcome, alpha) + ".";
+             doubt(outcome, alpha) + ": " + where(outcome, alpha) + ".";
     }
     case Verdict::several:
       return "The model lacks " + joined(outcome.named, "and") + " together: " + where(outcome, alpha) + ".";

@@ -41,11 +41,11 @@ std::optional<int> one_family(std::span<const Candidate> candidates, std::span<c
 }
 
 /// Puts the candidate that is to be named first; false if none is.
-bool find_name(std::span<const Candidate> singles, std::vector<std::size_t>& kept, double sure) {
+bool find_name(std::span<const Candidate> singles, std::vector<std::size_t>& kept, const DecisionLevels& levels) {
   const auto is_plain = [&](std::size_t i) { return singles[i].effects.empty(); };
   if (std::ranges::any_of(kept, is_plain)) return false;
   const auto likeliest = std::ranges::max_element(kept, {}, [&](std::size_t i) { return singles[i].probability; });
-  if (kept.size() > 1 && singles[*likeliest].probability < sure) return false;
+  if (singles[*likeliest].probability < (kept.size() > 1 ? levels.sure : levels.plausible)) return false;
   std::rotate(kept.begin(), likeliest, likeliest + 1);
   return true;
 }
@@ -70,7 +70,7 @@ Decision decide(double null_p, std::span<const Candidate> singles, std::span<con
   if (null_p > levels.alpha) return {};
   std::vector<std::size_t> kept = survivors(singles, levels.alpha);
   if (!kept.empty()) {
-    const Verdict verdict = find_name(singles, kept, levels.sure) ? Verdict::named : Verdict::one_of;
+    const Verdict verdict = find_name(singles, kept, levels) ? Verdict::named : Verdict::one_of;
     return describe(verdict, singles, std::move(kept), families);
   }
   kept = survivors(combinations, levels.alpha);

@@ -10,8 +10,8 @@ namespace pirsim::stats {
 
 enum class Verdict {
   no_disagreement,    ///< the model without any effect isn't refused
-  named,              ///< exactly one effect survives, or one of several is far likelier than the others
-  one_of,             ///< several survive: this data can't tell them apart
+  named,              ///< one effect survives and is likely, or one of several is far likelier than the others
+  one_of,             ///< several survive: these data can't tell them apart; or a single one that isn't likely
   several,            ///< no single effect survives, but two or more together do
   none_in_catalogue,  ///< nothing known makes such data
 };
@@ -20,7 +20,7 @@ enum class Verdict {
 struct Candidate {
   std::vector<std::size_t> effects;  ///< indices into the catalogue, ascending; none: the model as it is
   double p = 0.0;
-  double probability = 0.0;  ///< calibrated, among all candidates of its kind; 0: unknown
+  double probability = 0.0;  ///< calibrated, among all candidates of its kind
 };
 
 struct DecisionLevels {
@@ -29,6 +29,9 @@ struct DecisionLevels {
   /// 1,620 planted datasets (Study A, one run) 0.8, 0.85, 0.9 and 0.95 gave the right name in 0.80, 0.79, 0.78 and 0.76
   /// of the disagreements and a wrong one in 0.9, 0.6, 0.4 and 0.3 % of all.
   double sure = 0.85;
+  /// An effect that survives alone is named if it is as probable as this. Less probable ones, while likelier ones can't
+  /// have made the data, were right in 1 of 13 such cases, 10 of which no effect of the catalogue had made.
+  double plausible = 0.5;
 };
 
 struct Decision {

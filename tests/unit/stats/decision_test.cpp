@@ -10,7 +10,10 @@ namespace {
 /// Effects 0 and 1 are of family 7, effect 2 of family 8.
 const std::vector<int> families{7, 7, 8};
 
-std::vector<Candidate> singles(double p0, double p1, double p2) { return {{{0}, p0}, {{1}, p1}, {{2}, p2}}; }
+/// All of them likely, none by far.
+std::vector<Candidate> singles(double p0, double p1, double p2) {
+  return {{{0}, p0, 0.6}, {{1}, p1, 0.6}, {{2}, p2, 0.6}};
+}
 
 const std::vector<Candidate> pairs{{{0, 1}, 0.01}, {{0, 2}, 0.3}, {{1, 2}, 0.6}};
 
@@ -23,6 +26,12 @@ TEST_CASE("a model that is not refused has no disagreement whatever the effects 
 TEST_CASE("one surviving effect is named", "[stats]") {
   const Decision decision = decide(0.001, singles(0.01, 0.4, 0.05), pairs, families, {0.05});
   CHECK(decision == Decision{Verdict::named, {1}, {1}, 7});
+}
+
+TEST_CASE("one surviving effect that is not likely is not named", "[stats]") {
+  std::vector<Candidate> candidates = singles(0.01, 0.4, 0.05);
+  candidates[1].probability = 0.2;
+  CHECK(decide(0.001, candidates, pairs, families, {0.05}) == Decision{Verdict::one_of, {1}, {1}, 7});
 }
 
 TEST_CASE("several surviving effects are one of them with the family if it is one", "[stats]") {

@@ -58,8 +58,8 @@ struct Study {
     for (std::size_t row = 0; row < rows; ++row) {
       const double p = global_envelope_test(statistics.row(row), null, {.rank = PointwiseRank::continuous}).p;
       const Classification found = classifier.classify(drawn.row(row));
-      std::vector<Candidate> singles{{{}, found.p[toy::nothing]}};
-      for (std::size_t k = 1; k < toy::n_known; ++k) singles.push_back({{k}, found.p[k]});
+      std::vector<Candidate> singles{{{}, found.p[toy::nothing], found.probabilities[toy::nothing]}};
+      for (std::size_t k = 1; k < toy::n_known; ++k) singles.push_back({{k}, found.p[k], found.probabilities[k]});
       const Decision decision = decide(p, singles, {}, families, {alpha});
       const auto truth = static_cast<std::size_t>(effect);  // of nothing: index 0, the model as it is
       const bool kept = std::find(decision.kept.begin(), decision.kept.end(), truth) != decision.kept.end();
