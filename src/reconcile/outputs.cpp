@@ -1,5 +1,6 @@
 #include "pirsim/reconcile/outputs.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -185,8 +186,11 @@ std::string candidates_csv(const Outcome& outcome) {
   };
   for (const Candidate& c : outcome.candidates) {
     write_row(c.score.entry, c, c.reason);
-    for (const std::string& twin : effects::twins_of(c.score.entry))
+    for (const std::string& twin : effects::twins_of(c.score.entry)) {
+      const auto is_twin = [&](const Candidate& other) { return other.score.entry == twin; };
+      if (std::ranges::any_of(outcome.candidates, is_twin)) continue;  // it was asked for
       write_row(twin, c, "Judged as " + c.score.entry + ", which changes the model in the same way.");
+    }
   }
   return out.str();
 }
