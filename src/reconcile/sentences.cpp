@@ -79,6 +79,9 @@ std::string next_step(const Outcome& outcome) {
       return "What to do next: run script_patched.yaml, the same script with what was found put in, and see below "
              "whether it comes closer to trials that it was not fitted on.";
     case Verdict::one_of:
+      if (outcome.named.size() < 2)
+        return "What to do next: measure more before anything is put in; pirsim reconcile plan finds what would tell "
+               "most.";
       return "What to do next: measure more before one of them is put in. pirsim reconcile plan --effects " +
              separated(outcome.named, ",") +
              " finds the measurement that separates them best. What each does to the data: " +
