@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pirsim/core/units.hpp"
+#include "reconcile/correlation.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -126,19 +127,11 @@ double cycle_strength(std::span<const std::uint8_t> bits, double cycle_rows) {
 }
 
 double agreement(const BitSeries& series) {
-  double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
+  Correlation correlation;
   for (std::size_t i = 0; i < series.bits.size(); ++i) {
-    if (series.bits[i] == unknown_bit) continue;
-    const double bit = series.bits[i], expected = series.expected[i];
-    n += 1.0;
-    x += bit;
-    y += expected;
-    xx += bit * bit;
-    yy += expected * expected;
-    xy += bit * expected;
+    if (series.bits[i] != unknown_bit) correlation.add(series.bits[i], series.expected[i]);
   }
-  const double variance = (n * xx - x * x) * (n * yy - y * y);
-  return variance > 1e-9 ? (n * xy - x * y) / std::sqrt(variance) : 0.0;
+  return correlation.value();
 }
 
 }  // namespace

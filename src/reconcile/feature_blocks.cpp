@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "reconcile/correlation.hpp"
 #include "reconcile/feature_writer.hpp"
 
 namespace pirsim::reconcile {
@@ -194,23 +195,16 @@ void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
 double FeatureMap::likeness(std::span<const double> values, std::span<const std::size_t> trial_order,
                             std::span<const std::size_t> sensor_order) const {
   const std::size_t n_sensors = frame_.sensors.size();
-  double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0;
+  Correlation correlation;
   for (const std::size_t trial : trials_) {
     for (std::size_t sensor = 0; sensor < n_sensors; ++sensor) {
       const std::size_t from = trial_order[trial] * n_sensors + sensor_order[sensor];
       const std::size_t cell = trial * n_sensors + sensor;
       if (known_[cell * n_cell_statistics] == 0 || known_[from * n_cell_statistics] == 0) continue;
-      const double a = values[cell], b = expected_log_[from];
-      n += 1.0;
-      x += a;
-      y += b;
-      xx += a * a;
-      yy += b * b;
-      xy += a * b;
+      correlation.add(values[cell], expected_log_[from]);
     }
   }
-  const double variance = (n * xx - x * x) * (n * yy - y * y);
-  return variance > 1e-9 ? (n * xy - x * y) / std::sqrt(variance) : 0.0;
+  return correlation.value();
 }
 
 void FeatureMap::write_permutations(std::span<const float> statistics, Writer& out) const {

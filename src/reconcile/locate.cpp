@@ -60,10 +60,8 @@ Location locate(const StudyFrame& frame, const FeatureMap& map, const stats::Mat
   const std::vector<std::size_t>& columns = map.envelope_columns();
   const stats::Matrix<double> simulated = envelope_entries(map, plain, settings.threads);
   const std::vector<double> observed = envelope_entries(map, measured);
-  const stats::GlobalEnvelope test =
-      stats::global_envelope_test(observed, simulated,
-                                  {settings.alpha, stats::PointwiseRank::continuous, stats::Alternative::two_sided,
-                                   settings.seed, settings.threads});
+  const stats::GlobalEnvelope test = stats::global_envelope_test(
+      observed, simulated, {settings.alpha, stats::PointwiseRank::continuous, settings.seed, settings.threads});
 
   Location location;
   location.p = test.p;

@@ -103,27 +103,4 @@ Reliability reliability(const Matrix<double>& probabilities, std::span<const int
   return result;
 }
 
-std::vector<double> isotonic(std::span<const double> values, std::span<const double> weights) {
-  require(weights.empty() || weights.size() == values.size(), "isotonic: values and weights differ in number");
-  struct Block {
-    double mean, weight;
-    std::size_t count;
-  };
-  std::vector<Block> blocks;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    blocks.push_back({values[i], weights.empty() ? 1.0 : weights[i], 1});
-    while (blocks.size() > 1 && blocks[blocks.size() - 2].mean >= blocks.back().mean) {
-      const Block last = blocks.back();
-      blocks.pop_back();
-      Block& block = blocks.back();
-      block.mean = (block.mean * block.weight + last.mean * last.weight) / (block.weight + last.weight);
-      block.weight += last.weight;
-      block.count += last.count;
-    }
-  }
-  std::vector<double> fitted;
-  for (const Block& block : blocks) fitted.insert(fitted.end(), block.count, block.mean);
-  return fitted;
-}
-
 }  // namespace pirsim::stats

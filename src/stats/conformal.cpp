@@ -124,9 +124,7 @@ ConformalClassifier ConformalClassifier::fit(const Matrix<float>& features, std:
     fitted.layers_ = NormalLayers::fit(places, fitting_labels, n_classes, settings.layers);
     fitted.trees_ = ExtraTrees::fit(with_coordinates(fitting, places), fitting_labels, n_classes, settings.trees);
   }
-  fitted.calibration_rows_ = split.calibration;
-  fitted.calibrate(features.select_rows(fitted.calibration_rows_), select(labels, fitted.calibration_rows_),
-                   settings.threads);
+  fitted.calibrate(features.select_rows(split.calibration), select(labels, split.calibration), settings.threads);
   return fitted;
 }
 

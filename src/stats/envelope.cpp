@@ -43,15 +43,13 @@ ColumnRanks rank_column(const std::vector<double>& values, PointwiseRank kind, S
   return ranks;
 }
 
-/// One-sided ranks of every entry; small is extreme. A side that the test doesn't look at is empty.
+/// Ranks of every entry from either side; small is extreme.
 struct SideRanks {
   Matrix<double> low, high;
 };
 
 SideRanks rank_sides(const Matrix<double>& rows, const EnvelopeSettings& settings) {
-  SideRanks sides;
-  if (settings.alternative != Alternative::greater) sides.low = Matrix<double>(rows.rows(), rows.columns());
-  if (settings.alternative != Alternative::less) sides.high = Matrix<double>(rows.rows(), rows.columns());
+  SideRanks sides{Matrix<double>(rows.rows(), rows.columns()), Matrix<double>(rows.rows(), rows.columns())};
   std::size_t column = 0;
   const auto rank = [&](std::size_t c) {
     std::vector<double> values(rows.rows());
@@ -61,8 +59,8 @@ SideRanks rank_sides(const Matrix<double>& rows, const EnvelopeSettings& setting
   };
   const auto store = [&](ColumnRanks& ranks) {
     for (std::size_t r = 0; r < rows.rows(); ++r) {
-      if (sides.low.rows() > 0) sides.low(r, column) = ranks.from_below[r];
-      if (sides.high.rows() > 0) sides.high(r, column) = ranks.top - ranks.from_below[r];
+      sides.low(r, column) = ranks.from_below[r];
+      sides.high(r, column) = ranks.top - ranks.from_below[r];
     }
     ++column;
   };
@@ -70,13 +68,11 @@ SideRanks rank_sides(const Matrix<double>& rows, const EnvelopeSettings& setting
   return sides;
 }
 
-/// (n_rows x n_columns) per row its pointwise ranks of the sides looked at, smallest first.
+/// (n_rows x n_columns) per row its pointwise ranks from the nearer side, smallest first.
 Matrix<double> sorted_ranks(const SideRanks& sides) {
-  Matrix<double> sorted = sides.low.rows() > 0 ? sides.low : sides.high;
-  if (sides.low.rows() > 0 && sides.high.rows() > 0) {
-    for (std::size_t i = 0; i < sorted.values().size(); ++i)
-      sorted.values()[i] = std::min(sorted.values()[i], sides.high.values()[i]);
-  }
+  Matrix<double> sorted = sides.low;
+  for (std::size_t i = 0; i < sorted.values().size(); ++i)
+    sorted.values()[i] = std::min(sorted.values()[i], sides.high.values()[i]);
   for (std::size_t r = 0; r < sorted.rows(); ++r) std::sort(sorted.row(r).begin(), sorted.row(r).end());
   return sorted;
 }
@@ -113,28 +109,20 @@ double median_without_first(const Matrix<double>& rows, std::size_t column) {
   return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
 }
 
-void draw_envelope(const Matrix<double>& rows, const std::vector<double>& p, const EnvelopeSettings& settings,
-                   GlobalEnvelope& envelope) {
+void draw_envelope(const Matrix<double>& rows, const std::vector<double>& p, double alpha, GlobalEnvelope& envelope) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   envelope.lower.assign(rows.columns(), infinity);
   envelope.upper.assign(rows.columns(), -infinity);
   for (std::size_t r = 0; r < rows.rows(); ++r) {
-    if (p[r] <= settings.alpha) continue;
+    if (p[r] <= alpha) continue;
     for (std::size_t c = 0; c < rows.columns(); ++c) {
       envelope.lower[c] = std::min(envelope.lower[c], rows(r, c));
       envelope.upper[c] = std::max(envelope.upper[c], rows(r, c));
     }
   }
-  if (settings.alternative == Alternative::greater) envelope.lower.assign(rows.columns(), -infinity);
-  if (settings.alternative == Alternative::less) envelope.upper.assign(rows.columns(), infinity);
 }
 
 }  // namespace
-
-std::vector<double> extremeness(const Matrix<double>& rows, const EnvelopeSettings& settings) {
-  require_finite(rows.values(), "envelope: a statistic is not finite");
-  return share_at_least_as_extreme(sorted_ranks(rank_sides(rows, settings)));
-}
 
 GlobalEnvelope global_envelope_test(std::span<const double> observed, const Matrix<double>& simulated,
                                     const EnvelopeSettings& settings) {
@@ -152,13 +140,10 @@ GlobalEnvelope global_envelope_test(std::span<const double> observed, const Matr
   GlobalEnvelope envelope;
   envelope.p = p[0];
   for (std::size_t c = 0; c < rows.columns(); ++c) {
-    double adjusted = 1.0;
-    for (const auto* side : {&sides.low, &sides.high})
-      if (side->rows() > 0) adjusted = std::min(adjusted, adjusted_p(*side, p, c));
-    envelope.adjusted_p.push_back(adjusted);
+    envelope.adjusted_p.push_back(std::min(adjusted_p(sides.low, p, c), adjusted_p(sides.high, p, c)));
     envelope.median.push_back(median_without_first(rows, c));
   }
-  draw_envelope(rows, p, settings, envelope);
+  draw_envelope(rows, p, settings.alpha, envelope);
   return envelope;
 }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 #include "pirsim/stats/discriminant.hpp"
 #include "stats/eigen.hpp"

@@ -50,9 +50,10 @@ def run_example(pirsim, source, folder):
     assert report["sentence"] in result.stdout, result.stdout
     assert report["where"]["p"] <= 1.0
     with open(folder / "found/candidates.csv", newline="") as table:
-        judged = [row["effect"] for row in csv.DictReader(table)]
+        reasons = {row["effect"]: row["reason"] for row in csv.DictReader(table)}
     known = subprocess.run([pirsim, "effects", "--format", "csv"], capture_output=True, text=True, check=True).stdout
-    assert sorted(judged) == sorted({row["effect"] for row in csv.DictReader(io.StringIO(known))}), judged
+    assert set(reasons) == {row["effect"] for row in csv.DictReader(io.StringIO(known))}, reasons
+    assert reasons["thermal_contrast"].startswith("Judged as range_scale"), reasons["thermal_contrast"]
     return report
 
 

@@ -22,7 +22,6 @@ class LogPool {
   /// Per source (n_classes) probabilities -> (n_classes).
   [[nodiscard]] std::vector<double> combine(std::span<const std::vector<double>> sources) const;
   [[nodiscard]] const std::vector<double>& weights() const noexcept { return weights_; }  ///< (n_sources)
-  bool operator==(const LogPool&) const = default;
 
  private:
   std::vector<double> weights_;
@@ -41,9 +40,5 @@ struct Reliability {
 /// probabilities: (n_rows x n_classes), labels: (n_rows). Ref: [Guo2017]
 [[nodiscard]] Reliability reliability(const Matrix<double>& probabilities, std::span<const int> labels,
                                       std::size_t n_bins = 15);
-
-/// The non-decreasing sequence nearest to the values in (weighted) squares: pool adjacent violators. Sort values by
-/// the score first to calibrate a score. weights: (n_values), positive; empty: all 1. Ref: [Ayer1955]
-[[nodiscard]] std::vector<double> isotonic(std::span<const double> values, std::span<const double> weights = {});
 
 }  // namespace pirsim::stats

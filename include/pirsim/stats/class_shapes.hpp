@@ -10,10 +10,11 @@
 namespace pirsim::stats {
 
 struct ClassShapesSettings {
-  std::size_t subspace = 10;  ///< directions in which a class is taken to vary; fewer for a class with few rows
-  std::size_t curved = 4;     ///< of these, the first ones along which its other features may bend (squares, products)
-  std::uint64_t seed = 0;     ///< of the random projections that find the directions
-  unsigned threads = 0;       ///< 0: all cores; never changes the result
+  std::size_t subspace =
+      10;  ///< directions in which a class is taken to vary; a quarter of the rows and of the columns at most
+  std::size_t curved = 4;  ///< of these, the first ones along which its other features may bend (squares, products)
+  std::uint64_t seed = 0;  ///< of the random projections that find the directions
+  unsigned threads = 0;    ///< 0: all cores; never changes the result
 };
 
 /// Each class by itself: its mean and standard deviations, the directions in which it varies most, how it bends along

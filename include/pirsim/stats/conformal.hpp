@@ -64,13 +64,9 @@ class ConformalClassifier {
   /// One a row.
   [[nodiscard]] std::vector<Classification> classify(const Matrix<float>& features, unsigned threads = 0) const;
 
-  /// The rows that were kept for calibration, out of those given to fit(): for reliability() and error rates.
-  [[nodiscard]] const std::vector<std::size_t>& calibration_rows() const noexcept { return calibration_rows_; }
-  /// (n_calibration_rows x n_classes) their calibrated probabilities.
+  /// (n_calibration_rows x n_classes) calibrated, of the rows that were kept for calibration.
   [[nodiscard]] const Matrix<double>& calibration_probabilities() const noexcept { return probabilities_; }
   [[nodiscard]] const ExtraTrees& trees() const noexcept { return trees_; }
-  [[nodiscard]] const Discriminant& discriminant() const noexcept { return discriminant_; }
-  [[nodiscard]] const LogPool& pool() const noexcept { return pool_; }  ///< weights of trees, discriminant, layers
   [[nodiscard]] int n_classes() const noexcept { return trees_.n_classes(); }
 
  private:
@@ -106,10 +102,9 @@ class ConformalClassifier {
   Discriminant discriminant_;
   ExtraTrees trees_;
   NormalLayers layers_;
-  LogPool pool_;
+  LogPool pool_;  ///< weights of trees, discriminant, layers
   std::vector<std::vector<std::size_t>> blocks_;
   std::vector<ClassShapes> shapes_;  ///< per block
-  std::vector<std::size_t> calibration_rows_;
   Matrix<double> probabilities_;
   std::vector<std::vector<double>> margins_;  ///< per class, of its calibration rows
   std::vector<StrangestMeasure> strangest_;   ///< per class, of its calibration rows

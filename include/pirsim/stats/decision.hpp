@@ -29,8 +29,8 @@ struct DecisionLevels {
   /// 1,620 planted datasets (Study A, one run) 0.8, 0.85, 0.9 and 0.95 gave the right name in 0.80, 0.79, 0.78 and 0.76
   /// of the disagreements and a wrong one in 0.9, 0.6, 0.4 and 0.3 % of all.
   double sure = 0.85;
-  /// An effect that survives alone is named if it is as probable as this. Less probable ones, while likelier ones can't
-  /// have made the data, were right in 1 of 13 such cases, 10 of which no effect of the catalogue had made.
+  /// An effect that survives alone is named if it is as probable as this. Of 15 less probable ones 1 was right; 10
+  /// stood for something that the catalogue lacks, 2 for a pair.
   double plausible = 0.5;
 };
 

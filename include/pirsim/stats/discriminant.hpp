@@ -38,8 +38,6 @@ class Discriminant {
   [[nodiscard]] std::size_t n_directions() const noexcept { return directions_.rows(); }
   [[nodiscard]] double shrinkage() const noexcept { return shrinkage_; }
 
-  bool operator==(const Discriminant&) const = default;
-
  private:
   std::vector<double> centre_;  ///< (n_columns) taken off first
   Matrix<double> directions_;   ///< (n_directions x n_columns)

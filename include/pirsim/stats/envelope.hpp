@@ -19,12 +19,9 @@ enum class PointwiseRank {
                 ///< there are. Ref: [Hahn2015]
 };
 
-enum class Alternative { two_sided, less, greater };
-
 struct EnvelopeSettings {
   double alpha = 0.05;  ///< level of the drawn envelope; in (0, 1)
   PointwiseRank rank = PointwiseRank::random_ties;
-  Alternative alternative = Alternative::two_sided;
   std::uint64_t seed = 0;  ///< of the random order of ties
   unsigned threads = 0;    ///< 0: all cores; never changes the result
 };
@@ -33,8 +30,7 @@ struct GlobalEnvelope {
   double p = 1.0;                    ///< of the whole vector: P(p <= a) <= a if the model is right
   std::vector<double> adjusted_p;    ///< (n_entries) smallest alpha whose envelope excludes the entry; its minimum is p
                                      ///< with random ties
-  std::vector<double> lower, upper;  ///< (n_entries) envelope of the rows that are not among the alpha most extreme;
-                                     ///< -+infinity on the side that a one-sided test doesn't look at
+  std::vector<double> lower, upper;  ///< (n_entries) envelope of the rows that are not among the alpha most extreme
   std::vector<double> median;        ///< (n_entries) of the simulated rows
 };
 
@@ -44,8 +40,8 @@ struct GlobalEnvelope {
 [[nodiscard]] GlobalEnvelope global_envelope_test(std::span<const double> observed, const Matrix<double>& simulated,
                                                   const EnvelopeSettings& settings = {});
 
-/// The p of global_envelope_test() for many observed rows and one set of simulated ones: two-sided, without random
-/// ties. What doesn't depend on the observed row is done once; a row then costs one pass over the table.
+/// The p of global_envelope_test() for many observed rows and one set of simulated ones, without random ties. What
+/// doesn't depend on the observed row is done once; a row then costs one pass over the table.
 class EnvelopeReference {
  public:
   /// simulated: (n_simulated x n_entries), finite, two rows or more. Throws Error(usage) otherwise.
@@ -62,8 +58,5 @@ class EnvelopeReference {
   std::vector<double> least_;  ///< (n_simulated) the least of their ranks, from below or above
   PointwiseRank rank_;
 };
-
-/// p of every row among all rows (n_rows): the share of rows at least as extreme as it, itself counted.
-[[nodiscard]] std::vector<double> extremeness(const Matrix<double>& rows, const EnvelopeSettings& settings = {});
 
 }  // namespace pirsim::stats

@@ -9,8 +9,8 @@
 namespace pirsim::stats {
 
 struct NormalLayersSettings {
-  std::size_t layers = 3;        ///< of each class but the first; 1 to 4 were tried: 3 parts classes best
-  std::size_t fewest_rows = 60;  ///< of a layer: a class with few rows has fewer layers
+  std::size_t layers = 3;        ///< of each class but the first; 1, 2 and 3 were tried: 3 part classes best
+  std::size_t fewest_rows = 60;  ///< of a layer, assumed: a class with few rows has fewer layers
 };
 
 /// A class whose rows run from "hardly another than the first class" to "far away" isn't one normal distribution. Its
@@ -24,7 +24,6 @@ class NormalLayers {
                                         const NormalLayersSettings& settings = {});
   /// (n_classes) log of the classes' densities at the place, up to a number that all share.
   [[nodiscard]] std::vector<double> log_densities(std::span<const double> place) const;
-  [[nodiscard]] std::size_t n_classes() const noexcept { return classes_.size(); }
 
   struct Layer {
     std::vector<double> mean;      ///< (n_coordinates)

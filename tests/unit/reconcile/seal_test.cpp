@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "pirsim/core/digest.hpp"
 #include "pirsim/io/csv_writer.hpp"
 #include "pirsim/reconcile/simulated_world.hpp"
 #include "pirsim/sim/study.hpp"
@@ -38,4 +39,20 @@ TEST_CASE("a challenge is none of the worlds that an analysis with the same seed
   for (std::uint32_t index = 0; index < 3; ++index) {
     CHECK(challenge.rows != rows_of(draw_world(scene, script, {}, seed, index, 0)));
   }
+}
+
+TEST_CASE("whoever names the twin of what was hidden is right and whoever names another is not", "[reconcile][seal]") {
+  const std::string answer =
+      R"({"pirsim_sealed_answer": 1, "hidden": "one", "effects": [{"name": "thermal_contrast"}], "alien": null,)"
+      R"( "measured_sha256": "x"})";
+  const auto mark = [&](const std::string& effect) {
+    const std::string report = R"({"pirsim_reconcile_report": 1, "measured": {"sha256": "x"}, "verdict": "named",)"
+                               R"( "effects": [")" +
+                               effect + R"("]})";
+    return open_answer(answer, sha256(answer), report).mark;
+  };
+  CHECK(mark("range_scale") == Mark::exact);
+  CHECK(mark("thermal_contrast") == Mark::exact);
+  CHECK(mark("soft_zone_edges") == Mark::family);
+  CHECK(mark("dead_sensor") == Mark::wrong);
 }

@@ -79,26 +79,3 @@ TEST_CASE("the calibration error is what its bins say", "[stats]") {
   CHECK(result.bins[9].rows == 2);
   CHECK(result.bins[6].share_right == Approx(0.5));
 }
-
-TEST_CASE("isotonic values rise and are the nearest rising ones", "[stats]") {
-  CHECK(isotonic(std::vector<double>{1, 3, 2, 4}) == std::vector<double>{1, 2.5, 2.5, 4});
-  CHECK(isotonic(std::vector<double>{3, 1}, std::vector<double>{1, 3}) == std::vector<double>{1.5, 1.5});
-  // The min-max formula of isotonic regression, an independent way to the same values.
-  Stream stream({72, 0, 0, Purpose::test});
-  std::vector<double> values(30);
-  for (double& value : values) value = stream.normal();
-  const std::vector<double> fitted = isotonic(values);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    double greatest = -1e9;
-    for (std::size_t from = 0; from <= i; ++from) {
-      double least = 1e9;
-      for (std::size_t to = i; to < values.size(); ++to) {
-        double sum = 0.0;
-        for (std::size_t k = from; k <= to; ++k) sum += values[k];
-        least = std::min(least, sum / static_cast<double>(to - from + 1));
-      }
-      greatest = std::max(greatest, least);
-    }
-    CHECK(fitted[i] == Approx(greatest));
-  }
-}

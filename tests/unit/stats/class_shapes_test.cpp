@@ -7,16 +7,13 @@
 #include "pirsim/core/error.hpp"
 #include "pirsim/core/random.hpp"
 #include "support/catch.hpp"
+#include "support/labelled.hpp"
 
 using namespace pirsim;
 using namespace pirsim::stats;
+using pirsim::test::Labelled;
 
 namespace {
-
-struct Labelled {
-  Matrix<float> features;
-  std::vector<int> labels;
-};
 
 /// Two classes in 12 columns of unit noise; class 0 varies by sd 5 along (1, 1, 0, ...), class 1 not at all.
 Labelled draw(std::size_t rows, std::uint32_t study) {

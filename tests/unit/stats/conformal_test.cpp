@@ -8,16 +8,13 @@
 #include "pirsim/core/error.hpp"
 #include "pirsim/core/random.hpp"
 #include "support/catch.hpp"
+#include "support/labelled.hpp"
 
 using namespace pirsim;
 using namespace pirsim::stats;
+using pirsim::test::Labelled;
 
 namespace {
-
-struct Labelled {
-  Matrix<float> features;
-  std::vector<int> labels;
-};
 
 /// 30 columns. Class k in {0, 1, 2} moves columns 2 k and 2 k + 1 by a random strength from 0 to 4, so that weak ones
 /// look alike; class 3 is in no catalogue: it moves columns 20 to 22 by 4.

@@ -6,16 +6,13 @@
 #include "pirsim/core/error.hpp"
 #include "pirsim/core/random.hpp"
 #include "support/catch.hpp"
+#include "support/labelled.hpp"
 
 using namespace pirsim;
 using namespace pirsim::stats;
+using pirsim::test::Labelled;
 
 namespace {
-
-struct Labelled {
-  Matrix<float> features;
-  std::vector<int> labels;
-};
 
 /// Classes at -distance / 2 and +distance / 2 along column 0; column 1 repeats column 0's noise times `correlation`.
 Labelled two_normals(std::size_t rows, std::size_t columns, double distance, double correlation, std::uint32_t study) {

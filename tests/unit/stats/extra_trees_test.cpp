@@ -7,16 +7,13 @@
 #include "pirsim/core/error.hpp"
 #include "pirsim/core/random.hpp"
 #include "support/catch.hpp"
+#include "support/labelled.hpp"
 
 using namespace pirsim;
 using namespace pirsim::stats;
+using pirsim::test::Labelled;
 
 namespace {
-
-struct Labelled {
-  Matrix<float> features;
-  std::vector<int> labels;
-};
 
 /// Two classes that only the sign of x0 x1 tells apart (no single column, no linear rule does), two columns of noise.
 Labelled checkerboard(std::size_t rows, std::uint32_t study) {

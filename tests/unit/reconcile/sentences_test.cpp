@@ -1,0 +1,67 @@
+#include "reconcile/sentences.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/catch.hpp"
+
+using namespace pirsim;
+using namespace pirsim::reconcile;
+
+namespace {
+
+/// A disagreement in which these effects aren't ruled out, with these probabilities, the named or likeliest first.
+Outcome outcome_of(Verdict verdict, const std::vector<std::pair<std::string, double>>& kept) {
+  Outcome outcome;
+  outcome.verdict = verdict;
+  for (const auto& [effect, probability] : kept) {
+    outcome.candidates.push_back({{effect, probability, 0.3, 0.4, 0.6}, "person", true, ""});
+    if (verdict != Verdict::named || outcome.named.empty()) outcome.named.push_back(effect);
+  }
+  if (verdict == Verdict::named) outcome.fits.push_back({{kept.front().first, {}, {}, {}}, {}, false});
+  return outcome;
+}
+
+std::string sentence_of(Verdict verdict, const std::vector<std::pair<std::string, double>>& kept) {
+  return verdict_sentence(outcome_of(verdict, kept), 0.05);
+}
+
+}  // namespace
+
+TEST_CASE("a name says whether it has rivals and how probable it is", "[reconcile]") {
+  CHECK_THAT(sentence_of(Verdict::named, {{"seat_shift", 0.6}}), contains("no other effect of the catalogue explains"));
+  const std::string rivals =
+      sentence_of(Verdict::named, {{"seat_shift", 0.9}, {"body_size", 0.06}, {"dead_time", 0.01}});
+  CHECK_THAT(rivals, contains("The model lacks seat_shift"));
+  CHECK_THAT(rivals, contains("with probability 0.9"));
+  CHECK_THAT(rivals, contains("body_size and dead_time can't be ruled out"));
+  CHECK_THAT(rivals, !contains("no other effect"));
+}
+
+TEST_CASE("the reason of a rival compares it with the one that is named", "[reconcile]") {
+  const Outcome outcome = outcome_of(Verdict::named, {{"seat_shift", 0.9}, {"body_size", 0.06}});
+  const std::string reason = reason_of_unlikely(outcome.candidates[1], outcome.candidates[0]);
+  CHECK_THAT(reason, contains("much less likely than seat_shift (0.06 against 0.9)"));
+}
+
+TEST_CASE("where no name is given the sentence says why", "[reconcile]") {
+  CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}}), contains("can't tell apart"));
+  CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.13}}), contains("not a likely one (probability 0.13)"));
+  CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.9}}), contains("its strength may as well be none"));
+  Outcome weak = outcome_of(Verdict::one_of, {{"seat_shift", 0.9}, {"body_size", 0.05}});
+  weak.nothing.p = 0.2;
+  CHECK_THAT(verdict_sentence(weak, 0.05), contains("or nothing: the disagreement is weak"));
+}
+
+TEST_CASE("what to do next names a plan only for effects that are to be told apart", "[reconcile]") {
+  CHECK_THAT(next_step(outcome_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}})),
+             contains("--effects seat_shift,body_size"));
+  CHECK_THAT(next_step(outcome_of(Verdict::one_of, {{"seat_shift", 0.13}})), !contains("--effects"));
+}
+
+TEST_CASE("a fitted effect names its twin and others name none", "[reconcile]") {
+  CHECK_THAT(in_words({{"range_scale", {}, {}, {}}, {}, false}),
+             contains("or thermal_contrast, the same in the model"));
+  CHECK(in_words({{"seat_shift", {}, {}, {}}, {}, false}) == "seat_shift");
+}
