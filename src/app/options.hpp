@@ -115,7 +115,7 @@ struct EffectsOptions {
 struct SelftestOptions {
   reconcile::Measured::Kind kind = reconcile::Measured::Kind::series;
   int runs = 1;
-  std::uint32_t nulls = 60, planted = 10, beyond = 0, pairs = 0, aliens = 0;
+  std::uint32_t nulls = 60, planted = 10, beyond = 0, pairs = 0, aliens = 0, verified = 0;
   reconcile::LeaveOut leave_out = reconcile::LeaveOut::none;
 };
 

@@ -79,12 +79,11 @@ void draw_selftest(const std::filesystem::path& folder, const reconcile::Selftes
       run_gnuplot(io::gnuplot_program(reconcile::power_grid(result), folder / "power.png")) &&
       run_gnuplot(io::gnuplot_program(reconcile::reliability_chart(result), folder / "reliability.png")) &&
       run_gnuplot(io::gnuplot_program(reconcile::coverage_chart(result), folder / "coverage.png"));
-  if (!drawn) {
-    tell({{Severity::warning,
-           {},
-           "not all pictures could be drawn: gnuplot (package gnuplot-nox) isn't there or failed"}},
-         verbosity);
-  }
+  if (drawn) return;
+  Issue warning;
+  warning.severity = Severity::warning;
+  warning.message = "not all pictures could be drawn: gnuplot (package gnuplot-nox) isn't there or failed";
+  tell({warning}, verbosity);
 }
 
 }  // namespace
@@ -92,9 +91,9 @@ void draw_selftest(const std::filesystem::path& folder, const reconcile::Selftes
 void reconcile_selftest(const Inputs& inputs, const ReconcileOptions& options, const SelftestOptions& selftest) {
   const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
-  reconcile::SelftestSettings settings{settings_of(options), selftest.kind,    selftest.runs,
-                                       selftest.nulls,       selftest.planted, selftest.beyond,
-                                       selftest.pairs,       selftest.aliens,  selftest.leave_out};
+  reconcile::SelftestSettings settings{settings_of(options), selftest.kind,    selftest.runs,  selftest.nulls,
+                                       selftest.planted,     selftest.beyond,  selftest.pairs, selftest.aliens,
+                                       selftest.leave_out,   selftest.verified};
   settings.planted_folder = settings.analysis.table_folder / "planted";
   Teller teller(inputs.verbosity);
   const reconcile::SelftestResult result = reconcile::selftest(scene, script, settings, teller.observer());

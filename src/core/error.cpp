@@ -38,7 +38,10 @@ void add(std::vector<Issue>& issues, Issue issue) {
   const auto told =
       std::count_if(issues.begin(), issues.end(), [&](const Issue& other) { return other.severity == issue.severity; });
   if (told > most) return;
-  if (told == most) issue = {issue.severity, {issue.where.file, 0, 0}, "there are more like these"};
+  if (told == most) {
+    issue.where.line = issue.where.column = 0;
+    issue.message = "there are more like these";
+  }
   issues.push_back(std::move(issue));
 }
 

@@ -33,7 +33,8 @@ Analyst::Analyst(const StudyFrame& frame, const std::vector<CellKnowledge>& know
           NamerSettings{settings.alpha, settings.trees, settings.seed, settings.threads, settings.left_out})) {}
 
 FittedEffect Analyst::fit(std::size_t entry, std::span<const float> measured) const {
-  return fit_from_table(table_, map_, entry, measured, {settings_.seed, settings_.threads, 0.9});
+  return fit_from_table(table_, map_, entry, namer_->seen_rows(entry), measured,
+                        {settings_.seed, settings_.threads, 0.9});
 }
 
 std::size_t Analyst::likeliest(std::span<const float> measured, const std::function<bool(std::size_t)>& wanted) const {
@@ -49,13 +50,10 @@ Judgement Analyst::judge(std::span<const float> measured) const {
   Judgement judgement;
   judgement.p = plain_reference_->p(envelope_entries(map_, measured));
   judgement.scores = namer_->judge(measured);
-  std::vector<stats::Candidate> singles{{{}, judgement.scores.front().p, judgement.scores.front().probability}};
-  std::vector<int> families;
-  for (std::size_t entry = 1; entry < judgement.scores.size(); ++entry) {
-    singles.push_back({{entry - 1}, judgement.scores[entry].p, judgement.scores[entry].probability});
-    families.push_back(static_cast<int>(effects::find(judgement.scores[entry].entry).info.family));
-  }
-  judgement.decision = stats::decide(judgement.p, singles, {}, families, {settings_.alpha});
+  judgement.family = likeliest_family(judgement.scores);
+  std::vector<stats::Candidate> candidates;
+  for (const EntryScore& score : judgement.scores) candidates.push_back({score.p, score.probability});
+  judgement.decision = stats::decide(judgement.p, candidates, {settings_.alpha});
   return judgement;
 }
 
@@ -66,6 +64,7 @@ Outcome Analyst::analyse(std::span<const float> measured) const {
   outcome.location = locate(frame_, map_, plain_, measured, {settings_.alpha, settings_.seed, settings_.threads});
   outcome.trail.push_back("global test: p " + short_number(outcome.location.p));
   outcome.nothing = judgement.scores.front();
+  outcome.family = judgement.family;
   outcome.calibration_error = namer_->reliability().expected_calibration_error;
   const bool differs = outcome.verdict != Verdict::no_disagreement;
   for (std::size_t entry = 1; entry < judgement.scores.size(); ++entry) {

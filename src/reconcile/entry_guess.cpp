@@ -11,15 +11,15 @@ namespace {
 using effects::ParameterInfo;
 using effects::Scale;
 
-stats::Matrix<double> features_of(const ReferenceTable& table, const FeatureMap& map,
-                                  const std::vector<std::size_t>& rows, unsigned threads) {
+stats::Matrix<double> features_of(const ReferenceTable& table, const FeatureMap& map, std::span<const std::size_t> rows,
+                                  unsigned threads) {
   const stats::Matrix<float> narrow = map.features(table.statistics.select_rows(rows), threads);
   stats::Matrix<double> features(narrow.rows(), narrow.columns());
   std::ranges::copy(narrow.values(), features.values().begin());
   return features;
 }
 
-stats::Matrix<double> parameters_of(const ReferenceTable& table, const std::vector<std::size_t>& rows,
+stats::Matrix<double> parameters_of(const ReferenceTable& table, std::span<const std::size_t> rows,
                                     const std::vector<const ParameterInfo*>& infos) {
   stats::Matrix<double> parameters(rows.size(), infos.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -41,13 +41,13 @@ double from_flat(const ParameterInfo& info, double value) {
   return std::clamp(rounded, info.least, info.most);
 }
 
-EntryGuess::EntryGuess(const ReferenceTable& table, const FeatureMap& map, std::size_t entry, unsigned threads) {
+EntryGuess::EntryGuess(const ReferenceTable& table, const FeatureMap& map, std::size_t entry,
+                       std::span<const std::size_t> held_back, unsigned threads) {
   for (const ParameterInfo& info : effects::find(table.entry_name(entry)).info.parameters) {
     if (info.low < info.high) infos_.push_back(&info);
   }
   if (infos_.empty()) return;
-  const std::vector<std::size_t> training = rows_of(table, entry, Part::training),
-                                 held_back = rows_of(table, entry, Part::calibration);
+  const std::vector<std::size_t> training = rows_of(table, entry, Part::training);
   guess_ =
       stats::ParameterGuess::fit(features_of(table, map, training, threads), parameters_of(table, training, infos_));
   parameters_ = parameters_of(table, held_back, infos_);

@@ -1,6 +1,7 @@
 // What the datasets of one entry of the table say about its parameters.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "pirsim/effects/catalogue.hpp"
@@ -19,8 +20,9 @@ namespace pirsim::reconcile {
 /// guesses err as that of measured data does.
 class EntryGuess {
  public:
-  /// features of the map over all datasets of the entry; entry: 1 or more.
-  EntryGuess(const ReferenceTable& table, const FeatureMap& map, std::size_t entry, unsigned threads);
+  /// entry: 1 or more; held_back: rows of it outside the training part.
+  EntryGuess(const ReferenceTable& table, const FeatureMap& map, std::size_t entry,
+             std::span<const std::size_t> held_back, unsigned threads);
 
   [[nodiscard]] const std::vector<const effects::ParameterInfo*>& infos() const noexcept { return infos_; }
   [[nodiscard]] std::vector<stats::Interval> bounds() const;

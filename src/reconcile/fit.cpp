@@ -98,14 +98,15 @@ std::vector<double> widening_of(const EntryGuess& entry, std::span<const double>
 }  // namespace
 
 FittedEffect fit_from_table(const ReferenceTable& table, const FeatureMap& map, std::size_t entry,
-                            std::span<const float> measured, const FitSettings& settings) {
+                            std::span<const std::size_t> held_back, std::span<const float> measured,
+                            const FitSettings& settings) {
   FittedEffect fitted;
   fitted.effect.name = table.entry_name(entry);
   for (const ParameterInfo& info : effects::find(fitted.effect.name).info.parameters)
     fitted.effect.parameters[info.name] = info.low;  // of those that don't vary
   const std::vector<float> features = map.features(measured);
   choose(table, map, entry, features, fitted.effect);
-  const EntryGuess guess(table, map, entry, settings.threads);
+  const EntryGuess guess(table, map, entry, held_back, settings.threads);
   if (guess.infos().empty()) return fitted;
 
   const std::vector<double> observed = guess.of(features);

@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::uint32_t first_check_world = 1U << 23U;  ///< worlds that no table has seen
 constexpr int datasets_per_world = 4;                   ///< where zones are remembered
-constexpr std::size_t n_folds = 5;
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
@@ -90,7 +89,7 @@ void Loop::explain() {
   }
   begin("what the residuals follow");
   outcome_.residuals =
-      explain_residuals(steps_.front().lab, measured_, outcome_.candidates, {settings_.alpha, settings_.threads});
+      explain_residuals(steps_.front().lab, measured_, outcome_.family, {settings_.alpha, settings_.threads});
   outcome_.sentence += " " + outcome_.residuals->sentence;
   outcome_.trail.push_back("residuals: " + outcome_.residuals->sentence);
 }
@@ -182,10 +181,11 @@ void Loop::conclude() {
 void Loop::verify_effects() {
   if (outcome_.named.empty()) return;
   const bool one_of = outcome_.verdict == Verdict::one_of;
-  std::vector<PutIn> steps;
+  Claim claim{{}, outcome_.named};
   const std::size_t n = one_of ? 1 : put_in_.size();
   for (std::size_t i = 0; i < n; ++i)
-    steps.push_back({&steps_[i].lab, steps_[i].observed, one_of ? outcome_.named.front() : put_in_[i].effect.name});
+    claim.steps.push_back(
+        {&steps_[i].lab, steps_[i].observed, one_of ? outcome_.named.front() : put_in_[i].effect.name});
   const Laboratory& lab = steps_.front().lab;
   const std::vector<std::size_t> trials = measured_trials(lab);
   if (trials.size() < 2) {
@@ -193,11 +193,11 @@ void Loop::verify_effects() {
     return;
   }
   begin("does it help on held-out trials");
-  const bool sums = lab.shape.kind == Measured::Kind::sums;
-  const Folds folds = settings_.holdout.empty() ? folds_of(measured_.digest, trials, sums ? trials.size() : n_folds)
-                                                : Folds{settings_.holdout};
-  outcome_.verification = verify(steps, outcome_.named, folds,
-                                 {settings_.alpha, settings_.seed, settings_.threads, settings_.verify_worlds});
+  const Folds folds =
+      settings_.holdout.empty() ? usual_folds(measured_.digest, trials, lab.shape.kind) : Folds{settings_.holdout};
+  outcome_.verification =
+      verify(std::span(&claim, 1), folds, {settings_.alpha, settings_.seed, settings_.threads, settings_.verify_worlds})
+          .front();
   const Verification& v = *outcome_.verification;
   outcome_.trail.push_back("held-out trials: energy score " + short_number(v.before.energy_score) + " before, " +
                            short_number(v.after.energy_score) + " after, " + std::to_string(v.n_better) + " of " +

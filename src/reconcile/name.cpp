@@ -1,6 +1,7 @@
 #include "pirsim/reconcile/name.hpp"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include "pirsim/core/error.hpp"
@@ -15,7 +16,7 @@ constexpr std::size_t fewest_calibration = 10;
 
 /// The rows that the global test sees something in; if they are few the next ones too, so that p can fall below alpha:
 /// two tests in one need 2 / alpha rows, half as many again tell more than whether it does (40 to 80 rows were tried).
-std::vector<std::size_t> seen_rows(const ReferenceTable& table, const FeatureMap& map,
+std::vector<std::size_t> rows_seen(const ReferenceTable& table, const FeatureMap& map,
                                    const stats::EnvelopeReference& plain, std::vector<std::size_t> rows,
                                    const NamerSettings& settings) {
   std::vector<std::pair<double, std::size_t>> by_p;
@@ -51,10 +52,18 @@ struct Labelled {
 
 }  // namespace
 
+FamilyScore likeliest_family(std::span<const EntryScore> scores) {
+  std::map<effects::Family, double> sums;
+  for (const EntryScore& score : scores.subspan(1)) sums[effects::find(score.entry).info.family] += score.probability;
+  const auto likeliest = std::ranges::max_element(sums, {}, [](const auto& sum) { return sum.second; });
+  return likeliest == sums.end() ? FamilyScore{} : FamilyScore{likeliest->first, likeliest->second};
+}
+
 Namer::Namer(const ReferenceTable& table, const FeatureMap& map, const stats::EnvelopeReference& plain,
              const NamerSettings& settings)
     : map_(&map) {
   Labelled data;
+  seen_rows_.resize(table.n_entries());
   for (std::size_t entry = 0; entry < table.n_entries(); ++entry) {
     names_.push_back(table.entry_name(entry));
     if (names_.back() == settings.left_out) continue;
@@ -68,8 +77,8 @@ Namer::Namer(const ReferenceTable& table, const FeatureMap& map, const stats::En
     }
     const auto label = static_cast<int>(entries_.size());
     data.add(training, label, data.split.fitting);
-    data.add(entry == 0 ? calibration : seen_rows(table, map, plain, calibration, settings), label,
-             data.split.calibration);
+    seen_rows_[entry] = entry == 0 ? calibration : rows_seen(table, map, plain, calibration, settings);
+    data.add(seen_rows_[entry], label, data.split.calibration);
     entries_.push_back(entry);
   }
   const stats::Matrix<float> features = map.features(table.statistics.select_rows(data.rows), settings.threads);

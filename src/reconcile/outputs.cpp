@@ -109,9 +109,7 @@ Json to_json(const Residuals& residuals) {
                        {"z", driver.z},
                        {"p", driver.p}});
   }
-  return {{"sentence", residuals.sentence},
-          {"drivers", drivers},
-          {"nearest_family", {{"family", residuals.nearest_family}, {"probability", residuals.family_probability}}}};
+  return {{"sentence", residuals.sentence}, {"drivers", drivers}};
 }
 
 void write(const std::filesystem::path& file, const std::string& text) {
@@ -151,6 +149,7 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
   for (const Candidate& candidate : outcome.candidates) candidates.push_back(to_json(candidate));
   for (const FittedEffect& fitted : outcome.fits) fits.push_back(to_json(fitted));
   json["nothing"] = to_json(outcome.nothing);
+  json["family"] = {{"name", name(outcome.family.family)}, {"probability", outcome.family.probability}};
   json["candidates"] = candidates;
   json["fits"] = fits;
   Json looks = Json::array();

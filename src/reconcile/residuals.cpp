@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "pirsim/core/parallel.hpp"
 #include "pirsim/stats/logistic.hpp"
@@ -323,28 +322,17 @@ std::string in_words(const ResidualDriver& driver) {
          short_number(driver.p) + ")";
 }
 
-void name_nearest_family(std::span<const Candidate> candidates, Residuals& result) {
-  std::map<std::string, double> families;
-  for (const Candidate& candidate : candidates) families[candidate.family] += candidate.score.probability;
-  for (const auto& [family, probability] : families) {
-    if (probability <= result.family_probability) continue;
-    result.nearest_family = family;
-    result.family_probability = probability;
-  }
-}
-
-std::string sentence_of(const Residuals& result) {
+std::string sentence_of(const Residuals& result, const FamilyScore& family) {
   std::string text;
   for (const ResidualDriver& driver : result.drivers) text += (text.empty() ? "" : "; ") + in_words(driver);
   text = text.empty() ? "What is left follows no sensor, seat, time or neighbour that was tried."
                       : "What is left: " + text + ".";
-  if (!result.nearest_family.empty()) text += " The nearest family of effects is " + result.nearest_family + ".";
-  return text;
+  return text + " The nearest family of effects is " + std::string(name(family.family)) + ".";
 }
 
 }  // namespace
 
-Residuals explain_residuals(const Laboratory& lab, const Measured& measured, std::span<const Candidate> candidates,
+Residuals explain_residuals(const Laboratory& lab, const Measured& measured, const FamilyScore& family,
                             const ResidualSettings& settings) {
   const Profile& profile = lab.table.profile;
   const Bits bits(lab, profile);
@@ -366,8 +354,7 @@ Residuals explain_residuals(const Laboratory& lab, const Measured& measured, std
     result.drivers.push_back({who.name, when, in_words(driver.how, z > 0.0, lab.frame.sensors[driver.other]),
                               regression.log_odds(), regression.standard_error(), z, p});
   }
-  name_nearest_family(candidates, result);
-  result.sentence = sentence_of(result);
+  result.sentence = sentence_of(result, family);
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "pirsim/core/digest.hpp"
 #include "pirsim/core/parallel.hpp"
 #include "pirsim/effects/catalogue.hpp"
 #include "pirsim/reconcile/analyst.hpp"
@@ -40,6 +41,7 @@ PlantedCase judged(const Laboratory& lab, const Analyst& analyst, const Planted&
   for (const EntryScore& score : judgement.scores) result.probabilities.push_back(score.probability);
   const auto best = std::ranges::max_element(judgement.scores, {}, &EntryScore::probability);
   result.likeliest = best->entry;
+  if (!result.named.empty() && judgement.family.is_sure()) result.family = judgement.family.family;
   if (result.verdict != Verdict::named) return result;
   const FittedEffect fitted = analyst.fit(entry_of(lab.table, result.named.front()), planted.statistics);
   if (fitted.includes_off) {
@@ -47,6 +49,7 @@ PlantedCase judged(const Laboratory& lab, const Analyst& analyst, const Planted&
     return result;
   }
   result.named.resize(1);
+  result.family = effects::find(result.named.front()).info.family;
   if (kind == CaseKind::one && is_named(result, result.truth)) {
     check_coverage(fitted, planted.effects.front(), result);
   }
@@ -61,6 +64,36 @@ void judge_all(const Laboratory& lab, const Analyst& analyst, const std::vector<
       [&](PlantedCase& one) { cases.push_back(std::move(one)); });
 }
 
+/// Which datasets are judged on held-out trials, by index.
+std::vector<std::size_t> to_verify(const std::vector<PlantedCase>& cases, std::size_t n_right) {
+  std::vector<std::size_t> right, chosen;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const PlantedCase& c = cases[i];
+    if (c.kind == CaseKind::one && is_named(c, c.truth)) right.push_back(i);
+    if (c.kind == CaseKind::nothing && !c.named.empty()) chosen.push_back(i);
+  }
+  n_right = std::min(n_right, right.size());
+  for (std::size_t k = 0; k < n_right; ++k) chosen.push_back(right[k * right.size() / n_right]);
+  return chosen;
+}
+
+/// cases: of `planted`, in the same order.
+void verify_some(const Laboratory& lab, const std::vector<Planted>& planted, const SelftestSettings& settings,
+                 std::vector<PlantedCase>& cases) {
+  const std::vector<std::size_t> chosen = to_verify(cases, settings.n_verified);
+  if (chosen.empty()) return;
+  std::vector<Claim> claims;
+  for (const std::size_t i : chosen) {
+    const std::vector<std::string>& named = cases[i].named;
+    claims.push_back({{{&lab, planted[i].statistics, named.front()}}, named});
+  }
+  const Settings& analysis = settings.analysis;
+  const Folds folds = usual_folds(sha256(lab.key), all_trials(lab.frame), lab.shape.kind);
+  std::vector<Verification> found =
+      verify(claims, folds, {analysis.alpha, analysis.seed, analysis.threads, analysis.verify_worlds});
+  for (std::size_t k = 0; k < chosen.size(); ++k) cases[chosen[k]].verification = std::move(found[k]);
+}
+
 /// Of datasets with a disagreement: elsewhere no probability is told.
 stats::Reliability reliability_of(const SelftestResult& result) {
   stats::Matrix<double> probabilities;
@@ -71,12 +104,6 @@ stats::Reliability reliability_of(const SelftestResult& result) {
     labels.push_back(static_cast<int>(std::ranges::find(result.entries, c.truth) - result.entries.begin()));
   }
   return labels.empty() ? stats::Reliability{} : stats::reliability(probabilities, labels);
-}
-
-bool family_is(const std::vector<std::string>& effects, const std::string& truth) {
-  return !effects.empty() && std::ranges::all_of(effects, [&](const std::string& effect) {
-    return effects::find(effect).info.family == effects::find(truth).info.family;
-  });
 }
 
 /// Counts cases.
@@ -114,24 +141,41 @@ void count_nulls(const SelftestResult& result, std::vector<Rate>& rates) {
 void count_planted(const SelftestResult& result, std::vector<Rate>& rates) {
   Counter power("a disagreement seen"), exact("exactly the right name, given a disagreement"),
       named("a name, given a disagreement"), right("the right name, given a name"),
-      family("the right family, given a disagreement"), wrong("one wrong name"),
+      family("the right family, given a disagreement"), wrong("one wrong name"), wrong_family("one wrong family"),
       in_set("the truth in the set, given a disagreement"), none("none in the catalogue, given a disagreement"),
       coverage("parameters within their 90 % intervals");
   for (const PlantedCase& c : result.cases) {
     if (c.kind != CaseKind::one) continue;
     power.count(c.seen());
     wrong.count(c.verdict == Verdict::named && !is_named(c, c.truth));
+    wrong_family.count(c.family.has_value() && c.family != effects::find(c.truth).info.family);
     coverage.add(c.n_covered, c.n_parameters);
     if (!c.seen()) continue;
     exact.count(is_named(c, c.truth));
     named.count(c.verdict == Verdict::named);
     if (c.verdict == Verdict::named) right.count(is_named(c, c.truth));
-    family.count(family_is(c.named, c.truth));
+    family.count(c.family == effects::find(c.truth).info.family);
     in_set.count(contains(c.named, c.truth));
     none.count(c.verdict == Verdict::none_in_catalogue);
   }
   rates.insert(rates.end(), {power.rate(), exact.rate(), family.rate(), named.rate(), right.rate(), wrong.rate(),
-                             in_set.rate(), none.rate(), coverage.rate()});
+                             wrong_family.rate(), in_set.rate(), none.rate(), coverage.rate()});
+}
+
+void count_verified(const SelftestResult& result, std::vector<Rate>& rates) {
+  constexpr double nearly_all = 0.9;
+  Counter shrunk("a gap that shrunk on held-out trials, given the right name"),
+      closed("a gap closed on held-out trials, given the right name"),
+      most("nine tenths of what can be closed, given the right name"),
+      on_nulls("a gap that shrunk although nothing is hidden");
+  for (const PlantedCase& c : result.cases) {
+    if (c.kind == CaseKind::nothing) on_nulls.count(c.verification && c.verification->shrunk);
+    if (c.kind != CaseKind::one || !c.verification) continue;
+    shrunk.count(c.verification->shrunk);
+    closed.count(c.verification->closed);
+    most.count(c.verification->share_closed >= nearly_all);
+  }
+  if (shrunk.rate().of > 0) rates.insert(rates.end(), {shrunk.rate(), closed.rate(), most.rate(), on_nulls.rate()});
 }
 
 void count_strangers(const SelftestResult& result, CaseKind kind, const std::string& who, std::vector<Rate>& rates) {
@@ -189,7 +233,7 @@ std::string_view name(Strength strength) noexcept {
 
 SelftestResult judge(const Laboratory& lab, const std::vector<Planted>& planted, const SelftestSettings& settings,
                      const Observer& observer) {
-  const auto begin = [&](const char* stage) {
+  const auto begin = [&](const std::string& stage) {
     if (observer.stage) observer.stage(stage);
   };
   const Settings& analysis = settings.analysis;
@@ -205,16 +249,18 @@ SelftestResult judge(const Laboratory& lab, const std::vector<Planted>& planted,
   for (const Planted& one : planted) all.push_back(&one);
   judge_all(lab, analyst_without(""), all, {}, analysis.threads, result.cases);
   result.reliability = reliability_of(result);
+  if (settings.n_verified > 0) {
+    begin("judging on held-out trials");
+    verify_some(lab, planted, settings, result.cases);
+  }
   if (settings.leave_out == LeaveOut::none) return result;
-  begin("judging by catalogues that lack the effect");
-  std::uint32_t done = 0;
   for (const std::string& effect : lab.table.effects) {
+    begin("judging by a catalogue that lacks " + effect);
     std::vector<const Planted*> own;
     for (const Planted& one : planted) {
       if (one.kind == CaseKind::one && one.effects.front().name == effect) own.push_back(&one);
     }
     judge_all(lab, analyst_without(effect), own, CaseKind::left_out, analysis.threads, result.cases);
-    if (observer.progress) observer.progress(++done, static_cast<std::uint32_t>(lab.table.effects.size()));
   }
   return result;
 }
@@ -234,6 +280,7 @@ std::vector<Rate> rates_of(const SelftestResult& result) {
   std::vector<Rate> rates;
   count_nulls(result, rates);
   count_planted(result, rates);
+  count_verified(result, rates);
   count_strangers(result, CaseKind::left_out, "an effect that the catalogue lacks", rates);
   count_strangers(result, CaseKind::alien, "an alien", rates);
   count_beyond(result, rates);

@@ -16,6 +16,13 @@ std::string share(const Rate& rate) {
   return out.str();
 }
 
+/// Share of the gap that was closed, shrunk, closed; empty fields if nothing was put in.
+std::string verification(const PlantedCase& c) {
+  if (!c.verification) return ",,";
+  const Verification& v = *c.verification;
+  return io::csv_number(v.share_closed) + ',' + (v.shrunk ? '1' : '0') + ',' + (v.closed ? '1' : '0');
+}
+
 }  // namespace
 
 std::string to_markdown(const SelftestResult& result) {
@@ -52,7 +59,7 @@ std::string to_markdown(const SelftestResult& result) {
 
 std::string to_csv(const SelftestResult& result) {
   std::ostringstream out;
-  out << "kind,truth,strength,verdict,named,likeliest,p,parameters,covered,hidden\n";
+  out << "kind,truth,strength,verdict,named,family,likeliest,p,parameters,covered,share_closed,shrunk,closed,hidden\n";
   for (const PlantedCase& c : result.cases) {
     std::string named, hidden;
     for (const std::string& effect : c.named) named += (named.empty() ? "" : " ") + effect;
@@ -63,8 +70,8 @@ std::string to_csv(const SelftestResult& result) {
       for (const auto& [choice, value] : effect.choices) hidden += " " + choice + "=" + value;
     }
     out << name(c.kind) << ',' << c.truth << ',' << name(c.strength) << ',' << name(c.verdict) << ',' << named << ','
-        << c.likeliest << ',' << io::csv_number(c.p) << ',' << c.n_parameters << ',' << c.n_covered << ','
-        << io::csv_field(hidden) << '\n';
+        << (c.family ? name(*c.family) : "") << ',' << c.likeliest << ',' << io::csv_number(c.p) << ','
+        << c.n_parameters << ',' << c.n_covered << ',' << verification(c) << ',' << io::csv_field(hidden) << '\n';
   }
   return out.str();
 }

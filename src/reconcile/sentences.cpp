@@ -22,14 +22,11 @@ std::string fingerprints_of(const std::vector<std::string>& named) {
   return separated(texts, ". ");
 }
 
-std::string common_family(const std::vector<std::string>& effects) {
-  std::string family;
-  for (const std::string& effect : effects) {
-    const std::string own(name(effects::find(effect).info.family));
-    if (!family.empty() && family != own) return {};
-    family = own;
-  }
-  return family;
+/// Which kind of effect it is, if that is clear though its name isn't.
+std::string kind_of(const Outcome& outcome) {
+  if (!outcome.family.is_sure()) return {};
+  return " (with probability " + short_number(outcome.family.probability) + " something of the family " +
+         std::string(name(outcome.family.family)) + ")";
 }
 
 std::string where(const Outcome& outcome, double alpha) {
@@ -131,14 +128,12 @@ std::string verdict_sentence(const Outcome& outcome, double alpha) {
              short_number(outcome.location.band_s) + " s a cell.";
     case Verdict::named:
       return "The model lacks " + in_words(outcome.fits.back()) + ": " + where(outcome, alpha) + rivals(outcome);
-    case Verdict::one_of: {
-      const std::string family = common_family(outcome.named);
+    case Verdict::one_of:
       if (outcome.named.empty())
         return "Model and measurement differ, but so little that nothing can be named: " + where(outcome, alpha) + ".";
       return (outcome.named.size() == 1 ? "The model may lack " : "The model lacks one of ") +
-             joined(outcome.named, "or") + (family.empty() ? std::string() : " (of the family " + family + ")") +
-             doubt(outcome, alpha) + ": " + where(outcome, alpha) + ".";
-    }
+             joined(outcome.named, "or") + kind_of(outcome) + doubt(outcome, alpha) + ": " + where(outcome, alpha) +
+             ".";
     case Verdict::several:
       return "The model lacks " + joined(outcome.named, "and") + " together: " + where(outcome, alpha) + ".";
     case Verdict::none_in_catalogue:

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "pirsim/core/parallel.hpp"
 #include "pirsim/effects/catalogue.hpp"
@@ -36,19 +38,16 @@ std::vector<std::size_t> all_but(const std::vector<std::size_t>& held_out, const
 /// Finds effects again, step by step, with the given trials only.
 class FoldSearch {
  public:
-  FoldSearch(std::span<const PutIn> steps, std::span<const std::string> rivals, const VerifySettings& settings)
-      : steps_(steps), settings_(settings) {
-    for (const PutIn& step : steps) families_.insert(effects::find(step.effect).info.family);
-    for (const std::string& rival : rivals) families_.insert(effects::find(rival).info.family);
-  }
+  FoldSearch(std::vector<std::size_t> trials, const VerifySettings& settings)
+      : trials_(std::move(trials)), settings_(settings) {}
 
-  [[nodiscard]] FoldPatches search(const std::vector<std::size_t>& trials) const {
+  [[nodiscard]] FoldPatches search(const Claim& claim) {
     FoldPatches found;
-    for (const PutIn& step : steps_) {
-      const Analyst analyst = analyst_of(step, trials);
+    for (const PutIn& step : claim.steps) {
+      const Analyst& analyst = analyst_of(*step.lab);
       const std::size_t best = analyst.likeliest(step.observed, [](std::size_t) { return true; });
       if (best == 0) break;
-      if (found.patch.empty()) find_placebo(step, analyst, found);
+      if (found.patch.empty()) find_placebo(claim, analyst, found);
       found.patch.push_back(analyst.fit(best, step.observed).effect);
       const std::string name = step.lab->table.entry_name(best);
       found.names += (found.names.empty() ? "" : " + ") + name;
@@ -59,26 +58,33 @@ class FoldSearch {
   }
 
  private:
-  [[nodiscard]] Analyst analyst_of(const PutIn& step, const std::vector<std::size_t>& trials) const {
-    return {step.lab->frame,
-            step.lab->knowledge,
-            step.lab->table,
-            trials,
-            {settings_.alpha, settings_.seed, settings_.threads, settings_.trees}};
+  /// One is kept: it takes long to learn and much memory, and claims about the same study come one after the other.
+  const Analyst& analyst_of(const Laboratory& lab) {
+    if (lab_ != &lab) {
+      analyst_.emplace(lab.frame, lab.knowledge, lab.table, trials_,
+                       AnalystSettings{settings_.alpha, settings_.seed, settings_.threads, settings_.trees});
+      lab_ = &lab;
+    }
+    return *analyst_;
   }
-  void find_placebo(const PutIn& step, const Analyst& analyst, FoldPatches& found) const {
-    const ReferenceTable& table = step.lab->table;
-    const std::size_t other = analyst.likeliest(step.observed, [&](std::size_t entry) {
-      return !families_.contains(effects::find(table.entry_name(entry)).info.family);
+  static void find_placebo(const Claim& claim, const Analyst& analyst, FoldPatches& found) {
+    std::set<effects::Family> families;
+    for (const PutIn& step : claim.steps) families.insert(effects::find(step.effect).info.family);
+    for (const std::string& rival : claim.rivals) families.insert(effects::find(rival).info.family);
+    const PutIn& plain = claim.steps.front();
+    const ReferenceTable& table = plain.lab->table;
+    const std::size_t other = analyst.likeliest(plain.observed, [&](std::size_t entry) {
+      return !families.contains(effects::find(table.entry_name(entry)).info.family);
     });
     if (other == 0) return;
-    found.placebo = {analyst.fit(other, step.observed).effect};
+    found.placebo = {analyst.fit(other, plain.observed).effect};
     found.placebo_name = table.entry_name(other);
   }
 
-  std::span<const PutIn> steps_;
+  std::vector<std::size_t> trials_;
   VerifySettings settings_;
-  std::set<effects::Family> families_;
+  const Laboratory* lab_ = nullptr;  ///< that the analyst learnt from
+  std::optional<Analyst> analyst_;
 };
 
 /// Datasets of the same worlds (n_worlds x n_statistics): of the plain model, and with each fold's patch or placebo in
@@ -244,7 +250,35 @@ class Judge {
   std::vector<double> drops_;
 };
 
+Verification judge_claim(const Claim& claim, const Folds& folds, const std::vector<std::size_t>& held_out,
+                         const std::vector<FoldPatches>& found, const VerifySettings& settings) {
+  const PutIn& plain = claim.steps.front();
+  Verification result;
+  result.n_folds = folds.size();
+  for (const FoldPatches& fold : found) {
+    result.names.push_back(fold.names);
+    result.patches.push_back(fold.patch);
+    if (result.placebo_effect.empty()) result.placebo_effect = fold.placebo_name;
+  }
+  const Ensembles ensembles = Simulation(*plain.lab, folds, found).run(settings);
+  Judge judge(plain, ensembles, settings);
+  for (const std::size_t trial : held_out) judge.add_trial(trial, result);
+  judge.sum_up(held_out, result);
+  const bool enough_signs =
+      plain.lab->shape.kind == Measured::Kind::series || result.sign_p <= sign_level;  // sums tell little a trial
+  result.shrunk = result.gain.low > 0.0 && result.placebo > result.after.energy_score && enough_signs;
+  result.refused = result.before.p <= settings.alpha;
+  result.closed = result.shrunk && result.refused && result.after.p > settings.alpha;
+  return result;
+}
+
 }  // namespace
+
+Folds usual_folds(std::string_view digest, std::vector<std::size_t> trials, Measured::Kind kind) {
+  constexpr std::size_t usual = 5;
+  const std::size_t n_folds = kind == Measured::Kind::sums ? trials.size() : usual;
+  return folds_of(digest, std::move(trials), n_folds);
+}
 
 Folds folds_of(std::string_view digest, std::vector<std::size_t> trials, std::size_t n_folds) {
   std::uint64_t seed = 0;
@@ -293,33 +327,19 @@ std::vector<std::size_t> holdout_of(const std::string& asked, const StudyFrame& 
   return trials;
 }
 
-Verification verify(std::span<const PutIn> steps, std::span<const std::string> rivals, const Folds& folds,
-                    const VerifySettings& settings) {
-  Verification result;
-  result.n_folds = folds.size();
-  const PutIn& plain = steps.front();
-  const FoldSearch search(steps, rivals, settings);
-  const std::vector<std::size_t> all = all_trials(plain.lab->frame);
-  std::vector<FoldPatches> found;
+std::vector<Verification> verify(std::span<const Claim> claims, const Folds& folds, const VerifySettings& settings) {
+  std::vector<std::vector<FoldPatches>> found(claims.size());
   std::vector<std::size_t> held_out;
   for (const auto& fold : folds) {
-    found.push_back(search.search(all_but(fold, all)));
-    result.names.push_back(found.back().names);
-    result.patches.push_back(found.back().patch);
-    if (result.placebo_effect.empty()) result.placebo_effect = found.back().placebo_name;
     held_out.insert(held_out.end(), fold.begin(), fold.end());
+    FoldSearch search(all_but(fold, all_trials(claims.front().steps.front().lab->frame)), settings);
+    for (std::size_t i = 0; i < claims.size(); ++i) found[i].push_back(search.search(claims[i]));
   }
   std::ranges::sort(held_out);
-  const Ensembles ensembles = Simulation(*plain.lab, folds, found).run(settings);
-  Judge judge(plain, ensembles, settings);
-  for (const std::size_t trial : held_out) judge.add_trial(trial, result);
-  judge.sum_up(held_out, result);
-  const bool enough_signs =
-      plain.lab->shape.kind == Measured::Kind::series || result.sign_p <= sign_level;  // sums tell little a trial
-  result.shrunk = result.gain.low > 0.0 && result.placebo > result.after.energy_score && enough_signs;
-  result.refused = result.before.p <= settings.alpha;
-  result.closed = result.shrunk && result.refused && result.after.p > settings.alpha;
-  return result;
+  std::vector<Verification> results;
+  for (std::size_t i = 0; i < claims.size(); ++i)
+    results.push_back(judge_claim(claims[i], folds, held_out, found[i], settings));
+  return results;
 }
 
 }  // namespace pirsim::reconcile

@@ -25,7 +25,8 @@ struct AnalystSettings {
 struct Judgement {
   double p = 1.0;                  ///< of the global test
   std::vector<EntryScore> scores;  ///< (n_entries) nothing first
-  stats::Decision decision;        ///< effects are numbered as the table's, from 0
+  FamilyScore family;              ///< the likeliest
+  stats::Decision decision;        ///< candidates are numbered as the table's entries
 };
 
 /// Learns from the table's datasets, of the given trials only. Immutable.

@@ -2,14 +2,16 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "pirsim/effects/catalogue.hpp"
 #include "pirsim/reconcile/feature_map.hpp"
 #include "pirsim/reconcile/reference_table.hpp"
 #include "pirsim/stats/calibration.hpp"
 #include "pirsim/stats/conformal.hpp"
+#include "pirsim/stats/decision.hpp"
 #include "pirsim/stats/envelope.hpp"
 
 namespace pirsim::reconcile {
@@ -22,6 +24,16 @@ struct EntryScore {
   double p_absolute = 0.0;   ///< share of the entry's own datasets that lie as far from the rest of them
   double p = 0.0;            ///< of both: min(1, 2 min)
 };
+
+/// Effects of one family taken together.
+struct FamilyScore {
+  effects::Family family = effects::Family::data;
+  double probability = 0.0;
+  /// It is told to the reader.
+  [[nodiscard]] bool is_sure() const noexcept { return probability >= stats::DecisionLevels{}.sure; }
+};
+/// The likeliest family. scores: (n_entries) nothing first.
+[[nodiscard]] FamilyScore likeliest_family(std::span<const EntryScore> scores);
 
 struct NamerSettings {
   double alpha = 0.05;  ///< level of the global test
@@ -45,6 +57,9 @@ class Namer {
   [[nodiscard]] std::vector<EntryScore> judge(std::span<const float> statistics) const;
   /// (n_entries) probabilities only.
   [[nodiscard]] std::vector<double> probabilities(std::span<const float> statistics) const;
+  /// Datasets of an entry (rows of the table) that nothing was learnt from and in which the global test sees something,
+  /// as in data that a name is given to; or, of few, the likeliest to be seen. None of an entry that is no candidate.
+  [[nodiscard]] const std::vector<std::size_t>& seen_rows(std::size_t entry) const { return seen_rows_[entry]; }
   /// How well the probabilities of the calibration datasets mean what they say.
   [[nodiscard]] const stats::Reliability& reliability() const noexcept { return reliability_; }
   /// Names of the features with the greatest share in the trees' decisions.
@@ -52,8 +67,9 @@ class Namer {
 
  private:
   const FeatureMap* map_;
-  std::vector<std::string> names_;    ///< of all entries
-  std::vector<std::size_t> entries_;  ///< those with datasets enough: the classifier's classes
+  std::vector<std::string> names_;                   ///< of all entries
+  std::vector<std::size_t> entries_;                 ///< those with datasets enough: the classifier's classes
+  std::vector<std::vector<std::size_t>> seen_rows_;  ///< (n_entries)
   stats::ConformalClassifier classifier_;
   stats::Reliability reliability_;
 };

@@ -39,6 +39,7 @@ struct Outcome {
   Location location;
   std::vector<Candidate> candidates;  ///< most probable first; without `nothing`
   EntryScore nothing;                 ///< how well the plain model fits
+  FamilyScore family;                 ///< whose effects are likeliest together
   std::vector<std::string> named;     ///< effects put into the model, or those that can't be told apart; of `one_of`
                                       ///< the plain model is one more if nothing.p exceeds the level
   std::vector<FittedEffect> fits;     ///< of the effects that were put in

@@ -2,16 +2,15 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "pirsim/reconcile/measured.hpp"
+#include "pirsim/reconcile/name.hpp"
 
 namespace pirsim::reconcile {
 
 struct Laboratory;
-struct Candidate;
 
 /// One thing that the bits do and the model doesn't.
 struct ResidualDriver {
@@ -26,9 +25,7 @@ struct ResidualDriver {
 
 struct Residuals {
   std::vector<ResidualDriver> drivers;  ///< strongest first; none: the residuals follow nothing that was tried
-  std::string nearest_family;           ///< whose effects are likeliest together
-  double family_probability = 0.0;
-  std::string sentence;  ///< all this for a reader
+  std::string sentence;                 ///< all this for a reader
 };
 
 struct ResidualSettings {
@@ -43,8 +40,8 @@ struct ResidualSettings {
 /// the time between changes of posture, of the arm's cycle, waves), and how (more or less motion, only where little or
 /// much is expected, the opposite, together with another sensor). Scores are compared with those of simulated datasets
 /// with nuisance, the strongest with the strongest, so that neither dependent seconds nor the number of drivers tried
-/// makes one up. measured: series only; candidates: as they were judged, for the nearest family.
-[[nodiscard]] Residuals explain_residuals(const Laboratory& lab, const Measured& measured,
-                                          std::span<const Candidate> candidates, const ResidualSettings& settings);
+/// makes one up. measured: series only; family: the likeliest.
+[[nodiscard]] Residuals explain_residuals(const Laboratory& lab, const Measured& measured, const FamilyScore& family,
+                                          const ResidualSettings& settings);
 
 }  // namespace pirsim::reconcile

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "pirsim/effects/catalogue.hpp"
 #include "pirsim/reconcile/reconcile.hpp"
 #include "pirsim/stats/calibration.hpp"
 #include "pirsim/stats/intervals.hpp"
@@ -28,6 +30,9 @@ struct SelftestSettings {
   std::uint32_t n_pairs = 0;     ///< datasets with two effects
   std::uint32_t n_aliens = 0;    ///< of every alien
   LeaveOut leave_out = LeaveOut::none;
+  /// Datasets with the right name, spread over effects and strengths, whose effect is put in and judged on held-out
+  /// trials; if any, so are all with nothing hidden in which something is suspected.
+  std::uint32_t n_verified = 0;
   std::filesystem::path planted_folder = {};  ///< keeps finished datasets; empty: none
 };
 
@@ -64,12 +69,15 @@ struct PlantedCase {
   Strength strength = Strength::none;
   std::vector<EffectSpec> effects;
   Verdict verdict = Verdict::no_disagreement;
-  std::vector<std::string> named;     ///< or not to be told apart
-  std::string likeliest;              ///< entry with the greatest probability
-  std::vector<double> probabilities;  ///< (n_entries) as SelftestResult::entries
-  double p = 1.0;                     ///< of the global test
-  std::size_t n_parameters = 0;       ///< fitted, if the right effect was named
-  std::size_t n_covered = 0;          ///< of them, whose interval holds the truth
+  std::vector<std::string> named;         ///< or not to be told apart
+  std::optional<effects::Family> family;  ///< of the named effect, or one whose effects together are sure
+  std::string likeliest;                  ///< entry with the greatest probability
+  std::vector<double> probabilities;      ///< (n_entries) as SelftestResult::entries
+  double p = 1.0;                         ///< of the global test
+  std::size_t n_parameters = 0;           ///< fitted, if the right effect was named
+  std::size_t n_covered = 0;              ///< of them, whose interval holds the truth
+
+  std::optional<Verification> verification;  ///< of the effect named, or of the first that can't be ruled out
 
   [[nodiscard]] bool seen() const noexcept { return verdict != Verdict::no_disagreement; }
 };
@@ -101,7 +109,8 @@ struct SelftestResult {
                                       const SelftestSettings& settings, const Observer& observer = {});
 
 /// The design's rates: alarms and names on nulls, power, right name, right family, wrong name, truth in the set,
-/// coverage; what becomes of effects that the catalogue lacks, of pairs and of strengths beyond the prior.
+/// coverage; gaps closed on held-out trials; what becomes of effects that the catalogue lacks, of pairs and of
+/// strengths beyond the prior.
 [[nodiscard]] std::vector<Rate> rates_of(const SelftestResult& result);
 /// Of one effect and strength: how often a disagreement is seen, and how often the effect is then in the set.
 [[nodiscard]] std::vector<Rate> power_of(const SelftestResult& result, const std::string& effect);

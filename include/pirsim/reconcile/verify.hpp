@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pirsim/reconcile/measured.hpp"
 #include "pirsim/schema/effect_spec.hpp"
 #include "pirsim/stats/intervals.hpp"
 
@@ -58,16 +59,24 @@ struct PutIn {
   std::string effect;
 };
 
+/// What is said to be missing, about one measured dataset.
+struct Claim {
+  std::vector<PutIn> steps;         ///< effects put in one after the other
+  std::vector<std::string> rivals;  ///< effects that explain the data as well: none of their families is a placebo
+};
+
 /// Trials (indices, ascending) that are held out together; those of no fold are never judged.
 using Folds = std::vector<std::vector<std::size_t>>;
 
-/// Naming and fitting are repeated in every fold without its trials, step by step, and all effects together are judged
-/// on them against the plain model, that of the first step. What is not repeated is the simulation of the later steps'
-/// tables: they hold the earlier effects as all trials gave them. A fold that finds another effect than was put in
-/// stops there. `rivals`: effects that explain the data as well; none of their families is taken for a placebo.
-[[nodiscard]] Verification verify(std::span<const PutIn> steps, std::span<const std::string> rivals, const Folds& folds,
-                                  const VerifySettings& settings);
+/// One a claim. Naming and fitting are repeated in every fold without its trials, step by step, and all effects
+/// together are judged on them against the plain model, that of the first step. What is not repeated is the simulation
+/// of the later steps' tables: they hold the earlier effects as all trials gave them. A fold that finds another effect
+/// than was put in stops there.
+[[nodiscard]] std::vector<Verification> verify(std::span<const Claim> claims, const Folds& folds,
+                                               const VerifySettings& settings);
 
+/// Every trial is held out once: in five folds, or by itself if the data are sums, which say little a trial.
+[[nodiscard]] Folds usual_folds(std::string_view digest, std::vector<std::size_t> trials, Measured::Kind kind);
 /// Folds of about the same size over the given trials, from the data's digest alone: fixed before anything is named.
 [[nodiscard]] Folds folds_of(std::string_view digest, std::vector<std::size_t> trials, std::size_t n_folds);
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "support/catch.hpp"
@@ -42,6 +44,23 @@ TEST_CASE("results come in order and few are alive at a time", "[core]") {
     CHECK(Counted::alive == 0);
     CHECK(Counted::most <= static_cast<int>(5 * threads));  // four wait, one is being copied
   }
+}
+
+TEST_CASE("results that wait for a slow one are kept", "[core]") {
+  constexpr std::size_t ahead = 6;  // of eight that two threads may have under way
+  std::atomic<std::size_t> produced{0};
+  std::vector<std::size_t> order;
+  ordered_parallel<Counted>(
+      100, 2,
+      [&](std::size_t i) {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);  // on a single core nobody comes
+        while (i == 0 && produced < ahead && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+        ++produced;
+        return Counted(i);
+      },
+      [&](Counted& one) { order.push_back(one.number); });
+  REQUIRE(order.size() == 100);
+  for (std::size_t i = 0; i < order.size(); ++i) CHECK(order[i] == i);
 }
 
 TEST_CASE("an exception ends a parallel loop and leaves no result behind", "[core]") {

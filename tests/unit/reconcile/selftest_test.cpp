@@ -82,6 +82,12 @@ TEST_CASE("a small self-test keeps its promises and what must break it does", "[
     at_most("a disagreement although nothing is hidden", 0.05);
     at_most("a name although nothing is hidden", 0.01);
     at_most("one wrong name", 0.01);
+    at_most("one wrong family", 0.01);
+    for (const PlantedCase& c : result.cases) {
+      if (c.verdict != Verdict::named) continue;
+      CHECK(c.named.size() == 1);  // those that can't be ruled out beside it aren't named
+      CHECK(c.family == effects::find(c.named.front()).info.family);
+    }
     at_least("the truth in the set, given a disagreement", 0.95);
     at_least("the right name, given a name", 0.98);
     at_least("parameters within their 90 % intervals", 0.90);

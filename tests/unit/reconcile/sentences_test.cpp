@@ -54,6 +54,17 @@ TEST_CASE("where no name is given the sentence says why", "[reconcile]") {
   CHECK_THAT(verdict_sentence(weak, 0.05), contains("or nothing: the disagreement is weak"));
 }
 
+TEST_CASE("where no name is given the family is said if it is clear", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}, {"dead_time", 0.05}});
+  outcome.family = likeliest_family(
+      std::vector<EntryScore>{{"nothing", 0.05}, {"dead_time", 0.05}, {"seat_shift", 0.5}, {"body_size", 0.4}});
+  CHECK(outcome.family.family == effects::Family::person);
+  CHECK(outcome.family.probability == Approx(0.9));
+  CHECK_THAT(verdict_sentence(outcome, 0.05), contains("with probability 0.9 something of the family person"));
+  outcome.family.probability = 0.8;
+  CHECK_THAT(verdict_sentence(outcome, 0.05), !contains("family"));
+}
+
 TEST_CASE("what to do next names a plan only for effects that are to be told apart", "[reconcile]") {
   CHECK_THAT(next_step(outcome_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}})),
              contains("--effects seat_shift,body_size"));

@@ -64,12 +64,59 @@ TEST_CASE("every target but those of known geometry has a rate that a full self-
     PlantedCase c = planted("sensor_yaw", "sensor_yaw", Verdict::named);
     c.kind = kind;
     c.n_parameters = c.n_covered = 1;
+    c.verification.emplace();
     result.cases.push_back(c);
   }
   for (const TargetResult& one : compare_with_targets(result, Geometry::uncertain)) {
     INFO(one.target.rate);
     CHECK(one.rate.of > 0);
   }
+}
+
+TEST_CASE("gaps that are closed are counted where the right name was put in and claims where nothing is hidden",
+          "[selftest]") {
+  SelftestResult result = result_of(10, 2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    result.cases[i].verification.emplace();
+    result.cases[i].verification->shrunk = i == 0;
+  }
+  for (const double share : {0.95, 0.5, 0.92, 0.91}) {
+    result.cases.push_back(planted("sensor_yaw", "sensor_yaw", Verdict::named));
+    result.cases.back().verification.emplace();
+    result.cases.back().verification->share_closed = share;
+    result.cases.back().verification->shrunk = true;
+    result.cases.back().verification->closed = share > 0.6;
+  }
+  result.cases.push_back(planted("sensor_yaw", "sensor_yaw", Verdict::named));  // not among those tried
+  const std::vector<Rate> rates = rates_of(result);
+  const auto rate = [&](const std::string& what) {
+    const auto found = std::ranges::find(rates, what, &Rate::what);
+    REQUIRE(found != rates.end());
+    return std::pair(found->hits, found->of);
+  };
+  CHECK(rate("a gap that shrunk although nothing is hidden") == std::pair<std::size_t, std::size_t>(1, 10));
+  CHECK(rate("a gap that shrunk on held-out trials, given the right name") ==
+        std::pair<std::size_t, std::size_t>(4, 4));
+  CHECK(rate("a gap closed on held-out trials, given the right name") == std::pair<std::size_t, std::size_t>(3, 4));
+  CHECK(rate("nine tenths of what can be closed, given the right name") == std::pair<std::size_t, std::size_t>(3, 4));
+}
+
+TEST_CASE("a family counts as said if the named effect is of it or its effects are sure together", "[selftest]") {
+  SelftestResult result = result_of(1, 0);
+  for (const auto family : {effects::Family::mounting, effects::Family::optics}) {
+    result.cases.push_back(planted("sensor_yaw", "sensor_tilt", Verdict::one_of));
+    result.cases.back().family = family;
+  }
+  result.cases.push_back(planted("sensor_yaw", "sensor_tilt", Verdict::one_of));  // no family is sure
+  const std::vector<Rate> rates = rates_of(result);
+  const auto right = std::ranges::find(rates, "the right family, given a disagreement", &Rate::what);
+  const auto wrong = std::ranges::find(rates, "one wrong family", &Rate::what);
+  REQUIRE(right != rates.end());
+  REQUIRE(wrong != rates.end());
+  CHECK(right->hits == 1);
+  CHECK(wrong->hits == 1);
+  CHECK(right->of == 3);
+  CHECK(wrong->of == 3);
 }
 
 TEST_CASE("pairs that are taken for each other are listed with what the catalogue says", "[selftest]") {

@@ -57,13 +57,18 @@ Laboratory shuffled(Laboratory lab) {
   return lab;
 }
 
+Verification verify_one(const std::vector<PutIn>& steps, const Folds& folds) {
+  const Claim claim{steps, {}};
+  return verify(std::span(&claim, 1), folds, quick).front();
+}
+
 }  // namespace
 
 TEST_CASE("a fold names and fits without its own trials", "[reconcile]") {
   const Laboratory& lab = plain_lab();
   std::vector<float> data = planted(lab, 1, {false_triggers});
   const Folds folds = three_folds(lab);
-  const auto run = [&] { return verify(std::vector<PutIn>{{&lab, data, "false_triggers"}}, {}, folds, quick); };
+  const auto run = [&] { return verify_one({{&lab, data, "false_triggers"}}, folds); };
   const Verification before = run();
   for (const std::size_t trial : folds[1]) {
     for (std::size_t i = 0; i < lab.frame.sensors.size() * n_cell_statistics; ++i)
@@ -85,14 +90,13 @@ TEST_CASE("with the planted effect held-out trials are foretold and with shuffle
   double honest_share = 0.0, confused_share = 0.0;
   for (std::uint32_t world = 10; world < 13; ++world) {
     const std::vector<float> data = planted(lab, world, {false_triggers});
-    const Verification good = verify(std::vector<PutIn>{{&lab, data, "false_triggers"}}, {}, three_folds(lab), quick);
+    const Verification good = verify_one({{&lab, data, "false_triggers"}}, three_folds(lab));
     CHECK(good.shrunk);
     CHECK(good.refused);
     CHECK(good.n_trials == 6);
     CHECK(good.n_better >= 5);
     honest_share += good.share_closed / 3.0;
-    confused_share +=
-        verify(std::vector<PutIn>{{&confused, data, "false_triggers"}}, {}, three_folds(lab), quick).share_closed / 3.0;
+    confused_share += verify_one({{&confused, data, "false_triggers"}}, three_folds(lab)).share_closed / 3.0;
   }
   CHECK(honest_share > 0.75);
   CHECK(confused_share < 0.5);
@@ -104,11 +108,29 @@ TEST_CASE("nothing is closed where nothing was open", "[reconcile]") {
   for (std::uint32_t world = 20; world < 24; ++world) {
     const Laboratory& lab = plain_lab();
     const std::vector<float> data = planted(lab, world, {});
-    const Verification v = verify(std::vector<PutIn>{{&lab, data, "false_triggers"}}, {}, three_folds(lab), quick);
+    const Verification v = verify_one({{&lab, data, "false_triggers"}}, three_folds(lab));
     CHECK((v.refused || !v.closed));
     refused += v.refused ? 1 : 0;
   }
   CHECK(refused <= 1);
+}
+
+TEST_CASE("claims that are judged together are judged as each by itself", "[reconcile]") {
+  const Laboratory& lab = plain_lab();
+  const Laboratory again = plain_lab();  // whose analysts can't be taken for those of the first
+  const std::vector<float> one = planted(lab, 50, {false_triggers}), other = planted(lab, 51, {stretching});
+  const std::vector<Claim> claims{{{{&lab, one, "false_triggers"}}, {}},
+                                  {{{&again, one, "false_triggers"}}, {}},
+                                  {{{&lab, other, "pulse_stretching"}}, {"false_triggers"}}};
+  const std::vector<Verification> together = verify(claims, three_folds(lab), quick);
+  REQUIRE(together.size() == 3);
+  for (std::size_t i = 0; i < claims.size(); ++i) {
+    const Verification alone = verify(std::span(claims).subspan(i, 1), three_folds(lab), quick).front();
+    CHECK(together[i].names == alone.names);
+    CHECK(together[i].after.energy_score == alone.after.energy_score);
+    CHECK(together[i].placebo == alone.placebo);
+  }
+  CHECK(together[0].after.energy_score == together[1].after.energy_score);
 }
 
 TEST_CASE("two effects are judged together and close more than one of them", "[reconcile]") {
@@ -125,8 +147,8 @@ TEST_CASE("two effects are judged together and close more than one of them", "[r
   const std::vector<float> again = planted(second, 30, both);
   const PutIn first{&plain_lab(), data, name}, then{&second, again, rest};
   const Folds folds = three_folds(plain_lab());
-  const Verification together = verify(std::vector<PutIn>{first, then}, {}, folds, quick);
-  const Verification alone = verify(std::vector<PutIn>{first}, {}, folds, quick);
+  const Verification together = verify_one({first, then}, folds);
+  const Verification alone = verify_one({first}, folds);
   CHECK(together.before.energy_score == alone.before.energy_score);  // the plain model's, in both
   std::size_t found_again = 0;
   for (std::size_t fold = 0; fold < folds.size(); ++fold) {
@@ -145,7 +167,7 @@ TEST_CASE("of sums nearly all seats must be better", "[reconcile]") {
   const std::vector<float> data =
       planted(lab, 40, {{"missed_triggers", {{"probability", 0.6}}, {}, {}}});  // in all seats
   const auto one_out = folds_of(sha256("sums"), all_trials(lab.frame), 6);
-  const Verification all = verify(std::vector<PutIn>{{&lab, data, "missed_triggers"}}, {}, one_out, quick);
+  const Verification all = verify_one({{&lab, data, "missed_triggers"}}, one_out);
   CHECK(all.n_folds == 6);
   CHECK(all.n_better == 6);
   CHECK(all.sign_p == Approx(1.0 / 64.0));
@@ -153,7 +175,7 @@ TEST_CASE("of sums nearly all seats must be better", "[reconcile]") {
   CHECK(all.shrunk);
   // The same seats, but only four are judged: 1 of 16 by chance is too much.
   const Folds four(one_out.begin(), one_out.begin() + 4);
-  const Verification few = verify(std::vector<PutIn>{{&lab, data, "missed_triggers"}}, {}, four, quick);
+  const Verification few = verify_one({{&lab, data, "missed_triggers"}}, four);
   CHECK(few.n_trials == 4);
   CHECK_FALSE(few.shrunk);
 }

@@ -54,13 +54,12 @@ struct Study {
     const double share = 1.0 / static_cast<double>(rows);
     const Matrix<float> drawn = toy::draw_datasets(effect, rows, seconds, 3);
     const Matrix<double> statistics = in_double(drawn);
-    const std::vector<int> families(toy::n_known, 0);
     for (std::size_t row = 0; row < rows; ++row) {
       const double p = global_envelope_test(statistics.row(row), null, {.rank = PointwiseRank::continuous}).p;
       const Classification found = classifier.classify(drawn.row(row));
-      std::vector<Candidate> singles{{{}, found.p[toy::nothing], found.probabilities[toy::nothing]}};
-      for (std::size_t k = 1; k < toy::n_known; ++k) singles.push_back({{k}, found.p[k], found.probabilities[k]});
-      const Decision decision = decide(p, singles, {}, families, {alpha});
+      std::vector<Candidate> candidates;
+      for (std::size_t k = 0; k < toy::n_known; ++k) candidates.push_back({found.p[k], found.probabilities[k]});
+      const Decision decision = decide(p, candidates, {alpha});
       const auto truth = static_cast<std::size_t>(effect);  // of nothing: index 0, the model as it is
       const bool kept = std::find(decision.kept.begin(), decision.kept.end(), truth) != decision.kept.end();
       rates.alarms += p <= alpha ? share : 0.0;
