@@ -63,14 +63,13 @@ studies::CoverageMap compute(const studies::CoverageStudy& study, const Inputs& 
 
 void draw_maps(const studies::CoverageStudy& study, const studies::CoverageMap& map, const Inputs& inputs,
                const std::filesystem::path& folder) {
+  std::vector<std::string> programs;
   for (std::size_t i = 0; i < map.sensors.size(); ++i) {
     io::MapChart chart = studies::map_chart(study, map, i);
     chart.title = study.spec().name + ", " + chart.title;
-    if (run_gnuplot(io::gnuplot_program(chart, folder / (map.sensors[i] + ".png")))) continue;
-    return tell(
-        {{Severity::warning, {}, "no pictures of the maps: gnuplot (package gnuplot-nox) isn't there or failed"}},
-        inputs.verbosity);
+    programs.push_back(io::gnuplot_program(chart, folder / (map.sensors[i] + ".png")));
   }
+  draw(programs, inputs.verbosity);
 }
 
 }  // namespace

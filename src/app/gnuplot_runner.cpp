@@ -1,11 +1,16 @@
 #include "app/gnuplot_runner.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 
-namespace pirsim::app {
+#include "app/session.hpp"
 
-bool run_gnuplot(const std::string& program) {
+namespace pirsim::app {
+namespace {
+
+/// Whether gnuplot ran the program to its end.
+bool runs(const std::string& program) {
   // A gnuplot that isn't there or gives up must not end us with SIGPIPE.
   const auto before = std::signal(SIGPIPE, SIG_IGN);
   bool done = false;
@@ -15,6 +20,16 @@ bool run_gnuplot(const std::string& program) {
   }
   std::signal(SIGPIPE, before);
   return done;
+}
+
+}  // namespace
+
+void draw(const std::vector<std::string>& gnuplot_programs, Verbosity verbosity) {
+  if (std::ranges::all_of(gnuplot_programs, runs)) return;
+  Issue warning;
+  warning.severity = Severity::warning;
+  warning.message = "not all pictures could be drawn: gnuplot (package gnuplot-nox) isn't there or failed";
+  tell({warning}, verbosity);
 }
 
 }  // namespace pirsim::app

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include "app/options.hpp"
 
 namespace pirsim::app {
 
-/// Whether gnuplot ran the program to its end; false too if there is no gnuplot.
-[[nodiscard]] bool run_gnuplot(const std::string& program);
+/// Has gnuplot run one program after the other. Without gnuplot, or where it fails, a warning is all that happens.
+void draw(const std::vector<std::string>& gnuplot_programs, Verbosity verbosity);
 
 }  // namespace pirsim::app

@@ -74,16 +74,11 @@ std::string made_by(const Inputs& inputs) {
 }
 
 void draw_selftest(const std::filesystem::path& folder, const reconcile::SelftestResult& result, Verbosity verbosity) {
-  const bool drawn =
-      run_gnuplot(io::gnuplot_program(reconcile::confusion_chart(result), folder / "confusion.png")) &&
-      run_gnuplot(io::gnuplot_program(reconcile::power_grid(result), folder / "power.png")) &&
-      run_gnuplot(io::gnuplot_program(reconcile::reliability_chart(result), folder / "reliability.png")) &&
-      run_gnuplot(io::gnuplot_program(reconcile::coverage_chart(result), folder / "coverage.png"));
-  if (drawn) return;
-  Issue warning;
-  warning.severity = Severity::warning;
-  warning.message = "not all pictures could be drawn: gnuplot (package gnuplot-nox) isn't there or failed";
-  tell({warning}, verbosity);
+  draw({io::gnuplot_program(reconcile::confusion_chart(result), folder / "confusion.png"),
+        io::gnuplot_program(reconcile::power_grid(result), folder / "power.png"),
+        io::gnuplot_program(reconcile::reliability_chart(result), folder / "reliability.png"),
+        io::gnuplot_program(reconcile::coverage_chart(result), folder / "coverage.png")},
+       verbosity);
 }
 
 }  // namespace
