@@ -6,6 +6,7 @@
 #include "pirsim/reconcile/plan.hpp"
 #include "reconcile/report_charts.hpp"
 #include "reconcile/sentences.hpp"
+#include "reconcile/share_grids.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -41,33 +42,17 @@ io::GridChart power_grid(const PlanResult& result) {
   chart.columns = {"weak", "medium", "strong"};
   for (const PlannedPower& one : result.power) {
     if (chart.rows.empty() || chart.rows.back() != one.effect) chart.rows.push_back(one.effect);
-    io::GridChart::Cell cell;
-    if (one.seen.of > 0) {
-      cell.value = one.seen.value();
-      cell.text = fixed(100.0 * one.seen.value(), 0);
-      cell.hint = std::to_string(one.seen.hits) + " of " + std::to_string(one.seen.of) + " (" +
-                  percent(one.seen.interval.low) + " to " + percent(one.seen.interval.high) + ")";
-    }
-    chart.cells.push_back(std::move(cell));
+    chart.cells.push_back(share_cell(one.seen));
   }
   return chart;
 }
 
-io::GridChart confusion_grid(const PlanResult& result) {
-  io::GridChart chart;
+io::GridChart confusion_chart(const PlanResult& result) {
+  io::GridChart chart = confusion_grid(result.entries, result.confusion);
   chart.title = "What would be hidden (rows), and what it would look like most (columns), % of cases";
   chart.note =
       "Dark squares on the diagonal are right; dark squares beside it are pairs that what is planned can hardly "
       "tell apart.";
-  chart.label = "share of a row";
-  chart.rows = chart.columns = result.entries;
-  constexpr double worth_a_number = 0.05;
-  for (const std::vector<double>& row : result.confusion) {
-    for (const double share : row) {
-      chart.cells.push_back(
-          {share, share >= worth_a_number ? fixed(100.0 * share, 0) : "", percent(share), io::GridChart::Mark::none});
-    }
-  }
   return chart;
 }
 
@@ -100,7 +85,7 @@ io::Report plan_page(const PlanResult& result) {
   io::ReportSection seen{"What would be seen at all", {}, {}, {}};
   seen.charts.emplace_back(power_grid(result));
   io::ReportSection confused{"What would be taken for what", {}, {}, {}};
-  confused.charts.emplace_back(confusion_grid(result));
+  confused.charts.emplace_back(confusion_chart(result));
   report.sections = {std::move(gain), std::move(table), std::move(seen), std::move(confused)};
   return report;
 }

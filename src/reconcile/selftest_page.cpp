@@ -1,20 +1,14 @@
 #include "pirsim/reconcile/selftest_page.hpp"
 
-#include <algorithm>
 #include <map>
 
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/stats/intervals.hpp"
 #include "reconcile/sentences.hpp"
+#include "reconcile/share_grids.hpp"
 
 namespace pirsim::reconcile {
 namespace {
-
-std::string with_interval(const Rate& rate) {
-  if (rate.of == 0) return "no case";
-  return percent(rate.value()) + " (" + percent(rate.interval.low) + " to " + percent(rate.interval.high) + ", " +
-         std::to_string(rate.hits) + " of " + std::to_string(rate.of) + ")";
-}
 
 io::Table target_table(const SelftestResult& result, Geometry geometry) {
   io::Table table{{"how often", "target", "share (95 % interval)", "met"}, {}};
@@ -82,26 +76,11 @@ io::ReportSection power(const SelftestResult& result) {
 }  // namespace
 
 io::GridChart confusion_chart(const SelftestResult& result) {
-  io::GridChart chart;
+  io::GridChart chart = confusion_grid(result.entries, confusion_of(result));
   chart.title = "What was hidden (rows), and what it looked like most (columns)";
   chart.note =
       "Dark squares on the diagonal are right; dark squares beside it are two effects that look alike. Cases "
       "without a disagreement are left out.";
-  chart.label = "share of a row";
-  chart.rows = chart.columns = result.entries;
-  const auto shares = confusion_of(result);
-  constexpr double worth_a_number = 0.05;
-  for (std::size_t row = 0; row < shares.size(); ++row) {
-    const bool any = std::ranges::any_of(shares[row], [](double share) { return share > 0.0; });
-    for (std::size_t column = 0; column < shares.size(); ++column) {
-      const double share = shares[row][column];
-      io::GridChart::Cell cell;
-      if (any) cell.value = share;
-      if (share >= worth_a_number) cell.text = fixed(100.0 * share, 0);
-      cell.hint = any ? percent(share) : "no case";
-      chart.cells.push_back(std::move(cell));
-    }
-  }
   return chart;
 }
 
@@ -132,15 +111,7 @@ io::GridChart power_grid(const SelftestResult& result) {
   for (std::size_t entry = 1; entry < result.entries.size(); ++entry) {
     chart.rows.push_back(result.entries[entry]);
     const std::vector<Rate> rates = power_of(result, result.entries[entry]);
-    for (std::size_t i = 0; i < rates.size(); i += 2) {
-      io::GridChart::Cell cell;
-      if (rates[i].of > 0) {
-        cell.value = rates[i].value();
-        cell.text = fixed(100.0 * rates[i].value(), 0);
-      }
-      cell.hint = with_interval(rates[i]);
-      chart.cells.push_back(std::move(cell));
-    }
+    for (std::size_t i = 0; i < rates.size(); i += 2) chart.cells.push_back(share_cell(rates[i]));
   }
   return chart;
 }
