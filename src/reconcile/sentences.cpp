@@ -39,11 +39,21 @@ std::string where(const Outcome& outcome, double alpha) {
 /// Why no name was given to the effects that are left.
 std::string doubt(const Outcome& outcome, double alpha) {
   if (outcome.nothing.p > alpha) return ", or nothing: the disagreement is weak";
-  if (outcome.named.size() > 1) return ", which these data can't tell apart";
-  const double probability = outcome.candidates.front().score.probability;
-  if (probability >= stats::DecisionLevels{}.plausible) return ", but its strength may as well be none";
-  return ", the only effect of the catalogue that isn't ruled out, though not a likely one (probability " +
-         short_number(probability) + ")";
+  return outcome.named.size() > 1 ? ", which these data can't tell apart" : ", but its strength may as well be none";
+}
+
+/// Why nothing of the catalogue is taken for what is missing.
+std::string no_effect(const Outcome& outcome, double alpha) {
+  std::vector<std::string> possible;
+  double together = 0.0;
+  for (const Candidate& candidate : outcome.candidates) {
+    if (candidate.score.p <= alpha) continue;
+    possible.push_back(candidate.score.entry);
+    together += candidate.score.probability;
+  }
+  if (possible.empty()) return "no effect of the catalogue reproduces the data";
+  return "the likelier effects of the catalogue don't reproduce the data; " + joined(possible, "and") +
+         " might, but with a probability of only " + short_number(together);
 }
 
 /// What else may have made the data beside the effect that is named.
@@ -139,8 +149,8 @@ std::string verdict_sentence(const Outcome& outcome, double alpha) {
     case Verdict::none_in_catalogue:
       break;
   }
-  return "The model lacks something that is not in the catalogue: " + where(outcome, alpha) +
-         ", and no effect of the catalogue reproduces the data.";
+  return "The model lacks something that is not in the catalogue: " + where(outcome, alpha) + ", and " +
+         no_effect(outcome, alpha) + ".";
 }
 
 std::string reason_of_unlikely(const Candidate& candidate, const Candidate& named) {
@@ -154,6 +164,10 @@ std::string reason_of(const Candidate& candidate, double alpha) {
     return "Kept: it can have made these data (p " + short_number(score.p) +
            "), and no other effect explains them so "
            "much better that it can be ruled out.";
+  }
+  if (score.p > alpha) {
+    return "Dropped: by itself it might have made these data (p " + short_number(score.p) +
+           "), but what is likelier is ruled out, and all that isn't is improbable.";
   }
   if (score.p == 0.0) return "Dropped: it could hardly be simulated in this room.";
   const bool relative = 2.0 * score.p_relative <= alpha, absolute = 2.0 * score.p_absolute <= alpha;

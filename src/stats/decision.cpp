@@ -18,10 +18,9 @@ std::vector<std::size_t> survivors(std::span<const Candidate> candidates, double
 }
 
 /// Puts the candidate that is to be named first; false if none is.
-bool find_name(std::span<const Candidate> candidates, std::vector<std::size_t>& kept, const DecisionLevels& levels) {
-  if (std::ranges::find(kept, plain_model) != kept.end()) return false;
+bool find_name(std::span<const Candidate> candidates, std::vector<std::size_t>& kept, double sure) {
   const auto likeliest = std::ranges::max_element(kept, {}, [&](std::size_t i) { return candidates[i].probability; });
-  if (candidates[*likeliest].probability < (kept.size() > 1 ? levels.sure : levels.plausible)) return false;
+  if (kept.size() > 1 && candidates[*likeliest].probability < sure) return false;
   std::rotate(kept.begin(), likeliest, likeliest + 1);
   return true;
 }
@@ -31,8 +30,11 @@ bool find_name(std::span<const Candidate> candidates, std::vector<std::size_t>& 
 Decision decide(double null_p, std::span<const Candidate> candidates, const DecisionLevels& levels) {
   if (null_p > levels.alpha) return {};
   std::vector<std::size_t> kept = survivors(candidates, levels.alpha);
-  if (kept.empty()) return {Verdict::none_in_catalogue, {}};
-  const Verdict verdict = find_name(candidates, kept, levels) ? Verdict::named : Verdict::one_of;
+  if (std::ranges::find(kept, plain_model) != kept.end()) return {Verdict::one_of, std::move(kept)};
+  double together = 0.0;
+  for (const std::size_t i : kept) together += candidates[i].probability;
+  if (kept.empty() || together < levels.plausible) return {Verdict::none_in_catalogue, {}};
+  const Verdict verdict = find_name(candidates, kept, levels.sure) ? Verdict::named : Verdict::one_of;
   return {verdict, std::move(kept)};
 }
 

@@ -47,11 +47,21 @@ TEST_CASE("the reason of a rival compares it with the one that is named", "[reco
 
 TEST_CASE("where no name is given the sentence says why", "[reconcile]") {
   CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}}), contains("can't tell apart"));
-  CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.13}}), contains("not a likely one (probability 0.13)"));
   CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.9}}), contains("its strength may as well be none"));
   Outcome weak = outcome_of(Verdict::one_of, {{"seat_shift", 0.9}, {"body_size", 0.05}});
   weak.nothing.p = 0.2;
   CHECK_THAT(verdict_sentence(weak, 0.05), contains("or nothing: the disagreement is weak"));
+}
+
+TEST_CASE("improbable effects that might have made the data are told with their probability", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"seat_shift", 0.1}, {"body_size", 0.03}});
+  CHECK_THAT(verdict_sentence(outcome, 0.05),
+             contains("seat_shift and body_size might, but with a probability of only 0.13"));
+  outcome.candidates[0].kept = false;
+  CHECK_THAT(reason_of(outcome.candidates[0], 0.05),
+             contains("Dropped: by itself it might have made these data (p 0.6)"));
+  for (Candidate& candidate : outcome.candidates) candidate.score.p = 0.01;
+  CHECK_THAT(verdict_sentence(outcome, 0.05), contains("no effect of the catalogue reproduces the data"));
 }
 
 TEST_CASE("where no name is given the family is said if it is clear", "[reconcile]") {

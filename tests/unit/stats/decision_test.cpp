@@ -21,10 +21,16 @@ TEST_CASE("one surviving effect is named", "[stats]") {
   CHECK(decide(0.001, candidates(0.0, 0.01, 0.4, 0.05), {0.05}) == Decision{Verdict::named, {2}});
 }
 
-TEST_CASE("one surviving effect that is not likely is not named", "[stats]") {
+TEST_CASE("effects that survive while likelier ones are ruled out are none of the catalogue", "[stats]") {
   std::vector<Candidate> unlikely = candidates(0.0, 0.01, 0.4, 0.05);
   unlikely[2].probability = 0.2;
-  CHECK(decide(0.001, unlikely, {0.05}) == Decision{Verdict::one_of, {2}});
+  CHECK(decide(0.001, unlikely, {0.05}) == Decision{Verdict::none_in_catalogue, {}});
+  unlikely[3] = {0.3, 0.35};  // together they are more probable than not
+  CHECK(decide(0.001, unlikely, {0.05}) == Decision{Verdict::one_of, {2, 3}});
+  unlikely[3].probability = 0.25;
+  CHECK(decide(0.001, unlikely, {0.05}).verdict == Verdict::none_in_catalogue);
+  unlikely[0].p = 0.1;  // while the model as it is survives, nothing is known for sure
+  CHECK(decide(0.001, unlikely, {0.05}) == Decision{Verdict::one_of, {2, 3, 0}});
 }
 
 TEST_CASE("several surviving effects are one of them, the one that fits best first", "[stats]") {
