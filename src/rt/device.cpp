@@ -1,5 +1,7 @@
 #include "rt/device.hpp"
 
+#include <oneapi/tbb/task_arena.h>
+
 #include <string>
 
 #include "pirsim/core/error.hpp"
@@ -34,8 +36,7 @@ std::string_view describe(RTCError error) noexcept {
 }  // namespace
 
 Device make_device() {
-  // No `threads`: with oneTBB that would limit the whole process, not Embree. Hierarchies are built by the calling
-  // thread and by whoever is idle in its arena, and don't depend on how many help.
+  // No `threads`: with oneTBB that would limit the whole process, not Embree; see commit().
   const std::string config = "max_isa=" + std::string(pinned_instruction_set) + ",start_threads=0,set_affinity=0";
   Device device(rtcNewDevice(config.c_str()));
   if (!device) refuse("make a device", rtcGetDeviceError(nullptr));
@@ -61,7 +62,8 @@ GeometryHandle make_geometry(RTCDevice device, RTCGeometryType type) {
 }
 
 void commit(RTCDevice device, RTCScene scene) {
-  rtcCommitScene(scene);
+  // By this thread alone: rooms are small, and whoever waits for help with one would begin another world meanwhile.
+  oneapi::tbb::task_arena(1).execute([&] { rtcCommitScene(scene); });
   check(device, "build a scene");
 }
 
