@@ -97,3 +97,9 @@ void ordered_parallel(std::size_t count, unsigned threads,
 }
 
 }  // namespace pirsim::detail
+
+namespace pirsim {
+
+void without_help(const std::function<void()>& work) { oneapi::tbb::task_arena(1).execute(work); }
+
+}  // namespace pirsim

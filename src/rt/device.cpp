@@ -1,10 +1,9 @@
 #include "rt/device.hpp"
 
-#include <oneapi/tbb/task_arena.h>
-
 #include <string>
 
 #include "pirsim/core/error.hpp"
+#include "pirsim/core/parallel.hpp"
 #include "pirsim/rt/room.hpp"
 
 namespace pirsim::rt {
@@ -63,7 +62,7 @@ GeometryHandle make_geometry(RTCDevice device, RTCGeometryType type) {
 
 void commit(RTCDevice device, RTCScene scene) {
   // By this thread alone: rooms are small, and whoever waits for help with one would begin another world meanwhile.
-  oneapi::tbb::task_arena(1).execute([&] { rtcCommitScene(scene); });
+  without_help([&] { rtcCommitScene(scene); });
   check(device, "build a scene");
 }
 

@@ -25,4 +25,8 @@ void ordered_parallel(std::size_t count, unsigned threads, const std::function<R
       [&](void* result) { consume(*static_cast<Result*>(result)); }, goes_on);
 }
 
+/// Works on the calling thread alone: libraries that share oneTBB's threads find none to help them, and the caller
+/// begins nothing else while it waits for them.
+void without_help(const std::function<void()>& work);
+
 }  // namespace pirsim
