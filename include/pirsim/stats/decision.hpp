@@ -29,8 +29,8 @@ struct DecisionLevels {
   /// together is said.
   double sure = 0.85;
   /// What survives must be as probable together, else likelier effects were ruled out and nothing of the catalogue made
-  /// the data. One half: more probable than not. On the same datasets 0.05, 0.2 and 0.5 drop the truth in 1, 2 and 5 of
-  /// 1,155 disagreements and recognise 0.83, 0.89 and 0.98 of what the catalogue lacks (0: 0.76).
+  /// the data. One half: more probable than not. On planted datasets it drops the truth in 5 of 1,124 disagreements and
+  /// recognises 171 instead of 140 of 180 things that the catalogue lacks; smaller levels do less of both.
   double plausible = 0.5;
 };
 
