@@ -41,7 +41,8 @@ std::size_t Analyst::likeliest(std::span<const float> measured, const std::funct
   const std::vector<double> probabilities = namer_->probabilities(measured);
   std::size_t best = 0;
   for (std::size_t entry = 1; entry < probabilities.size(); ++entry) {
-    if (wanted(entry) && (best == 0 || probabilities[entry] > probabilities[best])) best = entry;
+    const double most = best == 0 ? 0.0 : probabilities[best];  // what is no candidate has 0
+    if (wanted(entry) && probabilities[entry] > most) best = entry;
   }
   return best;
 }

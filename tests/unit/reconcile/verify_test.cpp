@@ -133,6 +133,15 @@ TEST_CASE("claims that are judged together are judged as each by itself", "[reco
   CHECK(together[0].after.energy_score == together[1].after.energy_score);
 }
 
+TEST_CASE("an effect that is no candidate is never the likeliest", "[reconcile]") {
+  const Laboratory& lab = plain_lab();
+  const Analyst analyst(lab.frame, lab.knowledge, lab.table, all_trials(lab.frame), {0.05, 1, 0, 40, "false_triggers"});
+  const std::vector<float> data = planted(lab, 60, {false_triggers});
+  const std::size_t left_out = entry_of(lab.table, "false_triggers");
+  CHECK(analyst.likeliest(data, [&](std::size_t entry) { return entry == left_out; }) == 0);
+  CHECK(analyst.likeliest(data, [](std::size_t) { return true; }) != left_out);
+}
+
 TEST_CASE("two effects are judged together and close more than one of them", "[reconcile]") {
   const std::vector<EffectSpec> both{false_triggers, stretching};
   const std::vector<float> data = planted(plain_lab(), 30, both);
