@@ -69,7 +69,7 @@ template <auto method>
 struct Call {
   Loop* loop;
   template <typename Argument>
-  [[gnu::no_sanitize("thread")]] auto operator()(Argument&& argument) const {
+  __attribute__((no_sanitize("thread"))) auto operator()(Argument&& argument) const {
     return (loop->*method)(std::forward<Argument>(argument));
   }
 };
