@@ -13,15 +13,16 @@ namespace {
 
 using body::Stage;
 
-constexpr double look_ahead_m = 1.2;     ///< assumed: how far ahead a walker minds others (tried 0.8-2)
-constexpr double foresight_s = 1.5;      ///< assumed: how long before ways cross one gives way (tried 1-2)
-constexpr double gap_m = 0.1;            ///< assumed: kept between two people beside their radii
-constexpr double doorway_m = 2.5;        ///< assumed: who comes in is through the door at that distance (tried 2-3)
-constexpr double braking_m_s2 = 1.5;     ///< assumed, as Motion's acceleration
-constexpr double patience_s = 0.5;       ///< assumed: wait before looking for another way
-constexpr double patience_step_s = 0.7;  ///< more for every later person, so that two don't dodge alike
-constexpr double search_every_s = 0.2;   ///< how often one who found no way looks again
-constexpr double give_up_s = 60.0;       ///< then people block each other for good
+constexpr double look_ahead_m = 1.2;        ///< assumed: how far ahead a walker minds others (tried 0.8-2)
+constexpr double foresight_s = 1.5;         ///< assumed: how long before ways cross one gives way (tried 1-2)
+constexpr double gap_m = 0.1;               ///< assumed: kept between two people beside their radii
+constexpr double doorway_m = 2.5;           ///< assumed: who comes in is through the door at that distance (tried 2-3)
+constexpr double braking_m_s2 = 1.5;        ///< assumed, as Motion's acceleration
+constexpr double patience_s = 0.5;          ///< assumed: wait before looking for another way
+constexpr double patience_step_s = 0.7;     ///< more for every later person, so that two don't dodge alike
+constexpr double search_every_s = 0.2;      ///< how often one who found no way looks again
+constexpr double give_up_s = 60.0;          ///< then people block each other for good
+constexpr double give_up_in_all_s = 180.0;  ///< assumed: then somebody tries the same few steps for ever
 
 std::int64_t ticks(double seconds, const Model& model) {
   return std::llround(seconds * model.script().sensing.tick_rate_hz);
@@ -79,7 +80,10 @@ void Actor::carry_on(const Model& model, std::int64_t now, std::span<const Prese
       began_ = now;
       plan(model);
     }
-    while (!errands_.empty() && carry_out_first(model, others) == Progress::done) errands_.pop_front();
+    while (!errands_.empty() && carry_out_first(model, others) == Progress::done) {
+      errands_.pop_front();
+      held_up_ticks_ = 0;
+    }
     if (const auto* work_action = std::get_if<action::Work>(&action().what)) work(model, *work_action, now);
     const auto next = interrupting_action(model, now);
     if (!next && !(errands_.empty() && time_is_up(model, now))) return;
@@ -90,6 +94,7 @@ void Actor::carry_on(const Model& model, std::int64_t now, std::span<const Prese
 
 void Actor::finish_action() {
   errands_.clear();
+  held_up_ticks_ = 0;
   route_.reset();
   if (motion_ && std::holds_alternative<action::Work>(action().what)) motion_->rest();
   ++action_;
@@ -399,7 +404,9 @@ void Actor::keep_distance(const Model& model, std::span<const Presence> others, 
 void Actor::give_up(const std::string& why) const { throw Error(ErrorCode::infeasible, action().where, why); }
 
 void Actor::wait_for_others(const Model& model) {
-  if (++blocked_ticks_ <= ticks(give_up_s, model)) return;
+  ++blocked_ticks_;
+  ++held_up_ticks_;
+  if (blocked_ticks_ <= ticks(give_up_s, model) && held_up_ticks_ <= ticks(give_up_in_all_s, model)) return;
   give_up("'" + person().spec.id + "' waits in vain for others to make way");
 }
 

@@ -134,6 +134,7 @@ class Actor {
   std::string_view seat_;             ///< taken, or empty
   std::string_view phase_ = "outside";
   int blocked_ticks_ = 0;  ///< for how long others have been in the way
+  int held_up_ticks_ = 0;  ///< the same in all since the current errand was set out on
   Stream tilt_stream_;
   Stream scatter_stream_;
   Stream fidget_stream_;
