@@ -42,6 +42,8 @@ THIRD_PARTY = {
     "openssl": {"core"},
     "CLI": {"app"},
 }
+# the one file that includes a library, since its macros must be the same everywhere
+GATES = {"Eigen": "src/stats/eigen.hpp"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
@@ -77,6 +79,9 @@ def violations(root: pathlib.Path):
             target = included_layer(name)
             if layer and target and target != layer and target not in BELOW[layer]:
                 yield f"{here}:{number}: layer {layer} must not include layer {target} ({name})"
+            for prefix, gate in GATES.items():
+                if match.group(1) == "<" and name.startswith(prefix + "/") and str(here) != gate:
+                    yield f"{here}:{number}: {name} may only be included in {gate}"
             for prefix, homes in THIRD_PARTY.items():
                 if match.group(1) == "<" and (name == prefix or name.startswith((prefix + "/", prefix + "."))
                                               or (prefix == "embree" and name.startswith("embree"))):

@@ -1,6 +1,10 @@
 // Our matrices seen as Eigen's.
 #pragma once
 
+// The same sums on every processor: products are cut into blocks for fixed sizes of caches instead of those of the
+// machine, and roots don't begin with an estimate that differs from one maker to the next.
+#define EIGEN_NO_CPUID
+#define EIGEN_FAST_MATH 0
 #include <Eigen/Dense>
 
 #include "pirsim/stats/matrix.hpp"
