@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <utility>
 
 #include "pirsim/effects/catalogue.hpp"
 #include "reconcile/sentences.hpp"
@@ -20,25 +21,18 @@ std::vector<std::size_t> all_trials(const StudyFrame& frame) {
   return trials;
 }
 
-Analyst::Analyst(const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge, const ReferenceTable& table,
-                 std::vector<std::size_t> trials, const AnalystSettings& settings)
-    : frame_(frame),
-      table_(table),
+Analyst::Analyst(std::shared_ptr<const TableView> view, const AnalystSettings& settings)
+    : view_(std::move(view)),
       settings_(settings),
-      map_(frame, knowledge, table.statistics.select_rows(rows_of(table, 0, Part::training)), std::move(trials)),
-      plain_(table.statistics.select_rows(rows_of(table, 0, Part::all))),
-      plain_reference_(std::make_unique<stats::EnvelopeReference>(envelope_entries(map_, plain_, settings.threads))),
-      namer_(std::make_unique<Namer>(
-          table, map_, *plain_reference_,
-          NamerSettings{settings.alpha, settings.trees, settings.seed, settings.threads, settings.left_out})) {}
+      namer_(*view_, {settings.alpha, settings.trees, settings.seed, settings.threads, settings.left_out}) {}
 
 FittedEffect Analyst::fit(std::size_t entry, std::span<const float> measured) const {
-  return fit_from_table(table_, map_, entry, namer_->seen_rows(entry), measured,
+  return fit_from_table(view_->table(), view_->map(), entry, namer_.seen_rows(entry), measured,
                         {settings_.seed, settings_.threads, 0.9});
 }
 
 std::size_t Analyst::likeliest(std::span<const float> measured, const std::function<bool(std::size_t)>& wanted) const {
-  const std::vector<double> probabilities = namer_->probabilities(measured);
+  const std::vector<double> probabilities = namer_.probabilities(measured);
   std::size_t best = 0;
   for (std::size_t entry = 1; entry < probabilities.size(); ++entry) {
     const double most = best == 0 ? 0.0 : probabilities[best];  // what is no candidate has 0
@@ -49,8 +43,8 @@ std::size_t Analyst::likeliest(std::span<const float> measured, const std::funct
 
 Judgement Analyst::judge(std::span<const float> measured) const {
   Judgement judgement;
-  judgement.p = plain_reference_->p(envelope_entries(map_, measured));
-  judgement.scores = namer_->judge(measured);
+  judgement.p = view_->p(measured);
+  judgement.scores = namer_.judge(measured);
   judgement.family = likeliest_family(judgement.scores);
   std::vector<stats::Candidate> candidates;
   for (const EntryScore& score : judgement.scores) candidates.push_back({score.p, score.probability});
@@ -62,11 +56,12 @@ Outcome Analyst::analyse(std::span<const float> measured) const {
   const Judgement judgement = judge(measured);
   Outcome outcome;
   outcome.verdict = judgement.decision.verdict;
-  outcome.location = locate(frame_, map_, plain_, measured, {settings_.alpha, settings_.seed, settings_.threads});
+  outcome.location = locate(view_->frame(), view_->map(), view_->plain(), measured,
+                            {settings_.alpha, settings_.seed, settings_.threads});
   outcome.trail.push_back("global test: p " + short_number(outcome.location.p));
   outcome.nothing = judgement.scores.front();
   outcome.family = judgement.family;
-  outcome.calibration_error = namer_->reliability().expected_calibration_error;
+  outcome.calibration_error = namer_.reliability().expected_calibration_error;
   const bool differs = outcome.verdict != Verdict::no_disagreement;
   for (std::size_t entry = 1; entry < judgement.scores.size(); ++entry) {
     const EntryScore& score = judgement.scores[entry];
@@ -81,7 +76,7 @@ Outcome Analyst::analyse(std::span<const float> measured) const {
     return a.score.probability > b.score.probability;
   });
   if (differs) {
-    outcome.telling_features = namer_->telling_features(8);
+    outcome.telling_features = namer_.telling_features(8);
     std::string set = outcome.nothing.p > settings_.alpha ? " nothing" : "";
     for (const Candidate& candidate : outcome.candidates) set += candidate.kept ? " " + candidate.score.entry : "";
     outcome.trail.push_back("entries that can have made the data:" + (set.empty() ? " none" : set));
@@ -95,7 +90,7 @@ Outcome Analyst::analyse(std::span<const float> measured) const {
 void Analyst::fit_named(Outcome& outcome, std::span<const float> measured) const {
   if (outcome.verdict == Verdict::named) {
     Candidate& candidate = outcome.candidates.front();
-    FittedEffect fitted = fit(entry_of(table_, candidate.score.entry), measured);
+    FittedEffect fitted = fit(entry_of(view_->table(), candidate.score.entry), measured);
     if (fitted.includes_off) {
       outcome.trail.push_back("the interval of " + candidate.score.entry + " includes off: the name is withdrawn");
       candidate.reason = "Kept, but not named: its strength may as well be none.";

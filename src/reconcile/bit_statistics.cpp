@@ -100,13 +100,16 @@ double period_power(std::span<const std::uint8_t> bits) {
   }
   if (active.size() < 3 || active.size() + 3 > n) return 0.0;
   const std::vector<double>& cosine = cosines(n);
+  const std::size_t quarter = n / 4;
+  std::vector<std::size_t> phase(active.size(), 0);  // f t mod n, without a division
   double greatest = 0.0;
   for (std::size_t f = 1; f * shortest_period_rows <= n; ++f) {
     double real = 0.0, imaginary = 0.0;
-    for (const std::size_t t : active) {
-      const std::size_t k = f * t % n;
+    for (std::size_t i = 0; i < active.size(); ++i) {
+      const std::size_t next = phase[i] + active[i], k = next < n ? next : next - n;
+      phase[i] = k;
       real += cosine[k];
-      imaginary += cosine[(k + n - n / 4) % n];
+      imaginary += cosine[k < quarter ? k + n - quarter : k - quarter];
     }
     greatest = std::max(greatest, real * real + imaginary * imaginary);
   }

@@ -10,9 +10,6 @@
 namespace pirsim::reconcile {
 namespace {
 
-/// Statistics that are looked at as they are; those after them are parts of the time.
-constexpr auto n_told_of_cells = static_cast<std::size_t>(CellStatistic::sixth_1);
-constexpr auto n_told_of_trials = static_cast<std::size_t>(TrialStatistic::slice_1);
 constexpr std::size_t n_sixths = n_cell_statistics - n_told_of_cells;
 constexpr std::size_t n_slices = n_trial_statistics - n_told_of_trials;
 /// Statistics whose means over the sensors of a trial are looked at one by one.

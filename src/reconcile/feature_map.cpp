@@ -125,9 +125,16 @@ void FeatureMap::learn_covariates(const std::vector<CellKnowledge>& knowledge) {
 FeatureMap::Scaled FeatureMap::scaled(std::span<const float> statistics) const {
   Scaled data;
   data.values.resize(statistics.size(), 0.0);
-  for (std::size_t i = 0; i < statistics.size(); ++i) {
-    if (known_[i] == 0 || std::isnan(statistics[i])) continue;
-    data.values[i] = std::asinh((static_cast<double>(statistics[i]) - mean_[i]) / scale_[i]);
+  const auto scale = [&](std::size_t first, std::size_t n) {
+    for (std::size_t i = first; i < first + n; ++i) {
+      if (known_[i] == 0 || std::isnan(statistics[i])) continue;
+      data.values[i] = std::asinh((static_cast<double>(statistics[i]) - mean_[i]) / scale_[i]);
+    }
+  };
+  for (const std::size_t trial : trials_) {
+    for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor)
+      scale(cell_index(frame_, trial, sensor, CellStatistic::seconds), n_told_of_cells);
+    scale(trial_index(frame_, trial, TrialStatistic::lag_minus_4), n_told_of_trials);
   }
   return data;
 }

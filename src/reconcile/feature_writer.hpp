@@ -9,9 +9,13 @@
 
 namespace pirsim::reconcile {
 
-/// Deviations in units of the plain model's scatter, drawn in at the ends.
+/// Statistics that are looked at as they are; those after them are parts of the time.
+constexpr auto n_told_of_cells = static_cast<std::size_t>(CellStatistic::sixth_1);
+constexpr auto n_told_of_trials = static_cast<std::size_t>(TrialStatistic::slice_1);
+
+/// Deviations in units of the plain model's scatter, drawn in at the ends: of what is told of the trials looked at.
 struct FeatureMap::Scaled {
-  std::vector<double> values;  ///< (n_statistics)
+  std::vector<double> values;  ///< (n_statistics) 0 where nobody looks
 };
 
 /// Numbers in the order in which they come; their names too when those are wanted.

@@ -37,22 +37,26 @@ std::size_t entry_of(const ReferenceTable& table, const std::string& effect) {
   return 1 + static_cast<std::size_t>(std::ranges::find(table.effects, effect) - table.effects.begin());
 }
 
-std::vector<double> envelope_entries(const FeatureMap& map, std::span<const float> statistics) {
-  const std::vector<float> features = map.features(statistics);
+std::vector<double> tested_features(const FeatureMap& map, std::span<const float> features) {
   std::vector<double> entries;
   for (const std::size_t column : map.envelope_columns()) entries.push_back(static_cast<double>(features[column]));
   return entries;
 }
 
+stats::Matrix<double> tested_features(const FeatureMap& map, const stats::Matrix<float>& features) {
+  stats::Matrix<double> entries(features.rows(), map.envelope_columns().size());
+  for (std::size_t row = 0; row < features.rows(); ++row)
+    std::ranges::copy(tested_features(map, features.row(row)), entries.row(row).begin());
+  return entries;
+}
+
+std::vector<double> envelope_entries(const FeatureMap& map, std::span<const float> statistics) {
+  return tested_features(map, map.features(statistics));
+}
+
 stats::Matrix<double> envelope_entries(const FeatureMap& map, const stats::Matrix<float>& statistics,
                                        unsigned threads) {
-  const stats::Matrix<float> features = map.features(statistics, threads);
-  const std::vector<std::size_t>& columns = map.envelope_columns();
-  stats::Matrix<double> entries(statistics.rows(), columns.size());
-  for (std::size_t row = 0; row < statistics.rows(); ++row) {
-    for (std::size_t i = 0; i < columns.size(); ++i) entries(row, i) = static_cast<double>(features(row, columns[i]));
-  }
-  return entries;
+  return tested_features(map, map.features(statistics, threads));
 }
 
 Location locate(const StudyFrame& frame, const FeatureMap& map, const stats::Matrix<float>& plain,

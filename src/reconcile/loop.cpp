@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::uint32_t first_check_world = 1U << 23U;  ///< worlds that no table has seen
 constexpr int datasets_per_world = 4;                   ///< where zones are remembered
+constexpr std::uint32_t first_look_worlds = 40;
+constexpr double surely_passes = 0.25;  ///< six standard errors of a p of 0.05 from 40 datasets above it
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
@@ -31,17 +33,20 @@ std::vector<Series> part_of(const std::vector<Series>& runs, int i, int n) {
   return part;
 }
 
-/// Statistics of datasets of the model with a patch, in worlds of their own.
-stats::Matrix<float> simulate(const Laboratory& lab, const std::vector<EffectSpec>& patch, std::uint32_t n_worlds,
-                              unsigned threads) {
+struct Worlds {
+  std::uint32_t begin = 0, end = 0;
+};
+
+/// Adds the statistics of datasets of the model with a patch, in worlds of their own.
+void simulate(const Laboratory& lab, const std::vector<EffectSpec>& patch, Worlds worlds, unsigned threads,
+              stats::Matrix<float>& all) {
   const int n = lab.shape.n_replicates, per_world = acts_on_remembered_zones(patch) ? datasets_per_world : 1;
   using Rows = std::vector<std::vector<float>>;
-  stats::Matrix<float> all;
   ordered_parallel<Rows>(
-      n_worlds, threads,
+      worlds.end - worlds.begin, threads,
       [&](std::size_t i) {
-        const SimulatedWorld world(lab.source, lab.frame, first_check_world + static_cast<std::uint32_t>(i),
-                                   n * per_world);
+        const std::uint32_t index = first_check_world + worlds.begin + static_cast<std::uint32_t>(i);
+        const SimulatedWorld world(lab.source, lab.frame, index, n * per_world);
         const auto data = world.with_effects(patch, 0, n * per_world);
         Rows rows;
         for (int d = 0; data && d < per_world; ++d)
@@ -51,7 +56,6 @@ stats::Matrix<float> simulate(const Laboratory& lab, const std::vector<EffectSpe
       [&](const Rows& rows) {
         for (const auto& row : rows) all.append_row(std::span<const float>(row));
       });
-  return all;
 }
 
 std::vector<std::size_t> measured_trials(const Laboratory& lab) {
@@ -104,7 +108,7 @@ const Loop::Step& Loop::look(const Settings& settings, double level) {
       observer_);
   step.observed = statistics_of(step.lab.frame, step.lab.shape, step.lab.table.profile, measured_);
   begin("where they differ, and which effects can have made the data");
-  const Analyst analyst(step.lab.frame, step.lab.knowledge, step.lab.table, training_trials(),
+  const Analyst analyst(step.lab.view(training_trials(), settings_.threads),
                         {level, settings_.seed, settings_.threads, settings_.trees});
   step.outcome = analyst.analyse(step.observed);
   step.likeliest = analyst.likeliest(step.observed, [](std::size_t) { return true; });
@@ -145,7 +149,7 @@ Settings Loop::with_all(double level) const {
 void Loop::put_in_more() {
   for (;;) {
     const double level = settings_.alpha * std::pow(0.5, static_cast<double>(put_in_.size()));
-    const double p = p_with_all();
+    const double p = p_with_all(level);
     passes_ = p > level;
     outcome_.looks.push_back({names(), level, p});
     outcome_.trail.push_back("with " + joined(names()) + " put in, at level " + short_number(level) + ": p " +
@@ -207,16 +211,24 @@ void Loop::verify_effects() {
     outcome_.trail.push_back("the held-out trials alone don't refuse the plain model: too weak to call the gap closed");
 }
 
-double Loop::p_with_all() {
+/// Most models that pass do so at first sight. Only what looks strange in the first worlds is worth the rest, and only
+/// all of them together refuse, so that looking twice refuses no more models than the level allows.
+double Loop::p_with_all(double level) {
   begin("does the model with " + joined(names()) + " put in pass");
   const Step& plain = steps_.front();
-  const stats::Matrix<float> datasets =
-      simulate(plain.lab, patch(), std::max(settings_.verify_worlds, 20U), settings_.threads);
-  if (datasets.rows() < 2) return 0.0;
   const FeatureMap map(plain.lab.frame, plain.lab.knowledge,
                        plain.lab.table.statistics.select_rows(rows_of(plain.lab.table, 0, Part::training)),
                        training_trials());
-  return locate(plain.lab.frame, map, datasets, plain.observed, {settings_.alpha, settings_.seed, settings_.threads}).p;
+  stats::Matrix<float> datasets;
+  const auto p_after = [&](Worlds worlds) {
+    simulate(plain.lab, patch(), worlds, settings_.threads, datasets);
+    if (datasets.rows() < 2) return 0.0;
+    return locate(plain.lab.frame, map, datasets, plain.observed, {settings_.alpha, settings_.seed, settings_.threads})
+        .p;
+  };
+  const double p = p_after({0, first_look_worlds});
+  const auto n_to_refuse = static_cast<std::uint32_t>(std::ceil(2.0 / level));  // then two rows may be as strange
+  return p > surely_passes ? p : p_after({first_look_worlds, std::max(settings_.verify_worlds, n_to_refuse)});
 }
 
 std::vector<std::string> Loop::names() const {

@@ -34,7 +34,7 @@ class Loop {
   void explain();
   void verify_effects();
   /// p of the global test of the model with all that has been put in, its data simulated anew.
-  [[nodiscard]] double p_with_all();
+  [[nodiscard]] double p_with_all(double level);
   [[nodiscard]] Settings with_all(double level) const;
   [[nodiscard]] std::vector<std::string> names() const;
   [[nodiscard]] std::vector<EffectSpec> patch() const;

@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "pirsim/core/error.hpp"
-#include "pirsim/core/parallel.hpp"
 #include "pirsim/reconcile/locate.hpp"
 
 namespace pirsim::reconcile {
@@ -16,18 +15,13 @@ constexpr std::size_t fewest_calibration = 10;
 
 /// The rows that the global test sees something in; if they are few the next ones too, so that p can fall below alpha:
 /// two tests in one need 2 / alpha rows, half as many again tell more than whether it does (40 to 80 rows were tried).
-std::vector<std::size_t> rows_seen(const ReferenceTable& table, const FeatureMap& map,
-                                   const stats::EnvelopeReference& plain, std::vector<std::size_t> rows,
-                                   const NamerSettings& settings) {
+std::vector<std::size_t> rows_seen(const TableView& view, std::vector<std::size_t> rows, double alpha) {
   std::vector<std::pair<double, std::size_t>> by_p;
-  ordered_parallel<double>(
-      rows.size(), settings.threads,
-      [&](std::size_t i) { return plain.p(envelope_entries(map, table.statistics.row(rows[i]))); },
-      [&](double& p) { by_p.emplace_back(p, rows[by_p.size()]); });
+  for (const std::size_t row : rows) by_p.emplace_back(view.p_of_row(row), row);
   std::ranges::sort(by_p);
-  const auto fewest = static_cast<std::size_t>(3.0 / settings.alpha);
-  const auto n_seen = static_cast<std::size_t>(
-      std::ranges::count_if(by_p, [&](const auto& row) { return row.first <= settings.alpha; }));
+  const auto fewest = static_cast<std::size_t>(3.0 / alpha);
+  const auto n_seen =
+      static_cast<std::size_t>(std::ranges::count_if(by_p, [&](const auto& row) { return row.first <= alpha; }));
   by_p.resize(std::min(by_p.size(), std::max(n_seen, fewest)));
   rows.clear();
   for (const auto& [p, row] : by_p) rows.push_back(row);
@@ -59,9 +53,8 @@ FamilyScore likeliest_family(std::span<const EntryScore> scores) {
   return likeliest == sums.end() ? FamilyScore{} : FamilyScore{likeliest->first, likeliest->second};
 }
 
-Namer::Namer(const ReferenceTable& table, const FeatureMap& map, const stats::EnvelopeReference& plain,
-             const NamerSettings& settings)
-    : map_(&map) {
+Namer::Namer(const TableView& view, const NamerSettings& settings) : map_(&view.map()) {
+  const ReferenceTable& table = view.table();
   Labelled data;
   seen_rows_.resize(table.n_entries());
   for (std::size_t entry = 0; entry < table.n_entries(); ++entry) {
@@ -77,18 +70,18 @@ Namer::Namer(const ReferenceTable& table, const FeatureMap& map, const stats::En
     }
     const auto label = static_cast<int>(entries_.size());
     data.add(training, label, data.split.fitting);
-    seen_rows_[entry] = entry == 0 ? calibration : rows_seen(table, map, plain, calibration, settings);
+    seen_rows_[entry] = entry == 0 ? calibration : rows_seen(view, calibration, settings.alpha);
     data.add(seen_rows_[entry], label, data.split.calibration);
     entries_.push_back(entry);
   }
-  const stats::Matrix<float> features = map.features(table.statistics.select_rows(data.rows), settings.threads);
+  const stats::Matrix<float> features = view.features().select_rows(data.rows);
   stats::ConformalSettings conformal;
   conformal.trees.trees = settings.trees;
   conformal.trees.seed = settings.seed;
   conformal.trees.threads = settings.threads;
   conformal.shapes.seed = settings.seed;
   conformal.shapes.threads = settings.threads;
-  conformal.blocks = map.blocks();
+  conformal.blocks = view.map().blocks();
   conformal.threads = settings.threads;
   classifier_ =
       stats::ConformalClassifier::fit(features, data.labels, static_cast<int>(entries_.size()), data.split, conformal);

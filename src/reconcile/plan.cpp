@@ -23,7 +23,7 @@ struct Judged {
 
 Judged judge_held_back(const Laboratory& lab, std::vector<std::size_t> trials, const Settings& settings) {
   std::ranges::sort(trials);
-  const Analyst analyst(lab.frame, lab.knowledge, lab.table, std::move(trials),
+  const Analyst analyst(lab.view(std::move(trials), settings.threads),
                         {settings.alpha, settings.seed, settings.threads, settings.trees});
   Judged judged;
   for (std::size_t row = 0; row < lab.table.rows.size(); ++row) {

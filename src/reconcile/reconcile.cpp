@@ -1,5 +1,7 @@
 #include "pirsim/reconcile/reconcile.hpp"
 
+#include <utility>
+
 #include "reconcile/loop.hpp"
 
 namespace pirsim::reconcile {
@@ -29,6 +31,10 @@ Laboratory make_laboratory(const SceneSpec& scene, const ScriptSpec& script, con
                                    settings.table, settings.table_folder, {observer.progress});
   lab.key = lab.table.key;
   return lab;
+}
+
+std::shared_ptr<const TableView> Laboratory::view(std::vector<std::size_t> trials, unsigned threads) const {
+  return std::make_shared<const TableView>(frame, knowledge, table, std::move(trials), threads);
 }
 
 Outcome reconcile(const SceneSpec& scene, const ScriptSpec& script, const Measured& measured, const Settings& settings,

@@ -79,9 +79,10 @@ std::vector<std::size_t> to_verify(const std::vector<PlantedCase>& cases, std::s
 
 /// cases: of `planted`, in the same order.
 void verify_some(const Laboratory& lab, const std::vector<Planted>& planted, const SelftestSettings& settings,
-                 std::vector<PlantedCase>& cases) {
+                 const std::function<void(const std::string&)>& begin, std::vector<PlantedCase>& cases) {
   const std::vector<std::size_t> chosen = to_verify(cases, settings.n_verified);
   if (chosen.empty()) return;
+  begin("finding anew without held-out trials what is in " + std::to_string(chosen.size()) + " datasets");
   std::vector<Claim> claims;
   for (const std::size_t i : chosen) {
     const std::vector<std::string>& named = cases[i].named;
@@ -89,8 +90,10 @@ void verify_some(const Laboratory& lab, const std::vector<Planted>& planted, con
   }
   const Settings& analysis = settings.analysis;
   const Folds folds = usual_folds(sha256(lab.key), all_trials(lab.frame), lab.shape.kind);
-  std::vector<Verification> found =
-      verify(claims, folds, {analysis.alpha, analysis.seed, analysis.threads, analysis.verify_worlds});
+  std::vector<Verification> found = verify(
+      claims, folds, {analysis.alpha, analysis.seed, analysis.threads, analysis.verify_worlds}, [&](std::size_t done) {
+        begin("judged on held-out trials: " + std::to_string(done) + " of " + std::to_string(claims.size()));
+      });
   for (std::size_t k = 0; k < chosen.size(); ++k) cases[chosen[k]].verification = std::move(found[k]);
 }
 
@@ -237,9 +240,9 @@ SelftestResult judge(const Laboratory& lab, const std::vector<Planted>& planted,
     if (observer.stage) observer.stage(stage);
   };
   const Settings& analysis = settings.analysis;
+  const auto view = lab.view(all_trials(lab.frame), analysis.threads);
   const auto analyst_without = [&](const std::string& effect) {
-    return Analyst(lab.frame, lab.knowledge, lab.table, all_trials(lab.frame),
-                   {analysis.alpha, analysis.seed, analysis.threads, analysis.trees, effect});
+    return Analyst(view, {analysis.alpha, analysis.seed, analysis.threads, analysis.trees, effect});
   };
   SelftestResult result;
   for (std::size_t entry = 0; entry < lab.table.n_entries(); ++entry)
@@ -249,10 +252,7 @@ SelftestResult judge(const Laboratory& lab, const std::vector<Planted>& planted,
   for (const Planted& one : planted) all.push_back(&one);
   judge_all(lab, analyst_without(""), all, {}, analysis.threads, result.cases);
   result.reliability = reliability_of(result);
-  if (settings.n_verified > 0) {
-    begin("judging on held-out trials");
-    verify_some(lab, planted, settings, result.cases);
-  }
+  if (settings.n_verified > 0) verify_some(lab, planted, settings, begin, result.cases);
   if (settings.leave_out == LeaveOut::none) return result;
   for (const std::string& effect : lab.table.effects) {
     begin("judging by a catalogue that lacks " + effect);

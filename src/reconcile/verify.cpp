@@ -61,7 +61,7 @@ class FoldSearch {
   /// One is kept: it takes long to learn and much memory, and claims about the same study come one after the other.
   const Analyst& analyst_of(const Laboratory& lab) {
     if (lab_ != &lab) {
-      analyst_.emplace(lab.frame, lab.knowledge, lab.table, trials_,
+      analyst_.emplace(lab.view(trials_, settings_.threads),
                        AnalystSettings{settings_.alpha, settings_.seed, settings_.threads, settings_.trees});
       lab_ = &lab;
     }
@@ -327,7 +327,8 @@ std::vector<std::size_t> holdout_of(const std::string& asked, const StudyFrame& 
   return trials;
 }
 
-std::vector<Verification> verify(std::span<const Claim> claims, const Folds& folds, const VerifySettings& settings) {
+std::vector<Verification> verify(std::span<const Claim> claims, const Folds& folds, const VerifySettings& settings,
+                                 const std::function<void(std::size_t)>& on_judged) {
   std::vector<std::vector<FoldPatches>> found(claims.size());
   std::vector<std::size_t> held_out;
   for (const auto& fold : folds) {
@@ -337,8 +338,10 @@ std::vector<Verification> verify(std::span<const Claim> claims, const Folds& fol
   }
   std::ranges::sort(held_out);
   std::vector<Verification> results;
-  for (std::size_t i = 0; i < claims.size(); ++i)
+  for (std::size_t i = 0; i < claims.size(); ++i) {
     results.push_back(judge_claim(claims[i], folds, held_out, found[i], settings));
+    if (on_judged) on_judged(results.size());
+  }
   return results;
 }
 

@@ -30,8 +30,8 @@ class Grower {
         rows_(data.n_rows),
         columns_(data.n_columns),
         values_(data.n_rows),
-        node_counts_(data.class_weight.size()),
-        left_counts_(data.class_weight.size()) {
+        classes_(data.n_rows),
+        counts_(data.class_weight.size()) {
     std::iota(rows_.begin(), rows_.end(), std::uint32_t{0});
     std::iota(columns_.begin(), columns_.end(), std::uint32_t{0});
     grown_.gain.assign(data.n_columns, 0.0);
@@ -69,31 +69,41 @@ class Grower {
     return static_cast<std::uint32_t>(grown_.tree.column.size() - 1);
   }
 
+  /// Numbers the classes that the node has, ascending: deep in a tree these are few of all.
   void count(const Task& task) {
-    std::fill(node_counts_.begin(), node_counts_.end(), 0U);
-    for (std::size_t i = task.begin; i < task.end; ++i) ++node_counts_[data_.labels[rows_[i]]];
+    std::ranges::fill(counts_, 0U);
+    for (std::size_t i = task.begin; i < task.end; ++i) ++counts_[data_.labels[rows_[i]]];
+    node_classes_.clear();
+    node_counts_.clear();
+    node_weights_.clear();
+    for (std::size_t k = 0; k < counts_.size(); ++k) {
+      if (counts_[k] == 0) continue;
+      node_counts_.push_back(counts_[k]);
+      node_weights_.push_back(data_.class_weight[k]);
+      counts_[k] = static_cast<std::uint32_t>(node_classes_.size());
+      node_classes_.push_back(static_cast<std::uint16_t>(k));
+    }
+    left_counts_.resize(node_counts_.size());
+    for (std::size_t i = task.begin; i < task.end; ++i)
+      classes_[i] = static_cast<std::uint16_t>(counts_[data_.labels[rows_[i]]]);
   }
 
   /// Weight times (1 - Gini's impurity): the sum of squared class weights over their sum.
   [[nodiscard]] double purity(const std::vector<std::uint32_t>& counts) const {
     double sum = 0.0, squares = 0.0;
     for (std::size_t k = 0; k < counts.size(); ++k) {
-      const double weight = counts[k] * data_.class_weight[k];
+      const double weight = counts[k] * node_weights_[k];
       sum += weight;
       squares += weight * weight;
     }
     return sum > 0.0 ? squares / sum : 0.0;
   }
 
-  [[nodiscard]] bool pure() const {
-    return std::count_if(node_counts_.begin(), node_counts_.end(), [](std::uint32_t n) { return n > 0; }) < 2;
-  }
-
   /// Of up to `tries` columns that vary in the node, drawn without replacement, the best random threshold.
   Split find_split(const Task& task) {
     Split best;
     const std::size_t n = task.end - task.begin;
-    if (n < 2 * rules_.min_leaf || pure()) return best;
+    if (n < 2 * rules_.min_leaf || node_classes_.size() < 2) return best;
     std::size_t tried = 0;
     for (std::size_t drawn = 0; drawn < columns_.size() && tried < rules_.tries; ++drawn) {
       const std::size_t pick = drawn + stream_.index(static_cast<std::uint32_t>(columns_.size() - drawn));
@@ -123,11 +133,11 @@ class Grower {
   }
 
   double score_of(float threshold, const Task& task) {
-    std::fill(left_counts_.begin(), left_counts_.end(), 0U);
+    std::ranges::fill(left_counts_, 0U);
     std::size_t n_left = 0;
     for (std::size_t i = task.begin; i < task.end; ++i) {
       const std::uint32_t left = values_[i] <= threshold ? 1 : 0;
-      left_counts_[data_.labels[rows_[i]]] += left;
+      left_counts_[classes_[i]] += left;
       n_left += left;
     }
     if (n_left < rules_.min_leaf || task.end - task.begin - n_left < rules_.min_leaf) return -1.0;
@@ -146,13 +156,12 @@ class Grower {
 
   void make_leaf(std::uint32_t node) {
     double total = 0.0;
-    for (std::size_t k = 0; k < node_counts_.size(); ++k) total += node_counts_[k] * data_.class_weight[k];
+    for (std::size_t k = 0; k < node_counts_.size(); ++k) total += node_counts_[k] * node_weights_[k];
     grown_.tree.next[node] = static_cast<std::uint32_t>(grown_.tree.classes.size());
+    grown_.tree.column[node] = -static_cast<std::int32_t>(node_classes_.size());
     for (std::size_t k = 0; k < node_counts_.size(); ++k) {
-      if (node_counts_[k] == 0) continue;
-      --grown_.tree.column[node];
-      grown_.tree.classes.push_back(static_cast<std::uint16_t>(k));
-      grown_.tree.shares.push_back(static_cast<float>(node_counts_[k] * data_.class_weight[k] / total));
+      grown_.tree.classes.push_back(node_classes_[k]);
+      grown_.tree.shares.push_back(static_cast<float>(node_counts_[k] * node_weights_[k] / total));
     }
   }
 
@@ -162,6 +171,11 @@ class Grower {
   std::vector<std::uint32_t> rows_;     ///< of each node together
   std::vector<std::uint32_t> columns_;  ///< shuffled bit by bit as columns are drawn
   std::vector<float> values_;           ///< of the column being tried
+  std::vector<std::uint16_t> classes_;  ///< of the node's rows, as numbered in the node
+  std::vector<std::uint32_t> counts_;   ///< (n_classes) rows in the node, then the number there
+  // Of the classes that the node has.
+  std::vector<std::uint16_t> node_classes_;
+  std::vector<double> node_weights_;
   std::vector<std::uint32_t> node_counts_, left_counts_;
   GrownTree grown_;
 };

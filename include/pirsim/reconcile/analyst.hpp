@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "pirsim/reconcile/outcome.hpp"
-#include "pirsim/reconcile/reference_table.hpp"
-#include "pirsim/stats/envelope.hpp"
+#include "pirsim/reconcile/table_view.hpp"
 
 namespace pirsim::reconcile {
 
@@ -29,12 +28,10 @@ struct Judgement {
   stats::Decision decision;        ///< candidates are numbered as the table's entries
 };
 
-/// Learns from the table's datasets, of the given trials only. Immutable.
+/// Learns from the table's datasets, as the view shows them. Immutable.
 class Analyst {
  public:
-  /// frame, knowledge and table must outlive it.
-  Analyst(const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge, const ReferenceTable& table,
-          std::vector<std::size_t> trials, const AnalystSettings& settings);
+  Analyst(std::shared_ptr<const TableView> view, const AnalystSettings& settings);
 
   /// LOCATE's p and NAME, and what they decide. Without a disagreement no name is looked for.
   [[nodiscard]] Judgement judge(std::span<const float> measured) const;
@@ -44,19 +41,15 @@ class Analyst {
   [[nodiscard]] std::size_t likeliest(std::span<const float> measured,
                                       const std::function<bool(std::size_t)>& wanted) const;
   [[nodiscard]] FittedEffect fit(std::size_t entry, std::span<const float> measured) const;
-  [[nodiscard]] const FeatureMap& map() const noexcept { return map_; }
-  [[nodiscard]] const Namer& namer() const noexcept { return *namer_; }
+  [[nodiscard]] const FeatureMap& map() const noexcept { return view_->map(); }
+  [[nodiscard]] const Namer& namer() const noexcept { return namer_; }
 
  private:
   void fit_named(Outcome& outcome, std::span<const float> measured) const;
 
-  const StudyFrame& frame_;
-  const ReferenceTable& table_;
+  std::shared_ptr<const TableView> view_;
   AnalystSettings settings_;
-  FeatureMap map_;
-  stats::Matrix<float> plain_;
-  std::unique_ptr<const stats::EnvelopeReference> plain_reference_;  ///< of what the global test looks at
-  std::unique_ptr<const Namer> namer_;
+  Namer namer_;
 };
 
 /// Every trial of a study.

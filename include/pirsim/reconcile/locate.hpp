@@ -45,7 +45,11 @@ struct LocateSettings {
 [[nodiscard]] Location locate(const StudyFrame& frame, const FeatureMap& map, const stats::Matrix<float>& plain,
                               std::span<const float> measured, const LocateSettings& settings);
 
-/// What the global test looks at: (n_envelope_entries) of a dataset, (n_datasets x n_envelope_entries) of many.
+/// What the global test looks at of features that are known: (n_envelope_entries) of a dataset, (n_datasets x
+/// n_envelope_entries) of many.
+[[nodiscard]] std::vector<double> tested_features(const FeatureMap& map, std::span<const float> features);
+[[nodiscard]] stats::Matrix<double> tested_features(const FeatureMap& map, const stats::Matrix<float>& features);
+/// The same from statistics.
 [[nodiscard]] std::vector<double> envelope_entries(const FeatureMap& map, std::span<const float> statistics);
 [[nodiscard]] stats::Matrix<double> envelope_entries(const FeatureMap& map, const stats::Matrix<float>& statistics,
                                                      unsigned threads);

@@ -7,12 +7,10 @@
 #include <vector>
 
 #include "pirsim/effects/catalogue.hpp"
-#include "pirsim/reconcile/feature_map.hpp"
-#include "pirsim/reconcile/reference_table.hpp"
+#include "pirsim/reconcile/table_view.hpp"
 #include "pirsim/stats/calibration.hpp"
 #include "pirsim/stats/conformal.hpp"
 #include "pirsim/stats/decision.hpp"
-#include "pirsim/stats/envelope.hpp"
 
 namespace pirsim::reconcile {
 
@@ -48,10 +46,8 @@ struct NamerSettings {
 /// look like anything, would make every effect hard to rule out.
 class Namer {
  public:
-  /// map must outlive it; plain: what the global test compares with. Entries without enough datasets are never
-  /// candidates: their p is 0.
-  Namer(const ReferenceTable& table, const FeatureMap& map, const stats::EnvelopeReference& plain,
-        const NamerSettings& settings);
+  /// view must outlive it. Entries without enough datasets are never candidates: their p is 0.
+  Namer(const TableView& view, const NamerSettings& settings);
 
   /// (n_entries) of a dataset's statistics; nothing first.
   [[nodiscard]] std::vector<EntryScore> judge(std::span<const float> statistics) const;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "pirsim/reconcile/measured.hpp"
 #include "pirsim/reconcile/outcome.hpp"
 #include "pirsim/reconcile/reference_table.hpp"
+#include "pirsim/reconcile/table_view.hpp"
 
 namespace pirsim::reconcile {
 
@@ -23,8 +25,8 @@ struct Settings {
   TableSettings table;
   std::filesystem::path table_folder;  ///< empty: the table is not kept
   std::size_t trees = 300;
-  std::uint32_t verify_worlds = 100;  ///< simulated with each patched model
-  std::vector<std::size_t> holdout;   ///< trials (ascending) kept from naming and fitting, to be judged on; none: folds
+  std::uint32_t verify_worlds = 60;  ///< simulated with each patched model
+  std::vector<std::size_t> holdout;  ///< trials (ascending) kept from naming and fitting, to be judged on; none: folds
 };
 
 /// What a caller may tell its user while it waits.
@@ -41,6 +43,9 @@ struct Laboratory {
   DataShape shape;
   ReferenceTable table;
   std::string key;  ///< of the table
+
+  /// The table as it looks in these trials (sorted); must not outlive the laboratory.
+  [[nodiscard]] std::shared_ptr<const TableView> view(std::vector<std::size_t> trials, unsigned threads) const;
 };
 [[nodiscard]] Laboratory make_laboratory(
     const SceneSpec& scene, const ScriptSpec& script, const Settings& settings,

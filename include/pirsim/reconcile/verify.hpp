@@ -48,7 +48,7 @@ struct VerifySettings {
   double alpha = 0.05;
   std::uint64_t seed = 0;
   unsigned threads = 0;
-  std::uint32_t n_worlds = 100;  ///< simulated with each patched model
+  std::uint32_t n_worlds = 60;  ///< simulated with each patched model
   std::size_t trees = 100;
 };
 
@@ -71,9 +71,10 @@ using Folds = std::vector<std::vector<std::size_t>>;
 /// One a claim. Naming and fitting are repeated in every fold without its trials, step by step, and all effects
 /// together are judged on them against the plain model, that of the first step. What is not repeated is the simulation
 /// of the later steps' tables: they hold the earlier effects as all trials gave them. A fold that finds another effect
-/// than was put in stops there.
+/// than was put in stops there. on_judged is told how many claims are done.
 [[nodiscard]] std::vector<Verification> verify(std::span<const Claim> claims, const Folds& folds,
-                                               const VerifySettings& settings);
+                                               const VerifySettings& settings,
+                                               const std::function<void(std::size_t)>& on_judged = {});
 
 /// Every trial is held out once: in five folds, or by itself if the data are sums, which say little a trial.
 [[nodiscard]] Folds usual_folds(std::string_view digest, std::vector<std::size_t> trials, Measured::Kind kind);

@@ -135,7 +135,7 @@ TEST_CASE("claims that are judged together are judged as each by itself", "[reco
 
 TEST_CASE("an effect that is no candidate is never the likeliest", "[reconcile]") {
   const Laboratory& lab = plain_lab();
-  const Analyst analyst(lab.frame, lab.knowledge, lab.table, all_trials(lab.frame), {0.05, 1, 0, 40, "false_triggers"});
+  const Analyst analyst(lab.view(all_trials(lab.frame), 0), {0.05, 1, 0, 40, "false_triggers"});
   const std::vector<float> data = planted(lab, 60, {false_triggers});
   const std::size_t left_out = entry_of(lab.table, "false_triggers");
   CHECK(analyst.likeliest(data, [&](std::size_t entry) { return entry == left_out; }) == 0);
@@ -145,8 +145,7 @@ TEST_CASE("an effect that is no candidate is never the likeliest", "[reconcile]"
 TEST_CASE("two effects are judged together and close more than one of them", "[reconcile]") {
   const std::vector<EffectSpec> both{false_triggers, stretching};
   const std::vector<float> data = planted(plain_lab(), 30, both);
-  const Analyst analyst(plain_lab().frame, plain_lab().knowledge, plain_lab().table, all_trials(plain_lab().frame),
-                        {0.05, 1, 0, 40});
+  const Analyst analyst(plain_lab().view(all_trials(plain_lab().frame), 0), {0.05, 1, 0, 40});
   const FittedEffect likeliest = analyst.fit(analyst.likeliest(data, [](std::size_t) { return true; }), data);
   const std::string name = likeliest.effect.name,
                     rest = name == "false_triggers" ? "pulse_stretching" : "false_triggers";

@@ -41,8 +41,7 @@ const Laboratory& laboratory() {
 }
 
 const Analyst& analyst() {
-  static const Analyst one(laboratory().frame, laboratory().knowledge, laboratory().table,
-                           all_trials(laboratory().frame), {0.05, 1, 0, 60});
+  static const Analyst one(laboratory().view(all_trials(laboratory().frame), 0), {0.05, 1, 0, 60});
   return one;
 }
 
@@ -139,11 +138,10 @@ TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile]") {
     std::swap(entries[i - 1], entries[stream.index(static_cast<std::uint32_t>(i))]);
   }
   for (std::size_t i = 0; i < entries.size(); ++i) shuffled.rows[i].entry = entries[i];
-  const FeatureMap& map = analyst().map();
-  const stats::EnvelopeReference plain(
-      envelope_entries(map, laboratory().table.statistics.select_rows(rows_of(laboratory().table, 0, Part::all)), 0));
-  const Namer honest(laboratory().table, map, plain, {0.05, 60, 1, 0}),
-      confused(shuffled, map, plain, {0.05, 60, 1, 0});
+  const Laboratory& lab = laboratory();
+  const TableView shuffled_view(lab.frame, lab.knowledge, shuffled, all_trials(lab.frame), 0);
+  const Namer& honest = analyst().namer();
+  const Namer confused(shuffled_view, {0.05, 60, 1, 0});
   double sure_of_truth = 0.0, sure_of_truth_when_confused = 0.0;  // chance is a quarter
   for (std::uint32_t i = 0; i < 10; ++i) {
     const std::vector<float> data = planted(200 + i, {many_false_triggers});
@@ -181,7 +179,7 @@ TEST_CASE("features keep their places in a dataset that lacks a trial", "[reconc
 TEST_CASE("a held-out trial has no part in features and names", "[reconcile]") {
   const Laboratory& lab = laboratory();
   std::vector<float> data = planted(300, {many_false_triggers});
-  const Analyst without(lab.frame, lab.knowledge, lab.table, {0, 2}, {0.05, 1, 0, 30});
+  const Analyst without(lab.view({0, 2}, 0), {0.05, 1, 0, 30});
   const auto before = without.map().features(data);
   for (std::size_t sensor = 0; sensor < lab.frame.sensors.size(); ++sensor) {
     for (std::size_t k = 0; k < n_cell_statistics; ++k) {
