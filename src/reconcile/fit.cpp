@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
+#include <utility>
 
 #include "pirsim/reconcile/locate.hpp"
+#include "pirsim/stats/discriminant.hpp"
 #include "reconcile/entry_guess.hpp"
 
 namespace pirsim::reconcile {
@@ -17,26 +18,43 @@ constexpr double accepted_share = 0.3;
 constexpr std::size_t fewest_accepted = 40;    ///< or all, in a small table
 constexpr std::size_t fewest_neighbours = 80;  ///< whose intervals are tried; or all
 
-/// The choices that are most frequent among the datasets whose features lie nearest to the measured ones.
-void choose(const ReferenceTable& table, const FeatureMap& map, std::size_t entry, std::span<const float> measured,
-            EffectSpec& effect) {
-  const std::vector<std::size_t> rows = rows_of(table, entry, Part::training);
-  std::vector<std::pair<double, std::size_t>> near;
-  for (const std::size_t row : rows) {
-    const std::vector<float> features = map.features(table.statistics.row(row));
-    double squares = 0.0;
-    for (std::size_t f = 0; f < measured.size(); ++f) {
-      const double d = static_cast<double>(features[f]) - static_cast<double>(measured[f]);
-      squares += d * d;
-    }
-    near.emplace_back(squares, row);
+/// What of an effect isn't a matter of more or less: its choices, and parameters whose range is one number (of which
+/// the sign may be drawn).
+using Kind = std::pair<std::map<std::string, std::string, std::less<>>, std::vector<double>>;
+
+std::vector<std::string> parameters_of_one_size(const EffectSpec& effect) {
+  std::vector<std::string> names;
+  for (const ParameterInfo& info : effects::find(effect.name).info.parameters) {
+    if (!(info.low < info.high)) names.push_back(info.name);
   }
-  std::ranges::sort(near);
-  near.resize(std::min<std::size_t>(near.size(), 9));
-  std::map<std::map<std::string, std::string, std::less<>>, std::size_t> votes;
-  for (const auto& [distance, row] : near) ++votes[table.rows[row].effects.front().choices];
-  const auto most = std::ranges::max_element(votes, {}, [](const auto& vote) { return vote.second; });
-  if (most != votes.end()) effect.choices = most->first;
+  return names;
+}
+
+/// The likeliest kind of the effect, by a discriminant between the kinds that the entry's training datasets have.
+void choose(const ReferenceTable& table, const FeatureMap& map, std::size_t entry, std::span<const float> measured,
+            unsigned threads, EffectSpec& effect) {
+  const std::vector<std::size_t> rows = rows_of(table, entry, Part::training);
+  const std::vector<std::string> of_one_size = parameters_of_one_size(effect);
+  std::map<Kind, int> numbers;
+  std::vector<Kind> kinds;
+  std::vector<int> labels;
+  for (const std::size_t row : rows) {
+    const EffectSpec& drawn = table.rows[row].effects.front();
+    Kind kind{drawn.choices, {}};
+    for (const std::string& name : of_one_size) kind.second.push_back(drawn.parameters.at(name));
+    const auto [known, is_new] = numbers.try_emplace(kind, static_cast<int>(kinds.size()));
+    if (is_new) kinds.push_back(std::move(kind));
+    labels.push_back(known->second);
+  }
+  std::size_t likeliest = 0;
+  if (kinds.size() > 1) {
+    const auto discriminant = stats::Discriminant::fit(map.features(table.statistics.select_rows(rows), threads),
+                                                       labels, static_cast<int>(kinds.size()));
+    const std::vector<double> densities = discriminant.log_densities(measured);
+    likeliest = static_cast<std::size_t>(std::ranges::max_element(densities) - densities.begin());
+  }
+  effect.choices = kinds[likeliest].first;
+  for (std::size_t i = 0; i < of_one_size.size(); ++i) effect.parameters[of_one_size[i]] = kinds[likeliest].second[i];
 }
 
 /// The posterior at a guess, from the held-back datasets but one (or all, if `without` is none of them).
@@ -102,10 +120,8 @@ FittedEffect fit_from_table(const ReferenceTable& table, const FeatureMap& map, 
                             const FitSettings& settings) {
   FittedEffect fitted;
   fitted.effect.name = table.entry_name(entry);
-  for (const ParameterInfo& info : effects::find(fitted.effect.name).info.parameters)
-    fitted.effect.parameters[info.name] = info.low;  // of those that don't vary
   const std::vector<float> features = map.features(measured);
-  choose(table, map, entry, features, fitted.effect);
+  choose(table, map, entry, features, settings.threads, fitted.effect);
   const EntryGuess guess(table, map, entry, held_back, settings.threads);
   if (guess.infos().empty()) return fitted;
 

@@ -176,7 +176,8 @@ void count_verified(const SelftestResult& result, std::vector<Rate>& rates) {
     if (c.kind != CaseKind::one || !c.verification) continue;
     shrunk.count(c.verification->shrunk);
     closed.count(c.verification->closed);
-    most.count(c.verification->share_closed >= nearly_all);
+    const Verification& v = *c.verification;
+    if (v.before.energy_score > v.noise_floor) most.count(v.share_closed >= nearly_all);  // else nothing can be closed
   }
   if (shrunk.rate().of > 0) rates.insert(rates.end(), {shrunk.rate(), closed.rate(), most.rate(), on_nulls.rate()});
 }

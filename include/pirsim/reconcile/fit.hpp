@@ -36,9 +36,9 @@ struct FitSettings {
 
 /// From the datasets of one entry of the table alone: a linear guess of its parameters, then regression-adjusted ABC
 /// on it, widened until `held_back` datasets (rows of the entry outside the training part) like the measured one are
-/// covered as often as promised: give those in which a disagreement is seen, since nothing else is fitted. Choices
-/// (which sensor, which wall) are the most frequent ones among the nearest datasets. Ref: [FearnheadPrangle2012],
-/// [Beaumont2002]
+/// covered as often as promised: give those in which a disagreement is seen, since nothing else is fitted. What is no
+/// matter of more or less (which sensor, which wall, which way) is the likeliest kind by a discriminant between the
+/// kinds. Ref: [FearnheadPrangle2012], [Beaumont2002]
 [[nodiscard]] FittedEffect fit_from_table(const ReferenceTable& table, const FeatureMap& map, std::size_t entry,
                                           std::span<const std::size_t> held_back, std::span<const float> measured,
                                           const FitSettings& settings);

@@ -152,6 +152,27 @@ TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile]") {
   CHECK(sure_of_truth_when_confused < 0.5);
 }
 
+TEST_CASE("which way an effect goes is told even if its size is but one number", "[reconcile]") {
+  // A table in which false triggers are what comes of one way, missed ones of the other.
+  const Laboratory& lab = laboratory();
+  ReferenceTable table = lab.table;
+  table.effects.front() = "seats_shifted";
+  for (TableRow& row : table.rows) {
+    if (row.entry != 1 && row.entry != 2) continue;
+    row.effects = {{"seats_shifted", {{"places", row.entry == 1 ? 1.0 : -1.0}}, {}, {}}};
+    row.entry = 1;
+  }
+  const EffectSpec many_missed_triggers{"missed_triggers", {{"probability", 0.5}}, {}, {}};
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    const auto places = [&](const EffectSpec& hidden) {
+      const std::vector<float> data = planted(400 + i, {hidden});
+      return fit_from_table(table, analyst().map(), 1, {}, data, {1, 0, 0.9}).effect.parameters.at("places");
+    };
+    CHECK(places(many_false_triggers) == 1.0);
+    CHECK(places(many_missed_triggers) == -1.0);
+  }
+}
+
 TEST_CASE("folds follow from the data alone and hold out every trial once", "[reconcile]") {
   const std::string digest = sha256("some data"), other = sha256("other data");
   const std::vector<std::size_t> trials{0, 1, 2, 4, 5, 6, 7, 8, 9, 11};
