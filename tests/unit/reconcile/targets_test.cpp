@@ -64,7 +64,7 @@ TEST_CASE("every target but those of known geometry has a rate that a full self-
     PlantedCase c = planted("sensor_yaw", "sensor_yaw", Verdict::named);
     c.kind = kind;
     c.n_parameters = c.n_covered = 1;
-    c.verification.emplace();
+    c.verification.emplace().before.energy_score = 1.0;  // there is something to close
     result.cases.push_back(c);
   }
   for (const TargetResult& one : compare_with_targets(result, Geometry::uncertain)) {
