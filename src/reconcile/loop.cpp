@@ -199,16 +199,20 @@ void Loop::verify_effects() {
   begin("does it help on held-out trials");
   const Folds folds =
       settings_.holdout.empty() ? usual_folds(measured_.digest, trials, lab.shape.kind) : Folds{settings_.holdout};
-  outcome_.verification =
+  Verification v =
       verify(std::span(&claim, 1), folds, {settings_.alpha, settings_.seed, settings_.threads, settings_.verify_worlds})
           .front();
-  const Verification& v = *outcome_.verification;
+  if (v.n_trials == 0) {
+    outcome_.trail.push_back("people can hardly get about in the patched model: it can't be judged on held-out trials");
+    return;
+  }
   outcome_.trail.push_back("held-out trials: energy score " + short_number(v.before.energy_score) + " before, " +
                            short_number(v.after.energy_score) + " after, " + std::to_string(v.n_better) + " of " +
                            std::to_string(v.n_trials) + " trials better; global test p " + short_number(v.before.p) +
                            " before, " + short_number(v.after.p) + " after");
   if (!v.refused)
     outcome_.trail.push_back("the held-out trials alone don't refuse the plain model: too weak to call the gap closed");
+  outcome_.verification = std::move(v);
 }
 
 /// Most models that pass do so at first sight. Only what looks strange in the first worlds is worth the rest, and only

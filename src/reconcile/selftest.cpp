@@ -177,7 +177,8 @@ void count_verified(const SelftestResult& result, std::vector<Rate>& rates) {
     shrunk.count(c.verification->shrunk);
     closed.count(c.verification->closed);
     const Verification& v = *c.verification;
-    if (v.before.energy_score > v.noise_floor) most.count(v.share_closed >= nearly_all);  // else nothing can be closed
+    const bool nothing_to_close = v.n_trials > 0 && v.before.energy_score <= v.noise_floor;
+    if (!nothing_to_close) most.count(v.share_closed >= nearly_all);
   }
   if (shrunk.rate().of > 0) rates.insert(rates.end(), {shrunk.rate(), closed.rate(), most.rate(), on_nulls.rate()});
 }

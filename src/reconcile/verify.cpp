@@ -98,7 +98,8 @@ class Simulation {
   Simulation(const Laboratory& lab, const Folds& folds, const std::vector<FoldPatches>& found)
       : lab_(lab), folds_(folds), found_(found) {}
 
-  [[nodiscard]] Ensembles run(const VerifySettings& settings) const {
+  /// None if people can hardly get about with the patches.
+  [[nodiscard]] std::optional<Ensembles> run(const VerifySettings& settings) const {
     using Rows = std::vector<std::vector<float>>;  // before, after, placebo
     Ensembles all;
     ordered_parallel<Rows>(
@@ -117,9 +118,7 @@ class Simulation {
           all.after.append_row(std::span<const float>(rows[1]));
           all.placebo.append_row(std::span<const float>(rows[2]));
         });
-    if (all.after.rows() < 2) {
-      throw Error(ErrorCode::infeasible, "reconcile: people can hardly get about in the patched model");
-    }
+    if (all.after.rows() < 2) return std::nullopt;
     return all;
   }
 
@@ -260,8 +259,9 @@ Verification judge_claim(const Claim& claim, const Folds& folds, const std::vect
     result.patches.push_back(fold.patch);
     if (result.placebo_effect.empty()) result.placebo_effect = fold.placebo_name;
   }
-  const Ensembles ensembles = Simulation(*plain.lab, folds, found).run(settings);
-  Judge judge(plain, ensembles, settings);
+  const std::optional<Ensembles> ensembles = Simulation(*plain.lab, folds, found).run(settings);
+  if (!ensembles) return result;
+  Judge judge(plain, *ensembles, settings);
   for (const std::size_t trial : held_out) judge.add_trial(trial, result);
   judge.sum_up(held_out, result);
   const bool enough_signs =

@@ -32,7 +32,7 @@ struct Verification {
   double noise_floor = 0.0;        ///< energy score of the patched model's own datasets
   stats::Interval gain;            ///< 95 % of the mean drop in energy score per trial, over trials
   double share_closed = 0.0;       ///< (before - after) / (before - noise floor)
-  std::size_t n_trials = 0;        ///< held out and measured
+  std::size_t n_trials = 0;        ///< held out and measured; 0: people can hardly get about in the patched model
   std::size_t n_better = 0;        ///< of them, foretold better by the patched model
   double sign_p = 1.0;             ///< that so many are better by chance
   double placebo = 0.0;            ///< energy score after the best effect of another family, or 0 without one

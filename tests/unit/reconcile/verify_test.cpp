@@ -133,6 +133,34 @@ TEST_CASE("claims that are judged together are judged as each by itself", "[reco
   CHECK(together[0].after.energy_score == together[1].after.energy_score);
 }
 
+TEST_CASE("a patch with which nobody can get about is said not to be judged, and stops no other", "[reconcile]") {
+  // False triggers under the name of somebody who stands in the only doorway.
+  Laboratory blocked = plain_lab();
+  const Vec3 door = blocked.source.scene.entrances.front().world_from_entrance.origin;
+  double step_m = 0.0;
+  blocked.table.effects.front() = "second_person";
+  for (TableRow& row : blocked.table.rows) {
+    if (row.entry != 1) continue;
+    step_m = step_m < 0.05 ? step_m + 0.001 : 0.0;
+    row.effects = {{"second_person",
+                    {{"present", 1.0},
+                     {"x_m", door.x + step_m},
+                     {"z_m", door.z - step_m},
+                     {"heading_deg", 1000.0 * step_m},
+                     {"path_m", step_m},
+                     {"every_s", 10.0 + step_m}},
+                    {{"place", "given"}},
+                    {}}};
+  }
+  const std::vector<float> data = planted(plain_lab(), 1, {false_triggers});
+  const std::vector<Claim> claims{{{{&blocked, data, "second_person"}}, {}},
+                                  {{{&plain_lab(), data, "false_triggers"}}, {}}};
+  const std::vector<Verification> found = verify(claims, three_folds(plain_lab()), quick);
+  CHECK(found[0].n_trials == 0);
+  CHECK_FALSE(found[0].shrunk);
+  CHECK(found[1].n_trials == plain_lab().frame.trials.size());
+}
+
 TEST_CASE("an effect that is no candidate is never the likeliest", "[reconcile]") {
   const Laboratory& lab = plain_lab();
   const Analyst analyst(lab.view(all_trials(lab.frame), 0), {0.05, 1, 0, 40, "false_triggers"});
