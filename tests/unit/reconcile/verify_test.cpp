@@ -64,7 +64,7 @@ Verification verify_one(const std::vector<PutIn>& steps, const Folds& folds) {
 
 }  // namespace
 
-TEST_CASE("a fold names and fits without its own trials", "[reconcile]") {
+TEST_CASE("a fold names and fits without its own trials", "[reconcile][six-seats]") {
   const Laboratory& lab = plain_lab();
   std::vector<float> data = planted(lab, 1, {false_triggers});
   const Folds folds = three_folds(lab);
@@ -84,7 +84,8 @@ TEST_CASE("a fold names and fits without its own trials", "[reconcile]") {
   CHECK(before.before.energy_score != after.before.energy_score);
 }
 
-TEST_CASE("with the planted effect held-out trials are foretold and with shuffled labels they are not", "[reconcile]") {
+TEST_CASE("with the planted effect held-out trials are foretold and with shuffled labels they are not",
+          "[reconcile][six-seats]") {
   const Laboratory& lab = plain_lab();
   const Laboratory confused = shuffled(lab);
   double honest_share = 0.0, confused_share = 0.0;
@@ -102,7 +103,7 @@ TEST_CASE("with the planted effect held-out trials are foretold and with shuffle
   CHECK(confused_share < 0.5);
 }
 
-TEST_CASE("nothing is closed where nothing was open", "[reconcile]") {
+TEST_CASE("nothing is closed where nothing was open", "[reconcile][six-seats]") {
   // The plain model is refused on its own data with a chance of 5 %: two of four or more with one of 1.4 %.
   int refused = 0;
   for (std::uint32_t world = 20; world < 24; ++world) {
@@ -115,7 +116,7 @@ TEST_CASE("nothing is closed where nothing was open", "[reconcile]") {
   CHECK(refused <= 1);
 }
 
-TEST_CASE("claims that are judged together are judged as each by itself", "[reconcile]") {
+TEST_CASE("claims that are judged together are judged as each by itself", "[reconcile][six-seats]") {
   const Laboratory& lab = plain_lab();
   const Laboratory again = plain_lab();  // whose analysts can't be taken for those of the first
   const std::vector<float> one = planted(lab, 50, {false_triggers}), other = planted(lab, 51, {stretching});
@@ -133,7 +134,8 @@ TEST_CASE("claims that are judged together are judged as each by itself", "[reco
   CHECK(together[0].after.energy_score == together[1].after.energy_score);
 }
 
-TEST_CASE("a patch with which nobody can get about is said not to be judged, and stops no other", "[reconcile]") {
+TEST_CASE("a patch with which nobody can get about is said not to be judged, and stops no other",
+          "[reconcile][six-seats]") {
   // False triggers under the name of somebody who stands in the only doorway.
   Laboratory blocked = plain_lab();
   const Vec3 door = blocked.source.scene.entrances.front().world_from_entrance.origin;
@@ -161,7 +163,7 @@ TEST_CASE("a patch with which nobody can get about is said not to be judged, and
   CHECK(found[1].n_trials == plain_lab().frame.trials.size());
 }
 
-TEST_CASE("an effect that is no candidate is never the likeliest", "[reconcile]") {
+TEST_CASE("an effect that is no candidate is never the likeliest", "[reconcile][six-seats]") {
   const Laboratory& lab = plain_lab();
   const Analyst analyst(lab.view(all_trials(lab.frame), 0), {0.05, 1, 0, 40, "false_triggers"});
   const std::vector<float> data = planted(lab, 60, {false_triggers});
@@ -170,7 +172,7 @@ TEST_CASE("an effect that is no candidate is never the likeliest", "[reconcile]"
   CHECK(analyst.likeliest(data, [](std::size_t) { return true; }) != left_out);
 }
 
-TEST_CASE("two effects are judged together and close more than one of them", "[reconcile]") {
+TEST_CASE("two effects are judged together and close more than one of them", "[reconcile][six-seats]") {
   const std::vector<EffectSpec> both{false_triggers, stretching};
   const std::vector<float> data = planted(plain_lab(), 30, both);
   const Analyst analyst(plain_lab().view(all_trials(plain_lab().frame), 0), {0.05, 1, 0, 40});
@@ -198,7 +200,7 @@ TEST_CASE("two effects are judged together and close more than one of them", "[r
   CHECK(together.share_closed > alone.share_closed);
 }
 
-TEST_CASE("of sums nearly all seats must be better", "[reconcile]") {
+TEST_CASE("of sums nearly all seats must be better", "[reconcile][six-seats]") {
   const Laboratory lab = make({}, Measured::Kind::sums);
   const std::vector<float> data =
       planted(lab, 40, {{"missed_triggers", {{"probability", 0.6}}, {}, {}}});  // in all seats

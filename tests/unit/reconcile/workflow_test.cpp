@@ -80,7 +80,7 @@ TEST_CASE("a world is a pure function of seed and index and stays within the nui
   CHECK(exact.script.trials[0].people[0].stature_m == script.trials[0].people[0].stature_m);
 }
 
-TEST_CASE("effects on a remembered world give what a study with them gives", "[reconcile]") {
+TEST_CASE("effects on a remembered world give what a study with them gives", "[reconcile][three-seats]") {
   const Laboratory& lab = laboratory();
   const SimulatedWorld world(lab.source, lab.frame, 5, 1);
   ScriptSpec script = world.world().script;
@@ -94,7 +94,7 @@ TEST_CASE("effects on a remembered world give what a study with them gives", "[r
   }
 }
 
-TEST_CASE("a table goes on where it was interrupted and refuses another study's chunks", "[reconcile]") {
+TEST_CASE("a table goes on where it was interrupted and refuses another study's chunks", "[reconcile][three-seats]") {
   const Laboratory& lab = laboratory();
   const TemporaryFolder folder;
   const TableSettings settings{30, 30, 30, 0, {"false_triggers"}};
@@ -115,7 +115,7 @@ TEST_CASE("a table goes on where it was interrupted and refuses another study's 
   CHECK_THROWS_WITH(make(other), contains("holds simulated datasets of another"));
 }
 
-TEST_CASE("a planted effect is located and named and nothing is not", "[reconcile]") {
+TEST_CASE("a planted effect is located and named and nothing is not", "[reconcile][three-seats]") {
   const Outcome found = analyst().analyse(planted(1, {many_false_triggers}));
   CHECK(found.verdict == Verdict::named);
   REQUIRE_FALSE(found.named.empty());
@@ -129,7 +129,7 @@ TEST_CASE("a planted effect is located and named and nothing is not", "[reconcil
   CHECK(alarms <= 5);
 }
 
-TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile]") {
+TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile][three-seats]") {
   ReferenceTable shuffled = laboratory().table;
   Stream stream({5, 0, 0, Purpose::test});
   std::vector<std::uint32_t> entries;
@@ -152,7 +152,7 @@ TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile]") {
   CHECK(sure_of_truth_when_confused < 0.5);
 }
 
-TEST_CASE("which way an effect goes is told even if its size is but one number", "[reconcile]") {
+TEST_CASE("which way an effect goes is told even if its size is but one number", "[reconcile][three-seats]") {
   // A table in which false triggers are what comes of one way, missed ones of the other.
   const Laboratory& lab = laboratory();
   ReferenceTable table = lab.table;
@@ -189,7 +189,7 @@ TEST_CASE("folds follow from the data alone and hold out every trial once", "[re
   CHECK(folds_of(digest, {3, 4}, 5).size() == 2);
 }
 
-TEST_CASE("features keep their places in a dataset that lacks a trial", "[reconcile]") {
+TEST_CASE("features keep their places in a dataset that lacks a trial", "[reconcile][three-seats]") {
   const Laboratory& lab = laboratory();
   const FeatureMap map(lab.frame, lab.knowledge,
                        lab.table.statistics.select_rows(rows_of(lab.table, 0, Part::training)), {1});
@@ -197,7 +197,7 @@ TEST_CASE("features keep their places in a dataset that lacks a trial", "[reconc
   CHECK(map.features(nothing_measured).size() == map.names().size());
 }
 
-TEST_CASE("a held-out trial has no part in features and names", "[reconcile]") {
+TEST_CASE("a held-out trial has no part in features and names", "[reconcile][three-seats]") {
   const Laboratory& lab = laboratory();
   std::vector<float> data = planted(300, {many_false_triggers});
   const Analyst without(lab.view({0, 2}, 0), {0.05, 1, 0, 30});
@@ -211,7 +211,7 @@ TEST_CASE("a held-out trial has no part in features and names", "[reconcile]") {
   CHECK(analyst().map().features(data) != analyst().map().features(planted(300, {many_false_triggers})));
 }
 
-TEST_CASE("the whole loop writes a patched script that runs and closes the gap", "[reconcile]") {
+TEST_CASE("the whole loop writes a patched script that runs and closes the gap", "[reconcile][three-seats]") {
   const TemporaryFolder folder;
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
   ScriptSpec hidden = short_study();
@@ -252,7 +252,7 @@ TEST_CASE("the whole loop writes a patched script that runs and closes the gap",
   for (const Candidate& candidate : outcome.candidates) CHECK_THAT(page, contains(candidate.score.entry));
 }
 
-TEST_CASE("the seed of the script plays no part in the analysis", "[reconcile]") {
+TEST_CASE("the seed of the script plays no part in the analysis", "[reconcile][three-seats]") {
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
   ScriptSpec one = short_study(), other = short_study();
   other.seed = one.seed + 1;
@@ -265,7 +265,7 @@ TEST_CASE("the seed of the script plays no part in the analysis", "[reconcile]")
     measured.runs.push_back(*series_of(laboratory().frame, 1, result.trial, result.samples));
   });
   Settings settings = quick();
-  settings.table.entries = {"false_triggers"};
+  settings.table = {100, 100, 100, 0, {"false_triggers"}};
   settings.trees = 20;
   const auto report = [&](const ScriptSpec& script) {
     return to_json(reconcile::reconcile(scene, script, measured, settings), measured, settings, {"p", "s", "t", "m"});
