@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <utility>
 
 #include "pirsim/effects/catalogue.hpp"
@@ -15,30 +14,18 @@ std::string_view name(Verdict verdict) noexcept {
   return names[static_cast<std::size_t>(verdict)];
 }
 
-std::vector<std::size_t> all_trials(const StudyFrame& frame) {
-  std::vector<std::size_t> trials(frame.trials.size());
-  std::iota(trials.begin(), trials.end(), std::size_t{0});
-  return trials;
-}
-
 Analyst::Analyst(std::shared_ptr<const TableView> view, const AnalystSettings& settings)
     : view_(std::move(view)),
       settings_(settings),
       namer_(*view_, {settings.alpha, settings.trees, settings.seed, settings.threads, settings.left_out}) {}
 
 FittedEffect Analyst::fit(std::size_t entry, std::span<const float> measured) const {
-  return fit_from_table(view_->table(), view_->map(), entry, namer_.seen_rows(entry), measured,
+  return fit_from_table(view_->table(), view_->map(), entry, namer_.seen_rows()[entry], measured,
                         {settings_.seed, settings_.threads, 0.9});
 }
 
 std::size_t Analyst::likeliest(std::span<const float> measured, const std::function<bool(std::size_t)>& wanted) const {
-  const std::vector<double> probabilities = namer_.probabilities(measured);
-  std::size_t best = 0;
-  for (std::size_t entry = 1; entry < probabilities.size(); ++entry) {
-    const double most = best == 0 ? 0.0 : probabilities[best];  // what is no candidate has 0
-    if (wanted(entry) && probabilities[entry] > most) best = entry;
-  }
-  return best;
+  return likeliest_entry(namer_.probabilities(measured), wanted);
 }
 
 Judgement Analyst::judge(std::span<const float> measured) const {

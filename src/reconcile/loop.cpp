@@ -111,6 +111,7 @@ const Loop::Step& Loop::look(const Settings& settings, double level) {
   const Analyst analyst(step.lab.view(training_trials(), settings_.threads),
                         {level, settings_.seed, settings_.threads, settings_.trees});
   step.outcome = analyst.analyse(step.observed);
+  step.seen = analyst.namer().seen_rows();
   step.likeliest = analyst.likeliest(step.observed, [](std::size_t) { return true; });
   if (step.likeliest > 0) step.best = analyst.fit(step.likeliest, step.observed);
   return step;
@@ -189,7 +190,7 @@ void Loop::verify_effects() {
   const std::size_t n = one_of ? 1 : put_in_.size();
   for (std::size_t i = 0; i < n; ++i)
     claim.steps.push_back(
-        {&steps_[i].lab, steps_[i].observed, one_of ? outcome_.named.front() : put_in_[i].effect.name});
+        {&steps_[i].lab, steps_[i].observed, one_of ? outcome_.named.front() : put_in_[i].effect.name, steps_[i].seen});
   const Laboratory& lab = steps_.front().lab;
   const std::vector<std::size_t> trials = measured_trials(lab);
   if (trials.size() < 2) {

@@ -24,6 +24,7 @@ class Loop {
     Laboratory lab;
     std::vector<float> observed;  ///< statistics of the measured data
     Outcome outcome;
+    SeenRows seen;
     std::size_t likeliest = 0;  ///< entry
     FittedEffect best;          ///< of that entry
   };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 #include "io/text_input.hpp"
 #include "reconcile/measured_reader.hpp"
@@ -15,6 +16,12 @@ StudyFrame frame_of(const SceneSpec& scene, const ScriptSpec& script) {
   frame.counted_phases = script.summary.phases;
   frame.window_s = static_cast<double>(script.sensing.ticks_per_window) / script.sensing.tick_rate_hz;
   return frame;
+}
+
+std::vector<std::size_t> all_trials(const StudyFrame& frame) {
+  std::vector<std::size_t> trials(frame.trials.size());
+  std::iota(trials.begin(), trials.end(), std::size_t{0});
+  return trials;
 }
 
 std::optional<Series> series_of(const StudyFrame& frame, int replicate, std::string_view trial,

@@ -29,21 +29,6 @@ std::vector<std::size_t> rows_seen(const TableView& view, std::vector<std::size_
   return rows;
 }
 
-/// Rows of the table with their classes, split by world.
-struct Labelled {
-  std::vector<std::size_t> rows;
-  std::vector<int> labels;
-  stats::Split split;
-
-  void add(const std::vector<std::size_t>& more, int label, std::vector<std::size_t>& part) {
-    for (const std::size_t row : more) {
-      part.push_back(rows.size());
-      rows.push_back(row);
-      labels.push_back(label);
-    }
-  }
-};
-
 }  // namespace
 
 FamilyScore likeliest_family(std::span<const EntryScore> scores) {
@@ -53,56 +38,95 @@ FamilyScore likeliest_family(std::span<const EntryScore> scores) {
   return likeliest == sums.end() ? FamilyScore{} : FamilyScore{likeliest->first, likeliest->second};
 }
 
-Namer::Namer(const TableView& view, const NamerSettings& settings) : map_(&view.map()) {
+SeenRows seen_rows(const TableView& view, double alpha) {
   const ReferenceTable& table = view.table();
-  Labelled data;
-  seen_rows_.resize(table.n_entries());
-  for (std::size_t entry = 0; entry < table.n_entries(); ++entry) {
-    names_.push_back(table.entry_name(entry));
-    if (names_.back() == settings.left_out) continue;
+  SeenRows seen{rows_of(table, 0, Part::calibration)};
+  for (std::size_t entry = 1; entry < table.n_entries(); ++entry)
+    seen.push_back(rows_seen(view, rows_of(table, entry, Part::calibration), alpha));
+  return seen;
+}
+
+LabelledRows::LabelledRows(const ReferenceTable& table, const SeenRows& seen, std::string_view left_out)
+    : n_entries(table.n_entries()) {
+  const auto add = [&](const std::vector<std::size_t>& more, std::vector<std::size_t>& part) {
+    for (const std::size_t row : more) {
+      part.push_back(rows.size());
+      rows.push_back(row);
+      labels.push_back(static_cast<int>(entries.size()));
+    }
+  };
+  for (std::size_t entry = 0; entry < n_entries; ++entry) {
+    if (table.entry_name(entry) == left_out) continue;
     const std::vector<std::size_t> training = rows_of(table, entry, Part::training);
-    const std::vector<std::size_t> calibration = rows_of(table, entry, Part::calibration);
-    if (training.size() < fewest_training || calibration.size() < fewest_calibration) {
+    const std::size_t n_calibration = rows_of(table, entry, Part::calibration).size();
+    if (training.size() < fewest_training || n_calibration < fewest_calibration) {
       if (entry > 0) continue;
       throw Error(ErrorCode::infeasible, "reconcile: people could get about in too few worlds of the plain model (" +
-                                             std::to_string(training.size() + calibration.size()) +
+                                             std::to_string(training.size() + n_calibration) +
                                              "): simulate more worlds");
     }
-    const auto label = static_cast<int>(entries_.size());
-    data.add(training, label, data.split.fitting);
-    seen_rows_[entry] = entry == 0 ? calibration : rows_seen(view, calibration, settings.alpha);
-    data.add(seen_rows_[entry], label, data.split.calibration);
-    entries_.push_back(entry);
+    add(training, split.fitting);
+    add(seen.at(entry), split.calibration);
+    entries.push_back(entry);
   }
-  const stats::Matrix<float> features = view.features().select_rows(data.rows);
+}
+
+std::vector<double> LabelledRows::by_entry(std::span<const double> of_classes) const {
+  std::vector<double> values(n_entries, 0.0);
+  for (std::size_t c = 0; c < entries.size(); ++c) values[entries[c]] = of_classes[c];
+  return values;
+}
+
+std::size_t likeliest_entry(std::span<const double> probabilities, const std::function<bool(std::size_t)>& wanted) {
+  std::size_t best = 0;
+  for (std::size_t entry = 1; entry < probabilities.size(); ++entry) {
+    const double most = best == 0 ? 0.0 : probabilities[best];  // what is no candidate has 0
+    if (wanted(entry) && probabilities[entry] > most) best = entry;
+  }
+  return best;
+}
+
+EntryProbabilities::EntryProbabilities(const ReferenceTable& table, const FeatureMap& map, const SeenRows& seen,
+                                       const stats::PooledClassifierSettings& settings)
+    : map_(&map),
+      data_(table, seen, ""),
+      classifier_(stats::PooledClassifier::fit(map.features(table.statistics.select_rows(data_.rows), settings.threads),
+                                               data_.labels, static_cast<int>(data_.entries.size()), data_.split,
+                                               settings)) {}
+
+std::vector<double> EntryProbabilities::of(std::span<const float> statistics) const {
+  return data_.by_entry(classifier_.probabilities(map_->features(statistics)));
+}
+
+Namer::Namer(const TableView& view, const NamerSettings& settings)
+    : map_(&view.map()),
+      seen_rows_(reconcile::seen_rows(view, settings.alpha)),
+      data_(view.table(), seen_rows_, settings.left_out) {
+  for (std::size_t entry = 0; entry < view.table().n_entries(); ++entry)
+    names_.push_back(view.table().entry_name(entry));
   stats::ConformalSettings conformal;
-  conformal.trees.trees = settings.trees;
-  conformal.trees.seed = settings.seed;
-  conformal.trees.threads = settings.threads;
+  conformal.pooled.trees = {.trees = settings.trees, .seed = settings.seed, .threads = settings.threads};
+  conformal.pooled.threads = settings.threads;
   conformal.shapes.seed = settings.seed;
   conformal.shapes.threads = settings.threads;
   conformal.blocks = view.map().blocks();
-  conformal.threads = settings.threads;
-  classifier_ =
-      stats::ConformalClassifier::fit(features, data.labels, static_cast<int>(entries_.size()), data.split, conformal);
+  classifier_ = stats::ConformalClassifier::fit(view.features().select_rows(data_.rows), data_.labels,
+                                                static_cast<int>(data_.entries.size()), data_.split, conformal);
   std::vector<int> labels;
-  for (const std::size_t row : data.split.calibration) labels.push_back(data.labels[row]);
+  for (const std::size_t place : data_.split.calibration) labels.push_back(data_.labels[place]);
   reliability_ = stats::reliability(classifier_.calibration_probabilities(), labels);
 }
 
 std::vector<double> Namer::probabilities(std::span<const float> statistics) const {
-  const std::vector<double> of_classes = classifier_.probabilities(map_->features(statistics));
-  std::vector<double> p(names_.size(), 0.0);
-  for (std::size_t c = 0; c < entries_.size(); ++c) p[entries_[c]] = of_classes[c];
-  return p;
+  return data_.by_entry(classifier_.pooled().probabilities(map_->features(statistics)));
 }
 
 std::vector<EntryScore> Namer::judge(std::span<const float> statistics) const {
   const stats::Classification found = classifier_.classify(map_->features(statistics));
   std::vector<EntryScore> scores;
   for (const std::string& name : names_) scores.push_back({name});
-  for (std::size_t c = 0; c < entries_.size(); ++c) {
-    EntryScore& score = scores[entries_[c]];
+  for (std::size_t c = 0; c < data_.entries.size(); ++c) {
+    EntryScore& score = scores[data_.entries[c]];
     score.probability = found.probabilities[c];
     score.p_relative = found.p_relative[c];
     score.p_absolute = found.p_absolute[c];
@@ -114,7 +138,7 @@ std::vector<EntryScore> Namer::judge(std::span<const float> statistics) const {
 std::vector<std::string> Namer::telling_features(std::size_t n) const {
   std::vector<std::size_t> order(map_->names().size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  const std::vector<double>& importance = classifier_.trees().importance();
+  const std::vector<double>& importance = classifier_.pooled().trees().importance();
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return importance[a] > importance[b]; });
   std::vector<std::string> names;
   for (std::size_t i = 0; i < std::min(n, order.size()); ++i) names.push_back(map_->names()[order[i]]);

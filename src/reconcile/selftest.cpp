@@ -78,15 +78,16 @@ std::vector<std::size_t> to_verify(const std::vector<PlantedCase>& cases, std::s
 }
 
 /// cases: of `planted`, in the same order.
-void verify_some(const Laboratory& lab, const std::vector<Planted>& planted, const SelftestSettings& settings,
-                 const std::function<void(const std::string&)>& begin, std::vector<PlantedCase>& cases) {
+void verify_some(const Laboratory& lab, const SeenRows& seen, const std::vector<Planted>& planted,
+                 const SelftestSettings& settings, const std::function<void(const std::string&)>& begin,
+                 std::vector<PlantedCase>& cases) {
   const std::vector<std::size_t> chosen = to_verify(cases, settings.n_verified);
   if (chosen.empty()) return;
   begin("finding anew without held-out trials what is in " + std::to_string(chosen.size()) + " datasets");
   std::vector<Claim> claims;
   for (const std::size_t i : chosen) {
     const std::vector<std::string>& named = cases[i].named;
-    claims.push_back({{{&lab, planted[i].statistics, named.front()}}, named});
+    claims.push_back({{{&lab, planted[i].statistics, named.front(), seen}}, named});
   }
   const Settings& analysis = settings.analysis;
   const Folds folds = usual_folds(sha256(lab.key), all_trials(lab.frame), lab.shape.kind);
@@ -254,7 +255,8 @@ SelftestResult judge(const Laboratory& lab, const std::vector<Planted>& planted,
   for (const Planted& one : planted) all.push_back(&one);
   judge_all(lab, analyst_without(""), all, {}, analysis.threads, result.cases);
   result.reliability = reliability_of(result);
-  if (settings.n_verified > 0) verify_some(lab, planted, settings, begin, result.cases);
+  if (settings.n_verified > 0)
+    verify_some(lab, seen_rows(*view, analysis.alpha), planted, settings, begin, result.cases);
   if (settings.leave_out == LeaveOut::none) return result;
   for (const std::string& effect : lab.table.effects) {
     begin("judging by a catalogue that lacks " + effect);

@@ -10,7 +10,8 @@
 
 #include "pirsim/core/parallel.hpp"
 #include "pirsim/effects/catalogue.hpp"
-#include "pirsim/reconcile/analyst.hpp"
+#include "pirsim/reconcile/fit.hpp"
+#include "pirsim/reconcile/locate.hpp"
 #include "pirsim/reconcile/reconcile.hpp"
 #include "pirsim/stats/scores.hpp"
 
@@ -44,11 +45,12 @@ class FoldSearch {
   [[nodiscard]] FoldPatches search(const Claim& claim) {
     FoldPatches found;
     for (const PutIn& step : claim.steps) {
-      const Analyst& analyst = analyst_of(*step.lab);
-      const std::size_t best = analyst.likeliest(step.observed, [](std::size_t) { return true; });
+      learn(step);
+      const std::vector<double> probabilities = learnt_->probabilities.of(step.observed);
+      const std::size_t best = likeliest_entry(probabilities, [](std::size_t) { return true; });
       if (best == 0) break;
-      if (found.patch.empty()) find_placebo(claim, analyst, found);
-      found.patch.push_back(analyst.fit(best, step.observed).effect);
+      if (found.patch.empty()) find_placebo(claim, probabilities, found);
+      found.patch.push_back(fitted(best, step));
       const std::string name = step.lab->table.entry_name(best);
       found.names += (found.names.empty() ? "" : " + ") + name;
       if (name != step.effect) break;  // the later tables are of another model
@@ -58,33 +60,49 @@ class FoldSearch {
   }
 
  private:
-  /// One is kept: it takes long to learn and much memory, and claims about the same study come one after the other.
-  const Analyst& analyst_of(const Laboratory& lab) {
-    if (lab_ != &lab) {
-      analyst_.emplace(lab.view(trials_, settings_.threads),
-                       AnalystSettings{settings_.alpha, settings_.seed, settings_.threads, settings_.trees});
-      lab_ = &lab;
-    }
-    return *analyst_;
+  /// The table as it looks without the trials that are held out.
+  struct Learnt {
+    Learnt(const PutIn& step, const std::vector<std::size_t>& trials, const VerifySettings& settings)
+        : lab(step.lab),
+          map(lab->frame, lab->knowledge, lab->table.statistics.select_rows(rows_of(lab->table, 0, Part::training)),
+              trials),
+          probabilities(lab->table, map, step.seen,
+                        {.trees = {.trees = settings.trees, .seed = settings.seed, .threads = settings.threads},
+                         .threads = settings.threads}) {}
+    Learnt(const Learnt&) = delete;  // the probabilities point to the map
+    Learnt& operator=(const Learnt&) = delete;
+
+    const Laboratory* lab;
+    FeatureMap map;
+    EntryProbabilities probabilities;
+  };
+
+  /// One is kept: it takes long and much memory, and claims about the same study come one after the other.
+  void learn(const PutIn& step) {
+    if (!learnt_ || learnt_->lab != step.lab) learnt_.emplace(step, trials_, settings_);
   }
-  static void find_placebo(const Claim& claim, const Analyst& analyst, FoldPatches& found) {
+  [[nodiscard]] EffectSpec fitted(std::size_t entry, const PutIn& step) const {
+    return fit_from_table(step.lab->table, learnt_->map, entry, step.seen[entry], step.observed,
+                          {settings_.seed, settings_.threads})
+        .effect;
+  }
+  void find_placebo(const Claim& claim, std::span<const double> probabilities, FoldPatches& found) const {
     std::set<effects::Family> families;
     for (const PutIn& step : claim.steps) families.insert(effects::find(step.effect).info.family);
     for (const std::string& rival : claim.rivals) families.insert(effects::find(rival).info.family);
     const PutIn& plain = claim.steps.front();
     const ReferenceTable& table = plain.lab->table;
-    const std::size_t other = analyst.likeliest(plain.observed, [&](std::size_t entry) {
+    const std::size_t other = likeliest_entry(probabilities, [&](std::size_t entry) {
       return !families.contains(effects::find(table.entry_name(entry)).info.family);
     });
     if (other == 0) return;
-    found.placebo = {analyst.fit(other, plain.observed).effect};
+    found.placebo = {fitted(other, plain)};
     found.placebo_name = table.entry_name(other);
   }
 
   std::vector<std::size_t> trials_;
   VerifySettings settings_;
-  const Laboratory* lab_ = nullptr;  ///< that the analyst learnt from
-  std::optional<Analyst> analyst_;
+  std::optional<Learnt> learnt_;
 };
 
 /// Datasets of the same worlds (n_worlds x n_statistics): of the plain model, and with each fold's patch or placebo in

@@ -6,10 +6,9 @@
 #include <numeric>
 
 #include "pirsim/core/parallel.hpp"
-#include "pirsim/core/random.hpp"
 #include "pirsim/stats/intervals.hpp"
 #include "stats/require.hpp"
-#include "stats/softmax.hpp"
+#include "stats/select.hpp"
 
 namespace pirsim::stats {
 namespace {
@@ -21,33 +20,6 @@ double margin(std::span<const double> probabilities, std::size_t k) {
   for (std::size_t other = 0; other < probabilities.size(); ++other)
     if (other != k) best_other = std::max(best_other, probabilities[other]);
   return std::log(best_other) - std::log(std::max(probabilities[k], floor));
-}
-
-std::vector<float> with_coordinates(std::span<const float> features, std::span<const double> place) {
-  std::vector<float> wide(features.begin(), features.end());
-  for (const double coordinate : place) wide.push_back(static_cast<float>(coordinate));
-  return wide;
-}
-
-Matrix<float> with_coordinates(const Matrix<float>& features, const Matrix<double>& places) {
-  Matrix<float> wide(features.rows(), features.columns() + places.columns());
-  for (std::size_t row = 0; row < features.rows(); ++row) {
-    const std::vector<float> values = with_coordinates(features.row(row), places.row(row));
-    std::copy(values.begin(), values.end(), wide.row(row).begin());
-  }
-  return wide;
-}
-
-std::vector<int> select(std::span<const int> labels, std::span<const std::size_t> rows) {
-  std::vector<int> selected;
-  for (const std::size_t row : rows) selected.push_back(labels[row]);
-  return selected;
-}
-
-std::vector<float> pick(std::span<const float> features, std::span<const std::size_t> columns) {
-  std::vector<float> picked;
-  for (const std::size_t column : columns) picked.push_back(features[column]);
-  return picked;
 }
 
 Matrix<float> pick(const Matrix<float>& features, std::span<const std::size_t> columns) {
@@ -85,63 +57,28 @@ std::vector<std::size_t> prediction_set(std::span<const double> p, double alpha)
   return members;
 }
 
-Split split_by_class(std::span<const int> labels, double calibration_share, std::uint64_t seed) {
-  require(calibration_share > 0.0 && calibration_share < 1.0, "split: calibration share outside (0, 1)");
-  require(!labels.empty(), "split: no row");
-  const int n_classes = *std::max_element(labels.begin(), labels.end()) + 1;
-  Split split;
-  for (int k = 0; k < n_classes; ++k) {
-    std::vector<std::size_t> rows;
-    for (std::size_t row = 0; row < labels.size(); ++row)
-      if (labels[row] == k) rows.push_back(row);
-    if (rows.empty()) continue;
-    require(rows.size() > 1, "split: a class with a single row");
-    Stream stream({seed, static_cast<std::uint32_t>(k), 0, Purpose::calibration_split});
-    for (std::size_t i = rows.size() - 1; i > 0; --i)
-      std::swap(rows[i], rows[stream.index(static_cast<std::uint32_t>(i + 1))]);
-    const auto wanted = static_cast<std::size_t>(std::lround(calibration_share * static_cast<double>(rows.size())));
-    const auto kept = static_cast<std::ptrdiff_t>(std::clamp<std::size_t>(wanted, 1, rows.size() - 1));
-    split.calibration.insert(split.calibration.end(), rows.begin(), rows.begin() + kept);
-    split.fitting.insert(split.fitting.end(), rows.begin() + kept, rows.end());
-  }
-  std::sort(split.calibration.begin(), split.calibration.end());
-  std::sort(split.fitting.begin(), split.fitting.end());
-  return split;
-}
-
 ConformalClassifier ConformalClassifier::fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
                                              const Split& split, const ConformalSettings& settings) {
-  require(labels.size() == features.rows(), "classes: rows and labels differ in number");
-  const std::vector<int> fitting_labels = select(labels, split.fitting);
   ConformalClassifier fitted;
+  fitted.pooled_ = PooledClassifier::fit(features, labels, n_classes, split, settings.pooled);
+  fitted.blocks_ = checked_blocks(settings.blocks, features.columns());
   {
     const Matrix<float> fitting = features.select_rows(split.fitting);
-    fitted.discriminant_ = Discriminant::fit(fitting, fitting_labels, n_classes);
-    fitted.blocks_ = checked_blocks(settings.blocks, features.columns());
+    const std::vector<int> fitting_labels = detail::select(labels, split.fitting);
     for (const auto& block : fitted.blocks_)
       fitted.shapes_.push_back(ClassShapes::fit(pick(fitting, block), fitting_labels, n_classes, settings.shapes));
-    const Matrix<double> places = fitted.discriminant_.project(fitting, settings.threads);
-    fitted.layers_ = NormalLayers::fit(places, fitting_labels, n_classes, settings.layers);
-    fitted.trees_ = ExtraTrees::fit(with_coordinates(fitting, places), fitting_labels, n_classes, settings.trees);
   }
-  fitted.calibrate(features.select_rows(split.calibration), select(labels, split.calibration), settings.threads);
+  fitted.calibrate(features.select_rows(split.calibration), detail::select(labels, split.calibration),
+                   settings.pooled.threads);
   return fitted;
 }
 
-ConformalClassifier::Evidence ConformalClassifier::evidence(std::span<const float> features) const {
-  const std::vector<double> place = discriminant_.project(features);
-  std::vector<double> log_densities = layers_.log_densities(place);
-  return {{trees_.probabilities(with_coordinates(features, place)), discriminant_.probabilities(features),
-           detail::softmax(log_densities)},
-          log_densities};
-}
-
-std::vector<double> ConformalClassifier::measures(std::span<const float> features, const Evidence& evidence,
-                                                  std::size_t k) const {
+std::vector<double> ConformalClassifier::measures(std::span<const float> features,
+                                                  std::span<const double> log_densities, std::size_t k) const {
   std::vector<double> measures;
   for (std::size_t b = 0; b < blocks_.size(); ++b)
-    measures.push_back(std::cbrt(shapes_[b].strangeness(pick(features, blocks_[b]), k)));
-  measures.push_back(-evidence.log_densities[k]);
+    measures.push_back(std::cbrt(shapes_[b].strangeness(detail::select(features, blocks_[b]), k)));
+  measures.push_back(-log_densities[k]);
   return measures;
 }
 
@@ -164,49 +101,31 @@ double ConformalClassifier::StrangestMeasure::of(std::span<const double> measure
 
 void ConformalClassifier::calibrate(const Matrix<float>& features, std::span<const int> labels, unsigned threads) {
   const auto classes = static_cast<std::size_t>(n_classes());
-  struct Row {
-    Evidence evidence;
-    std::vector<double> measures;  ///< for its own class
-  };
-  std::vector<Row> rows;
-  ordered_parallel<Row>(
+  margins_.assign(classes, {});
+  std::vector<Matrix<double>> measures_of(classes);  // per class (its calibration rows x measures)
+  std::size_t next = 0;
+  ordered_parallel<std::vector<double>>(
       features.rows(), threads,
       [&](std::size_t i) {
-        Row row{evidence(features.row(i)), {}};
-        row.measures = measures(features.row(i), row.evidence, static_cast<std::size_t>(labels[i]));
-        return row;
+        const std::span<const float> row = features.row(i);
+        return measures(row, pooled_.log_densities(row), static_cast<std::size_t>(labels[i]));
       },
-      [&](Row& row) { rows.push_back(std::move(row)); });
-
-  std::array<Matrix<double>, n_sources> tables;
-  for (const Row& row : rows)
-    for (std::size_t s = 0; s < n_sources; ++s) tables[s].append_row(std::span<const double>(row.evidence.sources[s]));
-  pool_ = LogPool::fit(tables, labels);
-
-  margins_.assign(classes, {});
-  probabilities_ = {};
-  std::vector<Matrix<double>> measures_of(classes);  // per class (its calibration rows x measures)
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto own = static_cast<std::size_t>(labels[i]);
-    const std::vector<double> pooled = pool_.combine(rows[i].evidence.sources);
-    probabilities_.append_row(std::span<const double>(pooled));
-    margins_[own].push_back(margin(pooled, own));
-    measures_of[own].append_row(std::span<const double>(rows[i].measures));
-  }
+      [&](std::vector<double>& row) {
+        const auto own = static_cast<std::size_t>(labels[next]);
+        margins_[own].push_back(margin(calibration_probabilities().row(next), own));
+        measures_of[own].append_row(std::span<const double>(row));
+        ++next;
+      });
   for (const Matrix<double>& own : measures_of) strangest_.emplace_back(own);
 }
 
-std::vector<double> ConformalClassifier::probabilities(std::span<const float> features) const {
-  return pool_.combine(evidence(features).sources);
-}
-
 Classification ConformalClassifier::classify(std::span<const float> features) const {
-  const Evidence found = evidence(features);
   Classification result;
-  result.probabilities = pool_.combine(found.sources);
+  result.probabilities = pooled_.probabilities(features);
+  const std::vector<double> log_densities = pooled_.log_densities(features);
   for (std::size_t k = 0; k < result.probabilities.size(); ++k) {
     result.p_relative.push_back(conformal_p(margins_[k], margin(result.probabilities, k)));
-    result.p_absolute.push_back(strangest_[k].p(measures(features, found, k)));
+    result.p_absolute.push_back(strangest_[k].p(measures(features, log_densities, k)));
     result.p.push_back(std::min(1.0, 2.0 * std::min(result.p_relative[k], result.p_absolute[k])));
   }
   return result;

@@ -52,7 +52,4 @@ class Analyst {
   Namer namer_;
 };
 
-/// Every trial of a study.
-[[nodiscard]] std::vector<std::size_t> all_trials(const StudyFrame& frame);
-
 }  // namespace pirsim::reconcile

@@ -25,6 +25,8 @@ struct StudyFrame {
   bool operator==(const StudyFrame&) const = default;
 };
 [[nodiscard]] StudyFrame frame_of(const SceneSpec& scene, const ScriptSpec& script);
+/// Every trial of a study, by index.
+[[nodiscard]] std::vector<std::size_t> all_trials(const StudyFrame& frame);
 
 inline constexpr std::uint8_t unknown_bit = 2;
 

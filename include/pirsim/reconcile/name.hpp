@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pirsim/effects/catalogue.hpp"
@@ -33,6 +35,12 @@ struct FamilyScore {
 /// The likeliest family. scores: (n_entries) nothing first.
 [[nodiscard]] FamilyScore likeliest_family(std::span<const EntryScore> scores);
 
+/// (n_entries) Datasets (rows of the table) that nothing is learnt from and in which the global test sees something, as
+/// in data that a name is given to; or, of few, the likeliest to be seen.
+using SeenRows = std::vector<std::vector<std::size_t>>;
+/// alpha: level of the global test.
+[[nodiscard]] SeenRows seen_rows(const TableView& view, double alpha);
+
 struct NamerSettings {
   double alpha = 0.05;  ///< level of the global test
   std::size_t trees = 300;
@@ -41,21 +49,52 @@ struct NamerSettings {
   std::string left_out = {};  ///< effect that is not to be a candidate; empty: none
 };
 
+/// Rows of the table that its entries are told apart by, with their classes. Entries without enough datasets are none.
+struct LabelledRows {
+  /// left_out: effect that is not to be a candidate; empty: none. Throws Error(infeasible) without rows of nothing.
+  LabelledRows(const ReferenceTable& table, const SeenRows& seen, std::string_view left_out);
+  /// (n_classes) -> (n_entries); what is no candidate has 0.
+  [[nodiscard]] std::vector<double> by_entry(std::span<const double> of_classes) const;
+
+  std::vector<std::size_t> rows;     ///< (n) of the table
+  std::vector<int> labels;           ///< (n)
+  stats::Split split;                ///< training worlds and seen rows, by place in `rows`
+  std::vector<std::size_t> entries;  ///< (n_classes)
+  std::size_t n_entries = 0;
+};
+
+/// The entry of the greatest probability (at least 1) for which `wanted` holds; 0 if there is none above 0.
+[[nodiscard]] std::size_t likeliest_entry(std::span<const double> probabilities,
+                                          const std::function<bool(std::size_t)>& wanted);
+
+/// How probable each entry is, seen in some of the trials only, without a test of whether it can have made the data.
+class EntryProbabilities {
+ public:
+  /// map must outlive it.
+  EntryProbabilities(const ReferenceTable& table, const FeatureMap& map, const SeenRows& seen,
+                     const stats::PooledClassifierSettings& settings);
+  /// (n_entries) of a dataset's statistics.
+  [[nodiscard]] std::vector<double> of(std::span<const float> statistics) const;
+
+ private:
+  const FeatureMap* map_;
+  LabelledRows data_;
+  stats::PooledClassifier classifier_;
+};
+
 /// Trained on the training worlds of a table, calibrated on the others. Names are given only where the global test sees
 /// a disagreement, so an effect is calibrated on those of its datasets in which the test sees one: weak datasets, which
 /// look like anything, would make every effect hard to rule out.
 class Namer {
  public:
-  /// view must outlive it. Entries without enough datasets are never candidates: their p is 0.
+  /// view must outlive it. The p of what is no candidate is 0.
   Namer(const TableView& view, const NamerSettings& settings);
 
   /// (n_entries) of a dataset's statistics; nothing first.
   [[nodiscard]] std::vector<EntryScore> judge(std::span<const float> statistics) const;
   /// (n_entries) probabilities only.
   [[nodiscard]] std::vector<double> probabilities(std::span<const float> statistics) const;
-  /// Datasets of an entry (rows of the table) that nothing was learnt from and in which the global test sees something,
-  /// as in data that a name is given to; or, of few, the likeliest to be seen. None of an entry that is no candidate.
-  [[nodiscard]] const std::vector<std::size_t>& seen_rows(std::size_t entry) const { return seen_rows_[entry]; }
+  [[nodiscard]] const SeenRows& seen_rows() const noexcept { return seen_rows_; }
   /// How well the probabilities of the calibration datasets mean what they say.
   [[nodiscard]] const stats::Reliability& reliability() const noexcept { return reliability_; }
   /// Names of the features with the greatest share in the trees' decisions.
@@ -63,9 +102,9 @@ class Namer {
 
  private:
   const FeatureMap* map_;
-  std::vector<std::string> names_;                   ///< of all entries
-  std::vector<std::size_t> entries_;                 ///< those with datasets enough: the classifier's classes
-  std::vector<std::vector<std::size_t>> seen_rows_;  ///< (n_entries)
+  std::vector<std::string> names_;  ///< of all entries
+  SeenRows seen_rows_;
+  LabelledRows data_;
   stats::ConformalClassifier classifier_;
   stats::Reliability reliability_;
 };

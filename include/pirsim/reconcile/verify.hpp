@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pirsim/reconcile/measured.hpp"
+#include "pirsim/reconcile/name.hpp"
 #include "pirsim/schema/effect_spec.hpp"
 #include "pirsim/stats/intervals.hpp"
 
@@ -57,6 +58,7 @@ struct PutIn {
   const Laboratory* lab = nullptr;  ///< of the model with all effects before this one
   std::span<const float> observed;  ///< statistics of the measured data in that laboratory
   std::string effect;
+  SeenRows seen;  ///< of the table, with all trials
 };
 
 /// What is said to be missing, about one measured dataset.

@@ -1,16 +1,13 @@
 // Which classes can't be ruled out: p-values that hold whatever the classifier, from rows kept for calibration.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "pirsim/stats/calibration.hpp"
 #include "pirsim/stats/class_shapes.hpp"
-#include "pirsim/stats/discriminant.hpp"
-#include "pirsim/stats/extra_trees.hpp"
-#include "pirsim/stats/normal_layers.hpp"
+#include "pirsim/stats/matrix.hpp"
+#include "pirsim/stats/pooled_classifier.hpp"
 
 namespace pirsim::stats {
 
@@ -21,21 +18,12 @@ namespace pirsim::stats {
 /// Indices whose p exceeds alpha.
 [[nodiscard]] std::vector<std::size_t> prediction_set(std::span<const double> p, double alpha);
 
-/// Indices of rows, each class split alike: the first part for fitting, the second for calibration.
-struct Split {
-  std::vector<std::size_t> fitting, calibration;  ///< ascending
-};
-/// calibration_share in (0, 1); at least one row of each class goes to either part.
-[[nodiscard]] Split split_by_class(std::span<const int> labels, double calibration_share, std::uint64_t seed);
-
 struct ConformalSettings {
-  ExtraTreesSettings trees = {};  ///< grown on the features and the discriminant's coordinates. Ref: [Pudlo2016]
+  PooledClassifierSettings pooled = {};
   ClassShapesSettings shapes = {};
-  NormalLayersSettings layers = {};  ///< in the discriminant's coordinates
   /// Columns whose shapes are looked at together, each block by itself: {} or all columns as one. A block of sums over
   /// many cells sees a small change that all cells share, which drowns among the cells themselves.
   std::vector<std::vector<std::size_t>> blocks = {};
-  unsigned threads = 0;  ///< 0: all cores; never changes the result
 };
 
 /// What is said of one row; each list is (n_classes).
@@ -46,9 +34,8 @@ struct Classification {
   std::vector<double> p;              ///< min(1, 2 min(p_relative, p_absolute)): both tests in one
 };
 
-/// Trees, a discriminant and layers of normal distributions in its coordinates, pooled and calibrated, and the shapes
-/// of the classes. For a row that class k made, P(p[k] <= a) <= a for each k, up to the three pool weights and the
-/// measures' scales being taken from the calibration rows.
+/// A pooled classifier and the shapes of the classes. For a row that class k made, P(p[k] <= a) <= a for each k, up to
+/// the three pool weights and the measures' scales being taken from the calibration rows.
 class ConformalClassifier {
  public:
   ConformalClassifier() = default;
@@ -59,18 +46,17 @@ class ConformalClassifier {
                                                int n_classes, const Split& split,
                                                const ConformalSettings& settings = {});
   [[nodiscard]] Classification classify(std::span<const float> features) const;
-  /// (n_classes) as in classify(), without the tests.
-  [[nodiscard]] std::vector<double> probabilities(std::span<const float> features) const;
   /// One a row.
   [[nodiscard]] std::vector<Classification> classify(const Matrix<float>& features, unsigned threads = 0) const;
 
-  /// (n_calibration_rows x n_classes) calibrated, of the rows that were kept for calibration.
-  [[nodiscard]] const Matrix<double>& calibration_probabilities() const noexcept { return probabilities_; }
-  [[nodiscard]] const ExtraTrees& trees() const noexcept { return trees_; }
-  [[nodiscard]] int n_classes() const noexcept { return trees_.n_classes(); }
+  /// The classifier by itself, without the tests.
+  [[nodiscard]] const PooledClassifier& pooled() const noexcept { return pooled_; }
+  [[nodiscard]] const Matrix<double>& calibration_probabilities() const noexcept {
+    return pooled_.calibration_probabilities();
+  }
+  [[nodiscard]] int n_classes() const noexcept { return pooled_.n_classes(); }
 
  private:
-  static constexpr std::size_t n_sources = 3;
   /// A class's own rows by the strangest of several measures, each by how far it reaches upwards in these rows.
   class StrangestMeasure {
    public:
@@ -86,26 +72,16 @@ class ConformalClassifier {
     std::vector<Scale> scales_;  ///< (n_measures)
     std::vector<double> known_;  ///< (n_rows)
   };
-  /// What the classifiers say of one row, and where it lies.
-  struct Evidence {
-    std::array<std::vector<double>, n_sources> sources;  ///< (n_classes) probabilities each
-    std::vector<double> log_densities;                   ///< (n_classes) of the layers
-  };
-  [[nodiscard]] Evidence evidence(std::span<const float> features) const;
   /// (n_blocks + 1) of the row for class k: by block the cube root of its squared distance from the class's shape,
   /// which has a tail as the normal distribution whatever the number of columns [WilsonHilferty1931], and how unlikely
   /// the class's layers make it.
-  [[nodiscard]] std::vector<double> measures(std::span<const float> features, const Evidence& evidence,
+  [[nodiscard]] std::vector<double> measures(std::span<const float> features, std::span<const double> log_densities,
                                              std::size_t k) const;
   void calibrate(const Matrix<float>& features, std::span<const int> labels, unsigned threads);
 
-  Discriminant discriminant_;
-  ExtraTrees trees_;
-  NormalLayers layers_;
-  LogPool pool_;  ///< weights of trees, discriminant, layers
+  PooledClassifier pooled_;
   std::vector<std::vector<std::size_t>> blocks_;
-  std::vector<ClassShapes> shapes_;  ///< per block
-  Matrix<double> probabilities_;
+  std::vector<ClassShapes> shapes_;           ///< per block
   std::vector<std::vector<double>> margins_;  ///< per class, of its calibration rows
   std::vector<StrangestMeasure> strangest_;   ///< per class, of its calibration rows
 };

@@ -57,6 +57,10 @@ Laboratory shuffled(Laboratory lab) {
   return lab;
 }
 
+PutIn put_in(const Laboratory& lab, std::span<const float> data, const std::string& effect) {
+  return {&lab, data, effect, seen_rows(*lab.view(all_trials(lab.frame), 0), quick.alpha)};
+}
+
 Verification verify_one(const std::vector<PutIn>& steps, const Folds& folds) {
   const Claim claim{steps, {}};
   return verify(std::span(&claim, 1), folds, quick).front();
@@ -68,7 +72,7 @@ TEST_CASE("a fold names and fits without its own trials", "[reconcile][six-seats
   const Laboratory& lab = plain_lab();
   std::vector<float> data = planted(lab, 1, {false_triggers});
   const Folds folds = three_folds(lab);
-  const auto run = [&] { return verify_one({{&lab, data, "false_triggers"}}, folds); };
+  const auto run = [&] { return verify_one({put_in(lab, data, "false_triggers")}, folds); };
   const Verification before = run();
   for (const std::size_t trial : folds[1]) {
     for (std::size_t i = 0; i < lab.frame.sensors.size() * n_cell_statistics; ++i)
@@ -91,13 +95,13 @@ TEST_CASE("with the planted effect held-out trials are foretold and with shuffle
   double honest_share = 0.0, confused_share = 0.0;
   for (std::uint32_t world = 10; world < 13; ++world) {
     const std::vector<float> data = planted(lab, world, {false_triggers});
-    const Verification good = verify_one({{&lab, data, "false_triggers"}}, three_folds(lab));
+    const Verification good = verify_one({put_in(lab, data, "false_triggers")}, three_folds(lab));
     CHECK(good.shrunk);
     CHECK(good.refused);
     CHECK(good.n_trials == 6);
     CHECK(good.n_better >= 5);
     honest_share += good.share_closed / 3.0;
-    confused_share += verify_one({{&confused, data, "false_triggers"}}, three_folds(lab)).share_closed / 3.0;
+    confused_share += verify_one({put_in(confused, data, "false_triggers")}, three_folds(lab)).share_closed / 3.0;
   }
   CHECK(honest_share > 0.75);
   CHECK(confused_share < 0.5);
@@ -109,7 +113,7 @@ TEST_CASE("nothing is closed where nothing was open", "[reconcile][six-seats]") 
   for (std::uint32_t world = 20; world < 24; ++world) {
     const Laboratory& lab = plain_lab();
     const std::vector<float> data = planted(lab, world, {});
-    const Verification v = verify_one({{&lab, data, "false_triggers"}}, three_folds(lab));
+    const Verification v = verify_one({put_in(lab, data, "false_triggers")}, three_folds(lab));
     CHECK((v.refused || !v.closed));
     refused += v.refused ? 1 : 0;
   }
@@ -120,9 +124,9 @@ TEST_CASE("claims that are judged together are judged as each by itself", "[reco
   const Laboratory& lab = plain_lab();
   const Laboratory again = plain_lab();  // whose analysts can't be taken for those of the first
   const std::vector<float> one = planted(lab, 50, {false_triggers}), other = planted(lab, 51, {stretching});
-  const std::vector<Claim> claims{{{{&lab, one, "false_triggers"}}, {}},
-                                  {{{&again, one, "false_triggers"}}, {}},
-                                  {{{&lab, other, "pulse_stretching"}}, {"false_triggers"}}};
+  const std::vector<Claim> claims{{{put_in(lab, one, "false_triggers")}, {}},
+                                  {{put_in(again, one, "false_triggers")}, {}},
+                                  {{put_in(lab, other, "pulse_stretching")}, {"false_triggers"}}};
   const std::vector<Verification> together = verify(claims, three_folds(lab), quick);
   REQUIRE(together.size() == 3);
   for (std::size_t i = 0; i < claims.size(); ++i) {
@@ -155,8 +159,8 @@ TEST_CASE("a patch with which nobody can get about is said not to be judged, and
                     {}}};
   }
   const std::vector<float> data = planted(plain_lab(), 1, {false_triggers});
-  const std::vector<Claim> claims{{{{&blocked, data, "second_person"}}, {}},
-                                  {{{&plain_lab(), data, "false_triggers"}}, {}}};
+  const std::vector<Claim> claims{{{put_in(blocked, data, "second_person")}, {}},
+                                  {{put_in(plain_lab(), data, "false_triggers")}, {}}};
   const std::vector<Verification> found = verify(claims, three_folds(plain_lab()), quick);
   CHECK(found[0].n_trials == 0);
   CHECK_FALSE(found[0].shrunk);
@@ -183,7 +187,7 @@ TEST_CASE("two effects are judged together and close more than one of them", "[r
   const Laboratory second = make({likeliest.effect}, Measured::Kind::series);
   CHECK(second.table.n_entries() == 3);  // nothing and the two that are not in the model yet
   const std::vector<float> again = planted(second, 30, both);
-  const PutIn first{&plain_lab(), data, name}, then{&second, again, rest};
+  const PutIn first = put_in(plain_lab(), data, name), then = put_in(second, again, rest);
   const Folds folds = three_folds(plain_lab());
   const Verification together = verify_one({first, then}, folds);
   const Verification alone = verify_one({first}, folds);
@@ -205,7 +209,7 @@ TEST_CASE("of sums nearly all seats must be better", "[reconcile][six-seats]") {
   const std::vector<float> data =
       planted(lab, 40, {{"missed_triggers", {{"probability", 0.6}}, {}, {}}});  // in all seats
   const auto one_out = folds_of(sha256("sums"), all_trials(lab.frame), 6);
-  const Verification all = verify_one({{&lab, data, "missed_triggers"}}, one_out);
+  const Verification all = verify_one({put_in(lab, data, "missed_triggers")}, one_out);
   CHECK(all.n_folds == 6);
   CHECK(all.n_better == 6);
   CHECK(all.sign_p == Approx(1.0 / 64.0));
@@ -213,7 +217,7 @@ TEST_CASE("of sums nearly all seats must be better", "[reconcile][six-seats]") {
   CHECK(all.shrunk);
   // The same seats, but only four are judged: 1 of 16 by chance is too much.
   const Folds four(one_out.begin(), one_out.begin() + 4);
-  const Verification few = verify_one({{&lab, data, "missed_triggers"}}, four);
+  const Verification few = verify_one({put_in(lab, data, "missed_triggers")}, four);
   CHECK(few.n_trials == 4);
   CHECK_FALSE(few.shrunk);
 }

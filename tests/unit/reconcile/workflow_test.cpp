@@ -173,6 +173,38 @@ TEST_CASE("which way an effect goes is told even if its size is but one number",
   }
 }
 
+TEST_CASE("an effect is calibrated on held-back datasets in which the global test sees it", "[reconcile][three-seats]") {
+  const ReferenceTable& table = laboratory().table;
+  const auto view = laboratory().view(all_trials(laboratory().frame), 0);
+  const SeenRows seen = seen_rows(*view, 0.05);
+  REQUIRE(seen.size() == table.n_entries());
+  CHECK(seen[0] == rows_of(table, 0, Part::calibration));
+  for (std::size_t entry = 1; entry < table.n_entries(); ++entry) {
+    double greatest_taken = 0.0, least_left = 1.0;
+    std::size_t n_seen = 0;
+    const std::vector<std::size_t> own = rows_of(table, entry, Part::calibration);
+    for (const std::size_t row : own) {
+      const double p = view->p(table.statistics.row(row));
+      n_seen += p <= 0.05 ? 1 : 0;
+      if (std::ranges::binary_search(seen[entry], row)) {
+        greatest_taken = std::max(greatest_taken, p);
+      } else {
+        least_left = std::min(least_left, p);
+      }
+    }
+    CHECK(seen[entry].size() == std::max<std::size_t>(n_seen, 60));  // 3 / alpha are taken, seen or not
+    CHECK(seen[entry].size() < own.size());
+    CHECK(greatest_taken <= least_left);
+  }
+}
+
+TEST_CASE("the likeliest is among those that are wanted and can be at all", "[reconcile]") {
+  const std::vector<double> probabilities{0.4, 0.1, 0.3, 0.2, 0.0};
+  CHECK(likeliest_entry(probabilities, [](std::size_t) { return true; }) == 2);
+  CHECK(likeliest_entry(probabilities, [](std::size_t entry) { return entry != 2; }) == 3);
+  CHECK(likeliest_entry(probabilities, [](std::size_t entry) { return entry == 4; }) == 0);
+}
+
 TEST_CASE("folds follow from the data alone and hold out every trial once", "[reconcile]") {
   const std::string digest = sha256("some data"), other = sha256("other data");
   const std::vector<std::size_t> trials{0, 1, 2, 4, 5, 6, 7, 8, 9, 11};

@@ -39,9 +39,9 @@ Labelled draw(std::size_t rows_per_class, std::initializer_list<int> classes, st
 
 ConformalClassifier fit(std::uint32_t study, unsigned threads = 0) {
   const Labelled table = draw(400, {0, 1, 2}, study);
-  return ConformalClassifier::fit(
-      table.features, table.labels, 3, split_by_class(table.labels, 0.4, 0),
-      {.trees = {.trees = 60, .threads = threads}, .shapes = {.subspace = 4, .threads = threads}, .threads = threads});
+  return ConformalClassifier::fit(table.features, table.labels, 3, split_by_class(table.labels, 0.4, 0),
+                                  {.pooled = {.trees = {.trees = 60, .threads = threads}, .threads = threads},
+                                   .shapes = {.subspace = 4, .threads = threads}});
 }
 
 }  // namespace
@@ -144,7 +144,7 @@ TEST_CASE("a small change of every column is strange where a block holds their s
   std::iota(cells.begin(), cells.end(), std::size_t{0});
   const auto refused = [&](std::vector<std::vector<std::size_t>> blocks) {
     const auto classifier = ConformalClassifier::fit(table, labels, 2, split_by_class(labels, 0.4, 0),
-                                                     {.trees = {.trees = 20}, .blocks = blocks});
+                                                     {.pooled = {.trees = {.trees = 20}}, .blocks = blocks});
     const auto found = classifier.classify(draw_rows(200, 0.5F));
     const auto n = std::count_if(found.begin(), found.end(), [](const auto& one) { return one.p_absolute[0] <= 0.05; });
     return static_cast<double>(n) / 200.0;

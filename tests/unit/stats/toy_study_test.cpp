@@ -45,7 +45,7 @@ struct Study {
     }
     labels = relabel(labels);
     classifier = ConformalClassifier::fit(features, labels, toy::n_known, split_by_class(labels, 0.4, 0),
-                                          {.trees = {.trees = 60}, .blocks = toy::blocks()});
+                                          {.pooled = {.trees = {.trees = 60}}, .blocks = toy::blocks()});
   }
 
   /// `rows` datasets of the effect, each located, named and decided upon.

@@ -1,0 +1,57 @@
+// Which class made a row: what three kinds of classifier say, as one calibrated probability.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "pirsim/stats/calibration.hpp"
+#include "pirsim/stats/discriminant.hpp"
+#include "pirsim/stats/extra_trees.hpp"
+#include "pirsim/stats/normal_layers.hpp"
+
+namespace pirsim::stats {
+
+/// Indices of rows, each class split alike: the first part for fitting, the second for calibration.
+struct Split {
+  std::vector<std::size_t> fitting, calibration;  ///< ascending
+};
+/// calibration_share in (0, 1); at least one row of each class goes to either part.
+[[nodiscard]] Split split_by_class(std::span<const int> labels, double calibration_share, std::uint64_t seed);
+
+struct PooledClassifierSettings {
+  ExtraTreesSettings trees = {};     ///< grown on the features and the discriminant's coordinates. Ref: [Pudlo2016]
+  NormalLayersSettings layers = {};  ///< in the discriminant's coordinates
+  unsigned threads = 0;              ///< 0: all cores; never changes the result
+};
+
+/// Trees, a discriminant and layers of normal distributions in its coordinates, pooled and calibrated.
+class PooledClassifier {
+ public:
+  PooledClassifier() = default;
+  /// features: (n_rows x n_columns), finite; labels: (n_rows) in [0, n_classes); each class ten times or more among the
+  /// fitting rows and once or more among the calibration rows. Rows that depend on each other must be on one side of
+  /// the split.
+  [[nodiscard]] static PooledClassifier fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
+                                            const Split& split, const PooledClassifierSettings& settings = {});
+  /// (n_classes) calibrated, classes equally likely beforehand.
+  [[nodiscard]] std::vector<double> probabilities(std::span<const float> features) const;
+  /// (n_classes) of the layers: log density at the row's place, up to a number that all classes share.
+  [[nodiscard]] std::vector<double> log_densities(std::span<const float> features) const;
+
+  /// (n_calibration_rows x n_classes) calibrated, of the rows that were kept for calibration.
+  [[nodiscard]] const Matrix<double>& calibration_probabilities() const noexcept { return probabilities_; }
+  [[nodiscard]] const ExtraTrees& trees() const noexcept { return trees_; }
+  [[nodiscard]] int n_classes() const noexcept { return trees_.n_classes(); }
+
+ private:
+  /// (3 x n_classes) what each kind says of a row.
+  [[nodiscard]] std::vector<std::vector<double>> sources(std::span<const float> features) const;
+
+  Discriminant discriminant_;
+  ExtraTrees trees_;
+  NormalLayers layers_;
+  LogPool pool_;  ///< weights of trees, discriminant, layers
+  Matrix<double> probabilities_;
+};
+
+}  // namespace pirsim::stats

@@ -1,0 +1,100 @@
+#include "pirsim/stats/pooled_classifier.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pirsim/core/parallel.hpp"
+#include "pirsim/core/random.hpp"
+#include "stats/require.hpp"
+#include "stats/select.hpp"
+#include "stats/softmax.hpp"
+
+namespace pirsim::stats {
+namespace {
+
+std::vector<float> with_coordinates(std::span<const float> features, std::span<const double> place) {
+  std::vector<float> wide(features.begin(), features.end());
+  for (const double coordinate : place) wide.push_back(static_cast<float>(coordinate));
+  return wide;
+}
+
+Matrix<float> with_coordinates(const Matrix<float>& features, const Matrix<double>& places) {
+  Matrix<float> wide(features.rows(), features.columns() + places.columns());
+  for (std::size_t row = 0; row < features.rows(); ++row) {
+    const std::vector<float> values = with_coordinates(features.row(row), places.row(row));
+    std::copy(values.begin(), values.end(), wide.row(row).begin());
+  }
+  return wide;
+}
+
+}  // namespace
+
+Split split_by_class(std::span<const int> labels, double calibration_share, std::uint64_t seed) {
+  require(calibration_share > 0.0 && calibration_share < 1.0, "split: calibration share outside (0, 1)");
+  require(!labels.empty(), "split: no row");
+  const int n_classes = *std::max_element(labels.begin(), labels.end()) + 1;
+  Split split;
+  for (int k = 0; k < n_classes; ++k) {
+    std::vector<std::size_t> rows;
+    for (std::size_t row = 0; row < labels.size(); ++row)
+      if (labels[row] == k) rows.push_back(row);
+    if (rows.empty()) continue;
+    require(rows.size() > 1, "split: a class with a single row");
+    Stream stream({seed, static_cast<std::uint32_t>(k), 0, Purpose::calibration_split});
+    for (std::size_t i = rows.size() - 1; i > 0; --i)
+      std::swap(rows[i], rows[stream.index(static_cast<std::uint32_t>(i + 1))]);
+    const auto wanted = static_cast<std::size_t>(std::lround(calibration_share * static_cast<double>(rows.size())));
+    const auto kept = static_cast<std::ptrdiff_t>(std::clamp<std::size_t>(wanted, 1, rows.size() - 1));
+    split.calibration.insert(split.calibration.end(), rows.begin(), rows.begin() + kept);
+    split.fitting.insert(split.fitting.end(), rows.begin() + kept, rows.end());
+  }
+  std::sort(split.calibration.begin(), split.calibration.end());
+  std::sort(split.fitting.begin(), split.fitting.end());
+  return split;
+}
+
+PooledClassifier PooledClassifier::fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
+                                       const Split& split, const PooledClassifierSettings& settings) {
+  require(labels.size() == features.rows(), "classes: rows and labels differ in number");
+  const std::vector<int> fitting_labels = detail::select(labels, split.fitting);
+  PooledClassifier fitted;
+  {
+    const Matrix<float> fitting = features.select_rows(split.fitting);
+    fitted.discriminant_ = Discriminant::fit(fitting, fitting_labels, n_classes);
+    const Matrix<double> places = fitted.discriminant_.project(fitting, settings.threads);
+    fitted.layers_ = NormalLayers::fit(places, fitting_labels, n_classes, settings.layers);
+    fitted.trees_ = ExtraTrees::fit(with_coordinates(fitting, places), fitting_labels, n_classes, settings.trees);
+  }
+  std::vector<Matrix<double>> tables;  // per source (n_calibration_rows x n_classes)
+  using Sources = std::vector<std::vector<double>>;
+  ordered_parallel<Sources>(
+      split.calibration.size(), settings.threads,
+      [&](std::size_t i) { return fitted.sources(features.row(split.calibration[i])); },
+      [&](Sources& row) {
+        tables.resize(row.size());
+        for (std::size_t s = 0; s < row.size(); ++s) tables[s].append_row(std::span<const double>(row[s]));
+      });
+  fitted.pool_ = LogPool::fit(tables, detail::select(labels, split.calibration));
+  for (std::size_t i = 0; i < split.calibration.size(); ++i) {
+    Sources row;
+    for (const Matrix<double>& table : tables) row.emplace_back(table.row(i).begin(), table.row(i).end());
+    fitted.probabilities_.append_row(std::span<const double>(fitted.pool_.combine(row)));
+  }
+  return fitted;
+}
+
+std::vector<std::vector<double>> PooledClassifier::sources(std::span<const float> features) const {
+  const std::vector<double> place = discriminant_.project(features);
+  return {trees_.probabilities(with_coordinates(features, place)), discriminant_.probabilities(features),
+          detail::softmax(layers_.log_densities(place))};
+}
+
+std::vector<double> PooledClassifier::probabilities(std::span<const float> features) const {
+  return pool_.combine(sources(features));
+}
+
+std::vector<double> PooledClassifier::log_densities(std::span<const float> features) const {
+  return layers_.log_densities(discriminant_.project(features));
+}
+
+}  // namespace pirsim::stats
