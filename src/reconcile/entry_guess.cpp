@@ -3,20 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pirsim/reconcile/locate.hpp"
-
 namespace pirsim::reconcile {
 namespace {
 
 using effects::ParameterInfo;
 using effects::Scale;
 
-stats::Matrix<double> features_of(const ReferenceTable& table, const FeatureMap& map, std::span<const std::size_t> rows,
-                                  unsigned threads) {
-  const stats::Matrix<float> narrow = map.features(table.statistics.select_rows(rows), threads);
-  stats::Matrix<double> features(narrow.rows(), narrow.columns());
-  std::ranges::copy(narrow.values(), features.values().begin());
-  return features;
+stats::Matrix<double> in_double(const stats::Matrix<float>& narrow) {
+  stats::Matrix<double> wide(narrow.rows(), narrow.columns());
+  std::ranges::copy(narrow.values(), wide.values().begin());
+  return wide;
 }
 
 stats::Matrix<double> parameters_of(const ReferenceTable& table, std::span<const std::size_t> rows,
@@ -41,17 +37,15 @@ double from_flat(const ParameterInfo& info, double value) {
   return std::clamp(rounded, info.least, info.most);
 }
 
-EntryGuess::EntryGuess(const ReferenceTable& table, const FeatureMap& map, std::size_t entry,
-                       std::span<const std::size_t> held_back, unsigned threads) {
+EntryGuess::EntryGuess(const ReferenceTable& table, std::size_t entry, const EntryDatasets& training,
+                       const EntryDatasets& held_back) {
   for (const ParameterInfo& info : effects::find(table.entry_name(entry)).info.parameters) {
     if (info.low < info.high) infos_.push_back(&info);
   }
   if (infos_.empty()) return;
-  const std::vector<std::size_t> training = rows_of(table, entry, Part::training);
-  guess_ =
-      stats::ParameterGuess::fit(features_of(table, map, training, threads), parameters_of(table, training, infos_));
-  parameters_ = parameters_of(table, held_back, infos_);
-  guesses_ = guess_.guess(features_of(table, map, held_back, threads));
+  guess_ = stats::ParameterGuess::fit(in_double(training.features), parameters_of(table, training.rows, infos_));
+  parameters_ = parameters_of(table, held_back.rows, infos_);
+  guesses_ = guess_.guess(in_double(held_back.features));
 }
 
 std::vector<stats::Interval> EntryGuess::bounds() const {

@@ -16,13 +16,21 @@ namespace pirsim::reconcile {
 /// Whole where it must be, and within what is accepted.
 [[nodiscard]] double from_flat(const effects::ParameterInfo& info, double value);
 
+/// Some of an entry's datasets, as features.
+struct EntryDatasets {
+  EntryDatasets(const ReferenceTable& table, const FeatureMap& map, std::span<const std::size_t> of, unsigned threads)
+      : rows(of.begin(), of.end()), features(map.features(table.statistics.select_rows(of), threads)) {}
+  std::vector<std::size_t> rows;  ///< (n) of the table
+  stats::Matrix<float> features;  ///< (n x n_features)
+};
+
 /// A linear guess of the parameters that vary, learnt from the training datasets and made of the held-back ones, whose
 /// guesses err as that of measured data does.
 class EntryGuess {
  public:
-  /// entry: 1 or more; held_back: rows of it outside the training part.
-  EntryGuess(const ReferenceTable& table, const FeatureMap& map, std::size_t entry,
-             std::span<const std::size_t> held_back, unsigned threads);
+  /// entry: 1 or more; held_back: of it, outside the training part.
+  EntryGuess(const ReferenceTable& table, std::size_t entry, const EntryDatasets& training,
+             const EntryDatasets& held_back);
 
   [[nodiscard]] const std::vector<const effects::ParameterInfo*>& infos() const noexcept { return infos_; }
   [[nodiscard]] std::vector<stats::Interval> bounds() const;

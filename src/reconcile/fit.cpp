@@ -30,15 +30,14 @@ std::vector<std::string> parameters_of_one_size(const EffectSpec& effect) {
   return names;
 }
 
-/// The likeliest kind of the effect, by a discriminant between the kinds that the entry's training datasets have.
-void choose(const ReferenceTable& table, const FeatureMap& map, std::size_t entry, std::span<const float> measured,
-            unsigned threads, EffectSpec& effect) {
-  const std::vector<std::size_t> rows = rows_of(table, entry, Part::training);
+/// The likeliest kind of the effect, by a discriminant between the kinds that its training datasets have.
+void choose(const ReferenceTable& table, const EntryDatasets& training, std::span<const float> measured,
+            EffectSpec& effect) {
   const std::vector<std::string> of_one_size = parameters_of_one_size(effect);
   std::map<Kind, int> numbers;
   std::vector<Kind> kinds;
   std::vector<int> labels;
-  for (const std::size_t row : rows) {
+  for (const std::size_t row : training.rows) {
     const EffectSpec& drawn = table.rows[row].effects.front();
     Kind kind{drawn.choices, {}};
     for (const std::string& name : of_one_size) kind.second.push_back(drawn.parameters.at(name));
@@ -48,8 +47,7 @@ void choose(const ReferenceTable& table, const FeatureMap& map, std::size_t entr
   }
   std::size_t likeliest = 0;
   if (kinds.size() > 1) {
-    const auto discriminant = stats::Discriminant::fit(map.features(table.statistics.select_rows(rows), threads),
-                                                       labels, static_cast<int>(kinds.size()));
+    const auto discriminant = stats::Discriminant::fit(training.features, labels, static_cast<int>(kinds.size()));
     const std::vector<double> densities = discriminant.log_densities(measured);
     likeliest = static_cast<std::size_t>(std::ranges::max_element(densities) - densities.begin());
   }
@@ -121,8 +119,9 @@ FittedEffect fit_from_table(const ReferenceTable& table, const FeatureMap& map, 
   FittedEffect fitted;
   fitted.effect.name = table.entry_name(entry);
   const std::vector<float> features = map.features(measured);
-  choose(table, map, entry, features, settings.threads, fitted.effect);
-  const EntryGuess guess(table, map, entry, held_back, settings.threads);
+  const EntryDatasets training(table, map, rows_of(table, entry, Part::training), settings.threads);
+  choose(table, training, features, fitted.effect);
+  const EntryGuess guess(table, entry, training, {table, map, held_back, settings.threads});
   if (guess.infos().empty()) return fitted;
 
   const std::vector<double> observed = guess.of(features);
