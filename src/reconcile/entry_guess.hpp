@@ -36,15 +36,15 @@ class EntryGuess {
   [[nodiscard]] std::vector<stats::Interval> bounds() const;
   /// (n_parameters) of a dataset's features, flat.
   [[nodiscard]] std::vector<double> of(std::span<const float> features) const;
-  [[nodiscard]] const stats::Matrix<double>& parameters() const noexcept {
-    return parameters_;
-  }                                                                                         ///< (n x n_parameters)
-  [[nodiscard]] const stats::Matrix<double>& guesses() const noexcept { return guesses_; }  ///< (n x n_parameters)
+  /// (n x n_parameters) of the held-back datasets, flat.
+  [[nodiscard]] const stats::Matrix<double>& parameters() const noexcept { return parameters_; }
+  /// (n x n_parameters) what is guessed of them.
+  [[nodiscard]] const stats::Matrix<double>& guesses() const noexcept { return guesses_; }
 
  private:
   std::vector<const effects::ParameterInfo*> infos_;
   stats::ParameterGuess guess_;
-  stats::Matrix<double> parameters_, guesses_;  ///< of the held-back datasets
+  stats::Matrix<double> parameters_, guesses_;
 };
 
 }  // namespace pirsim::reconcile
