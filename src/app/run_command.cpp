@@ -122,10 +122,11 @@ class WholeStudyOutputs {
   void add(const RunResult& result) {
     if (zones_) zones_->add(result);
     if (trace_) trace_->add(result);
+    if (report_file_) report_.add_run(result);
+    if (!summary_file_ && !report_file_) return;
     studies::RunCounts counts(model_.scene().sensors.size(), model_.script().summary);
     for (const Sample& sample : result.samples) counts.add(sample);
     summary_.add_run(result.trial, counts.counts());
-    report_.add_run(result, counts.counts());
   }
   void commit() {
     if (zones_) zones_->commit();

@@ -50,7 +50,8 @@ Json to_json(const MapChart& chart) {
 }
 
 Json to_json(const HistogramChart& chart) {
-  Json json{{"kind", "histogram"}, {"label", chart.label}, {"unit", chart.unit}, {"values", chart.values}};
+  Json json{{"kind", "histogram"}, {"label", chart.label}, {"unit", chart.unit}};
+  for (const auto& [count, runs] : chart.counts) json["counts"].push_back({count, runs});
   json["real"] = chart.real ? Json(*chart.real) : Json(nullptr);
   return json;
 }

@@ -61,15 +61,11 @@ std::string note_of(const CellSummary& cell) {
 
 StudyReport::StudyReport(const Model& model) : model_(&model) {
   for (const SensorSpec& sensor : model.scene().sensors) sensors_.push_back(sensor.id);
-  for (const TrialModel& trial : model.trials()) {
-    trials_.push_back({trial.id, std::vector<std::vector<int>>(sensors_.size()), {}});
-  }
+  for (const TrialModel& trial : model.trials()) trials_.push_back({trial.id, {}});
 }
 
-void StudyReport::add_run(const RunResult& result, std::span<const int> counts) {
-  Trial& trial = trials_[result.run % trials_.size()];
-  for (std::size_t i = 0; i < sensors_.size(); ++i) trial.counts[i].push_back(counts[i]);
-  if (result.replicate == 1) trial.samples = result.samples;
+void StudyReport::add_run(const RunResult& result) {
+  if (result.replicate == 1) trials_[result.run % trials_.size()].samples = result.samples;
 }
 
 io::SeriesChart StudyReport::series_of(const Trial& trial) const {
@@ -117,11 +113,11 @@ io::Report StudyReport::finish(const Summary& summary) const {
     }
     for (std::size_t s = 0; s < sensors_.size(); ++s) {
       const CellSummary& cell = cells[t * sensors_.size() + s];
-      if (trials_[t].counts[s].empty()) continue;
+      if (cell.runs == 0) continue;
       std::optional<int> real;
       if (cell.measured) real = cell.measured->real;
       section.charts.emplace_back(io::HistogramChart{trials_[t].id + ", " + sensors_[s], note_of(cell),
-                                                     "windows with motion", "windows", trials_[t].counts[s], real});
+                                                     "windows with motion", "windows", cell.counts, real});
     }
     io::SeriesChart series = series_of(trials_[t]);
     series.title += ", first run";

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <utility>
 
 #include "pirsim/core/error.hpp"
@@ -75,28 +74,30 @@ void Summary::add_run(std::string_view trial, std::span<const int> counts) {
   }
   if (counts.size() != sensors_.size()) throw Error(ErrorCode::usage, "summary: expected one count a sensor");
   for (std::size_t sensor = 0; sensor < counts.size(); ++sensor) {
-    counts_[*index * sensors_.size() + sensor].push_back(counts[sensor]);
+    ++counts_[*index * sensors_.size() + sensor][counts[sensor]];
   }
 }
 
 std::vector<CellSummary> Summary::cells() const {
   std::vector<CellSummary> cells;
   for (std::size_t i = 0; i < counts_.size(); ++i) {
-    const std::vector<int>& counts = counts_[i];
     CellSummary cell;
+    cell.counts = counts_[i];
     cell.trial = trials_[i / sensors_.size()];
     cell.sensor = sensors_[i % sensors_.size()];
-    cell.runs = static_cast<int>(counts.size());
     cell.measured = measured_[i];
-    if (!counts.empty()) {
-      const auto [least, greatest] = std::minmax_element(counts.begin(), counts.end());
-      cell.min = *least;
-      cell.max = *greatest;
-      const auto total = std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
-      cell.mean = static_cast<double>(total) / static_cast<double>(counts.size());
+    if (!cell.counts.empty()) {
+      cell.min = cell.counts.begin()->first;
+      cell.max = cell.counts.rbegin()->first;
+      std::int64_t total = 0;
+      for (const auto& [count, times] : cell.counts) {
+        cell.runs += times;
+        total += count * times;
+      }
+      cell.mean = static_cast<double>(total) / static_cast<double>(cell.runs);
       if (cell.measured) {
         cell.inside = cell.min <= cell.measured->real && cell.measured->real <= cell.max;
-        cell.crps = stats::crps(std::vector<double>(counts.begin(), counts.end()), cell.measured->real);
+        cell.crps = stats::crps(cell.counts, cell.measured->real);
       }
     }
     cells.push_back(std::move(cell));

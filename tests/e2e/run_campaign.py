@@ -462,6 +462,21 @@ people: [{id: one, stature_m: 1.8, mass_kg: 80, actions: [{enter: door}, {wait_s
                 self.assertGreater((folder / f"{runs}.csv").stat().st_size, 5e6 * runs)
             self.assertLess(peaks[1], peaks[0] + 4)
 
+    def test_a_hundred_times_as_many_runs_take_no_more_memory(self):
+        if "PIRSIM_NO_FAILING_MALLOC" in os.environ:
+            self.skipTest("the sanitizers keep what was freed")
+        with scratch() as folder:
+            (folder / "short.yaml").write_text("""pirsim_script: 1
+name: A look into the room
+sensing: {tick_rate_hz: 1, rays_per_zone: 1}
+people: [{id: one, stature_m: 1.8, mass_kg: 80, actions: [{enter: door}, {wait_s: 1}]}]
+""")
+            peaks = [self.peak_mb([PIRSIM, "--scene", DATA / "rooms/meeting_room.gltf", "--script", folder / "short.yaml",
+                                   "-q", "--replicates", runs, "-o", folder / f"{runs}.csv",
+                                   "--summary", folder / f"{runs}_summary.csv"]) for runs in (2000, 200000)]
+            # Forty bytes a run, as a summary that keeps every run's counts takes, would be 8 MB more.
+            self.assertLess(peaks[1], peaks[0] + 2)
+
 
 class Options(unittest.TestCase):
     def test_wrong_names_of_outputs_are_usage_errors_before_any_work(self):

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "pirsim/core/tally.hpp"
 #include "pirsim/geom/frame.hpp"
 
 namespace pirsim::io {
@@ -35,7 +36,7 @@ struct HistogramChart {
   std::string title, note;
   std::string label;  ///< of the horizontal axis
   std::string unit;
-  std::vector<int> values;  ///< (n_runs), at least one
+  Tally counts;  ///< of one run or more
   std::optional<int> real;
 };
 

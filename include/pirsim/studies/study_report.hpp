@@ -1,7 +1,6 @@
 // A study's counts and time series as a page for a reader.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -11,13 +10,12 @@
 
 namespace pirsim::studies {
 
-/// Collects what the page shows: every run's counts, and the first replicate's rows.
+/// Collects what the page shows beside the summary: the first replicate's rows.
 class StudyReport {
  public:
   explicit StudyReport(const Model& model);
 
-  /// counts: (n_sensors) as added to the summary.
-  void add_run(const RunResult& result, std::span<const int> counts);
+  void add_run(const RunResult& result);
   /// Histograms a trial and sensor as in [Stefansson2021] Figure 8, with the summary's measured counts as lines, and
   /// the first replicate's time series as in Figure 9.
   [[nodiscard]] io::Report finish(const Summary& summary) const;
@@ -25,8 +23,7 @@ class StudyReport {
  private:
   struct Trial {
     std::string id;
-    std::vector<std::vector<int>> counts;  ///< (n_sensors x n_runs)
-    std::vector<Sample> samples;           ///< of the first replicate
+    std::vector<Sample> samples;  ///< of the first replicate
   };
   [[nodiscard]] io::SeriesChart series_of(const Trial& trial) const;
 

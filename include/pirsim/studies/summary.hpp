@@ -1,6 +1,7 @@
 // A study's counts against measured ones: per cell (trial x sensor) and over all cells.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -8,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "pirsim/core/tally.hpp"
 #include "pirsim/schema/measured_cell.hpp"
 #include "pirsim/schema/sample.hpp"
 #include "pirsim/schema/script_spec.hpp"
@@ -18,8 +20,9 @@ namespace pirsim::studies {
 struct CellSummary {
   std::string trial;
   std::string sensor;
-  int runs = 0;
-  int min = 0;  ///< of the runs' counts; all three are 0 without a run
+  Tally counts;  ///< of all runs: windows with motion
+  std::int64_t runs = 0;
+  int min = 0;  ///< of the counts; all three are 0 without a run
   int max = 0;
   double mean = 0.0;
   std::optional<MeasuredCell> measured;
@@ -40,7 +43,8 @@ struct OverallSummary {
   std::optional<double> mean_crps;   ///< none where only ranges are known
 };
 
-/// Collects the runs' counts. Cells are in the order of trials, then sensors.
+/// Collects the runs' counts, in memory that doesn't grow with their number. Cells are in the order of trials, then
+/// sensors.
 class Summary {
  public:
   /// measured: cells of other trials or sensors are left out; see unmatched().
@@ -60,7 +64,7 @@ class Summary {
 
  private:
   std::vector<std::string> trials_, sensors_;
-  std::vector<std::vector<int>> counts_;               ///< (n_cells x n_runs of the trial)
+  std::vector<Tally> counts_;                          ///< (n_cells)
   std::vector<std::optional<MeasuredCell>> measured_;  ///< (n_cells)
   std::vector<MeasuredCell> unmatched_;
 };

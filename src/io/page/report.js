@@ -70,16 +70,17 @@
   }
 
   function histogram(chart, width) {
-    const inner = width - 60, all = chart.values.concat(chart.real === null ? [] : [chart.real]);
+    const inner = width - 60, runs = chart.counts.reduce((sum, [, times]) => sum + times, 0);
+    const all = chart.counts.map(([count]) => count).concat(chart.real === null ? [] : [chart.real]);
     const low = Math.min(...all), high = Math.max(...all) + 1;
     const step = Math.max(1, Math.ceil((high - low) / 18));
     const first = Math.floor(low / step) * step, bins = [];
     for (let from = first; from < high; from += step) {
-      const n = chart.values.filter((v) => v >= from && v < from + step).length;
-      bins.push({ from, to: from + step, last: from + step - 1, n, share: n / chart.values.length });
+      const n = chart.counts.reduce((sum, [count, times]) => sum + (count >= from && count < from + step ? times : 0), 0);
+      bins.push({ from, to: from + step, last: from + step - 1, n, share: n / runs });
     }
     const text = "(datum.from == datum.last ? datum.from : datum.from + ' to ' + datum.last) + ' " + chart.unit +
-      "\\n' + datum.n + ' of " + chart.values.length + " runs'";
+      "\\n' + datum.n + ' of " + runs + " runs'";
     const marks = [{ type: "rect", from: { data: "bins" }, encode: { enter: {
       x: { scale: "x", field: "from", offset: 0.5 }, x2: { scale: "x", field: "to", offset: -0.5 },
       y: { scale: "y", field: "share" }, y2: { scale: "y", value: 0 }, fill: { value: css("--bar") },

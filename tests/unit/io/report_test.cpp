@@ -35,7 +35,7 @@ TEST_CASE("names from files can't become markup or end a script", "[report]") {
   const std::string evil = "</script><script>alert(1)</script><b>&\"";
   report.title = report.footer = evil;
   report.paragraphs = {evil};
-  HistogramChart histogram{evil, evil, evil, evil, {1, 2}, {}};
+  HistogramChart histogram{evil, evil, evil, evil, {{1, 1}, {2, 3}}, {}};
   report.sections = {{evil, {evil}, {{{evil}, {{evil}}}}, {histogram}}};
   const std::string html = to_html(report);
   CHECK(count(html, "</script>") == scripts);

@@ -69,6 +69,7 @@ TEST_CASE("runs add up per trial and sensor", "[summary]") {
   summary.add_run("S2", std::array{5, 0});
   const std::vector<CellSummary> cells = summary.cells();
   REQUIRE(cells.size() == 4);
+  CHECK(cells[0].counts == Tally{{1, 1}, {3, 1}});
   CHECK((cells[0].runs == 2 && cells[0].min == 1 && cells[0].max == 3 && cells[0].mean == 2.0));
   CHECK_FALSE(cells[0].inside);
   CHECK(cells[1].inside == true);
