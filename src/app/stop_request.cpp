@@ -1,6 +1,7 @@
 #include "app/stop_request.hpp"
 
 #include <array>
+#include <atomic>
 #include <csignal>
 
 #include "pirsim/core/error.hpp"
@@ -8,7 +9,9 @@
 namespace pirsim::app {
 namespace {
 
-volatile std::sig_atomic_t caught = 0;  // a handler can't reach anything else
+// A handler can't reach anything else, and any thread may ask.
+std::atomic<int> caught = 0;
+static_assert(std::atomic<int>::is_always_lock_free);  // what a handler may touch
 constexpr std::array signals{SIGINT, SIGTERM};
 
 extern "C" void remember(int signal) { caught = signal; }
