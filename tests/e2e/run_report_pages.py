@@ -20,8 +20,9 @@ setTimeout(() => {
     const tip = document.getElementById("tip");
     let best = "";
     for (let i = 1; i < 12 && !best; ++i) for (let k = 1; k < 24 && !best; ++k) {
-      canvas.dispatchEvent(new MouseEvent("mousemove", { bubbles: true, clientX: box.left + box.width * k / 24,
-        clientY: box.top + box.height * i / 12 }));
+      const at = { bubbles: true, clientX: box.left + box.width * k / 24, clientY: box.top + box.height * i / 12 };
+      canvas.dispatchEvent(new PointerEvent("pointermove", at));  // what later Vegas listen to
+      canvas.dispatchEvent(new MouseEvent("mousemove", at));
       if (tip.style.visibility === "visible") best = tip.textContent;
     }
     shown.push(best);
