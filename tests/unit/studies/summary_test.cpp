@@ -67,6 +67,7 @@ TEST_CASE("runs add up per trial and sensor", "[summary]") {
   summary.add_run("S1", std::array{1, 2});
   summary.add_run("S1", std::array{3, 6});
   summary.add_run("S2", std::array{5, 0});
+  summary.add_run("S2", std::array{5, 0});
   const std::vector<CellSummary> cells = summary.cells();
   REQUIRE(cells.size() == 4);
   CHECK(cells[0].counts == Tally{{1, 1}, {3, 1}});
@@ -74,6 +75,7 @@ TEST_CASE("runs add up per trial and sensor", "[summary]") {
   CHECK_FALSE(cells[0].inside);
   CHECK(cells[1].inside == true);
   CHECK(cells[1].crps == Approx(1.0));  // mean |2-4|,|6-4| = 2, half the mean spread = 1
+  CHECK((cells[2].runs == 2 && cells[2].counts == Tally{{5, 2}} && cells[2].mean == 5.0));
   CHECK(cells[2].inside == false);
   const OverallSummary overall = summary.overall();
   CHECK(overall.cells == 2);
