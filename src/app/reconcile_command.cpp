@@ -32,7 +32,7 @@ reconcile::Settings settings_of(const ReconcileOptions& options) {
   settings.seed = options.seed;
   settings.threads = options.threads;
   const auto scaled = [&](std::uint32_t n) {
-    return std::max(reconcile::fewest_datasets_to_refuse,
+    return std::max(reconcile::fewest_datasets_to_refuse(options.alpha),
                     static_cast<std::uint32_t>(static_cast<double>(n) * options.budget));
   };
   settings.table.threads = options.threads;

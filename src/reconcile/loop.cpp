@@ -130,10 +130,11 @@ void Loop::tell_first(const Step& first) {
   outcome_.table_key = lab.key;
 }
 
-/// Fewer datasets: what is left to be found is found in a third of them. Kept beside the first table.
+/// Fewer datasets: what is left to be found is found in a third of them, if these can rule anything out at the lower
+/// level. Kept beside the first table.
 Settings Loop::with_all(double level) const {
   Settings settings = settings_;
-  const auto third = [](std::uint32_t n) { return std::max(fewest_datasets_to_refuse, n / 3); };
+  const auto third = [level](std::uint32_t n) { return std::max(fewest_datasets_to_refuse(level), n / 3); };
   settings.alpha = level;
   settings.table.n_worlds = third(settings.table.n_worlds);
   settings.table.n_remembered = third(settings.table.n_remembered);
@@ -173,6 +174,11 @@ void Loop::conclude() {
     outcome_.verdict = Verdict::several;
     outcome_.named = names();
     outcome_.fits = put_in_;
+    for (Candidate& candidate : outcome_.candidates) {
+      if (std::ranges::find(outcome_.named, candidate.score.entry) == outcome_.named.end()) continue;
+      candidate.kept = true;
+      candidate.reason = "Kept, together with the others named. By itself: " + candidate.reason;
+    }
   } else if (outcome_.verdict == Verdict::none_in_catalogue) {
     put_in_.clear();
   }

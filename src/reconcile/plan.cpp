@@ -146,7 +146,7 @@ std::vector<std::vector<double>> confusion_of(const Laboratory& lab, const Judge
 /// A tenth of what naming takes: designs are compared on the same worlds, so that few suffice.
 Settings with_fewer_worlds(Settings settings) {
   for (std::uint32_t* n : {&settings.table.n_worlds, &settings.table.n_remembered, &settings.table.n_traced}) {
-    *n = std::max(fewest_datasets_to_refuse, *n / 10);
+    *n = std::max(fewest_datasets_to_refuse(settings.alpha), *n / 10);
   }
   return settings;
 }

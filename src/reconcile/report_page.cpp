@@ -38,6 +38,13 @@ io::ReportSection envelope(const Location& location, double alpha) {
   return section;
 }
 
+/// Of the model with effects put in.
+std::string what_a_look_showed(const Look& look) {
+  return "With " + joined(look.put_in, "and") + " put in, the model " +
+         (look.p > look.level ? "can have made these data" : "still differs from the data") +
+         " (p = " + short_number(look.p) + ").";
+}
+
 io::ReportSection candidates(const Outcome& outcome) {
   io::ReportSection section{"What it may be", {}, {}, {}};
   if (outcome.verdict == Verdict::no_disagreement) {
@@ -46,6 +53,7 @@ io::ReportSection candidates(const Outcome& outcome) {
   }
   section.paragraphs.push_back("Every effect of the catalogue was simulated many times in rooms like this one.");
   section.charts.emplace_back(ranking_chart(outcome));
+  for (const Look& look : outcome.looks) section.paragraphs.push_back(what_a_look_showed(look));
   return section;
 }
 
@@ -80,16 +88,17 @@ io::ReportSection strength(const std::vector<FittedEffect>& fits) {
 }
 
 std::string what_is_shown(const Verification& v) {
-  if (v.closed) return "With the effect, the model agrees with trials that it was not fitted on.";
-  if (v.shrunk) return "With the effect, the model is closer to trials that it was not fitted on, but still differs.";
-  return "That the model is closer with the effect is not shown.";
+  if (v.closed) return "With what was put in, the model agrees with trials that it was not fitted on.";
+  if (v.shrunk)
+    return "With what was put in, the model is closer to trials that it was not fitted on, but still differs.";
+  return "That the model is closer with what was put in is not shown.";
 }
 
 io::ReportSection held_out(const Verification& v, const std::string& named) {
   io::ReportSection section{"Does it help", {}, {}, {}};
   section.paragraphs = {
       what_is_shown(v),
-      "Trials were set aside, the effect was sought and fitted without them, and then they were compared with the "
+      "Trials were set aside, what is missing was sought and fitted without them, and then they were compared with the "
       "model before and after, " +
           std::to_string(v.n_folds) + " times over. A trial gets nearer by " + short_number(v.gain.low) + " to " +
           short_number(v.gain.high) + " on average (95 % interval); " + fixed(100.0 * v.share_closed, 0) +

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the image of tools/container and runs it, where there is an engine. Elsewhere it lints the recipes and exits
-# with 77, a skip for CTest: what can't be built here is said, not passed.
+# Builds the image of tools/container and runs Study A in it, where there is an engine. Elsewhere it lints the recipes
+# and exits with 77, a skip for CTest: what can't be built here is said, not passed.
 # Usage: run_container.sh SOURCE_DIR
 set -euo pipefail
 cd "$1"
@@ -10,7 +10,9 @@ say() { echo "container: $*" >&2; }
 for engine in docker podman; do
   if command -v "$engine" >/dev/null && "$engine" info >/dev/null 2>&1; then
     "$engine" build -q -f $recipes/Dockerfile -t pirsim-test .
-    "$engine" run --rm pirsim-test --version
+    rows=$("$engine" run --rm -v "$PWD/data:/work/data:ro" pirsim-test --scene data/rooms/meeting_room.gltf \
+      --script data/studies/studyA.yaml --replicates 1 | wc -l)
+    [ "$rows" -gt 1800 ] || { say "Study A has $rows rows in the image, too few for ten trials of 180 s"; exit 1; }
     exit 0
   fi
 done

@@ -23,9 +23,12 @@ struct TableSettings {
   bool operator==(const TableSettings&) const = default;
 };
 
-/// Two fifths calibrate, and two tests are combined: with fewer datasets of an entry no p-value reaches 0.05, so that
-/// nothing could ever be ruled out.
-inline constexpr std::uint32_t fewest_datasets_to_refuse = 110;
+/// Two fifths calibrate, and two tests are combined, so that p of an entry can't fall below 5 / (its number of
+/// datasets): with fewer than these, which leave a tenth for worlds in which nobody can get about, nothing is ever
+/// ruled out at the level.
+[[nodiscard]] constexpr std::uint32_t fewest_datasets_to_refuse(double level) {
+  return static_cast<std::uint32_t>(5.5 / level + 0.5);
+}
 
 /// One simulated dataset. The same world gives the same room and people for every entry.
 struct TableRow {

@@ -288,6 +288,58 @@ TEST_CASE("the whole loop writes a patched script that runs and closes the gap",
   for (const Candidate& candidate : outcome.candidates) CHECK_THAT(page, contains(candidate.score.entry));
 }
 
+TEST_CASE("with the fewest datasets that can refuse p falls below the level, with an eighth fewer it can't",
+          "[reconcile]") {
+  for (const double level : {0.05, 0.025, 0.0125, 0.01}) {
+    const double n = fewest_datasets_to_refuse(level);
+    const auto least_p = [](double datasets) { return 2.0 / (1.0 + std::floor(0.4 * datasets)); };
+    CHECK(least_p(n) <= level);
+    CHECK(least_p(0.875 * n) > level);
+  }
+}
+
+TEST_CASE("two effects at once are found one after the other", "[reconcile][three-seats]") {
+  const TemporaryFolder folder;
+  const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
+  const EffectSpec swapped{"labels_swapped", {}, {{"sensor", "PIR2"}, {"other", "PIR5"}}, {}};
+  ScriptSpec hidden = short_study();
+  hidden.seed = 99;
+  hidden.effects = {many_false_triggers, swapped};
+  Measured measured;
+  measured.digest = sha256("two hidden");
+  run_study(compile(scene, hidden), {}, [&](const RunResult& result) {
+    measured.runs.push_back(*series_of(laboratory().frame, 1, result.trial, result.samples));
+  });
+  Settings settings = quick();
+  settings.table.entries = {"false_triggers", "labels_swapped"};
+  const Outcome outcome = reconcile::reconcile(scene, short_study(), measured, settings);
+  CHECK(outcome.verdict == Verdict::several);
+  CHECK(std::set(outcome.named.begin(), outcome.named.end()) ==
+        std::set<std::string>{"false_triggers", "labels_swapped"});
+  // Neither will do alone, and each look is at half the level of the one before.
+  REQUIRE(outcome.looks.size() == 2);
+  CHECK(outcome.looks[0].level == settings.alpha / 2.0);
+  CHECK(outcome.looks[0].p <= outcome.looks[0].level);
+  CHECK(outcome.looks[1].level == settings.alpha / 4.0);
+  CHECK(outcome.looks[1].p > outcome.looks[1].level);
+  REQUIRE(outcome.verification);
+  CHECK(outcome.verification->n_better == 3);
+  write_outputs(folder.path(), outcome, measured, short_study(), settings, {"p", "s", "t", "m"});
+  const ScriptSpec patched = io::read_script(folder.path() / "script_patched.yaml");
+  REQUIRE(patched.effects.size() == 2);
+  for (const EffectSpec& effect : patched.effects) {
+    if (effect.name == "labels_swapped") CHECK(effect.choices == swapped.choices);
+  }
+  std::ifstream page_file(folder.path() / "report.html");
+  const std::string page{std::istreambuf_iterator<char>(page_file), {}};
+  CHECK_THAT(page, contains("With labels_swapped put in, the model still differs") &&
+                       contains("With labels_swapped and false_triggers put in, the model can have made these data"));
+  for (const Candidate& candidate : outcome.candidates) {
+    CHECK(candidate.kept);
+    CHECK_THAT(candidate.reason, contains("together with the others named. By itself: Dropped"));
+  }
+}
+
 TEST_CASE("the seed of the script plays no part in the analysis", "[reconcile][three-seats]") {
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
   ScriptSpec one = short_study(), other = short_study();
