@@ -142,6 +142,7 @@ std::vector<TrialSpec> read_trials(const std::optional<YamlNode>& node, const st
   for (const Variables& variables : all) {
     TrialSpec& trial = trials.emplace_back();
     trial.id = substitute(pattern, variables, map.where("id"), found);
+    if (trial.id.empty()) found.error(map.where("id"), "trials: id: expected a text that isn't empty");
     trial.people = read_people(people, variables, body_meshes, found);
     if (!ids.insert(trial.id).second) found.error(map.where("id"), "a second trial '" + trial.id + "'");
   }

@@ -42,18 +42,21 @@ class TreeBuilder final : public YAML::EventHandler {
     if (found == anchors_.end()) refuse(mark, "an alias inside of what it stands for");
     attach(found->second);
   }
-  void OnScalar(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t anchor,
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
+    refuse_unknown(tag, mark);
     if (expects_key()) return add_key(mark, value);
     add({YamlTree::Kind::scalar, place(mark), value, {}, {}}, anchor);
   }
-  void OnSequenceStart(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t anchor,
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value /*style*/) override {
+    refuse_unknown(tag, mark);
     open(YamlTree::Kind::list, mark, anchor);
   }
   void OnSequenceEnd() override { close(); }
-  void OnMapStart(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t anchor,
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                   YAML::EmitterStyle::value /*style*/) override {
+    refuse_unknown(tag, mark);
     open(YamlTree::Kind::map, mark, anchor);
   }
   void OnMapEnd() override { close(); }
@@ -75,6 +78,12 @@ class TreeBuilder final : public YAML::EventHandler {
   void refuse_as_key(const YAML::Mark& mark) const {
     // yaml-cpp takes a bracket that is never closed for a key.
     if (expects_key()) refuse(mark, "expected a name as key (is a bracket left open?)");
+  }
+  /// `!3` is a tag and an empty value, which somebody who writes it seldom means. Standard tags say what pirsim expects
+  /// anyway; `?` and `!` are what yaml-cpp says of values without one.
+  void refuse_unknown(const std::string& tag, const YAML::Mark& mark) const {
+    if (tag.empty() || tag == "?" || tag == "!" || tag.starts_with("tag:yaml.org,2002:")) return;
+    refuse(mark, "the tag '" + tag + "' isn't known (a text that begins with ! stands in quotes)");
   }
   void add_key(const YAML::Mark& mark, const std::string& name) {
     Open& map = open_.back();

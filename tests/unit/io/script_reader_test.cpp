@@ -85,6 +85,12 @@ TEST_CASE("every fault of a script is told at once, each with its place") {
   CHECK(text.find(":7:17: error: wait_s") != std::string::npos);
 }
 
+TEST_CASE("a trial's name may not become empty by what is filled in") {
+  const std::string text =
+      "pirsim_script: 1\ntrials:\n  for_each: {seat: [S1, \"\"]}\n  id: ${seat}\npeople: [{id: a}]\n";
+  CHECK(fault(text).find(":4:7: error: trials: id: expected a text that isn't empty") != std::string::npos);
+}
+
 TEST_CASE("two actions in one entry, an entry without one, and two people of one name are refused") {
   const std::string people = "pirsim_script: 1\npeople:\n  - id: a\n    actions:\n";
   CHECK(fault(people + "      - {sit: S1, rise: }\n").find("one action an entry") != std::string::npos);
