@@ -1,16 +1,50 @@
 // A sensor hangs higher or lower than drawn.
+#include <algorithm>
+
 #include "effects/entries.hpp"
 #include "effects/kit.hpp"
 #include "effects/parameter.hpp"
+#include "geom/triangle_test.hpp"
+#include "pirsim/core/error.hpp"
 
 namespace pirsim::effects {
 namespace {
 
+bool touches(const TriMesh& mesh, const Vec3& from, double height_m) {
+  constexpr double clear_m = 0.001;  // assumed: what sees is in front of what it is screwed to
+  return height_m != 0.0 && std::ranges::any_of(mesh.triangles, [&](const auto& triangle) {
+           const double ways = distance_to_triangle(from, Vec3(0, height_m, 0), mesh.positions[triangle[0]],
+                                                    mesh.positions[triangle[1]], mesh.positions[triangle[2]]);
+           return ways >= 0.0 && ways <= 1.0 + clear_m / std::abs(height_m);
+         });
+}
+
+/// What a sensor would have to go through, if anything: most hang just below a ceiling.
+const TriMesh* in_the_way(const SceneSpec& scene, const SensorSpec& sensor, double height_m) {
+  const auto mesh = std::ranges::find_if(
+      scene.meshes, [&](const TriMesh& m) { return touches(m, sensor.world_from_sensor.origin, height_m); });
+  return mesh == scene.meshes.end() ? nullptr : &*mesh;
+}
+
 void alter(SceneSpec& scene, ScriptSpec&, const EffectSpec& effect) {
+  const double height_m = effect.parameters.at("height_m");
   for (const std::uint32_t i : sensors_of(effect, scene)) {
-    Frame& frame = scene.sensors[i].world_from_sensor;
-    frame.origin.y += effect.parameters.at("height_m");
+    SensorSpec& sensor = scene.sensors[i];
+    if (const TriMesh* mesh = in_the_way(scene, sensor, height_m)) {
+      throw Error(ErrorCode::infeasible, effect.where,
+                  "sensor_height: " + sensor.id + " would hang in or behind '" + mesh->name + "'");
+    }
+    sensor.world_from_sensor.origin.y += height_m;
   }
+}
+
+/// Where there is no room above, sensors hang lower.
+void draw(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec&, Stream&) {
+  double& height_m = effect.parameters.at("height_m");
+  const std::vector<std::uint32_t> sensors = sensors_of(effect, scene);
+  const bool no_room = std::ranges::any_of(
+      sensors, [&](std::uint32_t i) { return in_the_way(scene, scene.sensors[i], height_m) != nullptr; });
+  if (no_room) height_m = -height_m;
 }
 
 }  // namespace
@@ -20,13 +54,15 @@ const Effect& sensor_height() {
       .info = {.name = "sensor_height",
                .family = Family::mounting,
                .stage = "placement",
-               .summary = "Sensors hang higher (positive) or lower than drawn.",
+               .summary = "Sensors hang higher (positive) or lower than drawn; not through a ceiling.",
                .fingerprint = "near and far seats change oppositely, as with tilt",
                .confused_with = {"sensor_tilt", "seat_shift"},
-               .parameters = {offset("height_m", "m", 0.3, -0.15, 3.0, "assumed: measured from the wrong edge")},
+               .parameters = {offset("height_m", "m", 0.3, -0.15, 3.0,
+                                     "assumed: measured from the wrong edge; down where a ceiling is above")},
                .choices = {sensor_choice()},
                .reach = Reach::geometry},
-      .alter = alter};
+      .alter = alter,
+      .draw = draw};
   return effect;
 }
 

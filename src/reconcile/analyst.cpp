@@ -73,13 +73,14 @@ Outcome Analyst::analyse(std::span<const float> measured) const {
   return outcome;
 }
 
-/// Fits the effect that a name was given to, and withdraws the name if its strength may as well be none.
+/// Fits the effect that a name was given to, and takes the name back if its strength may as well be none.
 void Analyst::fit_named(Outcome& outcome, std::span<const float> measured) const {
   if (outcome.verdict == Verdict::named) {
     Candidate& candidate = outcome.candidates.front();
     FittedEffect fitted = fit(entry_of(view_->table(), candidate.score.entry), measured);
-    if (fitted.includes_off) {
-      outcome.trail.push_back("the interval of " + candidate.score.entry + " includes off: the name is withdrawn");
+    if (fitted.includes_off) outcome.trail.push_back("the interval of " + candidate.score.entry + " includes off");
+    if (takes_back(fitted, outcome.location.p)) {
+      outcome.trail.push_back("the name is taken back");
       candidate.reason = "Kept, but not named: its strength may as well be none.";
       outcome.verdict = Verdict::one_of;
     } else {

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <utility>
 
 #include "pirsim/reconcile/locate.hpp"
-#include "pirsim/stats/discriminant.hpp"
 #include "reconcile/entry_guess.hpp"
+#include "reconcile/flat_scale.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -17,43 +15,6 @@ using effects::ParameterInfo;
 constexpr double accepted_share = 0.3;
 constexpr std::size_t fewest_accepted = 40;    ///< or all, in a small table
 constexpr std::size_t fewest_neighbours = 80;  ///< whose intervals are tried; or all
-
-/// What of an effect isn't a matter of more or less: its choices, and parameters whose range is one number (of which
-/// the sign may be drawn).
-using Kind = std::pair<std::map<std::string, std::string, std::less<>>, std::vector<double>>;
-
-std::vector<std::string> parameters_of_one_size(const EffectSpec& effect) {
-  std::vector<std::string> names;
-  for (const ParameterInfo& info : effects::find(effect.name).info.parameters) {
-    if (!(info.low < info.high)) names.push_back(info.name);
-  }
-  return names;
-}
-
-/// The likeliest kind of the effect, by a discriminant between the kinds that its training datasets have.
-void choose(const ReferenceTable& table, const EntryDatasets& training, std::span<const float> measured,
-            EffectSpec& effect) {
-  const std::vector<std::string> of_one_size = parameters_of_one_size(effect);
-  std::map<Kind, int> numbers;
-  std::vector<Kind> kinds;
-  std::vector<int> labels;
-  for (const std::size_t row : training.rows) {
-    const EffectSpec& drawn = table.rows[row].effects.front();
-    Kind kind{drawn.choices, {}};
-    for (const std::string& name : of_one_size) kind.second.push_back(drawn.parameters.at(name));
-    const auto [known, is_new] = numbers.try_emplace(kind, static_cast<int>(kinds.size()));
-    if (is_new) kinds.push_back(std::move(kind));
-    labels.push_back(known->second);
-  }
-  std::size_t likeliest = 0;
-  if (kinds.size() > 1) {
-    const auto discriminant = stats::Discriminant::fit(training.features, labels, static_cast<int>(kinds.size()));
-    const std::vector<double> densities = discriminant.log_densities(measured);
-    likeliest = static_cast<std::size_t>(std::ranges::max_element(densities) - densities.begin());
-  }
-  effect.choices = kinds[likeliest].first;
-  for (std::size_t i = 0; i < of_one_size.size(); ++i) effect.parameters[of_one_size[i]] = kinds[likeliest].second[i];
-}
 
 /// The posterior at a guess, from the held-back datasets but one (or all, if `without` is none of them).
 stats::AbcPosterior posterior_of(const EntryGuess& entry, std::span<const double> guess, std::size_t without) {
@@ -96,11 +57,11 @@ double reach(const stats::AbcPosterior& posterior, std::size_t parameter, double
 /// (n_parameters) By how much intervals must be stretched about their medians so that of held-back datasets near the
 /// measured one `confidence` lie in theirs: a conformal interval, the posterior being the measure of strangeness.
 std::vector<double> widening_of(const EntryGuess& entry, std::span<const double> guess, double confidence) {
-  std::vector<std::vector<double>> reaches(guess.size());
+  const std::size_t n = entry.infos().size();
+  std::vector<std::vector<double>> reaches(n);
   for (const std::size_t row : neighbours_of(entry, guess)) {
     const stats::AbcPosterior own = posterior_of(entry, entry.guesses().row(row), row);
-    for (std::size_t p = 0; p < guess.size(); ++p)
-      reaches[p].push_back(reach(own, p, confidence, entry.parameters()(row, p)));
+    for (std::size_t p = 0; p < n; ++p) reaches[p].push_back(reach(own, p, confidence, entry.parameters()(row, p)));
   }
   std::vector<double> widening;
   for (std::vector<double>& values : reaches) {
@@ -119,9 +80,16 @@ FittedEffect fit_from_table(const ReferenceTable& table, const FeatureMap& map, 
   FittedEffect fitted;
   fitted.effect.name = table.entry_name(entry);
   const std::vector<float> features = map.features(measured);
-  const EntryDatasets training(table, map, rows_of(table, entry, Part::training), settings.threads);
-  choose(table, training, features, fitted.effect);
-  const EntryGuess guess(table, entry, training, {table, map, held_back, settings.threads});
+  const auto datasets = [&](std::span<const std::size_t> rows) {
+    return EntryDatasets{rows, map.features(table.statistics.select_rows(rows), settings.threads)};
+  };
+  const std::vector<std::size_t> training = rows_of(table, entry, Part::training);
+  const EntryGuess guess(table, entry, datasets(training), datasets(held_back));
+  const EffectSpec& alike = guess.kind_of(features);
+  fitted.effect.choices = alike.choices;
+  for (const ParameterInfo& info : effects::find(fitted.effect.name).info.parameters) {
+    if (!(info.low < info.high)) fitted.effect.parameters[info.name] = alike.parameters.at(info.name);
+  }
   if (guess.infos().empty()) return fitted;
 
   const std::vector<double> observed = guess.of(features);

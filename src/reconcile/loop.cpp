@@ -162,6 +162,7 @@ void Loop::put_in_more() {
     begin("what is missing beside " + joined(names()));
     const Step& more = look(with_all(level), level);
     outcome_.trail.push_back("looked for more: " + std::string(name(more.outcome.verdict)));
+    if (more.outcome.verdict == Verdict::one_of) outcome_.looks.back().one_of = more.outcome.named;
     if (more.outcome.verdict != Verdict::named) return;
     put_in_.push_back(more.outcome.fits.front());
   }
@@ -184,8 +185,7 @@ void Loop::conclude() {
   }
   outcome_.sentence = verdict_sentence(outcome_, settings_.alpha);
   if (!passes_ && !put_in_.empty()) {
-    outcome_.sentence += " That is not all: the model with " + joined(names()) +
-                         " put in still differs from the data (p = " + short_number(outcome_.looks.back().p) + ").";
+    outcome_.sentence += " That is not all. " + what_a_look_showed(outcome_.looks.back());
   }
 }
 

@@ -6,12 +6,14 @@
 
 #include "pirsim/core/error.hpp"
 #include "pirsim/reconcile/locate.hpp"
+#include "reconcile/kinds.hpp"
 
 namespace pirsim::reconcile {
 namespace {
 
 constexpr std::size_t fewest_training = 20;  ///< datasets of an entry: fewer have no shape
 constexpr std::size_t fewest_calibration = 10;
+constexpr std::size_t fewest_of_kind = 10;  ///< training datasets: the mean of fewer is noise
 
 /// The rows that the global test sees something in; if they are few the next ones too, so that p can fall below alpha:
 /// two tests in one need 2 / alpha rows, half as many again tell more than whether it does (40 to 80 rows were tried).
@@ -48,13 +50,16 @@ SeenRows seen_rows(const TableView& view, double alpha) {
 
 LabelledRows::LabelledRows(const ReferenceTable& table, const SeenRows& seen, std::string_view left_out)
     : n_entries(table.n_entries()) {
-  const auto add = [&](const std::vector<std::size_t>& more, std::vector<std::size_t>& part) {
-    for (const std::size_t row : more) {
+  const auto add = [&](const std::vector<std::size_t>& more, const std::vector<int>& kinds_of_more,
+                       std::vector<std::size_t>& part) {
+    for (std::size_t i = 0; i < more.size(); ++i) {
       part.push_back(rows.size());
-      rows.push_back(row);
+      rows.push_back(more[i]);
       labels.push_back(static_cast<int>(entries.size()));
+      kinds.push_back(kinds_of_more[i]);
     }
   };
+  int n_kinds = 0;
   for (std::size_t entry = 0; entry < n_entries; ++entry) {
     if (table.entry_name(entry) == left_out) continue;
     const std::vector<std::size_t> training = rows_of(table, entry, Part::training);
@@ -65,8 +70,11 @@ LabelledRows::LabelledRows(const ReferenceTable& table, const SeenRows& seen, st
                                              std::to_string(training.size() + n_calibration) +
                                              "): simulate more worlds");
     }
-    add(training, split.fitting);
-    add(seen.at(entry), split.calibration);
+    std::vector<int> alike = number_alike(table, training, fewest_of_kind);
+    for (int& kind : alike) kind += n_kinds;
+    n_kinds = std::ranges::max(alike) + 1;
+    add(training, alike, split.fitting);
+    add(seen.at(entry), std::vector<int>(seen.at(entry).size(), -1), split.calibration);
     entries.push_back(entry);
   }
 }
@@ -92,7 +100,7 @@ EntryProbabilities::EntryProbabilities(const ReferenceTable& table, const Featur
       data_(table, seen, ""),
       classifier_(stats::PooledClassifier::fit(map.features(table.statistics.select_rows(data_.rows), settings.threads),
                                                data_.labels, static_cast<int>(data_.entries.size()), data_.split,
-                                               settings)) {}
+                                               settings, data_.kinds)) {}
 
 std::vector<double> EntryProbabilities::of(std::span<const float> statistics) const {
   return data_.by_entry(classifier_.probabilities(map_->features(statistics)));
@@ -110,8 +118,9 @@ Namer::Namer(const TableView& view, const NamerSettings& settings)
   conformal.shapes.seed = settings.seed;
   conformal.shapes.threads = settings.threads;
   conformal.blocks = view.map().blocks();
-  classifier_ = stats::ConformalClassifier::fit(view.features().select_rows(data_.rows), data_.labels,
-                                                static_cast<int>(data_.entries.size()), data_.split, conformal);
+  classifier_ =
+      stats::ConformalClassifier::fit(view.features().select_rows(data_.rows), data_.labels,
+                                      static_cast<int>(data_.entries.size()), data_.split, conformal, data_.kinds);
   std::vector<int> labels;
   for (const std::size_t place : data_.split.calibration) labels.push_back(data_.labels[place]);
   reliability_ = stats::reliability(classifier_.calibration_probabilities(), labels);

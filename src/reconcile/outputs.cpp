@@ -154,7 +154,7 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
   json["fits"] = fits;
   Json looks = Json::array();
   for (const Look& look : outcome.looks)
-    looks.push_back({{"put_in", look.put_in}, {"level", look.level}, {"p", look.p}});
+    looks.push_back({{"put_in", look.put_in}, {"level", look.level}, {"p", look.p}, {"one_of", look.one_of}});
   json["looks"] = looks;
   json["verification"] = outcome.verification ? to_json(*outcome.verification) : Json();
   json["residuals"] = outcome.residuals ? to_json(*outcome.residuals) : Json();

@@ -6,6 +6,7 @@
 #include "pirsim/effects/catalogue.hpp"
 #include "pirsim/reconcile/selftest.hpp"
 #include "reconcile/aliens.hpp"
+#include "reconcile/flat_scale.hpp"
 #include "reconcile/table_store.hpp"
 
 namespace pirsim::reconcile {
@@ -22,11 +23,6 @@ struct Plan {
   const effects::Effect* effect = nullptr;  ///< of one effect, or one beyond the prior
   const Alien* alien = nullptr;
 };
-
-/// The scale on which a prior is flat.
-double to_flat(const effects::ParameterInfo& info, double value) {
-  return info.scale == effects::Scale::logarithmic ? std::log(std::clamp(value, info.low, info.high)) : value;
-}
 
 bool comes_in_strengths(const effects::Effect& effect) {
   return !effect.info.parameters.empty() && effect.info.parameters.front().low < effect.info.parameters.front().high;
@@ -155,7 +151,7 @@ Strength strength_of(const EffectSpec& spec) {
   const effects::Effect& effect = effects::find(spec.name);
   if (!comes_in_strengths(effect)) return Strength::medium;
   const effects::ParameterInfo& first = effect.info.parameters.front();
-  const double off = to_flat(first, std::clamp(first.off, first.low, first.high));
+  const double off = to_flat(first, first.off);
   const double most = std::max(to_flat(first, first.high) - off, off - to_flat(first, first.low));
   const double distance =
       std::abs(to_flat(first, spec.parameters.at(first.name)) - off) / most;  // of the prior, 0 to 1

@@ -38,13 +38,6 @@ io::ReportSection envelope(const Location& location, double alpha) {
   return section;
 }
 
-/// Of the model with effects put in.
-std::string what_a_look_showed(const Look& look) {
-  return "With " + joined(look.put_in, "and") + " put in, the model " +
-         (look.p > look.level ? "can have made these data" : "still differs from the data") +
-         " (p = " + short_number(look.p) + ").";
-}
-
 io::ReportSection candidates(const Outcome& outcome) {
   io::ReportSection section{"What it may be", {}, {}, {}};
   if (outcome.verdict == Verdict::no_disagreement) {

@@ -44,7 +44,7 @@ PlantedCase judged(const Laboratory& lab, const Analyst& analyst, const Planted&
   if (!result.named.empty() && judgement.family.is_sure()) result.family = judgement.family.family;
   if (result.verdict != Verdict::named) return result;
   const FittedEffect fitted = analyst.fit(entry_of(lab.table, result.named.front()), planted.statistics);
-  if (fitted.includes_off) {
+  if (analyst.takes_back(fitted, result.p)) {
     result.verdict = Verdict::one_of;
     return result;
   }

@@ -125,6 +125,7 @@ std::string in_words(const FittedEffect& fitted) {
     details += (details.empty() ? "" : ", ") + choice + " " + value;
   }
   if (!details.empty()) text += " with " + details;
+  if (fitted.includes_off) text += ", a strength that these data hardly tell from none";
   for (const std::string& twin : effects::twins_of(fitted.effect.name))
     text += " (or " + twin + ", the same in the model)";
   return text;
@@ -151,6 +152,16 @@ std::string verdict_sentence(const Outcome& outcome, double alpha) {
   }
   return "The model lacks something that is not in the catalogue: " + where(outcome, alpha) + ", and " +
          no_effect(outcome, alpha) + ".";
+}
+
+std::string what_a_look_showed(const Look& look) {
+  std::string text = "With " + joined(look.put_in, "and") + " put in, the model " +
+                     (look.p > look.level ? "can have made these data" : "still differs from the data") +
+                     " (p = " + short_number(look.p) + ").";
+  if (look.one_of.size() == 1) text += " What is missing beside it may be " + look.one_of.front() + ".";
+  if (look.one_of.size() > 1)
+    text += " What is missing beside it may be " + joined(look.one_of, "or") + ": these data can't tell.";
+  return text;
 }
 
 std::string reason_of_unlikely(const Candidate& candidate, const Candidate& named) {

@@ -12,6 +12,8 @@ namespace pirsim::reconcile {
 /// Of one that isn't ruled out while another is named.
 [[nodiscard]] std::string reason_of_unlikely(const Candidate& candidate, const Candidate& named);
 [[nodiscard]] std::string in_words(const FittedEffect& fitted);
+/// Of the model with effects put in.
+[[nodiscard]] std::string what_a_look_showed(const Look& look);
 /// What a reader may do with the verdict.
 [[nodiscard]] std::string next_step(const Outcome& outcome);
 /// "a, b or c"

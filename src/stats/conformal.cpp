@@ -58,9 +58,10 @@ std::vector<std::size_t> prediction_set(std::span<const double> p, double alpha)
 }
 
 ConformalClassifier ConformalClassifier::fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
-                                             const Split& split, const ConformalSettings& settings) {
+                                             const Split& split, const ConformalSettings& settings,
+                                             std::span<const int> subclasses) {
   ConformalClassifier fitted;
-  fitted.pooled_ = PooledClassifier::fit(features, labels, n_classes, split, settings.pooled);
+  fitted.pooled_ = PooledClassifier::fit(features, labels, n_classes, split, settings.pooled, subclasses);
   fitted.blocks_ = checked_blocks(settings.blocks, features.columns());
   {
     const Matrix<float> fitting = features.select_rows(split.fitting);

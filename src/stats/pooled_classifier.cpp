@@ -54,13 +54,15 @@ Split split_by_class(std::span<const int> labels, double calibration_share, std:
 }
 
 PooledClassifier PooledClassifier::fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
-                                       const Split& split, const PooledClassifierSettings& settings) {
+                                       const Split& split, const PooledClassifierSettings& settings,
+                                       std::span<const int> subclasses) {
   require(labels.size() == features.rows(), "classes: rows and labels differ in number");
   const std::vector<int> fitting_labels = detail::select(labels, split.fitting);
   PooledClassifier fitted;
   {
     const Matrix<float> fitting = features.select_rows(split.fitting);
-    fitted.discriminant_ = Discriminant::fit(fitting, fitting_labels, n_classes);
+    const std::vector<int> parts = subclasses.empty() ? fitting_labels : detail::select(subclasses, split.fitting);
+    fitted.discriminant_ = MixtureDiscriminant::fit(fitting, fitting_labels, n_classes, parts, settings.coordinates);
     const Matrix<double> places = fitted.discriminant_.project(fitting, settings.threads);
     fitted.layers_ = NormalLayers::fit(places, fitting_labels, n_classes, settings.layers);
     fitted.trees_ = ExtraTrees::fit(with_coordinates(fitting, places), fitting_labels, n_classes, settings.trees);

@@ -41,6 +41,11 @@ class Analyst {
   [[nodiscard]] std::size_t likeliest(std::span<const float> measured,
                                       const std::function<bool(std::size_t)>& wanted) const;
   [[nodiscard]] FittedEffect fit(std::size_t entry, std::span<const float> measured) const;
+  /// A name is taken back if the effect's strength may as well be none; unless the global test, whose p is given,
+  /// refuses the plain model at a fifth of the level: then it isn't none, but poorly known.
+  [[nodiscard]] bool takes_back(const FittedEffect& fitted, double p) const noexcept {
+    return fitted.includes_off && p > settings_.alpha / 5.0;
+  }
   [[nodiscard]] const FeatureMap& map() const noexcept { return view_->map(); }
   [[nodiscard]] const Namer& namer() const noexcept { return namer_; }
 

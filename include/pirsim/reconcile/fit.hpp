@@ -25,7 +25,7 @@ struct FittedParameter {
 struct FittedEffect {
   EffectSpec effect;  ///< with the fitted parameters, as a script takes it
   std::vector<FittedParameter> parameters;
-  bool includes_off = false;  ///< every strength's interval holds its `off`: the name is withdrawn
+  bool includes_off = false;  ///< every strength's interval holds its `off`
 };
 
 struct FitSettings {

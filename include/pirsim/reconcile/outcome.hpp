@@ -29,8 +29,9 @@ struct Candidate {
 /// A look at the measured data with some effects put into the model.
 struct Look {
   std::vector<std::string> put_in;
-  double level = 0.05;  ///< of the global test; halved with every effect
-  double p = 1.0;       ///< of the global test
+  double level = 0.05;                   ///< of the global test; halved with every effect
+  double p = 1.0;                        ///< of the global test
+  std::vector<std::string> one_of = {};  ///< effects, one of which may be missing beside these and can't be told
 };
 
 struct Outcome {

@@ -41,10 +41,11 @@ class ConformalClassifier {
   ConformalClassifier() = default;
   /// features: (n_rows x n_columns), finite; labels: (n_rows) in [0, n_classes); each class ten times or more among the
   /// fitting rows and once or more among the calibration rows. Rows that depend on each other must be on one side of
-  /// the split.
+  /// the split. subclasses: of PooledClassifier::fit().
   [[nodiscard]] static ConformalClassifier fit(const Matrix<float>& features, std::span<const int> labels,
                                                int n_classes, const Split& split,
-                                               const ConformalSettings& settings = {});
+                                               const ConformalSettings& settings = {},
+                                               std::span<const int> subclasses = {});
   [[nodiscard]] Classification classify(std::span<const float> features) const;
   /// One a row.
   [[nodiscard]] std::vector<Classification> classify(const Matrix<float>& features, unsigned threads = 0) const;

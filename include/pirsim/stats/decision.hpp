@@ -25,8 +25,7 @@ struct DecisionLevels {
   double alpha = 0.05;  ///< a candidate survives if its p exceeds it
   /// An effect at least as probable is named though others survive: their own tests lack the power to refuse them. On
   /// 1,620 planted datasets (Study A, one run) 0.8, 0.85, 0.9 and 0.95 gave the right name in 0.80, 0.79, 0.78 and 0.76
-  /// of the disagreements and a wrong one in 0.9, 0.6, 0.4 and 0.3 % of all. A family whose effects are as probable
-  /// together is said.
+  /// of the disagreements and a wrong one in 0.9, 0.6, 0.4 and 0.3 % of all.
   double sure = 0.85;
   /// What survives must be as probable together, else likelier effects were ruled out and nothing of the catalogue made
   /// the data. One half: more probable than not. On planted datasets it drops the truth in 5 of 1,124 disagreements and

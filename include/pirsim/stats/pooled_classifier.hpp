@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "pirsim/stats/calibration.hpp"
-#include "pirsim/stats/discriminant.hpp"
 #include "pirsim/stats/extra_trees.hpp"
+#include "pirsim/stats/mixture_discriminant.hpp"
 #include "pirsim/stats/normal_layers.hpp"
 
 namespace pirsim::stats {
@@ -21,6 +21,7 @@ struct Split {
 struct PooledClassifierSettings {
   ExtraTreesSettings trees = {};     ///< grown on the features and the discriminant's coordinates. Ref: [Pudlo2016]
   NormalLayersSettings layers = {};  ///< in the discriminant's coordinates
+  std::size_t coordinates = 60;      ///< at most, the first of the discriminant's; 26, 40 and 60 were tried
   unsigned threads = 0;              ///< 0: all cores; never changes the result
 };
 
@@ -30,9 +31,11 @@ class PooledClassifier {
   PooledClassifier() = default;
   /// features: (n_rows x n_columns), finite; labels: (n_rows) in [0, n_classes); each class ten times or more among the
   /// fitting rows and once or more among the calibration rows. Rows that depend on each other must be on one side of
-  /// the split.
+  /// the split. subclasses: (n_rows) in [0, n), of the fitting rows each at least once and within one class, anything
+  /// for the others; or empty: the classes themselves.
   [[nodiscard]] static PooledClassifier fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
-                                            const Split& split, const PooledClassifierSettings& settings = {});
+                                            const Split& split, const PooledClassifierSettings& settings = {},
+                                            std::span<const int> subclasses = {});
   /// (n_classes) calibrated, classes equally likely beforehand.
   [[nodiscard]] std::vector<double> probabilities(std::span<const float> features) const;
   /// (n_classes) of the layers: log density at the row's place, up to a number that all classes share.
@@ -47,7 +50,7 @@ class PooledClassifier {
   /// (3 x n_classes) what each kind says of a row.
   [[nodiscard]] std::vector<std::vector<double>> sources(std::span<const float> features) const;
 
-  Discriminant discriminant_;
+  MixtureDiscriminant discriminant_;
   ExtraTrees trees_;
   NormalLayers layers_;
   LogPool pool_;  ///< weights of trees, discriminant, layers

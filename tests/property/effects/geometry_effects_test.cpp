@@ -2,6 +2,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "pirsim/core/random.hpp"
 #include "pirsim/core/units.hpp"
 #include "pirsim/sim/state.hpp"
 #include "support/catch.hpp"
@@ -56,19 +57,38 @@ TEST_CASE("a yawed sensor's rays are turned about the vertical through it: one s
   }
 }
 
-TEST_CASE("a tilted sensor looks so much further down and a raised one looks from so much higher") {
+TEST_CASE("a tilted sensor looks so much further down and a lowered one looks from so much lower") {
   const Model plain = meeting_room({}), tilted = meeting_room({effect("sensor_tilt", {{"tilt_deg", 4.0}})}),
-              raised = meeting_room({effect("sensor_height", {{"height_m", 0.2}})});
+              lowered = meeting_room({effect("sensor_height", {{"height_m", -0.2}})});
   for (std::size_t i = 0; i < plain.scene().sensors.size(); ++i) {
     const auto down_deg = [&](const Model& model) {
       return degrees(std::asin(-model.scene().sensors[i].world_from_sensor.forward().y));
     };
     CHECK(down_deg(tilted) == Approx(down_deg(plain) + 4.0));
-    CHECK(down_deg(raised) == down_deg(plain));
+    CHECK(down_deg(lowered) == down_deg(plain));
     const Vec3 up =
-        raised.scene().sensors[i].world_from_sensor.origin - plain.scene().sensors[i].world_from_sensor.origin;
-    CHECK(glm::distance(up, Vec3(0, 0.2, 0)) < 1e-12);
+        lowered.scene().sensors[i].world_from_sensor.origin - plain.scene().sensors[i].world_from_sensor.origin;
+    CHECK(glm::distance(up, Vec3(0, -0.2, 0)) < 1e-12);
   }
+}
+
+TEST_CASE("no sensor is raised into the ceiling, whose underside is 1 cm above it") {
+  const auto raised = [](double height_m) { return meeting_room({effect("sensor_height", {{"height_m", height_m}})}); };
+  CHECK_NOTHROW(raised(0.008));
+  CHECK_THROWS_WITH(raised(0.02), Catch::Contains("PIR1 would hang in or behind 'ceiling'"));
+  CHECK_THROWS_WITH(raised(0.3), Catch::Contains("ceiling"));  // above it
+  CHECK_THROWS_WITH(raised(-2.7), Catch::Contains("floor"));
+  const Model plain = meeting_room({});
+  int lower = 0;
+  for (std::uint32_t i = 0; i < 50; ++i) {
+    Stream stream({7, i, 0, Purpose::test});
+    const EffectSpec drawn =
+        effects::draw_from_prior(effects::find("sensor_height"), plain.scene(), plain.script(), stream);
+    CHECK(std::abs(drawn.parameters.at("height_m")) <= 0.3);
+    CHECK_NOTHROW(meeting_room({drawn}));
+    lower += drawn.parameters.at("height_m") < 0.0 ? 1 : 0;
+  }
+  CHECK(lower >= 45);  // of those above 0 only one in thirty lies below a centimetre
 }
 
 TEST_CASE("a shifted seat is taken so far forward of where it is drawn") {

@@ -45,6 +45,16 @@ TEST_CASE("the reason of a rival compares it with the one that is named", "[reco
   CHECK_THAT(reason, contains("much less likely than seat_shift (0.06 against 0.9)"));
 }
 
+TEST_CASE("of a model with effects put in it is said whether it passes, and what may be missing beside them",
+          "[reconcile]") {
+  CHECK(what_a_look_showed({{"clock_lag"}, 0.025, 0.4, {}}) ==
+        "With clock_lag put in, the model can have made these data (p = 0.4).");
+  CHECK(what_a_look_showed({{"clock_lag", "dead_time"}, 0.0125, 0.01, {"seat_shift", "body_size"}}) ==
+        "With clock_lag and dead_time put in, the model still differs from the data (p = 0.01). What is missing beside "
+        "it may be seat_shift or body_size: these data can't tell.");
+  CHECK_THAT(what_a_look_showed({{"clock_lag"}, 0.025, 0.01, {"seat_shift"}}), contains("may be seat_shift."));
+}
+
 TEST_CASE("where no name is given the sentence says why", "[reconcile]") {
   CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}}), contains("can't tell apart"));
   CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.9}}), contains("its strength may as well be none"));

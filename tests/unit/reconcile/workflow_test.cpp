@@ -132,12 +132,11 @@ TEST_CASE("a planted effect is located and named and nothing is not", "[reconcil
 TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile][three-seats]") {
   ReferenceTable shuffled = laboratory().table;
   Stream stream({5, 0, 0, Purpose::test});
-  std::vector<std::uint32_t> entries;
-  for (const TableRow& row : shuffled.rows) entries.push_back(row.entry);
-  for (std::size_t i = entries.size(); i > 1; --i) {
-    std::swap(entries[i - 1], entries[stream.index(static_cast<std::uint32_t>(i))]);
+  for (std::size_t i = shuffled.rows.size(); i > 1; --i) {
+    TableRow &a = shuffled.rows[i - 1], &b = shuffled.rows[stream.index(static_cast<std::uint32_t>(i))];
+    std::swap(a.entry, b.entry);
+    std::swap(a.effects, b.effects);
   }
-  for (std::size_t i = 0; i < entries.size(); ++i) shuffled.rows[i].entry = entries[i];
   const Laboratory& lab = laboratory();
   const TableView shuffled_view(lab.frame, lab.knowledge, shuffled, all_trials(lab.frame), 0);
   const Namer& honest = analyst().namer();
@@ -171,6 +170,14 @@ TEST_CASE("which way an effect goes is told even if its size is but one number",
     CHECK(places(many_false_triggers) == 1.0);
     CHECK(places(many_missed_triggers) == -1.0);
   }
+}
+
+TEST_CASE("a name is taken back whose strength may be none, unless the plain model is refused outright",
+          "[reconcile][three-seats]") {
+  const FittedEffect surely_there{{"false_triggers", {}, {}, {}}, {}, false}, maybe_none{surely_there.effect, {}, true};
+  CHECK(analyst().takes_back(maybe_none, 0.04));
+  CHECK_FALSE(analyst().takes_back(maybe_none, 0.01));  // a fifth of the level
+  CHECK_FALSE(analyst().takes_back(surely_there, 0.04));
 }
 
 TEST_CASE("an effect is calibrated on held-back datasets in which the global test sees it",
