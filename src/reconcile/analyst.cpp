@@ -17,11 +17,11 @@ std::string_view name(Verdict verdict) noexcept {
 Analyst::Analyst(std::shared_ptr<const TableView> view, const AnalystSettings& settings)
     : view_(std::move(view)),
       settings_(settings),
-      namer_(*view_, {settings.alpha, settings.trees, settings.seed, settings.threads, settings.left_out}) {}
+      namer_(*view_, {settings.alpha, settings.trees, settings.seed, settings.threads, settings.left_out}),
+      fitter_(view_->table(), view_->map(), namer_.seen_rows(), {settings.threads}) {}
 
 FittedEffect Analyst::fit(std::size_t entry, std::span<const float> measured) const {
-  return fit_from_table(view_->table(), view_->map(), entry, namer_.seen_rows()[entry], measured,
-                        {settings_.seed, settings_.threads, 0.9});
+  return fitter_.fit(entry, measured);
 }
 
 std::size_t Analyst::likeliest(std::span<const float> measured, const std::function<bool(std::size_t)>& wanted) const {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <optional>
+#include <utility>
 
 #include "pirsim/reconcile/locate.hpp"
 #include "reconcile/entry_guess.hpp"
@@ -74,17 +77,39 @@ std::vector<double> widening_of(const EntryGuess& entry, std::span<const double>
 
 }  // namespace
 
-FittedEffect fit_from_table(const ReferenceTable& table, const FeatureMap& map, std::size_t entry,
-                            std::span<const std::size_t> held_back, std::span<const float> measured,
-                            const FitSettings& settings) {
+struct EffectFitter::Learnt {
+  std::once_flag once;
+  std::optional<EntryGuess> guess;
+};
+
+EffectFitter::EffectFitter(const ReferenceTable& table, const FeatureMap& map,
+                           std::vector<std::vector<std::size_t>> held_back, const FitSettings& settings)
+    : table_(&table),
+      map_(&map),
+      held_back_(std::move(held_back)),
+      settings_(settings),
+      learnt_(std::make_unique<Learnt[]>(table.n_entries())) {}
+EffectFitter::~EffectFitter() = default;
+EffectFitter::EffectFitter(EffectFitter&&) noexcept = default;
+EffectFitter& EffectFitter::operator=(EffectFitter&&) noexcept = default;
+
+const EffectFitter::Learnt& EffectFitter::learnt(std::size_t entry) const {
+  Learnt& learnt = learnt_[entry];
+  std::call_once(learnt.once, [&] {
+    const auto datasets = [&](std::span<const std::size_t> rows) {
+      return EntryDatasets{rows, map_->features(table_->statistics.select_rows(rows), settings_.threads)};
+    };
+    const std::vector<std::size_t> training = rows_of(*table_, entry, Part::training);
+    learnt.guess.emplace(*table_, entry, datasets(training), datasets(held_back_[entry]));
+  });
+  return learnt;
+}
+
+FittedEffect EffectFitter::fit(std::size_t entry, std::span<const float> measured) const {
+  const EntryGuess& guess = *learnt(entry).guess;
+  const std::vector<float> features = map_->features(measured);
   FittedEffect fitted;
-  fitted.effect.name = table.entry_name(entry);
-  const std::vector<float> features = map.features(measured);
-  const auto datasets = [&](std::span<const std::size_t> rows) {
-    return EntryDatasets{rows, map.features(table.statistics.select_rows(rows), settings.threads)};
-  };
-  const std::vector<std::size_t> training = rows_of(table, entry, Part::training);
-  const EntryGuess guess(table, entry, datasets(training), datasets(held_back));
+  fitted.effect.name = table_->entry_name(entry);
   const EffectSpec& alike = guess.kind_of(features);
   fitted.effect.choices = alike.choices;
   for (const ParameterInfo& info : effects::find(fitted.effect.name).info.parameters) {
@@ -94,12 +119,12 @@ FittedEffect fit_from_table(const ReferenceTable& table, const FeatureMap& map, 
 
   const std::vector<double> observed = guess.of(features);
   const stats::AbcPosterior posterior = posterior_of(guess, observed, guess.guesses().rows());
-  const std::vector<double> widening = widening_of(guess, observed, settings.confidence);
+  const std::vector<double> widening = widening_of(guess, observed, settings_.confidence);
   fitted.includes_off = true;
   bool any_strength = false;
   for (std::size_t p = 0; p < guess.infos().size(); ++p) {
     const ParameterInfo& info = *guess.infos()[p];
-    const stats::Interval flat = posterior.interval(p, settings.confidence, widening[p]);
+    const stats::Interval flat = posterior.interval(p, settings_.confidence, widening[p]);
     FittedParameter parameter{info.name, info.unit, from_flat(info, posterior.quantile(p, 0.5)),
                               {},        info.off,  info.role == effects::Role::strength,
                               {}};

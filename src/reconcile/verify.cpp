@@ -68,13 +68,15 @@ class FoldSearch {
               trials),
           probabilities(lab->table, map, step.seen,
                         {.trees = {.trees = settings.trees, .seed = settings.seed, .threads = settings.threads},
-                         .threads = settings.threads}) {}
-    Learnt(const Learnt&) = delete;  // the probabilities point to the map
+                         .threads = settings.threads}),
+          fitter(lab->table, map, step.seen, {settings.threads}) {}
+    Learnt(const Learnt&) = delete;  // the others point to the map
     Learnt& operator=(const Learnt&) = delete;
 
     const Laboratory* lab;
     FeatureMap map;
     EntryProbabilities probabilities;
+    EffectFitter fitter;
   };
 
   /// One is kept: it takes long and much memory, and claims about the same study come one after the other.
@@ -82,9 +84,7 @@ class FoldSearch {
     if (!learnt_ || learnt_->lab != step.lab) learnt_.emplace(step, trials_, settings_);
   }
   [[nodiscard]] EffectSpec fitted(std::size_t entry, const PutIn& step) const {
-    return fit_from_table(step.lab->table, learnt_->map, entry, step.seen[entry], step.observed,
-                          {settings_.seed, settings_.threads})
-        .effect;
+    return learnt_->fitter.fit(entry, step.observed).effect;
   }
   void find_placebo(const Claim& claim, std::span<const double> probabilities, FoldPatches& found) const {
     std::set<effects::Family> families;

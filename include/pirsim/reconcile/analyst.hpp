@@ -55,6 +55,7 @@ class Analyst {
   std::shared_ptr<const TableView> view_;
   AnalystSettings settings_;
   Namer namer_;
+  EffectFitter fitter_;
 };
 
 }  // namespace pirsim::reconcile

@@ -1,8 +1,7 @@
 // How strong is a named effect?
 #pragma once
 
-#include <cstdint>
-#include <optional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,18 +28,37 @@ struct FittedEffect {
 };
 
 struct FitSettings {
-  std::uint64_t seed = 0;
   unsigned threads = 0;
   double confidence = 0.9;
 };
 
-/// From the datasets of one entry of the table alone: a linear guess of its parameters, then regression-adjusted ABC
-/// on it, widened until `held_back` datasets (rows of the entry outside the training part) like the measured one are
-/// covered as often as promised: give those in which a disagreement is seen, since nothing else is fitted. What is no
-/// matter of more or less (which sensor, which wall, which way) is the likeliest kind by a discriminant between the
-/// kinds. Ref: [FearnheadPrangle2012], [Beaumont2002]
-[[nodiscard]] FittedEffect fit_from_table(const ReferenceTable& table, const FeatureMap& map, std::size_t entry,
-                                          std::span<const std::size_t> held_back, std::span<const float> measured,
-                                          const FitSettings& settings);
+/// Fits effects from the datasets of one entry of a table alone: a linear guess of its parameters, then
+/// regression-adjusted ABC on it, widened until held-back datasets like the measured one are covered as often as
+/// promised. What is no matter of more or less (which sensor, which wall, which way) is the likeliest kind by a
+/// discriminant between the kinds. Ref: [FearnheadPrangle2012], [Beaumont2002]
+class EffectFitter {
+ public:
+  /// table and map must outlive it. held_back: (n_entries) rows of each entry outside the training part: give those in
+  /// which a disagreement is seen, since nothing else is fitted.
+  EffectFitter(const ReferenceTable& table, const FeatureMap& map, std::vector<std::vector<std::size_t>> held_back,
+               const FitSettings& settings);
+  ~EffectFitter();
+  EffectFitter(EffectFitter&&) noexcept;
+  EffectFitter& operator=(EffectFitter&&) noexcept;
+
+  /// entry: 1 or more; measured: statistics. What is learnt about an entry is kept for the next time. Safe to call from
+  /// several threads.
+  [[nodiscard]] FittedEffect fit(std::size_t entry, std::span<const float> measured) const;
+
+ private:
+  struct Learnt;
+  [[nodiscard]] const Learnt& learnt(std::size_t entry) const;
+
+  const ReferenceTable* table_;
+  const FeatureMap* map_;
+  std::vector<std::vector<std::size_t>> held_back_;
+  FitSettings settings_;
+  std::unique_ptr<Learnt[]> learnt_;  ///< (n_entries)
+};
 
 }  // namespace pirsim::reconcile

@@ -162,10 +162,10 @@ TEST_CASE("which way an effect goes is told even if its size is but one number",
     row.entry = 1;
   }
   const EffectSpec many_missed_triggers{"missed_triggers", {{"probability", 0.5}}, {}, {}};
+  const EffectFitter fitter(table, analyst().map(), std::vector<std::vector<std::size_t>>(table.n_entries()), {});
   for (std::uint32_t i = 0; i < 5; ++i) {
     const auto places = [&](const EffectSpec& hidden) {
-      const std::vector<float> data = planted(400 + i, {hidden});
-      return fit_from_table(table, analyst().map(), 1, {}, data, {1, 0, 0.9}).effect.parameters.at("places");
+      return fitter.fit(1, planted(400 + i, {hidden})).effect.parameters.at("places");
     };
     CHECK(places(many_false_triggers) == 1.0);
     CHECK(places(many_missed_triggers) == -1.0);
