@@ -122,4 +122,10 @@ EffectSpec draw_from_prior(const Effect& effect, const SceneSpec& scene, const S
   return spec;
 }
 
+EffectSpec settled(EffectSpec effect, const SceneSpec& scene) {
+  const Effect& entry = find(effect.name);
+  if (entry.settle != nullptr) entry.settle(effect, scene);
+  return effect;
+}
+
 }  // namespace pirsim::effects

@@ -1,12 +1,15 @@
 #include "effects/free_places.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
 namespace pirsim::effects {
 namespace {
+
+constexpr double spacing_m = 0.25;
 
 double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
   const Vec2 along = b - a;
@@ -45,7 +48,7 @@ double nearest_seat_m(const SceneSpec& scene, const Vec2& p) {
 }  // namespace
 
 std::vector<Vec2> free_places(const SceneSpec& scene, double clear_m) {
-  constexpr double spacing_m = 0.25, from_seat_m = 0.8, from_door_m = 1.2;  // assumed: not in anybody's way
+  constexpr double from_seat_m = 0.8, from_door_m = 1.2;  // assumed: not in anybody's way
   std::vector<Vec2> places;
   const Vec2 lower = scene.floor.lower(), upper = scene.floor.upper();
   for (double x = lower.x + clear_m; x <= upper.x - clear_m; x += spacing_m) {
@@ -64,6 +67,13 @@ std::vector<Vec2> free_places(const SceneSpec& scene, double clear_m) {
   }
   std::ranges::stable_sort(places, std::ranges::greater{}, [&](const Vec2& p) { return nearest_seat_m(scene, p); });
   return places;
+}
+
+Vec2 nearest_free(const SceneSpec& scene, double clear_m, const Vec2& place) {
+  const std::vector<Vec2> places = free_places(scene, clear_m);
+  if (places.empty()) return place;
+  const Vec2 nearest = *std::ranges::min_element(places, {}, [&](const Vec2& p) { return glm::distance(p, place); });
+  return glm::distance(nearest, place) <= spacing_m / std::sqrt(2.0) ? place : nearest;
 }
 
 }  // namespace pirsim::effects

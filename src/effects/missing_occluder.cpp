@@ -56,6 +56,14 @@ void draw(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec&, Stream&
   effect.parameters["height_m"] = 1.0 + u;  // assumed: a plant, a screen on a stand, a pillar's lower part
 }
 
+void settle(EffectSpec& effect, const SceneSpec& scene) {
+  if (!is_box(effect)) return;
+  const Vec2 place(effect.parameters.at("x_m"), effect.parameters.at("z_m"));
+  const Vec2 free = nearest_free(scene, 0.5 * effect.parameters.at("width_m"), place);
+  effect.parameters.at("x_m") = free.x;
+  effect.parameters.at("z_m") = free.y;
+}
+
 }  // namespace
 
 const Effect& missing_occluder() {
@@ -108,7 +116,8 @@ const Effect& missing_occluder() {
                .choices = {{"what", ChoiceKind::word, {"chair_backs", "box"}, "chair backs"}},
                .reach = Reach::geometry},
       .alter = alter,
-      .draw = draw};
+      .draw = draw,
+      .settle = settle};
   return effect;
 }
 

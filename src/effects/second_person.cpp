@@ -74,6 +74,12 @@ void draw(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec&, Stream&
   effect.parameters["z_m"] = place.y;
 }
 
+void settle(EffectSpec& effect, const SceneSpec& scene) {
+  const Vec2 place = nearest_free(scene, clear_m, place_of(effect, scene));
+  effect.parameters["x_m"] = place.x;
+  effect.parameters["z_m"] = place.y;
+}
+
 ParameterInfo detail(std::string name, std::string unit, double typical, double low, double high, double least,
                      double most, std::string source) {
   return {.name = std::move(name),
@@ -108,7 +114,8 @@ const Effect& second_person() {
                .choices = {{"place", ChoiceKind::word, {"free", "given"}, "the free place farthest from all seats"}},
                .reach = Reach::geometry},
       .alter = alter,
-      .draw = draw};
+      .draw = draw,
+      .settle = settle};
   return effect;
 }
 

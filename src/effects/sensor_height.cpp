@@ -38,13 +38,22 @@ void alter(SceneSpec& scene, ScriptSpec&, const EffectSpec& effect) {
   }
 }
 
+bool has_room(const EffectSpec& effect, const SceneSpec& scene) {
+  return std::ranges::none_of(sensors_of(effect, scene), [&](std::uint32_t i) {
+    return in_the_way(scene, scene.sensors[i], effect.parameters.at("height_m")) != nullptr;
+  });
+}
+
 /// Where there is no room above, sensors hang lower.
 void draw(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec&, Stream&) {
+  if (!has_room(effect, scene)) effect.parameters.at("height_m") *= -1.0;
+}
+
+/// Halved until there is room.
+void settle(EffectSpec& effect, const SceneSpec& scene) {
+  constexpr double least_m = 1e-4;
   double& height_m = effect.parameters.at("height_m");
-  const std::vector<std::uint32_t> sensors = sensors_of(effect, scene);
-  const bool no_room = std::ranges::any_of(
-      sensors, [&](std::uint32_t i) { return in_the_way(scene, scene.sensors[i], height_m) != nullptr; });
-  if (no_room) height_m = -height_m;
+  while (!has_room(effect, scene)) height_m = std::abs(height_m) > least_m ? 0.5 * height_m : 0.0;
 }
 
 }  // namespace
@@ -62,7 +71,8 @@ const Effect& sensor_height() {
                .choices = {sensor_choice()},
                .reach = Reach::geometry},
       .alter = alter,
-      .draw = draw};
+      .draw = draw,
+      .settle = settle};
   return effect;
 }
 

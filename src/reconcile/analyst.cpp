@@ -18,7 +18,7 @@ Analyst::Analyst(std::shared_ptr<const TableView> view, const AnalystSettings& s
     : view_(std::move(view)),
       settings_(settings),
       namer_(*view_, {settings.alpha, settings.trees, settings.seed, settings.threads, settings.left_out}),
-      fitter_(view_->table(), view_->map(), namer_.seen_rows(), {settings.threads}) {}
+      fitter_(view_->scene(), view_->table(), view_->map(), namer_.seen_rows(), {settings.threads}) {}
 
 FittedEffect Analyst::fit(std::size_t entry, std::span<const float> measured) const {
   return fitter_.fit(entry, measured);

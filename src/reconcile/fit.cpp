@@ -82,9 +82,10 @@ struct EffectFitter::Learnt {
   std::optional<EntryGuess> guess;
 };
 
-EffectFitter::EffectFitter(const ReferenceTable& table, const FeatureMap& map,
+EffectFitter::EffectFitter(const SceneSpec& scene, const ReferenceTable& table, const FeatureMap& map,
                            std::vector<std::vector<std::size_t>> held_back, const FitSettings& settings)
-    : table_(&table),
+    : scene_(&scene),
+      table_(&table),
       map_(&map),
       held_back_(std::move(held_back)),
       settings_(settings),
@@ -141,6 +142,8 @@ FittedEffect EffectFitter::fit(std::size_t entry, std::span<const float> measure
     fitted.parameters.push_back(std::move(parameter));
   }
   fitted.includes_off = fitted.includes_off && any_strength;
+  fitted.effect = effects::settled(std::move(fitted.effect), *scene_);
+  for (FittedParameter& parameter : fitted.parameters) parameter.value = fitted.effect.parameters.at(parameter.name);
   return fitted;
 }
 

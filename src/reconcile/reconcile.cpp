@@ -34,7 +34,7 @@ Laboratory make_laboratory(const SceneSpec& scene, const ScriptSpec& script, con
 }
 
 std::shared_ptr<const TableView> Laboratory::view(std::vector<std::size_t> trials, unsigned threads) const {
-  return std::make_shared<const TableView>(frame, knowledge, table, std::move(trials), threads);
+  return std::make_shared<const TableView>(source.scene, frame, knowledge, table, std::move(trials), threads);
 }
 
 Outcome reconcile(const SceneSpec& scene, const ScriptSpec& script, const Measured& measured, const Settings& settings,

@@ -7,9 +7,10 @@
 
 namespace pirsim::reconcile {
 
-TableView::TableView(const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge, const ReferenceTable& table,
-                     std::vector<std::size_t> trials, unsigned threads)
-    : frame_(frame),
+TableView::TableView(const SceneSpec& scene, const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge,
+                     const ReferenceTable& table, std::vector<std::size_t> trials, unsigned threads)
+    : scene_(scene),
+      frame_(frame),
       table_(table),
       map_(frame, knowledge, table.statistics.select_rows(rows_of(table, 0, Part::training)), std::move(trials)),
       features_(map_.features(table.statistics, threads)),

@@ -69,7 +69,7 @@ class FoldSearch {
           probabilities(lab->table, map, step.seen,
                         {.trees = {.trees = settings.trees, .seed = settings.seed, .threads = settings.threads},
                          .threads = settings.threads}),
-          fitter(lab->table, map, step.seen, {settings.threads}) {}
+          fitter(lab->source.scene, lab->table, map, step.seen, {settings.threads}) {}
     Learnt(const Learnt&) = delete;  // the others point to the map
     Learnt& operator=(const Learnt&) = delete;
 

@@ -26,12 +26,14 @@ inline ScriptSpec with(ScriptSpec script, std::vector<EffectSpec> effects) {
   return script;
 }
 
-/// Every strength at the far end of its prior, details as usual.
+/// Every strength at an end of its prior, the lower if there are two, details as usual.
 inline EffectSpec strong(const effects::Effect& effect) {
   EffectSpec spec{effect.info.name, {}, {}, {}};
   for (const effects::ParameterInfo& parameter : effect.info.parameters) {
     const bool is_strength = parameter.role == effects::Role::strength;
-    spec.parameters[parameter.name] = is_strength ? parameter.high : parameter.typical;
+    spec.parameters[parameter.name] = !is_strength                    ? parameter.typical
+                                      : parameter.low < parameter.off ? parameter.low
+                                                                      : parameter.high;
   }
   return spec;
 }

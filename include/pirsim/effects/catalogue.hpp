@@ -71,6 +71,8 @@ struct Effect {
   std::unique_ptr<RowStage> (*make_row_stage)(const EffectSpec& effect, const StageContext& context) = nullptr;
   /// Puts what the ranges alone can't draw (a free place in the room) into a spec drawn from them.
   void (*draw)(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec& script, Stream& stream) = nullptr;
+  /// Moves parameters that were estimated to what the room has a place for.
+  void (*settle)(EffectSpec& effect, const SceneSpec& scene) = nullptr;
 };
 
 /// In the order in which they act; alter() first, then stages tick by tick, then rows.
@@ -98,5 +100,9 @@ void alter(SceneSpec& scene, ScriptSpec& script);
 /// Parameters from their priors; a sensor from all and each (even odds between `all` and one of them).
 [[nodiscard]] EffectSpec draw_from_prior(const Effect& effect, const SceneSpec& scene, const ScriptSpec& script,
                                          Stream& stream);
+
+/// An effect whose parameters were estimated, as this scene has room for it: somebody stands in a free place, no sensor
+/// hangs in the ceiling.
+[[nodiscard]] EffectSpec settled(EffectSpec effect, const SceneSpec& scene);
 
 }  // namespace pirsim::effects

@@ -35,13 +35,14 @@ struct FitSettings {
 /// Fits effects from the datasets of one entry of a table alone: a linear guess of its parameters, then
 /// regression-adjusted ABC on it, widened until held-back datasets like the measured one are covered as often as
 /// promised. What is no matter of more or less (which sensor, which wall, which way) is the likeliest kind by a
-/// discriminant between the kinds. Ref: [FearnheadPrangle2012], [Beaumont2002]
+/// discriminant between the kinds; and where the room has no place for what comes out, it is moved to the nearest. Ref:
+/// [FearnheadPrangle2012], [Beaumont2002]
 class EffectFitter {
  public:
-  /// table and map must outlive it. held_back: (n_entries) rows of each entry outside the training part: give those in
-  /// which a disagreement is seen, since nothing else is fitted.
-  EffectFitter(const ReferenceTable& table, const FeatureMap& map, std::vector<std::vector<std::size_t>> held_back,
-               const FitSettings& settings);
+  /// scene, table and map must outlive it. held_back: (n_entries) rows of each entry outside the training part: give
+  /// those in which a disagreement is seen, since nothing else is fitted.
+  EffectFitter(const SceneSpec& scene, const ReferenceTable& table, const FeatureMap& map,
+               std::vector<std::vector<std::size_t>> held_back, const FitSettings& settings);
   ~EffectFitter();
   EffectFitter(EffectFitter&&) noexcept;
   EffectFitter& operator=(EffectFitter&&) noexcept;
@@ -54,6 +55,7 @@ class EffectFitter {
   struct Learnt;
   [[nodiscard]] const Learnt& learnt(std::size_t entry) const;
 
+  const SceneSpec* scene_;
   const ReferenceTable* table_;
   const FeatureMap* map_;
   std::vector<std::vector<std::size_t>> held_back_;

@@ -13,10 +13,11 @@ namespace pirsim::reconcile {
 /// Everything that doesn't depend on which effects are candidates, worked out once. Immutable.
 class TableView {
  public:
-  /// frame and table must outlive it. trials: those that are looked at (sorted).
-  TableView(const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge, const ReferenceTable& table,
-            std::vector<std::size_t> trials, unsigned threads);
+  /// scene, frame and table must outlive it. trials: those that are looked at (sorted).
+  TableView(const SceneSpec& scene, const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge,
+            const ReferenceTable& table, std::vector<std::size_t> trials, unsigned threads);
 
+  [[nodiscard]] const SceneSpec& scene() const noexcept { return scene_; }
   [[nodiscard]] const StudyFrame& frame() const noexcept { return frame_; }
   [[nodiscard]] const ReferenceTable& table() const noexcept { return table_; }
   [[nodiscard]] const FeatureMap& map() const noexcept { return map_; }
@@ -30,6 +31,7 @@ class TableView {
   [[nodiscard]] double p_of_row(std::size_t row) const { return p_of_rows_[row]; }
 
  private:
+  const SceneSpec& scene_;
   const StudyFrame& frame_;
   const ReferenceTable& table_;
   FeatureMap map_;

@@ -81,7 +81,7 @@ TEST_CASE("where no name is given the family is said if it is clear", "[reconcil
   CHECK(outcome.family.family == effects::Family::person);
   CHECK(outcome.family.probability == Approx(0.9));
   CHECK_THAT(verdict_sentence(outcome, 0.05), contains("with probability 0.9 something of the family person"));
-  outcome.family.probability = 0.8;
+  outcome.family.probability = 0.7;
   CHECK_THAT(verdict_sentence(outcome, 0.05), !contains("family"));
 }
 

@@ -138,7 +138,7 @@ TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile][three-se
     std::swap(a.effects, b.effects);
   }
   const Laboratory& lab = laboratory();
-  const TableView shuffled_view(lab.frame, lab.knowledge, shuffled, all_trials(lab.frame), 0);
+  const TableView shuffled_view(lab.source.scene, lab.frame, lab.knowledge, shuffled, all_trials(lab.frame), 0);
   const Namer& honest = analyst().namer();
   const Namer confused(shuffled_view, {0.05, 60, 1, 0});
   double sure_of_truth = 0.0, sure_of_truth_when_confused = 0.0;  // chance is a quarter
@@ -162,7 +162,8 @@ TEST_CASE("which way an effect goes is told even if its size is but one number",
     row.entry = 1;
   }
   const EffectSpec many_missed_triggers{"missed_triggers", {{"probability", 0.5}}, {}, {}};
-  const EffectFitter fitter(table, analyst().map(), std::vector<std::vector<std::size_t>>(table.n_entries()), {});
+  const EffectFitter fitter(lab.source.scene, table, analyst().map(),
+                            std::vector<std::vector<std::size_t>>(table.n_entries()), {});
   for (std::uint32_t i = 0; i < 5; ++i) {
     const auto places = [&](const EffectSpec& hidden) {
       return fitter.fit(1, planted(400 + i, {hidden})).effect.parameters.at("places");
