@@ -276,3 +276,28 @@ TEST_CASE("a second person is counted beside the first and doesn't keep the run 
   CHECK(nearest < 1e-6);
   CHECK(farthest == Approx(1.0).margin(1e-6));
 }
+
+TEST_CASE("what was estimated is moved to where the room has a place for it, and stays if that is so") {
+  const SceneSpec room = shipped_scene("meeting_room.gltf");
+  const auto raised = [&](double height_m) {
+    return effects::settled(effect("sensor_height", {{"height_m", height_m}}), room).parameters.at("height_m");
+  };
+  CHECK(raised(-0.2) == -0.2);
+  CHECK(raised(0.2) > 0.0);
+  CHECK(raised(0.2) < 0.01);  // the ceiling is 1 cm above
+  const auto placed = [&](double x, double z) {
+    const EffectSpec given = effect("second_person", {{"x_m", x}, {"z_m", z}}, {{"place", "given"}});
+    const EffectSpec there = effects::settled(effects::resolved(effects::find("second_person"), given), room);
+    CHECK_NOTHROW(results_of(meeting_room({there})));
+    return Vec2(there.parameters.at("x_m"), there.parameters.at("z_m"));
+  };
+  CHECK(placed(5.15, -1.2) == Vec2(5.15, -1.2));
+  const Vec2 outside(5.15, 3.0), moved = placed(outside.x, outside.y);
+  CHECK(room.floor.contains(moved));
+  CHECK(std::abs(moved.x - outside.x) < 2.0);  // no farther than to what is free near the wall
+  const EffectSpec box = effect("missing_occluder", {{"height_m", 1.0}, {"width_m", 0.5}, {"x_m", 40.0}, {"z_m", 40.0}},
+                                {{"what", "box"}});
+  const EffectSpec inside = effects::settled(box, room);
+  CHECK(room.floor.contains(Vec2(inside.parameters.at("x_m"), inside.parameters.at("z_m"))));
+  CHECK_NOTHROW(results_of(meeting_room({inside})));
+}
