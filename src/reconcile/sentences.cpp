@@ -52,7 +52,12 @@ std::string no_effect(const Outcome& outcome, double alpha) {
     together += candidate.score.probability;
   }
   if (possible.empty()) return "no effect of the catalogue reproduces the data";
-  return "the likelier effects of the catalogue don't reproduce the data; " + joined(possible, "and") +
+  const std::string& likeliest = std::ranges::max_element(outcome.candidates, {}, [](const Candidate& c) {
+                                   return c.score.probability;
+                                 })->score.entry;
+  const bool likeliest_is_possible = std::ranges::find(possible, likeliest) != possible.end();
+  return (likeliest_is_possible ? "most effects" : "the likelier effects") +
+         std::string(" of the catalogue don't reproduce the data; ") + joined(possible, "and") +
          " might, but with a probability of only " + short_number(together);
 }
 
@@ -178,7 +183,7 @@ std::string reason_of(const Candidate& candidate, double alpha) {
   }
   if (score.p > alpha) {
     return "Dropped: by itself it might have made these data (p " + short_number(score.p) +
-           "), but what is likelier is ruled out, and all that isn't is improbable.";
+           "), but all that isn't ruled out is improbable together.";
   }
   if (score.p == 0.0) return "Dropped: it could hardly be simulated in this room.";
   const bool relative = 2.0 * score.p_relative <= alpha, absolute = 2.0 * score.p_absolute <= alpha;

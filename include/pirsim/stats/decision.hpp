@@ -27,8 +27,8 @@ struct DecisionLevels {
   /// 1,620 planted datasets (Study A, one run) 0.8, 0.85, 0.9 and 0.95 gave the right name in 0.80, 0.79, 0.78 and 0.76
   /// of the disagreements and a wrong one in 0.9, 0.6, 0.4 and 0.3 % of all.
   double sure = 0.85;
-  /// What survives must be as probable together, else likelier effects were ruled out and nothing of the catalogue made
-  /// the data. One half: more probable than not. On planted datasets it drops the truth in 5 of 1,124 disagreements and
+  /// What survives must be as probable together, else too much that is as likely was ruled out, and nothing of the
+  /// catalogue made the data. One half: more probable than not. On planted datasets it drops the truth in 5 of 1,124 disagreements and
   /// recognises 171 instead of 140 of 180 things that the catalogue lacks; smaller levels do less of both.
   double plausible = 0.5;
 };

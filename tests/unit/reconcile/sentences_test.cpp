@@ -65,8 +65,11 @@ TEST_CASE("where no name is given the sentence says why", "[reconcile]") {
 
 TEST_CASE("improbable effects that might have made the data are told with their probability", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"seat_shift", 0.1}, {"body_size", 0.03}});
-  CHECK_THAT(verdict_sentence(outcome, 0.05),
-             contains("seat_shift and body_size might, but with a probability of only 0.13"));
+  CHECK_THAT(
+      verdict_sentence(outcome, 0.05),
+      contains("most effects") && contains("seat_shift and body_size might, but with a probability of only 0.13"));
+  outcome.candidates.push_back({{"dead_time", 0.6, 0.0, 0.0, 0.01}, "electronics", false, ""});
+  CHECK_THAT(verdict_sentence(outcome, 0.05), contains("the likelier effects"));
   outcome.candidates[0].kept = false;
   CHECK_THAT(reason_of(outcome.candidates[0], 0.05),
              contains("Dropped: by itself it might have made these data (p 0.6)"));
