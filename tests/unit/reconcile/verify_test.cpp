@@ -140,8 +140,17 @@ TEST_CASE("claims that are judged together are judged as each by itself", "[reco
 
 TEST_CASE("a patch with which nobody can get about is said not to be judged, and stops no other",
           "[reconcile][six-seats]") {
-  // False triggers under the name of somebody who stands in the only doorway.
+  // False triggers under the name of somebody who stands in the only doorway, in a room with so many seats (that nobody
+  // uses) that there is no better place.
   Laboratory blocked = plain_lab();
+  const Vec2 lower = blocked.source.scene.floor.lower(), upper = blocked.source.scene.floor.upper();
+  for (double x = lower.x; x < upper.x + 1.0; x += 1.0) {
+    for (double z = lower.y; z < upper.y + 1.0; z += 1.0) {
+      SeatSpec& seat = blocked.source.scene.seats.emplace_back(blocked.source.scene.seats.front());
+      seat.id = "unused " + std::to_string(blocked.source.scene.seats.size());
+      seat.world_from_seat.origin = Vec3(x, seat.world_from_seat.origin.y, z);
+    }
+  }
   const Vec3 door = blocked.source.scene.entrances.front().world_from_entrance.origin;
   double step_m = 0.0;
   blocked.table.effects.front() = "second_person";
