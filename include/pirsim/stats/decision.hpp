@@ -28,8 +28,9 @@ struct DecisionLevels {
   /// of the disagreements and a wrong one in 0.9, 0.6, 0.4 and 0.3 % of all.
   double sure = 0.85;
   /// What survives must be as probable together, else too much that is as likely was ruled out, and nothing of the
-  /// catalogue made the data. One half: more probable than not. On planted datasets it drops the truth in 5 of 1,124 disagreements and
-  /// recognises 171 instead of 140 of 180 things that the catalogue lacks; smaller levels do less of both.
+  /// catalogue made the data. One half: more probable than not. On planted datasets it drops the truth in 5 of 1,124
+  /// disagreements and recognises 171 instead of 140 of 180 things that the catalogue lacks; smaller levels do less of
+  /// both.
   double plausible = 0.5;
 };
 
