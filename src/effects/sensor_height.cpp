@@ -12,10 +12,12 @@ namespace {
 
 bool touches(const TriMesh& mesh, const Vec3& from, double height_m) {
   constexpr double clear_m = 0.001;  // assumed: what sees is in front of what it is screwed to
+  constexpr double off_m = 1e-6;     // a sensor that is drawn on a surface may leave it
   return height_m != 0.0 && std::ranges::any_of(mesh.triangles, [&](const auto& triangle) {
            const double ways = distance_to_triangle(from, Vec3(0, height_m, 0), mesh.positions[triangle[0]],
                                                     mesh.positions[triangle[1]], mesh.positions[triangle[2]]);
-           return ways >= 0.0 && ways <= 1.0 + clear_m / std::abs(height_m);
+           const double way_m = ways * std::abs(height_m);
+           return way_m > off_m && way_m <= std::abs(height_m) + clear_m;
          });
 }
 

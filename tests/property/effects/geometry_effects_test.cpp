@@ -78,6 +78,9 @@ TEST_CASE("no sensor is raised into the ceiling, whose underside is 1 cm above i
   CHECK_THROWS_WITH(raised(0.02), Catch::Contains("PIR1 would hang in or behind 'ceiling'"));
   CHECK_THROWS_WITH(raised(0.3), Catch::Contains("ceiling"));  // above it
   CHECK_THROWS_WITH(raised(-2.7), Catch::Contains("floor"));
+  SceneSpec drawn_on_it = shipped_scene("meeting_room.gltf");
+  for (SensorSpec& sensor : drawn_on_it.sensors) sensor.world_from_sensor.origin.y = 2.66;
+  CHECK_NOTHROW(compile(drawn_on_it, with(short_study_a(), {effect("sensor_height", {{"height_m", -0.1}})})));
   const Model plain = meeting_room({});
   int lower = 0;
   for (std::uint32_t i = 0; i < 50; ++i) {
