@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <functional>
 #include <map>
 #include <utility>
 #include <vector>
@@ -55,13 +57,13 @@ void add_stretches(const BitSeries& series, CellValues& values) {
 }
 
 double share_again_after(std::span<const std::uint8_t> bits, std::size_t lag) {
-  double followed = 0.0, known = 0.0;
-  for (std::size_t i = 0; i + lag < bits.size(); ++i) {
-    if (bits[i] != 1 || bits[i + lag] == unknown_bit) continue;
-    known += 1.0;
-    followed += bits[i + lag];
+  std::uint32_t followed = 0, known = 0;
+  for (std::size_t i = 0; i + lag < bits.size(); ++i) {  // without branches: bits are hard to foresee
+    const std::uint32_t moved = bits[i] == 1 ? 1 : 0;
+    followed += moved & (bits[i + lag] == 1 ? 1U : 0U);
+    known += moved & (bits[i + lag] != unknown_bit ? 1U : 0U);
   }
-  return known > 0.0 ? followed / known : 0.0;
+  return known > 0 ? static_cast<double>(followed) / known : 0.0;
 }
 
 /// Sum of squared deviations of block counts over what independent rows would give; 1 by chance, 0 without motion.
@@ -81,39 +83,41 @@ double dispersion(std::span<const std::uint8_t> bits) {
   return mean > 0.0 ? squares / (by_chance + 0.5) : 0.0;
 }
 
-/// Cosines of 2 pi k / n, made once for every n.
-const std::vector<double>& cosines(std::size_t n) {
-  thread_local std::map<std::size_t, std::vector<double>> known;
-  auto [found, is_new] = known.try_emplace(n);
-  for (std::size_t k = 0; is_new && k < n; ++k) {
-    found->second.push_back(std::cos(2.0 * pi * static_cast<double>(k) / static_cast<double>(n)));
+/// exp(2 pi i f t / n) for the frequencies f from 1 on whose period is no shorter than the shortest.
+struct Waves {
+  explicit Waves(std::size_t n) : n_frequencies(n / shortest_period_rows) {
+    for (std::size_t row = 0; row < n; ++row) {
+      for (std::size_t f = 1; f <= n_frequencies; ++f) {
+        const double angle = 2.0 * pi * static_cast<double>(f * row % n) / static_cast<double>(n);
+        values.emplace_back(std::cos(angle), std::sin(angle));
+      }
+    }
   }
-  return found->second;
+  [[nodiscard]] std::span<const std::complex<double>> at(std::size_t row) const {
+    return std::span(values).subspan(row * n_frequencies, n_frequencies);
+  }
+  std::size_t n_frequencies;
+  std::vector<std::complex<double>> values;  ///< (n x n_frequencies)
+};
+
+/// Made once for every n.
+const Waves& waves_of(std::size_t n) {
+  thread_local std::map<std::size_t, Waves> known;
+  return known.try_emplace(n, n).first->second;
 }
 
 /// Greatest |sum of exp(2 pi i f t / n)|^2 over the rows t with motion, divided by its expectation by chance.
 double period_power(std::span<const std::uint8_t> bits) {
   const std::size_t n = bits.size();
-  std::vector<std::size_t> active;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (bits[i] == 1) active.push_back(i);
+  const auto count = static_cast<double>(std::ranges::count(bits, 1));
+  if (count < 3.0 || count + 3.0 > static_cast<double>(n)) return 0.0;
+  const Waves& waves = waves_of(n);
+  std::vector<std::complex<double>> sums(waves.n_frequencies);
+  for (std::size_t row = 0; row < n; ++row) {
+    if (bits[row] == 1) std::ranges::transform(sums, waves.at(row), sums.begin(), std::plus<>());
   }
-  if (active.size() < 3 || active.size() + 3 > n) return 0.0;
-  const std::vector<double>& cosine = cosines(n);
-  const std::size_t quarter = n / 4;
-  std::vector<std::size_t> phase(active.size(), 0);  // f t mod n, without a division
   double greatest = 0.0;
-  for (std::size_t f = 1; f * shortest_period_rows <= n; ++f) {
-    double real = 0.0, imaginary = 0.0;
-    for (std::size_t i = 0; i < active.size(); ++i) {
-      const std::size_t next = phase[i] + active[i], k = next < n ? next : next - n;
-      phase[i] = k;
-      real += cosine[k];
-      imaginary += cosine[k < quarter ? k + n - quarter : k - quarter];
-    }
-    greatest = std::max(greatest, real * real + imaginary * imaginary);
-  }
-  const auto count = static_cast<double>(active.size());
+  for (const std::complex<double>& sum : sums) greatest = std::max(greatest, std::norm(sum));
   return greatest / (count * (1.0 - count / static_cast<double>(n)));
 }
 

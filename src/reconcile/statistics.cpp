@@ -49,9 +49,9 @@ std::vector<Value> column(const std::vector<Value>& table, std::size_t n_columns
 
 double seconds_between(const Series& run, std::size_t begin, std::size_t end, std::size_t sensor, std::size_t n_sensors,
                        double window_s) {
-  double seconds = 0.0;
-  for (std::size_t row = begin; row < end; ++row) seconds += run.bits[row * n_sensors + sensor] == 1 ? window_s : 0.0;
-  return seconds;
+  std::size_t rows = 0;
+  for (std::size_t row = begin; row < end; ++row) rows += run.bits[row * n_sensors + sensor] == 1 ? 1 : 0;
+  return static_cast<double>(rows) * window_s;
 }
 
 /// Collects the statistics of the runs of one trial.
@@ -160,13 +160,14 @@ class TrialStatistics {
 
   void add_pairs(const std::vector<std::uint8_t>& bits) {
     const std::size_t n = frame_.sensors.size();
-    for (std::size_t row = 0; row < bits.size(); row += n) {
-      std::size_t pair = 0;
-      for (std::size_t first = 0; first < n; ++first) {
-        for (std::size_t second = 0; second < n; ++second) {
-          if (first == second) continue;
-          pairs_[pair++] += bits[row + second] == 1 && bits[row + first] == 0 ? 1.0 : 0.0;
-        }
+    std::size_t pair = 0;
+    for (std::size_t first = 0; first < n; ++first) {
+      for (std::size_t second = 0; second < n; ++second) {
+        if (first == second) continue;
+        std::uint32_t rows = 0;  // counted without branches: bits are hard to foresee
+        for (std::size_t row = 0; row < bits.size(); row += n)
+          rows += (bits[row + second] == 1 ? 1U : 0U) & (bits[row + first] == 0 ? 1U : 0U);
+        pairs_[pair++] += rows;
       }
     }
   }

@@ -65,6 +65,7 @@ Series read_series(stats::BinaryReader& in) {
   const auto n = in.read<std::uint32_t>();
   const auto packed = in.read_vector<std::uint8_t>();
   if (packed.size() != (n + 7U) / 8U) throw Error(ErrorCode::input, "reference table: is damaged: an impossible size");
+  run.bits.reserve(n);
   for (std::uint32_t i = 0; i < n; ++i) run.bits.push_back(packed[i / 8] >> i % 8 & 1U);
   return run;
 }

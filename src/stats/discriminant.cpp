@@ -32,6 +32,11 @@ ShrunkCovariance shrink(const Eigen::MatrixXd& rows) {
   return shrunk;
 }
 
+Eigen::VectorXd off_centre(std::span<const float> features, std::span<const double> centre) {
+  require(features.size() == centre.size(), "discriminant: another number of features than was fitted");
+  return as_eigen(features).cast<double>() - as_eigen(centre);
+}
+
 }  // namespace
 
 ShrunkCovariance ledoit_wolf(const Matrix<double>& rows) {
@@ -53,7 +58,7 @@ Discriminant Discriminant::fit(const Matrix<float>& features, std::span<const in
   const ShrunkCovariance within = shrink(groups.residuals);
   const Eigen::LLT<Eigen::MatrixXd> factor(as_eigen(within.covariance));
   const Eigen::MatrixXd whitened = factor.matrixL().solve(means);  // (n_columns x n_classes)
-  const Eigen::JacobiSVD<Eigen::MatrixXd> parting(whitened, Eigen::ComputeThinU);
+  const Eigen::BDCSVD<Eigen::MatrixXd> parting(whitened, Eigen::ComputeThinU);
   const auto& strength = parting.singularValues();
   const Eigen::Index kept = (strength.array() > 1e-9 * strength(0)).count();
   const Eigen::MatrixXd basis = parting.matrixU().leftCols(kept);
@@ -68,19 +73,25 @@ Discriminant Discriminant::fit(const Matrix<float>& features, std::span<const in
 }
 
 std::vector<double> Discriminant::project(std::span<const float> features) const {
-  require(features.size() == centre_.size(), "discriminant: another number of features than was fitted");
-  const Eigen::VectorXd off = as_eigen(features).cast<double>() - as_eigen(std::span<const double>(centre_));
-  const Eigen::VectorXd place = as_eigen(directions_) * off;
+  const Eigen::VectorXd place = as_eigen(directions_) * off_centre(features, centre_);
   return {place.begin(), place.end()};
 }
 
-Matrix<double> Discriminant::project(const Matrix<float>& features, unsigned threads) const {
-  return detail::map_rows(features.rows(), n_directions(), threads,
-                          [&](std::size_t row) { return project(features.row(row)); });
+Matrix<double> Discriminant::project(const Matrix<float>& features, std::size_t n_coordinates, unsigned threads) const {
+  require(n_coordinates <= n_directions(), "discriminant: more coordinates than directions");
+  const auto n = static_cast<Eigen::Index>(n_coordinates);
+  return detail::map_rows(features.rows(), n_coordinates, threads, [&](std::size_t row) {
+    const Eigen::VectorXd place = as_eigen(directions_).topRows(n) * off_centre(features.row(row), centre_);
+    return std::vector<double>(place.begin(), place.end());
+  });
 }
 
 std::vector<double> Discriminant::log_densities(std::span<const float> features) const {
-  const std::vector<double> place = project(features);
+  return log_densities_at(project(features));
+}
+
+std::vector<double> Discriminant::log_densities_at(std::span<const double> place) const {
+  require(place.size() == n_directions(), "discriminant: another number of coordinates than was fitted");
   std::vector<double> logs;
   for (std::size_t k = 0; k < class_means_.rows(); ++k) {
     double squares = 0.0;

@@ -4,19 +4,17 @@
 #include <cmath>
 
 #include "stats/require.hpp"
-#include "stats/row_blocks.hpp"
 #include "stats/softmax.hpp"
 
 namespace pirsim::stats {
 
 MixtureDiscriminant MixtureDiscriminant::fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
-                                             std::span<const int> subclasses, std::size_t coordinates) {
+                                             std::span<const int> subclasses) {
   require(labels.size() == subclasses.size() && !labels.empty(), "subclasses: not one a row");
   const int n_subclasses = std::ranges::max(subclasses) + 1;
   MixtureDiscriminant fitted;
   fitted.discriminant_ = Discriminant::fit(features, subclasses, n_subclasses);
   fitted.n_classes_ = static_cast<std::size_t>(n_classes);
-  fitted.coordinates_ = std::min(coordinates, fitted.discriminant_.n_directions());
 
   const auto none = fitted.n_classes_;
   fitted.class_of_.assign(static_cast<std::size_t>(n_subclasses), none);
@@ -35,24 +33,13 @@ MixtureDiscriminant MixtureDiscriminant::fit(const Matrix<float>& features, std:
   return fitted;
 }
 
-std::vector<double> MixtureDiscriminant::probabilities(std::span<const float> features) const {
-  std::vector<double> parts = discriminant_.log_densities(features);
+std::vector<double> MixtureDiscriminant::probabilities_at(std::span<const double> place) const {
+  std::vector<double> parts = discriminant_.log_densities_at(place);
   for (std::size_t part = 0; part < parts.size(); ++part) parts[part] += log_share_[part];
   parts = detail::softmax(std::move(parts));
   std::vector<double> probabilities(n_classes_, 0.0);
   for (std::size_t part = 0; part < parts.size(); ++part) probabilities[class_of_[part]] += parts[part];
   return probabilities;
-}
-
-std::vector<double> MixtureDiscriminant::project(std::span<const float> features) const {
-  std::vector<double> place = discriminant_.project(features);
-  place.resize(coordinates_);
-  return place;
-}
-
-Matrix<double> MixtureDiscriminant::project(const Matrix<float>& features, unsigned threads) const {
-  return detail::map_rows(features.rows(), coordinates_, threads,
-                          [&](std::size_t row) { return project(features.row(row)); });
 }
 
 }  // namespace pirsim::stats

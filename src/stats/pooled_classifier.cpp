@@ -62,8 +62,10 @@ PooledClassifier PooledClassifier::fit(const Matrix<float>& features, std::span<
   {
     const Matrix<float> fitting = features.select_rows(split.fitting);
     const std::vector<int> parts = subclasses.empty() ? fitting_labels : detail::select(subclasses, split.fitting);
-    fitted.discriminant_ = MixtureDiscriminant::fit(fitting, fitting_labels, n_classes, parts, settings.coordinates);
-    const Matrix<double> places = fitted.discriminant_.project(fitting, settings.threads);
+    fitted.mixture_ = MixtureDiscriminant::fit(fitting, fitting_labels, n_classes, parts);
+    fitted.n_coordinates_ = std::min(settings.coordinates, fitted.mixture_.discriminant().n_directions());
+    const Matrix<double> places =
+        fitted.mixture_.discriminant().project(fitting, fitted.n_coordinates_, settings.threads);
     fitted.layers_ = NormalLayers::fit(places, fitting_labels, n_classes, settings.layers);
     fitted.trees_ = ExtraTrees::fit(with_coordinates(fitting, places), fitting_labels, n_classes, settings.trees);
   }
@@ -86,8 +88,9 @@ PooledClassifier PooledClassifier::fit(const Matrix<float>& features, std::span<
 }
 
 std::vector<std::vector<double>> PooledClassifier::sources(std::span<const float> features) const {
-  const std::vector<double> place = discriminant_.project(features);
-  return {trees_.probabilities(with_coordinates(features, place)), discriminant_.probabilities(features),
+  const std::vector<double> whole = mixture_.discriminant().project(features);
+  const auto place = std::span(whole).first(n_coordinates_);
+  return {trees_.probabilities(with_coordinates(features, place)), mixture_.probabilities_at(whole),
           detail::softmax(layers_.log_densities(place))};
 }
 
@@ -96,7 +99,8 @@ std::vector<double> PooledClassifier::probabilities(std::span<const float> featu
 }
 
 std::vector<double> PooledClassifier::log_densities(std::span<const float> features) const {
-  return layers_.log_densities(discriminant_.project(features));
+  const std::vector<double> place = mixture_.discriminant().project(features);
+  return layers_.log_densities(std::span(place).first(n_coordinates_));
 }
 
 }  // namespace pirsim::stats

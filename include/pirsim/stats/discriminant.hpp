@@ -28,13 +28,16 @@ class Discriminant {
 
   /// (n_classes) log of the class densities up to a common number.
   [[nodiscard]] std::vector<double> log_densities(std::span<const float> features) const;
+  /// The same of a row that has been projected.
+  [[nodiscard]] std::vector<double> log_densities_at(std::span<const double> place) const;
   /// (n_classes) softmax of log_densities(); too sure of itself where the classes aren't normal: calibrate.
   [[nodiscard]] std::vector<double> probabilities(std::span<const float> features) const;
   /// (n_directions <= n_classes - 1) coordinates along the directions that part the class means best, within-class
   /// variance 1, ordered by how much they part them.
   [[nodiscard]] std::vector<double> project(std::span<const float> features) const;
-  /// (n_rows x n_directions)
-  [[nodiscard]] Matrix<double> project(const Matrix<float>& features, unsigned threads = 0) const;
+  /// (n_rows x n_coordinates <= n_directions) the first of them.
+  [[nodiscard]] Matrix<double> project(const Matrix<float>& features, std::size_t n_coordinates,
+                                       unsigned threads = 0) const;
   [[nodiscard]] std::size_t n_directions() const noexcept { return directions_.rows(); }
   [[nodiscard]] double shrinkage() const noexcept { return shrinkage_; }
 

@@ -16,20 +16,19 @@ class MixtureDiscriminant {
  public:
   MixtureDiscriminant() = default;
   /// features: (n_rows x n_columns), finite; labels: (n_rows) in [0, n_classes), each at least once; subclasses:
-  /// (n_rows) in [0, n), each at least once and within one class. coordinates: how many of them are kept at most.
+  /// (n_rows) in [0, n), each at least once and within one class.
   [[nodiscard]] static MixtureDiscriminant fit(const Matrix<float>& features, std::span<const int> labels,
-                                               int n_classes, std::span<const int> subclasses, std::size_t coordinates);
+                                               int n_classes, std::span<const int> subclasses);
 
-  /// (n_classes) probabilities, classes equally likely beforehand; too sure of themselves: calibrate.
-  [[nodiscard]] std::vector<double> probabilities(std::span<const float> features) const;
-  /// The coordinates that part the subclasses best.
-  [[nodiscard]] std::vector<double> project(std::span<const float> features) const;
-  /// (n_rows x n_coordinates)
-  [[nodiscard]] Matrix<double> project(const Matrix<float>& features, unsigned threads = 0) const;
+  /// Between the subclasses: its coordinates part these.
+  [[nodiscard]] const Discriminant& discriminant() const noexcept { return discriminant_; }
+  /// place: a row as projected by discriminant(). (n_classes) probabilities, classes equally likely beforehand; too
+  /// sure of themselves: calibrate.
+  [[nodiscard]] std::vector<double> probabilities_at(std::span<const double> place) const;
 
  private:
   Discriminant discriminant_;
-  std::size_t n_classes_ = 0, coordinates_ = 0;
+  std::size_t n_classes_ = 0;
   std::vector<std::size_t> class_of_;  ///< (n_subclasses)
   std::vector<double> log_share_;      ///< (n_subclasses) of its class's rows
 };

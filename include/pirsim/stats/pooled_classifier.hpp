@@ -50,7 +50,8 @@ class PooledClassifier {
   /// (3 x n_classes) what each kind says of a row.
   [[nodiscard]] std::vector<std::vector<double>> sources(std::span<const float> features) const;
 
-  MixtureDiscriminant discriminant_;
+  MixtureDiscriminant mixture_;
+  std::size_t n_coordinates_ = 0;  ///< the first of the discriminant's
   ExtraTrees trees_;
   NormalLayers layers_;
   LogPool pool_;  ///< weights of trees, discriminant, layers

@@ -55,7 +55,7 @@ TEST_CASE("projected rows have the within-class variance one and the means apart
   const Labelled data = two_normals(4000, 3, 2.0, 0.0, 2);
   const Discriminant fitted = Discriminant::fit(data.features, data.labels, 2);
   REQUIRE(fitted.n_directions() == 1);
-  const Matrix<double> places = fitted.project(data.features, 1);
+  const Matrix<double> places = fitted.project(data.features, 1, 1);
   double mean[2] = {0.0, 0.0}, square[2] = {0.0, 0.0};
   for (std::size_t r = 0; r < 4000; ++r) {
     mean[data.labels[r]] += places(r, 0) / 2000;
@@ -63,6 +63,25 @@ TEST_CASE("projected rows have the within-class variance one and the means apart
   }
   CHECK(std::abs(mean[1] - mean[0]) == Approx(2.0).margin(4 * std::sqrt(2.0 / 2000)));
   for (const int k : {0, 1}) CHECK(square[k] - mean[k] * mean[k] == Approx(1.0).margin(4 * std::sqrt(2.0 / 2000)));
+}
+
+TEST_CASE("the first coordinates of rows are those of each row", "[stats]") {
+  Labelled data = two_normals(600, 5, 2.0, 0.0, 4);
+  for (std::size_t r = 0; r < 600; r += 3) {
+    data.labels[r] = 2;
+    data.features(r, 4) += 5.0F;
+  }
+  const Discriminant fitted = Discriminant::fit(data.features, data.labels, 3);
+  REQUIRE(fitted.n_directions() == 2);
+  for (const std::size_t n : {std::size_t{1}, std::size_t{2}}) {
+    const Matrix<double> places = fitted.project(data.features, n, 2);
+    REQUIRE(places.columns() == n);
+    for (std::size_t r = 0; r < 600; ++r) {
+      const std::vector<double> whole = fitted.project(data.features.row(r));
+      for (std::size_t i = 0; i < n; ++i) CHECK(places(r, i) == Approx(whole[i]).margin(1e-9));
+    }
+  }
+  CHECK_THROWS_AS(fitted.project(data.features, 3), Error);
 }
 
 TEST_CASE("Ledoit and Wolf shrink independent columns almost wholly and many dependent rows hardly", "[stats]") {

@@ -54,7 +54,10 @@ double least_error() {
 double error_of(const MixtureDiscriminant& fitted, const Data& test) {
   double wrong = 0.0;
   for (std::size_t r = 0; r < n_rows; ++r)
-    wrong += (fitted.probabilities(test.features.row(r))[1] > 0.5 ? 1 : 0) == test.labels[r] ? 0.0 : 1.0;
+    wrong += (fitted.probabilities_at(fitted.discriminant().project(test.features.row(r)))[1] > 0.5 ? 1 : 0) ==
+                     test.labels[r]
+                 ? 0.0
+                 : 1.0;
   return wrong / n_rows;
 }
 
@@ -64,35 +67,26 @@ TEST_CASE("a class of two parts is told from one between them as well as the den
   const Data train = rows(0), test = rows(1);
   const double expected = least_error();
   const double standard_error = std::sqrt(expected * (1.0 - expected) / n_rows);
-  const auto by_parts = MixtureDiscriminant::fit(train.features, train.labels, 2, train.subclasses, 60);
+  const auto by_parts = MixtureDiscriminant::fit(train.features, train.labels, 2, train.subclasses);
   CHECK(std::abs(error_of(by_parts, test) - expected) < 4 * standard_error);
   // The twin: one mean a class is another rule, and a worse one.
-  const auto by_classes = MixtureDiscriminant::fit(train.features, train.labels, 2, train.labels, 60);
+  const auto by_classes = MixtureDiscriminant::fit(train.features, train.labels, 2, train.labels);
   CHECK(error_of(by_classes, test) > expected + 8 * standard_error);
 }
 
 TEST_CASE("without parts a mixture discriminant is a discriminant", "[stats]") {
   const Data train = rows(2);
-  const auto mixture = MixtureDiscriminant::fit(train.features, train.labels, 2, train.labels, 60);
+  const auto mixture = MixtureDiscriminant::fit(train.features, train.labels, 2, train.labels);
   const auto plain = Discriminant::fit(train.features, train.labels, 2);
   for (std::size_t r = 0; r < 20; ++r) {
-    CHECK(mixture.probabilities(train.features.row(r)) == plain.probabilities(train.features.row(r)));
-    CHECK(mixture.project(train.features.row(r)) == plain.project(train.features.row(r)));
+    const std::vector<double> place = mixture.discriminant().project(train.features.row(r));
+    CHECK(place == plain.project(train.features.row(r)));
+    CHECK(mixture.probabilities_at(place) == plain.probabilities(train.features.row(r)));
   }
-}
-
-TEST_CASE("only the coordinates that part best are kept", "[stats]") {
-  const Data train = rows(3);
-  const auto all = MixtureDiscriminant::fit(train.features, train.labels, 2, train.subclasses, 60);
-  const auto one = MixtureDiscriminant::fit(train.features, train.labels, 2, train.subclasses, 1);
-  REQUIRE(all.project(train.features.row(0)).size() == 2);
-  REQUIRE(one.project(train.features.row(0)).size() == 1);
-  CHECK(one.project(train.features.row(0))[0] == all.project(train.features.row(0))[0]);
-  CHECK(one.probabilities(train.features.row(0)) == all.probabilities(train.features.row(0)));
 }
 
 TEST_CASE("a subclass of two classes is refused", "[stats]") {
   Data train = rows(4);
   train.subclasses[0] = 1;  // row 0 is of class 0
-  CHECK_THROWS_AS(MixtureDiscriminant::fit(train.features, train.labels, 2, train.subclasses, 60), Error);
+  CHECK_THROWS_AS(MixtureDiscriminant::fit(train.features, train.labels, 2, train.subclasses), Error);
 }
