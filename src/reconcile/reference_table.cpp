@@ -12,6 +12,17 @@ namespace {
 
 constexpr std::uint32_t entries_per_attempt = 4096;  ///< keeps the streams of attempts apart
 
+/// Number of worlds for calibration before the n-th world.
+std::uint32_t n_for_calibration(std::uint32_t n) {
+  std::uint32_t count = n / 5 * 2;
+  for (std::uint32_t world = n / 5 * 5; world < n; ++world) count += is_for_calibration(world) ? 1 : 0;
+  return count;
+}
+
+std::uint32_t place_in_catalogue(const effects::Effect& effect) {
+  return static_cast<std::uint32_t>(std::ranges::find(effects::catalogue(), &effect) - effects::catalogue().begin());
+}
+
 /// Simulates the datasets of single worlds.
 class WorldJob {
  public:
@@ -25,19 +36,26 @@ class WorldJob {
     const SimulatedWorld world(source_, frame_, index, n_replicates_);
     chunk.datasets.push_back({{0, index, {}}, world.plain(0, n_replicates_)});
     for (std::uint32_t e = 0; e < effects_.size(); ++e) {
-      if (index < n_datasets(*effects_[e])) add_effect(chunk, world, index, e);
+      if (has_dataset(*effects_[e], index)) add_effect(chunk, world, index, e);
     }
     return chunk;
   }
 
  private:
-  [[nodiscard]] std::uint32_t n_datasets(const effects::Effect& effect) const {
-    return effect.info.reach == effects::Reach::geometry ? settings_.n_traced : settings_.n_remembered;
+  /// All effects are trained in the same worlds, so that what is between two of them isn't the worlds' doing. They are
+  /// calibrated in worlds that differ as far as there are enough: a few strange ones shall not set the levels of all.
+  [[nodiscard]] bool has_dataset(const effects::Effect& effect, std::uint32_t world) const {
+    const std::uint32_t wanted =
+        effect.info.reach == effects::Reach::geometry ? settings_.n_traced : settings_.n_remembered;
+    if (!is_for_calibration(world)) return world < wanted;
+    const std::uint32_t n = n_for_calibration(settings_.n_worlds);
+    const auto first =
+        static_cast<std::uint32_t>(std::size_t{place_in_catalogue(effect)} * n / effects::catalogue().size());
+    return (n_for_calibration(world) + n - first) % n < n_for_calibration(wanted);
   }
   void add_effect(TableChunk& chunk, const SimulatedWorld& world, std::uint32_t index, std::uint32_t e) const {
     // What is drawn for an effect doesn't depend on which others are looked for.
-    const auto place =
-        static_cast<std::uint32_t>(std::ranges::find(effects::catalogue(), effects_[e]) - effects::catalogue().begin());
+    const std::uint32_t place = place_in_catalogue(*effects_[e]);
     for (std::uint32_t attempt = 0; attempt < most_attempts; ++attempt) {
       Stream stream({source_.seed, index, place + attempt * entries_per_attempt, Purpose::reference_parameters});
       const EffectSpec effect =

@@ -115,6 +115,30 @@ TEST_CASE("a table goes on where it was interrupted and refuses another study's 
   CHECK_THROWS_WITH(make(other), contains("holds simulated datasets of another"));
 }
 
+TEST_CASE("effects are trained in the same worlds and calibrated in worlds that differ", "[reconcile][three-seats]") {
+  const Laboratory& lab = laboratory();
+  const std::vector<std::string> entries{"seats_shifted", "sensor_tilt", "dual_polarity"};
+  const ReferenceTable table = make_reference_table(lab.source, lab.frame, lab.shape, lab.table.profile,
+                                                    {50, 20, 20, 0, entries}, std::filesystem::path());
+  const auto worlds = [&](std::size_t entry, Part part) {
+    std::set<std::uint32_t> found;
+    for (const std::size_t row : rows_of(table, entry, part)) found.insert(table.rows[row].world);
+    return found;
+  };
+  CHECK(worlds(0, Part::all).size() == 50);
+  std::set<std::uint32_t> of_any, of_all = worlds(1, Part::calibration);
+  for (std::size_t entry = 1; entry <= entries.size(); ++entry) {
+    CHECK(worlds(entry, Part::training) == worlds(1, Part::training));
+    const std::set<std::uint32_t> own = worlds(entry, Part::calibration);
+    CHECK(own.size() == 8);
+    of_any.insert(own.begin(), own.end());
+    std::erase_if(of_all, [&](std::uint32_t world) { return !own.contains(world); });
+  }
+  CHECK(worlds(1, Part::training).size() == 12);
+  CHECK(of_any == worlds(0, Part::calibration));
+  CHECK(of_all.empty());
+}
+
 TEST_CASE("a planted effect is located and named and nothing is not", "[reconcile][three-seats]") {
   const Outcome found = analyst().analyse(planted(1, {many_false_triggers}));
   CHECK(found.verdict == Verdict::named);
