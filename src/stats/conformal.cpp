@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "pirsim/core/parallel.hpp"
-#include "pirsim/stats/intervals.hpp"
 #include "stats/require.hpp"
 #include "stats/select.hpp"
 
@@ -45,11 +43,6 @@ std::vector<std::vector<std::size_t>> checked_blocks(std::vector<std::vector<std
 
 }  // namespace
 
-double conformal_p(std::span<const double> calibration, double score) {
-  const auto as_strange = std::count_if(calibration.begin(), calibration.end(), [&](double c) { return c >= score; });
-  return static_cast<double>(as_strange + 1) / static_cast<double>(calibration.size() + 1);
-}
-
 std::vector<std::size_t> prediction_set(std::span<const double> p, double alpha) {
   std::vector<std::size_t> members;
   for (std::size_t k = 0; k < p.size(); ++k)
@@ -81,23 +74,6 @@ std::vector<double> ConformalClassifier::measures(std::span<const float> feature
     measures.push_back(std::cbrt(shapes_[b].strangeness(detail::select(features, blocks_[b]), k)));
   measures.push_back(-log_densities[k]);
   return measures;
-}
-
-ConformalClassifier::StrangestMeasure::StrangestMeasure(const Matrix<double>& rows) {
-  for (std::size_t m = 0; m < rows.columns(); ++m) {
-    std::vector<double> values;
-    for (std::size_t row = 0; row < rows.rows(); ++row) values.push_back(rows(row, m));
-    const double median = quantile(values, 0.5);
-    scales_.push_back({median, std::max(quantile(values, 0.95) - median, 1e-9)});
-  }
-  for (std::size_t row = 0; row < rows.rows(); ++row) known_.push_back(of(rows.row(row)));
-}
-
-double ConformalClassifier::StrangestMeasure::of(std::span<const double> measures) const {
-  double strangest = -std::numeric_limits<double>::infinity();
-  for (std::size_t m = 0; m < measures.size(); ++m)
-    strangest = std::max(strangest, (measures[m] - scales_[m].median) / scales_[m].reach);
-  return strangest;
 }
 
 void ConformalClassifier::calibrate(const Matrix<float>& features, std::span<const int> labels, unsigned threads) {

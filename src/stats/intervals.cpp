@@ -16,13 +16,6 @@ namespace {
 using boost::math::binomial_distribution;
 
 /// Type 7 of a sorted sample.
-double sorted_quantile(const std::vector<double>& sorted, double probability) {
-  const double place = std::clamp(probability, 0.0, 1.0) * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
-
 std::vector<double> bootstrap_values(std::size_t n_blocks, const BlockStatistic& statistic,
                                      const BootstrapSettings& settings) {
   std::vector<double> values;
@@ -60,11 +53,18 @@ double acceleration(std::size_t n_blocks, const BlockStatistic& statistic) {
 }  // namespace
 
 double quantile(std::span<const double> sample, double probability) {
-  require(!sample.empty(), "quantile: empty sample");
-  require(probability >= 0.0 && probability <= 1.0, "quantile: probability outside [0, 1]");
   std::vector<double> sorted(sample.begin(), sample.end());
   std::sort(sorted.begin(), sorted.end());
   return sorted_quantile(sorted, probability);
+}
+
+double sorted_quantile(std::span<const double> sample, double probability) {
+  require(!sample.empty(), "quantile: empty sample");
+  require(probability >= 0.0 && probability <= 1.0, "quantile: probability outside [0, 1]");
+  const double place = probability * static_cast<double>(sample.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, sample.size() - 1);
+  return sample[below] + (place - static_cast<double>(below)) * (sample[above] - sample[below]);
 }
 
 Interval clopper_pearson(std::size_t hits, std::size_t trials, double confidence) {

@@ -8,12 +8,9 @@
 #include "pirsim/stats/class_shapes.hpp"
 #include "pirsim/stats/matrix.hpp"
 #include "pirsim/stats/pooled_classifier.hpp"
+#include "pirsim/stats/strangest_measure.hpp"
 
 namespace pirsim::stats {
-
-/// Share of the calibration scores and the score itself that are at least as great (strange) as the score. If the score
-/// and the calibration scores are exchangeable, P(p <= a) <= a. Ref: [Vovk2005]
-[[nodiscard]] double conformal_p(std::span<const double> calibration, double score);
 
 /// Indices whose p exceeds alpha.
 [[nodiscard]] std::vector<std::size_t> prediction_set(std::span<const double> p, double alpha);
@@ -35,7 +32,7 @@ struct Classification {
 };
 
 /// A pooled classifier and the shapes of the classes. For a row that class k made, P(p[k] <= a) <= a for each k, up to
-/// the three pool weights and the measures' scales being taken from the calibration rows.
+/// the three pool weights being taken from the calibration rows.
 class ConformalClassifier {
  public:
   ConformalClassifier() = default;
@@ -58,21 +55,6 @@ class ConformalClassifier {
   [[nodiscard]] int n_classes() const noexcept { return pooled_.n_classes(); }
 
  private:
-  /// A class's own rows by the strangest of several measures, each by how far it reaches upwards in these rows.
-  class StrangestMeasure {
-   public:
-    /// rows: (n_rows of the class x n_measures).
-    explicit StrangestMeasure(const Matrix<double>& rows);
-    [[nodiscard]] double p(std::span<const double> measures) const { return conformal_p(known_, of(measures)); }
-
-   private:
-    [[nodiscard]] double of(std::span<const double> measures) const;
-    struct Scale {
-      double median = 0.0, reach = 1.0;  ///< from the median to the 95 % quantile
-    };
-    std::vector<Scale> scales_;  ///< (n_measures)
-    std::vector<double> known_;  ///< (n_rows)
-  };
   /// (n_blocks + 1) of the row for class k: by block the cube root of its squared distance from the class's shape,
   /// which has a tail as the normal distribution whatever the number of columns [WilsonHilferty1931], and how unlikely
   /// the class's layers make it.

@@ -18,6 +18,8 @@ struct Interval {
 /// Quantile of a sample that needn't be sorted, linear between order statistics (type 7 of [Hyndman1996]).
 /// probability in [0, 1]. Throws Error(usage) for an empty sample.
 [[nodiscard]] double quantile(std::span<const double> sample, double probability);
+/// The same of an ascending sample.
+[[nodiscard]] double sorted_quantile(std::span<const double> sample, double probability);
 
 /// Exact interval of a probability after `hits` of `trials` (1 or more), at least `confidence` sure.
 /// Ref: [ClopperPearson1934]
