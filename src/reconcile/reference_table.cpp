@@ -11,6 +11,8 @@ namespace pirsim::reconcile {
 namespace {
 
 constexpr std::uint32_t entries_per_attempt = 4096;  ///< keeps the streams of attempts apart
+/// What a profile was made of looks less strange beside it than new data do: no world of a table.
+constexpr std::uint32_t first_pilot_world = 1U << 26U;
 
 /// Number of worlds for calibration before the n-th world.
 std::uint32_t n_for_calibration(std::uint32_t n) {
@@ -82,7 +84,9 @@ std::vector<Series> pilot_runs(const WorldSource& source, const StudyFrame& fram
   std::vector<Series> all;
   ordered_parallel<std::vector<Series>>(
       n_worlds, threads,
-      [&](std::size_t i) { return SimulatedWorld(source, frame, static_cast<std::uint32_t>(i), 1).plain(0, 1); },
+      [&](std::size_t i) {
+        return SimulatedWorld(source, frame, first_pilot_world + static_cast<std::uint32_t>(i), 1).plain(0, 1);
+      },
       [&](std::vector<Series>& runs) { std::ranges::move(runs, std::back_inserter(all)); });
   return all;
 }

@@ -43,7 +43,7 @@ class ReferenceTable {
   std::vector<std::string> effects;  ///< names of the entries from 1 on
   std::vector<TableRow> rows;        ///< by world, then entry
   stats::Matrix<float> statistics;   ///< (n_rows x n_statistics)
-  Profile profile;                   ///< of the plain model, from the first worlds
+  Profile profile;                   ///< of the plain model, from pilot runs
   std::uint32_t n_worlds = 0;
   std::uint32_t n_left_out = 0;  ///< datasets in whose worlds people couldn't get about
 
@@ -66,7 +66,7 @@ struct TableProgress {
                                                   const TableSettings& settings, const std::filesystem::path& folder,
                                                   const TableProgress& progress = {});
 
-/// Pilot runs of the plain model in the first worlds, for profiles and shapes.
+/// Pilot runs of the plain model, for profiles and shapes, in worlds that no table has.
 [[nodiscard]] std::vector<Series> pilot_runs(const WorldSource& source, const StudyFrame& frame, std::uint32_t n_worlds,
                                              unsigned threads);
 

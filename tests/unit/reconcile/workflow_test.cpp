@@ -115,6 +115,17 @@ TEST_CASE("a table goes on where it was interrupted and refuses another study's 
   CHECK_THROWS_WITH(make(other), contains("holds simulated datasets of another"));
 }
 
+TEST_CASE("pilot runs are of worlds that no table has", "[reconcile][three-seats]") {
+  const Laboratory& lab = laboratory();
+  const std::vector<Series> pilot = pilot_runs(lab.source, lab.frame, 2, 0);
+  REQUIRE(pilot.size() == 2 * lab.frame.trials.size());
+  for (const std::uint32_t world : {0U, 1U}) {
+    const Series own = SimulatedWorld(lab.source, lab.frame, world, 1).plain(0, 1).front();
+    CHECK(
+        std::ranges::none_of(pilot, [&](const Series& run) { return run.trial == own.trial && run.bits == own.bits; }));
+  }
+}
+
 TEST_CASE("effects are trained in the same worlds and calibrated in worlds that differ", "[reconcile][three-seats]") {
   const Laboratory& lab = laboratory();
   const std::vector<std::string> entries{"seats_shifted", "sensor_tilt", "dual_polarity"};
