@@ -11,11 +11,14 @@ namespace {
 using ray_tests::Lanes, ray_tests::Mask, ray_tests::n_lanes;
 using Vector = ray_tests::Vector<Lanes>;
 using Interval = ray_tests::Interval<Lanes>;
+using Near = ray_tests::Approach<Lanes>;
 
 /// Metres added to a ball before anything is left out: far above single precision's rounding (a kilometre from the
 /// world's origin 6e-5 m), so that what the exact tests say of a ray outside the ball is always "misses".
 constexpr float ball_margin = 1e-3F;
 constexpr float relative_margin = 1e-5F;
+constexpr float guess_margin = 1e-4F;   ///< metres, of a ray from where a capsule's surface is
+constexpr float least_square = 1e-30F;  ///< instead of zero, to divide by
 
 inline Vector vector_of(const Vec3f& v) noexcept { return {Lanes(v.x), Lanes(v.y), Lanes(v.z)}; }
 
@@ -50,20 +53,37 @@ inline Lanes size_of(Lanes x) noexcept { return larger(x, Lanes(0.0F) - x); }
   return n;
 }
 
-/// Rays that pass an endless bar around the solid at more than `reach` needn't be tested; those that run along it must.
-inline Mask passes_near(const Vector& offset, const Vector& direction, const Vector& axis, Lanes reach) noexcept {
-  const Vector normal{direction.y * axis.z - direction.z * axis.y, direction.z * axis.x - direction.x * axis.z,
-                      direction.x * axis.y - direction.y * axis.x};
-  const Lanes square = dot(normal, normal), apart = dot(offset, normal);
-  // Within a hundredth of a radian rounding could be worth more than the margin.
-  return (apart * apart <= reach * reach * square) | (square < Lanes(1e-4F));
+/// What can be said of rays without the exact test.
+struct Guess {
+  Mask surely, perhaps;  ///< hits; neither: a miss
+};
+
+/// A ray misses that passes the bone clearly outside; one that is clearly inside where it passes the bone hits. The
+/// exact test starts from the same `near`, so the margin covers the rounding of what follows only.
+inline Guess guess_capsule(const ray_tests::CapsuleAxis<Lanes>& bone, Lanes radius, const Near& near,
+                           const Vector& direction, Lanes slack, Lanes range) noexcept {
+  const Lanes along = dot(bone.half_axis, direction);
+  const Vector across = bone.half_axis - direction * along;
+  const Lanes square = dot(across, across), one(1.0F);
+  const Lanes place = dot(near.offset, across) / larger(square, Lanes(least_square));
+  const Lanes nearest = smaller(larger(place, Lanes(0.0F) - one), one);  // of the bone's points, in half axes
+  const Vector apart = near.offset - across * nearest;
+  const Lanes gap_square = dot(apart, apart), distance = near.distance + along * nearest;
+  const Lanes margin = Lanes(guess_margin) + slack, outside = radius + margin, inside = radius - margin;
+  // Within a hundredth of a radian of the bone rounding could be worth more than the margin.
+  const Lanes along_square = Lanes(1e-4F) * bone.half_length * bone.half_length;
+  const Mask is_met = (gap_square < inside * inside) & (inside > Lanes(0.0F)) & (square >= along_square);
+  return {is_met & (distance > margin) & (distance + margin < range),
+          (gap_square <= outside * outside) | (square < along_square)};
 }
 
 /// Forgets where rays enter, or notes it.
 struct HitsOnly {
+  static constexpr bool wants_distances = false;
   void operator()(std::size_t, Lanes) const noexcept {}
 };
 struct Distances {
+  static constexpr bool wants_distances = true;
   float* to;
   void operator()(std::size_t ray, Lanes distance) const noexcept { ray_tests::store(distance.value, to + ray); }
 };
@@ -79,8 +99,8 @@ struct Query {
   Note note;
 };
 
-template <typename Note, typename Cull, typename Test>
-inline void meet(const Query<Note>& query, const Cull& may_meet, const Test& inside_solid) noexcept {
+template <typename Note, typename Guesser, typename Test>
+inline void meet(const Query<Note>& query, const Guesser& guess, const Test& inside_solid) noexcept {
   const Vector centre = vector_of(query.around.centre);
   const float reach = query.around.radius * (1.0F + relative_margin) + ball_margin;
   const Lanes margin(reach), share(relative_margin);
@@ -91,11 +111,16 @@ inline void meet(const Query<Note>& query, const Cull& may_meet, const Test& ins
       const Vector origin = load(pack.origin_x, pack.origin_y, pack.origin_z, lane);
       const Vector direction = load(pack.direction_x, pack.direction_y, pack.direction_z, lane);
       const Lanes range = Lanes::at(pack.range + lane);
-      const auto near = ray_tests::approach(origin, direction, centre);
+      const Near near = ray_tests::approach(origin, direction, centre);
       const Lanes slack = share * size_of(near.distance), wide = margin + slack;
-      const Mask is_near = (dot(near.offset, near.offset) <= wide * wide) & (near.distance - wide <= range) &
-                           may_meet(near.offset, direction, slack);
+      const Mask is_near = (dot(near.offset, near.offset) <= wide * wide) & (near.distance - wide <= range);
       if (bits(is_near) == 0) continue;
+      const Guess guessed = guess(near, direction, slack, range);
+      const unsigned int surely = bits(is_near & guessed.surely), perhaps = bits(is_near & guessed.perhaps) & ~surely;
+      if (perhaps == 0 && (surely == 0 || !Note::wants_distances)) {
+        found |= surely << lane;
+        continue;
+      }
       const Interval inside = inside_solid(origin, direction);
       found |= bits(ray_tests::is_hit(inside, range)) << lane;
       query.note(k * pack_size + lane, ray_tests::entry(inside));
@@ -104,29 +129,30 @@ inline void meet(const Query<Note>& query, const Cull& may_meet, const Test& ins
   }
 }
 
-inline Mask any_ray(const Vector&, const Vector&, Lanes slack) noexcept { return slack >= Lanes(0.0F); }
+inline Guess unsure(const Near&, const Vector&, Lanes slack, Lanes) noexcept {
+  return {slack < Lanes(0.0F), slack >= Lanes(0.0F)};
+}
 
 template <typename Note>
 inline void meet_solid(const PosedSphere& solid, const Query<Note>& query) noexcept {
   const Vector centre = vector_of(solid.centre);
   const Lanes radius(solid.radius);
-  meet(query, any_ray, [&](const Vector& origin, const Vector& direction) {
+  meet(query, unsure, [&](const Vector& origin, const Vector& direction) {
     return ray_tests::sphere(origin, direction, centre, radius);
   });
 }
 
 template <typename Note>
 inline void meet_solid(const PosedCapsule& solid, const Query<Note>& query) noexcept {
-  const auto axis = ray_tests::capsule_axis(vector_of(solid.a), vector_of(solid.b));
+  const auto bone = ray_tests::capsule_axis(vector_of(solid.a), vector_of(solid.b));
   const Lanes radius(solid.radius);
-  const Lanes reach(solid.radius * (1.0F + relative_margin) + ball_margin);
   meet(
       query,
-      [&](const Vector& offset, const Vector& direction, Lanes slack) {
-        return passes_near(offset, direction, axis.axis, reach + slack);
+      [&](const Near& near, const Vector& direction, Lanes slack, Lanes range) {
+        return guess_capsule(bone, radius, near, direction, slack, range);
       },
       [&](const Vector& origin, const Vector& direction) {
-        return ray_tests::capsule(origin, direction, axis, radius);
+        return ray_tests::capsule(origin, direction, bone, radius);
       });
 }
 
@@ -134,7 +160,7 @@ template <typename Note>
 inline void meet_solid(const PosedBox& solid, const Query<Note>& query) noexcept {
   const Vector centre = vector_of(solid.centre), half_extents = vector_of(solid.half_extents);
   const std::array<Vector, 3> axes{vector_of(solid.axes[0]), vector_of(solid.axes[1]), vector_of(solid.axes[2])};
-  meet(query, any_ray, [&](const Vector& origin, const Vector& direction) {
+  meet(query, unsure, [&](const Vector& origin, const Vector& direction) {
     return ray_tests::box(origin, direction, centre, axes, half_extents);
   });
 }

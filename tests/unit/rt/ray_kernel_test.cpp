@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <vector>
 
 #include "support/catch.hpp"
@@ -112,6 +113,37 @@ TEST_CASE("rays along a capsule's axis, from inside and grazing agree as well", 
     for (const RayKernel* kernel : available_kernels()) n_wrong += met(*kernel, c) == c.expected ? 0 : 1;
   }
   CHECK(n_wrong == 0);
+}
+
+TEST_CASE("single rays that pass, begin or end within micrometres of a capsule's surface agree as well", "[rt]") {
+  Draw draw(80);
+  const auto kernels = available_kernels();
+  const auto tiny = [&] { return (draw.index(2) == 0 ? 1.0 : -1.0) * std::pow(10.0, draw.between(-7.0, -1.5)); };
+  std::size_t n_wrong = 0, n_hits = 0;
+  constexpr std::size_t n = 200000;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double reach = draw.index(4) == 0 ? 1000.0 : 6.0;
+    const Vec3 at = draw.inside(Vec3(-reach), Vec3(reach));
+    const Quat rotation = draw.rotation();
+    const double radius = draw.between(0.02, 0.15), half_length = draw.index(8) == 0 ? 0.0 : draw.between(0.0, 0.4);
+    const Vec3 bone = rotation * Vec3(0, 1, 0), aside = rotation * Vec3(1, 0, 0), normal = rotation * Vec3(0, 0, 1);
+    const double angle = draw.index(2) == 0 ? draw.between(0.0, 3.14) : std::pow(10.0, draw.between(-4.0, 0.0));
+    const Vec3 direction = std::cos(angle) * bone + std::sin(angle) * aside;
+    const Vec3 nearest = at + half_length * std::clamp(draw.between(-1.5, 1.5), -1.0, 1.0) * bone;
+    const double before = draw.index(3) == 0 ? tiny() : draw.between(-0.5, 15.0);
+    const Vec3 from = nearest + (radius + tiny()) * normal - before * direction;
+    const Ray ray = testing::ray_through(from, from + direction);
+    Case c;
+    c.solid = place(Capsule{radius, half_length}, {rotation, at});
+    const double range = draw.index(3) == 0 ? before + tiny() : draw.between(0.0, 20.0);
+    for (std::size_t k = 0; k < pack_size; ++k) set(c.pack, k, ray, k == 0 ? static_cast<float>(range) : -1.0F);
+    if (entry_distance(ray, c.solid, c.pack.range[0])) c.expected = 1;
+    n_hits += c.expected;
+    for (const RayKernel* kernel : kernels) n_wrong += met(*kernel, c) == c.expected ? 0 : 1;
+  }
+  CHECK(n_wrong == 0);
+  CHECK(n_hits > n / 5);
+  CHECK(n_hits < n * 4 / 5);
 }
 
 TEST_CASE("no cone that is culled has a ray that meets the ball, whatever the instruction set", "[rt]") {
