@@ -5,17 +5,23 @@
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <numeric>
+#include <type_traits>
 
 #include "rt/device.hpp"
 
 namespace pirsim::rt {
 namespace {
 
-template <typename Solid>
-void copy_bits(const Solid& solid, std::uint32_t* to) noexcept {
-  static_assert(sizeof(Solid) % sizeof(std::uint32_t) == 0);
-  const auto words = std::bit_cast<std::array<std::uint32_t, sizeof(Solid) / sizeof(std::uint32_t)>>(solid);
-  std::ranges::copy(words, to);
+/// By bytes, so that 0 and -0 count as different and no number as itself.
+bool is_same(const PosedShape& a, const PosedShape& b) noexcept {
+  if (a.index() != b.index()) return false;
+  return std::visit(
+      [&b](const auto& solid) {
+        using Solid = std::remove_cvref_t<decltype(solid)>;
+        static_assert(std::is_trivially_copyable_v<Solid>);
+        return std::memcmp(&solid, std::get_if<Solid>(&b), sizeof solid) == 0;
+      },
+      a);
 }
 
 /// For solids that have no test of many rays at a time.
@@ -52,22 +58,14 @@ DirectTracer::DirectTracer(const TracerSetup& setup, const RayKernel& kernel)
   near_person_cones_.reserve(cones_.size());
 }
 
-DirectTracer::Key DirectTracer::key_of(const PosedShape& solid) noexcept {
-  Key key{};
-  key.back() = static_cast<std::uint32_t>(solid.index()) + 1;  // never that of a slot without a solid
-  std::visit([&](const auto& s) { copy_bits(s, key.data()); }, solid);
-  return key;
-}
-
 void DirectTracer::find_moved(std::span<const PosedShape> solids, Memory& memory) {
   memory.slots.resize(solids.size());
   moved_.clear();
   left_.clear();
   for (std::size_t i = 0; i < solids.size(); ++i) {
-    const Key key = key_of(solids[i]);
     Slot& slot = memory.slots[i];
-    if (std::memcmp(&slot.key, &key, sizeof key) == 0) continue;
-    slot.key = key;
+    if (slot.solid && is_same(*slot.solid, solids[i])) continue;
+    slot.solid = solids[i];
     moved_.push_back(static_cast<std::uint32_t>(i));
     if (!slot.near.cover(solids[i])) left_.push_back(static_cast<std::uint32_t>(i));
   }

@@ -4,8 +4,8 @@
 // while it stands still.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "pirsim/geom/zone_set.hpp"
@@ -26,11 +26,9 @@ class DirectTracer final : public Tracer {
  private:
   /// Of the packs around one solid; more are allocated when they are needed.
   static constexpr std::size_t most_packs_reserved = 32;
-  /// The bits of all numbers of a solid: what is compared to tell whether it moved.
-  using Key = std::array<std::uint32_t, 16>;
   /// A solid as last seen. Its zones are words [i * n_words_, (i + 1) * n_words_) of a person's `hits`.
   struct Slot {
-    Key key{};
+    std::optional<PosedShape> solid;
     NearRays near{most_packs_reserved};
   };
   struct Memory {
@@ -42,7 +40,6 @@ class DirectTracer final : public Tracer {
     float distance;  ///< metres
   };
 
-  [[nodiscard]] static Key key_of(const PosedShape& solid) noexcept;
   void find_moved(std::span<const PosedShape> solids, Memory& memory);
   void gather(std::span<const PosedShape> solids, Memory& memory);
   void gather_one(const PosedShape& grown, const Ball& ball, NearRays& near);
