@@ -195,6 +195,9 @@ void add_reconcile_options(CLI::App& command, ReconcileOptions& options) {
   command.add_option("--alpha", options.alpha, "level of the tests (default: 0.05)")
       ->option_text("P")
       ->check(CLI::Range(0.001, 0.5));
+  command.add_option("--effects", options.effects, "candidates: a,b (default: the whole catalogue)")
+      ->option_text("NAMES")
+      ->delimiter(',');
   command.add_option("--max-effects", options.max_effects, "most effects to put in (default: 3)")
       ->option_text("N")
       ->check(CLI::Range(1, 5));
@@ -241,9 +244,6 @@ void add_plan_options(CLI::App& command, PlanOptions& options) {
   command.add_option("--runs", options.runs, "planned runs of every trial (default: 1)")
       ->option_text("N")
       ->check(CLI::Range(1, 100));
-  command.add_option("--effects", options.effects, "those to be told apart: a,b (default: the whole catalogue)")
-      ->option_text("NAMES")
-      ->delimiter(',');
 }
 
 void add_seal_options(CLI::App& command, SealOptions& options) {

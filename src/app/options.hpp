@@ -82,6 +82,7 @@ struct ReconcileOptions {
   std::string nuisance;                        ///< file, "none", or empty: the usual
   std::string holdout;                         ///< share or names of trials to be judged on; empty: folds
   double alpha = 0.05;
+  std::vector<std::string> effects;  ///< candidates; empty: the whole catalogue
   int max_effects = 3;
   double budget = 1.0;  ///< times the usual number of simulated datasets
   std::uint64_t seed = 1;
@@ -91,7 +92,6 @@ struct ReconcileOptions {
 struct PlanOptions {
   reconcile::Measured::Kind kind = reconcile::Measured::Kind::series;
   int runs = 1;
-  std::vector<std::string> effects;  ///< to be told apart; empty: the whole catalogue
 };
 
 struct SealOptions {

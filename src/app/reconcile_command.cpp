@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <iostream>
 #include <optional>
 
@@ -35,6 +36,12 @@ reconcile::Settings settings_of(const ReconcileOptions& options) {
     return std::max(reconcile::fewest_datasets_to_refuse(options.alpha),
                     static_cast<std::uint32_t>(static_cast<double>(n) * options.budget));
   };
+  for (const std::string& effect : options.effects) {
+    const std::string& name = effects::find(effect).info.name;
+    if (std::ranges::find(settings.table.entries, name) != settings.table.entries.end())
+      throw Error(ErrorCode::usage, "--effects: " + name + " twice");
+    settings.table.entries.push_back(name);
+  }
   settings.table.threads = options.threads;
   settings.table.n_worlds = scaled(settings.table.n_worlds);
   settings.table.n_remembered = scaled(settings.table.n_remembered);
@@ -105,8 +112,6 @@ void reconcile_plan(const Inputs& inputs, const ReconcileOptions& options, const
   const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   reconcile::PlanSettings settings{settings_of(options), plan.kind, plan.runs};
-  for (const std::string& effect : plan.effects)
-    settings.analysis.table.entries.push_back(effects::find(effect).info.name);
   Teller teller(inputs.verbosity);
   const reconcile::PlanResult result = reconcile::plan(scene, script, settings, teller.observer());
   teller.finish();

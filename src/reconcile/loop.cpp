@@ -85,6 +85,8 @@ Outcome Loop::run() {
     conclude();
   }
   if (outcome_.verdict == Verdict::none_in_catalogue) explain();
+  if (const auto& asked = settings_.table.entries; !asked.empty())
+    outcome_.sentence = "The catalogue was cut down to " + joined(asked, "and") + ". " + outcome_.sentence;
   verify_effects();
   return std::move(outcome_);
 }

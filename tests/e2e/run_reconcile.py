@@ -76,6 +76,9 @@ def main():
         assert [d["design"] for d in designs][:2] == ["as planned", "all again"], designs
         assert {"slow walk", "empty room"} <= {d["design"] for d in designs}, (designs, plan["notes"])
         assert abs(float(designs[0]["minutes"]) - 0.5) < 0.05, designs
+        twice = subprocess.run([pirsim, "reconcile", "plan", *study, "--effects", "dead_time,dead_time"], capture_output=True,
+                               text=True)
+        assert twice.returncode == 2 and "dead_time twice" in twice.stderr, twice
         # False triggers are counted best where nobody is; without anybody there is nothing to miss.
         for row in plan["confusion"]:
             assert abs(sum(row) - 1.0) < 1e-9, row

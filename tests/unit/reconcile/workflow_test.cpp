@@ -302,6 +302,8 @@ TEST_CASE("the whole loop writes a patched script that runs and closes the gap",
   const Settings settings = quick();
   const Outcome outcome = reconcile::reconcile(scene, short_study(), measured, settings);
   CHECK(outcome.verdict == Verdict::named);
+  CHECK_THAT(outcome.sentence,
+             contains("The catalogue was cut down to false_triggers, missed_triggers and pulse_stretching. The model"));
   // One effect was hidden: with it the model passes, and nothing more is looked for.
   REQUIRE(outcome.looks.size() == 1);
   CHECK(outcome.looks[0].put_in == outcome.named);
