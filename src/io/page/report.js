@@ -274,7 +274,7 @@
     return {
       width: inner, height, padding: { left: 8, right: 12, top: 4, bottom: 4 }, data: [{ name: "points", values: points }],
       scales: [{ name: "x", type: chart.log ? "log" : "linear", domain: chart.axis, range: "width", nice: false, zero: false }],
-      axes: [axis("x", "bottom", chart.label, { tickCount: 6, format: "~g" })], marks,
+      axes: [axis("x", "bottom", chart.label, { tickCount: 6, format: "~r" })], marks,
     };
   }
 
