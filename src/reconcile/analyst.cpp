@@ -34,7 +34,7 @@ Judgement Analyst::judge(std::span<const float> measured) const {
   judgement.scores = namer_.judge(measured);
   judgement.family = likeliest_family(judgement.scores);
   std::vector<stats::Candidate> candidates;
-  for (const EntryScore& score : judgement.scores) candidates.push_back({score.p, score.probability});
+  for (const EntryScore& score : judgement.scores) candidates.push_back({score.p, score.probability, score.least_p});
   judgement.decision = stats::decide(judgement.p, candidates, {settings_.alpha});
   return judgement;
 }

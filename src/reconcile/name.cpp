@@ -140,6 +140,7 @@ std::vector<EntryScore> Namer::judge(std::span<const float> statistics) const {
     score.p_relative = found.p_relative[c];
     score.p_absolute = found.p_absolute[c];
     score.p = found.p[c];
+    score.least_p = classifier_.least_p(c);
   }
   return scores;
 }

@@ -176,6 +176,10 @@ std::string reason_of_unlikely(const Candidate& candidate, const Candidate& name
 
 std::string reason_of(const Candidate& candidate, double alpha) {
   const EntryScore& score = candidate.score;
+  if (candidate.kept && score.p <= alpha) {
+    return "Kept, though data of its own seldom look like these (p " + short_number(score.p) + "): with probability " +
+           short_number(score.probability) + " it is this one of the catalogue, if any.";
+  }
   if (candidate.kept) {
     return "Kept: it can have made these data (p " + short_number(score.p) +
            "), and no other effect explains them so "

@@ -8,10 +8,14 @@ namespace {
 
 constexpr std::size_t plain_model = 0;
 
-std::vector<std::size_t> survivors(std::span<const Candidate> candidates, double alpha) {
+std::vector<std::size_t> survivors(std::span<const Candidate> candidates, const DecisionLevels& levels) {
   std::vector<std::size_t> kept;
-  for (std::size_t i = 0; i < candidates.size(); ++i)
-    if (candidates[i].p > alpha) kept.push_back(i);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const bool is_certain = i != plain_model && candidates[i].probability >= levels.certain;
+    const double level =
+        is_certain ? std::min(levels.alpha, std::max(0.4 * levels.alpha, candidates[i].least_p)) : levels.alpha;
+    if (candidates[i].p > level) kept.push_back(i);
+  }
   std::stable_sort(kept.begin(), kept.end(),
                    [&](std::size_t a, std::size_t b) { return candidates[a].p > candidates[b].p; });
   return kept;
@@ -29,7 +33,7 @@ bool find_name(std::span<const Candidate> candidates, std::vector<std::size_t>& 
 
 Decision decide(double null_p, std::span<const Candidate> candidates, const DecisionLevels& levels) {
   if (null_p > levels.alpha) return {};
-  std::vector<std::size_t> kept = survivors(candidates, levels.alpha);
+  std::vector<std::size_t> kept = survivors(candidates, levels);
   if (std::ranges::find(kept, plain_model) != kept.end()) return {Verdict::one_of, std::move(kept)};
   double together = 0.0;
   for (const std::size_t i : kept) together += candidates[i].probability;

@@ -23,6 +23,7 @@ struct EntryScore {
   double p_relative = 0.0;   ///< share of the entry's own datasets that another entry explains as well
   double p_absolute = 0.0;   ///< share of the entry's own datasets that lie as far from the rest of them
   double p = 0.0;            ///< of both: min(1, 2 min)
+  double least_p = 0.0;      ///< no data give a smaller one: the entry has too few datasets
 };
 
 /// Effects of one family taken together.

@@ -47,6 +47,11 @@ class ConformalClassifier {
   /// One a row.
   [[nodiscard]] std::vector<Classification> classify(const Matrix<float>& features, unsigned threads = 0) const;
 
+  /// The least p that class k can have: that of a row stranger than all of its calibration rows.
+  [[nodiscard]] double least_p(std::size_t k) const noexcept {
+    return 2.0 / static_cast<double>(margins_[k].size() + 1);
+  }
+
   /// The classifier by itself, without the tests.
   [[nodiscard]] const PooledClassifier& pooled() const noexcept { return pooled_; }
   [[nodiscard]] const Matrix<double>& calibration_probabilities() const noexcept {

@@ -19,6 +19,7 @@ enum class Verdict {
 struct Candidate {
   double p = 0.0;            ///< of "this and nothing else made the data"
   double probability = 0.0;  ///< calibrated, among all candidates
+  double least_p = 0.0;      ///< no p is smaller, whatever the data: few datasets can't tell how rare a row is
 };
 
 struct DecisionLevels {
@@ -32,6 +33,12 @@ struct DecisionLevels {
   /// disagreements and recognises 171 instead of 140 of 180 things that the catalogue lacks; smaller levels do less of
   /// both.
   double plausible = 0.5;
+  /// An effect at least as probable is ruled out only at two fifths of alpha, or by the least p that there is: that the
+  /// data are among the strangest twentieth of its own is then likelier than that nothing of the catalogue made them.
+  /// On the planted datasets of two seeds, and with the geometry known, 0.849, 0.844 and 0.939 instead of 0.840, 0.832
+  /// and 0.920 of the disagreements get the right name, no more get a wrong one; of two seeds' 180 things each that the
+  /// catalogue lacks 4 and none more are named, and 0.7 % of the effects left out of it.
+  double certain = 0.99;
 };
 
 struct Decision {

@@ -38,6 +38,24 @@ TEST_CASE("several surviving effects are one of them, the one that fits best fir
   CHECK(decide(0.001, candidates(0.0, 0.1, 0.4, 0.2), {0.05}) == Decision{Verdict::one_of, {2, 3, 1}});
 }
 
+TEST_CASE("an effect that is as good as certain is ruled out at two fifths of the level only", "[stats]") {
+  std::vector<Candidate> certain = candidates(0.0, 0.0, 0.03, 0.0);
+  CHECK(decide(0.001, certain, {0.05}).verdict == Verdict::none_in_catalogue);
+  certain[2].probability = 0.995;
+  CHECK(decide(0.001, certain, {0.05}) == Decision{Verdict::named, {2}});
+  certain[2].p = 0.02;
+  CHECK(decide(0.001, certain, {0.05}).verdict == Verdict::none_in_catalogue);
+  // With 48 calibration rows no p is below 0.041: who has that one is stranger than all of them.
+  certain[2] = {2.0 / 49.0, 0.995, 2.0 / 49.0};
+  CHECK(decide(0.001, certain, {0.05}).verdict == Verdict::none_in_catalogue);
+  certain[2].p = 0.06;
+  certain[2].least_p = 0.2;  // and with eight of them the level itself is what it was
+  CHECK(decide(0.001, certain, {0.05}).verdict == Verdict::named);
+  certain[0] = {0.03, 0.995};  // the model as it is has no such privilege
+  certain[2].p = 0.0;
+  CHECK(decide(0.001, certain, {0.05}).verdict == Verdict::none_in_catalogue);
+}
+
 TEST_CASE("where nothing survives the catalogue lacks it", "[stats]") {
   CHECK(decide(0.001, candidates(0.0, 0.0, 0.0, 0.0), {0.05}) == Decision{Verdict::none_in_catalogue, {}});
   CHECK(decide(0.001, candidates(0.0, 0.1, 0.4, 0.2), {0.5}).verdict == Verdict::none_in_catalogue);
