@@ -62,19 +62,22 @@ struct Guess {
 /// exact test starts from the same `near`, so the margin covers the rounding of what follows only.
 inline Guess guess_capsule(const ray_tests::CapsuleAxis<Lanes>& bone, Lanes radius, const Near& near,
                            const Vector& direction, Lanes slack, Lanes range) noexcept {
-  const Lanes along = dot(bone.half_axis, direction);
+  const Lanes along = dot(bone.half_axis, direction), one(1.0F);
   const Vector across = bone.half_axis - direction * along;
-  const Lanes square = dot(across, across), one(1.0F);
-  const Lanes place = dot(near.offset, across) / larger(square, Lanes(least_square));
-  const Lanes nearest = smaller(larger(place, Lanes(0.0F) - one), one);  // of the bone's points, in half axes
-  const Vector apart = near.offset - across * nearest;
-  const Lanes gap_square = dot(apart, apart), distance = near.distance + along * nearest;
+  const Lanes square = dot(across, across), aside = dot(near.offset, across);
   const Lanes margin = Lanes(guess_margin) + slack, outside = radius + margin, inside = radius - margin;
   // Within a hundredth of a radian of the bone rounding could be worth more than the margin.
   const Lanes along_square = Lanes(1e-4F) * bone.half_length * bone.half_length;
+  const Mask is_along = square < along_square;
+  // Most packs pass the bone's endless line at a distance, which is told without a division.
+  const Mask near_line = (dot(near.offset, near.offset) - outside * outside) * square <= aside * aside;
+  if (bits(near_line | is_along) == 0) return {near_line, near_line};
+  const Lanes place = aside / larger(square, Lanes(least_square));
+  const Lanes nearest = smaller(larger(place, Lanes(0.0F) - one), one);  // of the bone's points, in half axes
+  const Vector apart = near.offset - across * nearest;
+  const Lanes gap_square = dot(apart, apart), distance = near.distance + along * nearest;
   const Mask is_met = (gap_square < inside * inside) & (inside > Lanes(0.0F)) & (square >= along_square);
-  return {is_met & (distance > margin) & (distance + margin < range),
-          (gap_square <= outside * outside) | (square < along_square)};
+  return {is_met & (distance > margin) & (distance + margin < range), (gap_square <= outside * outside) | is_along};
 }
 
 /// Forgets where rays enter, or notes it.
