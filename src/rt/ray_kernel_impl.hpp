@@ -70,7 +70,8 @@ inline Guess guess_capsule(const ray_tests::CapsuleAxis<Lanes>& bone, Lanes radi
   const Lanes along_square = Lanes(1e-4F) * bone.half_length * bone.half_length;
   const Mask is_along = square < along_square;
   // Most packs pass the bone's endless line at a distance, which is told without a division.
-  const Mask near_line = (dot(near.offset, near.offset) - outside * outside) * square <= aside * aside;
+  const Lanes offset_square = dot(near.offset, near.offset) * Lanes(1.0F - relative_margin);
+  const Mask near_line = (offset_square - outside * outside) * square <= aside * aside;
   if (bits(near_line | is_along) == 0) return {near_line, near_line};
   const Lanes place = aside / larger(square, Lanes(least_square));
   const Lanes nearest = smaller(larger(place, Lanes(0.0F) - one), one);  // of the bone's points, in half axes
