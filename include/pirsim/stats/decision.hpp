@@ -36,8 +36,8 @@ struct DecisionLevels {
   /// An effect at least as probable is ruled out only at two fifths of alpha, or by the least p that there is: that the
   /// data are among the strangest twentieth of its own is then likelier than that nothing of the catalogue made them.
   /// On the planted datasets of two seeds, and with the geometry known, 0.849, 0.844 and 0.939 instead of 0.840, 0.832
-  /// and 0.920 of the disagreements get the right name, no more get a wrong one; of two seeds' 180 things each that the
-  /// catalogue lacks 4 and none more are named, and 0.7 % of the effects left out of it.
+  /// and 0.920 of the disagreements get the right name, no more get a wrong one. Of 180 things each that the catalogue
+  /// lacks 4 and none more are named, and of the effects left out of it 7 in 1,000 more.
   double certain = 0.99;
 };
 
