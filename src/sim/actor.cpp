@@ -262,8 +262,8 @@ Actor::Progress Actor::carry_out(const WalkOut& out, const Model& model, std::sp
   return walk_to(somebody_near(out.outside, others) ? out.behind_door : out.outside, model, others);
 }
 
-Actor::Progress Actor::carry_out(const FaceTo& face, const Model&, std::span<const Presence> others) {
-  if (become_standing(others) == Progress::going_on) return Progress::going_on;
+Actor::Progress Actor::carry_out(const FaceTo& face, const Model& model, std::span<const Presence> others) {
+  if (become_standing(model, others) == Progress::going_on) return Progress::going_on;
   if (std::abs(std::remainder(face.heading - motion_->heading(), 2.0 * pi)) < 1e-9) return Progress::done;
   motion_->turn_to(face.heading);
   return Progress::going_on;
@@ -275,8 +275,8 @@ Actor::Progress Actor::carry_out(const SitOn& seat, const Model&, std::span<cons
   return Progress::going_on;
 }
 
-Actor::Progress Actor::carry_out(const StandUp&, const Model&, std::span<const Presence> others) {
-  return become_standing(others);
+Actor::Progress Actor::carry_out(const StandUp&, const Model& model, std::span<const Presence> others) {
+  return become_standing(model, others);
 }
 
 Actor::Progress Actor::carry_out(const Vanish&, const Model&, std::span<const Presence>) {
@@ -291,10 +291,14 @@ bool Actor::somebody_near(const Vec2& point, std::span<const Presence> others) c
   });
 }
 
-Actor::Progress Actor::become_standing(std::span<const Presence> others) {
+Actor::Progress Actor::become_standing(const Model& model, std::span<const Presence> others) {
   if (motion_->stage() == Stage::standing) return motion_->settled() ? Progress::done : Progress::going_on;
   const bool on_seat = motion_->stage() == Stage::seated || motion_->stage() == Stage::sitting_down;
-  if (on_seat && free_to_stand(others)) motion_->rise();
+  if (on_seat && free_to_stand(others)) {
+    motion_->rise();
+  } else if (on_seat) {
+    be_held_up(model);
+  }
   // A walk or turn that an earlier action began and that isn't wanted any more; our own ends by itself.
   if (!on_seat && !route_ && motion_->stage() == Stage::walking) motion_->stop();
   return Progress::going_on;
@@ -319,7 +323,7 @@ bool Actor::free_to_stand(std::span<const Presence> others) const {
 
 Actor::Progress Actor::walk_to(const Vec2& target, const Model& model, std::span<const Presence> others) {
   if (route_ && motion_->stage() == Stage::walking) return Progress::going_on;
-  if (become_standing(others) == Progress::going_on) return Progress::going_on;
+  if (become_standing(model, others) == Progress::going_on) return Progress::going_on;
   constexpr double arrived_m = 1e-6;
   if (glm::distance(motion_->position(), target) < arrived_m) {
     route_.reset();
@@ -404,10 +408,14 @@ void Actor::keep_distance(const Model& model, std::span<const Presence> others, 
 void Actor::give_up(const std::string& why) const { throw Error(ErrorCode::infeasible, action().where, why); }
 
 void Actor::wait_for_others(const Model& model) {
-  ++blocked_ticks_;
-  ++held_up_ticks_;
-  if (blocked_ticks_ <= ticks(give_up_s, model) && held_up_ticks_ <= ticks(give_up_in_all_s, model)) return;
-  give_up("'" + person().spec.id + "' waits in vain for others to make way");
+  if (++blocked_ticks_ > ticks(give_up_s, model)) give_up_waiting();
+  be_held_up(model);
 }
+
+void Actor::be_held_up(const Model& model) {
+  if (++held_up_ticks_ > ticks(give_up_in_all_s, model)) give_up_waiting();
+}
+
+void Actor::give_up_waiting() const { give_up("'" + person().spec.id + "' waits in vain for others to make way"); }
 
 }  // namespace pirsim

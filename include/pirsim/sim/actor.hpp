@@ -114,11 +114,13 @@ class Actor {
   Progress carry_out(const Vanish& errand, const Model& model, std::span<const Presence> others);
   Progress wait_for_turn(const Model& model, std::span<const Presence> others);
   Progress walk_to(const Vec2& target, const Model& model, std::span<const Presence> others);
-  Progress become_standing(std::span<const Presence> others);
+  Progress become_standing(const Model& model, std::span<const Presence> others);
   void keep_distance(const Model& model, std::span<const Presence> others, std::size_t n_before);
   [[nodiscard]] double free_way_ahead(std::span<const Presence> others) const;
   [[nodiscard]] bool must_give_way(std::span<const Presence> others) const;
   void wait_for_others(const Model& model);
+  void be_held_up(const Model& model);
+  [[noreturn]] void give_up_waiting() const;
   [[noreturn]] void give_up(const std::string& why) const;
   [[nodiscard]] Vec2 standing_place(const body::SeatPlace& place, const SeatPlan& seat) const;
   [[nodiscard]] const ScriptedAction& action() const { return person().spec.actions[action_]; }

@@ -135,6 +135,17 @@ TEST_CASE("waiting for good ends with an error, not with an endless run") {
   CHECK(outcome({stays, person("b", {act(action::Appear{{6, -2}, 0})})}) == ErrorCode::infeasible);
   CHECK(outcome({sits, person("b", {act(action::Wait{5.0}), act(action::Enter{"door"}), act(action::Sit{"S4"})})}) ==
         ErrorCode::infeasible);
+  // Who stands so close behind a chair that its sitter can't rise may stand there for ever.
+  const SeatSpec& seat = *std::ranges::find(scene.seats, "S4", &SeatSpec::id);
+  const Vec2 behind = floor_point(seat.world_from_seat.origin) - 0.75 * floor_point(seat.world_from_seat.forward());
+  const auto sitter_beside = [&](const Vec2& bystander) {
+    return outcome({person("a", {act(action::Enter{"door"}), act(action::Sit{"S4"}), act(action::Work{30.0}),
+                                 act(action::Rise{})}),
+                    person("b", {act_at(30.0, action::Appear{bystander, 0})})});
+  };
+  CHECK(sitter_beside(behind) == ErrorCode::infeasible);
+  CHECK(sitter_beside(behind - floor_point(seat.world_from_seat.forward())) ==
+        ErrorCode::internal);  // comes to the end
 }
 
 TEST_CASE("at_s starts its action at its moment and skips what was to come before") {
