@@ -9,10 +9,11 @@
 
 namespace pirsim::stats::detail {
 
-/// What all trees are grown from.
+/// What all trees are grown from; the features must outlive it.
 struct GrowingData {
   std::size_t n_rows = 0, n_columns = 0;
-  std::vector<float> values;          ///< (n_columns x n_rows): a column's values lie together
+  std::span<const float> features;    ///< (n_rows x n_columns)
+  std::vector<float> columns;         ///< (n_columns x n_rows) the same, transposed
   std::vector<std::uint16_t> labels;  ///< (n_rows)
   std::vector<double> class_weight;   ///< (n_classes) of one row, so that all classes weigh the same
 };
