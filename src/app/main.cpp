@@ -226,9 +226,10 @@ void add_selftest_options(CLI::App& command, SelftestOptions& options) {
   command.add_option("--pairs", options.pairs, "datasets with two effects (default: 0)")->option_text("N");
   command.add_option("--aliens", options.aliens, "of every fault that no catalogue has (default: 0)")->option_text("N");
   command
-      .add_option("--verify", options.verified,
-                  "with the right name, judged on held-out trials; and all with nothing hidden and something suspected "
-                  "(default: 0)")
+      .add_option(
+          "--verify", options.verified,
+          "with the right name, judged on held-out trials; and all with nothing hidden and something suspected; "
+          "and names put in, to see whether the model passes (default: 0)")
       ->option_text("N");
   command.add_option("--leave-out", options.leave_out, "none, or each: judge by catalogues that lack the effect, too")
       ->option_text("HOW")

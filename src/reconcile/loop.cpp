@@ -1,64 +1,19 @@
 #include "reconcile/loop.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "pirsim/core/digest.hpp"
-#include "pirsim/core/parallel.hpp"
 #include "pirsim/io/script_reader.hpp"
+#include "reconcile/model_check.hpp"
 #include "reconcile/sentences.hpp"
 
 namespace pirsim::reconcile {
 namespace {
 
-constexpr std::uint32_t first_check_world = 1U << 23U;  ///< worlds that no table has seen
-constexpr int datasets_per_world = 4;                   ///< where zones are remembered
-constexpr std::uint32_t first_look_worlds = 40;
-constexpr double surely_passes = 0.25;  ///< six standard errors of a p of 0.05 from 40 datasets above it
-/// Of the datasets that refuse, so many would be as strange at the level. With two (80 datasets) the strangest of a
-/// hundred columns is noise: Table 1 with seats scattered had p 0.025 from 80 and 0.4 from 200.
-constexpr double n_as_strange = 5.0;
-
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : " + ") + name;
   return text;
-}
-
-/// The i-th n runs of every trial, numbered from 1.
-std::vector<Series> part_of(const std::vector<Series>& runs, int i, int n) {
-  std::vector<Series> part;
-  for (const Series& run : runs) {
-    if (run.replicate <= i * n || run.replicate > (i + 1) * n) continue;
-    part.push_back(run);
-    part.back().replicate -= i * n;
-  }
-  return part;
-}
-
-struct Worlds {
-  std::uint32_t begin = 0, end = 0;
-};
-
-/// Adds the statistics of datasets of the model with a patch, in worlds of their own.
-void simulate(const Laboratory& lab, const std::vector<EffectSpec>& patch, Worlds worlds, unsigned threads,
-              stats::Matrix<float>& all) {
-  const int n = lab.shape.n_replicates, per_world = acts_on_remembered_zones(patch) ? datasets_per_world : 1;
-  using Rows = std::vector<std::vector<float>>;
-  ordered_parallel<Rows>(
-      worlds.end - worlds.begin, threads,
-      [&](std::size_t i) {
-        const std::uint32_t index = first_check_world + worlds.begin + static_cast<std::uint32_t>(i);
-        const SimulatedWorld world(lab.source, lab.frame, index, n * per_world);
-        const auto data = world.with_effects(patch, 0, n * per_world);
-        Rows rows;
-        for (int d = 0; data && d < per_world; ++d)
-          rows.push_back(statistics_of(lab.frame, lab.shape, lab.table.profile, part_of(*data, d, n)));
-        return rows;
-      },
-      [&](const Rows& rows) {
-        for (const auto& row : rows) all.append_row(std::span<const float>(row));
-      });
 }
 
 std::vector<std::size_t> measured_trials(const Laboratory& lab) {
@@ -155,7 +110,7 @@ Settings Loop::with_all(double level) const {
 
 void Loop::put_in_more() {
   for (;;) {
-    const double level = settings_.alpha * std::pow(0.5, static_cast<double>(put_in_.size()));
+    const double level = level_with(put_in_.size(), settings_.alpha);
     const double p = p_with_all(level);
     passes_ = p > level;
     outcome_.looks.push_back({names(), level, p});
@@ -166,16 +121,24 @@ void Loop::put_in_more() {
     if (n_asked != 0 && put_in_.size() >= n_asked) return;
     begin("what is missing beside " + joined(names()));
     const Step& more = look(with_all(level), level);
-    outcome_.trail.push_back("looked for more: " + std::string(name(more.outcome.verdict)));
+    rest_ = more.outcome.verdict;
+    outcome_.trail.push_back("looked for more: " + std::string(name(*rest_)));
     if (more.outcome.verdict == Verdict::one_of) outcome_.looks.back().one_of = more.outcome.named;
     if (more.outcome.verdict != Verdict::named) return;
     put_in_.push_back(more.outcome.fits.front());
   }
 }
 
-/// One effect that was named stands; that two or more together made the data is said if the first of them was named by
-/// itself, or if the model with all of them passes.
+/// One effect that was named stands, unless it is the only one that isn't ruled out, the model with it can't have made
+/// the data, and nothing known explains the rest; that two or more together made the data is said if the first of them
+/// was named by itself, or if the model with all of them passes.
 void Loop::conclude() {
+  const bool only_one = std::ranges::count(outcome_.candidates, true, &Candidate::kept) == 1;
+  if (outcome_.verdict == Verdict::named && put_in_.size() == 1 && only_one && !passes_ &&
+      rest_ == Verdict::none_in_catalogue) {
+    take_back();
+    return;
+  }
   if (put_in_.size() > 1 && (passes_ || outcome_.verdict == Verdict::named)) {
     outcome_.verdict = Verdict::several;
     outcome_.named = names();
@@ -192,6 +155,18 @@ void Loop::conclude() {
   if (!passes_ && !put_in_.empty()) {
     outcome_.sentence += " That is not all. " + what_a_look_showed(outcome_.looks.back());
   }
+}
+
+void Loop::take_back() {
+  const auto refused = std::ranges::find(outcome_.candidates, true, &Candidate::kept);
+  refused->kept = false;
+  refused->reason = reason_of_refused(outcome_.looks.back());
+  outcome_.verdict = Verdict::none_in_catalogue;
+  outcome_.named.clear();
+  outcome_.fits.clear();
+  put_in_.clear();
+  outcome_.sentence = sentence_of_refused(outcome_, settings_.alpha);
+  outcome_.trail.push_back("the name is taken back: the model with it can't have made the data");
 }
 
 void Loop::verify_effects() {
@@ -227,24 +202,13 @@ void Loop::verify_effects() {
   outcome_.verification = std::move(v);
 }
 
-/// Most models that pass do so at first sight. Only what looks strange in the first worlds is worth the rest, and only
-/// all of them together refuse, so that looking twice refuses no more models than the level allows.
 double Loop::p_with_all(double level) {
   begin("does the model with " + joined(names()) + " put in pass");
   const Step& plain = steps_.front();
   const FeatureMap map(plain.lab.frame, plain.lab.knowledge,
                        plain.lab.table.statistics.select_rows(rows_of(plain.lab.table, 0, Part::training)),
                        training_trials());
-  stats::Matrix<float> datasets;
-  const auto p_after = [&](Worlds worlds) {
-    simulate(plain.lab, patch(), worlds, settings_.threads, datasets);
-    if (datasets.rows() < 2) return 0.0;
-    return locate(plain.lab.frame, map, datasets, plain.observed, {settings_.alpha, settings_.seed, settings_.threads})
-        .p;
-  };
-  const double p = p_after({0, first_look_worlds});
-  const auto n_to_refuse = static_cast<std::uint32_t>(std::ceil(n_as_strange / level));
-  return p > surely_passes ? p : p_after({first_look_worlds, n_to_refuse});
+  return p_with(put_in_, plain.lab, map, plain.observed, {level, settings_.seed, settings_.threads});
 }
 
 std::vector<std::string> Loop::names() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ class Loop {
   void put_in_more();
   void tell_first(const Step& first);
   void conclude();
+  void take_back();  ///< the one name that was given
   void explain();
   void verify_effects();
   /// p of the global test of the model with all that has been put in, its data simulated anew.
@@ -52,6 +54,7 @@ class Loop {
   std::deque<Step> steps_;            ///< addresses stay
   std::vector<FittedEffect> put_in_;  ///< one of each step
   bool passes_ = false;               ///< the model with all of them can have made the data
+  std::optional<Verdict> rest_;       ///< of the last look for more, where one was needed
   Outcome outcome_;
 };
 

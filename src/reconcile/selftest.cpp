@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <numeric>
 
 #include "pirsim/core/digest.hpp"
 #include "pirsim/core/parallel.hpp"
 #include "pirsim/effects/catalogue.hpp"
 #include "pirsim/reconcile/analyst.hpp"
+#include "reconcile/model_check.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -49,6 +52,7 @@ PlantedCase judged(const Laboratory& lab, const Analyst& analyst, const Planted&
     return result;
   }
   result.named.resize(1);
+  result.fitted = fitted;
   result.family = effects::find(result.named.front()).info.family;
   if (kind == CaseKind::one && is_named(result, result.truth)) {
     check_coverage(fitted, planted.effects.front(), result);
@@ -56,28 +60,44 @@ PlantedCase judged(const Laboratory& lab, const Analyst& analyst, const Planted&
   return result;
 }
 
-void judge_all(const Laboratory& lab, const Analyst& analyst, const std::vector<const Planted*>& planted,
-               std::optional<CaseKind> kind, unsigned threads, std::vector<PlantedCase>& cases) {
+/// which: of the planted datasets, by index.
+void judge_all(const Laboratory& lab, const Analyst& analyst, const std::vector<Planted>& planted,
+               const std::vector<std::size_t>& which, std::optional<CaseKind> kind, unsigned threads,
+               std::vector<PlantedCase>& cases) {
   ordered_parallel<PlantedCase>(
-      planted.size(), threads,
-      [&](std::size_t i) { return judged(lab, analyst, *planted[i], kind.value_or(planted[i]->kind)); },
+      which.size(), threads,
+      [&](std::size_t i) {
+        const Planted& one = planted[which[i]];
+        PlantedCase result = judged(lab, analyst, one, kind.value_or(one.kind));
+        result.planted = which[i];
+        return result;
+      },
       [&](PlantedCase& one) { cases.push_back(std::move(one)); });
 }
 
-/// Which datasets are judged on held-out trials, by index.
-std::vector<std::size_t> to_verify(const std::vector<PlantedCase>& cases, std::size_t n_right) {
-  std::vector<std::size_t> right, chosen;
+/// n of the cases that are asked for, by index, evenly spread.
+template <typename Asked>
+std::vector<std::size_t> some_of(const std::vector<PlantedCase>& cases, std::size_t n, const Asked& asked) {
+  std::vector<std::size_t> all, chosen;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    const PlantedCase& c = cases[i];
-    if (c.kind == CaseKind::one && is_named(c, c.truth)) right.push_back(i);
-    if (c.kind == CaseKind::nothing && !c.named.empty()) chosen.push_back(i);
+    if (asked(cases[i])) all.push_back(i);
   }
-  n_right = std::min(n_right, right.size());
-  for (std::size_t k = 0; k < n_right; ++k) chosen.push_back(right[k * right.size() / n_right]);
+  n = std::min(n, all.size());
+  for (std::size_t k = 0; k < n; ++k) chosen.push_back(all[k * all.size() / n]);
   return chosen;
 }
 
-/// cases: of `planted`, in the same order.
+bool has_right_name(const PlantedCase& c) { return c.kind == CaseKind::one && is_named(c, c.truth); }
+bool has_name_though(CaseKind kind, const PlantedCase& c) { return c.kind == kind && c.verdict == Verdict::named; }
+
+/// Which datasets are judged on held-out trials, by index.
+std::vector<std::size_t> to_verify(const std::vector<PlantedCase>& cases, std::size_t n_right) {
+  std::vector<std::size_t> chosen = some_of(
+      cases, cases.size(), [](const PlantedCase& c) { return c.kind == CaseKind::nothing && !c.named.empty(); });
+  std::ranges::copy(some_of(cases, n_right, has_right_name), std::back_inserter(chosen));
+  return chosen;
+}
+
 void verify_some(const Laboratory& lab, const SeenRows& seen, const std::vector<Planted>& planted,
                  const SelftestSettings& settings, const std::function<void(const std::string&)>& begin,
                  std::vector<PlantedCase>& cases) {
@@ -87,7 +107,7 @@ void verify_some(const Laboratory& lab, const SeenRows& seen, const std::vector<
   std::vector<Claim> claims;
   for (const std::size_t i : chosen) {
     const std::vector<std::string>& named = cases[i].named;
-    claims.push_back({{{&lab, planted[i].statistics, named.front(), seen}}, named});
+    claims.push_back({{{&lab, planted[cases[i].planted].statistics, named.front(), seen}}, named});
   }
   const Settings& analysis = settings.analysis;
   const Folds folds = usual_folds(sha256(lab.key), all_trials(lab.frame), lab.shape.kind);
@@ -96,6 +116,27 @@ void verify_some(const Laboratory& lab, const SeenRows& seen, const std::vector<
         begin("judged on held-out trials: " + std::to_string(done) + " of " + std::to_string(claims.size()));
       });
   for (std::size_t k = 0; k < chosen.size(); ++k) cases[chosen[k]].verification = std::move(found[k]);
+}
+
+/// Can the model with the effect named have made the data?
+void put_in_some(const Laboratory& lab, const std::vector<Planted>& planted, const SelftestSettings& settings,
+                 const std::function<void(const std::string&)>& begin, std::vector<PlantedCase>& cases) {
+  std::vector<std::size_t> chosen = some_of(cases, settings.n_verified, has_right_name);
+  for (const CaseKind kind : {CaseKind::left_out, CaseKind::alien}) {
+    std::ranges::copy(some_of(cases, settings.n_verified, [&](const auto& c) { return has_name_though(kind, c); }),
+                      std::back_inserter(chosen));
+  }
+  const Settings& analysis = settings.analysis;
+  const FeatureMap map(lab.frame, lab.knowledge,
+                       lab.table.statistics.select_rows(rows_of(lab.table, 0, Part::training)), all_trials(lab.frame));
+  const double level = level_with(1, analysis.alpha);
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    begin("put in: " + std::to_string(k) + " of " + std::to_string(chosen.size()));
+    PlantedCase& one = cases[chosen[k]];
+    one.put_in = Look{one.named, level,
+                      p_with(std::span(&*one.fitted, 1), lab, map, planted[one.planted].statistics,
+                             {level, analysis.seed, analysis.threads})};
+  }
 }
 
 /// Of datasets with a disagreement: elsewhere no probability is told.
@@ -184,6 +225,20 @@ void count_verified(const SelftestResult& result, std::vector<Rate>& rates) {
   if (shrunk.rate().of > 0) rates.insert(rates.end(), {shrunk.rate(), closed.rate(), most.rate(), on_nulls.rate()});
 }
 
+void count_put_in(const SelftestResult& result, std::vector<Rate>& rates) {
+  Counter right("put in, the right name: the model passes"),
+      neighbour("put in, the name of an effect that the catalogue lacks: the model passes"),
+      alien("put in, the name of an alien: the model passes");
+  for (const PlantedCase& c : result.cases) {
+    if (!c.put_in) continue;
+    Counter& counter = c.kind == CaseKind::left_out ? neighbour : c.kind == CaseKind::alien ? alien : right;
+    counter.count(c.put_in->p > c.put_in->level);
+  }
+  for (const Counter& counter : {right, neighbour, alien}) {
+    if (counter.rate().of > 0) rates.push_back(counter.rate());
+  }
+}
+
 void count_strangers(const SelftestResult& result, CaseKind kind, const std::string& who, std::vector<Rate>& rates) {
   Counter seen(who + ": a disagreement seen"), none(who + ": called none in the catalogue, given a disagreement"),
       misnamed(who + ": called by one name");
@@ -251,21 +306,23 @@ SelftestResult judge(const Laboratory& lab, const std::vector<Planted>& planted,
   for (std::size_t entry = 0; entry < lab.table.n_entries(); ++entry)
     result.entries.push_back(lab.table.entry_name(entry));
   begin("judging");
-  std::vector<const Planted*> all;
-  for (const Planted& one : planted) all.push_back(&one);
-  judge_all(lab, analyst_without(""), all, {}, analysis.threads, result.cases);
+  std::vector<std::size_t> all(planted.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  judge_all(lab, analyst_without(""), planted, all, {}, analysis.threads, result.cases);
   result.reliability = reliability_of(result);
   if (settings.n_verified > 0)
     verify_some(lab, seen_rows(*view, analysis.alpha), planted, settings, begin, result.cases);
-  if (settings.leave_out == LeaveOut::none) return result;
-  for (const std::string& effect : lab.table.effects) {
-    begin("judging by a catalogue that lacks " + effect);
-    std::vector<const Planted*> own;
-    for (const Planted& one : planted) {
-      if (one.kind == CaseKind::one && one.effects.front().name == effect) own.push_back(&one);
+  if (settings.leave_out == LeaveOut::each) {
+    for (const std::string& effect : lab.table.effects) {
+      begin("judging by a catalogue that lacks " + effect);
+      std::vector<std::size_t> own;
+      for (const std::size_t i : all) {
+        if (planted[i].kind == CaseKind::one && planted[i].effects.front().name == effect) own.push_back(i);
+      }
+      judge_all(lab, analyst_without(effect), planted, own, CaseKind::left_out, analysis.threads, result.cases);
     }
-    judge_all(lab, analyst_without(effect), own, CaseKind::left_out, analysis.threads, result.cases);
   }
+  put_in_some(lab, planted, settings, begin, result.cases);
   return result;
 }
 
@@ -285,6 +342,7 @@ std::vector<Rate> rates_of(const SelftestResult& result) {
   count_nulls(result, rates);
   count_planted(result, rates);
   count_verified(result, rates);
+  count_put_in(result, rates);
   count_strangers(result, CaseKind::left_out, "an effect that the catalogue lacks", rates);
   count_strangers(result, CaseKind::alien, "an alien", rates);
   count_beyond(result, rates);

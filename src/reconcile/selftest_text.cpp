@@ -59,7 +59,8 @@ std::string to_markdown(const SelftestResult& result) {
 
 std::string to_csv(const SelftestResult& result) {
   std::ostringstream out;
-  out << "kind,truth,strength,verdict,named,family,likeliest,p,parameters,covered,share_closed,shrunk,closed,hidden\n";
+  out << "kind,truth,strength,verdict,named,family,likeliest,p,parameters,covered,share_closed,shrunk,closed,p_put_in,"
+         "hidden\n";
   for (const PlantedCase& c : result.cases) {
     std::string named, hidden;
     for (const std::string& effect : c.named) named += (named.empty() ? "" : " ") + effect;
@@ -71,7 +72,8 @@ std::string to_csv(const SelftestResult& result) {
     }
     out << name(c.kind) << ',' << c.truth << ',' << name(c.strength) << ',' << name(c.verdict) << ',' << named << ','
         << (c.family ? name(*c.family) : "") << ',' << c.likeliest << ',' << io::csv_number(c.p) << ','
-        << c.n_parameters << ',' << c.n_covered << ',' << verification(c) << ',' << io::csv_field(hidden) << '\n';
+        << c.n_parameters << ',' << c.n_covered << ',' << verification(c) << ','
+        << (c.put_in ? io::csv_number(c.put_in->p) : "") << ',' << io::csv_field(hidden) << '\n';
   }
   return out.str();
 }

@@ -174,6 +174,19 @@ std::string reason_of_unlikely(const Candidate& candidate, const Candidate& name
          " (" + short_number(candidate.score.probability) + " against " + short_number(named.score.probability) + ").";
 }
 
+std::string reason_of_refused(const Look& look) {
+  return "Dropped: with it put in, the model still differs from the data (p " + short_number(look.p) +
+         "), and no other effect of the catalogue explains what is left.";
+}
+
+std::string sentence_of_refused(const Outcome& outcome, double alpha) {
+  const Look& look = outcome.looks.back();
+  return "The model lacks something that is not in the catalogue: " + where(outcome, alpha) +
+         ". What resembles it most, " + joined(look.put_in, "and") +
+         ", doesn't explain it: with that put in, the model still differs from the data (p = " + short_number(look.p) +
+         "), and no other effect of the catalogue explains what is left.";
+}
+
 std::string reason_of(const Candidate& candidate, double alpha) {
   const EntryScore& score = candidate.score;
   if (candidate.kept && score.p <= alpha) {

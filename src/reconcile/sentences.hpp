@@ -11,6 +11,10 @@ namespace pirsim::reconcile {
 [[nodiscard]] std::string reason_of(const Candidate& candidate, double alpha);
 /// Of one that isn't ruled out while another is named.
 [[nodiscard]] std::string reason_of_unlikely(const Candidate& candidate, const Candidate& named);
+/// Of the one that would be named, if the model with it can't have made the data: look, of that model.
+[[nodiscard]] std::string reason_of_refused(const Look& look);
+/// The verdict then.
+[[nodiscard]] std::string sentence_of_refused(const Outcome& outcome, double alpha);
 [[nodiscard]] std::string in_words(const FittedEffect& fitted);
 /// Of the model with effects put in.
 [[nodiscard]] std::string what_a_look_showed(const Look& look);

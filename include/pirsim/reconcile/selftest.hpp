@@ -31,7 +31,9 @@ struct SelftestSettings {
   std::uint32_t n_aliens = 0;    ///< of every alien
   LeaveOut leave_out = LeaveOut::none;
   /// Datasets with the right name, spread over effects and strengths, whose effect is put in and judged on held-out
-  /// trials; if any, so are all with nothing hidden in which something is suspected.
+  /// trials; if any, so are all with nothing hidden in which something is suspected. And so many names each that are
+  /// right, that an effect got which the catalogue lacks, and that an alien got, are put in to see whether the model
+  /// with them can have made the data.
   std::uint32_t n_verified = 0;
   std::filesystem::path planted_folder = {};  ///< keeps finished datasets; empty: none
 };
@@ -77,7 +79,11 @@ struct PlantedCase {
   std::size_t n_parameters = 0;           ///< fitted, if the right effect was named
   std::size_t n_covered = 0;              ///< of them, whose interval holds the truth
 
+  std::size_t planted = 0;             ///< which dataset it is of those that were planted
+  std::optional<FittedEffect> fitted;  ///< of the effect named
+
   std::optional<Verification> verification;  ///< of the effect named, or of the first that can't be ruled out
+  std::optional<Look> put_in;                ///< what the model with the effect named looks like
 
   [[nodiscard]] bool seen() const noexcept { return verdict != Verdict::no_disagreement; }
 };

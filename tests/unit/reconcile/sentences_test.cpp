@@ -55,6 +55,16 @@ TEST_CASE("of a model with effects put in it is said whether it passes, and what
   CHECK_THAT(what_a_look_showed({{"clock_lag"}, 0.025, 0.01, {"seat_shift"}}), contains("may be seat_shift."));
 }
 
+TEST_CASE("a name that doesn't do when it is put in is taken back with that reason", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"trigger_bursts", 0.99}});
+  outcome.looks.push_back({{"trigger_bursts"}, 0.025, 0.005, {}});
+  const std::string sentence = sentence_of_refused(outcome, 0.05);
+  CHECK_THAT(sentence, contains("The model lacks something that is not in the catalogue"));
+  CHECK_THAT(sentence,
+             contains("What resembles it most, trigger_bursts, doesn't explain it") && contains("(p = 0.005)"));
+  CHECK_THAT(reason_of_refused(outcome.looks.back()), contains("Dropped: with it put in") && contains("(p 0.005)"));
+}
+
 TEST_CASE("where no name is given the sentence says why", "[reconcile]") {
   CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}}), contains("can't tell apart"));
   CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.9}}), contains("its strength may as well be none"));

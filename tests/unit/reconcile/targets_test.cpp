@@ -104,6 +104,26 @@ TEST_CASE("gaps that are closed are counted where the right name was put in and 
   CHECK(rate("nine tenths of what can be closed, given the right name") == std::pair<std::size_t, std::size_t>(3, 4));
 }
 
+TEST_CASE("names that were put in are counted by whose they are", "[selftest]") {
+  SelftestResult result = result_of(1, 0);
+  const auto add = [&](CaseKind kind, double p) {
+    result.cases.push_back(planted("sensor_yaw", "sensor_yaw", Verdict::named));
+    result.cases.back().kind = kind;
+    result.cases.back().put_in = Look{{"sensor_yaw"}, 0.025, p, {}};
+  };
+  for (const double p : {0.3, 0.03, 0.02}) add(CaseKind::one, p);
+  for (const double p : {0.026, 0.025, 0.001, 0.002}) add(CaseKind::left_out, p);
+  result.cases.push_back(planted("sensor_yaw", "sensor_yaw", Verdict::named));  // not among those tried
+  const std::vector<Rate> rates = rates_of(result);
+  const auto rate = [&](const std::string& what) { return std::ranges::find(rates, what, &Rate::what); };
+  const auto right = rate("put in, the right name: the model passes");
+  const auto neighbour = rate("put in, the name of an effect that the catalogue lacks: the model passes");
+  REQUIRE((right != rates.end() && neighbour != rates.end()));
+  CHECK((right->hits == 2 && right->of == 3));
+  CHECK((neighbour->hits == 1 && neighbour->of == 4));
+  CHECK(rate("put in, the name of an alien: the model passes") == rates.end());
+}
+
 TEST_CASE("a family counts as said if the named effect is of it or its effects are sure together", "[selftest]") {
   SelftestResult result = result_of(1, 0);
   for (const auto family : {effects::Family::mounting, effects::Family::optics}) {

@@ -385,6 +385,39 @@ TEST_CASE("two effects at once are found one after the other", "[reconcile][thre
   }
 }
 
+TEST_CASE("a name is taken back if the model with it can't have made the data", "[reconcile][three-seats]") {
+  const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
+  ScriptSpec hidden = short_study();
+  hidden.seed = 7;
+  Measured measured;
+  measured.digest = sha256("alien");
+  run_study(compile(scene, hidden), {}, [&](const RunResult& result) {
+    measured.runs.push_back(*series_of(laboratory().frame, 1, result.trial, result.samples));
+    Series& run = measured.runs.back();  // one sensor says the opposite for a third of the time
+    const std::size_t n = laboratory().frame.sensors.size(), n_main = run.main_end - run.main_begin;
+    for (std::size_t row = run.main_begin + n_main / 3; row < run.main_begin + 2 * n_main / 3; ++row)
+      run.bits[row * n + 1] = run.bits[row * n + 1] == 0 ? 1 : 0;
+  });
+  Settings settings = quick();
+  settings.table.entries = {"false_triggers", "trigger_bursts"};
+  const TemporaryFolder folder;
+  settings.table_folder = folder.path() / "table";
+  const Outcome outcome = reconcile::reconcile(scene, short_study(), measured, settings);
+  CHECK(outcome.verdict == Verdict::none_in_catalogue);
+  CHECK((outcome.named.empty() && outcome.fits.empty() && !outcome.verification));
+  CHECK_THAT(outcome.sentence, contains("What resembles it most, trigger_bursts, doesn't explain it"));
+  REQUIRE(outcome.looks.size() == 1);
+  CHECK(outcome.looks.front().p <= settings.alpha / 2.0);
+  for (const Candidate& candidate : outcome.candidates) CHECK(!candidate.kept);
+  CHECK_THAT(outcome.candidates.front().reason, contains("Dropped: with it put in, the model still differs"));
+  REQUIRE(outcome.residuals);
+  CHECK_THAT(outcome.residuals->sentence, contains("PIR2, in the middle third") && contains("the opposite"));
+  settings.max_effects = 1;  // nothing else is looked for: the name stands, and the rest is told
+  const Outcome one = reconcile::reconcile(scene, short_study(), measured, settings);
+  CHECK((one.verdict == Verdict::named && one.named == std::vector<std::string>{"trigger_bursts"}));
+  CHECK_THAT(one.sentence, contains("That is not all. With trigger_bursts put in, the model still differs"));
+}
+
 TEST_CASE("the seed of the script plays no part in the analysis", "[reconcile][three-seats]") {
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
   ScriptSpec one = short_study(), other = short_study();
