@@ -126,6 +126,7 @@ void put_in_some(const Laboratory& lab, const std::vector<Planted>& planted, con
     std::ranges::copy(some_of(cases, settings.n_verified, [&](const auto& c) { return has_name_though(kind, c); }),
                       std::back_inserter(chosen));
   }
+  if (chosen.empty()) return;
   const Settings& analysis = settings.analysis;
   const FeatureMap map(lab.frame, lab.knowledge,
                        lab.table.statistics.select_rows(rows_of(lab.table, 0, Part::training)), all_trials(lab.frame));
