@@ -208,7 +208,8 @@ double Loop::p_with_all(double level) {
   const FeatureMap map(plain.lab.frame, plain.lab.knowledge,
                        plain.lab.table.statistics.select_rows(rows_of(plain.lab.table, 0, Part::training)),
                        training_trials());
-  return p_with(put_in_, plain.lab, map, plain.observed, {level, settings_.seed, settings_.threads});
+  const PatchedModel model{put_in_, plain.observed};
+  return p_with(std::span(&model, 1), plain.lab, map, {level, settings_.seed, settings_.threads}).front();
 }
 
 std::vector<std::string> Loop::names() const {

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
+#include <numeric>
+#include <optional>
 
 #include "pirsim/core/parallel.hpp"
 #include "pirsim/core/random.hpp"
@@ -50,41 +51,68 @@ std::vector<EffectSpec> drawn(std::span<const FittedEffect> effects, const Labor
   return all;
 }
 
-/// Simulates datasets of one model, more and more.
-class Ensemble {
- public:
-  Ensemble(std::span<const FittedEffect> effects, const Laboratory& lab, const ModelCheckSettings& settings)
-      : effects_(effects), lab_(lab), settings_(settings) {}
+int datasets_a_world(std::span<const FittedEffect> effects) {
+  std::vector<EffectSpec> specs;
+  for (const FittedEffect& fitted : effects) specs.push_back(fitted.effect);
+  return acts_on_remembered_zones(specs) ? datasets_per_world : 1;
+}
 
-  /// (n x n_statistics) of all worlds up to this one.
-  const stats::Matrix<float>& up_to(std::uint32_t n_worlds) {
-    using Rows = std::vector<std::vector<float>>;
-    ordered_parallel<Rows>(
+/// Simulates datasets of some models, more and more.
+class Ensembles {
+ public:
+  Ensembles(std::span<const PatchedModel> models, const Laboratory& lab, const ModelCheckSettings& settings)
+      : models_(models), lab_(lab), settings_(settings), datasets_(models.size()) {}
+
+  /// Simulates those models, by index, in all worlds up to this one. Call with fewer models and more worlds each time.
+  void extend(std::span<const std::size_t> which, std::uint32_t n_worlds) {
+    ordered_parallel<std::vector<Rows>>(
         n_worlds - n_worlds_, settings_.threads,
-        [&](std::size_t i) { return datasets_of(first_check_world + n_worlds_ + static_cast<std::uint32_t>(i)); },
-        [&](const Rows& rows) {
-          for (const auto& row : rows) datasets_.append_row(std::span<const float>(row));
+        [&](std::size_t i) {
+          return datasets_in(first_check_world + n_worlds_ + static_cast<std::uint32_t>(i), which);
+        },
+        [&](const std::vector<Rows>& of_models) {
+          for (std::size_t k = 0; k < which.size(); ++k) {
+            for (const auto& row : of_models[k]) datasets_[which[k]].append_row(std::span<const float>(row));
+          }
         });
     n_worlds_ = n_worlds;
-    return datasets_;
   }
 
+  /// (n x n_statistics) of one model.
+  [[nodiscard]] const stats::Matrix<float>& of(std::size_t model) const { return datasets_[model]; }
+  void forget(std::size_t model) { datasets_[model] = {}; }
+
  private:
-  [[nodiscard]] std::vector<std::vector<float>> datasets_of(std::uint32_t index) const {
-    const std::vector<EffectSpec> effects = drawn(effects_, lab_, settings_.seed, index);
-    const int n = lab_.shape.n_replicates, per_world = acts_on_remembered_zones(effects) ? datasets_per_world : 1;
-    const SimulatedWorld world(lab_.source, lab_.frame, index, n * per_world);
-    const auto data = world.with_effects(effects, 0, n * per_world);
-    std::vector<std::vector<float>> rows;
+  using Rows = std::vector<std::vector<float>>;
+
+  [[nodiscard]] std::vector<Rows> datasets_in(std::uint32_t index, std::span<const std::size_t> which) const {
+    std::vector<Rows> all(which.size());
+    for (const int per_world : {1, datasets_per_world}) {
+      std::optional<SimulatedWorld> world;
+      for (std::size_t k = 0; k < which.size(); ++k) {
+        const std::span<const FittedEffect> put_in = models_[which[k]].put_in;
+        if (datasets_a_world(put_in) != per_world) continue;
+        if (!world) world.emplace(lab_.source, lab_.frame, index, lab_.shape.n_replicates * per_world);
+        all[k] = datasets_of(put_in, *world, index, per_world);
+      }
+    }
+    return all;
+  }
+
+  [[nodiscard]] Rows datasets_of(std::span<const FittedEffect> put_in, const SimulatedWorld& world, std::uint32_t index,
+                                 int per_world) const {
+    const int n = lab_.shape.n_replicates;
+    const auto data = world.with_effects(drawn(put_in, lab_, settings_.seed, index), 0, n * per_world);
+    Rows rows;
     for (int d = 0; data && d < per_world; ++d)
       rows.push_back(statistics_of(lab_.frame, lab_.shape, lab_.table.profile, part_of(*data, d, n)));
     return rows;
   }
 
-  std::span<const FittedEffect> effects_;
+  std::span<const PatchedModel> models_;
   const Laboratory& lab_;
   const ModelCheckSettings& settings_;
-  stats::Matrix<float> datasets_;
+  std::vector<stats::Matrix<float>> datasets_;  // one a model
   std::uint32_t n_worlds_ = 0;
 };
 
@@ -92,20 +120,32 @@ class Ensemble {
 
 double level_with(std::size_t n_put_in, double alpha) { return alpha * std::pow(0.5, static_cast<double>(n_put_in)); }
 
-double p_with(std::span<const FittedEffect> put_in, const Laboratory& lab, const FeatureMap& map,
-              std::span<const float> observed, const ModelCheckSettings& settings) {
-  Ensemble ensemble(put_in, lab, settings);
-  const auto p_of = [&](std::uint32_t n_worlds) {
-    const stats::Matrix<float>& datasets = ensemble.up_to(n_worlds);
-    if (datasets.rows() < 2) return 0.0;
-    return locate(lab.frame, map, datasets, observed, {settings.level, settings.seed, settings.threads}).p;
-  };
-  for (const std::uint32_t n_worlds : first_looks) {
-    const double p = p_of(n_worlds);
-    if (p > surely_passes) return p;
-  }
+std::vector<double> p_with(std::span<const PatchedModel> models, const Laboratory& lab, const FeatureMap& map,
+                           const ModelCheckSettings& settings,
+                           const std::function<void(std::size_t, std::uint32_t)>& on_look) {
+  Ensembles ensembles(models, lab, settings);
+  std::vector<double> p(models.size());
+  std::vector<std::size_t> in_doubt(models.size());
+  std::iota(in_doubt.begin(), in_doubt.end(), std::size_t{0});
   const auto n_to_refuse = static_cast<std::uint32_t>(std::ceil(n_as_strange / settings.level));
-  return p_of(std::max(n_to_refuse, first_looks.back()));
+  for (const std::uint32_t n_worlds : {first_looks[0], first_looks[1], std::max(n_to_refuse, first_looks[1])}) {
+    if (in_doubt.empty()) break;
+    if (on_look) on_look(in_doubt.size(), n_worlds);
+    ensembles.extend(in_doubt, n_worlds);
+    std::vector<std::size_t> still;
+    for (const std::size_t k : in_doubt) {
+      const stats::Matrix<float>& datasets = ensembles.of(k);
+      if (datasets.rows() > 1)
+        p[k] =
+            locate(lab.frame, map, datasets, models[k].observed, {settings.level, settings.seed, settings.threads}).p;
+      if (p[k] > surely_passes)
+        ensembles.forget(k);
+      else
+        still.push_back(k);
+    }
+    in_doubt = std::move(still);
+  }
+  return p;
 }
 
 }  // namespace pirsim::reconcile

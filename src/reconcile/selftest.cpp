@@ -131,13 +131,15 @@ void put_in_some(const Laboratory& lab, const std::vector<Planted>& planted, con
   const FeatureMap map(lab.frame, lab.knowledge,
                        lab.table.statistics.select_rows(rows_of(lab.table, 0, Part::training)), all_trials(lab.frame));
   const double level = level_with(1, analysis.alpha);
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    begin("put in: " + std::to_string(k) + " of " + std::to_string(chosen.size()));
-    PlantedCase& one = cases[chosen[k]];
-    one.put_in = Look{one.named, level,
-                      p_with(std::span(&*one.fitted, 1), lab, map, planted[one.planted].statistics,
-                             {level, analysis.seed, analysis.threads})};
-  }
+  std::vector<PatchedModel> models;
+  for (const std::size_t i : chosen)
+    models.push_back({std::span(&*cases[i].fitted, 1), planted[cases[i].planted].statistics});
+  const std::vector<double> p =
+      p_with(models, lab, map, {level, analysis.seed, analysis.threads}, [&](std::size_t n, std::uint32_t n_worlds) {
+        begin("names put in: " + std::to_string(n) + " of " + std::to_string(models.size()) + " in " +
+              std::to_string(n_worlds) + " worlds");
+      });
+  for (std::size_t k = 0; k < chosen.size(); ++k) cases[chosen[k]].put_in = Look{cases[chosen[k]].named, level, p[k]};
 }
 
 /// Of datasets with a disagreement: elsewhere no probability is told.

@@ -43,11 +43,16 @@ FittedEffect false_triggers(double rate_per_s, std::vector<double> equally_likel
   return fitted;
 }
 
-double p_of(const std::vector<FittedEffect>& put_in, std::span<const float> observed, unsigned threads = 0) {
+std::vector<double> p_of(std::span<const PatchedModel> models, unsigned threads = 0) {
   const Laboratory& lab = laboratory();
   const FeatureMap map(lab.frame, lab.knowledge,
                        lab.table.statistics.select_rows(rows_of(lab.table, 0, Part::training)), all_trials(lab.frame));
-  return p_with(put_in, lab, map, observed, {level, 1, threads});
+  return p_with(models, lab, map, {level, 1, threads});
+}
+
+double p_of(const std::vector<FittedEffect>& put_in, std::span<const float> observed, unsigned threads = 0) {
+  const PatchedModel model{put_in, observed};
+  return p_of(std::span(&model, 1), threads).front();
 }
 
 }  // namespace
@@ -75,6 +80,19 @@ TEST_CASE("a model's p is the same on any number of threads", "[reconcile]") {
   const std::vector<float> observed = planted(7, {});
   const std::vector<FittedEffect> put_in{false_triggers(0.01, {0.005, 0.01, 0.02})};
   CHECK(p_of(put_in, observed, 1) == p_of(put_in, observed, 3));
+}
+
+TEST_CASE("what is said of a model doesn't depend on those that are looked at beside it", "[reconcile]") {
+  FittedEffect taller;
+  taller.effect = {"body_size", {{"scale", 1.1}}, {}, {}};
+  const std::vector<FittedEffect> right{false_triggers(0.1, {0.08, 0.1, 0.12})}, wrong{false_triggers(0.01, {})},
+      traced_anew{taller};
+  const std::vector<float> observed = planted(5, {right.front().effect});
+  const std::vector<PatchedModel> all{{wrong, observed}, {right, observed}, {traced_anew, observed}, {{}, observed}};
+  const std::vector<double> together = p_of(all);
+  for (std::size_t i = 0; i < all.size(); ++i) CHECK(together[i] == p_of(std::span(&all[i], 1)).front());
+  CHECK(together[1] > level);
+  CHECK(together[0] <= level);
 }
 
 TEST_CASE("the level is halved with every effect put in", "[reconcile]") {
