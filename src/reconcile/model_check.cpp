@@ -15,13 +15,21 @@
 namespace pirsim::reconcile {
 namespace {
 
-constexpr std::uint32_t first_check_world = 1U << 23U;  ///< worlds that no table has seen
-constexpr int datasets_per_world = 4;                   ///< where zones are remembered
-constexpr std::array<std::uint32_t, 2> first_looks{20, 60};
-constexpr double surely_passes = 0.25;  ///< of 20 datasets five as strange: with p 0.025 once in 10,000 models
+constexpr std::uint32_t first_check_world = 1U << 23U;       ///< worlds that no table has seen
+constexpr int datasets_per_world = 4;                        ///< where zones are remembered (assumed)
+constexpr std::array<std::uint32_t, 2> first_looks{20, 60};  ///< worlds (assumed: only time depends on them)
 /// Of the datasets that refuse, so many would be as strange at the level. With two (80 datasets) the strangest of a
 /// hundred columns is noise: Table 1 with seats scattered had p 0.025 from 80 and 0.4 from 200.
 constexpr double n_as_strange = 5.0;
+
+/// A quarter of the datasets are as strange, five at least: of 20 with p 0.025 once in 10,000 models.
+bool surely_passes(double p, std::size_t n_datasets) {
+  const double as_strange = p * static_cast<double>(n_datasets + 1);  // the data themselves count
+  return p > 0.25 && as_strange > n_as_strange;
+}
+
+/// With fewer datasets no data are strange enough.
+bool can_refuse(std::size_t n_datasets, double level) { return static_cast<double>(n_datasets + 1) * level >= 1.0; }
 
 /// The i-th n runs of every trial, numbered from 1.
 std::vector<Series> part_of(const std::vector<Series>& runs, int i, int n) {
@@ -138,12 +146,15 @@ std::vector<double> p_with(std::span<const PatchedModel> models, const Laborator
       if (datasets.rows() > 1)
         p[k] =
             locate(lab.frame, map, datasets, models[k].observed, {settings.level, settings.seed, settings.threads}).p;
-      if (p[k] > surely_passes)
+      if (surely_passes(p[k], datasets.rows()))
         ensembles.forget(k);
       else
         still.push_back(k);
     }
     in_doubt = std::move(still);
+  }
+  for (const std::size_t k : in_doubt) {
+    if (!can_refuse(ensembles.of(k).rows(), settings.level)) p[k] = 0.0;
   }
   return p;
 }

@@ -37,9 +37,11 @@ void push_beyond(const effects::Effect& effect, EffectSpec& spec) {
   if (effect.info.parameters.empty()) return;
   const effects::ParameterInfo& first = effect.info.parameters.front();
   double& value = spec.parameters.at(first.name);
-  const double end = value >= first.off ? first.high : first.low;
-  const double natural =
-      first.scale == effects::Scale::logarithmic ? first.high * beyond : first.off + beyond * (end - first.off);
+  const bool upwards = value >= first.off;
+  const double end = upwards ? first.high : first.low;
+  const double natural = first.scale != effects::Scale::logarithmic ? first.off + beyond * (end - first.off)
+                         : upwards                                  ? end * beyond
+                                                                    : end / beyond;
   value = std::clamp(first.scale == effects::Scale::whole ? std::round(natural) : natural, first.least, first.most);
 }
 
