@@ -38,7 +38,8 @@ THIRD_PARTY = {
     "Random123": {"core"},
     "nlopt": {"studies", "reconcile"},
     "Eigen": {"stats"},
-    "boost": {"stats"},
+    "boost/math": {"stats"},
+    "boost/algorithm": {"effects", "studies", "reconcile"},
     "openssl": {"core"},
     "CLI": {"app"},
 }

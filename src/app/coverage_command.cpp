@@ -25,12 +25,6 @@ studies::CoverageStudy load_coverage(const Inputs& inputs) {
   return {std::move(scene), std::move(spec)};
 }
 
-void write(const std::filesystem::path& path, const std::string& text) {
-  io::AtomicFile file(path);
-  file.stream() << text;
-  file.commit();
-}
-
 void make_folder(const std::filesystem::path& folder) {
   std::error_code fault;
   std::filesystem::create_directories(folder, fault);
@@ -81,7 +75,7 @@ void coverage(const Inputs& inputs, const CoverageOptions& options) {
   if (!options.report.empty()) report_file.emplace(options.report);
   const studies::CoverageMap map = compute(study, inputs, options);
   const studies::CoverageFigures figures = studies::figures_of(map);
-  write(options.output / "coverage.csv", to_csv(map));
+  io::write_text_file(options.output / "coverage.csv", to_csv(map));
   draw_maps(study, map, inputs, options.output);
   if (report_file) write_page(*report_file, studies::coverage_report(study, map, figures), inputs);
   if (inputs.verbosity != Verbosity::quiet) std::cout << to_text(map, figures);

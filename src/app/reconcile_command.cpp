@@ -10,7 +10,6 @@
 #include "pirsim/core/version.hpp"
 #include "pirsim/effects/catalogue.hpp"
 #include "pirsim/io/gnuplot.hpp"
-#include "pirsim/io/nuisance_reader.hpp"
 #include "pirsim/io/script_reader.hpp"
 #include "pirsim/reconcile/measured.hpp"
 #include "pirsim/reconcile/outputs.hpp"
@@ -21,13 +20,9 @@
 namespace pirsim::app {
 namespace {
 
-reconcile::Settings settings_of(const ReconcileOptions& options) {
+reconcile::Settings settings_of(const ReconcileOptions& options, const ScriptSpec& script) {
   reconcile::Settings settings;
-  if (options.nuisance == "none") {
-    settings.nuisance = {0.0, 0.0, 0.0, 0.0, 0.0};
-  } else if (!options.nuisance.empty()) {
-    settings.nuisance = io::read_nuisance(options.nuisance);
-  }
+  settings.nuisance = nuisance_of(options.nuisance);
   settings.alpha = options.alpha;
   settings.max_effects = options.max_effects;
   settings.seed = options.seed;
@@ -40,6 +35,8 @@ reconcile::Settings settings_of(const ReconcileOptions& options) {
     const std::string& name = effects::find(effect).info.name;
     if (std::ranges::find(settings.table.entries, name) != settings.table.entries.end())
       throw Error(ErrorCode::usage, "--effects: " + name + " twice");
+    if (std::ranges::find(script.effects, name, &EffectSpec::name) != script.effects.end())
+      throw Error(ErrorCode::usage, "--effects: the script has " + name + " already, it isn't looked for again");
     settings.table.entries.push_back(name);
   }
   settings.table.threads = options.threads;
@@ -93,9 +90,16 @@ void draw_selftest(const std::filesystem::path& folder, const reconcile::Selftes
 void reconcile_selftest(const Inputs& inputs, const ReconcileOptions& options, const SelftestOptions& selftest) {
   const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
-  reconcile::SelftestSettings settings{settings_of(options), selftest.kind,    selftest.runs,  selftest.nulls,
-                                       selftest.planted,     selftest.beyond,  selftest.pairs, selftest.aliens,
-                                       selftest.leave_out,   selftest.verified};
+  reconcile::SelftestSettings settings{settings_of(options, script),
+                                       selftest.kind,
+                                       selftest.runs,
+                                       selftest.nulls,
+                                       selftest.planted,
+                                       selftest.beyond,
+                                       selftest.pairs,
+                                       selftest.aliens,
+                                       selftest.leave_out,
+                                       selftest.verified};
   settings.planted_folder = settings.analysis.table_folder / "planted";
   Teller teller(inputs.verbosity);
   const reconcile::SelftestResult result = reconcile::selftest(scene, script, settings, teller.observer());
@@ -111,7 +115,7 @@ void reconcile_selftest(const Inputs& inputs, const ReconcileOptions& options, c
 void reconcile_plan(const Inputs& inputs, const ReconcileOptions& options, const PlanOptions& plan) {
   const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
-  reconcile::PlanSettings settings{settings_of(options), plan.kind, plan.runs};
+  reconcile::PlanSettings settings{settings_of(options, script), plan.kind, plan.runs};
   Teller teller(inputs.verbosity);
   const reconcile::PlanResult result = reconcile::plan(scene, script, settings, teller.observer());
   teller.finish();
@@ -132,8 +136,8 @@ void reconcile_data(const Inputs& inputs, const ReconcileOptions& options) {
   if (inputs.verbosity != Verbosity::quiet) {
     for (const std::string& note : measured.notes) std::cerr << note << '\n';
   }
-  reconcile::Settings settings = settings_of(options);
-  settings.holdout = reconcile::holdout_of(options.holdout, frame, measured.digest);
+  reconcile::Settings settings = settings_of(options, script);
+  settings.holdout = reconcile::holdout_of(options.holdout, frame, measured);
 
   Teller teller(inputs.verbosity);
   const reconcile::Outcome outcome = reconcile::reconcile(scene, script, measured, settings, teller.observer());

@@ -1,4 +1,3 @@
-#include <fstream>
 #include <iomanip>
 #include <iostream>
 #include <random>
@@ -7,7 +6,7 @@
 #include "app/commands.hpp"
 #include "app/row_output.hpp"
 #include "app/session.hpp"
-#include "pirsim/io/nuisance_reader.hpp"
+#include "io/text_input.hpp"
 #include "pirsim/io/script_reader.hpp"
 #include "pirsim/reconcile/seal.hpp"
 
@@ -28,19 +27,6 @@ std::string new_salt() {
   return text.str();
 }
 
-std::string read_text(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) throw Error(ErrorCode::io, file.string() + ": cannot be read");
-  return text.str();
-}
-
-void write_text(const std::filesystem::path& file, const std::string& text) {
-  io::AtomicFile out(file);
-  out.stream() << text;
-  out.commit();
-}
-
 }  // namespace
 
 void seal_challenge(const Inputs& inputs, const SealOptions& options) {
@@ -51,11 +37,7 @@ void seal_challenge(const Inputs& inputs, const SealOptions& options) {
   tell(scene.warnings, inputs.verbosity);
   tell(script.warnings, inputs.verbosity);
   reconcile::SealSettings settings;
-  if (options.nuisance == "none") {
-    settings.nuisance = {0.0, 0.0, 0.0, 0.0, 0.0};
-  } else if (!options.nuisance.empty()) {
-    settings.nuisance = io::read_nuisance(options.nuisance);
-  }
+  settings.nuisance = nuisance_of(options.nuisance);
   settings.hidden = options.hidden;
   settings.n_replicates = options.runs;
   settings.secret_seed = options.secret_seed ? *options.secret_seed : secret_word();
@@ -63,19 +45,19 @@ void seal_challenge(const Inputs& inputs, const SealOptions& options) {
   const reconcile::Challenge challenge = reconcile::seal(scene, script, settings);
   std::error_code unknown;
   std::filesystem::create_directories(options.output, unknown);
-  write_text(options.answer, challenge.answer);
-  write_text(options.output / "measured.csv", challenge.rows);
+  io::write_text_file(options.answer, challenge.answer);
+  io::write_text_file(options.output / "measured.csv", challenge.rows);
   // as sha256sum -c reads it
-  write_text(options.output / "commitment.sha256",
-             challenge.commitment + "  " + options.answer.filename().string() + '\n');
+  io::write_text_file(options.output / "commitment.sha256",
+                      challenge.commitment + "  " + options.answer.filename().string() + '\n');
   std::cout << challenge.commitment << '\n';
   require_written();
 }
 
 void open_challenge(const OpenOptions& options) {
-  const std::string published = read_text(options.commitment).substr(0, digest_digits);
+  const std::string published = io::read_text_file(options.commitment).substr(0, digest_digits);
   const reconcile::Score score =
-      reconcile::open_answer(read_text(options.answer), published, read_text(options.report));
+      reconcile::open_answer(io::read_text_file(options.answer), published, io::read_text_file(options.report));
   std::cout << score.sentence << '\n';
   require_written();
 }

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "pirsim/core/version.hpp"
+#include "pirsim/io/nuisance_reader.hpp"
 #include "pirsim/io/scene_reader.hpp"
 #include "pirsim/io/script_reader.hpp"
 
@@ -20,6 +21,11 @@ rt::TracerKind tracer_kind(const std::string& name) {
 }
 
 }  // namespace
+
+NuisanceSpec nuisance_of(const std::string& asked) {
+  if (asked == "none") return {0.0, 0.0, 0.0, 0.0, 0.0};
+  return asked.empty() ? NuisanceSpec{} : io::read_nuisance(asked);
+}
 
 void tell(const std::vector<Issue>& issues, Verbosity verbosity) {
   if (verbosity == Verbosity::quiet) return;

@@ -7,6 +7,7 @@
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/report.hpp"
 #include "pirsim/io/scene_reader.hpp"
+#include "pirsim/schema/nuisance_spec.hpp"
 #include "pirsim/sim/model.hpp"
 
 namespace pirsim::app {
@@ -21,6 +22,8 @@ namespace pirsim::app {
 void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs);
 /// Where a scene's sensors are looked for: what the user names, and last the data that came with this program.
 [[nodiscard]] io::SceneOptions scene_options(const Inputs& inputs);
+/// Of --nuisance: a file, "none", or "" for the usual one.
+[[nodiscard]] NuisanceSpec nuisance_of(const std::string& asked);
 void tell(const std::vector<Issue>& issues, Verbosity verbosity);
 
 }  // namespace pirsim::app

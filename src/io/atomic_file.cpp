@@ -75,4 +75,10 @@ void AtomicFile::fail(const char* what, int cause) {
   throw Error(ErrorCode::io, Where{path_.string()}, message);
 }
 
+void write_text_file(const std::filesystem::path& path, std::string_view text) {
+  AtomicFile file(path);
+  file.stream() << text;
+  file.commit();
+}
+
 }  // namespace pirsim::io

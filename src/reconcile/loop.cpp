@@ -1,6 +1,7 @@
 #include "reconcile/loop.hpp"
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 
 #include "pirsim/core/digest.hpp"
 #include "pirsim/io/script_reader.hpp"
@@ -8,25 +9,6 @@
 #include "reconcile/sentences.hpp"
 
 namespace pirsim::reconcile {
-namespace {
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : " + ") + name;
-  return text;
-}
-
-std::vector<std::size_t> measured_trials(const Laboratory& lab) {
-  std::vector<std::size_t> trials;
-  const std::size_t n_sensors = lab.frame.sensors.size();
-  for (std::size_t t = 0; t < lab.frame.trials.size(); ++t) {
-    const auto cells = std::span(lab.shape.known_cells).subspan(t * n_sensors, n_sensors);
-    if (std::ranges::any_of(cells, [](std::uint8_t known) { return known != 0; })) trials.push_back(t);
-  }
-  return trials;
-}
-
-}  // namespace
 
 Outcome Loop::run() {
   const Step& first = look(settings_, settings_.alpha);
@@ -114,18 +96,30 @@ void Loop::put_in_more() {
     const double p = p_with_all(level);
     passes_ = p > level;
     outcome_.looks.push_back({names(), level, p});
-    outcome_.trail.push_back("with " + joined(names()) + " put in, at level " + short_number(level) + ": p " +
-                             short_number(p));
+    outcome_.trail.push_back("with " + boost::algorithm::join(names(), " + ") + " put in, at level " +
+                             short_number(level) + ": p " + short_number(p));
     if (passes_ || static_cast<int>(put_in_.size()) >= settings_.max_effects) return;
     const std::size_t n_asked = settings_.table.entries.size();  // 0: the whole catalogue
     if (n_asked != 0 && put_in_.size() >= n_asked) return;
-    begin("what is missing beside " + joined(names()));
-    const Step& more = look(with_all(level), level);
-    rest_ = more.outcome.verdict;
+    begin("what is missing beside " + boost::algorithm::join(names(), " + "));
+    const Step* more = look_for_more(level);
+    if (more == nullptr) return;
+    rest_ = more->outcome.verdict;
     outcome_.trail.push_back("looked for more: " + std::string(name(*rest_)));
-    if (more.outcome.verdict == Verdict::one_of) outcome_.looks.back().one_of = more.outcome.named;
-    if (more.outcome.verdict != Verdict::named) return;
-    put_in_.push_back(more.outcome.fits.front());
+    if (more->outcome.verdict == Verdict::one_of) outcome_.looks.back().one_of = more->outcome.named;
+    if (more->outcome.verdict != Verdict::named) return;
+    put_in_.push_back(more->outcome.fits.front());
+  }
+}
+
+const Loop::Step* Loop::look_for_more(double level) {
+  try {
+    return &look(with_all(level), level);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::infeasible) throw;
+    steps_.pop_back();
+    outcome_.trail.push_back("people can hardly get about in that model: nothing more is looked for in it");
+    return nullptr;
   }
 }
 
@@ -178,7 +172,7 @@ void Loop::verify_effects() {
     claim.steps.push_back(
         {&steps_[i].lab, steps_[i].observed, one_of ? outcome_.named.front() : put_in_[i].effect.name, steps_[i].seen});
   const Laboratory& lab = steps_.front().lab;
-  const std::vector<std::size_t> trials = measured_trials(lab);
+  const std::vector<std::size_t> trials = measured_.trials();
   if (trials.size() < 2) {
     outcome_.trail.push_back("one trial only: nothing can be held out");
     return;
@@ -203,13 +197,12 @@ void Loop::verify_effects() {
 }
 
 double Loop::p_with_all(double level) {
-  begin("does the model with " + joined(names()) + " put in pass");
+  begin("does the model with " + boost::algorithm::join(names(), " + ") + " put in pass");
   const Step& plain = steps_.front();
-  const FeatureMap map(plain.lab.frame, plain.lab.knowledge,
-                       plain.lab.table.statistics.select_rows(rows_of(plain.lab.table, 0, Part::training)),
-                       training_trials());
   const PatchedModel model{put_in_, plain.observed};
-  return p_with(std::span(&model, 1), plain.lab, map, {level, settings_.seed, settings_.threads}).front();
+  return p_with(std::span(&model, 1), plain.lab, plain.lab.map(training_trials()),
+                {level, settings_.seed, settings_.threads})
+      .front();
 }
 
 std::vector<std::string> Loop::names() const {

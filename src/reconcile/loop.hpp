@@ -31,6 +31,8 @@ class Loop {
   };
   const Step& look(const Settings& settings, double level);
   void put_in_more();
+  /// With all that was put in; none if people can hardly get about in that model.
+  const Step* look_for_more(double level);
   void tell_first(const Step& first);
   void conclude();
   void take_back();  ///< the one name that was given

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "io/text_input.hpp"
 #include "reconcile/measured_reader.hpp"
@@ -56,6 +57,13 @@ int Measured::n_replicates() const noexcept {
   std::size_t most = 0;
   for (const auto& [trial, numbers] : seen) most = std::max(most, numbers.size());
   return static_cast<int>(most);
+}
+
+std::vector<std::size_t> Measured::trials() const {
+  std::set<std::size_t> all;
+  for (const Series& run : runs) all.insert(run.trial);
+  for (const Sum& sum : sums) all.insert(sum.trial);
+  return {all.begin(), all.end()};
 }
 
 Measured parse_measured(std::string_view text, const std::string& file, const StudyFrame& frame) {

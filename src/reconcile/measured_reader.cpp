@@ -1,8 +1,10 @@
 #include "reconcile/measured_reader.hpp"
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <cmath>
 #include <set>
+#include <span>
 
 #include "pirsim/core/digest.hpp"
 #include "pirsim/io/csv_writer.hpp"
@@ -17,12 +19,6 @@ constexpr std::size_t fewest_cells = 5;  ///< of sums
 
 std::string plural(std::size_t n, const std::string& one, const std::string& many) {
   return std::to_string(n) + " " + (n == 1 ? one : many);
-}
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 }  // namespace
@@ -47,6 +43,7 @@ Measured MeasuredReader::read() {
     read_rows();
   }
   faults_.throw_if_errors();
+  number_runs();
   refuse_too_little();
   note_missing_trials();
   return std::move(measured_);
@@ -107,10 +104,12 @@ std::vector<std::optional<std::size_t>> MeasuredReader::sensor_columns() {
     if (!columns.back()) absent.push_back(sensor);
   }
   if (absent.size() == frame_.sensors.size()) {
-    faults_.error({file_, 1, 1}, "none of the columns is a sensor of the scene (" + listed(frame_.sensors) +
+    faults_.error({file_, 1, 1}, "none of the columns is a sensor of the scene (" +
+                                     boost::algorithm::join(frame_.sensors, ", ") +
                                      "): is this the data of another scene?");
   } else if (!absent.empty()) {
-    measured_.notes.push_back("The file has no column for " + listed(absent) + ": left out of every comparison.");
+    measured_.notes.push_back("The file has no column for " + boost::algorithm::join(absent, ", ") +
+                              ": left out of every comparison.");
   }
   return columns;
 }
@@ -148,20 +147,21 @@ void MeasuredReader::read_rows() {
   }
   if (!phase_ && !frame_.counted_phases.empty()) {
     measured_.notes.push_back("The file has no column 'phase': its rows are taken for those of the phase '" +
-                              listed(frame_.counted_phases) + "', from its beginning.");
+                              boost::algorithm::join(frame_.counted_phases, ", ") + "', from its beginning.");
   }
   if (inserted_rows_ > 0) {
     measured_.notes.push_back(plural(inserted_rows_, "row is", "rows are") +
-                              " missing in the middle of runs: taken for unknown, in the simulation too.");
+                              " missing: taken for unknown, in the simulation too.");
   }
   if (unknown_bits_ > 0) {
     measured_.notes.push_back(plural(unknown_bits_, "reading is", "readings are") +
                               " empty: taken for unknown, in the simulation too.");
   }
-  if (runs_without_main_ > 0) {
-    measured_.notes.push_back(plural(runs_without_main_, "run has", "runs have") + " no row in a counted phase (" +
-                              listed(frame_.counted_phases) + ") and " + (runs_without_main_ == 1 ? "is" : "are") +
-                              " left out.");
+  if (unread_runs_ > 0) {
+    const std::string phases = boost::algorithm::join(frame_.counted_phases, ", ");
+    measured_.notes.push_back(plural(unread_runs_, "run has", "runs have") + " no reading" +
+                              (phases.empty() ? "" : " in a counted phase (" + phases + ")") + " and " +
+                              (unread_runs_ == 1 ? "is" : "are") + " left out.");
   }
 }
 
@@ -175,6 +175,12 @@ bool MeasuredReader::check_times(const std::vector<Row>& rows) {
       return false;
     }
     ++steps[std::round(step * 1e6) / 1e6];
+  }
+  if (frame_.counted_phases.empty() && rows.front().time_s > most_missing_rows * frame_.window_s) {
+    faults_.error(table_.where(rows.front().line, *time_), "time_s counts from the beginning of the trial; this one " +
+                                                               std::string("begins with ") +
+                                                               io::csv_number(rows.front().time_s));
+    return false;
   }
   if (steps.empty()) return true;
   const auto usual = std::ranges::max_element(steps, {}, &std::pair<const double, std::size_t>::second);
@@ -231,14 +237,21 @@ void MeasuredReader::mark_main(Series& series, const std::vector<Row>& rows, con
   if (!begun) series.main_end = 0;
 }
 
+/// Where the first row lies in its run. If phases are counted, they tell where the main part begins, not the clock.
+std::size_t MeasuredReader::first_place(double time_s) const {
+  if (!frame_.counted_phases.empty()) return 0;
+  return static_cast<std::size_t>(std::max(0L, std::lround(time_s / frame_.window_s) - 1));
+}
+
 void MeasuredReader::add_run(RunKey key, std::vector<Row> rows,
                              const std::vector<std::optional<std::size_t>>& columns) {
   if (!check_times(rows)) return;
   Series series{key.first, key.second, 0, 0, {}};
   std::vector<std::size_t> places;  // of the rows, gaps counted
+  const std::size_t first = first_place(rows.front().time_s);
   for (const Row& row : rows) {
     const double windows = (row.time_s - rows.front().time_s) / frame_.window_s;
-    const auto place = static_cast<std::size_t>(std::lround(windows));
+    const std::size_t place = first + static_cast<std::size_t>(std::lround(windows));
     while (series.bits.size() < place * frame_.sensors.size()) {
       series.bits.insert(series.bits.end(), frame_.sensors.size(), unknown_bit);
       ++inserted_rows_;
@@ -248,11 +261,27 @@ void MeasuredReader::add_run(RunKey key, std::vector<Row> rows,
     places.push_back(place);
   }
   mark_main(series, rows, places);
-  if (series.main_begin == series.main_end) {
-    ++runs_without_main_;
+  const auto main = std::span(series.bits)
+                        .subspan(series.main_begin * frame_.sensors.size(),
+                                 (series.main_end - series.main_begin) * frame_.sensors.size());
+  if (std::ranges::all_of(main, [](std::uint8_t bit) { return bit == unknown_bit; })) {
+    ++unread_runs_;
     return;
   }
   measured_.runs.push_back(std::move(series));
+}
+
+/// From 1 in every trial, as simulated runs are: numbers may begin anywhere and have gaps.
+void MeasuredReader::number_runs() {
+  std::map<std::size_t, std::set<int>> known;  // of a trial
+  for (const Series& run : measured_.runs) known[run.trial].insert(run.replicate);
+  for (const Measured::Sum& sum : measured_.sums) known[sum.trial].insert(sum.replicate);
+  const auto rank = [&](std::size_t trial, int replicate) {
+    const std::set<int>& numbers = known.at(trial);
+    return 1 + static_cast<int>(std::distance(numbers.begin(), numbers.find(replicate)));
+  };
+  for (Series& run : measured_.runs) run.replicate = rank(run.trial, run.replicate);
+  for (Measured::Sum& sum : measured_.sums) sum.replicate = rank(sum.trial, sum.replicate);
 }
 
 void MeasuredReader::refuse_too_little() {
@@ -285,7 +314,8 @@ void MeasuredReader::note_missing_trials() {
     if (!seen) absent.push_back(frame_.trials[trial]);
   }
   if (absent.empty()) return;
-  measured_.notes.push_back("The file has nothing of " + listed(absent) + ": left out of every comparison.");
+  measured_.notes.push_back("The file has nothing of " + boost::algorithm::join(absent, ", ") +
+                            ": left out of every comparison.");
 }
 
 }  // namespace pirsim::reconcile

@@ -33,11 +33,13 @@ class MeasuredReader {
   [[nodiscard]] int replicate_of(std::size_t row);
   [[nodiscard]] std::optional<std::size_t> find(const std::vector<std::string>& names, const std::string& what,
                                                 std::size_t row, std::size_t column);
+  [[nodiscard]] std::size_t first_place(double time_s) const;
   void add_run(RunKey key, std::vector<Row> rows, const std::vector<std::optional<std::size_t>>& columns);
   [[nodiscard]] bool check_times(const std::vector<Row>& rows);
   [[nodiscard]] std::vector<std::uint8_t> bits_of(std::size_t row,
                                                   const std::vector<std::optional<std::size_t>>& columns);
   void mark_main(Series& series, const std::vector<Row>& rows, const std::vector<std::size_t>& places);
+  void number_runs();
   void refuse_too_little();
   void note_missing_trials();
 
@@ -47,7 +49,7 @@ class MeasuredReader {
   Diagnostics faults_;
   Measured measured_;
   std::optional<std::size_t> trial_, replicate_, phase_, time_;
-  std::size_t inserted_rows_ = 0, unknown_bits_ = 0, bad_bits_ = 0, runs_without_main_ = 0;
+  std::size_t inserted_rows_ = 0, unknown_bits_ = 0, bad_bits_ = 0, unread_runs_ = 0;
 };
 
 }  // namespace pirsim::reconcile

@@ -112,12 +112,6 @@ Json to_json(const Residuals& residuals) {
   return {{"sentence", residuals.sentence}, {"drivers", drivers}};
 }
 
-void write(const std::filesystem::path& file, const std::string& text) {
-  io::AtomicFile out(file);
-  out.stream() << text;
-  out.commit();
-}
-
 }  // namespace
 
 std::string to_json(const Outcome& outcome, const Measured& measured, const Settings& settings,
@@ -222,21 +216,24 @@ void write_outputs(const std::filesystem::path& folder, const Outcome& outcome, 
                    const ScriptSpec& script, const Settings& settings, const Provenance& provenance) {
   std::error_code fault;
   std::filesystem::create_directories(folder, fault);
-  write(folder / "where.csv", where_csv(outcome));
-  write(folder / "candidates.csv", candidates_csv(outcome));
+  io::write_text_file(folder / "where.csv", where_csv(outcome));
+  io::write_text_file(folder / "candidates.csv", candidates_csv(outcome));
+  const std::filesystem::path patch = folder / "script_patched.yaml";
   if (outcome.verdict == Verdict::named || outcome.verdict == Verdict::several) {
-    write(folder / "script_patched.yaml", io::to_yaml(patched(script, outcome)));
+    io::write_text_file(patch, io::to_yaml(patched(script, outcome)));
+  } else {
+    std::filesystem::remove(patch, fault);  // of an earlier analysis
   }
   std::string trail = earlier_trail(folder);
   const std::size_t before = times_analysed(trail, measured.digest);
   if (!trail.empty()) trail += '\n';
   for (const std::string& line : outcome.trail) trail += line + '\n';
   trail += "these data were analysed " + std::to_string(before) + " times before in this folder\n";
-  write(folder / "trail.log", trail);
+  io::write_text_file(folder / "trail.log", trail);
   io::Report page = report_page(outcome, settings.alpha);
   page.footer = provenance.program + ", " + provenance.scene + ", " + provenance.script + ", " + provenance.measured;
-  write(folder / "report.html", io::to_html(page));
-  write(folder / "report.json", to_json(outcome, measured, settings, provenance));
+  io::write_text_file(folder / "report.html", io::to_html(page));
+  io::write_text_file(folder / "report.json", to_json(outcome, measured, settings, provenance));
 }
 
 }  // namespace pirsim::reconcile

@@ -130,16 +130,11 @@ std::string to_csv(const PlanResult& result) {
 void write_plan(const std::filesystem::path& folder, const PlanResult& result, const std::string& made_by) {
   std::error_code fault;
   std::filesystem::create_directories(folder, fault);
-  const auto write = [&](const char* file, const std::string& text) {
-    io::AtomicFile out(folder / file);
-    out.stream() << text;
-    out.commit();
-  };
   io::Report page = plan_page(result);
   page.footer = made_by;
-  write("plan.csv", to_csv(result));
-  write("plan.html", io::to_html(page));
-  write("plan.json", to_json(result));
+  io::write_text_file(folder / "plan.csv", to_csv(result));
+  io::write_text_file(folder / "plan.html", io::to_html(page));
+  io::write_text_file(folder / "plan.json", to_json(result));
 }
 
 }  // namespace pirsim::reconcile

@@ -33,6 +33,10 @@ Laboratory make_laboratory(const SceneSpec& scene, const ScriptSpec& script, con
   return lab;
 }
 
+FeatureMap Laboratory::map(std::vector<std::size_t> trials) const {
+  return {frame, knowledge, table.statistics.select_rows(rows_of(table, 0, Part::training)), std::move(trials)};
+}
+
 std::shared_ptr<const TableView> Laboratory::view(std::vector<std::size_t> trials, unsigned threads) const {
   return std::make_shared<const TableView>(source.scene, frame, knowledge, table, std::move(trials), threads);
 }

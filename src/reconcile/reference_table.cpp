@@ -104,6 +104,8 @@ ReferenceTable make_reference_table(const WorldSource& source, const StudyFrame&
   std::erase_if(settings.entries, [&](const std::string& entry) {
     return std::ranges::find(source.script.effects, entry, &EffectSpec::name) != source.script.effects.end();
   });
+  if (settings.entries.empty())
+    throw Error(ErrorCode::usage, "nothing is left to be looked for: the script has every effect that is asked for");
   ReferenceTable table;
   table.key = table_key(source, frame, shape.n_replicates, settings);
   const TableStore store(folder, table.key);

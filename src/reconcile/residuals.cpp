@@ -239,7 +239,9 @@ Usual simulate_usual(const Laboratory& lab, const Bits& bits, const Scores& scor
   std::vector<std::vector<double>> simulated;
   const Profile& profile = lab.table.profile;
   ordered_parallel<std::vector<double>>(
-      settings.n_simulated, settings.threads,
+      std::max(settings.n_simulated,
+               static_cast<std::uint32_t>(std::ceil(static_cast<double>(n_kinds) / settings.alpha))),
+      settings.threads,
       [&](std::size_t i) {
         const SimulatedWorld world(lab.source, lab.frame, first_residual_world + static_cast<std::uint32_t>(i),
                                    lab.shape.n_replicates);

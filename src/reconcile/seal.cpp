@@ -1,6 +1,7 @@
 #include "pirsim/reconcile/seal.hpp"
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -125,12 +126,6 @@ Mark mark_of(Hidden kind, const std::set<std::string>& truth, const std::string&
   return verdict == "no-disagreement" ? Mark::none : Mark::wrong;
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& one : names) text += (text.empty() ? "" : ", ") + one;
-  return text;
-}
-
 }  // namespace
 
 std::string_view name(Hidden hidden) noexcept {
@@ -184,8 +179,9 @@ Score open_answer(std::string_view answer, std::string_view commitment, std::str
     const auto named = judged.at("effects").get<std::vector<std::string>>();
     score.mark = mark_of(kind, as_judged(truth), verdict, as_judged(named));
     score.sentence = std::string(name(score.mark)) + ": hidden was " +
-                     (score.hidden.empty() ? "nothing" : listed(score.hidden)) + ", the verdict was " + verdict +
-                     (named.empty() ? "" : " (" + listed(named) + ")");
+                     (score.hidden.empty() ? "nothing" : boost::algorithm::join(score.hidden, ", ")) +
+                     ", the verdict was " + verdict +
+                     (named.empty() ? "" : " (" + boost::algorithm::join(named, ", ") + ")");
     return score;
   } catch (const Json::exception& fault) {
     throw Error(ErrorCode::input, std::string("answer or report: ") + fault.what());

@@ -119,8 +119,9 @@ void verify_some(const Laboratory& lab, const SeenRows& seen, const std::vector<
 }
 
 /// Can the model with the effect named have made the data?
-void put_in_some(const Laboratory& lab, const std::vector<Planted>& planted, const SelftestSettings& settings,
-                 const std::function<void(const std::string&)>& begin, std::vector<PlantedCase>& cases) {
+void put_in_some(const Laboratory& lab, const FeatureMap& map, const std::vector<Planted>& planted,
+                 const SelftestSettings& settings, const std::function<void(const std::string&)>& begin,
+                 std::vector<PlantedCase>& cases) {
   std::vector<std::size_t> chosen = some_of(cases, settings.n_verified, has_right_name);
   for (const CaseKind kind : {CaseKind::left_out, CaseKind::alien}) {
     std::ranges::copy(some_of(cases, settings.n_verified, [&](const auto& c) { return has_name_though(kind, c); }),
@@ -128,8 +129,6 @@ void put_in_some(const Laboratory& lab, const std::vector<Planted>& planted, con
   }
   if (chosen.empty()) return;
   const Settings& analysis = settings.analysis;
-  const FeatureMap map(lab.frame, lab.knowledge,
-                       lab.table.statistics.select_rows(rows_of(lab.table, 0, Part::training)), all_trials(lab.frame));
   const double level = level_with(1, analysis.alpha);
   std::vector<PatchedModel> models;
   for (const std::size_t i : chosen)
@@ -325,7 +324,7 @@ SelftestResult judge(const Laboratory& lab, const std::vector<Planted>& planted,
       judge_all(lab, analyst_without(effect), planted, own, CaseKind::left_out, analysis.threads, result.cases);
     }
   }
-  put_in_some(lab, planted, settings, begin, result.cases);
+  put_in_some(lab, view->map(), planted, settings, begin, result.cases);
   return result;
 }
 

@@ -180,17 +180,12 @@ void write_selftest(const std::filesystem::path& folder, const SelftestResult& r
                     const std::string& made_by) {
   std::error_code fault;
   std::filesystem::create_directories(folder, fault);
-  const auto write = [&](const char* file, const std::string& text) {
-    io::AtomicFile out(folder / file);
-    out.stream() << text;
-    out.commit();
-  };
-  write("selftest.csv", to_csv(result));
-  write("targets.md", targets_markdown(result, geometry));
-  write("selftest.md", to_markdown(result));
+  io::write_text_file(folder / "selftest.csv", to_csv(result));
+  io::write_text_file(folder / "targets.md", targets_markdown(result, geometry));
+  io::write_text_file(folder / "selftest.md", to_markdown(result));
   io::Report page = selftest_page(result, geometry);
   page.footer = made_by;
-  write("selftest.html", io::to_html(page));
+  io::write_text_file(folder / "selftest.html", io::to_html(page));
 }
 
 }  // namespace pirsim::reconcile

@@ -1,6 +1,7 @@
 #include "reconcile/sentences.hpp"
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -10,16 +11,10 @@
 namespace pirsim::reconcile {
 namespace {
 
-std::string separated(const std::vector<std::string>& texts, const std::string& by) {
-  std::string all;
-  for (const std::string& text : texts) all += (all.empty() ? "" : by) + text;
-  return all;
-}
-
 std::string fingerprints_of(const std::vector<std::string>& named) {
   std::vector<std::string> texts;
   for (const std::string& effect : named) texts.push_back(effect + ": " + effects::find(effect).info.fingerprint);
-  return separated(texts, ". ");
+  return boost::algorithm::join(texts, ". ");
 }
 
 /// Which kind of effect it is, if that is clear though its name isn't.
@@ -95,7 +90,7 @@ std::string next_step(const Outcome& outcome) {
         return "What to do next: measure more before anything is put in; pirsim reconcile plan finds what would tell "
                "most.";
       return "What to do next: measure more before one of them is put in. pirsim reconcile plan --effects " +
-             separated(outcome.named, ",") +
+             boost::algorithm::join(outcome.named, ",") +
              " finds the measurement that separates them best. What each does to the data: " +
              fingerprints_of(outcome.named) + ".";
     case Verdict::none_in_catalogue:

@@ -66,7 +66,9 @@ class TrialStatistics {
 
   void add(const Series& run, const DataShape::Run& shape, Measured::Kind kind) {
     const std::vector<std::uint8_t> bits = main_bits(run, shape, frame_.sensors.size());
-    for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) add_cell(run, shape, bits, sensor);
+    for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+      if (knows(shape, sensor)) add_cell(run, shape, bits, sensor);
+    }
     if (kind == Measured::Kind::series) add_trial(bits);
     lead_known_ = lead_known_ && shape.has_lead;
     tail_known_ = tail_known_ && shape.has_tail;
@@ -79,7 +81,7 @@ class TrialStatistics {
       if (shape.known_cells[trial * frame_.sensors.size() + sensor] == 0) continue;
       for (std::size_t i = 0; i < n_cell_statistics; ++i) {
         const auto statistic = static_cast<CellStatistic>(i);
-        if (!known(statistic, shape.kind)) continue;
+        if (!known(sensor, statistic, shape.kind)) continue;
         out[cell_index(frame_, trial, sensor, statistic)] = static_cast<float>(value_of(sensor, statistic));
       }
     }
@@ -93,8 +95,14 @@ class TrialStatistics {
   }
 
  private:
-  [[nodiscard]] bool known(CellStatistic statistic, Measured::Kind kind) const {
-    if (statistic == CellStatistic::run_variance) return n_runs_ > 1;
+  [[nodiscard]] bool knows(const DataShape::Run& shape, std::size_t sensor) const {
+    const std::size_t n = frame_.sensors.size();
+    bool any = shape.unknown.empty();
+    for (std::size_t i = sensor; i < shape.unknown.size() && !any; i += n) any = shape.unknown[i] == 0;
+    return any;
+  }
+  [[nodiscard]] bool known(std::size_t sensor, CellStatistic statistic, Measured::Kind kind) const {
+    if (statistic == CellStatistic::run_variance) return seconds_[sensor].size() > 1;
     if (statistic == CellStatistic::seconds) return true;
     if (kind == Measured::Kind::sums) return false;
     if (statistic == CellStatistic::lead_seconds) return lead_known_;
@@ -102,13 +110,14 @@ class TrialStatistics {
     return true;
   }
   [[nodiscard]] double value_of(std::size_t sensor, CellStatistic statistic) const {
+    const auto n_runs = static_cast<double>(seconds_[sensor].size());
     if (statistic != CellStatistic::run_variance) {
-      return cells_[sensor][static_cast<std::size_t>(statistic)] / n_runs_;
+      return cells_[sensor][static_cast<std::size_t>(statistic)] / n_runs;
     }
-    const double mean = cells_[sensor][static_cast<std::size_t>(CellStatistic::seconds)] / n_runs_;
+    const double mean = cells_[sensor][static_cast<std::size_t>(CellStatistic::seconds)] / n_runs;
     double squares = 0.0;
     for (const double seconds : seconds_[sensor]) squares += (seconds - mean) * (seconds - mean);
-    return squares / (n_runs_ - 1);
+    return squares / (n_runs - 1.0);
   }
 
   void add_cell(const Series& run, const DataShape::Run& shape, const std::vector<std::uint8_t>& bits,
@@ -187,7 +196,7 @@ class TrialStatistics {
   const StudyFrame& frame_;
   const Profile::Trial& profile_;
   std::vector<CellValues> cells_;             ///< (n_sensors) sums over runs
-  std::vector<std::vector<double>> seconds_;  ///< (n_sensors x n_runs)
+  std::vector<std::vector<double>> seconds_;  ///< (n_sensors x n_runs that know anything of the sensor)
   std::array<double, n_trial_statistics> trial_{};
   std::vector<double> pairs_;  ///< (n_pairs) sums over runs
   bool lead_known_ = true, tail_known_ = true;
@@ -204,14 +213,43 @@ double arm_period_s(const TrialSpec& trial) {
   return action::Work{}.arm_period_s;
 }
 
+/// No row of these (n_rows x n_sensors) is wholly unknown.
+bool every_row_known(std::span<const std::uint8_t> bits, std::size_t n_sensors) {
+  for (; !bits.empty(); bits = bits.subspan(n_sensors)) {
+    if (std::ranges::all_of(bits.first(n_sensors), [](std::uint8_t bit) { return bit == unknown_bit; })) return false;
+  }
+  return true;
+}
+
 DataShape::Run shape_of_run(const Series& run, std::size_t n_sensors) {
-  DataShape::Run shape{
-      run.trial, run.replicate, run.main_end - run.main_begin, run.main_begin > 0, run.main_end < run.n_rows(n_sensors),
-      {}};
-  const auto main = std::span(run.bits).subspan(run.main_begin * n_sensors, shape.n_main * n_sensors);
+  const std::span<const std::uint8_t> bits = run.bits;
+  const auto lead = bits.first(run.main_begin * n_sensors), tail = bits.subspan(run.main_end * n_sensors);
+  const auto main = bits.subspan(lead.size(), bits.size() - lead.size() - tail.size());
+  const auto has = [&](std::span<const std::uint8_t> part) {
+    return !part.empty() && every_row_known(part, n_sensors);
+  };
+  DataShape::Run shape{run.trial, run.replicate, run.main_end - run.main_begin, has(lead), has(tail), {}};
   if (std::ranges::find(main, unknown_bit) == main.end()) return shape;
   for (const std::uint8_t bit : main) shape.unknown.push_back(bit == unknown_bit ? 1 : 0);
   return shape;
+}
+
+/// Of these runs, those with sums, blind where there are none.
+std::vector<DataShape::Run> summed(const Measured& measured, std::size_t n_sensors,
+                                   const std::vector<DataShape::Run>& runs) {
+  std::vector<DataShape::Run> all;
+  for (const DataShape::Run& run : runs) {
+    std::vector<std::uint8_t> unknown(n_sensors, 1);
+    for (const Measured::Sum& sum : measured.sums) {
+      if (sum.trial == run.trial && sum.replicate == run.replicate) unknown[sum.sensor] = 0;
+    }
+    const auto n_unknown = static_cast<std::size_t>(std::ranges::count(unknown, 1));
+    if (n_unknown == n_sensors) continue;
+    all.push_back(run);
+    for (std::size_t row = 0; row < run.n_main && n_unknown > 0; ++row)
+      all.back().unknown.insert(all.back().unknown.end(), unknown.begin(), unknown.end());
+  }
+  return all;
 }
 
 }  // namespace
@@ -247,7 +285,10 @@ DataShape shape_of(const StudyFrame& frame, const Measured& measured, std::span<
   DataShape shape = full_shape(frame, measured.kind, measured.n_replicates(), pilot);
   std::ranges::fill(shape.known_cells, std::uint8_t{0});
   for (const Measured::Sum& sum : measured.sums) shape.known_cells[sum.trial * n + sum.sensor] = 1;
-  if (measured.kind == Measured::Kind::sums) return shape;
+  if (measured.kind == Measured::Kind::sums) {
+    shape.runs = summed(measured, n, shape.runs);
+    return shape;
+  }
   shape.runs.clear();
   for (const Series& run : measured.runs) {
     shape.runs.push_back(shape_of_run(run, n));

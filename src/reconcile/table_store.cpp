@@ -87,8 +87,8 @@ TableStore::TableStore(std::filesystem::path folder, const std::string& key) : f
     std::ifstream(key_file) >> known;
     if (known == key) return;
     throw Error(ErrorCode::input, {key_file.string(), 0, 0},
-                "this folder holds simulated datasets of another scene, script, nuisance, number of runs or build: "
-                "remove it or name another folder with --table");
+                "this folder holds simulated datasets of other inputs, settings (seed, effects, numbers of datasets or "
+                "runs, nuisance) or of another build: remove it or name another folder with --table");
   }
   io::AtomicFile out(key_file);
   out.stream() << key << '\n';

@@ -64,8 +64,7 @@ class FoldSearch {
   struct Learnt {
     Learnt(const PutIn& step, const std::vector<std::size_t>& trials, const VerifySettings& settings)
         : lab(step.lab),
-          map(lab->frame, lab->knowledge, lab->table.statistics.select_rows(rows_of(lab->table, 0, Part::training)),
-              trials),
+          map(lab->map(trials)),
           probabilities(lab->table, map, step.seen,
                         {.trees = {.trees = settings.trees, .seed = settings.seed, .threads = settings.threads},
                          .threads = settings.threads}),
@@ -121,7 +120,7 @@ class Simulation {
     using Rows = std::vector<std::vector<float>>;  // before, after, placebo
     Ensembles all;
     ordered_parallel<Rows>(
-        settings.n_worlds, settings.threads,
+        std::max(settings.n_worlds, static_cast<std::uint32_t>(std::ceil(1.0 / settings.alpha))), settings.threads,
         [&](std::size_t i) -> Rows {
           const SimulatedWorld world(lab_.source, lab_.frame, first_verify_world + static_cast<std::uint32_t>(i),
                                      lab_.shape.n_replicates);
@@ -312,15 +311,16 @@ Folds folds_of(std::string_view digest, std::vector<std::size_t> trials, std::si
   return folds;
 }
 
-std::vector<std::size_t> holdout_of(const std::string& asked, const StudyFrame& frame, std::string_view digest) {
+std::vector<std::size_t> holdout_of(const std::string& asked, const StudyFrame& frame, const Measured& measured) {
   if (asked.empty()) return {};
   constexpr std::size_t fewest = 2;
+  const std::vector<std::size_t> all = measured.trials();
   std::vector<std::size_t> trials;
   double share = 0.0;
   const auto [end, fault] = std::from_chars(asked.data(), asked.data() + asked.size(), share);
   if (fault == std::errc() && end == asked.data() + asked.size() && share > 0.0 && share < 1.0) {
-    const auto n = static_cast<std::size_t>(std::lround(share * static_cast<double>(frame.trials.size())));
-    for (const auto& fold : folds_of(digest, all_trials(frame), frame.trials.size())) {
+    const auto n = static_cast<std::size_t>(std::lround(share * static_cast<double>(all.size())));
+    for (const auto& fold : folds_of(measured.digest, all, all.size())) {
       if (trials.size() < std::max(n, fewest)) trials.push_back(fold.front());
     }
   } else {
@@ -333,12 +333,14 @@ std::vector<std::size_t> holdout_of(const std::string& asked, const StudyFrame& 
                                           did_you_mean(name, frame.trials));
       }
       trials.push_back(static_cast<std::size_t>(known - frame.trials.begin()));
+      if (!std::ranges::binary_search(all, trials.back()))
+        throw Error(ErrorCode::usage, "--holdout: nothing of trial '" + name + "' was measured");
     }
   }
   std::ranges::sort(trials);
   trials.erase(std::unique(trials.begin(), trials.end()), trials.end());
-  if (trials.size() < fewest || trials.size() + fewest > frame.trials.size()) {
-    throw Error(ErrorCode::usage, "--holdout: of " + std::to_string(frame.trials.size()) + " trials, " +
+  if (trials.size() < fewest || trials.size() + fewest > all.size()) {
+    throw Error(ErrorCode::usage, "--holdout: of " + std::to_string(all.size()) + " measured trials, " +
                                       std::to_string(trials.size()) + " would be held out; two or more must be, and " +
                                       "two or more left");
   }

@@ -127,6 +127,7 @@ void draw_envelope(const Matrix<double>& rows, const std::vector<double>& p, dou
 GlobalEnvelope global_envelope_test(std::span<const double> observed, const Matrix<double>& simulated,
                                     const EnvelopeSettings& settings) {
   require(simulated.rows() > 0, "envelope: no simulated row");
+  require(simulated.columns() > 0, "envelope: nothing to compare");
   require(observed.size() == simulated.columns(), "envelope: observed and simulated rows differ in length");
   require(settings.alpha > 0.0 && settings.alpha < 1.0, "envelope: alpha must lie between 0 and 1");
   require_finite(observed, "envelope: an observed statistic is not finite");

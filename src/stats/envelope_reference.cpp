@@ -49,6 +49,7 @@ EnvelopeReference::EnvelopeReference(Matrix<double> simulated, PointwiseRank ran
       rank_(rank) {
   require(rank != PointwiseRank::random_ties, "envelope: a reference can't put ties in random order");
   require(simulated_.rows() > 1, "envelope: fewer than two simulated rows");
+  require(simulated_.columns() > 0, "envelope: nothing to compare");
   require_finite(simulated_.values(), "envelope: a simulated statistic is not finite");
   const std::size_t n = simulated_.rows();
   std::vector<double> values(n);

@@ -1,6 +1,7 @@
 #include "pirsim/studies/placement.hpp"
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <glm/geometric.hpp>
 #include <iomanip>
 #include <nlopt.hpp>
@@ -70,9 +71,7 @@ void maximise(nlopt::algorithm algorithm, Objective& objective, int evaluations)
 }
 
 std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : " ") + name;
-  return text.empty() ? "none" : text;
+  return names.empty() ? "none" : boost::algorithm::join(names, " ");
 }
 
 }  // namespace

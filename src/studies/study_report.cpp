@@ -1,6 +1,7 @@
 #include "pirsim/studies/study_report.hpp"
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <iomanip>
 #include <sstream>
 
@@ -11,12 +12,6 @@ std::string fixed(double value, int digits) {
   std::ostringstream out;
   out << std::fixed << std::setprecision(digits) << value;
   return out.str();
-}
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 /// Stretches of rows in one of the counted phases.
@@ -90,12 +85,14 @@ io::Report StudyReport::finish(const Summary& summary) const {
   const std::vector<CellSummary> cells = summary.cells();  // trials in order, sensors within each
   io::Report report;
   report.title = script.name;
-  report.paragraphs = {
-      std::to_string(trials_.size()) + " trials in " + model_->scene().name + ", each run " +
-      std::to_string(script.replicates) + " times, watched by " + listed(sensors_) +
-      ". A count is the "
-      "number of windows in which a sensor reported motion" +
-      (script.summary.phases.empty() ? "." : " while the phase was " + listed(script.summary.phases) + ".")};
+  report.paragraphs = {std::to_string(trials_.size()) + " trials in " + model_->scene().name + ", each run " +
+                       std::to_string(script.replicates) + " times, watched by " +
+                       boost::algorithm::join(sensors_, ", ") +
+                       ". A count is the "
+                       "number of windows in which a sensor reported motion" +
+                       (script.summary.phases.empty()
+                            ? "."
+                            : " while the phase was " + boost::algorithm::join(script.summary.phases, ", ") + ".")};
   io::ReportSection numbers{"In numbers", {}, {}, {}};
   if (summary.overall().cells > 0) {
     numbers.tables.push_back(overall_table(summary.overall()));

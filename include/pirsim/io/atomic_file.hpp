@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <ostream>
+#include <string_view>
 
 namespace pirsim::io {
 
@@ -42,5 +43,8 @@ class AtomicFile {
   Buffer buffer_;
   std::ostream stream_{&buffer_};
 };
+
+/// An AtomicFile with this text.
+void write_text_file(const std::filesystem::path& path, std::string_view text);
 
 }  // namespace pirsim::io

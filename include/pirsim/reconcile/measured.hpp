@@ -58,12 +58,13 @@ struct Measured {
     double seconds = 0.0;
   };
   Kind kind = Kind::series;
-  std::vector<Series> runs;        ///< of series: by trial, then replicate
+  std::vector<Series> runs;        ///< of series: by trial, then replicate, numbered from 1 in every trial
   std::vector<Sum> sums;           ///< of sums; cells that aren't there weren't measured
   std::vector<std::string> notes;  ///< sentences: what was done with which rows
   std::string digest;              ///< SHA-256 of the file
 
-  [[nodiscard]] int n_replicates() const noexcept;  ///< the greatest number of runs of a trial
+  [[nodiscard]] int n_replicates() const noexcept;        ///< the greatest number of runs of a trial
+  [[nodiscard]] std::vector<std::size_t> trials() const;  ///< ascending; of which anything was measured
 };
 
 /// Reads pirsim's own rows (docs/formats/rows.md), or sums with the columns trial (or seat), sensor, seconds (or real)

@@ -44,6 +44,8 @@ struct Laboratory {
   ReferenceTable table;
   std::string key;  ///< of the table
 
+  /// What the plain model's training datasets say of these trials (sorted).
+  [[nodiscard]] FeatureMap map(std::vector<std::size_t> trials) const;
   /// The table as it looks in these trials (sorted); must not outlive the laboratory.
   [[nodiscard]] std::shared_ptr<const TableView> view(std::vector<std::size_t> trials, unsigned threads) const;
 };

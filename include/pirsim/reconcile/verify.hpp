@@ -49,7 +49,7 @@ struct VerifySettings {
   double alpha = 0.05;
   std::uint64_t seed = 0;
   unsigned threads = 0;
-  std::uint32_t n_worlds = 60;  ///< simulated with each patched model
+  std::uint32_t n_worlds = 60;  ///< simulated with each patched model; more if these couldn't refuse it at alpha
   std::size_t trees = 100;
 };
 
@@ -83,9 +83,10 @@ using Folds = std::vector<std::vector<std::size_t>>;
 /// Folds of about the same size over the given trials, from the data's digest alone: fixed before anything is named.
 [[nodiscard]] Folds folds_of(std::string_view digest, std::vector<std::size_t> trials, std::size_t n_folds);
 
-/// Which trials (ascending) `asked` means: a share of them, "0.3", drawn by the data's digest, or names, "S3,S8";
-/// empty: none. Throws Error(usage): an unknown trial, or fewer than two trials held out or left.
+/// Which measured trials (ascending) `asked` means: a share of them, "0.3", drawn by the data's digest, or names,
+/// "S3,S8"; empty: none. Throws Error(usage): a trial that is unknown or wasn't measured, or fewer than two held out or
+/// left.
 [[nodiscard]] std::vector<std::size_t> holdout_of(const std::string& asked, const StudyFrame& frame,
-                                                  std::string_view digest);
+                                                  const Measured& measured);
 
 }  // namespace pirsim::reconcile

@@ -72,6 +72,38 @@ TEST_CASE("rows without phases are taken for the counted phases", "[measured]") 
   CHECK_THAT(measured.notes.at(0), contains("no column 'phase'"));
 }
 
+TEST_CASE("runs are numbered from 1 in every trial, whatever the file calls them", "[measured]") {
+  std::string text = header;
+  for (const auto& [trial, replicate] : {std::pair{"S1", 7}, {"S1", 3}, {"S2", 0}}) {
+    std::string run = rows(trial, 40);
+    for (std::size_t at = 0; at < run.size(); at = run.find('\n', at) + 1)
+      run.replace(at, 1, std::to_string(replicate));
+    text += run;
+  }
+  const Measured measured = parse_measured(text, "m.csv", two_by_two());
+  REQUIRE(measured.runs.size() == 3);
+  CHECK(measured.n_replicates() == 2);
+  for (const auto& [i, trial, replicate] : {std::tuple{0U, 0U, 1}, {1U, 0U, 2}, {2U, 1U, 1}}) {
+    CHECK(measured.runs[i].trial == trial);
+    CHECK(measured.runs[i].replicate == replicate);
+  }
+}
+
+TEST_CASE("a run that was recorded late keeps its place where no phase tells it", "[measured]") {
+  const StudyFrame frame{{"S1"}, {"PIR1"}, {}, 1.0};
+  std::string text = "time_s,PIR1\n";
+  for (int i = 6; i <= 45; ++i) text += std::to_string(i) + ",1\n";
+  const Measured late = parse_measured(text, "m.csv", frame);
+  CHECK(late.runs.at(0).n_rows(1) == 45);
+  CHECK(late.runs.at(0).bits[4] == unknown_bit);
+  CHECK(late.runs.at(0).bits[5] == 1);
+  CHECK_THAT(late.notes.at(0), contains("5 rows are missing"));
+  const StudyFrame phased{{"S1"}, {"PIR1"}, {"working"}, 1.0};
+  CHECK(parse_measured(text, "m.csv", phased).runs.at(0).n_rows(1) == 40);
+  CHECK_THROWS_WITH(parse_measured("time_s,PIR1\n1700000000,1\n1700000001,1\n", "m.csv", frame),
+                    contains("counts from the beginning of the trial"));
+}
+
 TEST_CASE("bad measured rows are refused with a sentence and a place", "[measured]") {
   CHECK_THAT(refusal(header + rows("S1", 40) + rows("S11", 40)), contains("'S11' is not in the study (did you mean"));
   CHECK_THAT(refusal(header + rows("S1", 40, "0,2")), contains("m.csv:2:20: error: PIR2: expected 0 or 1, got '2'"));

@@ -45,9 +45,7 @@ FittedEffect false_triggers(double rate_per_s, std::vector<double> equally_likel
 
 std::vector<double> p_of(std::span<const PatchedModel> models, unsigned threads = 0) {
   const Laboratory& lab = laboratory();
-  const FeatureMap map(lab.frame, lab.knowledge,
-                       lab.table.statistics.select_rows(rows_of(lab.table, 0, Part::training)), all_trials(lab.frame));
-  return p_with(models, lab, map, {level, 1, threads});
+  return p_with(models, lab, lab.map(all_trials(lab.frame)), {level, 1, threads});
 }
 
 double p_of(const std::vector<FittedEffect>& put_in, std::span<const float> observed, unsigned threads = 0) {

@@ -148,3 +148,26 @@ TEST_CASE("sums give seconds and nothing else", "[statistics]") {
   CHECK(of(simulated, CellStatistic::run_variance) == 2.0F);
   CHECK(std::isnan(of(simulated, CellStatistic::onsets)));
 }
+
+TEST_CASE("a cell's mean is over the runs in which its sensor is known", "[statistics]") {
+  const StudyFrame two{{"S1", "S2"}, {"A", "B"}, {}, 1.0};
+  const std::vector<TrialSpec> trials(2, one_trial().trials.front());
+  ScriptSpec script = one_trial();
+  script.trials = trials;
+  const std::vector<std::uint8_t> both(8, 1), none(8, 0);
+  const std::vector<Series> pilot{{0, 1, 0, 4, both}, {1, 1, 0, 4, both}};
+  Measured measured;
+  measured.kind = Measured::Kind::sums;  // of A in S1 two, of B there and of both in S2 one
+  measured.sums = {{0, 0, 1, 4.0}, {0, 0, 2, 0.0}, {0, 1, 1, 4.0}, {1, 0, 1, 4.0}, {1, 1, 1, 4.0}};
+  const DataShape shape = shape_of(two, measured, pilot);
+  const Profile profile = profile_of(two, script, pilot);
+  const std::vector<Series> runs{{0, 1, 0, 4, both}, {0, 2, 0, 4, none}, {1, 1, 0, 4, both}, {1, 2, 0, 4, none}};
+  for (const auto& s : {statistics_of(two, shape, profile, runs), statistics_of(two, shape, profile, measured)}) {
+    CHECK(s[cell_index(two, 0, 0, CellStatistic::seconds)] == 2.0F);
+    CHECK(s[cell_index(two, 0, 0, CellStatistic::run_variance)] == 8.0F);
+    CHECK(s[cell_index(two, 0, 1, CellStatistic::seconds)] == 4.0F);
+    CHECK(std::isnan(s[cell_index(two, 0, 1, CellStatistic::run_variance)]));
+    CHECK(s[cell_index(two, 1, 0, CellStatistic::seconds)] == 4.0F);
+    CHECK(s[cell_index(two, 1, 1, CellStatistic::seconds)] == 4.0F);
+  }
+}

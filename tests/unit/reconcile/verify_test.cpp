@@ -233,15 +233,24 @@ TEST_CASE("of sums nearly all seats must be better", "[reconcile][six-seats]") {
 
 TEST_CASE("a holdout is a share drawn by the data or names of trials", "[reconcile]") {
   const StudyFrame frame{{"S1", "S2", "S3", "S4", "S5", "S6", "S7", "S8", "S9", "S10"}, {"PIR1"}, {}, 1.0};
-  const std::string digest = sha256("some data"), other = sha256("other data");
-  CHECK(holdout_of("", frame, digest).empty());
-  CHECK(holdout_of("S8,S3,S8", frame, digest) == std::vector<std::size_t>{2, 7});
-  const auto three = holdout_of("0.3", frame, digest);
+  const auto data = [](const std::string& text, std::size_t n_trials) {
+    Measured measured;
+    measured.digest = sha256(text);
+    for (std::size_t trial = 0; trial < n_trials; ++trial) measured.runs.push_back({trial, 1, 0, 1, {1}});
+    return measured;
+  };
+  const Measured some = data("some data", 10), other = data("other data", 10), few = data("some data", 4);
+  CHECK(holdout_of("", frame, some).empty());
+  CHECK(holdout_of("S8,S3,S8", frame, some) == std::vector<std::size_t>{2, 7});
+  const auto three = holdout_of("0.3", frame, some);
   CHECK(three.size() == 3);
   CHECK(std::ranges::is_sorted(three));
-  CHECK(three == holdout_of("0.3", frame, digest));
+  CHECK(three == holdout_of("0.3", frame, some));
   CHECK(three != holdout_of("0.3", frame, other));
-  CHECK_THROWS_WITH(holdout_of("S3,S11", frame, digest), contains("'S11'") && contains("S1"));
-  CHECK_THROWS_WITH(holdout_of("S3", frame, digest), contains("1 would be held out"));
-  CHECK_THROWS_WITH(holdout_of("0.95", frame, digest), contains("two or more left"));
+  CHECK(holdout_of("0.5", frame, few).back() < 4);
+  CHECK_THROWS_WITH(holdout_of("S3,S11", frame, some), contains("'S11'") && contains("S1"));
+  CHECK_THROWS_WITH(holdout_of("S3", frame, some), contains("1 would be held out"));
+  CHECK_THROWS_WITH(holdout_of("0.95", frame, some), contains("two or more left"));
+  CHECK_THROWS_WITH(holdout_of("S3,S8", frame, few), contains("nothing of trial 'S8' was measured"));
+  CHECK_THROWS_WITH(holdout_of("S1,S2,S3", frame, few), contains("two or more left"));
 }

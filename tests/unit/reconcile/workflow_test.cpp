@@ -112,7 +112,7 @@ TEST_CASE("a table goes on where it was interrupted and refuses another study's 
   CHECK(first.rows.size() == 60);
   WorldSource other = lab.source;
   other.nuisance.seat_position_m = 0.05;
-  CHECK_THROWS_WITH(make(other), contains("holds simulated datasets of another"));
+  CHECK_THROWS_WITH(make(other), contains("holds simulated datasets of other inputs"));
 }
 
 TEST_CASE("pilot runs are of worlds that no table has", "[reconcile][three-seats]") {
@@ -383,6 +383,11 @@ TEST_CASE("two effects at once are found one after the other", "[reconcile][thre
     CHECK(candidate.kept);
     CHECK_THAT(candidate.reason, contains("together with the others named. By itself: Dropped"));
   }
+  // What another analysis finds replaces it.
+  Outcome nothing = outcome;
+  nothing.verdict = Verdict::no_disagreement;
+  write_outputs(folder.path(), nothing, measured, short_study(), settings, {"p", "s", "t", "m"});
+  CHECK_FALSE(std::filesystem::exists(folder.path() / "script_patched.yaml"));
 }
 
 TEST_CASE("a name is taken back if the model with it can't have made the data", "[reconcile][three-seats]") {
