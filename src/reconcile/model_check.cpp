@@ -10,6 +10,7 @@
 #include "pirsim/core/random.hpp"
 #include "pirsim/effects/catalogue.hpp"
 #include "pirsim/reconcile/locate.hpp"
+#include "pirsim/reconcile/outcome.hpp"
 #include "pirsim/reconcile/simulated_world.hpp"
 
 namespace pirsim::reconcile {
@@ -18,9 +19,7 @@ namespace {
 constexpr std::uint32_t first_check_world = 1U << 23U;       ///< worlds that no table has seen
 constexpr int datasets_per_world = 4;                        ///< where zones are remembered (assumed)
 constexpr std::array<std::uint32_t, 2> first_looks{20, 60};  ///< worlds (assumed: only time depends on them)
-/// Of the datasets that refuse, so many would be as strange at the level. With two (80 datasets) the strangest of a
-/// hundred columns is noise: Table 1 with seats scattered had p 0.025 from 80 and 0.4 from 200.
-constexpr double n_as_strange = 5.0;
+constexpr double n_as_strange = 5.0;                         ///< datasets, the data among them (assumed)
 
 /// A quarter of the datasets are as strange, five at least: of 20 with p 0.025 once in 10,000 models.
 bool surely_passes(double p, std::size_t n_datasets) {
@@ -135,7 +134,7 @@ std::vector<double> p_with(std::span<const PatchedModel> models, const Laborator
   std::vector<double> p(models.size());
   std::vector<std::size_t> in_doubt(models.size());
   std::iota(in_doubt.begin(), in_doubt.end(), std::size_t{0});
-  const auto n_to_refuse = static_cast<std::uint32_t>(std::ceil(n_as_strange / settings.level));
+  const auto n_to_refuse = static_cast<std::uint32_t>(std::ceil(worlds_to_refuse / settings.level));
   for (const std::uint32_t n_worlds : {first_looks[0], first_looks[1], std::max(n_to_refuse, first_looks[1])}) {
     if (in_doubt.empty()) break;
     if (on_look) on_look(in_doubt.size(), n_worlds);

@@ -228,16 +228,18 @@ void count_verified(const SelftestResult& result, std::vector<Rate>& rates) {
 }
 
 void count_put_in(const SelftestResult& result, std::vector<Rate>& rates) {
-  Counter right("put in, the right name: the model passes"),
-      neighbour("put in, the name of an effect that the catalogue lacks: the model passes"),
-      alien("put in, the name of an alien: the model passes");
-  for (const PlantedCase& c : result.cases) {
-    if (!c.put_in) continue;
-    Counter& counter = c.kind == CaseKind::left_out ? neighbour : c.kind == CaseKind::alien ? alien : right;
-    counter.count(c.put_in->p > c.put_in->level);
-  }
-  for (const Counter& counter : {right, neighbour, alien}) {
-    if (counter.rate().of > 0) rates.push_back(counter.rate());
+  const std::array<std::pair<CaseKind, std::string>, 3> kinds{
+      {{CaseKind::one, "the right name"},
+       {CaseKind::left_out, "the name of an effect that the catalogue lacks"},
+       {CaseKind::alien, "the name of an alien"}}};
+  for (const auto& [kind, whose] : kinds) {
+    Counter passes("put in, " + whose + ": the model passes"), refused("put in, " + whose + ": it is refused outright");
+    for (const PlantedCase& c : result.cases) {
+      if (c.kind != kind || !c.put_in) continue;
+      passes.count(c.put_in->passes());
+      refused.count(c.put_in->is_refused_outright());
+    }
+    if (passes.rate().of > 0) rates.insert(rates.end(), {passes.rate(), refused.rate()});
   }
 }
 

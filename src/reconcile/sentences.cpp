@@ -156,7 +156,7 @@ std::string verdict_sentence(const Outcome& outcome, double alpha) {
 
 std::string what_a_look_showed(const Look& look) {
   std::string text = "With " + joined(look.put_in, "and") + " put in, the model " +
-                     (look.p > look.level ? "can have made these data" : "still differs from the data") +
+                     (look.passes() ? "can have made these data" : "still differs from the data") +
                      " (p = " + short_number(look.p) + ").";
   if (look.one_of.size() == 1) text += " What is missing beside it may be " + look.one_of.front() + ".";
   if (look.one_of.size() > 1)
