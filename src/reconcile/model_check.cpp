@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 #include "pirsim/core/parallel.hpp"
 #include "pirsim/core/random.hpp"
@@ -17,7 +16,6 @@ namespace pirsim::reconcile {
 namespace {
 
 constexpr std::uint32_t first_check_world = 1U << 23U;       ///< worlds that no table has seen
-constexpr int datasets_per_world = 4;                        ///< where zones are remembered (assumed)
 constexpr std::array<std::uint32_t, 2> first_looks{20, 60};  ///< worlds (assumed: only time depends on them)
 constexpr double n_as_strange = 5.0;                         ///< datasets, the data among them (assumed)
 
@@ -29,17 +27,6 @@ bool surely_passes(double p, std::size_t n_datasets) {
 
 /// With fewer datasets no data are strange enough.
 bool can_refuse(std::size_t n_datasets, double level) { return static_cast<double>(n_datasets + 1) * level >= 1.0; }
-
-/// The i-th n runs of every trial, numbered from 1.
-std::vector<Series> part_of(const std::vector<Series>& runs, int i, int n) {
-  std::vector<Series> part;
-  for (const Series& run : runs) {
-    if (run.replicate <= i * n || run.replicate > (i + 1) * n) continue;
-    part.push_back(run);
-    part.back().replicate -= i * n;
-  }
-  return part;
-}
 
 /// As they are in one world.
 std::vector<EffectSpec> drawn(std::span<const FittedEffect> effects, const Laboratory& lab, std::uint64_t seed,
@@ -58,13 +45,8 @@ std::vector<EffectSpec> drawn(std::span<const FittedEffect> effects, const Labor
   return all;
 }
 
-int datasets_a_world(std::span<const FittedEffect> effects) {
-  std::vector<EffectSpec> specs;
-  for (const FittedEffect& fitted : effects) specs.push_back(fitted.effect);
-  return acts_on_remembered_zones(specs) ? datasets_per_world : 1;
-}
-
-/// Simulates datasets of some models, more and more.
+/// Simulates datasets of some models, more and more. Of each model one in a world: those of one world share the room,
+/// so that data of another room would be stranger than any of them.
 class Ensembles {
  public:
   Ensembles(std::span<const PatchedModel> models, const Laboratory& lab, const ModelCheckSettings& settings)
@@ -72,14 +54,14 @@ class Ensembles {
 
   /// Simulates those models, by index, in all worlds up to this one. Call with fewer models and more worlds each time.
   void extend(std::span<const std::size_t> which, std::uint32_t n_worlds) {
-    ordered_parallel<std::vector<Rows>>(
+    ordered_parallel<Rows>(
         n_worlds - n_worlds_, settings_.threads,
         [&](std::size_t i) {
           return datasets_in(first_check_world + n_worlds_ + static_cast<std::uint32_t>(i), which);
         },
-        [&](const std::vector<Rows>& of_models) {
+        [&](const Rows& rows) {
           for (std::size_t k = 0; k < which.size(); ++k) {
-            for (const auto& row : of_models[k]) datasets_[which[k]].append_row(std::span<const float>(row));
+            if (!rows[k].empty()) datasets_[which[k]].append_row(std::span<const float>(rows[k]));
           }
         });
     n_worlds_ = n_worlds;
@@ -90,29 +72,16 @@ class Ensembles {
   void forget(std::size_t model) { datasets_[model] = {}; }
 
  private:
-  using Rows = std::vector<std::vector<float>>;
+  using Rows = std::vector<std::vector<float>>;  ///< one a model; empty: people can't get about
 
-  [[nodiscard]] std::vector<Rows> datasets_in(std::uint32_t index, std::span<const std::size_t> which) const {
-    std::vector<Rows> all(which.size());
-    for (const int per_world : {1, datasets_per_world}) {
-      std::optional<SimulatedWorld> world;
-      for (std::size_t k = 0; k < which.size(); ++k) {
-        const std::span<const FittedEffect> put_in = models_[which[k]].put_in;
-        if (datasets_a_world(put_in) != per_world) continue;
-        if (!world) world.emplace(lab_.source, lab_.frame, index, lab_.shape.n_replicates * per_world);
-        all[k] = datasets_of(put_in, *world, index, per_world);
-      }
-    }
-    return all;
-  }
-
-  [[nodiscard]] Rows datasets_of(std::span<const FittedEffect> put_in, const SimulatedWorld& world, std::uint32_t index,
-                                 int per_world) const {
+  [[nodiscard]] Rows datasets_in(std::uint32_t index, std::span<const std::size_t> which) const {
     const int n = lab_.shape.n_replicates;
-    const auto data = world.with_effects(drawn(put_in, lab_, settings_.seed, index), 0, n * per_world);
+    const SimulatedWorld world(lab_.source, lab_.frame, index, n);
     Rows rows;
-    for (int d = 0; data && d < per_world; ++d)
-      rows.push_back(statistics_of(lab_.frame, lab_.shape, lab_.table.profile, part_of(*data, d, n)));
+    for (const std::size_t k : which) {
+      const auto data = world.with_effects(drawn(models_[k].put_in, lab_, settings_.seed, index), 0, n);
+      rows.push_back(data ? statistics_of(lab_.frame, lab_.shape, lab_.table.profile, *data) : std::vector<float>());
+    }
     return rows;
   }
 

@@ -29,8 +29,8 @@ struct PatchedModel {
 /// p of each model's global test, its datasets simulated in worlds that no table has seen. What was fitted isn't known
 /// for sure: in every world the parameters are other ones of those that are equally likely. Datasets are simulated only
 /// until they surely don't refuse the model, and all of them if they do, so that looking more than once refuses no more
-/// models than the level allows. 0 if people can hardly get about in it. A world is traced once for all models that act
-/// on remembered zones, and once for all others; what is said of one doesn't depend on the rest.
+/// models than the level allows. 0 if people can hardly get about in it. A world is traced once for all models; what
+/// is said of one doesn't depend on the others.
 /// map: of the plain model, with the trials to be looked at; on_look is told how many models are still simulated, and
 /// in how many worlds.
 [[nodiscard]] std::vector<double> p_with(std::span<const PatchedModel> models, const Laboratory& lab,

@@ -26,9 +26,8 @@ struct Candidate {
   std::string reason;  ///< why it was kept or dropped, as a sentence
 };
 
-/// Worlds in which a model with effects put in is simulated before it is refused, times the level. With two (80
-/// datasets) the strangest of a hundred columns is noise: Table 1 with seats scattered had p 0.025 from 80 and 0.4 from
-/// 200.
+/// Worlds in which a model with effects put in is simulated before it is refused, times the level (assumed: fewer would
+/// refuse as seldom where nothing is wrong, and not as surely where something is).
 inline constexpr double worlds_to_refuse = 5.0;
 
 /// A look at the measured data with some effects put into the model.

@@ -68,6 +68,24 @@ TEST_CASE("a model passes with what made the data put in, and no other", "[recon
   CHECK(p_of({right}, planted(100, {})) <= level);
 }
 
+TEST_CASE("right models fail as often as the level says, and oftener if their rooms are all alike", "[reconcile]") {
+  constexpr std::uint32_t n = 40;
+  const FittedEffect right = false_triggers(0.02, {});
+  std::vector<std::vector<float>> observed;
+  for (std::uint32_t i = 0; i < n; ++i) observed.push_back(planted(1000 + i, {right.effect}));
+  std::vector<PatchedModel> models;
+  for (const std::vector<float>& one : observed) models.push_back({std::span(&right, 1), one});
+  const auto n_refused = [&](const Laboratory& lab) {
+    return std::ranges::count_if(p_with(models, lab, lab.map(all_trials(lab.frame)), {level, 1, 0}),
+                                 [](double p) { return p <= level; });
+  };
+  // 4 expected, standard error 1.9: more than 9 once in 200 seeds.
+  CHECK(n_refused(laboratory()) <= 9);
+  Laboratory alike = laboratory();
+  alike.source.nuisance = {0.0, 0.0, 0.0, 0.0, 0.0};
+  CHECK(n_refused(alike) > 9);
+}
+
 TEST_CASE("what a fit doesn't know for sure widens what the model can have made", "[reconcile]") {
   const std::vector<float> observed = planted(3, {false_triggers(0.1, {}).effect});
   CHECK(p_of({false_triggers(0.01, {})}, observed) <= level);
