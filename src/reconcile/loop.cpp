@@ -123,13 +123,13 @@ const Loop::Step* Loop::look_for_more(double level) {
   }
 }
 
-/// One effect that was named stands, unless it is the only one that isn't ruled out, the model with it is refused
-/// outright, and nothing known explains the rest; that two or more together made the data is said if the first of them
+/// One effect that was named stands, unless it is the only one that isn't ruled out, the model with it can't have made
+/// the data, and nothing known explains the rest; that two or more together made the data is said if the first of them
 /// was named by itself, or if the model with all of them passes.
 void Loop::conclude() {
   const bool only_one = std::ranges::count(outcome_.candidates, true, &Candidate::kept) == 1;
-  if (outcome_.verdict == Verdict::named && put_in_.size() == 1 && only_one &&
-      outcome_.looks.back().is_refused_outright() && rest_ == Verdict::none_in_catalogue) {
+  if (outcome_.verdict == Verdict::named && put_in_.size() == 1 && only_one && !passes_ &&
+      rest_ == Verdict::none_in_catalogue) {
     take_back();
     return;
   }
@@ -160,7 +160,7 @@ void Loop::take_back() {
   outcome_.fits.clear();
   put_in_.clear();
   outcome_.sentence = sentence_of_refused(outcome_, settings_.alpha);
-  outcome_.trail.push_back("the name is taken back: the model with it is refused outright");
+  outcome_.trail.push_back("the name is taken back: the model with it can't have made the data");
 }
 
 void Loop::verify_effects() {

@@ -9,7 +9,6 @@
 #include "pirsim/core/random.hpp"
 #include "pirsim/effects/catalogue.hpp"
 #include "pirsim/reconcile/locate.hpp"
-#include "pirsim/reconcile/outcome.hpp"
 #include "pirsim/reconcile/simulated_world.hpp"
 
 namespace pirsim::reconcile {
@@ -18,6 +17,9 @@ namespace {
 constexpr std::uint32_t first_check_world = 1U << 23U;       ///< worlds that no table has seen
 constexpr std::array<std::uint32_t, 2> first_looks{20, 60};  ///< worlds (assumed: only time depends on them)
 constexpr double n_as_strange = 5.0;                         ///< datasets, the data among them (assumed)
+/// Worlds in which a model is simulated before it is refused, times the level (assumed: fewer would refuse as seldom
+/// where nothing is wrong, and not as surely where something is).
+constexpr double worlds_to_refuse = 5.0;
 
 /// A quarter of the datasets are as strange, five at least: of 20 with p 0.025 once in 10,000 models.
 bool surely_passes(double p, std::size_t n_datasets) {

@@ -26,10 +26,6 @@ struct Candidate {
   std::string reason;  ///< why it was kept or dropped, as a sentence
 };
 
-/// Worlds in which a model with effects put in is simulated before it is refused, times the level (assumed: fewer would
-/// refuse as seldom where nothing is wrong, and not as surely where something is).
-inline constexpr double worlds_to_refuse = 5.0;
-
 /// A look at the measured data with some effects put into the model.
 struct Look {
   std::vector<std::string> put_in;
@@ -38,10 +34,6 @@ struct Look {
   std::vector<std::string> one_of = {};  ///< effects, one of which may be missing beside these and can't be told
 
   [[nodiscard]] bool passes() const noexcept { return p > level; }
-  /// Hardly a dataset in all its worlds is as strange as the data. Of 80 right names that were put in, 10 didn't pass,
-  /// since what was fitted is drawn number by number, and 2 were refused outright; of 80 names of effects that the
-  /// catalogue lacks 26 and 16, of 30 aliens' 30 and 27 (docs/validation.md).
-  [[nodiscard]] bool is_refused_outright() const noexcept { return p * worlds_to_refuse <= level; }
 };
 
 struct Outcome {
