@@ -31,8 +31,7 @@ struct Residuals {
 struct ResidualSettings {
   double alpha = 0.05;
   unsigned threads = 0;
-  std::uint32_t n_simulated =
-      100;  ///< datasets that the scores are compared with; more if these couldn't refuse at alpha
+  std::uint32_t n_simulated = 100;  ///< datasets that scores are compared with; more if alpha needs them
   std::size_t most_drivers = 3;
 };
 
