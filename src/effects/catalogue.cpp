@@ -58,23 +58,39 @@ std::vector<std::string> twins_of(std::string_view name) {
   return twins;
 }
 
+bool applies(const ParameterInfo& parameter, const EffectSpec& effect) {
+  const auto& [choice, word] = parameter.only_if;
+  if (choice.empty()) return true;
+  if (const auto made = effect.choices.find(choice); made != effect.choices.end()) return made->second == word;
+  return std::ranges::find(find(effect.name).info.choices, choice, &ChoiceInfo::name)->words.front() == word;
+}
+
+const ParameterInfo& strength_parameter(const EffectSpec& effect) {
+  return *std::ranges::find_if(find(effect.name).info.parameters, [&](const ParameterInfo& parameter) {
+    return parameter.role == Role::strength && applies(parameter, effect);
+  });
+}
+
 bool is_off(const EffectSpec& effect) {
   const EffectSpec complete = resolved(find(effect.name), effect);
   return std::ranges::all_of(find(effect.name).info.parameters, [&](const ParameterInfo& parameter) {
-    return parameter.role == Role::detail || complete.parameters.at(parameter.name) == parameter.off;
+    return parameter.role == Role::detail || !applies(parameter, effect) ||
+           complete.parameters.at(parameter.name) == parameter.off;
   });
 }
 
 EffectSpec resolved(const Effect& effect, EffectSpec spec) {
   for (const ParameterInfo& parameter : effect.info.parameters) {
-    spec.parameters.try_emplace(parameter.name, parameter.typical);
+    if (applies(parameter, spec)) spec.parameters.try_emplace(parameter.name, parameter.typical);
   }
   return spec;
 }
 
 EffectSpec off(const Effect& effect) {
   EffectSpec spec{effect.info.name, {}, {}, {}};
-  for (const ParameterInfo& parameter : effect.info.parameters) spec.parameters[parameter.name] = parameter.off;
+  for (const ParameterInfo& parameter : effect.info.parameters) {
+    if (applies(parameter, spec)) spec.parameters[parameter.name] = parameter.off;
+  }
   return spec;
 }
 
@@ -119,6 +135,9 @@ EffectSpec draw_from_prior(const Effect& effect, const SceneSpec& scene, const S
     if (choice.kind == ChoiceKind::sensor && stream.index(2) == 1) spec.choices[choice.name] = pick(scene.sensors).id;
   }
   if (effect.draw != nullptr) effect.draw(spec, scene, script, stream);
+  for (const ParameterInfo& parameter : effect.info.parameters) {
+    if (!applies(parameter, spec)) spec.parameters.erase(parameter.name);
+  }
   return spec;
 }
 

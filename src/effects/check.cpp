@@ -36,6 +36,9 @@ void check_parameters(const EffectSpec& spec, const EffectInfo& info, Diagnostic
     } else if (!(value >= known->least && value <= known->most)) {
       diagnostics.error(spec.where, info.name + "." + name + ": expected a number from " + text(known->least) + " to " +
                                         text(known->most) + ", not " + text(value));
+    } else if (!applies(*known, spec)) {
+      diagnostics.error(spec.where, info.name + "." + name + " means nothing without " + known->only_if.choice + ": " +
+                                        known->only_if.word);
     }
   }
 }

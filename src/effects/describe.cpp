@@ -27,6 +27,12 @@ std::string off_of(const ParameterInfo& parameter) {
   return parameter.role == Role::detail ? "-" : with_unit(parameter.off, parameter.unit);
 }
 
+/// Of the range, and with which choice the parameter means anything.
+std::string source_of(const ParameterInfo& parameter) {
+  const auto& [choice, word] = parameter.only_if;
+  return choice.empty() ? parameter.source : parameter.source + "; only with " + choice + ": " + word;
+}
+
 std::string values_of(const ChoiceInfo& choice) {
   if (choice.kind == ChoiceKind::sensor) return "a sensor's name";
   if (choice.kind == ChoiceKind::mesh) return "a mesh's name";
@@ -38,7 +44,7 @@ std::string in_script(const Effect& effect) {
   out << "- " << effect.info.name << ": {";
   std::string separator;
   for (const ParameterInfo& parameter : effect.info.parameters) {
-    if (parameter.role == Role::detail) continue;
+    if (parameter.role == Role::detail || !applies(parameter, {effect.info.name, {}, {}, {}})) continue;
     out << separator << parameter.name << ": " << parameter.typical;
     separator = ", ";
   }
@@ -61,7 +67,7 @@ void add_markdown(std::ostream& out, const Effect& effect) {
   out << "| parameter | off | typical | prior | source |\n|---|---|---|---|---|\n";
   for (const ParameterInfo& parameter : info.parameters) {
     out << "| `" << parameter.name << "` | " << off_of(parameter) << " | "
-        << with_unit(parameter.typical, parameter.unit) << " | " << range_of(parameter) << " | " << parameter.source
+        << with_unit(parameter.typical, parameter.unit) << " | " << range_of(parameter) << " | " << source_of(parameter)
         << " |\n";
   }
   for (const ChoiceInfo& choice : info.choices) {
@@ -96,7 +102,7 @@ std::string to_text(const Effect& effect) {
   for (const ParameterInfo& parameter : info.parameters) {
     out << "  " << std::left << std::setw(16) << parameter.name << "off " << std::setw(8) << off_of(parameter)
         << "typical " << std::setw(10) << with_unit(parameter.typical, parameter.unit) << "prior "
-        << range_of(parameter) << "\n                  source: " << parameter.source << '\n';
+        << range_of(parameter) << "\n                  source: " << source_of(parameter) << '\n';
   }
   for (const ChoiceInfo& choice : info.choices) {
     out << "  " << std::left << std::setw(16) << choice.name << values_of(choice) << " (else: " << choice.otherwise

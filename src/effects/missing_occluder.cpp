@@ -30,7 +30,8 @@ bool is_box(const EffectSpec& effect) {
 }
 
 void alter(SceneSpec& scene, ScriptSpec&, const EffectSpec& effect) {
-  const double half_height = 0.5 * effect.parameters.at("height_m"), half_width = 0.5 * effect.parameters.at("width_m");
+  const double half_height = 0.5 * effect.parameters.at(is_box(effect) ? "box_height_m" : "height_m");
+  const double half_width = 0.5 * effect.parameters.at("width_m");
   if (is_box(effect)) {
     const Frame middle{Quat(1, 0, 0, 0), Vec3(effect.parameters.at("x_m"), scene.floor.height_m() + half_height,
                                               effect.parameters.at("z_m"))};
@@ -44,8 +45,7 @@ void alter(SceneSpec& scene, ScriptSpec&, const EffectSpec& effect) {
 }
 
 void draw(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec&, Stream& stream) {
-  const double width = effect.parameters.at("width_m"), u = stream.uniform();
-  const std::vector<Vec2> places = free_places(scene, 0.5 * width);
+  const std::vector<Vec2> places = free_places(scene, 0.5 * effect.parameters.at("width_m"));
   if (!is_box(effect) || places.empty()) {
     effect.choices["what"] = "chair_backs";
     return;
@@ -53,7 +53,6 @@ void draw(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec&, Stream&
   const Vec2 place = places[stream.index(static_cast<std::uint32_t>(places.size()))];
   effect.parameters["x_m"] = place.x;
   effect.parameters["z_m"] = place.y;
-  effect.parameters["height_m"] = 1.0 + u;  // assumed: a plant, a screen on a stand, a pillar's lower part
 }
 
 void settle(EffectSpec& effect, const SceneSpec& scene) {
@@ -82,7 +81,19 @@ const Effect& missing_occluder() {
                                .high = 0.7,
                                .least = 0.0,
                                .most = 5.0,
-                               .source = "assumed: of a chair's back above the seat; of a box above the floor (1-2)"},
+                               .source = "assumed: of a chair's back above the seat",
+                               .only_if = {"what", "chair_backs"}},
+                              {.name = "box_height_m",
+                               .unit = "m",
+                               .off = 0.0,
+                               .typical = 1.5,
+                               .low = 1.0,
+                               .high = 2.0,
+                               .least = 0.0,
+                               .most = 5.0,
+                               .source =
+                                   "assumed: above the floor; a plant, a screen on a stand, a pillar's lower part",
+                               .only_if = {"what", "box"}},
                               {.name = "width_m",
                                .unit = "m",
                                .role = Role::detail,
@@ -102,7 +113,8 @@ const Effect& missing_occluder() {
                                .high = 50.0,
                                .least = -1e4,
                                .most = 1e4,
-                               .source = "assumed: of a box, a free place"},
+                               .source = "assumed: a free place",
+                               .only_if = {"what", "box"}},
                               {.name = "z_m",
                                .unit = "m",
                                .role = Role::detail,
@@ -112,7 +124,8 @@ const Effect& missing_occluder() {
                                .high = 50.0,
                                .least = -1e4,
                                .most = 1e4,
-                               .source = "assumed: of a box, a free place"}},
+                               .source = "assumed: a free place",
+                               .only_if = {"what", "box"}}},
                .choices = {{"what", ChoiceKind::word, {"chair_backs", "box"}, "chair backs"}},
                .reach = Reach::geometry},
       .alter = alter,

@@ -12,11 +12,13 @@ namespace {
 
 constexpr double clear_m = 0.4;
 
-Vec2 place_of(const EffectSpec& effect, const SceneSpec& scene) {
+bool is_given(const EffectSpec& effect) {
   const auto how = effect.choices.find("place");
-  if (how != effect.choices.end() && how->second == "given") {
-    return {effect.parameters.at("x_m"), effect.parameters.at("z_m")};
-  }
+  return how != effect.choices.end() && how->second == "given";
+}
+
+Vec2 place_of(const EffectSpec& effect, const SceneSpec& scene) {
+  if (is_given(effect)) return {effect.parameters.at("x_m"), effect.parameters.at("z_m")};
   const std::vector<Vec2> places = free_places(scene, clear_m);
   if (!places.empty()) return places.front();
   throw Error(ErrorCode::infeasible, effect.where, "second_person: no free place in " + scene.name);
@@ -67,7 +69,6 @@ void alter(SceneSpec& scene, ScriptSpec& script, const EffectSpec& effect) {
 void draw(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec&, Stream& stream) {
   const std::vector<Vec2> places = free_places(scene, clear_m);
   effect.choices["place"] = places.empty() ? "free" : "given";
-  effect.parameters["path_m"] = 0.0;
   if (places.empty()) return;
   const Vec2 place = places[stream.index(static_cast<std::uint32_t>(places.size()))];
   effect.parameters["x_m"] = place.x;
@@ -75,13 +76,14 @@ void draw(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec&, Stream&
 }
 
 void settle(EffectSpec& effect, const SceneSpec& scene) {
+  if (!is_given(effect)) return;
   const Vec2 place = nearest_free(scene, clear_m, place_of(effect, scene));
   effect.parameters["x_m"] = place.x;
   effect.parameters["z_m"] = place.y;
 }
 
 ParameterInfo detail(std::string name, std::string unit, double typical, double low, double high, double least,
-                     double most, std::string source) {
+                     double most, std::string source, Condition only_if = {}) {
   return {.name = std::move(name),
           .unit = std::move(unit),
           .role = Role::detail,
@@ -91,28 +93,31 @@ ParameterInfo detail(std::string name, std::string unit, double typical, double 
           .high = high,
           .least = least,
           .most = most,
-          .source = std::move(source)};
+          .source = std::move(source),
+          .only_if = std::move(only_if)};
 }
 
 }  // namespace
 
 const Effect& second_person() {
   static const Effect effect{
-      .info = {.name = "second_person",
-               .family = Family::motion,
-               .stage = "body",
-               .summary = "Somebody else is in the room for all of every trial: stands and turns, or walks to and fro.",
-               .fingerprint = "sensors are active together that the scripted person can't reach at once",
-               .confused_with = {"false_triggers", "trigger_bursts"},
-               .parameters = {whether("present", "assumed"),
-                              detail("x_m", "m", 0.0, -50.0, 50.0, -1e4, 1e4, "assumed: a free place, if place: given"),
-                              detail("z_m", "m", 0.0, -50.0, 50.0, -1e4, 1e4, "assumed: a free place, if place: given"),
-                              detail("heading_deg", "deg", 0.0, -180.0, 180.0, -360.0, 360.0, "any"),
-                              detail("path_m", "m", 0.0, 0.0, 3.0, 0.0, 100.0,
-                                     "assumed: how far to walk that way and back; 0: turns on the spot"),
-                              detail("every_s", "s", 10.0, 5.0, 30.0, 0.5, 3600.0, "assumed: between two moves")},
-               .choices = {{"place", ChoiceKind::word, {"free", "given"}, "the free place farthest from all seats"}},
-               .reach = Reach::geometry},
+      .info =
+          {.name = "second_person",
+           .family = Family::motion,
+           .stage = "body",
+           .summary = "Somebody else is in the room for all of every trial: stands and turns, or walks to and fro.",
+           .fingerprint = "sensors are active together that the scripted person can't reach at once",
+           .confused_with = {"false_triggers", "trigger_bursts"},
+           .parameters = {whether("present", "assumed"),
+                          detail("x_m", "m", 0.0, -50.0, 50.0, -1e4, 1e4, "assumed: a free place", {"place", "given"}),
+                          detail("z_m", "m", 0.0, -50.0, 50.0, -1e4, 1e4, "assumed: a free place", {"place", "given"}),
+                          detail("heading_deg", "deg", 0.0, -180.0, 180.0, -360.0, 360.0, "any"),
+                          detail("path_m", "m", 0.0, 0.0, 0.0, 0.0, 100.0,
+                                 "assumed: how far to walk that way and back; 0: turns on the spot. Not drawn: "
+                                 "whether there is room to walk depends on the place"),
+                          detail("every_s", "s", 10.0, 5.0, 30.0, 0.5, 3600.0, "assumed: between two moves")},
+           .choices = {{"place", ChoiceKind::word, {"free", "given"}, "the free place farthest from all seats"}},
+           .reach = Reach::geometry},
       .alter = alter,
       .draw = draw,
       .settle = settle};

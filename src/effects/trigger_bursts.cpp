@@ -1,5 +1,6 @@
 // Triggers that come back: a ventilation that switches on, sun through a blind.
 #include <algorithm>
+#include <limits>
 
 #include "effects/entries.hpp"
 #include "effects/kit.hpp"
@@ -13,16 +14,17 @@ struct Burst {
   double mean_per_tick = 0.0;  ///< triggers within a burst
 };
 
-/// Bursts begin a period apart, at a phase that is the same for all sensors of a run and drawn for each run.
+/// Bursts begin a period apart, at a phase that is the same for all sensors of a run and drawn for each run: one may be
+/// under way when it begins.
 class TriggerBursts final : public CloneableTriggerStage<TriggerBursts> {
  public:
   TriggerBursts(std::vector<std::uint32_t> sensors, const Burst& burst) : sensors_(std::move(sensors)), burst_(burst) {}
 
   void begin_run(std::uint64_t seed, std::uint32_t run) override {
     constexpr std::uint32_t everybody = 0xFFFFFFFF;
-    begin_ = Stream({seed, run, everybody, Purpose::burst}).uniform() * burst_.period_ticks;
+    begin_ = Stream({seed, run, everybody, Purpose::burst}).uniform() * burst_.period_ticks - burst_.period_ticks;
     streams_ = streams_of(sensors_, seed, run, Purpose::burst);
-    next_.assign(sensors_.size(), 0);
+    next_.assign(sensors_.size(), std::numeric_limits<std::int64_t>::min());
   }
 
   void tick(std::int64_t tick, std::span<std::uint8_t> triggers) noexcept override {
@@ -31,8 +33,7 @@ class TriggerBursts final : public CloneableTriggerStage<TriggerBursts> {
     if (now < begin_) return;
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
       const auto began = static_cast<std::int64_t>(begin_);
-      if (next_[i] <= began) next_[i] = began + ticks_to_event(streams_[i], burst_.mean_per_tick);
-      next_[i] = std::max(next_[i], tick);
+      if (next_[i] <= began) next_[i] = tick - 1 + ticks_to_event(streams_[i], burst_.mean_per_tick);
       if (tick != next_[i]) continue;
       triggers[sensors_[i]] = 1;
       next_[i] += ticks_to_event(streams_[i], burst_.mean_per_tick);

@@ -24,13 +24,18 @@ std::vector<const EffectSpec*> drawn_in(const ReferenceTable& table, std::span<c
   return drawn;
 }
 
+/// Of one that doesn't apply: what is usual.
+double flat_value(const ParameterInfo& info, const EffectSpec& drawn) {
+  const auto value = drawn.parameters.find(info.name);
+  return to_flat(info, value == drawn.parameters.end() ? info.typical : value->second);
+}
+
 /// (n x n_parameters) flat
 stats::Matrix<double> parameters_of(const std::vector<const EffectSpec*>& drawn,
                                     const std::vector<const ParameterInfo*>& infos) {
   stats::Matrix<double> parameters(drawn.size(), infos.size());
   for (std::size_t i = 0; i < drawn.size(); ++i) {
-    for (std::size_t p = 0; p < infos.size(); ++p)
-      parameters(i, p) = to_flat(*infos[p], drawn[i]->parameters.at(infos[p]->name));
+    for (std::size_t p = 0; p < infos.size(); ++p) parameters(i, p) = flat_value(*infos[p], *drawn[i]);
   }
   return parameters;
 }
@@ -62,7 +67,8 @@ EntryGuess::EntryGuess(const ReferenceTable& table, std::size_t entry, const Ent
     }
   }
   from_all_ = stats::ParameterGuess::fit(features, targets);
-  parameters_ = parameters_of(drawn_in(table, held_back.rows), infos_);
+  held_back_ = drawn_in(table, held_back.rows);
+  parameters_ = parameters_of(held_back_, infos_);
   for (std::size_t i = 0; i < held_back.rows.size(); ++i)
     guesses_.append_row(std::span<const double>(of(held_back.features.row(i))));
 }
@@ -71,6 +77,18 @@ std::vector<stats::Interval> EntryGuess::bounds() const {
   std::vector<stats::Interval> bounds;
   for (const ParameterInfo* info : infos_) bounds.push_back({to_flat(*info, info->low), to_flat(*info, info->high)});
   return bounds;
+}
+
+std::vector<std::size_t> EntryGuess::rows_like(const EffectSpec& kind) const {
+  const auto is_like = [&](const EffectSpec* drawn) {
+    return std::ranges::all_of(infos_, [&](auto* info) { return applies(*info, *drawn) == applies(*info, kind); });
+  };
+  std::vector<std::size_t> rows, all;
+  for (std::size_t row = 0; row < held_back_.size(); ++row) {
+    all.push_back(row);
+    if (is_like(held_back_[row])) rows.push_back(row);
+  }
+  return rows.size() < fewest_own ? all : rows;
 }
 
 const EffectSpec& EntryGuess::kind_of(std::span<const float> features) const {

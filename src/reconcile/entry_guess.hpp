@@ -35,6 +35,8 @@ class EntryGuess {
   [[nodiscard]] std::vector<stats::Interval> bounds() const;
   /// As a training dataset of the likeliest kind was drawn.
   [[nodiscard]] const EffectSpec& kind_of(std::span<const float> features) const;
+  /// Held-back datasets in which the same parameters apply, ascending; all, if these are too few.
+  [[nodiscard]] std::vector<std::size_t> rows_like(const EffectSpec& kind) const;
   /// (n_guesses) of a dataset's features.
   [[nodiscard]] std::vector<double> of(std::span<const float> features) const;
   /// (n x n_parameters) of the held-back datasets.
@@ -50,7 +52,8 @@ class EntryGuess {
   };
 
   std::vector<const effects::ParameterInfo*> infos_;
-  std::vector<const EffectSpec*> drawn_;  ///< (n_training)
+  std::vector<const EffectSpec*> drawn_;      ///< (n_training)
+  std::vector<const EffectSpec*> held_back_;  ///< (n)
   KindFinder finder_;
   std::map<Choices, Alike> alike_;
   stats::ParameterGuess from_all_;  ///< (n_choices x n_parameters) each with the others' strength taken for none

@@ -19,23 +19,21 @@ constexpr double accepted_share = 0.3;
 constexpr std::size_t fewest_accepted = 40;    ///< or all, in a small table
 constexpr std::size_t fewest_neighbours = 80;  ///< whose intervals are tried; or all
 
-/// The posterior at a guess, from the held-back datasets but one (or all, if `without` is none of them).
-stats::AbcPosterior posterior_of(const EntryGuess& entry, std::span<const double> guess, std::size_t without) {
-  std::vector<std::size_t> rows;
-  for (std::size_t row = 0; row < entry.guesses().rows(); ++row) {
-    if (row != without) rows.push_back(row);
-  }
+/// The posterior at a guess, from these held-back datasets.
+stats::AbcPosterior posterior_of(const EntryGuess& entry, std::span<const double> guess,
+                                 const std::vector<std::size_t>& rows) {
   const auto n = static_cast<double>(rows.size());
   const double share = std::clamp(static_cast<double>(fewest_accepted) / n, accepted_share, 1.0);
   return stats::abc_posterior(entry.parameters().select_rows(rows), entry.guesses().select_rows(rows), guess,
                               {share, entry.bounds()});
 }
 
-/// Held-back datasets whose guesses lie nearest to the measured one, by the guesses' own scatter.
-std::vector<std::size_t> neighbours_of(const EntryGuess& entry, std::span<const double> guess) {
-  const stats::Matrix<double>& guesses = entry.guesses();
-  std::vector<std::pair<double, std::size_t>> near(guesses.rows());
-  for (std::size_t i = 0; i < near.size(); ++i) near[i].second = i;
+/// Those of these datasets whose guesses lie nearest to the measured one, by the guesses' own scatter.
+std::vector<std::size_t> nearest_of(const EntryGuess& entry, std::span<const double> guess,
+                                    const std::vector<std::size_t>& rows) {
+  const stats::Matrix<double> guesses = entry.guesses().select_rows(rows);
+  std::vector<std::pair<double, std::size_t>> near(rows.size());
+  for (std::size_t i = 0; i < near.size(); ++i) near[i].second = rows[i];
   for (std::size_t p = 0; p < guess.size(); ++p) {
     std::vector<double> values;
     for (std::size_t i = 0; i < guesses.rows(); ++i) values.push_back(guesses(i, p));
@@ -44,8 +42,13 @@ std::vector<std::size_t> neighbours_of(const EntryGuess& entry, std::span<const 
   }
   std::ranges::sort(near);
   near.resize(std::min(near.size(), std::max(fewest_neighbours, near.size() / 4)));
-  std::vector<std::size_t> rows;
-  for (const auto& [distance, row] : near) rows.push_back(row);
+  std::vector<std::size_t> nearest;
+  for (const auto& [distance, row] : near) nearest.push_back(row);
+  return nearest;
+}
+
+std::vector<std::size_t> without(std::vector<std::size_t> rows, std::size_t row) {
+  std::erase(rows, row);
   return rows;
 }
 
@@ -57,13 +60,14 @@ double reach(const stats::AbcPosterior& posterior, std::size_t parameter, double
   return std::abs(truth - median) / std::max(half, 1e-12);
 }
 
-/// (n_parameters) By how much intervals must be stretched about their medians so that of held-back datasets near the
+/// (n_parameters) By how much intervals must be stretched about their medians so that of these datasets near the
 /// measured one `confidence` lie in theirs: a conformal interval, the posterior being the measure of strangeness.
-std::vector<double> widening_of(const EntryGuess& entry, std::span<const double> guess, double confidence) {
+std::vector<double> widening_of(const EntryGuess& entry, std::span<const double> guess,
+                                const std::vector<std::size_t>& rows, double confidence) {
   const std::size_t n = entry.infos().size();
   std::vector<std::vector<double>> reaches(n);
-  for (const std::size_t row : neighbours_of(entry, guess)) {
-    const stats::AbcPosterior own = posterior_of(entry, entry.guesses().row(row), row);
+  for (const std::size_t row : nearest_of(entry, guess, rows)) {
+    const stats::AbcPosterior own = posterior_of(entry, entry.guesses().row(row), without(rows, row));
     for (std::size_t p = 0; p < n; ++p) reaches[p].push_back(reach(own, p, confidence, entry.parameters()(row, p)));
   }
   std::vector<double> widening;
@@ -114,17 +118,19 @@ FittedEffect EffectFitter::fit(std::size_t entry, std::span<const float> measure
   const EffectSpec& alike = guess.kind_of(features);
   fitted.effect.choices = alike.choices;
   for (const ParameterInfo& info : effects::find(fitted.effect.name).info.parameters) {
-    if (!(info.low < info.high)) fitted.effect.parameters[info.name] = alike.parameters.at(info.name);
+    if (applies(info, alike)) fitted.effect.parameters[info.name] = alike.parameters.at(info.name);
   }
   if (guess.infos().empty()) return fitted;
 
   const std::vector<double> observed = guess.of(features);
-  const stats::AbcPosterior posterior = posterior_of(guess, observed, guess.guesses().rows());
-  const std::vector<double> widening = widening_of(guess, observed, settings_.confidence);
+  const std::vector<std::size_t> rows = guess.rows_like(alike);
+  const stats::AbcPosterior posterior = posterior_of(guess, observed, rows);
+  const std::vector<double> widening = widening_of(guess, observed, rows, settings_.confidence);
   fitted.includes_off = true;
   bool any_strength = false;
   for (std::size_t p = 0; p < guess.infos().size(); ++p) {
     const ParameterInfo& info = *guess.infos()[p];
+    if (!applies(info, alike)) continue;
     const stats::Interval flat = posterior.interval(p, settings_.confidence, widening[p]);
     FittedParameter parameter{info.name, info.unit, from_flat(info, posterior.quantile(p, 0.5)),
                               {},        info.off,  info.role == effects::Role::strength,

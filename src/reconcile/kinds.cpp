@@ -20,7 +20,7 @@ using Kind = std::pair<std::map<std::string, std::string, std::less<>>, std::vec
 Kind kind_of(const EffectSpec& effect) {
   Kind kind{effect.choices, {}};
   for (const effects::ParameterInfo& info : effects::find(effect.name).info.parameters) {
-    if (info.role != effects::Role::strength) continue;
+    if (info.role != effects::Role::strength || !effects::applies(info, effect)) continue;
     const double value = effect.parameters.at(info.name);
     kind.second.push_back(value > info.off ? 1 : value < info.off ? -1 : 0);
   }
@@ -28,8 +28,8 @@ Kind kind_of(const EffectSpec& effect) {
 }
 
 double strength_of(const EffectSpec& effect) {
-  const auto& parameters = effects::find(effect.name).info.parameters;
-  return parameters.empty() ? 0.0 : to_flat(parameters.front(), effect.parameters.at(parameters.front().name));
+  const effects::ParameterInfo& strength = effects::strength_parameter(effect);
+  return to_flat(strength, effect.parameters.at(strength.name));
 }
 
 }  // namespace

@@ -24,18 +24,18 @@ struct Plan {
   const Alien* alien = nullptr;
 };
 
-bool comes_in_strengths(const effects::Effect& effect) {
-  return !effect.info.parameters.empty() && effect.info.parameters.front().low < effect.info.parameters.front().high;
+bool comes_in_strengths(const EffectSpec& spec) {
+  const effects::ParameterInfo& first = effects::strength_parameter(spec);
+  return first.low < first.high;
 }
 
-bool has_strength(const effects::Effect& effect, const EffectSpec& spec, Strength wanted) {
-  return wanted == Strength::beyond || !comes_in_strengths(effect) || strength_of(spec) == wanted;
+bool has_strength(const EffectSpec& spec, Strength wanted) {
+  return wanted == Strength::beyond || !comes_in_strengths(spec) || strength_of(spec) == wanted;
 }
 
 /// Moves the strength to where the prior ends and beyond, on the side where it lies.
-void push_beyond(const effects::Effect& effect, EffectSpec& spec) {
-  if (effect.info.parameters.empty()) return;
-  const effects::ParameterInfo& first = effect.info.parameters.front();
+void push_beyond(EffectSpec& spec) {
+  const effects::ParameterInfo& first = effects::strength_parameter(spec);
   double& value = spec.parameters.at(first.name);
   const bool upwards = value >= first.off;
   const double end = upwards ? first.high : first.low;
@@ -125,8 +125,8 @@ class PlantingJob {
     std::vector<EffectSpec> drawn;
     for (const effects::Effect* effect : wanted) {
       drawn.push_back(effects::draw_from_prior(*effect, world.scene, world.script, stream));
-      if (plan.kind == CaseKind::one && !has_strength(*effect, drawn.back(), plan.strength)) return std::nullopt;
-      if (plan.kind == CaseKind::beyond_prior) push_beyond(*effect, drawn.back());
+      if (plan.kind == CaseKind::one && !has_strength(drawn.back(), plan.strength)) return std::nullopt;
+      if (plan.kind == CaseKind::beyond_prior) push_beyond(drawn.back());
     }
     return drawn;
   }
@@ -150,9 +150,8 @@ std::string key_of(const Laboratory& lab, const SelftestSettings& settings) {
 }  // namespace
 
 Strength strength_of(const EffectSpec& spec) {
-  const effects::Effect& effect = effects::find(spec.name);
-  if (!comes_in_strengths(effect)) return Strength::medium;
-  const effects::ParameterInfo& first = effect.info.parameters.front();
+  if (!comes_in_strengths(spec)) return Strength::medium;
+  const effects::ParameterInfo& first = effects::strength_parameter(spec);
   const double off = to_flat(first, first.off);
   const double most = std::max(to_flat(first, first.high) - off, off - to_flat(first, first.low));
   const double distance =

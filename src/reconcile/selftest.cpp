@@ -24,8 +24,10 @@ bool is_named(const PlantedCase& c, const std::string& effect) {
 
 void check_coverage(const FittedEffect& fitted, const EffectSpec& truth, PlantedCase& result) {
   for (const FittedParameter& parameter : fitted.parameters) {
+    const auto true_value = truth.parameters.find(parameter.name);
+    if (true_value == truth.parameters.end()) continue;  // of another kind
     ++result.n_parameters;
-    result.n_covered += parameter.interval.contains(truth.parameters.at(parameter.name)) ? 1 : 0;
+    result.n_covered += parameter.interval.contains(true_value->second) ? 1 : 0;
   }
 }
 

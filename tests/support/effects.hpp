@@ -30,6 +30,7 @@ inline ScriptSpec with(ScriptSpec script, std::vector<EffectSpec> effects) {
 inline EffectSpec strong(const effects::Effect& effect) {
   EffectSpec spec{effect.info.name, {}, {}, {}};
   for (const effects::ParameterInfo& parameter : effect.info.parameters) {
+    if (!effects::applies(parameter, spec)) continue;
     const bool is_strength = parameter.role == effects::Role::strength;
     spec.parameters[parameter.name] = !is_strength                    ? parameter.typical
                                       : parameter.low < parameter.off ? parameter.low

@@ -20,6 +20,10 @@ enum class Role {
   strength,  ///< with all of these at `off` nothing happens, bit for bit
   detail     ///< how it happens; has no off of its own (`off` repeats `typical`)
 };
+/// That choice has that word, in the script or because it says nothing.
+struct Condition {
+  std::string choice, word;
+};
 struct ParameterInfo {
   std::string name;  ///< with unit suffix
   std::string unit;  ///< "" for a pure number
@@ -29,7 +33,8 @@ struct ParameterInfo {
   double low = 0.0, high = 0.0;    ///< the prior
   double least = 0.0, most = 0.0;  ///< what is accepted
   Scale scale = Scale::linear;
-  std::string source;  ///< of the range: a paper, a data sheet, or `assumed`
+  std::string source;   ///< of the range: a paper, a data sheet, or `assumed`
+  Condition only_if{};  ///< else it means nothing (a chair's back has no place of its own); empty: always
 };
 enum class ChoiceKind { sensor, mesh, word };
 struct ChoiceInfo {
@@ -93,11 +98,15 @@ void check(std::span<const EffectSpec> effects, const SceneSpec& scene, Diagnost
 /// Applies alter() of script.effects, in the catalogue's order, to both. Throws Error(input) for what check() finds.
 void alter(SceneSpec& scene, ScriptSpec& script);
 
+/// Whether a parameter of that effect means anything with its choices.
+[[nodiscard]] bool applies(const ParameterInfo& parameter, const EffectSpec& effect);
+/// The first of an effect's strengths that applies.
+[[nodiscard]] const ParameterInfo& strength_parameter(const EffectSpec& effect);
 [[nodiscard]] bool is_off(const EffectSpec& effect);
-/// With every parameter: those not given take the typical value.
+/// With every parameter that applies: those not given take the typical value.
 [[nodiscard]] EffectSpec resolved(const Effect& effect, EffectSpec spec);
 [[nodiscard]] EffectSpec off(const Effect& effect);
-/// Parameters from their priors; a sensor from all and each (even odds between `all` and one of them).
+/// Parameters that apply, from their priors; a sensor from all and each (even odds between `all` and one of them).
 [[nodiscard]] EffectSpec draw_from_prior(const Effect& effect, const SceneSpec& scene, const ScriptSpec& script,
                                          Stream& stream);
 

@@ -126,9 +126,49 @@ TEST_CASE("a prior's draws are accepted by the check and stay in their ranges") 
         INFO(effect->info.name);
         REQUIRE_FALSE(diagnostics.has_errors());
         REQUIRE_FALSE(effects::is_off(spec));
+        for (const effects::ParameterInfo& parameter : effect->info.parameters) {
+          INFO(parameter.name);
+          REQUIRE(spec.parameters.contains(parameter.name) == effects::applies(parameter, spec));
+          if (!effects::applies(parameter, spec)) continue;
+          const double value = spec.parameters.at(parameter.name);
+          const bool either_way = effect->info.name == "seats_shifted";  // by one, and by minus one
+          REQUIRE((either_way ? std::abs(value) == parameter.high : value >= parameter.low && value <= parameter.high));
+        }
       }
     }
   }
+}
+
+TEST_CASE("a parameter with a range varies: no other is fitted") {
+  Stream stream({9, 0, 0, Purpose::test});
+  const Place place = places().front();
+  for (const Effect* effect : effects::catalogue()) {
+    std::map<std::string, std::set<double>> values;
+    for (int i = 0; i < 60; ++i) {
+      for (const auto& [name, value] : effects::draw_from_prior(*effect, place.scene, place.script, stream).parameters)
+        values[name].insert(value);
+    }
+    for (const effects::ParameterInfo& parameter : effect->info.parameters) {
+      INFO(effect->info.name << ' ' << parameter.name);
+      if (effect->info.name != "seats_shifted")  // which way is told by the likeliest kind
+        CHECK((values[parameter.name].size() > 1) == (parameter.low < parameter.high));
+    }
+  }
+}
+
+TEST_CASE("a parameter that means nothing with the choices is refused and leaves an effect off") {
+  const auto spec = [](const std::string& height, double value, const std::string& what) {
+    return EffectSpec{"missing_occluder", {{height, value}}, {{"what", what}}, {}};
+  };
+  Diagnostics faults;
+  effects::check(std::vector{spec("height_m", 1.0, "box")}, faults);
+  REQUIRE(faults.has_errors());
+  CHECK_THAT(faults.issues().front().message, contains("height_m means nothing without what: chair_backs"));
+  CHECK(effects::is_off(spec("box_height_m", 0.0, "box")));
+  CHECK_FALSE(effects::is_off(spec("box_height_m", 1.0, "box")));
+  CHECK(effects::is_off(spec("height_m", 0.0, "chair_backs")));
+  CHECK(effects::strength_parameter(spec("box_height_m", 1.0, "box")).name == "box_height_m");
+  CHECK(effects::strength_parameter({"missing_occluder", {}, {}, {}}).name == "height_m");
 }
 
 TEST_CASE("entries are complete and refer to one another by name") {
@@ -148,7 +188,9 @@ TEST_CASE("entries are complete and refer to one another by name") {
     for (const effects::ParameterInfo& parameter : info.parameters) {
       INFO(parameter.name);
       CHECK_FALSE(parameter.source.empty());
-      CHECK((parameter.low < parameter.high || parameter.scale == effects::Scale::whole));
+      const bool is_fixed = parameter.low == parameter.high;
+      CHECK((parameter.low < parameter.high || parameter.scale == effects::Scale::whole ||
+             (is_fixed && parameter.role == effects::Role::detail)));
       CHECK(parameter.least <= std::min({parameter.low, parameter.off, parameter.typical}));
       CHECK(parameter.most >= std::max({parameter.high, parameter.off, parameter.typical}));
       CHECK((parameter.scale != effects::Scale::logarithmic || parameter.low > 0.0));

@@ -1,4 +1,5 @@
 // Warm chairs and fidgeting: rates against closed forms.
+#include <array>
 #include <cmath>
 
 #include "pirsim/core/units.hpp"
@@ -91,4 +92,33 @@ TEST_CASE("who fidgets moves at the given rate within the given angles and who d
   CHECK(degrees(furthest_tilt) > 4.5);
   CHECK(degrees(furthest_turn) <= 30.0 + 1e-6);
   CHECK(degrees(furthest_turn) > 27.0);
+}
+
+TEST_CASE("a burst is under way when a run begins as often as at any other time") {
+  const Model model = compile(shipped_scene("meeting_room.gltf"), short_study_a());
+  const double rate_per_s = 2.0, length_s = 12.0, period_s = 60.0;
+  effects::Pipeline pipeline = sim::make_pipeline(
+      model, std::vector{effect("trigger_bursts",
+                                {{"length_s", length_s}, {"period_s", period_s}, {"rate_per_s", rate_per_s}})});
+  constexpr int runs = 600, parts = 10;
+  std::array<double, parts> with_triggers{};  // runs of which the first sensor is triggered in that tenth of a period
+  for (int run = 0; run < runs; ++run) {
+    pipeline.begin_run(1, static_cast<std::uint32_t>(run));
+    std::array<bool, parts> any{};
+    for (int tick = 0; tick < 3000; ++tick) {
+      std::vector<std::uint8_t> triggers(model.scene().sensors.size(), 0);
+      pipeline.tick(tick, triggers);
+      any[static_cast<std::size_t>(tick / 300)] |= triggers[0] != 0;
+    }
+    for (std::size_t part = 0; part < parts; ++part) with_triggers[part] += any[part] ? 1 : 0;
+  }
+  // A burst of 12 s overlaps a part of 6 s by x seconds: all 6 for 6 s of its starts, 0 to 6 for 6 s at each end. No
+  // trigger comes with probability exp(-2 x); averaged over a start that is uniform in 60 s.
+  const double ends = 2.0 * (6.0 - (1.0 - std::exp(-12.0)) / 2.0), whole = 6.0 * (1.0 - std::exp(-12.0));
+  const double share = (ends + whole) / period_s;
+  const double tolerance = 4.0 * std::sqrt(runs * share * (1.0 - share));
+  for (const double n : with_triggers) CHECK(std::abs(n - runs * share) < tolerance);
+  // Must fail: no burst before the run, so that only starts within the first 6 s count there.
+  const double none_before = (6.0 - (1.0 - std::exp(-12.0)) / 2.0) / period_s;
+  CHECK_FALSE(std::abs(with_triggers[0] - runs * none_before) < tolerance);
 }

@@ -298,8 +298,8 @@ TEST_CASE("what was estimated is moved to where the room has a place for it, and
   const Vec2 outside(5.15, 3.0), moved = placed(outside.x, outside.y);
   CHECK(room.floor.contains(moved));
   CHECK(std::abs(moved.x - outside.x) < 2.0);  // no farther than to what is free near the wall
-  const EffectSpec box = effect("missing_occluder", {{"height_m", 1.0}, {"width_m", 0.5}, {"x_m", 40.0}, {"z_m", 40.0}},
-                                {{"what", "box"}});
+  const EffectSpec box = effect(
+      "missing_occluder", {{"box_height_m", 1.0}, {"width_m", 0.5}, {"x_m", 40.0}, {"z_m", 40.0}}, {{"what", "box"}});
   const EffectSpec inside = effects::settled(box, room);
   CHECK(room.floor.contains(Vec2(inside.parameters.at("x_m"), inside.parameters.at("z_m"))));
   CHECK_NOTHROW(results_of(meeting_room({inside})));

@@ -122,3 +122,42 @@ TEST_CASE("a strength is guessed as well as if the sensor were known", "[reconci
   // three.
   CHECK(std::sqrt(all / n) > 0.6);
 }
+
+TEST_CASE("what is no parameter of a kind says nothing about it", "[reconcile]") {
+  // Boxes of 1 to 2 m, chair backs of 0.2 to 0.7 m; a box moves the first feature, a chair's back the second.
+  ReferenceTable table;
+  table.effects = {"missing_occluder"};
+  const auto draw = [&](std::size_t n, std::uint32_t number) {
+    Stream stream({45, number, 0, Purpose::test});
+    stats::Matrix<float> features(n, 3);
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < n; ++i) {
+      const bool box = i % 3 == 0;
+      const double height = box ? 1.0 + stream.uniform() : 0.2 + 0.5 * stream.uniform();
+      EffectSpec drawn{"missing_occluder", {{"width_m", 0.35 + 0.25 * stream.uniform()}}, {}, {}};
+      drawn.choices["what"] = box ? "box" : "chair_backs";
+      drawn.parameters[box ? "box_height_m" : "height_m"] = height;
+      if (box) drawn.parameters.insert({{"x_m", stream.normal()}, {"z_m", stream.normal()}});
+      for (std::size_t f = 0; f < 3; ++f)
+        features(i, f) = static_cast<float>((f == (box ? 0U : 1U) ? 10.0 * height : 0.0) + 0.1 * stream.normal());
+      rows.push_back(table.rows.size());
+      table.rows.push_back({1, static_cast<std::uint32_t>(i), {std::move(drawn)}});
+    }
+    return std::pair(features, rows);
+  };
+  const auto [training, training_rows] = draw(300, 0);
+  const auto [held_back, held_back_rows] = draw(90, 1);
+  const auto [few, few_rows] = draw(30, 2);
+  const EntryGuess guess(table, 1, {training_rows, training}, {held_back_rows, held_back});
+  const std::vector<float> like_box{15.0F, 0.0F, 0.0F};
+  const EffectSpec& kind = guess.kind_of(like_box);
+  CHECK(kind.choices.at("what") == "box");
+  const std::vector<std::size_t> rows = guess.rows_like(kind);
+  CHECK(rows.size() == 30);
+  for (const std::size_t row : rows) CHECK(table.rows[held_back_rows[row]].effects.front().choices.at("what") == "box");
+  std::size_t at = 0;
+  while (guess.infos()[at]->name != "box_height_m") ++at;
+  CHECK(guess.of(like_box)[guess.infos().size() + at] == Approx(1.5).margin(0.05));  // learnt from boxes
+  const EntryGuess of_few(table, 1, {training_rows, training}, {few_rows, few});
+  CHECK(of_few.rows_like(kind).size() == 30);  // ten boxes are too few
+}

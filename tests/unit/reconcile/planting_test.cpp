@@ -20,7 +20,7 @@ TEST_CASE("strengths beyond the prior lie on both sides of it where it has two",
   std::size_t n_weaker = 0, n_stronger = 0, n_rates = 0;
   for (const Planted& planted : plant(lab, settings)) {
     const EffectSpec& effect = planted.effects.front();
-    const effects::ParameterInfo& first = effects::find(effect.name).info.parameters.front();
+    const effects::ParameterInfo& first = effects::strength_parameter(effect);
     const double value = effect.parameters.at(first.name);
     INFO(effect.name << ' ' << value);
     CHECK((value < first.low || value > first.high));
