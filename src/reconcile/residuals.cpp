@@ -278,8 +278,10 @@ class Regression {
       cluster.push_back(static_cast<int>(bits_.places[place].trial));
     }
     const bool one_trial = std::ranges::count(cluster, cluster.front()) == std::ssize(cluster);
-    fit_ = stats::fit_logistic(columns, outcomes,
-                               {1.0, offset, one_trial ? std::span<const int>() : std::span<const int>(cluster)});
+    constexpr double weak = 1.0, hardly_any = 0.1;  // assumed: as an observation or so among thousands
+    fit_ = stats::fit_logistic(
+        columns, outcomes,
+        {weak, hardly_any, offset, one_trial ? std::span<const int>() : std::span<const int>(cluster)});
     for (std::size_t place = 0; place < chance_.size(); ++place) {
       const std::vector<double> x = values(place);
       double odds = bits_.odds[place] + fit_.coefficients[0];

@@ -244,20 +244,10 @@ class Judge {
     result.sign_p = stats::sign_test_greater(result.n_better, static_cast<std::size_t>(worse));
     const double closable = result.before.energy_score - result.noise_floor;
     if (closable > 0.0) result.share_closed = (result.before.energy_score - result.after.energy_score) / closable;
-    if (drops_.size() > 1) result.gain = interval_of_gain();
+    if (drops_.size() > 1) result.gain = stats::mean_interval(drops_);
   }
 
  private:
-  [[nodiscard]] stats::Interval interval_of_gain() const {
-    const auto mean = [&](std::span<const std::size_t> blocks) {
-      double sum = 0.0;
-      for (const std::size_t block : blocks) sum += drops_[block] / static_cast<double>(blocks.size());
-      return sum;
-    };
-    return stats::block_bootstrap(drops_.size(), mean,
-                                  {0.95, 2000, stats::BootstrapKind::bca, settings_.seed, settings_.threads});
-  }
-
   const Laboratory& lab_;
   std::span<const float> measured_;
   const Ensembles& ensembles_;

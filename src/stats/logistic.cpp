@@ -26,7 +26,7 @@ Problem pose(const Matrix<double>& columns, std::span<const std::uint8_t> outcom
   Problem problem{Eigen::MatrixXd::Ones(n, d + 1), Eigen::VectorXd(n), Eigen::VectorXd::Zero(n),
                   Eigen::VectorXd::Constant(d + 1, settings.ridge)};
   problem.design.rightCols(d) = detail::as_eigen(columns);
-  problem.penalty(0) = 0.0;
+  problem.penalty(0) = settings.intercept_ridge;
   for (Eigen::Index i = 0; i < n; ++i) problem.outcomes(i) = outcomes[static_cast<std::size_t>(i)];
   if (!settings.offset.empty()) problem.offset = detail::as_eigen(settings.offset);
   return problem;
@@ -77,7 +77,7 @@ LogisticFit fit_logistic(const Matrix<double>& columns, std::span<const std::uin
   require(columns.rows() == outcomes.size() && !outcomes.empty(), "logistic: rows and outcomes differ in number");
   require(settings.offset.empty() || settings.offset.size() == outcomes.size(), "logistic: length of the offset");
   require(settings.cluster.empty() || settings.cluster.size() == outcomes.size(), "logistic: length of the clusters");
-  require(settings.ridge >= 0.0, "logistic: negative ridge");
+  require(settings.ridge >= 0.0 && settings.intercept_ridge >= 0.0, "logistic: negative ridge");
   require_finite(columns.values(), "logistic: a number is not finite");
   require_finite(settings.offset, "logistic: a number is not finite");
   for (const std::uint8_t outcome : outcomes) require(outcome <= 1, "logistic: an outcome is neither 0 nor 1");

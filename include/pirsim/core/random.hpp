@@ -23,7 +23,6 @@ enum class Purpose : std::uint32_t {
   effect_prior = 11,   ///< parameters drawn from the catalogue's priors
   // Of statistics, from 100 on.
   tied_ranks = 100,         ///< order of equal values in a rank test
-  bootstrap = 101,          ///< which blocks a bootstrap sample takes
   tree_growing = 102,       ///< columns and thresholds that a randomised tree tries
   projection = 103,         ///< random directions that a subspace is found from
   calibration_split = 104,  ///< which rows are kept for calibration
@@ -31,7 +30,7 @@ enum class Purpose : std::uint32_t {
   nuisance = 200,              ///< where seats and sensors really are, and how large people are
   simulated_seed = 201,        ///< seeds of simulated datasets
   reference_parameters = 202,  ///< parameters of effects, from their priors
-  analysis = 203,              ///< ties, forests, splits, bootstrap
+  analysis = 203,              ///< ties, forests, splits
   sealed_answer = 204,         ///< what a sealed challenge hides
   model_check = 205,           ///< parameters of a fitted effect in the worlds that its model is checked in
   // Of the physical response, from 300 on.

@@ -31,13 +31,13 @@ struct Verification {
   std::size_t n_folds = 0;
   Gap before, after;
   double noise_floor = 0.0;        ///< energy score of the patched model's own datasets
-  stats::Interval gain;            ///< 95 % of the mean drop in energy score per trial, over trials
+  stats::Interval gain;            ///< 95 % (Student's) of the mean drop in energy score per trial, over trials
   double share_closed = 0.0;       ///< (before - after) / (before - noise floor)
   std::size_t n_trials = 0;        ///< held out and measured; 0: people can hardly get about in the patched model
   std::size_t n_better = 0;        ///< of them, foretold better by the patched model
   double sign_p = 1.0;             ///< that so many are better by chance
-  double placebo = 0.0;            ///< energy score after the best effect of another family, or 0 without one
-  std::string placebo_effect;      ///< its name
+  double placebo = 0.0;            ///< energy score after the best effect of another family; as before without one
+  std::string placebo_effect;      ///< its name, in the first fold that has one
   std::vector<std::string> names;  ///< what each fold found, effects joined by " + "
   std::vector<std::vector<EffectSpec>> patches;  ///< with the parameters that each fold's other trials gave
   bool shrunk = false;   ///< the interval excludes 0 and the placebo does less; of sums, sign_p <= 0.05 too

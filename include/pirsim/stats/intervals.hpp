@@ -1,11 +1,8 @@
-// How sure a number is: intervals of shares, of any statistic of resampled blocks, and the sign test.
+// How sure a number is: intervals of shares and of means, and the sign test.
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <functional>
 #include <span>
-#include <vector>
 
 namespace pirsim::stats {
 
@@ -31,25 +28,8 @@ struct Interval {
 /// The same for either direction: twice the smaller tail, at most 1.
 [[nodiscard]] double sign_test_two_sided(std::size_t positive, std::size_t negative);
 
-enum class BootstrapKind {
-  percentile,
-  bca,  ///< bias-corrected and accelerated; the acceleration from the jackknife. Ref: [Efron1987]
-};
-
-struct BootstrapSettings {
-  double confidence = 0.95;
-  std::size_t samples = 2000;
-  BootstrapKind kind = BootstrapKind::bca;
-  std::uint64_t seed = 0;
-  unsigned threads = 0;  ///< 0: all cores; never changes the result
-};
-
-/// A statistic of the blocks of the given indices; an index may occur several times. Called from several threads.
-using BlockStatistic = std::function<double(std::span<const std::size_t> blocks)>;
-
-/// Interval of a statistic of `n_blocks` (2 or more) independent blocks, trials for example, drawn with replacement.
-/// Blocks keep what is dependent together; with few blocks (10, say) any bootstrap interval is somewhat too short.
-[[nodiscard]] Interval block_bootstrap(std::size_t n_blocks, const BlockStatistic& statistic,
-                                       const BootstrapSettings& settings = {});
+/// Student's interval of the mean of independent values (2 or more), `confidence` sure if they are normally
+/// distributed.
+[[nodiscard]] Interval mean_interval(std::span<const double> values, double confidence = 0.95);
 
 }  // namespace pirsim::stats

@@ -16,17 +16,19 @@ namespace {
 constexpr double work_s = 180.0;
 
 /// Without a table: the plain model's profile is all that is needed.
+Laboratory make_laboratory(const NuisanceSpec& nuisance) {
+  Laboratory one;
+  one.source = {test::shipped_scene("meeting_room.gltf"), test::short_study({"S2", "S5", "S9"}, work_s), nuisance, 4};
+  one.frame = frame_of(one.source.scene, one.source.script);
+  one.knowledge = cell_knowledge(one.source.scene, one.source.script);
+  const std::vector<Series> pilot = pilot_runs(one.source, one.frame, 30, 0);
+  one.shape = full_shape(one.frame, Measured::Kind::series, 1, pilot);
+  one.table.profile = profile_of(one.frame, one.source.script, pilot);
+  return one;
+}
+
 const Laboratory& laboratory() {
-  static const Laboratory lab = [] {
-    Laboratory one;
-    one.source = {test::shipped_scene("meeting_room.gltf"), test::short_study({"S2", "S5", "S9"}, work_s), {}, 4};
-    one.frame = frame_of(one.source.scene, one.source.script);
-    one.knowledge = cell_knowledge(one.source.scene, one.source.script);
-    const std::vector<Series> pilot = pilot_runs(one.source, one.frame, 30, 0);
-    one.shape = full_shape(one.frame, Measured::Kind::series, 1, pilot);
-    one.table.profile = profile_of(one.frame, one.source.script, pilot);
-    return one;
-  }();
+  static const Laboratory lab = make_laboratory({});
   return lab;
 }
 
@@ -90,4 +92,23 @@ TEST_CASE("residuals of the model itself follow nothing", "[reconcile]") {
   for (std::uint32_t world = 0; world < 5; ++world)
     with_driver += explained(planted(100 + world, [](auto&, auto&) {})).drivers.empty() ? 0 : 1;
   CHECK(with_driver <= 2);
+}
+
+TEST_CASE("sensors that are dead or stuck are explained as well", "[reconcile]") {
+  const Laboratory known = make_laboratory({0.0, 0.0, 0.0, 0.0, 0.0});
+  for (const std::uint8_t bit : {0, 1}) {
+    const Measured measured = planted(2, [bit](std::vector<Sample>& rows, Stream&) {
+      for (Sample& row : rows) std::ranges::fill(row.bits, bit);
+    });
+    ResidualSettings settings;
+    settings.n_simulated = 60;
+    const Residuals found = explain_residuals(known, measured, {}, settings);
+    INFO(found.sentence);
+    REQUIRE_FALSE(found.drivers.empty());
+    CHECK_THAT(found.drivers.front().what, contains(bit == 1 ? "motion where hardly any is expected" : "less motion"));
+    for (const ResidualDriver& driver : found.drivers) {
+      CHECK(std::isfinite(driver.log_odds));
+      CHECK(driver.standard_error > 0.0);
+    }
+  }
 }

@@ -93,3 +93,15 @@ TEST_CASE("logistic regression says when there is no maximum", "[stats]") {
   CHECK_THROWS_AS(fit_logistic(column, std::vector<std::uint8_t>{0, 1, 2, 0, 0, 0}), Error);
   CHECK_THROWS_AS(fit_logistic(column, std::vector<std::uint8_t>{0, 1}), Error);
 }
+
+TEST_CASE("with outcomes that are all equal a ridge on the intercept keeps the fit finite", "[stats]") {
+  // One parameter: penalised maximum where n (outcome - share(b)) = ridge b.
+  for (const std::uint8_t outcome : {0, 1}) {
+    const Matrix<double> nothing(500, 1, 0.0);
+    const std::vector<std::uint8_t> outcomes(500, outcome);
+    const LogisticFit fit = fit_logistic(nothing, outcomes, {.ridge = 1.0, .intercept_ridge = 0.1});
+    CHECK(500.0 * (outcome - share(fit.coefficients[0])) == Approx(0.1 * fit.coefficients[0]).margin(1e-6));
+    CHECK((outcome == 1) == (fit.coefficients[0] > 0.0));
+    CHECK(fit.standard_errors[0] > 0.0);
+  }
+}
