@@ -9,6 +9,7 @@
 #include "app/session.hpp"
 #include "pirsim/core/version.hpp"
 #include "pirsim/effects/catalogue.hpp"
+#include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/gnuplot.hpp"
 #include "pirsim/io/script_reader.hpp"
 #include "pirsim/reconcile/measured.hpp"
@@ -45,6 +46,18 @@ reconcile::Settings settings_of(const ReconcileOptions& options, const ScriptSpe
   settings.table.n_traced = scaled(settings.table.n_traced);
   settings.table_folder = options.table.empty() ? options.output / "table" : options.table;
   return settings;
+}
+
+/// That nothing can be written is told before minutes of work, not after them.
+void require_writable(const std::filesystem::path& folder) {
+  std::error_code told_below;
+  std::filesystem::create_directories(folder, told_below);
+  const io::AtomicFile never_committed(folder / "report.json");
+}
+
+void tell_notes(const std::vector<std::string>& notes, Verbosity verbosity) {
+  if (verbosity == Verbosity::quiet) return;
+  for (const std::string& note : notes) std::cerr << note << '\n';
 }
 
 /// Tells stages and progress on standard error.
@@ -100,6 +113,7 @@ void reconcile_selftest(const Inputs& inputs, const ReconcileOptions& options, c
                                        selftest.aliens,
                                        selftest.leave_out,
                                        selftest.verified};
+  require_writable(options.output);
   settings.planted_folder = settings.analysis.table_folder / "planted";
   Teller teller(inputs.verbosity);
   const reconcile::SelftestResult result = reconcile::selftest(scene, script, settings, teller.observer());
@@ -116,6 +130,7 @@ void reconcile_plan(const Inputs& inputs, const ReconcileOptions& options, const
   const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   reconcile::PlanSettings settings{settings_of(options, script), plan.kind, plan.runs};
+  require_writable(options.output);
   Teller teller(inputs.verbosity);
   const reconcile::PlanResult result = reconcile::plan(scene, script, settings, teller.observer());
   teller.finish();
@@ -133,15 +148,15 @@ void reconcile_data(const Inputs& inputs, const ReconcileOptions& options) {
   tell(script.warnings, inputs.verbosity);
   const reconcile::StudyFrame frame = reconcile::frame_of(scene, script);
   const reconcile::Measured measured = reconcile::read_measured(options.measured, frame);
-  if (inputs.verbosity != Verbosity::quiet) {
-    for (const std::string& note : measured.notes) std::cerr << note << '\n';
-  }
+  tell_notes(measured.notes, inputs.verbosity);
+  require_writable(options.output);
   reconcile::Settings settings = settings_of(options, script);
   settings.holdout = reconcile::holdout_of(options.holdout, frame, measured);
 
   Teller teller(inputs.verbosity);
   const reconcile::Outcome outcome = reconcile::reconcile(scene, script, measured, settings, teller.observer());
   teller.finish();
+  tell_notes(outcome.notes, inputs.verbosity);
   std::cout << outcome.sentence << '\n';
   require_written();
   reconcile::write_outputs(options.output, outcome, measured, script, settings,

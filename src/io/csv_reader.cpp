@@ -106,6 +106,11 @@ class CsvParser {
   }
 
   void check_header(const CsvTable& table) {
+    if (table.header_.size() == 1) {
+      const CsvTable::Field& only = table.header_.front();
+      if (only.text.find(';') != std::string::npos || only.text.find('\t') != std::string::npos)
+        refuse(only.line, only.column, "columns must be separated by commas, not by semicolons or tabs");
+    }
     std::set<std::string> names;
     for (const CsvTable::Field& field : table.header_) {
       if (names.insert(field.text).second) continue;

@@ -1,5 +1,7 @@
 #include <yaml-cpp/yaml.h>
 
+#include <filesystem>
+
 #include "pirsim/io/csv_writer.hpp"
 #include "pirsim/io/script_reader.hpp"
 
@@ -95,6 +97,23 @@ YAML::Node write(const EffectSpec& effect) {
 }
 
 }  // namespace
+
+ScriptSpec moved(ScriptSpec script, const std::filesystem::path& folder) {
+  namespace fs = std::filesystem;
+  const auto move = [&](std::string& file) {
+    if (file.empty() || fs::path(file).is_absolute()) return;
+    const fs::path there = fs::absolute(fs::path(script.directory) / file);
+    const fs::path from_here =
+        fs::weakly_canonical(there).lexically_relative(fs::weakly_canonical(fs::absolute(folder)));
+    file = (from_here.empty() ? there : from_here).generic_string();
+  };
+  move(script.summary.reference_file);
+  for (TrialSpec& trial : script.trials) {
+    for (PersonSpec& person : trial.people) move(person.body_mesh_file);
+  }
+  script.directory = folder.string();
+  return script;
+}
 
 std::string to_yaml(const ScriptSpec& script) {
   YAML::Node root;

@@ -1,18 +1,12 @@
 #include "pirsim/reconcile/analyst.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "pirsim/effects/catalogue.hpp"
 #include "reconcile/sentences.hpp"
 
 namespace pirsim::reconcile {
-
-std::string_view name(Verdict verdict) noexcept {
-  constexpr std::array<std::string_view, 5> names{"no-disagreement", "named", "one-of", "several", "none-in-catalogue"};
-  return names[static_cast<std::size_t>(verdict)];
-}
 
 Analyst::Analyst(std::shared_ptr<const TableView> view, const AnalystSettings& settings)
     : view_(std::move(view)),

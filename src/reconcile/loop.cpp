@@ -62,7 +62,9 @@ const Loop::Step& Loop::look(const Settings& settings, double level) {
 void Loop::tell_first(const Step& first) {
   const Laboratory& lab = first.lab;
   std::vector<std::string> trail{"data " + measured_.digest + ", analysis seed " + std::to_string(settings_.seed)};
+  outcome_.notes = notes_on(lab.shape, measured_, lab.frame.sensors.size());
   for (const std::string& note : measured_.notes) trail.push_back("data: " + note);
+  for (const std::string& note : outcome_.notes) trail.push_back("data: " + note);
   std::string held_out;
   for (const std::size_t trial : settings_.holdout) held_out += " " + lab.frame.trials[trial];
   if (!held_out.empty()) trail.push_back("held out from naming and fitting:" + held_out);

@@ -25,6 +25,7 @@ std::string plural(std::size_t n, const std::string& one, const std::string& man
 
 MeasuredReader::MeasuredReader(std::string_view text, const std::string& file, const StudyFrame& frame)
     : frame_(frame), file_(file), table_(io::CsvTable::parse(text, file)) {
+  measured_.file = file;
   measured_.digest = sha256(text);
 }
 
@@ -54,7 +55,8 @@ std::optional<std::size_t> MeasuredReader::find(const std::vector<std::string>& 
   const std::string& name = table_.text(row, column);
   const auto known = std::ranges::find(names, name);
   if (known != names.end()) return static_cast<std::size_t>(known - names.begin());
-  faults_.error(table_.where(row, column), what + " '" + name + "' is not in the study" + did_you_mean(name, names));
+  if (unknown_names_.insert(name).second)  // each is told once
+    faults_.error(table_.where(row, column), what + " '" + name + "' is not in the study" + did_you_mean(name, names));
   return std::nullopt;
 }
 
@@ -93,6 +95,17 @@ void MeasuredReader::read_sums() {
   }
   if (missing > 0) {
     measured_.notes.push_back(plural(missing, "sum is", "sums are") + " empty and left out of every comparison.");
+  }
+  std::set<std::pair<std::size_t, std::size_t>> cells;
+  std::set<std::size_t> trials;
+  for (const auto& [run, which] : seen) {
+    cells.insert({run.first, which});
+    trials.insert(run.first);
+  }
+  const std::size_t absent = trials.size() * frame_.sensors.size() - cells.size();
+  if (absent > 0) {
+    measured_.notes.push_back(plural(absent, "cell", "cells") + " (trial and sensor) of the trials in the file " +
+                              (absent == 1 ? "has" : "have") + " no sum: left out of every comparison.");
   }
 }
 
@@ -145,6 +158,7 @@ void MeasuredReader::read_rows() {
     faults_.error({file_, 0, 0},
                   plural(bad_bits_ - most_faults_told, "more reading is", "more readings are") + " neither 0 nor 1");
   }
+  measured_.tells_phases = phase_.has_value();
   if (!phase_ && !frame_.counted_phases.empty()) {
     measured_.notes.push_back("The file has no column 'phase': its rows are taken for those of the phase '" +
                               boost::algorithm::join(frame_.counted_phases, ", ") + "', from its beginning.");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -49,6 +50,7 @@ class MeasuredReader {
   Diagnostics faults_;
   Measured measured_;
   std::optional<std::size_t> trial_, replicate_, phase_, time_;
+  std::set<std::string> unknown_names_;
   std::size_t inserted_rows_ = 0, unknown_bits_ = 0, bad_bits_ = 0, unread_runs_ = 0;
 };
 

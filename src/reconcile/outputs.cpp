@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "io/text_input.hpp"
-#include "pirsim/effects/catalogue.hpp"
 #include "pirsim/io/atomic_file.hpp"
 #include "pirsim/io/csv_writer.hpp"
 #include "pirsim/io/script_reader.hpp"
@@ -116,6 +115,8 @@ Json to_json(const Residuals& residuals) {
 
 std::string to_json(const Outcome& outcome, const Measured& measured, const Settings& settings,
                     const Provenance& provenance) {
+  std::vector<std::string> notes = measured.notes;
+  notes.insert(notes.end(), outcome.notes.begin(), outcome.notes.end());
   Json json = {{"pirsim_reconcile_report", report_schema},
                {"verdict", name(outcome.verdict)},
                {"sentence", outcome.sentence},
@@ -128,7 +129,7 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
                  {"sha256", measured.digest},
                  {"kind", measured.kind == Measured::Kind::series ? "series" : "sums"},
                  {"runs", measured.n_replicates()},
-                 {"notes", measured.notes}}},
+                 {"notes", notes}}},
                {"alpha", settings.alpha},
                {"seed", settings.seed},
                {"table", outcome.table_key},
@@ -140,7 +141,7 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
                  {"arm_amplitude", settings.nuisance.arm_amplitude}}}};
   json["where"] = to_json(outcome.location);
   Json candidates = Json::array(), fits = Json::array();
-  for (const Candidate& candidate : outcome.candidates) candidates.push_back(to_json(candidate));
+  for (const Candidate& candidate : with_twins(outcome.candidates)) candidates.push_back(to_json(candidate));
   for (const FittedEffect& fitted : outcome.fits) fits.push_back(to_json(fitted));
   json["nothing"] = to_json(outcome.nothing);
   json["family"] = {{"name", name(outcome.family.family)}, {"probability", outcome.family.probability}};
@@ -172,18 +173,10 @@ std::string where_csv(const Outcome& outcome) {
 std::string candidates_csv(const Outcome& outcome) {
   std::ostringstream out;
   out << "effect,family,kept,probability,p,p_relative,p_absolute,reason\n";
-  const auto write_row = [&](const std::string& entry, const Candidate& c, const std::string& reason) {
-    out << entry << ',' << c.family << ',' << (c.kept ? 1 : 0) << ',' << io::csv_number(c.score.probability) << ','
-        << io::csv_number(c.score.p) << ',' << io::csv_number(c.score.p_relative) << ','
-        << io::csv_number(c.score.p_absolute) << ',' << io::csv_field(reason) << '\n';
-  };
-  for (const Candidate& c : outcome.candidates) {
-    write_row(c.score.entry, c, c.reason);
-    for (const std::string& twin : effects::twins_of(c.score.entry)) {
-      const auto is_twin = [&](const Candidate& other) { return other.score.entry == twin; };
-      if (std::ranges::any_of(outcome.candidates, is_twin)) continue;  // it was asked for
-      write_row(twin, c, "Judged as " + c.score.entry + ", which changes the model in the same way.");
-    }
+  for (const Candidate& c : with_twins(outcome.candidates)) {
+    out << c.score.entry << ',' << c.family << ',' << (c.kept ? 1 : 0) << ',' << io::csv_number(c.score.probability)
+        << ',' << io::csv_number(c.score.p) << ',' << io::csv_number(c.score.p_relative) << ','
+        << io::csv_number(c.score.p_absolute) << ',' << io::csv_field(c.reason) << '\n';
   }
   return out.str();
 }
@@ -220,7 +213,7 @@ void write_outputs(const std::filesystem::path& folder, const Outcome& outcome, 
   io::write_text_file(folder / "candidates.csv", candidates_csv(outcome));
   const std::filesystem::path patch = folder / "script_patched.yaml";
   if (outcome.verdict == Verdict::named || outcome.verdict == Verdict::several) {
-    io::write_text_file(patch, io::to_yaml(patched(script, outcome)));
+    io::write_text_file(patch, io::to_yaml(io::moved(patched(script, outcome), folder)));
   } else {
     std::filesystem::remove(patch, fault);  // of an earlier analysis
   }

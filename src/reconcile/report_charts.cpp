@@ -198,7 +198,9 @@ std::vector<io::DotsChart> posterior_charts(const FittedEffect& fitted) {
 io::BarChart held_out_chart(const Verification& v, const std::string& named) {
   io::BarChart chart;
   chart.title = "How far the model is from trials that it was not fitted on";
-  chart.note = "Shorter is better. The last bar is as near as any model can come, since runs differ by chance.";
+  chart.note =
+      "Shorter is better. The last bar is what a right model comes to on average, since runs differ by chance; "
+      "single data may lie nearer or farther.";
   chart.label = "distance (energy score)";
   const auto add = [&](const std::string& name, double value, io::BarChart::Weight weight) {
     chart.bars.push_back({name, value, fixed(value, 3), weight, {}, {}});
@@ -208,7 +210,7 @@ io::BarChart held_out_chart(const Verification& v, const std::string& named) {
   if (!v.placebo_effect.empty()) {
     add("placebo: with " + v.placebo_effect + " instead", v.placebo, io::BarChart::Weight::faint);
   }
-  add("at best: the new model against itself", v.noise_floor, io::BarChart::Weight::faint);
+  add("the new model against itself", v.noise_floor, io::BarChart::Weight::faint);
   return chart;
 }
 

@@ -20,7 +20,10 @@ io::ReportSection where(const Outcome& outcome, double alpha) {
       "The model was run " + std::to_string(location.n_simulated) +
           " times, each time in a slightly different room, since nobody knows seats and sensors exactly. On average, a "
           "difference below " +
-          fixed(location.band_s, 0) + " s in one cell can't be told from chance here."};
+          fixed(location.band_s, 0) +
+          " s in one cell can't be told from chance here. Of so many cells some lie outside their usual range by "
+          "chance "
+          "alone; a frame marks those that do with that allowed for."};
   section.charts.emplace_back(difference_chart(location, alpha));
   return section;
 }
@@ -33,7 +36,9 @@ io::ReportSection envelope(const Location& location, double alpha) {
       "only " +
       fixed(100.0 * alpha, 0) + " % of cases. Here, " +
       count_of(static_cast<std::size_t>(outside), location.envelope.size()) +
-      " lie outside (p = " + short_number(location.p) + ")."};
+      " lie outside (p = " + short_number(location.p) +
+      "). Each number is counted in units of its own scatter in the model, with very great ones drawn in, not in "
+      "seconds."};
   section.charts.emplace_back(envelope_chart(location, alpha));
   return section;
 }
@@ -50,10 +55,15 @@ io::ReportSection candidates(const Outcome& outcome) {
   return section;
 }
 
-io::ReportSection reasons(const Outcome& outcome) {
+io::ReportSection reasons(const Outcome& outcome, double alpha) {
   io::ReportSection section{"Every candidate, and why it was kept or dropped", {}, {}, {}};
+  section.paragraphs = {
+      "p: of two tests, whether the effect's own data look like these and whether another effect explains these "
+      "better, "
+      "the smaller p, doubled since there are two. At most " +
+      short_number(alpha) + " speaks against the effect."};
   io::Table table{{"effect", "family", "probability", "p", "why"}, {}};
-  for (const Candidate& candidate : outcome.candidates) {
+  for (const Candidate& candidate : with_twins(outcome.candidates)) {
     table.rows.push_back({candidate.score.entry, candidate.family, fixed(100.0 * candidate.score.probability, 0) + " %",
                           short_number(candidate.score.p), candidate.reason});
   }
@@ -82,9 +92,19 @@ io::ReportSection strength(const std::vector<FittedEffect>& fits) {
 
 std::string what_is_shown(const Verification& v) {
   if (v.closed) return "With what was put in, the model agrees with trials that it was not fitted on.";
-  if (v.shrunk)
-    return "With what was put in, the model is closer to trials that it was not fitted on, but still differs.";
+  const std::string closer = "With what was put in, the model is closer to trials that it was not fitted on, ";
+  if (v.shrunk && v.refused)
+    return closer + "but the test of everything still finds a difference there (p = " + short_number(v.after.p) + ").";
+  if (v.shrunk) return closer + "but these trials alone are too few to tell even the model as it is from the data.";
   return "That the model is closer with what was put in is not shown.";
+}
+
+/// Chance carries a share beyond all that can be closed.
+std::string what_is_closed(const Verification& v) {
+  if (v.share_closed >= 1.0)
+    return "with it, the data are as near to the model as two of its own runs are to each other, on average.";
+  return fixed(100.0 * v.share_closed, 0) +
+         " % of what can be closed is closed (the rest is how far two runs of the model are apart).";
 }
 
 io::ReportSection held_out(const Verification& v, const std::string& named) {
@@ -94,8 +114,7 @@ io::ReportSection held_out(const Verification& v, const std::string& named) {
       "Trials were set aside, what is missing was sought and fitted without them, and then they were compared with the "
       "model before and after, " +
           std::to_string(v.n_folds) + " times over. A trial gets nearer by " + short_number(v.gain.low) + " to " +
-          short_number(v.gain.high) + " on average (95 % interval); " + fixed(100.0 * v.share_closed, 0) +
-          " % of what can be closed is closed."};
+          short_number(v.gain.high) + " on average (95 % interval); " + what_is_closed(v)};
   section.charts.emplace_back(held_out_chart(v, named));
   io::Table table{{"on trials set aside", "before", "after"}, {}};
   table.rows = {{"seconds between model and data, mean", fixed(v.before.area_s, 1), fixed(v.after.area_s, 1)},
@@ -120,7 +139,7 @@ io::Report report_page(const Outcome& outcome, double alpha) {
     const std::string put_in = undecided ? "the likeliest of each fold" : joined(outcome.named, "and");
     report.sections.push_back(held_out(*outcome.verification, put_in));
   }
-  if (outcome.verdict != Verdict::no_disagreement) report.sections.push_back(reasons(outcome));
+  if (outcome.verdict != Verdict::no_disagreement) report.sections.push_back(reasons(outcome, alpha));
   return report;
 }
 

@@ -1,9 +1,12 @@
 #include "pirsim/reconcile/statistics.hpp"
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <cmath>
 #include <limits>
 
+#include "pirsim/core/error.hpp"
+#include "pirsim/io/csv_writer.hpp"
 #include "reconcile/bit_statistics.hpp"
 
 namespace pirsim::reconcile {
@@ -221,14 +224,40 @@ bool every_row_known(std::span<const std::uint8_t> bits, std::size_t n_sensors) 
   return true;
 }
 
-DataShape::Run shape_of_run(const Series& run, std::size_t n_sensors) {
+/// Rows of the runs of one trial.
+struct Lengths {
+  std::size_t shortest_lead = 0, shortest_tail = 0, longest_main = 0;
+};
+
+Lengths lengths_of(std::size_t trial, std::span<const Series> runs, std::size_t n_sensors) {
+  Lengths lengths;
+  bool any = false;
+  for (const Series& run : runs) {
+    if (run.trial != trial) continue;
+    const std::size_t tail = run.n_rows(n_sensors) - run.main_end;
+    lengths.shortest_lead = any ? std::min(lengths.shortest_lead, run.main_begin) : run.main_begin;
+    lengths.shortest_tail = any ? std::min(lengths.shortest_tail, tail) : tail;
+    lengths.longest_main = std::max(lengths.longest_main, run.main_end - run.main_begin);
+    any = true;
+  }
+  return lengths;
+}
+
+DataShape::Run shape_of_run(const Series& run, const Lengths& usual, std::size_t n_sensors) {
   const std::span<const std::uint8_t> bits = run.bits;
   const auto lead = bits.first(run.main_begin * n_sensors), tail = bits.subspan(run.main_end * n_sensors);
   const auto main = bits.subspan(lead.size(), bits.size() - lead.size() - tail.size());
-  const auto has = [&](std::span<const std::uint8_t> part) {
-    return !part.empty() && every_row_known(part, n_sensors);
+  const auto has = [&](std::span<const std::uint8_t> part, std::size_t shortest) {
+    constexpr std::size_t a_row = 1;  // by which walks of people with another gait may be shorter (assumed)
+    const std::size_t n_rows = part.size() / n_sensors;
+    return n_rows > 0 && n_rows + a_row >= shortest && every_row_known(part, n_sensors);
   };
-  DataShape::Run shape{run.trial, run.replicate, run.main_end - run.main_begin, has(lead), has(tail), {}};
+  DataShape::Run shape{run.trial,
+                       run.replicate,
+                       run.main_end - run.main_begin,
+                       has(lead, usual.shortest_lead),
+                       has(tail, usual.shortest_tail),
+                       {}};
   if (std::ranges::find(main, unknown_bit) == main.end()) return shape;
   for (const std::uint8_t bit : main) shape.unknown.push_back(bit == unknown_bit ? 1 : 0);
   return shape;
@@ -252,6 +281,34 @@ std::vector<DataShape::Run> summed(const Measured& measured, std::size_t n_senso
   return all;
 }
 
+/// All faults at once.
+void refuse_longer_than_study(const StudyFrame& frame, const Measured& measured, std::span<const Series> pilot) {
+  if (frame.counted_phases.empty()) return;  // then there is no part that could be taken for another
+  constexpr double longer = 1.05;            // assumed: who sits down earlier or later
+  const std::string phases = boost::algorithm::join(frame.counted_phases, ", ");
+  Diagnostics faults;
+  for (std::size_t trial = 0; trial < frame.trials.size(); ++trial) {
+    const auto longest = static_cast<double>(lengths_of(trial, pilot, frame.sensors.size()).longest_main);
+    if (longest == 0.0) continue;
+    const auto refuse = [&](const std::string& what, const std::string& hint) {
+      faults.error({measured.file, 0, 0}, "trial '" + frame.trials[trial] + "': " + what + ", but '" + phases +
+                                              "' lasts at most " + io::csv_number(longest * frame.window_s) +
+                                              " s in the simulation; " + hint);
+    };
+    for (const Measured::Sum& sum : measured.sums) {
+      if (sum.trial != trial || sum.seconds <= longer * longest * frame.window_s) continue;
+      refuse("'" + frame.sensors[sum.sensor] + "' has " + io::csv_number(sum.seconds) + " s with motion",
+             "give the sum of one run, of that part only");
+    }
+    for (const Series& run : measured.runs) {
+      const std::size_t n_main = run.main_end - run.main_begin;
+      if (measured.tells_phases || run.trial != trial || static_cast<double>(n_main) <= longer * longest) continue;
+      refuse(std::to_string(n_main) + " rows without a column 'phase'", "leave out the others, or give the phases");
+    }
+  }
+  faults.throw_if_errors();
+}
+
 }  // namespace
 
 std::string name(CellStatistic statistic) {
@@ -273,7 +330,7 @@ DataShape full_shape(const StudyFrame& frame, Measured::Kind kind, int n_replica
     const auto run = std::ranges::find(pilot, trial, &Series::trial);
     if (run == pilot.end()) continue;
     for (int replicate = 1; replicate <= n_replicates; ++replicate) {
-      shape.runs.push_back(shape_of_run(*run, frame.sensors.size()));
+      shape.runs.push_back(shape_of_run(*run, {}, frame.sensors.size()));
       shape.runs.back().replicate = replicate;
     }
   }
@@ -281,6 +338,7 @@ DataShape full_shape(const StudyFrame& frame, Measured::Kind kind, int n_replica
 }
 
 DataShape shape_of(const StudyFrame& frame, const Measured& measured, std::span<const Series> pilot) {
+  refuse_longer_than_study(frame, measured, pilot);
   const std::size_t n = frame.sensors.size();
   DataShape shape = full_shape(frame, measured.kind, measured.n_replicates(), pilot);
   std::ranges::fill(shape.known_cells, std::uint8_t{0});
@@ -291,12 +349,31 @@ DataShape shape_of(const StudyFrame& frame, const Measured& measured, std::span<
   }
   shape.runs.clear();
   for (const Series& run : measured.runs) {
-    shape.runs.push_back(shape_of_run(run, n));
+    shape.runs.push_back(shape_of_run(run, lengths_of(run.trial, pilot, n), n));
     for (std::size_t i = run.main_begin * n; i < run.main_end * n; ++i) {
       if (run.bits[i] != unknown_bit) shape.known_cells[run.trial * n + i % n] = 1;
     }
   }
   return shape;
+}
+
+std::vector<std::string> notes_on(const DataShape& shape, const Measured& measured, std::size_t n_sensors) {
+  std::size_t leads = 0, tails = 0;
+  for (std::size_t i = 0; i < measured.runs.size(); ++i) {
+    const Series& run = measured.runs[i];
+    leads += run.main_begin > 0 && !shape.runs[i].has_lead ? 1 : 0;
+    tails += run.main_end < run.n_rows(n_sensors) && !shape.runs[i].has_tail ? 1 : 0;
+  }
+  std::vector<std::string> notes;
+  const auto add = [&](std::size_t n, const std::string& which, const std::string& because) {
+    if (n == 0) return;
+    notes.push_back("What comes " + which + " the counted phases is left out of the comparison in " +
+                    std::to_string(n) + (n == 1 ? " run: " : " runs: ") + because +
+                    ", or some of its rows are unknown.");
+  };
+  add(leads, "before", "the recording begins later than any simulated one");
+  add(tails, "after", "the recording ends earlier than any simulated one");
+  return notes;
 }
 
 Profile profile_of(const StudyFrame& frame, const ScriptSpec& script, std::span<const Series> runs) {

@@ -16,4 +16,7 @@ namespace pirsim::io {
 /// The script as YAML that read_script() reads back to the same spec: trials and people written out.
 [[nodiscard]] std::string to_yaml(const ScriptSpec& script);
 
+/// The same script for a file in another folder: the files that it refers to are found from there.
+[[nodiscard]] ScriptSpec moved(ScriptSpec script, const std::filesystem::path& folder);
+
 }  // namespace pirsim::io

@@ -61,7 +61,9 @@ struct Measured {
   std::vector<Series> runs;        ///< of series: by trial, then replicate, numbered from 1 in every trial
   std::vector<Sum> sums;           ///< of sums; cells that aren't there weren't measured
   std::vector<std::string> notes;  ///< sentences: what was done with which rows
+  std::string file;                ///< its name, for messages
   std::string digest;              ///< SHA-256 of the file
+  bool tells_phases = true;        ///< or all rows are taken for the counted ones
 
   [[nodiscard]] int n_replicates() const noexcept;        ///< the greatest number of runs of a trial
   [[nodiscard]] std::vector<std::size_t> trials() const;  ///< ascending; of which anything was measured

@@ -40,7 +40,7 @@ struct Outcome {
   Verdict verdict = Verdict::no_disagreement;
   std::string sentence;  ///< the verdict for a reader
   Location location;
-  std::vector<Candidate> candidates;  ///< most probable first; without `nothing`
+  std::vector<Candidate> candidates;  ///< most probable first; without `nothing` and twins
   EntryScore nothing;                 ///< how well the plain model fits
   FamilyScore family;                 ///< whose effects are likeliest together
   std::vector<std::string> named;     ///< effects put into the model, or those that can't be told apart; of `one_of`
@@ -52,7 +52,11 @@ struct Outcome {
   std::vector<std::string> telling_features;
   double calibration_error = 0.0;
   std::string table_key;
+  std::vector<std::string> notes;  ///< sentences beside the data's own: what was done with which rows
   std::vector<std::string> trail;  ///< every decision, in order
 };
+
+/// The candidates, and after each those that change the model in the same way and were judged as one with it.
+[[nodiscard]] std::vector<Candidate> with_twins(const std::vector<Candidate>& candidates);
 
 }  // namespace pirsim::reconcile

@@ -27,8 +27,13 @@ struct DataShape {
   std::vector<std::uint8_t> known_cells;  ///< (n_trials x n_sensors) 1 where anything was measured
   bool operator==(const DataShape&) const = default;
 };
-/// pilot: runs of the base model, for what sums don't tell.
+/// pilot: runs of the base model, for what sums don't tell. What comes before and after the main part is taken for
+/// unknown if it is shorter than in any of them: the recording began late, or ended early. Throws Error(input) for what
+/// can't be of this study: sums longer than its main parts, or rows that are, if the file doesn't tell phases.
 [[nodiscard]] DataShape shape_of(const StudyFrame& frame, const Measured& measured, std::span<const Series> pilot);
+/// Sentences: what is unknown in this shape though the file has rows of it.
+[[nodiscard]] std::vector<std::string> notes_on(const DataShape& shape, const Measured& measured,
+                                                std::size_t n_sensors);
 /// Everything is known: n_replicates runs of every trial, with the main parts of these pilot runs.
 [[nodiscard]] DataShape full_shape(const StudyFrame& frame, Measured::Kind kind, int n_replicates,
                                    std::span<const Series> pilot);

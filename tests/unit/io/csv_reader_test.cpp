@@ -103,3 +103,11 @@ TEST_CASE("faults of a table of measured counts are all told", "[csv]") {
         "f:5:1: error: expected both or neither of min_sim and max_sim");
   CHECK(refusal_of_cells("trial,sensor,real\r\nS1,A,3\r\n") == "accepted");
 }
+
+TEST_CASE("a table with other separators is told so", "[csv]") {
+  const std::string refusal = "f:1:1: error: columns must be separated by commas, not by semicolons or tabs";
+  CHECK(refusal_of("trial;time_s\nS1;1,5\n") == refusal);
+  CHECK(refusal_of("trial\ttime_s\nS1\t1.5\n") == refusal);
+  CHECK(refusal_of("trial\nS1\n") == "accepted");
+  CHECK(refusal_of("trial,a;b\nS1,1\n") == "accepted");
+}

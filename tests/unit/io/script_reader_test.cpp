@@ -97,3 +97,23 @@ TEST_CASE("two actions in one entry, an entry without one, and two people of one
   CHECK(fault(people + "      - at_s: 4\n").find("an action is missing") != std::string::npos);
   CHECK(fault("pirsim_script: 1\npeople: [{id: a}, {id: a}]\n").find("a second person 'a'") != std::string::npos);
 }
+
+TEST_CASE("a script for another folder finds the same files from there", "[io]") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "studies");
+  std::filesystem::create_directories(folder.path() / "found" / "deep");
+  std::ofstream(folder.path() / "sums.csv") << "trial,sensor,real\n";
+  std::ofstream(folder.path() / "studies" / "s.yaml") << "pirsim_script: 1\npeople: []\n"
+                                                         "summary: {phases: [working], reference: ../sums.csv}\n";
+  const ScriptSpec script = io::read_script(folder.path() / "studies" / "s.yaml");
+  const std::filesystem::path there = folder.path() / "found" / "deep" / "s.yaml";
+  std::ofstream(there) << io::to_yaml(io::moved(script, there.parent_path()));
+  const ScriptSpec again = io::read_script(there);
+  CHECK(again.summary.reference_file == "../../sums.csv");
+  CHECK(std::filesystem::equivalent(std::filesystem::path(again.directory) / again.summary.reference_file,
+                                    folder.path() / "sums.csv"));
+  ScriptSpec absolute = script;
+  absolute.summary.reference_file = "/sums.csv";
+  CHECK(io::moved(absolute, there.parent_path()).summary.reference_file == "/sums.csv");
+  CHECK(io::moved(ScriptSpec{}, there.parent_path()).summary.reference_file.empty());
+}

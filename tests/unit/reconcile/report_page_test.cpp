@@ -128,3 +128,32 @@ TEST_CASE("the page says the verdict first and shows what each verdict has", "[r
   CHECK_FALSE(says(nothing, "<div class=\"charts dots\">"));
   CHECK(says(nothing, "Nothing was looked for"));
 }
+
+TEST_CASE("the page says what held-out trials show and no more", "[report]") {
+  Outcome outcome = named();
+  const auto page = [&] { return to_html(report_page(outcome, 0.05)); };
+  CHECK(says(page(), "these trials alone are too few to tell even the model as it is"));
+  outcome.verification->refused = true;
+  outcome.verification->after.p = 0.049;
+  outcome.verification->share_closed = 0.9;
+  CHECK(says(page(), "the test of everything still finds a difference there (p = 0.049)"));
+  CHECK(says(page(), "90 % of what can be closed is closed"));
+  outcome.verification->share_closed = 1.05;
+  CHECK_FALSE(says(page(), "of what can be closed"));
+  CHECK(says(page(), "as near to the model as two of its own runs"));
+  outcome.verification->closed = true;
+  CHECK(says(page(), "the model agrees with trials that it was not fitted on"));
+}
+
+TEST_CASE("an effect that changes the model as another does stands beside it wherever candidates are listed",
+          "[report]") {
+  Outcome outcome = named();
+  outcome.candidates[1].score.entry = "range_scale";
+  const std::vector<Candidate> all = with_twins(outcome.candidates);
+  REQUIRE(all.size() == 3);
+  CHECK(all[2].score.entry == "thermal_contrast");
+  CHECK_THAT(all[2].reason, contains("Judged as range_scale"));
+  CHECK(says(to_html(report_page(outcome, 0.05)), "thermal_contrast"));
+  outcome.candidates[0].score.entry = "thermal_contrast";  // asked for by itself
+  CHECK(with_twins(outcome.candidates).size() == 2);
+}

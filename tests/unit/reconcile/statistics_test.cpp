@@ -171,3 +171,57 @@ TEST_CASE("a cell's mean is over the runs in which its sensor is known", "[stati
     CHECK(s[cell_index(two, 1, 1, CellStatistic::seconds)] == 4.0F);
   }
 }
+
+namespace {
+
+const StudyFrame phased{{"S1"}, {"A", "B"}, {"working"}, 1.0};
+
+Series phased_run(std::size_t lead, std::size_t main, std::size_t tail) {
+  return {0, 1, lead, lead + main, std::vector<std::uint8_t>(2 * (lead + main + tail), 0)};
+}
+
+Measured measured_of(Series run) {
+  Measured measured;
+  measured.file = "m.csv";
+  measured.runs = {std::move(run)};
+  return measured;
+}
+
+}  // namespace
+
+TEST_CASE("what was recorded of the walks in and out is compared only if none of it was missed", "[statistics]") {
+  const std::vector<Series> pilot{phased_run(9, 60, 8), phased_run(8, 60, 7)};
+  const auto shape = [&](std::size_t lead, std::size_t tail) {
+    return shape_of(phased, measured_of(phased_run(lead, 60, tail)), pilot).runs.front();
+  };
+  CHECK(shape(8, 7).has_lead);
+  CHECK(shape(7, 6).has_lead);  // a row is within what another gait does
+  CHECK(shape(7, 6).has_tail);
+  CHECK(shape(12, 12).has_lead);
+  CHECK_FALSE(shape(6, 7).has_lead);
+  CHECK(shape(6, 7).has_tail);
+  CHECK_FALSE(shape(8, 5).has_tail);
+  CHECK_FALSE(shape(0, 0).has_lead);
+  const Measured late = measured_of(phased_run(3, 60, 7));
+  const auto notes = notes_on(shape_of(phased, late, pilot), late, 2);
+  REQUIRE(notes.size() == 1);
+  CHECK_THAT(notes[0], contains("before the counted phases") && contains("1 run:"));
+  const Measured whole = measured_of(phased_run(8, 60, 7));
+  CHECK(notes_on(shape_of(phased, whole, pilot), whole, 2).empty());
+}
+
+TEST_CASE("rows and sums that can't be of the counted phases are refused", "[statistics]") {
+  const std::vector<Series> pilot{phased_run(9, 60, 8)};
+  Measured rows = measured_of(phased_run(0, 77, 0));
+  CHECK_NOTHROW(shape_of(phased, rows, pilot));  // the file says itself which are
+  rows.tells_phases = false;
+  CHECK_THROWS_WITH(shape_of(phased, rows, pilot), contains("m.csv: error: trial 'S1': 77 rows") && contains("60 s"));
+  rows.runs = {phased_run(0, 62, 0)};
+  CHECK_NOTHROW(shape_of(phased, rows, pilot));
+  Measured sums;
+  sums.kind = Measured::Kind::sums;
+  sums.sums = {{0, 0, 1, 60.0}, {0, 1, 1, 999.0}};
+  CHECK_THROWS_WITH(shape_of(phased, sums, pilot), contains("'B' has 999 s with motion"));
+  sums.sums[1].seconds = 12.0;
+  CHECK_NOTHROW(shape_of(phased, sums, pilot));
+}
