@@ -2,6 +2,7 @@
 #include <unistd.h>
 #include <CLI/CLI.hpp>
 
+#include <boost/algorithm/string/join.hpp>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
@@ -209,12 +210,28 @@ void add_reconcile_options(CLI::App& command, ReconcileOptions& options) {
   command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
 }
 
+/// Words for the values of an enumeration.
+template <typename Value>
+CLI::Validator one_of(std::map<std::string, Value> values) {
+  return {[values = std::move(values)](std::string& text) -> std::string {
+            if (const auto known = values.find(text); known != values.end()) {
+              text = std::to_string(static_cast<int>(known->second));
+              return {};
+            }
+            std::vector<std::string> words;
+            for (const auto& [word, value] : values) words.push_back(word);
+            return "expected one of " + boost::algorithm::join(words, ", ") + ", not '" + text + "'" +
+                   did_you_mean(text, words);
+          },
+          "", "one of"};
+}
+
 void add_selftest_options(CLI::App& command, SelftestOptions& options) {
   using Kind = reconcile::Measured::Kind;
   using reconcile::LeaveOut;
   command.add_option("--data", options.kind, "what is planted in: series or sums (default: series)")
       ->option_text("KIND")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Kind>{{"series", Kind::series}, {"sums", Kind::sums}}));
+      ->transform(one_of<Kind>({{"series", Kind::series}, {"sums", Kind::sums}}));
   command.add_option("--runs", options.runs, "runs of every trial (default: 1)")
       ->option_text("N")
       ->check(CLI::Range(1, 100));
@@ -233,15 +250,14 @@ void add_selftest_options(CLI::App& command, SelftestOptions& options) {
       ->option_text("N");
   command.add_option("--leave-out", options.leave_out, "none, or each: judge by catalogues that lack the effect, too")
       ->option_text("HOW")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, LeaveOut>{{"none", LeaveOut::none}, {"each", LeaveOut::each}}));
+      ->transform(one_of<LeaveOut>({{"none", LeaveOut::none}, {"each", LeaveOut::each}}));
 }
 
 void add_plan_options(CLI::App& command, PlanOptions& options) {
   using Kind = reconcile::Measured::Kind;
   command.add_option("--data", options.kind, "what is to be measured: series or sums (default: series)")
       ->option_text("KIND")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Kind>{{"series", Kind::series}, {"sums", Kind::sums}}));
+      ->transform(one_of<Kind>({{"series", Kind::series}, {"sums", Kind::sums}}));
   command.add_option("--runs", options.runs, "planned runs of every trial (default: 1)")
       ->option_text("N")
       ->check(CLI::Range(1, 100));
@@ -249,11 +265,6 @@ void add_plan_options(CLI::App& command, PlanOptions& options) {
 
 void add_seal_options(CLI::App& command, SealOptions& options) {
   using reconcile::Hidden;
-  const std::map<std::string, Hidden> kinds{{"any", Hidden::any},
-                                            {"nothing", Hidden::nothing},
-                                            {"one", Hidden::one},
-                                            {"two", Hidden::two},
-                                            {"alien", Hidden::alien}};
   command.add_option("-o,--out", options.output, "folder for data and hash (default: challenge)")->option_text("DIR");
   command.add_option("--answer", options.answer, "where the sealed answer goes, JSON; keep it secret")
       ->option_text("FILE");
@@ -261,7 +272,11 @@ void add_seal_options(CLI::App& command, SealOptions& options) {
       ->option_text("FILE");
   command.add_option("--hide", options.hidden, "any, nothing, one, two or alien (default: any)")
       ->option_text("KIND")
-      ->transform(CLI::CheckedTransformer(kinds));
+      ->transform(one_of<Hidden>({{"any", Hidden::any},
+                                  {"nothing", Hidden::nothing},
+                                  {"one", Hidden::one},
+                                  {"two", Hidden::two},
+                                  {"alien", Hidden::alien}}));
   command.add_option("--runs", options.runs, "runs of every trial (default: 1)")
       ->option_text("N")
       ->check(CLI::Range(1, 100));

@@ -27,11 +27,27 @@ std::string new_salt() {
   return text.str();
 }
 
+/// What was committed to must not be lost, and the answer not be handed over with the data.
+void check_files(const SealOptions& options, const std::filesystem::path& commitment) {
+  for (const std::filesystem::path& file : {options.answer, commitment}) {
+    if (std::filesystem::exists(file))
+      throw Error(ErrorCode::usage, "'" + file.string() + "' is there already: a sealed challenge isn't overwritten");
+  }
+  std::error_code unknown;
+  const auto folder_of = [&](const std::filesystem::path& file) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(file).parent_path(), unknown);
+  };
+  if (folder_of(options.answer) == folder_of(commitment))
+    throw Error(ErrorCode::usage, "--answer: the answer is secret, and --out is the folder that is handed over");
+}
+
 }  // namespace
 
 void seal_challenge(const Inputs& inputs, const SealOptions& options) {
   if (options.answer.empty())
     throw Error(ErrorCode::usage, "--answer FILE is missing; see pirsim reconcile seal --help");
+  const std::filesystem::path commitment = options.output / "commitment.sha256";
+  check_files(options, commitment);
   const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
@@ -48,14 +64,15 @@ void seal_challenge(const Inputs& inputs, const SealOptions& options) {
   io::write_text_file(options.answer, challenge.answer);
   io::write_text_file(options.output / "measured.csv", challenge.rows);
   // as sha256sum -c reads it
-  io::write_text_file(options.output / "commitment.sha256",
-                      challenge.commitment + "  " + options.answer.filename().string() + '\n');
+  io::write_text_file(commitment, challenge.commitment + "  " + options.answer.filename().string() + '\n');
   std::cout << challenge.commitment << '\n';
   require_written();
 }
 
 void open_challenge(const OpenOptions& options) {
   const std::string published = io::read_text_file(options.commitment).substr(0, digest_digits);
+  if (published.size() != digest_digits || published.find_first_not_of("0123456789abcdef") != std::string::npos)
+    throw Error(ErrorCode::input, {options.commitment.string(), 1, 1}, "expected a SHA-256 of 64 hexadecimal digits");
   const reconcile::Score score =
       reconcile::open_answer(io::read_text_file(options.answer), published, io::read_text_file(options.report));
   std::cout << score.sentence << '\n';

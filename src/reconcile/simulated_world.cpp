@@ -65,7 +65,7 @@ SimulatedWorld::SimulatedWorld(const WorldSource& source, const StudyFrame& fram
       traced_ = std::make_unique<Traced>(world_);
       return;
     } catch (const Error& error) {
-      if (error.code() != ErrorCode::infeasible || attempt + 1 == most_attempts) throw;
+      if (error.code() != ErrorCode::infeasible || attempt + 1 == most_rooms) throw;
     }
   }
 }

@@ -3,6 +3,7 @@
 #include "pirsim/core/digest.hpp"
 #include "pirsim/core/version.hpp"
 #include "pirsim/effects/catalogue.hpp"
+#include "pirsim/geom/triangle_surface.hpp"
 #include "pirsim/io/script_reader.hpp"
 #include "pirsim/reconcile/reference_table.hpp"
 
@@ -53,14 +54,16 @@ void add(Fingerprint& print, const SensorModelSpec& model) {
   }
 }
 
-void add(Fingerprint& print, const SceneSpec& scene) {
-  for (const TriMesh& mesh : scene.meshes) {
-    print.add(mesh.name);
-    for (const Vec3& p : mesh.positions) print.add(p);
-    for (const auto& triangle : mesh.triangles) {
-      for (const auto corner : triangle) print.add_number(corner);
-    }
+void add(Fingerprint& print, const TriMesh& mesh) {
+  print.add(mesh.name);
+  for (const Vec3& p : mesh.positions) print.add(p);
+  for (const auto& triangle : mesh.triangles) {
+    for (const auto corner : triangle) print.add_number(corner);
   }
+}
+
+void add(Fingerprint& print, const SceneSpec& scene) {
+  for (const TriMesh& mesh : scene.meshes) add(print, mesh);
   for (const SensorSpec& sensor : scene.sensors) {
     print.add(sensor.id);
     print.add(sensor.model);
@@ -81,6 +84,19 @@ void add(Fingerprint& print, const SceneSpec& scene) {
     for (const Vec2& p : loop) print.add(p);
   }
   for (const auto& [id, model] : scene.sensor_models) add(print, model);
+}
+
+/// What YAML doesn't hold of it.
+void add_body_meshes(Fingerprint& print, const ScriptSpec& script) {
+  for (const TrialSpec& trial : script.trials) {
+    for (const PersonSpec& person : trial.people) {
+      print.add_number(person.body_meshes.size());
+      for (const auto& [part, mesh] : person.body_meshes) {
+        print.add(part);
+        add(print, mesh.surface->mesh());
+      }
+    }
+  }
 }
 
 void add(Fingerprint& print, const NuisanceSpec& nuisance) {
@@ -115,6 +131,7 @@ std::string table_key(const WorldSource& source, const StudyFrame& frame, int n_
   script.seed = 0;  // worlds have seeds of their own
   script.replicates = 1;
   print.add(io::to_yaml(script));
+  add_body_meshes(print, script);
   add(print, source.nuisance);
   print.add_number(source.seed);
   print.add_number(n_replicates);

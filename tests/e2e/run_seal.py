@@ -6,6 +6,7 @@ Usage: run_seal.py PIRSIM DATA_DIRECTORY
 import hashlib
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -21,6 +22,8 @@ def main():
         return result
 
     def sealed(folder, kind, seed):
+        shutil.rmtree(folder / "public", ignore_errors=True)
+        (folder / "answer.json").unlink(missing_ok=True)
         call("seal", *study, "--hide", kind, "--secret-seed", seed, "-o", folder / "public", "--answer",
              folder / "answer.json")
         return json.loads((folder / "answer.json").read_text())
@@ -92,6 +95,21 @@ def main():
         assert call(*study, "--measured", one / "answer.json", "-o", pathlib.Path(name) / "out", code=3)
         call(*study, "--measured", one / "public/measured.csv", "--answer", one / "answer.json", code=2)
         call("seal", *study, "-o", one / "x", code=2)
+
+        # What was committed to is never lost, and the answer is not handed over with the data.
+        before = {file: file.read_bytes() for file in one.rglob("*") if file.is_file()}
+        for out, secret in ((one / "public", two / "new.json"), (two / "new", one / "answer.json")):
+            assert "isn't overwritten" in call("seal", *study, "-o", out, "--answer", secret, code=2).stderr
+        assert {file: file.read_bytes() for file in one.rglob("*") if file.is_file()} == before
+        assert "secret" in call("seal", *study, "-o", two / "new", "--answer", two / "new/answer.json", code=2).stderr
+        assert not (two / "new").exists() and not (two / "new.json").exists()
+
+        # Messages that say what is wrong.
+        refused = call("seal", *study, "-o", two / "new", "--answer", two / "new.json", "--hide", "twoo", code=2).stderr
+        assert "expected one of" in refused and "two" in refused, refused
+        refused = call("open", "--answer", one / "answer.json", "--commitment", one / "public/measured.csv", "--report",
+                       one / "report.json", code=3).stderr
+        assert "64 hexadecimal digits" in refused, refused
 
 
 if __name__ == "__main__":
