@@ -39,7 +39,7 @@ THIRD_PARTY = {
     "nlopt": {"studies", "reconcile"},
     "Eigen": {"stats"},
     "boost/math": {"stats"},
-    "boost/algorithm": {"effects", "studies", "reconcile"},
+    "boost/algorithm": {"app", "effects", "studies", "reconcile"},
     "openssl": {"core"},
     "CLI": {"app"},
 }
