@@ -104,7 +104,7 @@ std::string what_is_closed(const Verification& v) {
   if (v.share_closed >= 1.0)
     return "with it, the data are as near to the model as two of its own runs are to each other, on average.";
   return fixed(100.0 * v.share_closed, 0) +
-         " % of what can be closed is closed (the rest is how far two runs of the model are apart).";
+         " % of what can be closed is closed; how far two runs of the model are apart can't be.";
 }
 
 io::ReportSection held_out(const Verification& v, const std::string& named) {
