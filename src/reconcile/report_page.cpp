@@ -21,9 +21,8 @@ io::ReportSection where(const Outcome& outcome, double alpha) {
           " times, each time in a slightly different room, since nobody knows seats and sensors exactly. On average, a "
           "difference below " +
           fixed(location.band_s, 0) +
-          " s in one cell can't be told from chance here. Of so many cells some lie outside their usual range by "
-          "chance "
-          "alone; a frame marks those that do with that allowed for."};
+          " s in one cell can't be told from chance here. Of so many cells some lie outside their usual range "
+          "by chance alone; a frame marks those that do with that allowed for."};
   section.charts.emplace_back(difference_chart(location, alpha));
   return section;
 }
@@ -59,8 +58,7 @@ io::ReportSection reasons(const Outcome& outcome, double alpha) {
   io::ReportSection section{"Every candidate, and why it was kept or dropped", {}, {}, {}};
   section.paragraphs = {
       "p: of two tests, whether the effect's own data look like these and whether another effect explains these "
-      "better, "
-      "the smaller p, doubled since there are two. At most " +
+      "better, the smaller p, doubled since there are two. At most " +
       short_number(alpha) + " speaks against the effect."};
   io::Table table{{"effect", "family", "probability", "p", "why"}, {}};
   for (const Candidate& candidate : with_twins(outcome.candidates)) {
