@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <functional>
 #include <map>
 #include <utility>
 #include <vector>
@@ -83,38 +82,32 @@ double dispersion(std::span<const std::uint8_t> bits) {
   return mean > 0.0 ? squares / (by_chance + 0.5) : 0.0;
 }
 
-/// exp(2 pi i f t / n) for the frequencies f from 1 on whose period is no shorter than the shortest.
-struct Waves {
-  explicit Waves(std::size_t n) : n_frequencies(n / shortest_period_rows) {
-    for (std::size_t row = 0; row < n; ++row) {
-      for (std::size_t f = 1; f <= n_frequencies; ++f) {
-        const double angle = 2.0 * pi * static_cast<double>(f * row % n) / static_cast<double>(n);
-        values.emplace_back(std::cos(angle), std::sin(angle));
-      }
-    }
+/// (n) exp(2 pi i k / n), made once for every n.
+const std::vector<std::complex<double>>& roots_of_unity(std::size_t n) {
+  thread_local std::map<std::size_t, std::vector<std::complex<double>>> known;
+  std::vector<std::complex<double>>& roots = known[n];
+  for (std::size_t k = roots.size(); k < n; ++k) {
+    const double angle = 2.0 * pi * static_cast<double>(k) / static_cast<double>(n);
+    roots.emplace_back(std::cos(angle), std::sin(angle));
   }
-  [[nodiscard]] std::span<const std::complex<double>> at(std::size_t row) const {
-    return std::span(values).subspan(row * n_frequencies, n_frequencies);
-  }
-  std::size_t n_frequencies;
-  std::vector<std::complex<double>> values;  ///< (n x n_frequencies)
-};
-
-/// Made once for every n.
-const Waves& waves_of(std::size_t n) {
-  thread_local std::map<std::size_t, Waves> known;
-  return known.try_emplace(n, n).first->second;
+  return roots;
 }
 
-/// Greatest |sum of exp(2 pi i f t / n)|^2 over the rows t with motion, divided by its expectation by chance.
+/// Greatest |sum of exp(2 pi i f t / n)|^2 over the rows t with motion, divided by its expectation by chance: of the
+/// frequencies f from 1 on whose period is no shorter than the shortest.
 double period_power(std::span<const std::uint8_t> bits) {
   const std::size_t n = bits.size();
   const auto count = static_cast<double>(std::ranges::count(bits, 1));
   if (count < 3.0 || count + 3.0 > static_cast<double>(n)) return 0.0;
-  const Waves& waves = waves_of(n);
-  std::vector<std::complex<double>> sums(waves.n_frequencies);
+  const std::vector<std::complex<double>>& roots = roots_of_unity(n);
+  std::vector<std::complex<double>> sums(n / shortest_period_rows);
   for (std::size_t row = 0; row < n; ++row) {
-    if (bits[row] == 1) std::ranges::transform(sums, waves.at(row), sums.begin(), std::plus<>());
+    if (bits[row] != 1) continue;
+    std::size_t k = 0;  // f * row modulo n
+    for (std::complex<double>& sum : sums) {
+      k = k + row < n ? k + row : k + row - n;
+      sum += roots[k];
+    }
   }
   double greatest = 0.0;
   for (const std::complex<double>& sum : sums) greatest = std::max(greatest, std::norm(sum));

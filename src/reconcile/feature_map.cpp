@@ -18,6 +18,16 @@ void standardise(std::vector<double>& values, const std::vector<std::size_t>& ov
   for (double& value : values) value = square > 1e-12 ? (value - mean) / std::sqrt(square) : 0.0;
 }
 
+/// Calls visit(column, value) for every number that is there, row by row.
+template <typename Visit>
+void for_all_known(const stats::Matrix<float>& table, const Visit& visit) {
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    for (std::size_t i = 0; i < table.columns(); ++i) {
+      if (!std::isnan(table(row, i))) visit(i, static_cast<double>(table(row, i)));
+    }
+  }
+}
+
 const action::Sit* first_seat(const TrialSpec& trial) {
   for (const PersonSpec& person : trial.people) {
     for (const ScriptedAction& action : person.actions) {
@@ -48,7 +58,8 @@ std::vector<CellKnowledge> cell_knowledge(const SceneSpec& scene, const ScriptSp
 FeatureMap::FeatureMap(const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge,
                        const stats::Matrix<float>& plain, std::vector<std::size_t> trials)
     : frame_(frame), trials_(std::move(trials)) {
-  for (const float value : plain.row(0)) known_.push_back(std::isnan(value) ? 0 : 1);
+  known_.assign(plain.columns(), 0);
+  for_all_known(plain, [&](std::size_t i, double) { known_[i] = 1; });
   learn_scales(plain);
   learn_covariates(knowledge);
   Writer writer;
@@ -64,23 +75,18 @@ bool FeatureMap::known(std::size_t trial, std::size_t sensor, std::size_t statis
 
 void FeatureMap::learn_scales(const stats::Matrix<float>& plain) {
   const std::size_t n = plain.columns();
-  const auto rows = static_cast<double>(plain.rows());
-  std::vector<double> square(n, 0.0);
+  std::vector<double> rows(n, 0.0),
+      square(n, 0.0);  // rows that have the statistic: a counted phase may not come in all
   mean_.assign(n, 0.0);
   expected_log_.assign(frame_.n_cells(), 0.0);
+  for_all_known(plain, [&](std::size_t i, double) { rows[i] += 1.0; });
+  for_all_known(plain, [&](std::size_t i, double value) { mean_[i] += value / rows[i]; });
+  for_all_known(plain,
+                [&](std::size_t i, double value) { square[i] += (value - mean_[i]) * (value - mean_[i]) / rows[i]; });
   for (std::size_t row = 0; row < plain.rows(); ++row) {
-    for (std::size_t i = 0; i < n; ++i) {
-      if (known_[i] != 0) mean_[i] += static_cast<double>(plain(row, i)) / rows;
-    }
     for (std::size_t cell = 0; cell < frame_.n_cells(); ++cell) {
-      const std::size_t seconds = cell * n_cell_statistics;
-      if (known_[seconds] != 0) expected_log_[cell] += std::log1p(static_cast<double>(plain(row, seconds))) / rows;
-    }
-  }
-  for (std::size_t row = 0; row < plain.rows(); ++row) {
-    for (std::size_t i = 0; i < n; ++i) {
-      const double d = known_[i] != 0 ? static_cast<double>(plain(row, i)) - mean_[i] : 0.0;
-      square[i] += d * d / rows;
+      const std::size_t i = cell * n_cell_statistics;  // its seconds
+      if (!std::isnan(plain(row, i))) expected_log_[cell] += std::log1p(static_cast<double>(plain(row, i))) / rows[i];
     }
   }
   // A statistic that hardly varies in one cell must not drown the others: its scatter is at least a part of what the

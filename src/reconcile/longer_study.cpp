@@ -34,8 +34,11 @@ ScriptedAction labelled(Action what, const ScriptSpec& script) {
   return {std::move(what), {}, script.summary.phases.empty() ? std::string() : script.summary.phases.front(), {}};
 }
 
+/// The first person of the script.
 TrialSpec alone(const ScriptSpec& script, std::string id) {
-  PersonSpec person = script.trials.front().people.front();
+  const auto peopled = std::ranges::find_if(script.trials, [](const TrialSpec& t) { return !t.people.empty(); });
+  if (peopled == script.trials.end()) throw Error(ErrorCode::infeasible, "nobody is in any trial");
+  PersonSpec person = peopled->people.front();
   person.role = PersonRole::subject;
   person.actions.clear();
   return {std::move(id), {std::move(person)}};

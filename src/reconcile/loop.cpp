@@ -46,7 +46,11 @@ const Loop::Step& Loop::look(const Settings& settings, double level) {
   Step& step = steps_.emplace_back();
   step.lab = make_laboratory(
       scene_, script, settings,
-      [&](const StudyFrame& frame, std::span<const Series> pilot) { return shape_of(frame, measured_, pilot); },
+      [&](const StudyFrame& frame, std::span<const Series> pilot) {
+        DataShape shape = shape_of(frame, measured_, pilot);
+        step.notes = notes_on(frame, shape, measured_, pilot);
+        return shape;
+      },
       observer_);
   step.observed = statistics_of(step.lab.frame, step.lab.shape, step.lab.table.profile, measured_);
   begin("where they differ, and which effects can have made the data");
@@ -62,7 +66,7 @@ const Loop::Step& Loop::look(const Settings& settings, double level) {
 void Loop::tell_first(const Step& first) {
   const Laboratory& lab = first.lab;
   std::vector<std::string> trail{"data " + measured_.digest + ", analysis seed " + std::to_string(settings_.seed)};
-  outcome_.notes = notes_on(lab.shape, measured_, lab.frame.sensors.size());
+  outcome_.notes = first.notes;
   for (const std::string& note : measured_.notes) trail.push_back("data: " + note);
   for (const std::string& note : outcome_.notes) trail.push_back("data: " + note);
   std::string held_out;
@@ -148,6 +152,12 @@ void Loop::conclude() {
     put_in_.clear();
   }
   outcome_.sentence = verdict_sentence(outcome_, settings_.alpha);
+  if (passes_ && outcome_.verdict == Verdict::none_in_catalogue) {
+    const Look& look = outcome_.looks.back();
+    const auto nearest = std::ranges::find(outcome_.candidates, look.put_in.front(),
+                                           [](const Candidate& candidate) { return candidate.score.entry; });
+    outcome_.sentence += " " + sentence_of_nearest(look, nearest->reason);
+  }
   if (!passes_ && !put_in_.empty()) {
     outcome_.sentence += " That is not all. " + what_a_look_showed(outcome_.looks.back());
   }

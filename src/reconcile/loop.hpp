@@ -23,7 +23,8 @@ class Loop {
   /// A look at the data with the table of one model.
   struct Step {
     Laboratory lab;
-    std::vector<float> observed;  ///< statistics of the measured data
+    std::vector<std::string> notes;  ///< what was done with which measured rows
+    std::vector<float> observed;     ///< statistics of the measured data
     Outcome outcome;
     SeenRows seen;
     std::size_t likeliest = 0;  ///< entry

@@ -34,6 +34,7 @@ Measured MeasuredReader::read() {
   replicate_ = table_.column("replicate");
   phase_ = table_.column("phase");
   time_ = table_.column("time_s");
+  refuse_both("trial", "seat");
   if (!trial_ && frame_.trials.size() > 1) {
     static_cast<void>(table_.required_column("trial", faults_));
     faults_.throw_if_errors();
@@ -74,6 +75,9 @@ void MeasuredReader::read_sums() {
   measured_.kind = Measured::Kind::sums;
   const std::size_t sensor = *table_.column("sensor");
   const auto seconds = table_.column("real") ? table_.column("real") : table_.required_column("seconds", faults_);
+  refuse_both("real", "seconds");
+  refuse_unknown_columns({"trial", "seat", "sensor", "replicate", "seconds", "real", "min_sim", "max_sim", "mean_sim",
+                          "in_range"});  // the last four: simulated by others, in the table that is shipped
   faults_.throw_if_errors();
   std::set<std::pair<RunKey, std::size_t>> seen;
   std::size_t missing = 0;
@@ -127,12 +131,16 @@ std::vector<std::optional<std::size_t>> MeasuredReader::sensor_columns() {
   return columns;
 }
 
+void MeasuredReader::refuse_both(const std::string& one, const std::string& other) {
+  if (table_.column(one) && table_.column(other))
+    faults_.error({file_, 1, 1}, "columns '" + one + "' and '" + other + "' mean the same: give one of them");
+}
+
 void MeasuredReader::refuse_unknown_columns(const std::vector<std::string>& known) {
   const std::vector<std::string> names = table_.names();
   for (const std::string& name : names) {
     if (std::ranges::find(known, name) != known.end()) continue;
-    faults_.error({file_, 1, 1}, "column '" + name + "' is neither a sensor of the scene nor known otherwise" +
-                                     did_you_mean(name, known));
+    faults_.error({file_, 1, 1}, "unknown column '" + name + "'" + did_you_mean(name, known));
   }
 }
 

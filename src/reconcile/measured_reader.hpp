@@ -29,6 +29,7 @@ class MeasuredReader {
   void read_sums();
   void read_rows();
   [[nodiscard]] std::vector<std::optional<std::size_t>> sensor_columns();
+  void refuse_both(const std::string& one, const std::string& other);
   void refuse_unknown_columns(const std::vector<std::string>& known);
   [[nodiscard]] std::optional<std::size_t> trial_of(std::size_t row);
   [[nodiscard]] int replicate_of(std::size_t row);

@@ -38,7 +38,7 @@ class Bits {
       }
     }
   }
-  /// (n_places) 0 or 1.
+  /// (n_places) 0 or 1; 0 where nothing was measured.
   [[nodiscard]] std::vector<std::uint8_t> of(std::span<const Series> runs, const Profile& profile) const {
     const std::size_t n = lab_.frame.sensors.size();
     std::vector<std::uint8_t> bits;
@@ -48,7 +48,8 @@ class Bits {
           runs, [&](const Series& s) { return s.trial == wanted.trial && s.replicate == wanted.replicate; });
       for (std::size_t i = 0; i < size; ++i) {
         const bool there = run != runs.end() && run->main_begin * n + i < run->main_end * n;
-        bits.push_back(there && run->bits[run->main_begin * n + i] == 1 ? 1 : 0);
+        const bool moved = there && run->bits[run->main_begin * n + i] == 1;
+        bits.push_back(moved && known[bits.size()] != 0 ? 1 : 0);
       }
     }
     return bits;

@@ -182,6 +182,12 @@ std::string sentence_of_refused(const Outcome& outcome, double alpha) {
          "), and no other effect of the catalogue explains what is left.";
 }
 
+std::string sentence_of_nearest(const Look& look, const std::string& reason) {
+  return look.put_in.front() +
+         " comes nearest: with it put in, the test of everything together sees no difference (p = " +
+         short_number(look.p) + "). " + reason;
+}
+
 std::string reason_of(const Candidate& candidate, double alpha) {
   const EntryScore& score = candidate.score;
   if (candidate.kept && score.p <= alpha) {

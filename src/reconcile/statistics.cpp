@@ -13,7 +13,9 @@ namespace pirsim::reconcile {
 namespace {
 
 constexpr float nothing_known = std::numeric_limits<float>::quiet_NaN();
-constexpr double busy_share = 0.12;  ///< of the rows
+constexpr double busy_share = 0.12;   ///< of the rows
+constexpr std::size_t a_row = 1;      ///< by which walks of people with another gait may be shorter (assumed)
+constexpr double a_twentieth = 1.05;  ///< by which main parts may be longer or shorter: who sits down earlier (assumed)
 
 constexpr auto first_sixth = static_cast<std::size_t>(CellStatistic::sixth_1);
 constexpr std::array<std::string_view, first_sixth> cell_names{
@@ -50,6 +52,12 @@ std::vector<Value> column(const std::vector<Value>& table, std::size_t n_columns
   return values;
 }
 
+bool knows_main_part(const DataShape::Run& shape, std::size_t sensor, std::size_t n_sensors) {
+  bool any = shape.unknown.empty();
+  for (std::size_t i = sensor; i < shape.unknown.size() && !any; i += n_sensors) any = shape.unknown[i] == 0;
+  return any;
+}
+
 double seconds_between(const Series& run, std::size_t begin, std::size_t end, std::size_t sensor, std::size_t n_sensors,
                        double window_s) {
   std::size_t rows = 0;
@@ -65,16 +73,19 @@ class TrialStatistics {
         profile_(profile),
         cells_(frame.sensors.size()),
         seconds_(frame.sensors.size()),
-        pairs_(n_pairs(frame), 0.0) {}
+        pairs_(n_pairs(frame), 0.0),
+        lead_known_(frame.sensors.size(), 1),
+        tail_known_(frame.sensors.size(), 1) {}
 
   void add(const Series& run, const DataShape::Run& shape, Measured::Kind kind) {
     const std::vector<std::uint8_t> bits = main_bits(run, shape, frame_.sensors.size());
     for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
-      if (knows(shape, sensor)) add_cell(run, shape, bits, sensor);
+      if (!knows(shape, sensor)) continue;
+      add_cell(run, shape, bits, sensor);
+      lead_known_[sensor] &= shape.lead_known[sensor];
+      tail_known_[sensor] &= shape.tail_known[sensor];
     }
     if (kind == Measured::Kind::series) add_trial(bits);
-    lead_known_ = lead_known_ && shape.has_lead;
-    tail_known_ = tail_known_ && shape.has_tail;
     ++n_runs_;
   }
 
@@ -99,18 +110,15 @@ class TrialStatistics {
 
  private:
   [[nodiscard]] bool knows(const DataShape::Run& shape, std::size_t sensor) const {
-    const std::size_t n = frame_.sensors.size();
-    bool any = shape.unknown.empty();
-    for (std::size_t i = sensor; i < shape.unknown.size() && !any; i += n) any = shape.unknown[i] == 0;
-    return any;
+    return knows_main_part(shape, sensor, frame_.sensors.size());
   }
   [[nodiscard]] bool known(std::size_t sensor, CellStatistic statistic, Measured::Kind kind) const {
     if (statistic == CellStatistic::run_variance) return seconds_[sensor].size() > 1;
     if (statistic == CellStatistic::seconds) return true;
     if (kind == Measured::Kind::sums) return false;
-    if (statistic == CellStatistic::lead_seconds) return lead_known_;
-    if (statistic == CellStatistic::tail_seconds || statistic == CellStatistic::late_tail_seconds) return tail_known_;
-    return true;
+    if (statistic == CellStatistic::lead_seconds) return lead_known_[sensor] != 0;
+    if (statistic != CellStatistic::tail_seconds && statistic != CellStatistic::late_tail_seconds) return true;
+    return tail_known_[sensor] != 0;
   }
   [[nodiscard]] double value_of(std::size_t sensor, CellStatistic statistic) const {
     const auto n_runs = static_cast<double>(seconds_[sensor].size());
@@ -201,8 +209,8 @@ class TrialStatistics {
   std::vector<CellValues> cells_;             ///< (n_sensors) sums over runs
   std::vector<std::vector<double>> seconds_;  ///< (n_sensors x n_runs that know anything of the sensor)
   std::array<double, n_trial_statistics> trial_{};
-  std::vector<double> pairs_;  ///< (n_pairs) sums over runs
-  bool lead_known_ = true, tail_known_ = true;
+  std::vector<double> pairs_;                          ///< (n_pairs) sums over runs
+  std::vector<std::uint8_t> lead_known_, tail_known_;  ///< (n_sensors) in all runs
   int n_runs_ = 0;
 };
 
@@ -216,17 +224,9 @@ double arm_period_s(const TrialSpec& trial) {
   return action::Work{}.arm_period_s;
 }
 
-/// No row of these (n_rows x n_sensors) is wholly unknown.
-bool every_row_known(std::span<const std::uint8_t> bits, std::size_t n_sensors) {
-  for (; !bits.empty(); bits = bits.subspan(n_sensors)) {
-    if (std::ranges::all_of(bits.first(n_sensors), [](std::uint8_t bit) { return bit == unknown_bit; })) return false;
-  }
-  return true;
-}
-
 /// Rows of the runs of one trial.
 struct Lengths {
-  std::size_t shortest_lead = 0, shortest_tail = 0, longest_main = 0;
+  std::size_t shortest_lead = 0, shortest_tail = 0, shortest_main = 0, longest_main = 0;
 };
 
 Lengths lengths_of(std::size_t trial, std::span<const Series> runs, std::size_t n_sensors) {
@@ -234,33 +234,51 @@ Lengths lengths_of(std::size_t trial, std::span<const Series> runs, std::size_t 
   bool any = false;
   for (const Series& run : runs) {
     if (run.trial != trial) continue;
-    const std::size_t tail = run.n_rows(n_sensors) - run.main_end;
-    lengths.shortest_lead = any ? std::min(lengths.shortest_lead, run.main_begin) : run.main_begin;
-    lengths.shortest_tail = any ? std::min(lengths.shortest_tail, tail) : tail;
-    lengths.longest_main = std::max(lengths.longest_main, run.main_end - run.main_begin);
+    const std::size_t tail = run.n_rows(n_sensors) - run.main_end, main = run.main_end - run.main_begin;
+    const auto shortest = [&](std::size_t& least, std::size_t length) {
+      least = any ? std::min(least, length) : length;
+    };
+    shortest(lengths.shortest_lead, run.main_begin);
+    shortest(lengths.shortest_tail, tail);
+    shortest(lengths.shortest_main, main);
+    lengths.longest_main = std::max(lengths.longest_main, main);
     any = true;
   }
   return lengths;
 }
 
-DataShape::Run shape_of_run(const Series& run, const Lengths& usual, std::size_t n_sensors) {
+/// (n_sensors) 1 where all bits of a part (n_rows x n_sensors) before or after the main one are known, and as many as
+/// in the shortest of its kind.
+std::vector<std::uint8_t> known_sensors(std::span<const std::uint8_t> part, std::size_t shortest,
+                                        std::size_t n_sensors) {
+  const std::size_t n_rows = part.size() / n_sensors;
+  std::vector<std::uint8_t> known(n_sensors, n_rows > 0 && n_rows + a_row >= shortest ? 1 : 0);
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    if (part[i] == unknown_bit) known[i % n_sensors] = 0;
+  }
+  return known;
+}
+
+/// n_main: rows of the main part to look at.
+DataShape::Run shape_of_run(const Series& run, std::size_t n_main, const Lengths& usual, std::size_t n_sensors) {
   const std::span<const std::uint8_t> bits = run.bits;
-  const auto lead = bits.first(run.main_begin * n_sensors), tail = bits.subspan(run.main_end * n_sensors);
-  const auto main = bits.subspan(lead.size(), bits.size() - lead.size() - tail.size());
-  const auto has = [&](std::span<const std::uint8_t> part, std::size_t shortest) {
-    constexpr std::size_t a_row = 1;  // by which walks of people with another gait may be shorter (assumed)
-    const std::size_t n_rows = part.size() / n_sensors;
-    return n_rows > 0 && n_rows + a_row >= shortest && every_row_known(part, n_sensors);
-  };
+  const auto main = bits.subspan(run.main_begin * n_sensors, n_main * n_sensors);
   DataShape::Run shape{run.trial,
                        run.replicate,
-                       run.main_end - run.main_begin,
-                       has(lead, usual.shortest_lead),
-                       has(tail, usual.shortest_tail),
+                       n_main,
+                       known_sensors(bits.first(run.main_begin * n_sensors), usual.shortest_lead, n_sensors),
+                       known_sensors(bits.subspan(run.main_end * n_sensors), usual.shortest_tail, n_sensors),
                        {}};
   if (std::ranges::find(main, unknown_bit) == main.end()) return shape;
   for (const std::uint8_t bit : main) shape.unknown.push_back(bit == unknown_bit ? 1 : 0);
   return shape;
+}
+
+/// Rows of a measured run's main part to look at: no more than in any simulated one, where no effect acts after the
+/// end.
+std::size_t n_main_of(const Series& run, const Lengths& usual) {
+  const std::size_t n_main = run.main_end - run.main_begin;
+  return usual.longest_main > 0 ? std::min(n_main, usual.longest_main) : n_main;
 }
 
 /// Of these runs, those with sums, blind where there are none.
@@ -284,7 +302,6 @@ std::vector<DataShape::Run> summed(const Measured& measured, std::size_t n_senso
 /// All faults at once.
 void refuse_longer_than_study(const StudyFrame& frame, const Measured& measured, std::span<const Series> pilot) {
   if (frame.counted_phases.empty()) return;  // then there is no part that could be taken for another
-  constexpr double longer = 1.05;            // assumed: who sits down earlier or later
   const std::string phases = boost::algorithm::join(frame.counted_phases, ", ");
   Diagnostics faults;
   for (std::size_t trial = 0; trial < frame.trials.size(); ++trial) {
@@ -296,13 +313,13 @@ void refuse_longer_than_study(const StudyFrame& frame, const Measured& measured,
                                               " s in the simulation; " + hint);
     };
     for (const Measured::Sum& sum : measured.sums) {
-      if (sum.trial != trial || sum.seconds <= longer * longest * frame.window_s) continue;
+      if (sum.trial != trial || sum.seconds <= a_twentieth * longest * frame.window_s) continue;
       refuse("'" + frame.sensors[sum.sensor] + "' has " + io::csv_number(sum.seconds) + " s with motion",
              "give the sum of one run, of that part only");
     }
     for (const Series& run : measured.runs) {
       const std::size_t n_main = run.main_end - run.main_begin;
-      if (measured.tells_phases || run.trial != trial || static_cast<double>(n_main) <= longer * longest) continue;
+      if (measured.tells_phases || run.trial != trial || static_cast<double>(n_main) <= a_twentieth * longest) continue;
       refuse(std::to_string(n_main) + " rows without a column 'phase'", "leave out the others, or give the phases");
     }
   }
@@ -330,7 +347,7 @@ DataShape full_shape(const StudyFrame& frame, Measured::Kind kind, int n_replica
     const auto run = std::ranges::find(pilot, trial, &Series::trial);
     if (run == pilot.end()) continue;
     for (int replicate = 1; replicate <= n_replicates; ++replicate) {
-      shape.runs.push_back(shape_of_run(*run, {}, frame.sensors.size()));
+      shape.runs.push_back(shape_of_run(*run, run->main_end - run->main_begin, {}, frame.sensors.size()));
       shape.runs.back().replicate = replicate;
     }
   }
@@ -349,7 +366,8 @@ DataShape shape_of(const StudyFrame& frame, const Measured& measured, std::span<
   }
   shape.runs.clear();
   for (const Series& run : measured.runs) {
-    shape.runs.push_back(shape_of_run(run, lengths_of(run.trial, pilot, n), n));
+    const Lengths usual = lengths_of(run.trial, pilot, n);
+    shape.runs.push_back(shape_of_run(run, n_main_of(run, usual), usual, n));
     for (std::size_t i = run.main_begin * n; i < run.main_end * n; ++i) {
       if (run.bits[i] != unknown_bit) shape.known_cells[run.trial * n + i % n] = 1;
     }
@@ -357,22 +375,45 @@ DataShape shape_of(const StudyFrame& frame, const Measured& measured, std::span<
   return shape;
 }
 
-std::vector<std::string> notes_on(const DataShape& shape, const Measured& measured, std::size_t n_sensors) {
-  std::size_t leads = 0, tails = 0;
+std::vector<std::string> notes_on(const StudyFrame& frame, const DataShape& shape, const Measured& measured,
+                                  std::span<const Series> pilot) {
+  const std::size_t n = frame.sensors.size();
+  std::size_t leads = 0, tails = 0, begun = 0, shorter = 0, longer = 0;
   for (std::size_t i = 0; i < measured.runs.size(); ++i) {
     const Series& run = measured.runs[i];
-    leads += run.main_begin > 0 && !shape.runs[i].has_lead ? 1 : 0;
-    tails += run.main_end < run.n_rows(n_sensors) && !shape.runs[i].has_tail ? 1 : 0;
+    const DataShape::Run& of_run = shape.runs[i];
+    const Lengths usual = lengths_of(run.trial, pilot, n);
+    const auto left_out = [&](const std::vector<std::uint8_t>& known) {
+      for (std::size_t sensor = 0; sensor < n; ++sensor) {
+        if (known[sensor] == 0 && knows_main_part(of_run, sensor, n)) return 1;
+      }
+      return 0;
+    };
+    const std::size_t n_main = run.main_end - run.main_begin;
+    leads += run.main_begin > 0 ? left_out(of_run.lead_known) : 0;
+    tails += run.main_end < run.n_rows(n) ? left_out(of_run.tail_known) : 0;
+    begun += measured.tells_phases && run.main_begin == 0 && usual.shortest_lead > a_row ? 1 : 0;
+    shorter += a_twentieth * static_cast<double>(n_main) < static_cast<double>(usual.shortest_main) ? 1 : 0;
+    longer += of_run.n_main < n_main ? 1 : 0;
   }
   std::vector<std::string> notes;
-  const auto add = [&](std::size_t n, const std::string& which, const std::string& because) {
-    if (n == 0) return;
-    notes.push_back("What comes " + which + " the counted phases is left out of the comparison in " +
-                    std::to_string(n) + (n == 1 ? " run: " : " runs: ") + because +
-                    ", or some of its rows are unknown.");
+  const auto runs = [](std::size_t count) { return std::to_string(count) + (count == 1 ? " run" : " runs"); };
+  const auto left_out = [&](std::size_t count, const std::string& which, const std::string& because) {
+    if (count == 0) return;
+    notes.push_back("What comes " + which + " the counted phases is left out of the comparison in " + runs(count) +
+                    ", of all sensors or some: " + because + ", or some readings are unknown.");
   };
-  add(leads, "before", "the recording begins later than any simulated one");
-  add(tails, "after", "the recording ends earlier than any simulated one");
+  left_out(leads, "before", "the recording begins later than any simulated one");
+  left_out(tails, "after", "the recording ends earlier than any simulated one");
+  if (begun > 0)
+    notes.push_back(runs(begun) + " of the file " + (begun == 1 ? "begins" : "begin") +
+                    " in a counted phase: the first row is taken for its beginning.");
+  if (shorter > 0)
+    notes.push_back("The main part of " + runs(shorter) + " of the file ends before any simulated one, by a " +
+                    "twentieth or more: compared as far as it goes.");
+  if (longer > 0)
+    notes.push_back("What goes on after the end of the longest simulated run is left out of the comparison in " +
+                    runs(longer) + ".");
   return notes;
 }
 

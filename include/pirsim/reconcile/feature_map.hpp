@@ -26,7 +26,7 @@ struct CellKnowledge {
 class FeatureMap {
  public:
   /// plain: statistics of datasets of the plain model (n x n_statistics); trials: those that are looked at (sorted).
-  /// Statistics that are NaN in the first plain row are unknown and left out.
+  /// Statistics that are NaN in all of them are unknown and left out; so are those of single datasets.
   FeatureMap(const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge, const stats::Matrix<float>& plain,
              std::vector<std::size_t> trials);
 

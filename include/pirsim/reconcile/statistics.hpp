@@ -16,9 +16,9 @@ struct DataShape {
   struct Run {
     std::size_t trial = 0;
     int replicate = 1;
-    std::size_t n_main = 0;                   ///< rows of the main part
-    bool has_lead = false, has_tail = false;  ///< rows before and after it
-    std::vector<std::uint8_t> unknown;        ///< (n_main x n_sensors), or empty if all is known
+    std::size_t n_main = 0;                            ///< rows of the main part
+    std::vector<std::uint8_t> lead_known, tail_known;  ///< (n_sensors) 1 where all before it is known, and all after
+    std::vector<std::uint8_t> unknown;                 ///< (n_main x n_sensors), or empty if all is known
     bool operator==(const Run&) const = default;
   };
   Measured::Kind kind = Measured::Kind::series;
@@ -28,12 +28,13 @@ struct DataShape {
   bool operator==(const DataShape&) const = default;
 };
 /// pilot: runs of the base model, for what sums don't tell. What comes before and after the main part is taken for
-/// unknown if it is shorter than in any of them: the recording began late, or ended early. Throws Error(input) for what
-/// can't be of this study: sums longer than its main parts, or rows that are, if the file doesn't tell phases.
+/// unknown if it is shorter than in any of them: the recording began late, or ended early. A main part is looked at as
+/// far as the longest of theirs goes. Throws Error(input) for what can't be of this study: sums longer than its main
+/// parts, or rows that are, if the file doesn't tell phases.
 [[nodiscard]] DataShape shape_of(const StudyFrame& frame, const Measured& measured, std::span<const Series> pilot);
-/// Sentences: what is unknown in this shape though the file has rows of it.
-[[nodiscard]] std::vector<std::string> notes_on(const DataShape& shape, const Measured& measured,
-                                                std::size_t n_sensors);
+/// Sentences: which rows of the file are left out in this shape of it, and what others are taken for.
+[[nodiscard]] std::vector<std::string> notes_on(const StudyFrame& frame, const DataShape& shape,
+                                                const Measured& measured, std::span<const Series> pilot);
 /// Everything is known: n_replicates runs of every trial, with the main parts of these pilot runs.
 [[nodiscard]] DataShape full_shape(const StudyFrame& frame, Measured::Kind kind, int n_replicates,
                                    std::span<const Series> pilot);

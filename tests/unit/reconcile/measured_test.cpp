@@ -108,7 +108,7 @@ TEST_CASE("bad measured rows are refused with a sentence and a place", "[measure
   CHECK_THAT(refusal(header + rows("S1", 40) + rows("S11", 40)), contains("'S11' is not in the study (did you mean"));
   CHECK_THAT(refusal(header + rows("S1", 40, "0,2")), contains("m.csv:2:20: error: PIR2: expected 0 or 1, got '2'"));
   CHECK_THAT(refusal("replicate,trial,time_s,phase,people,PIR1,PRI2\n" + rows("S1", 40)),
-             contains("column 'PRI2' is neither a sensor"));
+             contains("unknown column 'PRI2' (did you mean"));
   CHECK_THAT(refusal("trial,time_s,A,B\nS1,1,0,0\n"), contains("is this the data of another scene?"));
   CHECK_THAT(refusal(header + rows("S1", 5)), contains("too little data: 5 rows"));
   std::string slow = "trial,time_s,PIR1,PIR2\n";
@@ -134,4 +134,10 @@ TEST_CASE("sums are read with seats as trials and empty ones are left out", "[me
   CHECK_THROWS_WITH(parse_measured("trial,sensor,seconds\nS1,PIR1,-3\n", "m.csv", frame), contains("negative"));
   CHECK_THROWS_WITH(parse_measured("trial,sensor,seconds\nS1,PIR1,3\n", "m.csv", frame), contains("too little data"));
   CHECK_THROWS_WITH(parse_measured("trial,sensor,seconds\nS1,PIR4,3\n", "m.csv", frame), contains("did you mean"));
+  CHECK_THROWS_WITH(parse_measured("trial,sensor,seconds,PIR9\nS1,PIR1,3,1\n", "m.csv", frame),
+                    contains("m.csv:1:1: error: unknown column 'PIR9'"));
+  CHECK_THROWS_WITH(parse_measured("trial,sensor,seconds,real\nS1,PIR1,5,50\n", "m.csv", frame),
+                    contains("'real' and 'seconds' mean the same"));
+  CHECK_THROWS_WITH(parse_measured("trial,seat,sensor,seconds\nS1,S2,PIR1,5\n", "m.csv", frame),
+                    contains("'trial' and 'seat' mean the same"));
 }

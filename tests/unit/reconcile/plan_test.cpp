@@ -42,6 +42,17 @@ TEST_CASE("a longer study repeats every trial and adds a slow walk and the empty
   for (const ScriptedAction& action : study.script.trials[20].people.front().actions) CHECK(action.phase == "working");
 }
 
+TEST_CASE("the walker of a longer study is the first person of any trial", "[plan]") {
+  const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
+  ScriptSpec script = one_seat();
+  script.trials.insert(script.trials.begin(), TrialSpec{"empty", {}});
+  CHECK(longer_study(scene, script).notes.empty());
+  script.trials.resize(1);
+  const LongerStudy nobody = longer_study(scene, script);
+  REQUIRE(nobody.notes.size() == 2);
+  CHECK_THAT(nobody.notes.front(), contains("nobody is in any trial"));
+}
+
 TEST_CASE("a room without an entrance has no slow walk and the plan says so", "[plan]") {
   SceneSpec scene = test::shipped_scene("meeting_room.gltf");
   ScriptSpec script = one_seat();

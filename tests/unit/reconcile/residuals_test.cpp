@@ -96,7 +96,7 @@ TEST_CASE("residuals of the model itself follow nothing", "[reconcile]") {
 
 TEST_CASE("sensors that are dead or stuck are explained as well", "[reconcile]") {
   const Laboratory known = make_laboratory({0.0, 0.0, 0.0, 0.0, 0.0});
-  for (const std::uint8_t bit : {0, 1}) {
+  for (const std::uint8_t bit : {std::uint8_t{0}, std::uint8_t{1}}) {
     const Measured measured = planted(2, [bit](std::vector<Sample>& rows, Stream&) {
       for (Sample& row : rows) std::ranges::fill(row.bits, bit);
     });

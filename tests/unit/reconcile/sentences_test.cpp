@@ -65,6 +65,13 @@ TEST_CASE("a name that doesn't do when it is put in is taken back with that reas
   CHECK_THAT(reason_of_refused(outcome.looks.back()), contains("Dropped: with it put in") && contains("(p 0.005)"));
 }
 
+TEST_CASE("of an effect that does when it is put in and was dropped all the same both is said", "[reconcile]") {
+  CHECK(
+      sentence_of_nearest({{"labels_swapped"}, 0.025, 0.524, {}}, "Dropped: data of its own hardly look like these.") ==
+      "labels_swapped comes nearest: with it put in, the test of everything together sees no difference (p = 0.524). "
+      "Dropped: data of its own hardly look like these.");
+}
+
 TEST_CASE("where no name is given the sentence says why", "[reconcile]") {
   CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}}), contains("can't tell apart"));
   CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.9}}), contains("its strength may as well be none"));

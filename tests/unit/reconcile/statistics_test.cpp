@@ -1,8 +1,10 @@
 #include "pirsim/reconcile/statistics.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "pirsim/core/random.hpp"
+#include "pirsim/core/units.hpp"
 
 #include "support/catch.hpp"
 
@@ -77,6 +79,25 @@ TEST_CASE("a periodic sensor stands out in the periodogram and chance does not",
   const std::string none(180, '0');
   CHECK(of(statistics(periodic, none), CellStatistic::period_power) == Approx(12.0 * 12.0 / (12.0 * 168.0 / 180.0)));
   CHECK(of(statistics(scattered, none), CellStatistic::period_power) < 8.0F);
+}
+
+TEST_CASE("the periodogram of chance is that of the definition", "[statistics]") {
+  std::string bits;
+  Stream stream({4, 0, 0, Purpose::test});
+  for (int i = 0; i < 187; ++i) bits += stream.uniform() < 0.3 ? '1' : '0';
+  double greatest = 0.0, count = 0.0;
+  for (const char bit : bits) count += bit == '1' ? 1.0 : 0.0;
+  for (int f = 1; f <= 187 / 8; ++f) {
+    double real = 0.0, imaginary = 0.0;
+    for (int t = 0; t < 187; ++t) {
+      if (bits[static_cast<std::size_t>(t)] != '1') continue;
+      real += std::cos(2.0 * pi * f * t / 187.0);
+      imaginary += std::sin(2.0 * pi * f * t / 187.0);
+    }
+    greatest = std::max(greatest, real * real + imaginary * imaginary);
+  }
+  const std::string none(187, '0');
+  CHECK(of(statistics(bits, none), CellStatistic::period_power) == Approx(greatest / (count * (1.0 - count / 187.0))));
 }
 
 TEST_CASE("motion that keeps to the arm's cycle is told from motion that does not", "[statistics]") {
@@ -187,6 +208,17 @@ Measured measured_of(Series run) {
   return measured;
 }
 
+std::vector<std::string> notes(const StudyFrame& of, const Series& run, const std::vector<Series>& pilot) {
+  const Measured measured = measured_of(run);
+  return notes_on(of, shape_of(of, measured, pilot), measured, pilot);
+}
+
+std::string only_note(const StudyFrame& of, const Series& run, const std::vector<Series>& pilot) {
+  const auto all = notes(of, run, pilot);
+  REQUIRE(all.size() == 1);
+  return all.front();
+}
+
 }  // namespace
 
 TEST_CASE("what was recorded of the walks in and out is compared only if none of it was missed", "[statistics]") {
@@ -194,26 +226,63 @@ TEST_CASE("what was recorded of the walks in and out is compared only if none of
   const auto shape = [&](std::size_t lead, std::size_t tail) {
     return shape_of(phased, measured_of(phased_run(lead, 60, tail)), pilot).runs.front();
   };
-  CHECK(shape(8, 7).has_lead);
-  CHECK(shape(7, 6).has_lead);  // a row is within what another gait does
-  CHECK(shape(7, 6).has_tail);
-  CHECK(shape(12, 12).has_lead);
-  CHECK_FALSE(shape(6, 7).has_lead);
-  CHECK(shape(6, 7).has_tail);
-  CHECK_FALSE(shape(8, 5).has_tail);
-  CHECK_FALSE(shape(0, 0).has_lead);
-  const Measured late = measured_of(phased_run(3, 60, 7));
-  const auto notes = notes_on(shape_of(phased, late, pilot), late, 2);
-  REQUIRE(notes.size() == 1);
-  CHECK_THAT(notes[0], contains("before the counted phases") && contains("1 run:"));
-  const Measured whole = measured_of(phased_run(8, 60, 7));
-  CHECK(notes_on(shape_of(phased, whole, pilot), whole, 2).empty());
+  using Known = std::vector<std::uint8_t>;
+  const Known both{1, 1}, none{0, 0};
+  CHECK(shape(8, 7).lead_known == both);
+  CHECK(shape(7, 6).lead_known == both);  // a row is within what another gait does
+  CHECK(shape(7, 6).tail_known == both);
+  CHECK(shape(12, 12).lead_known == both);
+  CHECK(shape(6, 7).lead_known == none);
+  CHECK(shape(6, 7).tail_known == both);
+  CHECK(shape(8, 5).tail_known == none);
+  CHECK(shape(0, 0).lead_known == none);
+  CHECK_THAT(only_note(phased, phased_run(3, 60, 7), pilot),
+             contains("before the counted phases") && contains("1 run,"));
+  CHECK(notes(phased, phased_run(8, 60, 7), pilot).empty());
+
+  Series gap = phased_run(8, 60, 7);  // of B, while somebody walks in
+  gap.bits[3 * 2 + 1] = unknown_bit;
+  const DataShape half = shape_of(phased, measured_of(gap), pilot);
+  CHECK(half.runs.front().lead_known == Known{1, 0});
+  CHECK(half.runs.front().tail_known == both);
+  CHECK_THAT(only_note(phased, gap, pilot), contains("before the counted phases") && contains("some readings"));
+  const Profile profile = profile_of(phased, one_trial(), pilot);
+  const std::vector<float> values = statistics_of(phased, half, profile, pilot);
+  CHECK_FALSE(std::isnan(values[cell_index(phased, 0, 0, CellStatistic::lead_seconds)]));
+  CHECK(std::isnan(values[cell_index(phased, 0, 1, CellStatistic::lead_seconds)]));
+  CHECK_FALSE(std::isnan(values[cell_index(phased, 0, 1, CellStatistic::tail_seconds)]));
+
+  Series no_b = phased_run(8, 60, 7);  // B was measured nowhere: that is told elsewhere
+  for (std::size_t i = 1; i < no_b.bits.size(); i += 2) no_b.bits[i] = unknown_bit;
+  CHECK(notes(phased, no_b, pilot).empty());
+}
+
+TEST_CASE("what runs that begin or end within a counted phase are taken for is told", "[statistics]") {
+  const std::vector<Series> pilot{phased_run(9, 60, 8), phased_run(8, 61, 7)};
+  CHECK_THAT(only_note(phased, phased_run(0, 60, 7), pilot),
+             contains("1 run of the file") && contains("its beginning"));
+  CHECK_THAT(only_note(phased, phased_run(8, 50, 7), pilot), contains("ends") && contains("as far as"));
+  CHECK(notes(phased, phased_run(8, 58, 7), pilot).empty());
+  CHECK(notes(phased, phased_run(0, 60, 0), std::vector{phased_run(0, 60, 0)}).empty());
+}
+
+TEST_CASE("rows after the longest simulated main part are left out", "[statistics]") {
+  const StudyFrame all{{"S1"}, {"A", "B"}, {}, 1.0};
+  const std::vector<Series> pilot{phased_run(0, 60, 0), phased_run(0, 62, 0)};
+  Series longer = phased_run(0, 90, 0);
+  longer.bits.back() = unknown_bit;
+  CHECK_THAT(only_note(all, longer, pilot),
+             contains("after the end of the longest simulated run") && contains("1 run."));
+  const DataShape::Run shape = shape_of(all, measured_of(longer), pilot).runs.front();
+  CHECK(shape.n_main == 62);
+  CHECK(shape.unknown.empty());
+  CHECK(notes(all, phased_run(0, 61, 0), pilot).empty());
 }
 
 TEST_CASE("rows and sums that can't be of the counted phases are refused", "[statistics]") {
   const std::vector<Series> pilot{phased_run(9, 60, 8)};
   Measured rows = measured_of(phased_run(0, 77, 0));
-  CHECK_NOTHROW(shape_of(phased, rows, pilot));  // the file says itself which are
+  CHECK(shape_of(phased, rows, pilot).runs.front().n_main == 60);  // the file says itself which are
   rows.tells_phases = false;
   CHECK_THROWS_WITH(shape_of(phased, rows, pilot), contains("m.csv: error: trial 'S1': 77 rows") && contains("60 s"));
   rows.runs = {phased_run(0, 62, 0)};
