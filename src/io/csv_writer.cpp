@@ -5,6 +5,18 @@
 #include <utility>
 
 namespace pirsim::io {
+namespace {
+
+std::string when(const Sample& sample) {
+  return std::to_string(sample.replicate) + ',' + csv_field(sample.trial) + ',' + csv_number(sample.time_s) + ',' +
+         csv_field(sample.phase);
+}
+
+void add_bits(std::string& line, const Sample& sample) {
+  for (const std::uint8_t bit : sample.bits) line += bit != 0 ? ",1" : ",0";
+}
+
+}  // namespace
 
 std::string csv_field(std::string_view text) {
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
@@ -29,9 +41,20 @@ CsvWriter::CsvWriter(std::ostream& out, const std::vector<std::string>& columns)
 }
 
 void CsvWriter::write(const Sample& sample) {
-  std::string line = std::to_string(sample.replicate) + ',' + csv_field(sample.trial) + ',' +
-                     csv_number(sample.time_s) + ',' + csv_field(sample.phase) + ',' + std::to_string(sample.people);
-  for (const std::uint8_t bit : sample.bits) line += bit != 0 ? ",1" : ",0";
+  std::string line = when(sample) + ',' + std::to_string(sample.people);
+  add_bits(line, sample);
+  out_ << line << '\n';
+}
+
+MeasuredCsvWriter::MeasuredCsvWriter(std::ostream& out, const std::vector<std::string>& sensors) : out_(out) {
+  std::string line = "replicate,trial,time_s,phase";
+  for (const std::string& sensor : sensors) line += ',' + csv_field(sensor);
+  out_ << line << '\n';
+}
+
+void MeasuredCsvWriter::write(const Sample& sample) {
+  std::string line = when(sample);
+  add_bits(line, sample);
   out_ << line << '\n';
 }
 

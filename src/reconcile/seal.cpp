@@ -56,7 +56,7 @@ Answer draw_answer(const SceneSpec& scene, const ScriptSpec& script, Hidden want
 std::string simulate(const World& world, const Answer& answer, Stream& stream) {
   const Model model = compile(world.scene, world.script);
   std::ostringstream text;
-  io::CsvWriter csv(text, model.columns());
+  io::MeasuredCsvWriter csv(text, frame_of(world.scene, world.script).sensors);
   run_study(model, {.threads = 1}, [&](const RunResult& result) {
     std::vector<Sample> rows = result.samples;
     if (answer.alien != nullptr) answer.alien->apply(rows, answer.alien_sensor, stream);

@@ -28,6 +28,16 @@ class CsvWriter {
   std::ostream& out_;
 };
 
+/// Rows as somebody measures them: the same but for `people`, whom nobody counts.
+class MeasuredCsvWriter {
+ public:
+  MeasuredCsvWriter(std::ostream& out, const std::vector<std::string>& sensors);
+  void write(const Sample& sample);
+
+ private:
+  std::ostream& out_;
+};
+
 /// Zone activity, so that others can check the bits: one line a tick and sensor, `zones` a string of 0 and 1 in the
 /// order of the sensor's zones.
 class ZoneCsvWriter {

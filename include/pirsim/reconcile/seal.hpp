@@ -30,8 +30,9 @@ struct SealSettings {
 };
 
 struct Challenge {
-  std::string rows;        ///< CSV as docs/formats/rows.md has it, without a manifest: that would tell seed and effects
-  std::string answer;      ///< JSON, to be kept secret; holds the rows' SHA-256 too
+  std::string rows;    ///< CSV as docs/formats/rows.md has it, but nothing that nobody can measure: neither `people`,
+                       ///< which would tell a hidden one, nor a manifest, which would tell seed and effects
+  std::string answer;  ///< JSON, to be kept secret; holds the rows' SHA-256 too
   std::string commitment;  ///< SHA-256 of the answer's bytes, to be published
 };
 /// Throws Error(infeasible) if no attempt gives a room that people can get about in.

@@ -25,6 +25,15 @@ TEST_CASE("names with commas, quotes and line breaks come back from the reader a
   CHECK(out.str().starts_with("\"trial, one\",\"a \"\"b\"\"\"\n"));
 }
 
+TEST_CASE("measured rows are the others without the number of people") {
+  std::ostringstream out, measured;
+  io::CsvWriter(out, {"replicate", "trial", "time_s", "phase", "people", "A,1", "B"})
+      .write({2, "S,1", 0.5, "at, work", 3, {1, 0}});
+  io::MeasuredCsvWriter(measured, {"A,1", "B"}).write({2, "S,1", 0.5, "at, work", 3, {1, 0}});
+  CHECK(measured.str() == "replicate,trial,time_s,phase,\"A,1\",B\n2,\"S,1\",0.5,\"at, work\",1,0\n");
+  CHECK(out.str() == "replicate,trial,time_s,phase,people,\"A,1\",B\n2,\"S,1\",0.5,\"at, work\",3,1,0\n");
+}
+
 TEST_CASE("zone activity is one line a sensor, zones split at the sensors' borders") {
   std::ostringstream out;
   io::ZoneCsvWriter zones(out, {"A", "B"}, {0, 2, 5});
