@@ -35,6 +35,23 @@ Hidden draw_kind(Stream& stream) {
   return u < 0.85 ? Hidden::two : Hidden::alien;
 }
 
+std::size_t most_effects(Hidden kind) {
+  return kind == Hidden::one ? 1 : kind == Hidden::two || kind == Hidden::any ? 2 : 0;
+}
+
+bool has(const std::vector<EffectSpec>& effects, const effects::Effect& effect) {
+  return std::ranges::find(effects, effect.info.name, &EffectSpec::name) != effects.end();
+}
+
+void require_effects_left(const ScriptSpec& script, Hidden wanted) {
+  const auto left = static_cast<std::size_t>(std::ranges::count_if(
+      effects::catalogue(), [&](const effects::Effect* effect) { return !has(script.effects, *effect); }));
+  if (left >= most_effects(wanted)) return;
+  throw Error(ErrorCode::usage, "'" + std::string(name(wanted)) +
+                                    "' can't be hidden: effects that the script doesn't have: " + std::to_string(left) +
+                                    ", needed: " + std::to_string(most_effects(wanted)));
+}
+
 Answer draw_answer(const SceneSpec& scene, const ScriptSpec& script, Hidden wanted, Stream& stream) {
   Answer answer;
   answer.kind = wanted == Hidden::any ? draw_kind(stream) : wanted;
@@ -43,11 +60,9 @@ Answer draw_answer(const SceneSpec& scene, const ScriptSpec& script, Hidden want
     answer.alien = &aliens()[stream.index(static_cast<std::uint32_t>(aliens().size()))];
     answer.alien_sensor = stream.index(static_cast<std::uint32_t>(scene.sensors.size()));
   }
-  const std::size_t n = answer.kind == Hidden::one ? 1 : answer.kind == Hidden::two ? 2 : 0;
-  while (answer.effects.size() < n) {
+  while (answer.effects.size() < most_effects(answer.kind)) {
     const effects::Effect& effect = *catalogue[stream.index(static_cast<std::uint32_t>(catalogue.size()))];
-    const auto is_it = [&](const EffectSpec& there) { return there.name == effect.info.name; };
-    if (std::ranges::any_of(answer.effects, is_it) || std::ranges::any_of(script.effects, is_it)) continue;
+    if (has(answer.effects, effect) || has(script.effects, effect)) continue;
     answer.effects.push_back(effects::draw_from_prior(effect, scene, script, stream));
   }
   return answer;
@@ -139,6 +154,7 @@ std::string_view name(Mark mark) noexcept {
 }
 
 Challenge seal(const SceneSpec& scene, const ScriptSpec& script, const SealSettings& settings) {
+  require_effects_left(script, settings.hidden);
   for (std::uint32_t attempt = 0;; ++attempt) {
     Stream stream({settings.secret_seed, 0, attempt, Purpose::sealed_answer});
     const std::uint64_t world_seed = (std::uint64_t{stream.next_u32()} << 32U) | stream.next_u32();

@@ -35,7 +35,8 @@ struct Challenge {
   std::string answer;  ///< JSON, to be kept secret; holds the rows' SHA-256 too
   std::string commitment;  ///< SHA-256 of the answer's bytes, to be published
 };
-/// Throws Error(infeasible) if no attempt gives a room that people can get about in.
+/// Throws Error: usage if the catalogue has fewer effects beside the script's than are to be hidden (`any`: two),
+/// infeasible if no attempt gives a room that people can get about in.
 [[nodiscard]] Challenge seal(const SceneSpec& scene, const ScriptSpec& script, const SealSettings& settings);
 
 enum class Mark {

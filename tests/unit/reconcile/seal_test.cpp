@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "pirsim/core/digest.hpp"
+#include "pirsim/core/error.hpp"
 #include "pirsim/effects/catalogue.hpp"
 #include "pirsim/io/csv_writer.hpp"
 #include "pirsim/reconcile/simulated_world.hpp"
@@ -83,6 +84,30 @@ TEST_CASE("only the sensors tell what was hidden", "[reconcile][seal]") {
     seen += challenge.rows != plain ? 1 : 0;
   }
   CHECK(seen > 15);  // the others are too weak, or far from this seat
+}
+
+TEST_CASE("what can't be hidden beside the script's own effects is refused", "[reconcile][seal]") {
+  const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
+  const auto sealed = [&](Hidden hidden, const std::set<std::string>& left) {
+    return seal(scene, with_all_but(left), {{}, hidden, 1, 1, {}}).answer;
+  };
+  for (const Hidden hidden : {Hidden::one, Hidden::two, Hidden::any}) {
+    CHECK_THROWS_WITH(sealed(hidden, {}), contains("effects that the script doesn't have: 0, needed: "));
+  }
+  for (const Hidden hidden : {Hidden::two, Hidden::any}) {
+    try {
+      static_cast<void>(sealed(hidden, {"clock_lag"}));
+      FAIL("hidden");
+    } catch (const Error& error) {
+      CHECK(error.code() == ErrorCode::usage);
+    }
+  }
+  CHECK(sealed(Hidden::one, {"clock_lag"}).find("clock_lag") != std::string::npos);
+  const std::string both = sealed(Hidden::two, {"clock_lag", "dead_sensor"});
+  CHECK(both.find("clock_lag") != std::string::npos);
+  CHECK(both.find("dead_sensor") != std::string::npos);
+  CHECK_NOTHROW(sealed(Hidden::nothing, {}));
+  CHECK_NOTHROW(sealed(Hidden::alien, {}));
 }
 
 TEST_CASE("whoever names the twin of what was hidden is right and whoever names another is not", "[reconcile][seal]") {
