@@ -41,6 +41,10 @@ void check_files(const SealOptions& options, const std::filesystem::path& commit
     throw Error(ErrorCode::usage, "--answer: the answer is secret, and --out is the folder that is handed over");
 }
 
+reconcile::Document read_document(const std::filesystem::path& file) {
+  return {file.string(), io::read_text_file(file)};
+}
+
 }  // namespace
 
 void seal_challenge(const Inputs& inputs, const SealOptions& options) {
@@ -74,7 +78,7 @@ void open_challenge(const OpenOptions& options) {
   if (published.size() != digest_digits || published.find_first_not_of("0123456789abcdef") != std::string::npos)
     throw Error(ErrorCode::input, {options.commitment.string(), 1, 1}, "expected a SHA-256 of 64 hexadecimal digits");
   const reconcile::Score score =
-      reconcile::open_answer(io::read_text_file(options.answer), published, io::read_text_file(options.report));
+      reconcile::open_answer(read_document(options.answer), published, read_document(options.report));
   std::cout << score.sentence << '\n';
   require_written();
 }

@@ -1,16 +1,12 @@
 #include "pirsim/reconcile/outcome.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "pirsim/effects/catalogue.hpp"
 
 namespace pirsim::reconcile {
 
-std::string_view name(Verdict verdict) noexcept {
-  constexpr std::array<std::string_view, 5> names{"no-disagreement", "named", "one-of", "several", "none-in-catalogue"};
-  return names[static_cast<std::size_t>(verdict)];
-}
+std::string_view name(Verdict verdict) noexcept { return verdict_names[static_cast<std::size_t>(verdict)]; }
 
 std::vector<Candidate> with_twins(const std::vector<Candidate>& candidates) {
   std::vector<Candidate> all;

@@ -1,9 +1,7 @@
 #include "pirsim/reconcile/seal.hpp"
 
 #include <algorithm>
-#include <boost/algorithm/string/join.hpp>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <sstream>
 
 #include "pirsim/core/digest.hpp"
@@ -18,8 +16,6 @@ namespace pirsim::reconcile {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr int answer_schema = 1;
 
 struct Answer {
   Hidden kind = Hidden::nothing;
@@ -99,59 +95,9 @@ std::string to_json(const Answer& answer, const SealSettings& settings, const Sc
   return json.dump(2) + '\n';
 }
 
-Json parse(std::string_view text, const char* what, const char* marker) {
-  Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded() || !json.is_object() || !json.contains(marker)) {
-    throw Error(ErrorCode::input, std::string(what) + ": expected a JSON object with '" + marker + "'");
-  }
-  return json;
-}
-
-std::set<std::string> families_of(const std::set<std::string>& names) {
-  std::set<std::string> families;
-  for (const std::string& effect : names) families.emplace(effects::name(effects::find(effect).info.family));
-  return families;
-}
-
-template <typename Names>
-std::set<std::string> as_judged(const Names& names) {
-  std::set<std::string> judged;
-  for (const std::string& name : names) judged.insert(effects::judged_as(name));
-  return judged;
-}
-
-Mark mark_of_effects(const std::set<std::string>& truth, const std::string& verdict,
-                     const std::set<std::string>& named) {
-  if (named.empty()) return Mark::none;
-  const auto is_named = [&](const std::string& effect) { return named.contains(effect); };
-  if (verdict == "one-of") {
-    if (std::ranges::any_of(truth, is_named)) return Mark::one_of;
-  } else {
-    if (named == truth) return Mark::exact;
-    if (std::ranges::includes(truth, named)) return Mark::part;
-  }
-  return families_of(named) == families_of(truth) ? Mark::family : Mark::wrong;
-}
-
-Mark mark_of(Hidden kind, const std::set<std::string>& truth, const std::string& verdict,
-             const std::set<std::string>& named) {
-  if (kind == Hidden::nothing) return verdict == "no-disagreement" ? Mark::exact : Mark::wrong;
-  if (kind != Hidden::alien) return mark_of_effects(truth, verdict, named);
-  if (verdict == "none-in-catalogue") return Mark::exact;
-  return verdict == "no-disagreement" ? Mark::none : Mark::wrong;
-}
-
 }  // namespace
 
-std::string_view name(Hidden hidden) noexcept {
-  constexpr std::string_view names[] = {"any", "nothing", "one", "two", "alien"};
-  return names[static_cast<std::size_t>(hidden)];
-}
-
-std::string_view name(Mark mark) noexcept {
-  constexpr std::string_view names[] = {"exact", "family", "one-of", "part", "wrong", "none"};
-  return names[static_cast<std::size_t>(mark)];
-}
+std::string_view name(Hidden hidden) noexcept { return hidden_names[static_cast<std::size_t>(hidden)]; }
 
 Challenge seal(const SceneSpec& scene, const ScriptSpec& script, const SealSettings& settings) {
   require_effects_left(script, settings.hidden);
@@ -171,36 +117,6 @@ Challenge seal(const SceneSpec& scene, const ScriptSpec& script, const SealSetti
     } catch (const Error& error) {
       if (error.code() != ErrorCode::infeasible || attempt + 1 == most_attempts) throw;
     }
-  }
-}
-
-Score open_answer(std::string_view answer, std::string_view commitment, std::string_view report) {
-  if (sha256(answer) != commitment) {
-    throw Error(ErrorCode::input, "the answer is not the one that was committed to: its SHA-256 is " + sha256(answer));
-  }
-  const Json sealed = parse(answer, "answer", "pirsim_sealed_answer");
-  const Json judged = parse(report, "report", "pirsim_reconcile_report");
-  try {
-    if (sealed.at("measured_sha256") != judged.at("measured").at("sha256")) {
-      throw Error(ErrorCode::input, "the report is about other data than those of this challenge");
-    }
-    Score score;
-    std::set<std::string> truth;
-    for (const Json& effect : sealed.at("effects")) truth.insert(effect.at("name").get<std::string>());
-    score.hidden.assign(truth.begin(), truth.end());
-    if (!sealed.at("alien").is_null()) score.hidden.push_back(sealed.at("alien").at("name").get<std::string>());
-    const auto kind_name = sealed.at("hidden").get<std::string>();
-    const Hidden kind = kind_name == "nothing" ? Hidden::nothing : kind_name == "alien" ? Hidden::alien : Hidden::one;
-    const auto verdict = judged.at("verdict").get<std::string>();
-    const auto named = judged.at("effects").get<std::vector<std::string>>();
-    score.mark = mark_of(kind, as_judged(truth), verdict, as_judged(named));
-    score.sentence = std::string(name(score.mark)) + ": hidden was " +
-                     (score.hidden.empty() ? "nothing" : boost::algorithm::join(score.hidden, ", ")) +
-                     ", the verdict was " + verdict +
-                     (named.empty() ? "" : " (" + boost::algorithm::join(named, ", ") + ")");
-    return score;
-  } catch (const Json::exception& fault) {
-    throw Error(ErrorCode::input, std::string("answer or report: ") + fault.what());
   }
 }
 

@@ -1,6 +1,7 @@
 // What a reconciliation found.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -16,6 +17,9 @@
 namespace pirsim::reconcile {
 
 using stats::Verdict;
+/// In the order of the enumeration.
+inline constexpr std::array<std::string_view, 5> verdict_names{"no-disagreement", "named", "one-of", "several",
+                                                               "none-in-catalogue"};
 [[nodiscard]] std::string_view name(Verdict verdict) noexcept;
 
 /// What became of one entry of the catalogue.

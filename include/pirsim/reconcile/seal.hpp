@@ -1,6 +1,7 @@
 // A blind challenge: something is hidden in simulated data, what it is gets sealed, and a verdict is scored later.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -19,6 +20,8 @@ enum class Hidden {
   two,      ///< two different ones
   alien     ///< something that the catalogue lacks
 };
+/// In the order of the enumeration.
+inline constexpr std::array<std::string_view, 5> hidden_names{"any", "nothing", "one", "two", "alien"};
 [[nodiscard]] std::string_view name(Hidden hidden) noexcept;
 
 struct SealSettings {
@@ -28,6 +31,8 @@ struct SealSettings {
   std::uint64_t secret_seed = 0;  ///< everything that is drawn follows from it
   std::string salt;               ///< so that answers can't be found by trying all; kept in the answer
 };
+
+inline constexpr int answer_schema = 1;
 
 struct Challenge {
   std::string rows;    ///< CSV as docs/formats/rows.md has it, but nothing that nobody can measure: neither `people`,
@@ -54,8 +59,13 @@ struct Score {
   std::vector<std::string> hidden;  ///< effects, or the alien's name
   std::string sentence;             ///< the score for a reader
 };
-/// answer: the sealed file's bytes; report: of report.json. Throws Error(input): the answer isn't the one committed to,
-/// the report is about other data, or one of them can't be read.
-[[nodiscard]] Score open_answer(std::string_view answer, std::string_view commitment, std::string_view report);
+/// A file that was read.
+struct Document {
+  std::string name;  ///< for messages
+  std::string text;
+};
+/// answer: the sealed file; report: report.json. Throws Error(input) that names the file: the answer isn't the one
+/// committed to, the report is about other data, or something in them isn't known.
+[[nodiscard]] Score open_answer(const Document& answer, std::string_view commitment, const Document& report);
 
 }  // namespace pirsim::reconcile

@@ -51,6 +51,21 @@ std::string without_sensors(const std::string& rows) {
   return rest;
 }
 
+const std::string valid_answer =
+    R"({"pirsim_sealed_answer": 1, "hidden": "one", "effects": [{"name": "thermal_contrast"}], "alien": null,)"
+    R"( "measured_sha256": "x"})";
+const std::string valid_report =
+    R"({"pirsim_reconcile_report": 1, "measured": {"sha256": "x"}, "verdict": "named", "effects": ["range_scale"]})";
+
+Score opened(const std::string& answer, const std::string& report) {
+  return open_answer({"secret.json", answer}, sha256(answer), {"report.json", report});
+}
+
+std::string changed(std::string text, const std::string& old, const std::string& now) {
+  REQUIRE(text.find(old) != std::string::npos);
+  return text.replace(text.find(old), old.size(), now);
+}
+
 }  // namespace
 
 TEST_CASE("a challenge is none of the worlds that an analysis with the same seed simulates", "[reconcile][seal]") {
@@ -110,15 +125,55 @@ TEST_CASE("what can't be hidden beside the script's own effects is refused", "[r
   CHECK_NOTHROW(sealed(Hidden::alien, {}));
 }
 
+TEST_CASE("a report or an answer that isn't understood is refused by its name", "[reconcile][seal]") {
+  struct Fault {
+    std::string old, now, message;
+  };
+  const auto refused = [](const std::string& answer, const std::string& report, const std::string& message) {
+    INFO(answer + "\n" + report);
+    try {
+      static_cast<void>(opened(answer, report));
+      FAIL("not refused");
+    } catch (const Error& error) {
+      CHECK(error.code() == ErrorCode::input);
+      CHECK(error.issues().size() == 1);
+      CHECK(error.what() == message);
+    }
+  };
+  CHECK(opened(valid_answer, valid_report).mark == Mark::exact);
+  for (const auto& [old, now, message] : std::vector<Fault>{
+           {"range_scale", "range_scall", "'range_scall' is not an effect (did you mean 'range_scale'?)"},
+           {R"("named")", R"("nonsense")",
+            "'/verdict' is 'nonsense', not one of no-disagreement, named, one-of, several, none-in-catalogue"},
+           {R"("named")", "3", "'/verdict' isn't there, or isn't what it should be"},
+           {R"("named")", R"("no-disagreement")", "'/effects' isn't empty, though the verdict is no-disagreement"},
+           {R"("named")", R"("none-in-catalogue")", "'/effects' isn't empty, though the verdict is none-in-catalogue"},
+           {"report\": 1", "report\": 2", "'pirsim_reconcile_report' isn't 1, the only one that this pirsim reads"},
+           {"_report", "_rapport", "expected a JSON object with 'pirsim_reconcile_report'"},
+           {R"({"sha256": "x"})", "[]", "'/measured/sha256' isn't there, or isn't what it should be"},
+           {R"(["range_scale"])", R"("range_scale")", "'/effects' isn't there, or isn't what it should be"},
+           {R"("x")", R"("y")", "the report is about other data than those of this challenge"},
+           {"}", "", "expected a JSON object with 'pirsim_reconcile_report'"}}) {
+    refused(valid_answer, changed(valid_report, old, now), "report.json: error: " + message);
+  }
+  for (const auto& [old, now, message] : std::vector<Fault>{
+           {"thermal_contrast", "thermal_contrasts",
+            "'thermal_contrasts' is not an effect (did you mean 'thermal_contrast'?)"},
+           {R"("one")", R"("three")", "'/hidden' is 'three', not one of any, nothing, one, two, alien"},
+           {"answer\": 1", "answer\": \"1\"", "'pirsim_sealed_answer' isn't 1, the only one that this pirsim reads"},
+           {R"("name")", R"("nom")", "'/effects/0/name' isn't there, or isn't what it should be"},
+           {"null", "{}", "'/alien/name' isn't there, or isn't what it should be"},
+           {R"("alien": null,)", "", "'/alien' isn't there, or isn't what it should be"},
+           {"{", "[{", "expected a JSON object with 'pirsim_sealed_answer'"}}) {
+    refused(changed(valid_answer, old, now), valid_report, "secret.json: error: " + message);
+  }
+  CHECK_THROWS_WITH(open_answer({"secret.json", valid_answer}, sha256("another"), {"report.json", valid_report}),
+                    contains("secret.json: error: the answer is not the one"));
+}
+
 TEST_CASE("whoever names the twin of what was hidden is right and whoever names another is not", "[reconcile][seal]") {
-  const std::string answer =
-      R"({"pirsim_sealed_answer": 1, "hidden": "one", "effects": [{"name": "thermal_contrast"}], "alien": null,)"
-      R"( "measured_sha256": "x"})";
   const auto mark = [&](const std::string& effect) {
-    const std::string report = R"({"pirsim_reconcile_report": 1, "measured": {"sha256": "x"}, "verdict": "named",)"
-                               R"( "effects": [")" +
-                               effect + R"("]})";
-    return open_answer(answer, sha256(answer), report).mark;
+    return opened(valid_answer, changed(valid_report, "range_scale", effect)).mark;
   };
   CHECK(mark("range_scale") == Mark::exact);
   CHECK(mark("thermal_contrast") == Mark::exact);
