@@ -52,4 +52,9 @@ void check_outputs(const std::vector<NamedOutput>& outputs, const Inputs& inputs
   }
 }
 
+bool is_below(const fs::path& file, const fs::path& folder) {
+  const fs::path inner = identity(file), outer = fs::path(identity(folder / "any")).parent_path();
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
 }  // namespace pirsim::app

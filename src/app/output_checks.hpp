@@ -22,4 +22,7 @@ struct NamedOutput {
 /// is), for one file with two outputs, and for an output that is an input.
 void check_outputs(const std::vector<NamedOutput>& outputs, const Inputs& inputs);
 
+/// Would the file lie in that folder, however deep, or be the folder itself?
+[[nodiscard]] bool is_below(const std::filesystem::path& file, const std::filesystem::path& folder);
+
 }  // namespace pirsim::app

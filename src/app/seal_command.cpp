@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "app/commands.hpp"
+#include "app/output_checks.hpp"
 #include "app/row_output.hpp"
 #include "app/session.hpp"
 #include "io/text_input.hpp"
@@ -12,6 +13,8 @@
 
 namespace pirsim::app {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::size_t digest_digits = 64;
 
@@ -27,31 +30,48 @@ std::string new_salt() {
   return text.str();
 }
 
+struct ChallengeFiles {
+  fs::path answer, folder, rows, commitment;
+};
+
 /// What was committed to must not be lost, and the answer not be handed over with the data.
-void check_files(const SealOptions& options, const std::filesystem::path& commitment) {
-  for (const std::filesystem::path& file : {options.answer, commitment}) {
-    if (std::filesystem::exists(file))
-      throw Error(ErrorCode::usage, "'" + file.string() + "' is there already: a sealed challenge isn't overwritten");
-  }
+void check_files(const ChallengeFiles& files) {
   std::error_code unknown;
-  const auto folder_of = [&](const std::filesystem::path& file) {
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(file).parent_path(), unknown);
-  };
-  if (folder_of(options.answer) == folder_of(commitment))
+  for (const fs::path& file : {files.answer, files.rows, files.commitment}) {
+    if (fs::exists(file, unknown))
+      throw Error(ErrorCode::usage, "'" + file.string() + "' is there already and isn't overwritten");
+  }
+  if (is_below(files.answer, files.folder))
     throw Error(ErrorCode::usage, "--answer: the answer is secret, and --out is the folder that is handed over");
 }
 
-reconcile::Document read_document(const std::filesystem::path& file) {
-  return {file.string(), io::read_text_file(file)};
+/// All or none: an answer without its data would be in the way of the next try.
+void write(const ChallengeFiles& files, const reconcile::Challenge& challenge) {
+  try {
+    io::write_text_file(files.answer, challenge.answer);
+    std::error_code fault;
+    fs::create_directories(files.folder, fault);
+    if (fault) throw Error(ErrorCode::io, Where{files.folder.string()}, "can't make the folder: " + fault.message());
+    io::write_text_file(files.rows, challenge.rows);
+    // as sha256sum -c reads it
+    io::write_text_file(files.commitment, challenge.commitment + "  " + files.answer.filename().string() + '\n');
+  } catch (...) {
+    std::error_code ignored;
+    for (const fs::path& file : {files.answer, files.rows, files.commitment}) fs::remove(file, ignored);
+    throw;
+  }
 }
+
+reconcile::Document read_document(const fs::path& file) { return {file.string(), io::read_text_file(file)}; }
 
 }  // namespace
 
 void seal_challenge(const Inputs& inputs, const SealOptions& options) {
   if (options.answer.empty())
     throw Error(ErrorCode::usage, "--answer FILE is missing; see pirsim reconcile seal --help");
-  const std::filesystem::path commitment = options.output / "commitment.sha256";
-  check_files(options, commitment);
+  const fs::path& folder = options.output;
+  const ChallengeFiles files{options.answer, folder, folder / "measured.csv", folder / "commitment.sha256"};
+  check_files(files);
   const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
@@ -63,12 +83,7 @@ void seal_challenge(const Inputs& inputs, const SealOptions& options) {
   settings.secret_seed = options.secret_seed ? *options.secret_seed : secret_word();
   settings.salt = new_salt();
   const reconcile::Challenge challenge = reconcile::seal(scene, script, settings);
-  std::error_code unknown;
-  std::filesystem::create_directories(options.output, unknown);
-  io::write_text_file(options.answer, challenge.answer);
-  io::write_text_file(options.output / "measured.csv", challenge.rows);
-  // as sha256sum -c reads it
-  io::write_text_file(commitment, challenge.commitment + "  " + options.answer.filename().string() + '\n');
+  write(files, challenge);
   std::cout << challenge.commitment << '\n';
   require_written();
 }

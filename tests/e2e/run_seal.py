@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 """A blind challenge as two people play it: one seals, the other analyses, both see the score.
 
-Usage: run_seal.py PIRSIM DATA_DIRECTORY
+Usage: run_seal.py PIRSIM DATA_DIRECTORY FAILING_CALLS_LIBRARY
 """
+import csv
+import errno
 import hashlib
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -13,11 +16,11 @@ import tempfile
 
 
 def main():
-    pirsim, data = sys.argv[1], pathlib.Path(sys.argv[2])
+    pirsim, data, failing_calls = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3]
     study = ["--scene", str(data / "rooms/meeting_room.gltf"), "--script", str(data / "studies/studyA.yaml")]
 
-    def call(*words, code=0):
-        result = subprocess.run([pirsim, "reconcile", *map(str, words)], capture_output=True, text=True)
+    def call(*words, code=0, env=None):
+        result = subprocess.run([pirsim, "reconcile", *map(str, words)], capture_output=True, text=True, env=env)
         assert result.returncode == code, (words, result.returncode, result.stdout, result.stderr)
         return result
 
@@ -105,6 +108,56 @@ def main():
         assert "secret" in call("seal", *study, "-o", two / "new", "--answer", two / "new/answer.json", code=2).stderr
         assert not (two / "new").exists() and not (two / "new.json").exists()
 
+        # No file of anybody's is overwritten, and the answer isn't handed over however deep it lies.
+        notes = two / "mine/measured.csv"
+        notes.parent.mkdir()
+        notes.write_text("my own")
+        assert "isn't overwritten" in call("seal", *study, "-o", notes.parent, "--answer", two / "new.json",
+                                           code=2).stderr
+        assert notes.read_text() == "my own" and not (two / "new.json").exists()
+        notes.unlink()
+        (two / "link").symlink_to(two / "mine")
+        for out, secret in (("new", "new/deep/answer.json"), ("new/", "new/answer.json"), ("new", "new"),
+                            ("link", "mine/sub/answer.json"), ("mine", "link/sub/answer.json"),
+                            ("new/../new", "mine/../new/sub/answer.json")):
+            refused = call("seal", *study, "-o", f"{two}/{out}", "--answer", f"{two}/{secret}", code=2).stderr
+            assert "secret" in refused, (out, secret, refused)
+
+        # What fails leaves nothing in the way of the next try.
+        def fails(out, secret, env=None):
+            before = sorted(two.rglob("*.*"))
+            message = call("seal", *short, "-o", out, "--answer", secret, code=4, env=env).stderr
+            assert sorted(two.rglob("*.*")) == before, (message, sorted(two.rglob("*.*")))
+            return message
+
+        short = [*study, "--set", "trials.for_each.seat=[S1]"]
+        (two / "plain").write_text("a file")
+        assert "plain" in fails(two / "plain", two / "new.json")
+        assert "nowhere" in fails(two / "next", two / "nowhere/new.json")
+        assert not (two / "next").exists()
+        failing = {**os.environ, "LD_PRELOAD": failing_calls, "ASAN_OPTIONS": "verify_asan_link_order=0:detect_leaks=0",
+                   "PIRSIM_FAIL_ERRNO": str(int(errno.ENOSPC))}
+        for what in ("open", "rename", "write"):
+            for at in (1, 2, 3):  # answer, rows, hash
+                message = fails(two / "next", two / "new.json",
+                                {**failing, "PIRSIM_FAIL_CALL": what, "PIRSIM_FAIL_AT": str(at)})
+                assert "No space left" in message, message
+        call("seal", *short, "-o", two / "next", "--answer", two / "new.json", "--secret-seed", 7)
+        assert sorted(f.name for f in (two / "next").iterdir()) == ["commitment.sha256", "measured.csv"]
+
+        # Nothing can be hidden that the script has: that is told, not searched for ever.
+        listed = subprocess.run([pirsim, "effects", "--format", "csv"], capture_output=True, text=True, check=True)
+        every = sorted({row["effect"] for row in csv.DictReader(listed.stdout.splitlines())})
+        has_all = "effects=[" + ", ".join(f"{{{name}: {{}}}}" for name in every) + "]"
+        refused = call("seal", *study, "--set", has_all, "--hide", "one", "-o", two / "none", "--answer",
+                       two / "none.json", code=2).stderr
+        assert "can't be hidden" in refused and not (two / "none").exists(), refused
+
+        # What a report says that isn't known isn't scored, and the file is named.
+        opened(one, "named", [effect])
+        for verdict, effects, what in (("nonsense", [], "nonsense"), ("named", ["dead_senser"], "dead_sensor")):
+            refused = opened(one, verdict, effects, code=3).stderr
+            assert str(one / "report.json") in refused and what in refused, refused
         # Messages that say what is wrong.
         refused = call("seal", *study, "-o", two / "new", "--answer", two / "new.json", "--hide", "twoo", code=2).stderr
         assert "expected one of" in refused and "two" in refused, refused
