@@ -35,12 +35,25 @@ constexpr const char* examples = R"(Examples:
   pirsim --scene room.gltf --script study.yaml --shard 3/100 -o out a block of the runs; then pirsim status, merge
 )";
 
-void add_inputs(CLI::App& command, Inputs& inputs) {
+/// Without the script's seed and replicates, where others take their place.
+void add_scene_and_script(CLI::App& command, Inputs& inputs) {
   command.add_option("--scene", inputs.scene, "room: a glTF 2.0 file (.gltf or .glb)")->option_text("FILE");
   command.add_option("--script", inputs.script, "study: a YAML file")->option_text("FILE");
   command.add_option("--set", inputs.overrides, "override a value of the script: sensing.rays_per_zone=9")
       ->option_text("KEY=VALUE")
       ->allow_extra_args(false);
+  command.add_option("--sensors", inputs.sensor_directories, "folder with sensor models, searched first")
+      ->option_text("DIR")
+      ->allow_extra_args(false);
+  command.add_option("--tracer", inputs.tracer, "auto, direct, embree or reference")->option_text("NAME");
+  command.add_flag_callback(
+      "-q,--quiet", [&] { inputs.verbosity = Verbosity::quiet; }, "errors only");
+  command.add_flag_callback(
+      "-v,--verbose", [&] { inputs.verbosity = Verbosity::verbose; }, "more about what goes on");
+}
+
+void add_inputs(CLI::App& command, Inputs& inputs) {
+  add_scene_and_script(command, inputs);
   command
       .add_option_function<std::int64_t>(
           "--seed", [&](std::int64_t n) { inputs.overrides.push_back("seed=" + std::to_string(n)); },
@@ -51,14 +64,6 @@ void add_inputs(CLI::App& command, Inputs& inputs) {
           "--replicates", [&](int n) { inputs.overrides.push_back("replicates=" + std::to_string(n)); },
           "how often every trial is run")
       ->option_text("N");
-  command.add_option("--sensors", inputs.sensor_directories, "folder with sensor models, searched first")
-      ->option_text("DIR")
-      ->allow_extra_args(false);
-  command.add_option("--tracer", inputs.tracer, "auto, direct, embree or reference")->option_text("NAME");
-  command.add_flag_callback(
-      "-q,--quiet", [&] { inputs.verbosity = Verbosity::quiet; }, "errors only");
-  command.add_flag_callback(
-      "-v,--verbose", [&] { inputs.verbosity = Verbosity::verbose; }, "more about what goes on");
 }
 
 void add_run_options(CLI::App& command, RunOptions& options) {
@@ -355,16 +360,16 @@ int run_command_line(int argc, char** argv) {
   reconcile_command->require_subcommand(0, 1);
   CLI::App* selftest_command =
       reconcile_command->add_subcommand("selftest", "hide effects in simulated data and see which are found");
-  add_inputs(*selftest_command, inputs);
+  add_scene_and_script(*selftest_command, inputs);
   add_reconcile_options(*selftest_command, reconcile_options);
   add_selftest_options(*selftest_command, selftest_options);
   CLI::App* plan_command =
       reconcile_command->add_subcommand("plan", "before measuring: what could be told apart, and what to measure next");
-  add_inputs(*plan_command, inputs);
+  add_scene_and_script(*plan_command, inputs);
   add_reconcile_options(*plan_command, reconcile_options);
   add_plan_options(*plan_command, plan_options);
   CLI::App* seal_command = reconcile_command->add_subcommand("seal", "hide something in data, to be found blindly");
-  add_inputs(*seal_command, inputs);
+  add_scene_and_script(*seal_command, inputs);
   add_seal_options(*seal_command, seal_options);
   CLI::App* open_command = reconcile_command->add_subcommand("open", "score a report against the sealed answer");
   add_open_options(*open_command, open_options);

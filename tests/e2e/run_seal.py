@@ -158,6 +158,10 @@ def main():
         for verdict, effects, what in (("nonsense", [], "nonsense"), ("named", ["dead_senser"], "dead_sensor")):
             refused = opened(one, verdict, effects, code=3).stderr
             assert str(one / "report.json") in refused and what in refused, refused
+        # How often trials are run is --runs, and the secret seed decides: no option that does nothing is offered.
+        for option in ("--replicates", "--seed"):
+            assert option in call("seal", *study, option, 7, "-o", two / "x", "--answer", two / "x.json", code=2).stderr
+
         # Messages that say what is wrong.
         refused = call("seal", *study, "-o", two / "new", "--answer", two / "new.json", "--hide", "twoo", code=2).stderr
         assert "expected one of" in refused and "two" in refused, refused
