@@ -11,6 +11,7 @@
 #include <new>
 #include <sstream>
 #include <string_view>
+#include <vector>
 
 #include "app/commands.hpp"
 #include "app/output_checks.hpp"
@@ -185,34 +186,39 @@ void add_merge_options(CLI::App& command, CampaignOptions& options) {
       ->allow_extra_args(false);
 }
 
-void add_reconcile_options(CLI::App& command, ReconcileOptions& options) {
-  command.add_option("--measured", options.measured, "rows or sums from the real room, CSV")->option_text("FILE");
-  command.add_option("-o,--out", options.output, "folder for report and patched script (default: reconcile)")
-      ->option_text("DIR");
+void add_analysis_options(CLI::App& command, AnalysisOptions& options) {
   command.add_option("--table", options.table, "folder that keeps the reference table (default: DIR/table)")
       ->option_text("DIR");
   command.add_option("--nuisance", options.nuisance, "what is uncertain about the room, YAML; or none")
       ->option_text("FILE");
-  command
-      .add_option("--holdout", options.holdout,
-                  "share (0.3) or names (S3,S8) of trials kept from naming and fitting, to be judged on "
-                  "(default: every trial once, in folds)")
-      ->option_text("TRIALS");
   command.add_option("--alpha", options.alpha, "level of the tests (default: 0.05)")
       ->option_text("P")
       ->check(CLI::Range(0.001, 0.5));
   command.add_option("--effects", options.effects, "candidates: a,b (default: the whole catalogue)")
       ->option_text("NAMES")
       ->delimiter(',');
-  command.add_option("--max-effects", options.max_effects, "most effects to put in (default: 3)")
-      ->option_text("N")
-      ->check(CLI::Range(1, 5));
   command.add_option("--budget", options.budget, "times the usual number of simulated datasets (default: 1)")
       ->option_text("X")
       ->check(CLI::Range(0.05, 20.0));
   command.add_option("--analysis-seed", options.seed, "of everything random in the analysis (default: 1)")
       ->option_text("N");
   command.add_option("--threads", options.threads, "0: all cores; changes no byte of any result")->option_text("N");
+}
+
+/// Returns what its subcommands don't take.
+std::vector<CLI::Option*> add_reconcile_options(CLI::App& command, ReconcileOptions& options) {
+  return {
+      command.add_option("--measured", options.measured, "rows or sums from the real room, CSV")->option_text("FILE"),
+      command.add_option("-o,--out", options.output, "folder for report and patched script (default: reconcile)")
+          ->option_text("DIR"),
+      command
+          .add_option("--holdout", options.holdout,
+                      "share (0.3) or names (S3,S8) of trials kept from naming and fitting, to be judged on "
+                      "(default: every trial once, in folds)")
+          ->option_text("TRIALS"),
+      command.add_option("--max-effects", options.max_effects, "most effects to put in (default: 3)")
+          ->option_text("N")
+          ->check(CLI::Range(1, 5))};
 }
 
 /// Words for the values of an enumeration.
@@ -234,6 +240,8 @@ CLI::Validator one_of(std::map<std::string, Value> values) {
 void add_selftest_options(CLI::App& command, SelftestOptions& options) {
   using Kind = reconcile::Measured::Kind;
   using reconcile::LeaveOut;
+  command.add_option("-o,--out", options.output, "folder for rates and pictures (default: reconcile_selftest)")
+      ->option_text("DIR");
   command.add_option("--data", options.kind, "what is planted in: series or sums (default: series)")
       ->option_text("KIND")
       ->transform(one_of<Kind>({{"series", Kind::series}, {"sums", Kind::sums}}));
@@ -260,6 +268,8 @@ void add_selftest_options(CLI::App& command, SelftestOptions& options) {
 
 void add_plan_options(CLI::App& command, PlanOptions& options) {
   using Kind = reconcile::Measured::Kind;
+  command.add_option("-o,--out", options.output, "folder for page and tables (default: reconcile_plan)")
+      ->option_text("DIR");
   command.add_option("--data", options.kind, "what is to be measured: series or sums (default: series)")
       ->option_text("KIND")
       ->transform(one_of<Kind>({{"series", Kind::series}, {"sums", Kind::sums}}));
@@ -313,6 +323,7 @@ int run_command_line(int argc, char** argv) {
   CoverageOptions coverage_options;
   WalkTestOptions walk_test_options;
   PlacementOptions placement_options;
+  AnalysisOptions analysis_options;
   ReconcileOptions reconcile_options;
   SealOptions seal_options;
   OpenOptions open_options;
@@ -356,23 +367,27 @@ int run_command_line(int argc, char** argv) {
   CLI::App* reconcile_command =
       app.add_subcommand("reconcile", "where model and measurement disagree, and which effect is missing");
   add_inputs(*reconcile_command, inputs);
-  add_reconcile_options(*reconcile_command, reconcile_options);
+  const std::vector<CLI::Option*> reconcile_only = add_reconcile_options(*reconcile_command, reconcile_options);
+  add_analysis_options(*reconcile_command, analysis_options);
   reconcile_command->require_subcommand(0, 1);
   CLI::App* selftest_command =
       reconcile_command->add_subcommand("selftest", "hide effects in simulated data and see which are found");
   add_scene_and_script(*selftest_command, inputs);
-  add_reconcile_options(*selftest_command, reconcile_options);
   add_selftest_options(*selftest_command, selftest_options);
+  add_analysis_options(*selftest_command, analysis_options);
   CLI::App* plan_command =
       reconcile_command->add_subcommand("plan", "before measuring: what could be told apart, and what to measure next");
   add_scene_and_script(*plan_command, inputs);
-  add_reconcile_options(*plan_command, reconcile_options);
   add_plan_options(*plan_command, plan_options);
+  add_analysis_options(*plan_command, analysis_options);
   CLI::App* seal_command = reconcile_command->add_subcommand("seal", "hide something in data, to be found blindly");
   add_scene_and_script(*seal_command, inputs);
   add_seal_options(*seal_command, seal_options);
   CLI::App* open_command = reconcile_command->add_subcommand("open", "score a report against the sealed answer");
   add_open_options(*open_command, open_options);
+  for (CLI::App* command : {selftest_command, plan_command, seal_command, open_command}) {
+    for (CLI::Option* option : reconcile_only) command->excludes(option);
+  }
 
   try {
     app.parse(argc, argv);
@@ -405,13 +420,13 @@ int run_command_line(int argc, char** argv) {
   } else if (*walk_test_command) {
     walk_test(inputs, walk_test_options);
   } else if (*selftest_command) {
-    reconcile_selftest(inputs, reconcile_options, selftest_options);
+    reconcile_selftest(inputs, analysis_options, selftest_options);
   } else if (*plan_command) {
-    reconcile_plan(inputs, reconcile_options, plan_options);
+    reconcile_plan(inputs, analysis_options, plan_options);
   } else if (*seal_command) {
     seal_challenge(inputs, seal_options);
   } else if (*reconcile_command) {
-    reconcile_data(inputs, reconcile_options);
+    reconcile_data(inputs, analysis_options, reconcile_options);
   } else if (*placements_command) {
     placements(inputs, placement_options);
   } else if (*export_command) {

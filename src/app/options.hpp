@@ -75,21 +75,26 @@ struct CampaignOptions {
   Verbosity verbosity = Verbosity::normal;
 };
 
-struct ReconcileOptions {
-  std::filesystem::path measured;
-  std::filesystem::path output = "reconcile";  ///< folder
-  std::filesystem::path table;                 ///< folder of the reference table; empty: in the output folder
-  std::string nuisance;                        ///< file, "none", or empty: the usual
-  std::string holdout;                         ///< share or names of trials to be judged on; empty: folds
+/// What a reconciliation, its plan and its self-test share.
+struct AnalysisOptions {
+  std::filesystem::path table;  ///< folder of the reference table; empty: in the output folder
+  std::string nuisance;         ///< file, "none", or empty: the usual
   double alpha = 0.05;
   std::vector<std::string> effects;  ///< candidates; empty: the whole catalogue
-  int max_effects = 3;
-  double budget = 1.0;  ///< times the usual number of simulated datasets
+  double budget = 1.0;               ///< times the usual number of simulated datasets
   std::uint64_t seed = 1;
   unsigned threads = 0;
 };
 
+struct ReconcileOptions {
+  std::filesystem::path measured;
+  std::filesystem::path output = "reconcile";  ///< folder
+  std::string holdout;                         ///< share or names of trials to be judged on; empty: folds
+  int max_effects = 3;
+};
+
 struct PlanOptions {
+  std::filesystem::path output = "reconcile_plan";  ///< folder
   reconcile::Measured::Kind kind = reconcile::Measured::Kind::series;
   int runs = 1;
 };
@@ -113,6 +118,7 @@ struct EffectsOptions {
 };
 
 struct SelftestOptions {
+  std::filesystem::path output = "reconcile_selftest";  ///< folder
   reconcile::Measured::Kind kind = reconcile::Measured::Kind::series;
   int runs = 1;
   std::uint32_t nulls = 60, planted = 10, beyond = 0, pairs = 0, aliens = 0, verified = 0;

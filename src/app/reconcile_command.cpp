@@ -21,11 +21,11 @@
 namespace pirsim::app {
 namespace {
 
-reconcile::Settings settings_of(const ReconcileOptions& options, const ScriptSpec& script) {
+reconcile::Settings settings_of(const AnalysisOptions& options, const std::filesystem::path& output,
+                                const ScriptSpec& script) {
   reconcile::Settings settings;
   settings.nuisance = nuisance_of(options.nuisance);
   settings.alpha = options.alpha;
-  settings.max_effects = options.max_effects;
   settings.seed = options.seed;
   settings.threads = options.threads;
   const auto scaled = [&](std::uint32_t n) {
@@ -44,7 +44,7 @@ reconcile::Settings settings_of(const ReconcileOptions& options, const ScriptSpe
   settings.table.n_worlds = scaled(settings.table.n_worlds);
   settings.table.n_remembered = scaled(settings.table.n_remembered);
   settings.table.n_traced = scaled(settings.table.n_traced);
-  settings.table_folder = options.table.empty() ? options.output / "table" : options.table;
+  settings.table_folder = options.table.empty() ? output / "table" : options.table;
   return settings;
 }
 
@@ -100,19 +100,19 @@ void draw_selftest(const std::filesystem::path& folder, const reconcile::Selftes
 
 }  // namespace
 
-void reconcile_selftest(const Inputs& inputs, const ReconcileOptions& options, const SelftestOptions& selftest) {
+void reconcile_selftest(const Inputs& inputs, const AnalysisOptions& analysis, const SelftestOptions& options) {
   const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
-  reconcile::SelftestSettings settings{settings_of(options, script),
-                                       selftest.kind,
-                                       selftest.runs,
-                                       selftest.nulls,
-                                       selftest.planted,
-                                       selftest.beyond,
-                                       selftest.pairs,
-                                       selftest.aliens,
-                                       selftest.leave_out,
-                                       selftest.verified};
+  reconcile::SelftestSettings settings{settings_of(analysis, options.output, script),
+                                       options.kind,
+                                       options.runs,
+                                       options.nulls,
+                                       options.planted,
+                                       options.beyond,
+                                       options.pairs,
+                                       options.aliens,
+                                       options.leave_out,
+                                       options.verified};
   require_writable(options.output);
   settings.planted_folder = settings.analysis.table_folder / "planted";
   Teller teller(inputs.verbosity);
@@ -121,15 +121,15 @@ void reconcile_selftest(const Inputs& inputs, const ReconcileOptions& options, c
   std::cout << reconcile::to_markdown(result);
   require_written();
   const reconcile::Geometry geometry =
-      options.nuisance == "none" ? reconcile::Geometry::known : reconcile::Geometry::uncertain;
+      analysis.nuisance == "none" ? reconcile::Geometry::known : reconcile::Geometry::uncertain;
   reconcile::write_selftest(options.output, result, geometry, made_by(inputs));
   draw_selftest(options.output, result, inputs.verbosity);
 }
 
-void reconcile_plan(const Inputs& inputs, const ReconcileOptions& options, const PlanOptions& plan) {
+void reconcile_plan(const Inputs& inputs, const AnalysisOptions& analysis, const PlanOptions& options) {
   const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
-  reconcile::PlanSettings settings{settings_of(options, script), plan.kind, plan.runs};
+  reconcile::PlanSettings settings{settings_of(analysis, options.output, script), options.kind, options.runs};
   require_writable(options.output);
   Teller teller(inputs.verbosity);
   const reconcile::PlanResult result = reconcile::plan(scene, script, settings, teller.observer());
@@ -139,7 +139,7 @@ void reconcile_plan(const Inputs& inputs, const ReconcileOptions& options, const
   reconcile::write_plan(options.output, result, made_by(inputs));
 }
 
-void reconcile_data(const Inputs& inputs, const ReconcileOptions& options) {
+void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const ReconcileOptions& options) {
   if (options.measured.empty())
     throw Error(ErrorCode::usage, "--measured FILE is missing; see pirsim reconcile --help");
   const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
@@ -150,7 +150,8 @@ void reconcile_data(const Inputs& inputs, const ReconcileOptions& options) {
   const reconcile::Measured measured = reconcile::read_measured(options.measured, frame);
   tell_notes(measured.notes, inputs.verbosity);
   require_writable(options.output);
-  reconcile::Settings settings = settings_of(options, script);
+  reconcile::Settings settings = settings_of(analysis, options.output, script);
+  settings.max_effects = options.max_effects;
   settings.holdout = reconcile::holdout_of(options.holdout, frame, measured);
 
   Teller teller(inputs.verbosity);

@@ -46,6 +46,15 @@ class CommandLine(unittest.TestCase):
         pirsim("--no-such-option", code=2)
         self.assertIn("did you mean", study("--tracer", "embre", code=2).stderr)
 
+    def test_what_only_an_analysis_of_data_takes_is_refused_by_its_subcommands(self):
+        for command in ("plan", "selftest", "seal"):
+            text = pirsim("reconcile", command, "--help").stdout
+            for option in ("--measured", "--holdout", "--max-effects"):
+                self.assertNotIn(option, text)
+                self.assertIn(option, pirsim("reconcile", command, option, "1", code=2).stderr)
+                self.assertIn(option, pirsim("reconcile", option, "1", command, code=2).stderr)
+            self.assertIn("--out", pirsim("reconcile", "--out", "folder", command, code=2).stderr)
+
     def test_a_file_that_is_not_there_is_an_io_error_that_names_it(self):
         result = pirsim("--scene", "nowhere.gltf", "--script", DATA / "studies" / "studyA.yaml", code=4)
         self.assertIn("nowhere.gltf", result.stderr)

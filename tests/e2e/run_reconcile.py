@@ -66,13 +66,14 @@ def main():
         study = ["-q", "--scene", folder / "data/rooms/meeting_room.gltf", "--script", folder / "data/studies/studyA.yaml"]
 
         def reconcile(command, *more):
-            return subprocess.run([pirsim, "reconcile", command, *study, "--budget", "0.05", *more], capture_output=True,
-                                  text=True, check=True).stdout
+            return subprocess.run([pirsim, "reconcile", command, *study, "--budget", "0.05", *more], cwd=folder,
+                                  capture_output=True, text=True, check=True).stdout
 
-        sentence = reconcile("plan", "--effects", "missed_triggers,false_triggers", "-o", folder / "plan").strip()
-        plan = json.loads((folder / "plan/plan.json").read_text())
+        # Each into its own folder, where none is asked for.
+        sentence = reconcile("plan", "--effects", "missed_triggers,false_triggers").strip()
+        plan = json.loads((folder / "reconcile_plan/plan.json").read_text())
         assert plan["sentence"] == sentence and plan["entries"] == ["nothing", "missed_triggers", "false_triggers"]
-        designs = list(csv.DictReader((folder / "plan/plan.csv").open()))
+        designs = list(csv.DictReader((folder / "reconcile_plan/plan.csv").open()))
         assert [d["design"] for d in designs][:2] == ["as planned", "all again"], designs
         assert {"slow walk", "empty room"} <= {d["design"] for d in designs}, (designs, plan["notes"])
         assert abs(float(designs[0]["minutes"]) - 0.5) < 0.05, designs
@@ -86,21 +87,23 @@ def main():
         for row in plan["confusion"]:
             assert abs(sum(row) - 1.0) < 1e-9, row
 
-        reconcile("selftest", "--nulls", "5", "--planted", "1", "--table", folder / "found/table", "-o", folder / "self")
-        assert "| a name although nothing is hidden | at most 0.01 |" in (folder / "self/targets.md").read_text()
+        reconcile("selftest", "--nulls", "5", "--planted", "1", "--table", folder / "found/table")
+        self_test = folder / "reconcile_selftest"
+        assert "| a name although nothing is hidden | at most 0.01 |" in (self_test / "targets.md").read_text()
+        assert not (folder / "reconcile").exists()
         if shutil.which("gnuplot"):
             for picture in ("confusion", "power", "reliability"):
-                assert (folder / f"self/{picture}.png").read_bytes().startswith(b"\x89PNG"), picture
+                assert (self_test / f"{picture}.png").read_bytes().startswith(b"\x89PNG"), picture
 
         if chromium:
             fits = sum(p["unit"] is not None for fit in report["fits"] for p in fit["parameters"])
             differs = report["verdict"] != "no-disagreement"
             verified = report["verification"] is not None
             check_page(chromium, folder / "found/report.html", 2 + differs + fits + verified, folder)
-            check_page(chromium, folder / "plan/plan.html", 3, folder)
-            charts = (folder / "self/selftest.html").read_text().count("<figure>")
+            check_page(chromium, folder / "reconcile_plan/plan.html", 3, folder)
+            charts = (self_test / "selftest.html").read_text().count("<figure>")
             assert charts >= 27 + 2, charts
-            check_page(chromium, folder / "self/selftest.html", charts, folder, widths=(1400,))
+            check_page(chromium, self_test / "selftest.html", charts, folder, widths=(1400,))
     print("reconcile: example, plan, self-test and their pages are whole")
 
 
