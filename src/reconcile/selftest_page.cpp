@@ -166,8 +166,7 @@ io::Report selftest_page(const SelftestResult& result, Geometry geometry) {
   report.sections = {
       {"Targets", {}, {target_table(result, geometry)}, {}}, confusion(result), pairs(result), power(result)};
   io::ReportSection calibration{"Can probabilities and intervals be trusted", {}, {}, {}};
-  calibration.paragraphs = {
-      "Mean distance between probability and share: " + fixed(result.reliability.expected_calibration_error, 3) + "."};
+  calibration.paragraphs = {"Mean distance between probability and share: " + calibration_error(result) + "."};
   calibration.charts.emplace_back(reliability_chart(result));
   if (io::BarChart chart = coverage_chart(result); !chart.bars.empty())
     calibration.charts.emplace_back(std::move(chart));

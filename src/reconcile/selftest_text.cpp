@@ -4,6 +4,8 @@
 
 #include "pirsim/io/csv_writer.hpp"
 #include "pirsim/reconcile/selftest.hpp"
+#include "reconcile/sentences.hpp"
+#include "reconcile/share_grids.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -29,14 +31,13 @@ std::string to_markdown(const SelftestResult& result) {
   std::ostringstream out;
   out << "| how often | share (95 % interval) |\n|---|---|\n";
   for (const Rate& rate : rates_of(result)) out << "| " << rate.what << " | " << share(rate) << " |\n";
-  out << "| calibration error of the probabilities | " << std::fixed << std::setprecision(3)
-      << result.reliability.expected_calibration_error << " |\n\n| effect |";
+  out << "| calibration error of the probabilities | " << calibration_error(result) << " |\n\n| effect |";
   for (const char* strength : {"weak", "medium", "strong"}) out << ' ' << strength << ": seen | and in the set |";
   out << "\n|---|---|---|---|---|---|---|\n";
   for (std::size_t entry = 1; entry < result.entries.size(); ++entry) {
     out << "| " << result.entries[entry] << " |";
     for (const Rate& rate : power_of(result, result.entries[entry])) {
-      out << ' ' << std::setprecision(2) << rate.value() << " |";
+      out << ' ' << (rate.of == 0 ? "no case" : fixed(rate.value(), 2)) << " |";
     }
     out << '\n';
   }
@@ -48,9 +49,7 @@ std::string to_markdown(const SelftestResult& result) {
     std::string list;
     for (std::size_t column = 0; column < confusion.size(); ++column) {
       if (confusion[row][column] < 0.05) continue;
-      std::ostringstream one;
-      one << std::fixed << std::setprecision(2) << confusion[row][column];
-      list += (list.empty() ? " " : ", ") + result.entries[column] + " " + one.str();
+      list += (list.empty() ? " " : ", ") + result.entries[column] + " " + fixed(confusion[row][column], 2);
     }
     out << list << " |\n";
   }

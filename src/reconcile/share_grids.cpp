@@ -13,6 +13,10 @@ std::string with_interval(const Rate& rate) {
          std::to_string(rate.hits) + " of " + std::to_string(rate.of) + ")";
 }
 
+std::string calibration_error(const SelftestResult& result) {
+  return result.reliability.bins.empty() ? "no case" : fixed(result.reliability.expected_calibration_error, 3);
+}
+
 io::GridChart::Cell share_cell(const Rate& rate) {
   io::GridChart::Cell cell;
   cell.hint = with_interval(rate);

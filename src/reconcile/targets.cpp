@@ -105,9 +105,14 @@ std::string targets_markdown(const SelftestResult& result, Geometry geometry) {
     }
     out << " | " << one.rate.of << " | " << name(one.reached) << " |\n";
   }
-  const double error = result.reliability.expected_calibration_error;
-  out << "| calibration error of the probabilities | at most " << fixed(largest_calibration_error, 2) << " | "
-      << fixed(error, 3) << " | | " << name(error <= largest_calibration_error ? Reached::yes : Reached::no) << " |\n";
+  out << "| calibration error of the probabilities | at most " << fixed(largest_calibration_error, 2) << " | ";
+  if (const stats::Reliability& counted = result.reliability; counted.bins.empty()) {
+    out << "| | " << name(Reached::not_tested) << " |\n";
+  } else {
+    const double error = counted.expected_calibration_error;
+    out << fixed(error, 3) << " | | " << name(error <= largest_calibration_error ? Reached::yes : Reached::no)
+        << " |\n";
+  }
   const std::vector<ConfusedPair> pairs = confused_pairs(result);
   if (pairs.empty()) {
     out << "\nNo two effects are taken for each other in a tenth of their cases.\n";

@@ -73,6 +73,15 @@ TEST_CASE("every target but those of known geometry has a rate that a full self-
   }
 }
 
+TEST_CASE("what had no case is neither met nor a number", "[selftest]") {
+  const SelftestResult result = result_of(0, 0);
+  const std::string compared = targets_markdown(result, Geometry::uncertain), text = to_markdown(result);
+  CHECK(count(compared, "| calibration error of the probabilities | at most 0.05 | | | not tested |") == 1);
+  CHECK(count(text, "| calibration error of the probabilities | no case |") == 1);
+  CHECK(count(text, "| sensor_yaw | no case | no case | no case | no case | no case | no case |") == 1);
+  CHECK(count(to_html(selftest_page(result, Geometry::uncertain)), "probability and share: no case") == 1);
+}
+
 TEST_CASE("gaps that are closed are counted where the right name was put in and claims where nothing is hidden",
           "[selftest]") {
   SelftestResult result = result_of(10, 2);
