@@ -147,6 +147,12 @@ std::string key_of(const Laboratory& lab, const SelftestSettings& settings) {
   return sha256(text);
 }
 
+/// Other numbers are kept beside the first, so that nobody has to remove these.
+std::filesystem::path folder_of(const SelftestSettings& settings, const std::string& key) {
+  if (settings.planted_folder.empty()) return {};
+  return settings.planted_folder.string() + "_" + key.substr(0, 8);
+}
+
 }  // namespace
 
 Strength strength_of(const EffectSpec& spec) {
@@ -168,7 +174,8 @@ std::string Planted::truth() const {
 std::vector<Planted> plant(const Laboratory& lab, const SelftestSettings& settings, const Observer& observer) {
   if (observer.stage) observer.stage("planted datasets");
   const PlantingJob job(lab, settings);
-  const TableStore store(settings.planted_folder, key_of(lab, settings));
+  const std::string key = key_of(lab, settings);
+  const TableStore store(folder_of(settings, key), key);
   std::vector<Planted> planted;
   stats::Matrix<float> statistics;
   for_each_chunk(

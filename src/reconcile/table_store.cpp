@@ -64,10 +64,27 @@ Series read_series(stats::BinaryReader& in) {
   run.main_end = in.read<std::uint32_t>();
   const auto n = in.read<std::uint32_t>();
   const auto packed = in.read_vector<std::uint8_t>();
-  if (packed.size() != (n + 7U) / 8U) throw Error(ErrorCode::input, "reference table: is damaged: an impossible size");
+  if (packed.size() != (n + 7U) / 8U)
+    throw Error(ErrorCode::input, std::string(kind) + " is damaged: an impossible size");
   run.bits.reserve(n);
   for (std::uint32_t i = 0; i < n; ++i) run.bits.push_back(packed[i / 8] >> i % 8 & 1U);
   return run;
+}
+
+TableChunk read_chunk(std::istream& stream) {
+  stats::BinaryReader in(stream, kind, format);
+  TableChunk chunk;
+  chunk.n_left_out = in.read<std::uint32_t>();
+  for (auto n = in.read<std::uint32_t>(); n > 0; --n) {
+    SimulatedDataset dataset;
+    dataset.row.entry = in.read<std::uint32_t>();
+    dataset.row.world = in.read<std::uint32_t>();
+    for (auto m = in.read<std::uint32_t>(); m > 0; --m) dataset.row.effects.push_back(read_effect(in));
+    for (auto m = in.read<std::uint32_t>(); m > 0; --m) dataset.runs.push_back(read_series(in));
+    chunk.datasets.push_back(std::move(dataset));
+  }
+  in.finish();
+  return chunk;
 }
 
 void append(TableChunk& chunk, TableChunk& more) {
@@ -103,19 +120,12 @@ std::filesystem::path TableStore::file(std::uint32_t number) const {
 std::optional<TableChunk> TableStore::find(std::uint32_t number) const {
   if (folder_.empty() || !std::filesystem::exists(file(number))) return std::nullopt;
   std::ifstream stream(file(number), std::ios::binary);
-  stats::BinaryReader in(stream, kind, format);
-  TableChunk chunk;
-  chunk.n_left_out = in.read<std::uint32_t>();
-  for (auto n = in.read<std::uint32_t>(); n > 0; --n) {
-    SimulatedDataset dataset;
-    dataset.row.entry = in.read<std::uint32_t>();
-    dataset.row.world = in.read<std::uint32_t>();
-    for (auto m = in.read<std::uint32_t>(); m > 0; --m) dataset.row.effects.push_back(read_effect(in));
-    for (auto m = in.read<std::uint32_t>(); m > 0; --m) dataset.runs.push_back(read_series(in));
-    chunk.datasets.push_back(std::move(dataset));
+  try {
+    return read_chunk(stream);
+  } catch (const Error& error) {
+    throw Error(ErrorCode::input, {file(number).string(), 0, 0},
+                error.issues().front().message + "; remove this file, and only its worlds are simulated again");
   }
-  in.finish();
-  return chunk;
 }
 
 void TableStore::keep(std::uint32_t number, const TableChunk& chunk) const {

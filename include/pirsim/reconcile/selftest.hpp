@@ -35,7 +35,8 @@ struct SelftestSettings {
   /// right, that an effect got which the catalogue lacks, and that an alien got, are put in to see whether the model
   /// with them can have made the data.
   std::uint32_t n_verified = 0;
-  std::filesystem::path planted_folder = {};  ///< keeps finished datasets; empty: none
+  /// Keeps finished datasets; its name is made longer by what they depend on. Empty: they are not kept.
+  std::filesystem::path planted_folder = {};
 };
 
 /// What is hidden in a dataset, and from whom.
