@@ -36,7 +36,7 @@ THIRD_PARTY = {
     "oneapi": {"core"},
     "tbb": {"core"},
     "Random123": {"core"},
-    "nlopt": {"studies", "reconcile"},
+    "nlopt": {"studies"},
     "Eigen": {"stats"},
     "boost/math": {"stats"},
     "boost/algorithm": {"app", "effects", "studies", "reconcile"},
