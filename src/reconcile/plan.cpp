@@ -188,7 +188,6 @@ std::string best_of(const PlanResult& result) {
     if (&design == &planned || design.more_bits_95.low <= 0.0) continue;
     if (best == nullptr || design.surely_per_minute() > best->surely_per_minute()) best = &design;
   }
-  const auto percent = [](double share) { return short_number(std::round(100.0 * share)) + " %"; };
   const std::string now = "what is planned makes the right effect the likeliest in " + percent(planned.right) +
                           " of cases (" + short_number(planned.bits) + " bits)";
   if (best == nullptr) return "None of the further measurements tried is shown to help: " + now + ".";
