@@ -43,13 +43,6 @@ std::vector<std::vector<std::size_t>> checked_blocks(std::vector<std::vector<std
 
 }  // namespace
 
-std::vector<std::size_t> prediction_set(std::span<const double> p, double alpha) {
-  std::vector<std::size_t> members;
-  for (std::size_t k = 0; k < p.size(); ++k)
-    if (p[k] > alpha) members.push_back(k);
-  return members;
-}
-
 ConformalClassifier ConformalClassifier::fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
                                              const Split& split, const ConformalSettings& settings,
                                              std::span<const int> subclasses) {

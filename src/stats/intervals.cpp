@@ -46,10 +46,6 @@ double sign_test_greater(std::size_t positive, std::size_t negative) {
   return boost::math::cdf(boost::math::complement(signs, static_cast<double>(positive) - 1.0));
 }
 
-double sign_test_two_sided(std::size_t positive, std::size_t negative) {
-  return std::min(1.0, 2.0 * sign_test_greater(std::max(positive, negative), std::min(positive, negative)));
-}
-
 Interval mean_interval(std::span<const double> values, double confidence) {
   require(values.size() > 1, "mean_interval: fewer than two values");
   require(confidence > 0.0 && confidence < 1.0, "mean_interval: confidence must lie between 0 and 1");

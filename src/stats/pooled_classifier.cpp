@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "pirsim/core/parallel.hpp"
-#include "pirsim/core/random.hpp"
 #include "stats/require.hpp"
 #include "stats/select.hpp"
 #include "stats/softmax.hpp"
@@ -28,30 +27,6 @@ Matrix<float> with_coordinates(const Matrix<float>& features, const Matrix<doubl
 }
 
 }  // namespace
-
-Split split_by_class(std::span<const int> labels, double calibration_share, std::uint64_t seed) {
-  require(calibration_share > 0.0 && calibration_share < 1.0, "split: calibration share outside (0, 1)");
-  require(!labels.empty(), "split: no row");
-  const int n_classes = *std::max_element(labels.begin(), labels.end()) + 1;
-  Split split;
-  for (int k = 0; k < n_classes; ++k) {
-    std::vector<std::size_t> rows;
-    for (std::size_t row = 0; row < labels.size(); ++row)
-      if (labels[row] == k) rows.push_back(row);
-    if (rows.empty()) continue;
-    require(rows.size() > 1, "split: a class with a single row");
-    Stream stream({seed, static_cast<std::uint32_t>(k), 0, Purpose::calibration_split});
-    for (std::size_t i = rows.size() - 1; i > 0; --i)
-      std::swap(rows[i], rows[stream.index(static_cast<std::uint32_t>(i + 1))]);
-    const auto wanted = static_cast<std::size_t>(std::lround(calibration_share * static_cast<double>(rows.size())));
-    const auto kept = static_cast<std::ptrdiff_t>(std::clamp<std::size_t>(wanted, 1, rows.size() - 1));
-    split.calibration.insert(split.calibration.end(), rows.begin(), rows.begin() + kept);
-    split.fitting.insert(split.fitting.end(), rows.begin() + kept, rows.end());
-  }
-  std::sort(split.calibration.begin(), split.calibration.end());
-  std::sort(split.fitting.begin(), split.fitting.end());
-  return split;
-}
 
 PooledClassifier PooledClassifier::fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
                                        const Split& split, const PooledClassifierSettings& settings,

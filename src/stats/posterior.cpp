@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 
-#include "pirsim/stats/discriminant.hpp"
 #include "stats/eigen.hpp"
 #include "stats/require.hpp"
 
@@ -197,28 +195,6 @@ AbcPosterior abc_posterior(const Matrix<double>& parameters, const Matrix<double
   for (std::size_t p = 0; p < settings.bounds.size(); ++p)
     for (double& value : values.col(static_cast<Eigen::Index>(p))) value = from_open(value, settings.bounds[p]);
   return {detail::to_matrix(values), std::move(accepted.weights)};
-}
-
-double synthetic_log_likelihood(const Matrix<double>& simulated, std::span<const double> observed, double smallest_sd) {
-  require(simulated.rows() > 1, "synthetic likelihood: fewer than two simulated rows");
-  require(simulated.columns() == observed.size(), "synthetic likelihood: observed and simulated rows differ in length");
-  require(smallest_sd > 0.0, "synthetic likelihood: smallest_sd must be positive");
-  const auto rows = as_eigen(simulated);
-  const Eigen::RowVectorXd mean = rows.colwise().mean();
-  const Eigen::RowVectorXd variance =
-      (rows.rowwise() - mean).colwise().squaredNorm() / static_cast<double>(simulated.rows() - 1);
-  const Eigen::RowVectorXd sd = variance.cwiseSqrt().cwiseMax(smallest_sd);
-  Matrix<double> standard(simulated.rows(), simulated.columns());
-  as_eigen(standard) = (rows.rowwise() - mean).array().rowwise() / sd.array();
-  const ShrunkCovariance shrunk = ledoit_wolf(standard);
-  Eigen::MatrixXd correlation = as_eigen(shrunk.covariance);
-  correlation.diagonal().setOnes();
-  const Eigen::VectorXd off = ((as_eigen(observed).transpose() - mean).array() / sd.array()).matrix().transpose();
-  const Eigen::LLT<Eigen::MatrixXd> factor(correlation);
-  const Eigen::VectorXd whitened = factor.matrixL().solve(off);
-  const double log_determinant = 2.0 * factor.matrixLLT().diagonal().array().log().sum() + 2.0 * sd.array().log().sum();
-  const double dimensions = static_cast<double>(observed.size());
-  return -0.5 * (whitened.squaredNorm() + log_determinant + dimensions * std::log(2.0 * std::numbers::pi));
 }
 
 }  // namespace pirsim::stats

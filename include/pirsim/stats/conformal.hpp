@@ -12,9 +12,6 @@
 
 namespace pirsim::stats {
 
-/// Indices whose p exceeds alpha.
-[[nodiscard]] std::vector<std::size_t> prediction_set(std::span<const double> p, double alpha);
-
 struct ConformalSettings {
   PooledClassifierSettings pooled = {};
   ClassShapesSettings shapes = {};

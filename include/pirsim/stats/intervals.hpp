@@ -25,8 +25,6 @@ struct Interval {
 /// P(at least `positive` of `positive + negative` signs are positive) if both signs are equally likely; zeros are to be
 /// left out by the caller. 1 without any sign.
 [[nodiscard]] double sign_test_greater(std::size_t positive, std::size_t negative);
-/// The same for either direction: twice the smaller tail, at most 1.
-[[nodiscard]] double sign_test_two_sided(std::size_t positive, std::size_t negative);
 
 /// Student's interval of the mean of independent values (2 or more), `confidence` sure if they are normally
 /// distributed.

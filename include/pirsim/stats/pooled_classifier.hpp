@@ -11,12 +11,10 @@
 
 namespace pirsim::stats {
 
-/// Indices of rows, each class split alike: the first part for fitting, the second for calibration.
+/// Indices of rows: the first part for fitting, the second for calibration.
 struct Split {
   std::vector<std::size_t> fitting, calibration;  ///< ascending
 };
-/// calibration_share in (0, 1); at least one row of each class goes to either part.
-[[nodiscard]] Split split_by_class(std::span<const int> labels, double calibration_share, std::uint64_t seed);
 
 struct PooledClassifierSettings {
   ExtraTreesSettings trees = {};     ///< grown on the features and the discriminant's coordinates. Ref: [Pudlo2016]

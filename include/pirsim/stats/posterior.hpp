@@ -1,4 +1,4 @@
-// Parameters of a simulator from data, without a likelihood: regression-adjusted ABC, and a synthetic likelihood.
+// Parameters of a simulator from data, without a likelihood: regression-adjusted ABC.
 #pragma once
 
 #include <span>
@@ -46,11 +46,5 @@ struct AbcPosterior {
 /// n_statistics + 2 accepted rows. Ref: [Beaumont2002]
 [[nodiscard]] AbcPosterior abc_posterior(const Matrix<double>& parameters, const Matrix<double>& statistics,
                                          std::span<const double> observed, const AbcSettings& settings = {});
-
-/// Log density of `observed` (n_statistics) under the normal distribution of `simulated` (n_rows x n_statistics), its
-/// correlations shrunk ([LedoitWolf2004]). smallest_sd: (one number, in the statistics' unit) keeps a statistic that
-/// never varied from deciding alone; positive. Ref: [Wood2010]
-[[nodiscard]] double synthetic_log_likelihood(const Matrix<double>& simulated, std::span<const double> observed,
-                                              double smallest_sd);
 
 }  // namespace pirsim::stats

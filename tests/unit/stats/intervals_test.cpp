@@ -51,10 +51,8 @@ TEST_CASE("Clopper-Pearson bounds are where the binomial tails equal half of wha
 
 TEST_CASE("the sign test counts coins", "[stats]") {
   CHECK(sign_test_greater(9, 1) == Approx(11.0 / 1024.0));
-  CHECK(sign_test_two_sided(1, 9) == Approx(22.0 / 1024.0));
   CHECK(sign_test_greater(0, 4) == 1.0);
   CHECK(sign_test_greater(0, 0) == 1.0);
-  CHECK(sign_test_two_sided(3, 3) == 1.0);
 }
 
 TEST_CASE("quantiles lie on the line between order statistics", "[stats]") {

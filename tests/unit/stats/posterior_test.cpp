@@ -1,7 +1,6 @@
 #include "pirsim/stats/posterior.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "pirsim/core/error.hpp"
@@ -106,27 +105,4 @@ TEST_CASE("guessed parameters from many statistics are near the best guess there
   CHECK(squares > best * 0.8);
   CHECK(squares < best * 1.45);  // 200 slopes from 1,000 rows cost about a fifth each way
   CHECK(squares < 0.25);         // guessing the mean would give 1
-}
-
-TEST_CASE("the synthetic likelihood of normal statistics is their density", "[stats]") {
-  Stream stream({54, 0, 0, Purpose::test});
-  Matrix<double> simulated(40000, 2);
-  for (std::size_t r = 0; r < simulated.rows(); ++r) {
-    const double common = stream.normal();
-    simulated(r, 0) = 1.0 + 2.0 * common;
-    simulated(r, 1) = -1.0 + 0.6 * common + 0.8 * stream.normal();
-  }
-  // Covariance (4, 1.2; 1.2, 1), determinant 2.56.
-  const auto exact = [](double x, double y) {
-    const double dx = x - 1.0, dy = y + 1.0;
-    const double squares = (1.0 * dx * dx - 2.0 * 1.2 * dx * dy + 4.0 * dy * dy) / 2.56;
-    return -0.5 * squares - std::log(2.0 * std::numbers::pi) - 0.5 * std::log(2.56);
-  };
-  for (const auto& [x, y] : {std::pair{1.0, -1.0}, std::pair{4.0, 0.0}, std::pair{0.0, 1.0}})
-    CHECK(synthetic_log_likelihood(simulated, std::vector<double>{x, y}, 1e-6) == Approx(exact(x, y)).margin(0.15));
-
-  // A statistic that never varied costs what its smallest sd says, not infinity.
-  Matrix<double> still(50, 1, 3.0);
-  CHECK(synthetic_log_likelihood(still, std::vector<double>{4.0}, 0.5) ==
-        Approx(-0.5 * 4.0 - 0.5 * std::log(2.0 * std::numbers::pi) - std::log(0.5)));
 }

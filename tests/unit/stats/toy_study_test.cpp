@@ -8,6 +8,7 @@
 #include "pirsim/stats/decision.hpp"
 #include "pirsim/stats/envelope.hpp"
 #include "support/catch.hpp"
+#include "support/labelled.hpp"
 #include "support/toy_catalogue.hpp"
 
 using namespace pirsim;
@@ -44,7 +45,7 @@ struct Study {
       }
     }
     labels = relabel(labels);
-    classifier = ConformalClassifier::fit(features, labels, toy::n_known, split_by_class(labels, 0.4, 0),
+    classifier = ConformalClassifier::fit(features, labels, toy::n_known, test::split_by_class(labels),
                                           {.pooled = {.trees = {.trees = 60}}, .blocks = toy::blocks()});
   }
 
@@ -66,7 +67,10 @@ struct Study {
       rates.truth_kept += kept ? share : 0.0;
       rates.named_right += decision.verdict == Verdict::named && kept ? share : 0.0;
       rates.named_wrong += decision.verdict == Verdict::named && !kept ? share : 0.0;
-      const std::vector<std::size_t> likely = prediction_set(found.p_relative, alpha);
+      std::vector<std::size_t> likely;
+      for (std::size_t k = 0; k < toy::n_known; ++k) {
+        if (found.p_relative[k] > alpha) likely.push_back(k);
+      }
       const bool wrong = likely.size() == 1 && likely[0] != toy::nothing && likely[0] != truth;
       rates.by_margin += p <= alpha && wrong ? share : 0.0;
       rates.none += decision.verdict == Verdict::none_in_catalogue ? share : 0.0;
