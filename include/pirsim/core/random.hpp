@@ -22,10 +22,9 @@ enum class Purpose : std::uint32_t {
   dead_sensor = 10,    ///< dead_sensor: which rows a dying sensor loses
   effect_prior = 11,   ///< parameters drawn from the catalogue's priors
   // Of statistics, from 100 on.
-  tied_ranks = 100,         ///< order of equal values in a rank test
-  tree_growing = 102,       ///< columns and thresholds that a randomised tree tries
-  projection = 103,         ///< random directions that a subspace is found from
-  calibration_split = 104,  ///< which rows are kept for calibration
+  tied_ranks = 100,    ///< order of equal values in a rank test
+  tree_growing = 102,  ///< columns and thresholds that a randomised tree tries
+  projection = 103,    ///< random directions that a subspace is found from
   // Of reconciliation, from 200 on.
   nuisance = 200,              ///< where seats and sensors really are, and how large people are
   simulated_seed = 201,        ///< seeds of simulated datasets
