@@ -96,7 +96,7 @@ TEST_CASE("logistic regression says when there is no maximum", "[stats]") {
 
 TEST_CASE("with outcomes that are all equal a ridge on the intercept keeps the fit finite", "[stats]") {
   // One parameter: penalised maximum where n (outcome - share(b)) = ridge b.
-  for (const std::uint8_t outcome : {0, 1}) {
+  for (const std::uint8_t outcome : {std::uint8_t{0}, std::uint8_t{1}}) {
     const Matrix<double> nothing(500, 1, 0.0);
     const std::vector<std::uint8_t> outcomes(500, outcome);
     const LogisticFit fit = fit_logistic(nothing, outcomes, {.ridge = 1.0, .intercept_ridge = 0.1});
