@@ -46,13 +46,13 @@ std::string no_effect(const Outcome& outcome, double alpha) {
     possible.push_back(candidate.score.entry);
     together += candidate.score.probability;
   }
-  if (possible.empty()) return "no effect of the catalogue reproduces the data";
+  if (possible.empty()) return "no effect of the catalogue is likely to have made the data";
   const std::string& likeliest = std::ranges::max_element(outcome.candidates, {}, [](const Candidate& c) {
                                    return c.score.probability;
                                  })->score.entry;
   const bool likeliest_is_possible = std::ranges::find(possible, likeliest) != possible.end();
   return (likeliest_is_possible ? "most effects" : "the likelier effects") +
-         std::string(" of the catalogue don't reproduce the data; ") + joined(possible, "and") +
+         std::string(" of the catalogue can hardly have made the data; ") + joined(possible, "and") +
          " might, but with a probability of only " + short_number(together);
 }
 
@@ -183,9 +183,10 @@ std::string sentence_of_refused(const Outcome& outcome, double alpha) {
 }
 
 std::string sentence_of_nearest(const Look& look, const std::string& reason) {
+  const std::string why = reason.substr(reason.find(": ") + 2);
   return look.put_in.front() +
          " comes nearest: with it put in, the test of everything together sees no difference (p = " +
-         short_number(look.p) + "). " + reason;
+         short_number(look.p) + "). It was dropped all the same: " + why;
 }
 
 std::string reason_of(const Candidate& candidate, double alpha) {

@@ -15,7 +15,7 @@ namespace pirsim::reconcile {
 [[nodiscard]] std::string reason_of_refused(const Look& look);
 /// The verdict then.
 [[nodiscard]] std::string sentence_of_refused(const Outcome& outcome, double alpha);
-/// Of the likeliest effect if it was dropped, though the model with it passes; reason: its reason_of.
+/// Of the likeliest effect if it was dropped, though the model with it passes; reason: its reason_of, "Dropped: ...".
 [[nodiscard]] std::string sentence_of_nearest(const Look& look, const std::string& reason);
 [[nodiscard]] std::string in_words(const FittedEffect& fitted);
 /// Of the model with effects put in.
