@@ -75,8 +75,8 @@ bool FeatureMap::known(std::size_t trial, std::size_t sensor, std::size_t statis
 
 void FeatureMap::learn_scales(const stats::Matrix<float>& plain) {
   const std::size_t n = plain.columns();
-  std::vector<double> rows(n, 0.0),
-      square(n, 0.0);  // rows that have the statistic: a counted phase may not come in all
+  std::vector<double> rows(n, 0.0);  // that have the statistic: in some a counted phase may not come
+  std::vector<double> square(n, 0.0);
   mean_.assign(n, 0.0);
   expected_log_.assign(frame_.n_cells(), 0.0);
   for_all_known(plain, [&](std::size_t i, double) { rows[i] += 1.0; });

@@ -13,9 +13,9 @@ namespace pirsim::reconcile {
 namespace {
 
 constexpr float nothing_known = std::numeric_limits<float>::quiet_NaN();
-constexpr double busy_share = 0.12;   ///< of the rows
-constexpr std::size_t a_row = 1;      ///< by which walks of people with another gait may be shorter (assumed)
-constexpr double a_twentieth = 1.05;  ///< by which main parts may be longer or shorter: who sits down earlier (assumed)
+constexpr double busy_share = 0.12;  ///< of the rows
+constexpr std::size_t a_row = 1;     ///< by which walks of people with another gait may be shorter (assumed)
+constexpr double longer_by = 1.05;   ///< times as long may main parts be, or as short: who sits down earlier (assumed)
 
 constexpr auto first_sixth = static_cast<std::size_t>(CellStatistic::sixth_1);
 constexpr std::array<std::string_view, first_sixth> cell_names{
@@ -313,13 +313,13 @@ void refuse_longer_than_study(const StudyFrame& frame, const Measured& measured,
                                               " s in the simulation; " + hint);
     };
     for (const Measured::Sum& sum : measured.sums) {
-      if (sum.trial != trial || sum.seconds <= a_twentieth * longest * frame.window_s) continue;
+      if (sum.trial != trial || sum.seconds <= longer_by * longest * frame.window_s) continue;
       refuse("'" + frame.sensors[sum.sensor] + "' has " + io::csv_number(sum.seconds) + " s with motion",
              "give the sum of one run, of that part only");
     }
     for (const Series& run : measured.runs) {
       const std::size_t n_main = run.main_end - run.main_begin;
-      if (measured.tells_phases || run.trial != trial || static_cast<double>(n_main) <= a_twentieth * longest) continue;
+      if (measured.tells_phases || run.trial != trial || static_cast<double>(n_main) <= longer_by * longest) continue;
       refuse(std::to_string(n_main) + " rows without a column 'phase'", "leave out the others, or give the phases");
     }
   }
@@ -383,17 +383,17 @@ std::vector<std::string> notes_on(const StudyFrame& frame, const DataShape& shap
     const Series& run = measured.runs[i];
     const DataShape::Run& of_run = shape.runs[i];
     const Lengths usual = lengths_of(run.trial, pilot, n);
-    const auto left_out = [&](const std::vector<std::uint8_t>& known) {
+    const auto left_out_of_any = [&](const std::vector<std::uint8_t>& known) {
       for (std::size_t sensor = 0; sensor < n; ++sensor) {
         if (known[sensor] == 0 && knows_main_part(of_run, sensor, n)) return 1;
       }
       return 0;
     };
     const std::size_t n_main = run.main_end - run.main_begin;
-    leads += run.main_begin > 0 ? left_out(of_run.lead_known) : 0;
-    tails += run.main_end < run.n_rows(n) ? left_out(of_run.tail_known) : 0;
+    leads += run.main_begin > 0 ? left_out_of_any(of_run.lead_known) : 0;
+    tails += run.main_end < run.n_rows(n) ? left_out_of_any(of_run.tail_known) : 0;
     begun += measured.tells_phases && run.main_begin == 0 && usual.shortest_lead > a_row ? 1 : 0;
-    shorter += a_twentieth * static_cast<double>(n_main) < static_cast<double>(usual.shortest_main) ? 1 : 0;
+    shorter += longer_by * static_cast<double>(n_main) < static_cast<double>(usual.shortest_main) ? 1 : 0;
     longer += of_run.n_main < n_main ? 1 : 0;
   }
   std::vector<std::string> notes;
