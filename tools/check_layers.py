@@ -16,7 +16,7 @@ BELOW = {
     "rt": {"schema", "geom", "core"},
     "body": {"schema", "geom", "core"},
     "pir": {"schema", "geom", "core"},
-    "io": {"schema", "geom", "core"},
+    "io": {"effects", "schema", "geom", "core"},
     "effects": {"schema", "geom", "core"},
     "sim": {"effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
     "studies": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "stats", "core"},

@@ -1,15 +1,27 @@
 #include "io/effect_reader.hpp"
 
+#include <algorithm>
+
 #include "io/text_input.hpp"
+#include "pirsim/effects/catalogue.hpp"
 
 namespace pirsim::io {
 namespace {
+
+/// Then the value is a name, and may look like a number: `sensor: 1`.
+bool is_choice(const std::string& effect, const std::string& setting) {
+  return std::ranges::any_of(effects::catalogue(), [&](const effects::Effect* known) {
+    const std::vector<effects::ChoiceInfo>& choices = known->info.choices;
+    return known->info.name == effect &&
+           std::ranges::find(choices, setting, &effects::ChoiceInfo::name) != choices.end();
+  });
+}
 
 void read_setting(const YamlKey& key, const YamlNode& value, EffectSpec& effect, Diagnostics& faults) {
   const std::string what = effect.name + "." + key.name;
   const std::string text = value.text(faults, what);
   if (!value.is_scalar()) return;
-  if (parse_number<double>(text)) {
+  if (!is_choice(effect.name, key.name) && parse_number<double>(text)) {
     effect.parameters[key.name] = value.number(faults, what);
   } else {
     effect.choices[key.name] = text;

@@ -77,6 +77,10 @@ LabelledRows::LabelledRows(const ReferenceTable& table, const SeenRows& seen, st
     add(seen.at(entry), std::vector<int>(seen.at(entry).size(), -1), split.calibration);
     entries.push_back(entry);
   }
+  if (entries.size() < 2)
+    throw Error(ErrorCode::infeasible,
+                "reconcile: no effect to look for is left; of each too few worlds could be "
+                "simulated in this room");
 }
 
 std::vector<double> LabelledRows::by_entry(std::span<const double> of_classes) const {

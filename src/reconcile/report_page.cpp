@@ -33,7 +33,7 @@ io::ReportSection envelope(const Location& location, double alpha) {
   section.paragraphs = {
       "One test for everything together, and its picture: if the model were right, even one red dot would be there in "
       "only " +
-      fixed(100.0 * alpha, 0) + " % of cases. Here, " +
+      short_number(100.0 * alpha) + " % of cases. Here, " +
       count_of(static_cast<std::size_t>(outside), location.envelope.size()) +
       " lie outside (p = " + short_number(location.p) +
       "). Each number is counted in units of its own scatter in the model, with very great ones drawn in, not in "
@@ -99,8 +99,11 @@ std::string what_is_shown(const Verification& v) {
 
 /// Chance carries a share beyond all that can be closed.
 std::string what_is_closed(const Verification& v) {
+  if (v.before.energy_score <= v.noise_floor)
+    return "the model as it is was as near to these trials already as two runs of the new one are to each other.";
   if (v.share_closed >= 1.0)
     return "with it, the data are as near to the model as two of its own runs are to each other, on average.";
+  if (v.share_closed < 0.0) return "on average these trials are farther from the model with it than without.";
   return fixed(100.0 * v.share_closed, 0) +
          " % of what can be closed is closed; how far two runs of the model are apart can't be.";
 }

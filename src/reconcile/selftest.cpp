@@ -103,8 +103,8 @@ std::vector<std::size_t> to_verify(const std::vector<PlantedCase>& cases, std::s
 void verify_some(const Laboratory& lab, const SeenRows& seen, const std::vector<Planted>& planted,
                  const SelftestSettings& settings, const std::function<void(const std::string&)>& begin,
                  std::vector<PlantedCase>& cases) {
-  const std::vector<std::size_t> chosen = to_verify(cases, settings.n_verified);
-  if (chosen.empty()) return;
+  const std::vector<std::size_t> chosen = to_verify(cases, settings.n_verified), trials = all_trials(lab.frame);
+  if (chosen.empty() || trials.size() < 2) return;  // of one trial nothing can be held out
   begin("finding anew without held-out trials what is in " + std::to_string(chosen.size()) + " datasets");
   std::vector<Claim> claims;
   for (const std::size_t i : chosen) {
@@ -112,7 +112,7 @@ void verify_some(const Laboratory& lab, const SeenRows& seen, const std::vector<
     claims.push_back({{{&lab, planted[cases[i].planted].statistics, named.front(), seen}}, named});
   }
   const Settings& analysis = settings.analysis;
-  const Folds folds = usual_folds(sha256(lab.key), all_trials(lab.frame), lab.shape.kind);
+  const Folds folds = usual_folds(sha256(lab.key), trials, lab.shape.kind);
   std::vector<Verification> found = verify(
       claims, folds, {analysis.alpha, analysis.seed, analysis.threads, analysis.verify_worlds}, [&](std::size_t done) {
         begin("judged on held-out trials: " + std::to_string(done) + " of " + std::to_string(claims.size()));

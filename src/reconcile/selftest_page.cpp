@@ -79,8 +79,8 @@ io::GridChart confusion_chart(const SelftestResult& result) {
   io::GridChart chart = confusion_grid(result.entries, confusion_of(result));
   chart.title = "What was hidden (rows), and what it looked like most (columns)";
   chart.note =
-      "Dark squares on the diagonal are right; dark squares beside it are two effects that look alike. Cases "
-      "without a disagreement are left out.";
+      "Dark squares on the diagonal are right; dark squares beside it are two effects that look alike. Cases of an "
+      "effect without a disagreement are left out.";
   return chart;
 }
 

@@ -41,8 +41,8 @@ std::string to_markdown(const SelftestResult& result) {
     }
     out << '\n';
   }
-  out << "\nConfusion: of the cases with a disagreement, the share in which the column's entry is the likeliest; "
-         "less than 0.05 left out.\n\n| hidden | taken for |\n|---|---|\n";
+  out << "\nConfusion: of the cases with a disagreement (of nothing: of all), the share in which the column's entry is "
+         "the likeliest; less than 0.05 left out.\n\n| hidden | taken for |\n|---|---|\n";
   const auto confusion = confusion_of(result);
   for (std::size_t row = 0; row < confusion.size(); ++row) {
     out << "| " << result.entries[row] << " |";

@@ -37,6 +37,14 @@ TEST_CASE("effects are read in order with numbers and names and can be overridde
   CHECK(script_with("", {"effects=[{dead_time: {dead_s: 1}}]"}).effects.at(0).parameters.at("dead_s") == 1.0);
 }
 
+TEST_CASE("a sensor's name may look like a number, also in the script that is written") {
+  const ScriptSpec script = script_with("effects: [{missed_triggers: {probability: 0.3, sensor: 1.0}}]");
+  CHECK(script.effects.at(0).choices.at("sensor") == "1.0");
+  const TemporaryFolder folder;
+  const ScriptSpec again = io::read_script(folder.write("again.yaml", io::to_yaml(script)));
+  CHECK(again.effects.at(0).choices.at("sensor") == "1.0");
+}
+
 TEST_CASE("what is wrong with an effect is said with its place and the nearest name") {
   CHECK_THAT(faults_of("effects:\n- dead_tyme\n"),
              contains("'dead_tyme' is not an effect (did you mean 'dead_time'?)"));
@@ -44,7 +52,7 @@ TEST_CASE("what is wrong with an effect is said with its place and the nearest n
   CHECK_THAT(faults_of("effects: [{dead_time: {dead: 2}}]"), contains("no parameter 'dead' (did you mean 'dead_s'?)"));
   CHECK_THAT(faults_of("effects: [{dead_time: {dead_s: long}}]"), contains("expected a number, not 'long'"));
   CHECK_THAT(faults_of("effects: [{dead_time: {dead_s: -1}}]"), contains("expected a number from 0 to 600, not -1"));
-  CHECK_THAT(faults_of("effects: [{dead_time: {sensor: 3}}]"), contains("expected a name, not a number"));
+  CHECK_THAT(faults_of("effects: [{dead_time: {sensor: 3}}]"), contains("'3' is not in meeting_room.gltf"));
   CHECK_THAT(faults_of("effects: [{dead_time: {sensor: PIR9}}]"), contains("'PIR9' is not in meeting_room.gltf"));
   CHECK_THAT(faults_of("effects: [dead_time, dead_time: {sensor: PIR1}]"), contains("a second time"));
   CHECK_THAT(faults_of("effects: [dead_time: 3]"), contains("expected parameters by name"));

@@ -138,11 +138,16 @@ TEST_CASE("the page says what held-out trials show and no more", "[report]") {
   outcome.verification->share_closed = 0.9;
   CHECK(says(page(), "the test of everything still finds a difference there (p = 0.049)"));
   CHECK(says(page(), "90 % of what can be closed is closed"));
+  outcome.verification->share_closed = -0.2;
+  CHECK_FALSE(says(page(), "of what can be closed"));
+  CHECK(says(page(), "farther from the model with it than without"));
   outcome.verification->share_closed = 1.05;
   CHECK_FALSE(says(page(), "of what can be closed"));
   CHECK(says(page(), "as near to the model as two of its own runs"));
   outcome.verification->closed = true;
   CHECK(says(page(), "the model agrees with trials that it was not fitted on"));
+  outcome.verification->noise_floor = outcome.verification->before.energy_score + 1.0;
+  CHECK(says(page(), "was as near to these trials already"));
 }
 
 TEST_CASE("an effect that changes the model as another does stands beside it wherever candidates are listed",

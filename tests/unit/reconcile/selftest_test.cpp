@@ -72,6 +72,20 @@ Laboratory changed(const std::function<void(ReferenceTable&)>& change) {
 
 }  // namespace
 
+TEST_CASE("of a study of one trial nothing is held out and names are put in all the same", "[reconcile][selftest]") {
+  SelftestSettings settings = small();
+  settings.analysis.table = {120, 60, 60, 0, {"false_triggers", "dead_sensor"}};
+  settings.n_nulls = 5;
+  settings.n_planted = 4;
+  settings.n_aliens = 0;
+  settings.leave_out = LeaveOut::none;
+  settings.n_verified = 2;
+  const SelftestResult result =
+      selftest(test::shipped_scene("meeting_room.gltf"), test::short_study({"S4"}, 30.0), settings);
+  CHECK(std::ranges::none_of(result.cases, [](const PlantedCase& c) { return c.verification.has_value(); }));
+  CHECK(std::ranges::any_of(result.cases, [](const PlantedCase& c) { return c.put_in.has_value(); }));
+}
+
 // One case: its sections share the laboratory and the planted datasets.
 TEST_CASE("a small self-test keeps its promises and what must break it does", "[reconcile][selftest]") {
   SECTION("a small self-test keeps its promises") {

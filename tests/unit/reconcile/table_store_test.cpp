@@ -14,7 +14,7 @@ TEST_CASE("a damaged chunk of a table is named, and what to do about it", "[reco
   const TemporaryFolder folder;
   const TableStore store(folder.path(), "key");
   TableChunk chunk;
-  chunk.datasets.push_back({{1, 7, {{"dead_time", {{"dead_s", 2.0}}, {}}}}, {}});
+  chunk.datasets.push_back({{1, 7, {{"dead_time", {{"dead_s", 2.0}}, {}, {}}}}, {}});
   store.keep(3, chunk);
   REQUIRE(store.find(3)->datasets.size() == 1);
   const std::filesystem::path file = folder.path() / "worlds_0003.bin";
