@@ -67,6 +67,12 @@ void check_choices(const EffectSpec& spec, const EffectInfo& info, const SceneSp
   }
 }
 
+void check_sense(const EffectSpec& spec, const Effect& effect, const SceneSpec* scene, Diagnostics& diagnostics) {
+  if (scene == nullptr || effect.fault == nullptr) return;
+  const std::string fault = effect.fault(spec, *scene);
+  if (!fault.empty()) diagnostics.error(spec.where, spec.name + ": " + fault);
+}
+
 /// Two stages of one kind on one sensor would draw the same numbers.
 bool meet(const EffectSpec& a, const EffectSpec& b, const Effect& effect) {
   if (effect.make_stage == nullptr && effect.make_row_stage == nullptr) return false;
@@ -86,6 +92,7 @@ void check_all(std::span<const EffectSpec> effects, const SceneSpec* scene, Diag
     }
     check_parameters(spec, (*known)->info, diagnostics);
     check_choices(spec, (*known)->info, scene, diagnostics);
+    check_sense(spec, **known, scene, diagnostics);
     for (std::size_t before = 0; before < i; ++before) {
       if (meet(effects[before], spec, **known)) {
         diagnostics.error(spec.where, spec.name + " stands here a second time for the same sensor");

@@ -31,6 +31,13 @@ std::unique_ptr<RowStage> make(const EffectSpec& effect, const StageContext& con
                                        index_of(effect, "other", 1, context.scene));
 }
 
+/// In a room with one sensor there is no other to name.
+std::string fault(const EffectSpec& effect, const SceneSpec& scene) {
+  const std::size_t n = scene.sensors.size(), a = index_of(effect, "sensor", 0, scene);
+  if (n < 2 || a >= n || a != index_of(effect, "other", 1, scene)) return "";
+  return "sensor and other are both '" + scene.sensors[a].id + "': nothing would be swapped";
+}
+
 void draw(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec&, Stream& stream) {
   const auto n = static_cast<std::uint32_t>(scene.sensors.size());
   const std::uint32_t a = stream.index(n);
@@ -54,7 +61,8 @@ const Effect& labels_swapped() {
                            {"other", ChoiceKind::sensor, {}, "the second sensor"}},
                .reach = Reach::rows},
       .make_row_stage = make,
-      .draw = draw};
+      .draw = draw,
+      .fault = fault};
   return effect;
 }
 

@@ -78,6 +78,8 @@ struct Effect {
   void (*draw)(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec& script, Stream& stream) = nullptr;
   /// Moves parameters that were estimated to what the room has a place for.
   void (*settle)(EffectSpec& effect, const SceneSpec& scene) = nullptr;
+  /// Why it can't be meant so in this scene, though every name and number of the script is good; empty: it can.
+  std::string (*fault)(const EffectSpec& effect, const SceneSpec& scene) = nullptr;
 };
 
 /// In the order in which they act; alter() first, then stages tick by tick, then rows.

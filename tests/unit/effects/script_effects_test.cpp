@@ -59,3 +59,17 @@ TEST_CASE("what is wrong with an effect is said with its place and the nearest n
   CHECK_THAT(faults_of("effects: [{dead_time: {}, clock_lag: {}}]"), contains("an effect an entry"));
   CHECK(faults_of("effects: [dead_time: {sensor: PIR1}, dead_time: {sensor: PIR2}]").empty());
 }
+
+TEST_CASE("a column that would be swapped with itself is refused, named or by default") {
+  const auto twice = [](const std::string& id) {
+    return contains("script.yaml:7:3: error: labels_swapped: sensor and other are both '" + id +
+                    "': nothing would be swapped");
+  };
+  CHECK_THAT(faults_of("effects:\n- labels_swapped: {sensor: PIR2}\n"), twice("PIR2"));
+  CHECK_THAT(faults_of("effects:\n- labels_swapped: {other: PIR1}\n"), twice("PIR1"));
+  CHECK_THAT(faults_of("effects:\n- labels_swapped: {sensor: PIR4, other: PIR4}\n"), twice("PIR4"));
+  CHECK_THAT(faults_of("effects: [labels_swapped: {sensor: PIR9, other: PIR9}]"),
+             !contains("nothing would be swapped"));
+  CHECK(faults_of("effects: [labels_swapped, sensor_yaw: {sensor: PIR2}]").empty());
+  CHECK(faults_of("effects: [labels_swapped: {sensor: PIR3}]").empty());
+}
