@@ -73,11 +73,34 @@ void check_sense(const EffectSpec& spec, const Effect& effect, const SceneSpec* 
   if (!fault.empty()) diagnostics.error(spec.where, spec.name + ": " + fault);
 }
 
-/// Two stages of one kind on one sensor would draw the same numbers.
-bool meet(const EffectSpec& a, const EffectSpec& b, const Effect& effect) {
-  if (effect.make_stage == nullptr && effect.make_row_stage == nullptr) return false;
-  const auto x = a.choices.find("sensor"), y = b.choices.find("sensor");
-  return a.name == b.name && (x == a.choices.end() || y == b.choices.end() || x->second == y->second);
+std::string made(const EffectSpec& spec, const ChoiceInfo& choice) {
+  const auto named = spec.choices.find(choice.name);
+  if (named != spec.choices.end()) return named->second;
+  return choice.kind == ChoiceKind::word ? choice.words.front() : "";
+}
+
+/// Whether both of two entries of an effect can act: for two sensors or walls, each named, in two ways, or in one way
+/// at two places. Others would draw the same numbers, or the later would undo the earlier.
+bool apart(const EffectSpec& a, const EffectSpec& b, const EffectInfo& info) {
+  if (info.choices.empty()) return false;
+  const ChoiceInfo& choice = info.choices.front();
+  const std::string x = made(a, choice), y = made(b, choice);
+  if (choice.kind != ChoiceKind::word) return !x.empty() && !y.empty() && x != y;
+  return x != y || std::ranges::any_of(info.parameters, [&](const ParameterInfo& parameter) {
+           const auto value = [&](const EffectSpec& spec) {
+             const auto given = spec.parameters.find(parameter.name);
+             return given == spec.parameters.end() ? parameter.typical : given->second;
+           };
+           const bool says_where = parameter.role == Role::detail && parameter.only_if.choice == choice.name;
+           return says_where && parameter.only_if.word == x && value(a) != value(b);
+         });
+}
+
+std::string second_time(const EffectInfo& info) {
+  std::string text = info.name + " stands here a second time";
+  if (!info.choices.empty() && info.choices.front().kind != ChoiceKind::word)
+    text += " for the same " + info.choices.front().name;
+  return text;
 }
 
 void check_all(std::span<const EffectSpec> effects, const SceneSpec* scene, Diagnostics& diagnostics) {
@@ -94,9 +117,8 @@ void check_all(std::span<const EffectSpec> effects, const SceneSpec* scene, Diag
     check_choices(spec, (*known)->info, scene, diagnostics);
     check_sense(spec, **known, scene, diagnostics);
     for (std::size_t before = 0; before < i; ++before) {
-      if (meet(effects[before], spec, **known)) {
-        diagnostics.error(spec.where, spec.name + " stands here a second time for the same sensor");
-      }
+      if (effects[before].name == spec.name && !apart(effects[before], spec, (*known)->info))
+        diagnostics.error(spec.where, second_time((*known)->info));
     }
   }
 }

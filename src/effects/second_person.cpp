@@ -1,5 +1,7 @@
 // Somebody else is there of whom the script doesn't know.
+#include <algorithm>
 #include <glm/geometric.hpp>
+#include <string>
 
 #include "effects/entries.hpp"
 #include "effects/free_places.hpp"
@@ -40,11 +42,18 @@ double longest_s(const TrialSpec& trial) {
   return longest;
 }
 
-PersonSpec bystander(const Vec2& place, const EffectSpec& effect, double until_s) {
+/// Several in one room go by numbers.
+std::string new_id(const TrialSpec& trial) {
+  const std::string id = "second person";
+  const auto others = std::ranges::count_if(trial.people, [&](const auto& p) { return p.id.starts_with(id); });
+  return others == 0 ? id : id + " " + std::to_string(others + 1);
+}
+
+PersonSpec bystander(const std::string& id, const Vec2& place, const EffectSpec& effect, double until_s) {
   const double every_s = effect.parameters.at("every_s"), heading_deg = effect.parameters.at("heading_deg");
   const double path_m = effect.parameters.at("path_m");
   PersonSpec person;
-  person.id = "second person";
+  person.id = id;
   person.role = PersonRole::bystander;
   person.stature_m = 1.75;  // assumed
   const auto act = [&](Action what) { person.actions.push_back({std::move(what), {}, {}, effect.where}); };
@@ -63,7 +72,8 @@ PersonSpec bystander(const Vec2& place, const EffectSpec& effect, double until_s
 
 void alter(SceneSpec& scene, ScriptSpec& script, const EffectSpec& effect) {
   const Vec2 place = place_of(effect, scene);
-  for (TrialSpec& trial : script.trials) trial.people.push_back(bystander(place, effect, longest_s(trial)));
+  for (TrialSpec& trial : script.trials)
+    trial.people.push_back(bystander(new_id(trial), place, effect, longest_s(trial)));
 }
 
 void draw(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec&, Stream& stream) {

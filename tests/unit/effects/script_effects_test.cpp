@@ -60,6 +60,26 @@ TEST_CASE("what is wrong with an effect is said with its place and the nearest n
   CHECK(faults_of("effects: [dead_time: {sensor: PIR1}, dead_time: {sensor: PIR2}]").empty());
 }
 
+TEST_CASE("an effect stands twice only where both entries act") {
+  for (const std::string twice :
+       {"soft_zone_edges, soft_zone_edges: {sigma_deg: 2}", "dual_polarity, dual_polarity", "fidgeting, fidgeting",
+        "body_size: {scale: 0.9}, body_size: {scale: 1.1}", "second_person, second_person",
+        "mirrored_room, mirrored_room: {across: x}", "missing_occluder, missing_occluder: {height_m: 1}",
+        "sensor_yaw, sensor_yaw: {sensor: PIR1}", "wall_reflection: {wall: room}, wall_reflection: {wall: room}",
+        "missing_occluder: {what: box, box_height_m: 1}, missing_occluder: {what: box}"}) {
+    INFO(twice);
+    CHECK_THAT(faults_of("effects: [" + twice + "]"), contains("a second time"));
+  }
+  for (const std::string apart :
+       {"sensor_yaw: {sensor: PIR2}, sensor_yaw: {sensor: PIR1}", "mirrored_room, mirrored_room: {across: z}",
+        "missing_occluder, missing_occluder: {what: box, x_m: 1}",
+        "missing_occluder: {what: box, x_m: 1}, missing_occluder: {what: box}",
+        "second_person, second_person: {place: given, x_m: 1.2, z_m: -2}"}) {
+    INFO(apart);
+    CHECK(faults_of("effects: [" + apart + "]").empty());
+  }
+}
+
 TEST_CASE("a column that would be swapped with itself is refused, named or by default") {
   const auto twice = [](const std::string& id) {
     return contains("script.yaml:7:3: error: labels_swapped: sensor and other are both '" + id +
