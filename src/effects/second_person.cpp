@@ -27,15 +27,19 @@ Vec2 place_of(const EffectSpec& effect, const SceneSpec& scene) {
 }
 
 /// An upper bound of how long a trial may last, seconds.
-double longest_s(const TrialSpec& trial) {
+double longest_s(const TrialSpec& trial, const SceneSpec& scene) {
   double longest = 0.0;
   for (const PersonSpec& person : trial.people) {
+    // Once across the room, and as much again to get round what stands there.
+    const double way_s = 2.0 * glm::distance(scene.floor.lower(), scene.floor.upper()) / person.walking_speed_m_s;
     double sum = 0.0;
     for (const ScriptedAction& action : person.actions) {
-      constexpr double any_s = 60.0;  // walking, sitting down: more than enough
-      sum += any_s + action.at_s.value_or(0.0);
+      constexpr double any_s = 60.0;  // turning, sitting down: more than enough
+      sum += any_s + way_s + action.at_s.value_or(0.0);
       if (const auto* wait = std::get_if<action::Wait>(&action.what)) sum += wait->duration_s;
       if (const auto* work = std::get_if<action::Work>(&action.what)) sum += work->duration_s;
+      if (const auto* walk = std::get_if<action::Walk>(&action.what))
+        sum += way_s * static_cast<double>(walk->points.size());
     }
     longest = std::max(longest, sum);
   }
@@ -73,7 +77,7 @@ PersonSpec bystander(const std::string& id, const Vec2& place, const EffectSpec&
 void alter(SceneSpec& scene, ScriptSpec& script, const EffectSpec& effect) {
   const Vec2 place = place_of(effect, scene);
   for (TrialSpec& trial : script.trials)
-    trial.people.push_back(bystander(new_id(trial), place, effect, longest_s(trial)));
+    trial.people.push_back(bystander(new_id(trial), place, effect, longest_s(trial, scene)));
 }
 
 void draw(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec&, Stream& stream) {

@@ -280,6 +280,30 @@ TEST_CASE("a second person is counted beside the first and doesn't keep the run 
   CHECK(farthest == Approx(1.0).margin(1e-6));
 }
 
+TEST_CASE("a second person goes on moving for as long as somebody walks slowly") {
+  ScriptSpec script = with(short_study_a(1), {effect("second_person", {{"every_s", 5.0}})});
+  script.trials.resize(1);
+  PersonSpec& slow = script.trials[0].people[0];
+  slow.walking_speed_m_s = 0.1;
+  const Where where;
+  const Vec2 here(1.2, -2.0), there(1.2, -4.0);
+  slow.actions = {{action::Appear{here, 0.0}, {}, {}, where},
+                  {action::Walk{{there, here, there, here, there, here, there, here, there, here}}, {}, {}, where}};
+  const Model model = compile(shipped_scene("meeting_room.gltf"), script);
+  State state(model, 0);
+  double last_s = 0.0, last_move_s = 0.0;
+  Vec3 before(0.0);
+  while (step(model, state)) {
+    last_s += 1.0;
+    const Vec2 facing = direction_of(state.actors()[1].motion().heading());
+    const Vec3 now(facing.x, facing.y, 0.0);
+    if (glm::distance(now, before) > 0.01) last_move_s = last_s;
+    before = now;
+  }
+  CHECK(last_s > 190.0);
+  CHECK(last_move_s > last_s - 10.0);
+}
+
 TEST_CASE("what was estimated is moved to where the room has a place for it, and stays if that is so") {
   const SceneSpec room = shipped_scene("meeting_room.gltf");
   const auto raised = [&](double height_m) {
