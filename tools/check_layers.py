@@ -23,6 +23,14 @@ BELOW = {
     "reconcile": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "stats", "core"},
 }
 BELOW["app"] = set(BELOW)
+# public header -> the layer that it belongs to; include/pirsim/pirsim.hpp is the umbrella and belongs to none
+PUBLIC = {
+    "error": "core", "random": "core", "version": "core",
+    "geometry": "geom", "shapes": "geom", "rays": "geom",
+    "sensor": "schema", "scene": "schema", "script": "schema", "survey": "schema", "sample": "schema",
+    "effects": "effects",
+    "csv": "io", "io": "io",
+}
 # header prefix of a third-party library -> the only layers that may include it
 THIRD_PARTY = {
     "embree": {"rt"},
@@ -51,14 +59,14 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 def layer_of(path: pathlib.Path, root: pathlib.Path):
     parts = path.relative_to(root).parts
     if parts[:2] == ("include", "pirsim"):
-        return parts[2] if len(parts) > 3 else None  # pirsim.hpp itself is the umbrella
+        return PUBLIC.get(path.stem)
     return parts[1] if parts[0] == "src" and len(parts) > 2 else None
 
 
 def included_layer(name: str):
     parts = name.split("/")
     if parts[0] == "pirsim":
-        return parts[1] if len(parts) > 2 else None
+        return PUBLIC.get(parts[1].removesuffix(".hpp"))
     return parts[0] if parts[0] in BELOW and len(parts) > 1 else None
 
 

@@ -1,10 +1,9 @@
 // All that most users of the library need.
 #pragma once
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/io/csv_writer.hpp"
-#include "pirsim/io/scene_reader.hpp"
-#include "pirsim/io/script_reader.hpp"
-#include "pirsim/sim/model.hpp"
-#include "pirsim/sim/state.hpp"
-#include "pirsim/sim/study.hpp"
+#include "pirsim/csv.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/io.hpp"
+#include "sim/model.hpp"
+#include "sim/state.hpp"
+#include "sim/study.hpp"

@@ -5,10 +5,10 @@
 #include "app/output_checks.hpp"
 #include "app/row_output.hpp"
 #include "app/summary_output.hpp"
-#include "pirsim/core/error.hpp"
-#include "pirsim/io/script_reader.hpp"
-#include "pirsim/studies/campaign.hpp"
-#include "pirsim/studies/row_tally.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/io.hpp"
+#include "studies/campaign.hpp"
+#include "studies/row_tally.hpp"
 
 namespace pirsim::app {
 

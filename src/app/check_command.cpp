@@ -4,7 +4,7 @@
 #include "app/commands.hpp"
 #include "app/row_output.hpp"
 #include "app/session.hpp"
-#include "pirsim/studies/sight.hpp"
+#include "studies/sight.hpp"
 
 namespace pirsim::app {
 namespace {

@@ -7,13 +7,12 @@
 #include "app/progress.hpp"
 #include "app/session.hpp"
 #include "app/stop_request.hpp"
-#include "pirsim/io/atomic_file.hpp"
-#include "pirsim/io/coverage_reader.hpp"
-#include "pirsim/io/gnuplot.hpp"
-#include "pirsim/io/scene_reader.hpp"
-#include "pirsim/studies/coverage_figures.hpp"
-#include "pirsim/studies/coverage_report.hpp"
-#include "pirsim/studies/row_store.hpp"
+#include "io/atomic_file.hpp"
+#include "io/gnuplot.hpp"
+#include "pirsim/io.hpp"
+#include "studies/coverage_figures.hpp"
+#include "studies/coverage_report.hpp"
+#include "studies/row_store.hpp"
 
 namespace pirsim::app {
 namespace {

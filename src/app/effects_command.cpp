@@ -3,8 +3,8 @@
 #include "app/commands.hpp"
 #include "app/row_output.hpp"
 #include "app/session.hpp"
-#include "pirsim/effects/describe.hpp"
-#include "pirsim/io/csv_writer.hpp"
+#include "effects/describe.hpp"
+#include "pirsim/csv.hpp"
 
 namespace pirsim::app {
 namespace {

@@ -4,9 +4,9 @@
 #include "app/commands.hpp"
 #include "app/output_checks.hpp"
 #include "app/session.hpp"
-#include "pirsim/io/gltf_writer.hpp"
-#include "pirsim/sim/beams.hpp"
-#include "pirsim/sim/state.hpp"
+#include "io/gltf_writer.hpp"
+#include "sim/beams.hpp"
+#include "sim/state.hpp"
 
 namespace pirsim::app {
 namespace {

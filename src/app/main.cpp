@@ -16,9 +16,9 @@
 #include "app/commands.hpp"
 #include "app/output_checks.hpp"
 #include "app/row_output.hpp"
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/version.hpp"
-#include "pirsim/rt/room.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/version.hpp"
+#include "rt/room.hpp"
 
 namespace {
 

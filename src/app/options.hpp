@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/reconcile/seal.hpp"
-#include "pirsim/reconcile/selftest.hpp"
+#include "reconcile/seal.hpp"
+#include "reconcile/selftest.hpp"
 
 namespace pirsim::app {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <map>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/io/atomic_file.hpp"
+#include "io/atomic_file.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::app {
 namespace {

@@ -4,10 +4,8 @@
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "app/session.hpp"
-#include "pirsim/io/placement_reader.hpp"
-#include "pirsim/io/scene_reader.hpp"
-#include "pirsim/io/sensor_library.hpp"
-#include "pirsim/studies/placement.hpp"
+#include "pirsim/io.hpp"
+#include "studies/placement.hpp"
 
 namespace pirsim::app {
 namespace {

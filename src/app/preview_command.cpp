@@ -7,11 +7,11 @@
 #include "app/commands.hpp"
 #include "app/output_checks.hpp"
 #include "app/session.hpp"
-#include "pirsim/core/units.hpp"
-#include "pirsim/io/png.hpp"
-#include "pirsim/rt/renderer.hpp"
-#include "pirsim/sim/beams.hpp"
-#include "pirsim/sim/state.hpp"
+#include "io/png.hpp"
+#include "pirsim/geometry.hpp"
+#include "rt/renderer.hpp"
+#include "sim/beams.hpp"
+#include "sim/state.hpp"
 
 namespace pirsim::app {
 namespace {

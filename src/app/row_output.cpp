@@ -6,12 +6,12 @@
 #include <iostream>
 #include <sstream>
 
-#include "pirsim/core/version.hpp"
-#include "pirsim/io/atomic_file.hpp"
-#include "pirsim/io/csv_writer.hpp"
-#include "pirsim/io/row_file.hpp"
-#include "pirsim/io/script_reader.hpp"
-#include "pirsim/studies/shards.hpp"
+#include "io/atomic_file.hpp"
+#include "io/row_file.hpp"
+#include "pirsim/csv.hpp"
+#include "pirsim/io.hpp"
+#include "pirsim/version.hpp"
+#include "studies/shards.hpp"
 
 namespace pirsim::app {
 namespace {

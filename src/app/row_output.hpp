@@ -6,9 +6,9 @@
 #include <span>
 
 #include "app/options.hpp"
-#include "pirsim/schema/sample.hpp"
-#include "pirsim/schema/shard.hpp"
-#include "pirsim/sim/model.hpp"
+#include "pirsim/sample.hpp"
+#include "schema/shard.hpp"
+#include "sim/model.hpp"
 
 namespace pirsim::app {
 

@@ -8,8 +8,8 @@
 #include "app/row_output.hpp"
 #include "app/session.hpp"
 #include "io/text_input.hpp"
-#include "pirsim/io/script_reader.hpp"
-#include "pirsim/reconcile/seal.hpp"
+#include "pirsim/io.hpp"
+#include "reconcile/seal.hpp"
 
 namespace pirsim::app {
 namespace {

@@ -2,10 +2,8 @@
 
 #include <iostream>
 
-#include "pirsim/core/version.hpp"
-#include "pirsim/io/nuisance_reader.hpp"
-#include "pirsim/io/scene_reader.hpp"
-#include "pirsim/io/script_reader.hpp"
+#include "pirsim/io.hpp"
+#include "pirsim/version.hpp"
 
 namespace pirsim::app {
 namespace {

@@ -4,11 +4,11 @@
 #include <string>
 
 #include "app/options.hpp"
-#include "pirsim/io/atomic_file.hpp"
-#include "pirsim/io/report.hpp"
-#include "pirsim/io/scene_reader.hpp"
-#include "pirsim/schema/nuisance_spec.hpp"
-#include "pirsim/sim/model.hpp"
+#include "io/atomic_file.hpp"
+#include "io/report.hpp"
+#include "pirsim/io.hpp"
+#include "pirsim/script.hpp"
+#include "sim/model.hpp"
 
 namespace pirsim::app {
 

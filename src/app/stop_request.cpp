@@ -4,7 +4,7 @@
 #include <atomic>
 #include <csignal>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::app {
 namespace {

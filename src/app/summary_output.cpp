@@ -2,7 +2,7 @@
 
 #include <iostream>
 
-#include "pirsim/io/csv_reader.hpp"
+#include "io/csv_reader.hpp"
 
 namespace pirsim::app {
 

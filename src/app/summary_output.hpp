@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "app/options.hpp"
-#include "pirsim/io/atomic_file.hpp"
-#include "pirsim/schema/script_spec.hpp"
-#include "pirsim/studies/summary.hpp"
+#include "io/atomic_file.hpp"
+#include "pirsim/script.hpp"
+#include "studies/summary.hpp"
 
 namespace pirsim::app {
 

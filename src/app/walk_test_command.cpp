@@ -6,10 +6,9 @@
 #include "app/progress.hpp"
 #include "app/session.hpp"
 #include "app/stop_request.hpp"
-#include "pirsim/io/atomic_file.hpp"
-#include "pirsim/io/scene_reader.hpp"
-#include "pirsim/io/walk_test_reader.hpp"
-#include "pirsim/studies/walk_test.hpp"
+#include "io/atomic_file.hpp"
+#include "pirsim/io.hpp"
+#include "studies/walk_test.hpp"
 
 namespace pirsim::app {
 

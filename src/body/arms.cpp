@@ -1,11 +1,11 @@
-#include "pirsim/body/arms.hpp"
+#include "body/arms.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "pirsim/body/two_bone_ik.hpp"
+#include "body/two_bone_ik.hpp"
 
 namespace pirsim::body {
 

@@ -1,6 +1,6 @@
-#include "pirsim/body/body_part.hpp"
+#include "body/body_part.hpp"
 
-#include "pirsim/schema/body_part_names.hpp"
+#include "schema/body_part_names.hpp"
 
 namespace pirsim::body {
 

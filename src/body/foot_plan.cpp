@@ -1,4 +1,4 @@
-#include "pirsim/body/foot_plan.hpp"
+#include "body/foot_plan.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "pirsim/geom/frame.hpp"
-#include "pirsim/geom/mesh.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim::body {
 

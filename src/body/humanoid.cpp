@@ -1,11 +1,11 @@
-#include "pirsim/body/humanoid.hpp"
+#include "body/humanoid.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
 
-#include "pirsim/schema/body_part_names.hpp"
+#include "schema/body_part_names.hpp"
 
 namespace pirsim::body {
 

@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "pirsim/body/skeleton.hpp"
+#include "body/skeleton.hpp"
 
 namespace pirsim::body {
 

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "pirsim/body/motion.hpp"
+#include "body/motion.hpp"
 
 namespace pirsim::body {
 

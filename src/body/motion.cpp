@@ -1,5 +1,5 @@
 // The state machine: commands and the tick. How the state becomes a posture is in motion_posture.cpp.
-#include "pirsim/body/motion.hpp"
+#include "body/motion.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "body/limbs.hpp"
-#include "pirsim/body/motion.hpp"
+#include "body/motion.hpp"
 
 namespace pirsim::body {
 

@@ -1,11 +1,11 @@
-#include "pirsim/body/route.hpp"
+#include "body/route.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::body {
 namespace {

@@ -1,4 +1,4 @@
-#include "pirsim/body/seating.hpp"
+#include "body/seating.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::body {
 

@@ -1,4 +1,4 @@
-#include "pirsim/body/skeleton.hpp"
+#include "body/skeleton.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "body/limbs.hpp"
-#include "pirsim/body/two_bone_ik.hpp"
+#include "body/two_bone_ik.hpp"
 
 namespace pirsim::body {
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "pirsim/geom/frame.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim::body {
 

@@ -1,4 +1,4 @@
-#include "pirsim/body/walkable_floor.hpp"
+#include "body/walkable_floor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "body/grid_search.hpp"
 #include "body/taut_way.hpp"
 #include "body/way_memory.hpp"
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::body {
 namespace {

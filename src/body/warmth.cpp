@@ -1,4 +1,4 @@
-#include "pirsim/body/warmth.hpp"
+#include "body/warmth.hpp"
 
 #include <algorithm>
 

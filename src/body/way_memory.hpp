@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "pirsim/geom/frame.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim::body {
 

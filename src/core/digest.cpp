@@ -1,11 +1,11 @@
-#include "pirsim/core/digest.hpp"
+#include "core/digest.hpp"
 
 #include <openssl/evp.h>
 
 #include <array>
 #include <new>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim {
 

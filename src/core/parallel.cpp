@@ -1,4 +1,4 @@
-#include "pirsim/core/parallel.hpp"
+#include "core/parallel.hpp"
 
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_pipeline.h>

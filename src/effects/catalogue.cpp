@@ -1,4 +1,4 @@
-#include "pirsim/effects/catalogue.hpp"
+#include "pirsim/effects.hpp"
 
 #include <algorithm>
 #include <array>

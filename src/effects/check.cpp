@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "pirsim/effects/catalogue.hpp"
+#include "pirsim/effects.hpp"
 
 namespace pirsim::effects {
 namespace {

@@ -1,4 +1,4 @@
-#include "pirsim/effects/describe.hpp"
+#include "effects/describe.hpp"
 
 #include <array>
 #include <boost/algorithm/string/join.hpp>

@@ -1,7 +1,7 @@
 // The catalogue's entries, one file each.
 #pragma once
 
-#include "pirsim/effects/catalogue.hpp"
+#include "pirsim/effects.hpp"
 
 namespace pirsim::effects {
 

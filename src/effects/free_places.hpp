@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "pirsim/schema/scene_spec.hpp"
+#include "pirsim/scene.hpp"
 
 namespace pirsim::effects {
 

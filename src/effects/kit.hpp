@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pirsim/effects/catalogue.hpp"
+#include "pirsim/effects.hpp"
 
 namespace pirsim::effects {
 

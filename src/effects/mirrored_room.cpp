@@ -4,7 +4,7 @@
 #include "effects/entries.hpp"
 #include "effects/kit.hpp"
 #include "effects/parameter.hpp"
-#include "pirsim/core/units.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim::effects {
 namespace {

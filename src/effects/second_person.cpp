@@ -7,7 +7,7 @@
 #include "effects/free_places.hpp"
 #include "effects/kit.hpp"
 #include "effects/parameter.hpp"
-#include "pirsim/core/units.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim::effects {
 namespace {

@@ -5,7 +5,7 @@
 #include "effects/kit.hpp"
 #include "effects/parameter.hpp"
 #include "geom/triangle_test.hpp"
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::effects {
 namespace {

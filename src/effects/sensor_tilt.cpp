@@ -1,5 +1,5 @@
 // A sensor looks further down than drawn, or less far.
-#include "pirsim/core/units.hpp"
+#include "pirsim/geometry.hpp"
 
 #include "effects/entries.hpp"
 #include "effects/kit.hpp"

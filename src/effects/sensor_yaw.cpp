@@ -1,5 +1,5 @@
 // A sensor is screwed on a little turned.
-#include "pirsim/core/units.hpp"
+#include "pirsim/geometry.hpp"
 
 #include "effects/entries.hpp"
 #include "effects/kit.hpp"

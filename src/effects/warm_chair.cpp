@@ -1,5 +1,5 @@
 // A seat stays warm after somebody has left it.
-#include "pirsim/geom/shapes.hpp"
+#include "pirsim/shapes.hpp"
 
 #include "effects/entries.hpp"
 #include "effects/kit.hpp"

@@ -1,4 +1,4 @@
-#include "pirsim/geom/floor_area.hpp"
+#include "pirsim/geometry.hpp"
 
 #include <glm/common.hpp>
 

@@ -1,4 +1,4 @@
-#include "pirsim/geom/mesh.hpp"
+#include "pirsim/geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,7 @@
 #include <utility>
 
 #include "geom/mesh_connectivity.hpp"
-#include "pirsim/core/error.hpp"
-#include "pirsim/geom/floor_area.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pirsim/geom/mesh.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim::detail {
 

@@ -1,10 +1,10 @@
-#include "pirsim/geom/shapes.hpp"
+#include "pirsim/shapes.hpp"
 
 #include <algorithm>
 #include <array>
 
 #include "geom/ray_tests.hpp"
-#include "pirsim/geom/triangle_surface.hpp"
+#include "geom/triangle_surface.hpp"
 
 namespace pirsim {
 namespace {

@@ -1,4 +1,4 @@
-#include "pirsim/geom/triangle_surface.hpp"
+#include "geom/triangle_surface.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "geom/triangle_test.hpp"
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim {
 namespace {

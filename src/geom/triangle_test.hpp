@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "pirsim/geom/shapes.hpp"
+#include "pirsim/shapes.hpp"
 
 namespace pirsim {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "io/yaml_node.hpp"
-#include "pirsim/schema/script_spec.hpp"
+#include "pirsim/script.hpp"
 
 namespace pirsim::io {
 

@@ -1,4 +1,4 @@
-#include "pirsim/io/atomic_file.hpp"
+#include "io/atomic_file.hpp"
 
 #include <cerrno>
 #include <string>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "io/output_path.hpp"
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::io {
 

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "geom/triangle_surface.hpp"
 #include "io/gltf_geometry.hpp"
 #include "io/gltf_nodes.hpp"
-#include "pirsim/geom/triangle_surface.hpp"
-#include "pirsim/schema/body_part_names.hpp"
+#include "schema/body_part_names.hpp"
 
 namespace pirsim::io::detail {
 namespace {

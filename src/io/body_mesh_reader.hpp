@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/schema/script_spec.hpp"
+#include "pirsim/script.hpp"
 
 namespace pirsim::io::detail {
 

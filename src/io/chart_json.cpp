@@ -1,6 +1,6 @@
 #include "io/chart_json.hpp"
 
-#include "pirsim/core/units.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim::io::detail {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "pirsim/io/charts.hpp"
+#include "io/charts.hpp"
 
 namespace pirsim::io::detail {
 

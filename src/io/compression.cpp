@@ -1,4 +1,4 @@
-#include "pirsim/io/compression.hpp"
+#include "io/compression.hpp"
 
 #include <zlib.h>
 #include <zstd.h>
@@ -9,7 +9,7 @@
 #include <string>
 
 #include "io/posix_file.hpp"
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::io {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "io/yaml_map.hpp"
-#include "pirsim/schema/coverage_spec.hpp"
+#include "pirsim/survey.hpp"
 
 namespace pirsim::io {
 

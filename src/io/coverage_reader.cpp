@@ -1,4 +1,4 @@
-#include "pirsim/io/coverage_reader.hpp"
+#include "pirsim/io.hpp"
 
 #include <cmath>
 #include <glm/geometric.hpp>

@@ -1,4 +1,4 @@
-#include "pirsim/io/csv_reader.hpp"
+#include "io/csv_reader.hpp"
 
 #include <algorithm>
 #include <cmath>

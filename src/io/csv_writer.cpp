@@ -1,4 +1,4 @@
-#include "pirsim/io/csv_writer.hpp"
+#include "pirsim/csv.hpp"
 
 #include <array>
 #include <charconv>

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/yaml_map.hpp"
-#include "pirsim/schema/detector_spec.hpp"
+#include "pirsim/sensor.hpp"
 
 namespace pirsim::io {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "io/text_input.hpp"
-#include "pirsim/effects/catalogue.hpp"
+#include "pirsim/effects.hpp"
 
 namespace pirsim::io {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "io/yaml_node.hpp"
-#include "pirsim/schema/effect_spec.hpp"
+#include "pirsim/script.hpp"
 
 namespace pirsim::io {
 

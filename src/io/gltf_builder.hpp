@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/geom/frame.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim::io {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "io/gltf_document.hpp"
-#include "pirsim/geom/mesh.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim::io::detail {
 

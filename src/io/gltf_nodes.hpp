@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/gltf_document.hpp"
-#include "pirsim/geom/frame.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim::io::detail {
 

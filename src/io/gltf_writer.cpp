@@ -1,4 +1,4 @@
-#include "pirsim/io/gltf_writer.hpp"
+#include "io/gltf_writer.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,10 +6,10 @@
 #include <exception>
 #include <glm/gtc/quaternion.hpp>
 
+#include "io/atomic_file.hpp"
 #include "io/gltf_builder.hpp"
 #include "io/solid_mesh.hpp"
-#include "pirsim/core/error.hpp"
-#include "pirsim/io/atomic_file.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::io {
 namespace {

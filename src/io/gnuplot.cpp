@@ -1,11 +1,11 @@
-#include "pirsim/io/gnuplot.hpp"
+#include "io/gnuplot.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <sstream>
 
-#include "pirsim/io/csv_writer.hpp"
+#include "pirsim/csv.hpp"
 
 namespace pirsim::io {
 namespace {

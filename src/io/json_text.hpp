@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::io::detail {
 

@@ -1,12 +1,12 @@
-#include "pirsim/io/manifest.hpp"
+#include "io/manifest.hpp"
 
 #include <nlohmann/json.hpp>
 
+#include "core/digest.hpp"
+#include "io/atomic_file.hpp"
 #include "io/posix_file.hpp"
 #include "io/text_input.hpp"
-#include "pirsim/core/digest.hpp"
-#include "pirsim/core/error.hpp"
-#include "pirsim/io/atomic_file.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::io {
 namespace {

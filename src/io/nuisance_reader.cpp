@@ -1,4 +1,4 @@
-#include "pirsim/io/nuisance_reader.hpp"
+#include "pirsim/io.hpp"
 
 #include "io/coverage_keys.hpp"
 #include "io/yaml_map.hpp"

@@ -1,4 +1,4 @@
-#include "pirsim/io/placement_reader.hpp"
+#include "pirsim/io.hpp"
 
 #include <set>
 

@@ -1,11 +1,11 @@
-#include "pirsim/io/png.hpp"
+#include "io/png.hpp"
 
 #include <limits>
 #include <ostream>
 #include <utility>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/io/atomic_file.hpp"
+#include "io/atomic_file.hpp"
+#include "pirsim/error.hpp"
 
 // Static, because tinygltf brings another copy.
 #define STB_IMAGE_WRITE_STATIC

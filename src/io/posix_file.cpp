@@ -9,7 +9,7 @@
 #include <system_error>
 #include <utility>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::io {
 namespace {

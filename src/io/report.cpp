@@ -1,12 +1,12 @@
-#include "pirsim/io/report.hpp"
+#include "io/report.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "io/atomic_file.hpp"
 #include "io/chart_json.hpp"
 #include "io/page_texts.hpp"
-#include "pirsim/io/atomic_file.hpp"
 
 namespace pirsim::io {
 namespace {

@@ -1,4 +1,4 @@
-#include "pirsim/io/row_file.hpp"
+#include "io/row_file.hpp"
 
 #include <algorithm>
 #include <fstream>
@@ -7,12 +7,12 @@
 #include <system_error>
 #include <utility>
 
+#include "core/digest.hpp"
+#include "io/atomic_file.hpp"
+#include "io/compression.hpp"
 #include "io/output_path.hpp"
 #include "io/posix_file.hpp"
-#include "pirsim/core/digest.hpp"
-#include "pirsim/core/error.hpp"
-#include "pirsim/io/atomic_file.hpp"
-#include "pirsim/io/compression.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::io {
 namespace {

@@ -4,9 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/geom/floor_area.hpp"
-#include "pirsim/geom/mesh.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim::io::detail {
 

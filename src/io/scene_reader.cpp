@@ -1,4 +1,4 @@
-#include "pirsim/io/scene_reader.hpp"
+#include "pirsim/io.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,6 @@
 #include "io/scene_floor.hpp"
 #include "io/scene_markup.hpp"
 #include "io/sensor_lookup.hpp"
-#include "pirsim/io/sensor_reader.hpp"
 
 namespace pirsim::io {
 namespace {

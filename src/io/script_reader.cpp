@@ -1,4 +1,4 @@
-#include "pirsim/io/script_reader.hpp"
+#include "pirsim/io.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -10,7 +10,7 @@
 #include "io/effect_reader.hpp"
 #include "io/sensing_reader.hpp"
 #include "io/yaml_map.hpp"
-#include "pirsim/schema/body_part_names.hpp"
+#include "schema/body_part_names.hpp"
 
 namespace pirsim::io {
 namespace {

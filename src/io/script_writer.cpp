@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "pirsim/io/csv_writer.hpp"
-#include "pirsim/io/script_reader.hpp"
+#include "pirsim/csv.hpp"
+#include "pirsim/io.hpp"
 
 namespace pirsim::io {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "io/yaml_node.hpp"
-#include "pirsim/schema/script_spec.hpp"
+#include "pirsim/script.hpp"
 
 namespace pirsim::io {
 

@@ -1,7 +1,6 @@
-#include "pirsim/io/sensor_library.hpp"
+#include "pirsim/io.hpp"
 
 #include "io/sensor_lookup.hpp"
-#include "pirsim/io/sensor_reader.hpp"
 
 namespace pirsim::io {
 

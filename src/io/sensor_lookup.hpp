@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/io/scene_reader.hpp"
+#include "pirsim/io.hpp"
 
 namespace pirsim::io::detail {
 

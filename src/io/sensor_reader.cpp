@@ -1,4 +1,4 @@
-#include "pirsim/io/sensor_reader.hpp"
+#include "pirsim/io.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "pirsim/geom/triangle_surface.hpp"
+#include "geom/triangle_surface.hpp"
 
 namespace pirsim::io {
 namespace {

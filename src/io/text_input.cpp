@@ -3,7 +3,7 @@
 #include <array>
 #include <fstream>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::io {
 

@@ -1,4 +1,4 @@
-#include "pirsim/io/walk_test_reader.hpp"
+#include "pirsim/io.hpp"
 
 #include "io/coverage_keys.hpp"
 #include "io/sensing_reader.hpp"

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::io {
 

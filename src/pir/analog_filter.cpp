@@ -1,11 +1,11 @@
-#include "pirsim/pir/analog_filter.hpp"
+#include "pir/analog_filter.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/units.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim::pir {
 namespace {

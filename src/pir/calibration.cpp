@@ -1,11 +1,11 @@
-#include "pirsim/pir/calibration.hpp"
+#include "pir/calibration.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/pir/analog_filter.hpp"
+#include "pir/analog_filter.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::pir {
 namespace {

@@ -1,9 +1,9 @@
-#include "pirsim/pir/comparator.hpp"
+#include "pir/comparator.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::pir {
 namespace {

@@ -1,4 +1,4 @@
-#include "pirsim/pir/detector.hpp"
+#include "pir/detector.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "pirsim/pir/edge_draw.hpp"
+#include "pir/edge_draw.hpp"
 
 #include <algorithm>
 #include <bit>

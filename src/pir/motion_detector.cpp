@@ -1,4 +1,4 @@
-#include "pirsim/pir/motion_detector.hpp"
+#include "pir/motion_detector.hpp"
 
 #include <bit>
 

@@ -1,11 +1,11 @@
-#include "pirsim/pir/optics.hpp"
+#include "pir/optics.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "pirsim/core/units.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim::pir {
 namespace {

@@ -1,10 +1,10 @@
-#include "pirsim/pir/polarity_detector.hpp"
+#include "pir/polarity_detector.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-#include "pirsim/core/units.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim::pir {
 

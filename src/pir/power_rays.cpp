@@ -1,8 +1,8 @@
-#include "pirsim/pir/power_rays.hpp"
+#include "pir/power_rays.hpp"
 
 #include <glm/geometric.hpp>
 
-#include "pirsim/pir/zone_quadrature.hpp"
+#include "pir/zone_quadrature.hpp"
 
 namespace pirsim::pir {
 

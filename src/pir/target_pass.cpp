@@ -1,11 +1,11 @@
-#include "pirsim/pir/target_pass.hpp"
+#include "pir/target_pass.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "pirsim/pir/planck.hpp"
-#include "pirsim/pir/zone_quadrature.hpp"
+#include "pir/planck.hpp"
+#include "pir/zone_quadrature.hpp"
 
 namespace pirsim::pir {
 

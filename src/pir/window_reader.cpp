@@ -1,4 +1,4 @@
-#include "pirsim/pir/window_reader.hpp"
+#include "pir/window_reader.hpp"
 
 #include <utility>
 

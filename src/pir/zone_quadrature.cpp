@@ -1,10 +1,10 @@
-#include "pirsim/pir/zone_quadrature.hpp"
+#include "pir/zone_quadrature.hpp"
 
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "pirsim/core/units.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim::pir {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/core/random.hpp"
-#include "pirsim/schema/sample.hpp"
+#include "pirsim/random.hpp"
+#include "pirsim/sample.hpp"
 
 namespace pirsim::reconcile {
 

@@ -1,9 +1,9 @@
-#include "pirsim/reconcile/analyst.hpp"
+#include "reconcile/analyst.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "pirsim/effects/catalogue.hpp"
+#include "pirsim/effects.hpp"
 #include "reconcile/sentences.hpp"
 
 namespace pirsim::reconcile {

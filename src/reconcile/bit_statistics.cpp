@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "pirsim/core/units.hpp"
+#include "pirsim/geometry.hpp"
 #include "reconcile/correlation.hpp"
 
 namespace pirsim::reconcile {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "pirsim/reconcile/statistics.hpp"
+#include "reconcile/statistics.hpp"
 
 namespace pirsim::reconcile {
 

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/effects/catalogue.hpp"
-#include "pirsim/reconcile/feature_map.hpp"
-#include "pirsim/reconcile/reference_table.hpp"
-#include "pirsim/stats/posterior.hpp"
+#include "pirsim/effects.hpp"
+#include "reconcile/feature_map.hpp"
 #include "reconcile/kinds.hpp"
+#include "reconcile/reference_table.hpp"
+#include "stats/posterior.hpp"
 
 namespace pirsim::reconcile {
 

@@ -1,11 +1,11 @@
-#include "pirsim/reconcile/feature_map.hpp"
+#include "reconcile/feature_map.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numeric>
 
-#include "pirsim/core/parallel.hpp"
+#include "core/parallel.hpp"
 #include "reconcile/feature_writer.hpp"
 
 namespace pirsim::reconcile {

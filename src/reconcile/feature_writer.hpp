@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/reconcile/feature_map.hpp"
+#include "reconcile/feature_map.hpp"
 
 namespace pirsim::reconcile {
 

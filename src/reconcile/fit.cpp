@@ -1,4 +1,4 @@
-#include "pirsim/reconcile/fit.hpp"
+#include "reconcile/fit.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,9 +6,9 @@
 #include <optional>
 #include <utility>
 
-#include "pirsim/reconcile/locate.hpp"
 #include "reconcile/entry_guess.hpp"
 #include "reconcile/flat_scale.hpp"
+#include "reconcile/locate.hpp"
 
 namespace pirsim::reconcile {
 namespace {

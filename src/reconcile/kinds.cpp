@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "pirsim/effects/catalogue.hpp"
+#include "pirsim/effects.hpp"
 #include "reconcile/flat_scale.hpp"
 
 namespace pirsim::reconcile {

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "pirsim/reconcile/reference_table.hpp"
-#include "pirsim/stats/discriminant.hpp"
+#include "reconcile/reference_table.hpp"
+#include "stats/discriminant.hpp"
 
 namespace pirsim::reconcile {
 

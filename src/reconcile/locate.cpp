@@ -1,10 +1,10 @@
-#include "pirsim/reconcile/locate.hpp"
+#include "reconcile/locate.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pirsim/stats/envelope.hpp"
-#include "pirsim/stats/intervals.hpp"
+#include "stats/envelope.hpp"
+#include "stats/intervals.hpp"
 
 namespace pirsim::reconcile {
 namespace {

@@ -4,8 +4,8 @@
 #include <glm/geometric.hpp>
 
 #include "effects/free_places.hpp"
-#include "pirsim/sim/model.hpp"
-#include "pirsim/sim/study.hpp"
+#include "sim/model.hpp"
+#include "sim/study.hpp"
 
 namespace pirsim::reconcile {
 namespace {

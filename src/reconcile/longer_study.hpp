@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/schema/scene_spec.hpp"
-#include "pirsim/schema/script_spec.hpp"
+#include "pirsim/scene.hpp"
+#include "pirsim/script.hpp"
 
 namespace pirsim::reconcile {
 

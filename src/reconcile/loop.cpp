@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
 
-#include "pirsim/core/digest.hpp"
-#include "pirsim/io/script_reader.hpp"
+#include "core/digest.hpp"
+#include "pirsim/io.hpp"
 #include "reconcile/model_check.hpp"
 #include "reconcile/sentences.hpp"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/reconcile/analyst.hpp"
-#include "pirsim/reconcile/reconcile.hpp"
+#include "reconcile/analyst.hpp"
+#include "reconcile/reconcile.hpp"
 
 namespace pirsim::reconcile {
 

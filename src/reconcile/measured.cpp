@@ -1,4 +1,4 @@
-#include "pirsim/reconcile/measured.hpp"
+#include "reconcile/measured.hpp"
 
 #include <algorithm>
 #include <map>

@@ -6,8 +6,8 @@
 #include <set>
 #include <span>
 
-#include "pirsim/core/digest.hpp"
-#include "pirsim/io/csv_writer.hpp"
+#include "core/digest.hpp"
+#include "pirsim/csv.hpp"
 
 namespace pirsim::reconcile {
 namespace {

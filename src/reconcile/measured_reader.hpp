@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "pirsim/io/csv_reader.hpp"
-#include "pirsim/reconcile/measured.hpp"
+#include "io/csv_reader.hpp"
+#include "reconcile/measured.hpp"
 
 namespace pirsim::reconcile {
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "pirsim/core/parallel.hpp"
-#include "pirsim/core/random.hpp"
-#include "pirsim/effects/catalogue.hpp"
-#include "pirsim/reconcile/locate.hpp"
-#include "pirsim/reconcile/simulated_world.hpp"
+#include "core/parallel.hpp"
+#include "pirsim/effects.hpp"
+#include "pirsim/random.hpp"
+#include "reconcile/locate.hpp"
+#include "reconcile/simulated_world.hpp"
 
 namespace pirsim::reconcile {
 namespace {

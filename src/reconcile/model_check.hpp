@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "pirsim/reconcile/reconcile.hpp"
+#include "reconcile/reconcile.hpp"
 
 namespace pirsim::reconcile {
 

@@ -1,12 +1,12 @@
-#include "pirsim/reconcile/name.hpp"
+#include "reconcile/name.hpp"
 
 #include <algorithm>
 #include <map>
 #include <numeric>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/reconcile/locate.hpp"
+#include "pirsim/error.hpp"
 #include "reconcile/kinds.hpp"
+#include "reconcile/locate.hpp"
 
 namespace pirsim::reconcile {
 namespace {

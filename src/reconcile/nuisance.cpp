@@ -1,11 +1,11 @@
-#include "pirsim/reconcile/nuisance.hpp"
+#include "reconcile/nuisance.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "pirsim/core/random.hpp"
-#include "pirsim/core/units.hpp"
+#include "pirsim/geometry.hpp"
+#include "pirsim/random.hpp"
 
 namespace pirsim::reconcile {
 namespace {

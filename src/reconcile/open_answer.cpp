@@ -3,12 +3,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "pirsim/core/digest.hpp"
-#include "pirsim/core/error.hpp"
-#include "pirsim/effects/catalogue.hpp"
-#include "pirsim/reconcile/outcome.hpp"
-#include "pirsim/reconcile/outputs.hpp"
-#include "pirsim/reconcile/seal.hpp"
+#include "core/digest.hpp"
+#include "pirsim/effects.hpp"
+#include "pirsim/error.hpp"
+#include "reconcile/outcome.hpp"
+#include "reconcile/outputs.hpp"
+#include "reconcile/seal.hpp"
 
 namespace pirsim::reconcile {
 namespace {

@@ -1,8 +1,8 @@
-#include "pirsim/reconcile/outcome.hpp"
+#include "reconcile/outcome.hpp"
 
 #include <algorithm>
 
-#include "pirsim/effects/catalogue.hpp"
+#include "pirsim/effects.hpp"
 
 namespace pirsim::reconcile {
 

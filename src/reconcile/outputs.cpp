@@ -1,14 +1,14 @@
-#include "pirsim/reconcile/outputs.hpp"
+#include "reconcile/outputs.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "io/atomic_file.hpp"
 #include "io/text_input.hpp"
-#include "pirsim/io/atomic_file.hpp"
-#include "pirsim/io/csv_writer.hpp"
-#include "pirsim/io/script_reader.hpp"
-#include "pirsim/reconcile/report_page.hpp"
+#include "pirsim/csv.hpp"
+#include "pirsim/io.hpp"
+#include "reconcile/report_page.hpp"
 
 namespace pirsim::reconcile {
 namespace {

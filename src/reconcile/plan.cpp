@@ -1,12 +1,12 @@
-#include "pirsim/reconcile/plan.hpp"
+#include "reconcile/plan.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
 
-#include "pirsim/core/parallel.hpp"
-#include "pirsim/reconcile/analyst.hpp"
+#include "core/parallel.hpp"
+#include "reconcile/analyst.hpp"
 #include "reconcile/longer_study.hpp"
 #include "reconcile/sentences.hpp"
 

@@ -1,9 +1,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "pirsim/io/atomic_file.hpp"
-#include "pirsim/io/csv_writer.hpp"
-#include "pirsim/reconcile/plan.hpp"
+#include "io/atomic_file.hpp"
+#include "pirsim/csv.hpp"
+#include "reconcile/plan.hpp"
 #include "reconcile/report_charts.hpp"
 #include "reconcile/sentences.hpp"
 #include "reconcile/share_grids.hpp"

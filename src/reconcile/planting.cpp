@@ -2,11 +2,11 @@
 #include <array>
 #include <cmath>
 
-#include "pirsim/core/digest.hpp"
-#include "pirsim/effects/catalogue.hpp"
-#include "pirsim/reconcile/selftest.hpp"
+#include "core/digest.hpp"
+#include "pirsim/effects.hpp"
 #include "reconcile/aliens.hpp"
 #include "reconcile/flat_scale.hpp"
+#include "reconcile/selftest.hpp"
 #include "reconcile/table_store.hpp"
 
 namespace pirsim::reconcile {

@@ -1,4 +1,4 @@
-#include "pirsim/reconcile/reconcile.hpp"
+#include "reconcile/reconcile.hpp"
 
 #include <utility>
 

@@ -1,10 +1,10 @@
-#include "pirsim/reconcile/reference_table.hpp"
+#include "reconcile/reference_table.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "pirsim/core/parallel.hpp"
-#include "pirsim/effects/catalogue.hpp"
+#include "core/parallel.hpp"
+#include "pirsim/effects.hpp"
 #include "reconcile/table_store.hpp"
 
 namespace pirsim::reconcile {

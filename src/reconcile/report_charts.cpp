@@ -6,7 +6,7 @@
 #include <map>
 #include <sstream>
 
-#include "pirsim/effects/catalogue.hpp"
+#include "pirsim/effects.hpp"
 #include "reconcile/sentences.hpp"
 
 namespace pirsim::reconcile {

@@ -1,8 +1,8 @@
 // A reconciliation in pictures. Private to reconcile.
 #pragma once
 
-#include "pirsim/io/charts.hpp"
-#include "pirsim/reconcile/outcome.hpp"
+#include "io/charts.hpp"
+#include "reconcile/outcome.hpp"
 
 namespace pirsim::reconcile {
 

@@ -1,4 +1,4 @@
-#include "pirsim/reconcile/report_page.hpp"
+#include "reconcile/report_page.hpp"
 
 #include <algorithm>
 

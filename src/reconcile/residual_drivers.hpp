@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/reconcile/reconcile.hpp"
+#include "reconcile/reconcile.hpp"
 
 namespace pirsim::reconcile {
 

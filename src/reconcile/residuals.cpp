@@ -1,13 +1,13 @@
-#include "pirsim/reconcile/residuals.hpp"
+#include "reconcile/residuals.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "pirsim/core/parallel.hpp"
-#include "pirsim/stats/logistic.hpp"
+#include "core/parallel.hpp"
 #include "reconcile/residual_drivers.hpp"
 #include "reconcile/sentences.hpp"
+#include "stats/logistic.hpp"
 
 namespace pirsim::reconcile {
 namespace {

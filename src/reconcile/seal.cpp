@@ -1,16 +1,16 @@
-#include "pirsim/reconcile/seal.hpp"
+#include "reconcile/seal.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "pirsim/core/digest.hpp"
-#include "pirsim/core/error.hpp"
-#include "pirsim/effects/catalogue.hpp"
-#include "pirsim/io/csv_writer.hpp"
-#include "pirsim/reconcile/simulated_world.hpp"
-#include "pirsim/sim/study.hpp"
+#include "core/digest.hpp"
+#include "pirsim/csv.hpp"
+#include "pirsim/effects.hpp"
+#include "pirsim/error.hpp"
 #include "reconcile/aliens.hpp"
+#include "reconcile/simulated_world.hpp"
+#include "sim/study.hpp"
 
 namespace pirsim::reconcile {
 namespace {

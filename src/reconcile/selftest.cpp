@@ -1,14 +1,14 @@
-#include "pirsim/reconcile/selftest.hpp"
+#include "reconcile/selftest.hpp"
 
 #include <algorithm>
 #include <array>
 #include <iterator>
 #include <numeric>
 
-#include "pirsim/core/digest.hpp"
-#include "pirsim/core/parallel.hpp"
-#include "pirsim/effects/catalogue.hpp"
-#include "pirsim/reconcile/analyst.hpp"
+#include "core/digest.hpp"
+#include "core/parallel.hpp"
+#include "pirsim/effects.hpp"
+#include "reconcile/analyst.hpp"
 #include "reconcile/model_check.hpp"
 
 namespace pirsim::reconcile {

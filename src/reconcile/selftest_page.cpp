@@ -1,11 +1,11 @@
-#include "pirsim/reconcile/selftest_page.hpp"
+#include "reconcile/selftest_page.hpp"
 
 #include <map>
 
-#include "pirsim/io/atomic_file.hpp"
-#include "pirsim/stats/intervals.hpp"
+#include "io/atomic_file.hpp"
 #include "reconcile/sentences.hpp"
 #include "reconcile/share_grids.hpp"
+#include "stats/intervals.hpp"
 
 namespace pirsim::reconcile {
 namespace {

@@ -2,8 +2,8 @@
 #include <iomanip>
 #include <sstream>
 
-#include "pirsim/io/csv_writer.hpp"
-#include "pirsim/reconcile/selftest.hpp"
+#include "pirsim/csv.hpp"
+#include "reconcile/selftest.hpp"
 #include "reconcile/sentences.hpp"
 #include "reconcile/share_grids.hpp"
 

@@ -6,7 +6,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "pirsim/effects/catalogue.hpp"
+#include "pirsim/effects.hpp"
 
 namespace pirsim::reconcile {
 namespace {

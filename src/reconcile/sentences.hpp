@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "pirsim/reconcile/outcome.hpp"
+#include "reconcile/outcome.hpp"
 
 namespace pirsim::reconcile {
 

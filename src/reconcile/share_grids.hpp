@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/io/charts.hpp"
-#include "pirsim/reconcile/selftest.hpp"
+#include "io/charts.hpp"
+#include "reconcile/selftest.hpp"
 
 namespace pirsim::reconcile {
 

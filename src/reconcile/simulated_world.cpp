@@ -1,9 +1,9 @@
-#include "pirsim/reconcile/simulated_world.hpp"
+#include "reconcile/simulated_world.hpp"
 
 #include <algorithm>
 
-#include "pirsim/effects/catalogue.hpp"
-#include "pirsim/sim/trace_family.hpp"
+#include "pirsim/effects.hpp"
+#include "sim/trace_family.hpp"
 
 namespace pirsim::reconcile {
 namespace {

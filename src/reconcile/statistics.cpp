@@ -1,12 +1,12 @@
-#include "pirsim/reconcile/statistics.hpp"
+#include "reconcile/statistics.hpp"
 
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
 #include <cmath>
 #include <limits>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/io/csv_writer.hpp"
+#include "pirsim/csv.hpp"
+#include "pirsim/error.hpp"
 #include "reconcile/bit_statistics.hpp"
 
 namespace pirsim::reconcile {

@@ -1,11 +1,11 @@
 #include <cstring>
 
-#include "pirsim/core/digest.hpp"
-#include "pirsim/core/version.hpp"
-#include "pirsim/effects/catalogue.hpp"
-#include "pirsim/geom/triangle_surface.hpp"
-#include "pirsim/io/script_reader.hpp"
-#include "pirsim/reconcile/reference_table.hpp"
+#include "core/digest.hpp"
+#include "geom/triangle_surface.hpp"
+#include "pirsim/effects.hpp"
+#include "pirsim/io.hpp"
+#include "pirsim/version.hpp"
+#include "reconcile/reference_table.hpp"
 
 namespace pirsim::reconcile {
 namespace {

@@ -4,10 +4,10 @@
 #include <fstream>
 #include <utility>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/parallel.hpp"
-#include "pirsim/io/atomic_file.hpp"
-#include "pirsim/stats/binary.hpp"
+#include "core/parallel.hpp"
+#include "io/atomic_file.hpp"
+#include "pirsim/error.hpp"
+#include "stats/binary.hpp"
 
 namespace pirsim::reconcile {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/reconcile/reference_table.hpp"
+#include "reconcile/reference_table.hpp"
 
 namespace pirsim::reconcile {
 

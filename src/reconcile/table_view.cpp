@@ -1,9 +1,9 @@
-#include "pirsim/reconcile/table_view.hpp"
+#include "reconcile/table_view.hpp"
 
 #include <utility>
 
-#include "pirsim/core/parallel.hpp"
-#include "pirsim/reconcile/locate.hpp"
+#include "core/parallel.hpp"
+#include "reconcile/locate.hpp"
 
 namespace pirsim::reconcile {
 

@@ -1,4 +1,4 @@
-#include "pirsim/reconcile/targets.hpp"
+#include "reconcile/targets.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <sstream>
 #include <utility>
 
-#include "pirsim/effects/catalogue.hpp"
+#include "pirsim/effects.hpp"
 #include "reconcile/sentences.hpp"
 
 namespace pirsim::reconcile {

@@ -1,4 +1,4 @@
-#include "pirsim/reconcile/verify.hpp"
+#include "reconcile/verify.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -8,12 +8,12 @@
 #include <sstream>
 #include <utility>
 
-#include "pirsim/core/parallel.hpp"
-#include "pirsim/effects/catalogue.hpp"
-#include "pirsim/reconcile/fit.hpp"
-#include "pirsim/reconcile/locate.hpp"
-#include "pirsim/reconcile/reconcile.hpp"
-#include "pirsim/stats/scores.hpp"
+#include "core/parallel.hpp"
+#include "pirsim/effects.hpp"
+#include "reconcile/fit.hpp"
+#include "reconcile/locate.hpp"
+#include "reconcile/reconcile.hpp"
+#include "stats/scores.hpp"
 
 namespace pirsim::reconcile {
 namespace {

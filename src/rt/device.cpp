@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/parallel.hpp"
-#include "pirsim/rt/room.hpp"
+#include "core/parallel.hpp"
+#include "pirsim/error.hpp"
+#include "rt/room.hpp"
 
 namespace pirsim::rt {
 namespace {

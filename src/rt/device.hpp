@@ -6,7 +6,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "pirsim/geom/shapes.hpp"
+#include "pirsim/shapes.hpp"
 #include "rt/embree_compat.hpp"
 
 namespace pirsim::rt {

@@ -8,11 +8,11 @@
 #include <optional>
 #include <vector>
 
-#include "pirsim/geom/zone_set.hpp"
-#include "pirsim/rt/tracer.hpp"
+#include "pirsim/rays.hpp"
 #include "rt/near_rays.hpp"
 #include "rt/ray_kernel.hpp"
 #include "rt/ray_packs.hpp"
+#include "rt/tracer.hpp"
 
 namespace pirsim::rt {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "pirsim/geom/shapes.hpp"
+#include "pirsim/shapes.hpp"
 #include "rt/ray_packs.hpp"
 #include "rt/view_cones.hpp"
 

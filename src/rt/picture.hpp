@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "pirsim/rt/renderer.hpp"
+#include "rt/renderer.hpp"
 
 namespace pirsim::rt {
 

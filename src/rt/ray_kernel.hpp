@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "pirsim/geom/shapes.hpp"
+#include "pirsim/shapes.hpp"
 #include "rt/ray_packs.hpp"
 #include "rt/view_cones.hpp"
 

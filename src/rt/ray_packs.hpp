@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pirsim/geom/ray_bundle.hpp"
+#include "pirsim/rays.hpp"
 
 namespace pirsim::rt {
 

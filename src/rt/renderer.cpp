@@ -1,5 +1,5 @@
 // Soft light from everywhere (ambient occlusion), one soft key light, and a doll's-house cut.
-#include "pirsim/rt/renderer.hpp"
+#include "rt/renderer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <numbers>
 #include <string>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/parallel.hpp"
+#include "core/parallel.hpp"
+#include "pirsim/error.hpp"
 #include "rt/picture.hpp"
 #include "rt/room_impl.hpp"
 #include "rt/view_cones.hpp"

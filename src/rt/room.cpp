@@ -1,4 +1,4 @@
-#include "pirsim/rt/room.hpp"
+#include "rt/room.hpp"
 
 #include <algorithm>
 #include <glm/common.hpp>
@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "geom/triangle_test.hpp"
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 #include "rt/room_impl.hpp"
 
 namespace pirsim::rt {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "pirsim/rt/room.hpp"
 #include "rt/device.hpp"
+#include "rt/room.hpp"
 
 namespace pirsim::rt {
 

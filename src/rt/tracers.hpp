@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "pirsim/rt/tracer.hpp"
+#include "rt/tracer.hpp"
 
 namespace pirsim::rt {
 

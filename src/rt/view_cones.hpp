@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "pirsim/geom/ray_bundle.hpp"
+#include "pirsim/rays.hpp"
 
 namespace pirsim::rt {
 

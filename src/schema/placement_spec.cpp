@@ -1,6 +1,6 @@
-#include "pirsim/schema/placement_spec.hpp"
+#include "pirsim/survey.hpp"
 
-#include "pirsim/core/units.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim {
 

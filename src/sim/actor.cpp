@@ -1,12 +1,12 @@
-#include "pirsim/sim/actor.hpp"
+#include "sim/actor.hpp"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/units.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim {
 namespace {

@@ -1,9 +1,9 @@
 // From one tick's triggers to what is read of them: the one way, of runs as they go and of remembered zones.
 #pragma once
 
-#include "pirsim/effects/stage.hpp"
-#include "pirsim/pir/window_reader.hpp"
-#include "pirsim/schema/script_spec.hpp"
+#include "pir/window_reader.hpp"
+#include "pirsim/effects.hpp"
+#include "pirsim/script.hpp"
 
 namespace pirsim::sim {
 

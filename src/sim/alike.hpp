@@ -1,7 +1,7 @@
 // What two studies have in common, decided from what their specs say, not from how they came to differ.
 #pragma once
 
-#include "pirsim/sim/model.hpp"
+#include "sim/model.hpp"
 
 namespace pirsim::sim {
 

@@ -1,8 +1,8 @@
-#include "pirsim/sim/analog_model.hpp"
+#include "sim/analog_model.hpp"
 
 #include <map>
 
-#include "pirsim/pir/calibration.hpp"
+#include "pir/calibration.hpp"
 
 namespace pirsim::sim {
 namespace {

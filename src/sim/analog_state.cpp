@@ -1,6 +1,6 @@
-#include "pirsim/sim/analog_state.hpp"
+#include "sim/analog_state.hpp"
 
-#include "pirsim/sim/model.hpp"
+#include "sim/model.hpp"
 
 namespace pirsim::sim {
 

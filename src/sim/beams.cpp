@@ -1,4 +1,4 @@
-#include "pirsim/sim/beams.hpp"
+#include "sim/beams.hpp"
 
 namespace pirsim::sim {
 

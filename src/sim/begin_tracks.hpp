@@ -1,7 +1,7 @@
 // What all ways of tracing a Model's zones begin with.
 #pragma once
 
-#include "pirsim/sim/zone_tracks.hpp"
+#include "sim/zone_tracks.hpp"
 
 namespace pirsim::sim {
 

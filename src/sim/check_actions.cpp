@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::sim {
 namespace {

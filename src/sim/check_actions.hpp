@@ -1,8 +1,8 @@
 // What can be said about a script's actions without moving anybody.
 #pragma once
 
-#include "pirsim/schema/scene_spec.hpp"
-#include "pirsim/schema/script_spec.hpp"
+#include "pirsim/scene.hpp"
+#include "pirsim/script.hpp"
 
 namespace pirsim::sim {
 

@@ -6,10 +6,10 @@
 #include <tuple>
 #include <vector>
 
-#include "pirsim/pir/analog_filter.hpp"
-#include "pirsim/schema/trace_row.hpp"
-#include "pirsim/sim/state.hpp"
+#include "pir/analog_filter.hpp"
+#include "pirsim/sample.hpp"
 #include "sim/power_meter.hpp"
+#include "sim/state.hpp"
 
 namespace pirsim::sim {
 

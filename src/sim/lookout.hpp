@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "pirsim/geom/zone_set.hpp"
-#include "pirsim/rt/tracer.hpp"
-#include "pirsim/sim/actor.hpp"
-#include "pirsim/sim/model.hpp"
+#include "pirsim/rays.hpp"
+#include "rt/tracer.hpp"
+#include "sim/actor.hpp"
 #include "sim/mannequin.hpp"
+#include "sim/model.hpp"
 #include "sim/posture_memory.hpp"
 #include "sim/power_meter.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "body/poser.hpp"
-#include "pirsim/geom/shapes.hpp"
+#include "pirsim/shapes.hpp"
 
 namespace pirsim::sim {
 

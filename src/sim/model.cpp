@@ -1,10 +1,10 @@
-#include "pirsim/sim/model.hpp"
+#include "sim/model.hpp"
 
 #include <mutex>
 #include <utility>
 
-#include "pirsim/effects/catalogue.hpp"
-#include "pirsim/pir/optics.hpp"
+#include "pir/optics.hpp"
+#include "pirsim/effects.hpp"
 #include "sim/alike.hpp"
 #include "sim/lookout.hpp"
 #include "sim/plan_people.hpp"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "pirsim/sim/state.hpp"
+#include "sim/state.hpp"
 
 namespace pirsim::sim {
 

@@ -5,9 +5,9 @@
 #include <deque>
 #include <vector>
 
-#include "pirsim/sim/actor.hpp"
-#include "pirsim/sim/zone_tracks.hpp"
+#include "sim/actor.hpp"
 #include "sim/posture_index.hpp"
+#include "sim/zone_tracks.hpp"
 
 namespace pirsim::sim {
 

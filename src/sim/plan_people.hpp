@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "pirsim/rt/room.hpp"
-#include "pirsim/sim/model.hpp"
+#include "rt/room.hpp"
+#include "sim/model.hpp"
 
 namespace pirsim::sim {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "pirsim/body/motion.hpp"
+#include "body/motion.hpp"
 
 namespace pirsim::sim {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "pirsim/geom/zone_set.hpp"
+#include "pirsim/rays.hpp"
 #include "sim/posture_index.hpp"
 
 namespace pirsim::sim {

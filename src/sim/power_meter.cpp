@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "pirsim/sim/state.hpp"
+#include "sim/state.hpp"
 
 namespace pirsim::sim {
 

@@ -1,7 +1,7 @@
-#include "pirsim/sim/power_model.hpp"
+#include "sim/power_model.hpp"
 
-#include "pirsim/body/warmth.hpp"
-#include "pirsim/pir/planck.hpp"
+#include "body/warmth.hpp"
+#include "pir/planck.hpp"
 
 namespace pirsim::sim {
 

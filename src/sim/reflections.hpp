@@ -3,9 +3,9 @@
 
 #include <span>
 
-#include "pirsim/rt/room.hpp"
-#include "pirsim/schema/scene_spec.hpp"
-#include "pirsim/schema/script_spec.hpp"
+#include "pirsim/scene.hpp"
+#include "pirsim/script.hpp"
+#include "rt/room.hpp"
 
 namespace pirsim::sim {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pirsim/geom/zone_set.hpp"
+#include "pirsim/rays.hpp"
 
 namespace pirsim::sim {
 

@@ -1,4 +1,4 @@
-#include "pirsim/sim/state.hpp"
+#include "sim/state.hpp"
 
 #include <algorithm>
 

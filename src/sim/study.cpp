@@ -1,10 +1,10 @@
-#include "pirsim/sim/study.hpp"
+#include "sim/study.hpp"
 
 #include <optional>
 
-#include "pirsim/core/parallel.hpp"
-#include "pirsim/sim/state.hpp"
+#include "core/parallel.hpp"
 #include "sim/explainer.hpp"
+#include "sim/state.hpp"
 
 namespace pirsim {
 

@@ -1,11 +1,11 @@
-#include "pirsim/sim/trace_family.hpp"
+#include "sim/trace_family.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <utility>
 
-#include "pirsim/rt/tracer.hpp"
+#include "rt/tracer.hpp"
 #include "sim/begin_tracks.hpp"
 #include "sim/mannequin.hpp"
 #include "sim/people_tracks.hpp"

@@ -1,13 +1,13 @@
-#include "pirsim/sim/zone_tracks.hpp"
+#include "sim/zone_tracks.hpp"
 
 #include <algorithm>
 
-#include "pirsim/core/parallel.hpp"
-#include "pirsim/effects/catalogue.hpp"
-#include "pirsim/sim/state.hpp"
+#include "core/parallel.hpp"
+#include "pirsim/effects.hpp"
 #include "sim/add_triggers.hpp"
 #include "sim/begin_tracks.hpp"
 #include "sim/set_numbering.hpp"
+#include "sim/state.hpp"
 
 namespace pirsim::sim {
 namespace {

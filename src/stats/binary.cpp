@@ -1,10 +1,10 @@
-#include "pirsim/stats/binary.hpp"
+#include "stats/binary.hpp"
 
 #include <bit>
 #include <istream>
 #include <ostream>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::stats {
 namespace {

@@ -1,4 +1,4 @@
-#include "pirsim/stats/calibration.hpp"
+#include "stats/calibration.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "pirsim/stats/class_shapes.hpp"
+#include "stats/class_shapes.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pirsim/core/parallel.hpp"
-#include "pirsim/core/random.hpp"
-#include "pirsim/stats/discriminant.hpp"
+#include "core/parallel.hpp"
+#include "pirsim/random.hpp"
+#include "stats/discriminant.hpp"
 #include "stats/eigen.hpp"
 #include "stats/groups.hpp"
 #include "stats/require.hpp"

@@ -1,10 +1,10 @@
-#include "pirsim/stats/conformal.hpp"
+#include "stats/conformal.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "pirsim/core/parallel.hpp"
+#include "core/parallel.hpp"
 #include "stats/require.hpp"
 #include "stats/select.hpp"
 

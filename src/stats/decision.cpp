@@ -1,4 +1,4 @@
-#include "pirsim/stats/decision.hpp"
+#include "stats/decision.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "pirsim/stats/discriminant.hpp"
+#include "stats/discriminant.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #define EIGEN_FAST_MATH 0
 #include <Eigen/Dense>
 
-#include "pirsim/stats/matrix.hpp"
+#include "stats/matrix.hpp"
 
 namespace pirsim::stats::detail {
 

@@ -1,12 +1,12 @@
-#include "pirsim/stats/envelope.hpp"
+#include "stats/envelope.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-#include "pirsim/core/parallel.hpp"
-#include "pirsim/core/random.hpp"
+#include "core/parallel.hpp"
+#include "pirsim/random.hpp"
 #include "stats/pointwise_rank.hpp"
 #include "stats/require.hpp"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pirsim/stats/envelope.hpp"
+#include "stats/envelope.hpp"
 #include "stats/pointwise_rank.hpp"
 #include "stats/require.hpp"
 

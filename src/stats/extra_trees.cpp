@@ -1,9 +1,9 @@
-#include "pirsim/stats/extra_trees.hpp"
+#include "stats/extra_trees.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pirsim/core/parallel.hpp"
+#include "core/parallel.hpp"
 #include "stats/groups.hpp"
 #include "stats/require.hpp"
 #include "stats/row_blocks.hpp"

@@ -1,4 +1,4 @@
-#include "pirsim/stats/intervals.hpp"
+#include "stats/intervals.hpp"
 
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>

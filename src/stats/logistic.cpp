@@ -1,4 +1,4 @@
-#include "pirsim/stats/logistic.hpp"
+#include "stats/logistic.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "pirsim/stats/mixture_discriminant.hpp"
+#include "stats/mixture_discriminant.hpp"
 
 #include <algorithm>
 #include <cmath>

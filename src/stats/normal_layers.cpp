@@ -1,10 +1,10 @@
-#include "pirsim/stats/normal_layers.hpp"
+#include "stats/normal_layers.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "pirsim/stats/discriminant.hpp"
+#include "stats/discriminant.hpp"
 #include "stats/eigen.hpp"
 #include "stats/require.hpp"
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "pirsim/stats/envelope.hpp"
+#include "stats/envelope.hpp"
 
 namespace pirsim::stats::detail {
 

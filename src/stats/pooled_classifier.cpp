@@ -1,9 +1,9 @@
-#include "pirsim/stats/pooled_classifier.hpp"
+#include "stats/pooled_classifier.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pirsim/core/parallel.hpp"
+#include "core/parallel.hpp"
 #include "stats/require.hpp"
 #include "stats/select.hpp"
 #include "stats/softmax.hpp"

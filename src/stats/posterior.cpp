@@ -1,4 +1,4 @@
-#include "pirsim/stats/posterior.hpp"
+#include "stats/posterior.hpp"
 
 #include <algorithm>
 #include <cmath>

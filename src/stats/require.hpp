@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::stats {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "pirsim/core/parallel.hpp"
-#include "pirsim/stats/matrix.hpp"
+#include "core/parallel.hpp"
+#include "stats/matrix.hpp"
 
 namespace pirsim::stats::detail {
 

@@ -1,4 +1,4 @@
-#include "pirsim/stats/scores.hpp"
+#include "stats/scores.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "pirsim/stats/strangest_measure.hpp"
+#include "stats/strangest_measure.hpp"
 
 #include <algorithm>
 #include <limits>
 
-#include "pirsim/stats/intervals.hpp"
+#include "stats/intervals.hpp"
 #include "stats/require.hpp"
 
 namespace pirsim::stats {

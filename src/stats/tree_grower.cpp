@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "pirsim/core/random.hpp"
+#include "pirsim/random.hpp"
 
 namespace pirsim::stats::detail {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "pirsim/stats/extra_trees.hpp"
+#include "stats/extra_trees.hpp"
 
 namespace pirsim::stats::detail {
 

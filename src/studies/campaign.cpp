@@ -1,16 +1,16 @@
-#include "pirsim/studies/campaign.hpp"
+#include "studies/campaign.hpp"
 
 #include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
 
-#include "pirsim/core/digest.hpp"
-#include "pirsim/core/error.hpp"
-#include "pirsim/io/atomic_file.hpp"
-#include "pirsim/io/compression.hpp"
-#include "pirsim/io/row_file.hpp"
-#include "pirsim/studies/shards.hpp"
+#include "core/digest.hpp"
+#include "io/atomic_file.hpp"
+#include "io/compression.hpp"
+#include "io/row_file.hpp"
+#include "pirsim/error.hpp"
+#include "studies/shards.hpp"
 
 namespace pirsim::studies {
 namespace {

@@ -1,13 +1,13 @@
-#include "pirsim/studies/coverage.hpp"
+#include "studies/coverage.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <span>
 #include <utility>
 
-#include "pirsim/core/parallel.hpp"
-#include "pirsim/pir/optics.hpp"
-#include "pirsim/pir/planck.hpp"
+#include "core/parallel.hpp"
+#include "pir/optics.hpp"
+#include "pir/planck.hpp"
 #include "studies/cross_tracer.hpp"
 
 namespace pirsim::studies {

@@ -1,11 +1,11 @@
-#include "pirsim/studies/coverage_figures.hpp"
+#include "studies/coverage_figures.hpp"
 
 #include <algorithm>
 #include <cstdlib>
 #include <iomanip>
 #include <sstream>
 
-#include "pirsim/io/csv_writer.hpp"
+#include "pirsim/csv.hpp"
 
 namespace pirsim::studies {
 namespace {

@@ -1,4 +1,4 @@
-#include "pirsim/studies/coverage_report.hpp"
+#include "studies/coverage_report.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pirsim/geom/shapes.hpp"
+#include "pirsim/shapes.hpp"
 
 namespace pirsim::studies {
 

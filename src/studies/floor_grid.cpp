@@ -1,9 +1,9 @@
-#include "pirsim/studies/floor_grid.hpp"
+#include "studies/floor_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::studies {
 

@@ -1,4 +1,4 @@
-#include "pirsim/studies/placement.hpp"
+#include "studies/placement.hpp"
 
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
@@ -8,7 +8,7 @@
 #include <sstream>
 #include <utility>
 
-#include "pirsim/studies/coverage_figures.hpp"
+#include "studies/coverage_figures.hpp"
 
 namespace pirsim::studies {
 namespace {

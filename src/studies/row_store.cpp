@@ -1,4 +1,4 @@
-#include "pirsim/studies/row_store.hpp"
+#include "studies/row_store.hpp"
 
 #include <span>
 #include <sstream>
@@ -6,8 +6,8 @@
 #include <system_error>
 #include <utility>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/version.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/version.hpp"
 
 namespace pirsim::studies {
 namespace {

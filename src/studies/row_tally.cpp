@@ -1,9 +1,9 @@
-#include "pirsim/studies/row_tally.hpp"
+#include "studies/row_tally.hpp"
 
 #include <array>
 #include <utility>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::studies {
 namespace {

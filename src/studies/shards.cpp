@@ -1,4 +1,4 @@
-#include "pirsim/studies/shards.hpp"
+#include "studies/shards.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -6,7 +6,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::studies {
 namespace {

@@ -1,9 +1,9 @@
-#include "pirsim/studies/sight.hpp"
+#include "studies/sight.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pirsim/body/motion.hpp"
+#include "body/motion.hpp"
 
 namespace pirsim::studies {
 namespace {

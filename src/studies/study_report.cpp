@@ -1,4 +1,4 @@
-#include "pirsim/studies/study_report.hpp"
+#include "studies/study_report.hpp"
 
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>

@@ -1,12 +1,12 @@
-#include "pirsim/studies/summary.hpp"
+#include "studies/summary.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/stats/scores.hpp"
+#include "pirsim/error.hpp"
+#include "stats/scores.hpp"
 
 namespace pirsim::studies {
 namespace {

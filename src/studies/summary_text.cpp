@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <functional>
 
-#include "pirsim/studies/summary.hpp"
+#include "studies/summary.hpp"
 
 namespace pirsim::studies {
 namespace {

@@ -1,9 +1,9 @@
-#include "pirsim/studies/turning_target.hpp"
+#include "studies/turning_target.hpp"
 
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "pirsim/core/units.hpp"
+#include "pirsim/geometry.hpp"
 
 namespace pirsim::studies {
 namespace {

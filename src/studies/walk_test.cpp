@@ -1,14 +1,14 @@
-#include "pirsim/studies/walk_test.hpp"
+#include "studies/walk_test.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pirsim/body/motion.hpp"
-#include "pirsim/core/parallel.hpp"
-#include "pirsim/core/units.hpp"
-#include "pirsim/pir/motion_detector.hpp"
-#include "pirsim/pir/optics.hpp"
-#include "pirsim/sim/analog_model.hpp"
+#include "body/motion.hpp"
+#include "core/parallel.hpp"
+#include "pir/motion_detector.hpp"
+#include "pir/optics.hpp"
+#include "pirsim/geometry.hpp"
+#include "sim/analog_model.hpp"
 
 namespace pirsim::studies {
 namespace {

@@ -1,7 +1,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "pirsim/studies/walk_test.hpp"
+#include "studies/walk_test.hpp"
 
 namespace pirsim::studies {
 namespace {

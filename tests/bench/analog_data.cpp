@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "pirsim/io/sensor_reader.hpp"
-#include "pirsim/pir/calibration.hpp"
-#include "pirsim/pir/detector.hpp"
+#include "pir/calibration.hpp"
+#include "pir/detector.hpp"
+#include "pirsim/io.hpp"
 
 namespace {
 

@@ -13,13 +13,13 @@
 #include <thread>
 #include <vector>
 
-#include "pirsim/core/version.hpp"
-#include "pirsim/effects/catalogue.hpp"
-#include "pirsim/io/csv_writer.hpp"
-#include "pirsim/reconcile/reference_table.hpp"
-#include "pirsim/sim/state.hpp"
-#include "pirsim/sim/study.hpp"
+#include "pirsim/csv.hpp"
+#include "pirsim/effects.hpp"
+#include "pirsim/version.hpp"
+#include "reconcile/reference_table.hpp"
 #include "rt/direct_tracer.hpp"
+#include "sim/state.hpp"
+#include "sim/study.hpp"
 #include "support/shipped.hpp"
 
 using namespace pirsim;

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <string>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 // libFuzzer's entry, also called by replay.cpp.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "fuzz_target.hpp"
-#include "pirsim/io/scene_reader.hpp"
+#include "pirsim/io.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // Scripts of studies. What is accepted is written back as a script that is accepted and written the same.
 #include "fuzz_target.hpp"
-#include "pirsim/io/script_reader.hpp"
+#include "pirsim/io.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return pirsim::test::read_as_file(data, size, ".yaml", [](const std::filesystem::path& file) {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "fuzz_target.hpp"
-#include "pirsim/io/sensor_reader.hpp"
+#include "pirsim/io.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return pirsim::test::read_as_file(data, size, ".yaml", [](const std::filesystem::path& file) {

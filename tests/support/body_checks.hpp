@@ -7,8 +7,8 @@
 #include <numbers>
 #include <variant>
 
-#include "pirsim/body/motion.hpp"
-#include "pirsim/body/skeleton.hpp"
+#include "body/motion.hpp"
+#include "body/skeleton.hpp"
 #include "support/catch.hpp"
 
 namespace pirsim::body::test {

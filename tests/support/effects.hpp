@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "pirsim/effects/catalogue.hpp"
+#include "pirsim/effects.hpp"
 #include "support/shipped.hpp"
 
 namespace pirsim::test {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-#include "pirsim/geom/triangle_surface.hpp"
+#include "geom/triangle_surface.hpp"
 #include "support/random_scene.hpp"
 
 namespace pirsim::testing {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "pirsim/stats/matrix.hpp"
-#include "pirsim/stats/pooled_classifier.hpp"
+#include "stats/matrix.hpp"
+#include "stats/pooled_classifier.hpp"
 
 namespace pirsim::test {
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "pirsim/geom/mesh.hpp"
-#include "pirsim/geom/ray_bundle.hpp"
+#include "pirsim/geometry.hpp"
+#include "pirsim/rays.hpp"
 #include "support/random_shapes.hpp"
 
 namespace pirsim::testing {

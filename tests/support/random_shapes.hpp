@@ -5,9 +5,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "pirsim/core/random.hpp"
-#include "pirsim/geom/shapes.hpp"
-#include "pirsim/geom/triangle_surface.hpp"
+#include "geom/triangle_surface.hpp"
+#include "pirsim/random.hpp"
+#include "pirsim/shapes.hpp"
 
 namespace pirsim::testing {
 

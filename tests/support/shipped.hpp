@@ -5,10 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/io/scene_reader.hpp"
-#include "pirsim/io/script_reader.hpp"
-#include "pirsim/sim/model.hpp"
-#include "pirsim/sim/study.hpp"
+#include "pirsim/io.hpp"
+#include "sim/model.hpp"
+#include "sim/study.hpp"
 #include "support/paths.hpp"
 
 namespace pirsim::test {

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "pirsim/core/random.hpp"
-#include "pirsim/stats/matrix.hpp"
+#include "pirsim/random.hpp"
+#include "stats/matrix.hpp"
 
 namespace toy {
 

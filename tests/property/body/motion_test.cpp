@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "body/poser.hpp"
-#include "pirsim/core/random.hpp"
+#include "pirsim/random.hpp"
 #include "support/body_checks.hpp"
 
 using namespace pirsim;

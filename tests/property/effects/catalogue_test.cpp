@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <set>
 
-#include "pirsim/sim/state.hpp"
-#include "pirsim/sim/zone_tracks.hpp"
+#include "sim/state.hpp"
+#include "sim/zone_tracks.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
 #include "support/temporary_folder.hpp"

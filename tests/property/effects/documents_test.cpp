@@ -2,7 +2,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "pirsim/effects/describe.hpp"
+#include "effects/describe.hpp"
 #include "property/effects/warm_up.cpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"

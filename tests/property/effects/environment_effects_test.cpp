@@ -2,9 +2,9 @@
 #include <array>
 #include <cmath>
 
-#include "pirsim/core/units.hpp"
-#include "pirsim/sim/state.hpp"
-#include "pirsim/sim/zone_tracks.hpp"
+#include "pirsim/geometry.hpp"
+#include "sim/state.hpp"
+#include "sim/zone_tracks.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
 

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "pirsim/core/random.hpp"
-#include "pirsim/core/units.hpp"
-#include "pirsim/sim/state.hpp"
+#include "pirsim/geometry.hpp"
+#include "pirsim/random.hpp"
+#include "sim/state.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
 

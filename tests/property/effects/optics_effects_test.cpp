@@ -2,11 +2,11 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "pirsim/core/units.hpp"
-#include "pirsim/pir/edge_draw.hpp"
-#include "pirsim/pir/optics.hpp"
-#include "pirsim/pir/polarity_detector.hpp"
-#include "pirsim/sim/state.hpp"
+#include "pir/edge_draw.hpp"
+#include "pir/optics.hpp"
+#include "pir/polarity_detector.hpp"
+#include "pirsim/geometry.hpp"
+#include "sim/state.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
 

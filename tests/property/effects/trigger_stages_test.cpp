@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pirsim/core/random.hpp"
+#include "pirsim/random.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
 

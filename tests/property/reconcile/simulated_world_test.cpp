@@ -1,7 +1,7 @@
 // A world with effects on top, however it gets there, against the slow way: a study of its own with these effects.
 #include <algorithm>
 
-#include "pirsim/reconcile/simulated_world.hpp"
+#include "reconcile/simulated_world.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
 

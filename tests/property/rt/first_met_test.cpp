@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "pirsim/rt/tracer.hpp"
+#include "rt/tracer.hpp"
 #include "support/catch.hpp"
 #include "support/fine_mesh.hpp"
 #include "support/random_scene.hpp"

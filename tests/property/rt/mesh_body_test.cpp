@@ -1,8 +1,8 @@
 // Mesh bodies before every tracer.
 #include <algorithm>
 
-#include "pirsim/rt/tracer.hpp"
-#include "pirsim/sim/model.hpp"
+#include "rt/tracer.hpp"
+#include "sim/model.hpp"
 #include "support/catch.hpp"
 #include "support/fine_mesh.hpp"
 

@@ -1,4 +1,4 @@
-#include "pirsim/rt/room.hpp"
+#include "rt/room.hpp"
 
 #include <vector>
 

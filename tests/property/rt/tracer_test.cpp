@@ -1,10 +1,10 @@
-#include "pirsim/rt/tracer.hpp"
+#include "rt/tracer.hpp"
 
 #include <algorithm>
 #include <array>
 #include <vector>
 
-#include "pirsim/core/parallel.hpp"
+#include "core/parallel.hpp"
 #include "rt/direct_tracer.hpp"
 #include "support/catch.hpp"
 #include "support/random_scene.hpp"

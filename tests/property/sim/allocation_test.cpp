@@ -4,7 +4,7 @@
 #include <new>
 #include <string>
 
-#include "pirsim/sim/state.hpp"
+#include "sim/state.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 

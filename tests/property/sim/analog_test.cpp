@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pirsim/pir/planck.hpp"
-#include "pirsim/sim/state.hpp"
+#include "pir/planck.hpp"
+#include "sim/state.hpp"
 #include "support/catch.hpp"
 #include "support/fine_mesh.hpp"
 #include "support/shipped.hpp"

@@ -1,8 +1,8 @@
 // A whole person as meshes against the same person as primitives.
 #include <algorithm>
 
-#include "pirsim/sim/state.hpp"
-#include "pirsim/studies/sight.hpp"
+#include "sim/state.hpp"
+#include "studies/sight.hpp"
 #include "support/catch.hpp"
 #include "support/fine_mesh.hpp"
 #include "support/shipped.hpp"

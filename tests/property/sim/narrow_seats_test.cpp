@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
-#include "pirsim/sim/state.hpp"
+#include "sim/state.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <map>
 
-#include "pirsim/core/random.hpp"
-#include "pirsim/sim/state.hpp"
+#include "pirsim/random.hpp"
+#include "sim/state.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "pirsim/core/units.hpp"
-#include "pirsim/sim/state.hpp"
+#include "pirsim/geometry.hpp"
+#include "sim/state.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 

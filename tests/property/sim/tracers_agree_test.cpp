@@ -1,8 +1,8 @@
 // Every tracer gives the reference's bits on every shipped study: every zone at every tick.
 #include <filesystem>
 
-#include "pirsim/sim/state.hpp"
-#include "pirsim/sim/study.hpp"
+#include "sim/state.hpp"
+#include "sim/study.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 

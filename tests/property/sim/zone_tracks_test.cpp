@@ -1,8 +1,8 @@
-#include "pirsim/sim/zone_tracks.hpp"
+#include "sim/zone_tracks.hpp"
 
 #include <numeric>
 
-#include "pirsim/core/random.hpp"
+#include "pirsim/random.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 

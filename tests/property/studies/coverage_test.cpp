@@ -1,14 +1,13 @@
 // Coverage maps against the plain tracer, against symmetry and against geometry done another way.
-#include "pirsim/studies/coverage.hpp"
+#include "studies/coverage.hpp"
 
 #include <glm/geometric.hpp>
 
-#include "pirsim/core/units.hpp"
-#include "pirsim/io/coverage_reader.hpp"
-#include "pirsim/io/sensor_reader.hpp"
-#include "pirsim/pir/motion_detector.hpp"
-#include "pirsim/pir/optics.hpp"
-#include "pirsim/pir/planck.hpp"
+#include "pir/motion_detector.hpp"
+#include "pir/optics.hpp"
+#include "pir/planck.hpp"
+#include "pirsim/geometry.hpp"
+#include "pirsim/io.hpp"
 #include "support/catch.hpp"
 #include "support/random_scene.hpp"
 #include "support/shipped.hpp"

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "pirsim/core/random.hpp"
+#include "pirsim/random.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim::body;

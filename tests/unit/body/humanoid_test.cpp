@@ -1,8 +1,8 @@
-#include "pirsim/body/humanoid.hpp"
+#include "body/humanoid.hpp"
 
 #include <numeric>
 
-#include "pirsim/geom/shapes.hpp"
+#include "pirsim/shapes.hpp"
 #include "support/body_checks.hpp"
 
 using namespace pirsim;

@@ -1,4 +1,4 @@
-#include "pirsim/body/min_jerk.hpp"
+#include "body/min_jerk.hpp"
 
 #include <cmath>
 #include <vector>

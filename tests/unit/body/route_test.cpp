@@ -1,4 +1,4 @@
-#include "pirsim/body/route.hpp"
+#include "body/route.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/random.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/random.hpp"
 #include "support/catch.hpp"
 
 using pirsim::Vec2;

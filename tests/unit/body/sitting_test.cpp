@@ -1,7 +1,7 @@
 // Sitting down, rising, desk work and the spine's tilt.
 #include <vector>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 #include "support/body_checks.hpp"
 
 using namespace pirsim;

@@ -1,4 +1,4 @@
-#include "pirsim/body/walkable_floor.hpp"
+#include "body/walkable_floor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "pirsim/body/route.hpp"
-#include "pirsim/core/random.hpp"
+#include "body/route.hpp"
+#include "pirsim/random.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -1,4 +1,4 @@
-#include "pirsim/core/digest.hpp"
+#include "core/digest.hpp"
 
 #include "support/catch.hpp"
 

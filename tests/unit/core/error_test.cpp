@@ -1,4 +1,4 @@
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 
 #include "support/catch.hpp"
 

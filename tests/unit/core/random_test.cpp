@@ -1,4 +1,4 @@
-#include "pirsim/core/random.hpp"
+#include "pirsim/random.hpp"
 
 #include <array>
 #include <cmath>

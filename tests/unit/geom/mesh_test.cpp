@@ -1,4 +1,4 @@
-#include "pirsim/geom/mesh.hpp"
+#include "pirsim/geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,8 @@
 #include <set>
 #include <sstream>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/random.hpp"
-#include "pirsim/geom/floor_area.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/random.hpp"
 #include "support/catch.hpp"
 
 using pirsim::boundary_loops_xz;

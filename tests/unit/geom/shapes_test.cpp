@@ -1,4 +1,4 @@
-#include "pirsim/geom/shapes.hpp"
+#include "pirsim/shapes.hpp"
 
 #include <bit>
 #include <cmath>

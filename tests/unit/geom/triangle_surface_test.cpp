@@ -1,8 +1,8 @@
-#include "pirsim/geom/triangle_surface.hpp"
+#include "geom/triangle_surface.hpp"
 
 #include <limits>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 #include "support/catch.hpp"
 #include "support/fine_mesh.hpp"
 

@@ -1,9 +1,9 @@
 // A person's body_mesh in a script.
 #include <glm/geometric.hpp>
 
+#include "geom/triangle_surface.hpp"
 #include "gltf_builder.hpp"
-#include "pirsim/geom/triangle_surface.hpp"
-#include "pirsim/io/script_reader.hpp"
+#include "pirsim/io.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -1,9 +1,9 @@
-#include "pirsim/io/compression.hpp"
+#include "io/compression.hpp"
 
 #include <fstream>
 #include <sstream>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 

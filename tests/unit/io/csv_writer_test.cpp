@@ -1,8 +1,8 @@
-#include "pirsim/io/csv_writer.hpp"
+#include "pirsim/csv.hpp"
 
 #include <sstream>
 
-#include "pirsim/io/csv_reader.hpp"
+#include "io/csv_reader.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/io/scene_reader.hpp"
+#include "pirsim/io.hpp"
 #include "support/catch.hpp"
 #include "support/paths.hpp"
 #include "support/temporary_folder.hpp"

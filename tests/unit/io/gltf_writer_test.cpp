@@ -1,4 +1,4 @@
-#include "pirsim/io/gltf_writer.hpp"
+#include "io/gltf_writer.hpp"
 
 #include <tiny_gltf.h>
 
@@ -12,9 +12,9 @@
 #include <limits>
 #include <map>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/random.hpp"
-#include "pirsim/geom/triangle_surface.hpp"
+#include "geom/triangle_surface.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/random.hpp"
 #include "support/catch.hpp"
 #include "support/paths.hpp"
 #include "support/temporary_folder.hpp"

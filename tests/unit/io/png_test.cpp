@@ -1,11 +1,11 @@
-#include "pirsim/io/png.hpp"
+#include "io/png.hpp"
 
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <vector>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -1,6 +1,6 @@
-#include "pirsim/io/report.hpp"
+#include "io/report.hpp"
 
-#include "pirsim/io/gnuplot.hpp"
+#include "io/gnuplot.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -1,11 +1,11 @@
 // RowFile: whatever is left on the disk, to resume gives the bytes of an undisturbed run.
-#include "pirsim/io/row_file.hpp"
+#include "io/row_file.hpp"
 
 #include <fstream>
 #include <iterator>
 
-#include "pirsim/core/digest.hpp"
-#include "pirsim/core/error.hpp"
+#include "core/digest.hpp"
+#include "pirsim/error.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 

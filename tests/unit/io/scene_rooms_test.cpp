@@ -1,7 +1,7 @@
 #include <cstdlib>
 
 #include "gltf_builder.hpp"
-#include "pirsim/io/scene_reader.hpp"
+#include "pirsim/io.hpp"
 #include "support/catch.hpp"
 #include "support/paths.hpp"
 

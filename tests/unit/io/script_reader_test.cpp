@@ -1,4 +1,4 @@
-#include "pirsim/io/script_reader.hpp"
+#include "pirsim/io.hpp"
 
 #include <fstream>
 

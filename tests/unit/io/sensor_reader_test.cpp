@@ -1,4 +1,4 @@
-#include "pirsim/io/sensor_reader.hpp"
+#include "pirsim/io.hpp"
 
 #include <unistd.h>
 
@@ -10,7 +10,7 @@
 #include <memory>
 #include <sstream>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 #include "support/catch.hpp"
 #include "support/paths.hpp"
 

@@ -1,8 +1,8 @@
 // Temperatures in scenes and scripts.
-#include "pirsim/body/warmth.hpp"
+#include "body/warmth.hpp"
 
 #include "gltf_builder.hpp"
-#include "pirsim/io/script_reader.hpp"
+#include "pirsim/io.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

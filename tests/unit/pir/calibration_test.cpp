@@ -1,11 +1,11 @@
-#include "pirsim/pir/calibration.hpp"
+#include "pir/calibration.hpp"
 
 #include <cmath>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/io/sensor_reader.hpp"
-#include "pirsim/pir/detector.hpp"
-#include "pirsim/pir/planck.hpp"
+#include "pir/detector.hpp"
+#include "pir/planck.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/io.hpp"
 #include "support/catch.hpp"
 #include "support/paths.hpp"
 

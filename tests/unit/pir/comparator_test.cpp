@@ -1,8 +1,8 @@
-#include "pirsim/pir/comparator.hpp"
+#include "pir/comparator.hpp"
 
 #include <string>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -1,9 +1,9 @@
-#include "pirsim/pir/detector.hpp"
+#include "pir/detector.hpp"
 
 #include <cmath>
 #include <vector>
 
-#include "pirsim/core/units.hpp"
+#include "pirsim/geometry.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

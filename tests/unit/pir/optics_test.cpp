@@ -1,11 +1,11 @@
-#include "pirsim/pir/optics.hpp"
+#include "pir/optics.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "pirsim/io/sensor_reader.hpp"
-#include "pirsim/pir/motion_detector.hpp"
+#include "pir/motion_detector.hpp"
+#include "pirsim/io.hpp"
 #include "support/catch.hpp"
 #include "support/paths.hpp"
 

@@ -1,8 +1,8 @@
-#include "pirsim/pir/planck.hpp"
+#include "pir/planck.hpp"
 
 #include <cmath>
 
-#include "pirsim/core/units.hpp"
+#include "pirsim/geometry.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -1,12 +1,12 @@
-#include "pirsim/pir/target_pass.hpp"
+#include "pir/target_pass.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "pirsim/io/sensor_reader.hpp"
-#include "pirsim/pir/planck.hpp"
-#include "pirsim/pir/zone_quadrature.hpp"
+#include "pir/planck.hpp"
+#include "pir/zone_quadrature.hpp"
+#include "pirsim/io.hpp"
 #include "support/catch.hpp"
 #include "support/paths.hpp"
 

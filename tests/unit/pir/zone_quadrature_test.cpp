@@ -1,10 +1,10 @@
-#include "pirsim/pir/zone_quadrature.hpp"
+#include "pir/zone_quadrature.hpp"
 
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "pirsim/core/units.hpp"
-#include "pirsim/io/sensor_reader.hpp"
+#include "pirsim/geometry.hpp"
+#include "pirsim/io.hpp"
 #include "support/catch.hpp"
 #include "support/paths.hpp"
 

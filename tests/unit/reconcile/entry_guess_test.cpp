@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/core/random.hpp"
+#include "pirsim/random.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -1,10 +1,10 @@
-#include "pirsim/reconcile/feature_map.hpp"
+#include "reconcile/feature_map.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "pirsim/core/random.hpp"
+#include "pirsim/random.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

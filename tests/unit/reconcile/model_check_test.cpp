@@ -1,7 +1,7 @@
 // The global test of a model with effects put in, on a shortened Study A.
 #include "reconcile/model_check.hpp"
 
-#include "pirsim/reconcile/simulated_world.hpp"
+#include "reconcile/simulated_world.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 #include "support/short_study.hpp"

@@ -1,11 +1,11 @@
 // Planning, on one seat and half a minute of work, with three effects that differ plainly.
-#include "pirsim/reconcile/plan.hpp"
+#include "reconcile/plan.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "pirsim/io/script_reader.hpp"
+#include "pirsim/io.hpp"
 #include "reconcile/longer_study.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"

@@ -1,5 +1,5 @@
 // What a self-test hides.
-#include "pirsim/reconcile/selftest.hpp"
+#include "reconcile/selftest.hpp"
 
 #include <algorithm>
 #include <filesystem>

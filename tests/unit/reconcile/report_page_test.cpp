@@ -1,5 +1,5 @@
 // The page of a reconciliation, from outcomes made by hand.
-#include "pirsim/reconcile/report_page.hpp"
+#include "reconcile/report_page.hpp"
 
 #include <cmath>
 

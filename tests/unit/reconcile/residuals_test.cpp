@@ -1,10 +1,10 @@
 // Things that no catalogue holds, planted in the bits: the sentence must say who, when and how.
 #include <cmath>
 
-#include "pirsim/reconcile/outcome.hpp"
-#include "pirsim/reconcile/reconcile.hpp"
-#include "pirsim/sim/study.hpp"
 #include "reconcile/aliens.hpp"
+#include "reconcile/outcome.hpp"
+#include "reconcile/reconcile.hpp"
+#include "sim/study.hpp"
 #include "support/catch.hpp"
 #include "support/short_study.hpp"
 

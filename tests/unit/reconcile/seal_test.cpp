@@ -1,14 +1,14 @@
-#include "pirsim/reconcile/seal.hpp"
+#include "reconcile/seal.hpp"
 
 #include <set>
 #include <sstream>
 
-#include "pirsim/core/digest.hpp"
-#include "pirsim/core/error.hpp"
-#include "pirsim/effects/catalogue.hpp"
-#include "pirsim/io/csv_writer.hpp"
-#include "pirsim/reconcile/simulated_world.hpp"
-#include "pirsim/sim/study.hpp"
+#include "core/digest.hpp"
+#include "pirsim/csv.hpp"
+#include "pirsim/effects.hpp"
+#include "pirsim/error.hpp"
+#include "reconcile/simulated_world.hpp"
+#include "sim/study.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 #include "support/short_study.hpp"

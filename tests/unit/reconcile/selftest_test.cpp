@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pirsim/reconcile/selftest.hpp"
+#include "reconcile/selftest.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 #include "support/short_study.hpp"

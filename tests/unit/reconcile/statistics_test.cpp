@@ -1,10 +1,10 @@
-#include "pirsim/reconcile/statistics.hpp"
+#include "reconcile/statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "pirsim/core/random.hpp"
-#include "pirsim/core/units.hpp"
+#include "pirsim/geometry.hpp"
+#include "pirsim/random.hpp"
 
 #include "support/catch.hpp"
 

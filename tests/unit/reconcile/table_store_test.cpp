@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
 

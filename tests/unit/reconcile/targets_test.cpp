@@ -1,10 +1,10 @@
 // Targets and pictures of a self-test, from cases made by hand.
-#include "pirsim/reconcile/targets.hpp"
+#include "reconcile/targets.hpp"
 
 #include <algorithm>
 
-#include "pirsim/io/gnuplot.hpp"
-#include "pirsim/reconcile/selftest_page.hpp"
+#include "io/gnuplot.hpp"
+#include "reconcile/selftest_page.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -1,12 +1,12 @@
 // Held-out trials: what is fitted must not see them, and what is said about them must be earned.
-#include "pirsim/reconcile/verify.hpp"
+#include "reconcile/verify.hpp"
 
 #include <algorithm>
 
-#include "pirsim/core/digest.hpp"
-#include "pirsim/core/random.hpp"
-#include "pirsim/reconcile/analyst.hpp"
-#include "pirsim/reconcile/reconcile.hpp"
+#include "core/digest.hpp"
+#include "pirsim/random.hpp"
+#include "reconcile/analyst.hpp"
+#include "reconcile/reconcile.hpp"
 #include "support/catch.hpp"
 #include "support/short_study.hpp"
 

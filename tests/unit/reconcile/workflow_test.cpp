@@ -5,13 +5,13 @@
 #include <iterator>
 #include <set>
 
-#include "pirsim/core/digest.hpp"
-#include "pirsim/core/random.hpp"
-#include "pirsim/effects/catalogue.hpp"
-#include "pirsim/io/script_reader.hpp"
-#include "pirsim/reconcile/analyst.hpp"
-#include "pirsim/reconcile/outputs.hpp"
-#include "pirsim/reconcile/reconcile.hpp"
+#include "core/digest.hpp"
+#include "pirsim/effects.hpp"
+#include "pirsim/io.hpp"
+#include "pirsim/random.hpp"
+#include "reconcile/analyst.hpp"
+#include "reconcile/outputs.hpp"
+#include "reconcile/reconcile.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 #include "support/short_study.hpp"

@@ -1,11 +1,11 @@
-#include "pirsim/rt/renderer.hpp"
+#include "rt/renderer.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 #include "support/catch.hpp"
 #include "support/meeting_room.hpp"
 

@@ -1,8 +1,8 @@
-#include "pirsim/rt/room.hpp"
+#include "rt/room.hpp"
 
 #include <vector>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 #include "rt/device.hpp"
 #include "support/catch.hpp"
 #include "support/random_scene.hpp"

@@ -1,9 +1,9 @@
 // The whole chain from lens data to motion, against times that can be computed on paper.
 #include <cmath>
 
-#include "pirsim/pir/motion_detector.hpp"
-#include "pirsim/pir/optics.hpp"
-#include "pirsim/rt/tracer.hpp"
+#include "pir/motion_detector.hpp"
+#include "pir/optics.hpp"
+#include "rt/tracer.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -1,8 +1,8 @@
-#include "pirsim/stats/binary.hpp"
+#include "stats/binary.hpp"
 
 #include <sstream>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -1,11 +1,11 @@
-#include "pirsim/stats/class_shapes.hpp"
+#include "stats/class_shapes.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/random.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/random.hpp"
 #include "support/catch.hpp"
 #include "support/labelled.hpp"
 

@@ -1,12 +1,12 @@
-#include "pirsim/stats/conformal.hpp"
+#include "stats/conformal.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/random.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/random.hpp"
 #include "support/catch.hpp"
 #include "support/labelled.hpp"
 

@@ -1,10 +1,10 @@
-#include "pirsim/stats/discriminant.hpp"
+#include "stats/discriminant.hpp"
 
 #include <cmath>
 #include <vector>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/random.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/random.hpp"
 #include "support/catch.hpp"
 #include "support/labelled.hpp"
 

@@ -1,12 +1,12 @@
-#include "pirsim/stats/envelope.hpp"
+#include "stats/envelope.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/random.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/random.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -1,11 +1,11 @@
-#include "pirsim/stats/extra_trees.hpp"
+#include "stats/extra_trees.hpp"
 
 #include <cmath>
 #include <numeric>
 #include <vector>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/random.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/random.hpp"
 #include "support/catch.hpp"
 #include "support/labelled.hpp"
 

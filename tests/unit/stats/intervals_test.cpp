@@ -1,10 +1,10 @@
-#include "pirsim/stats/intervals.hpp"
+#include "stats/intervals.hpp"
 
 #include <cmath>
 #include <vector>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/random.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/random.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

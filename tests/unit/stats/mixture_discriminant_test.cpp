@@ -1,12 +1,12 @@
-#include "pirsim/stats/mixture_discriminant.hpp"
+#include "stats/mixture_discriminant.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/random.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/random.hpp"
 #include "support/catch.hpp"
 #include "support/labelled.hpp"
 

@@ -1,12 +1,12 @@
-#include "pirsim/stats/normal_layers.hpp"
+#include "stats/normal_layers.hpp"
 
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/random.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/random.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -1,11 +1,11 @@
-#include "pirsim/stats/scores.hpp"
+#include "stats/scores.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <vector>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim::stats;

@@ -1,12 +1,12 @@
-#include "pirsim/stats/strangest_measure.hpp"
+#include "stats/strangest_measure.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/core/random.hpp"
-#include "pirsim/stats/intervals.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/random.hpp"
+#include "stats/intervals.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "pirsim/stats/conformal.hpp"
-#include "pirsim/stats/decision.hpp"
-#include "pirsim/stats/envelope.hpp"
+#include "stats/conformal.hpp"
+#include "stats/decision.hpp"
+#include "stats/envelope.hpp"
 #include "support/catch.hpp"
 #include "support/labelled.hpp"
 #include "support/toy_catalogue.hpp"

@@ -1,4 +1,4 @@
-#include "pirsim/studies/coverage_figures.hpp"
+#include "studies/coverage_figures.hpp"
 
 #include "support/catch.hpp"
 

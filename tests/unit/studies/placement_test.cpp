@@ -1,8 +1,8 @@
-#include "pirsim/studies/placement.hpp"
+#include "studies/placement.hpp"
 
 #include <glm/geometric.hpp>
 
-#include "pirsim/core/units.hpp"
+#include "pirsim/geometry.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

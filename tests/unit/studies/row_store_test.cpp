@@ -1,9 +1,9 @@
-#include "pirsim/studies/row_store.hpp"
+#include "studies/row_store.hpp"
 
 #include <fstream>
 #include <sstream>
 
-#include "pirsim/io/sensor_reader.hpp"
+#include "pirsim/io.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 #include "support/temporary_folder.hpp"

@@ -1,6 +1,6 @@
-#include "pirsim/studies/row_tally.hpp"
+#include "studies/row_tally.hpp"
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

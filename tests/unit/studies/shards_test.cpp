@@ -1,8 +1,8 @@
-#include "pirsim/studies/shards.hpp"
+#include "studies/shards.hpp"
 
 #include <map>
 
-#include "pirsim/core/error.hpp"
+#include "pirsim/error.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -1,12 +1,12 @@
-#include "pirsim/studies/summary.hpp"
+#include "studies/summary.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
 
-#include "pirsim/core/error.hpp"
-#include "pirsim/io/csv_reader.hpp"
+#include "io/csv_reader.hpp"
+#include "pirsim/error.hpp"
 #include "support/catch.hpp"
 #include "support/paths.hpp"
 

@@ -1,7 +1,7 @@
 // Walk tests whose answer is known: one ray straight down from the ceiling.
-#include "pirsim/studies/walk_test.hpp"
+#include "studies/walk_test.hpp"
 
-#include "pirsim/core/units.hpp"
+#include "pirsim/geometry.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

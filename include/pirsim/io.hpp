@@ -1,0 +1,76 @@
+// Reading what users write: scenes (glTF 2.0), scripts, sensors and surveys (YAML). Formats: docs/formats.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pirsim/scene.hpp"
+#include "pirsim/script.hpp"
+#include "pirsim/sensor.hpp"
+#include "pirsim/survey.hpp"
+
+namespace pirsim::io {
+
+// Rooms from glTF 2.0 files. How a room is marked up: docs/formats/scene.md.
+
+struct SceneOptions {
+  /// Where `<model>.yaml` of a sensor is looked for first; then in `sensors` beside the scene and beside its folder,
+  /// in `$PIRSIM_DATA_DIR/sensors`, in `sensors` of the data_directories and in the installed data.
+  std::vector<std::filesystem::path> sensor_directories;
+  std::vector<std::filesystem::path> data_directories{};
+};
+
+/// Reads a .gltf or .glb file with everything it refers to. Meshes are in world coordinates and cleaned.
+/// Throws Error(io) for a file that can't be read and Error(input) with all faults of the file that could be told
+/// apart; what was repaired or ignored stands in SceneSpec::warnings.
+[[nodiscard]] SceneSpec read_scene(const std::filesystem::path& file, const SceneOptions& options = {});
+
+// Studies as YAML; the format is described in docs/formats/script.md.
+
+/// Reads and validates a script. Each override is `sensing.rays_per_zone=9`: it replaces a value before reading.
+/// Throws Error (io: no such file; input: all faults with file:line:column; usage: an override).
+[[nodiscard]] ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+
+/// The script as YAML that read_script() reads back to the same spec: trials and people written out.
+[[nodiscard]] std::string to_yaml(const ScriptSpec& script);
+
+/// The same script for a file in another folder: the files that it refers to are found from there.
+[[nodiscard]] ScriptSpec moved(ScriptSpec script, const std::filesystem::path& folder);
+
+// Reads a sensor's optics; the format is docs/formats/sensor.md.
+
+/// data/sensors/*.yaml. Facets with a zone law are expanded to zones' corners. Throws Error (io, input).
+[[nodiscard]] SensorModelSpec read_sensor_model(const std::filesystem::path& path);
+
+// Sensor models by name.
+
+/// The model that a sensor of this scene would get. Throws Error(input) for a name that no folder has.
+[[nodiscard]] SensorModelSpec find_sensor_model(const std::string& model, const std::filesystem::path& scene_file,
+                                                const SceneOptions& options = {});
+
+// Coverage studies as YAML; the format is described in docs/formats/coverage.md.
+
+/// Reads and validates; overrides as in read_script(). Throws Error (io, input, usage).
+[[nodiscard]] CoverageSpec read_coverage(const std::filesystem::path& file,
+                                         std::span<const std::string> overrides = {});
+
+// Walk tests as YAML; the format is described in docs/formats/coverage.md.
+
+/// Reads and validates; overrides as in read_script(). Throws Error (io, input, usage).
+[[nodiscard]] WalkTestSpec read_walk_test(const std::filesystem::path& file,
+                                          std::span<const std::string> overrides = {});
+
+// Comparisons of sensor placements as YAML; the format is described in docs/formats/coverage.md.
+
+/// Reads and validates; overrides as in read_script(). Throws Error (io, input, usage).
+[[nodiscard]] PlacementSpec read_placements(const std::filesystem::path& file,
+                                            std::span<const std::string> overrides = {});
+
+// What is uncertain about a real room, as YAML; the format is described in docs/formats/reconcile.md.
+
+/// Throws Error (io: no such file; input: all faults with file:line:column).
+[[nodiscard]] NuisanceSpec read_nuisance(const std::filesystem::path& file);
+
+}  // namespace pirsim::io

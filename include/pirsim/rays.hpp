@@ -1,0 +1,64 @@
+// All rays of all sensors of a scene, and which zones they make active.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pirsim/shapes.hpp"
+
+namespace pirsim {
+
+// All rays of all sensors of a scene, compiled once and traced every tick.
+
+/// Rays grouped by zone, zones by cluster, clusters by sensor, each group contiguous and in file order.
+/// `zone_rays_begin` has n_zones + 1 entries: zone z owns rays [zone_rays_begin[z], zone_rays_begin[z + 1]);
+/// likewise `cluster_zones_begin` (n_clusters + 1) and `sensor_clusters_begin` (n_sensors + 1).
+struct RayBundle {
+  std::vector<Ray> rays;     ///< (n_rays) world frame
+  std::vector<float> range;  ///< (n_rays) metres; rated range, or less where the room cuts the ray
+  std::vector<std::uint32_t> zone_rays_begin{0};
+  std::vector<std::uint32_t> cluster_zones_begin{0};
+  std::vector<std::uint32_t> sensor_clusters_begin{0};
+
+  [[nodiscard]] std::size_t n_zones() const noexcept { return zone_rays_begin.size() - 1; }
+  [[nodiscard]] std::size_t n_clusters() const noexcept { return cluster_zones_begin.size() - 1; }
+  [[nodiscard]] std::size_t n_sensors() const noexcept { return sensor_clusters_begin.size() - 1; }
+};
+
+/// Activity of every zone at one tick: 1 where at least one of the zone's rays meets a person. (n_zones)
+using ZoneActivity = std::vector<std::uint8_t>;
+
+// Which zones are active, one bit a zone.
+
+/// A set of zones (or of other things counted from 0) as bits in 64-bit words. The unused bits of the last word are 0.
+class ZoneSet {
+ public:
+  using Word = std::uint64_t;
+  static constexpr std::size_t bits_per_word = 64;
+
+  ZoneSet() = default;
+  explicit ZoneSet(std::size_t n) : n_(n), words_((n + bits_per_word - 1) / bits_per_word, 0) {}
+
+  [[nodiscard]] std::size_t size() const noexcept { return n_; }
+  [[nodiscard]] bool test(std::size_t i) const noexcept {
+    return ((words_[i / bits_per_word] >> (i % bits_per_word)) & 1U) != 0;
+  }
+  void insert(std::size_t i) noexcept { words_[i / bits_per_word] |= Word{1} << (i % bits_per_word); }
+  void clear() noexcept { std::ranges::fill(words_, Word{0}); }
+  /// Adds the members of a set of the same size, given as words.
+  void add(std::span<const Word> words) noexcept {
+    for (std::size_t i = 0; i < words_.size(); ++i) words_[i] |= words[i];
+  }
+  [[nodiscard]] std::span<const Word> words() const noexcept { return words_; }
+  [[nodiscard]] std::span<Word> words() noexcept { return words_; }
+  bool operator==(const ZoneSet&) const = default;
+
+ private:
+  std::size_t n_ = 0;
+  std::vector<Word> words_;
+};
+
+}  // namespace pirsim

@@ -1,0 +1,48 @@
+// A room as plain data: what occludes, where the sensors hang, where people sit, enter and walk.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "pirsim/error.hpp"
+#include "pirsim/geometry.hpp"
+#include "pirsim/sensor.hpp"
+
+namespace pirsim {
+
+/// A sensor looks along its frame's -Z with +Y up.
+struct SensorSpec {
+  std::string id;
+  std::string model;  ///< key into SceneSpec::sensor_models
+  Frame world_from_sensor;
+};
+
+/// The sitter's pelvis rests at the origin of the seat's frame and faces its -Z; +Y is up.
+struct SeatSpec {
+  std::string id;
+  Frame world_from_seat;
+};
+
+/// A doorway. The origin is the middle of the threshold on the floor, -Z points into the room. People wait
+/// `outside_m` behind it (+Z) and may walk on the strip of `width_m` that leads there.
+struct EntranceSpec {
+  std::string id;
+  Frame world_from_entrance;
+  double width_m = 0.9;
+  double outside_m = 1.5;
+};
+
+struct SceneSpec {
+  std::string name;                 ///< file name, for messages
+  std::vector<TriMesh> meshes;      ///< everything that occludes, world frame, cleaned
+  std::vector<SensorSpec> sensors;  ///< in file order: the order of the output columns
+  std::vector<SeatSpec> seats;
+  std::vector<EntranceSpec> entrances;
+  FloorArea floor;
+  std::map<std::string, SensorModelSpec> sensor_models;  ///< every model that a sensor names
+  std::vector<std::string> files;                        ///< all that was read: scene, its buffers, sensors
+  std::vector<Issue> warnings;                           ///< what the reader noticed and repaired or ignored
+};
+
+}  // namespace pirsim

@@ -1,0 +1,200 @@
+// What happens in a study as plain data: people and their actions, the trials, how sensors are read.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "pirsim/error.hpp"
+#include "pirsim/geometry.hpp"
+#include "pirsim/sensor.hpp"
+#include "pirsim/shapes.hpp"
+
+namespace pirsim {
+
+/// An entry of `effects:`; names are those of the catalogue (pirsim/effects/catalogue.hpp), which checks them when a
+/// Model is compiled.
+struct EffectSpec {
+  std::string name;
+  std::map<std::string, double, std::less<>> parameters;  ///< by name with unit; missing: the catalogue's typical value
+  std::map<std::string, std::string, std::less<>> choices;  ///< `sensor: PIR3`; missing: all, or the effect's own way
+  Where where;                                              ///< for messages
+};
+
+enum class ChangePer { cluster, beam };  ///< whose change of activity is motion
+enum class RaysPerZone { one = 1, five = 5, nine = 9, sixteen = 16 };
+
+/// Rays go on mirrored where they meet a mesh; what they see there counts for their zone.
+struct ReflectionSpec {
+  std::string mesh;
+  double coefficient = 0.0;  ///< share of the power that is mirrored, 0-1
+};
+
+/// The pyroelectric pair: zones count with their sign, what their sum does is filtered and compared with a threshold.
+struct DualPolaritySpec {
+  double threshold = 1.0;     ///< in steps of one zone
+  double high_pass_hz = 0.3;  ///< corner frequencies, one pole each
+  double low_pass_hz = 7.0;
+};
+
+/// When in a window each sensor is asked whether it has triggered since it was last asked.
+enum class Reader {
+  in_step,      ///< all at the window's end: a row tells its own window
+  free_running  ///< each at a moment of its own, drawn once a run: as hardware that isn't in step with the rows
+};
+
+struct SensingSpec {
+  int tick_rate_hz = 50;
+  int ticks_per_window = 50;  ///< a row and its bits cover this many ticks
+  RaysPerZone rays_per_zone = RaysPerZone::five;
+  ChangePer change_per = ChangePer::cluster;
+  Reader reader = Reader::in_step;
+  std::optional<Response> response;  ///< of all sensors; otherwise each its own
+  double ambient_c = 20.0;           ///< of surfaces and of the air, where the scene says nothing else
+  /// Rays of a zone in the physical response (docs/physics/analog.md has the convergence).
+  int analog_rays_per_zone = 34;
+  // Set by effects alone.
+  double edge_sigma_deg = 0.0;  ///< how soft the edges of zones are; 0: hard
+  std::vector<ReflectionSpec> reflections;
+  std::optional<DualPolaritySpec> dual_polarity;
+};
+
+/// Which cells a summary adds up, and what they are compared with.
+struct SummarySpec {
+  std::vector<std::string> phases;  ///< rows in these phases count
+  std::string reference_file;       ///< CSV with measured sums, or empty; relative to the script
+};
+
+/// Person-to-person and chair-to-chair variation, drawn once a run and person.
+struct SeatScatterSpec {
+  double position_sd_m = 0.0;  ///< of each horizontal coordinate
+  double heading_sd_deg = 0.0;
+};
+
+/// Small moves of somebody seated, of which no script says when; set by the effect `fidgeting`.
+struct FidgetSpec {
+  double rate_per_s = 0.0;  ///< of moves, a Poisson process
+  double tilt_deg = 0.0;    ///< the trunk moves to within so much of its scripted tilt
+  double turn_deg = 0.0;    ///< the head turns to within so much of straight ahead
+};
+
+/// Whether a run lasts until the person has carried out all actions.
+enum class PersonRole { subject, bystander };
+
+// Actions, carried out one after the other. Names are resolved against the scene when a Model is compiled.
+namespace action {
+struct Wait {
+  double duration_s = 0.0;
+};
+/// Stands on the floor from now on, without having entered.
+struct Appear {
+  Vec2 point{0.0};
+  double heading_deg = 0.0;  ///< 0 facing -Z, positive turning left
+};
+/// Appears outside the entrance and walks to just inside it, or straight on if the next action leads elsewhere.
+struct Enter {
+  std::string entrance;
+};
+/// Walks to each of the given floor points in turn.
+struct Walk {
+  std::vector<Vec2> points;
+};
+/// Walks to the seat, turns and sits down.
+struct Sit {
+  std::string seat;
+};
+/// Desk work while seated: both forearms slide on the table in opposite phase, the spine changes its tilt.
+struct Work {
+  double duration_s = 180.0;
+  double arm_amplitude_m = 0.1;  ///< paper: 0.1 sin(2 pi t / 3)
+  double arm_period_s = 3.0;
+  std::vector<double> tilt_choices_deg{-15.0, 0.0, 15.0};  ///< positive forward
+  double tilt_every_s = 30.0;
+};
+/// Rises from the seat and stays standing behind it.
+struct Rise {};
+/// Walks out through the entrance (rising first if seated) and disappears.
+struct Leave {
+  std::string entrance;
+};
+/// Stands on the spot and turns to face a heading.
+struct Turn {
+  double heading_deg = 0.0;
+};
+}  // namespace action
+
+using Action = std::variant<action::Wait, action::Appear, action::Enter, action::Walk, action::Sit, action::Work,
+                            action::Rise, action::Leave, action::Turn>;
+
+struct ScriptedAction {
+  Action what;
+  std::optional<double> at_s;  ///< starts then: interrupts what goes on, or waits if that is already done
+  std::string phase;           ///< label of rows while this action runs; empty: what the body is doing
+  Where where;                 ///< for messages
+};
+
+/// Meshes by the name of the body part (schema/body_part_names.hpp) that they stand for, in that part's frame.
+using BodyMeshes = std::map<std::string, MeshSolid, std::less<>>;
+
+/// How warm a person's surface is, for the physical response.
+struct WarmthSpec {
+  double skin_c = 33.5;  ///< 33.5 to 36.9
+  /// Insulation of what covers the parts that aren't bare, clo: 0.5 light summer, 1 a suit (`assumed`; 0 to 2 tried).
+  double clothing_clo = 1.0;
+  /// Parts that show skin (`assumed`; the head alone tried as well).
+  std::vector<std::string> bare{"head", "left_forearm", "right_forearm"};
+  std::map<std::string, double> parts_c;  ///< surface temperatures that are known, by part
+};
+
+/// A person; lengths follow from stature by the fractions of Drillis & Contini (1966).
+struct PersonSpec {
+  std::string id;
+  double stature_m = 1.86;
+  double mass_kg = 80.0;
+  double walking_speed_m_s = 1.0;
+  SeatScatterSpec seat_scatter;
+  double seat_shift_m = 0.0;  ///< sits so far forward of where seats are drawn; set by the effect `seat_shift`
+  FidgetSpec fidgeting;
+  PersonRole role = PersonRole::subject;
+  std::string body_mesh_file;  ///< glTF, or empty; relative to the script
+  BodyMeshes body_meshes;      ///< what was read from it: parts without a mesh stay primitive solids
+  WarmthSpec warmth;
+  std::vector<ScriptedAction> actions;
+};
+
+/// One choreography; a study runs every trial once per replicate.
+struct TrialSpec {
+  std::string id;                  ///< as the output names it, "S1"
+  std::vector<PersonSpec> people;  ///< the first one's actions name the rows' phase
+};
+
+struct ScriptSpec {
+  std::string name;
+  std::uint64_t seed = 1;
+  int replicates = 1;
+  SensingSpec sensing;
+  SummarySpec summary;
+  std::vector<TrialSpec> trials;
+  std::vector<EffectSpec> effects;  ///< what the plain model leaves out; applied when a Model is compiled
+  std::vector<Issue> warnings;
+  std::string directory;           ///< of the script file, for relative references
+  std::vector<std::string> files;  ///< all that was read: script, body meshes and their buffers
+};
+
+/// What nobody knows exactly about a real room and its people: drawn anew for every simulated dataset of a
+/// reconciliation, never fitted.
+/// Half-widths of uniform distributions round the value that scene or script gives. Shared by a whole dataset, since it
+/// is one real room with one real person: sensors and bodies are drawn once, seats once each.
+struct NuisanceSpec {
+  double seat_position_m = 0.04;  ///< of each horizontal coordinate of a seat; assumed (tried 0-0.08)
+  double sensor_yaw_deg = 1.5;    ///< of each sensor; assumed (tried 0-3)
+  double sensor_tilt_deg = 1.0;   ///< assumed (tried 0-2)
+  double body_size = 0.03;        ///< of stature, relative; mass follows with its cube; assumed (tried 0-0.06)
+  double arm_amplitude = 0.10;    ///< of desk work, relative; assumed (tried 0-0.2)
+  bool operator==(const NuisanceSpec&) const = default;
+};
+
+}  // namespace pirsim

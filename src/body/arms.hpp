@@ -1,0 +1,33 @@
+// What arms do: swing along with the legs, lie on the thighs, work on a table.
+#pragma once
+
+#include "body/humanoid.hpp"
+#include "body/skeleton.hpp"
+
+namespace pirsim::body {
+
+/// Arm and spine motion of a seated person (Stefansson et al. 2021, section 3.1).
+struct DeskWork {
+  double arm_amplitude_m = 0.1;
+  double arm_period_s = 3.0;
+  bool operator==(const DeskWork&) const = default;
+};
+
+/// Hanging beside the body; each elbow is drawn forward or back after the opposite foot. feet_ahead_m: of the hips,
+/// left and right.
+[[nodiscard]] std::array<ArmPose, 2> hanging_arms(const Measures& measures,
+                                                  const std::array<double, 2>& feet_ahead_m) noexcept;
+
+/// thigh_angle: from the vertical, radians.
+[[nodiscard]] std::array<ArmPose, 2> arms_on_thighs(const Humanoid& humanoid, double spine_tilt,
+                                                    double thigh_angle) noexcept;
+
+/// Forearms on a plane, the left hand hand_offset_m further ahead than its base place and the right one as much less.
+/// table_above_hips_m: the plane that the forearms touch.
+[[nodiscard]] std::array<ArmPose, 2> arms_on_table(const Humanoid& humanoid, double spine_tilt,
+                                                   double table_above_hips_m, double hand_offset_m) noexcept;
+
+/// From thighs (0) to table (1): hands are lifted on the way, so that they pass over the table's edge.
+[[nodiscard]] ArmPose reach_over(const ArmPose& on_thigh, const ArmPose& on_table, double progress) noexcept;
+
+}  // namespace pirsim::body

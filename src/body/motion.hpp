@@ -1,0 +1,142 @@
+// How one person moves: the state machine of standing, walking, turning, sitting down, sitting and rising.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "body/arms.hpp"
+#include "body/body_part.hpp"
+#include "body/foot_plan.hpp"
+#include "body/humanoid.hpp"
+#include "body/min_jerk.hpp"
+#include "body/route.hpp"
+#include "body/seating.hpp"
+#include "body/skeleton.hpp"
+#include "pirsim/geometry.hpp"
+
+namespace pirsim::body {
+
+enum class Stage { standing, walking, turning, sitting_down, seated, rising };
+[[nodiscard]] std::string_view name(Stage stage) noexcept;
+
+/// What a person's posture depends on beside their measures. Equal outlines give equal postures, bit for bit, and a
+/// choreography repeats its outlines; they cost a tenth of a posture. Doubles only, so that bytes can be compared.
+struct Outline {
+  Placement pelvis;
+  double hip_height_m = 0.0;  ///< y in the world, as all heights here
+  Feet feet{};
+  double floor_height_m = 0.0;
+  double spine_tilt = 0.0;
+  double fall = 0.0;            ///< 0 standing, 1 at the seat's height
+  double reach = 0.0;           ///< of the arms: 0 on the thighs, 1 on the table
+  double thigh_angle = 0.0;     ///< when seated; 0 while fall is 0
+  double table_height_m = 0.0;  ///< what the forearms rest on; 0 while reach is 0, as the next
+  double hand_offset_m = 0.0;   ///< of the left hand ahead of its base place
+  double head_turn = 0.0;       ///< to the left
+  bool operator==(const Outline&) const = default;
+};
+[[nodiscard]] Posture posture_of(const Humanoid& humanoid, const Outline& outline) noexcept;
+
+/// A value: copying it copies the whole state of the person's body. Commands may be given at any time; every part
+/// stays continuous in position whatever the order of commands, and joint speeds stay bounded.
+class Motion {
+ public:
+  /// Standing still, feet together. floor_height_m: y of the floor.
+  Motion(const Humanoid& humanoid, const Vec2& position, double heading, double floor_height_m, double tick_s);
+
+  // Commands. A command that needs another stage first (walk while seated) throws std::logic_error: the caller
+  // sequences them; stop() and rise() lead back to standing from anywhere.
+  /// From standing; the route starts here. Turns first where it leads off by more than 20 degrees, and at pivots.
+  void walk(const Route& route);
+  void turn_to(double heading);  ///< from standing, in place, with small steps
+  /// From walking or turning: comes to stand within two steps. Who waits in mid-stride (limit_speed(0)) brings the
+  /// feet together on the spot, which counts as turning.
+  void stop();
+  void sit_down(const SeatPlace& seat);  ///< from standing, facing as the seat does; also reverses rising from it
+  void rise();                           ///< from seated or sitting_down: back to where sitting down began
+  void work(const DeskWork& work);       ///< from seated: forearms to the table, then oscillating
+  void rest();                           ///< ends desk work: arms and spine come to rest
+  void tilt_spine(double radians);       ///< target of the spine's tilt, positive forward; only while seated
+  // Beside what else spine and head do, while seated; both end with rising.
+  void sway(double radians);       ///< target of a further tilt of the spine, positive forward
+  void turn_head(double radians);  ///< target, positive to the left
+  /// Upper bound of the walking speed from now on (m/s); 0 lets a walker wait on the spot.
+  void limit_speed(double metres_per_second);
+
+  void advance();  ///< one tick
+
+  [[nodiscard]] Stage stage() const noexcept;
+  /// Nothing of the last command is left to do (desk work and sitting go on while settled).
+  [[nodiscard]] bool settled() const noexcept;
+  [[nodiscard]] Vec2 position() const noexcept;  ///< of the pelvis over the floor
+  [[nodiscard]] double heading() const noexcept;
+  [[nodiscard]] double speed_m_s() const noexcept;
+  [[nodiscard]] Outline outline() const noexcept;
+  [[nodiscard]] Posture posture() const noexcept { return posture_of(humanoid_, outline()); }
+  bool operator==(const Motion&) const = default;
+
+ private:
+  [[nodiscard]] bool on_track() const noexcept { return stage_ == Stage::walking || stage_ == Stage::turning; }
+  [[nodiscard]] bool on_seat() const noexcept { return stage_ != Stage::standing && !on_track(); }
+  [[nodiscard]] int ticks(double seconds) const noexcept;
+  [[nodiscard]] Placement pelvis() const noexcept;
+  [[nodiscard]] Feet feet() const noexcept;
+  [[nodiscard]] double hip_height_m(const Placement& pelvis, const Feet& feet) const noexcept;
+  [[nodiscard]] double spine_tilt() const noexcept;
+  [[nodiscard]] double hand_offset_m() const noexcept;
+  void begin_track(Stage stage, const Track& track, const StepStyle& style);
+  void begin_turn(double angle);
+  void walk_from(const Route& route, double from_s);
+  void advance_on_track();
+  void advance_on_seat() noexcept;
+  void bring_feet_together();
+  void come_to_stand(const Placement& place, const Feet& feet) noexcept;
+  void update_stance() noexcept;
+
+  Humanoid humanoid_;
+  double floor_height_m_ = 0.0;
+  double tick_s_ = 0.02;
+  Stage stage_ = Stage::standing;
+
+  // Standing; also where sitting down began.
+  Placement stand_;
+  Feet stand_feet_{};
+
+  /// Where pelvis and feet are: follows from all that is below, kept because it changes rarely while seated.
+  struct Stance {
+    Placement pelvis;
+    Feet feet{};
+    double hip_height_m = 0.0;  ///< above the floor
+    bool operator==(const Stance&) const = default;
+  };
+  Stance stance_;
+
+  // Walking and turning; distances in metres or radians.
+  Track track_;
+  FootPlan steps_;
+  double distance_ = 0.0;
+  double track_speed_ = 0.0;
+  double hips_lowered_m_ = 0.0;  ///< below standing at the start of a turn, fading
+  double speed_limit_m_s_ = std::numeric_limits<double>::infinity();
+  /// What is left to walk after the present track: of a route with sharp turns.
+  struct Remainder {
+    Route route;
+    double from_s = 0.0;
+    bool operator==(const Remainder&) const = default;
+  };
+  std::optional<Remainder> remainder_;
+
+  // Sitting.
+  Seating seating_;
+  MinJerk fall_;  ///< 0 standing, 1 at the seat's height
+  MinJerk slide_m_;
+  MinJerk tilt_;  ///< of the spine, beyond what falling and rising need
+  MinJerk sway_, head_turn_;
+  MinJerk reach_;  ///< of the arms: 0 on the thighs, 1 on the table
+  DeskWork work_;
+  std::int64_t work_tick_ = 0;
+  MinJerk hand_offset_left_over_m_;  ///< from desk work that was replaced by another, fading
+};
+
+}  // namespace pirsim::body

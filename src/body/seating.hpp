@@ -1,0 +1,58 @@
+// The way from standing onto a seat: a controlled fall about the knees, then sliding with the chair.
+#pragma once
+
+#include <optional>
+
+#include "body/foot_plan.hpp"
+#include "body/humanoid.hpp"
+#include "pirsim/geometry.hpp"
+
+namespace pirsim::body {
+
+/// A seat as the body needs it.
+struct SeatPlace {
+  Frame world_from_seat;                 ///< pelvis rests at the origin, facing -Z
+  double floor_height_m = 0.0;           ///< y of the floor under the feet
+  std::optional<double> table_height_m;  ///< y of what the forearms rest on; none: hands on the thighs
+  bool operator==(const SeatPlace&) const = default;
+};
+
+/// Height of the hip joints above the floor of a person who stands upright; a little below 0.530 H, since knees that
+/// are locked could not begin to bend smoothly.
+[[nodiscard]] double standing_hip_height_m(const Measures& measures) noexcept;
+
+/// Pelvis and feet by two measures of progress: `fall` from 0 (standing) to 1 (at the seat's height) and then
+/// `slide_m` from 0 to slide_length_m (at the seat).
+class Seating {
+ public:
+  Seating() = default;
+  /// Throws Error(infeasible) if the seat's height can't be sat on, std::logic_error if the person stands elsewhere
+  /// than before or behind the seat on its axis, or faces another way.
+  Seating(const Humanoid& humanoid, const SeatPlace& seat, const Placement& standing, const Feet& feet);
+
+  [[nodiscard]] const SeatPlace& seat() const noexcept { return seat_; }
+  [[nodiscard]] double slide_length_m() const noexcept { return shuffling_.length(); }
+  [[nodiscard]] Placement pelvis(double fall, double slide_m) const noexcept;
+  [[nodiscard]] double hip_height_m(double fall) const noexcept;  ///< above the floor
+  [[nodiscard]] Feet feet(double slide_m) const noexcept { return shuffling_.feet(sliding_, slide_m); }
+  [[nodiscard]] double thigh_angle(double fall) const noexcept;  ///< radians from the vertical
+  bool operator==(const Seating&) const = default;
+
+ private:
+  SeatPlace seat_;
+  Placement from_;    ///< where the person stands
+  Placement before_;  ///< the same, put right: on the seat's axis and facing as it does
+  double thigh_m_ = 0.0;
+  double knee_ahead_m_ = 0.0;  ///< of the ankle
+  double knee_height_m_ = 0.0;
+  double standing_angle_ = 0.0;
+  double seated_angle_ = 0.0;
+  Track sliding_;
+  FootPlan shuffling_;
+};
+
+/// Where to stand before sitting down there: how far before the seat's pelvis point (along the facing direction) a
+/// person stands who falls back into it without moving the chair.
+[[nodiscard]] double fall_back_m(const Humanoid& humanoid, const SeatPlace& seat) noexcept;
+
+}  // namespace pirsim::body

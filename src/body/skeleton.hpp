@@ -1,0 +1,75 @@
+// The joint tree: from a few quantities that decide a posture to the thirteen parts, and back to joint angles.
+#pragma once
+
+#include <array>
+
+#include "body/body_part.hpp"
+#include "body/humanoid.hpp"
+
+namespace pirsim::body {
+
+/// Shoulder (ball) and elbow (hinge). The upper arm's frame has its origin in the shoulder and its Y towards it from
+/// the elbow; the elbow bends about X, positive forward.
+struct ArmPose {
+  Quat torso_from_upper_arm{1.0, 0.0, 0.0, 0.0};
+  double elbow_flexion = 0.0;  ///< radians
+};
+
+/// Arrays are left, right.
+struct Pose {
+  Frame world_from_hips;                  ///< upright; origin midway between the hip joints
+  double spine_tilt = 0.0;                ///< radians about the hips' axis, positive forward
+  double head_turn = 0.0;                 ///< radians about the neck, positive to the left
+  std::array<Frame, 2> world_from_ankle;  ///< origin in the ankle joint, facing as the foot does
+  std::array<ArmPose, 2> arms;
+};
+
+/// Forward kinematics for spine, head and arms, two-bone inverse kinematics for the legs (knees forward).
+[[nodiscard]] Posture posture_of(const Humanoid& humanoid, const Pose& pose) noexcept;
+
+/// Frame of the torso with its origin midway between the hips.
+[[nodiscard]] Frame world_from_torso(const Pose& pose) noexcept;
+/// The shoulder joint in that frame.
+[[nodiscard]] Vec3 shoulder(const Measures& measures, std::size_t side) noexcept;
+/// The arm whose elbow and hand are at these points of the torso's frame; bone lengths win over the hand's place.
+[[nodiscard]] ArmPose arm_through(const Vec3& shoulder, const Vec3& elbow, const Vec3& hand) noexcept;
+[[nodiscard]] ArmPose blend(const ArmPose& a, const ArmPose& b, double weight_of_b) noexcept;
+
+/// Twelve joints below the root, which is the pelvis.
+enum class Joint : std::size_t {
+  spine,
+  neck,
+  left_shoulder,
+  right_shoulder,
+  left_elbow,
+  right_elbow,
+  left_hip,
+  right_hip,
+  left_knee,
+  right_knee,
+  left_ankle,
+  right_ankle,
+};
+inline constexpr std::size_t n_joints = 12;
+
+/// Radians. Child relative to parent: flexion, then abduction (away from the middle), then twist about the child's
+/// long axis (inwards).
+struct JointAngles {
+  double flexion = 0.0;
+  double abduction = 0.0;
+  double twist = 0.0;
+};
+struct JointLimits {
+  JointAngles lower;
+  JointAngles upper;
+};
+[[nodiscard]] const JointLimits& limits(Joint joint) noexcept;
+[[nodiscard]] std::array<JointAngles, n_joints> joint_angles(const Posture& posture) noexcept;
+/// The joint's place in the world as its parent has it, and as its child has it: the same point in a sound posture.
+struct JointPlaces {
+  Vec3 by_parent{0.0};
+  Vec3 by_child{0.0};
+};
+[[nodiscard]] JointPlaces joint_places(const Humanoid& humanoid, const Posture& posture, Joint joint) noexcept;
+
+}  // namespace pirsim::body

@@ -1,0 +1,145 @@
+// Charts as plain data: report pages draw them with Vega, gnuplot programs as pictures.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/tally.hpp"
+#include "pirsim/geometry.hpp"
+
+namespace pirsim::io {
+
+/// Squares of a floor seen from above, coloured by a value.
+struct MapChart {
+  struct Marker {
+    std::string label;
+    Vec2 point{0.0};       ///< (x, z), metres
+    double heading = 0.0;  ///< radians, 0 facing -Z (up the page), positive turning left
+  };
+  std::string title, note;
+  std::string label;  ///< of the colour bar: "seconds with motion"
+  std::string unit;   ///< after a value: "s of 60"
+  Vec2 lower{0.0};    ///< corner of the first square, (x, z)
+  double spacing_m = 1.0;
+  int columns = 0, rows = 0;
+  std::vector<std::optional<double>> values;  ///< (rows x columns), none off the floor
+  double max = 1.0;                           ///< of the colour bar
+  std::vector<std::vector<Vec2>> outline;     ///< closed polygons, drawn solid: walls
+  std::vector<std::vector<Vec2>> dashed;      ///< closed polygons, drawn dashed: what was taken out
+  std::vector<Marker> markers;                ///< sensors
+};
+
+/// How often a count came out, over the runs, and the measured one as a line.
+struct HistogramChart {
+  std::string title, note;
+  std::string label;  ///< of the horizontal axis
+  std::string unit;
+  Tally counts;  ///< of one run or more
+  std::optional<int> real;
+};
+
+/// In which windows each of several sensors reported motion.
+struct SeriesChart {
+  struct Row {
+    std::string name;
+    std::vector<double> times_s;  ///< ends of the windows with motion
+  };
+  struct Phase {
+    std::string name;
+    double from_s = 0.0, to_s = 0.0;
+  };
+  std::string title, note;
+  double window_s = 1.0;
+  double end_s = 0.0;
+  std::vector<Row> rows;
+  std::vector<Phase> phases;  ///< shaded
+};
+
+/// Rows by columns of numbers: coloured squares with the numbers in them.
+struct GridChart {
+  enum class Colours { from_zero, about_zero };
+  enum class Mark { none, framed };
+  struct Cell {
+    std::optional<double> value;  ///< none: an empty square
+    std::string text;             ///< in the square
+    std::string hint;             ///< when pointed at, below the names of row and column
+    Mark mark = Mark::none;
+  };
+  std::string title, note;
+  std::string label;  ///< of the colour bar
+  std::string row_label, column_label;
+  std::vector<std::string> rows, columns;
+  std::vector<Cell> cells;  ///< (n_rows x n_columns)
+  Colours colours = Colours::from_zero;
+  double max = 1.0;  ///< the colours reach from 0, or from -max, to max
+};
+
+/// Points beside one band that is the same for all of them, from -1 to 1.
+struct BandChart {
+  struct Point {
+    double position = 0.0;
+    std::string hint;
+    enum class Mark { inside, outside } mark = Mark::inside;
+  };
+  struct Row {
+    std::string name;
+    std::vector<Point> points;
+  };
+  std::string title, note;
+  std::string label;      ///< of the horizontal axis
+  std::string low, high;  ///< what points to the left and to the right of the band mean
+  double limit = 4.0;     ///< points further out are drawn here
+  std::vector<Row> rows;
+};
+
+/// Values as horizontal bars, with ranges.
+struct BarChart {
+  enum class Weight { plain, strong, faint };
+  struct Bar {
+    std::string name;
+    double value = 0.0;
+    std::string text;  ///< at its end
+    Weight weight = Weight::plain;
+    std::optional<double> low, high;  ///< a range, drawn as a line
+    std::string hint = {};
+  };
+  std::string title, note, label;
+  std::vector<Bar> bars;
+};
+
+/// How sure a number is: a few equally likely values as dots.
+struct DotsChart {
+  enum class Scale { linear, logarithmic };
+  std::string title, note, label;
+  std::vector<double> values;    ///< equally likely
+  double low = 0.0, high = 0.0;  ///< shaded range
+  double axis_low = 0.0, axis_high = 1.0;
+  std::optional<double> reference;  ///< a dashed line
+  std::string reference_label;
+  Scale scale = Scale::linear;
+};
+
+/// Lines through points with ranges.
+struct LineChart {
+  struct Point {
+    double x = 0.0, y = 0.0;
+    std::optional<double> low, high;
+    std::string hint = {};
+  };
+  struct Line {
+    std::string name;
+    std::vector<Point> points;
+  };
+  enum class Guide { none, diagonal };
+  std::string title, note, x_label, y_label;
+  std::vector<Line> lines;
+  double x_low = 0.0, x_high = 1.0, y_low = 0.0, y_high = 1.0;
+  std::vector<std::string> x_names;  ///< of x = 1, 2, ...; empty: numbers
+  Guide guide = Guide::none;
+};
+
+using Chart = std::variant<MapChart, HistogramChart, SeriesChart, GridChart, BandChart, BarChart, DotsChart, LineChart>;
+
+}  // namespace pirsim::io

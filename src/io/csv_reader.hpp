@@ -1,0 +1,50 @@
+// Tables from CSV files (RFC 4180), with the place of every field.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pirsim/error.hpp"
+#include "schema/measured_cell.hpp"
+
+namespace pirsim::io {
+
+/// A header and rows of as many fields. Quoted fields, doubled quotes, line ends inside quotes, CRLF and a byte order
+/// mark are understood; empty lines and lines that begin with '#' are skipped.
+class CsvTable {
+ public:
+  /// Throws Error: io (no file), input (content).
+  [[nodiscard]] static CsvTable read(const std::filesystem::path& path);
+  [[nodiscard]] static CsvTable parse(std::string_view text, const std::string& file);
+
+  [[nodiscard]] std::size_t n_rows() const noexcept { return rows_.size(); }
+  [[nodiscard]] std::vector<std::string> names() const;
+  [[nodiscard]] std::optional<std::size_t> column(std::string_view name) const;
+  /// A missing one is reported with the name that comes nearest.
+  [[nodiscard]] std::optional<std::size_t> required_column(std::string_view name, Diagnostics& faults) const;
+
+  [[nodiscard]] const std::string& text(std::size_t row, std::size_t column) const;
+  [[nodiscard]] Where where(std::size_t row, std::size_t column) const;
+  // None if the field is empty, and after a fault, which is reported.
+  [[nodiscard]] std::optional<int> integer(std::size_t row, std::size_t column, Diagnostics& faults) const;
+  [[nodiscard]] std::optional<double> number(std::size_t row, std::size_t column, Diagnostics& faults) const;
+
+ private:
+  struct Field {
+    std::string text;
+    int line = 0;
+    int column = 0;
+  };
+  friend class CsvParser;
+  std::string file_;
+  std::vector<Field> header_;
+  std::vector<std::vector<Field>> rows_;
+};
+
+/// Columns trial (or seat), sensor, real and, if they are there, min_sim, max_sim, mean_sim; others are ignored.
+[[nodiscard]] std::vector<MeasuredCell> read_measured_cells(const std::filesystem::path& path);
+
+}  // namespace pirsim::io

@@ -1,0 +1,48 @@
+// A run as an animated glTF that any viewer plays and other programs can compute with (docs/formats/gltf_export.md).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pirsim/geometry.hpp"
+#include "pirsim/shapes.hpp"
+
+namespace pirsim::io {
+
+/// A moving solid, one node named "<person>/<part>".
+struct ExportedPart {
+  std::string person;
+  std::string part;
+  Shape shape;
+  std::vector<Frame> world_from_part;  ///< (n_keys)
+};
+
+struct ExportedPerson {
+  std::string id;
+  std::vector<ExportedPart> parts;
+  std::vector<std::uint8_t> present;  ///< (n_keys) 0 from this key to the next: not in the scene, drawn at scale 0
+};
+
+/// What a sensor looks along, as lines.
+struct ExportedBeams {
+  std::string sensor;
+  std::vector<std::pair<Vec3, Vec3>> segments;  ///< world metres
+};
+
+struct ExportedRun {
+  std::string title;
+  std::vector<TriMesh> meshes;
+  std::vector<ExportedPerson> people;
+  std::vector<ExportedBeams> beams;
+  std::vector<double> key_times_s;  ///< (n_keys) ascending from 0 or later; at least one if there are people
+};
+
+/// A binary .glb, or by any other extension a .gltf with its buffer embedded. Positions and poses are stored in
+/// single precision. Error(usage) for keys, poses and presences that don't match or aren't finite, Error(io) if the
+/// file can't be written.
+void write_gltf(const std::filesystem::path& file, const ExportedRun& run);
+
+}  // namespace pirsim::io

@@ -1,0 +1,59 @@
+// The side-car of a data file: what made it, which part of the study it holds, and the hash by which it is known
+// (docs/formats/manifest.md).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "schema/shard.hpp"
+
+namespace pirsim::io {
+
+struct HashedFile {
+  std::string name;  ///< without its folder
+  std::string sha256;
+  bool operator==(const HashedFile&) const = default;
+};
+
+/// All that decides the bytes of a study's rows. Equal provenance and equal runs: equal rows.
+struct Provenance {
+  std::string version;
+  std::string git_revision;
+  std::string compiler;
+  std::string embree;              ///< version and instruction set
+  std::vector<HashedFile> inputs;  ///< script, scene, and the files that they name, in the order they were read
+  std::string resolved_script;     ///< YAML, after overrides
+  std::uint64_t seed = 0;
+  std::uint32_t study_runs = 0;  ///< of the whole study
+};
+
+struct Manifest {
+  Provenance provenance;
+  std::string tracer;  ///< changes no bit of the rows
+  std::optional<Shard> shard;
+  RunRange runs;
+  std::uint64_t rows = 0;
+  std::uint64_t bytes = 0;  ///< of the rows with their header, before compression
+  std::string sha256;       ///< of these bytes
+};
+
+/// What differs, in words: "git revision (1a2b3c, not 4d5e6f)". Empty if nothing does.
+[[nodiscard]] std::vector<std::string> differences(const Provenance& one, const Provenance& other);
+/// The files with their hashes. Throws Error(io).
+[[nodiscard]] std::vector<HashedFile> hashed(const std::vector<std::string>& files);
+
+[[nodiscard]] std::string to_json(const Manifest& manifest, int indent);
+/// Throws Error(input); `name` stands in messages.
+[[nodiscard]] Manifest manifest_from_json(const std::string& text, const std::string& name);
+
+/// `<data file>.json`
+[[nodiscard]] std::filesystem::path manifest_path(const std::filesystem::path& data_file);
+/// Written last, so that a data file with a manifest is complete. Throws Error(io).
+void write_manifest(const std::filesystem::path& file, const Manifest& manifest);
+/// Throws Error: io, input.
+[[nodiscard]] Manifest read_manifest(const std::filesystem::path& file);
+
+}  // namespace pirsim::io

@@ -1,0 +1,48 @@
+// A file of rows that survives whatever ends the process: what was written can be gone on with at the last whole run.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "io/manifest.hpp"
+
+namespace pirsim::io {
+
+/// While runs come in, the rows stand in `<file>.partial`, without compression, and `<file>.journal` says after each
+/// run how far they reach and what their hash is (both without .gz or .zst). commit() puts the file in its place and
+/// then writes its manifest; until then every way to die leaves a state that RowFile::Start::resume goes on from.
+/// One process at a time works on a file; a second one is refused.
+class RowFile {
+ public:
+  enum class Start { anew, resume };
+
+  /// `made`: what the manifest will say, without rows, bytes and hash. `header`: the line of column names. To resume
+  /// is refused by Error(input) if the file, finished or not, was made from anything else. Throws Error(io).
+  RowFile(std::filesystem::path file, Manifest made, const std::string& header, Start start);
+  ~RowFile();
+  RowFile(const RowFile&) = delete;
+  RowFile& operator=(const RowFile&) = delete;
+
+  /// True if file and manifest are there, fit, and the hash is right: nothing is left to do.
+  [[nodiscard]] bool finished() const noexcept;
+  [[nodiscard]] std::uint32_t next_run() const noexcept;  ///< the first whose rows are missing
+  [[nodiscard]] std::uint64_t rows() const noexcept;
+  /// Of the run next_run(), whole lines.
+  void add_run(std::string_view lines, std::uint64_t n_rows);
+  /// After the last run.
+  void commit();
+  /// Removes what was written: there is no sense in going on.
+  void discard() noexcept;
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
+
+/// Whether the data file is what its manifest says; if not, why. Reads it all, in bounded memory.
+[[nodiscard]] std::string fault_of_data(const std::filesystem::path& file, const Manifest& manifest);
+
+}  // namespace pirsim::io

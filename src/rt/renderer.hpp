@@ -1,0 +1,58 @@
+// Pictures of a room, people and beams, through the room's own ray scene.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pirsim/shapes.hpp"
+#include "rt/room.hpp"
+
+namespace pirsim::rt {
+
+/// Linear-light red, green, blue in [0, 1].
+using Colour = std::array<float, 3>;
+
+/// +Y is up in the picture.
+struct Camera {
+  Vec3 position{0.0};
+  Vec3 target{0.0, 0.0, -1.0};
+  double vertical_fov_rad = 0.8;
+};
+
+/// A thin glowing line, hidden by what is in front of it.
+struct Beam {
+  Vec3 from{0.0};
+  Vec3 to{0.0};
+  Colour colour{1.0F, 1.0F, 1.0F};
+};
+
+struct RenderedSolid {
+  PosedShape shape;
+  Colour colour{0.8F, 0.8F, 0.8F};
+};
+
+enum class Surface {
+  opaque,
+  see_through,  ///< cut away where it stands between the camera and its target: the front walls of a doll's house
+  hidden,       ///< not drawn and throws no shadow
+};
+
+/// 8-bit sRGB, (height x width x 3), top row first.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgb;
+};
+
+/// sRGB of a pixel in which there is nothing.
+inline constexpr std::array<std::uint8_t, 3> background_rgb{244, 246, 249};
+
+/// mesh_surfaces and mesh_colours: (n_meshes of the room). The same arguments give the same bytes, whatever the
+/// number of threads. Throws Error(usage) for arrays of another length or a picture without pixels.
+[[nodiscard]] Image render(const Room& room, std::span<const Surface> mesh_surfaces,
+                           std::span<const Colour> mesh_colours, std::span<const RenderedSolid> solids,
+                           std::span<const Beam> beams, const Camera& camera, int width, int height);
+
+}  // namespace pirsim::rt

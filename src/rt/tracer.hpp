@@ -1,0 +1,54 @@
+// Which zones see a person at this tick, and what does each ray meet first? Several tracers answer, all with the same
+// bits.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "pirsim/rays.hpp"
+#include "rt/room.hpp"
+
+namespace pirsim::rt {
+
+enum class TracerKind {
+  reference,  ///< the plain way: whole scene rebuilt, closest hit of every ray at its full rated range
+  embree,     ///< rays cut once at the room, one instance moved per body part, occlusion queries
+  direct,     ///< rays cut once at the room, cones around rays, then every solid against many rays at a time
+};
+[[nodiscard]] std::string_view name(TracerKind kind) noexcept;
+
+/// A ray of the bundle and the solid that it meets before all others and the room.
+struct Meeting {
+  std::uint32_t ray = 0;
+  std::uint32_t solid = 0;  ///< index; the lower one where a ray enters two at once
+  bool operator==(const Meeting&) const = default;
+};
+
+/// Scratch memory of one thread; not shared.
+class Tracer {
+ public:
+  virtual ~Tracer() = default;
+  /// solids: everything of every person that is in the scene now (surfaces of meshes outlive the tracer); zones:
+  /// (n_zones) overwritten.
+  virtual void trace(std::span<const PosedShape> solids, std::span<std::uint8_t> zones) = 0;
+  /// Adds the zones that see one person of several to `zones`; what is kept from tick to tick is kept by `person`.
+  virtual void add(std::size_t person, std::span<const PosedShape> solids, ZoneSet& zones);
+  /// One entry a ray that meets a solid within its range, in any order; `met` is overwritten.
+  virtual void find_first(std::span<const PosedShape> solids, std::vector<Meeting>& met) = 0;
+};
+
+/// What a tracer works on; all of it outlives the tracer.
+struct TracerSetup {
+  const Room* room = nullptr;
+  const RayBundle* rated = nullptr;    ///< ranges as rated
+  const RayBundle* clipped = nullptr;  ///< the same rays cut at the room
+};
+/// What --tracer auto stands for.
+inline constexpr TracerKind fastest_tracer = TracerKind::direct;
+/// "avx512f", "avx2" or "baseline": what the direct tracer uses on this processor. Changes no bit.
+[[nodiscard]] std::string_view direct_instruction_set() noexcept;
+[[nodiscard]] std::unique_ptr<Tracer> make_tracer(TracerKind kind, const TracerSetup& setup);
+
+}  // namespace pirsim::rt

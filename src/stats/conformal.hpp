@@ -1,0 +1,74 @@
+// Which classes can't be ruled out: p-values that hold whatever the classifier, from rows kept for calibration.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "stats/class_shapes.hpp"
+#include "stats/matrix.hpp"
+#include "stats/pooled_classifier.hpp"
+#include "stats/strangest_measure.hpp"
+
+namespace pirsim::stats {
+
+struct ConformalSettings {
+  PooledClassifierSettings pooled = {};
+  ClassShapesSettings shapes = {};
+  /// Columns whose shapes are looked at together, each block by itself: {} or all columns as one. A block of sums over
+  /// many cells sees a small change that all cells share, which drowns among the cells themselves.
+  std::vector<std::vector<std::size_t>> blocks = {};
+};
+
+/// What is said of one row; each list is (n_classes).
+struct Classification {
+  std::vector<double> probabilities;  ///< calibrated, classes equally likely beforehand
+  std::vector<double> p_relative;     ///< of the margin of the best other class over this one
+  std::vector<double> p_absolute;     ///< of the row's strangeness for the class: can it make this row at all
+  std::vector<double> p;              ///< min(1, 2 min(p_relative, p_absolute)): both tests in one
+};
+
+/// A pooled classifier and the shapes of the classes. For a row that class k made, P(p[k] <= a) <= a for each k, up to
+/// the three pool weights being taken from the calibration rows.
+class ConformalClassifier {
+ public:
+  ConformalClassifier() = default;
+  /// features: (n_rows x n_columns), finite; labels: (n_rows) in [0, n_classes); each class ten times or more among the
+  /// fitting rows and once or more among the calibration rows. Rows that depend on each other must be on one side of
+  /// the split. subclasses: of PooledClassifier::fit().
+  [[nodiscard]] static ConformalClassifier fit(const Matrix<float>& features, std::span<const int> labels,
+                                               int n_classes, const Split& split,
+                                               const ConformalSettings& settings = {},
+                                               std::span<const int> subclasses = {});
+  [[nodiscard]] Classification classify(std::span<const float> features) const;
+  /// One a row.
+  [[nodiscard]] std::vector<Classification> classify(const Matrix<float>& features, unsigned threads = 0) const;
+
+  /// The least p that class k can have: that of a row stranger than all of its calibration rows.
+  [[nodiscard]] double least_p(std::size_t k) const noexcept {
+    return 2.0 / static_cast<double>(margins_[k].size() + 1);
+  }
+
+  /// The classifier by itself, without the tests.
+  [[nodiscard]] const PooledClassifier& pooled() const noexcept { return pooled_; }
+  [[nodiscard]] const Matrix<double>& calibration_probabilities() const noexcept {
+    return pooled_.calibration_probabilities();
+  }
+  [[nodiscard]] int n_classes() const noexcept { return pooled_.n_classes(); }
+
+ private:
+  /// (n_blocks + 1) of the row for class k: by block the cube root of its squared distance from the class's shape,
+  /// which has a tail as the normal distribution whatever the number of columns [WilsonHilferty1931], and how unlikely
+  /// the class's layers make it.
+  [[nodiscard]] std::vector<double> measures(std::span<const float> features, std::span<const double> log_densities,
+                                             std::size_t k) const;
+  void calibrate(const Matrix<float>& features, std::span<const int> labels, unsigned threads);
+
+  PooledClassifier pooled_;
+  std::vector<std::vector<std::size_t>> blocks_;
+  std::vector<ClassShapes> shapes_;           ///< per block
+  std::vector<std::vector<double>> margins_;  ///< per class, of its calibration rows
+  std::vector<StrangestMeasure> strangest_;   ///< per class, of its calibration rows
+};
+
+}  // namespace pirsim::stats

@@ -1,0 +1,59 @@
+// Which class made a row: what three kinds of classifier say, as one calibrated probability.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "stats/calibration.hpp"
+#include "stats/extra_trees.hpp"
+#include "stats/mixture_discriminant.hpp"
+#include "stats/normal_layers.hpp"
+
+namespace pirsim::stats {
+
+/// Indices of rows: the first part for fitting, the second for calibration.
+struct Split {
+  std::vector<std::size_t> fitting, calibration;  ///< ascending
+};
+
+struct PooledClassifierSettings {
+  ExtraTreesSettings trees = {};     ///< grown on the features and the discriminant's coordinates. Ref: [Pudlo2016]
+  NormalLayersSettings layers = {};  ///< in the discriminant's coordinates
+  std::size_t coordinates = 60;      ///< at most, the first of the discriminant's; 26, 40 and 60 were tried
+  unsigned threads = 0;              ///< 0: all cores; never changes the result
+};
+
+/// Trees, a discriminant and layers of normal distributions in its coordinates, pooled and calibrated.
+class PooledClassifier {
+ public:
+  PooledClassifier() = default;
+  /// features: (n_rows x n_columns), finite; labels: (n_rows) in [0, n_classes); each class ten times or more among the
+  /// fitting rows and once or more among the calibration rows. Rows that depend on each other must be on one side of
+  /// the split. subclasses: (n_rows) in [0, n), of the fitting rows each at least once and within one class, anything
+  /// for the others; or empty: the classes themselves.
+  [[nodiscard]] static PooledClassifier fit(const Matrix<float>& features, std::span<const int> labels, int n_classes,
+                                            const Split& split, const PooledClassifierSettings& settings = {},
+                                            std::span<const int> subclasses = {});
+  /// (n_classes) calibrated, classes equally likely beforehand.
+  [[nodiscard]] std::vector<double> probabilities(std::span<const float> features) const;
+  /// (n_classes) of the layers: log density at the row's place, up to a number that all classes share.
+  [[nodiscard]] std::vector<double> log_densities(std::span<const float> features) const;
+
+  /// (n_calibration_rows x n_classes) calibrated, of the rows that were kept for calibration.
+  [[nodiscard]] const Matrix<double>& calibration_probabilities() const noexcept { return probabilities_; }
+  [[nodiscard]] const ExtraTrees& trees() const noexcept { return trees_; }
+  [[nodiscard]] int n_classes() const noexcept { return trees_.n_classes(); }
+
+ private:
+  /// (3 x n_classes) what each kind says of a row.
+  [[nodiscard]] std::vector<std::vector<double>> sources(std::span<const float> features) const;
+
+  MixtureDiscriminant mixture_;
+  std::size_t n_coordinates_ = 0;  ///< the first of the discriminant's
+  ExtraTrees trees_;
+  NormalLayers layers_;
+  LogPool pool_;  ///< weights of trees, discriminant, layers
+  Matrix<double> probabilities_;
+};
+
+}  // namespace pirsim::stats

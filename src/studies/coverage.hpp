@@ -1,0 +1,80 @@
+// Where does a sensor see? A target moves in every square of the floor, and each sensor's motion is counted.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pirsim/rays.hpp"
+#include "pirsim/scene.hpp"
+#include "pirsim/survey.hpp"
+#include "rt/room.hpp"
+#include "sim/analog_model.hpp"
+#include "studies/floor_grid.hpp"
+#include "studies/turning_target.hpp"
+
+namespace pirsim::studies {
+
+/// Windows with motion, in [0, n_windows].
+using MotionCount = std::uint16_t;
+
+/// A compiled coverage study: immutable, shared by threads. The crosses have stood at tick 0, so appearing isn't
+/// motion.
+class CoverageStudy {
+ public:
+  /// Takes the things of `spec.without` out of the scene. Throws Error(input) for a name that no mesh has.
+  CoverageStudy(SceneSpec scene, CoverageSpec spec);
+
+  [[nodiscard]] const SceneSpec& scene() const noexcept { return scene_; }  ///< without what was taken out
+  [[nodiscard]] const CoverageSpec& spec() const noexcept { return spec_; }
+  [[nodiscard]] const FloorGrid& grid() const noexcept { return grid_; }
+  [[nodiscard]] const TurningTarget& target() const noexcept { return target_; }
+  [[nodiscard]] const rt::Room& room() const noexcept { return *room_; }
+  [[nodiscard]] const RayBundle& rated_rays() const noexcept { return rated_; }
+  [[nodiscard]] const RayBundle& clipped_rays() const noexcept { return clipped_; }
+  /// The sensors that answer physically, or null if none does. Their noise is left out: the same square gives the same.
+  [[nodiscard]] const sim::AnalogModel* analog() const noexcept { return analog_.get(); }
+  [[nodiscard]] int n_windows() const noexcept { return n_windows_; }
+  [[nodiscard]] const std::vector<TriMesh>& taken_out() const noexcept { return taken_out_; }
+
+  /// (n_sensors) counts of the target at one point of the floor.
+  [[nodiscard]] std::vector<MotionCount> counts_at(const Vec2& point) const;
+  /// (n_columns x n_sensors) counts of a row of squares; zeros off the floor.
+  [[nodiscard]] std::vector<MotionCount> counts_of_row(std::size_t row) const;
+
+ private:
+  SceneSpec scene_;
+  CoverageSpec spec_;
+  std::vector<TriMesh> taken_out_;
+  FloorGrid grid_;
+  int n_windows_ = 0;
+  TurningTarget target_;
+  std::unique_ptr<rt::Room> room_;
+  RayBundle rated_, clipped_;
+  std::unique_ptr<sim::AnalogModel> analog_;
+};
+
+struct CoverageMap {
+  FloorGrid grid;
+  std::vector<std::string> sensors;
+  int n_windows = 0;
+  std::vector<MotionCount> counts;  ///< (n_rows x n_columns x n_sensors)
+
+  [[nodiscard]] MotionCount count(std::size_t column, std::size_t row, std::size_t sensor) const noexcept {
+    return counts[(row * grid.n_columns() + column) * sensors.size() + sensor];
+  }
+};
+
+/// A map without counts yet.
+[[nodiscard]] CoverageMap empty_map(const CoverageStudy& study);
+
+/// Computes the rows [first_row, n_rows) and hands each to `consume` in order, from one thread at a time.
+/// threads 0: all cores; changes no byte.
+void run_rows(const CoverageStudy& study, std::size_t first_row, unsigned threads,
+              const std::function<void(std::size_t row, const std::vector<MotionCount>& counts)>& consume);
+/// All rows, in memory.
+[[nodiscard]] CoverageMap run_coverage(const CoverageStudy& study, unsigned threads = 0);
+
+}  // namespace pirsim::studies

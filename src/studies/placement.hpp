@@ -1,0 +1,49 @@
+// Which set of sensors covers a room best, and could another one do better?
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pirsim/scene.hpp"
+#include "pirsim/survey.hpp"
+
+namespace pirsim::studies {
+
+/// How one set of sensors does. The target stands still at a square or seat as in a coverage study.
+struct PlacementScore {
+  SensorSetSpec set;
+  double seen_area_m2 = 0.0;  ///< by at least one sensor
+  double blind_fraction = 0.0;
+  double overlap = 0.0;                  ///< share of the seen area that two sensors or more see
+  std::vector<std::string> blind_seats;  ///< where no sensor sees the target
+};
+
+/// Throws Error(input) as CoverageStudy does. The scene has every model that the set names.
+[[nodiscard]] PlacementScore score(const SceneSpec& scene, const CoverageSpec& coverage, SensorSetSpec set,
+                                   unsigned threads = 0);
+
+/// Greatest seen area first; ties: fewer blind seats, then the order given.
+[[nodiscard]] std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores);
+
+struct PlacementSearch {
+  PlacementScore even;   ///< spaced evenly along the lines
+  PlacementScore found;  ///< never covers less than `even`
+  int evaluations = 0;
+};
+
+/// Looks for the sensors' places along the lines that cover most: NLopt's DIRECT-L over all of them, then SBPLX from
+/// the best. Both are deterministic. `set_done` is called after each set that was tried. Ref: [Gablonsky2001],
+/// [Rowan1990].
+[[nodiscard]] PlacementSearch search_placement(
+    const SceneSpec& scene, const CoverageSpec& coverage, const PlacementSearchSpec& search, unsigned threads = 0,
+    const std::function<void()>& set_done = [] {});
+
+/// Sensors at these shares, in [0, 1], of the lines' joint length.
+[[nodiscard]] SensorSetSpec sensors_along(const PlacementSearchSpec& search, const std::vector<double>& shares,
+                                          std::string id);
+
+[[nodiscard]] std::string to_text(const std::vector<PlacementScore>& scores);
+[[nodiscard]] std::string to_text(const PlacementSearch& search);
+
+}  // namespace pirsim::studies
