@@ -29,6 +29,7 @@ PUBLIC = {
     "geometry": "geom", "shapes": "geom", "rays": "geom",
     "sensor": "schema", "scene": "schema", "script": "schema", "survey": "schema", "sample": "schema",
     "effects": "effects",
+    "model": "sim", "state": "sim", "study": "sim", "recording": "sim",
     "csv": "io", "io": "io",
 }
 # header prefix of a third-party library -> the only layers that may include it

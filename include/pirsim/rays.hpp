@@ -61,4 +61,13 @@ class ZoneSet {
   std::vector<Word> words_;
 };
 
+/// How rays are traced; changes no bit of any result.
+enum class TracerKind {
+  reference,  ///< the plain way: whole scene rebuilt, closest hit of every ray at its full rated range
+  embree,     ///< rays cut once at the room, one instance moved per body part, occlusion queries
+  direct,     ///< rays cut once at the room, cones around rays, then every solid against many rays at a time
+};
+/// What --tracer auto stands for.
+inline constexpr TracerKind fastest_tracer = TracerKind::direct;
+
 }  // namespace pirsim

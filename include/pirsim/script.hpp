@@ -27,19 +27,6 @@ struct EffectSpec {
 enum class ChangePer { cluster, beam };  ///< whose change of activity is motion
 enum class RaysPerZone { one = 1, five = 5, nine = 9, sixteen = 16 };
 
-/// Rays go on mirrored where they meet a mesh; what they see there counts for their zone.
-struct ReflectionSpec {
-  std::string mesh;
-  double coefficient = 0.0;  ///< share of the power that is mirrored, 0-1
-};
-
-/// The pyroelectric pair: zones count with their sign, what their sum does is filtered and compared with a threshold.
-struct DualPolaritySpec {
-  double threshold = 1.0;     ///< in steps of one zone
-  double high_pass_hz = 0.3;  ///< corner frequencies, one pole each
-  double low_pass_hz = 7.0;
-};
-
 /// When in a window each sensor is asked whether it has triggered since it was last asked.
 enum class Reader {
   in_step,      ///< all at the window's end: a row tells its own window
@@ -56,10 +43,6 @@ struct SensingSpec {
   double ambient_c = 20.0;           ///< of surfaces and of the air, where the scene says nothing else
   /// Rays of a zone in the physical response (docs/physics/analog.md has the convergence).
   int analog_rays_per_zone = 34;
-  // Set by effects alone.
-  double edge_sigma_deg = 0.0;  ///< how soft the edges of zones are; 0: hard
-  std::vector<ReflectionSpec> reflections;
-  std::optional<DualPolaritySpec> dual_polarity;
 };
 
 /// Which cells a summary adds up, and what they are compared with.
@@ -73,16 +56,6 @@ struct SeatScatterSpec {
   double position_sd_m = 0.0;  ///< of each horizontal coordinate
   double heading_sd_deg = 0.0;
 };
-
-/// Small moves of somebody seated, of which no script says when; set by the effect `fidgeting`.
-struct FidgetSpec {
-  double rate_per_s = 0.0;  ///< of moves, a Poisson process
-  double tilt_deg = 0.0;    ///< the trunk moves to within so much of its scripted tilt
-  double turn_deg = 0.0;    ///< the head turns to within so much of straight ahead
-};
-
-/// Whether a run lasts until the person has carried out all actions.
-enum class PersonRole { subject, bystander };
 
 // Actions, carried out one after the other. Names are resolved against the scene when a Model is compiled.
 namespace action {
@@ -156,9 +129,6 @@ struct PersonSpec {
   double mass_kg = 80.0;
   double walking_speed_m_s = 1.0;
   SeatScatterSpec seat_scatter;
-  double seat_shift_m = 0.0;  ///< sits so far forward of where seats are drawn; set by the effect `seat_shift`
-  FidgetSpec fidgeting;
-  PersonRole role = PersonRole::subject;
   std::string body_mesh_file;  ///< glTF, or empty; relative to the script
   BodyMeshes body_meshes;      ///< what was read from it: parts without a mesh stay primitive solids
   WarmthSpec warmth;

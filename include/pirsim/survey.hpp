@@ -1,6 +1,7 @@
 // What coverage studies, walk tests and comparisons of placements are asked for, as plain data.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,8 @@ struct CoverageSpec {
   std::vector<std::string> without;  ///< things taken out of the room: meshes of this name, or of this first word
   std::vector<Where> without_where;  ///< (n of `without`) for messages
   XShapesSpec target;
+  std::uint64_t seed = 1;           ///< of what effects draw; every square draws by itself
+  std::vector<EffectSpec> effects;  ///< as in a script
 };
 
 // Sets of sensors to compare, and where a better set may be looked for, as plain data.
@@ -92,6 +95,8 @@ struct WalkTestSpec {
   double desk_height_m = 0.74;   ///< on which the forearms move; the desk itself hides nothing
   double arm_amplitude_m = 0.1;
   double arm_period_s = 3.0;
+  std::uint64_t seed = 1;           ///< of what effects draw; every try draws by itself
+  std::vector<EffectSpec> effects;  ///< as in a script
 };
 
 }  // namespace pirsim

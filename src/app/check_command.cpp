@@ -4,20 +4,21 @@
 #include "app/commands.hpp"
 #include "app/row_output.hpp"
 #include "app/session.hpp"
+#include "sim/compiled_study.hpp"
 #include "studies/sight.hpp"
 
 namespace pirsim::app {
 namespace {
 
 void print(std::ostream& out, const Model& model, const studies::SightReport& report) {
-  const SceneSpec& scene = model.scene();
+  const SceneSpec& scene = model.compiled().scene();
   const auto percent = [&](std::size_t places) {
     return report.places == 0 ? 0.0 : 100.0 * static_cast<double>(places) / static_cast<double>(report.places);
   };
   out << scene.name << ": " << scene.meshes.size() << " meshes, " << scene.sensors.size() << " sensors, "
       << scene.seats.size() << " seats, " << scene.entrances.size() << " entrances, floor " << std::fixed
       << std::setprecision(2) << scene.floor.area_m2() << " m2\n";
-  out << model.script().name << ": " << model.trials().size() << " trials x " << model.script().replicates
+  out << model.script().name << ": " << model.script().trials.size() << " trials x " << model.script().replicates
       << " replicates = " << model.n_runs() << " runs\n\n";
   out << "what each sensor sees of a person standing on one of " << report.places << " places (every "
       << report.spacing_m << " m), and seated at rest:\n";

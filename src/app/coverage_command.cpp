@@ -21,7 +21,9 @@ studies::CoverageStudy load_coverage(const Inputs& inputs) {
   CoverageSpec spec = io::read_coverage(inputs.script, inputs.overrides);
   SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
-  return {std::move(scene), std::move(spec)};
+  studies::CoverageStudy study(std::move(scene), std::move(spec));
+  tell(study.warnings(), inputs.verbosity);
+  return study;
 }
 
 void make_folder(const std::filesystem::path& folder) {

@@ -5,13 +5,14 @@
 #include "app/output_checks.hpp"
 #include "app/session.hpp"
 #include "io/gltf_writer.hpp"
+#include "pirsim/state.hpp"
 #include "sim/beams.hpp"
-#include "sim/state.hpp"
+#include "sim/run_state.hpp"
 
 namespace pirsim::app {
 namespace {
 
-io::ExportedPerson without_keys(const Actor& actor) {
+io::ExportedPerson without_keys(const sim::Actor& actor) {
   io::ExportedPerson person{actor.person().spec.id, {}, {}};
   for (std::size_t i = 0; i < body::n_parts; ++i) {
     const auto part = static_cast<body::Part>(i);
@@ -21,7 +22,7 @@ io::ExportedPerson without_keys(const Actor& actor) {
 }
 
 /// While away, a person's parts keep their last place (they are drawn at scale 0).
-void add_key(const Actor& actor, io::ExportedPerson& person) {
+void add_key(const sim::Actor& actor, io::ExportedPerson& person) {
   person.present.push_back(actor.present() ? 1 : 0);
   const body::Posture posture = actor.present() ? actor.motion().posture() : body::Posture{};
   for (std::size_t i = 0; i < body::n_parts; ++i) {
@@ -40,19 +41,20 @@ void export_gltf(const Inputs& inputs, const ExportOptions& options) {
 
   State state(model, find_run(model, options.trial, options.replicate));
   io::ExportedRun run;
-  run.title = model.script().name + ", trial " + model.trial_of(state.run()).id;
-  run.meshes = model.scene().meshes;
+  run.title = model.script().name + ", trial " + model.trial_of(state.run());
+  run.meshes = model.compiled().scene().meshes;
   for (const std::size_t sensor : find_sensors(model, options.beams)) {
     io::ExportedBeams& beams = run.beams.emplace_back();
     beams.sensor = model.scene().sensors[sensor].id;
     for (const sim::BeamSegment& beam : sim::beams_of(model, state, sensor))
       beams.segments.emplace_back(beam.from, beam.to);
   }
-  for (const Actor& actor : state.actors()) run.people.push_back(without_keys(actor));
+  const std::vector<sim::Actor>& actors = state.run_state().crowd.actors();
+  for (const sim::Actor& actor : actors) run.people.push_back(without_keys(actor));
   while (true) {
     if (state.tick() % ticks_per_key == 0 || state.finished()) {
       run.key_times_s.push_back(static_cast<double>(state.tick()) / rate);
-      for (std::size_t i = 0; i < run.people.size(); ++i) add_key(state.actors()[i], run.people[i]);
+      for (std::size_t i = 0; i < run.people.size(); ++i) add_key(actors[i], run.people[i]);
     }
     if (state.finished()) break;
     step_tick(model, state);

@@ -10,8 +10,10 @@
 #include "io/png.hpp"
 #include "pirsim/geometry.hpp"
 #include "rt/renderer.hpp"
+#include "pirsim/state.hpp"
 #include "sim/beams.hpp"
-#include "sim/state.hpp"
+#include "sim/run_state.hpp"
+#include "sim/solids.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -90,7 +92,8 @@ void require_usable(const rt::Camera& camera) {
 
 bool reached_default_time(const State& state, std::int64_t& work_began, const Model& model) {
   constexpr double into_work_s = 10.0;
-  if (work_began < 0 && !state.actors().empty() && state.actors().front().phase() == "working")
+  const sim::Crowd& crowd = state.run_state().crowd;
+  if (work_began < 0 && !crowd.actors().empty() && crowd.actors().front().phase() == "working")
     work_began = state.tick();
   return work_began >= 0 && static_cast<double>(state.tick() - work_began) * model.tick_s() >= into_work_s;
 }
@@ -115,17 +118,18 @@ void preview(const Inputs& inputs, const PreviewOptions& options) {
   const Model model = load(inputs);
   const State state = go_to_moment(model, options);
 
+  const SceneSpec& scene = model.compiled().scene();
   std::vector<rt::Surface> surfaces;
   std::vector<rt::Colour> colours;
-  for (const TriMesh& mesh : model.scene().meshes) {
-    const MeshLook look = look_of(mesh, model.scene().floor.height_m());
+  for (const TriMesh& mesh : scene.meshes) {
+    const MeshLook look = look_of(mesh, scene.floor.height_m());
     surfaces.push_back(look.surface);
     colours.push_back(look.colour);
   }
   std::vector<rt::RenderedSolid> solids;
-  for (const Actor& actor : state.actors()) {
+  for (const sim::Actor& actor : state.run_state().crowd.actors()) {
     std::vector<PosedShape> shapes;
-    append_solids(actor, shapes);
+    sim::append_solids(actor, shapes);
     for (std::size_t i = 0; i < shapes.size(); ++i)
       solids.push_back({shapes[i], colour_of(static_cast<body::Part>(i))});
   }
@@ -141,7 +145,7 @@ void preview(const Inputs& inputs, const PreviewOptions& options) {
   // What sees the person is drawn last, over the rest.
   std::stable_partition(beams.begin(), beams.end(), [&](const rt::Beam& beam) { return beam.colour == idle; });
   const double fov = radians(options.field_of_view_deg);
-  rt::Camera camera = dolls_house_camera(model.scene(), fov, static_cast<double>(options.width) / options.height);
+  rt::Camera camera = dolls_house_camera(scene, fov, static_cast<double>(options.width) / options.height);
   const auto vec = [](const std::array<double, 3>& a) { return Vec3(a[0], a[1], a[2]); };
   if (options.camera) camera.position = vec(*options.camera);
   if (options.look_at) camera.target = vec(*options.look_at);
@@ -149,10 +153,10 @@ void preview(const Inputs& inputs, const PreviewOptions& options) {
   require_usable(camera);
 
   const rt::Image image =
-      rt::render(model.room(), surfaces, colours, solids, beams, camera, options.width, options.height);
+      rt::render(model.compiled().array().room(), surfaces, colours, solids, beams, camera, options.width, options.height);
   io::write_png(options.output, image.width, image.height, image.rgb);
   if (inputs.verbosity != Verbosity::quiet) {
-    std::cerr << "wrote " << options.output.string() << ": trial " << model.trial_of(state.run()).id << " at "
+    std::cerr << "wrote " << options.output.string() << ": trial " << model.trial_of(state.run()) << " at "
               << static_cast<double>(state.tick()) * model.tick_s() << " s\n";
   }
 }

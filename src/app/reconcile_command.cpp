@@ -9,7 +9,7 @@
 #include "app/session.hpp"
 #include "io/atomic_file.hpp"
 #include "io/gnuplot.hpp"
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/version.hpp"
 #include "reconcile/measured.hpp"

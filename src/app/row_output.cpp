@@ -11,6 +11,8 @@
 #include "pirsim/csv.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/version.hpp"
+#include "rt/tracer.hpp"
+#include "sim/compiled_study.hpp"
 #include "studies/shards.hpp"
 
 namespace pirsim::app {
@@ -74,8 +76,8 @@ class ResumableRows final : public RowOutput {
 };
 
 std::string tracer_used(const Model& model) {
-  std::string name(rt::name(model.tracer()));
-  if (model.tracer() == rt::TracerKind::direct) name += " " + std::string(rt::direct_instruction_set());
+  std::string name(rt::name(model.compiled().tracer()));
+  if (model.compiled().tracer() == TracerKind::direct) name += " " + std::string(rt::direct_instruction_set());
   return name;
 }
 

@@ -7,8 +7,8 @@
 
 #include "app/options.hpp"
 #include "pirsim/sample.hpp"
-#include "schema/shard.hpp"
-#include "sim/model.hpp"
+#include "pirsim/sample.hpp"
+#include "pirsim/model.hpp"
 
 namespace pirsim::app {
 

@@ -15,9 +15,10 @@
 #include "io/compression.hpp"
 #include "io/manifest.hpp"
 #include "pirsim/csv.hpp"
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "pirsim/io.hpp"
-#include "sim/study.hpp"
+#include "pirsim/study.hpp"
+#include "sim/compiled_study.hpp"
 #include "studies/sight.hpp"
 #include "studies/study_report.hpp"
 #include "studies/summary.hpp"
@@ -32,7 +33,7 @@ std::vector<std::string> sensor_ids(const Model& model) {
 }
 
 std::vector<std::size_t> first_zones(const Model& model) {
-  const RayBundle& rays = model.rated_rays();
+  const RayBundle& rays = model.rays();
   std::vector<std::size_t> begins;
   for (const auto cluster : rays.sensor_clusters_begin) begins.push_back(rays.cluster_zones_begin[cluster]);
   return begins;
@@ -40,7 +41,7 @@ std::vector<std::size_t> first_zones(const Model& model) {
 
 studies::Summary make_summary(const Model& model, const RunOptions& options) {
   std::vector<std::string> trials;
-  for (const TrialModel& trial : model.trials()) trials.push_back(trial.id);
+  for (const TrialSpec& trial : model.script().trials) trials.push_back(trial.id);
   const bool compared = !options.summary.empty() || !options.report.empty();
   const std::vector<MeasuredCell> measured = compared ? measured_cells(model.script()) : std::vector<MeasuredCell>{};
   return {trials, sensor_ids(model), measured};
@@ -95,7 +96,7 @@ class TraceOutput {
  public:
   TraceOutput(const std::filesystem::path& file, const Model& model)
       : output_(file), csv_(output_.lines(), sensor_ids(model), model.script().sensing.tick_rate_hz) {
-    if (model.analog() == nullptr) throw Error(ErrorCode::usage, "--trace: no sensor has an analog response");
+    if (model.compiled().array().analog() == nullptr) throw Error(ErrorCode::usage, "--trace: no sensor has an analog response");
   }
 
   void add(const RunResult& result) {

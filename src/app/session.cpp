@@ -2,16 +2,18 @@
 
 #include <iostream>
 
+#include "pirsim/effects.hpp"
 #include "pirsim/io.hpp"
+#include "rt/tracer.hpp"
 #include "pirsim/version.hpp"
 
 namespace pirsim::app {
 namespace {
 
-rt::TracerKind tracer_kind(const std::string& name) {
-  if (name == "auto") return rt::fastest_tracer;
+TracerKind tracer_kind(const std::string& name) {
+  if (name == "auto") return fastest_tracer;
   std::vector<std::string> names{"auto"};
-  for (const auto kind : {rt::TracerKind::direct, rt::TracerKind::embree, rt::TracerKind::reference}) {
+  for (const auto kind : {TracerKind::direct, TracerKind::embree, TracerKind::reference}) {
     if (rt::name(kind) == name) return kind;
     names.emplace_back(rt::name(kind));
   }
@@ -45,12 +47,14 @@ io::SceneOptions scene_options(const Inputs& inputs) {
 }
 
 Model load(const Inputs& inputs) {
-  const rt::TracerKind tracer = tracer_kind(inputs.tracer);
+  const TracerKind tracer = tracer_kind(inputs.tracer);
   ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
   tell(script.warnings, inputs.verbosity);
-  return compile(std::move(scene), std::move(script), {tracer});
+  Model model = compile(std::move(scene), std::move(script), {tracer});
+  tell(effects::idle(model.script().effects, model.scene(), model.script().sensing), inputs.verbosity);
+  return model;
 }
 
 std::uint32_t find_run(const Model& model, const std::string& trial, int replicate) {
@@ -58,10 +62,10 @@ std::uint32_t find_run(const Model& model, const std::string& trial, int replica
     throw Error(ErrorCode::usage, "--replicate: the script has 1 to " + std::to_string(model.script().replicates));
   }
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < model.trials().size(); ++i) {
-    names.push_back(model.trials()[i].id);
+  for (std::size_t i = 0; i < model.script().trials.size(); ++i) {
+    names.push_back(model.script().trials[i].id);
     if (trial.empty() || trial == names.back()) {
-      return static_cast<std::uint32_t>(static_cast<std::size_t>(replicate - 1) * model.trials().size() + i);
+      return static_cast<std::uint32_t>(static_cast<std::size_t>(replicate - 1) * model.script().trials.size() + i);
     }
   }
   throw Error(ErrorCode::usage, "--trial: '" + trial + "' is not in the script" + did_you_mean(trial, names));

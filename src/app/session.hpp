@@ -8,7 +8,7 @@
 #include "io/report.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/script.hpp"
-#include "sim/model.hpp"
+#include "pirsim/model.hpp"
 
 namespace pirsim::app {
 

@@ -18,6 +18,7 @@ void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
   SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
   const studies::WalkTest test(std::move(scene), std::move(spec));
+  tell(test.warnings(), inputs.verbosity);
   io::AtomicFile file(options.output);
   std::optional<io::AtomicFile> report_file;
   if (!options.report.empty()) report_file.emplace(options.report);

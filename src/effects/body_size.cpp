@@ -6,10 +6,10 @@
 namespace pirsim::effects {
 namespace {
 
-void alter(SceneSpec&, ScriptSpec& script, const EffectSpec& effect) {
+void alter(StudyInForce& study, const EffectSpec& effect) {
   const double scale = effect.parameters.at("scale");
-  for (TrialSpec& trial : script.trials) {
-    for (PersonSpec& person : trial.people) {
+  for (TrialInForce& trial : study.trials) {
+    for (PersonInForce& person : trial.people) {
       person.stature_m *= scale;
       person.mass_kg *= scale * scale * scale;
     }

@@ -1,4 +1,4 @@
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 
 #include <algorithm>
 #include <array>
@@ -44,6 +44,14 @@ const Effect& find(std::string_view name) {
   for (const Effect* effect : all) names.push_back(effect->info.name);
   throw Error(ErrorCode::usage, "'" + std::string(name) + "' is not an effect" + did_you_mean(name, names));
 }
+
+std::vector<EffectInfo> list() {
+  std::vector<EffectInfo> infos;
+  for (const Effect* effect : catalogue()) infos.push_back(effect->info);
+  return infos;
+}
+
+const EffectInfo& info(std::string_view name) { return find(name).info; }
 
 std::string judged_as(std::string_view name) {
   const EffectInfo& info = find(name).info;
@@ -94,17 +102,18 @@ EffectSpec off(const Effect& effect) {
   return spec;
 }
 
-void alter(SceneSpec& scene, ScriptSpec& script) {
+StudyInForce in_force(SceneSpec scene, const ScriptSpec& script) {
   Diagnostics diagnostics;
   check(script.effects, scene, diagnostics);
   diagnostics.throw_if_errors();
-  const std::vector<EffectSpec> specs = script.effects;
+  StudyInForce study = as_given(std::move(scene), script);
   for (const Effect* effect : catalogue()) {
-    for (const EffectSpec& spec : specs) {
+    for (const EffectSpec& spec : script.effects) {
       if (effect->alter == nullptr || spec.name != effect->info.name || is_off(spec)) continue;
-      effect->alter(scene, script, resolved(*effect, spec));
+      effect->alter(study, resolved(*effect, spec));
     }
   }
+  return study;
 }
 
 namespace {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 
 namespace pirsim::effects {
 namespace {
@@ -129,6 +129,20 @@ void check(std::span<const EffectSpec> effects, Diagnostics& diagnostics) { chec
 
 void check(std::span<const EffectSpec> effects, const SceneSpec& scene, Diagnostics& diagnostics) {
   check_all(effects, &scene, diagnostics);
+}
+
+std::vector<Issue> idle(std::span<const EffectSpec> effects, const SceneSpec& scene, const SensingSpec& sensing) {
+  const auto by_zones = [&](const SensorSpec& sensor) {
+    return sensing.response.value_or(scene.sensor_models.at(sensor.model).response) == Response::zones;
+  };
+  Diagnostics remarks;
+  for (const EffectSpec& spec : effects) {
+    if (find(spec.name).info.acts_on != ActsOn::zone_sensors || is_off(spec)) continue;
+    if (std::ranges::any_of(scene.sensors, by_zones)) continue;
+    remarks.warning(spec.where, spec.name + " does nothing here: it acts on sensors with response: zones, and " +
+                                    "every sensor's response is analog");
+  }
+  return remarks.issues();
 }
 
 }  // namespace pirsim::effects

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 
 namespace pirsim::effects {
 

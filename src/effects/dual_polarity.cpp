@@ -7,9 +7,9 @@ namespace pirsim::effects {
 namespace {
 
 /// Where the physics is: pir::PolarityDetector.
-void alter(SceneSpec&, ScriptSpec& script, const EffectSpec& effect) {
-  script.sensing.dual_polarity = {effect.parameters.at("threshold"), effect.parameters.at("high_pass_hz"),
-                                  effect.parameters.at("low_pass_hz")};
+void alter(StudyInForce& study, const EffectSpec& effect) {
+  study.sensing.dual_polarity = {effect.parameters.at("threshold"), effect.parameters.at("high_pass_hz"),
+                                 effect.parameters.at("low_pass_hz")};
 }
 
 }  // namespace
@@ -57,7 +57,8 @@ const Effect& dual_polarity() {
                                .most = 100.0,
                                .scale = Scale::logarithmic,
                                .source = "assumed: and end at 5-10 Hz"}},
-               .reach = Reach::geometry},
+               .reach = Reach::geometry,
+               .acts_on = ActsOn::zone_sensors},
       .alter = alter};
   return effect;
 }

@@ -1,7 +1,7 @@
 // The catalogue's entries, one file each.
 #pragma once
 
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 
 namespace pirsim::effects {
 

@@ -6,11 +6,11 @@
 namespace pirsim::effects {
 namespace {
 
-void alter(SceneSpec&, ScriptSpec& script, const EffectSpec& effect) {
-  for (TrialSpec& trial : script.trials) {
-    for (PersonSpec& person : trial.people) {
-      person.fidgeting = {effect.parameters.at("rate_per_s"), effect.parameters.at("tilt_deg"),
-                          effect.parameters.at("turn_deg")};
+void alter(StudyInForce& study, const EffectSpec& effect) {
+  for (TrialInForce& trial : study.trials) {
+    for (PersonInForce& person : trial.people) {
+      person.changes.fidgeting = {effect.parameters.at("rate_per_s"), effect.parameters.at("tilt_deg"),
+                                  effect.parameters.at("turn_deg")};
     }
   }
 }

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 
 namespace pirsim::effects {
 

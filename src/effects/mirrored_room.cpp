@@ -65,15 +65,16 @@ void mirror_actions(std::vector<ScriptedAction>& actions, const Mirror& mirror) 
   }
 }
 
-void alter(SceneSpec& scene, ScriptSpec& script, const EffectSpec& effect) {
+void alter(StudyInForce& study, const EffectSpec& effect) {
+  SceneSpec& scene = study.scene;
   const auto across = effect.choices.find("across");
   const Mirror mirror(scene, across != effect.choices.end() && across->second == "z");
   mirror_meshes(scene.meshes, mirror);
   for (SeatSpec& seat : scene.seats) seat.world_from_seat = mirror.frame(seat.world_from_seat);
   for (EntranceSpec& door : scene.entrances) door.world_from_entrance = mirror.frame(door.world_from_entrance);
   scene.floor = mirrored(scene.floor, mirror);
-  for (TrialSpec& trial : script.trials) {
-    for (PersonSpec& person : trial.people) mirror_actions(person.actions, mirror);
+  for (TrialInForce& trial : study.trials) {
+    for (PersonInForce& person : trial.people) mirror_actions(person.actions, mirror);
   }
 }
 

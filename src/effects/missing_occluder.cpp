@@ -29,7 +29,8 @@ bool is_box(const EffectSpec& effect) {
   return what != effect.choices.end() && what->second == "box";
 }
 
-void alter(SceneSpec& scene, ScriptSpec&, const EffectSpec& effect) {
+void alter(StudyInForce& study, const EffectSpec& effect) {
+  SceneSpec& scene = study.scene;
   const double half_height = 0.5 * effect.parameters.at(is_box(effect) ? "box_height_m" : "height_m");
   const double half_width = 0.5 * effect.parameters.at("width_m");
   if (is_box(effect)) {

@@ -1,7 +1,7 @@
 // Short forms of parameters that many effects have alike.
 #pragma once
 
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 
 namespace pirsim::effects {
 

@@ -1,4 +1,4 @@
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 
 namespace pirsim::effects {
 

@@ -6,7 +6,8 @@
 namespace pirsim::effects {
 namespace {
 
-void alter(SceneSpec& scene, ScriptSpec&, const EffectSpec& effect) {
+void alter(StudyInForce& study, const EffectSpec& effect) {
+  SceneSpec& scene = study.scene;
   for (auto& [id, model] : scene.sensor_models) {
     for (ClusterSpec& cluster : model.clusters) cluster.range_m *= effect.parameters.at("scale");
   }

@@ -6,9 +6,9 @@
 namespace pirsim::effects {
 namespace {
 
-void alter(SceneSpec&, ScriptSpec& script, const EffectSpec& effect) {
-  for (TrialSpec& trial : script.trials) {
-    for (PersonSpec& person : trial.people) {
+void alter(StudyInForce& study, const EffectSpec& effect) {
+  for (TrialInForce& trial : study.trials) {
+    for (PersonInForce& person : trial.people) {
       SeatScatterSpec& scatter = person.seat_scatter;
       scatter.position_sd_m = std::hypot(scatter.position_sd_m, effect.parameters.at("position_sd_m"));
       scatter.heading_sd_deg = std::hypot(scatter.heading_sd_deg, effect.parameters.at("heading_sd_deg"));

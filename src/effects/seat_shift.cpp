@@ -6,9 +6,9 @@
 namespace pirsim::effects {
 namespace {
 
-void alter(SceneSpec&, ScriptSpec& script, const EffectSpec& effect) {
-  for (TrialSpec& trial : script.trials) {
-    for (PersonSpec& person : trial.people) person.seat_shift_m += effect.parameters.at("forward_m");
+void alter(StudyInForce& study, const EffectSpec& effect) {
+  for (TrialInForce& trial : study.trials) {
+    for (PersonInForce& person : trial.people) person.changes.seat_shift_m += effect.parameters.at("forward_m");
   }
 }
 

@@ -7,7 +7,8 @@ namespace pirsim::effects {
 namespace {
 
 /// Who is said to sit on a seat sits on the one so many further in the scene's order, round its end.
-void alter(SceneSpec& scene, ScriptSpec&, const EffectSpec& effect) {
+void alter(StudyInForce& study, const EffectSpec& effect) {
+  SceneSpec& scene = study.scene;
   const auto n = static_cast<std::int64_t>(scene.seats.size());
   const std::vector<SeatSpec> drawn = scene.seats;
   const std::int64_t places = std::llround(effect.parameters.at("places"));

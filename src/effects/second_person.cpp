@@ -27,9 +27,9 @@ Vec2 place_of(const EffectSpec& effect, const SceneSpec& scene) {
 }
 
 /// An upper bound of how long a trial may last, seconds.
-double longest_s(const TrialSpec& trial, const SceneSpec& scene) {
+double longest_s(const TrialInForce& trial, const SceneSpec& scene) {
   double longest = 0.0;
-  for (const PersonSpec& person : trial.people) {
+  for (const PersonInForce& person : trial.people) {
     // Once across the room, and as much again to get round what stands there.
     const double way_s = 2.0 * glm::distance(scene.floor.lower(), scene.floor.upper()) / person.walking_speed_m_s;
     double sum = 0.0;
@@ -47,18 +47,18 @@ double longest_s(const TrialSpec& trial, const SceneSpec& scene) {
 }
 
 /// Several in one room go by numbers.
-std::string new_id(const TrialSpec& trial) {
+std::string new_id(const TrialInForce& trial) {
   const std::string id = "second person";
   const auto others = std::ranges::count_if(trial.people, [&](const auto& p) { return p.id.starts_with(id); });
   return others == 0 ? id : id + " " + std::to_string(others + 1);
 }
 
-PersonSpec bystander(const std::string& id, const Vec2& place, const EffectSpec& effect, double until_s) {
+PersonInForce bystander(const std::string& id, const Vec2& place, const EffectSpec& effect, double until_s) {
   const double every_s = effect.parameters.at("every_s"), heading_deg = effect.parameters.at("heading_deg");
   const double path_m = effect.parameters.at("path_m");
-  PersonSpec person;
+  PersonInForce person;
   person.id = id;
-  person.role = PersonRole::bystander;
+  person.changes.role = PersonRole::bystander;
   person.stature_m = 1.75;  // assumed
   const auto act = [&](Action what) { person.actions.push_back({std::move(what), {}, {}, effect.where}); };
   act(action::Appear{place, heading_deg});
@@ -74,9 +74,10 @@ PersonSpec bystander(const std::string& id, const Vec2& place, const EffectSpec&
   return person;
 }
 
-void alter(SceneSpec& scene, ScriptSpec& script, const EffectSpec& effect) {
+void alter(StudyInForce& study, const EffectSpec& effect) {
+  SceneSpec& scene = study.scene;
   const Vec2 place = place_of(effect, scene);
-  for (TrialSpec& trial : script.trials)
+  for (TrialInForce& trial : study.trials)
     trial.people.push_back(bystander(new_id(trial), place, effect, longest_s(trial, scene)));
 }
 

@@ -28,7 +28,8 @@ const TriMesh* in_the_way(const SceneSpec& scene, const SensorSpec& sensor, doub
   return mesh == scene.meshes.end() ? nullptr : &*mesh;
 }
 
-void alter(SceneSpec& scene, ScriptSpec&, const EffectSpec& effect) {
+void alter(StudyInForce& study, const EffectSpec& effect) {
+  SceneSpec& scene = study.scene;
   const double height_m = effect.parameters.at("height_m");
   for (const std::uint32_t i : sensors_of(effect, scene)) {
     SensorSpec& sensor = scene.sensors[i];

@@ -8,7 +8,8 @@
 namespace pirsim::effects {
 namespace {
 
-void alter(SceneSpec& scene, ScriptSpec&, const EffectSpec& effect) {
+void alter(StudyInForce& study, const EffectSpec& effect) {
+  SceneSpec& scene = study.scene;
   for (const std::uint32_t i : sensors_of(effect, scene)) {
     Frame& frame = scene.sensors[i].world_from_sensor;
     frame.rotation = glm::normalize(rotation_from_heading(radians(effect.parameters.at("yaw_deg"))) * frame.rotation);

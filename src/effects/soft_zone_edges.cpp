@@ -6,8 +6,8 @@ namespace pirsim::effects {
 namespace {
 
 /// Where the physics is: pir::edge_levels grows nested copies of every zone, pir::EdgeDraw draws one a window.
-void alter(SceneSpec&, ScriptSpec& script, const EffectSpec& effect) {
-  script.sensing.edge_sigma_deg = effect.parameters.at("sigma_deg");
+void alter(StudyInForce& study, const EffectSpec& effect) {
+  study.sensing.edge_sigma_deg = effect.parameters.at("sigma_deg");
 }
 
 }  // namespace
@@ -32,7 +32,8 @@ const Effect& soft_zone_edges() {
                                .most = 5.0,
                                .scale = Scale::logarithmic,
                                .source = "assumed: from a moulded lens's few tenths of a degree to a defocused one"}},
-               .reach = Reach::geometry},
+               .reach = Reach::geometry,
+               .acts_on = ActsOn::zone_sensors},
       .alter = alter};
   return effect;
 }

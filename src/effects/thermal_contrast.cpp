@@ -9,7 +9,8 @@ namespace {
 constexpr double rated_k =
     4.0;  // data sheet of the EKMC series: detection distance at 4 K between target and background
 
-void alter(SceneSpec& scene, ScriptSpec&, const EffectSpec& effect) {
+void alter(StudyInForce& study, const EffectSpec& effect) {
+  SceneSpec& scene = study.scene;
   const double factor = std::sqrt(effect.parameters.at("delta_t_k") / rated_k);
   for (auto& [id, model] : scene.sensor_models) {
     for (ClusterSpec& cluster : model.clusters) cluster.range_m *= factor;

@@ -6,9 +6,9 @@
 namespace pirsim::effects {
 namespace {
 
-void alter(SceneSpec&, ScriptSpec& script, const EffectSpec& effect) {
-  for (TrialSpec& trial : script.trials) {
-    for (PersonSpec& person : trial.people) {
+void alter(StudyInForce& study, const EffectSpec& effect) {
+  for (TrialInForce& trial : study.trials) {
+    for (PersonInForce& person : trial.people) {
       for (ScriptedAction& scripted : person.actions) {
         auto* work = std::get_if<action::Work>(&scripted.what);
         if (work == nullptr) continue;

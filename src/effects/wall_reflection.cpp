@@ -33,9 +33,10 @@ std::string largest(const SceneSpec& scene) {
   return std::ranges::max_element(scene.meshes, {}, upright_area_m2)->name;
 }
 
-void alter(SceneSpec& scene, ScriptSpec& script, const EffectSpec& effect) {
+void alter(StudyInForce& study, const EffectSpec& effect) {
+  SceneSpec& scene = study.scene;
   const auto wall = effect.choices.find("wall");
-  script.sensing.reflections.push_back(
+  study.sensing.reflections.push_back(
       {wall == effect.choices.end() ? largest(scene) : wall->second, effect.parameters.at("coefficient")});
 }
 
@@ -64,7 +65,8 @@ const Effect& wall_reflection() {
                                .most = 1.0,
                                .source = "assumed: of power at 10 um; glass mirrors a tenth, bare metal nearly all"}},
                .choices = {{"wall", ChoiceKind::mesh, {}, "the mesh with the largest upright faces"}},
-               .reach = Reach::geometry},
+               .reach = Reach::geometry,
+               .acts_on = ActsOn::zone_sensors},
       .alter = alter,
       .draw = draw};
   return effect;

@@ -124,13 +124,13 @@ std::optional<float> TriangleSurface::first_hit(const Vec3& origin, const Vec3& 
   if (!(t_max > 0.0F)) return std::nullopt;
   float nearest = t_max;
   const double square_length = glm::dot(direction, direction);
-  const auto may_meet = [&](const Ball& ball) {
+  const auto may_hit = [&](const Ball& ball) {
     const Vec3 offset = ball.centre - origin;
     const double along = std::clamp(glm::dot(offset, direction) / square_length, 0.0, static_cast<double>(nearest));
     const Vec3 miss = offset - direction * along;
     return glm::dot(miss, miss) <= ball.radius * ball.radius;
   };
-  visit(may_meet, [&](const Corners& triangle) {
+  visit(may_hit, [&](const Corners& triangle) {
     const float distance = distance_to_triangle(origin, direction, triangle.a, triangle.b, triangle.c);
     if (distance >= 0.0F && distance < nearest) nearest = distance;
   });

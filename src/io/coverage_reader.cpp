@@ -4,7 +4,9 @@
 #include <glm/geometric.hpp>
 
 #include "io/coverage_keys.hpp"
+#include "io/effect_reader.hpp"
 #include "io/sensing_reader.hpp"
+#include "pirsim/effects.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -56,6 +58,13 @@ void read_coverage_keys(YamlMap& map, CoverageSpec& spec) {
   YamlMap target(map.required_child("target"), faults, "target");
   spec.target = read_x_shapes(target.required_child("x_shapes"), faults);
   target.finish();
+  read_seed_and_effects(map, spec.seed, spec.effects);
+}
+
+void read_seed_and_effects(YamlMap& map, std::uint64_t& seed, std::vector<EffectSpec>& effects) {
+  seed = map.unsigned_integer("seed", seed);
+  effects = read_effects(map.list("effects"), map.faults());
+  pirsim::effects::check(effects, map.faults());
 }
 
 void check_version(YamlMap& map, const std::string& key) {

@@ -10,10 +10,10 @@ namespace {
 
 /// Then the value is a name, and may look like a number: `sensor: 1`.
 bool is_choice(const std::string& effect, const std::string& setting) {
-  return std::ranges::any_of(effects::catalogue(), [&](const effects::Effect* known) {
-    const std::vector<effects::ChoiceInfo>& choices = known->info.choices;
-    return known->info.name == effect &&
-           std::ranges::find(choices, setting, &effects::ChoiceInfo::name) != choices.end();
+  const std::vector<effects::EffectInfo> known = effects::list();
+  return std::ranges::any_of(known, [&](const effects::EffectInfo& info) {
+    return info.name == effect &&
+           std::ranges::find(info.choices, setting, &effects::ChoiceInfo::name) != info.choices.end();
   });
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "schema/shard.hpp"
+#include "pirsim/sample.hpp"
 
 namespace pirsim::io {
 

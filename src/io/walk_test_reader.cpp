@@ -53,6 +53,7 @@ WalkTestSpec read_walk_test(const std::filesystem::path& file, std::span<const s
   if (const auto node = map.child("person")) read_person(*node, spec, faults);
   if (const auto node = map.child("major_motion")) read_major(*node, spec, faults);
   if (const auto node = map.child("minor_motion")) read_minor(*node, spec, faults);
+  read_seed_and_effects(map, spec.seed, spec.effects);
   map.finish();
   faults.throw_if_errors();
   return spec;

@@ -13,8 +13,7 @@ PolarityDetector::PolarityDetector(const SceneSpec& scene, const DualPolaritySpe
     : threshold_(spec.threshold),
       fast_share_(-std::expm1(-2.0 * pi * spec.low_pass_hz * tick_s)),
       slow_share_(-std::expm1(-2.0 * pi * spec.high_pass_hz * tick_s)),
-      filters_(scene.sensors.size()),
-      sums_(scene.sensors.size()) {
+      filters_(scene.sensors.size()) {
   for (std::uint32_t sensor = 0; sensor < scene.sensors.size(); ++sensor) {
     for (std::size_t level = 0; level < n_levels; ++level) {
       for (const ClusterSpec& cluster : scene.sensor_models.at(scene.sensors[sensor].model).clusters) {
@@ -27,7 +26,9 @@ PolarityDetector::PolarityDetector(const SceneSpec& scene, const DualPolaritySpe
   }
 }
 
-void PolarityDetector::begin_run() noexcept { std::ranges::fill(filters_, Filter{}); }
+void PolarityDetector::begin_run(std::span<const double> rest) noexcept {
+  for (std::size_t s = 0; s < filters_.size(); ++s) filters_[s] = {rest[s], rest[s]};
+}
 
 void PolarityDetector::add_up(const ZoneSet& zones, std::span<double> sums) const noexcept {
   std::ranges::fill(sums, 0.0);
@@ -48,11 +49,6 @@ void PolarityDetector::tick(std::span<const double> sums, std::span<std::uint8_t
     filter.slow += slow_share_ * (filter.fast - filter.slow);
     if (std::abs(filter.fast - filter.slow) > threshold_) triggers[s] = 1;
   }
-}
-
-void PolarityDetector::tick(const ZoneSet& zones, std::span<std::uint8_t> triggers) noexcept {
-  add_up(zones, sums_);
-  tick(sums_, triggers);
 }
 
 }  // namespace pirsim::pir

@@ -7,7 +7,7 @@
 
 #include "pirsim/rays.hpp"
 #include "pirsim/scene.hpp"
-#include "pirsim/script.hpp"
+#include "schema/study_in_force.hpp"
 
 namespace pirsim::pir {
 
@@ -18,12 +18,12 @@ class PolarityDetector {
   /// n_levels: copies of every zone (pir::append), which share its weight.
   PolarityDetector(const SceneSpec& scene, const DualPolaritySpec& spec, std::size_t n_levels, double tick_s);
 
-  void begin_run() noexcept;
+  /// rest: (n_sensors) sums of the signs of zones that have been active for long.
+  void begin_run(std::span<const double> rest) noexcept;
   /// sums: (n_sensors) of the signs of active zones.
   void add_up(const ZoneSet& zones, std::span<double> sums) const noexcept;
   /// One tick; sets triggers[s] (n_sensors) where sensor s triggers.
   void tick(std::span<const double> sums, std::span<std::uint8_t> triggers) noexcept;
-  void tick(const ZoneSet& zones, std::span<std::uint8_t> triggers) noexcept;
   [[nodiscard]] std::size_t n_sensors() const noexcept { return filters_.size(); }
 
  private:
@@ -36,7 +36,6 @@ class PolarityDetector {
   double threshold_;
   double fast_share_, slow_share_;  ///< of the difference that is taken over in a tick
   std::vector<Filter> filters_;     ///< (n_sensors)
-  std::vector<double> sums_;        ///< scratch
 };
 
 }  // namespace pirsim::pir

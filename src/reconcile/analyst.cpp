@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "reconcile/sentences.hpp"
 
 namespace pirsim::reconcile {

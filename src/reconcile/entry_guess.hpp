@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "reconcile/feature_map.hpp"
 #include "reconcile/kinds.hpp"
 #include "reconcile/reference_table.hpp"

@@ -1,7 +1,7 @@
 // The scale on which a parameter's prior is flat.
 #pragma once
 
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 
 namespace pirsim::reconcile {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "reconcile/flat_scale.hpp"
 
 namespace pirsim::reconcile {

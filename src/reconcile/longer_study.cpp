@@ -4,8 +4,8 @@
 #include <glm/geometric.hpp>
 
 #include "effects/free_places.hpp"
-#include "sim/model.hpp"
-#include "sim/study.hpp"
+#include "pirsim/model.hpp"
+#include "pirsim/study.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -39,7 +39,6 @@ TrialSpec alone(const ScriptSpec& script, std::string id) {
   const auto peopled = std::ranges::find_if(script.trials, [](const TrialSpec& t) { return !t.people.empty(); });
   if (peopled == script.trials.end()) throw Error(ErrorCode::infeasible, "nobody is in any trial");
   PersonSpec person = peopled->people.front();
-  person.role = PersonRole::subject;
   person.actions.clear();
   return {std::move(id), {std::move(person)}};
 }

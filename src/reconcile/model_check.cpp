@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "core/parallel.hpp"
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "pirsim/random.hpp"
 #include "reconcile/locate.hpp"
 #include "reconcile/simulated_world.hpp"

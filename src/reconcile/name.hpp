@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "reconcile/table_view.hpp"
 #include "stats/calibration.hpp"
 #include "stats/conformal.hpp"

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "core/digest.hpp"
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "pirsim/error.hpp"
 #include "reconcile/outcome.hpp"
 #include "reconcile/outputs.hpp"

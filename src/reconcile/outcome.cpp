@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 
 namespace pirsim::reconcile {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/digest.hpp"
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "reconcile/aliens.hpp"
 #include "reconcile/flat_scale.hpp"
 #include "reconcile/selftest.hpp"

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/parallel.hpp"
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "reconcile/table_store.hpp"
 
 namespace pirsim::reconcile {

@@ -6,7 +6,7 @@
 #include <map>
 #include <sstream>
 
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "reconcile/sentences.hpp"
 
 namespace pirsim::reconcile {

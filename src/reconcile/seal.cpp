@@ -6,11 +6,11 @@
 
 #include "core/digest.hpp"
 #include "pirsim/csv.hpp"
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "pirsim/error.hpp"
 #include "reconcile/aliens.hpp"
 #include "reconcile/simulated_world.hpp"
-#include "sim/study.hpp"
+#include "pirsim/study.hpp"
 
 namespace pirsim::reconcile {
 namespace {

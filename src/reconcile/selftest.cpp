@@ -7,7 +7,7 @@
 
 #include "core/digest.hpp"
 #include "core/parallel.hpp"
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "reconcile/analyst.hpp"
 #include "reconcile/model_check.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "reconcile/reconcile.hpp"
 #include "stats/calibration.hpp"
 #include "stats/intervals.hpp"

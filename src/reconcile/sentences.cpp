@@ -6,7 +6,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 
 namespace pirsim::reconcile {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "pirsim/effects.hpp"
-#include "sim/trace_family.hpp"
+#include "effects/catalogue.hpp"
+#include "sim/recording_family.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -26,7 +26,7 @@ void add_series(const StudyFrame& frame, const RunResult& result, int first, std
 
 /// Zones as a Model's detector takes them.
 struct Emitter {
-  Emitter(const Model& of, const sim::ZoneTracks& from) : model(of), tracks(from), logic(sim::make_logic(of)) {
+  Emitter(const Model& of, const Recording& from) : model(of), tracks(from), logic(sim::make_logic(of)) {
     logic->prepare(tracks.sets);
   }
   [[nodiscard]] std::vector<Series> emit(const StudyFrame& frame, const effects::Pipeline& pipeline, int first,
@@ -35,14 +35,14 @@ struct Emitter {
     for (std::size_t i = 0; i < tracks.runs.size(); ++i) {
       const int replicate = tracks.runs[i].rows.replicate;
       if (replicate <= first || replicate > first + n) continue;
-      add_series(frame, sim::emit(tracks, i, *logic, model.script().seed, pipeline), first, data);
+      add_series(frame, sim::replay(tracks, i, *logic, model.script().seed, pipeline), first, data);
     }
     return data;
   }
 
   const Model& model;
-  const sim::ZoneTracks& tracks;
-  std::unique_ptr<sim::DetectorLogic> logic;
+  const Recording& tracks;
+  std::unique_ptr<DetectorLogic> logic;
 };
 
 }  // namespace
@@ -52,7 +52,7 @@ struct SimulatedWorld::Traced {
       : model(compile(world.scene, world.script)), family(model, runs_of(model, {})), emitter(model, family.first()) {}
 
   Model model;
-  sim::TraceFamily family;
+  sim::RecordingFamily family;
   Emitter emitter;
 };
 
@@ -77,7 +77,7 @@ SimulatedWorld& SimulatedWorld::operator=(SimulatedWorld&&) noexcept = default;
 std::vector<Series> SimulatedWorld::with(std::span<const EffectSpec> more, int first, int n) const {
   std::vector<EffectSpec> all = world_.script.effects;
   all.insert(all.end(), more.begin(), more.end());
-  return traced_->emitter.emit(*frame_, sim::make_pipeline(traced_->model, all), first, n);
+  return traced_->emitter.emit(*frame_, sim::make_stages(traced_->model, all), first, n);
 }
 
 std::vector<Series> SimulatedWorld::anew(std::span<const EffectSpec> more, int n,
@@ -86,8 +86,8 @@ std::vector<Series> SimulatedWorld::anew(std::span<const EffectSpec> more, int n
   altered.script.effects.insert(altered.script.effects.end(), more.begin(), more.end());
   altered.script.replicates = n;
   const Model model = compile(altered.scene, altered.script, {.like = &traced_->model});
-  const sim::ZoneTracks tracks = traced_->family.trace(model, runs_of(model, trials));
-  return Emitter(model, tracks).emit(*frame_, model.pipeline(), 0, n);
+  const Recording tracks = traced_->family.record(model, runs_of(model, trials));
+  return Emitter(model, tracks).emit(*frame_, model.compiled().stages(), 0, n);
 }
 
 std::optional<std::vector<Series>> SimulatedWorld::with_effects(std::span<const EffectSpec> more, int first, int n,

@@ -2,7 +2,7 @@
 
 #include "core/digest.hpp"
 #include "geom/triangle_surface.hpp"
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/version.hpp"
 #include "reconcile/reference_table.hpp"

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <utility>
 
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "reconcile/sentences.hpp"
 
 namespace pirsim::reconcile {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/parallel.hpp"
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "reconcile/fit.hpp"
 #include "reconcile/locate.hpp"
 #include "reconcile/reconcile.hpp"

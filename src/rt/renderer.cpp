@@ -87,7 +87,7 @@ Room drawn_part(const Room& room, std::span<const Surface> surfaces, const Camer
 }
 
 /// False only if the ray passes the ball.
-bool may_meet(const Ray& ray, const Ball& ball, float reach) {
+bool may_hit(const Ray& ray, const Ball& ball, float reach) {
   const Vec3f offset = ball.centre - ray.origin;
   const float nearest = std::clamp(glm::dot(offset, ray.direction), 0.0F, reach);
   const Vec3f miss = offset - ray.direction * nearest;
@@ -136,7 +136,7 @@ class Picture {
     }
     for (std::size_t i = 0; i < solids_.size(); ++i) {
       const float reach = nearest ? nearest->distance : far_away;
-      if (!may_meet(ray, balls_[i], reach)) continue;
+      if (!may_hit(ray, balls_[i], reach)) continue;
       const RenderedSolid& solid = solids_[i];
       const auto distance = entry_distance(ray, solid.shape, reach);
       if (!distance) continue;
@@ -156,7 +156,7 @@ class Picture {
     any_hit(room_.impl().scene.get(), context, query);
     if (query.tfar < 0.0F) return true;
     for (std::size_t i = 0; i < solids_.size(); ++i) {
-      if (may_meet(ray, balls_[i], reach) && entry_distance(ray, solids_[i].shape, reach)) return true;
+      if (may_hit(ray, balls_[i], reach) && entry_distance(ray, solids_[i].shape, reach)) return true;
     }
     return false;
   }

@@ -12,11 +12,6 @@
 
 namespace pirsim::rt {
 
-enum class TracerKind {
-  reference,  ///< the plain way: whole scene rebuilt, closest hit of every ray at its full rated range
-  embree,     ///< rays cut once at the room, one instance moved per body part, occlusion queries
-  direct,     ///< rays cut once at the room, cones around rays, then every solid against many rays at a time
-};
 [[nodiscard]] std::string_view name(TracerKind kind) noexcept;
 
 /// A ray of the bundle and the solid that it meets before all others and the room.
@@ -45,8 +40,6 @@ struct TracerSetup {
   const RayBundle* rated = nullptr;    ///< ranges as rated
   const RayBundle* clipped = nullptr;  ///< the same rays cut at the room
 };
-/// What --tracer auto stands for.
-inline constexpr TracerKind fastest_tracer = TracerKind::direct;
 /// "avx512f", "avx2" or "baseline": what the direct tracer uses on this processor. Changes no bit.
 [[nodiscard]] std::string_view direct_instruction_set() noexcept;
 [[nodiscard]] std::unique_ptr<Tracer> make_tracer(TracerKind kind, const TracerSetup& setup);

@@ -8,7 +8,7 @@
 #include "pirsim/error.hpp"
 #include "pirsim/geometry.hpp"
 
-namespace pirsim {
+namespace pirsim::sim {
 namespace {
 
 using body::Stage;
@@ -24,8 +24,8 @@ constexpr double search_every_s = 0.2;      ///< how often one who found no way 
 constexpr double give_up_s = 60.0;          ///< then people block each other for good
 constexpr double give_up_in_all_s = 180.0;  ///< assumed: then somebody tries the same few steps for ever
 
-std::int64_t ticks(double seconds, const Model& model) {
-  return std::llround(seconds * model.script().sensing.tick_rate_hz);
+std::int64_t ticks(double seconds, const CompiledStudy& study) {
+  return std::llround(seconds * study.sensing().tick_rate_hz);
 }
 
 Vec2 outside(const EntranceSpec& door) { return floor_point(door.world_from_entrance * Vec3(0, 0, door.outside_m)); }
@@ -37,12 +37,12 @@ bool leads_elsewhere(const ScriptedAction& action) {
 
 }  // namespace
 
-Actor::Actor(const Model& model, std::uint32_t run, std::uint32_t person)
-    : person_(&model.trial_of(run).people[person]),
+Actor::Actor(const CompiledStudy& study, std::uint32_t run, std::uint32_t person)
+    : person_(&study.trial_of(run).people[person]),
       index_(person),
-      tilt_stream_({model.script().seed, run, person, Purpose::spine_tilt}),
-      scatter_stream_({model.script().seed, run, person, Purpose::seat_scatter}),
-      fidget_stream_({model.script().seed, run, person, Purpose::fidgeting}) {}
+      tilt_stream_({study.seed(), run, person, Purpose::spine_tilt}),
+      scatter_stream_({study.seed(), run, person, Purpose::seat_scatter}),
+      fidget_stream_({study.seed(), run, person, Purpose::fidgeting}) {}
 
 std::string_view Actor::current_phase() const noexcept {
   if (!done() && begun_ && !action().phase.empty()) return action().phase;
@@ -61,32 +61,33 @@ Presence Actor::presence() const {
           person().humanoid.clearance_radius_m()};
 }
 
-void Actor::advance(const Model& model, std::int64_t tick, std::span<const Presence> others, std::size_t n_before) {
-  carry_on(model, tick - 1, others);
+void Actor::advance(const CompiledStudy& study, std::int64_t tick, std::span<const Presence> others,
+                    std::size_t n_before) {
+  carry_on(study, tick - 1, others);
   if (motion_) {
-    keep_distance(model, others, n_before);
-    if (motion_->stage() == Stage::seated) fidget(model);
+    keep_distance(study, others, n_before);
+    if (motion_->stage() == Stage::seated) fidget(study);
     motion_->advance();
   }
   phase_ = current_phase();
-  if (!done() && begun_ && errands_.empty() && time_is_up(model, tick)) finish_action();
+  if (!done() && begun_ && errands_.empty() && time_is_up(study, tick)) finish_action();
 }
 
-void Actor::carry_on(const Model& model, std::int64_t now, std::span<const Presence> others) {
+void Actor::carry_on(const CompiledStudy& study, std::int64_t now, std::span<const Presence> others) {
   while (!done()) {
     if (!begun_) {
-      if (action().at_s && now < ticks(*action().at_s, model)) return;
+      if (action().at_s && now < ticks(*action().at_s, study)) return;
       begun_ = true;
       began_ = now;
-      plan(model);
+      plan(study);
     }
-    while (!errands_.empty() && carry_out_first(model, others) == Progress::done) {
+    while (!errands_.empty() && carry_out_first(study, others) == Progress::done) {
       errands_.pop_front();
       held_up_ticks_ = 0;
     }
-    if (const auto* work_action = std::get_if<action::Work>(&action().what)) work(model, *work_action, now);
-    const auto next = interrupting_action(model, now);
-    if (!next && !(errands_.empty() && time_is_up(model, now))) return;
+    if (const auto* work_action = std::get_if<action::Work>(&action().what)) work(study, *work_action, now);
+    const auto next = interrupting_action(study, now);
+    if (!next && !(errands_.empty() && time_is_up(study, now))) return;
     finish_action();
     if (next) action_ = *next;
   }
@@ -101,25 +102,25 @@ void Actor::finish_action() {
   begun_ = false;
 }
 
-std::optional<std::size_t> Actor::interrupting_action(const Model& model, std::int64_t now) const {
+std::optional<std::size_t> Actor::interrupting_action(const CompiledStudy& study, std::int64_t now) const {
   const auto& actions = person().spec.actions;
   for (std::size_t i = actions.size(); i-- > action_ + 1;) {
-    if (actions[i].at_s && now >= ticks(*actions[i].at_s, model)) return i;
+    if (actions[i].at_s && now >= ticks(*actions[i].at_s, study)) return i;
   }
   return std::nullopt;
 }
 
-bool Actor::time_is_up(const Model& model, std::int64_t now) const {
+bool Actor::time_is_up(const CompiledStudy& study, std::int64_t now) const {
   if (const auto* wait = std::get_if<action::Wait>(&action().what))
-    return now - began_ >= ticks(wait->duration_s, model);
+    return now - began_ >= ticks(wait->duration_s, study);
   if (const auto* work = std::get_if<action::Work>(&action().what))
-    return now - began_ >= ticks(work->duration_s, model);
+    return now - began_ >= ticks(work->duration_s, study);
   return true;
 }
 
-void Actor::plan(const Model& model) {
+void Actor::plan(const CompiledStudy& study) {
   const auto entrance = [&](const std::string& id) -> const EntranceSpec& {
-    return *std::ranges::find(model.scene().entrances, id, &EntranceSpec::id);
+    return *std::ranges::find(study.scene().entrances, id, &EntranceSpec::id);
   };
   const Action& what = action().what;
   const bool arrives = std::holds_alternative<action::Appear>(what) || std::holds_alternative<action::Enter>(what) ||
@@ -171,8 +172,8 @@ void Actor::plan_sitting() {
   // Drawn whether used or not, so that a scatter of zero leaves every other draw where it was.
   const double dx = scatter_stream_.normal(), dz = scatter_stream_.normal(), turn = scatter_stream_.normal();
   place.world_from_seat.origin += scatter.position_sd_m * Vec3(dx, 0, dz);
-  if (person().spec.seat_shift_m != 0.0) {
-    place.world_from_seat.origin += person().spec.seat_shift_m * seat.place.world_from_seat.forward();
+  if (person().spec.changes.seat_shift_m != 0.0) {
+    place.world_from_seat.origin += person().spec.changes.seat_shift_m * seat.place.world_from_seat.forward();
   }
   if (scatter.heading_sd_deg > 0.0) {
     place.world_from_seat.rotation =
@@ -199,18 +200,18 @@ Vec2 Actor::standing_place(const body::SeatPlace& place, const SeatPlan& seat) c
   return pelvis - seat.stand_back_m * facing;
 }
 
-void Actor::work(const Model& model, const action::Work& work, std::int64_t now) {
+void Actor::work(const CompiledStudy& study, const action::Work& work, std::int64_t now) {
   const std::int64_t since = now - began_;
-  if (work.tilt_choices_deg.empty() || since >= ticks(work.duration_s, model)) return;
-  if (since % std::max<std::int64_t>(1, ticks(work.tilt_every_s, model)) != 0) return;
+  if (work.tilt_choices_deg.empty() || since >= ticks(work.duration_s, study)) return;
+  if (since % std::max<std::int64_t>(1, ticks(work.tilt_every_s, study)) != 0) return;
   const auto choice = tilt_stream_.index(static_cast<std::uint32_t>(work.tilt_choices_deg.size()));
   motion_->tilt_spine(radians(work.tilt_choices_deg[choice]));
 }
 
-void Actor::fidget(const Model& model) {
-  const FidgetSpec& fidgeting = person().spec.fidgeting;
+void Actor::fidget(const CompiledStudy& study) {
+  const FidgetSpec& fidgeting = person().spec.changes.fidgeting;
   if (fidgeting.rate_per_s <= 0.0) return;
-  if (fidget_stream_.uniform() >= -std::expm1(-fidgeting.rate_per_s * model.tick_s())) return;
+  if (fidget_stream_.uniform() >= -std::expm1(-fidgeting.rate_per_s * study.tick_s())) return;
   const double way = 2.0 * fidget_stream_.uniform() - 1.0;
   if (fidget_stream_.index(2) == 0) {
     motion_->sway(radians(fidgeting.tilt_deg) * way);
@@ -219,67 +220,69 @@ void Actor::fidget(const Model& model) {
   }
 }
 
-Actor::Progress Actor::carry_out_first(const Model& model, std::span<const Presence> others) {
-  return std::visit([&](const auto& errand) { return carry_out(errand, model, others); }, errands_.front());
+Actor::Progress Actor::carry_out_first(const CompiledStudy& study, std::span<const Presence> others) {
+  return std::visit([&](const auto& errand) { return carry_out(errand, study, others); }, errands_.front());
 }
 
-Actor::Progress Actor::carry_out(const ComeIn& come, const Model& model, std::span<const Presence> others) {
+Actor::Progress Actor::carry_out(const ComeIn& come, const CompiledStudy& study, std::span<const Presence> others) {
   if (somebody_near(come.point, others)) {
-    wait_for_others(model);
+    wait_for_others(study);
     return Progress::going_on;
   }
-  motion_.emplace(person().humanoid, come.point, come.heading, model.scene().floor.height_m(), model.tick_s());
+  motion_.emplace(person().humanoid, come.point, come.heading, study.scene().floor.height_m(), study.tick_s());
   return Progress::done;
 }
 
-Actor::Progress Actor::carry_out(const WaitForDoor& door, const Model& model, std::span<const Presence> others) {
-  return door_is_taken(door, others) ? wait_for_turn(model, others) : Progress::done;
+Actor::Progress Actor::carry_out(const WaitForDoor& door, const CompiledStudy& study,
+                                 std::span<const Presence> others) {
+  return door_is_taken(door, others) ? wait_for_turn(study, others) : Progress::done;
 }
 
-Actor::Progress Actor::carry_out(const WaitForSeat& wait, const Model& model, std::span<const Presence> others) {
+Actor::Progress Actor::carry_out(const WaitForSeat& wait, const CompiledStudy& study,
+                                 std::span<const Presence> others) {
   const bool is_taken = std::ranges::find(others, wait.seat, &Presence::seat) != others.end();
-  return is_taken ? wait_for_turn(model, others) : Progress::done;
+  return is_taken ? wait_for_turn(study, others) : Progress::done;
 }
 
-Actor::Progress Actor::wait_for_turn(const Model& model, std::span<const Presence> others) {
+Actor::Progress Actor::wait_for_turn(const CompiledStudy& study, std::span<const Presence> others) {
   const bool for_good = std::ranges::find(others, Presence::Script::going_on, &Presence::script) == others.end();
   if (for_good) give_up("'" + person().spec.id + "' waits in vain: nobody of those there has anything more to do");
-  if (present()) wait_for_others(model);  // who isn't there yet is in nobody's way, and may wait long
+  if (present()) wait_for_others(study);  // who isn't there yet is in nobody's way, and may wait long
   return Progress::going_on;
 }
 
-Actor::Progress Actor::carry_out(const TakeSeat& take, const Model&, std::span<const Presence>) {
+Actor::Progress Actor::carry_out(const TakeSeat& take, const CompiledStudy&, std::span<const Presence>) {
   seat_ = take.seat;
   return Progress::done;
 }
 
-Actor::Progress Actor::carry_out(const WalkTo& walk, const Model& model, std::span<const Presence> others) {
-  return walk_to(walk.target, model, others);
+Actor::Progress Actor::carry_out(const WalkTo& walk, const CompiledStudy& study, std::span<const Presence> others) {
+  return walk_to(walk.target, study, others);
 }
 
-Actor::Progress Actor::carry_out(const WalkOut& out, const Model& model, std::span<const Presence> others) {
-  if (route_) return walk_to(route_->position(route_->length_m()), model, others);  // decided when setting out
-  return walk_to(somebody_near(out.outside, others) ? out.behind_door : out.outside, model, others);
+Actor::Progress Actor::carry_out(const WalkOut& out, const CompiledStudy& study, std::span<const Presence> others) {
+  if (route_) return walk_to(route_->position(route_->length_m()), study, others);  // decided when setting out
+  return walk_to(somebody_near(out.outside, others) ? out.behind_door : out.outside, study, others);
 }
 
-Actor::Progress Actor::carry_out(const FaceTo& face, const Model& model, std::span<const Presence> others) {
-  if (become_standing(model, others) == Progress::going_on) return Progress::going_on;
+Actor::Progress Actor::carry_out(const FaceTo& face, const CompiledStudy& study, std::span<const Presence> others) {
+  if (become_standing(study, others) == Progress::going_on) return Progress::going_on;
   if (std::abs(std::remainder(face.heading - motion_->heading(), 2.0 * pi)) < 1e-9) return Progress::done;
   motion_->turn_to(face.heading);
   return Progress::going_on;
 }
 
-Actor::Progress Actor::carry_out(const SitOn& seat, const Model&, std::span<const Presence>) {
+Actor::Progress Actor::carry_out(const SitOn& seat, const CompiledStudy&, std::span<const Presence>) {
   if (motion_->stage() == Stage::seated && motion_->settled()) return Progress::done;
   if (motion_->stage() == Stage::standing && motion_->settled()) motion_->sit_down(seat.place);
   return Progress::going_on;
 }
 
-Actor::Progress Actor::carry_out(const StandUp&, const Model& model, std::span<const Presence> others) {
-  return become_standing(model, others);
+Actor::Progress Actor::carry_out(const StandUp&, const CompiledStudy& study, std::span<const Presence> others) {
+  return become_standing(study, others);
 }
 
-Actor::Progress Actor::carry_out(const Vanish&, const Model&, std::span<const Presence>) {
+Actor::Progress Actor::carry_out(const Vanish&, const CompiledStudy&, std::span<const Presence>) {
   motion_.reset();
   return Progress::done;
 }
@@ -291,13 +294,13 @@ bool Actor::somebody_near(const Vec2& point, std::span<const Presence> others) c
   });
 }
 
-Actor::Progress Actor::become_standing(const Model& model, std::span<const Presence> others) {
+Actor::Progress Actor::become_standing(const CompiledStudy& study, std::span<const Presence> others) {
   if (motion_->stage() == Stage::standing) return motion_->settled() ? Progress::done : Progress::going_on;
   const bool on_seat = motion_->stage() == Stage::seated || motion_->stage() == Stage::sitting_down;
   if (on_seat && free_to_stand(others)) {
     motion_->rise();
   } else if (on_seat) {
-    be_held_up(model);
+    be_held_up(study);
   }
   // A walk or turn that an earlier action began and that isn't wanted any more; our own ends by itself.
   if (!on_seat && !route_ && motion_->stage() == Stage::walking) motion_->stop();
@@ -321,16 +324,16 @@ bool Actor::free_to_stand(std::span<const Presence> others) const {
   });
 }
 
-Actor::Progress Actor::walk_to(const Vec2& target, const Model& model, std::span<const Presence> others) {
+Actor::Progress Actor::walk_to(const Vec2& target, const CompiledStudy& study, std::span<const Presence> others) {
   if (route_ && motion_->stage() == Stage::walking) return Progress::going_on;
-  if (become_standing(model, others) == Progress::going_on) return Progress::going_on;
+  if (become_standing(study, others) == Progress::going_on) return Progress::going_on;
   constexpr double arrived_m = 1e-6;
   if (glm::distance(motion_->position(), target) < arrived_m) {
     route_.reset();
     return Progress::done;
   }
-  if (!route_ && blocked_ticks_ % std::max<std::int64_t>(1, ticks(search_every_s, model)) != 0) {
-    wait_for_others(model);
+  if (!route_ && blocked_ticks_ % std::max<std::int64_t>(1, ticks(search_every_s, study)) != 0) {
+    wait_for_others(study);
     return Progress::going_on;
   }
   if (!route_) {
@@ -341,7 +344,7 @@ Actor::Progress Actor::walk_to(const Vec2& target, const Model& model, std::span
       if (!person().floor->find_way(motion_->position(), target)) {
         give_up("'" + person().spec.id + "' finds no way to where they are to go, even if nobody stands in it");
       }
-      wait_for_others(model);
+      wait_for_others(study);
       return Progress::going_on;
     }
     route_.emplace(*way);
@@ -388,7 +391,7 @@ bool Actor::must_give_way(std::span<const Presence> others) const {
   return false;
 }
 
-void Actor::keep_distance(const Model& model, std::span<const Presence> others, std::size_t n_before) {
+void Actor::keep_distance(const CompiledStudy& study, std::span<const Presence> others, std::size_t n_before) {
   if (motion_->stage() != Stage::walking) return;
   const double free_m = free_way_ahead(others);
   const bool give_way = must_give_way(others.first(n_before));
@@ -398,8 +401,8 @@ void Actor::keep_distance(const Model& model, std::span<const Presence> others, 
     blocked_ticks_ = 0;
     return;
   }
-  wait_for_others(model);
-  if (blocked_ticks_ % ticks(patience_s + patience_step_s * index_, model) == 0) {
+  wait_for_others(study);
+  if (blocked_ticks_ % ticks(patience_s + patience_step_s * index_, study) == 0) {
     motion_->stop();  // stands, then looks for a way round the others
     route_.reset();
   }
@@ -407,15 +410,15 @@ void Actor::keep_distance(const Model& model, std::span<const Presence> others, 
 
 void Actor::give_up(const std::string& why) const { throw Error(ErrorCode::infeasible, action().where, why); }
 
-void Actor::wait_for_others(const Model& model) {
-  if (++blocked_ticks_ > ticks(give_up_s, model)) give_up_waiting();
-  be_held_up(model);
+void Actor::wait_for_others(const CompiledStudy& study) {
+  if (++blocked_ticks_ > ticks(give_up_s, study)) give_up_waiting();
+  be_held_up(study);
 }
 
-void Actor::be_held_up(const Model& model) {
-  if (++held_up_ticks_ > ticks(give_up_in_all_s, model)) give_up_waiting();
+void Actor::be_held_up(const CompiledStudy& study) {
+  if (++held_up_ticks_ > ticks(give_up_in_all_s, study)) give_up_waiting();
 }
 
 void Actor::give_up_waiting() const { give_up("'" + person().spec.id + "' waits in vain for others to make way"); }
 
-}  // namespace pirsim
+}  // namespace pirsim::sim

@@ -11,9 +11,9 @@
 
 #include "body/motion.hpp"
 #include "pirsim/random.hpp"
-#include "sim/model.hpp"
+#include "sim/compiled_study.hpp"
 
-namespace pirsim {
+namespace pirsim::sim {
 
 /// What others need to know to keep out of a person's way.
 struct Presence {
@@ -28,12 +28,12 @@ struct Presence {
 /// A value; all its randomness comes from streams keyed by (seed, run, person).
 class Actor {
  public:
-  Actor(const Model& model, std::uint32_t run, std::uint32_t person);
+  Actor(const CompiledStudy& study, std::uint32_t run, std::uint32_t person);
 
   /// From tick - 1 to tick: starts, goes on with or interrupts actions, then moves the body. others: everyone else in
   /// the scene, in the order of the script; those before this person go first where ways cross.
   /// Throws Error(infeasible) when people block each other for good.
-  void advance(const Model& model, std::int64_t tick, std::span<const Presence> others, std::size_t n_before);
+  void advance(const CompiledStudy& study, std::int64_t tick, std::span<const Presence> others, std::size_t n_before);
 
   [[nodiscard]] bool present() const noexcept { return motion_.has_value(); }
   [[nodiscard]] bool done() const noexcept { return action_ == person().spec.actions.size(); }
@@ -86,40 +86,40 @@ class Actor {
       std::variant<ComeIn, WaitForDoor, WaitForSeat, TakeSeat, WalkTo, FaceTo, SitOn, StandUp, WalkOut, Vanish>;
   enum class Progress { going_on, done };
 
-  void plan(const Model& model);
+  void plan(const CompiledStudy& study);
   void plan_entering(const EntranceSpec& door);
   void plan_leaving(const EntranceSpec& door);
   void plan_sitting();
-  void work(const Model& model, const action::Work& work, std::int64_t now);
-  void fidget(const Model& model);
-  void carry_on(const Model& model, std::int64_t now, std::span<const Presence> others);
+  void work(const CompiledStudy& study, const action::Work& work, std::int64_t now);
+  void fidget(const CompiledStudy& study);
+  void carry_on(const CompiledStudy& study, std::int64_t now, std::span<const Presence> others);
   void finish_action();
   [[nodiscard]] std::string_view current_phase() const noexcept;
   /// Index of the latest action whose moment has come, if it is later than the current one.
-  [[nodiscard]] std::optional<std::size_t> interrupting_action(const Model& model, std::int64_t now) const;
-  [[nodiscard]] bool time_is_up(const Model& model, std::int64_t now) const;
+  [[nodiscard]] std::optional<std::size_t> interrupting_action(const CompiledStudy& study, std::int64_t now) const;
+  [[nodiscard]] bool time_is_up(const CompiledStudy& study, std::int64_t now) const;
   [[nodiscard]] bool door_is_taken(const WaitForDoor& door, std::span<const Presence> others) const;
   [[nodiscard]] bool somebody_near(const Vec2& point, std::span<const Presence> others) const;
   [[nodiscard]] bool free_to_stand(std::span<const Presence> others) const;
-  Progress carry_out_first(const Model& model, std::span<const Presence> others);
-  Progress carry_out(const ComeIn& errand, const Model& model, std::span<const Presence> others);
-  Progress carry_out(const WaitForDoor& errand, const Model& model, std::span<const Presence> others);
-  Progress carry_out(const WaitForSeat& errand, const Model& model, std::span<const Presence> others);
-  Progress carry_out(const TakeSeat& errand, const Model& model, std::span<const Presence> others);
-  Progress carry_out(const WalkTo& errand, const Model& model, std::span<const Presence> others);
-  Progress carry_out(const FaceTo& errand, const Model& model, std::span<const Presence> others);
-  Progress carry_out(const SitOn& errand, const Model& model, std::span<const Presence> others);
-  Progress carry_out(const StandUp& errand, const Model& model, std::span<const Presence> others);
-  Progress carry_out(const WalkOut& errand, const Model& model, std::span<const Presence> others);
-  Progress carry_out(const Vanish& errand, const Model& model, std::span<const Presence> others);
-  Progress wait_for_turn(const Model& model, std::span<const Presence> others);
-  Progress walk_to(const Vec2& target, const Model& model, std::span<const Presence> others);
-  Progress become_standing(const Model& model, std::span<const Presence> others);
-  void keep_distance(const Model& model, std::span<const Presence> others, std::size_t n_before);
+  Progress carry_out_first(const CompiledStudy& study, std::span<const Presence> others);
+  Progress carry_out(const ComeIn& errand, const CompiledStudy& study, std::span<const Presence> others);
+  Progress carry_out(const WaitForDoor& errand, const CompiledStudy& study, std::span<const Presence> others);
+  Progress carry_out(const WaitForSeat& errand, const CompiledStudy& study, std::span<const Presence> others);
+  Progress carry_out(const TakeSeat& errand, const CompiledStudy& study, std::span<const Presence> others);
+  Progress carry_out(const WalkTo& errand, const CompiledStudy& study, std::span<const Presence> others);
+  Progress carry_out(const FaceTo& errand, const CompiledStudy& study, std::span<const Presence> others);
+  Progress carry_out(const SitOn& errand, const CompiledStudy& study, std::span<const Presence> others);
+  Progress carry_out(const StandUp& errand, const CompiledStudy& study, std::span<const Presence> others);
+  Progress carry_out(const WalkOut& errand, const CompiledStudy& study, std::span<const Presence> others);
+  Progress carry_out(const Vanish& errand, const CompiledStudy& study, std::span<const Presence> others);
+  Progress wait_for_turn(const CompiledStudy& study, std::span<const Presence> others);
+  Progress walk_to(const Vec2& target, const CompiledStudy& study, std::span<const Presence> others);
+  Progress become_standing(const CompiledStudy& study, std::span<const Presence> others);
+  void keep_distance(const CompiledStudy& study, std::span<const Presence> others, std::size_t n_before);
   [[nodiscard]] double free_way_ahead(std::span<const Presence> others) const;
   [[nodiscard]] bool must_give_way(std::span<const Presence> others) const;
-  void wait_for_others(const Model& model);
-  void be_held_up(const Model& model);
+  void wait_for_others(const CompiledStudy& study);
+  void be_held_up(const CompiledStudy& study);
   [[noreturn]] void give_up_waiting() const;
   [[noreturn]] void give_up(const std::string& why) const;
   [[nodiscard]] Vec2 standing_place(const body::SeatPlace& place, const SeatPlan& seat) const;
@@ -142,4 +142,4 @@ class Actor {
   Stream fidget_stream_;
 };
 
-}  // namespace pirsim
+}  // namespace pirsim::sim

@@ -67,11 +67,12 @@ bool same_action(const ScriptedAction& a, const ScriptedAction& b) {
   return a.at_s == b.at_s && a.phase == b.phase && std::visit(is_same, a.what);
 }
 
-bool same_person(const PersonSpec& a, const PersonSpec& b) {
-  const auto parts = [](const PersonSpec& person) {
-    const auto& [id, stature_m, mass_kg, speed, scatter, seat_shift_m, fidgeting, role, file, meshes, warmth, actions] =
-        person;
+bool same_person(const PersonInForce& a, const PersonInForce& b) {
+  const auto parts = [](const PersonInForce& person) {
+    const auto& [id, stature_m, mass_kg, speed, scatter, file, meshes, warmth, actions] =
+        static_cast<const PersonSpec&>(person);
     const auto& [position_sd_m, heading_sd_deg] = scatter;
+    const auto& [seat_shift_m, fidgeting, role] = person.changes;
     const auto& [rate_per_s, tilt_deg, turn_deg] = fidgeting;
     const auto& [skin_c, clothing_clo, bare, parts_c] = warmth;
     return std::tie(id, stature_m, mass_kg, speed, position_sd_m, heading_sd_deg, seat_shift_m, rate_per_s, tilt_deg,
@@ -97,9 +98,9 @@ bool same_size(const PersonSpec& a, const PersonSpec& b) {
   return a.stature_m == b.stature_m && a.mass_kg == b.mass_kg;
 }
 
-bool same_trial(const TrialModel& planned, const TrialSpec& trial, double ambient_c) {
+bool same_trial(const TrialModel& planned, const TrialInForce& trial, double ambient_c) {
   return planned.id == trial.id &&
-         std::ranges::equal(planned.people, trial.people, [&](const PersonModel& a, const PersonSpec& b) {
+         std::ranges::equal(planned.people, trial.people, [&](const PersonModel& a, const PersonInForce& b) {
            return same_person(a.spec, b) && a.radiance == radiance_of(b.warmth, ambient_c);
          });
 }
@@ -115,17 +116,17 @@ bool same_ground(const SceneSpec& a, const SceneSpec& b) {
          std::ranges::equal(solids(a), solids(b), [](const TriMesh* x, const TriMesh* y) { return same(*x, *y); });
 }
 
-bool same_people(const Model& like, const SceneSpec& scene, const ScriptSpec& script, const ScriptSpec& as_written) {
-  const ScriptSpec& other = like.script();
+bool same_people(const CompiledStudy& like, const CompiledStudy& study, const std::vector<TrialInForce>& trials) {
   const auto same_sizes = [](const TrialSpec& a, const TrialSpec& b) {
     return std::ranges::equal(a.people, b.people, same_size);
   };
-  return other.seed == as_written.seed && other.sensing.tick_rate_hz == as_written.sensing.tick_rate_hz &&
-         other.sensing.ticks_per_window == as_written.sensing.ticks_per_window && same_ground(like.scene(), scene) &&
-         std::ranges::equal(like.scene().seats, scene.seats, same<SeatSpec>) &&
-         std::ranges::equal(other.trials, as_written.trials, same_sizes) &&
-         std::ranges::equal(like.trials(), script.trials, [&](const TrialModel& planned, const TrialSpec& trial) {
-           return same_trial(planned, trial, script.sensing.ambient_c);
+  const SensingInForce &a = like.sensing(), &b = study.sensing();
+  return like.seed() == study.seed() && a.tick_rate_hz == b.tick_rate_hz && a.ticks_per_window == b.ticks_per_window &&
+         same_ground(like.scene(), study.scene()) &&
+         std::ranges::equal(like.scene().seats, study.scene().seats, same<SeatSpec>) &&
+         std::ranges::equal(like.script_given().trials, study.script_given().trials, same_sizes) &&
+         std::ranges::equal(like.trials(), trials, [&](const TrialModel& planned, const TrialInForce& trial) {
+           return same_trial(planned, trial, b.ambient_c);
          });
 }
 

@@ -1,7 +1,7 @@
 // What two studies have in common, decided from what their specs say, not from how they came to differ.
 #pragma once
 
-#include "sim/model.hpp"
+#include "sim/compiled_study.hpp"
 
 namespace pirsim::sim {
 
@@ -9,9 +9,8 @@ namespace pirsim::sim {
 [[nodiscard]] bool same_meshes(const SceneSpec& a, const SceneSpec& b);
 /// The same floor, entrances and solid meshes: one can walk alike.
 [[nodiscard]] bool same_ground(const SceneSpec& a, const SceneSpec& b);
-/// Would the people of `like` be planned and move the same in this study? scene and script with their effects applied;
-/// as_written: before.
-[[nodiscard]] bool same_people(const Model& like, const SceneSpec& scene, const ScriptSpec& script,
-                               const ScriptSpec& as_written);
+/// Would the people of `like` be planned and move the same in `study`, whose trials with all effects these are?
+[[nodiscard]] bool same_people(const CompiledStudy& like, const CompiledStudy& study,
+                               const std::vector<TrialInForce>& trials);
 
 }  // namespace pirsim::sim

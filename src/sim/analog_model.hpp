@@ -4,14 +4,14 @@
 #include <optional>
 #include <vector>
 
-#include "pir/detector.hpp"
+#include "pir/analog_detector.hpp"
 #include "sim/power_model.hpp"
 
 namespace pirsim::sim {
 
 /// One make of sensor, calibrated by its rated distances (pir::calibrate).
 struct CalibratedSensor {
-  pir::Detector detector;
+  pir::AnalogDetector detector;
   pir::AnalogFilter silent_filter;   ///< the detector's element and amplifier, without noise
   std::vector<double> apertures_m2;  ///< (n_clusters)
 };

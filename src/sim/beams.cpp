@@ -1,14 +1,17 @@
 #include "sim/beams.hpp"
 
+#include "sim/run_state.hpp"
+#include "sim/solids.hpp"
+
 namespace pirsim::sim {
 
 std::vector<BeamSegment> beams_of(const Model& model, const State& state, std::size_t sensor) {
-  const RayBundle& bundle = model.clipped_rays();
+  const RayBundle& bundle = model.rays();
   const auto first_ray = [&](std::uint32_t cluster) {
     return bundle.zone_rays_begin[bundle.cluster_zones_begin[cluster]];
   };
   std::vector<PosedShape> solids;
-  for (const Actor& actor : state.actors()) append_solids(actor, solids);
+  for (const Actor& actor : state.run_state().crowd.actors()) append_solids(actor, solids);
   std::vector<BeamSegment> beams;
   for (auto i = first_ray(bundle.sensor_clusters_begin[sensor]);
        i < first_ray(bundle.sensor_clusters_begin[sensor + 1]); ++i) {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "sim/state.hpp"
+#include "pirsim/state.hpp"
 
 namespace pirsim::sim {
 

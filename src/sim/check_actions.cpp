@@ -93,11 +93,11 @@ class Check {
 
 }  // namespace
 
-void check_actions(const SceneSpec& scene, const ScriptSpec& script) {
+void check_actions(const SceneSpec& scene, const std::vector<TrialInForce>& trials) {
   Diagnostics diagnostics;
   std::set<std::string> told;  // trials repeat the same actions: say each thing once
-  for (const TrialSpec& trial : script.trials) {
-    for (const PersonSpec& person : trial.people) {
+  for (const TrialInForce& trial : trials) {
+    for (const PersonInForce& person : trial.people) {
       Diagnostics found;
       Check check(scene, person, found);
       for (const ScriptedAction& action : person.actions) check(action);

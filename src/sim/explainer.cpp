@@ -5,19 +5,19 @@
 
 namespace pirsim::sim {
 
-Explainer::Explainer(const Model& model) : model_(model), meter_(model) {
-  for (const auto& sensor : model.analog()->sensors()) {
+Explainer::Explainer(const CompiledStudy& study) : study_(study), meter_(study) {
+  for (const auto& sensor : study.array().analog()->sensors()) {
     filters_.push_back(sensor ? std::optional(sensor->silent_filter) : std::nullopt);
   }
-  const RayBundle& bundle = model.analog()->power().clipped();
+  const RayBundle& bundle = study.array().analog()->power().clipped();
   for (std::uint32_t zone = 0; zone < bundle.n_zones(); ++zone) {
     zone_of_ray_.resize(bundle.zone_rays_begin[zone + 1], zone);
   }
 }
 
 std::uint32_t Explainer::sensor_of(std::uint32_t zone) const {
-  const RayBundle& bundle = model_.analog()->power().clipped();
-  return model_.analog()->power().sensor_of(bundle.zone_rays_begin[zone]);
+  const RayBundle& bundle = study_.array().analog()->power().clipped();
+  return study_.array().analog()->power().sensor_of(bundle.zone_rays_begin[zone]);
 }
 
 void Explainer::advance() {
@@ -28,23 +28,23 @@ void Explainer::advance() {
   }
 }
 
-void Explainer::explain(const State& state, std::vector<TraceRow>& rows) {
-  meter_.explain(state.actors(), met_);
+void Explainer::explain(const RunState& state, std::vector<TraceRow>& rows) {
+  meter_.explain(state.crowd.actors(), met_);
   for (const PowerShare& each : met_) {
     Share& share = shares_[{zone_of_ray_[each.ray], each.person, each.part}];
     share.now_w += static_cast<double>(each.power) * watts_per_step;
   }
   advance();
-  const RayBundle& bundle = model_.analog()->power().clipped();
+  const RayBundle& bundle = study_.array().analog()->power().clipped();
   const std::size_t first_row = rows.size();
   for (std::size_t i = 0; i < filters_.size(); ++i) {
-    const auto& detector = state.analog().detectors()[i];
+    const auto& detector = state.detector.analog()[i];
     if (!detector) continue;
-    rows.push_back({.tick = state.tick(),
+    rows.push_back({.tick = state.tick,
                     .sensor = i,
                     .power_w = detector->power_w,
                     .signal_v = detector->volts,
-                    .output = pir::Detector::on(*detector) ? std::uint8_t{1} : std::uint8_t{0}});
+                    .output = pir::AnalogDetector::on(*detector) ? std::uint8_t{1} : std::uint8_t{0}});
   }
   for (const auto& [source, share] : shares_) {
     const auto& [zone, person, part] = source;
@@ -55,7 +55,7 @@ void Explainer::explain(const State& state, std::vector<TraceRow>& rows) {
     if (std::abs(volts) <= std::abs(row.share_v)) continue;
     row.share_v = volts;
     row.zone = zone - bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor]];
-    row.person = state.actors()[person].person().spec.id;
+    row.person = state.crowd.actors()[person].person().spec.id;
     row.part = body::name(part);
   }
 }

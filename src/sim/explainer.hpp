@@ -9,16 +9,16 @@
 #include "pir/analog_filter.hpp"
 #include "pirsim/sample.hpp"
 #include "sim/power_meter.hpp"
-#include "sim/state.hpp"
+#include "sim/run_state.hpp"
 
 namespace pirsim::sim {
 
 /// Follows one run tick by tick. Gives every zone and body part an element and amplifier of its own: they are linear.
 class Explainer {
  public:
-  explicit Explainer(const Model& model);
+  explicit Explainer(const CompiledStudy& study);
   /// After each step_tick(), from the first on; appends one row an analog sensor.
-  void explain(const State& state, std::vector<TraceRow>& rows);
+  void explain(const RunState& state, std::vector<TraceRow>& rows);
 
  private:
   /// Zone of the bundle, person, part.
@@ -31,7 +31,7 @@ class Explainer {
   void advance();
   [[nodiscard]] std::uint32_t sensor_of(std::uint32_t zone) const;
 
-  const Model& model_;
+  const CompiledStudy& study_;
   PowerMeter meter_;
   std::vector<std::optional<pir::AnalogFilter>> filters_;  ///< (n_sensors) without noise
   std::vector<std::uint32_t> zone_of_ray_;

@@ -2,23 +2,23 @@
 
 #include <algorithm>
 
-#include "sim/state.hpp"
+#include "sim/run_state.hpp"
 
 namespace pirsim::sim {
 
-PeopleTrack Postures::follow(const Model& model, std::uint32_t run) {
-  State state(model, run);
-  const std::vector<Actor>& actors = state.actors();
-  PeopleTrack track{{{run, model.replicate_of(run), model.trial_of(run).id, {}, {}, {}}, {}, {}}, 0, actors.size(), {}};
+PeopleTrack Postures::follow(const CompiledStudy& study, std::uint32_t run) {
+  RunState state(study, run);
+  const std::vector<Actor>& actors = state.crowd.actors();
+  PeopleTrack track{{{run, study.replicate_of(run), study.trial_of(run).id, {}, {}, {}}, {}, {}}, 0, actors.size(), {}};
   std::vector<std::uint64_t> bodies;
   for (const Actor& actor : actors) bodies.push_back(number_of(actor.person().humanoid));
   index_.make_room_for(actors.size());
-  while (!state.finished()) {
-    if (move_tick(model, state)) track.rows.rows.samples.push_back(state.sample());
-    for (const std::size_t seat : state.seats_left()) track.rows.seats_left.push_back({state.tick(), seat});
+  while (!state.finished) {
+    if (move_tick(study, state)) track.rows.rows.samples.push_back(state.sample);
+    for (const std::size_t seat : state.crowd.seats_left()) track.rows.seats_left.push_back({state.tick, seat});
     for (std::uint32_t i = 0; i < actors.size(); ++i) track.postures.push_back(number_of(i, bodies[i], actors[i]));
   }
-  track.n_ticks = static_cast<std::size_t>(state.tick());
+  track.n_ticks = static_cast<std::size_t>(state.tick);
   return track;
 }
 

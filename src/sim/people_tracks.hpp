@@ -7,13 +7,13 @@
 
 #include "sim/actor.hpp"
 #include "sim/posture_index.hpp"
-#include "sim/zone_tracks.hpp"
+#include "sim/replay.hpp"
 
 namespace pirsim::sim {
 
 /// One run.
 struct PeopleTrack {
-  ZoneTrack rows;  ///< all but the sets
+  RecordedRun rows;  ///< all but the sets
   std::size_t n_ticks = 0, n_people = 0;
   std::vector<PostureIndex::Number> postures;  ///< (n_ticks x n_people); 0: not there
 };
@@ -21,7 +21,7 @@ struct PeopleTrack {
 /// All postures of some studies, each once, in the order in which they came.
 class Postures {
  public:
-  [[nodiscard]] PeopleTrack follow(const Model& model, std::uint32_t run);
+  [[nodiscard]] PeopleTrack follow(const CompiledStudy& study, std::uint32_t run);
   [[nodiscard]] std::size_t size() const noexcept { return index_.size(); }
   /// Forgets all but the first n.
   void shrink(std::size_t n) noexcept;

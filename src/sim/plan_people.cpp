@@ -118,13 +118,9 @@ class Rehearsal {
   Vec2 at_{0.0};
 };
 
-}  // namespace
-
-namespace {
-
 using Floors = std::map<double, std::shared_ptr<const body::WalkableFloor>>;  // by clearance
 
-Floors floors_of(const Model* like, const SceneSpec& scene) {
+Floors floors_of(const CompiledStudy* like, const SceneSpec& scene) {
   Floors floors;
   if (like == nullptr || !same_ground(like->scene(), scene)) return floors;
   for (const TrialModel& trial : like->trials()) {
@@ -133,15 +129,15 @@ Floors floors_of(const Model* like, const SceneSpec& scene) {
   return floors;
 }
 
-std::vector<TrialModel> plan_among_solids(const SceneSpec& scene, const ScriptSpec& script,
-                                          const ScriptSpec& as_written, const rt::Room& room, Floors floors) {
-  std::vector<TrialModel> trials;
+std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std::vector<TrialInForce>& trials,
+                                          const SceneSpec& scene, const rt::Room& room, Floors floors) {
+  std::vector<TrialModel> planned_trials;
   Diagnostics diagnostics;
-  for (const TrialSpec& trial : script.trials) {
-    TrialModel& planned = trials.emplace_back();
+  for (const TrialInForce& trial : trials) {
+    const std::vector<PersonSpec>& written = study.script_given().trials[planned_trials.size()].people;
+    TrialModel& planned = planned_trials.emplace_back();
     planned.id = trial.id;
-    const std::vector<PersonSpec>& written = as_written.trials[trials.size() - 1].people;
-    for (const PersonSpec& spec : trial.people) {
+    for (const PersonInForce& spec : trial.people) {
       body::Humanoid humanoid(spec);
       double clearance_m = humanoid.clearance_radius_m();
       if (planned.people.size() < written.size()) {
@@ -152,26 +148,27 @@ std::vector<TrialModel> plan_among_solids(const SceneSpec& scene, const ScriptSp
         floor = std::make_shared<const body::WalkableFloor>(scene.floor, scene.entrances, scene.meshes, clearance_m);
       }
       PersonModel& person = planned.people.emplace_back(
-          PersonModel{spec, humanoid, floor, {}, radiance_of(spec.warmth, script.sensing.ambient_c)});
+          PersonModel{spec, humanoid, floor, {}, radiance_of(spec.warmth, study.sensing().ambient_c)});
       Rehearsal(scene, room, person, diagnostics).run();
     }
   }
   diagnostics.throw_if_errors(ErrorCode::infeasible);
-  return trials;
+  return planned_trials;
 }
 
 }  // namespace
 
-std::vector<TrialModel> plan_people(const SceneSpec& scene, const ScriptSpec& script, const ScriptSpec& as_written,
-                                    const rt::Room& room, const Model* like) {
-  check_actions(scene, script);
+std::vector<TrialModel> plan_people(const CompiledStudy& study, const std::vector<TrialInForce>& trials,
+                                    const CompiledStudy* like) {
+  const SceneSpec& scene = study.scene();
+  check_actions(scene, trials);
   const auto is_screen = [](const TriMesh& mesh) { return mesh.solidity == Solidity::screen; };
   if (std::ranges::none_of(scene.meshes, is_screen)) {
-    return plan_among_solids(scene, script, as_written, room, floors_of(like, scene));
+    return plan_among_solids(study, trials, scene, study.array().room(), floors_of(like, scene));
   }
   SceneSpec solid = scene;
   std::erase_if(solid.meshes, is_screen);
-  return plan_among_solids(solid, script, as_written, rt::Room(solid.meshes), floors_of(like, scene));
+  return plan_among_solids(study, trials, solid, rt::Room(solid.meshes), floors_of(like, scene));
 }
 
 }  // namespace pirsim::sim

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <bit>
 
-#include "sim/state.hpp"
+#include "sim/solids.hpp"
 
 namespace pirsim::sim {
 
-PowerMeter::PowerMeter(const Model& model)
-    : power_(model.analog()->power()),
-      kind_(model.tracer()),
-      tracer_(model.make_power_tracer()),
+PowerMeter::PowerMeter(const CompiledStudy& study)
+    : power_(study.array().analog()->power()),
+      kind_(study.tracer()),
+      tracer_(study.array().make_power_tracer(kind_)),
       memory_(power_.n_sensors()),
       row_(power_.n_sensors()) {}
 
@@ -18,7 +18,7 @@ void PowerMeter::measure(const std::vector<Actor>& actors, std::span<PowerSteps>
   std::ranges::fill(powers, PowerSteps{0});
   const auto n_present = std::ranges::count_if(actors, &Actor::present);
   // People hide one another, so only who is alone is remembered. The slow tracers are there to be compared with.
-  if (n_present != 1 || kind_ != rt::TracerKind::direct) {
+  if (n_present != 1 || kind_ != TracerKind::direct) {
     if (n_present > 0) add(actors, powers);
     return;
   }

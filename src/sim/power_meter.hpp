@@ -7,7 +7,7 @@
 
 #include "rt/tracer.hpp"
 #include "sim/actor.hpp"
-#include "sim/model.hpp"
+#include "sim/compiled_study.hpp"
 #include "sim/posture_memory.hpp"
 #include "sim/power_model.hpp"
 
@@ -24,7 +24,7 @@ struct PowerShare {
 /// Belongs to one thread at a time and to one Model; what it has measured before changes no result.
 class PowerMeter {
  public:
-  explicit PowerMeter(const Model& model);
+  explicit PowerMeter(const CompiledStudy& study);
   /// powers: (n_sensors) overwritten.
   void measure(const std::vector<Actor>& actors, std::span<PowerSteps> powers);
   /// Ray by ray, without memory.
@@ -35,7 +35,7 @@ class PowerMeter {
   void trace(const std::vector<Actor>& actors);
 
   const PowerModel& power_;
-  rt::TracerKind kind_;
+  TracerKind kind_;
   std::unique_ptr<rt::Tracer> tracer_;
   PostureMemory memory_;
   // Scratch.

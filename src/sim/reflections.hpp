@@ -3,9 +3,8 @@
 
 #include <span>
 
-#include "pirsim/scene.hpp"
-#include "pirsim/script.hpp"
 #include "rt/room.hpp"
+#include "schema/study_in_force.hpp"
 
 namespace pirsim::sim {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "io/manifest.hpp"
-#include "schema/shard.hpp"
+#include "pirsim/sample.hpp"
 
 namespace pirsim::studies {
 

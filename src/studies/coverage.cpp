@@ -1,12 +1,13 @@
 #include "studies/coverage.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <span>
 #include <utility>
 
 #include "core/parallel.hpp"
-#include "pir/optics.hpp"
 #include "pir/planck.hpp"
 #include "studies/cross_tracer.hpp"
 
@@ -50,11 +51,15 @@ class SquareCounter {
  public:
   explicit SquareCounter(const CoverageStudy& study)
       : study_(study),
-        rays_(study.clipped_rays()),
+        array_(study.survey().array()),
         n_poses_(study.target().n_poses()),
+        detector_(study.survey().make_detector()),
+        logger_(study.survey().make_logger()),
+        repeats_(detector_.is_memoryless() && study.survey().stages().size() == 0 &&
+                 study.survey().sensing().reader == Reader::in_step),
         active_(padded(n_poses_)),
-        changed_(n_poses_),
-        powers_(n_poses_),
+        exposures_(n_poses_, array_.unexposed()),
+        triggers_(array_.n_sensors()),
         radiance_(pir::band_radiance(pir::kelvin(study.spec().target.temperature_c))) {
     for (const TurningCross& cross : study.target().crosses()) {
       Posed& posed = posed_.emplace_back();
@@ -63,13 +68,17 @@ class SquareCounter {
     }
   }
 
-  /// counts: (n_sensors)
-  void count(const Vec2& point, std::span<MotionCount> counts) {
+  /// counts: (n_sensors); square: its number, which keys what effects draw.
+  void count(const Vec2& point, std::uint32_t square, std::span<MotionCount> counts) {
     foot_ = {point.x, study_.scene().floor.height_m(), point.y};
     for (Posed& posed : posed_) posed.up_to_date = 0;
-    for (std::size_t sensor = 0; sensor < counts.size(); ++sensor) {
-      const bool is_analog = study_.analog() != nullptr && study_.analog()->sensors()[sensor];
-      counts[sensor] = is_analog ? count_outputs(sensor) : count_motion(sensor);
+    const bool anything = expose();
+    if (!repeats_) {
+      count_windows(square, counts);
+    } else if (anything) {
+      count_periods(counts);
+    } else {
+      std::ranges::fill(counts, MotionCount{0});
     }
   }
 
@@ -81,89 +90,66 @@ class SquareCounter {
     std::uint8_t up_to_date = 0;
   };
 
-  MotionCount count_motion(std::size_t sensor) {
-    std::ranges::fill(changed_, std::uint8_t{0});
-    bool any = false;
-    for (auto c = rays_.sensor_clusters_begin[sensor]; c < rays_.sensor_clusters_begin[sensor + 1]; ++c) {
-      const auto first = rays_.cluster_zones_begin[c], last = rays_.cluster_zones_begin[c + 1];
-      if (study_.spec().sensing.change_per == ChangePer::cluster) {
-        any |= mark_changes(first, last);
-      } else {
-        for (auto zone = first; zone < last; ++zone) any |= mark_changes(zone, zone + 1);
+  /// What the optics show in every pose; false if that is an empty room in all of them.
+  bool expose() {
+    if (std::exchange(exposed_, false)) std::ranges::fill(exposures_, array_.unexposed());
+    expose_zones();
+    if (array_.analog() != nullptr) expose_powers();
+    return exposed_;
+  }
+
+  void expose_zones() {
+    const RayBundle& rays = array_.clipped();
+    for (std::uint32_t zone = 0; zone < rays.n_zones(); ++zone) {
+      bool near = false;
+      for (auto i = rays.zone_rays_begin[zone]; i < rays.zone_rays_begin[zone + 1]; ++i) {
+        mark_poses(rays.rays[i], rays.range[i], near);
+      }
+      if (!near) continue;
+      for_active([&](std::size_t pose) { exposures_[pose].zones.insert(zone); });
+    }
+    if (!exposed_) return;
+    for (sim::Exposure& exposure : exposures_) array_.expose(exposure);
+  }
+
+  /// All crosses are equally warm, so that it doesn't matter which of them a ray hits first.
+  void expose_powers() {
+    const sim::PowerModel& power = array_.analog()->power();
+    const RayBundle& rays = power.clipped();
+    for (std::uint32_t i = 0; i < rays.rays.size(); ++i) {
+      bool near = false;
+      mark_poses(rays.rays[i], rays.range[i], near);
+      if (!near) continue;
+      const sim::PowerSteps step = power.power(i, radiance_);
+      const std::uint32_t sensor = power.sensor_of(i);
+      for_active([&](std::size_t pose) { exposures_[pose].powers[sensor] += step; });
+    }
+  }
+
+  /// Calls `act` with every pose that is marked.
+  template <typename Act>
+  void for_active(const Act& act) {
+    // Eight poses at a time: most rays come near a cross without hitting it.
+    for (std::size_t first = 0; first < n_poses_; first += sizeof(std::uint64_t)) {
+      std::uint64_t eight = 0;
+      std::memcpy(&eight, active_.data() + first, std::min(sizeof eight, n_poses_ - first));
+      if (eight == 0) continue;
+      exposed_ = true;
+      for (std::size_t pose = first; pose < std::min(first + sizeof eight, n_poses_); ++pose) {
+        if (active_[pose] != 0) act(pose);
       }
     }
-    return any ? count_windows_with_change() : MotionCount{0};
   }
 
-  /// Where the activity of zones [first, last), taken as one, changes; false if no ray of theirs comes near.
-  bool mark_changes(std::uint32_t first, std::uint32_t last) {
-    bool near = false;
-    for (auto i = rays_.zone_rays_begin[first]; i < rays_.zone_rays_begin[last]; ++i) {
-      mark_poses(rays_.rays[i], rays_.range[i], near);
-    }
-    if (!near) return false;
-    for (std::size_t pose = 0; pose < n_poses_; ++pose) {
-      const std::size_t before = pose == 0 ? n_poses_ - 1 : pose - 1;
-      if (active_[pose] != active_[before]) changed_[pose] = 1;
-    }
-    return true;
-  }
-
-  /// Adds the poses in which the ray meets a cross to those marked; the first ray that comes near (`near`, which is
+  /// Adds the poses in which the ray hits a cross to those marked; the first ray that comes near (`near`, which is
   /// then set) begins anew.
   void mark_poses(const Ray& ray, float range, bool& near) {
     for (std::size_t k = 0; k < posed_.size(); ++k) {
       const TurningCross& cross = study_.target().crosses()[k];
-      if (!may_meet(ray, range, foot_ + cross.middle, cross.reach_m)) continue;
+      if (!may_hit(ray, range, foot_ + cross.middle, cross.reach_m)) continue;
       if (!std::exchange(near, true)) std::ranges::fill(active_, 0);
       for (const BarPoses& bar : posed(k)) mark_active(ray, range, bar, active_);
     }
-  }
-
-  /// Windows in which an analog sensor's output was on. All crosses are equally warm, so that it doesn't matter which
-  /// of them a ray meets first.
-  MotionCount count_outputs(std::size_t sensor) {
-    const sim::PowerModel& power = study_.analog()->power();
-    const RayBundle& rays = power.clipped();
-    const auto first_ray = [&](std::size_t s) {
-      return rays.zone_rays_begin[rays.cluster_zones_begin[rays.sensor_clusters_begin[s]]];
-    };
-    std::ranges::fill(powers_, sim::PowerSteps{0});
-    bool any = false;
-    for (auto i = first_ray(sensor); i < first_ray(sensor + 1); ++i) {
-      bool near = false;
-      mark_poses(rays.rays[i], rays.range[i], near);
-      if (!near) continue;
-      any = true;
-      const sim::PowerSteps step = power.power(i, radiance_);
-      for (std::size_t pose = 0; pose < n_poses_; ++pose) powers_[pose] += active_[pose] != 0 ? step : 0;
-    }
-    return any ? count_windows_with_output(sensor) : MotionCount{0};
-  }
-
-  MotionCount count_windows_with_output(std::size_t sensor) const {
-    const SensingSpec& sensing = study_.spec().sensing;
-    const SceneSpec& scene = study_.scene();
-    const pir::AnalogFilter& filter = study_.analog()->sensors()[sensor]->silent_filter;
-    const pir::Comparator comparator(scene.sensor_models.at(scene.sensors[sensor].model).detector.comparator,
-                                     1.0 / sensing.tick_rate_hz);
-    const auto watts = [&](std::size_t pose) { return static_cast<double>(powers_[pose]) * sim::watts_per_step; };
-    pir::AnalogFilter::Sections sections = filter.at_rest(watts(0));
-    pir::Comparator::State state;
-    MotionCount count = 0;
-    std::size_t pose = 0;
-    for (int window = 0; window < study_.n_windows(); ++window) {
-      bool motion = false;
-      for (int tick = 0; tick < sensing.ticks_per_window; ++tick) {
-        const double before_w = watts(pose);
-        if (++pose == n_poses_) pose = 0;
-        filter.advance(sections, before_w, watts(pose), 0.0);
-        comparator.advance(state, filter.output(sections));
-        motion |= state.on;
-      }
-      count = static_cast<MotionCount>(count + (motion ? 1 : 0));
-    }
-    return count;
   }
 
   const std::vector<BarPoses>& posed(std::size_t k) {
@@ -178,14 +164,56 @@ class SquareCounter {
     return posed.bars;
   }
 
-  MotionCount count_windows_with_change() const {
+  [[nodiscard]] std::size_t after(std::size_t pose) const noexcept { return pose + 1 == n_poses_ ? 0 : pose + 1; }
+
+  /// Every tick of every window through detector and logger.
+  void count_windows(std::uint32_t square, std::span<MotionCount> counts) {
+    std::ranges::fill(counts, MotionCount{0});
+    detector_.begin_run(study_.survey().seed(), square, exposures_[0]);
+    logger_.begin_run(study_.survey().seed(), square);
+    std::size_t pose = 0;
+    std::int64_t tick = 0;
+    for (int window = 1; window <= study_.n_windows(); ++window) {
+      for (int i = 0; i < study_.survey().sensing().ticks_per_window; ++i) {
+        const std::size_t next = after(pose);
+        detector_.tick(exposures_[pose], exposures_[next], triggers_);
+        logger_.tick(++tick, triggers_);
+        pose = next;
+      }
+      row_.time_s = static_cast<double>(tick) / study_.survey().sensing().tick_rate_hz;
+      logger_.complete(row_);
+      for (std::size_t s = 0; s < counts.size(); ++s) counts[s] = static_cast<MotionCount>(counts[s] + row_.bits[s]);
+    }
+  }
+
+  /// The same where triggers repeat with the poses: one turn through the detector, then counted window by window.
+  void count_periods(std::span<MotionCount> counts) {
+    const std::size_t n_sensors = counts.size();
+    std::ranges::fill(counts, MotionCount{0});
+    any_.assign(n_sensors, 0);
+    turn_.assign(n_sensors * n_poses_, 0);
+    for (std::size_t pose = 0; pose < n_poses_; ++pose) {
+      const std::size_t next = after(pose);
+      detector_.tick(exposures_[pose], exposures_[next], triggers_);
+      for (std::size_t s = 0; s < n_sensors; ++s) {
+        turn_[s * n_poses_ + next] = triggers_[s];
+        any_[s] |= triggers_[s];
+      }
+    }
+    for (std::size_t s = 0; s < n_sensors; ++s) {
+      if (any_[s] != 0) counts[s] = windows_with(std::span(turn_).subspan(s * n_poses_, n_poses_));
+    }
+  }
+
+  /// turn: (n_poses) triggers of one sensor.
+  [[nodiscard]] MotionCount windows_with(std::span<const std::uint8_t> turn) const {
     MotionCount count = 0;
     std::size_t pose = 0;
     for (int window = 0; window < study_.n_windows(); ++window) {
       std::uint8_t motion = 0;
-      for (int tick = 0; tick < study_.spec().sensing.ticks_per_window; ++tick) {
-        if (++pose == n_poses_) pose = 0;
-        motion |= changed_[pose];
+      for (int tick = 0; tick < study_.survey().sensing().ticks_per_window; ++tick) {
+        pose = after(pose);
+        motion |= turn[pose];
       }
       count = static_cast<MotionCount>(count + motion);
     }
@@ -193,49 +221,63 @@ class SquareCounter {
   }
 
   const CoverageStudy& study_;
-  const RayBundle& rays_;
+  const sim::SensorArray& array_;
   std::size_t n_poses_;
+  sim::Detector detector_;
+  sim::Logger logger_;
+  bool repeats_;  ///< triggers do, with the poses
   Vec3 foot_{0.0};
   std::vector<Posed> posed_;
-  std::vector<std::uint8_t> active_;     ///< (padded n_poses)
-  std::vector<std::uint8_t> changed_;    ///< (n_poses) from the pose before to this one
-  std::vector<sim::PowerSteps> powers_;  ///< (n_poses)
-  double radiance_;                      ///< of the crosses, W m^-2 sr^-1
+  std::vector<std::uint8_t> active_;      ///< (padded n_poses)
+  std::vector<sim::Exposure> exposures_;  ///< (n_poses)
+  bool exposed_ = false;                  ///< some exposure isn't that of an empty room
+  std::vector<std::uint8_t> triggers_;    ///< (n_sensors) scratch
+  std::vector<std::uint8_t> turn_;        ///< (n_sensors x n_poses) from the pose before to this one
+  std::vector<std::uint8_t> any_;         ///< (n_sensors)
+  Sample row_;
+  double radiance_;  ///< of the crosses, W m^-2 sr^-1
 };
+
+ScriptSpec as_script(const CoverageSpec& spec) {
+  ScriptSpec script;
+  script.sensing = spec.sensing;
+  script.seed = spec.seed;
+  script.effects = spec.effects;
+  return script;
+}
 
 }  // namespace
 
 CoverageStudy::CoverageStudy(SceneSpec scene, CoverageSpec spec)
-    : scene_(std::move(scene)),
-      spec_(std::move(spec)),
-      taken_out_(take_out(scene_, spec_)),
-      grid_(scene_.floor, spec_.spacing_m),
+    : spec_(std::move(spec)),
+      taken_out_(take_out(scene, spec_)),
+      survey_(std::move(scene), as_script(spec_)),
+      grid_(survey_.scene().floor, spec_.spacing_m),
       n_windows_(count_windows(spec_)),
-      target_(spec_.target, spec_.sensing.tick_rate_hz, std::int64_t{n_windows_} * spec_.sensing.ticks_per_window),
-      room_(std::make_unique<rt::Room>(scene_.meshes)) {
-  for (const SensorSpec& sensor : scene_.sensors) {
-    pir::append(rated_, sensor, scene_.sensor_models.at(sensor.model), spec_.sensing.rays_per_zone);
-  }
-  clipped_ = rated_;
-  room_->clip(clipped_);
-  if (sim::AnalogModel::is_needed(scene_, spec_.sensing)) {
-    analog_ = std::make_unique<sim::AnalogModel>(scene_, spec_.sensing, *room_);
-  }
+      target_(spec_.target, spec_.sensing.tick_rate_hz, std::int64_t{n_windows_} * spec_.sensing.ticks_per_window) {}
+
+std::vector<Issue> CoverageStudy::warnings() const {
+  // Nobody is there.
+  static constexpr std::array<std::string_view, 10> idle{"seats_shifted", "second_person", "seat_shift", "seat_scatter",
+                                                         "body_size",     "arm_motion",    "trunk_tilt", "fidgeting",
+                                                         "warm_chair",    "clock_lag"};
+  return idle_effects(spec_.effects, survey_, idle, "coverage study");
 }
 
 std::vector<MotionCount> CoverageStudy::counts_at(const Vec2& point) const {
-  std::vector<MotionCount> counts(scene_.sensors.size());
-  SquareCounter(*this).count(point, counts);
+  std::vector<MotionCount> counts(scene().sensors.size());
+  SquareCounter(*this).count(point, static_cast<std::uint32_t>(grid_.n_rows() * grid_.n_columns()), counts);
   return counts;
 }
 
 std::vector<MotionCount> CoverageStudy::counts_of_row(std::size_t row) const {
-  const std::size_t n_sensors = scene_.sensors.size();
+  const std::size_t n_sensors = scene().sensors.size();
   std::vector<MotionCount> counts(grid_.n_columns() * n_sensors, 0);
   SquareCounter counter(*this);
   for (std::size_t column = 0; column < grid_.n_columns(); ++column) {
     if (!grid_.on_floor(column, row)) continue;
-    counter.count(grid_.centre(column, row), std::span(counts).subspan(column * n_sensors, n_sensors));
+    counter.count(grid_.centre(column, row), static_cast<std::uint32_t>(row * grid_.n_columns() + column),
+                  std::span(counts).subspan(column * n_sensors, n_sensors));
   }
   return counts;
 }

@@ -7,12 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/rays.hpp"
-#include "pirsim/scene.hpp"
 #include "pirsim/survey.hpp"
-#include "rt/room.hpp"
-#include "sim/analog_model.hpp"
 #include "studies/floor_grid.hpp"
+#include "studies/survey_base.hpp"
 #include "studies/turning_target.hpp"
 
 namespace pirsim::studies {
@@ -27,17 +24,16 @@ class CoverageStudy {
   /// Takes the things of `spec.without` out of the scene. Throws Error(input) for a name that no mesh has.
   CoverageStudy(SceneSpec scene, CoverageSpec spec);
 
-  [[nodiscard]] const SceneSpec& scene() const noexcept { return scene_; }  ///< without what was taken out
+  /// With the effects in force and without what was taken out.
+  [[nodiscard]] const SurveyBase& survey() const noexcept { return survey_; }
+  [[nodiscard]] const SceneSpec& scene() const noexcept { return survey_.scene(); }
   [[nodiscard]] const CoverageSpec& spec() const noexcept { return spec_; }
   [[nodiscard]] const FloorGrid& grid() const noexcept { return grid_; }
   [[nodiscard]] const TurningTarget& target() const noexcept { return target_; }
-  [[nodiscard]] const rt::Room& room() const noexcept { return *room_; }
-  [[nodiscard]] const RayBundle& rated_rays() const noexcept { return rated_; }
-  [[nodiscard]] const RayBundle& clipped_rays() const noexcept { return clipped_; }
-  /// The sensors that answer physically, or null if none does. Their noise is left out: the same square gives the same.
-  [[nodiscard]] const sim::AnalogModel* analog() const noexcept { return analog_.get(); }
   [[nodiscard]] int n_windows() const noexcept { return n_windows_; }
   [[nodiscard]] const std::vector<TriMesh>& taken_out() const noexcept { return taken_out_; }
+  /// Effects that a coverage study can't show.
+  [[nodiscard]] std::vector<Issue> warnings() const;
 
   /// (n_sensors) counts of the target at one point of the floor.
   [[nodiscard]] std::vector<MotionCount> counts_at(const Vec2& point) const;
@@ -45,15 +41,12 @@ class CoverageStudy {
   [[nodiscard]] std::vector<MotionCount> counts_of_row(std::size_t row) const;
 
  private:
-  SceneSpec scene_;
   CoverageSpec spec_;
   std::vector<TriMesh> taken_out_;
+  SurveyBase survey_;
   FloorGrid grid_;
   int n_windows_ = 0;
   TurningTarget target_;
-  std::unique_ptr<rt::Room> room_;
-  RayBundle rated_, clipped_;
-  std::unique_ptr<sim::AnalogModel> analog_;
 };
 
 struct CoverageMap {

@@ -51,7 +51,7 @@ void mark_active(const Ray& ray, float range, const BarPoses& poses, std::vector
   }
 }
 
-bool may_meet(const Ray& ray, float range, const Vec3& middle, double reach_m) noexcept {
+bool may_hit(const Ray& ray, float range, const Vec3& middle, double reach_m) noexcept {
   constexpr double safety_m = 1e-3;  // as the tracers' bounding boxes have it
   const Vec3 to_middle = middle - Vec3(ray.origin), direction(ray.direction);
   const double along = std::clamp(glm::dot(to_middle, direction), 0.0, static_cast<double>(range));

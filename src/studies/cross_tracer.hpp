@@ -27,6 +27,6 @@ void pose_bar(const std::vector<Vec3>& half_axes, const Vec3& middle, double rad
 void mark_active(const Ray& ray, float range, const BarPoses& poses, std::vector<std::uint8_t>& active) noexcept;
 
 /// Whether the ray passes a ball within its range; a millimetre is added to be on the safe side of rounding.
-[[nodiscard]] bool may_meet(const Ray& ray, float range, const Vec3& middle, double reach_m) noexcept;
+[[nodiscard]] bool may_hit(const Ray& ray, float range, const Vec3& middle, double reach_m) noexcept;
 
 }  // namespace pirsim::studies

@@ -78,8 +78,8 @@ void add_detector(Hash& hash, const DetectorSpec& detector) {
 
 /// What only the physical response depends on.
 void add_analog(Hash& hash, const CoverageStudy& study) {
-  if (study.analog() == nullptr) return;
-  const sim::PowerModel& power = study.analog()->power();
+  if (study.survey().array().analog() == nullptr) return;
+  const sim::PowerModel& power = study.survey().array().analog()->power();
   for (std::uint32_t i = 0; i < power.clipped().rays.size(); ++i) {
     hash.add(power.clipped().rays[i].direction);
     hash.add(power.clipped().range[i]);
@@ -87,12 +87,30 @@ void add_analog(Hash& hash, const CoverageStudy& study) {
     hash.add(power.background(i));
   }
   for (std::size_t i = 0; i < power.n_sensors(); ++i) {
-    if (!study.analog()->sensors()[i]) continue;
+    if (!study.survey().array().analog()->sensors()[i]) continue;
     hash.add(i);
     add_detector(hash, study.scene().sensor_models.at(study.scene().sensors[i].model).detector);
   }
   hash.add(study.spec().target.temperature_c);
   hash.add(study.spec().sensing.tick_rate_hz);
+}
+
+/// What rays don't show of them: how detectors and electronics are changed.
+void add_effects(Hash& hash, const CoverageSpec& spec) {
+  hash.add(spec.seed);
+  hash.add(spec.sensing.reader);
+  const auto add_text = [&](const std::string& text) { hash.add_bytes(text.c_str(), text.size() + 1); };
+  for (const EffectSpec& effect : spec.effects) {
+    add_text(effect.name);
+    for (const auto& [name, value] : effect.parameters) {
+      add_text(name);
+      hash.add(value);
+    }
+    for (const auto& [name, value] : effect.choices) {
+      add_text(name);
+      add_text(value);
+    }
+  }
 }
 
 }  // namespace
@@ -101,7 +119,7 @@ std::uint64_t fingerprint(const CoverageStudy& study) {
   Hash hash;
   const std::string build = version() + git_revision();
   hash.add_bytes(build.data(), build.size());
-  const RayBundle& rays = study.clipped_rays();
+  const RayBundle& rays = study.survey().array().clipped();
   for (const Ray& ray : rays.rays) {
     hash.add(ray.origin);
     hash.add(ray.direction);
@@ -132,6 +150,7 @@ std::uint64_t fingerprint(const CoverageStudy& study) {
   hash.add(study.spec().sensing.ticks_per_window);
   hash.add(study.spec().sensing.change_per);
   add_analog(hash, study);
+  add_effects(hash, study.spec());
   return hash.value();
 }
 

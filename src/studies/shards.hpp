@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "schema/shard.hpp"
+#include "pirsim/sample.hpp"
 
 namespace pirsim::studies {
 

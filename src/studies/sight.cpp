@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "body/motion.hpp"
+#include "sim/compiled_study.hpp"
 
 namespace pirsim::studies {
 namespace {
@@ -14,7 +15,10 @@ constexpr double buried_m = 0.5;  // assumed: 0.3 to 1 m would do; walls are thi
 class Onlooker {
  public:
   Onlooker(const Model& model, const body::Humanoid& humanoid)
-      : rays_(model.rated_rays()), humanoid_(humanoid), tracer_(model.make_tracer()), zones_(rays_.n_zones()) {}
+      : rays_(model.compiled().array().rated()),
+        humanoid_(humanoid),
+        tracer_(model.compiled().array().make_tracer(model.compiled().tracer())),
+        zones_(rays_.n_zones()) {}
 
   /// (n_sensors) whether the sensor sees the posture.
   std::vector<bool> sensors_that_see(const body::Posture& posture) {
@@ -38,7 +42,7 @@ class Onlooker {
 };
 
 body::Posture seated_posture(const Model& model, const body::Humanoid& humanoid, const SeatSpec& seat) {
-  const body::SeatPlace place{seat.world_from_seat, model.scene().floor.height_m(), std::nullopt};
+  const body::SeatPlace place{seat.world_from_seat, model.compiled().scene().floor.height_m(), std::nullopt};
   const double heading = heading_of(seat.world_from_seat);
   const Vec2 stand =
       floor_point(seat.world_from_seat.origin) + body::fall_back_m(humanoid, place) * direction_of(heading);
@@ -49,8 +53,8 @@ body::Posture seated_posture(const Model& model, const body::Humanoid& humanoid,
 }
 
 void count_rays(const Model& model, std::size_t sensor, SensorSight& sight) {
-  const RayBundle& rated = model.rated_rays();
-  const RayBundle& clipped = model.clipped_rays();
+  const RayBundle& rated = model.compiled().array().rated();
+  const RayBundle& clipped = model.rays();
   const auto ray_of_cluster = [&](std::uint32_t cluster) {
     return rated.zone_rays_begin[rated.cluster_zones_begin[cluster]];
   };
@@ -66,9 +70,9 @@ void count_rays(const Model& model, std::size_t sensor, SensorSight& sight) {
 }  // namespace
 
 SightReport look_around(const Model& model) {
-  const SceneSpec& scene = model.scene();
-  const auto& people = model.trials().front().people;
-  const body::Humanoid humanoid(people.empty() ? PersonSpec{} : people.front().spec);
+  const SceneSpec& scene = model.compiled().scene();
+  const auto& people = model.compiled().trials().front().people;
+  const body::Humanoid humanoid(people.empty() ? PersonInForce{} : people.front().spec);
   const body::WalkableFloor floor(scene.floor, {}, scene.meshes, humanoid.clearance_radius_m());
   Onlooker onlooker(model, humanoid);
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/model.hpp"
+#include "pirsim/model.hpp"
 
 namespace pirsim::studies {
 

@@ -56,7 +56,7 @@ std::string note_of(const CellSummary& cell) {
 
 StudyReport::StudyReport(const Model& model) : model_(&model) {
   for (const SensorSpec& sensor : model.scene().sensors) sensors_.push_back(sensor.id);
-  for (const TrialModel& trial : model.trials()) trials_.push_back({trial.id, {}});
+  for (const TrialSpec& trial : model.script().trials) trials_.push_back({trial.id, {}});
 }
 
 void StudyReport::add_run(const RunResult& result) {

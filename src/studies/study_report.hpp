@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/report.hpp"
-#include "sim/study.hpp"
+#include "pirsim/study.hpp"
 #include "studies/summary.hpp"
 
 namespace pirsim::studies {

@@ -1,14 +1,12 @@
 #include "studies/walk_test.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "body/motion.hpp"
 #include "core/parallel.hpp"
-#include "pir/motion_detector.hpp"
-#include "pir/optics.hpp"
 #include "pirsim/geometry.hpp"
-#include "sim/analog_model.hpp"
 
 namespace pirsim::studies {
 namespace {
@@ -19,28 +17,51 @@ int ticks(const WalkTestSpec& spec, double seconds) {
   return std::max(1, static_cast<int>(std::lround(seconds * spec.sensing.tick_rate_hz)));
 }
 
+/// The walk test's person in a trial of their own, so that effects find them.
+ScriptSpec as_script(const WalkTestSpec& spec) {
+  action::Work work;
+  work.arm_amplitude_m = spec.arm_amplitude_m;
+  work.arm_period_s = spec.arm_period_s;
+  PersonSpec person = spec.person;
+  person.actions = {{work, {}, {}, {}}};
+  ScriptSpec script;
+  script.sensing = spec.sensing;
+  script.seed = spec.seed;
+  script.effects = spec.effects;
+  script.trials = {{"walk test", {person}}};
+  return script;
+}
+
+/// The spec with the person as effects made them.
+WalkTestSpec in_force(WalkTestSpec spec, const PersonInForce& person) {
+  spec.person = person;
+  const auto& work = std::get<action::Work>(person.actions.front().what);
+  spec.arm_amplitude_m = work.arm_amplitude_m;
+  spec.arm_period_s = work.arm_period_s;
+  return spec;
+}
+
 }  // namespace
 
 WalkTest::WalkTest(SceneSpec scene, WalkTestSpec spec)
-    : scene_(std::move(scene)),
-      spec_(std::move(spec)),
-      grid_(scene_.floor, spec_.spacing_m),
+    : survey_(std::move(scene), as_script(spec)),
+      spec_(in_force(std::move(spec), survey_.trials().front().people.front())),
+      grid_(survey_.scene().floor, spec_.spacing_m),
       humanoid_(spec_.person),
-      floor_(scene_.floor, {}, scene_.meshes, humanoid_.clearance_radius_m()),
-      room_(scene_.meshes) {
-  if (sim::AnalogModel::is_needed(scene_, spec_.sensing)) {
-    throw Error(ErrorCode::input, "a walk test knows hard zones only; ask for them by sensing.response: zones");
-  }
-  for (const SensorSpec& sensor : scene_.sensors) {
-    pir::append(rated_, sensor, scene_.sensor_models.at(sensor.model), spec_.sensing.rays_per_zone);
-  }
-  clipped_ = rated_;
-  room_.clip(clipped_);
-  crossing_ = crossing();
-  arm_work_ = arm_work();
+      floor_(survey_.scene().floor, {}, survey_.scene().meshes, humanoid_.clearance_radius_m()) {
+  crossing_ = make_crossing();
+  arm_work_ = make_arm_work();
 }
 
-WalkTest::Movement WalkTest::crossing() const {
+std::vector<Issue> WalkTest::warnings() const {
+  // One person, who walks and works as the test says, and no script.
+  static constexpr std::array<std::string_view, 9> idle{"second_person", "seat_shift",  "seat_scatter",
+                                                        "trunk_tilt",    "fidgeting",   "warm_chair",
+                                                        "clock_lag",     "dead_sensor", "labels_swapped"};
+  return idle_effects(spec_.effects, survey_, idle, "walk test");
+}
+
+WalkTest::Movement WalkTest::make_crossing() const {
   const Vec2 start(0.0, spec_.path_m / 2), end = -start;  // along -Z
   body::Motion motion(humanoid_, start, 0.0, 0.0, tick_s(spec_));
   Movement postures{motion.posture()};
@@ -52,7 +73,7 @@ WalkTest::Movement WalkTest::crossing() const {
   return postures;
 }
 
-WalkTest::Movement WalkTest::arm_work() const {
+WalkTest::Movement WalkTest::make_arm_work() const {
   const body::SeatPlace seat{Frame{{1, 0, 0, 0}, {0.0, spec_.seat_height_m, 0.0}}, 0.0, spec_.desk_height_m};
   const Vec2 stand = body::fall_back_m(humanoid_, seat) * direction_of(0.0);
   body::Motion motion(humanoid_, stand, 0.0, 0.0, tick_s(spec_));
@@ -70,49 +91,79 @@ WalkTest::Movement WalkTest::arm_work() const {
   return postures;
 }
 
-bool WalkTest::is_noticed(const Movement& movement, const Frame& world_from_movement, rt::Tracer& tracer) const {
-  ZoneActivity before(rated_.n_zones()), after(rated_.n_zones());
-  std::vector<std::uint8_t> bits(rated_.n_sensors(), 0);
-  std::vector<PosedShape> solids(body::n_parts);
-  for (std::size_t tick = 0; tick < movement.size(); ++tick) {
-    for (std::size_t i = 0; i < body::n_parts; ++i) {
-      solids[i] = place(humanoid_.solids()[i], world_from_movement * movement[tick][i]);
-    }
-    std::swap(before, after);
-    tracer.trace(solids, after);
-    if (tick == 0) continue;
-    pir::mark_motion(rated_, spec_.sensing.change_per, before, after, bits);
-    if (std::ranges::find(bits, 1) != bits.end()) return true;
+WalkTester::WalkTester(const WalkTest& test)
+    : test_(test),
+      array_(test.survey().array()),
+      tracer_(array_.make_tracer(fastest_tracer)),
+      power_tracer_(array_.analog() != nullptr ? array_.make_power_tracer(fastest_tracer) : nullptr),
+      detector_(test.survey().make_detector()),
+      logger_(test.survey().make_logger()),
+      before_(array_.unexposed()),
+      after_(before_),
+      radiance_(sim::radiance_of(test.spec().person.warmth, test.survey().sensing().ambient_c)),
+      activity_(array_.channels().n_zones()),
+      solids_(body::n_parts),
+      triggers_(array_.n_sensors()) {}
+
+void WalkTester::look(const body::Posture& posture, const Frame& world_from_movement, sim::Exposure& exposure) {
+  for (std::size_t i = 0; i < body::n_parts; ++i) {
+    solids_[i] = place(test_.humanoid().solids()[i], world_from_movement * posture[i]);
+  }
+  tracer_->trace(solids_, activity_);
+  exposure.zones.clear();
+  for (std::size_t zone = 0; zone < activity_.size(); ++zone) {
+    if (activity_[zone] != 0) exposure.zones.insert(zone);
+  }
+  array_.expose(exposure);
+  if (!power_tracer_) return;
+  const sim::PowerModel& power = array_.analog()->power();
+  power_tracer_->find_first(solids_, met_);
+  std::ranges::fill(exposure.powers, sim::PowerSteps{0});
+  for (const auto& [ray, solid] : met_) exposure.powers[power.sensor_of(ray)] += power.power(ray, radiance_[solid]);
+}
+
+bool WalkTester::is_noticed(const WalkTest::Movement& movement, const Frame& world_from_movement,
+                            std::uint32_t try_number) {
+  look(movement.front(), world_from_movement, after_);
+  detector_.begin_run(test_.survey().seed(), try_number, after_);
+  logger_.begin_run(test_.survey().seed(), try_number);
+  for (std::size_t tick = 1; tick < movement.size(); ++tick) {
+    std::swap(before_, after_);
+    look(movement[tick], world_from_movement, after_);
+    detector_.tick(before_, after_, triggers_);
+    logger_.tick(static_cast<std::int64_t>(tick), triggers_);
+    if (std::ranges::find(triggers_, 1) != triggers_.end()) return true;
   }
   return false;
 }
 
-PointResult WalkTest::try_point(const Vec2& point, rt::Tracer& tracer) const {
+PointResult WalkTester::try_point(const Vec2& point, std::uint32_t number) {
+  const WalkTestSpec& spec = test_.spec();
+  const auto n_tries = static_cast<std::uint32_t>(spec.major.directions + spec.minor.directions);
+  std::uint32_t try_number = number * n_tries;
   PointResult result;
-  const Vec3 foot(point.x, scene_.floor.height_m(), point.y);
-  for (int i = 0; i < spec_.major.directions; ++i) {
-    const double heading = 2.0 * pi * i / spec_.major.directions;
-    const Vec2 half_path = spec_.path_m / 2 * direction_of(heading);
-    if (!floor_.walkable(point - half_path, point + half_path)) continue;
+  const Vec3 foot(point.x, test_.scene().floor.height_m(), point.y);
+  for (int i = 0; i < spec.major.directions; ++i, ++try_number) {
+    const double heading = 2.0 * pi * i / spec.major.directions;
+    const Vec2 half_path = spec.path_m / 2 * direction_of(heading);
+    if (!test_.floor().walkable(point - half_path, point + half_path)) continue;
     ++result.major.made;
-    if (is_noticed(crossing_, {rotation_from_heading(heading), foot}, tracer)) ++result.major.noticed;
+    if (is_noticed(test_.crossing(), {rotation_from_heading(heading), foot}, try_number)) ++result.major.noticed;
   }
-  for (int i = 0; i < spec_.minor.directions && floor_.walkable(point); ++i) {
-    const double heading = 2.0 * pi * i / spec_.minor.directions;
+  for (int i = 0; i < spec.minor.directions && test_.floor().walkable(point); ++i, ++try_number) {
+    const double heading = 2.0 * pi * i / spec.minor.directions;
     ++result.minor.made;
-    if (is_noticed(arm_work_, {rotation_from_heading(heading), foot}, tracer)) ++result.minor.noticed;
+    if (is_noticed(test_.arm_work(), {rotation_from_heading(heading), foot}, try_number)) ++result.minor.noticed;
   }
   return result;
 }
 
-bool WalkTest::notices_sitter(const SeatSpec& seat, rt::Tracer& tracer) const {
+bool WalkTester::notices_sitter(const SeatSpec& seat, std::uint32_t number) {
   const Vec3 pelvis = seat.world_from_seat.origin;
-  const Vec3 foot(pelvis.x, scene_.floor.height_m(), pelvis.z);
-  return is_noticed(arm_work_, {rotation_from_heading(heading_of(seat.world_from_seat)), foot}, tracer);
-}
-
-std::unique_ptr<rt::Tracer> WalkTest::make_tracer() const {
-  return rt::make_tracer(rt::fastest_tracer, {&room_, &rated_, &clipped_});
+  const Vec3 foot(pelvis.x, test_.scene().floor.height_m(), pelvis.z);
+  const auto n_tries = static_cast<std::uint32_t>(test_.spec().major.directions + test_.spec().minor.directions);
+  return is_noticed(test_.arm_work(), {rotation_from_heading(heading_of(seat.world_from_seat)), foot},
+                    number * n_tries);
 }
 
 WalkTestResult run_walk_test(const WalkTest& test, unsigned threads, const std::function<void()>& row_done) {
@@ -121,10 +172,13 @@ WalkTestResult run_walk_test(const WalkTest& test, unsigned threads, const std::
   ordered_parallel<std::vector<PointResult>>(
       grid.n_rows(), threads,
       [&](std::size_t row) {
-        const std::unique_ptr<rt::Tracer> tracer = test.make_tracer();
+        WalkTester tester(test);
         std::vector<PointResult> points(grid.n_columns());
         for (std::size_t column = 0; column < grid.n_columns(); ++column) {
-          if (grid.on_floor(column, row)) points[column] = test.try_point(grid.centre(column, row), *tracer);
+          if (grid.on_floor(column, row)) {
+            points[column] =
+                tester.try_point(grid.centre(column, row), static_cast<std::uint32_t>(row * grid.n_columns() + column));
+          }
         }
         return points;
       },
@@ -132,8 +186,11 @@ WalkTestResult run_walk_test(const WalkTest& test, unsigned threads, const std::
         result.points.insert(result.points.end(), points.begin(), points.end());
         row_done();
       });
-  const std::unique_ptr<rt::Tracer> tracer = test.make_tracer();
-  for (const SeatSpec& seat : test.scene().seats) result.seats.push_back({seat.id, test.notices_sitter(seat, *tracer)});
+  WalkTester tester(test);
+  auto number = static_cast<std::uint32_t>(grid.n_rows() * grid.n_columns());
+  for (const SeatSpec& seat : test.scene().seats) {
+    result.seats.push_back({seat.id, tester.notices_sitter(seat, number++)});
+  }
   return result;
 }
 

@@ -15,7 +15,9 @@
 #include "pirsim/scene.hpp"
 #include "pirsim/survey.hpp"
 #include "rt/tracer.hpp"
+#include "sim/power_model.hpp"
 #include "studies/floor_grid.hpp"
+#include "studies/survey_base.hpp"
 
 namespace pirsim::studies {
 
@@ -37,31 +39,61 @@ class WalkTest {
  public:
   WalkTest(SceneSpec scene, WalkTestSpec spec);
 
-  [[nodiscard]] const SceneSpec& scene() const noexcept { return scene_; }
+  /// With the effects in force.
+  [[nodiscard]] const SurveyBase& survey() const noexcept { return survey_; }
+  [[nodiscard]] const SceneSpec& scene() const noexcept { return survey_.scene(); }
   [[nodiscard]] const WalkTestSpec& spec() const noexcept { return spec_; }
   [[nodiscard]] const FloorGrid& grid() const noexcept { return grid_; }
 
-  /// A walk is tried if the whole path is walkable, sitting if the point is.
-  [[nodiscard]] PointResult try_point(const Vec2& point, rt::Tracer& tracer) const;
-  /// Minor motion on a seat of the scene, facing as it does: noticed in time?
-  [[nodiscard]] bool notices_sitter(const SeatSpec& seat, rt::Tracer& tracer) const;
-  [[nodiscard]] std::unique_ptr<rt::Tracer> make_tracer() const;
+  /// Effects that a walk test can't show.
+  [[nodiscard]] std::vector<Issue> warnings() const;
 
- private:
   /// Postures tick by tick of a person at the origin who faces -Z; the first is the state before.
   using Movement = std::vector<body::Posture>;
-  [[nodiscard]] Movement crossing() const;
-  [[nodiscard]] Movement arm_work() const;
-  [[nodiscard]] bool is_noticed(const Movement& movement, const Frame& world_from_movement, rt::Tracer& tracer) const;
+  [[nodiscard]] const Movement& crossing() const noexcept { return crossing_; }
+  [[nodiscard]] const Movement& arm_work() const noexcept { return arm_work_; }
+  [[nodiscard]] const body::Humanoid& humanoid() const noexcept { return humanoid_; }
+  [[nodiscard]] const body::WalkableFloor& floor() const noexcept { return floor_; }
 
-  SceneSpec scene_;
+ private:
+  [[nodiscard]] Movement make_crossing() const;
+  [[nodiscard]] Movement make_arm_work() const;
+
+  SurveyBase survey_;
   WalkTestSpec spec_;
   FloorGrid grid_;
   body::Humanoid humanoid_;
   body::WalkableFloor floor_;
-  rt::Room room_;
-  RayBundle rated_, clipped_;
   Movement crossing_, arm_work_;
+};
+
+/// Tries one movement after another in the sensors' sight. Belongs to one thread and to a walk test that outlives it.
+class WalkTester {
+ public:
+  explicit WalkTester(const WalkTest& test);
+  /// A walk is tried if the whole path is walkable, sitting if the point is. number: of the point, which keys what
+  /// effects draw.
+  [[nodiscard]] PointResult try_point(const Vec2& point, std::uint32_t number);
+  /// Minor motion on a seat of the scene, facing as it does: noticed in time?
+  [[nodiscard]] bool notices_sitter(const SeatSpec& seat, std::uint32_t number);
+
+ private:
+  [[nodiscard]] bool is_noticed(const WalkTest::Movement& movement, const Frame& world_from_movement,
+                                std::uint32_t try_number);
+  void look(const body::Posture& posture, const Frame& world_from_movement, sim::Exposure& exposure);
+
+  const WalkTest& test_;
+  const sim::SensorArray& array_;
+  std::unique_ptr<rt::Tracer> tracer_, power_tracer_;
+  sim::Detector detector_;
+  sim::Logger logger_;
+  sim::Exposure before_, after_;
+  sim::BodyRadiance radiance_;
+  // Scratch.
+  ZoneActivity activity_;
+  std::vector<PosedShape> solids_;
+  std::vector<rt::Meeting> met_;
+  std::vector<std::uint8_t> triggers_;
 };
 
 struct SeatResult {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pir/calibration.hpp"
-#include "pir/detector.hpp"
+#include "pir/analog_detector.hpp"
 #include "pirsim/io.hpp"
 
 namespace {
@@ -38,14 +38,14 @@ void write_alarms(const SensorModelSpec& model) {
       DetectorSpec spec = model.detector;
       spec.comparator = {.positive_v = level * spec.amplifier.noise_v_pp / 6.6,
                          .negative_v = level * spec.amplifier.noise_v_pp / 6.6};
-      const pir::Detector detector(spec, 1.0, tick_s);
-      pir::Detector::State state =
+      const pir::AnalogDetector detector(spec, 1.0, tick_s);
+      pir::AnalogDetector::State state =
           detector.start(0.0, {.seed = 1, .run = 0, .entity = 0, .purpose = Purpose::detector_noise});
       std::int64_t alarms = 0;
       for (std::int64_t tick = 0; tick < std::llround(seconds / tick_s); ++tick) {
-        const bool before = pir::Detector::on(state);
+        const bool before = pir::AnalogDetector::on(state);
         detector.advance(state, 0.0);
-        if (!before && pir::Detector::on(state)) ++alarms;
+        if (!before && pir::AnalogDetector::on(state)) ++alarms;
       }
       std::cout << tick_s << ',' << level << ',' << alarms << ',' << seconds << '\n';
     }

@@ -14,12 +14,12 @@
 #include <vector>
 
 #include "pirsim/csv.hpp"
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "pirsim/version.hpp"
 #include "reconcile/reference_table.hpp"
 #include "rt/direct_tracer.hpp"
-#include "sim/state.hpp"
-#include "sim/study.hpp"
+#include "pirsim/state.hpp"
+#include "pirsim/study.hpp"
 #include "support/shipped.hpp"
 
 using namespace pirsim;
@@ -69,7 +69,7 @@ void describe_machine() {
   std::cout << "machine,\"pirsim " << version() << ' ' << git_revision() << ", " << compiler() << "\",1,build\n";
 }
 
-Model study_a(rt::TracerKind kind, std::vector<std::string> overrides = {}) {
+Model study_a(TracerKind kind, std::vector<std::string> overrides = {}) {
   overrides.emplace_back("replicates=1000");
   return compile(shipped_scene("meeting_room.gltf"), shipped_script("studyA.yaml", overrides), {kind});
 }
@@ -104,9 +104,9 @@ void responses() {
     std::array<double, 2> fresh{}, known{};
     for (const bool analog : {false, true}) {
       const std::vector<std::string> overrides{analog ? "sensing.response=analog" : "sensing.response=zones"};
-      const Model model = study_a(rt::TracerKind::direct, overrides);
+      const Model model = study_a(TracerKind::direct, overrides);
       fresh[analog] = least(3, [&] {
-        const Model first = study_a(rt::TracerKind::direct, overrides);
+        const Model first = study_a(TracerKind::direct, overrides);
         return tick_ns(first, at_phase(first, 3, phase.name), phase.n_ticks);
       });
       known[analog] = least(5, [&] { return tick_ns(model, at_phase(model, 3, phase.name), phase.n_ticks); });
@@ -120,15 +120,15 @@ void responses() {
 }
 
 void ticks_by_phase() {
-  const Model direct = study_a(rt::TracerKind::direct);
-  const Model embree = study_a(rt::TracerKind::embree), reference = study_a(rt::TracerKind::reference);
+  const Model direct = study_a(TracerKind::direct);
+  const Model embree = study_a(TracerKind::embree), reference = study_a(TracerKind::reference);
   for (const Phase& phase : phases) {
     const std::string name(phase.name);
     const int few = std::min(phase.n_ticks, 150);
     const double plain = least(3, [&] { return tick_ns(reference, at_phase(reference, 3, phase.name), few); });
     const double instances = least(3, [&] { return tick_ns(embree, at_phase(embree, 3, phase.name), few); });
     const double study = least(3, [&] {
-      const Model fresh = study_a(rt::TracerKind::direct);
+      const Model fresh = study_a(TracerKind::direct);
       return tick_ns(fresh, at_phase(fresh, 3, phase.name), phase.n_ticks);
     });
     const double known = least(5, [&] { return tick_ns(direct, at_phase(direct, 3, phase.name), phase.n_ticks); });
@@ -175,7 +175,7 @@ double anew_ns(const Model& model, const std::vector<std::vector<body::Outline>>
 }
 
 void postures_anew() {
-  const Model model = study_a(rt::TracerKind::direct);
+  const Model model = study_a(TracerKind::direct);
   for (const Phase& phase : phases) {
     const int n_ticks = std::min(phase.n_ticks, 1000);
     const auto one = outlines(model, phase.name, n_ticks, 1);
@@ -208,7 +208,7 @@ void counted(const rt::RayPack* rays, const std::uint32_t* picked, std::size_t n
 
 /// What must be tested at all: packs that pass the cones of a part, and rays that meet it.
 void limit() {
-  const Model model = study_a(rt::TracerKind::direct);
+  const Model model = study_a(TracerKind::direct);
   rt::RayKernel counting = rt::best_ray_kernel();
   counting.meet_sphere = counted<PosedSphere, &rt::RayKernel::meet_sphere>;
   counting.meet_capsule = counted<PosedCapsule, &rt::RayKernel::meet_capsule>;
@@ -238,7 +238,7 @@ void limit() {
 }
 
 void people() {
-  const Model model = study_a(rt::TracerKind::direct);
+  const Model model = study_a(TracerKind::direct);
   const auto all = outlines(model, "working", 1000, 8);
   double apart = 0.0;
   for (std::size_t person = 0; person < all.size(); ++person) {
@@ -349,7 +349,7 @@ void runs_per_second() {
 void start_up() {
   const double seconds = least(5, [] {
     const auto begin = Clock::now();
-    const Model model = study_a(rt::TracerKind::direct);
+    const Model model = study_a(TracerKind::direct);
     State state(model, 0);
     step(model, state);
     return seconds_since(begin);

@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "support/shipped.hpp"
 
 namespace pirsim::test {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "pirsim/io.hpp"
-#include "sim/model.hpp"
-#include "sim/study.hpp"
+#include "pirsim/model.hpp"
+#include "pirsim/study.hpp"
 #include "support/paths.hpp"
 
 namespace pirsim::test {

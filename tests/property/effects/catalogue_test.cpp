@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <set>
 
-#include "sim/state.hpp"
-#include "sim/zone_tracks.hpp"
+#include "pirsim/state.hpp"
+#include "sim/replay.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
 #include "support/temporary_folder.hpp"
@@ -81,20 +81,20 @@ TEST_CASE("an effect's rows don't depend on the number of threads and a copied s
 TEST_CASE("remembered zones give the rows of the study with every effect that acts after them") {
   const Place place = places().front();
   const Model plain = model_of(place, {});
-  const sim::ZoneTracks plain_tracks = sim::trace(plain, all_runs(plain), 1);
+  const Recording plain_tracks = record(plain, all_runs(plain), 1);
   for (const Effect* effect : effects::catalogue()) {
     INFO(effect->info.name);
     const EffectSpec spec = strong(*effect);
     const Model model = model_of(place, {spec});
     const auto rows = results_of(model);
     const bool traced_anew = effect->info.reach == Reach::geometry;
-    const sim::ZoneTracks own_tracks = traced_anew ? sim::trace(model, all_runs(model), 1) : sim::ZoneTracks{};
-    const sim::ZoneTracks& tracks = traced_anew ? own_tracks : plain_tracks;
+    const Recording own_tracks = traced_anew ? record(model, all_runs(model), 1) : Recording{};
+    const Recording& tracks = traced_anew ? own_tracks : plain_tracks;
     const auto logic = sim::make_logic(model);
     logic->prepare(tracks.sets);
-    const effects::Pipeline pipeline = sim::make_pipeline(plain, std::vector{spec});
+    const effects::Pipeline pipeline = sim::make_stages(plain, std::vector{spec});
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      CHECK(sim::emit(tracks, i, *logic, model.script().seed, pipeline).samples == rows[i].samples);
+      CHECK(sim::replay(tracks, i, *logic, model.script().seed, pipeline).samples == rows[i].samples);
     }
   }
 }

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "pirsim/geometry.hpp"
-#include "sim/state.hpp"
-#include "sim/zone_tracks.hpp"
+#include "pirsim/state.hpp"
+#include "sim/replay.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
 
@@ -21,7 +21,7 @@ EffectSpec effect(const std::string& name, std::map<std::string, double, std::le
 std::vector<double> after_leaving(const Model& model, std::size_t seat, double rate_per_s, double decay_s, int runs,
                                   int seconds) {
   effects::Pipeline pipeline =
-      sim::make_pipeline(model, std::vector{effect("warm_chair", {{"rate_per_s", rate_per_s}, {"decay_s", decay_s}})});
+      sim::make_stages(model, std::vector{effect("warm_chair", {{"rate_per_s", rate_per_s}, {"decay_s", decay_s}})});
   std::vector<double> counts(model.scene().sensors.size(), 0.0);
   for (int run = 0; run < runs; ++run) {
     pipeline.begin_run(1, static_cast<std::uint32_t>(run));
@@ -97,7 +97,7 @@ TEST_CASE("who fidgets moves at the given rate within the given angles and who d
 TEST_CASE("a burst is under way when a run begins as often as at any other time") {
   const Model model = compile(shipped_scene("meeting_room.gltf"), short_study_a());
   const double rate_per_s = 2.0, length_s = 12.0, period_s = 60.0;
-  effects::Pipeline pipeline = sim::make_pipeline(
+  effects::Pipeline pipeline = sim::make_stages(
       model, std::vector{effect("trigger_bursts",
                                 {{"length_s", length_s}, {"period_s", period_s}, {"rate_per_s", rate_per_s}})});
   constexpr int runs = 600, parts = 10;

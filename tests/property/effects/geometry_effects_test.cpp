@@ -4,7 +4,7 @@
 
 #include "pirsim/geometry.hpp"
 #include "pirsim/random.hpp"
-#include "sim/state.hpp"
+#include "pirsim/state.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
 

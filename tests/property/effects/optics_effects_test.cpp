@@ -6,7 +6,7 @@
 #include "pir/optics.hpp"
 #include "pir/polarity_detector.hpp"
 #include "pirsim/geometry.hpp"
-#include "sim/state.hpp"
+#include "pirsim/state.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
 

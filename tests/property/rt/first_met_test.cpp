@@ -9,7 +9,7 @@
 
 using namespace pirsim;
 using pirsim::rt::Meeting;
-using pirsim::rt::TracerKind;
+using pirsim::TracerKind;
 using pirsim::testing::Draw;
 using pirsim::testing::RandomScene;
 

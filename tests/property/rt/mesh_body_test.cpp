@@ -2,12 +2,12 @@
 #include <algorithm>
 
 #include "rt/tracer.hpp"
-#include "sim/model.hpp"
+#include "pirsim/model.hpp"
 #include "support/catch.hpp"
 #include "support/fine_mesh.hpp"
 
 using namespace pirsim;
-using pirsim::rt::TracerKind;
+using pirsim::TracerKind;
 using pirsim::testing::Draw;
 using pirsim::testing::RandomScene;
 

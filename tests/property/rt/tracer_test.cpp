@@ -10,7 +10,7 @@
 #include "support/random_scene.hpp"
 
 using namespace pirsim;
-using pirsim::rt::TracerKind;
+using pirsim::TracerKind;
 using pirsim::testing::Draw;
 using pirsim::testing::RandomScene;
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "pir/planck.hpp"
-#include "sim/state.hpp"
+#include "pirsim/state.hpp"
 #include "support/catch.hpp"
 #include "support/fine_mesh.hpp"
 #include "support/shipped.hpp"
@@ -28,7 +28,7 @@ ScriptSpec walkers(int n_people) {
   return script;
 }
 
-Powers powers_of(const SceneSpec& scene, const ScriptSpec& script, rt::TracerKind kind = rt::fastest_tracer) {
+Powers powers_of(const SceneSpec& scene, const ScriptSpec& script, TracerKind kind = fastest_tracer) {
   const Model model = compile(scene, script, {kind});
   State state(model, 0);
   Powers powers;
@@ -158,7 +158,7 @@ TEST_CASE("all tracers give the same powers and signals of two people one of who
   script.trials[0].people[0].actions.push_back(act(action::Walk{{{2.0, -0.8}}}));
   std::vector<RunResult> results;
   std::vector<Powers> powers;
-  for (const auto kind : {rt::TracerKind::reference, rt::TracerKind::embree, rt::TracerKind::direct}) {
+  for (const auto kind : {TracerKind::reference, TracerKind::embree, TracerKind::direct}) {
     powers.push_back(powers_of(scene, script, kind));
     results.push_back(run_once(compile(scene, script, {kind}), 0));
   }

@@ -1,7 +1,7 @@
 // A whole person as meshes against the same person as primitives.
 #include <algorithm>
 
-#include "sim/state.hpp"
+#include "pirsim/state.hpp"
 #include "studies/sight.hpp"
 #include "support/catch.hpp"
 #include "support/fine_mesh.hpp"
@@ -47,7 +47,7 @@ Comparison compare(const RunResult& first, const RunResult& second) {
 
 TEST_CASE("a walker made of fine meshes is seen by the zones that see the exact walker, but for grazing rays",
           "[mesh_body]") {
-  const auto run = [](const PersonSpec& person, rt::TracerKind tracer) {
+  const auto run = [](const PersonSpec& person, TracerKind tracer) {
     return run_once(compile(shipped_scene("open_hall.gltf"), script_of({person}), {tracer}), 0,
                     Record::samples_and_zones);
   };
@@ -65,7 +65,7 @@ TEST_CASE("a walker made of fine meshes is seen by the zones that see the exact 
   CHECK(coarse.lost > active / 500);
   CHECK(coarse.gained == 0);
 
-  const RunResult plainly = run(in_meshes(walker()), rt::TracerKind::reference);
+  const RunResult plainly = run(in_meshes(walker()), TracerKind::reference);
   CHECK(plainly.zones == meshed.zones);
   CHECK(plainly.samples == meshed.samples);
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
-#include "sim/state.hpp"
+#include "pirsim/state.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 

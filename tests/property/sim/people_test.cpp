@@ -5,7 +5,7 @@
 #include <map>
 
 #include "pirsim/random.hpp"
-#include "sim/state.hpp"
+#include "pirsim/state.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 

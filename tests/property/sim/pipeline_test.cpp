@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "pirsim/geometry.hpp"
-#include "sim/state.hpp"
+#include "pirsim/state.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 

@@ -1,8 +1,8 @@
 // Every tracer gives the reference's bits on every shipped study: every zone at every tick.
 #include <filesystem>
 
-#include "sim/state.hpp"
-#include "sim/study.hpp"
+#include "pirsim/state.hpp"
+#include "pirsim/study.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 
@@ -40,8 +40,8 @@ Comparison compare(const Model& fast, const Model& slow, std::uint32_t run, std:
   return result;
 }
 
-Comparison compare_study(const std::string& room, const ScriptSpec& script, rt::TracerKind kind, std::int64_t stride) {
-  const Model fast = compile(shipped_scene(room), script, {rt::TracerKind::direct});
+Comparison compare_study(const std::string& room, const ScriptSpec& script, TracerKind kind, std::int64_t stride) {
+  const Model fast = compile(shipped_scene(room), script, {TracerKind::direct});
   const Model slow = compile(shipped_scene(room), script, {kind});
   Comparison all;
   for (std::uint32_t run = 0; run < fast.n_runs(); ++run) {
@@ -67,7 +67,7 @@ TEST_CASE("the direct tracer with its memory gives embree's zones at every tick 
   for (const std::string study : {"studyA.yaml", "office.yaml", "density.yaml"}) {
     INFO(study);
     const Comparison c =
-        compare_study(room_of(study), shipped_script(study, {"replicates=1"}), rt::TracerKind::embree, 1);
+        compare_study(room_of(study), shipped_script(study, {"replicates=1"}), TracerKind::embree, 1);
     CHECK(c.n_different == 0);
     CHECK(c.n_ticks > 1000);
     CHECK(c.n_active > 0);
@@ -77,11 +77,11 @@ TEST_CASE("the direct tracer with its memory gives embree's zones at every tick 
 TEST_CASE("and the reference's zones, sampled through all of them and with scattered seats") {
   for (const std::string study : {"studyA.yaml", "office.yaml", "density.yaml"}) {
     INFO(study);
-    CHECK(compare_study(room_of(study), shipped_script(study, {"replicates=1"}), rt::TracerKind::reference, 11)
+    CHECK(compare_study(room_of(study), shipped_script(study, {"replicates=1"}), TracerKind::reference, 11)
               .n_different == 0);
   }
   const ScriptSpec scattered = shipped_script(
       "studyA.yaml",
       {"replicates=2", "people.0.seat_scatter.position_sd_m=0.05", "people.0.seat_scatter.heading_sd_deg=4.3"});
-  CHECK(compare_study("meeting_room.gltf", scattered, rt::TracerKind::reference, 101).n_different == 0);
+  CHECK(compare_study("meeting_room.gltf", scattered, TracerKind::reference, 101).n_different == 0);
 }

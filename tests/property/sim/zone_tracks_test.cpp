@@ -1,4 +1,4 @@
-#include "sim/zone_tracks.hpp"
+#include "sim/replay.hpp"
 
 #include <numeric>
 
@@ -28,7 +28,7 @@ std::vector<RunResult> study_of(const Model& model) {
 }
 
 /// Misses every trigger with probability one half.
-class DozingLogic final : public sim::DetectorLogic {
+class DozingLogic final : public DetectorLogic {
  public:
   explicit DozingLogic(const pir::MotionDetector& detector) : awake_(detector), seen_(detector.n_sensors()) {}
   void prepare(std::span<const ZoneSet> sets) override { awake_.prepare(sets); }
@@ -57,7 +57,7 @@ int total_bits(const RunResult& result) {
 
 TEST_CASE("what is emitted from traced zones is the study, bit for bit, whichever change counts") {
   const Model per_cluster = short_study("cluster"), per_beam = short_study("beam");
-  const sim::ZoneTracks tracks = sim::trace(per_cluster, all_runs(per_cluster));
+  const Recording tracks = record(per_cluster, all_runs(per_cluster));
   REQUIRE(tracks.runs.size() == 20);
   CHECK(tracks.sets.front() == ZoneSet(per_cluster.detector().n_zones()));
   int differences = 0;
@@ -68,7 +68,7 @@ TEST_CASE("what is emitted from traced zones is the study, bit for bit, whicheve
     logic.prepare(tracks.sets);
     studies.push_back(study_of(*model));
     for (std::size_t i = 0; i < tracks.runs.size(); ++i) {
-      const RunResult emitted = sim::emit(tracks, i, logic, 1);
+      const RunResult emitted = sim::replay(tracks, i, logic, 1);
       REQUIRE(emitted.trial == studies.back()[i].trial);
       REQUIRE(emitted.samples == studies.back()[i].samples);
     }
@@ -79,20 +79,20 @@ TEST_CASE("what is emitted from traced zones is the study, bit for bit, whicheve
 
 TEST_CASE("a detector's chance follows from the seed and the run alone") {
   const Model model = short_study("cluster");
-  const sim::ZoneTracks tracks = sim::trace(model, all_runs(model), 1);
+  const Recording tracks = record(model, all_runs(model), 1);
   DozingLogic dozing(model.detector());
   dozing.prepare(tracks.sets);
-  const auto rows = [&](std::size_t run, std::uint64_t seed) { return sim::emit(tracks, run, dozing, seed).samples; };
+  const auto rows = [&](std::size_t run, std::uint64_t seed) { return sim::replay(tracks, run, dozing, seed).samples; };
   const auto first = rows(0, 1);
   CHECK(rows(1, 1) != rows(0, 1));
   CHECK(rows(0, 1) == first);
   CHECK(rows(0, 2) != first);
-  CHECK(total_bits(sim::emit(tracks, 0, dozing, 3)) < total_bits(tracks.runs[0].rows));
+  CHECK(total_bits(sim::replay(tracks, 0, dozing, 3)) < total_bits(tracks.runs[0].rows));
 }
 
 TEST_CASE("traces don't depend on the number of threads") {
   const Model model = short_study("cluster");
-  const sim::ZoneTracks one = sim::trace(model, all_runs(model), 1), two = sim::trace(model, all_runs(model), 2);
+  const Recording one = record(model, all_runs(model), 1), two = record(model, all_runs(model), 2);
   CHECK(one.sets == two.sets);
   for (std::size_t i = 0; i < one.runs.size(); ++i) REQUIRE(one.runs[i].sets == two.runs[i].sets);
 }

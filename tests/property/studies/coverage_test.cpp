@@ -27,7 +27,7 @@ CoverageSpec study_b(const std::vector<std::string>& overrides = {}) {
 std::vector<MotionCount> plain_counts(const CoverageStudy& study, const Vec2& point) {
   const RayBundle& rays = study.rated_rays();
   const auto tracer =
-      rt::make_tracer(rt::TracerKind::reference, {&study.room(), &study.rated_rays(), &study.clipped_rays()});
+      rt::make_tracer(TracerKind::reference, {&study.room(), &study.rated_rays(), &study.clipped_rays()});
   const Vec3 foot(point.x, study.scene().floor.height_m(), point.y);
   ZoneActivity before(rays.n_zones()), after(rays.n_zones());
   tracer->trace(study.target().solids(foot, 0), after);
@@ -266,7 +266,7 @@ namespace {
 /// Power by a tracer at every tick, then filter and comparator.
 std::vector<MotionCount> plain_analog_counts(const CoverageStudy& study, const Vec2& point) {
   const sim::PowerModel& power = study.analog()->power();
-  const auto tracer = rt::make_tracer(rt::TracerKind::embree, {&study.room(), &power.rays().bundle, &power.clipped()});
+  const auto tracer = rt::make_tracer(TracerKind::embree, {&study.room(), &power.rays().bundle, &power.clipped()});
   const double tick_s = 1.0 / study.spec().sensing.tick_rate_hz;
   const double radiance = pir::band_radiance(pir::kelvin(study.spec().target.temperature_c));
   const Vec3 foot(point.x, study.scene().floor.height_m(), point.y);

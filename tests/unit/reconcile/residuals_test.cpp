@@ -4,7 +4,7 @@
 #include "reconcile/aliens.hpp"
 #include "reconcile/outcome.hpp"
 #include "reconcile/reconcile.hpp"
-#include "sim/study.hpp"
+#include "pirsim/study.hpp"
 #include "support/catch.hpp"
 #include "support/short_study.hpp"
 

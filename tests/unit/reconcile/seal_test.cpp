@@ -5,10 +5,10 @@
 
 #include "core/digest.hpp"
 #include "pirsim/csv.hpp"
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "pirsim/error.hpp"
 #include "reconcile/simulated_world.hpp"
-#include "sim/study.hpp"
+#include "pirsim/study.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 #include "support/short_study.hpp"

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "core/digest.hpp"
-#include "pirsim/effects.hpp"
+#include "effects/catalogue.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/random.hpp"
 #include "reconcile/analyst.hpp"

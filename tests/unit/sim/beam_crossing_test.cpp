@@ -24,7 +24,7 @@ struct Crossing {
 };
 
 /// A sphere that moves at `speed` along the line x = speed * t - 2 m at the given height and distance, 50 Hz, 4 s.
-Crossing cross(rt::TracerKind kind, double speed, double height, double distance, double radius, double range_m) {
+Crossing cross(TracerKind kind, double speed, double height, double distance, double radius, double range_m) {
   RayBundle rays;
   pir::append(rays, {"eye", "one beam", Frame{}}, one_beam(range_m), RaysPerZone::one);
   const rt::Room room({});
@@ -53,7 +53,7 @@ TEST_CASE("a sphere on a straight line enters and leaves a beam at the computed 
   struct Case {
     double speed, height, distance, radius;
   };
-  for (const auto kind : {rt::TracerKind::reference, rt::TracerKind::embree}) {
+  for (const auto kind : {TracerKind::reference, TracerKind::embree}) {
     for (const Case& c : {Case{1.0, 0.0, 3.0, 0.305}, Case{1.3, 0.1, 2.0, 0.25}, Case{0.7, -0.2, 5.0, 0.5}}) {
       // Within the beam while x^2 + height^2 < radius^2: half the chord at that height, met at x = 0 from both sides.
       const double half_chord = std::sqrt(c.radius * c.radius - c.height * c.height);
@@ -68,7 +68,7 @@ TEST_CASE("a sphere on a straight line enters and leaves a beam at the computed 
 }
 
 TEST_CASE("a sphere beyond the beam's range, above it or behind the sensor is never seen") {
-  const auto kind = rt::TracerKind::embree;
+  const auto kind = TracerKind::embree;
   CHECK(cross(kind, 1.0, 0.0, 3.2, 0.3, 3.0).first_active > 0);   // its near side is within 3 m: 2.9 m
   CHECK(cross(kind, 1.0, 0.0, 3.31, 0.3, 3.0).first_active < 0);  // 3.01 m
   CHECK(cross(kind, 1.0, 0.31, 2.0, 0.3, 3.0).first_active < 0);

@@ -8,30 +8,27 @@
 #include "pirsim/rays.hpp"
 #include "rt/tracer.hpp"
 #include "sim/actor.hpp"
+#include "sim/compiled_study.hpp"
 #include "sim/mannequin.hpp"
-#include "sim/model.hpp"
 #include "sim/posture_memory.hpp"
 #include "sim/power_meter.hpp"
 
 namespace pirsim::sim {
 
-/// Belongs to one thread at a time and to one Model; what it has seen before changes no result.
-class Lookout {
+/// Belongs to one thread at a time and to one study; what it has seen before changes no result.
+class ZoneCache {
  public:
-  explicit Lookout(const Model& model);
-  /// zones and channels (of the Model's detector) are overwritten.
-  void look(const std::vector<Actor>& actors, ZoneSet& zones, ZoneSet& channels);
-  /// Only if there are analog sensors; powers: (n_sensors) overwritten.
-  void measure(const std::vector<Actor>& actors, std::span<PowerSteps> powers) {
-    power_meter_->measure(actors, powers);
-  }
+  explicit ZoneCache(const CompiledStudy& study);
+  /// exposure: of the study's array, overwritten.
+  void look(const std::vector<Actor>& actors, Exposure& exposure);
 
  private:
-  void look_at_all(const std::vector<Actor>& actors, ZoneSet& zones, ZoneSet& channels);
+  void look_at_each(const std::vector<Actor>& actors, Exposure& exposure);
+  void look_at_all(const std::vector<Actor>& actors, ZoneSet& zones);
   std::span<const ZoneSet::Word> row_of(std::size_t person, const Actor& actor);
 
-  const pir::MotionDetector& detector_;
-  rt::TracerKind kind_;
+  const SensorArray& array_;
+  TracerKind kind_;
   std::unique_ptr<rt::Tracer> tracer_;
   PostureMemory memory_;
   std::unique_ptr<PowerMeter> power_meter_;

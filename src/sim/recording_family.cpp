@@ -1,4 +1,4 @@
-#include "sim/trace_family.hpp"
+#include "sim/recording_family.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "rt/tracer.hpp"
-#include "sim/begin_tracks.hpp"
 #include "sim/mannequin.hpp"
 #include "sim/people_tracks.hpp"
+#include "sim/replay.hpp"
 #include "sim/set_numbering.hpp"
 
 namespace pirsim::sim {
@@ -30,9 +30,9 @@ Zones zones_of(const RayBundle& bundle, std::size_t sensor) {
           bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor + 1]]};
 }
 
-/// The zones of sensors whose rays are the same, and end alike, in both Models.
-ZoneSet zones_in_common(const Model& first, const Model& other) {
-  const RayBundle &a = first.clipped_rays(), &b = other.clipped_rays();
+/// The zones of sensors whose rays are the same, and end alike, in both studies.
+ZoneSet zones_in_common(const CompiledStudy& first, const CompiledStudy& other) {
+  const RayBundle &a = first.array().clipped(), &b = other.array().clipped();
   ZoneSet zones(b.n_zones());
   if (a.zone_rays_begin != b.zone_rays_begin || a.cluster_zones_begin != b.cluster_zones_begin ||
       a.sensor_clusters_begin != b.sensor_clusters_begin) {
@@ -42,7 +42,7 @@ ZoneSet zones_in_common(const Model& first, const Model& other) {
     const auto [begin, end] = zones_of(b, sensor);
     const std::size_t first_ray = b.zone_rays_begin[begin], last_ray = b.zone_rays_begin[end];
     if (!same_rays(a, b, first_ray, last_ray)) continue;
-    if (!same_rays(first.rated_rays(), other.rated_rays(), first_ray, last_ray)) continue;
+    if (!same_rays(first.array().rated(), other.array().rated(), first_ray, last_ray)) continue;
     for (std::size_t zone = begin; zone < end; ++zone) zones.insert(zone);
   }
   return zones;
@@ -97,17 +97,17 @@ class Solids {
   std::vector<Mannequin> mannequins_;  ///< (n_people)
 };
 
-/// What the rays of one Model see of postures, as far as anybody asked.
+/// What the rays of one study see of postures, as far as anybody asked.
 class Sight {
  public:
-  explicit Sight(const Model& model) : Sight(model, ZoneSet(model.clipped_rays().n_zones()), nullptr) {}
+  explicit Sight(const CompiledStudy& study) : Sight(study, ZoneSet(study.array().clipped().n_zones()), nullptr) {}
   /// Asks `other` about the zones in common, whose rays are the same in both.
-  Sight(const Model& model, const ZoneSet& in_common, Sight* other)
+  Sight(const CompiledStudy& study, const ZoneSet& in_common, Sight* other)
       : in_common_(in_common),
         other_(other),
-        rated_(without(model.rated_rays(), in_common)),
-        clipped_(without(model.clipped_rays(), in_common)),
-        tracer_(rt::make_tracer(model.tracer(), {&model.room(), &rated_, &clipped_})),
+        rated_(without(study.array().rated(), in_common)),
+        clipped_(without(study.array().clipped(), in_common)),
+        tracer_(rt::make_tracer(study.tracer(), {&study.array().room(), &rated_, &clipped_})),
         zones_(in_common.size()),
         n_words_(zones_.words().size()),
         rows_(n_words_, 0),
@@ -158,8 +158,8 @@ class Painter {
       : postures_(postures), solids_(solids), sight_(sight), numbering_(sight.n_zones()), all_(sight.n_zones()) {
     sets_.resize(postures.size() + 1, unknown);
   }
-  [[nodiscard]] ZoneTrack paint(const PeopleTrack& people) {
-    ZoneTrack track = people.rows;
+  [[nodiscard]] RecordedRun paint(const PeopleTrack& people) {
+    RecordedRun track = people.rows;
     const std::size_t n = people.n_people;
     for (std::size_t tick = 0; tick < people.n_ticks; ++tick) {
       track.sets.push_back(set_of(std::span(people.postures).subspan(tick * n, n)));
@@ -193,30 +193,30 @@ class Painter {
 
 }  // namespace
 
-struct TraceFamily::Impl {
-  Impl(const Model& model, std::span<const std::uint32_t> runs) : first(model), sight(model) {
-    tracks = begin_tracks(model);
-    for (const std::uint32_t run : runs) people.push_back(postures.follow(model, run));
+struct RecordingFamily::Impl {
+  Impl(const CompiledStudy& study, std::span<const std::uint32_t> runs) : first(study), sight(study) {
+    tracks = empty_recording(study);
+    for (const std::uint32_t run : runs) people.push_back(postures.follow(study, run));
     n_postures = postures.size();
     paint(people, sight, tracks);
   }
 
-  void paint(std::span<const PeopleTrack> who, Sight& from, ZoneTracks& to) {
+  void paint(std::span<const PeopleTrack> who, Sight& from, Recording& to) {
     Painter painter(postures, solids, from);
     for (const PeopleTrack& one : who) to.runs.push_back(painter.paint(one));
     to.sets = std::move(painter.sets());
   }
 
-  [[nodiscard]] PeopleTrack follow(const Model& other, std::uint32_t run) {
+  [[nodiscard]] PeopleTrack follow(const CompiledStudy& other, std::uint32_t run) {
     const auto known = std::ranges::find(people, run, [](const PeopleTrack& track) { return track.rows.rows.run; });
     return other.moves_people_as(first) && known != people.end() ? *known : postures.follow(other, run);
   }
 
-  [[nodiscard]] ZoneTracks trace(const Model& other, std::span<const std::uint32_t> runs) {
+  [[nodiscard]] Recording record(const CompiledStudy& other, std::span<const std::uint32_t> runs) {
     postures.shrink(n_postures);
     solids.shrink(n_postures);
     sight.shrink(n_postures);
-    ZoneTracks result = begin_tracks(other);
+    Recording result = empty_recording(other);
     std::vector<PeopleTrack> who;
     for (const std::uint32_t run : runs) who.push_back(follow(other, run));
     const ZoneSet in_common = zones_in_common(first, other);
@@ -230,25 +230,25 @@ struct TraceFamily::Impl {
     return result;
   }
 
-  const Model& first;
+  const CompiledStudy& first;
   Postures postures;
   Solids solids;
   Sight sight;
   std::size_t n_postures = 0;  ///< of the first study
   std::vector<PeopleTrack> people;
-  ZoneTracks tracks;
+  Recording tracks;
 };
 
-TraceFamily::TraceFamily(const Model& first, std::span<const std::uint32_t> runs)
-    : impl_(std::make_unique<Impl>(first, runs)) {}
-TraceFamily::~TraceFamily() = default;
-TraceFamily::TraceFamily(TraceFamily&&) noexcept = default;
-TraceFamily& TraceFamily::operator=(TraceFamily&&) noexcept = default;
+RecordingFamily::RecordingFamily(const Model& first, std::span<const std::uint32_t> runs)
+    : impl_(std::make_unique<Impl>(first.compiled(), runs)) {}
+RecordingFamily::~RecordingFamily() = default;
+RecordingFamily::RecordingFamily(RecordingFamily&&) noexcept = default;
+RecordingFamily& RecordingFamily::operator=(RecordingFamily&&) noexcept = default;
 
-const ZoneTracks& TraceFamily::first() const noexcept { return impl_->tracks; }
+const Recording& RecordingFamily::first() const noexcept { return impl_->tracks; }
 
-ZoneTracks TraceFamily::trace(const Model& other, std::span<const std::uint32_t> runs) {
-  return impl_->trace(other, runs);
+Recording RecordingFamily::record(const Model& other, std::span<const std::uint32_t> runs) {
+  return impl_->record(other.compiled(), runs);
 }
 
 }  // namespace pirsim::sim

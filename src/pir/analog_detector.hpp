@@ -9,7 +9,7 @@
 namespace pirsim::pir {
 
 /// Immutable, shared by all sensors of one model.
-class Detector {
+class AnalogDetector {
  public:
   /// Everything that changes, of one sensor.
   struct State {
@@ -21,7 +21,7 @@ class Detector {
     bool operator==(const State&) const = default;
   };
 
-  Detector(const DetectorSpec& spec, double volts_per_watt, double tick_s);
+  AnalogDetector(const DetectorSpec& spec, double volts_per_watt, double tick_s);
 
   /// Long after power-on, with this power on the element ever since. noise: Purpose::detector_noise, entity the sensor.
   [[nodiscard]] State start(double power_w, StreamKey noise) const noexcept;

@@ -8,8 +8,7 @@
 
 #include "pirsim/rays.hpp"
 #include "pirsim/sample.hpp"
-#include "schema/shard.hpp"
-#include "sim/model.hpp"
+#include "pirsim/model.hpp"
 
 namespace pirsim {
 

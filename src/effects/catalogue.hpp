@@ -1,0 +1,62 @@
+// Everything that a plain model is known to leave out, with what carries it out.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "effects/pipeline.hpp"
+#include "pirsim/effects.hpp"
+#include "pirsim/random.hpp"
+#include "schema/study_in_force.hpp"
+
+namespace pirsim::effects {
+
+/// One file of src/effects. Hooks get an EffectSpec with every parameter filled in; null where the effect doesn't act.
+struct Effect {
+  EffectInfo info;
+  void (*alter)(StudyInForce& study, const EffectSpec& effect) = nullptr;
+  std::unique_ptr<TriggerStage> (*make_stage)(const EffectSpec& effect, const StageContext& context) = nullptr;
+  std::unique_ptr<RowStage> (*make_row_stage)(const EffectSpec& effect, const StageContext& context) = nullptr;
+  /// Puts what the ranges alone can't draw (a free place in the room) into a spec drawn from them.
+  void (*draw)(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec& script, Stream& stream) = nullptr;
+  /// Moves parameters that were estimated to what the room has a place for.
+  void (*settle)(EffectSpec& effect, const SceneSpec& scene) = nullptr;
+  /// Why it can't be meant so in this scene, though every name and number of the script is good; empty: it can.
+  std::string (*fault)(const EffectSpec& effect, const SceneSpec& scene) = nullptr;
+};
+
+/// In the order in which they act; alter() first, then stages tick by tick, then rows.
+[[nodiscard]] const std::vector<const Effect*>& catalogue();
+/// Throws Error(usage) with the nearest name.
+[[nodiscard]] const Effect& find(std::string_view name);
+
+/// The entry that stands for it where data are judged: no data tell entries apart that are the same change of the
+/// model.
+[[nodiscard]] std::string judged_as(std::string_view name);
+/// Names of the others that it stands for.
+[[nodiscard]] std::vector<std::string> twins_of(std::string_view name);
+
+/// The study with the effects of `script` applied: alter() of each, in the catalogue's order. Throws Error(input) for
+/// what check() finds.
+[[nodiscard]] StudyInForce in_force(SceneSpec scene, const ScriptSpec& script);
+
+/// Whether a parameter of that effect means anything with its choices.
+[[nodiscard]] bool applies(const ParameterInfo& parameter, const EffectSpec& effect);
+/// The first of an effect's strengths that applies.
+[[nodiscard]] const ParameterInfo& strength_parameter(const EffectSpec& effect);
+[[nodiscard]] bool is_off(const EffectSpec& effect);
+/// With every parameter that applies: those not given take the typical value.
+[[nodiscard]] EffectSpec resolved(const Effect& effect, EffectSpec spec);
+[[nodiscard]] EffectSpec off(const Effect& effect);
+/// Parameters that apply, from their priors; a sensor from all and each (even odds between `all` and one of them).
+[[nodiscard]] EffectSpec draw_from_prior(const Effect& effect, const SceneSpec& scene, const ScriptSpec& script,
+                                         Stream& stream);
+
+/// An effect whose parameters were estimated, as this scene has room for it: somebody stands in a free place, no sensor
+/// hangs in the ceiling.
+[[nodiscard]] EffectSpec settled(EffectSpec effect, const SceneSpec& scene);
+
+}  // namespace pirsim::effects

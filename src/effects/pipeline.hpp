@@ -1,0 +1,74 @@
+// Where effects of electronics, environment and bookkeeping act: on what the sensors' detectors say, tick by tick, and
+// on finished rows.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "pirsim/rays.hpp"
+#include "pirsim/sample.hpp"
+#include "pirsim/scene.hpp"
+#include "pirsim/script.hpp"
+
+namespace pirsim::effects {
+
+/// What a stage may know of the compiled study, of which nothing is kept beyond the making of the stage.
+struct StageContext {
+  const SceneSpec& scene;
+  const SensingSpec& sensing;
+  const RayBundle& clipped_rays;  ///< world frame, cut at the room
+};
+
+/// Changes which sensors trigger at a tick. A value behind a pointer: clone() goes on by itself from the same moment.
+class TriggerStage {
+ public:
+  virtual ~TriggerStage() = default;
+  [[nodiscard]] virtual std::unique_ptr<TriggerStage> clone() const = 0;
+  /// Before tick 1 of a run: forgets everything. All randomness follows from these two.
+  virtual void begin_run(std::uint64_t seed, std::uint32_t run) = 0;
+  /// Somebody rose from a seat (index into the scene's) in the step to the tick that comes next.
+  virtual void seat_left(std::size_t /*seat*/) {}
+  /// Once a tick, from tick 1 on. triggers: (n_sensors) 1 where the sensor triggers at this tick, and at it alone.
+  virtual void tick(std::int64_t tick, std::span<std::uint8_t> triggers) noexcept = 0;
+};
+
+/// Changes finished rows: what a logger or a person keeping the books does to them.
+class RowStage {
+ public:
+  virtual ~RowStage() = default;
+  [[nodiscard]] virtual std::unique_ptr<RowStage> clone() const = 0;
+  virtual void begin_run(std::uint64_t seed, std::uint32_t run) = 0;
+  virtual void apply(Sample& row) noexcept = 0;
+};
+
+/// All stages of a study, a value; without stages it does nothing. Their order is the catalogue's, whatever the order
+/// in the script; the same effect twice (for two sensors, say) acts in the script's order.
+class Pipeline {
+ public:
+  Pipeline() = default;
+  /// Only of effects that act here; the others are passed over. The names have been checked.
+  Pipeline(std::span<const EffectSpec> effects, const StageContext& context);
+  Pipeline(const Pipeline& other);
+  Pipeline& operator=(const Pipeline& other);
+  Pipeline(Pipeline&&) noexcept = default;
+  Pipeline& operator=(Pipeline&&) noexcept = default;
+  ~Pipeline() = default;
+
+  void add(std::unique_ptr<TriggerStage> stage) { trigger_stages_.push_back(std::move(stage)); }
+  void add(std::unique_ptr<RowStage> stage) { row_stages_.push_back(std::move(stage)); }
+  [[nodiscard]] std::size_t size() const noexcept { return trigger_stages_.size() + row_stages_.size(); }
+
+  void begin_run(std::uint64_t seed, std::uint32_t run);
+  void seat_left(std::size_t seat);
+  void tick(std::int64_t tick, std::span<std::uint8_t> triggers) noexcept;
+  void apply(Sample& row) noexcept;
+
+ private:
+  std::vector<std::unique_ptr<TriggerStage>> trigger_stages_;
+  std::vector<std::unique_ptr<RowStage>> row_stages_;
+};
+
+}  // namespace pirsim::effects

@@ -1,0 +1,43 @@
+#include "sim/compiled_study.hpp"
+
+#include <utility>
+
+#include "effects/catalogue.hpp"
+#include "sim/alike.hpp"
+#include "sim/plan_people.hpp"
+
+namespace pirsim::sim {
+
+bool PersonModel::can_stand(const Vec2& place, const Vec2& facing, double half_depth_m) const noexcept {
+  const double radius_m = humanoid.clearance_radius_m();
+  if (half_depth_m >= radius_m) return floor->walkable(place);
+  const Vec2 aside = (radius_m - half_depth_m) * Vec2(-facing.y, facing.x);
+  return floor->has_room(place - aside, place + aside, half_depth_m);
+}
+
+std::uint32_t CompiledStudy::n_runs() const noexcept {
+  return static_cast<std::uint32_t>(trials().size()) * static_cast<std::uint32_t>(script_given_.replicates);
+}
+
+CompiledStudy::CompiledStudy(SceneSpec scene, ScriptSpec script, TracerKind tracer, const CompiledStudy* like)
+    : CompiledStudy(scene, script, effects::in_force(scene, script), tracer, like) {}
+
+CompiledStudy::CompiledStudy(SceneSpec scene, ScriptSpec script, StudyInForce study, TracerKind tracer,
+                             const CompiledStudy* like)
+    : scene_given_(std::move(scene)),
+      script_given_(std::move(script)),
+      scene_(std::move(study.scene)),
+      sensing_(std::move(study.sensing)),
+      seed_(study.seed),
+      tracer_(tracer) {
+  const auto room = like != nullptr && same_meshes(like->scene(), scene_)
+                        ? like->array().shared_room()
+                        : std::make_shared<const rt::Room>(scene_.meshes);
+  array_ = std::make_unique<const SensorArray>(scene_, sensing_, room);
+  stages_ = effects::Pipeline(script_given_.effects, {scene_, sensing_, array_->clipped()});
+  trials_ = like != nullptr && same_people(*like, *this, study.trials)
+                ? like->trials_
+                : std::make_shared<const std::vector<TrialModel>>(plan_people(*this, study.trials, like));
+}
+
+}  // namespace pirsim::sim

@@ -1,0 +1,44 @@
+// Who is where: all people of one run, carrying out their scripts among each other.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "sim/actor.hpp"
+#include "sim/compiled_study.hpp"
+
+namespace pirsim::sim {
+
+/// A value. Belongs to the study that it was made for, which outlives it.
+class Crowd {
+ public:
+  /// The moment before the first tick.
+  Crowd(const CompiledStudy& study, std::uint32_t run);
+
+  /// To this tick (1, 2, ...), from the one before.
+  void advance(const CompiledStudy& study, std::int64_t tick);
+
+  [[nodiscard]] const std::vector<Actor>& actors() const noexcept { return actors_; }
+  /// Indices (into the scene's seats) of the seats from which somebody rose in the step to this tick.
+  [[nodiscard]] const std::vector<std::size_t>& seats_left() const noexcept { return seats_left_; }
+  [[nodiscard]] int n_on_floor(const FloorArea& floor) const;
+  /// What the first person does: the rows' phase.
+  [[nodiscard]] std::string_view phase() const noexcept;
+  /// Every subject has carried out all actions.
+  [[nodiscard]] bool done() const noexcept;
+
+ private:
+  /// Fills others_ with everyone in the scene but the i-th person; how many of them come before in the script.
+  std::size_t gather_others(std::size_t i);
+  void note_seats_left(const CompiledStudy& study);
+
+  std::vector<Actor> actors_;
+  std::vector<std::optional<Presence>> presences_;  ///< (n_actors) as they are now; of those in the scene
+  std::vector<std::uint8_t> seated_;                ///< (n_actors) 1 while seated
+  std::vector<std::size_t> seats_left_;
+  std::vector<Presence> others_;  ///< scratch
+};
+
+}  // namespace pirsim::sim

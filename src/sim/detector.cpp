@@ -1,0 +1,45 @@
+#include "sim/detector.hpp"
+
+#include <algorithm>
+
+namespace pirsim::sim {
+namespace {
+
+double watts(PowerSteps power) { return static_cast<double>(power) * watts_per_step; }
+
+}  // namespace
+
+Detector::Detector(const SensorArray& array)
+    : array_(&array),
+      edge_draw_(array.channels(), array.n_levels(), array.ticks_per_window()),
+      polarity_(array.polarity()),
+      analog_(array.analog() != nullptr ? array.n_sensors() : 0) {}
+
+void Detector::begin_run(std::uint64_t seed, std::uint32_t run, const Exposure& rest) {
+  edge_draw_.begin_run(seed, run);
+  if (polarity_) polarity_->begin_run(rest.sums);
+  for (std::uint32_t i = 0; i < analog_.size(); ++i) {
+    const auto& sensor = array_->analog()->sensors()[i];
+    if (!sensor) continue;
+    analog_[i] = sensor->detector.start(watts(rest.powers[i]), {seed, run, i, Purpose::detector_noise});
+  }
+}
+
+void Detector::tick(const Exposure& before, const Exposure& after, std::span<std::uint8_t> triggers) noexcept {
+  std::ranges::fill(triggers, std::uint8_t{0});
+  if (polarity_) {
+    polarity_->tick(after.sums, triggers);
+  } else {
+    edge_draw_.tick();
+    array_->channels().mark(before.channels.words(), after.channels.words(), edge_draw_.watched(), triggers);
+  }
+  for (std::size_t i = 0; i < analog_.size(); ++i) {
+    if (!analog_[i]) continue;
+    array_->analog()->sensors()[i]->detector.advance(*analog_[i], watts(after.powers[i]));
+    triggers[i] = pir::AnalogDetector::on(*analog_[i]) ? 1 : 0;
+  }
+}
+
+bool Detector::is_memoryless() const noexcept { return !polarity_ && analog_.empty() && array_->n_levels() == 1; }
+
+}  // namespace pirsim::sim

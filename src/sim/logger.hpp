@@ -1,0 +1,36 @@
+// From triggers to rows: what electronics, environment and bookkeeping do to them, and who reads them when.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "effects/pipeline.hpp"
+#include "pir/window_reader.hpp"
+#include "pirsim/sample.hpp"
+#include "pirsim/script.hpp"
+
+namespace pirsim::sim {
+
+/// A value.
+class Logger {
+ public:
+  Logger(const effects::Pipeline& stages, const SensingSpec& sensing, std::size_t n_sensors);
+
+  /// Forgets everything. All randomness follows from these two.
+  void begin_run(std::uint64_t seed, std::uint32_t run);
+  /// Somebody rose from a seat (index into the scene's) in the step to the tick that comes next.
+  void seat_left(std::size_t seat) { stages_.seat_left(seat); }
+  /// triggers: (n_sensors) what the detectors said at this tick (1, 2, ...); the effects change them.
+  void tick(std::int64_t tick, std::span<std::uint8_t> triggers) noexcept;
+  /// The row's bits as they were read last, then what the effects do to the row.
+  void complete(Sample& row) noexcept;
+
+ private:
+  effects::Pipeline stages_;
+  Reader kind_;
+  std::int32_t ticks_per_window_;
+  std::size_t n_sensors_;
+  pir::WindowReader reader_;
+};
+
+}  // namespace pirsim::sim

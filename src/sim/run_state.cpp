@@ -1,0 +1,44 @@
+#include "sim/run_state.hpp"
+
+#include <utility>
+
+namespace pirsim::sim {
+
+RunState::RunState(const CompiledStudy& study, std::uint32_t run_number)
+    : run(run_number),
+      crowd(study, run_number),
+      exposure(study.array().unexposed()),
+      previous_exposure(exposure),
+      detector(study.array()),
+      logger(study.stages(), study.sensing(), study.array().n_sensors()),
+      triggers(study.array().n_sensors(), 0) {
+  detector.begin_run(study.seed(), run, exposure);
+  logger.begin_run(study.seed(), run);
+  sample.replicate = study.replicate_of(run);
+  sample.trial = study.trial_of(run).id;
+}
+
+bool move_tick(const CompiledStudy& study, RunState& state) {
+  ++state.tick;
+  state.crowd.advance(study, state.tick);
+  if (state.tick % study.sensing().ticks_per_window != 0) return false;
+  state.sample.time_s = static_cast<double>(state.tick) / study.sensing().tick_rate_hz;
+  state.sample.phase = state.crowd.phase();
+  state.sample.people = state.crowd.n_on_floor(study.scene().floor);
+  state.finished = state.crowd.done();
+  return true;
+}
+
+bool step_tick(const CompiledStudy& study, RunState& state) {
+  const bool window_ended = move_tick(study, state);
+  if (!*state.cache) *state.cache = std::make_shared<ZoneCache>(study);
+  std::swap(state.exposure, state.previous_exposure);
+  (*state.cache)->look(state.crowd.actors(), state.exposure);
+  state.detector.tick(state.previous_exposure, state.exposure, state.triggers);
+  for (const std::size_t seat : state.crowd.seats_left()) state.logger.seat_left(seat);
+  state.logger.tick(state.tick, state.triggers);
+  if (window_ended) state.logger.complete(state.sample);
+  return window_ended;
+}
+
+}  // namespace pirsim::sim

@@ -1,0 +1,42 @@
+// Everything that changes during one run: people, what the optics show, detectors, logger.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "pirsim/sample.hpp"
+#include "sim/crowd.hpp"
+#include "sim/detector.hpp"
+#include "sim/logger.hpp"
+#include "sim/scratch.hpp"
+#include "sim/sensor_array.hpp"
+#include "sim/zone_cache.hpp"
+
+namespace pirsim::sim {
+
+/// A value: a copy goes on by itself from the same moment. The study outlives it.
+struct RunState {
+  /// The moment before the first tick of a run, run in [0, study.n_runs()).
+  RunState(const CompiledStudy& study, std::uint32_t run);
+
+  std::uint32_t run = 0;
+  std::int64_t tick = 0;
+  bool finished = false;  ///< everybody has carried out all actions and the last window is complete
+  Crowd crowd;
+  Exposure exposure, previous_exposure;
+  Detector detector;
+  Logger logger;
+  std::vector<std::uint8_t> triggers;  ///< (n_sensors) at this tick
+  Sample sample;                       ///< at the end of the last whole window
+  /// What has been traced before; changes no result. Made when first needed, unless whoever runs many lends theirs.
+  Scratch<std::shared_ptr<ZoneCache>> cache;
+};
+
+/// Advances people alone by a tick: what sensors do stays as it is. For a state that isn't stepped otherwise. True if
+/// a window ended with it.
+bool move_tick(const CompiledStudy& study, RunState& state);
+/// Advances one tick: people, optics, detectors, logger. True if a window ended with it.
+bool step_tick(const CompiledStudy& study, RunState& state);
+
+}  // namespace pirsim::sim

@@ -1,0 +1,68 @@
+// All sensors of a scene, compiled once: rays, where the room ends them, and which of them form zones and channels.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "pir/motion_detector.hpp"
+#include "pir/polarity_detector.hpp"
+#include "pirsim/rays.hpp"
+#include "rt/room.hpp"
+#include "rt/tracer.hpp"
+#include "schema/study_in_force.hpp"
+#include "sim/analog_model.hpp"
+
+namespace pirsim::sim {
+
+/// What the optics show the detectors at one tick: the only thing that a detector knows of the room.
+struct Exposure {
+  ZoneSet zones;             ///< active
+  ZoneSet channels;          ///< of zones, as SensorArray::channels() joins them
+  std::vector<double> sums;  ///< (n_sensors) of the active zones' polarities; empty unless the array has polarity()
+  std::vector<PowerSteps> powers;  ///< (n_sensors); empty unless the array has analog()
+};
+
+/// Immutable, shared by threads. Runs, recordings, coverage studies and walk tests trace these rays.
+class SensorArray {
+ public:
+  SensorArray(const SceneSpec& scene, const SensingInForce& sensing, std::shared_ptr<const rt::Room> room);
+  SensorArray(const SensorArray&) = delete;
+  SensorArray& operator=(const SensorArray&) = delete;
+
+  [[nodiscard]] const rt::Room& room() const noexcept { return *room_; }
+  [[nodiscard]] const std::shared_ptr<const rt::Room>& shared_room() const noexcept { return room_; }
+  [[nodiscard]] const RayBundle& rated() const noexcept { return rated_; }      ///< rays at their rated ranges
+  [[nodiscard]] const RayBundle& clipped() const noexcept { return clipped_; }  ///< the same, cut at the room
+  [[nodiscard]] std::size_t n_sensors() const noexcept { return clipped_.n_sensors(); }
+  /// Zones joined as `change_per` says.
+  [[nodiscard]] const pir::MotionDetector& channels() const noexcept { return channels_; }
+  /// Nested copies of every zone that stand for soft edges; 1: hard edges.
+  [[nodiscard]] std::size_t n_levels() const noexcept { return n_levels_; }
+  [[nodiscard]] int ticks_per_window() const noexcept { return ticks_per_window_; }
+  /// Takes the place of the detector of changes, if an effect says so.
+  [[nodiscard]] const std::optional<pir::PolarityDetector>& polarity() const noexcept { return polarity_; }
+  /// The sensors that answer physically, or null if none does.
+  [[nodiscard]] const AnalogModel* analog() const noexcept { return analog_ ? &*analog_ : nullptr; }
+
+  [[nodiscard]] std::unique_ptr<rt::Tracer> make_tracer(TracerKind kind) const;
+  /// Of the analog sensors' rays; only if there are any.
+  [[nodiscard]] std::unique_ptr<rt::Tracer> make_power_tracer(TracerKind kind) const;
+
+  /// Of an empty room.
+  [[nodiscard]] Exposure unexposed() const;
+  /// Fills in what follows from `zones`: channels and sums.
+  void expose(Exposure& exposure) const noexcept;
+
+ private:
+  std::shared_ptr<const rt::Room> room_;
+  std::size_t n_levels_;
+  int ticks_per_window_;
+  RayBundle rated_, clipped_;
+  pir::MotionDetector channels_;
+  std::optional<pir::PolarityDetector> polarity_;
+  std::optional<AnalogModel> analog_;
+};
+
+}  // namespace pirsim::sim
