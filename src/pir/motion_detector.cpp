@@ -40,18 +40,4 @@ void MotionDetector::mark(std::span<const ZoneSet::Word> before, std::span<const
   }
 }
 
-void mark_motion(const RayBundle& bundle, ChangePer change_per, std::span<const std::uint8_t> before,
-                 std::span<const std::uint8_t> after, std::span<std::uint8_t> bits) {
-  const MotionDetector detector(bundle, change_per);
-  const auto channels_of = [&](std::span<const std::uint8_t> activity) {
-    ZoneSet zones(activity.size()), channels(detector.n_channels());
-    for (std::size_t zone = 0; zone < activity.size(); ++zone) {
-      if (activity[zone] != 0) zones.insert(zone);
-    }
-    detector.add_channels(zones, channels);
-    return channels;
-  };
-  detector.mark(channels_of(before).words(), channels_of(after).words(), bits);
-}
-
 }  // namespace pirsim::pir

@@ -39,8 +39,4 @@ class MotionDetector {
   std::vector<ZoneSet::Word> sensor_masks_;  ///< (n_sensors x words of a channel set)
 };
 
-/// The same for zone activity as bytes (n_zones), slowly.
-void mark_motion(const RayBundle& bundle, ChangePer change_per, std::span<const std::uint8_t> before,
-                 std::span<const std::uint8_t> after, std::span<std::uint8_t> bits);
-
 }  // namespace pirsim::pir

@@ -258,9 +258,9 @@ CoverageStudy::CoverageStudy(SceneSpec scene, CoverageSpec spec)
 
 std::vector<Issue> CoverageStudy::warnings() const {
   // Nobody is there.
-  static constexpr std::array<std::string_view, 10> idle{"seats_shifted", "second_person", "seat_shift", "seat_scatter",
-                                                         "body_size",     "arm_motion",    "trunk_tilt", "fidgeting",
-                                                         "warm_chair",    "clock_lag"};
+  static constexpr std::array<std::string_view, 9> idle{"seats_shifted", "second_person", "seat_shift",
+                                                        "seat_scatter",  "body_size",     "arm_motion",
+                                                        "trunk_tilt",    "fidgeting",     "warm_chair"};
   return idle_effects(spec_.effects, survey_, idle, "coverage study");
 }
 

@@ -13,13 +13,16 @@
 #include <thread>
 #include <vector>
 
-#include "pirsim/csv.hpp"
 #include "effects/catalogue.hpp"
+#include "pirsim/csv.hpp"
+#include "pirsim/state.hpp"
+#include "pirsim/study.hpp"
 #include "pirsim/version.hpp"
 #include "reconcile/reference_table.hpp"
 #include "rt/direct_tracer.hpp"
-#include "pirsim/state.hpp"
-#include "pirsim/study.hpp"
+#include "sim/compiled_study.hpp"
+#include "sim/run_state.hpp"
+#include "sim/solids.hpp"
 #include "support/shipped.hpp"
 
 using namespace pirsim;
@@ -80,7 +83,7 @@ const std::vector<std::string> scattered{"people.0.seat_scatter.position_sd_m=0.
 State at_phase(const Model& model, std::uint32_t run, std::string_view phase) {
   State state(model, run);
   do step_tick(model, state);
-  while (state.actors().front().phase() != phase);
+  while (state.run_state().crowd.actors().front().phase() != phase);
   return state;
 }
 
@@ -148,7 +151,7 @@ std::vector<std::vector<body::Outline>> outlines(const Model& model, std::string
   for (std::uint32_t person = 0; person < n_people; ++person) {
     State state = at_phase(model, person, phase);
     for (int i = 0; i < n_ticks; ++i) {
-      result[person].push_back(state.actors().front().motion().outline());
+      result[person].push_back(state.run_state().crowd.actors().front().motion().outline());
       step_tick(model, state);
     }
   }
@@ -157,9 +160,9 @@ std::vector<std::vector<body::Outline>> outlines(const Model& model, std::string
 
 /// Nanoseconds per tick of posture and rays with one kernel, nothing remembered but the parts that stand still.
 double anew_ns(const Model& model, const std::vector<std::vector<body::Outline>>& people, const rt::RayKernel& kernel) {
-  rt::DirectTracer tracer({&model.room(), &model.rated_rays(), &model.clipped_rays()}, kernel);
-  const body::Humanoid humanoid{model.trials().front().people.front().spec};
-  ZoneSet zones(model.rated_rays().n_zones());
+  rt::DirectTracer tracer({&model.compiled().array().room(), &model.compiled().array().rated(), &model.rays()}, kernel);
+  const body::Humanoid humanoid{model.compiled().trials().front().people.front().spec};
+  ZoneSet zones(model.compiled().array().rated().n_zones());
   std::vector<PosedShape> solids;
   const std::size_t n_ticks = people.front().size();
   const Stopwatch stopwatch;
@@ -167,7 +170,7 @@ double anew_ns(const Model& model, const std::vector<std::vector<body::Outline>>
     zones.clear();
     for (std::size_t person = 0; person < people.size(); ++person) {
       solids.clear();
-      append_solids(humanoid, body::posture_of(humanoid, people[person][tick]), solids);
+      sim::append_solids(humanoid, body::posture_of(humanoid, people[person][tick]), solids);
       tracer.add(person, solids, zones);
     }
   }
@@ -184,8 +187,8 @@ void postures_anew() {
       const double ns = least(5, [&] { return anew_ns(model, one, *kernel); });
       const std::string what = std::string(phase.name) + ", " + std::string(kernel->name);
       report("posture and rays anew", what, ns, "ns");
-      report("posture and rays anew", what + ", per ray", ns / static_cast<double>(model.rated_rays().rays.size()),
-             "ns");
+      report("posture and rays anew", what + ", per ray",
+             ns / static_cast<double>(model.compiled().array().rated().rays.size()), "ns");
     }
   }
 }
@@ -217,13 +220,13 @@ void limit() {
     const std::string name(phase.name);
     const int n_ticks = std::min(phase.n_ticks, 1000);
     const auto one = outlines(model, phase.name, n_ticks, 1);
-    const body::Humanoid humanoid{model.trials().front().people.front().spec};
+    const body::Humanoid humanoid{model.compiled().trials().front().people.front().spec};
     std::vector<PosedShape> solids;
     const double pose = least(5, [&] {
       const Stopwatch stopwatch;
       for (const body::Outline& outline : one.front()) {
         solids.clear();
-        append_solids(humanoid, body::posture_of(humanoid, outline), solids);
+        sim::append_solids(humanoid, body::posture_of(humanoid, outline), solids);
       }
       return stopwatch.seconds() / n_ticks * 1e9;
     });
@@ -257,9 +260,9 @@ void people() {
 /// So many people at work in one room.
 struct Office {
   Office(const SceneSpec& scene, const ScriptSpec& script) : model(compile(scene, script)), state(model, 0) {
-    const auto works = [](const Actor& actor) { return actor.phase() == "working"; };
+    const auto works = [](const sim::Actor& actor) { return actor.phase() == "working"; };
     do step_tick(model, state);
-    while (!std::ranges::all_of(state.actors(), works));
+    while (!std::ranges::all_of(state.run_state().crowd.actors(), works));
   }
   Model model;
   State state;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs a build of pirsim under a scratch prefix, builds main.cpp against it by find_package and by pkg-config, and
-# compares the rows of both with those of the installed command.
+# Installs a build of pirsim under a scratch prefix and is its user there: the README's program by find_package and by
+# pkg-config, one with a room made in memory, one with a detector of its own, and every public header by itself.
 # Usage: run.sh BUILD_DIR SOURCE_DIR CXX "CXXFLAGS"
 set -euo pipefail
 build=$1 source=$2 cxx=$3 flags=$4
@@ -9,8 +9,8 @@ trap 'rm -rf "$scratch"' EXIT
 cmake --install "$build" --prefix "$scratch/prefix" >/dev/null
 
 cmake -S "$source/tests/consumer" -B "$scratch/build" -DCMAKE_PREFIX_PATH="$scratch/prefix" \
-  -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_CXX_FLAGS="$flags" >/dev/null
-cmake --build "$scratch/build" >/dev/null
+  -DPIRSIM_INCLUDE_DIR="$scratch/prefix/include" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_CXX_FLAGS="$flags" >/dev/null
+cmake --build "$scratch/build" --parallel 2 >/dev/null
 export PKG_CONFIG_PATH=$(dirname "$(find "$scratch/prefix" -name pirsim.pc)")
 # shellcheck disable=SC2046
 "$cxx" -std=c++20 $flags "$source/tests/consumer/main.cpp" -o "$scratch/by_pkg_config" \
@@ -18,10 +18,22 @@ export PKG_CONFIG_PATH=$(dirname "$(find "$scratch/prefix" -name pirsim.pc)")
 
 data="$scratch/prefix/share/pirsim"
 scene="$data/rooms/meeting_room.gltf" script="$data/studies/studyA.yaml"
-"$scratch/build/consumer" "$scene" "$script" >"$scratch/a.csv"
+"$scratch/build/main" "$scene" "$script" >"$scratch/a.csv"
 "$scratch/by_pkg_config" "$scene" "$script" >"$scratch/b.csv"
 "$scratch/prefix/bin/pirsim" --scene "$scene" --script "$script" --replicates 1 -q |
   awk -F, 'NR == 1 || $2 == "S8"' >"$scratch/c.csv"
 cmp "$scratch/a.csv" "$scratch/b.csv"
 cmp "$scratch/a.csv" "$scratch/c.csv"
 echo "consumer: $(wc -l <"$scratch/a.csv") rows, the same three ways"
+
+# 4 m at 1 m/s past sixteen zones, there and back: some second must see it, and nobody is seen before the first.
+"$scratch/build/own_room" >"$scratch/own_room.csv"
+awk -F, 'NR > 1 { seen += $6 } END { exit !(NR > 8 && seen > 3 && seen < NR) }' "$scratch/own_room.csv"
+# Fewer seconds have more active zones, and some have any.
+"$scratch/build/own_detector" "$scene" "$script" >"$scratch/own_detector.txt"
+awk 'NR > 1 && $2 > before { bad = 1 } { before = $2 } NR == 1 { first = $2 } END { exit bad || first == 0 || before == first }' \
+  "$scratch/own_detector.txt"
+n_headers=$(find "$scratch/prefix/include/pirsim" -name '*.hpp' | wc -l)
+[ "$n_headers" -le 24 ] || { echo "consumer: $n_headers public headers" >&2; exit 1; }
+[ "$(find "$scratch/prefix/include/pirsim" -mindepth 1 -type d | wc -l)" -eq 0 ]
+echo "consumer: own room, own detector, $n_headers headers each alone"

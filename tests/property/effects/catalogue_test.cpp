@@ -208,10 +208,9 @@ TEST_CASE("a contrast of temperature is a factor of all ranges, its square root"
   CHECK(effects::judged_as("range_scale") == "range_scale");
   CHECK(effects::twins_of("range_scale") == std::vector<std::string>{"thermal_contrast"});
   const auto ranges_with = [](const EffectSpec& effect) {
-    SceneSpec scene = shipped_scene("meeting_room.gltf");
     ScriptSpec script;
     script.effects = {effect};
-    effects::alter(scene, script);
+    const SceneSpec scene = effects::in_force(shipped_scene("meeting_room.gltf"), script).scene;
     std::vector<double> ranges;
     for (const auto& [id, model] : scene.sensor_models)
       for (const ClusterSpec& cluster : model.clusters) ranges.push_back(cluster.range_m);

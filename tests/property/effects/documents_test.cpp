@@ -39,7 +39,7 @@ TEST_CASE("the effect of the how-to silences the first seconds and nothing after
   const EffectSpec spec = effects::resolved(effects::warm_up(), {"warm_up", {{"duration_s", 12.0}}, {}, {}});
   effects::Pipeline pipeline;
   pipeline.add(effects::warm_up().info.reach == effects::Reach::triggers
-                   ? effects::warm_up().make_stage(spec, {model.scene(), model.script().sensing, model.clipped_rays()})
+                   ? effects::warm_up().make_stage(spec, {model.scene(), model.script().sensing, model.rays()})
                    : nullptr);
   pipeline.begin_run(1, 0);
   for (std::int64_t tick = 1; tick <= 1000; ++tick) {

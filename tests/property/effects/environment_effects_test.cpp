@@ -5,6 +5,7 @@
 #include "pirsim/geometry.hpp"
 #include "pirsim/state.hpp"
 #include "sim/replay.hpp"
+#include "sim/run_state.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
 
@@ -70,7 +71,7 @@ TEST_CASE("who fidgets moves at the given rate within the given angles and who d
   double furthest_tilt = 0, furthest_turn = 0;
   while (!state.finished()) {
     step_tick(model, state);
-    const Actor& actor = state.actors()[0];
+    const sim::Actor& actor = state.run_state().crowd.actors()[0];
     if (!actor.present() || actor.motion().stage() != body::Stage::seated) continue;
     ++seated_ticks;
     const body::Outline now = actor.motion().outline();

@@ -5,6 +5,8 @@
 #include "pirsim/geometry.hpp"
 #include "pirsim/random.hpp"
 #include "pirsim/state.hpp"
+#include "sim/compiled_study.hpp"
+#include "sim/run_state.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
 
@@ -24,16 +26,17 @@ Model meeting_room(std::vector<EffectSpec> effects, int replicates = 1) {
 /// Goes on until the first person sits.
 State seated(const Model& model, std::uint32_t run) {
   State state(model, run);
-  while (!state.actors().front().present() || state.actors().front().motion().stage() != body::Stage::seated) {
+  while (!state.run_state().crowd.actors().front().present() ||
+         state.run_state().crowd.actors().front().motion().stage() != body::Stage::seated) {
     step_tick(model, state);
   }
   return state;
 }
 Vec2 where_seated(const Model& model, std::uint32_t run) {
-  return seated(model, run).actors().front().motion().position();
+  return seated(model, run).run_state().crowd.actors().front().motion().position();
 }
 Vec2 place_of(const Model& model, const std::string& id) {
-  return floor_point(std::ranges::find(model.scene().seats, id, &SeatSpec::id)->world_from_seat.origin);
+  return floor_point(std::ranges::find(model.compiled().scene().seats, id, &SeatSpec::id)->world_from_seat.origin);
 }
 
 std::size_t rays_of(const RayBundle& rays, std::size_t sensor) {
@@ -45,10 +48,11 @@ std::size_t rays_of(const RayBundle& rays, std::size_t sensor) {
 TEST_CASE("a yawed sensor's rays are turned about the vertical through it: one sensor and no other") {
   const Model plain = meeting_room({}),
               yawed = meeting_room({effect("sensor_yaw", {{"yaw_deg", 5.0}}, {{"sensor", "PIR2"}})});
-  const std::size_t begin = rays_of(plain.rated_rays(), 1), end = rays_of(plain.rated_rays(), 2);
+  const std::size_t begin = rays_of(plain.compiled().array().rated(), 1),
+                    end = rays_of(plain.compiled().array().rated(), 2);
   const double c = std::cos(radians(5.0)), s = std::sin(radians(5.0));
-  for (std::size_t i = 0; i < plain.rated_rays().rays.size(); ++i) {
-    const Ray &before = plain.rated_rays().rays[i], &after = yawed.rated_rays().rays[i];
+  for (std::size_t i = 0; i < plain.compiled().array().rated().rays.size(); ++i) {
+    const Ray &before = plain.compiled().array().rated().rays[i], &after = yawed.compiled().array().rated().rays[i];
     REQUIRE(after.origin == before.origin);
     const Vec3 d(before.direction);
     // Turning left, seen from above, takes -Z to -X.
@@ -62,12 +66,12 @@ TEST_CASE("a tilted sensor looks so much further down and a lowered one looks fr
               lowered = meeting_room({effect("sensor_height", {{"height_m", -0.2}})});
   for (std::size_t i = 0; i < plain.scene().sensors.size(); ++i) {
     const auto down_deg = [&](const Model& model) {
-      return degrees(std::asin(-model.scene().sensors[i].world_from_sensor.forward().y));
+      return degrees(std::asin(-model.compiled().scene().sensors[i].world_from_sensor.forward().y));
     };
     CHECK(down_deg(tilted) == Approx(down_deg(plain) + 4.0));
     CHECK(down_deg(lowered) == down_deg(plain));
     const Vec3 up =
-        lowered.scene().sensors[i].world_from_sensor.origin - plain.scene().sensors[i].world_from_sensor.origin;
+        lowered.compiled().scene().sensors[i].world_from_sensor.origin - plain.scene().sensors[i].world_from_sensor.origin;
     CHECK(glm::distance(up, Vec3(0, -0.2, 0)) < 1e-12);
   }
 }
@@ -98,7 +102,7 @@ TEST_CASE("a shifted seat is taken so far forward of where it is drawn") {
   for (const double forward_m : {0.1, -0.1}) {
     const Model model = meeting_room({effect("seat_shift", {{"forward_m", forward_m}})});
     for (std::uint32_t run = 0; run < 2; ++run) {
-      const SeatSpec& seat = *std::ranges::find(model.scene().seats, model.trial_of(run).id, &SeatSpec::id);
+      const SeatSpec& seat = *std::ranges::find(model.compiled().scene().seats, model.trial_of(run), &SeatSpec::id);
       const Vec3 expected = seat.world_from_seat * Vec3(0, 0, -forward_m);
       CHECK(glm::distance(where_seated(model, run), floor_point(expected)) < 1e-6);
     }
@@ -110,7 +114,7 @@ TEST_CASE("scattered seats are taken with the scatter's spread") {
   const Model model = meeting_room({effect("seat_scatter", {{"position_sd_m", sd}, {"heading_sd_deg", 0.0}})}, 150);
   double squares = 0;
   for (std::uint32_t run = 0; run < model.n_runs(); ++run) {
-    const Vec2 off = where_seated(model, run) - place_of(model, model.trial_of(run).id);
+    const Vec2 off = where_seated(model, run) - place_of(model, model.trial_of(run));
     squares += glm::dot(off, off);
   }
   const double n = 2.0 * model.n_runs(), variance = squares / n, standard_error = sd * sd * std::sqrt(2.0 / n);
@@ -121,7 +125,7 @@ TEST_CASE("scattered seats are taken with the scatter's spread") {
 TEST_CASE("a scaled body has scaled lengths") {
   const Model plain = meeting_room({}), small = meeting_room({effect("body_size", {{"scale", 0.8}})});
   const auto head_m = [](const Model& model) {
-    return model.trials()[0].people[0].humanoid.measures().shoulder_height_m;
+    return model.compiled().trials()[0].people[0].humanoid.measures().shoulder_height_m;
   };
   CHECK(head_m(small) == Approx(0.8 * head_m(plain)));
 }
@@ -129,41 +133,42 @@ TEST_CASE("a scaled body has scaled lengths") {
 TEST_CASE("four times the contrast reaches twice as far and is the same as a scaled range") {
   const Model plain = meeting_room({}), warm = meeting_room({effect("thermal_contrast", {{"delta_t_k", 16.0}})}),
               far = meeting_room({effect("range_scale", {{"scale", 2.0}})});
-  for (std::size_t i = 0; i < plain.rated_rays().range.size(); ++i) {
-    REQUIRE(warm.rated_rays().range[i] == 2.0F * plain.rated_rays().range[i]);
-    REQUIRE(far.rated_rays().range[i] == warm.rated_rays().range[i]);
+  for (std::size_t i = 0; i < plain.compiled().array().rated().range.size(); ++i) {
+    REQUIRE(warm.compiled().array().rated().range[i] == 2.0F * plain.compiled().array().rated().range[i]);
+    REQUIRE(far.compiled().array().rated().range[i] == warm.compiled().array().rated().range[i]);
   }
 }
 
 TEST_CASE("chair backs cut rays where boxes behind the seats stand and nobody walks otherwise than before") {
   const Model plain = meeting_room({}), backs = meeting_room({effect("missing_occluder", {{"height_m", 0.5}})});
   std::size_t cut = 0;
-  for (std::size_t i = 0; i < plain.clipped_rays().rays.size(); ++i) {
-    float expected = plain.clipped_rays().range[i];
+  for (std::size_t i = 0; i < plain.rays().rays.size(); ++i) {
+    float expected = plain.rays().range[i];
     for (const SeatSpec& seat : plain.scene().seats) {
       const Box back{Vec3(0.225, 0.25, 0.015)};
       const PosedShape box = place(back, seat.world_from_seat * Frame{Quat(1, 0, 0, 0), Vec3(0, 0.25, 0.17)});
-      expected = entry_distance(plain.clipped_rays().rays[i], box, expected).value_or(expected);
+      expected = entry_distance(plain.rays().rays[i], box, expected).value_or(expected);
     }
-    cut += expected < plain.clipped_rays().range[i] ? 1 : 0;
-    REQUIRE(backs.clipped_rays().range[i] == Approx(expected).margin(2e-3));
+    cut += expected < plain.rays().range[i] ? 1 : 0;
+    REQUIRE(backs.rays().range[i] == Approx(expected).margin(2e-3));
   }
   CHECK(cut > 20);
   State a(plain, 0), b(backs, 0);
   while (!a.finished()) {
     step_tick(plain, a);
     step_tick(backs, b);
-    REQUIRE(a.actors()[0].present() == b.actors()[0].present());
-    if (a.actors()[0].present()) REQUIRE(a.actors()[0].motion().outline() == b.actors()[0].motion().outline());
+    REQUIRE(a.run_state().crowd.actors()[0].present() == b.run_state().crowd.actors()[0].present());
+    if (a.run_state().crowd.actors()[0].present())
+      REQUIRE(a.run_state().crowd.actors()[0].motion().outline() == b.run_state().crowd.actors()[0].motion().outline());
   }
 }
 
 TEST_CASE("a mirrored room looks to its sensors as the room does to mirrored sensors") {
   for (const std::string across : {"x", "z"}) {
     const Model plain = meeting_room({});
-    SceneSpec scene = plain.scene();
-    ScriptSpec script = with(short_study_a(), {effect("mirrored_room", {{"mirrored", 1.0}}, {{"across", across}})});
-    effects::alter(scene, script);
+    const ScriptSpec script =
+        with(short_study_a(), {effect("mirrored_room", {{"mirrored", 1.0}}, {{"across", across}})});
+    SceneSpec scene = effects::in_force(plain.scene(), script).scene;
     const rt::Room room(scene.meshes);
     const FloorArea& floor = plain.scene().floor;
     const auto mirrored = [&](Vec3f p, bool is_point) {
@@ -172,18 +177,19 @@ TEST_CASE("a mirrored room looks to its sensors as the room does to mirrored sen
       return p;
     };
     std::size_t differing = 0;
-    for (std::size_t i = 0; i < plain.rated_rays().rays.size(); i += 7) {
-      const Ray& ray = plain.rated_rays().rays[i];
+    for (std::size_t i = 0; i < plain.compiled().array().rated().rays.size(); i += 7) {
+      const Ray& ray = plain.compiled().array().rated().rays[i];
       const auto here = room.first_hit(ray, 50.0F);
-      const auto there = plain.room().first_hit({mirrored(ray.origin, true), mirrored(ray.direction, false)}, 50.0F);
+      const auto there = plain.compiled().array().room().first_hit(
+          {mirrored(ray.origin, true), mirrored(ray.direction, false)}, 50.0F);
       REQUIRE(here.has_value() == there.has_value());
       if (here) REQUIRE(here->distance == Approx(there->distance).margin(1e-4));
-      const auto before = plain.room().first_hit(ray, 50.0F);
+      const auto before = plain.compiled().array().room().first_hit(ray, 50.0F);
       if (here && before && std::abs(here->distance - before->distance) > 1e-3F) ++differing;
     }
     CHECK(differing > 0);
     // Seats face the mirrored way; twice is as before.
-    effects::alter(scene, script);
+    scene = effects::in_force(scene, script).scene;
     for (std::size_t i = 0; i < scene.seats.size(); ++i) {
       const Frame &once_more = scene.seats[i].world_from_seat, &first = plain.scene().seats[i].world_from_seat;
       CHECK(glm::distance(once_more.origin, first.origin) < 1e-9);
@@ -272,7 +278,7 @@ TEST_CASE("a second person is counted beside the first and doesn't keep the run 
   State state(given, 0);
   double nearest = 10, farthest = 0;
   while (step(given, state)) {
-    const double z = state.actors()[1].motion().position().y;
+    const double z = state.run_state().crowd.actors()[1].motion().position().y;
     nearest = std::min(nearest, std::abs(z + 2.0));
     farthest = std::max(farthest, std::abs(z + 2.0));
   }
@@ -295,7 +301,7 @@ TEST_CASE("a second person goes on moving for as long as somebody walks slowly")
   Vec3 before(0.0);
   while (step(model, state)) {
     last_s += 1.0;
-    const Vec2 facing = direction_of(state.actors()[1].motion().heading());
+    const Vec2 facing = direction_of(state.run_state().crowd.actors()[1].motion().heading());
     const Vec3 now(facing.x, facing.y, 0.0);
     if (glm::distance(now, before) > 0.01) last_move_s = last_s;
     before = now;

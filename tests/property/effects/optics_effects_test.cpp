@@ -7,6 +7,7 @@
 #include "pir/polarity_detector.hpp"
 #include "pirsim/geometry.hpp"
 #include "pirsim/state.hpp"
+#include "sim/compiled_study.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
 
@@ -125,7 +126,7 @@ TEST_CASE("soft edges keep the hard zones as their first copies") {
     return compile(shipped_scene("meeting_room.gltf"), with(short_study_a(), std::move(effects)));
   };
   const Model hard = model_with({}), soft = model_with({effect("soft_zone_edges", {{"sigma_deg", 0.5}})});
-  const RayBundle &a = hard.rated_rays(), &b = soft.rated_rays();
+  const RayBundle &a = hard.compiled().array().rated(), &b = soft.compiled().array().rated();
   CHECK(b.n_zones() == 7 * a.n_zones());
   const auto first_ray = [](const RayBundle& rays, std::size_t sensor) {
     return rays.zone_rays_begin[rays.cluster_zones_begin[rays.sensor_clusters_begin[sensor]]];
@@ -163,17 +164,17 @@ TEST_CASE("a glossy wall shows what a mirrored person behind it would show witho
                        -0.5F - 3.4F * static_cast<float>(stream.uniform()));
     const PosedSphere ball{centre, 0.25F};
     const Vec3f mirrored(centre.x, centre.y, 2.0F * static_cast<float>(front) - centre.z);
-    for (std::size_t zone = 0; zone < plain.rated_rays().n_zones(); ++zone) {
-      const RayBundle& seen = glossy.clipped_rays();
+    for (std::size_t zone = 0; zone < plain.compiled().array().rated().n_zones(); ++zone) {
+      const RayBundle& seen = glossy.rays();
       const bool with_wall = active(
           seen, zone, [&](std::size_t i) { return entry_distance(seen.rays[i], ball, seen.range[i]).has_value(); });
-      const RayBundle& rated = plain.rated_rays();
+      const RayBundle& rated = plain.compiled().array().rated();
       const bool direct = active(rated, zone, [&](std::size_t i) {
-        return entry_distance(rated.rays[i], ball, plain.clipped_rays().range[i]).has_value();
+        return entry_distance(rated.rays[i], ball, plain.rays().range[i]).has_value();
       });
       const auto shows_ghost = [&](float radius) {
         return active(rated, zone, [&](std::size_t i) {
-          const auto hit = plain.room().first_hit(rated.rays[i], rated.range[i]);
+          const auto hit = plain.compiled().array().room().first_hit(rated.rays[i], rated.range[i]);
           if (!hit || scene.meshes[hit->mesh].name != "wall far") return false;
           const float reach = rated.range[i] * static_cast<float>(std::sqrt(coefficient));
           const auto met = entry_distance(rated.rays[i], PosedSphere{mirrored, radius}, reach);
@@ -181,7 +182,7 @@ TEST_CASE("a glossy wall shows what a mirrored person behind it would show witho
           // On its way back the ray must not be stopped by the table before it is there.
           const Vec3f at = rated.rays[i].origin + hit->distance * rated.rays[i].direction + 1e-3F * hit->normal;
           const Vec3f back = glm::reflect(rated.rays[i].direction, hit->normal);
-          return !plain.room().first_hit({at, back}, *met - hit->distance);
+          return !plain.compiled().array().room().first_hit({at, back}, *met - hit->distance);
         });
       };
       // The mirrored ray sets out a millimetre before the wall: what a ray only grazes may go either way.
@@ -209,13 +210,15 @@ TEST_CASE("a zone that becomes active triggers for as long as the high pass lets
   const double tick_s = 0.001, corner_hz = 0.5, threshold = 0.3;
   pir::PolarityDetector detector(scene, {threshold, corner_hz, 100.0}, 1, tick_s);
   const auto ticks_on = [&](std::size_t n_zones_active) {
-    detector.begin_run();
+    std::array<double, 1> sums{};
+    detector.begin_run(sums);
     ZoneSet zones(2);
     for (std::size_t zone = 0; zone < n_zones_active; ++zone) zones.insert(zone);
     int on = 0;
     for (int tick = 0; tick < 5000; ++tick) {
       std::array<std::uint8_t, 1> triggers{};
-      detector.tick(zones, triggers);
+      detector.add_up(zones, sums);
+      detector.tick(sums, triggers);
       on += triggers[0];
     }
     return on;
@@ -235,13 +238,15 @@ TEST_CASE("signed zones lose motion that is slower than the high pass") {
   scene.sensors = {{"A", "m", {}}};
   pir::PolarityDetector detector(scene, {1.2, 0.3, 7.0}, 1, 0.02);
   const auto triggers_when_zones_come_every = [&](int ticks) {
-    detector.begin_run();
+    std::array<double, 1> sums{};
+    detector.begin_run(sums);
     ZoneSet zones(10);
     int on = 0;
     for (int tick = 0; tick < 10 * ticks; ++tick) {
       if (tick % ticks == 0) zones.insert(static_cast<std::size_t>(tick / ticks));
       std::array<std::uint8_t, 1> triggers{};
-      detector.tick(zones, triggers);
+      detector.add_up(zones, sums);
+      detector.tick(sums, triggers);
       on += triggers[0];
     }
     return on;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pirsim/state.hpp"
+#include "sim/run_state.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 
@@ -50,7 +51,8 @@ TEST_CASE("the loop over ticks allocates nothing, apart from the moments when an
       step_tick(model, state);
       const std::size_t after = n_allocations;
       ++n_ticks;
-      const std::string phase = state.actors().empty() ? "" : std::string(state.actors().front().phase());
+      const std::string phase =
+          state.run_state().crowd.actors().empty() ? "" : std::string(state.run_state().crowd.actors().front().phase());
       if (after != before) ++allocating_ticks[phase];
     }
     INFO("run " << run);

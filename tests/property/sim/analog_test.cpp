@@ -4,6 +4,8 @@
 
 #include "pir/planck.hpp"
 #include "pirsim/state.hpp"
+#include "sim/compiled_study.hpp"
+#include "sim/run_state.hpp"
 #include "support/catch.hpp"
 #include "support/fine_mesh.hpp"
 #include "support/shipped.hpp"
@@ -34,7 +36,7 @@ Powers powers_of(const SceneSpec& scene, const ScriptSpec& script, TracerKind ki
   Powers powers;
   while (!state.finished()) {
     step_tick(model, state);
-    powers.emplace_back(state.analog().powers().begin(), state.analog().powers().end());
+    powers.emplace_back(state.run_state().exposure.powers.begin(), state.run_state().exposure.powers.end());
   }
   return powers;
 }
@@ -178,7 +180,8 @@ TEST_CASE("a copied state with analog sensors goes on as the original does", "[s
     step_tick(model, state);
     step_tick(model, copy);
     REQUIRE(copy.sample() == state.sample());
-    for (std::size_t i = 0; i < 5; ++i) REQUIRE(copy.analog().detectors()[i] == state.analog().detectors()[i]);
+    for (std::size_t i = 0; i < 5; ++i)
+      REQUIRE(copy.run_state().detector.analog()[i] == state.run_state().detector.analog()[i]);
   }
 }
 
@@ -223,7 +226,7 @@ TEST_CASE("zones decide unless a sensor or the study asks for the physical respo
   const RunResult analog = run_once(compile(scene, script), 0);
   script.sensing.response.reset();
   const RunResult zones = run_once(compile(scene, script), 0);
-  CHECK(compile(scene, script).analog() == nullptr);
+  CHECK(compile(scene, script).compiled().array().analog() == nullptr);
   CHECK(analog.samples != zones.samples);
   scene.sensor_models.begin()->second.response = Response::analog;
   CHECK(run_once(compile(scene, script), 0).samples == analog.samples);

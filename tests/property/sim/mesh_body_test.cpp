@@ -1,6 +1,7 @@
 // A whole person as meshes against the same person as primitives.
 #include <algorithm>
 
+#include "body/humanoid.hpp"
 #include "pirsim/state.hpp"
 #include "studies/sight.hpp"
 #include "support/catch.hpp"

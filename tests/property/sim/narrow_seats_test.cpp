@@ -3,6 +3,9 @@
 #include <glm/geometric.hpp>
 
 #include "pirsim/state.hpp"
+#include "sim/compiled_study.hpp"
+#include "sim/run_state.hpp"
+#include "sim/solids.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 
@@ -16,12 +19,12 @@ double beyond(const Bounds& solid, const Vec2& lower, const Vec2& upper) {
   return std::max({lower.x - solid.lower.x, lower.y - solid.lower.z, solid.upper.x - upper.x, solid.upper.z - upper.y});
 }
 
-bool is_narrow(const PersonModel& person, const SeatPlan& seat) {
+bool is_narrow(const sim::PersonModel& person, const sim::SeatPlan& seat) {
   return seat.half_depth_m > 0.0 && seat.half_depth_m < person.humanoid.clearance_radius_m();
 }
 
 /// The greatest over a whole run, from coming to stand before the seat to setting out from there again.
-double farthest_beyond_walls(const Model& model, std::uint32_t run, const SeatPlan& seat) {
+double farthest_beyond_walls(const Model& model, std::uint32_t run, const sim::SeatPlan& seat) {
   const Vec2 lower = model.scene().floor.lower(), upper = model.scene().floor.upper();
   const Frame& world_from_seat = seat.place.world_from_seat;
   const Vec2 stand =
@@ -30,14 +33,14 @@ double farthest_beyond_walls(const Model& model, std::uint32_t run, const SeatPl
   std::vector<PosedShape> solids;
   for (State state(model, run); !state.finished();) {
     step_tick(model, state);
-    const Actor& person = state.actors().front();
+    const sim::Actor& person = state.run_state().crowd.actors().front();
     if (!person.present()) continue;
     const body::Stage stage = person.motion().stage();
     const bool on_seat =
         stage != body::Stage::walking && stage != body::Stage::turning && stage != body::Stage::standing;
     if (!on_seat && glm::distance(person.motion().position(), stand) > 0.01) continue;
     solids.clear();
-    append_solids(person, solids);
+    sim::append_solids(person, solids);
     for (const PosedShape& solid : solids) farthest = std::max(farthest, beyond(bounds(solid), lower, upper));
   }
   return farthest;
@@ -50,11 +53,12 @@ TEST_CASE("who sits down between a table and a wall goes through no wall") {
     const Model model = compile(shipped_scene(room), shipped_script("studyA.yaml", {"replicates=1"}));
     int n_narrow = 0;
     for (std::uint32_t run = 0; run < model.n_runs(); ++run) {
-      const PersonModel& person = model.trial_of(run).people.front();
-      const auto seat = std::ranges::find_if(person.seats, [&](const SeatPlan& s) { return is_narrow(person, s); });
+      const sim::PersonModel& person = model.compiled().trial_of(run).people.front();
+      const auto seat =
+          std::ranges::find_if(person.seats, [&](const sim::SeatPlan& s) { return is_narrow(person, s); });
       if (seat == person.seats.end()) continue;
       ++n_narrow;
-      INFO(room << ", " << model.trial_of(run).id);
+      INFO(room << ", " << model.trial_of(run));
       const double beyond_m = farthest_beyond_walls(model, run, *seat);
       CHECK(beyond_m < 0.0);
       CHECK(beyond_m > -0.5);  // there is a wall

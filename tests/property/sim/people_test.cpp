@@ -6,6 +6,7 @@
 
 #include "pirsim/random.hpp"
 #include "pirsim/state.hpp"
+#include "sim/run_state.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 
@@ -28,7 +29,7 @@ Encounter watch(const Model& model) {
     step_tick(model, state);
     ++result.ticks;
     std::vector<Vec2> places;
-    for (const Actor& actor : state.actors()) {
+    for (const sim::Actor& actor : state.run_state().crowd.actors()) {
       if (actor.present()) places.push_back(actor.motion().position());
     }
     result.most_people = std::max(result.most_people, places.size());
@@ -173,7 +174,7 @@ TEST_CASE("at work the forearms lie on the table") {
   double lowest = 1e9, highest = -1e9;
   while (!state.finished()) {
     step_tick(model, state);
-    const Actor& actor = state.actors().front();
+    const sim::Actor& actor = state.run_state().crowd.actors().front();
     if (actor.phase() != "working" || state.tick() < 20 * 50) continue;  // hands are on the table by then
     const auto part = static_cast<std::size_t>(body::Part::left_forearm);
     const auto& forearm = std::get<Capsule>(actor.person().humanoid.solids()[part]);
@@ -222,7 +223,7 @@ TEST_CASE("people are counted from geometry: 0 outside the door, 1 inside, whate
                                                     act(action::Rise{}), act(action::Leave{"door"})})})));
   State state(model, 0);
   while (step(model, state)) {
-    const Actor& actor = state.actors().front();
+    const sim::Actor& actor = state.run_state().crowd.actors().front();
     const int inside = actor.present() && actor.motion().position().y < 0.0 ? 1 : 0;  // the room extends to -Z
     REQUIRE(state.sample().people == inside);
   }

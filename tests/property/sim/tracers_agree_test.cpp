@@ -3,6 +3,9 @@
 
 #include "pirsim/state.hpp"
 #include "pirsim/study.hpp"
+#include "sim/compiled_study.hpp"
+#include "sim/run_state.hpp"
+#include "sim/solids.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 
@@ -19,15 +22,15 @@ struct Comparison {
 /// of the state, so that all of a study's trials can be covered.
 Comparison compare(const Model& fast, const Model& slow, std::uint32_t run, std::int64_t stride) {
   Comparison result;
-  const auto tracer = slow.make_tracer();
-  ZoneActivity expected(slow.rated_rays().n_zones());
+  const auto tracer = slow.compiled().array().make_tracer(slow.compiled().tracer());
+  ZoneActivity expected(slow.compiled().array().rated().n_zones());
   std::vector<PosedShape> solids;
   State state(fast, run);
   while (!state.finished()) {
     step_tick(fast, state);
     if ((state.tick() + run) % stride != 0) continue;
     solids.clear();
-    for (const Actor& actor : state.actors()) append_solids(actor, solids);
+    for (const sim::Actor& actor : state.run_state().crowd.actors()) sim::append_solids(actor, solids);
     tracer->trace(solids, expected);
     ++result.n_ticks;
     bool differs = false;
@@ -66,8 +69,7 @@ std::string room_of(const std::string& study) {
 TEST_CASE("the direct tracer with its memory gives embree's zones at every tick of every shipped study's trials") {
   for (const std::string study : {"studyA.yaml", "office.yaml", "density.yaml"}) {
     INFO(study);
-    const Comparison c =
-        compare_study(room_of(study), shipped_script(study, {"replicates=1"}), TracerKind::embree, 1);
+    const Comparison c = compare_study(room_of(study), shipped_script(study, {"replicates=1"}), TracerKind::embree, 1);
     CHECK(c.n_different == 0);
     CHECK(c.n_ticks > 1000);
     CHECK(c.n_active > 0);
@@ -77,8 +79,9 @@ TEST_CASE("the direct tracer with its memory gives embree's zones at every tick 
 TEST_CASE("and the reference's zones, sampled through all of them and with scattered seats") {
   for (const std::string study : {"studyA.yaml", "office.yaml", "density.yaml"}) {
     INFO(study);
-    CHECK(compare_study(room_of(study), shipped_script(study, {"replicates=1"}), TracerKind::reference, 11)
-              .n_different == 0);
+    CHECK(
+        compare_study(room_of(study), shipped_script(study, {"replicates=1"}), TracerKind::reference, 11).n_different ==
+        0);
   }
   const ScriptSpec scattered = shipped_script(
       "studyA.yaml",

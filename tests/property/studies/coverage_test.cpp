@@ -9,6 +9,7 @@
 #include "pirsim/geometry.hpp"
 #include "pirsim/io.hpp"
 #include "support/catch.hpp"
+#include "support/plain_motion.hpp"
 #include "support/random_scene.hpp"
 #include "support/shipped.hpp"
 
@@ -25,9 +26,10 @@ CoverageSpec study_b(const std::vector<std::string>& overrides = {}) {
 
 /// Tick by tick with the reference tracer, as the simulation itself does it.
 std::vector<MotionCount> plain_counts(const CoverageStudy& study, const Vec2& point) {
-  const RayBundle& rays = study.rated_rays();
-  const auto tracer =
-      rt::make_tracer(TracerKind::reference, {&study.room(), &study.rated_rays(), &study.clipped_rays()});
+  const RayBundle& rays = study.survey().array().rated();
+  const auto tracer = rt::make_tracer(
+      TracerKind::reference,
+      {&study.survey().array().room(), &study.survey().array().rated(), &study.survey().array().clipped()});
   const Vec3 foot(point.x, study.scene().floor.height_m(), point.y);
   ZoneActivity before(rays.n_zones()), after(rays.n_zones());
   tracer->trace(study.target().solids(foot, 0), after);
@@ -38,7 +40,7 @@ std::vector<MotionCount> plain_counts(const CoverageStudy& study, const Vec2& po
     for (int i = 0; i < study.spec().sensing.ticks_per_window; ++i) {
       std::swap(before, after);
       tracer->trace(study.target().solids(foot, ++tick), after);
-      pir::mark_motion(rays, study.spec().sensing.change_per, before, after, bits);
+      test::mark_motion(rays, study.spec().sensing.change_per, before, after, bits);
     }
     for (std::size_t s = 0; s < bits.size(); ++s) counts[s] = static_cast<MotionCount>(counts[s] + bits[s]);
   }
@@ -265,8 +267,9 @@ namespace {
 
 /// Power by a tracer at every tick, then filter and comparator.
 std::vector<MotionCount> plain_analog_counts(const CoverageStudy& study, const Vec2& point) {
-  const sim::PowerModel& power = study.analog()->power();
-  const auto tracer = rt::make_tracer(TracerKind::embree, {&study.room(), &power.rays().bundle, &power.clipped()});
+  const sim::PowerModel& power = study.survey().array().analog()->power();
+  const auto tracer =
+      rt::make_tracer(TracerKind::embree, {&study.survey().array().room(), &power.rays().bundle, &power.clipped()});
   const double tick_s = 1.0 / study.spec().sensing.tick_rate_hz;
   const double radiance = pir::band_radiance(pir::kelvin(study.spec().target.temperature_c));
   const Vec3 foot(point.x, study.scene().floor.height_m(), point.y);
@@ -286,7 +289,7 @@ std::vector<MotionCount> plain_analog_counts(const CoverageStudy& study, const V
   const pir::Comparator comparator(silent.comparator, tick_s);
   std::vector<double> before = watts_at(0);
   for (std::size_t s = 0; s < before.size(); ++s) {
-    sections.push_back(study.analog()->sensors()[s]->silent_filter.at_rest(before[s]));
+    sections.push_back(study.survey().array().analog()->sensors()[s]->silent_filter.at_rest(before[s]));
   }
   std::vector<MotionCount> counts(before.size(), 0);
   std::int64_t tick = 0;
@@ -295,7 +298,7 @@ std::vector<MotionCount> plain_analog_counts(const CoverageStudy& study, const V
     for (int i = 0; i < study.spec().sensing.ticks_per_window; ++i) {
       const std::vector<double> now = watts_at(++tick);
       for (std::size_t s = 0; s < now.size(); ++s) {
-        const pir::AnalogFilter& filter = study.analog()->sensors()[s]->silent_filter;
+        const pir::AnalogFilter& filter = study.survey().array().analog()->sensors()[s]->silent_filter;
         filter.advance(sections[s], before[s], now[s], 0.0);
         comparator.advance(states[s], filter.output(sections[s]));
         if (states[s].on) motion[s] = 1;

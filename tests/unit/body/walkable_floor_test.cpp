@@ -19,7 +19,6 @@ using Way = std::vector<Vec2>;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
 constexpr double clearance = 0.3;
 
 /// An upright block; what the tests know of obstacles besides their triangles.

@@ -16,8 +16,6 @@ using pirsim::io::tessellated;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 /// Positive if triangles are counter-clockwise seen from outside.
 double volume(const SolidMesh& mesh) {
   double six_fold = 0.0;

@@ -12,6 +12,7 @@
 #include "reconcile/analyst.hpp"
 #include "reconcile/outputs.hpp"
 #include "reconcile/reconcile.hpp"
+#include "sim/compiled_study.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 #include "support/short_study.hpp"
@@ -326,7 +327,7 @@ TEST_CASE("the whole loop writes a patched script that runs and closes the gap",
   const ScriptSpec patched_script = io::read_script(folder.path() / "script_patched.yaml");
   REQUIRE(patched_script.effects.size() == 1);
   CHECK(patched_script.effects[0].name == "false_triggers");
-  CHECK(compile(scene, patched_script).pipeline().size() == 1);
+  CHECK(compile(scene, patched_script).compiled().stages().size() == 1);
   std::ifstream page_file(folder.path() / "report.html");
   const std::string page{std::istreambuf_iterator<char>(page_file), {}};
   CHECK_THAT(page, contains(outcome.sentence) && contains("Does it help"));

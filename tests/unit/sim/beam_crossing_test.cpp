@@ -5,6 +5,7 @@
 #include "pir/optics.hpp"
 #include "rt/tracer.hpp"
 #include "support/catch.hpp"
+#include "support/plain_motion.hpp"
 
 using namespace pirsim;
 
@@ -37,7 +38,7 @@ Crossing cross(TracerKind kind, double speed, double height, double distance, do
     before = after;
     tracer->trace(solids, after);
     std::vector<std::uint8_t> bit(1, 0);
-    pir::mark_motion(rays, ChangePer::cluster, before, after, bit);
+    test::mark_motion(rays, ChangePer::cluster, before, after, bit);
     if (bit[0] != 0) crossing.motion.push_back(tick);
     if (after[0] != 0) {
       if (crossing.first_active < 0) crossing.first_active = tick;

@@ -33,7 +33,7 @@ WalkTestSpec four_walks(double within_s) {
   return spec;
 }
 
-Tries major_at(const WalkTest& test, const Vec2& point) { return test.try_point(point, *test.make_tracer()).major; }
+Tries major_at(const WalkTest& test, const Vec2& point) { return WalkTester(test).try_point(point, 0).major; }
 
 }  // namespace
 
@@ -64,7 +64,7 @@ TEST_CASE("a sitter's arms are noticed under the needle only, and still arms nev
   WalkTestSpec spec = four_walks(2.0);
   const auto noticed = [&](const Vec2& point) {
     const WalkTest test(needle_over_the_middle(), spec);
-    return test.try_point(point, *test.make_tracer()).minor;
+    return WalkTester(test).try_point(point, 0).minor;
   };
   // A forearm's hand moves 0.1 m to and fro about half a metre ahead: near the sitter some direction sweeps it
   // through the needle, far away none does.

@@ -1,3 +1,4 @@
+#include "sim/compiled_study.hpp"
 #include "sim/replay.hpp"
 
 #include <numeric>
@@ -30,19 +31,22 @@ std::vector<RunResult> study_of(const Model& model) {
 /// Misses every trigger with probability one half.
 class DozingLogic final : public DetectorLogic {
  public:
-  explicit DozingLogic(const pir::MotionDetector& detector) : awake_(detector), seen_(detector.n_sensors()) {}
-  void prepare(std::span<const ZoneSet> sets) override { awake_.prepare(sets); }
-  void begin_run(std::uint64_t seed, std::uint32_t run) override { stream_ = Stream({seed, run, 0, Purpose::test}); }
+  explicit DozingLogic(const Model& model) : awake_(sim::make_logic(model)), seen_(model.scene().sensors.size()) {}
+  void prepare(std::span<const ZoneSet> sets) override { awake_->prepare(sets); }
+  void begin_run(std::uint64_t seed, std::uint32_t run) override {
+    awake_->begin_run(seed, run);
+    stream_ = Stream({seed, run, 0, Purpose::test});
+  }
   void tick(std::uint32_t before, std::uint32_t after, std::span<std::uint8_t> bits) noexcept override {
     std::fill(seen_.begin(), seen_.end(), std::uint8_t{0});
-    awake_.tick(before, after, seen_);
+    awake_->tick(before, after, seen_);
     for (std::size_t s = 0; s < bits.size(); ++s) {
       if (seen_[s] != 0 && stream_.index(2) == 0) bits[s] = 1;
     }
   }
 
  private:
-  sim::ChangeLogic awake_;
+  std::unique_ptr<DetectorLogic> awake_;
   std::vector<std::uint8_t> seen_;
   Stream stream_{{}};
 };
@@ -55,20 +59,20 @@ int total_bits(const RunResult& result) {
 
 }  // namespace
 
-TEST_CASE("what is emitted from traced zones is the study, bit for bit, whichever change counts") {
+TEST_CASE("what is replayed from recorded zones is the study, bit for bit, whichever change counts") {
   const Model per_cluster = short_study("cluster"), per_beam = short_study("beam");
   const Recording tracks = record(per_cluster, all_runs(per_cluster));
   REQUIRE(tracks.runs.size() == 20);
-  CHECK(tracks.sets.front() == ZoneSet(per_cluster.detector().n_zones()));
+  CHECK(tracks.sets.front() == ZoneSet(per_cluster.compiled().array().channels().n_zones()));
   int differences = 0;
   std::vector<std::vector<RunResult>> studies;
-  // One trace serves both: the second study was never traced.
+  // One recording serves both: the second study was never followed.
   for (const Model* model : {&per_cluster, &per_beam}) {
-    sim::ChangeLogic logic(model->detector());
-    logic.prepare(tracks.sets);
+    const auto logic = sim::make_logic(*model);
+    logic->prepare(tracks.sets);
     studies.push_back(study_of(*model));
     for (std::size_t i = 0; i < tracks.runs.size(); ++i) {
-      const RunResult emitted = sim::replay(tracks, i, logic, 1);
+      const RunResult emitted = replay(tracks, i, *logic, 1);
       REQUIRE(emitted.trial == studies.back()[i].trial);
       REQUIRE(emitted.samples == studies.back()[i].samples);
     }
@@ -80,17 +84,17 @@ TEST_CASE("what is emitted from traced zones is the study, bit for bit, whicheve
 TEST_CASE("a detector's chance follows from the seed and the run alone") {
   const Model model = short_study("cluster");
   const Recording tracks = record(model, all_runs(model), 1);
-  DozingLogic dozing(model.detector());
+  DozingLogic dozing(model);
   dozing.prepare(tracks.sets);
-  const auto rows = [&](std::size_t run, std::uint64_t seed) { return sim::replay(tracks, run, dozing, seed).samples; };
+  const auto rows = [&](std::size_t run, std::uint64_t seed) { return replay(tracks, run, dozing, seed).samples; };
   const auto first = rows(0, 1);
   CHECK(rows(1, 1) != rows(0, 1));
   CHECK(rows(0, 1) == first);
   CHECK(rows(0, 2) != first);
-  CHECK(total_bits(sim::replay(tracks, 0, dozing, 3)) < total_bits(tracks.runs[0].rows));
+  CHECK(total_bits(replay(tracks, 0, dozing, 3)) < total_bits(tracks.runs[0].rows));
 }
 
-TEST_CASE("traces don't depend on the number of threads") {
+TEST_CASE("recordings don't depend on the number of threads") {
   const Model model = short_study("cluster");
   const Recording one = record(model, all_runs(model), 1), two = record(model, all_runs(model), 2);
   CHECK(one.sets == two.sets);
