@@ -1,6 +1,5 @@
 # Every third-party library in one place. Only GLM shows in public headers.
 find_package(glm REQUIRED)
-find_package(TBB REQUIRED)
 find_package(embree 4 QUIET)
 if(NOT embree_FOUND)
   find_package(embree 3 REQUIRED)

@@ -42,8 +42,6 @@ THIRD_PARTY = {
     "zlib": {"io"},
     "zstd": {"io"},
     "OpenMesh": {"geom"},
-    "oneapi": {"core"},
-    "tbb": {"core"},
     "Random123": {"core"},
     "nlopt": {"studies"},
     "Eigen": {"stats"},

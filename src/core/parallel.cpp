@@ -1,77 +1,106 @@
 #include "core/parallel.hpp"
 
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/parallel_pipeline.h>
-#include <oneapi/tbb/task_arena.h>
-
 #include <algorithm>
-#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
 #include <utility>
 #include <vector>
 
 namespace pirsim::detail {
 namespace {
 
-namespace tbb = oneapi::tbb;
-
-/// While it lives, a step of a loop is under way: it sees whatever was done before any step that has ended, on any
-/// thread. oneTBB's pipeline sees to that already, but by means that a thread sanitizer can't follow into a library
-/// that wasn't built with it.
-class Step {
+/// Indices are handed out in order, made by whoever is free, and consumed in order by whoever made the next one.
+class Loop {
  public:
-  explicit Step(std::atomic<unsigned>& n_ended) : n_ended_(n_ended) { see(); }
-  ~Step() {
-    see();
-    n_ended_.fetch_add(1, std::memory_order_release);
+  Loop(std::size_t count, std::size_t n_alive, const std::function<std::shared_ptr<void>(std::size_t)>& produce,
+       const std::function<void(void*)>& consume, const std::function<bool()>& goes_on)
+      : count_(count), produce_(produce), consume_(consume), goes_on_(goes_on), slots_(n_alive) {}
+
+  /// What each thread does until nothing is left to begin.
+  void work() {
+    std::unique_lock lock(mutex_);
+    while (begin_next(lock)) {
+      const std::size_t i = next_++;
+      lock.unlock();
+      Slot made = make(i);
+      lock.lock();
+      slots_[i % slots_.size()] = std::move(made);
+      consume_ready(lock);
+    }
   }
-  Step(const Step&) = delete;
-  Step& operator=(const Step&) = delete;
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
 
  private:
-  void see() const { (void)n_ended_.load(std::memory_order_acquire); }
-  std::atomic<unsigned>& n_ended_;
-};
+  /// A result, or why there is none.
+  struct Slot {
+    std::shared_ptr<void> result;
+    std::exception_ptr error;
+    [[nodiscard]] bool is_ready() const noexcept { return result != nullptr || error != nullptr; }
+  };
 
-struct Loop {
-  std::size_t count;
-  const std::function<std::shared_ptr<void>(std::size_t)>& produce;
-  const std::function<void(void*)>& consume;
-  const std::function<bool()>& goes_on;
-  /// Results wait here and not in the pipeline, which forgets those under way when an exception ends it. They are
-  /// consumed in order, so the indices alive lie side by side and no two share a slot.
-  std::vector<std::shared_ptr<void>> alive;
-  std::size_t next = 0;
-  std::atomic<unsigned> n_ended{0};
-
-  std::size_t take(tbb::flow_control& control) {
-    const Step step(n_ended);
-    if (next == count || (goes_on && !goes_on())) {
-      control.stop();
-      return 0;
+  /// Waits until there is room for one more result; false if none is to be begun.
+  bool begin_next(std::unique_lock<std::mutex>& lock) {
+    changed_.wait(lock, [&] { return ended_ || next_ == count_ || next_ - consumed_ < slots_.size(); });
+    if (ended_ || next_ == count_) return false;
+    try {
+      if (!goes_on_ || goes_on_()) return true;
+      end(nullptr);
+    } catch (...) {
+      end(std::current_exception());
     }
-    return next++;
+    return false;
   }
-  std::size_t make(std::size_t i) {
-    const Step step(n_ended);
-    alive[i % alive.size()] = produce(i);
-    return i;
-  }
-  void use(std::size_t i) {
-    const Step step(n_ended);
-    const std::shared_ptr<void> result = std::move(alive[i % alive.size()]);
-    consume(result.get());
-  }
-};
 
-/// What oneTBB calls: a method of the loop. Where the loop is, is read before any step begins, hence unseen by a thread
-/// sanitizer.
-template <auto method>
-struct Call {
-  Loop* loop;
-  template <typename Argument>
-  __attribute__((no_sanitize("thread"))) auto operator()(Argument&& argument) const {
-    return (loop->*method)(std::forward<Argument>(argument));
+  Slot make(std::size_t i) const {
+    try {
+      return {produce_(i), nullptr};
+    } catch (...) {
+      return {nullptr, std::current_exception()};
+    }
   }
+
+  void consume_ready(std::unique_lock<std::mutex>& lock) {
+    if (consuming_) return;  // whoever is at it sees this one too
+    consuming_ = true;
+    while (!error_ && slots_[consumed_ % slots_.size()].is_ready()) {
+      Slot slot = std::exchange(slots_[consumed_ % slots_.size()], {});
+      lock.unlock();
+      std::exception_ptr error = slot.error;
+      try {
+        if (!error) consume_(slot.result.get());
+      } catch (...) {
+        error = std::current_exception();
+      }
+      slot.result.reset();
+      lock.lock();
+      ++consumed_;
+      if (error) end(error);
+      changed_.notify_all();
+    }
+    consuming_ = false;
+  }
+
+  void end(std::exception_ptr error) {
+    ended_ = true;
+    if (!error_) error_ = std::move(error);
+    changed_.notify_all();
+  }
+
+  const std::size_t count_;
+  const std::function<std::shared_ptr<void>(std::size_t)>& produce_;
+  const std::function<void(void*)>& consume_;
+  const std::function<bool()>& goes_on_;
+  std::mutex mutex_;  ///< of all that follows
+  std::condition_variable changed_;
+  std::vector<Slot> slots_;  ///< those alive lie side by side, so that no two share a slot
+  std::size_t next_ = 0, consumed_ = 0;
+  bool consuming_ = false, ended_ = false;
+  std::exception_ptr error_;
 };
 
 }  // namespace
@@ -79,27 +108,20 @@ struct Call {
 void ordered_parallel(std::size_t count, unsigned threads,
                       const std::function<std::shared_ptr<void>(std::size_t)>& produce,
                       const std::function<void(void*)>& consume, const std::function<bool()>& goes_on) {
-  // More than TBB allows would only make it print a warning; the results don't depend on it.
-  const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  const std::size_t wanted = threads == 0 ? allowed : std::min<std::size_t>(threads, allowed);
-  tbb::task_arena arena(static_cast<int>(wanted));
-  const auto n_alive = 4 * static_cast<std::size_t>(arena.max_concurrency());
-  Loop loop{count, produce, consume, goes_on, std::vector<std::shared_ptr<void>>(n_alive)};
-  { const Step before(loop.n_ended); }
-  const Step all(loop.n_ended);
-  arena.execute([&] {
-    using tbb::filter_mode;
-    tbb::parallel_pipeline(
-        n_alive, tbb::make_filter<void, std::size_t>(filter_mode::serial_in_order, Call<&Loop::take>{&loop}) &
-                     tbb::make_filter<std::size_t, std::size_t>(filter_mode::parallel, Call<&Loop::make>{&loop}) &
-                     tbb::make_filter<std::size_t, void>(filter_mode::serial_in_order, Call<&Loop::use>{&loop}));
-  });
+  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  const unsigned n_threads = threads == 0 ? cores : std::min(threads, cores);
+  constexpr std::size_t alive_a_thread = 4;
+  Loop loop(count, alive_a_thread * n_threads, produce, consume, goes_on);
+  {
+    std::vector<std::jthread> others;
+    try {
+      for (unsigned i = 1; i < n_threads; ++i) others.emplace_back([&loop] { loop.work(); });
+    } catch (const std::system_error&) {
+      // The system gives no more threads: those there are do it.
+    }
+    loop.work();
+  }
+  loop.rethrow();
 }
 
 }  // namespace pirsim::detail
-
-namespace pirsim {
-
-void without_help(const std::function<void()>& work) { oneapi::tbb::task_arena(1).execute(work); }
-
-}  // namespace pirsim

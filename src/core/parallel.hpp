@@ -14,9 +14,10 @@ void ordered_parallel(std::size_t count, unsigned threads,
 }  // namespace detail
 
 /// Calls `produce(i)` for i in [0, count) on up to `threads` threads (0: all cores) and hands the results to
-/// `consume`, one at a time and in the order of i. At most four results a thread are alive. An exception of
-/// either function stops the loop and is rethrown. `goes_on`, if given, is asked before each i: after a false nothing
-/// new is begun, and what was begun is finished and consumed.
+/// `consume`, one at a time and in the order of i. At most four results a thread are alive. Where produce(i) or consume
+/// throws, all results before i have been consumed and none after it is; the exception is rethrown when every thread
+/// has stopped. `goes_on`, if given, is asked before each i: after a false nothing new is begun, and what was begun is
+/// finished and consumed.
 template <typename Result>
 void ordered_parallel(std::size_t count, unsigned threads, const std::function<Result(std::size_t)>& produce,
                       const std::function<void(Result&)>& consume, const std::function<bool()>& goes_on = {}) {
@@ -24,9 +25,5 @@ void ordered_parallel(std::size_t count, unsigned threads, const std::function<R
       count, threads, [&](std::size_t i) { return std::make_shared<Result>(produce(i)); },
       [&](void* result) { consume(*static_cast<Result*>(result)); }, goes_on);
 }
-
-/// Works on the calling thread alone: libraries that share oneTBB's threads find none to help them, and the caller
-/// begins nothing else while it waits for them.
-void without_help(const std::function<void()>& work);
 
 }  // namespace pirsim

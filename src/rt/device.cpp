@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "core/parallel.hpp"
 #include "pirsim/error.hpp"
 #include "rt/room.hpp"
 
@@ -35,7 +34,7 @@ std::string_view describe(RTCError error) noexcept {
 }  // namespace
 
 Device make_device() {
-  // No `threads`: with oneTBB that would limit the whole process, not Embree; see commit().
+  // No `threads`: with oneTBB that would limit the whole process, not Embree.
   const std::string config = "max_isa=" + std::string(pinned_instruction_set) + ",start_threads=0,set_affinity=0";
   Device device(rtcNewDevice(config.c_str()));
   if (!device) refuse("make a device", rtcGetDeviceError(nullptr));
@@ -61,8 +60,7 @@ GeometryHandle make_geometry(RTCDevice device, RTCGeometryType type) {
 }
 
 void commit(RTCDevice device, RTCScene scene) {
-  // By this thread alone: rooms are small, and whoever waits for help with one would begin another world meanwhile.
-  without_help([&] { rtcCommitScene(scene); });
+  rtcCommitScene(scene);
   check(device, "build a scene");
 }
 

@@ -31,8 +31,8 @@ NumberedRun record_run(const CompiledStudy& study, std::uint32_t run, ZoneCacheP
   while (!state.finished) {
     if (step_tick(study, state)) recorded.track.rows.samples.push_back(state.sample);
     for (const std::size_t seat : state.crowd.seats_left()) recorded.track.seats_left.push_back({state.tick, seat});
-    if (state.exposure.zones != last) {
-      last = state.exposure.zones;
+    if (state.exposure().zones != last) {
+      last = state.exposure().zones;
       number = numbering.number(last);
     }
     recorded.track.sets.push_back(number);

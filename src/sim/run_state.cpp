@@ -1,18 +1,15 @@
 #include "sim/run_state.hpp"
 
-#include <utility>
-
 namespace pirsim::sim {
 
 RunState::RunState(const CompiledStudy& study, std::uint32_t run_number)
     : run(run_number),
       crowd(study, run_number),
-      exposure(study.array().unexposed()),
-      previous_exposure(exposure),
+      exposures{study.array().unexposed(), study.array().unexposed()},
       detector(study.array()),
       logger(study.stages(), study.sensing(), study.array().n_sensors()),
       triggers(study.array().n_sensors(), 0) {
-  detector.begin_run(study.seed(), run, exposure);
+  detector.begin_run(study.seed(), run, exposure());
   logger.begin_run(study.seed(), run);
   sample.replicate = study.replicate_of(run);
   sample.trial = study.trial_of(run).id;
@@ -32,9 +29,9 @@ bool move_tick(const CompiledStudy& study, RunState& state) {
 bool step_tick(const CompiledStudy& study, RunState& state) {
   const bool window_ended = move_tick(study, state);
   if (!*state.cache) *state.cache = std::make_shared<ZoneCache>(study);
-  std::swap(state.exposure, state.previous_exposure);
-  (*state.cache)->look(state.crowd.actors(), state.exposure);
-  state.detector.tick(state.previous_exposure, state.exposure, state.triggers);
+  const Exposure& before = state.exposures[static_cast<std::size_t>((state.tick - 1) % 2)];
+  (*state.cache)->look(state.crowd.actors(), state.exposure());
+  state.detector.tick(before, state.exposure(), state.triggers);
   for (const std::size_t seat : state.crowd.seats_left()) state.logger.seat_left(seat);
   state.logger.tick(state.tick, state.triggers);
   if (window_ended) state.logger.complete(state.sample);

@@ -1,6 +1,7 @@
 // Everything that changes during one run: people, what the optics show, detectors, logger.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -20,11 +21,14 @@ struct RunState {
   /// The moment before the first tick of a run, run in [0, study.n_runs()).
   RunState(const CompiledStudy& study, std::uint32_t run);
 
+  [[nodiscard]] Exposure& exposure() noexcept { return exposures[static_cast<std::size_t>(tick % 2)]; }
+  [[nodiscard]] const Exposure& exposure() const noexcept { return exposures[static_cast<std::size_t>(tick % 2)]; }
+
   std::uint32_t run = 0;
   std::int64_t tick = 0;
   bool finished = false;  ///< everybody has carried out all actions and the last window is complete
   Crowd crowd;
-  Exposure exposure, previous_exposure;
+  std::array<Exposure, 2> exposures;  ///< of this tick and of the one before, by turns
   Detector detector;
   Logger logger;
   std::vector<std::uint8_t> triggers;  ///< (n_sensors) at this tick

@@ -25,7 +25,7 @@ RunResult run_with(sim::ZoneCachePool& caches, const sim::CompiledStudy& study, 
   if (trace == Trace::signals && study.array().analog() != nullptr) explainer.emplace(study);
   while (!state.finished) {
     const bool window_ended = sim::step_tick(study, state);
-    if (record == Record::samples_and_zones) result.zones.push_back(activity_of(state.exposure.zones));
+    if (record == Record::samples_and_zones) result.zones.push_back(activity_of(state.exposure().zones));
     if (explainer) explainer->explain(state, result.trace);
     if (window_ended) result.samples.push_back(state.sample);
   }

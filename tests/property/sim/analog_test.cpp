@@ -36,7 +36,7 @@ Powers powers_of(const SceneSpec& scene, const ScriptSpec& script, TracerKind ki
   Powers powers;
   while (!state.finished()) {
     step_tick(model, state);
-    powers.emplace_back(state.run_state().exposure.powers.begin(), state.run_state().exposure.powers.end());
+    powers.emplace_back(state.run_state().exposure().powers.begin(), state.run_state().exposure().powers.end());
   }
   return powers;
 }

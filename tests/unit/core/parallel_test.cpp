@@ -83,6 +83,22 @@ TEST_CASE("an exception ends a parallel loop and leaves no result behind", "[cor
   }
 }
 
+TEST_CASE("what comes before a failure in order has been consumed, and nothing after it", "[core]") {
+  for (const unsigned threads : {1U, 2U}) {
+    std::vector<std::size_t> consumed;
+    const auto produce = [](std::size_t i) {
+      // The later failure is there first, as a rule.
+      if (i == 20) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      if (i == 20 || i == 23) throw std::runtime_error(std::to_string(i));
+      return Counted(i);
+    };
+    CHECK_THROWS_WITH(ordered_parallel<Counted>(100, threads, produce,
+                                                [&](Counted& one) { consumed.push_back(one.number); }),
+                      "20");
+    CHECK(consumed.size() == 20);
+  }
+}
+
 TEST_CASE("a loop that is told to stop finishes what it began", "[core]") {
   std::atomic<int> produced{0};
   int consumed = 0;
