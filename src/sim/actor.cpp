@@ -70,7 +70,7 @@ void Actor::advance(const CompiledStudy& study, std::int64_t tick, std::span<con
     motion_->advance();
   }
   phase_ = current_phase();
-  if (!done() && begun_ && errands_.empty() && time_is_up(study, tick)) finish_action();
+  if (!done() && begun_ && errands_.empty() && time_is_up(tick)) finish_action();
 }
 
 void Actor::carry_on(const CompiledStudy& study, std::int64_t now, std::span<const Presence> others) {
@@ -79,15 +79,16 @@ void Actor::carry_on(const CompiledStudy& study, std::int64_t now, std::span<con
       if (action().at_s && now < ticks(*action().at_s, study)) return;
       begun_ = true;
       began_ = now;
+      note_durations(study);
       plan(study);
     }
     while (!errands_.empty() && carry_out_first(study, others) == Progress::done) {
       errands_.pop_front();
       held_up_ticks_ = 0;
     }
-    if (const auto* work_action = std::get_if<action::Work>(&action().what)) work(study, *work_action, now);
+    if (const auto* work_action = std::get_if<action::Work>(&action().what)) work(*work_action, now);
     const auto next = interrupting_action(study, now);
-    if (!next && !(errands_.empty() && time_is_up(study, now))) return;
+    if (!next && !(errands_.empty() && time_is_up(now))) return;
     finish_action();
     if (next) action_ = *next;
   }
@@ -110,13 +111,17 @@ std::optional<std::size_t> Actor::interrupting_action(const CompiledStudy& study
   return std::nullopt;
 }
 
-bool Actor::time_is_up(const CompiledStudy& study, std::int64_t now) const {
-  if (const auto* wait = std::get_if<action::Wait>(&action().what))
-    return now - began_ >= ticks(wait->duration_s, study);
-  if (const auto* work = std::get_if<action::Work>(&action().what))
-    return now - began_ >= ticks(work->duration_s, study);
-  return true;
+/// In ticks, once an action: they are asked for every tick.
+void Actor::note_durations(const CompiledStudy& study) {
+  lasts_ticks_ = 0;
+  if (const auto* wait = std::get_if<action::Wait>(&action().what)) lasts_ticks_ = ticks(wait->duration_s, study);
+  if (const auto* work = std::get_if<action::Work>(&action().what)) {
+    lasts_ticks_ = ticks(work->duration_s, study);
+    tilt_every_ticks_ = std::max<std::int64_t>(1, ticks(work->tilt_every_s, study));
+  }
 }
+
+bool Actor::time_is_up(std::int64_t now) const noexcept { return now - began_ >= lasts_ticks_; }
 
 void Actor::plan(const CompiledStudy& study) {
   const auto entrance = [&](const std::string& id) -> const EntranceSpec& {
@@ -200,10 +205,9 @@ Vec2 Actor::standing_place(const body::SeatPlace& place, const SeatPlan& seat) c
   return pelvis - seat.stand_back_m * facing;
 }
 
-void Actor::work(const CompiledStudy& study, const action::Work& work, std::int64_t now) {
+void Actor::work(const action::Work& work, std::int64_t now) {
   const std::int64_t since = now - began_;
-  if (work.tilt_choices_deg.empty() || since >= ticks(work.duration_s, study)) return;
-  if (since % std::max<std::int64_t>(1, ticks(work.tilt_every_s, study)) != 0) return;
+  if (work.tilt_choices_deg.empty() || since >= lasts_ticks_ || since % tilt_every_ticks_ != 0) return;
   const auto choice = tilt_stream_.index(static_cast<std::uint32_t>(work.tilt_choices_deg.size()));
   motion_->tilt_spine(radians(work.tilt_choices_deg[choice]));
 }

@@ -90,14 +90,15 @@ class Actor {
   void plan_entering(const EntranceSpec& door);
   void plan_leaving(const EntranceSpec& door);
   void plan_sitting();
-  void work(const CompiledStudy& study, const action::Work& work, std::int64_t now);
+  void work(const action::Work& work, std::int64_t now);
   void fidget(const CompiledStudy& study);
   void carry_on(const CompiledStudy& study, std::int64_t now, std::span<const Presence> others);
   void finish_action();
   [[nodiscard]] std::string_view current_phase() const noexcept;
   /// Index of the latest action whose moment has come, if it is later than the current one.
   [[nodiscard]] std::optional<std::size_t> interrupting_action(const CompiledStudy& study, std::int64_t now) const;
-  [[nodiscard]] bool time_is_up(const CompiledStudy& study, std::int64_t now) const;
+  void note_durations(const CompiledStudy& study);
+  [[nodiscard]] bool time_is_up(std::int64_t now) const noexcept;
   [[nodiscard]] bool door_is_taken(const WaitForDoor& door, std::span<const Presence> others) const;
   [[nodiscard]] bool somebody_near(const Vec2& point, std::span<const Presence> others) const;
   [[nodiscard]] bool free_to_stand(std::span<const Presence> others) const;
@@ -128,12 +129,14 @@ class Actor {
   const PersonModel* person_ = nullptr;
   std::uint32_t index_ = 0;  ///< of the person in the trial
   std::optional<body::Motion> motion_;
-  std::size_t action_ = 0;            ///< index of the current action
-  bool begun_ = false;                ///< the current action has begun
-  std::int64_t began_ = 0;            ///< tick at which it did
-  std::deque<Errand> errands_;        ///< still to do for the current action
-  std::optional<body::Route> route_;  ///< to walk once the body faces its start, or being walked
-  std::string_view seat_;             ///< taken, or empty
+  std::size_t action_ = 0;             ///< index of the current action
+  bool begun_ = false;                 ///< the current action has begun
+  std::int64_t began_ = 0;             ///< tick at which it did
+  std::int64_t lasts_ticks_ = 0;       ///< of a wait or work; others end when their errands are done
+  std::int64_t tilt_every_ticks_ = 1;  ///< of work
+  std::deque<Errand> errands_;         ///< still to do for the current action
+  std::optional<body::Route> route_;   ///< to walk once the body faces its start, or being walked
+  std::string_view seat_;              ///< taken, or empty
   std::string_view phase_ = "outside";
   int blocked_ticks_ = 0;  ///< for how long others have been in the way
   int held_up_ticks_ = 0;  ///< the same in all since the current errand was set out on
