@@ -13,7 +13,7 @@
 namespace pirsim {
 namespace {
 
-/// Metres by which balls are larger than what they hold: a thousand times what triangles reach over their edges and
+/// Metres by which spheres are larger than what they hold: a thousand times what triangles reach over their edges and
 /// what rounding takes, at the size of a body.
 constexpr double padding = 1e-6;
 
@@ -68,7 +68,7 @@ TriangleSurface::Corners TriangleSurface::corners(std::size_t triangle) const no
   return {mesh_.positions[a], mesh_.positions[b], mesh_.positions[c]};
 }
 
-TriangleSurface::Ball TriangleSurface::ball_around(std::size_t begin, std::size_t end) const noexcept {
+TriangleSurface::BoundingSphere TriangleSurface::bounding_sphere(std::size_t begin, std::size_t end) const noexcept {
   Vec3 lower(std::numeric_limits<double>::infinity()), upper = -lower;
   double square = 0.0;
   const auto for_each_corner = [&](const auto& function) {
@@ -84,15 +84,15 @@ TriangleSurface::Ball TriangleSurface::ball_around(std::size_t begin, std::size_
 }
 
 void TriangleSurface::grow(std::size_t begin, std::size_t end) {
-  const std::size_t node = balls_.size();
-  balls_.push_back(ball_around(begin, end));
-  if (!balls_[node].is_leaf()) {
+  const std::size_t node = spheres_.size();
+  spheres_.push_back(bounding_sphere(begin, end));
+  if (!spheres_[node].is_leaf()) {
     Vec3 sum(0.0), sum_of_squares(0.0);
     const auto middle_of = [&](const auto& t) {
       return (mesh_.positions[t[0]] + mesh_.positions[t[1]] + mesh_.positions[t[2]]) / 3.0;
     };
     for (std::size_t i = begin; i < end; ++i) {
-      const Vec3 middle = middle_of(mesh_.triangles[i]) - balls_[node].centre;
+      const Vec3 middle = middle_of(mesh_.triangles[i]) - spheres_[node].centre;
       sum += middle, sum_of_squares += middle * middle;
     }
     const Vec3 spread = sum_of_squares - sum * sum / static_cast<double>(end - begin);
@@ -104,18 +104,18 @@ void TriangleSurface::grow(std::size_t begin, std::size_t end) {
     grow(begin, half);
     grow(half, end);
   }
-  balls_[node].next = balls_.size();
+  spheres_[node].next = spheres_.size();
 }
 
 template <typename MayConcern, typename LookAt>
 void TriangleSurface::visit(const MayConcern& may_concern, const LookAt& look_at) const noexcept {
-  for (std::size_t node = 0; node < balls_.size();) {
-    const Ball& ball = balls_[node];
-    if (!may_concern(ball)) {
-      node = ball.next;
+  for (std::size_t node = 0; node < spheres_.size();) {
+    const BoundingSphere& sphere = spheres_[node];
+    if (!may_concern(sphere)) {
+      node = sphere.next;
       continue;
     }
-    for (std::size_t i = ball.begin; ball.is_leaf() && i < ball.end; ++i) look_at(corners(i));
+    for (std::size_t i = sphere.begin; sphere.is_leaf() && i < sphere.end; ++i) look_at(corners(i));
     ++node;
   }
 }
@@ -124,11 +124,11 @@ std::optional<float> TriangleSurface::first_hit(const Vec3& origin, const Vec3& 
   if (!(t_max > 0.0F)) return std::nullopt;
   float nearest = t_max;
   const double square_length = glm::dot(direction, direction);
-  const auto may_hit = [&](const Ball& ball) {
-    const Vec3 offset = ball.centre - origin;
+  const auto may_hit = [&](const BoundingSphere& sphere) {
+    const Vec3 offset = sphere.centre - origin;
     const double along = std::clamp(glm::dot(offset, direction) / square_length, 0.0, static_cast<double>(nearest));
     const Vec3 miss = offset - direction * along;
-    return glm::dot(miss, miss) <= ball.radius * ball.radius;
+    return glm::dot(miss, miss) <= sphere.radius * sphere.radius;
   };
   visit(may_hit, [&](const Corners& triangle) {
     const float distance = distance_to_triangle(origin, direction, triangle.a, triangle.b, triangle.c);
@@ -140,8 +140,8 @@ std::optional<float> TriangleSurface::first_hit(const Vec3& origin, const Vec3& 
 Vec3 TriangleSurface::normal_near(const Vec3& point) const noexcept {
   double nearest = std::numeric_limits<double>::infinity();
   Vec3 normal(0.0, 1.0, 0.0);
-  const auto may_be_nearer = [&](const Ball& ball) {
-    return glm::distance(point, ball.centre) - ball.radius < nearest;
+  const auto may_be_nearer = [&](const BoundingSphere& sphere) {
+    return glm::distance(point, sphere.centre) - sphere.radius < nearest;
   };
   visit(may_be_nearer, [&](const Corners& triangle) {
     const Vec3 facing = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);

@@ -9,7 +9,7 @@
 
 namespace pirsim {
 
-/// Immutable and safe to share between threads. A tree of balls leaves out triangles that a query can't concern; what
+/// Immutable and safe to share between threads. A tree of spheres leaves out triangles that a query can't concern; what
 /// it finds is what a loop over all triangles finds.
 class TriangleSurface {
  public:
@@ -29,7 +29,7 @@ class TriangleSurface {
 
  private:
   /// Around triangles [begin, end), both halves of which follow as nodes of their own unless it is a leaf.
-  struct Ball {
+  struct BoundingSphere {
     Vec3 centre{0.0};
     double radius = 0.0;
     std::size_t begin = 0;
@@ -45,15 +45,15 @@ class TriangleSurface {
   [[nodiscard]] Corners corners(std::size_t triangle) const noexcept;
   void check() const;
   void grow(std::size_t begin, std::size_t end);
-  [[nodiscard]] Ball ball_around(std::size_t begin, std::size_t end) const noexcept;
-  /// Calls `look_at` with the corners of all triangles but those in balls that can't concern the query.
+  [[nodiscard]] BoundingSphere bounding_sphere(std::size_t begin, std::size_t end) const noexcept;
+  /// Calls `look_at` with the corners of all triangles but those in spheres that can't concern the query.
   template <typename MayConcern, typename LookAt>
   void visit(const MayConcern& may_concern, const LookAt& look_at) const noexcept;
 
   TriMesh mesh_;
   Vec3 lower_{0.0};
   Vec3 upper_{0.0};
-  std::vector<Ball> balls_;  ///< depth first
+  std::vector<BoundingSphere> spheres_;  ///< depth first
 };
 
 }  // namespace pirsim

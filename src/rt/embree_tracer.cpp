@@ -1,6 +1,6 @@
 // One Embree instance per solid, moved with it; each zone asks for any solid before the room and stops at the first, or
 // each ray asks for the nearest.
-// Embree leaves out the solids that a ray can't meet; whether it does meet one of the rest is decided by
+// Embree leaves out the solids that a ray can't hit; whether it does hit one of the rest is decided by
 // entry_distance() with the ray as it is in the world (docs/adr/0001-shared-ray-tests.md).
 #include <algorithm>
 #include <array>
@@ -63,7 +63,7 @@ void bound_cube(const RTCBoundsFunctionArguments* arguments) {
   *arguments->bounds_o = {-1.0F, -1.0F, -1.0F, 0.0F, 1.0F, 1.0F, 1.0F, 0.0F};
 }
 
-void meet_solid(const RTCOccludedFunctionNArguments* arguments) {
+void intersect_solid(const RTCOccludedFunctionNArguments* arguments) {
   if (arguments->valid[0] == 0) return;
   const auto& query = *static_cast<const SolidQuery*>(arguments->context);
   const PosedShape& solid = query.solids[query.instID[0]];
@@ -96,7 +96,7 @@ class EmbreeTracer final : public Tracer {
     const GeometryHandle cube = make_geometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(cube.get(), 1);
     rtcSetGeometryBoundsFunction(cube.get(), bound_cube, nullptr);
-    rtcSetGeometryOccludedFunction(cube.get(), meet_solid);
+    rtcSetGeometryOccludedFunction(cube.get(), intersect_solid);
     rtcSetGeometryIntersectFunction(cube.get(), offer_solid);
     rtcCommitGeometry(cube.get());
     rtcAttachGeometry(cube_.get(), cube.get());
@@ -114,8 +114,8 @@ class EmbreeTracer final : public Tracer {
     for (const std::size_t zone : candidates_) zones[zone] = sees_solid(query, zone);
   }
 
-  void find_first(std::span<const PosedShape> solids, std::vector<Meeting>& met) override {
-    met.clear();
+  void find_first(std::span<const PosedShape> solids, std::vector<FirstHit>& hits) override {
+    hits.clear();
     find_candidates(solids);
     if (candidates_.empty()) return;
     move_instances(solids);
@@ -124,7 +124,7 @@ class EmbreeTracer final : public Tracer {
     query.solids = solids;
     for (const std::size_t zone : candidates_) {
       for (std::uint32_t i = bundle_.zone_rays_begin[zone]; i < bundle_.zone_rays_begin[zone + 1]; ++i) {
-        if (const auto solid = first_solid(query, i)) met.push_back({i, *solid});
+        if (const auto solid = first_solid(query, i)) hits.push_back({i, *solid});
       }
     }
   }
@@ -132,17 +132,17 @@ class EmbreeTracer final : public Tracer {
  private:
   /// Zones that may see a solid; coarse to fine: clusters against all solids at once, against each, zones against each.
   void find_candidates(std::span<const PosedShape> solids) {
-    balls_.clear();
-    for (const PosedShape& solid : solids) balls_.push_back(ball_around(solid));
+    spheres_.clear();
+    for (const PosedShape& solid : solids) spheres_.push_back(bounding_sphere(solid));
     candidates_.clear();
-    if (balls_.empty()) return;
-    const Ball all = ball_around(balls_);
+    if (spheres_.empty()) return;
+    const BoundingSphere all = bounding_sphere(spheres_);
     for (std::size_t cluster = 0; cluster < bundle_.n_clusters(); ++cluster) {
       const ViewCone& cone = cluster_cones_[cluster];
-      if (!may_touch_any(cone, {&all, 1}) || !may_touch_any(cone, balls_)) continue;
+      if (!may_touch_any(cone, {&all, 1}) || !may_touch_any(cone, spheres_)) continue;
       const std::size_t end = bundle_.cluster_zones_begin[cluster + 1];
       for (std::size_t zone = bundle_.cluster_zones_begin[cluster]; zone < end; ++zone) {
-        if (may_touch_any(zone_cones_[zone], balls_)) candidates_.push_back(zone);
+        if (may_touch_any(zone_cones_[zone], spheres_)) candidates_.push_back(zone);
       }
     }
   }
@@ -218,7 +218,7 @@ class EmbreeTracer final : public Tracer {
   SceneHandle cube_;                     ///< the one primitive that every instance shows: a cube around its solid
   SceneHandle scene_;
   std::vector<Instance> instances_;
-  std::vector<Ball> balls_;  ///< (n_solids)
+  std::vector<BoundingSphere> spheres_;  ///< (n_solids)
   std::vector<std::size_t> candidates_;
 };
 

@@ -15,9 +15,9 @@ constexpr float least_margin_m = 0.0125F, greatest_margin_m = 0.4F;
 constexpr int short_lived_ticks = 4, long_lived_ticks = 16;
 constexpr float jump = 4.0F;  ///< margins: who moved that far was not looked at on the way
 
-constexpr Column RayPack::*ray_columns[] = {&RayPack::origin_x,    &RayPack::origin_y,    &RayPack::origin_z,
-                                            &RayPack::direction_x, &RayPack::direction_y, &RayPack::direction_z,
-                                            &RayPack::range};
+constexpr Column RayPacket::*ray_columns[] = {&RayPacket::origin_x,    &RayPacket::origin_y,    &RayPacket::origin_z,
+                                              &RayPacket::direction_x, &RayPacket::direction_y, &RayPacket::direction_z,
+                                              &RayPacket::range};
 
 struct Grown {
   float margin_m;
@@ -36,7 +36,7 @@ struct Grown {
   PosedShape operator()(const PosedMesh& mesh) const noexcept { return (*this)(box_around(mesh)); }
 };
 
-void copy_ray(const RayPack& from, std::size_t i, RayPack& to, std::size_t k) noexcept {
+void copy_ray(const RayPacket& from, std::size_t i, RayPacket& to, std::size_t k) noexcept {
   for (const auto column : ray_columns) (to.*column)[k] = (from.*column)[i];
   to.zone[k] = from.zone[i];
   to.ray[k] = from.ray[i];
@@ -48,7 +48,7 @@ struct Displacement {
   float operator()(const PosedSphere& a, const PosedSphere& b) const noexcept {
     return a.radius == b.radius ? glm::distance(a.centre, b.centre) : infinite;
   }
-  /// Every point of a capsule is as far between the balls at its ends as before.
+  /// Every point of a capsule is as far between the spheres at its ends as before.
   float operator()(const PosedCapsule& a, const PosedCapsule& b) const noexcept {
     return a.radius == b.radius ? std::max(glm::distance(a.a, b.a), glm::distance(a.b, b.b)) : infinite;
   }
@@ -88,25 +88,25 @@ PosedShape NearRays::begin(const PosedShape& solid, float slack_m) noexcept {
   if (!has_jumped && n_ticks_ > long_lived_ticks) margin_m_ = std::max(0.5F * margin_m_, least_margin_m);
   around_ = solid;
   n_ticks_ = 0;
-  packs_.clear();
-  n_in_last_ = pack_size;
+  packets_.clear();
+  n_in_last_ = packet_size;
   return grown(solid, margin_m_ + slack_m);
 }
 
-void NearRays::add(const RayPack& pack, unsigned int rays) {
+void NearRays::add(const RayPacket& packet, unsigned int rays) {
   for (; rays != 0; rays &= rays - 1) {
-    if (n_in_last_ == pack_size) {
-      packs_.emplace_back();
+    if (n_in_last_ == packet_size) {
+      packets_.emplace_back();
       n_in_last_ = 0;
     }
-    copy_ray(pack, static_cast<std::size_t>(std::countr_zero(rays)), packs_.back(), n_in_last_++);
+    copy_ray(packet, static_cast<std::size_t>(std::countr_zero(rays)), packets_.back(), n_in_last_++);
   }
 }
 
 void NearRays::end() noexcept {
-  for (; n_in_last_ < pack_size; ++n_in_last_) {
-    copy_ray(packs_.back(), 0, packs_.back(), n_in_last_);
-    packs_.back().range[n_in_last_] = -1.0F;
+  for (; n_in_last_ < packet_size; ++n_in_last_) {
+    copy_ray(packets_.back(), 0, packets_.back(), n_in_last_);
+    packets_.back().range[n_in_last_] = -1.0F;
   }
 }
 

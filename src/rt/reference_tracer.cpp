@@ -17,7 +17,7 @@ void bound_solid(const RTCBoundsFunctionArguments* arguments) {
                           upper.x + padding, upper.y + padding, upper.z + padding, 0.0F};
 }
 
-void meet_solid(const RTCIntersectFunctionNArguments* arguments) {
+void intersect_solid(const RTCIntersectFunctionNArguments* arguments) {
   if (arguments->valid[0] == 0) return;
   const auto& solid = *static_cast<const PosedShape*>(arguments->geometryUserPtr);
   if (const auto distance = entry_distance(ray_of(*arguments), solid, unlimited)) {
@@ -39,11 +39,11 @@ class ReferenceTracer final : public Tracer {
     }
   }
 
-  void find_first(std::span<const PosedShape> solids, std::vector<Meeting>& met) override {
+  void find_first(std::span<const PosedShape> solids, std::vector<FirstHit>& hits) override {
     const SceneHandle scene = build(solids);
-    met.clear();
+    hits.clear();
     for (std::uint32_t i = 0; i < rated_.rays.size(); ++i) {
-      if (const auto solid = first_solid(scene.get(), i)) met.push_back({i, *solid});
+      if (const auto solid = first_solid(scene.get(), i)) hits.push_back({i, *solid});
     }
   }
 
@@ -57,7 +57,7 @@ class ReferenceTracer final : public Tracer {
       rtcSetGeometryUserPrimitiveCount(geometry.get(), 1);
       rtcSetGeometryUserData(geometry.get(), const_cast<PosedShape*>(&solids[i]));
       rtcSetGeometryBoundsFunction(geometry.get(), bound_solid, nullptr);
-      rtcSetGeometryIntersectFunction(geometry.get(), meet_solid);
+      rtcSetGeometryIntersectFunction(geometry.get(), intersect_solid);
       rtcCommitGeometry(geometry.get());
       rtcAttachGeometryByID(scene.get(), geometry.get(), room_.n_meshes() + i);
     }
@@ -66,7 +66,7 @@ class ReferenceTracer final : public Tracer {
     return scene;
   }
 
-  /// What the ray meets first, if that is a solid: they come after the room's meshes.
+  /// What the ray hits first, if that is a solid: they come after the room's meshes.
   [[nodiscard]] std::optional<std::uint32_t> first_solid(RTCScene scene, std::uint32_t ray) const noexcept {
     QueryContext context;
     initialise(context);

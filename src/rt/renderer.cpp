@@ -86,12 +86,12 @@ Room drawn_part(const Room& room, std::span<const Surface> surfaces, const Camer
   return Room(drawn);
 }
 
-/// False only if the ray passes the ball.
-bool may_hit(const Ray& ray, const Ball& ball, float reach) {
-  const Vec3f offset = ball.centre - ray.origin;
+/// False only if the ray passes the sphere.
+bool may_hit(const Ray& ray, const BoundingSphere& sphere, float reach) {
+  const Vec3f offset = sphere.centre - ray.origin;
   const float nearest = std::clamp(glm::dot(offset, ray.direction), 0.0F, reach);
   const Vec3f miss = offset - ray.direction * nearest;
-  const float radius = ball.radius * 1.001F + 1e-3F;
+  const float radius = sphere.radius * 1.001F + 1e-3F;
   return glm::dot(miss, miss) <= radius * radius;
 }
 
@@ -100,7 +100,7 @@ class Picture {
   Picture(const Room& drawn_room, std::span<const Colour> colours, std::span<const RenderedSolid> solids,
           const View& view)
       : room_(drawn_room), colours_(colours), solids_(solids), view_(view) {
-    for (const RenderedSolid& solid : solids) balls_.push_back(ball_around(solid.shape));
+    for (const RenderedSolid& solid : solids) spheres_.push_back(bounding_sphere(solid.shape));
     to_key_ = glm::normalize(Vec3f(0.0F, 0.75F, 0.0F) + view.right * -0.3F - view.forward * 0.6F);
     key_sides_ = tangents(to_key_);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -121,14 +121,14 @@ class Picture {
       const float dx = (static_cast<float>(sample % samples_a_side) + 0.5F) / samples_a_side;
       const float dy = (static_cast<float>(sample / samples_a_side) + 0.5F) / samples_a_side;
       const Ray ray = view_.ray_through(static_cast<float>(x) + dx, static_cast<float>(y) + dy);
-      const auto point = meet(ray);
+      const auto point = intersect(ray);
       if (point) result.depth = std::min(result.depth, view_.depth_of(point->position));
       result.light += (point ? shade(*point, sample, pixel_noise(x, y)) : background_) / static_cast<float>(n_samples);
     }
     return result;
   }
 
-  [[nodiscard]] std::optional<SurfacePoint> meet(const Ray& ray) const {
+  [[nodiscard]] std::optional<SurfacePoint> intersect(const Ray& ray) const {
     std::optional<SurfacePoint> nearest;
     if (const auto hit = room_.first_hit(ray, far_away)) {
       const Vec3f position = ray.origin + ray.direction * hit->distance;
@@ -136,7 +136,7 @@ class Picture {
     }
     for (std::size_t i = 0; i < solids_.size(); ++i) {
       const float reach = nearest ? nearest->distance : far_away;
-      if (!may_hit(ray, balls_[i], reach)) continue;
+      if (!may_hit(ray, spheres_[i], reach)) continue;
       const RenderedSolid& solid = solids_[i];
       const auto distance = entry_distance(ray, solid.shape, reach);
       if (!distance) continue;
@@ -156,7 +156,7 @@ class Picture {
     any_hit(room_.impl().scene.get(), context, query);
     if (query.tfar < 0.0F) return true;
     for (std::size_t i = 0; i < solids_.size(); ++i) {
-      if (may_hit(ray, balls_[i], reach) && entry_distance(ray, solids_[i].shape, reach)) return true;
+      if (may_hit(ray, spheres_[i], reach) && entry_distance(ray, solids_[i].shape, reach)) return true;
     }
     return false;
   }
@@ -197,7 +197,7 @@ class Picture {
   std::span<const Colour> colours_;
   std::span<const RenderedSolid> solids_;
   const View& view_;
-  std::vector<Ball> balls_;  ///< (n_solids)
+  std::vector<BoundingSphere> spheres_;  ///< (n_solids)
   Vec3f to_key_{0.0F};
   std::array<Vec3f, 2> key_sides_{};
   Vec3f background_{0.0F};

@@ -38,7 +38,7 @@ void bound_triangle(const RTCBoundsFunctionArguments* arguments) {
   *arguments->bounds_o = {lower.x, lower.y, lower.z, 0.0F, upper.x, upper.y, upper.z, 0.0F};
 }
 
-void meet_triangle(const RTCIntersectFunctionNArguments* arguments) {
+void intersect_triangle(const RTCIntersectFunctionNArguments* arguments) {
   if (arguments->valid[0] == 0) return;
   const auto [a, b, c] = corners(*static_cast<const RoomMesh*>(arguments->geometryUserPtr), arguments->primID);
   const float distance = distance_to_triangle(ray_of(*arguments), a, b, c);
@@ -83,7 +83,7 @@ void Room::Impl::attach_to(RTCScene target) const {
     rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned int>(meshes[i].triangles.size()));
     rtcSetGeometryUserData(geometry.get(), const_cast<RoomMesh*>(&meshes[i]));
     rtcSetGeometryBoundsFunction(geometry.get(), bound_triangle, nullptr);
-    rtcSetGeometryIntersectFunction(geometry.get(), meet_triangle);
+    rtcSetGeometryIntersectFunction(geometry.get(), intersect_triangle);
     rtcSetGeometryOccludedFunction(geometry.get(), shade_triangle);
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometryByID(target, geometry.get(), i);

@@ -1,4 +1,4 @@
-// Which zones see a person at this tick, and what does each ray meet first? Several tracers answer, all with the same
+// Which zones see a person at this tick, and what does each ray hit first? Several tracers answer, all with the same
 // bits.
 #pragma once
 
@@ -14,11 +14,11 @@ namespace pirsim::rt {
 
 [[nodiscard]] std::string_view name(TracerKind kind) noexcept;
 
-/// A ray of the bundle and the solid that it meets before all others and the room.
-struct Meeting {
+/// A ray of the bundle and the solid that it hits before all others and the room.
+struct FirstHit {
   std::uint32_t ray = 0;
   std::uint32_t solid = 0;  ///< index; the lower one where a ray enters two at once
-  bool operator==(const Meeting&) const = default;
+  bool operator==(const FirstHit&) const = default;
 };
 
 /// Scratch memory of one thread; not shared.
@@ -30,8 +30,8 @@ class Tracer {
   virtual void trace(std::span<const PosedShape> solids, std::span<std::uint8_t> zones) = 0;
   /// Adds the zones that see one person of several to `zones`; what is kept from tick to tick is kept by `person`.
   virtual void add(std::size_t person, std::span<const PosedShape> solids, ZoneSet& zones);
-  /// One entry a ray that meets a solid within its range, in any order; `met` is overwritten.
-  virtual void find_first(std::span<const PosedShape> solids, std::vector<Meeting>& met) = 0;
+  /// One entry a ray that hits a solid within its range, in any order; `hits` is overwritten.
+  virtual void find_first(std::span<const PosedShape> solids, std::vector<FirstHit>& hits) = 0;
 };
 
 /// What a tracer works on; all of it outlives the tracer.

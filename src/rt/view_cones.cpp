@@ -9,7 +9,7 @@
 namespace pirsim::rt {
 namespace {
 
-/// Widens cones (radians) and balls (metres, and as a share of the distance) far beyond single precision's rounding.
+/// Widens cones (radians) and spheres (metres, and as a share of the distance) far beyond single precision's rounding.
 constexpr double angle_margin = 1e-4;
 constexpr float distance_margin = 1e-3F;
 constexpr float relative_margin = 1e-5F;
@@ -60,11 +60,11 @@ ViewCone cone_of(const RayBundle& bundle, std::size_t first_zone, std::size_t en
                      std::span(bundle.range).subspan(begin, end - begin));
 }
 
-bool may_touch(const ViewCone& cone, const Ball& ball) noexcept {
-  const Vec3f offset = ball.centre - cone.apex;
+bool may_touch(const ViewCone& cone, const BoundingSphere& sphere) noexcept {
+  const Vec3f offset = sphere.centre - cone.apex;
   const float along = glm::dot(offset, cone.axis);
   const float across = glm::length(offset - cone.axis * along);
-  const float reach = ball.radius + distance_margin + relative_margin * (std::abs(along) + across);
+  const float reach = sphere.radius + distance_margin + relative_margin * (std::abs(along) + across);
   // Projection of the offset on the cone's outward normal: at most the distance to the cone, equal beside it.
   const bool is_beside = across * cone.cosine - along * cone.sine > reach;
   return !is_beside && along - reach <= cone.length;
@@ -72,7 +72,7 @@ bool may_touch(const ViewCone& cone, const Ball& ball) noexcept {
 
 }  // namespace
 
-Ball ball_around(const PosedShape& shape) noexcept {
+BoundingSphere bounding_sphere(const PosedShape& shape) noexcept {
   if (const auto* sphere = std::get_if<PosedSphere>(&shape)) return {sphere->centre, sphere->radius};
   if (const auto* capsule = std::get_if<PosedCapsule>(&shape)) {
     return {(capsule->a + capsule->b) * 0.5F, glm::length(capsule->b - capsule->a) * 0.5F + capsule->radius};
@@ -82,15 +82,15 @@ Ball ball_around(const PosedShape& shape) noexcept {
   return {box.centre, glm::length(box.half_extents)};
 }
 
-Ball ball_around(std::span<const Ball> balls) noexcept {
-  Vec3f lower = balls.front().centre, upper = lower;
-  for (const Ball& ball : balls) {
-    lower = glm::min(lower, ball.centre - ball.radius);
-    upper = glm::max(upper, ball.centre + ball.radius);
+BoundingSphere bounding_sphere(std::span<const BoundingSphere> spheres) noexcept {
+  Vec3f lower = spheres.front().centre, upper = lower;
+  for (const BoundingSphere& sphere : spheres) {
+    lower = glm::min(lower, sphere.centre - sphere.radius);
+    upper = glm::max(upper, sphere.centre + sphere.radius);
   }
-  Ball all{(lower + upper) * 0.5F, 0.0F};
-  for (const Ball& ball : balls) {
-    all.radius = std::max(all.radius, glm::length(ball.centre - all.centre) + ball.radius);
+  BoundingSphere all{(lower + upper) * 0.5F, 0.0F};
+  for (const BoundingSphere& sphere : spheres) {
+    all.radius = std::max(all.radius, glm::length(sphere.centre - all.centre) + sphere.radius);
   }
   return all;
 }
@@ -109,8 +109,9 @@ std::vector<ViewCone> zone_cones(const RayBundle& bundle) {
   return cones;
 }
 
-bool may_touch_any(const ViewCone& cone, std::span<const Ball> balls) noexcept {
-  return std::any_of(balls.begin(), balls.end(), [&](const Ball& ball) { return may_touch(cone, ball); });
+bool may_touch_any(const ViewCone& cone, std::span<const BoundingSphere> spheres) noexcept {
+  return std::any_of(spheres.begin(), spheres.end(),
+                     [&](const BoundingSphere& sphere) { return may_touch(cone, sphere); });
 }
 
 }  // namespace pirsim::rt

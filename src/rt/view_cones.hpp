@@ -1,4 +1,4 @@
-// Which groups of rays can't meet any solid? A cone around each group's rays against a ball around each solid.
+// Which groups of rays can't hit any solid? A cone around each group's rays against a sphere around each solid.
 #pragma once
 
 #include <span>
@@ -8,14 +8,14 @@
 
 namespace pirsim::rt {
 
-/// Ball around a solid.
-struct Ball {
+/// BoundingSphere around a solid.
+struct BoundingSphere {
   Vec3f centre{0.0F};
   float radius = 0.0F;
 };
-[[nodiscard]] Ball ball_around(const PosedShape& shape) noexcept;
-/// Ball around balls; at least one.
-[[nodiscard]] Ball ball_around(std::span<const Ball> balls) noexcept;
+[[nodiscard]] BoundingSphere bounding_sphere(const PosedShape& shape) noexcept;
+/// BoundingSphere around spheres; at least one.
+[[nodiscard]] BoundingSphere bounding_sphere(std::span<const BoundingSphere> spheres) noexcept;
 
 /// All points that rays from `apex` within `half_angle` of `axis` reach up to `length` metres.
 struct ViewCone {
@@ -33,7 +33,7 @@ struct ViewCone {
 [[nodiscard]] std::vector<ViewCone> cluster_cones(const RayBundle& bundle);
 [[nodiscard]] std::vector<ViewCone> zone_cones(const RayBundle& bundle);
 
-/// False only if no ray of the cone can meet anything inside a ball; true may be wrong.
-[[nodiscard]] bool may_touch_any(const ViewCone& cone, std::span<const Ball> balls) noexcept;
+/// False only if no ray of the cone can hit anything inside a sphere; true may be wrong.
+[[nodiscard]] bool may_touch_any(const ViewCone& cone, std::span<const BoundingSphere> spheres) noexcept;
 
 }  // namespace pirsim::rt

@@ -39,7 +39,7 @@ void PowerMeter::measure(const std::vector<Actor>& actors, std::span<PowerSteps>
 
 void PowerMeter::add(const std::vector<Actor>& actors, std::span<PowerSteps> powers) {
   trace(actors);
-  for (const auto& [ray, solid] : met_) {
+  for (const auto& [ray, solid] : hits_) {
     const BodyRadiance& radiance = *radiances_[solid / body::n_parts];
     powers[power_.sensor_of(ray)] += power_.power(ray, radiance[solid % body::n_parts]);
   }
@@ -48,7 +48,7 @@ void PowerMeter::add(const std::vector<Actor>& actors, std::span<PowerSteps> pow
 void PowerMeter::explain(const std::vector<Actor>& actors, std::vector<PowerShare>& shares) {
   trace(actors);
   shares.clear();
-  for (const auto& [ray, solid] : met_) {
+  for (const auto& [ray, solid] : hits_) {
     const std::size_t person = solid / body::n_parts, part = solid % body::n_parts;
     shares.push_back(
         {ray, people_[person], static_cast<body::Part>(part), power_.power(ray, (*radiances_[person])[part])});
@@ -65,7 +65,7 @@ void PowerMeter::trace(const std::vector<Actor>& actors) {
     radiances_.push_back(&actors[i].person().radiance);
     people_.push_back(i);
   }
-  tracer_->find_first(solids_, met_);
+  tracer_->find_first(solids_, hits_);
 }
 
 }  // namespace pirsim::sim

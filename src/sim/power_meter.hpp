@@ -42,7 +42,7 @@ class PowerMeter {
   std::vector<PosedShape> solids_;
   std::vector<const BodyRadiance*> radiances_;  ///< (n_people in the scene)
   std::vector<std::uint32_t> people_;           ///< likewise: indices of actors
-  std::vector<rt::Meeting> met_;
+  std::vector<rt::FirstHit> hits_;
   std::vector<PostureMemory::Word> row_;
 };
 

@@ -117,9 +117,9 @@ void WalkTester::look(const body::Posture& posture, const Frame& world_from_move
   array_.expose(exposure);
   if (!power_tracer_) return;
   const sim::PowerModel& power = array_.analog()->power();
-  power_tracer_->find_first(solids_, met_);
+  power_tracer_->find_first(solids_, hits_);
   std::ranges::fill(exposure.powers, sim::PowerSteps{0});
-  for (const auto& [ray, solid] : met_) exposure.powers[power.sensor_of(ray)] += power.power(ray, radiance_[solid]);
+  for (const auto& [ray, solid] : hits_) exposure.powers[power.sensor_of(ray)] += power.power(ray, radiance_[solid]);
 }
 
 bool WalkTester::is_noticed(const WalkTest::Movement& movement, const Frame& world_from_movement,

@@ -92,7 +92,7 @@ class WalkTester {
   // Scratch.
   ZoneActivity activity_;
   std::vector<PosedShape> solids_;
-  std::vector<rt::Meeting> met_;
+  std::vector<rt::FirstHit> hits_;
   std::vector<std::uint8_t> triggers_;
 };
 

@@ -195,27 +195,27 @@ void postures_anew() {
 
 // A kernel that counts what it is asked.
 struct Counts {
-  std::size_t packs = 0, hits = 0;
+  std::size_t packets = 0, hits = 0;
 };
 Counts counts;
 template <typename Solid>
-using Meet = void (*)(const rt::RayPack*, const std::uint32_t*, std::size_t, const Solid&, const rt::Ball&,
-                      rt::PackHits*) noexcept;
-template <typename Solid, Meet<Solid> rt::RayKernel::*meet>
-void counted(const rt::RayPack* rays, const std::uint32_t* picked, std::size_t n, const Solid& solid,
-             const rt::Ball& around, rt::PackHits* hits) noexcept {
-  (rt::best_ray_kernel().*meet)(rays, picked, n, solid, around, hits);
-  counts.packs += n;
+using Intersect = void (*)(const rt::RayPacket*, const std::uint32_t*, std::size_t, const Solid&,
+                           const rt::BoundingSphere&, rt::PacketHits*) noexcept;
+template <typename Solid, Intersect<Solid> rt::RayKernel::*hit>
+void counted(const rt::RayPacket* rays, const std::uint32_t* picked, std::size_t n, const Solid& solid,
+             const rt::BoundingSphere& around, rt::PacketHits* hits) noexcept {
+  (rt::best_ray_kernel().*hit)(rays, picked, n, solid, around, hits);
+  counts.packets += n;
   for (std::size_t k = 0; k < n; ++k) counts.hits += static_cast<std::size_t>(std::popcount(hits[k]));
 }
 
-/// What must be tested at all: packs that pass the cones of a part, and rays that meet it.
+/// What must be tested at all: packets that pass the cones of a part, and rays that hit it.
 void limit() {
   const Model model = study_a(TracerKind::direct);
   rt::RayKernel counting = rt::best_ray_kernel();
-  counting.meet_sphere = counted<PosedSphere, &rt::RayKernel::meet_sphere>;
-  counting.meet_capsule = counted<PosedCapsule, &rt::RayKernel::meet_capsule>;
-  counting.meet_box = counted<PosedBox, &rt::RayKernel::meet_box>;
+  counting.intersect_sphere = counted<PosedSphere, &rt::RayKernel::intersect_sphere>;
+  counting.intersect_capsule = counted<PosedCapsule, &rt::RayKernel::intersect_capsule>;
+  counting.intersect_box = counted<PosedBox, &rt::RayKernel::intersect_box>;
   for (const Phase& phase : phases) {
     const std::string name(phase.name);
     const int n_ticks = std::min(phase.n_ticks, 1000);
@@ -233,9 +233,9 @@ void limit() {
     counts = {};
     (void)anew_ns(model, one, counting);
     report("limit", name + ", pose alone", pose, "ns");
-    report("limit", name + ", pairs of a part and a pack tested", static_cast<double>(counts.packs) / n_ticks,
+    report("limit", name + ", pairs of a part and a packet tested", static_cast<double>(counts.packets) / n_ticks,
            "per tick");
-    report("limit", name + ", pairs of a part and a ray that meet", static_cast<double>(counts.hits) / n_ticks,
+    report("limit", name + ", pairs of a part and a ray that hit", static_cast<double>(counts.hits) / n_ticks,
            "per tick");
   }
 }

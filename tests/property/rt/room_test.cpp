@@ -21,7 +21,7 @@ TriMesh closed_room(int n) {
         p[side % 3] = side < 3 ? -1.0 : 1.0;
         p[(side + 1) % 3] = 2.0 * i / n - 1.0;
         p[(side + 2) % 3] = 2.0 * j / n - 1.0;
-        // A smooth map of space: equal points stay equal, so that the sides still meet without a gap.
+        // A smooth map of space: equal points stay equal, so that the sides still hit without a gap.
         mesh.positions.push_back(Vec3(3.1, 1.4, 2.3) *
                                  (p + 0.07 * Vec3(std::sin(5 * p.y), std::sin(6 * p.z), std::sin(7 * p.x))));
       }

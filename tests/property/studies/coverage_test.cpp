@@ -273,11 +273,11 @@ std::vector<MotionCount> plain_analog_counts(const CoverageStudy& study, const V
   const double tick_s = 1.0 / study.spec().sensing.tick_rate_hz;
   const double radiance = pir::band_radiance(pir::kelvin(study.spec().target.temperature_c));
   const Vec3 foot(point.x, study.scene().floor.height_m(), point.y);
-  std::vector<rt::Meeting> met;
+  std::vector<rt::FirstHit> hits;
   const auto watts_at = [&](std::int64_t tick) {
-    tracer->find_first(study.target().solids(foot, tick), met);
+    tracer->find_first(study.target().solids(foot, tick), hits);
     std::vector<sim::PowerSteps> steps(power.n_sensors(), 0);
-    for (const rt::Meeting& each : met) steps[power.sensor_of(each.ray)] += power.power(each.ray, radiance);
+    for (const rt::FirstHit& each : hits) steps[power.sensor_of(each.ray)] += power.power(each.ray, radiance);
     std::vector<double> watts;
     for (const sim::PowerSteps step : steps) watts.push_back(static_cast<double>(step) * sim::watts_per_step);
     return watts;

@@ -46,7 +46,8 @@ TEST_CASE("no point of a solid moves farther than its displacement nor leaves th
     const Vec3 point = point_of(draw, shape);
     const double displacement = static_cast<double>(displacement_m(from, to));
     const double moved_m = glm::distance(before * point, after * point);
-    // A ball and a capsule may turn about themselves: what counts is how far the solid as a whole is from where it was.
+    // A sphere and a capsule may turn about themselves: what counts is how far the solid as a whole is from where it
+    // was.
     const double apart_m = testing::signed_distance(from, after * point);
     constexpr double rounding_m = 1e-5;
     n_far += apart_m > displacement + rounding_m ? 1 : 0;
@@ -61,10 +62,10 @@ TEST_CASE("no point of a solid moves farther than its displacement nor leaves th
 }
 
 TEST_CASE("solids of different kinds or sizes are infinitely far apart") {
-  const PosedSphere ball{Vec3f(0.0F), 0.1F};
-  CHECK(displacement_m(ball, PosedSphere{Vec3f(0.0F), 0.1F}) == 0.0F);
-  CHECK(std::isinf(displacement_m(ball, PosedSphere{Vec3f(0.0F), 0.2F})));
-  CHECK(std::isinf(displacement_m(ball, PosedCapsule{Vec3f(0.0F), Vec3f(0.0F), 0.1F})));
+  const PosedSphere sphere{Vec3f(0.0F), 0.1F};
+  CHECK(displacement_m(sphere, PosedSphere{Vec3f(0.0F), 0.1F}) == 0.0F);
+  CHECK(std::isinf(displacement_m(sphere, PosedSphere{Vec3f(0.0F), 0.2F})));
+  CHECK(std::isinf(displacement_m(sphere, PosedCapsule{Vec3f(0.0F), Vec3f(0.0F), 0.1F})));
   CHECK(std::isinf(displacement_m(PosedMesh{}, PosedMesh{})));
 }
 

@@ -14,55 +14,57 @@ using pirsim::testing::Draw;
 
 namespace {
 
-/// A ray aimed at, or close by, a ball: half of the rays of a kernel test shall meet the solid.
-Ray ray_near(Draw& draw, const Ball& ball) {
-  const Vec3 centre(ball.centre);
-  const double radius = ball.radius;
+/// A ray aimed at, or close by, a sphere: half of the rays of a kernel test shall hit the solid.
+Ray ray_near(Draw& draw, const BoundingSphere& sphere) {
+  const Vec3 centre(sphere.centre);
+  const double radius = sphere.radius;
   const Vec3 from = centre + draw.between(0.0, 9.0) * draw.direction();
   return testing::ray_through(from, centre + 0.9 * radius * draw.between(0.0, 1.0) * draw.direction());
 }
 
-void set(RayPack& pack, std::size_t i, const Ray& ray, float range) {
-  pack.origin_x[i] = ray.origin.x;
-  pack.origin_y[i] = ray.origin.y;
-  pack.origin_z[i] = ray.origin.z;
-  pack.direction_x[i] = ray.direction.x;
-  pack.direction_y[i] = ray.direction.y;
-  pack.direction_z[i] = ray.direction.z;
-  pack.range[i] = range;
+void set(RayPacket& packet, std::size_t i, const Ray& ray, float range) {
+  packet.origin_x[i] = ray.origin.x;
+  packet.origin_y[i] = ray.origin.y;
+  packet.origin_z[i] = ray.origin.z;
+  packet.direction_x[i] = ray.direction.x;
+  packet.direction_y[i] = ray.direction.y;
+  packet.direction_z[i] = ray.direction.z;
+  packet.range[i] = range;
 }
 
 struct Case {
   PosedShape solid;
-  RayPack pack{};
-  PackHits expected = 0;  ///< by entry_distance()
+  RayPacket packet{};
+  PacketHits expected = 0;  ///< by entry_distance()
 };
 
 /// The range is drawn, or the entry distance itself, or the next float above it: ties are where bits would differ.
 Case random_case(Draw& draw) {
   Case c;
   c.solid = place(draw.shape(), {draw.rotation(), draw.inside({-6, 0, -6}, {6, 3, 6})});
-  const Ball ball = ball_around(c.solid);
-  for (std::size_t i = 0; i < pack_size; ++i) {
-    const Ray ray = ray_near(draw, ball);
+  const BoundingSphere sphere = bounding_sphere(c.solid);
+  for (std::size_t i = 0; i < packet_size; ++i) {
+    const Ray ray = ray_near(draw, sphere);
     float range = static_cast<float>(draw.between(0.0, 12.0));
     const auto distance = entry_distance(ray, c.solid, 1e9F);
     const std::uint32_t choice = draw.index(4);
     if (distance && choice == 0) range = *distance;
     if (distance && choice == 1) range = std::nextafter(*distance, 1e9F);
-    set(c.pack, i, ray, range);
-    if (entry_distance(ray, c.solid, range)) c.expected = static_cast<PackHits>(c.expected | (1U << i));
+    set(c.packet, i, ray, range);
+    if (entry_distance(ray, c.solid, range)) c.expected = static_cast<PacketHits>(c.expected | (1U << i));
   }
   return c;
 }
 
-PackHits met(const RayKernel& kernel, const Case& c) {
+PacketHits hits(const RayKernel& kernel, const Case& c) {
   const std::uint32_t first = 0;
-  const Ball ball = ball_around(c.solid);
-  PackHits hits = 0;
-  if (const auto* s = std::get_if<PosedSphere>(&c.solid)) kernel.meet_sphere(&c.pack, &first, 1, *s, ball, &hits);
-  if (const auto* s = std::get_if<PosedCapsule>(&c.solid)) kernel.meet_capsule(&c.pack, &first, 1, *s, ball, &hits);
-  if (const auto* s = std::get_if<PosedBox>(&c.solid)) kernel.meet_box(&c.pack, &first, 1, *s, ball, &hits);
+  const BoundingSphere sphere = bounding_sphere(c.solid);
+  PacketHits hits = 0;
+  if (const auto* s = std::get_if<PosedSphere>(&c.solid))
+    kernel.intersect_sphere(&c.packet, &first, 1, *s, sphere, &hits);
+  if (const auto* s = std::get_if<PosedCapsule>(&c.solid))
+    kernel.intersect_capsule(&c.packet, &first, 1, *s, sphere, &hits);
+  if (const auto* s = std::get_if<PosedBox>(&c.solid)) kernel.intersect_box(&c.packet, &first, 1, *s, sphere, &hits);
   return hits;
 }
 
@@ -80,15 +82,15 @@ TEST_CASE("every instruction set gives the bits of entry_distance for 1,000,000 
   Draw draw(77);
   const auto kernels = available_kernels();
   std::size_t n_hits = 0, n_wrong = 0;
-  constexpr std::size_t n_packs = 62500;
-  for (std::size_t i = 0; i < n_packs; ++i) {
+  constexpr std::size_t n_packets = 62500;
+  for (std::size_t i = 0; i < n_packets; ++i) {
     const Case c = random_case(draw);
     n_hits += static_cast<std::size_t>(std::popcount(c.expected));
-    for (const RayKernel* kernel : kernels) n_wrong += met(*kernel, c) == c.expected ? 0 : 1;
+    for (const RayKernel* kernel : kernels) n_wrong += hits(*kernel, c) == c.expected ? 0 : 1;
   }
   CHECK(n_wrong == 0);
-  CHECK(n_hits > n_packs * pack_size / 5);
-  CHECK(n_hits < n_packs * pack_size * 4 / 5);
+  CHECK(n_hits > n_packets * packet_size / 5);
+  CHECK(n_hits < n_packets * packet_size * 4 / 5);
   WARN(kernels.size() << " instruction sets, the widest " << kernels.front()->name << "; " << n_hits << " hits");
 }
 
@@ -101,16 +103,16 @@ TEST_CASE("rays along a capsule's axis, from inside and grazing agree as well", 
     const double radius = draw.between(0.03, 0.15), half_length = draw.between(0.0, 0.4);
     Case c;
     c.solid = place(Capsule{radius, half_length}, {rotation, at});
-    for (std::size_t k = 0; k < pack_size; ++k) {
+    for (std::size_t k = 0; k < packet_size; ++k) {
       const Vec3 along = rotation * Vec3(0, 1, 0), aside = rotation * Vec3(1, 0, 0);
       const double tilt = k % 4 == 0 ? 0.0 : draw.between(-0.02, 0.02);
       const double off = k % 2 == 0 ? radius * draw.between(0.9999, 1.0001) : radius * draw.between(0.0, 1.2);
       const Vec3 from = at + off * aside - draw.between(-0.2, 5.0) * along;
       const Ray ray = testing::ray_through(from, from + along + tilt * draw.direction());
-      set(c.pack, k, ray, 12.0F);
-      if (entry_distance(ray, c.solid, 12.0F)) c.expected = static_cast<PackHits>(c.expected | (1U << k));
+      set(c.packet, k, ray, 12.0F);
+      if (entry_distance(ray, c.solid, 12.0F)) c.expected = static_cast<PacketHits>(c.expected | (1U << k));
     }
-    for (const RayKernel* kernel : available_kernels()) n_wrong += met(*kernel, c) == c.expected ? 0 : 1;
+    for (const RayKernel* kernel : available_kernels()) n_wrong += hits(*kernel, c) == c.expected ? 0 : 1;
   }
   CHECK(n_wrong == 0);
 }
@@ -136,17 +138,17 @@ TEST_CASE("single rays that pass, begin or end within micrometres of a capsule's
     Case c;
     c.solid = place(Capsule{radius, half_length}, {rotation, at});
     const double range = draw.index(3) == 0 ? before + tiny() : draw.between(0.0, 20.0);
-    for (std::size_t k = 0; k < pack_size; ++k) set(c.pack, k, ray, k == 0 ? static_cast<float>(range) : -1.0F);
-    if (entry_distance(ray, c.solid, c.pack.range[0])) c.expected = 1;
+    for (std::size_t k = 0; k < packet_size; ++k) set(c.packet, k, ray, k == 0 ? static_cast<float>(range) : -1.0F);
+    if (entry_distance(ray, c.solid, c.packet.range[0])) c.expected = 1;
     n_hits += c.expected;
-    for (const RayKernel* kernel : kernels) n_wrong += met(*kernel, c) == c.expected ? 0 : 1;
+    for (const RayKernel* kernel : kernels) n_wrong += hits(*kernel, c) == c.expected ? 0 : 1;
   }
   CHECK(n_wrong == 0);
   CHECK(n_hits > n / 5);
   CHECK(n_hits < n * 4 / 5);
 }
 
-TEST_CASE("no cone that is culled has a ray that meets the ball, whatever the instruction set", "[rt]") {
+TEST_CASE("no cone that is culled has a ray that hits the sphere, whatever the instruction set", "[rt]") {
   Draw draw(79);
   std::size_t n_left_out = 0, n_faults = 0, n_cones = 0;
   for (int i = 0; i < 300; ++i) {
@@ -159,21 +161,22 @@ TEST_CASE("no cone that is culled has a ray that meets the ball, whatever the in
     bundle.zone_rays_begin = {0, 340};
     bundle.cluster_zones_begin = {0, 1};
     bundle.sensor_clusters_begin = {0, 1};
-    const auto packs = pack_rays(bundle);
-    const auto cones = cones_around(packs);
-    const Ball ball{Vec3f(draw.inside({-4, 0, -8}, {4, 3, 0})), static_cast<float>(draw.between(0.05, 0.9))};
+    const auto packets = packet_of_rays(bundle);
+    const auto cones = cones_around(packets);
+    const BoundingSphere sphere{Vec3f(draw.inside({-4, 0, -8}, {4, 3, 0})),
+                                static_cast<float>(draw.between(0.05, 0.9))};
     for (const RayKernel* kernel : available_kernels()) {
-      std::vector<std::uint32_t> kept(cones.size() * pack_size);
-      kept.resize(kernel->cull(cones.data(), cones.size(), ball, kept.data()));
-      n_cones += packs.size();
-      for (std::uint32_t p = 0; p < packs.size(); ++p) {
+      std::vector<std::uint32_t> kept(cones.size() * packet_size);
+      kept.resize(kernel->cull(cones.data(), cones.size(), sphere, kept.data()));
+      n_cones += packets.size();
+      for (std::uint32_t p = 0; p < packets.size(); ++p) {
         if (std::ranges::binary_search(kept, p)) continue;
         ++n_left_out;
-        for (std::size_t k = 0; k < pack_size; ++k) {
-          const RayPack& pack = packs[p];
-          const Ray ray{Vec3f(pack.origin_x[k], pack.origin_y[k], pack.origin_z[k]),
-                        Vec3f(pack.direction_x[k], pack.direction_y[k], pack.direction_z[k])};
-          n_faults += entry_distance(ray, PosedSphere{ball.centre, ball.radius}, pack.range[k]) ? 1 : 0;
+        for (std::size_t k = 0; k < packet_size; ++k) {
+          const RayPacket& packet = packets[p];
+          const Ray ray{Vec3f(packet.origin_x[k], packet.origin_y[k], packet.origin_z[k]),
+                        Vec3f(packet.direction_x[k], packet.direction_y[k], packet.direction_z[k])};
+          n_faults += entry_distance(ray, PosedSphere{sphere.centre, sphere.radius}, packet.range[k]) ? 1 : 0;
         }
       }
     }

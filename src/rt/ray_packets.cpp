@@ -1,4 +1,4 @@
-#include "rt/ray_packs.hpp"
+#include "rt/ray_packets.hpp"
 
 #include <algorithm>
 #include <array>
@@ -32,29 +32,29 @@ int widest_axis(std::span<const std::uint32_t> order, const std::vector<Ray>& ra
   return width[wider] < width.z ? 2 : wider;
 }
 
-/// Halves, quarters and so on by direction, down to packs.
-void sort_into_packs(std::span<std::uint32_t> order, const std::vector<Ray>& rays) {
-  if (order.size() <= pack_size) return;
-  const std::size_t n_packs = (order.size() + pack_size - 1) / pack_size;
-  const std::size_t middle = n_packs / 2 * pack_size;
+/// Halves, quarters and so on by direction, down to packets.
+void sort_into_packets(std::span<std::uint32_t> order, const std::vector<Ray>& rays) {
+  if (order.size() <= packet_size) return;
+  const std::size_t n_packets = (order.size() + packet_size - 1) / packet_size;
+  const std::size_t middle = n_packets / 2 * packet_size;
   const int axis = widest_axis(order, rays);
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     const float x = rays[a].direction[axis], y = rays[b].direction[axis];
     return x < y || (x == y && a < b);
   });
-  sort_into_packs(order.first(middle), rays);
-  sort_into_packs(order.subspan(middle), rays);
+  sort_into_packets(order.first(middle), rays);
+  sort_into_packets(order.subspan(middle), rays);
 }
 
-void set(RayPack& pack, std::size_t i, const Ray& ray, float range, std::uint32_t zone) noexcept {
-  pack.origin_x[i] = ray.origin.x;
-  pack.origin_y[i] = ray.origin.y;
-  pack.origin_z[i] = ray.origin.z;
-  pack.direction_x[i] = ray.direction.x;
-  pack.direction_y[i] = ray.direction.y;
-  pack.direction_z[i] = ray.direction.z;
-  pack.range[i] = range;
-  pack.zone[i] = zone;
+void set(RayPacket& packet, std::size_t i, const Ray& ray, float range, std::uint32_t zone) noexcept {
+  packet.origin_x[i] = ray.origin.x;
+  packet.origin_y[i] = ray.origin.y;
+  packet.origin_z[i] = ray.origin.z;
+  packet.direction_x[i] = ray.direction.x;
+  packet.direction_y[i] = ray.direction.y;
+  packet.direction_z[i] = ray.direction.z;
+  packet.range[i] = range;
+  packet.zone[i] = zone;
 }
 
 std::vector<std::uint32_t> zone_of_each_ray(const RayBundle& bundle) {
@@ -65,41 +65,42 @@ std::vector<std::uint32_t> zone_of_each_ray(const RayBundle& bundle) {
 
 }  // namespace
 
-std::vector<RayPack> pack_rays(const RayBundle& bundle) {
+std::vector<RayPacket> packet_of_rays(const RayBundle& bundle) {
   const std::vector<std::uint32_t> zones = zone_of_each_ray(bundle);
-  std::vector<RayPack> packs;
+  std::vector<RayPacket> packets;
   for (std::size_t sensor = 0; sensor < bundle.n_sensors(); ++sensor) {
     const auto begin = bundle.zone_rays_begin[bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor]]];
     const auto end = bundle.zone_rays_begin[bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor + 1]]];
     std::vector<std::uint32_t> order(end - begin);
     std::iota(order.begin(), order.end(), begin);
-    sort_into_packs(order, bundle.rays);
-    for (std::size_t k = 0; k < order.size(); k += pack_size) {
-      RayPack& pack = packs.emplace_back();
-      for (std::size_t i = 0; i < pack_size; ++i) {
+    sort_into_packets(order, bundle.rays);
+    for (std::size_t k = 0; k < order.size(); k += packet_size) {
+      RayPacket& packet = packets.emplace_back();
+      for (std::size_t i = 0; i < packet_size; ++i) {
         const bool is_missing = k + i >= order.size();
         const std::uint32_t ray = is_missing ? order.back() : order[k + i];
-        set(pack, i, bundle.rays[ray], is_missing ? -1.0F : bundle.range[ray], zones[ray]);
-        pack.ray[i] = ray;
+        set(packet, i, bundle.rays[ray], is_missing ? -1.0F : bundle.range[ray], zones[ray]);
+        packet.ray[i] = ray;
       }
     }
   }
-  return packs;
+  return packets;
 }
 
-std::vector<ConeBlock> cones_around(const std::vector<RayPack>& packs) {
-  std::vector<ConeBlock> cones((packs.size() + pack_size - 1) / pack_size, untouchable());
-  std::array<Ray, pack_size> rays;
-  for (std::size_t p = 0; p < packs.size(); ++p) {
-    const RayPack& pack = packs[p];
-    for (std::size_t i = 0; i < pack_size; ++i) {
-      rays[i] = {Vec3f(pack.origin_x[i], pack.origin_y[i], pack.origin_z[i]),
-                 Vec3f(pack.direction_x[i], pack.direction_y[i], pack.direction_z[i])};
+std::vector<ConeBlock> cones_around(const std::vector<RayPacket>& packets) {
+  std::vector<ConeBlock> cones((packets.size() + packet_size - 1) / packet_size, untouchable());
+  std::array<Ray, packet_size> rays;
+  for (std::size_t p = 0; p < packets.size(); ++p) {
+    const RayPacket& packet = packets[p];
+    for (std::size_t i = 0; i < packet_size; ++i) {
+      rays[i] = {Vec3f(packet.origin_x[i], packet.origin_y[i], packet.origin_z[i]),
+                 Vec3f(packet.direction_x[i], packet.direction_y[i], packet.direction_z[i])};
     }
-    const ViewCone cone = cone_around(rays, pack.range);
+    const ViewCone cone = cone_around(rays, packet.range);
     const float values[] = {cone.apex.x, cone.apex.y, cone.apex.z, cone.axis.x, cone.axis.y,
                             cone.axis.z, cone.cosine, cone.sine,   cone.length};
-    for (std::size_t c = 0; c < std::size(columns); ++c) (cones[p / pack_size].*columns[c])[p % pack_size] = values[c];
+    for (std::size_t c = 0; c < std::size(columns); ++c)
+      (cones[p / packet_size].*columns[c])[p % packet_size] = values[c];
   }
   return cones;
 }
@@ -107,11 +108,11 @@ std::vector<ConeBlock> cones_around(const std::vector<RayPack>& packs) {
 void pick(const std::vector<ConeBlock>& cones, const std::uint32_t* indices, std::size_t n,
           std::vector<ConeBlock>& picked) {
   static const ConeBlock empty = untouchable();
-  picked.assign((n + pack_size - 1) / pack_size, empty);
+  picked.assign((n + packet_size - 1) / packet_size, empty);
   for (std::size_t k = 0; k < n; ++k) {
-    const ConeBlock& from = cones[indices[k] / pack_size];
+    const ConeBlock& from = cones[indices[k] / packet_size];
     for (const auto column : columns)
-      (picked[k / pack_size].*column)[k % pack_size] = (from.*column)[indices[k] % pack_size];
+      (picked[k / packet_size].*column)[k % packet_size] = (from.*column)[indices[k] % packet_size];
   }
 }
 

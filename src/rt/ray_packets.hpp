@@ -1,4 +1,4 @@
-// The rays of a bundle in packs of sixteen that lie close together, and a cone around each pack; both laid out in
+// The rays of a bundle in packets of sixteen that lie close together, and a cone around each packet; both laid out in
 // columns for the ray kernels.
 #pragma once
 
@@ -10,16 +10,16 @@
 
 namespace pirsim::rt {
 
-inline constexpr std::size_t pack_size = 16;
-using Column = float[pack_size];
+inline constexpr std::size_t packet_size = 16;
+using Column = float[packet_size];
 
-/// Rays that are missing to a full pack have a negative range and meet nothing.
-struct alignas(64) RayPack {
+/// Rays that are missing to a full packet have a negative range and hit nothing.
+struct alignas(64) RayPacket {
   Column origin_x, origin_y, origin_z;
   Column direction_x, direction_y, direction_z;
   Column range;
-  std::uint32_t zone[pack_size];  ///< that the ray belongs to
-  std::uint32_t ray[pack_size];   ///< its index in the bundle
+  std::uint32_t zone[packet_size];  ///< that the ray belongs to
+  std::uint32_t ray[packet_size];   ///< its index in the bundle
 };
 
 /// Cones as in view_cones.hpp, sixteen at a time; nothing touches those that are missing to a full block.
@@ -29,10 +29,10 @@ struct alignas(64) ConeBlock {
   Column cosine, sine, length;
 };
 
-/// Sorts each sensor's rays by direction into packs.
-[[nodiscard]] std::vector<RayPack> pack_rays(const RayBundle& bundle);
-/// Cone i, counted through the blocks, is around pack i.
-[[nodiscard]] std::vector<ConeBlock> cones_around(const std::vector<RayPack>& packs);
+/// Sorts each sensor's rays by direction into packets.
+[[nodiscard]] std::vector<RayPacket> packet_of_rays(const RayBundle& bundle);
+/// Cone i, counted through the blocks, is around packet i.
+[[nodiscard]] std::vector<ConeBlock> cones_around(const std::vector<RayPacket>& packets);
 /// Picks cones by their indices; `picked` is overwritten and has room for them.
 void pick(const std::vector<ConeBlock>& cones, const std::uint32_t* indices, std::size_t n,
           std::vector<ConeBlock>& picked);
