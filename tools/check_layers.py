@@ -30,6 +30,7 @@ PUBLIC = {
     "sensor": "schema", "scene": "schema", "script": "schema", "survey": "schema", "sample": "schema",
     "effects": "effects",
     "model": "sim", "state": "sim", "study": "sim", "recording": "sim",
+    "coverage": "studies", "walk_test": "studies",
     "csv": "io", "io": "io",
 }
 # header prefix of a third-party library -> the only layers that may include it

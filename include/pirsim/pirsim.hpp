@@ -1,6 +1,7 @@
 // All that most users of the library need.
 #pragma once
 
+#include "pirsim/coverage.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
@@ -8,3 +9,4 @@
 #include "pirsim/recording.hpp"
 #include "pirsim/state.hpp"
 #include "pirsim/study.hpp"
+#include "pirsim/walk_test.hpp"

@@ -33,11 +33,10 @@ void make_folder(const std::filesystem::path& folder) {
 }
 
 /// Goes on where an interrupted run of the same study stopped.
-studies::CoverageMap compute(const studies::CoverageStudy& study, const Inputs& inputs,
-                             const CoverageOptions& options) {
+CoverageMap compute(const studies::CoverageStudy& study, const Inputs& inputs, const CoverageOptions& options) {
   make_folder(options.output);
   studies::RowStore rows(options.output / "coverage.rows", study);
-  studies::CoverageMap map = studies::empty_map(study);
+  CoverageMap map = studies::empty_map(study);
   map.counts = rows.found();
   if (rows.n_found_rows() > 0 && inputs.verbosity != Verbosity::quiet) {
     std::cerr << "going on after " << rows.n_found_rows() << " of " << study.grid().n_rows() << " rows of squares\n";
@@ -45,7 +44,7 @@ studies::CoverageMap compute(const studies::CoverageStudy& study, const Inputs& 
   Progress progress(static_cast<std::uint32_t>(study.grid().n_rows() - rows.n_found_rows()), inputs.verbosity,
                     "rows of squares");
   const StopRequest stop;
-  const auto keep = [&](std::size_t, const std::vector<studies::MotionCount>& counts) {
+  const auto keep = [&](std::size_t, const std::vector<MotionCount>& counts) {
     rows.append(counts);
     map.counts.insert(map.counts.end(), counts.begin(), counts.end());
     progress.run_finished();
@@ -56,7 +55,7 @@ studies::CoverageMap compute(const studies::CoverageStudy& study, const Inputs& 
   return map;
 }
 
-void draw_maps(const studies::CoverageStudy& study, const studies::CoverageMap& map, const Inputs& inputs,
+void draw_maps(const studies::CoverageStudy& study, const CoverageMap& map, const Inputs& inputs,
                const std::filesystem::path& folder) {
   std::vector<std::string> programs;
   for (std::size_t i = 0; i < map.sensors.size(); ++i) {
@@ -74,12 +73,12 @@ void coverage(const Inputs& inputs, const CoverageOptions& options) {
   const studies::CoverageStudy study = load_coverage(inputs);
   std::optional<io::AtomicFile> report_file;
   if (!options.report.empty()) report_file.emplace(options.report);
-  const studies::CoverageMap map = compute(study, inputs, options);
+  const CoverageMap map = compute(study, inputs, options);
   const studies::CoverageFigures figures = studies::figures_of(map);
-  io::write_text_file(options.output / "coverage.csv", to_csv(map));
+  io::write_text_file(options.output / "coverage.csv", studies::to_csv(map));
   draw_maps(study, map, inputs, options.output);
   if (report_file) write_page(*report_file, studies::coverage_report(study, map, figures), inputs);
-  if (inputs.verbosity != Verbosity::quiet) std::cout << to_text(map, figures);
+  if (inputs.verbosity != Verbosity::quiet) std::cout << studies::to_text(map, figures);
 }
 
 }  // namespace pirsim::app

@@ -23,7 +23,7 @@ void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
   std::optional<io::AtomicFile> report_file;
   if (!options.report.empty()) report_file.emplace(options.report);
   const StopRequest stop;
-  const studies::WalkTestResult result = [&] {
+  const WalkTestResult result = [&] {
     Progress progress(static_cast<std::uint32_t>(test.grid().n_rows()), inputs.verbosity, "rows of points");
     return studies::run_walk_test(test, options.threads, [&] {
       progress.run_finished();

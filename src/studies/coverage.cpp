@@ -306,3 +306,11 @@ CoverageMap run_coverage(const CoverageStudy& study, unsigned threads) {
 }
 
 }  // namespace pirsim::studies
+
+namespace pirsim {
+
+CoverageMap run_coverage(SceneSpec scene, CoverageSpec spec, unsigned threads) {
+  return studies::run_coverage(studies::CoverageStudy(std::move(scene), std::move(spec)), threads);
+}
+
+}  // namespace pirsim

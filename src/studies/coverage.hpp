@@ -1,4 +1,4 @@
-// Where does a sensor see? A target moves in every square of the floor, and each sensor's motion is counted.
+// A coverage study, compiled and computed row by row.
 #pragma once
 
 #include <cstdint>
@@ -7,15 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/survey.hpp"
-#include "studies/floor_grid.hpp"
+#include "pirsim/coverage.hpp"
 #include "studies/survey_base.hpp"
 #include "studies/turning_target.hpp"
 
 namespace pirsim::studies {
-
-/// Windows with motion, in [0, n_windows].
-using MotionCount = std::uint16_t;
 
 /// A compiled coverage study: immutable, shared by threads. The crosses have stood at tick 0, so appearing isn't
 /// motion.
@@ -47,17 +43,6 @@ class CoverageStudy {
   FloorGrid grid_;
   int n_windows_ = 0;
   TurningTarget target_;
-};
-
-struct CoverageMap {
-  FloorGrid grid;
-  std::vector<std::string> sensors;
-  int n_windows = 0;
-  std::vector<MotionCount> counts;  ///< (n_rows x n_columns x n_sensors)
-
-  [[nodiscard]] MotionCount count(std::size_t column, std::size_t row, std::size_t sensor) const noexcept {
-    return counts[(row * grid.n_columns() + column) * sensors.size() + sensor];
-  }
 };
 
 /// A map without counts yet.

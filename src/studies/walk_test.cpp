@@ -168,7 +168,7 @@ bool WalkTester::notices_sitter(const SeatSpec& seat, std::uint32_t number) {
 
 WalkTestResult run_walk_test(const WalkTest& test, unsigned threads, const std::function<void()>& row_done) {
   const FloorGrid& grid = test.grid();
-  WalkTestResult result;
+  WalkTestResult result{grid, {}, {}};
   ordered_parallel<std::vector<PointResult>>(
       grid.n_rows(), threads,
       [&](std::size_t row) {
@@ -195,3 +195,11 @@ WalkTestResult run_walk_test(const WalkTest& test, unsigned threads, const std::
 }
 
 }  // namespace pirsim::studies
+
+namespace pirsim {
+
+WalkTestResult run_walk_test(SceneSpec scene, WalkTestSpec spec, unsigned threads) {
+  return studies::run_walk_test(studies::WalkTest(std::move(scene), std::move(spec)), threads);
+}
+
+}  // namespace pirsim

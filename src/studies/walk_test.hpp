@@ -1,5 +1,4 @@
-// A virtual walk test: at every point of the floor, how surely is a walker or a sitter's arm noticed in time?
-// In the manner of NEMA WD 7 (major and minor motion, cell by cell) and EN 50131-2-2 (walks in several directions).
+// A walk test, compiled and tried point by point.
 #pragma once
 
 #include <functional>
@@ -13,26 +12,12 @@
 #include "io/report.hpp"
 #include "pirsim/rays.hpp"
 #include "pirsim/scene.hpp"
-#include "pirsim/survey.hpp"
+#include "pirsim/walk_test.hpp"
 #include "rt/tracer.hpp"
 #include "sim/power_model.hpp"
-#include "studies/floor_grid.hpp"
 #include "studies/survey_base.hpp"
 
 namespace pirsim::studies {
-
-/// How many tries were possible at a point, and in how many of them any sensor reported motion in time.
-struct Tries {
-  int made = 0;
-  int noticed = 0;
-  [[nodiscard]] std::optional<double> probability() const {
-    return made == 0 ? std::nullopt : std::optional(static_cast<double>(noticed) / made);
-  }
-};
-
-struct PointResult {
-  Tries major, minor;
-};
 
 /// Immutable, shared by threads.
 class WalkTest {
@@ -94,15 +79,6 @@ class WalkTester {
   std::vector<PosedShape> solids_;
   std::vector<rt::FirstHit> hits_;
   std::vector<std::uint8_t> triggers_;
-};
-
-struct SeatResult {
-  std::string seat;
-  bool noticed = false;
-};
-struct WalkTestResult {
-  std::vector<PointResult> points;  ///< (n_rows x n_columns), without tries off the floor
-  std::vector<SeatResult> seats;
 };
 
 /// threads 0: all cores; changes nothing in the result. `row_done` is called after each row of points.

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs a build of pirsim under a scratch prefix and is its user there: the README's program by find_package and by
-# pkg-config, one with a room made in memory, one with a detector of its own, and every public header by itself.
+# pkg-config, one with a room made in memory, one with a detector of its own, one that
+# surveys a room, and every public header by itself.
 # Usage: run.sh BUILD_DIR SOURCE_DIR CXX "CXXFLAGS"
 set -euo pipefail
 build=$1 source=$2 cxx=$3 flags=$4
@@ -33,7 +34,14 @@ awk -F, 'NR > 1 { seen += $6 } END { exit !(NR > 8 && seen > 3 && seen < NR) }' 
 "$scratch/build/own_detector" "$scene" "$script" >"$scratch/own_detector.txt"
 awk 'NR > 1 && $2 > before { bad = 1 } { before = $2 } NR == 1 { first = $2 } END { exit bad || first == 0 || before == first }' \
   "$scratch/own_detector.txt"
+# The same counts as the command line's.
+"$scratch/build/own_survey" "$scene" "$data/studies/studyB.yaml" >"$scratch/own_survey.txt"
+"$scratch/prefix/bin/pirsim" coverage --scene "$scene" --script "$data/studies/studyB.yaml" --set spacing_m=0.5 -q \
+  -o "$scratch/coverage" 2>/dev/null
+awk -F, 'NR > 1 { for (i = 3; i <= NF; ++i) n += $i } END { print NR - 1, n }' "$scratch/coverage/coverage.csv" |
+  cmp - <(head -1 "$scratch/own_survey.txt")
+awk 'NR == 2 { exit !($1 > 0 && $2 > 0) }' "$scratch/own_survey.txt"
 n_headers=$(find "$scratch/prefix/include/pirsim" -name '*.hpp' | wc -l)
 [ "$n_headers" -le 24 ] || { echo "consumer: $n_headers public headers" >&2; exit 1; }
 [ "$(find "$scratch/prefix/include/pirsim" -mindepth 1 -type d | wc -l)" -eq 0 ]
-echo "consumer: own room, own detector, $n_headers headers each alone"
+echo "consumer: own room, own detector, own survey, $n_headers headers each alone"

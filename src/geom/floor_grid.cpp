@@ -1,11 +1,11 @@
-#include "studies/floor_grid.hpp"
+#include "pirsim/geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "pirsim/error.hpp"
 
-namespace pirsim::studies {
+namespace pirsim {
 
 FloorGrid::FloorGrid(const FloorArea& floor, double spacing_m)
     : spacing_m_(spacing_m), middle_(0.5 * (floor.lower() + floor.upper())) {
@@ -29,4 +29,4 @@ Vec2 FloorGrid::centre(std::size_t column, std::size_t row) const noexcept {
   return {middle_.x + spacing_m_ * from_middle(column, n_columns_), middle_.y + spacing_m_ * from_middle(row, n_rows_)};
 }
 
-}  // namespace pirsim::studies
+}  // namespace pirsim
