@@ -75,9 +75,13 @@ struct Enter {
 struct Walk {
   std::vector<Vec2> points;
 };
-/// Walks to the seat, turns and sits down.
+/// What somebody does whose seat stays taken.
+enum class IfTaken { next_action, other_seat };
+/// Walks to the seat, turns and sits down. Waits for a seat that somebody else has, for a while.
 struct Sit {
   std::string seat;
+  double wait_s = 120.0;  ///< assumed (tried 0 to 600); no longer if all others have carried out their scripts
+  IfTaken if_taken = IfTaken::next_action;
 };
 /// Desk work while seated: both forearms slide on the table in opposite phase, the spine changes its tilt.
 struct Work {

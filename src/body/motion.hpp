@@ -70,6 +70,8 @@ class Motion {
   /// Nothing of the last command is left to do (desk work and sitting go on while settled).
   [[nodiscard]] bool settled() const noexcept;
   [[nodiscard]] Vec2 position() const noexcept;  ///< of the pelvis over the floor
+  /// Where the pelvis is, or is to be, when standing: on a seat, where sitting down began.
+  [[nodiscard]] Vec2 place_to_stand() const noexcept { return on_seat() ? stand_.position : position(); }
   [[nodiscard]] double heading() const noexcept;
   [[nodiscard]] double speed_m_s() const noexcept;
   [[nodiscard]] Outline outline() const noexcept;

@@ -37,7 +37,18 @@ Action read_walk(const YamlNode& node, Diagnostics& faults) {
   map.finish();
   return walk;
 }
-Action read_sit(const YamlNode& node, Diagnostics& faults) { return action::Sit{node.text(faults, "sit")}; }
+Action read_sit(const YamlNode& node, Diagnostics& faults) {
+  if (!node.is_map()) return action::Sit{node.text(faults, "sit")};
+  YamlMap map(node, faults, "sit");
+  action::Sit sit;
+  sit.seat = map.required_text("seat");
+  sit.wait_s = map.number("wait_s", sit.wait_s, {.min = 0.0, .max = 1e6});
+  sit.if_taken = map.choice<action::IfTaken>(
+      "if_taken", sit.if_taken,
+      {{"next_action", action::IfTaken::next_action}, {"other_seat", action::IfTaken::other_seat}});
+  map.finish();
+  return sit;
+}
 Action read_work(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "work");
   action::Work work;

@@ -31,7 +31,16 @@ struct ActionWriter {
   void operator()(const action::Walk& walk) {
     for (const Vec2& p : walk.points) entry["walk"]["to_xz_m"].push_back(point(p));
   }
-  void operator()(const action::Sit& sit) { entry["sit"] = sit.seat; }
+  void operator()(const action::Sit& sit) {
+    const action::Sit plain{sit.seat};
+    if (sit.wait_s == plain.wait_s && sit.if_taken == plain.if_taken) {
+      entry["sit"] = sit.seat;
+      return;
+    }
+    entry["sit"]["seat"] = sit.seat;
+    entry["sit"]["wait_s"] = number(sit.wait_s);
+    entry["sit"]["if_taken"] = sit.if_taken == action::IfTaken::other_seat ? "other_seat" : "next_action";
+  }
   void operator()(const action::Work& work) {
     YAML::Node node;
     node["duration_s"] = number(work.duration_s);

@@ -13,16 +13,10 @@ namespace {
 
 using body::Stage;
 
-constexpr double look_ahead_m = 1.2;        ///< assumed: how far ahead a walker minds others (tried 0.8-2)
-constexpr double foresight_s = 1.5;         ///< assumed: how long before ways cross one gives way (tried 1-2)
-constexpr double gap_m = 0.1;               ///< assumed: kept between two people beside their radii
-constexpr double doorway_m = 2.5;           ///< assumed: who comes in is through the door at that distance (tried 2-3)
-constexpr double braking_m_s2 = 1.5;        ///< assumed, as Motion's acceleration
-constexpr double patience_s = 0.5;          ///< assumed: wait before looking for another way
-constexpr double patience_step_s = 0.7;     ///< more for every later person, so that two don't dodge alike
-constexpr double search_every_s = 0.2;      ///< how often one who found no way looks again
-constexpr double give_up_s = 60.0;          ///< then people block each other for good
-constexpr double give_up_in_all_s = 180.0;  ///< assumed: then somebody tries the same few steps for ever
+constexpr double gap_m = 0.1;         ///< assumed: kept between two people beside their radii
+constexpr double doorway_m = 2.5;     ///< assumed: who comes in is through the door at that distance (tried 2-3)
+constexpr double door_wait_s = 60.0;  ///< assumed: then one goes through the door whoever comes (tried 20-120)
+constexpr double room_wait_s = 20.0;  ///< then one comes in where somebody stands, and passes through them
 
 std::int64_t ticks(double seconds, const CompiledStudy& study) {
   return std::llround(seconds * study.sensing().tick_rate_hz);
@@ -48,47 +42,51 @@ std::string_view Actor::current_phase() const noexcept {
   if (!done() && begun_ && !action().phase.empty()) return action().phase;
   if (!present()) return "outside";
   if (!done() && begun_ && std::holds_alternative<action::Work>(action().what)) return "working";
-  return body::name(motion_->stage());
+  return body::name(body_->motion().stage());
 }
 
 Presence Actor::presence() const {
-  const double speed = motion_->speed_m_s();
-  return {motion_->position(),
-          speed > 0.0 ? speed * direction_of(motion_->heading()) : Vec2(0.0),
-          route_ ? route_->position(route_->length_m()) : motion_->position(),
-          seat_,
-          done() ? Presence::Script::carried_out : Presence::Script::going_on,
-          person().humanoid.clearance_radius_m()};
+  Presence mine = body_->presence();
+  mine.seat = seat_;
+  mine.script = done() ? Presence::Script::carried_out : Presence::Script::going_on;
+  return mine;
+}
+
+void Actor::note(IncidentKind kind, std::int64_t tick) {
+  incidents_.push_back({kind, tick, index_, body_ ? body_->motion().position() : Vec2(0.0)});
 }
 
 void Actor::advance(const CompiledStudy& study, std::int64_t tick, std::span<const Presence> others,
                     std::size_t n_before) {
-  carry_on(study, tick - 1, others);
-  if (motion_) {
-    keep_distance(study, others, n_before);
-    if (motion_->stage() == Stage::seated) fidget(study);
-    motion_->advance();
+  incidents_.clear();
+  carry_on({study, others, tick - 1});
+  if (body_) {
+    if (body_->motion().stage() == Stage::seated) fidget(study);
+    body_->advance(others, n_before, tick - 1);
+    if (const auto incident = body_->take_incident()) incidents_.push_back(*incident);
   }
   phase_ = current_phase();
   if (!done() && begun_ && errands_.empty() && time_is_up(tick)) finish_action();
 }
 
-void Actor::carry_on(const CompiledStudy& study, std::int64_t now, std::span<const Presence> others) {
+void Actor::carry_on(const Scene& scene) {
+  const bool busy = body_ && body_->makes_way(scene.others, scene.now);
   while (!done()) {
     if (!begun_) {
-      if (action().at_s && now < ticks(*action().at_s, study)) return;
+      if (action().at_s && scene.now < ticks(*action().at_s, scene.study)) return;
       begun_ = true;
-      began_ = now;
-      note_durations(study);
-      plan(study);
+      began_ = scene.now;
+      note_durations(scene.study);
+      plan(scene);
     }
-    while (!errands_.empty() && carry_out_first(study, others) == Progress::done) {
+    while (!busy && !errands_.empty() && carry_out_first(scene) == Progress::done) {
       errands_.pop_front();
-      held_up_ticks_ = 0;
+      waited_ticks_ = 0;
+      if (body_) body_->set_out();
     }
-    if (const auto* work_action = std::get_if<action::Work>(&action().what)) work(*work_action, now);
-    const auto next = interrupting_action(study, now);
-    if (!next && !(errands_.empty() && time_is_up(now))) return;
+    if (const auto* work_action = std::get_if<action::Work>(&action().what)) work(*work_action, scene.now);
+    const auto next = interrupting_action(scene);
+    if (!next && !(errands_.empty() && time_is_up(scene.now))) return;
     finish_action();
     if (next) action_ = *next;
   }
@@ -96,17 +94,20 @@ void Actor::carry_on(const CompiledStudy& study, std::int64_t now, std::span<con
 
 void Actor::finish_action() {
   errands_.clear();
-  held_up_ticks_ = 0;
-  route_.reset();
-  if (motion_ && std::holds_alternative<action::Work>(action().what)) motion_->rest();
+  waited_ticks_ = seat_wait_ticks_ = 0;
+  if (body_) {
+    body_->forget_way();
+    body_->set_out();
+    if (std::holds_alternative<action::Work>(action().what)) body_motion().rest();
+  }
   ++action_;
   begun_ = false;
 }
 
-std::optional<std::size_t> Actor::interrupting_action(const CompiledStudy& study, std::int64_t now) const {
+std::optional<std::size_t> Actor::interrupting_action(const Scene& scene) const {
   const auto& actions = person().spec.actions;
   for (std::size_t i = actions.size(); i-- > action_ + 1;) {
-    if (actions[i].at_s && now >= ticks(*actions[i].at_s, study)) return i;
+    if (actions[i].at_s && scene.now >= ticks(*actions[i].at_s, scene.study)) return i;
   }
   return std::nullopt;
 }
@@ -123,9 +124,9 @@ void Actor::note_durations(const CompiledStudy& study) {
 
 bool Actor::time_is_up(std::int64_t now) const noexcept { return now - began_ >= lasts_ticks_; }
 
-void Actor::plan(const CompiledStudy& study) {
+void Actor::plan(const Scene& scene) {
   const auto entrance = [&](const std::string& id) -> const EntranceSpec& {
-    return *std::ranges::find(study.scene().entrances, id, &EntranceSpec::id);
+    return *std::ranges::find(scene.study.scene().entrances, id, &EntranceSpec::id);
   };
   const Action& what = action().what;
   const bool arrives = std::holds_alternative<action::Appear>(what) || std::holds_alternative<action::Enter>(what) ||
@@ -138,7 +139,7 @@ void Actor::plan(const CompiledStudy& study) {
   } else if (const auto* walk = std::get_if<action::Walk>(&what)) {
     for (const Vec2& point : walk->points) errands_.push_back(WalkTo{point});
   } else if (std::holds_alternative<action::Sit>(what)) {
-    plan_sitting();
+    plan_sitting(std::get<action::Sit>(what).seat);
   } else if (std::holds_alternative<action::Rise>(what)) {
     errands_.push_back(StandUp{});
   } else if (const auto* turn = std::get_if<action::Turn>(&what)) {
@@ -146,8 +147,11 @@ void Actor::plan(const CompiledStudy& study) {
   } else if (const auto* leave = std::get_if<action::Leave>(&what)) {
     plan_leaving(entrance(leave->entrance));
   } else if (const auto* work_action = std::get_if<action::Work>(&what)) {
-    if (motion_->stage() != Stage::seated) give_up("'" + person().spec.id + "' is not seated when work begins");
-    motion_->work({work_action->arm_amplitude_m, work_action->arm_period_s});
+    if (body_->motion().stage() == Stage::seated) {
+      body_motion().work({work_action->arm_amplitude_m, work_action->arm_period_s});
+    } else {
+      lasts_ticks_ = 0;  // did without a seat
+    }
   }
 }
 
@@ -170,8 +174,8 @@ void Actor::plan_leaving(const EntranceSpec& door) {
   errands_.push_back(Vanish{});
 }
 
-void Actor::plan_sitting() {
-  const SeatPlan& seat = person().seats[action_];
+void Actor::plan_sitting(std::string_view id) {
+  const SeatPlan& seat = person().seat_plan(id);
   const SeatScatterSpec& scatter = person().spec.seat_scatter;
   body::SeatPlace place = seat.place;
   // Drawn whether used or not, so that a scatter of zero leaves every other draw where it was.
@@ -185,7 +189,6 @@ void Actor::plan_sitting() {
         rotation_from_heading(radians(scatter.heading_sd_deg * turn)) * place.world_from_seat.rotation;
   }
   const double heading = heading_of(place.world_from_seat);
-  const std::string_view id = std::get<action::Sit>(action().what).seat;
   errands_.push_back(WaitForSeat{id});
   errands_.push_back(TakeSeat{id});
   errands_.push_back(WalkTo{standing_place(place, seat)});
@@ -207,9 +210,10 @@ Vec2 Actor::standing_place(const body::SeatPlace& place, const SeatPlan& seat) c
 
 void Actor::work(const action::Work& work, std::int64_t now) {
   const std::int64_t since = now - began_;
+  if (body_->motion().stage() != Stage::seated) return;
   if (work.tilt_choices_deg.empty() || since >= lasts_ticks_ || since % tilt_every_ticks_ != 0) return;
   const auto choice = tilt_stream_.index(static_cast<std::uint32_t>(work.tilt_choices_deg.size()));
-  motion_->tilt_spine(radians(work.tilt_choices_deg[choice]));
+  body_motion().tilt_spine(radians(work.tilt_choices_deg[choice]));
 }
 
 void Actor::fidget(const CompiledStudy& study) {
@@ -218,76 +222,102 @@ void Actor::fidget(const CompiledStudy& study) {
   if (fidget_stream_.uniform() >= -std::expm1(-fidgeting.rate_per_s * study.tick_s())) return;
   const double way = 2.0 * fidget_stream_.uniform() - 1.0;
   if (fidget_stream_.index(2) == 0) {
-    motion_->sway(radians(fidgeting.tilt_deg) * way);
+    body_motion().sway(radians(fidgeting.tilt_deg) * way);
   } else {
-    motion_->turn_head(radians(fidgeting.turn_deg) * way);
+    body_motion().turn_head(radians(fidgeting.turn_deg) * way);
   }
 }
 
-Actor::Progress Actor::carry_out_first(const CompiledStudy& study, std::span<const Presence> others) {
-  return std::visit([&](const auto& errand) { return carry_out(errand, study, others); }, errands_.front());
+Progress Actor::carry_out_first(const Scene& scene) {
+  return std::visit([&](const auto& errand) { return carry_out(errand, scene); }, errands_.front());
 }
 
-Actor::Progress Actor::carry_out(const ComeIn& come, const CompiledStudy& study, std::span<const Presence> others) {
-  if (somebody_near(come.point, others)) {
-    wait_for_others(study);
-    return Progress::going_on;
-  }
-  motion_.emplace(person().humanoid, come.point, come.heading, study.scene().floor.height_m(), study.tick_s());
+Progress Actor::carry_out(const ComeIn& come, const Scene& scene) {
+  const bool taken = somebody_near(come.point, scene.others);
+  if (taken && ++waited_ticks_ < ticks(room_wait_s, scene.study)) return Progress::going_on;
+  body_.emplace(scene.study, person(), index_, come.point, come.heading);
+  if (taken) body_->pass_through(scene.now);
   return Progress::done;
 }
 
-Actor::Progress Actor::carry_out(const WaitForDoor& door, const CompiledStudy& study,
-                                 std::span<const Presence> others) {
-  return door_is_taken(door, others) ? wait_for_turn(study, others) : Progress::done;
+Progress Actor::carry_out(const WaitForDoor& door, const Scene& scene) {
+  const bool waits = door_is_taken(door, scene.others) && ++waited_ticks_ < ticks(door_wait_s, scene.study);
+  return waits ? Progress::going_on : Progress::done;
 }
 
-Actor::Progress Actor::carry_out(const WaitForSeat& wait, const CompiledStudy& study,
-                                 std::span<const Presence> others) {
-  const bool is_taken = std::ranges::find(others, wait.seat, &Presence::seat) != others.end();
-  return is_taken ? wait_for_turn(study, others) : Progress::done;
+Progress Actor::carry_out(const WaitForSeat& wait, const Scene& scene) {
+  if (std::ranges::find(scene.others, wait.seat, &Presence::seat) == scene.others.end()) return Progress::done;
+  const auto& actions = person().spec.actions;
+  const auto* sit = std::get_if<action::Sit>(&action().what);
+  const bool before_coming_in = sit == nullptr;
+  if (before_coming_in) sit = &std::get<action::Sit>(actions[action_ + 1].what);
+  const bool for_good = std::ranges::none_of(
+      scene.others, [](const Presence& other) { return other.script == Presence::Script::going_on; });
+  if (!for_good && ++seat_wait_ticks_ < ticks(sit->wait_s, scene.study)) return Progress::going_on;
+  if (!before_coming_in) do_without_seat(scene);
+  return Progress::done;
 }
 
-Actor::Progress Actor::wait_for_turn(const CompiledStudy& study, std::span<const Presence> others) {
-  const bool for_good = std::ranges::find(others, Presence::Script::going_on, &Presence::script) == others.end();
-  if (for_good) give_up("'" + person().spec.id + "' waits in vain: nobody of those there has anything more to do");
-  if (present()) wait_for_others(study);  // who isn't there yet is in nobody's way, and may wait long
-  return Progress::going_on;
+void Actor::do_without_seat(const Scene& scene) {
+  const auto& sit = std::get<action::Sit>(action().what);
+  const SeatSpec* other = sit.if_taken == action::IfTaken::other_seat ? nearest_free_seat(scene) : nullptr;
+  note(other != nullptr ? IncidentKind::seat_changed : IncidentKind::seat_missed, scene.now + 1);
+  // The errand that asks for this is the first, and about to be popped.
+  errands_.resize(1, errands_.front());
+  if (other != nullptr) plan_sitting(other->id);
 }
 
-Actor::Progress Actor::carry_out(const TakeSeat& take, const CompiledStudy&, std::span<const Presence>) {
+const SeatSpec* Actor::nearest_free_seat(const Scene& scene) const {
+  const SeatSpec* nearest = nullptr;
+  double least_m = 0.0;
+  const Vec2 here = body_ ? body_->motion().position() : Vec2(0.0);
+  for (const SeatSpec& seat : scene.study.scene().seats) {
+    if (!person().can_use(seat.id)) continue;
+    if (std::ranges::find(scene.others, seat.id, &Presence::seat) != scene.others.end()) continue;
+    const double away_m = glm::distance(floor_point(seat.world_from_seat.origin), here);
+    if (nearest != nullptr && away_m >= least_m) continue;
+    nearest = &seat;
+    least_m = away_m;
+  }
+  return nearest;
+}
+
+Progress Actor::carry_out(const TakeSeat& take, const Scene&) {
   seat_ = take.seat;
   return Progress::done;
 }
 
-Actor::Progress Actor::carry_out(const WalkTo& walk, const CompiledStudy& study, std::span<const Presence> others) {
-  return walk_to(walk.target, study, others);
+Progress Actor::carry_out(const WalkTo& walk, const Scene& scene) {
+  const Progress progress = body_->go_to(walk.target, scene.others, scene.now);
+  // A seat is left where the walk away from it begins.
+  if (!std::holds_alternative<action::Sit>(action().what) && body_->motion().stage() == Stage::walking) seat_ = {};
+  return progress;
 }
 
-Actor::Progress Actor::carry_out(const WalkOut& out, const CompiledStudy& study, std::span<const Presence> others) {
-  if (route_) return walk_to(route_->position(route_->length_m()), study, others);  // decided when setting out
-  return walk_to(somebody_near(out.outside, others) ? out.behind_door : out.outside, study, others);
+Progress Actor::carry_out(const WalkOut& out, const Scene& scene) {
+  const Vec2 target = body_->target().value_or(  // decided when setting out
+      somebody_near(out.outside, scene.others) ? out.behind_door : out.outside);
+  return carry_out(WalkTo{target}, scene);
 }
 
-Actor::Progress Actor::carry_out(const FaceTo& face, const CompiledStudy& study, std::span<const Presence> others) {
-  if (become_standing(study, others) == Progress::going_on) return Progress::going_on;
-  if (std::abs(std::remainder(face.heading - motion_->heading(), 2.0 * pi)) < 1e-9) return Progress::done;
-  motion_->turn_to(face.heading);
+Progress Actor::carry_out(const FaceTo& face, const Scene& scene) {
+  if (body_->stand_up(scene.others, scene.now) == Progress::going_on) return Progress::going_on;
+  if (std::abs(std::remainder(face.heading - body_->motion().heading(), 2.0 * pi)) < 1e-9) return Progress::done;
+  body_motion().turn_to(face.heading);
   return Progress::going_on;
 }
 
-Actor::Progress Actor::carry_out(const SitOn& seat, const CompiledStudy&, std::span<const Presence>) {
-  if (motion_->stage() == Stage::seated && motion_->settled()) return Progress::done;
-  if (motion_->stage() == Stage::standing && motion_->settled()) motion_->sit_down(seat.place);
+Progress Actor::carry_out(const SitOn& seat, const Scene&) {
+  if (body_->motion().stage() == Stage::seated && body_->motion().settled()) return Progress::done;
+  if (body_->motion().stage() == Stage::standing && body_->motion().settled()) body_motion().sit_down(seat.place);
   return Progress::going_on;
 }
 
-Actor::Progress Actor::carry_out(const StandUp&, const CompiledStudy& study, std::span<const Presence> others) {
-  return become_standing(study, others);
-}
+Progress Actor::carry_out(const StandUp&, const Scene& scene) { return body_->stand_up(scene.others, scene.now); }
 
-Actor::Progress Actor::carry_out(const Vanish&, const CompiledStudy&, std::span<const Presence>) {
-  motion_.reset();
+Progress Actor::carry_out(const Vanish&, const Scene&) {
+  body_.reset();
+  seat_ = {};
   return Progress::done;
 }
 
@@ -298,19 +328,6 @@ bool Actor::somebody_near(const Vec2& point, std::span<const Presence> others) c
   });
 }
 
-Actor::Progress Actor::become_standing(const CompiledStudy& study, std::span<const Presence> others) {
-  if (motion_->stage() == Stage::standing) return motion_->settled() ? Progress::done : Progress::going_on;
-  const bool on_seat = motion_->stage() == Stage::seated || motion_->stage() == Stage::sitting_down;
-  if (on_seat && free_to_stand(others)) {
-    motion_->rise();
-  } else if (on_seat) {
-    be_held_up(study);
-  }
-  // A walk or turn that an earlier action began and that isn't wanted any more; our own ends by itself.
-  if (!on_seat && !route_ && motion_->stage() == Stage::walking) motion_->stop();
-  return Progress::going_on;
-}
-
 bool Actor::door_is_taken(const WaitForDoor& door, std::span<const Presence> others) const {
   return std::ranges::any_of(others, [&](const Presence& other) {
     const bool goes_out = glm::distance(other.destination, door.outside) < gap_m;
@@ -319,110 +336,5 @@ bool Actor::door_is_taken(const WaitForDoor& door, std::span<const Presence> oth
     return !goes_out && !stays && glm::distance(other.position, door.outside) < doorway_m;
   });
 }
-
-bool Actor::free_to_stand(std::span<const Presence> others) const {
-  const double radius = person().humanoid.clearance_radius_m();
-  const Vec2 behind = motion_->position() - radius * direction_of(motion_->heading());
-  return std::ranges::none_of(others, [&](const Presence& other) {
-    return glm::distance(other.position, behind) < other.radius_m + radius - gap_m;
-  });
-}
-
-Actor::Progress Actor::walk_to(const Vec2& target, const CompiledStudy& study, std::span<const Presence> others) {
-  if (route_ && motion_->stage() == Stage::walking) return Progress::going_on;
-  if (become_standing(study, others) == Progress::going_on) return Progress::going_on;
-  constexpr double arrived_m = 1e-6;
-  if (glm::distance(motion_->position(), target) < arrived_m) {
-    route_.reset();
-    return Progress::done;
-  }
-  if (!route_ && blocked_ticks_ % std::max<std::int64_t>(1, ticks(search_every_s, study)) != 0) {
-    wait_for_others(study);
-    return Progress::going_on;
-  }
-  if (!route_) {
-    std::vector<body::Disc> discs;
-    for (const Presence& other : others) discs.push_back({other.position, other.radius_m + gap_m});
-    const auto way = person().floor->find_way(motion_->position(), target, discs);
-    if (!way) {
-      if (!person().floor->find_way(motion_->position(), target)) {
-        give_up("'" + person().spec.id + "' finds no way to where they are to go, even if nobody stands in it");
-      }
-      wait_for_others(study);
-      return Progress::going_on;
-    }
-    route_.emplace(*way);
-  }
-  constexpr double facing_rad = 1e-6;
-  const double off = std::remainder(route_->heading(0.0) - motion_->heading(), 2.0 * pi);
-  if (std::abs(off) > facing_rad) {
-    motion_->turn_to(route_->heading(0.0));
-  } else {
-    motion_->walk(*route_);
-    if (!std::holds_alternative<action::Sit>(action().what)) seat_ = {};
-  }
-  return Progress::going_on;
-}
-
-double Actor::free_way_ahead(std::span<const Presence> others) const {
-  double free_m = look_ahead_m;
-  if (others.empty()) return free_m;
-  const Vec2 ahead = direction_of(motion_->heading());
-  for (const Presence& other : others) {
-    const Vec2 to_other = other.position - motion_->position();
-    const double along = glm::dot(to_other, ahead);
-    const double aside = std::abs(to_other.x * ahead.y - to_other.y * ahead.x);
-    const double reach = person().humanoid.clearance_radius_m() + other.radius_m;
-    if (along > 0.0 && aside < reach) {
-      free_m = std::min(free_m, along - std::sqrt(reach * reach - aside * aside) - gap_m);
-    }
-  }
-  return free_m;
-}
-
-/// Will somebody who goes first come too near within the next moments if both go on as they do?
-bool Actor::must_give_way(std::span<const Presence> others) const {
-  if (others.empty()) return false;
-  const Presence mine = presence();
-  for (const Presence& other : others) {
-    const Vec2 offset = other.position - mine.position;
-    const Vec2 closing = other.velocity - person().humanoid.walking_speed_m_s() * direction_of(motion_->heading());
-    const double speed2 = glm::dot(closing, closing);
-    if (glm::length(other.velocity) < 0.1 || speed2 < 1e-6) continue;  // who stands is walked round
-    const double when = std::clamp(-glm::dot(offset, closing) / speed2, 0.0, foresight_s);
-    if (when > 0.0 && glm::length(offset + when * closing) < mine.radius_m + other.radius_m + gap_m) return true;
-  }
-  return false;
-}
-
-void Actor::keep_distance(const CompiledStudy& study, std::span<const Presence> others, std::size_t n_before) {
-  if (motion_->stage() != Stage::walking) return;
-  const double free_m = free_way_ahead(others);
-  const bool give_way = must_give_way(others.first(n_before));
-  const double safe = give_way ? 0.0 : std::sqrt(2.0 * braking_m_s2 * std::max(0.0, free_m));
-  motion_->limit_speed(std::min(person().humanoid.walking_speed_m_s(), safe));
-  if (free_m > gap_m) {
-    blocked_ticks_ = 0;
-    return;
-  }
-  wait_for_others(study);
-  if (blocked_ticks_ % ticks(patience_s + patience_step_s * index_, study) == 0) {
-    motion_->stop();  // stands, then looks for a way round the others
-    route_.reset();
-  }
-}
-
-void Actor::give_up(const std::string& why) const { throw Error(ErrorCode::infeasible, action().where, why); }
-
-void Actor::wait_for_others(const CompiledStudy& study) {
-  if (++blocked_ticks_ > ticks(give_up_s, study)) give_up_waiting();
-  be_held_up(study);
-}
-
-void Actor::be_held_up(const CompiledStudy& study) {
-  if (++held_up_ticks_ > ticks(give_up_in_all_s, study)) give_up_waiting();
-}
-
-void Actor::give_up_waiting() const { give_up("'" + person().spec.id + "' waits in vain for others to make way"); }
 
 }  // namespace pirsim::sim

@@ -36,8 +36,8 @@ auto fields(const action::Walk& walk) {
   return std::tie(points);
 }
 auto fields(const action::Sit& sit) {
-  const auto& [seat] = sit;
-  return std::tie(seat);
+  const auto& [seat, wait_s, if_taken] = sit;
+  return std::tie(seat, wait_s, if_taken);
 }
 auto fields(const action::Work& work) {
   const auto& [duration_s, arm_amplitude_m, arm_period_s, tilt_choices_deg, tilt_every_s] = work;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,7 +32,10 @@ struct PersonModel {
   std::shared_ptr<const body::WalkableFloor> floor;  ///< shared by all who need the same clearance
   /// Is there room to stand, facing so, with the clearance radius to the sides and half_depth_m before and behind?
   [[nodiscard]] bool can_stand(const Vec2& place, const Vec2& facing, double half_depth_m) const noexcept;
-  std::vector<SeatPlan> seats;  ///< (n_actions) of the sit actions; empty plans for the others
+  /// By seat, of those that the script asks for; of all that can be reached if any seat may do.
+  std::map<std::string, SeatPlan, std::less<>> seats;
+  [[nodiscard]] bool can_use(std::string_view seat) const { return seats.contains(seat); }
+  [[nodiscard]] const SeatPlan& seat_plan(std::string_view seat) const { return seats.find(seat)->second; }
   BodyRadiance radiance{};
 };
 

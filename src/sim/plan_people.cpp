@@ -33,13 +33,13 @@ class Rehearsal {
       : scene_(scene), room_(room), person_(person), diagnostics_(diagnostics) {}
 
   void run() {
-    person_.seats.resize(person_.spec.actions.size());
-    for (std::size_t i = 0; i < person_.spec.actions.size(); ++i) {
-      const ScriptedAction& action = person_.spec.actions[i];
+    for (const ScriptedAction& action : person_.spec.actions) {
       if (const auto* appear = std::get_if<action::Appear>(&action.what)) at_ = appear->point;
       if (const auto* enter = std::get_if<action::Enter>(&action.what)) at_ = outside(enter->entrance);
-      if (const auto* sit = std::get_if<action::Sit>(&action.what))
-        person_.seats[i] = sit_down(sit->seat, action.where);
+      if (const auto* sit = std::get_if<action::Sit>(&action.what)) {
+        sit_down(sit->seat, action.where);
+        if (sit->if_taken == action::IfTaken::other_seat) note_other_seats();
+      }
       if (const auto* leave = std::get_if<action::Leave>(&action.what)) {
         go_to(outside(leave->entrance), "entrance '" + leave->entrance + "'", action.where);
       }
@@ -70,9 +70,34 @@ class Rehearsal {
     at_ = target;
   }
 
-  /// Stands as near to the free fall into the seat as the furniture allows, at most a metre farther back.
-  SeatPlan sit_down(const std::string& id, const Where& where) {
+  void sit_down(const std::string& id, const Where& where) {
     const SeatSpec& seat = *std::ranges::find(scene_.seats, id, &SeatSpec::id);
+    if (const auto plan = plan_of(seat)) {
+      person_.seats.emplace(id, *plan);
+      at_ = place_to_stand(seat, *plan);
+      return;
+    }
+    person_.seats.emplace(id, SeatPlan{});
+    diagnostics_.error(where, "seat '" + id + "' of " + scene_.name + " can't be reached by '" + person_.spec.id +
+                                  "': no place to stand and sit down from, within a metre of it, has a way from " +
+                                  text(at_));
+  }
+
+  /// Any that can be reached may do if the seat asked for is taken.
+  void note_other_seats() {
+    for (const SeatSpec& seat : scene_.seats) {
+      if (person_.can_use(seat.id)) continue;
+      if (const auto plan = plan_of(seat)) person_.seats.emplace(seat.id, *plan);
+    }
+  }
+
+  static Vec2 place_to_stand(const SeatSpec& seat, const SeatPlan& plan) {
+    return floor_point(seat.world_from_seat.origin) -
+           plan.stand_back_m * direction_of(heading_of(seat.world_from_seat));
+  }
+
+  /// Stands as near to the free fall into the seat as the furniture allows, at most a metre farther back.
+  std::optional<SeatPlan> plan_of(const SeatSpec& seat) const {
     const double floor_y = scene_.floor.height_m();
     SeatPlan plan{{seat.world_from_seat, floor_y, table_height(seat, floor_y, room_)}, 0.0, 0.0};
     // Where a table is near a wall nobody has the room of a walker: they squeeze in.
@@ -80,13 +105,10 @@ class Rehearsal {
       plan.half_depth_m = half_depth_m;
       if (find_place_to_stand(seat, plan)) return plan;
     }
-    diagnostics_.error(where, "seat '" + id + "' of " + scene_.name + " can't be reached by '" + person_.spec.id +
-                                  "': no place to stand and sit down from, within a metre of it, has a way from " +
-                                  text(at_));
-    return plan;
+    return std::nullopt;
   }
 
-  bool find_place_to_stand(const SeatSpec& seat, SeatPlan& plan) {
+  bool find_place_to_stand(const SeatSpec& seat, SeatPlan& plan) const {
     const double fall_back = body::fall_back_m(person_.humanoid, plan.place);
     const Vec2 pelvis = floor_point(seat.world_from_seat.origin);
     const Vec2 facing = direction_of(heading_of(seat.world_from_seat));
@@ -97,7 +119,6 @@ class Rehearsal {
       if (!room_behind(seat, back + fall_back, plan.half_depth_m)) continue;
       if (!person_.floor->find_way(at_, stand)) continue;
       plan.stand_back_m = back;
-      at_ = stand;
       return true;
     }
     return false;

@@ -1,0 +1,350 @@
+#include "sim/pedestrian.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "body/footprint.hpp"
+#include "pirsim/error.hpp"
+
+namespace pirsim::sim {
+namespace {
+
+using body::Stage;
+using Solidity = Presence::Solidity;
+
+constexpr double look_ahead_m = 1.2;      ///< assumed: how far ahead a walker minds others (tried 0.8-2)
+constexpr double foresight_s = 1.5;       ///< assumed: how long before ways cross one gives way (tried 1-2)
+constexpr double gap_m = 0.1;             ///< assumed: kept between two people on foot beside their radii
+constexpr double behind_sitter_m = 0.07;  ///< assumed: room of a sitter and the chair's back beyond half the trunk
+constexpr double sitter_gap_m = 0.06;     ///< kept beside that in planning: what a rounded corner cuts, and 1 cm
+constexpr double braking_m_s2 = 1.5;      ///< assumed, as Motion's acceleration
+constexpr double patience_s = 0.5;        ///< assumed: wait before looking for another way (tried 0.3-1)
+constexpr double patience_step_s = 0.35;  ///< more for some, so that two don't dodge alike
+constexpr double search_every_s = 0.2;    ///< how often one who found no way looks again
+constexpr double wish_after_s = 1.0;      ///< assumed: held up for so long one asks others to make way (tried 0.5-2)
+constexpr double walked_on_m = 0.5;       ///< who has come so far isn't held up any more
+constexpr double wish_reaches_m = 3.0;    ///< assumed: who stands farther along a wished way isn't concerned yet
+constexpr double aside_most_s = 10.0;     ///< assumed: nobody waits aside for longer (tried 5-20)
+constexpr double passed_m = 0.8;          ///< who passes through others goes at least so far
+constexpr double stuck_s = 20.0;          ///< then people pass through each other (people.md)
+constexpr double stuck_in_all_s = 60.0;   ///< assumed: held up so long in one errand is stuck too (tried 40-120)
+
+/// From a point to somebody's middle, wherever it gets between sitting and standing.
+double distance_to(const Vec2& point, const Presence& other) {
+  return body::distance(point, other.position, other.back);
+}
+
+double distance_to_way(const Vec2& point, const std::vector<Vec2>& way, double reach_m) {
+  double nearest = glm::distance(point, way.front()), walked = 0.0;
+  for (std::size_t i = 0; i + 1 < way.size() && walked < reach_m; ++i) {
+    nearest = std::min(nearest, body::distance(point, way[i], way[i + 1]));
+    walked += glm::distance(way[i], way[i + 1]);
+  }
+  return nearest;
+}
+
+bool is_solid(const Presence& other) { return other.solidity == Solidity::solid; }
+
+}  // namespace
+
+Pedestrian::Pedestrian(const CompiledStudy& study, const PersonModel& person, std::uint32_t index, const Vec2& point,
+                       double heading)
+    : person_(&person),
+      index_(index),
+      tick_rate_hz_(study.sensing().tick_rate_hz),
+      motion_(person.humanoid, point, heading, study.scene().floor.height_m(), study.tick_s()) {}
+
+std::int64_t Pedestrian::ticks(double seconds) const noexcept {
+  return std::max<std::int64_t>(1, std::llround(seconds * tick_rate_hz_));
+}
+
+bool Pedestrian::on_feet() const noexcept {
+  const Stage stage = motion_.stage();
+  return stage == Stage::standing || stage == Stage::walking || stage == Stage::turning;
+}
+
+Presence Pedestrian::presence() const {
+  Presence mine;
+  mine.person = index_;
+  mine.position = mine.back = motion_.position();
+  const double speed = motion_.speed_m_s();
+  if (speed > 0.0) mine.velocity = speed * direction_of(motion_.heading());
+  mine.destination = target().value_or(mine.position);
+  mine.solidity = solidity_;
+  mine.radius_m = radius_m();
+  mine.gap_m = gap_m;
+  if (!on_feet()) {
+    if (motion_.stage() != Stage::seated) {
+      mine.back = motion_.place_to_stand();
+    } else {
+      mine.radius_m = person_->humanoid.half_depth_m() + behind_sitter_m;
+    }
+    mine.gap_m = sitter_gap_m;
+  }
+  mine.wished_way = wished_way_;
+  if (aside_) {
+    mine.precedence = aside_->precedence;
+  } else if (held_up_since_) {
+    mine.precedence = {*held_up_since_, index_};
+  }
+  return mine;
+}
+
+void Pedestrian::forget_way() noexcept {
+  route_.reset();
+  target_.reset();
+  wished_way_.reset();
+}
+
+std::optional<Incident> Pedestrian::take_incident() noexcept {
+  const auto taken = incident_;
+  incident_.reset();
+  return taken;
+}
+
+void Pedestrian::be_held_up(std::int64_t now) {
+  ++blocked_ticks_;
+  ++held_up_ticks_;
+  if (!held_up_since_) {
+    held_up_since_ = now;
+    held_up_at_ = motion_.position();
+  }
+  if (solidity_ != Solidity::solid) return;
+  if (now - *held_up_since_ >= ticks(stuck_s) || held_up_ticks_ >= ticks(stuck_in_all_s)) pass_through(now);
+}
+
+void Pedestrian::pass_through(std::int64_t now) {
+  solidity_ = Solidity::passing_through;
+  held_up_at_ = motion_.position();
+  incident_ = Incident{IncidentKind::passed_through, now, index_, motion_.position()};
+  aside_.reset();
+  wished_way_.reset();
+  held_up_since_.reset();
+  held_up_ticks_ = blocked_ticks_ = 0;
+  if (motion_.stage() == Stage::walking) motion_.stop();
+  route_.reset();
+}
+
+/// Solid again once clear of everybody, on the way or at its end.
+void Pedestrian::end_passing(std::span<const Presence> others) noexcept {
+  if (solidity_ == Solidity::solid) return;
+  const bool clear = std::ranges::none_of(others, [&](const Presence& other) {
+    return distance_to(motion_.position(), other) < radius_m() + other.radius_m;
+  });
+  const bool done = on_feet() && (!target_ || glm::distance(motion_.position(), held_up_at_) > passed_m);
+  if (clear && done) solidity_ = Solidity::solid;
+}
+
+Progress Pedestrian::stand_up(std::span<const Presence> others, std::int64_t now) {
+  if (motion_.stage() == Stage::standing) return motion_.settled() ? Progress::done : Progress::going_on;
+  const bool on_seat = motion_.stage() == Stage::seated || motion_.stage() == Stage::sitting_down;
+  if (on_seat && (solidity_ != Solidity::solid || free_to_rise(others))) {
+    motion_.rise();
+    wished_way_.reset();
+    held_up_since_.reset();
+  } else if (on_seat) {
+    be_held_up(now);
+    if (!wished_way_ && held_up_since_ && now - *held_up_since_ >= ticks(wish_after_s)) {
+      wished_way_ =
+          std::make_shared<const std::vector<Vec2>>(std::vector<Vec2>{motion_.position(), motion_.place_to_stand()});
+    }
+  }
+  // A walk that isn't wanted any more; our own ends by itself.
+  if (!on_seat && !route_ && motion_.stage() == Stage::walking) motion_.stop();
+  return Progress::going_on;
+}
+
+bool Pedestrian::free_to_rise(std::span<const Presence> others) const {
+  const Vec2 from = motion_.position(), to = motion_.place_to_stand();
+  return std::ranges::none_of(others, [&](const Presence& other) {
+    if (!is_solid(other)) return false;
+    const double reach = other.radius_m + radius_m() - sitter_gap_m;
+    // Who sits beside is as near as ever; it is the way back that has to be free.
+    return body::distance(other.position, from, to) < reach &&
+           glm::distance(other.position, to) < glm::distance(other.position, from) + sitter_gap_m;
+  });
+}
+
+std::optional<std::vector<Vec2>> Pedestrian::way_among(const Vec2& target, std::span<const Presence> others) const {
+  if (solidity_ != Solidity::solid) return person_->floor->find_way(motion_.position(), target);
+  std::vector<body::Disc> discs;
+  for (const Presence& other : others) {
+    if (!is_solid(other)) continue;
+    discs.push_back({other.position, other.radius_m + other.gap_m});
+    if (other.back != other.position) {
+      discs.push_back({0.5 * (other.position + other.back), other.radius_m + other.gap_m});
+      discs.push_back({other.back, other.radius_m + other.gap_m});
+    }
+  }
+  return person_->floor->find_way(motion_.position(), target, discs);
+}
+
+Progress Pedestrian::go_to(const Vec2& target, std::span<const Presence> others, std::int64_t now) {
+  if (target_ != target) route_.reset();
+  if (route_ && motion_.stage() == Stage::walking) return Progress::going_on;
+  target_ = target;
+  if (stand_up(others, now) == Progress::going_on) return Progress::going_on;
+  constexpr double arrived_m = 1e-6;
+  if (glm::distance(motion_.position(), target) < arrived_m) {
+    forget_way();
+    held_up_since_.reset();
+    return Progress::done;
+  }
+  if (!route_ && blocked_ticks_ % ticks(search_every_s) != 0) {
+    be_held_up(now);
+    return Progress::going_on;
+  }
+  if (!route_) {
+    const auto way = way_among(target, others);
+    if (!way) {
+      const auto alone = person_->floor->find_way(motion_.position(), target);
+      if (!alone) {
+        throw Error(ErrorCode::infeasible,
+                    "'" + person_->spec.id + "' finds no way to where they are to go, even if nobody stands in it");
+      }
+      be_held_up(now);
+      if (held_up_since_ && now - *held_up_since_ >= ticks(wish_after_s)) {
+        wished_way_ = std::make_shared<const std::vector<Vec2>>(*alone);
+      }
+      return Progress::going_on;
+    }
+    route_.emplace(*way);
+  }
+  constexpr double facing_rad = 1e-6;
+  const double off = std::remainder(route_->heading(0.0) - motion_.heading(), 2.0 * pi);
+  if (std::abs(off) > facing_rad) {
+    motion_.turn_to(route_->heading(0.0));
+  } else {
+    motion_.walk(*route_);
+  }
+  return Progress::going_on;
+}
+
+double Pedestrian::free_way_ahead(std::span<const Presence> others) const {
+  double free_m = look_ahead_m;
+  const Vec2 ahead = direction_of(motion_.heading());
+  for (const Presence& other : others) {
+    if (!is_solid(other)) continue;
+    for (const Vec2& place : {other.position, other.back}) {
+      const Vec2 to_other = place - motion_.position();
+      const double along = glm::dot(to_other, ahead);
+      const double aside = std::abs(to_other.x * ahead.y - to_other.y * ahead.x);
+      const double reach = radius_m() + other.radius_m;
+      if (along > 0.0 && aside < reach) {
+        free_m = std::min(free_m, along - std::sqrt(reach * reach - aside * aside) - other.gap_m);
+      }
+    }
+  }
+  return free_m;
+}
+
+/// Will somebody who goes first come too near within the next moments if both go on as they do?
+bool Pedestrian::must_give_way(std::span<const Presence> others) const {
+  for (const Presence& other : others) {
+    if (!is_solid(other)) continue;
+    const Vec2 offset = other.position - motion_.position();
+    const Vec2 closing = other.velocity - person_->humanoid.walking_speed_m_s() * direction_of(motion_.heading());
+    const double speed2 = glm::dot(closing, closing);
+    if (glm::length(other.velocity) < 0.1 || speed2 < 1e-6) continue;  // who stands is walked round
+    const double when = std::clamp(-glm::dot(offset, closing) / speed2, 0.0, foresight_s);
+    if (when > 0.0 && glm::length(offset + when * closing) < radius_m() + other.radius_m + gap_m) return true;
+  }
+  return false;
+}
+
+void Pedestrian::keep_distance(std::span<const Presence> others, std::size_t n_before, std::int64_t now) {
+  if (motion_.stage() != Stage::walking) return;
+  if (solidity_ != Solidity::solid) {
+    motion_.limit_speed(person_->humanoid.walking_speed_m_s());
+    return;
+  }
+  const double free_m = others.empty() ? look_ahead_m : free_way_ahead(others);
+  const bool give_way = must_give_way(others.first(n_before));
+  const double safe = give_way ? 0.0 : std::sqrt(2.0 * braking_m_s2 * std::max(0.0, free_m));
+  motion_.limit_speed(std::min(person_->humanoid.walking_speed_m_s(), safe));
+  if (free_m > gap_m) {
+    blocked_ticks_ = 0;
+    return;
+  }
+  be_held_up(now);
+  if (solidity_ != Solidity::solid) return;
+  if (blocked_ticks_ % ticks(patience_s + patience_step_s * (index_ % 4)) == 0) {
+    motion_.stop();  // stands, then looks for a way round the others
+    route_.reset();
+  }
+}
+
+std::optional<Vec2> Pedestrian::passing_place(const Presence& whom, std::span<const Presence> others) const {
+  constexpr int n_directions = 16;
+  constexpr double step_m = 0.15, farthest_m = 3.0;
+  const double keep_m = radius_m() + whom.radius_m + 0.5 * gap_m;
+  std::vector<body::Disc> discs;
+  for (const Presence& other : others) {
+    if (is_solid(other)) discs.push_back({other.position, other.radius_m});
+  }
+  for (double away = step_m; away <= farthest_m; away += step_m) {
+    for (int k = 0; k < n_directions; ++k) {
+      const Vec2 place = motion_.position() + away * direction_of(2.0 * pi * k / n_directions);
+      if (!person_->floor->walkable(place, place, discs)) continue;
+      if (distance_to_way(place, *whom.wished_way, wish_reaches_m + farthest_m) < keep_m) continue;
+      if (person_->floor->walkable(motion_.position(), place, discs) ||
+          person_->floor->find_way(motion_.position(), place, discs)) {
+        return place;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+bool Pedestrian::makes_way(std::span<const Presence> others, std::int64_t now) {
+  if (aside_) {
+    const auto whom = std::ranges::find(others, aside_->whom, &Presence::person);
+    const bool gone = whom == others.end() || !whom->wished_way ||
+                      distance_to_way(motion_.position(), *whom->wished_way, wish_reaches_m) > wish_reaches_m;
+    const bool past = whom == others.end() || (!whom->wished_way && glm::distance(whom->position, motion_.position()) >
+                                                                        2.0 * (radius_m() + whom->radius_m));
+    if (now >= aside_->until || (gone && past)) {
+      aside_.reset();
+      forget_way();
+      if (motion_.stage() == Stage::walking) motion_.stop();
+      return false;
+    }
+    const Vec2 place = aside_->place;
+    ++held_up_ticks_;
+    if (go_to(place, others, now) == Progress::done) blocked_ticks_ = 0;
+    return aside_.has_value();
+  }
+  if (others.empty() || !on_feet() || solidity_ != Solidity::solid) return false;
+  if (motion_.stage() == Stage::turning || now % ticks(search_every_s) != 0) return false;
+  const bool walks_freely = motion_.speed_m_s() > 0.0 && !held_up_since_;
+  if (walks_freely) return false;
+  const Presence* first = nullptr;
+  for (const Presence& other : others) {
+    if (!other.wished_way || (held_up_since_ && Precedence{*held_up_since_, index_} < other.precedence)) continue;
+    if (distance_to_way(motion_.position(), *other.wished_way, wish_reaches_m) > radius_m() + other.radius_m + gap_m) {
+      continue;
+    }
+    if (first == nullptr || other.precedence < first->precedence) first = &other;
+  }
+  if (first == nullptr) return false;
+  const auto place = passing_place(*first, others);
+  if (!place) return false;
+  aside_ = Aside{*place, first->precedence, first->person, now + ticks(aside_most_s)};
+  if (motion_.stage() == Stage::walking) motion_.stop();
+  forget_way();
+  return true;
+}
+
+void Pedestrian::advance(std::span<const Presence> others, std::size_t n_before, std::int64_t now) {
+  keep_distance(others, n_before, now);
+  motion_.advance();
+  end_passing(others);
+  if (held_up_since_ && glm::distance(motion_.position(), held_up_at_) > walked_on_m) {
+    held_up_since_.reset();
+    wished_way_.reset();
+  }
+}
+
+}  // namespace pirsim::sim

@@ -1,0 +1,90 @@
+// A body among other bodies: finds its way, keeps its distance, makes way, and is never stuck for good.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "body/motion.hpp"
+#include "body/route.hpp"
+#include "sim/compiled_study.hpp"
+#include "sim/presence.hpp"
+
+namespace pirsim::sim {
+
+enum class Progress { going_on, done };
+
+/// A value. Commands are repeated every tick until they are done; advance() ends the tick.
+///
+/// Who is held up for a second tells others the way that they wish to go; whoever stands on it and has not been held
+/// up for longer steps aside, to the nearest place off that way, with the precedence of whom they make way for. After
+/// 20 s the person walks through the others, which is an incident.
+class Pedestrian {
+ public:
+  Pedestrian(const CompiledStudy& study, const PersonModel& person, std::uint32_t index, const Vec2& point,
+             double heading);
+
+  /// What others see. destination and velocity are those of the walk.
+  [[nodiscard]] Presence presence() const;
+  [[nodiscard]] const body::Motion& motion() const noexcept { return motion_; }
+  [[nodiscard]] body::Motion& motion() noexcept { return motion_; }
+  /// Of the walk that is under way, if there is one.
+  [[nodiscard]] std::optional<Vec2> target() const { return route_ ? target_ : std::nullopt; }
+
+  /// Makes way for others if need be; true while that is what the body does, so that commands have to wait.
+  bool makes_way(std::span<const Presence> others, std::int64_t now);
+  /// Rises if need be, then walks. Throws Error(infeasible) if there is no way even without others.
+  Progress go_to(const Vec2& target, std::span<const Presence> others, std::int64_t now);
+  /// From a seat as soon as the way back is free; stops a walk that isn't one of go_to().
+  Progress stand_up(std::span<const Presence> others, std::int64_t now);
+  void forget_way() noexcept;
+  /// From now on through others, until clear of them: an incident.
+  void pass_through(std::int64_t now);
+  /// A new errand: what held up the one before doesn't count any more.
+  void set_out() noexcept { held_up_ticks_ = 0; }
+
+  /// n_before: of the others, those who go first where ways cross.
+  void advance(std::span<const Presence> others, std::size_t n_before, std::int64_t now);
+
+  /// Begun since the last call.
+  [[nodiscard]] std::optional<Incident> take_incident() noexcept;
+
+ private:
+  struct Aside {
+    Vec2 place{0.0};
+    Precedence precedence;   ///< inherited
+    std::uint32_t whom = 0;  ///< way is made for
+    std::int64_t until = 0;  ///< tick
+  };
+
+  [[nodiscard]] std::int64_t ticks(double seconds) const noexcept;
+  [[nodiscard]] double radius_m() const noexcept { return person_->humanoid.clearance_radius_m(); }
+  [[nodiscard]] bool on_feet() const noexcept;
+  [[nodiscard]] bool free_to_rise(std::span<const Presence> others) const;
+  [[nodiscard]] std::optional<std::vector<Vec2>> way_among(const Vec2& target, std::span<const Presence> others) const;
+  [[nodiscard]] double free_way_ahead(std::span<const Presence> others) const;
+  [[nodiscard]] bool must_give_way(std::span<const Presence> others) const;
+  [[nodiscard]] std::optional<Vec2> passing_place(const Presence& whom, std::span<const Presence> others) const;
+  void keep_distance(std::span<const Presence> others, std::size_t n_before, std::int64_t now);
+  void be_held_up(std::int64_t now);
+  void end_passing(std::span<const Presence> others) noexcept;
+
+  const PersonModel* person_ = nullptr;
+  std::uint32_t index_ = 0;
+  int tick_rate_hz_ = 50;
+  body::Motion motion_;
+  std::optional<body::Route> route_;  ///< to walk once the body faces its start, or being walked
+  std::optional<Vec2> target_;        ///< of the last go_to()
+  std::optional<Aside> aside_;
+  std::shared_ptr<const std::vector<Vec2>> wished_way_;
+  std::optional<std::int64_t> held_up_since_;  ///< until half a metre is walked
+  Vec2 held_up_at_{0.0};
+  std::int64_t blocked_ticks_ = 0;  ///< since somebody came into the way
+  std::int64_t held_up_ticks_ = 0;  ///< in all since the errand was set out on
+  Presence::Solidity solidity_ = Presence::Solidity::solid;
+  std::optional<Incident> incident_;
+};
+
+}  // namespace pirsim::sim

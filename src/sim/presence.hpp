@@ -1,0 +1,53 @@
+// What people know of each other.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "pirsim/geometry.hpp"
+
+namespace pirsim::sim {
+
+/// Who goes first where two people are in each other's way: who has been held up since earlier, then who comes first
+/// in the script. Ref: priority inheritance as in [Okumura2022].
+struct Precedence {
+  std::int64_t held_up_since = 0;  ///< tick
+  std::uint32_t person = 0;
+  auto operator<=>(const Precedence&) const = default;  ///< the lesser goes first
+};
+
+/// What others need to know to keep out of a person's way.
+struct Presence {
+  std::uint32_t person = 0;  ///< index in the trial
+  Vec2 position{0.0};
+  Vec2 back{0.0};         ///< where a sitter gets to when rising or sitting down; else the position
+  Vec2 velocity{0.0};     ///< m/s
+  Vec2 destination{0.0};  ///< where the current walk leads; the position of who isn't walking
+  std::string_view seat;  ///< taken: from setting out for it to walking away from it; or empty
+  enum class Script { going_on, carried_out } script = Script::going_on;
+  enum class Solidity { solid, passing_through } solidity = Solidity::solid;
+  double radius_m = 0.0;  ///< what others keep clear of, round the way from `position` to `back`
+  double gap_m = 0.0;     ///< what they keep beside that where they plan their way
+  /// Of somebody who is held up: the way that they would go if nobody were there; others leave it if they can.
+  std::shared_ptr<const std::vector<Vec2>> wished_way;
+  Precedence precedence;  ///< of that wish
+};
+
+/// What happened between people that a study's user should know of; none of it ends a run.
+enum class IncidentKind {
+  passed_through,  ///< two people who had found no way round each other went through each other
+  seat_changed,    ///< the seat was taken; another one was free
+  seat_missed      ///< the seat stayed taken; the person went on with what comes next
+};
+
+struct Incident {
+  IncidentKind kind = IncidentKind::passed_through;
+  std::int64_t tick = 0;
+  std::uint32_t person = 0;
+  Vec2 place{0.0};
+};
+
+}  // namespace pirsim::sim
