@@ -23,6 +23,7 @@ using namespace pirsim::app;
 constexpr const char* first_steps = R"(Examples:
   pirsim --scene room.gltf --script study.yaml                     rows of the whole study as CSV on stdout
   pirsim --scene room.gltf --script study.yaml -o rows.csv --summary table.md
+  pirsim check --scene room.gltf --script study.yaml               validate, and report what each sensor can see
   pirsim help run                                                  options and examples of a command
 )";
 

@@ -295,10 +295,10 @@ void offer_run(CLI::App& command) {
 }
 
 constexpr const char* examples = R"(
-  pirsim --scene room.gltf --script study.yaml                     rows of the whole study as CSV on stdout
-  pirsim --scene room.gltf --script study.yaml -o rows.csv --summary table.md
-  pirsim --scene room.gltf --script study.yaml --replicates 20 --set people.0.stature_m=1.7
-  pirsim --scene room.gltf --script study.yaml --shard 3/100 -o out a block of the runs; then pirsim status, merge
+  pirsim run --scene room.gltf --script study.yaml                 rows of the whole study as CSV on stdout
+  pirsim run --scene room.gltf --script study.yaml -o rows.csv --summary table.md
+  pirsim run --scene room.gltf --script study.yaml --replicates 20 --set people.0.stature_m=1.7
+  pirsim run --scene room.gltf --script study.yaml --shard 3/100 -o out   a block of the runs; then pirsim status, merge
 )";
 
 }  // namespace
