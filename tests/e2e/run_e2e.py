@@ -44,8 +44,7 @@ def study_files(script="studyA.yaml"):
 # What a command needs besides the option that is tried: a script of its kind, and what it can't be without.
 COMMANDS = {(): ("studyA.yaml", "-o", "rows.csv"), ("run",): ("studyA.yaml", "-o", "rows.csv"),
             ("check",): ("studyA.yaml",), ("preview",): ("studyA.yaml",), ("export",): ("studyA.yaml",),
-            ("coverage",): ("studyB.yaml",),
-            ("walktest",): ("walk_test.yaml",), ("placements",): ("placements.yaml",),
+            ("coverage",): ("studyB.yaml",), ("walktest",): ("walk_test.yaml",), ("placements",): ("placements.yaml",),
             ("reconcile",): ("studyA.yaml", "--measured", "m.csv"), ("reconcile", "plan"): ("studyA.yaml",),
             ("reconcile", "selftest"): ("studyA.yaml",),
             ("reconcile", "seal"): ("studyA.yaml", "--answer", "answer.json")}
@@ -54,8 +53,8 @@ OTHERS = {("reconcile", "open"): ("--answer", "a", "--commitment", "b", "--repor
 VALUES = {"--set": "name=other", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--format": ".csv",
           "--summary": "sums.csv", "--zones": "zones.csv", "--trace": "trace.csv", "--shard": "1/2", "--max-time": "5m",
           "--trial": "S1", "--beams": "all", "--camera": "0,5,0", "--look-at": "1,0,1", "--width": "64",
-          "--height": "64", "--measured": "m.csv", "--holdout": "0.3", "--table": "table", "--nuisance": "none", "--alpha": "0.05",
-          "--effects": "dead_time", "--data": "sums", "--leave-out": "each", "--hide": "one",
+          "--height": "64", "--measured": "m.csv", "--holdout": "0.3", "--table": "table", "--nuisance": "none",
+          "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "each", "--hide": "one",
           "--script": "other.yaml"}
 OUTPUTS = {"preview": "room.png", "export": "run.glb", "coverage": "maps", "walktest": "points.csv"}
 
