@@ -2,7 +2,7 @@
 #include <iostream>
 
 #include "app/commands.hpp"
-#include "app/row_output.hpp"
+#include "app/outputs.hpp"
 #include "app/session.hpp"
 #include "sim/compiled_study.hpp"
 #include "studies/sight.hpp"
@@ -34,14 +34,26 @@ void print(std::ostream& out, const Model& model, const studies::SightReport& re
   out << "  any sensor: floor " << std::setprecision(1) << percent(report.places_seen_by_any) << " %\n";
 }
 
-}  // namespace
-
 void check(const Inputs& inputs) {
   const Model model = load(inputs);
   const studies::SightReport report = studies::look_around(model);
   tell(studies::warnings(report, model.scene().name), inputs.verbosity);
   if (inputs.verbosity != Verbosity::quiet) print(std::cout, model, report);
   require_written();
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app) {
+  CLI::App& command = add_command(app, "check", "validate scene and script without running them", R"(
+  pirsim check --scene room.gltf --script study.yaml               validate, and report what each sensor can see
+  pirsim check --scene room.gltf --script study.yaml -q            only whether there are faults
+)");
+  const auto inputs = std::make_shared<Inputs>();
+  offer_study(command, *inputs);
+  offer_tracer(command, *inputs);
+  offer_replicates(command, *inputs);
+  on_call(command, inputs, check);
 }
 
 }  // namespace pirsim::app

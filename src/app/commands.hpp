@@ -1,24 +1,32 @@
-// What the command line can do. Each returns normally or throws Error.
+// The list of commands. Each is registered by a file of its own: its options, its examples, and what it does.
 #pragma once
+
+#include <array>
 
 #include "app/options.hpp"
 
 namespace pirsim::app {
 
-void run(const Inputs& inputs, const RunOptions& options);
-void check(const Inputs& inputs);
-void preview(const Inputs& inputs, const PreviewOptions& options);
-void coverage(const Inputs& inputs, const CoverageOptions& options);
-void walk_test(const Inputs& inputs, const WalkTestOptions& options);
-void placements(const Inputs& inputs, const PlacementOptions& options);
-void status(const CampaignOptions& options);
-void merge(const CampaignOptions& options);
-void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const ReconcileOptions& options);
-void seal_challenge(const Inputs& inputs, const SealOptions& options);
-void open_challenge(const OpenOptions& options);
-void list_effects(const EffectsOptions& options);
-void reconcile_selftest(const Inputs& inputs, const AnalysisOptions& analysis, const SelftestOptions& options);
-void reconcile_plan(const Inputs& inputs, const AnalysisOptions& analysis, const PlanOptions& options);
-void export_gltf(const Inputs& inputs, const ExportOptions& options);
+void add_run_command(CLI::App& app);
+void add_check_command(CLI::App& app);
+void add_preview_command(CLI::App& app);
+void add_export_command(CLI::App& app);
+void add_effects_command(CLI::App& app);
+void add_coverage_command(CLI::App& app);
+void add_walktest_command(CLI::App& app);
+void add_placements_command(CLI::App& app);
+void add_status_command(CLI::App& app);
+void add_merge_command(CLI::App& app);
+void add_reconcile_command(CLI::App& app);
+void add_help_command(CLI::App& app);
+/// These two belong to reconcile.
+void add_seal_command(CLI::App& reconcile_command);
+void add_open_command(CLI::App& reconcile_command);
+
+/// In the order of the help.
+inline constexpr std::array all_commands{add_run_command,      add_check_command,      add_preview_command,
+                                         add_export_command,   add_effects_command,    add_coverage_command,
+                                         add_walktest_command, add_placements_command, add_status_command,
+                                         add_merge_command,    add_reconcile_command,  add_help_command};
 
 }  // namespace pirsim::app

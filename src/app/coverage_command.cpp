@@ -2,11 +2,9 @@
 #include <optional>
 
 #include "app/commands.hpp"
-#include "app/gnuplot_runner.hpp"
-#include "app/output_checks.hpp"
-#include "app/progress.hpp"
+#include "app/long_work.hpp"
+#include "app/outputs.hpp"
 #include "app/session.hpp"
-#include "app/stop_request.hpp"
 #include "io/atomic_file.hpp"
 #include "io/gnuplot.hpp"
 #include "pirsim/io.hpp"
@@ -17,6 +15,12 @@
 namespace pirsim::app {
 namespace {
 
+struct CoverageOptions {
+  std::filesystem::path output = "coverage";  ///< folder
+  std::filesystem::path report;               ///< .html
+  unsigned threads = 0;
+};
+
 studies::CoverageStudy load_coverage(const Inputs& inputs) {
   CoverageSpec spec = io::read_coverage(inputs.script, inputs.overrides);
   SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
@@ -24,12 +28,6 @@ studies::CoverageStudy load_coverage(const Inputs& inputs) {
   studies::CoverageStudy study(std::move(scene), std::move(spec));
   tell(study.warnings(), inputs.verbosity);
   return study;
-}
-
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code fault;
-  std::filesystem::create_directories(folder, fault);
-  if (fault) throw Error(ErrorCode::io, Where{folder.string()}, "can't make the folder: " + fault.message());
 }
 
 /// Goes on where an interrupted run of the same study stopped.
@@ -66,8 +64,6 @@ void draw_maps(const studies::CoverageStudy& study, const CoverageMap& map, cons
   draw(programs, inputs.verbosity);
 }
 
-}  // namespace
-
 void coverage(const Inputs& inputs, const CoverageOptions& options) {
   check_outputs({{"--report", options.report, {".html"}}}, inputs);
   const studies::CoverageStudy study = load_coverage(inputs);
@@ -79,6 +75,23 @@ void coverage(const Inputs& inputs, const CoverageOptions& options) {
   draw_maps(study, map, inputs, options.output);
   if (report_file) write_page(*report_file, studies::coverage_report(study, map, figures), inputs);
   if (inputs.verbosity != Verbosity::quiet) std::cout << studies::to_text(map, figures);
+}
+
+}  // namespace
+
+void add_coverage_command(CLI::App& app) {
+  CLI::App& command = add_command(app, "coverage", "map where each sensor sees a moving target", R"(
+  pirsim coverage --scene room.gltf --script studyB.yaml -o maps   a map of every sensor, figures, pictures
+  pirsim coverage --scene room.gltf --script studyB.yaml --set spacing_m=0.1 --report maps.html
+)");
+  const auto inputs = std::make_shared<Inputs>();
+  const auto options = std::make_shared<CoverageOptions>();
+  offer_study(command, *inputs);
+  offer_seed(command, *inputs);
+  offer_output(command, options->output, "DIR", "folder for maps and figures");
+  offer_map_report(command, options->report);
+  offer_threads(command, options->threads);
+  on_call(command, inputs, [options](const Inputs& given) { coverage(given, *options); });
 }
 
 }  // namespace pirsim::app

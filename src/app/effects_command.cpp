@@ -1,13 +1,17 @@
 #include <iostream>
 
 #include "app/commands.hpp"
-#include "app/row_output.hpp"
-#include "app/session.hpp"
+#include "app/outputs.hpp"
 #include "effects/describe.hpp"
 #include "pirsim/csv.hpp"
 
 namespace pirsim::app {
 namespace {
+
+struct EffectsOptions {
+  std::string name;  ///< empty: all
+  std::string format = "text";
+};
 
 /// A line a parameter.
 void print_csv(std::ostream& out, const effects::Effect& effect) {
@@ -23,8 +27,6 @@ void print_csv(std::ostream& out, const effects::Effect& effect) {
   }
 }
 
-}  // namespace
-
 void list_effects(const EffectsOptions& options) {
   std::vector<const effects::Effect*> chosen = effects::catalogue();
   if (!options.name.empty()) chosen = {&effects::find(options.name)};
@@ -39,6 +41,22 @@ void list_effects(const EffectsOptions& options) {
     std::cout << effects::list_text();
   }
   require_written();
+}
+
+}  // namespace
+
+void add_effects_command(CLI::App& app) {
+  CLI::App& command = add_command(app, "effects", "list what a script can add to the plain model", R"(
+  pirsim effects                                                   all, one a line
+  pirsim effects dead_time                                         one in detail
+  pirsim effects --format csv                                      every parameter with its range
+)");
+  const auto options = std::make_shared<EffectsOptions>();
+  command.add_option("name", options->name, "one effect in detail")->option_text("NAME");
+  command.add_option("--format", options->format, "text, csv or md")
+      ->option_text("NAME")
+      ->check(CLI::IsMember({"text", "csv", "md"}));
+  command.callback([options] { list_effects(*options); });
 }
 
 }  // namespace pirsim::app

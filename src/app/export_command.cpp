@@ -2,7 +2,7 @@
 #include <iostream>
 
 #include "app/commands.hpp"
-#include "app/output_checks.hpp"
+#include "app/outputs.hpp"
 #include "app/session.hpp"
 #include "io/gltf_writer.hpp"
 #include "pirsim/state.hpp"
@@ -11,6 +11,13 @@
 
 namespace pirsim::app {
 namespace {
+
+struct ExportOptions {
+  std::filesystem::path output = "run.glb";
+  RunChoice run;
+  double keys_per_s = 10.0;
+  std::vector<std::string> beams{"all"};
+};
 
 io::ExportedPerson without_keys(const sim::Actor& actor) {
   io::ExportedPerson person{actor.person().spec.id, {}, {}};
@@ -31,15 +38,13 @@ void add_key(const sim::Actor& actor, io::ExportedPerson& person) {
   }
 }
 
-}  // namespace
-
 void export_gltf(const Inputs& inputs, const ExportOptions& options) {
   check_outputs({{"-o", options.output, {".gltf", ".glb"}}}, inputs);
   const Model model = load(inputs);
   const int rate = model.script().sensing.tick_rate_hz;
   const auto ticks_per_key = std::max<std::int64_t>(1, std::llround(rate / options.keys_per_s));
 
-  State state(model, find_run(model, options.trial, options.replicate));
+  State state(model, find_run(model, options.run));
   io::ExportedRun run;
   run.title = model.script().name + ", trial " + model.trial_of(state.run());
   run.meshes = model.compiled().scene().meshes;
@@ -63,6 +68,29 @@ void export_gltf(const Inputs& inputs, const ExportOptions& options) {
   if (inputs.verbosity != Verbosity::quiet) {
     std::cerr << "wrote " << options.output.string() << ": " << run.title << ", " << run.key_times_s.back() << " s\n";
   }
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app) {
+  CLI::App& command = add_command(app, "export", "write one run as an animated glTF", R"(
+  pirsim export --scene room.gltf --script study.yaml -o run.glb   the first trial
+  pirsim export --scene room.gltf --script study.yaml --trial S8 --beams PIR4,PIR5 -o S8.gltf
+)");
+  const auto inputs = std::make_shared<Inputs>();
+  const auto options = std::make_shared<ExportOptions>();
+  offer_study(command, *inputs);
+  offer_tracer(command, *inputs);
+  offer_seed(command, *inputs);
+  offer_output(command, options->output, "FILE", "glTF file, .gltf or .glb (default: run.glb)");
+  offer_run_choice(command, options->run);
+  command.add_option("--keys-per-s", options->keys_per_s, "animation keys a second (default: 10)")
+      ->option_text("N")
+      ->check(CLI::Range(0.001, 10000.0));
+  command.add_option("--beams", options->beams, "sensors whose beams are drawn, or all or none (default: all)")
+      ->option_text("ID,...")
+      ->delimiter(',');
+  on_call(command, inputs, [options](const Inputs& given) { export_gltf(given, *options); });
 }
 
 }  // namespace pirsim::app

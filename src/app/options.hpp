@@ -1,21 +1,21 @@
-// The command line as data.
+// What the commands have in common: options in groups, and how a command is registered.
 #pragma once
 
-#include <array>
+#include <CLI/CLI.hpp>
+
 #include <cstdint>
 #include <filesystem>
-#include <optional>
+#include <functional>
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
-
-#include "reconcile/seal.hpp"
-#include "reconcile/selftest.hpp"
 
 namespace pirsim::app {
 
 enum class Verbosity { quiet, normal, verbose };
 
-/// What every command reads.
+/// A room, a script, and what changes how they are read. A command offers as much of it as it uses.
 struct Inputs {
   std::filesystem::path scene;
   std::filesystem::path script;
@@ -25,112 +25,49 @@ struct Inputs {
   Verbosity verbosity = Verbosity::normal;
 };
 
-struct RunOptions {
-  std::filesystem::path output;   ///< .csv, .csv.gz or .csv.zst; of a shard its folder; empty: standard output
-  std::filesystem::path summary;  ///< .csv or .md
-  std::filesystem::path zones;    ///< .csv, .csv.gz or .csv.zst
-  std::filesystem::path trace;    ///< the same
-  std::filesystem::path report;   ///< .html
-  std::string shard;              ///< "3/100", "auto"; empty: the whole study
-  std::string format = ".csv";    ///< ending of a shard's file
-  enum class Start { anew, resume } start = Start::anew;
-  std::optional<double> max_time_s;
-  unsigned threads = 0;
-  enum class Action { run, print_config } action = Action::run;
-};
-
-struct PreviewOptions {
-  std::filesystem::path output = "preview.png";
+/// One run of a study.
+struct RunChoice {
   std::string trial;  ///< empty: the first
   int replicate = 1;
-  std::optional<double> time_s;    ///< empty: when the first person has been at work for a while
-  std::vector<std::string> beams;  ///< sensors whose beams are drawn; "all", "none"
-  std::optional<std::array<double, 3>> camera, look_at;
-  double field_of_view_deg = 45.0;
-  int width = 1280, height = 720;
 };
 
-struct CoverageOptions {
-  std::filesystem::path output = "coverage";  ///< folder
-  std::filesystem::path report;               ///< .html
-  unsigned threads = 0;
-};
+/// --scene, --script, --set, --sensors and --quiet: every command that reads a room uses them.
+void offer_study(CLI::App& command, Inputs& inputs);
+/// For commands that trace rays by load().
+void offer_tracer(CLI::App& command, Inputs& inputs);
+void offer_seed(CLI::App& command, Inputs& inputs);
+void offer_replicates(CLI::App& command, Inputs& inputs);
+void offer_quiet(CLI::App& command, Verbosity& verbosity);
+/// After offer_quiet(): who asks for both gets Error(usage).
+void offer_verbose(CLI::App& command, Verbosity& verbosity);
+void offer_threads(CLI::App& command, unsigned& threads);
+void offer_run_choice(CLI::App& command, RunChoice& choice);
+/// `text`: FILE or DIR.
+void offer_output(CLI::App& command, std::filesystem::path& output, const std::string& text, const std::string& what);
+void offer_map_report(CLI::App& command, std::filesystem::path& report);
 
-struct WalkTestOptions {
-  std::filesystem::path output = "walk_test.csv";
-  std::filesystem::path report;  ///< .html
-  unsigned threads = 0;
-};
+/// A subcommand. `examples` are whole lines, and stand at the end of its help.
+[[nodiscard]] CLI::App& add_command(CLI::App& parent, const std::string& name, const std::string& what,
+                                    const std::string& examples);
+/// Does the work if the command itself is called, not one of its subcommands. It refuses to without scene and script.
+void on_call(CLI::App& command, std::shared_ptr<const Inputs> inputs, std::function<void(const Inputs&)> work);
 
-struct PlacementOptions {
-  unsigned threads = 0;
-};
+/// Options before a command's name count as if they stood after it: `pirsim --scene room.gltf check`. What the command
+/// doesn't take is refused by Error(usage). Holds for all subcommands that the app has, however deep.
+void pass_options_on(CLI::App& app);
+/// CLI11's message in one or two lines, but for what pirsim says in its own words.
+[[nodiscard]] std::string explain(const CLI::App* app, const CLI::Error& error);
+/// As a user types it, without "pirsim": "reconcile plan".
+[[nodiscard]] std::string spoken_name(const CLI::App& command);
 
-struct CampaignOptions {
-  std::filesystem::path folder;        ///< with shards
-  std::filesystem::path output;        ///< of merge
-  std::filesystem::path summary;       ///< of merge
-  std::filesystem::path script;        ///< for the summary
-  std::vector<std::string> overrides;  ///< of the script
-  Verbosity verbosity = Verbosity::normal;
-};
-
-/// What a reconciliation, its plan and its self-test share.
-struct AnalysisOptions {
-  std::filesystem::path table;  ///< folder of the reference table; empty: in the output folder
-  std::string nuisance;         ///< file, "none", or empty: the usual
-  double alpha = 0.05;
-  std::vector<std::string> effects;  ///< candidates; empty: the whole catalogue
-  double budget = 1.0;               ///< times the usual number of simulated datasets
-  std::uint64_t seed = 1;
-  unsigned threads = 0;
-};
-
-struct ReconcileOptions {
-  std::filesystem::path measured;
-  std::filesystem::path output = "reconcile";  ///< folder
-  std::string holdout;                         ///< share or names of trials to be judged on; empty: folds
-  int max_effects = 3;
-};
-
-struct PlanOptions {
-  std::filesystem::path output = "reconcile_plan";  ///< folder
-  reconcile::Measured::Kind kind = reconcile::Measured::Kind::series;
-  int runs = 1;
-};
-
-struct SealOptions {
-  std::filesystem::path output = "challenge";  ///< folder of what may be published
-  std::filesystem::path answer;                ///< what must be kept secret
-  std::string nuisance;                        ///< file, "none", or empty: the usual
-  reconcile::Hidden hidden = reconcile::Hidden::any;
-  int runs = 1;
-  std::optional<std::uint64_t> secret_seed;
-};
-
-struct OpenOptions {
-  std::filesystem::path answer, commitment, report;
-};
-
-struct EffectsOptions {
-  std::string name;  ///< empty: all
-  std::string format = "text";
-};
-
-struct SelftestOptions {
-  std::filesystem::path output = "reconcile_selftest";  ///< folder
-  reconcile::Measured::Kind kind = reconcile::Measured::Kind::series;
-  int runs = 1;
-  std::uint32_t nulls = 60, planted = 10, beyond = 0, pairs = 0, aliens = 0, verified = 0;
-  reconcile::LeaveOut leave_out = reconcile::LeaveOut::none;
-};
-
-struct ExportOptions {
-  std::filesystem::path output = "run.glb";
-  std::string trial;
-  int replicate = 1;
-  double keys_per_s = 10.0;
-  std::vector<std::string> beams{"all"};
-};
+/// Turns a word into the number that stands for it, or says which words there are.
+[[nodiscard]] CLI::Validator one_of_words(std::map<std::string, int> values);
+/// Words for the values of an enumeration.
+template <typename Value>
+[[nodiscard]] CLI::Validator one_of(const std::map<std::string, Value>& values) {
+  std::map<std::string, int> numbers;
+  for (const auto& [word, value] : values) numbers.emplace(word, static_cast<int>(value));
+  return one_of_words(std::move(numbers));
+}
 
 }  // namespace pirsim::app

@@ -1,22 +1,35 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iostream>
+#include <optional>
+#include <sstream>
 
 #include "app/commands.hpp"
-#include "app/output_checks.hpp"
+#include "app/outputs.hpp"
 #include "app/session.hpp"
 #include "io/png.hpp"
 #include "pirsim/geometry.hpp"
-#include "rt/renderer.hpp"
 #include "pirsim/state.hpp"
+#include "rt/renderer.hpp"
 #include "sim/beams.hpp"
 #include "sim/run_state.hpp"
 #include "sim/solids.hpp"
 
 namespace pirsim::app {
 namespace {
+
+struct PreviewOptions {
+  std::filesystem::path output = "preview.png";
+  RunChoice run;
+  std::optional<double> time_s;    ///< empty: when the first person has been at work for a while
+  std::vector<std::string> beams;  ///< sensors whose beams are drawn; "all", "none"
+  std::optional<std::array<double, 3>> camera, look_at;
+  double field_of_view_deg = 45.0;
+  int width = 1280, height = 720;
+};
 
 struct Extent {
   Vec3 lower{1e9}, upper{-1e9};
@@ -98,20 +111,29 @@ bool reached_default_time(const State& state, std::int64_t& work_began, const Mo
   return work_began >= 0 && static_cast<double>(state.tick() - work_began) * model.tick_s() >= into_work_s;
 }
 
-State go_to_moment(const Model& model, const PreviewOptions& options) {
-  State state(model, find_run(model, options.trial, options.replicate));
-  std::int64_t work_began = -1;
-  while (!state.finished()) {
-    if (options.time_s ? static_cast<double>(state.tick()) * model.tick_s() >= *options.time_s
-                       : reached_default_time(state, work_began, model)) {
-      break;
-    }
-    step_tick(model, state);
-  }
-  return state;
+double time_s(const Model& model, const State& state) { return static_cast<double>(state.tick()) * model.tick_s(); }
+
+/// Where somebody asks for a moment that never comes, a picture of another one would mislead.
+void require_reached(double asked_s, const Model& model, const State& state) {
+  const double reached_s = time_s(model, state);
+  if (reached_s >= asked_s) return;
+  std::ostringstream message;
+  message << "--time: the run is shorter than " << asked_s << " s, trial " << model.trial_of(state.run()) << " lasts "
+          << reached_s << " s";
+  throw Error(ErrorCode::usage, message.str());
 }
 
-}  // namespace
+State go_to_moment(const Model& model, const PreviewOptions& options) {
+  State state(model, find_run(model, options.run));
+  std::int64_t work_began = -1;
+  while (!state.finished()) {
+    if (options.time_s ? time_s(model, state) >= *options.time_s : reached_default_time(state, work_began, model))
+      break;
+    step_tick(model, state);
+  }
+  if (options.time_s) require_reached(*options.time_s, model, state);
+  return state;
+}
 
 void preview(const Inputs& inputs, const PreviewOptions& options) {
   check_outputs({{"-o", options.output, {".png"}}}, inputs);
@@ -152,13 +174,65 @@ void preview(const Inputs& inputs, const PreviewOptions& options) {
 
   require_usable(camera);
 
-  const rt::Image image =
-      rt::render(model.compiled().array().room(), surfaces, colours, solids, beams, camera, options.width, options.height);
+  const rt::Image image = rt::render(model.compiled().array().room(), surfaces, colours, solids, beams, camera,
+                                     options.width, options.height);
   io::write_png(options.output, image.width, image.height, image.rgb);
   if (inputs.verbosity != Verbosity::quiet) {
     std::cerr << "wrote " << options.output.string() << ": trial " << model.trial_of(state.run()) << " at "
-              << static_cast<double>(state.tick()) * model.tick_s() << " s\n";
+              << time_s(model, state) << " s\n";
   }
+}
+
+/// One word "X,Y,Z": an option of three values would take the next option for the third.
+void add_point(CLI::App& command, const std::string& name, std::optional<std::array<double, 3>>& point,
+               const std::string& what) {
+  const auto read = [name, &point](const std::string& text) {
+    std::istringstream stream(text);
+    std::array<double, 3> values{};
+    char comma = ',', rest = 0;
+    for (double& value : values) {
+      const bool is_first = &value == values.data();
+      if ((is_first || (stream >> comma && comma == ',')) && stream >> value) continue;
+      throw Error(ErrorCode::usage, name + ": expected X,Y,Z in metres, got '" + text + "'");
+    }
+    if (stream >> rest) throw Error(ErrorCode::usage, name + ": expected X,Y,Z in metres, got '" + text + "'");
+    point = values;
+  };
+  command.add_option_function<std::string>(name, read, what)->option_text("X,Y,Z");
+}
+
+}  // namespace
+
+void add_preview_command(CLI::App& app) {
+  CLI::App& command = add_command(app, "preview", "render room, people and beams as PNG", R"(
+  pirsim preview --scene room.gltf --script study.yaml -o room.png  a picture of room, people and beams
+  pirsim preview --scene room.gltf --script study.yaml --trial S8 --time 20 --beams PIR4,PIR5
+  pirsim preview --scene room.gltf --script study.yaml --camera 0,6,0 --look-at 2,0,2
+)");
+  const auto inputs = std::make_shared<Inputs>();
+  const auto options = std::make_shared<PreviewOptions>();
+  offer_study(command, *inputs);
+  offer_tracer(command, *inputs);
+  offer_seed(command, *inputs);
+  offer_output(command, options->output, "FILE", "PNG file (default: preview.png)");
+  offer_run_choice(command, options->run);
+  command.add_option("--time", options->time_s, "moment of the run in seconds (default: 10 s into desk work)")
+      ->option_text("S");
+  command.add_option("--beams", options->beams, "sensors whose beams are drawn, or all or none (default: the first)")
+      ->option_text("ID,...")
+      ->delimiter(',');
+  add_point(command, "--camera", options->camera, "where the camera stands, m");
+  add_point(command, "--look-at", options->look_at, "what it looks at, m");
+  command.add_option("--fov-deg", options->field_of_view_deg, "vertical field of view (default: 45)")
+      ->option_text("DEG")
+      ->check(CLI::Range(1.0, 170.0));
+  command.add_option("--width", options->width, "pixels (default: 1280)")
+      ->option_text("N")
+      ->check(CLI::Range(16, 7680));
+  command.add_option("--height", options->height, "pixels (default: 720)")
+      ->option_text("N")
+      ->check(CLI::Range(16, 4320));
+  on_call(command, inputs, [options](const Inputs& given) { preview(given, *options); });
 }
 
 }  // namespace pirsim::app

@@ -3,23 +3,55 @@
 #include <optional>
 
 #include "app/commands.hpp"
-#include "app/gnuplot_runner.hpp"
-#include "app/progress.hpp"
-#include "app/row_output.hpp"
+#include "app/long_work.hpp"
+#include "app/outputs.hpp"
 #include "app/session.hpp"
+#include "effects/catalogue.hpp"
 #include "io/atomic_file.hpp"
 #include "io/gnuplot.hpp"
-#include "effects/catalogue.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/version.hpp"
 #include "reconcile/measured.hpp"
 #include "reconcile/outputs.hpp"
 #include "reconcile/plan.hpp"
 #include "reconcile/reconcile.hpp"
+#include "reconcile/selftest.hpp"
 #include "reconcile/selftest_page.hpp"
 
 namespace pirsim::app {
 namespace {
+
+/// What a reconciliation, its plan and its self-test share.
+struct AnalysisOptions {
+  std::filesystem::path table;  ///< folder of the reference table; empty: in the output folder
+  std::string nuisance;         ///< file, "none", or empty: the usual
+  double alpha = 0.05;
+  std::vector<std::string> effects;  ///< candidates; empty: the whole catalogue
+  double budget = 1.0;               ///< times the usual number of simulated datasets
+  std::uint64_t seed = 1;
+  unsigned threads = 0;
+};
+
+struct ReconcileOptions {
+  std::filesystem::path measured;
+  std::filesystem::path output = "reconcile";  ///< folder
+  std::string holdout;                         ///< share or names of trials to be judged on; empty: folds
+  int max_effects = 3;
+};
+
+struct PlanOptions {
+  std::filesystem::path output = "reconcile_plan";  ///< folder
+  reconcile::Measured::Kind kind = reconcile::Measured::Kind::series;
+  int runs = 1;
+};
+
+struct SelftestOptions {
+  std::filesystem::path output = "reconcile_selftest";  ///< folder
+  reconcile::Measured::Kind kind = reconcile::Measured::Kind::series;
+  int runs = 1;
+  std::uint32_t nulls = 60, planted = 10, beyond = 0, pairs = 0, aliens = 0, verified = 0;
+  reconcile::LeaveOut leave_out = reconcile::LeaveOut::none;
+};
 
 reconcile::Settings settings_of(const AnalysisOptions& options, const std::filesystem::path& output,
                                 const ScriptSpec& script) {
@@ -98,8 +130,6 @@ void draw_selftest(const std::filesystem::path& folder, const reconcile::Selftes
        verbosity);
 }
 
-}  // namespace
-
 void reconcile_selftest(const Inputs& inputs, const AnalysisOptions& analysis, const SelftestOptions& options) {
   const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
@@ -163,6 +193,120 @@ void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const
   reconcile::write_outputs(options.output, outcome, measured, script, settings,
                            {"pirsim " + version() + " " + git_revision(), inputs.scene.filename().string(),
                             inputs.script.filename().string(), options.measured.filename().string()});
+}
+
+void offer_analysis(CLI::App& command, AnalysisOptions& options) {
+  command.add_option("--table", options.table, "folder that keeps the reference table (default: DIR/table)")
+      ->option_text("DIR");
+  command.add_option("--nuisance", options.nuisance, "what is uncertain about the room, YAML; or none")
+      ->option_text("FILE");
+  command.add_option("--alpha", options.alpha, "level of the tests (default: 0.05)")
+      ->option_text("P")
+      ->check(CLI::Range(0.001, 0.5));
+  command.add_option("--effects", options.effects, "candidates: a,b (default: the whole catalogue)")
+      ->option_text("NAMES")
+      ->delimiter(',');
+  command.add_option("--budget", options.budget, "times the usual number of simulated datasets (default: 1)")
+      ->option_text("X")
+      ->check(CLI::Range(0.05, 20.0));
+  command.add_option("--analysis-seed", options.seed, "of everything random in the analysis (default: 1)")
+      ->option_text("N");
+  offer_threads(command, options.threads);
+}
+
+void offer_kind(CLI::App& command, reconcile::Measured::Kind& kind, const std::string& what) {
+  using Kind = reconcile::Measured::Kind;
+  command.add_option("--data", kind, what + ": series or sums (default: series)")
+      ->option_text("KIND")
+      ->transform(one_of<Kind>({{"series", Kind::series}, {"sums", Kind::sums}}));
+}
+
+void add_selftest_command(CLI::App& reconcile_command) {
+  CLI::App& command =
+      add_command(reconcile_command, "selftest", "hide effects in simulated data and see which are found", R"(
+  pirsim reconcile selftest --scene room.gltf --script study.yaml --budget 0.2
+  pirsim reconcile selftest --scene room.gltf --script study.yaml --effects dead_time,sensor_yaw --planted 40
+)");
+  const auto inputs = std::make_shared<Inputs>();
+  const auto analysis = std::make_shared<AnalysisOptions>();
+  const auto options = std::make_shared<SelftestOptions>();
+  offer_study(command, *inputs);
+  using reconcile::LeaveOut;
+  command.add_option("-o,--out", options->output, "folder for rates and pictures (default: reconcile_selftest)")
+      ->option_text("DIR");
+  offer_kind(command, options->kind, "what is planted in");
+  command.add_option("--runs", options->runs, "runs of every trial (default: 1)")
+      ->option_text("N")
+      ->check(CLI::Range(1, 100));
+  command.add_option("--nulls", options->nulls, "datasets with nothing hidden (default: 60)")->option_text("N");
+  command.add_option("--planted", options->planted, "datasets of every effect and strength (default: 10)")
+      ->option_text("N");
+  command.add_option("--beyond", options->beyond, "of every effect, stronger than any in the table (default: 0)")
+      ->option_text("N");
+  command.add_option("--pairs", options->pairs, "datasets with two effects (default: 0)")->option_text("N");
+  command.add_option("--aliens", options->aliens, "of every fault that no catalogue has (default: 0)")
+      ->option_text("N");
+  command
+      .add_option(
+          "--verify", options->verified,
+          "with the right name, judged on held-out trials; and all with nothing hidden and something suspected; "
+          "and names put in, to see whether the model passes (default: 0)")
+      ->option_text("N");
+  command.add_option("--leave-out", options->leave_out, "none, or each: judge by catalogues that lack the effect, too")
+      ->option_text("HOW")
+      ->transform(one_of<LeaveOut>({{"none", LeaveOut::none}, {"each", LeaveOut::each}}));
+  offer_analysis(command, *analysis);
+  on_call(command, inputs,
+          [analysis, options](const Inputs& given) { reconcile_selftest(given, *analysis, *options); });
+}
+
+void add_plan_command(CLI::App& reconcile_command) {
+  CLI::App& command =
+      add_command(reconcile_command, "plan", "before measuring: what could be told apart, and what to measure next", R"(
+  pirsim reconcile plan --scene room.gltf --script study.yaml -o plan
+  pirsim reconcile plan --scene room.gltf --script study.yaml --data sums --runs 3
+)");
+  const auto inputs = std::make_shared<Inputs>();
+  const auto analysis = std::make_shared<AnalysisOptions>();
+  const auto options = std::make_shared<PlanOptions>();
+  offer_study(command, *inputs);
+  command.add_option("-o,--out", options->output, "folder for page and tables (default: reconcile_plan)")
+      ->option_text("DIR");
+  offer_kind(command, options->kind, "what is to be measured");
+  command.add_option("--runs", options->runs, "planned runs of every trial (default: 1)")
+      ->option_text("N")
+      ->check(CLI::Range(1, 100));
+  offer_analysis(command, *analysis);
+  on_call(command, inputs, [analysis, options](const Inputs& given) { reconcile_plan(given, *analysis, *options); });
+}
+
+}  // namespace
+
+void add_reconcile_command(CLI::App& app) {
+  CLI::App& command =
+      add_command(app, "reconcile", "where model and measurement disagree, and which effect is missing", R"(
+  pirsim reconcile --scene room.gltf --script study.yaml --measured rows.csv -o found
+  pirsim reconcile --scene room.gltf --script study.yaml --measured rows.csv --holdout S3,S8
+)");
+  command.require_subcommand(0, 1);
+  const auto inputs = std::make_shared<Inputs>();
+  const auto analysis = std::make_shared<AnalysisOptions>();
+  const auto options = std::make_shared<ReconcileOptions>();
+  offer_study(command, *inputs);
+  command.add_option("--measured", options->measured, "rows or sums from the real room, CSV")->option_text("FILE");
+  command.add_option("-o,--out", options->output, "folder for report and patched script (default: reconcile)")
+      ->option_text("DIR");
+  command
+      .add_option("--holdout", options->holdout,
+                  "share (0.3) or names (S3,S8) of trials kept from naming and fitting, to be judged on "
+                  "(default: every trial once, in folds)")
+      ->option_text("TRIALS");
+  command.add_option("--max-effects", options->max_effects, "most effects to put in (default: 3)")
+      ->option_text("N")
+      ->check(CLI::Range(1, 5));
+  offer_analysis(command, *analysis);
+  on_call(command, inputs, [analysis, options](const Inputs& given) { reconcile_data(given, *analysis, *options); });
+  for (const auto add : {add_selftest_command, add_plan_command, add_seal_command, add_open_command}) add(command);
 }
 
 }  // namespace pirsim::app

@@ -1,11 +1,9 @@
 #include "app/row_output.hpp"
 
-#include <poll.h>
-#include <unistd.h>
-
 #include <iostream>
 #include <sstream>
 
+#include "app/outputs.hpp"
 #include "io/atomic_file.hpp"
 #include "io/row_file.hpp"
 #include "pirsim/csv.hpp"
@@ -50,11 +48,11 @@ class StreamedRows final : public RowOutput {
 class ResumableRows final : public RowOutput {
  public:
   ResumableRows(const fs::path& file, io::Manifest made, const std::vector<std::string>& columns,
-                RunOptions::Start start)
+                RowOptions::Start start)
       : end_(made.runs.end),
         csv_(lines_, columns),
         file_(file, std::move(made), lines_.str(),
-              start == RunOptions::Start::resume ? io::RowFile::Start::resume : io::RowFile::Start::anew) {}
+              start == RowOptions::Start::resume ? io::RowFile::Start::resume : io::RowFile::Start::anew) {}
 
   [[nodiscard]] RunRange missing_runs() const override { return {file_.next_run(), end_}; }
   void add_run(std::span<const Sample> rows) override {
@@ -111,11 +109,9 @@ void refuse_other_shards(const fs::path& folder, const Shard& shard) {
   }
 }
 
-std::unique_ptr<RowOutput> open_shard(const Model& model, const RunOptions& options) {
+std::unique_ptr<RowOutput> open_shard(const Model& model, const RowOptions& options) {
   const Shard shard = studies::parse_shard(options.shard);
-  std::error_code fault;
-  fs::create_directories(options.output, fault);
-  if (fault) throw Error(ErrorCode::io, Where{options.output.string()}, "can't make the folder: " + fault.message());
+  make_folder(options.output);
   refuse_other_shards(options.output, shard);
   io::Manifest manifest = manifest_of(model);
   manifest.shard = shard;
@@ -126,19 +122,12 @@ std::unique_ptr<RowOutput> open_shard(const Model& model, const RunOptions& opti
 
 }  // namespace
 
-std::unique_ptr<RowOutput> open_rows(const Model& model, const RunOptions& options) {
+std::unique_ptr<RowOutput> open_rows(const Model& model, const RowOptions& options) {
   if (!options.shard.empty()) return open_shard(model, options);
   if (options.output.empty() || io::is_written_directly(options.output)) {
     return std::make_unique<StreamedRows>(model, options.output);
   }
   return std::make_unique<ResumableRows>(options.output, manifest_of(model), model.columns(), options.start);
-}
-
-void require_written() {
-  if (std::cout.flush()) return;
-  pollfd output{STDOUT_FILENO, POLLOUT, 0};
-  if (poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0) throw ClosedPipe{};
-  throw Error(ErrorCode::io, "standard output can't be written: is the disk full?");
 }
 
 }  // namespace pirsim::app

@@ -2,15 +2,22 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
 
-#include "app/options.hpp"
-#include "pirsim/sample.hpp"
-#include "pirsim/sample.hpp"
 #include "pirsim/model.hpp"
+#include "pirsim/sample.hpp"
 
 namespace pirsim::app {
+
+struct RowOptions {
+  std::filesystem::path output;  ///< .csv, .csv.gz or .csv.zst; of a shard its folder; empty: standard output
+  std::string shard;             ///< "3/100", "auto"; empty: the whole study
+  std::string format = ".csv";   ///< ending of a shard's file
+  enum class Start { anew, resume } start = Start::anew;
+};
 
 class RowOutput {
  public:
@@ -25,11 +32,6 @@ class RowOutput {
 };
 
 /// Throws Error: usage (a shard without a folder, and the like), io, input (nothing that could be resumed).
-[[nodiscard]] std::unique_ptr<RowOutput> open_rows(const Model& model, const RunOptions& options);
-
-/// Thrown when nobody reads standard output any more, as in `pirsim ... | head`.
-struct ClosedPipe {};
-/// Throws ClosedPipe, or Error(io), if standard output fails.
-void require_written();
+[[nodiscard]] std::unique_ptr<RowOutput> open_rows(const Model& model, const RowOptions& options);
 
 }  // namespace pirsim::app

@@ -5,17 +5,15 @@
 #include <sstream>
 
 #include "app/commands.hpp"
-#include "app/output_checks.hpp"
-#include "app/progress.hpp"
+#include "app/long_work.hpp"
+#include "app/outputs.hpp"
 #include "app/row_output.hpp"
 #include "app/session.hpp"
-#include "app/stop_request.hpp"
-#include "app/summary_output.hpp"
+#include "effects/catalogue.hpp"
 #include "io/atomic_file.hpp"
 #include "io/compression.hpp"
 #include "io/manifest.hpp"
 #include "pirsim/csv.hpp"
-#include "effects/catalogue.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/study.hpp"
 #include "sim/compiled_study.hpp"
@@ -25,6 +23,17 @@
 
 namespace pirsim::app {
 namespace {
+
+struct RunOptions {
+  RowOptions rows;
+  std::filesystem::path summary;  ///< .csv or .md
+  std::filesystem::path zones;    ///< .csv, .csv.gz or .csv.zst
+  std::filesystem::path trace;    ///< the same
+  std::filesystem::path report;   ///< .html
+  std::optional<double> max_time_s;
+  unsigned threads = 0;
+  enum class Action { run, print_config } action = Action::run;
+};
 
 std::vector<std::string> sensor_ids(const Model& model) {
   std::vector<std::string> ids;
@@ -96,7 +105,8 @@ class TraceOutput {
  public:
   TraceOutput(const std::filesystem::path& file, const Model& model)
       : output_(file), csv_(output_.lines(), sensor_ids(model), model.script().sensing.tick_rate_hz) {
-    if (model.compiled().array().analog() == nullptr) throw Error(ErrorCode::usage, "--trace: no sensor has an analog response");
+    if (model.compiled().array().analog() == nullptr)
+      throw Error(ErrorCode::usage, "--trace: no sensor has an analog response");
   }
 
   void add(const RunResult& result) {
@@ -153,8 +163,8 @@ bool has_whole_study_outputs(const RunOptions& options) {
 }
 
 void check_options(const Inputs& inputs, const RunOptions& options) {
-  const bool sharded = !options.shard.empty();
-  const std::filesystem::path rows = sharded ? std::filesystem::path{} : options.output;
+  const bool sharded = !options.rows.shard.empty();
+  const std::filesystem::path rows = sharded ? std::filesystem::path{} : options.rows.output;
   std::vector<NamedOutput> outputs{{"-o", rows, table_endings()},
                                    {"--summary", options.summary, {".csv", ".md"}},
                                    {"--zones", options.zones, table_endings()},
@@ -162,16 +172,16 @@ void check_options(const Inputs& inputs, const RunOptions& options) {
                                    {"--report", options.report, {".html"}}};
   if (!rows.empty()) outputs.push_back({"the manifest of -o", io::manifest_path(rows), {".json"}});
   check_outputs(outputs, inputs);
-  const char* partial = sharded                                      ? "--shard"
-                        : options.start == RunOptions::Start::resume ? "--resume"
-                        : options.max_time_s                         ? "--max-time"
-                                                                     : nullptr;
+  const char* partial = sharded                                           ? "--shard"
+                        : options.rows.start == RowOptions::Start::resume ? "--resume"
+                        : options.max_time_s                              ? "--max-time"
+                                                                          : nullptr;
   if (partial == nullptr) return;
-  if (options.output.empty()) {
+  if (options.rows.output.empty()) {
     throw Error(ErrorCode::usage, std::string(partial) + " needs -o " + (sharded ? "DIR" : "FILE"));
   }
-  if (!sharded && io::is_written_directly(options.output)) {
-    throw Error(ErrorCode::usage, std::string(partial) + ": '" + options.output.string() +
+  if (!sharded && io::is_written_directly(options.rows.output)) {
+    throw Error(ErrorCode::usage, std::string(partial) + ": '" + options.rows.output.string() +
                                       "' is no regular file, its rows can't be gone on with");
   }
   if (has_whole_study_outputs(options)) {
@@ -185,12 +195,10 @@ std::string stop_message(const RunOptions& options, const std::string& cause, co
                          const RowOutput& rows) {
   const RunRange left = rows.missing_runs();
   std::string message = "stopped by " + cause;
-  if (options.output.empty() || io::is_written_directly(options.output)) return message;
+  if (options.rows.output.empty() || io::is_written_directly(options.rows.output)) return message;
   message += ", " + std::to_string(left.count()) + " of " + std::to_string(model.n_runs()) + " runs are left";
   return message + "; --resume goes on";
 }
-
-}  // namespace
 
 void run(const Inputs& inputs, const RunOptions& options) {
   if (options.action == RunOptions::Action::print_config) {
@@ -210,8 +218,8 @@ void run(const Inputs& inputs, const RunOptions& options) {
 
   // Rows that only go to a stream can end anywhere, as by Ctrl-C.
   std::optional<StopRequest> stop;
-  if (!options.output.empty() || has_whole_study_outputs(options)) stop.emplace();
-  const std::unique_ptr<RowOutput> rows = open_rows(model, options);
+  if (!options.rows.output.empty() || has_whole_study_outputs(options)) stop.emplace();
+  const std::unique_ptr<RowOutput> rows = open_rows(model, options.rows);
   WholeStudyOutputs others(model, inputs, options);
   const std::uint32_t wanted = rows->missing_runs().count();
   Progress progress(wanted, inputs.verbosity);
@@ -243,6 +251,61 @@ void run(const Inputs& inputs, const RunOptions& options) {
   if (inputs.verbosity == Verbosity::verbose) {
     std::cerr << done << " runs, " << rows->rows() << " rows in " << progress.seconds() << " s\n";
   }
+}
+
+void offer_run(CLI::App& command) {
+  const auto inputs = std::make_shared<Inputs>();
+  const auto options = std::make_shared<RunOptions>();
+  offer_study(command, *inputs);
+  offer_verbose(command, inputs->verbosity);
+  offer_tracer(command, *inputs);
+  offer_seed(command, *inputs);
+  offer_replicates(command, *inputs);
+  offer_output(command, options->rows.output, "FILE",
+               "rows, .csv, .csv.gz or .csv.zst (default: as CSV on standard output)");
+  command.add_option("--summary", options->summary, "table of sums per trial and sensor, .csv or .md")
+      ->option_text("FILE");
+  command.add_option("--report", options->report, "counts and time series as one self-contained page, .html")
+      ->option_text("FILE");
+  command.add_option("--zones", options->zones, "every zone's activity at every tick, .csv, .csv.gz or .csv.zst")
+      ->option_text("FILE");
+  command
+      .add_option("--trace", options->trace,
+                  "analog sensors' power, signal and what is behind it at every tick, .csv, .csv.gz or .csv.zst")
+      ->option_text("FILE");
+  offer_threads(command, options->threads);
+  command
+      .add_option("--shard", options->rows.shard,
+                  "only this block of the runs: I/N, auto/N or auto (in a job array); -o names a folder")
+      ->option_text("I/N");
+  command.add_option("--format", options->rows.format, "of a shard: .csv, .csv.gz or .csv.zst (default: .csv)")
+      ->option_text("ENDING")
+      ->check(CLI::IsMember(table_endings()));
+  command.add_flag_callback(
+      "--resume", [options] { options->rows.start = RowOptions::Start::resume; },
+      "go on at the last whole run; nothing to do if all is done");
+  command.add_option("--max-time", options->max_time_s, "stop at the end of a run after so long: 3000, 50m, 2h")
+      ->option_text("TIME")
+      ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1.0}, {"m", 60.0}, {"h", 3600.0}},
+                                        CLI::AsNumberWithUnit::CASE_SENSITIVE, "TIME"));
+  command.add_flag_callback(
+      "--print-config", [options] { options->action = RunOptions::Action::print_config; },
+      "print the resolved script and stop");
+  on_call(command, inputs, [options](const Inputs& given) { run(given, *options); });
+}
+
+constexpr const char* examples = R"(
+  pirsim run --scene room.gltf --script study.yaml                 rows of the whole study as CSV on stdout
+  pirsim run --scene room.gltf --script study.yaml -o rows.csv --summary table.md
+  pirsim run --scene room.gltf --script study.yaml --replicates 20 --set people.0.stature_m=1.7
+  pirsim run --scene room.gltf --script study.yaml --shard 3/100 -o out   a block of the runs; then pirsim status, merge
+)";
+
+}  // namespace
+
+void add_run_command(CLI::App& app) {
+  offer_run(app);  // the default
+  offer_run(add_command(app, "run", "run the study (the default)", examples));
 }
 
 }  // namespace pirsim::app

@@ -1,11 +1,11 @@
 #include <iomanip>
 #include <iostream>
+#include <optional>
 #include <random>
 #include <sstream>
 
 #include "app/commands.hpp"
-#include "app/output_checks.hpp"
-#include "app/row_output.hpp"
+#include "app/outputs.hpp"
 #include "app/session.hpp"
 #include "io/text_input.hpp"
 #include "pirsim/io.hpp"
@@ -15,6 +15,19 @@ namespace pirsim::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct SealOptions {
+  fs::path output = "challenge";  ///< folder of what may be published
+  fs::path answer;                ///< what must be kept secret
+  std::string nuisance;           ///< file, "none", or empty: the usual
+  reconcile::Hidden hidden = reconcile::Hidden::any;
+  int runs = 1;
+  std::optional<std::uint64_t> secret_seed;
+};
+
+struct OpenOptions {
+  fs::path answer, commitment, report;
+};
 
 constexpr std::size_t digest_digits = 64;
 
@@ -64,8 +77,6 @@ void write(const ChallengeFiles& files, const reconcile::Challenge& challenge) {
 
 reconcile::Document read_document(const fs::path& file) { return {file.string(), io::read_text_file(file)}; }
 
-}  // namespace
-
 void seal_challenge(const Inputs& inputs, const SealOptions& options) {
   if (options.answer.empty())
     throw Error(ErrorCode::usage, "--answer FILE is missing; see pirsim reconcile seal --help");
@@ -96,6 +107,48 @@ void open_challenge(const OpenOptions& options) {
       reconcile::open_answer(read_document(options.answer), published, read_document(options.report));
   std::cout << score.sentence << '\n';
   require_written();
+}
+
+}  // namespace
+
+void add_seal_command(CLI::App& reconcile_command) {
+  CLI::App& command = add_command(reconcile_command, "seal", "hide something in data, to be found blindly", R"(
+  pirsim reconcile seal --scene room.gltf --script study.yaml -o challenge --answer secret/answer.json
+  pirsim reconcile seal --scene room.gltf --script study.yaml --hide one --runs 3 --answer secret/answer.json
+)");
+  const auto inputs = std::make_shared<Inputs>();
+  const auto options = std::make_shared<SealOptions>();
+  offer_study(command, *inputs);
+  using reconcile::Hidden;
+  command.add_option("-o,--out", options->output, "folder for data and hash (default: challenge)")->option_text("DIR");
+  command.add_option("--answer", options->answer, "where the sealed answer goes, JSON; keep it secret")
+      ->option_text("FILE");
+  command.add_option("--nuisance", options->nuisance, "what is uncertain about the room, YAML; or none")
+      ->option_text("FILE");
+  command.add_option("--hide", options->hidden, "any, nothing, one, two or alien (default: any)")
+      ->option_text("KIND")
+      ->transform(one_of<Hidden>({{"any", Hidden::any},
+                                  {"nothing", Hidden::nothing},
+                                  {"one", Hidden::one},
+                                  {"two", Hidden::two},
+                                  {"alien", Hidden::alien}}));
+  command.add_option("--runs", options->runs, "runs of every trial (default: 1)")
+      ->option_text("N")
+      ->check(CLI::Range(1, 100));
+  command.add_option("--secret-seed", options->secret_seed, "of everything drawn (default: from the system)")
+      ->option_text("N");
+  on_call(command, inputs, [options](const Inputs& given) { seal_challenge(given, *options); });
+}
+
+void add_open_command(CLI::App& reconcile_command) {
+  CLI::App& command = add_command(reconcile_command, "open", "score a report against the sealed answer", R"(
+  pirsim reconcile open --answer secret/answer.json --commitment challenge/commitment.sha256 --report found/report.json
+)");
+  const auto options = std::make_shared<OpenOptions>();
+  command.add_option("--answer", options->answer, "the sealed answer")->option_text("FILE")->required();
+  command.add_option("--commitment", options->commitment, "the published hash")->option_text("FILE")->required();
+  command.add_option("--report", options->report, "report.json to be scored")->option_text("FILE")->required();
+  command.callback([options] { open_challenge(*options); });
 }
 
 }  // namespace pirsim::app

@@ -5,7 +5,6 @@
 #include "pirsim/effects.hpp"
 #include "pirsim/io.hpp"
 #include "rt/tracer.hpp"
-#include "pirsim/version.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -32,15 +31,12 @@ void tell(const std::vector<Issue>& issues, Verbosity verbosity) {
   for (const Issue& issue : issues) std::cerr << to_string(issue) << '\n';
 }
 
-void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs) {
-  report.footer = "pirsim " + version() + " (" + git_revision() + "), " + inputs.scene.filename().string() + ", " +
-                  inputs.script.filename().string();
-  file.stream() << io::to_html(report);
-  file.commit();
-}
-
 io::SceneOptions scene_options(const Inputs& inputs) {
   std::error_code unknown;
+  for (const std::filesystem::path& folder : inputs.sensor_directories) {
+    if (!std::filesystem::is_directory(folder, unknown))
+      throw Error(ErrorCode::io, Where{folder.string()}, "--sensors: there is no such folder");
+  }
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
   // Installed (bin beside share), or in a build folder of the source tree (build/<preset>).
   return {inputs.sensor_directories, {program / ".." / "share" / "pirsim", program / ".." / ".." / "data"}};
@@ -57,18 +53,20 @@ Model load(const Inputs& inputs) {
   return model;
 }
 
-std::uint32_t find_run(const Model& model, const std::string& trial, int replicate) {
-  if (replicate < 1 || replicate > model.script().replicates) {
+std::uint32_t find_run(const Model& model, const RunChoice& choice) {
+  if (choice.replicate < 1 || choice.replicate > model.script().replicates) {
     throw Error(ErrorCode::usage, "--replicate: the script has 1 to " + std::to_string(model.script().replicates));
   }
   std::vector<std::string> names;
   for (std::size_t i = 0; i < model.script().trials.size(); ++i) {
     names.push_back(model.script().trials[i].id);
-    if (trial.empty() || trial == names.back()) {
-      return static_cast<std::uint32_t>(static_cast<std::size_t>(replicate - 1) * model.script().trials.size() + i);
+    if (choice.trial.empty() || choice.trial == names.back()) {
+      return static_cast<std::uint32_t>(static_cast<std::size_t>(choice.replicate - 1) * model.script().trials.size() +
+                                        i);
     }
   }
-  throw Error(ErrorCode::usage, "--trial: '" + trial + "' is not in the script" + did_you_mean(trial, names));
+  throw Error(ErrorCode::usage,
+              "--trial: '" + choice.trial + "' is not in the script" + did_you_mean(choice.trial, names));
 }
 
 std::vector<std::size_t> find_sensors(const Model& model, const std::vector<std::string>& names) {

@@ -7,6 +7,7 @@ import csv
 import io
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -34,6 +35,151 @@ def write(folder, name, text):
     path = pathlib.Path(folder) / name
     path.write_text(text)
     return path
+
+
+def study_files(script="studyA.yaml"):
+    return "--scene", DATA / "rooms" / "meeting_room.gltf", "--script", DATA / "studies" / script
+
+
+# What a command needs besides the option that is tried: a script of its kind, and what it can't be without.
+COMMANDS = {(): ("studyA.yaml", "-o", "rows.csv"), ("run",): ("studyA.yaml", "-o", "rows.csv"),
+            ("check",): ("studyA.yaml",), ("preview",): ("studyA.yaml",), ("export",): ("studyA.yaml",),
+            ("coverage",): ("studyB.yaml",), ("walktest",): ("walk_test.yaml",), ("placements",): ("placements.yaml",),
+            ("reconcile",): ("studyA.yaml", "--measured", "m.csv"), ("reconcile", "plan"): ("studyA.yaml",),
+            ("reconcile", "selftest"): ("studyA.yaml",),
+            ("reconcile", "seal"): ("studyA.yaml", "--answer", "answer.json")}
+OTHERS = {("reconcile", "open"): ("--answer", "a", "--commitment", "b", "--report", "c"), ("status",): ("shards",),
+          ("merge",): ("shards", "-o", "rows.csv", "--script", "other.yaml"), ("effects",): (), ("help",): ()}
+VALUES = {"--set": "name=other", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--format": ".csv",
+          "--summary": "sums.csv", "--zones": "zones.csv", "--trace": "trace.csv", "--shard": "1/2", "--max-time": "5m",
+          "--trial": "S1", "--beams": "all", "--camera": "0,5,0", "--look-at": "1,0,1", "--width": "64",
+          "--height": "64", "--measured": "m.csv", "--holdout": "0.3", "--table": "table", "--nuisance": "none",
+          "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "each", "--hide": "one",
+          "--script": "other.yaml"}
+OUTPUTS = {"preview": "room.png", "export": "run.glb", "coverage": "maps", "walktest": "points.csv"}
+
+
+def options_of(command):
+    """What the help offers: {"--seed": "N", "--resume": None}."""
+    lines = pirsim(*command, "--help").stdout.splitlines()
+    found = (re.match(r"  (?:-\w,)?(--[\w-]+)(?: (\S+))?(?:  |$)", line) for line in lines)
+    return {match[1]: match[2] for match in found if match}
+
+
+def value_of(command, option):
+    if option == "--output":
+        return OUTPUTS.get(command[0], "x")
+    if command == ("effects",) and option == "--format":
+        return "csv"
+    return VALUES.get(option, "1" if option not in ("--out", "--answer") else "folder")
+
+
+class Options(unittest.TestCase):
+    def test_the_tables_above_name_every_command(self):
+        def below(command):
+            text = pirsim(*command, "--help").stdout
+            if "Subcommands:" not in text:
+                return {command}
+            names = re.findall(r"^  (\w+) ", text.split("Subcommands:")[1].split("Examples:")[0], re.M)
+            return {command}.union(*(below((*command, name)) for name in names))
+        self.assertEqual(below(()), {*COMMANDS, *OTHERS})
+
+    def test_no_command_offers_an_option_that_it_refuses(self):
+        """The room is the last to be read and isn't there: who gets that far has taken option and script."""
+        with tempfile.TemporaryDirectory() as folder:
+            for command, (script, *rest) in COMMANDS.items():
+                offered = options_of(command)
+                self.assertIn("--scene", offered)
+                for option, takes in offered.items():
+                    if option in ("--help", "--version", "--scene", "--script") or option in rest:
+                        continue
+                    if option in ("--output", "--print-config") and "-o" in rest:
+                        continue
+                    value = () if takes is None else (value_of(command, option),)
+                    result = pirsim(*command, "--scene", "nowhere.gltf", "--script", DATA / "studies" / script, *rest,
+                                    option, *value, code=4, cwd=folder)
+                    self.assertIn("nowhere.gltf", result.stderr, (command, option))
+            for command, rest in OTHERS.items():
+                for option, takes in options_of(command).items():
+                    if option == "--help" or option in rest or option == "--output":
+                        continue
+                    value = () if takes is None else (value_of(command, option),)
+                    result = subprocess.run([PIRSIM, *command, *rest, option, *value], capture_output=True, text=True,
+                                            cwd=folder)
+                    self.assertNotEqual(result.returncode, 2, (command, option, result.stderr))
+
+    def test_no_command_offers_an_option_that_would_do_nothing(self):
+        for command, unused in ((("coverage",), ("--replicates", "--tracer", "--verbose")),
+                                (("walktest",), ("--replicates", "--tracer")),
+                                (("placements",), ("--replicates", "--tracer")), (("preview",), ("--replicates",)),
+                                (("export",), ("--replicates",)), (("check",), ("--seed", "--threads")),
+                                (("reconcile",), ("--seed", "--replicates", "--tracer")),
+                                (("effects",), ("--scene", "--quiet"))):
+            self.assertTrue(options_of(command).keys().isdisjoint(unused), command)
+            for option in unused:
+                self.assertIn(option, pirsim(*command, option, 1, code=2).stderr)
+                self.assertIn(option, pirsim(option, *((1,) if option not in ("--quiet", "--verbose") else ()),
+                                             *command, code=2).stderr)
+
+    def test_the_seed_of_a_survey_can_be_overridden(self):
+        with tempfile.TemporaryDirectory() as folder:
+            def map_of(*args):
+                pirsim("coverage", *study_files("studyB.yaml"), "-q", "--set", "spacing_m=0.5", "--set",
+                       "effects=[{missed_triggers: {probability: 0.5}}]", *args, "-o", folder)
+                return (pathlib.Path(folder) / "coverage.csv").read_bytes()
+            self.assertEqual(map_of("--seed", 5), map_of("--set", "seed=5"))
+            self.assertNotEqual(map_of("--seed", 5), map_of("--seed", 6))
+
+    def test_options_before_a_command_count_as_after_it(self):
+        after = pirsim("check", *study_files(), "--replicates", 3).stdout
+        self.assertIn("10 trials x 3 replicates", after)
+        self.assertEqual(pirsim(*study_files(), "--replicates", 3, "check").stdout, after)
+        scene, script = study_files()[:2], study_files()[2:]
+        self.assertIn("--measured", pirsim(*scene, "reconcile", *script, "--measured", "x", "plan", code=2).stderr)
+        refused = pirsim("-o", "room.png", "preview", *study_files(), code=2).stderr
+        self.assertIn("--output must stand after 'preview'", refused)
+
+    def test_an_option_given_twice_is_said_to_be(self):
+        for args in (("--seed", 1, "--seed", 2), ("--seed", 1, "run", "--seed", 2), ("run", "--seed", 1, "--seed", 2)):
+            self.assertEqual(pirsim(*args, *study_files(), code=2).stderr, "--seed is given twice\n")
+        twice = pirsim("reconcile", "plan", "--runs", 1, "--runs", 2, code=2).stderr
+        self.assertEqual(twice, "--runs is given twice\n")
+        study("--set", "seed=1", "--set", "replicates=2", "--print-config")
+
+    def test_quiet_and_verbose_exclude_each_other(self):
+        for args in (("-q", "-v"), ("-v", "-q"), ("-q", "run", "-v"), ("run", "--verbose", "--quiet")):
+            result = pirsim(*args, *study_files(), code=2)
+            self.assertIn("--quiet and --verbose", result.stderr)
+            self.assertEqual(result.stdout, "")
+
+    def test_folders_that_are_not_there_are_named(self):
+        for command in (("check", *study_files()), ("coverage", *study_files("studyB.yaml"))):
+            refused = pirsim(*command, "--sensors", "/nonexistent", code=4).stderr
+            self.assertIn("/nonexistent: error: --sensors", refused)
+        for option in ("-o", "--summary", "--zones"):
+            self.assertEqual(study(option, "/nonexistent/x.csv", code=4).stderr,
+                             "/nonexistent/x.csv: error: can't write: there is no folder '/nonexistent'\n")
+        with tempfile.TemporaryDirectory() as folder:
+            file = write(folder, "file", "")
+            self.assertIn(f"'{file}' isn't a folder", study("-o", file / "x.csv", code=4).stderr)
+
+
+class Help(unittest.TestCase):
+    def test_help_of_a_command_is_what_the_command_says_itself(self):
+        for command in (*COMMANDS, *OTHERS):
+            text = pirsim("help", *command).stdout
+            self.assertEqual(text, pirsim(*command, "--help").stdout)
+            examples = text.split("Examples:\n")[1].split("\n")
+            self.assertTrue(examples[0].startswith(" ".join(("  pirsim", *command))), examples[0])
+
+    def test_help_of_an_unknown_command_names_the_nearest(self):
+        self.assertEqual(pirsim("help", "chekc", code=2).stderr,
+                         "error: help: 'chekc' isn't a command (did you mean 'check'?)\n")
+        self.assertEqual(pirsim("help", "reconcile", "pln", code=2).stderr,
+                         "error: help: 'pln' isn't a command of 'reconcile' (did you mean 'plan'?)\n")
+
+    def test_version_has_a_short_name(self):
+        self.assertEqual(pirsim("-V").stdout, pirsim("--version").stdout)
 
 
 class CommandLine(unittest.TestCase):
@@ -208,6 +354,16 @@ class Looking(unittest.TestCase):
             header = out.read_bytes()[:24]
         self.assertEqual(header[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual((int.from_bytes(header[16:20], "big"), int.from_bytes(header[20:24], "big")), (160, 90))
+
+    def test_a_moment_after_the_end_of_the_run_is_refused_with_its_length(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "p.png"
+            refused = pirsim("preview", *study_files(), "-o", out, "--time", 99999, code=2).stderr
+            self.assertIn("shorter than 99999 s", refused)
+            end = re.search(r"lasts (\S+) s", refused)[1]
+            self.assertFalse(out.exists())
+            pirsim("preview", *study_files(), "-o", out, "--time", end, "--width", 64, "--height", 64)
+            self.assertTrue(out.exists())
 
     def test_export_writes_thirteen_parts_with_their_primitives(self):
         with tempfile.TemporaryDirectory() as folder:

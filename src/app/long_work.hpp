@@ -1,4 +1,4 @@
-// How far a study is, on standard error: one line that overwrites itself on a terminal, now and then a line elsewhere.
+// Work that takes a while: how far it is, and whether it is to stop.
 #pragma once
 
 #include <chrono>
@@ -9,6 +9,7 @@
 
 namespace pirsim::app {
 
+/// How far a study is, on standard error: one line that overwrites itself on a terminal, now and then a line elsewhere.
 class Progress {
  public:
   /// unit: what is counted, in messages.
@@ -29,6 +30,21 @@ class Progress {
   Style style_;
   Clock::time_point begun_ = Clock::now();
   Clock::time_point told_ = begun_;
+};
+
+/// SIGINT and SIGTERM as a wish to stop when it suits, as long as it lives. A second signal of the kind ends the
+/// process at once. One at a time.
+class StopRequest {
+ public:
+  StopRequest();
+  ~StopRequest();
+  StopRequest(const StopRequest&) = delete;
+  StopRequest& operator=(const StopRequest&) = delete;
+
+  [[nodiscard]] bool was_made() const noexcept;
+  [[nodiscard]] std::string signal_name() const;
+  /// For work that can't be gone on with: throws Error(stopped), so that unfinished outputs are removed.
+  void throw_if_made() const;
 };
 
 }  // namespace pirsim::app

@@ -2,27 +2,26 @@
 #include <optional>
 
 #include "app/commands.hpp"
-#include "app/output_checks.hpp"
-#include "app/row_output.hpp"
-#include "app/summary_output.hpp"
+#include "app/outputs.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
 #include "studies/campaign.hpp"
 #include "studies/row_tally.hpp"
 
 namespace pirsim::app {
-
-void status(const CampaignOptions& options) {
-  const std::vector<studies::ShardReport> shards = studies::campaign_status(options.folder);
-  if (options.verbosity != Verbosity::quiet) std::cerr << studies::to_text(shards);
-  if (const std::string rest = studies::array_specification(shards); !rest.empty()) std::cout << rest << '\n';
-  require_written();
-}
-
 namespace {
 
+struct MergeOptions {
+  std::filesystem::path folder;  ///< with shards
+  std::filesystem::path output;
+  std::filesystem::path summary;
+  std::filesystem::path script;        ///< for the summary
+  std::vector<std::string> overrides;  ///< of the script
+  Verbosity verbosity = Verbosity::normal;
+};
+
 /// The script of the shards, read again for what a summary wants to know of it.
-ScriptSpec script_of(const CampaignOptions& options) {
+ScriptSpec script_of(const MergeOptions& options) {
   if (options.script.empty()) throw Error(ErrorCode::usage, "--summary needs --script FILE, that of the shards");
   const io::Provenance made = studies::campaign_provenance(options.folder);
   ScriptSpec script = io::read_script(options.script, options.overrides);
@@ -40,9 +39,7 @@ std::vector<std::string> trial_ids(const ScriptSpec& script) {
   return ids;
 }
 
-}  // namespace
-
-void merge(const CampaignOptions& options) {
+void merge(const MergeOptions& options) {
   if (options.output.empty()) throw Error(ErrorCode::usage, "-o FILE is missing");
   check_outputs({{"-o", options.output, table_endings()}, {"--summary", options.summary, {".csv", ".md"}}}, {});
   ScriptSpec script;
@@ -59,6 +56,26 @@ void merge(const CampaignOptions& options) {
   if (options.verbosity != Verbosity::quiet) {
     std::cerr << "merged " << merged.runs.count() << " runs, " << merged.rows << " rows\n";
   }
+}
+
+}  // namespace
+
+void add_merge_command(CLI::App& app) {
+  CLI::App& command = add_command(app, "merge", "shards to one file, the same as of one process", R"(
+  pirsim merge out -o rows.csv.zst
+  pirsim merge out -o rows.csv --script study.yaml --summary table.md
+)");
+  const auto options = std::make_shared<MergeOptions>();
+  command.add_option("DIR", options->folder, "folder with the shards")->required();
+  offer_quiet(command, options->verbosity);
+  offer_output(command, options->output, "FILE", "rows, .csv, .csv.gz or .csv.zst");
+  command.add_option("--summary", options->summary, "table of sums per trial and sensor, .csv or .md; needs --script")
+      ->option_text("FILE");
+  command.add_option("--script", options->script, "that of the shards, for the summary")->option_text("FILE");
+  command.add_option("--set", options->overrides, "as for the shards")
+      ->option_text("KEY=VALUE")
+      ->allow_extra_args(false);
+  command.callback([options] { merge(*options); });
 }
 
 }  // namespace pirsim::app

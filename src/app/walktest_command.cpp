@@ -2,15 +2,21 @@
 #include <optional>
 
 #include "app/commands.hpp"
-#include "app/output_checks.hpp"
-#include "app/progress.hpp"
+#include "app/long_work.hpp"
+#include "app/outputs.hpp"
 #include "app/session.hpp"
-#include "app/stop_request.hpp"
 #include "io/atomic_file.hpp"
 #include "pirsim/io.hpp"
 #include "studies/walk_test.hpp"
 
 namespace pirsim::app {
+namespace {
+
+struct WalkTestOptions {
+  std::filesystem::path output = "walk_test.csv";
+  std::filesystem::path report;  ///< .html
+  unsigned threads = 0;
+};
 
 void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
   check_outputs({{"-o", options.output, {".csv"}}, {"--report", options.report, {".html"}}}, inputs);
@@ -34,6 +40,23 @@ void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
   file.commit();
   if (report_file) write_page(*report_file, studies::walk_test_report(test, result), inputs);
   if (inputs.verbosity != Verbosity::quiet) std::cout << to_text(test, result);
+}
+
+}  // namespace
+
+void add_walktest_command(CLI::App& app) {
+  CLI::App& command = add_command(app, "walktest", "how surely walkers and sitters are noticed in time", R"(
+  pirsim walktest --scene room.gltf --script walk_test.yaml -o points.csv
+  pirsim walktest --scene room.gltf --script walk_test.yaml --set spacing_m=1 --report maps.html
+)");
+  const auto inputs = std::make_shared<Inputs>();
+  const auto options = std::make_shared<WalkTestOptions>();
+  offer_study(command, *inputs);
+  offer_seed(command, *inputs);
+  offer_output(command, options->output, "FILE", "points with tries and verdicts, as CSV");
+  offer_map_report(command, options->report);
+  offer_threads(command, options->threads);
+  on_call(command, inputs, [options](const Inputs& given) { walk_test(given, *options); });
 }
 
 }  // namespace pirsim::app

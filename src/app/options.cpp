@@ -1,0 +1,175 @@
+#include "app/options.hpp"
+
+#include <boost/algorithm/string/join.hpp>
+#include <utility>
+
+#include "pirsim/error.hpp"
+
+namespace pirsim::app {
+namespace {
+
+void require_study(const Inputs& inputs) {
+  if (!inputs.scene.empty() && !inputs.script.empty()) return;
+  throw Error(ErrorCode::usage,
+              std::string(inputs.scene.empty() ? "--scene" : "--script") + " FILE is missing; see pirsim --help");
+}
+
+/// Functions that offer an option to several commands give it one description. Others mean something of their own.
+bool mean_the_same(const CLI::Option& one, const CLI::Option& other) {
+  return one.get_description() == other.get_description();
+}
+
+/// CLI11 answers these itself, wherever they stand.
+bool is_about_pirsim(const CLI::App& app, const CLI::Option* option) {
+  return option == app.get_help_ptr() || option == app.get_version_ptr();
+}
+
+void take_from_parent(CLI::App& command) {
+  CLI::App& parent = *command.get_parent();
+  for (CLI::Option* option : parent.get_options(nullptr)) {
+    if (option->count() == 0 || is_about_pirsim(parent, option)) continue;
+    const std::string name = option->get_name();
+    CLI::Option* own = command.get_option_no_throw(name);
+    if (own == nullptr) throw Error(ErrorCode::usage, name + " is not an option of '" + spoken_name(command) + "'");
+    if (!mean_the_same(*option, *own)) {
+      throw Error(ErrorCode::usage,
+                  name + " must stand after '" + spoken_name(command) + "'; before it, it means something else");
+    }
+    own->add_result(option->results());
+    option->clear();
+  }
+}
+
+/// The option that the user gave more often than it can be taken, or null.
+const CLI::Option* repeated_option(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options(nullptr)) {
+    const bool is_single = option->get_multi_option_policy() == CLI::MultiOptionPolicy::Throw;
+    if (is_single && static_cast<int>(option->count()) > option->get_items_expected_max()) return option;
+  }
+  for (const CLI::App* command : app.get_subcommands()) {
+    if (const CLI::Option* option = repeated_option(*command)) return option;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+void offer_study(CLI::App& command, Inputs& inputs) {
+  command.add_option("--scene", inputs.scene, "room: a glTF 2.0 file (.gltf or .glb)")->option_text("FILE");
+  command.add_option("--script", inputs.script, "study: a YAML file")->option_text("FILE");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--set",
+          [&inputs](const std::vector<std::string>& given) {
+            inputs.overrides.insert(inputs.overrides.end(), given.begin(), given.end());
+          },
+          "override a value of the script: sensing.rays_per_zone=9")
+      ->option_text("KEY=VALUE")
+      ->allow_extra_args(false);
+  command.add_option("--sensors", inputs.sensor_directories, "folder with sensor models, searched first")
+      ->option_text("DIR")
+      ->allow_extra_args(false);
+  offer_quiet(command, inputs.verbosity);
+}
+
+void offer_tracer(CLI::App& command, Inputs& inputs) {
+  command.add_option("--tracer", inputs.tracer, "auto, direct, embree or reference")->option_text("NAME");
+}
+
+void offer_seed(CLI::App& command, Inputs& inputs) {
+  command
+      .add_option_function<std::int64_t>(
+          "--seed", [&inputs](std::int64_t n) { inputs.overrides.push_back("seed=" + std::to_string(n)); },
+          "seed of all random streams")
+      ->option_text("N");
+}
+
+void offer_replicates(CLI::App& command, Inputs& inputs) {
+  command
+      .add_option_function<int>(
+          "--replicates", [&inputs](int n) { inputs.overrides.push_back("replicates=" + std::to_string(n)); },
+          "how often every trial is run")
+      ->option_text("N");
+}
+
+void offer_quiet(CLI::App& command, Verbosity& verbosity) {
+  command.add_flag_callback(
+      "-q,--quiet", [&verbosity] { verbosity = Verbosity::quiet; }, "errors only");
+}
+
+void offer_verbose(CLI::App& command, Verbosity& verbosity) {
+  // CLI11 calls back in the order in which options were offered, so --quiet has had its effect by now.
+  const auto set = [&verbosity] {
+    if (verbosity == Verbosity::quiet) throw Error(ErrorCode::usage, "--quiet and --verbose exclude each other");
+    verbosity = Verbosity::verbose;
+  };
+  command.add_flag_callback("-v,--verbose", set, "more about what goes on");
+}
+
+void offer_threads(CLI::App& command, unsigned& threads) {
+  command.add_option("--threads", threads, "0: all cores; changes no byte of any result")->option_text("N");
+}
+
+void offer_run_choice(CLI::App& command, RunChoice& choice) {
+  command.add_option("--trial", choice.trial, "which trial (default: the first)")->option_text("ID");
+  command.add_option("--replicate", choice.replicate, "which replicate (default: 1)")->option_text("N");
+}
+
+void offer_output(CLI::App& command, std::filesystem::path& output, const std::string& text, const std::string& what) {
+  command.add_option("-o,--output", output, what)->option_text(text);
+}
+
+void offer_map_report(CLI::App& command, std::filesystem::path& report) {
+  command.add_option("--report", report, "the maps as one self-contained page, .html")->option_text("FILE");
+}
+
+CLI::App& add_command(CLI::App& parent, const std::string& name, const std::string& what, const std::string& examples) {
+  CLI::App& command = *parent.add_subcommand(name, what);
+  command.footer("Examples:" + examples);
+  return command;
+}
+
+void on_call(CLI::App& command, std::shared_ptr<const Inputs> inputs, std::function<void(const Inputs&)> work) {
+  command.callback([&command, inputs = std::move(inputs), work = std::move(work)] {
+    if (!command.get_subcommands().empty()) return;
+    require_study(*inputs);
+    work(*inputs);
+  });
+}
+
+void pass_options_on(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands(nullptr)) {
+    command->preparse_callback([command](std::size_t) { take_from_parent(*command); });
+    pass_options_on(*command);
+  }
+}
+
+std::string explain(const CLI::App* app, const CLI::Error& error) {
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    if (const CLI::Option* option = repeated_option(*app)) return option->get_name() + " is given twice\n";
+  }
+  return CLI::FailureMessage::simple(app, error);
+}
+
+std::string spoken_name(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  if (parent == nullptr) return {};
+  const std::string before = spoken_name(*parent);
+  return before.empty() ? command.get_name() : before + ' ' + command.get_name();
+}
+
+CLI::Validator one_of_words(std::map<std::string, int> values) {
+  return {[values = std::move(values)](std::string& text) -> std::string {
+            if (const auto known = values.find(text); known != values.end()) {
+              text = std::to_string(known->second);
+              return {};
+            }
+            std::vector<std::string> words;
+            for (const auto& [word, value] : values) words.push_back(word);
+            return "expected one of " + boost::algorithm::join(words, ", ") + ", not '" + text + "'" +
+                   did_you_mean(text, words);
+          },
+          "", "one of"};
+}
+
+}  // namespace pirsim::app

@@ -1,0 +1,49 @@
+// What commands write besides rows: names checked beforehand, tables, pages, pictures, standard output.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/options.hpp"
+#include "io/atomic_file.hpp"
+#include "io/report.hpp"
+#include "pirsim/script.hpp"
+#include "studies/summary.hpp"
+
+namespace pirsim::app {
+
+struct NamedOutput {
+  std::string option;          ///< "--summary"
+  std::filesystem::path file;  ///< empty: not asked for
+  std::vector<std::string> endings;
+};
+
+/// ".csv", ".csv.gz", ".csv.zst"
+[[nodiscard]] const std::vector<std::string>& table_endings();
+
+/// Tells what is wrong with the names of output files before any work is done. Throws Error(usage) for an ending that
+/// isn't known (unless the file is there and no regular one, as /dev/stdout is), for one file with two outputs, and for
+/// an output that is an input; Error(io) for a folder that is missing.
+void check_outputs(const std::vector<NamedOutput>& outputs, const Inputs& inputs);
+/// Would the file lie in that folder, however deep, or be the folder itself?
+[[nodiscard]] bool is_below(const std::filesystem::path& file, const std::filesystem::path& folder);
+/// With all that it lies in. Throws Error(io).
+void make_folder(const std::filesystem::path& folder);
+
+/// Those that the script's summary refers to; none if it doesn't.
+[[nodiscard]] std::vector<MeasuredCell> measured_cells(const ScriptSpec& script);
+/// A document if `path` ends in .md, else CSV; and a copy on standard error unless all is quiet.
+void write_summary(const studies::Summary& summary, io::AtomicFile& file, const std::filesystem::path& path,
+                   const std::string& title, Verbosity verbosity);
+/// Writes a report with what made it in the footer, and commits the file.
+void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs);
+/// Has gnuplot run one program after the other. Without gnuplot, or where it fails, a warning is all that happens.
+void draw(const std::vector<std::string>& gnuplot_programs, Verbosity verbosity);
+
+/// Thrown when nobody reads standard output any more, as in `pirsim ... | head`.
+struct ClosedPipe {};
+/// Throws ClosedPipe, or Error(io), if standard output fails.
+void require_written();
+
+}  // namespace pirsim::app
