@@ -27,7 +27,7 @@ BELOW["app"] = set(BELOW)
 PUBLIC = {
     "error": "core", "random": "core", "version": "core",
     "geometry": "geom", "shapes": "geom", "rays": "geom",
-    "sensor": "schema", "scene": "schema", "script": "schema", "survey": "schema", "sample": "schema",
+    "sensor": "schema", "scene": "schema", "script": "schema", "schedule": "schema", "survey": "schema", "sample": "schema",
     "effects": "effects",
     "model": "sim", "state": "sim", "study": "sim", "recording": "sim",
     "coverage": "studies", "walk_test": "studies",

@@ -51,6 +51,16 @@ class ZoneCsvWriter {
   std::vector<std::size_t> zones_begin_;
 };
 
+/// Who is where and does what: one line a window and person.
+class OccupantCsvWriter {
+ public:
+  explicit OccupantCsvWriter(std::ostream& out);
+  void write(int replicate, std::string_view trial, const OccupantRow& row);
+
+ private:
+  std::ostream& out_;
+};
+
 /// What analog sensors received, made of it and why: one line a tick and sensor.
 class TraceCsvWriter {
  public:

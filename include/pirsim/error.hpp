@@ -14,6 +14,7 @@ enum class ErrorCode : int {
   input = 3,       ///< a file was read but its content is refused
   io = 4,          ///< a file can't be read or written
   infeasible = 5,  ///< the inputs are valid but the run they ask for can't be done (a seat that can't be reached)
+  incomplete = 6,  ///< some runs of the study could not go on; the rows of all others are there
   internal = 70,   ///< a fault of pirsim itself, or memory ran out
   stopped = 75,    ///< a signal or a time limit ended the work early, at the end of a run (sysexits.h: EX_TEMPFAIL)
 };

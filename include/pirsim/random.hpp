@@ -10,17 +10,23 @@ namespace pirsim {
 
 /// What a stream is used for. Append only: a value is part of every published result.
 enum class Purpose : std::uint32_t {
-  spine_tilt = 1,      ///< which tilt a sitter takes at each redraw
-  seat_scatter = 2,    ///< where exactly, and how turned, a sitter sits down in this run
-  zone_edge = 3,       ///< soft_zone_edges: which of the nested zones decides in a window
-  false_trigger = 4,   ///< false_triggers: when the next one comes
-  burst = 5,           ///< trigger_bursts: when the first burst comes in a run, and its triggers
-  warm_chair = 6,      ///< warm_chair: triggers after a seat was left
-  missed_trigger = 7,  ///< missed_triggers: which windows are lost
-  pulse_length = 8,    ///< pulse_stretching: how long an output holds
-  fidgeting = 9,       ///< fidgeting: when somebody moves, and how
-  dead_sensor = 10,    ///< dead_sensor: which rows a dying sensor loses
-  effect_prior = 11,   ///< parameters drawn from the catalogue's priors
+  spine_tilt = 1,          ///< which tilt a sitter takes at each redraw
+  seat_scatter = 2,        ///< where exactly, and how turned, a sitter sits down in this run
+  zone_edge = 3,           ///< soft_zone_edges: which of the nested zones decides in a window
+  false_trigger = 4,       ///< false_triggers: when the next one comes
+  burst = 5,               ///< trigger_bursts: when the first burst comes in a run, and its triggers
+  warm_chair = 6,          ///< warm_chair: triggers after a seat was left
+  missed_trigger = 7,      ///< missed_triggers: which windows are lost
+  pulse_length = 8,        ///< pulse_stretching: how long an output holds
+  fidgeting = 9,           ///< fidgeting: when somebody moves, and how
+  dead_sensor = 10,        ///< dead_sensor: which rows a dying sensor loses
+  natural_motion = 12,     ///< small movements of a person of natural style, and how lively they are
+  pace = 13,               ///< how fast such a person walks in a run
+  conversation = 14,       ///< who speaks in a meeting, and for how long
+  schedule = 15,           ///< when one person of a schedule comes, what they do and when they go
+  schedule_meetings = 16,  ///< when meetings are held, and who comes
+  schedule_body = 17,      ///< how large the people of a schedule are
+  effect_prior = 11,       ///< parameters drawn from the catalogue's priors
   // Of statistics, from 100 on.
   tied_ranks = 100,    ///< order of equal values in a rank test
   tree_growing = 102,  ///< columns and thresholds that a randomised tree tries

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "pirsim/geometry.hpp"
+
 namespace pirsim {
 
 // One row of output.
@@ -17,6 +19,7 @@ struct Sample {
   int replicate = 0;  ///< counts from 1
   std::string trial;
   double time_s = 0.0;
+  std::string clock;  ///< "2026-03-02T08:30:00" of time_s; empty without a schedule
   std::string phase;
   int people = 0;                  ///< people whose pelvis stands over the floor area
   std::vector<std::uint8_t> bits;  ///< (n_sensors) 1 where the sensor saw motion
@@ -38,6 +41,39 @@ struct TraceRow {
   std::string_view part = {};
   double share_v = 0.0;
   bool operator==(const TraceRow&) const = default;
+};
+
+// What happened in a run beside its rows.
+
+/// One person at the end of one window, while they are there.
+struct OccupantRow {
+  double time_s = 0.0;
+  std::string clock;  ///< as a Sample's
+  std::string person;
+  std::string activity;  ///< as a Sample's phase, of this person
+  std::string seat;      ///< taken, from setting out for it to walking away from it; or empty
+  Vec2 place_m{0.0};     ///< x and z of the pelvis
+  enum class Where { inside, outside } where = Where::inside;  ///< over the floor area, or in a doorway
+};
+
+/// Between people, or a person and a seat; nothing of it ends a run.
+enum class IncidentKind {
+  passed_through,  ///< two people who had found no way round each other went through each other
+  seat_changed,    ///< the seat was taken; another one was free
+  seat_missed      ///< the seat stayed taken; the person went on with what comes next
+};
+
+struct RunIncident {
+  IncidentKind kind = IncidentKind::passed_through;
+  double time_s = 0.0;
+  std::string person;
+  Vec2 place_m{0.0};  ///< x and z on the floor
+};
+
+/// Why a run could not go on; others are not concerned.
+struct RunFault {
+  double time_s = 0.0;
+  std::string message;
 };
 
 /// Runs first, first + 1, ... end - 1 of a study.

@@ -10,6 +10,7 @@
 
 #include "pirsim/error.hpp"
 #include "pirsim/geometry.hpp"
+#include "pirsim/schedule.hpp"
 #include "pirsim/sensor.hpp"
 #include "pirsim/shapes.hpp"
 
@@ -57,6 +58,14 @@ struct SeatScatterSpec {
   double heading_sd_deg = 0.0;
 };
 
+/// How people move beside their choreography.
+enum class MotionStyle {
+  choreographed,  ///< as the paper's: nothing moves that the script doesn't say; forearms swing steadily
+  natural         ///< stillness and small movements by turns, breathing, a pace of one's own
+};
+/// What a sitter of natural style is busy with.
+enum class Activity { typing, reading, meeting, phone };
+
 // Actions, carried out one after the other. Names are resolved against the scene when a Model is compiled.
 namespace action {
 struct Wait {
@@ -90,6 +99,7 @@ struct Work {
   double arm_period_s = 3.0;
   std::vector<double> tilt_choices_deg{-15.0, 0.0, 15.0};  ///< positive forward
   double tilt_every_s = 30.0;
+  Activity activity = Activity::typing;  ///< of natural style, which has no use for the swing and the tilts
 };
 /// Rises from the seat and stays standing behind it.
 struct Rise {};
@@ -136,13 +146,16 @@ struct PersonSpec {
   std::string body_mesh_file;  ///< glTF, or empty; relative to the script
   BodyMeshes body_meshes;      ///< what was read from it: parts without a mesh stay primitive solids
   WarmthSpec warmth;
+  MotionStyle style = MotionStyle::choreographed;
   std::vector<ScriptedAction> actions;
 };
 
 /// One choreography; a study runs every trial once per replicate.
 struct TrialSpec {
-  std::string id;                  ///< as the output names it, "S1"
-  std::vector<PersonSpec> people;  ///< the first one's actions name the rows' phase
+  std::string id;                          ///< as the output names it, "S1"
+  std::vector<PersonSpec> people;          ///< the first one's actions name the rows' phase
+  std::optional<double> duration_s{};      ///< of a run; none: until all subjects have carried out all actions
+  std::optional<ScheduleSpec> schedule{};  ///< adds people whose actions are drawn anew for every run
 };
 
 struct ScriptSpec {

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "pirsim/model.hpp"
 #include "pirsim/rays.hpp"
 #include "pirsim/sample.hpp"
-#include "pirsim/model.hpp"
 
 namespace pirsim {
 
@@ -22,13 +22,21 @@ enum class Trace {
   signals  ///< also what every analog sensor received, made of it and why at every tick; slow
 };
 
+enum class Occupants {
+  counted,  ///< rows say how many people there are
+  told      ///< also who is where and does what, a row a window and person
+};
+
 struct RunResult {
   std::uint32_t run = 0;
   int replicate = 0;
   std::string trial;
-  std::vector<Sample> samples;      ///< one a window
-  std::vector<ZoneActivity> zones;  ///< (n_ticks x n_zones) from tick 1 on, if recorded
-  std::vector<TraceRow> trace;      ///< (n_ticks x n_analog_sensors) if asked for; texts are the Model's
+  std::vector<Sample> samples;           ///< one a window
+  std::vector<ZoneActivity> zones;       ///< (n_ticks x n_zones) from tick 1 on, if recorded
+  std::vector<TraceRow> trace;           ///< (n_ticks x n_analog_sensors) if asked for; texts are the Model's
+  std::vector<OccupantRow> occupants{};  ///< if asked for
+  std::vector<RunIncident> incidents{};  ///< in the order of time
+  std::optional<RunFault> fault{};       ///< then there are neither samples nor zones nor trace
 };
 
 struct StudyOptions {
@@ -37,14 +45,16 @@ struct StudyOptions {
   std::optional<RunRange> runs{};   ///< default: all of the study
   std::function<bool()> goes_on{};  ///< asked before each run; after a false no further one begins
   Trace trace = Trace::none;
+  Occupants occupants = Occupants::counted;
 };
 
 /// Runs the study, or a range of it, and hands each run's result to `consume` in the order of runs, from one thread at
-/// a time. Memory is bounded by a few runs a thread. Throws what a run or `consume` throws.
+/// a time. Memory is bounded by a few runs a thread. A run that can't go on is handed on with its fault and without
+/// rows, and the others go on. Throws what `consume` throws.
 void run_study(const Model& model, const StudyOptions& options, const std::function<void(const RunResult&)>& consume);
 
-/// One run from beginning to end.
+/// One run from beginning to end, with its fault if it can't go on.
 [[nodiscard]] RunResult run_once(const Model& model, std::uint32_t run, Record record = Record::samples,
-                                 Trace trace = Trace::none);
+                                 Trace trace = Trace::none, Occupants occupants = Occupants::counted);
 
 }  // namespace pirsim

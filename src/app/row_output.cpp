@@ -27,14 +27,16 @@ class StreamedRows final : public RowOutput {
         csv_(stream(), model.columns()) {}
 
   [[nodiscard]] RunRange missing_runs() const override { return runs_; }
-  void add_run(std::span<const Sample> rows) override {
+  void add_run(std::span<const Sample> rows, const io::RunNotes& notes) override {
     for (const Sample& sample : rows) csv_.write(sample);
+    notes_ += notes;
     rows_ += rows.size();
     if (!stream()) commit();  // which says why
   }
   void commit() override { file_ ? file_->commit() : require_written(); }
   void discard() noexcept override {}
   [[nodiscard]] std::uint64_t rows() const override { return rows_; }
+  [[nodiscard]] const io::RunNotes& notes() const override { return notes_; }
 
  private:
   [[nodiscard]] std::ostream& stream() { return file_ ? file_->stream() : std::cout; }
@@ -43,6 +45,7 @@ class StreamedRows final : public RowOutput {
   std::unique_ptr<io::AtomicFile> file_;
   io::CsvWriter csv_;
   std::uint64_t rows_ = 0;
+  io::RunNotes notes_;
 };
 
 class ResumableRows final : public RowOutput {
@@ -55,16 +58,17 @@ class ResumableRows final : public RowOutput {
               start == RowOptions::Start::resume ? io::RowFile::Start::resume : io::RowFile::Start::anew) {}
 
   [[nodiscard]] RunRange missing_runs() const override { return {file_.next_run(), end_}; }
-  void add_run(std::span<const Sample> rows) override {
+  void add_run(std::span<const Sample> rows, const io::RunNotes& notes) override {
     lines_.str({});
     for (const Sample& sample : rows) csv_.write(sample);
-    file_.add_run(lines_.view(), rows.size());
+    file_.add_run(lines_.view(), rows.size(), notes);
   }
   void commit() override {
     if (!file_.finished()) file_.commit();
   }
   void discard() noexcept override { file_.discard(); }
   [[nodiscard]] std::uint64_t rows() const override { return file_.rows(); }
+  [[nodiscard]] const io::RunNotes& notes() const override { return file_.notes(); }
 
  private:
   std::uint32_t end_;

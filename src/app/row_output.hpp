@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "io/manifest.hpp"
 #include "pirsim/model.hpp"
 #include "pirsim/sample.hpp"
 
@@ -23,7 +24,9 @@ class RowOutput {
  public:
   virtual ~RowOutput() = default;
   [[nodiscard]] virtual RunRange missing_runs() const = 0;
-  virtual void add_run(std::span<const Sample> rows) = 0;
+  virtual void add_run(std::span<const Sample> rows, const io::RunNotes& notes) = 0;
+  /// Of all runs, also of those that were there before.
+  [[nodiscard]] virtual const io::RunNotes& notes() const = 0;
   /// After the last run.
   virtual void commit() = 0;
   /// The work ends early for good: nothing is left behind.

@@ -26,13 +26,15 @@ namespace {
 
 struct RunOptions {
   RowOptions rows;
-  std::filesystem::path summary;  ///< .csv or .md
-  std::filesystem::path zones;    ///< .csv, .csv.gz or .csv.zst
-  std::filesystem::path trace;    ///< the same
-  std::filesystem::path report;   ///< .html
+  std::filesystem::path summary;    ///< .csv or .md
+  std::filesystem::path zones;      ///< .csv, .csv.gz or .csv.zst
+  std::filesystem::path trace;      ///< the same
+  std::filesystem::path occupants;  ///< as zones
+  std::filesystem::path report;     ///< .html
   std::optional<double> max_time_s;
   unsigned threads = 0;
   enum class Action { run, print_config } action = Action::run;
+  enum class Faults { note, stop } faults = Faults::note;  ///< of single runs
 };
 
 std::vector<std::string> sensor_ids(const Model& model) {
@@ -120,6 +122,22 @@ class TraceOutput {
   io::TraceCsvWriter csv_;
 };
 
+/// Who is where in all runs.
+class OccupantOutput {
+ public:
+  explicit OccupantOutput(const std::filesystem::path& file) : output_(file), csv_(output_.lines()) {}
+
+  void add(const RunResult& result) {
+    for (const OccupantRow& row : result.occupants) csv_.write(result.replicate, result.trial, row);
+    output_.pass_on();
+  }
+  void commit() { output_.commit(); }
+
+ private:
+  LineOutput output_;
+  io::OccupantCsvWriter csv_;
+};
+
 /// The outputs that need all runs at once; nothing of them is left if the study ends early.
 class WholeStudyOutputs {
  public:
@@ -127,12 +145,15 @@ class WholeStudyOutputs {
       : inputs_(inputs), options_(options), summary_(make_summary(model, options)), report_(model), model_(model) {
     if (!options.zones.empty()) zones_.emplace(options.zones, model);
     if (!options.trace.empty()) trace_.emplace(options.trace, model);
+    if (!options.occupants.empty()) occupants_.emplace(options.occupants);
     if (!options.summary.empty()) summary_file_.emplace(options.summary);
     if (!options.report.empty()) report_file_.emplace(options.report);
   }
   void add(const RunResult& result) {
+    if (result.fault) return;
     if (zones_) zones_->add(result);
     if (trace_) trace_->add(result);
+    if (occupants_) occupants_->add(result);
     if (report_file_) report_.add_run(result);
     if (!summary_file_ && !report_file_) return;
     studies::RunCounts counts(model_.scene().sensors.size(), model_.script().summary);
@@ -142,6 +163,7 @@ class WholeStudyOutputs {
   void commit() {
     if (zones_) zones_->commit();
     if (trace_) trace_->commit();
+    if (occupants_) occupants_->commit();
     if (summary_file_)
       write_summary(summary_, *summary_file_, options_.summary, model_.script().name, inputs_.verbosity);
     if (report_file_) write_page(*report_file_, report_.finish(summary_), inputs_);
@@ -155,11 +177,13 @@ class WholeStudyOutputs {
   const Model& model_;
   std::optional<ZoneOutput> zones_;
   std::optional<TraceOutput> trace_;
+  std::optional<OccupantOutput> occupants_;
   std::optional<io::AtomicFile> summary_file_, report_file_;
 };
 
 bool has_whole_study_outputs(const RunOptions& options) {
-  return !options.summary.empty() || !options.zones.empty() || !options.trace.empty() || !options.report.empty();
+  return !options.summary.empty() || !options.zones.empty() || !options.trace.empty() || !options.report.empty() ||
+         !options.occupants.empty();
 }
 
 void check_options(const Inputs& inputs, const RunOptions& options) {
@@ -169,6 +193,7 @@ void check_options(const Inputs& inputs, const RunOptions& options) {
                                    {"--summary", options.summary, {".csv", ".md"}},
                                    {"--zones", options.zones, table_endings()},
                                    {"--trace", options.trace, table_endings()},
+                                   {"--occupants", options.occupants, table_endings()},
                                    {"--report", options.report, {".html"}}};
   if (!rows.empty()) outputs.push_back({"the manifest of -o", io::manifest_path(rows), {".json"}});
   check_outputs(outputs, inputs);
@@ -185,10 +210,57 @@ void check_options(const Inputs& inputs, const RunOptions& options) {
                                       "' is no regular file, its rows can't be gone on with");
   }
   if (has_whole_study_outputs(options)) {
-    throw Error(ErrorCode::usage, std::string(partial) +
-                                      " goes with none of --summary, --zones, --trace and --report: they " +
-                                      "need all runs at once");
+    throw Error(ErrorCode::usage,
+                std::string(partial) +
+                    " goes with none of --summary, --zones, --trace, --occupants and --report: they " +
+                    "need all runs at once");
   }
+}
+
+io::FailedRun failed_run(const RunResult& result) {
+  return {result.run, result.trial, result.replicate, result.fault->time_s, result.fault->message};
+}
+
+io::RunNotes notes_of(const RunResult& result) {
+  io::RunNotes notes;
+  for (const RunIncident& incident : result.incidents) {
+    switch (incident.kind) {
+      case IncidentKind::passed_through:
+        ++notes.passes_through;
+        break;
+      case IncidentKind::seat_changed:
+        ++notes.seats_changed;
+        break;
+      case IncidentKind::seat_missed:
+        ++notes.seats_missed;
+        break;
+    }
+  }
+  if (result.fault) notes.failed.push_back(failed_run(result));
+  return notes;
+}
+
+std::string describe(const io::FailedRun& run) {
+  std::ostringstream text;
+  text << "trial " << run.trial << ", replicate " << run.replicate << ", second " << run.time_s << ": " << run.message;
+  return text.str();
+}
+
+/// What rows don't say. Throws Error(incomplete) if there were runs that could not go on.
+void tell(const io::RunNotes& notes, Verbosity verbosity) {
+  const auto warn = [&](std::uint64_t n, const char* what) {
+    if (n > 0 && verbosity != Verbosity::quiet) std::cerr << "warning: " << n << what << '\n';
+  };
+  warn(notes.passes_through, " times somebody who found no way round others for 20 s walked through them");
+  warn(notes.seats_changed, " times somebody took another seat, since theirs stayed taken");
+  warn(notes.seats_missed, " times somebody went without a seat, since theirs stayed taken");
+  if (notes.failed.empty()) return;
+  constexpr std::size_t most_told = 10;
+  std::string message = std::to_string(notes.failed.size()) + " runs could not go on and have no rows";
+  for (std::size_t i = 0; i < std::min(notes.failed.size(), most_told); ++i) {
+    message += "\n  " + describe(notes.failed[i]);
+  }
+  throw Error(ErrorCode::incomplete, message);
 }
 
 std::string stop_message(const RunOptions& options, const std::string& cause, const Model& model,
@@ -229,11 +301,15 @@ void run(const Inputs& inputs, const RunOptions& options) {
   study.threads = options.threads;
   study.record = options.zones.empty() ? Record::samples : Record::samples_and_zones;
   study.trace = options.trace.empty() ? Trace::none : Trace::signals;
+  study.occupants = options.occupants.empty() ? Occupants::counted : Occupants::told;
   study.runs = rows->missing_runs();
   study.goes_on = [&] { return !(stop && stop->was_made()) && !out_of_time(); };
   try {
     run_study(model, study, [&](const RunResult& result) {
-      rows->add_run(result.samples);
+      if (result.fault && options.faults == RunOptions::Faults::stop) {
+        throw Error(ErrorCode::infeasible, describe(failed_run(result)));
+      }
+      rows->add_run(result.samples, notes_of(result));
       others.add(result);
       ++done;
       progress.run_finished();
@@ -248,6 +324,7 @@ void run(const Inputs& inputs, const RunOptions& options) {
   }
   rows->commit();
   others.commit();
+  tell(rows->notes(), inputs.verbosity);
   if (inputs.verbosity == Verbosity::verbose) {
     std::cerr << done << " runs, " << rows->rows() << " rows in " << progress.seconds() << " s\n";
   }
@@ -273,6 +350,10 @@ void offer_run(CLI::App& command) {
       .add_option("--trace", options->trace,
                   "analog sensors' power, signal and what is behind it at every tick, .csv, .csv.gz or .csv.zst")
       ->option_text("FILE");
+  command
+      .add_option("--occupants", options->occupants,
+                  "who is where and does what, a row a second and person, .csv, .csv.gz or .csv.zst")
+      ->option_text("FILE");
   offer_threads(command, options->threads);
   command
       .add_option("--shard", options->rows.shard,
@@ -284,6 +365,9 @@ void offer_run(CLI::App& command) {
   command.add_flag_callback(
       "--resume", [options] { options->rows.start = RowOptions::Start::resume; },
       "go on at the last whole run; nothing to do if all is done");
+  command.add_flag_callback(
+      "--strict", [options] { options->faults = RunOptions::Faults::stop; },
+      "end at the first run that can't go on (default: note it, go on with the others, exit code 6)");
   command.add_option("--max-time", options->max_time_s, "stop at the end of a run after so long: 3000, 50m, 2h")
       ->option_text("TIME")
       ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1.0}, {"m", 60.0}, {"h", 3600.0}},

@@ -37,7 +37,6 @@ constexpr double lowest_elbow_blend = 0.06;
 constexpr double lift_over_edge = 35 * degree;  // assumed (20-60): further bending of the elbow on the way
 
 double sign_of(std::size_t side) { return side == 0 ? -1.0 : 1.0; }
-Quat tilted(double spine_tilt) { return glm::angleAxis(-spine_tilt, Vec3(1, 0, 0)); }
 
 /// min(x, limit) without a kink.
 double smooth_min(double x, double limit, double width) {
@@ -58,13 +57,14 @@ Vec3 within_reach(const Vec3& shoulder, const Vec3& hand, double reach) {
 
 /// On the spheres about shoulder and hand and in the plane through the hand: the outer one of the two points; where
 /// the spheres meet above the plane only, near the lowest point of the circle in which they meet.
-Vec3 elbow_on_table(const Vec3& shoulder, const Vec3& hand, double upper, double lower, std::size_t side) {
+Vec3 elbow_on_table(const Vec3& shoulder, const Vec3& hand, double plane, double upper, double lower,
+                    std::size_t side) {
   const ElbowCircle circle = elbow_circle(shoulder, hand, upper, lower);
   const Vec3 down = glm::normalize(Vec3(0, -1, 0) + circle.axis.y * circle.axis);
   const Vec3 outwards = -sign_of(side) * glm::cross(circle.axis, down);
   const double drop = std::max(-circle.radius * down.y, 1e-9);
   const double cosine =
-      std::clamp(smooth_min((circle.centre.y - hand.y) / drop, lowest_elbow, lowest_elbow_blend), -1.0, 1.0);
+      std::clamp(smooth_min((circle.centre.y - plane) / drop, lowest_elbow, lowest_elbow_blend), -1.0, 1.0);
   const double sine = std::sqrt(1.0 - cosine * cosine);
   return circle.centre + circle.radius * (cosine * down + sine * outwards);
 }
@@ -86,13 +86,14 @@ std::array<ArmPose, 2> hanging_arms(const Measures& measures, const std::array<d
   return arms;
 }
 
-std::array<ArmPose, 2> arms_on_thighs(const Humanoid& humanoid, double spine_tilt, double thigh_angle) noexcept {
+std::array<ArmPose, 2> arms_on_thighs(const Humanoid& humanoid, const Quat& hips_from_torso,
+                                      double thigh_angle) noexcept {
   const Measures& m = humanoid.measures();
   const double sine = std::sin(thigh_angle);
   const double cosine = std::cos(thigh_angle);
   const double along = hand_along_thigh * m.thigh_m;
   const double above = humanoid.radius_m(Part::left_thigh) + humanoid.radius_m(Part::left_forearm);
-  const Quat torso_from_hips = glm::conjugate(tilted(spine_tilt));
+  const Quat torso_from_hips = glm::conjugate(hips_from_torso);
   std::array<ArmPose, 2> arms;
   for (std::size_t side : {0U, 1U}) {
     const Vec3 thigh_point(0.5 * sign_of(side) * m.hip_width_m, -along * cosine, -along * sine);
@@ -105,22 +106,21 @@ std::array<ArmPose, 2> arms_on_thighs(const Humanoid& humanoid, double spine_til
   return arms;
 }
 
-std::array<ArmPose, 2> arms_on_table(const Humanoid& humanoid, double spine_tilt, double table_above_hips_m,
-                                     double hand_offset_m) noexcept {
+std::array<ArmPose, 2> arms_on_table(const Humanoid& humanoid, const Quat& hips_from_torso, double table_above_hips_m,
+                                     const std::array<HandPlace, 2>& hands) noexcept {
   const Measures& m = humanoid.measures();
   const double scale = m.stature_m / fitted_stature_m;
   const double inwards = (elbow_beside_m - hand_beside_m) * scale;
   const double base_ahead = elbow_ahead_m * scale + std::sqrt(m.forearm_m * m.forearm_m - inwards * inwards);
   const double plane = table_above_hips_m + humanoid.radius_m(Part::left_forearm);
-  const Quat hips_from_torso = tilted(spine_tilt);
   const Quat torso_from_hips = glm::conjugate(hips_from_torso);
   std::array<ArmPose, 2> arms;
   for (std::size_t side : {0U, 1U}) {
     const Vec3 from = hips_from_torso * shoulder(m, side);
-    const double ahead = base_ahead - arm_follows_torso * from.z - sign_of(side) * hand_offset_m;
-    const Vec3 wanted(sign_of(side) * hand_beside_m * scale, plane, -ahead);
+    const double ahead = base_ahead - arm_follows_torso * from.z + hands[side].ahead_m;
+    const Vec3 wanted(sign_of(side) * hand_beside_m * scale, plane + hands[side].up_m, -ahead);
     const Vec3 hand = within_reach(from, wanted, longest_reach * (m.upper_arm_m + m.forearm_m));
-    const Vec3 elbow = elbow_on_table(from, hand, m.upper_arm_m, m.forearm_m, side);
+    const Vec3 elbow = elbow_on_table(from, hand, hand.y - hands[side].up_m, m.upper_arm_m, m.forearm_m, side);
     arms[side] = arm_through(torso_from_hips * from, torso_from_hips * elbow, torso_from_hips * hand);
   }
   return arms;

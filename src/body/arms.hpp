@@ -19,13 +19,19 @@ struct DeskWork {
                                                   const std::array<double, 2>& feet_ahead_m) noexcept;
 
 /// thigh_angle: from the vertical, radians.
-[[nodiscard]] std::array<ArmPose, 2> arms_on_thighs(const Humanoid& humanoid, double spine_tilt,
+[[nodiscard]] std::array<ArmPose, 2> arms_on_thighs(const Humanoid& humanoid, const Quat& hips_from_torso,
                                                     double thigh_angle) noexcept;
 
-/// Forearms on a plane, the left hand hand_offset_m further ahead than its base place and the right one as much less.
-/// table_above_hips_m: the plane that the forearms touch.
-[[nodiscard]] std::array<ArmPose, 2> arms_on_table(const Humanoid& humanoid, double spine_tilt,
-                                                   double table_above_hips_m, double hand_offset_m) noexcept;
+/// Where a hand is beside its base place on the table, metres.
+struct HandPlace {
+  double ahead_m = 0.0;
+  double up_m = 0.0;
+};
+/// Forearms on a plane, or a hand lifted from it. table_above_hips_m: the plane that the forearms touch. hands: left,
+/// right.
+[[nodiscard]] std::array<ArmPose, 2> arms_on_table(const Humanoid& humanoid, const Quat& hips_from_torso,
+                                                   double table_above_hips_m,
+                                                   const std::array<HandPlace, 2>& hands) noexcept;
 
 /// From thighs (0) to table (1): hands are lifted on the way, so that they pass over the table's edge.
 [[nodiscard]] ArmPose reach_over(const ArmPose& on_thigh, const ArmPose& on_table, double progress) noexcept;

@@ -119,6 +119,11 @@ double Humanoid::half_depth_m() const noexcept {
   return std::get<Box>(primitives_[static_cast<std::size_t>(Part::torso)]).half_extents.z + to_spare_m;
 }
 
+double Humanoid::half_width_m() const noexcept {
+  constexpr double to_spare_m = 0.02;  // assumed (0-0.04)
+  return std::get<Box>(primitives_[static_cast<std::size_t>(Part::torso)]).half_extents.x + to_spare_m;
+}
+
 double Humanoid::radius_m(Part part) const noexcept {
   const Shape& shape = primitives_[static_cast<std::size_t>(part)];
   if (const auto* capsule = std::get_if<Capsule>(&shape)) return capsule->radius;

@@ -43,6 +43,9 @@ class Humanoid {
   /// From a standing person's middle to the front and to the back: what they keep clear of where there is less room
   /// than for the cylinder, between a table and a wall. The feet reach farther, under the table.
   [[nodiscard]] double half_depth_m() const noexcept;
+  /// From a standing person's middle to the side of the trunk: what they keep clear of in narrow places, with their
+  /// arms drawn in.
+  [[nodiscard]] double half_width_m() const noexcept;
   [[nodiscard]] double walking_speed_m_s() const noexcept { return walking_speed_m_s_; }
   /// Of a part that is a sphere or a capsule.
   [[nodiscard]] double radius_m(Part part) const noexcept;

@@ -34,7 +34,7 @@ constexpr double shortest_slide_s = 0.6;        // assumed
 constexpr double reach_s = 1.0;                 // assumed (0.6-1.5): hands between thighs and table
 constexpr double tilt_s = 1.0;                  // assumed (0.5-2): for 15 degrees of spine tilt
 constexpr double shortest_tilt_s = 0.4;         // assumed
-constexpr double fidget_s = 0.6;                // assumed (0.4-1): a small move of trunk or head
+constexpr double chair_turn_s = 1.5;            // assumed (1-3): a quarter turn
 constexpr double backmost_tilt = -20 * degree;  // within the spine's limits, with room for a passing overshoot
 constexpr double foremost_tilt = 50 * degree;
 
@@ -53,7 +53,7 @@ std::string_view name(Stage stage) noexcept {
 }
 
 Motion::Motion(const Humanoid& humanoid, const Vec2& position, double heading, double floor_height_m, double tick_s)
-    : humanoid_(humanoid), floor_height_m_(floor_height_m), tick_s_(tick_s) {
+    : humanoid_(humanoid), floor_height_m_(floor_height_m), tick_s_(tick_s), pace_m_s_(humanoid.walking_speed_m_s()) {
   const Placement place{position, heading};
   const double half_stance = 0.5 * humanoid.measures().hip_width_m;
   come_to_stand(place, {Footstep{place.shifted(0.0, -half_stance)}, Footstep{place.shifted(0.0, half_stance)}});
@@ -156,9 +156,14 @@ void Motion::rise() {
   if (stage_ == Stage::rising) return;
   if (!on_seat()) refuse("rising", stage_);
   rest();
-  for (MinJerk* motion : {&sway_, &head_turn_}) {
-    if (!rests_at(*motion, 0.0)) motion->move_to(0.0, ticks(fidget_s));
+  for (MinJerk& motion : channels_) {
+    if (!rests_at(motion, 0.0)) motion.move_to(0.0, ticks(fidget_s));
   }
+  if (seating_.seat().approach_turn != 0.0) {
+    MinJerk& chair = channels_[static_cast<std::size_t>(Channel::chair_turn)];
+    chair.move_to(0.0, ticks(chair_turn_s));
+  }
+  breath_ = 0.0;
   stage_ = Stage::rising;
 }
 
@@ -185,21 +190,22 @@ void Motion::tilt_spine(double radians) {
   tilt_.move_to(target, ticks(std::max(seconds, shortest_tilt_s)));
 }
 
-void Motion::sway(double radians) {
-  if (stage_ != Stage::seated) refuse("swaying", stage_);
-  sway_.move_to(radians, ticks(fidget_s));
+void Motion::adjust(Channel channel, double target, double seconds) {
+  if (stage_ == Stage::rising || stage_ == Stage::sitting_down) refuse("a small movement", stage_);
+  channels_[static_cast<std::size_t>(channel)].move_to(target, ticks(seconds));
 }
 
-void Motion::turn_head(double radians) {
-  if (stage_ != Stage::seated) refuse("turning the head", stage_);
-  head_turn_.move_to(radians, ticks(fidget_s));
+bool Motion::channels_rest() const noexcept {
+  return std::ranges::all_of(channels_, [](const MinJerk& motion) { return rests_at(motion, 0.0); });
 }
 
 void Motion::limit_speed(double metres_per_second) { speed_limit_m_s_ = std::max(0.0, metres_per_second); }
 
 void Motion::advance() {
   const Stage before = stage_;
-  const bool was_moving = on_track() || (on_seat() && !(fall_.settled() && slide_m_.settled()));
+  const bool was_moving =
+      on_track() || (on_seat() && !(fall_.settled() && slide_m_.settled() && channel(Channel::chair_turn).settled()));
+  for (MinJerk& motion : channels_) motion.advance();
   if (on_track()) advance_on_track();
   if (on_seat()) advance_on_seat();
   if (was_moving || stage_ != before) update_stance();
@@ -209,12 +215,13 @@ void Motion::update_stance() noexcept {
   stance_.pelvis = pelvis();
   stance_.feet = feet();
   stance_.hip_height_m = hip_height_m(stance_.pelvis, stance_.feet);
+  if (on_seat() && channel(Channel::chair_turn).value() != 0.0) turn_with_chair(stance_);
 }
 
 void Motion::advance_on_track() {
   const bool walking = stage_ == Stage::walking;
   const double acceleration = walking ? walking_acceleration_m_s2 : turning_acceleration;
-  const double wanted = walking ? std::min(humanoid_.walking_speed_m_s(), speed_limit_m_s_) : turning_speed;
+  const double wanted = walking ? std::min(pace_m_s_, speed_limit_m_s_) : turning_speed;
   const double change = acceleration * tick_s_;
   // The highest speed from which, after this tick, one can still brake on the way that remains.
   const double remaining = steps_.length() - distance_;
@@ -234,8 +241,7 @@ void Motion::advance_on_track() {
 }
 
 void Motion::advance_on_seat() noexcept {
-  for (MinJerk* motion : {&fall_, &slide_m_, &tilt_, &sway_, &head_turn_, &reach_, &hand_offset_left_over_m_})
-    motion->advance();
+  for (MinJerk* motion : {&fall_, &slide_m_, &tilt_, &reach_, &hand_offset_left_over_m_}) motion->advance();
   ++work_tick_;
   const auto slide_to = [this](double target) {
     const double seconds = 1.875 * std::abs(target - slide_m_.value()) / sliding_speed_m_s;  // minimum jerk's peak
@@ -245,12 +251,22 @@ void Motion::advance_on_seat() noexcept {
   if (stage_ == Stage::sitting_down) {
     fall_.move_to(1.0, ticks(fall_s));
     if (rests_at(fall_, 1.0)) slide_to(seat_slide);
-    if (rests_at(fall_, 1.0) && rests_at(slide_m_, seat_slide)) stage_ = Stage::seated;
-  } else if (stage_ == Stage::rising && rests_at(reach_, 0.0) && rests_at(tilt_, 0.0) && rests_at(sway_, 0.0) &&
-             rests_at(head_turn_, 0.0)) {
+    if (rests_at(fall_, 1.0) && rests_at(slide_m_, seat_slide)) turn_to_table();
+  } else if (stage_ == Stage::rising && rests_at(reach_, 0.0) && rests_at(tilt_, 0.0) && channels_rest()) {
     slide_to(0.0);
     if (rests_at(slide_m_, 0.0)) fall_.move_to(0.0, ticks(fall_s));
     if (rests_at(fall_, 0.0)) come_to_stand(stand_, stand_feet_);
+  }
+}
+
+/// A chair that was sat on turned away from the table turns back.
+void Motion::turn_to_table() noexcept {
+  const double wanted = -seating_.seat().approach_turn;
+  MinJerk& chair = channels_[static_cast<std::size_t>(Channel::chair_turn)];
+  if (rests_at(chair, wanted)) {
+    stage_ = Stage::seated;
+  } else {
+    chair.move_to(wanted, ticks(chair_turn_s));
   }
 }
 

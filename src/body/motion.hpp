@@ -1,6 +1,7 @@
 // How one person moves: the state machine of standing, walking, turning, sitting down, sitting and rising.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -20,6 +21,20 @@ namespace pirsim::body {
 enum class Stage { standing, walking, turning, sitting_down, seated, rising };
 [[nodiscard]] std::string_view name(Stage stage) noexcept;
 
+/// Small movements on top of what a stage does. Each goes to a target and stays there until it gets another.
+enum class Channel : std::size_t {
+  trunk_tilt,       ///< radians, positive forward
+  trunk_lean,       ///< radians, positive to the right
+  head_turn,        ///< radians, positive to the left
+  chair_turn,       ///< radians, positive to the left; while seated
+  left_hand_ahead,  ///< metres along the table, as the next three; while the forearms are on it
+  right_hand_ahead,
+  left_hand_up,  ///< metres above the table
+  right_hand_up,
+};
+inline constexpr std::size_t n_channels = 8;
+inline constexpr double fidget_s = 0.6;  ///< assumed (0.4-1): a small move of trunk or head
+
 /// What a person's posture depends on beside their measures. Equal outlines give equal postures, bit for bit, and a
 /// choreography repeats its outlines; they cost a tenth of a posture. Doubles only, so that bytes can be compared.
 struct Outline {
@@ -28,12 +43,15 @@ struct Outline {
   Feet feet{};
   double floor_height_m = 0.0;
   double spine_tilt = 0.0;
-  double fall = 0.0;            ///< 0 standing, 1 at the seat's height
-  double reach = 0.0;           ///< of the arms: 0 on the thighs, 1 on the table
-  double thigh_angle = 0.0;     ///< when seated; 0 while fall is 0
-  double table_height_m = 0.0;  ///< what the forearms rest on; 0 while reach is 0, as the next
-  double hand_offset_m = 0.0;   ///< of the left hand ahead of its base place
-  double head_turn = 0.0;       ///< to the left
+  double fall = 0.0;                     ///< 0 standing, 1 at the seat's height
+  double reach = 0.0;                    ///< of the arms: 0 on the thighs, 1 on the table
+  double thigh_angle = 0.0;              ///< when seated; 0 while fall is 0
+  double table_height_m = 0.0;           ///< what the forearms rest on; 0 while reach is 0, as the next
+  double hand_offset_m = 0.0;            ///< of the left hand ahead of its base place
+  double head_turn = 0.0;                ///< to the left
+  double spine_lean = 0.0;               ///< to the right
+  std::array<double, 2> hand_ahead_m{};  ///< left, right; beyond hand_offset_m; 0 while reach is 0, as the next
+  std::array<double, 2> hand_up_m{};
   bool operator==(const Outline&) const = default;
 };
 [[nodiscard]] Posture posture_of(const Humanoid& humanoid, const Outline& outline) noexcept;
@@ -58,9 +76,12 @@ class Motion {
   void work(const DeskWork& work);       ///< from seated: forearms to the table, then oscillating
   void rest();                           ///< ends desk work: arms and spine come to rest
   void tilt_spine(double radians);       ///< target of the spine's tilt, positive forward; only while seated
-  // Beside what else spine and head do, while seated; both end with rising.
-  void sway(double radians);       ///< target of a further tilt of the spine, positive forward
-  void turn_head(double radians);  ///< target, positive to the left
+  /// Anywhere but on the way onto or off a seat; rising brings all channels back to 0.
+  void adjust(Channel channel, double target, double seconds);
+  void breathe(double radians) noexcept { breath_ = radians; }  ///< tilt of the spine from now on, as it is
+  /// Walking speed from the next tick on, instead of the person's own.
+  [[nodiscard]] double pace_m_s() const noexcept { return pace_m_s_; }
+  void set_pace(double metres_per_second) noexcept { pace_m_s_ = metres_per_second; }
   /// Upper bound of the walking speed from now on (m/s); 0 lets a walker wait on the spot.
   void limit_speed(double metres_per_second);
 
@@ -79,6 +100,13 @@ class Motion {
   bool operator==(const Motion&) const = default;
 
  private:
+  /// Where pelvis and feet are: follows from all that is below, kept because it changes rarely while seated.
+  struct Stance {
+    Placement pelvis;
+    Feet feet{};
+    double hip_height_m = 0.0;  ///< above the floor
+    bool operator==(const Stance&) const = default;
+  };
   [[nodiscard]] bool on_track() const noexcept { return stage_ == Stage::walking || stage_ == Stage::turning; }
   [[nodiscard]] bool on_seat() const noexcept { return stage_ != Stage::standing && !on_track(); }
   [[nodiscard]] int ticks(double seconds) const noexcept;
@@ -86,12 +114,18 @@ class Motion {
   [[nodiscard]] Feet feet() const noexcept;
   [[nodiscard]] double hip_height_m(const Placement& pelvis, const Feet& feet) const noexcept;
   [[nodiscard]] double spine_tilt() const noexcept;
+  [[nodiscard]] const MinJerk& channel(Channel which) const noexcept {
+    return channels_[static_cast<std::size_t>(which)];
+  }
+  [[nodiscard]] bool channels_rest() const noexcept;
+  void turn_with_chair(Stance& stance) const noexcept;
   [[nodiscard]] double hand_offset_m() const noexcept;
   void begin_track(Stage stage, const Track& track, const StepStyle& style);
   void begin_turn(double angle);
   void walk_from(const Route& route, double from_s);
   void advance_on_track();
   void advance_on_seat() noexcept;
+  void turn_to_table() noexcept;
   void bring_feet_together();
   void come_to_stand(const Placement& place, const Feet& feet) noexcept;
   void update_stance() noexcept;
@@ -105,13 +139,6 @@ class Motion {
   Placement stand_;
   Feet stand_feet_{};
 
-  /// Where pelvis and feet are: follows from all that is below, kept because it changes rarely while seated.
-  struct Stance {
-    Placement pelvis;
-    Feet feet{};
-    double hip_height_m = 0.0;  ///< above the floor
-    bool operator==(const Stance&) const = default;
-  };
   Stance stance_;
 
   // Walking and turning; distances in metres or radians.
@@ -120,6 +147,7 @@ class Motion {
   double distance_ = 0.0;
   double track_speed_ = 0.0;
   double hips_lowered_m_ = 0.0;  ///< below standing at the start of a turn, fading
+  double pace_m_s_ = 1.0;
   double speed_limit_m_s_ = std::numeric_limits<double>::infinity();
   /// What is left to walk after the present track: of a route with sharp turns.
   struct Remainder {
@@ -134,7 +162,8 @@ class Motion {
   MinJerk fall_;  ///< 0 standing, 1 at the seat's height
   MinJerk slide_m_;
   MinJerk tilt_;  ///< of the spine, beyond what falling and rising need
-  MinJerk sway_, head_turn_;
+  std::array<MinJerk, n_channels> channels_;
+  double breath_ = 0.0;
   MinJerk reach_;  ///< of the arms: 0 on the thighs, 1 on the table
   DeskWork work_;
   std::int64_t work_tick_ = 0;

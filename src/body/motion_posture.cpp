@@ -36,6 +36,19 @@ Feet Motion::feet() const noexcept {
   return stand_feet_;
 }
 
+/// The chair turns about the pelvis, and the feet go with it.
+void Motion::turn_with_chair(Stance& stance) const noexcept {
+  const Placement before = stance.pelvis;
+  const double turn = channel(Channel::chair_turn).value();
+  stance.pelvis.heading += turn;
+  const Vec2 ahead = direction_of(before.heading), right(-ahead.y, ahead.x);
+  for (Footstep& foot : stance.feet) {
+    const Vec2 offset = foot.print.position - before.position;
+    foot.print.position = stance.pelvis.shifted(glm::dot(offset, ahead), glm::dot(offset, right)).position;
+    foot.print.heading += turn;
+  }
+}
+
 double Motion::hip_height_m(const Placement& pelvis, const Feet& feet) const noexcept {
   if (on_seat()) return seating_.hip_height_m(std::clamp(fall_.value(), 0.0, 1.0));
   const Measures& m = humanoid_.measures();
@@ -60,7 +73,8 @@ double Motion::hip_height_m(const Placement& pelvis, const Feet& feet) const noe
 }
 
 double Motion::spine_tilt() const noexcept {
-  if (fall_.settled()) return sway_.value() == 0.0 ? tilt_.value() : swayed(tilt_.value() + sway_.value());
+  const double more = channel(Channel::trunk_tilt).value() + breath_;
+  if (fall_.settled()) return more == 0.0 ? tilt_.value() : swayed(tilt_.value() + more);
   const double s = std::sin(pi * std::clamp(fall_.value(), 0.0, 1.0));
   return tilt_.value() + lean_while_falling * s * s;
 }
@@ -84,12 +98,15 @@ Outline Motion::outline() const noexcept {
   outline.spine_tilt = spine_tilt();
   outline.fall = std::clamp(fall_.value(), 0.0, 1.0);
   outline.reach = std::clamp(reach_.value(), 0.0, 1.0);
-  outline.head_turn = head_turn_.value();
+  outline.head_turn = channel(Channel::head_turn).value();
+  outline.spine_lean = channel(Channel::trunk_lean).value();
   if (outline.fall > 0.0) outline.thigh_angle = seating_.thigh_angle(1.0);
   if (outline.reach > 0.0) {
     const double thighs = outline.hip_height_m + humanoid_.radius_m(Part::left_thigh);
     outline.table_height_m = seating_.seat().table_height_m.value_or(thighs);
     outline.hand_offset_m = hand_offset_m();
+    outline.hand_ahead_m = {channel(Channel::left_hand_ahead).value(), channel(Channel::right_hand_ahead).value()};
+    outline.hand_up_m = {channel(Channel::left_hand_up).value(), channel(Channel::right_hand_up).value()};
   }
   return outline;
 }
@@ -105,12 +122,15 @@ std::array<ArmPose, 2> arms_of(const Humanoid& humanoid, const Outline& outline,
                                               -(hips_from_world * pose.world_from_ankle[1].origin).z});
   }
   if (outline.fall > 0.0 && outline.reach < 1.0) {
-    const auto resting = arms_on_thighs(humanoid, pose.spine_tilt, outline.thigh_angle);
+    const auto resting = arms_on_thighs(humanoid, torso_rotation(pose), outline.thigh_angle);
     for (std::size_t side : {0U, 1U}) arms[side] = blend(arms[side], resting[side], smoothstep(outline.fall));
   }
   if (outline.reach > 0.0) {
     const double table_above_hips_m = outline.table_height_m - pose.world_from_hips.origin.y;
-    const auto working = arms_on_table(humanoid, pose.spine_tilt, table_above_hips_m, outline.hand_offset_m);
+    const std::array<HandPlace, 2> hands{
+        HandPlace{outline.hand_offset_m + outline.hand_ahead_m[0], outline.hand_up_m[0]},
+        HandPlace{-outline.hand_offset_m + outline.hand_ahead_m[1], outline.hand_up_m[1]}};
+    const auto working = arms_on_table(humanoid, torso_rotation(pose), table_above_hips_m, hands);
     for (std::size_t side : {0U, 1U}) arms[side] = reach_over(arms[side], working[side], outline.reach);
   }
   return arms;
@@ -124,6 +144,7 @@ void update(Pose& pose, const Humanoid& humanoid, const Outline& outline, const 
                             Vec3(outline.pelvis.position.x, outline.hip_height_m, outline.pelvis.position.y)};
   }
   pose.spine_tilt = outline.spine_tilt;
+  pose.spine_lean = outline.spine_lean;
   pose.head_turn = outline.head_turn;
   const double ankle_height = outline.floor_height_m + humanoid.measures().ankle_height_m;
   for (std::size_t side : {0U, 1U}) {

@@ -15,13 +15,14 @@ bool differ(const Value& a, const Value& b) noexcept {
 Limbs changes(const Outline& a, const Outline& b) noexcept {
   Limbs changed;
   changed.hips = differ(a.pelvis, b.pelvis) || differ(a.hip_height_m, b.hip_height_m);
-  changed.spine = differ(a.spine_tilt, b.spine_tilt);
+  changed.spine = differ(a.spine_tilt, b.spine_tilt) || differ(a.spine_lean, b.spine_lean);
   changed.head = differ(a.head_turn, b.head_turn);
   const bool floor = differ(a.floor_height_m, b.floor_height_m);
   for (const std::size_t side : {0U, 1U}) changed.ankles[side] = floor || differ(a.feet[side], b.feet[side]);
   changed.arms = changed.hips || changed.spine || changed.ankles[0] || changed.ankles[1] || differ(a.fall, b.fall) ||
                  differ(a.reach, b.reach) || differ(a.thigh_angle, b.thigh_angle) ||
-                 differ(a.table_height_m, b.table_height_m) || differ(a.hand_offset_m, b.hand_offset_m);
+                 differ(a.table_height_m, b.table_height_m) || differ(a.hand_offset_m, b.hand_offset_m) ||
+                 differ(a.hand_ahead_m, b.hand_ahead_m) || differ(a.hand_up_m, b.hand_up_m);
   return changed;
 }
 

@@ -71,7 +71,7 @@ Seating::Seating(const Humanoid& humanoid, const SeatPlace& seat, const Placemen
   standing_angle_ = leg.thigh_angle;
   seated_angle_ = std::acos(cosine);
 
-  const double seat_heading = heading_of(seat.world_from_seat);
+  const double seat_heading = heading_of(seat.world_from_seat) + seat.approach_turn;
   const Vec2 seat_point = floor_point(seat.world_from_seat.origin);
   const Vec2 forward = direction_of(seat_heading);
   const double ahead = glm::dot(standing.position - seat_point, forward);

@@ -14,6 +14,8 @@ struct SeatPlace {
   Frame world_from_seat;                 ///< pelvis rests at the origin, facing -Z
   double floor_height_m = 0.0;           ///< y of the floor under the feet
   std::optional<double> table_height_m;  ///< y of what the forearms rest on; none: hands on the thighs
+  /// How far to the left the chair is turned while somebody sits down or rises, where there is no room behind it.
+  double approach_turn = 0.0;
   bool operator==(const SeatPlace&) const = default;
 };
 

@@ -78,8 +78,13 @@ void put_foot(const Measures& m, const Frame& ankle, std::size_t side, Posture& 
 
 }  // namespace
 
+Quat torso_rotation(const Pose& pose) noexcept {
+  const Quat tilted = glm::angleAxis(-pose.spine_tilt, x_axis);
+  return pose.spine_lean == 0.0 ? tilted : tilted * glm::angleAxis(-pose.spine_lean, z_axis);
+}
+
 Frame world_from_torso(const Pose& pose) noexcept {
-  return pose.world_from_hips * Frame{glm::angleAxis(-pose.spine_tilt, x_axis), Vec3(0.0)};
+  return pose.world_from_hips * Frame{torso_rotation(pose), Vec3(0.0)};
 }
 
 Vec3 shoulder(const Measures& measures, std::size_t side) noexcept {

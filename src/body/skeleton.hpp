@@ -19,6 +19,7 @@ struct ArmPose {
 struct Pose {
   Frame world_from_hips;                  ///< upright; origin midway between the hip joints
   double spine_tilt = 0.0;                ///< radians about the hips' axis, positive forward
+  double spine_lean = 0.0;                ///< radians, positive to the right
   double head_turn = 0.0;                 ///< radians about the neck, positive to the left
   std::array<Frame, 2> world_from_ankle;  ///< origin in the ankle joint, facing as the foot does
   std::array<ArmPose, 2> arms;
@@ -27,6 +28,8 @@ struct Pose {
 /// Forward kinematics for spine, head and arms, two-bone inverse kinematics for the legs (knees forward).
 [[nodiscard]] Posture posture_of(const Humanoid& humanoid, const Pose& pose) noexcept;
 
+/// Of the torso in the hips' frame.
+[[nodiscard]] Quat torso_rotation(const Pose& pose) noexcept;
 /// Frame of the torso with its origin midway between the hips.
 [[nodiscard]] Frame world_from_torso(const Pose& pose) noexcept;
 /// The shoulder joint in that frame.

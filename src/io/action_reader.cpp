@@ -57,6 +57,11 @@ Action read_work(const YamlNode& node, Diagnostics& faults) {
   work.arm_period_s = map.number("arm_period_s", work.arm_period_s, {.min = 0.2, .max = 1e6});
   work.tilt_choices_deg = map.numbers("tilt_choices_deg", work.tilt_choices_deg, {.min = -30.0, .max = 45.0});
   work.tilt_every_s = map.number("tilt_every_s", work.tilt_every_s, positive);
+  work.activity = map.choice<Activity>("activity", work.activity,
+                                       {{"typing", Activity::typing},
+                                        {"reading", Activity::reading},
+                                        {"meeting", Activity::meeting},
+                                        {"phone", Activity::phone}});
   map.finish();
   return work;
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <utility>
 
 namespace pirsim::io {
@@ -9,7 +10,7 @@ namespace {
 
 std::string when(const Sample& sample) {
   return std::to_string(sample.replicate) + ',' + csv_field(sample.trial) + ',' + csv_number(sample.time_s) + ',' +
-         csv_field(sample.phase);
+         (sample.clock.empty() ? "" : sample.clock + ',') + csv_field(sample.phase);
 }
 
 void add_bits(std::string& line, const Sample& sample) {
@@ -71,6 +72,18 @@ void ZoneCsvWriter::write(int replicate, std::string_view trial, std::int64_t ti
     for (std::size_t z = zones_begin_[sensor]; z < zones_begin_[sensor + 1]; ++z) line += zones[z] != 0 ? '1' : '0';
     out_ << line << '\n';
   }
+}
+
+OccupantCsvWriter::OccupantCsvWriter(std::ostream& out) : out_(out) {
+  out_ << "replicate,trial,time_s,time,person,where,activity,seat,x_m,z_m\n";
+}
+
+void OccupantCsvWriter::write(int replicate, std::string_view trial, const OccupantRow& row) {
+  const auto millimetres = [](double metres) { return csv_number(std::round(1000.0 * metres) / 1000.0); };
+  out_ << replicate << ',' << csv_field(trial) << ',' << csv_number(row.time_s) << ',' << row.clock << ','
+       << csv_field(row.person) << ',' << (row.where == OccupantRow::Where::inside ? "inside" : "outside") << ','
+       << csv_field(row.activity) << ',' << csv_field(row.seat) << ',' << millimetres(row.place_m.x) << ','
+       << millimetres(row.place_m.y) << '\n';
 }
 
 TraceCsvWriter::TraceCsvWriter(std::ostream& out, std::vector<std::string> sensors, int tick_rate_hz)

@@ -34,6 +34,22 @@ void compare_inputs(const std::vector<HashedFile>& one, const std::vector<Hashed
   }
 }
 
+ordered_json tree_of(const RunNotes& notes) {
+  ordered_json tree;
+  tree["passes_through"] = notes.passes_through;
+  tree["seats_changed"] = notes.seats_changed;
+  tree["seats_missed"] = notes.seats_missed;
+  tree["failed_runs"] = ordered_json::array();
+  for (const FailedRun& run : notes.failed) {
+    tree["failed_runs"].push_back({{"run", run.run},
+                                   {"trial", run.trial},
+                                   {"replicate", run.replicate},
+                                   {"time_s", run.time_s},
+                                   {"message", run.message}});
+  }
+  return tree;
+}
+
 ordered_json to_tree(const Manifest& manifest) {
   const Provenance& made = manifest.provenance;
   ordered_json inputs = ordered_json::array();
@@ -52,9 +68,21 @@ ordered_json to_tree(const Manifest& manifest) {
   tree["rows"] = manifest.rows;
   tree["bytes"] = manifest.bytes;
   tree["sha256"] = manifest.sha256;
+  if (!manifest.notes.empty()) tree["people"] = tree_of(manifest.notes);
   tree["inputs"] = std::move(inputs);
   tree["resolved_script"] = made.resolved_script;
   return tree;
+}
+
+RunNotes notes_from(const ordered_json& tree) {
+  RunNotes notes;
+  tree.at("passes_through").get_to(notes.passes_through);
+  tree.at("seats_changed").get_to(notes.seats_changed);
+  tree.at("seats_missed").get_to(notes.seats_missed);
+  for (const ordered_json& run : tree.at("failed_runs")) {
+    notes.failed.push_back({run.at("run"), run.at("trial"), run.at("replicate"), run.at("time_s"), run.at("message")});
+  }
+  return notes;
 }
 
 Manifest from_tree(const ordered_json& tree) {
@@ -75,12 +103,37 @@ Manifest from_tree(const ordered_json& tree) {
   tree.at("rows").get_to(manifest.rows);
   tree.at("bytes").get_to(manifest.bytes);
   tree.at("sha256").get_to(manifest.sha256);
+  if (tree.contains("people")) manifest.notes = notes_from(tree.at("people"));
   for (const ordered_json& file : tree.at("inputs")) made.inputs.push_back({file.at("file"), file.at("sha256")});
   tree.at("resolved_script").get_to(made.resolved_script);
   return manifest;
 }
 
 }  // namespace
+
+RunNotes& RunNotes::operator+=(const RunNotes& other) {
+  passes_through += other.passes_through;
+  seats_changed += other.seats_changed;
+  seats_missed += other.seats_missed;
+  failed.insert(failed.end(), other.failed.begin(), other.failed.end());
+  return *this;
+}
+
+bool RunNotes::empty() const noexcept {
+  return passes_through == 0 && seats_changed == 0 && seats_missed == 0 && failed.empty();
+}
+
+std::string to_json(const RunNotes& notes) {
+  return tree_of(notes).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+std::optional<RunNotes> notes_from_json(const std::string& text) {
+  try {
+    return notes_from(ordered_json::parse(text));
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  }
+}
 
 std::vector<std::string> differences(const Provenance& one, const Provenance& other) {
   std::vector<std::string> found;

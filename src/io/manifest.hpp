@@ -30,6 +30,24 @@ struct Provenance {
   std::uint32_t study_runs = 0;  ///< of the whole study
 };
 
+struct FailedRun {
+  std::uint32_t run = 0;
+  std::string trial;
+  int replicate = 0;
+  double time_s = 0.0;
+  std::string message;  ///< says which person, doing what
+};
+
+/// What happened in runs that their rows don't tell.
+struct RunNotes {
+  std::uint64_t passes_through = 0;  ///< of two people who found no way round each other
+  std::uint64_t seats_changed = 0;
+  std::uint64_t seats_missed = 0;
+  std::vector<FailedRun> failed;  ///< without rows
+  RunNotes& operator+=(const RunNotes& other);
+  [[nodiscard]] bool empty() const noexcept;
+};
+
 struct Manifest {
   Provenance provenance;
   std::string tracer;  ///< changes no bit of the rows
@@ -38,6 +56,7 @@ struct Manifest {
   std::uint64_t rows = 0;
   std::uint64_t bytes = 0;  ///< of the rows with their header, before compression
   std::string sha256;       ///< of these bytes
+  RunNotes notes;
 };
 
 /// What differs, in words: "git revision (1a2b3c, not 4d5e6f)". Empty if nothing does.
@@ -46,6 +65,9 @@ struct Manifest {
 [[nodiscard]] std::vector<HashedFile> hashed(const std::vector<std::string>& files);
 
 [[nodiscard]] std::string to_json(const Manifest& manifest, int indent);
+/// In one line, and back; std::nullopt for what was damaged.
+[[nodiscard]] std::string to_json(const RunNotes& notes);
+[[nodiscard]] std::optional<RunNotes> notes_from_json(const std::string& text);
 /// Throws Error(input); `name` stands in messages.
 [[nodiscard]] Manifest manifest_from_json(const std::string& text, const std::string& name);
 

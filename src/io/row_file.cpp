@@ -67,11 +67,12 @@ struct Mark {
   std::uint64_t rows = 0;
   std::uint64_t bytes = 0;
   std::string sha256;
+  RunNotes notes{};  ///< of that run
 };
 
 std::string to_line(const Mark& mark) {
   return std::to_string(mark.next_run) + ' ' + std::to_string(mark.rows) + ' ' + std::to_string(mark.bytes) + ' ' +
-         mark.sha256 + '\n';
+         mark.sha256 + (mark.notes.empty() ? "" : ' ' + to_json(mark.notes)) + '\n';
 }
 
 std::optional<Mark> mark_from(const std::string& line) {
@@ -79,7 +80,12 @@ std::optional<Mark> mark_from(const std::string& line) {
   Mark mark;
   std::string rest;
   constexpr std::size_t hash_digits = 64;
-  if (!(words >> mark.next_run >> mark.rows >> mark.bytes >> mark.sha256) || words >> rest) return std::nullopt;
+  if (!(words >> mark.next_run >> mark.rows >> mark.bytes >> mark.sha256)) return std::nullopt;
+  if (std::getline(words >> std::ws, rest)) {
+    const std::optional<RunNotes> notes = notes_from_json(rest);
+    if (!notes) return std::nullopt;
+    mark.notes = *notes;
+  }
   return mark.sha256.size() == hash_digits ? std::optional(mark) : std::nullopt;
 }
 
@@ -87,6 +93,7 @@ std::optional<Mark> mark_from(const std::string& line) {
 struct Journal {
   std::string made;  ///< manifest in one line
   std::optional<Mark> last;
+  RunNotes notes;  ///< of all runs
   std::uint64_t whole_bytes = 0;
 };
 
@@ -100,6 +107,7 @@ Journal read_journal(const fs::path& file) {
     const std::optional<Mark> mark = mark_from(line);
     if (!mark) break;
     journal.last = mark;
+    journal.notes += mark->notes;
     journal.whole_bytes += line.size() + 1;
   }
   return journal;
@@ -114,6 +122,7 @@ struct RowFile::Work {
   std::optional<PosixFile> partial, journal;
   Sha256 hash;
   Mark mark;
+  RunNotes notes;
 
   void take_journal() {
     journal.emplace(journal_path, PosixFile::Mode::append);
@@ -132,6 +141,7 @@ struct RowFile::Work {
     if (!fault_of_data(file, *found).empty()) return false;
     finished = true;
     mark = {found->runs.end, found->rows, found->bytes, found->sha256};
+    notes = found->notes;
     remove_traces();
     return true;
   }
@@ -144,16 +154,19 @@ struct RowFile::Work {
     journal->truncate(0);
     hash = {};
     mark = {made.runs.first, 0, 0, {}};
+    notes = {};
     journal->append(to_json(made, -1) + '\n');
-    write(header, 0);
+    write(header, 0, {});
   }
 
-  void write(std::string_view lines, std::uint64_t n_rows) {
+  void write(std::string_view lines, std::uint64_t n_rows, const RunNotes& of_run) {
     partial->append(lines);
     hash.add(lines);
     mark.rows += n_rows;
     mark.bytes += lines.size();
     mark.sha256 = hash.hex();
+    mark.notes = of_run;
+    notes += of_run;
     journal->append(to_line(mark));
   }
 
@@ -171,6 +184,7 @@ struct RowFile::Work {
     if (!hash_whole_runs(*found.last)) return false;
     partial->truncate(mark.bytes);
     journal->truncate(found.whole_bytes);
+    notes = found.notes;
     return true;
   }
 
@@ -225,9 +239,11 @@ bool RowFile::finished() const noexcept { return work_->finished; }
 std::uint32_t RowFile::next_run() const noexcept { return work_->mark.next_run; }
 std::uint64_t RowFile::rows() const noexcept { return work_->mark.rows; }
 
-void RowFile::add_run(std::string_view lines, std::uint64_t n_rows) {
+const RunNotes& RowFile::notes() const noexcept { return work_->notes; }
+
+void RowFile::add_run(std::string_view lines, std::uint64_t n_rows, const RunNotes& notes) {
   ++work_->mark.next_run;
-  work_->write(lines, n_rows);
+  work_->write(lines, n_rows, notes);
 }
 
 void RowFile::commit() {
@@ -236,6 +252,7 @@ void RowFile::commit() {
   work.made.rows = work.mark.rows;
   work.made.bytes = work.mark.bytes;
   work.made.sha256 = work.mark.sha256;
+  work.made.notes = work.notes;
   remove_or_throw(manifest_path(work.file));  // of an older file: it must not speak for the new one
   work.put_in_place();
   write_manifest(manifest_path(work.file), work.made);

@@ -31,7 +31,9 @@ class RowFile {
   [[nodiscard]] std::uint32_t next_run() const noexcept;  ///< the first whose rows are missing
   [[nodiscard]] std::uint64_t rows() const noexcept;
   /// Of the run next_run(), whole lines.
-  void add_run(std::string_view lines, std::uint64_t n_rows);
+  void add_run(std::string_view lines, std::uint64_t n_rows, const RunNotes& notes = {});
+  /// Of all runs that are in the file.
+  [[nodiscard]] const RunNotes& notes() const noexcept;
   /// After the last run.
   void commit();
   /// Removes what was written: there is no sense in going on.

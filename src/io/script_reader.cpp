@@ -8,6 +8,7 @@
 #include "io/action_reader.hpp"
 #include "io/body_mesh_reader.hpp"
 #include "io/effect_reader.hpp"
+#include "io/schedule_reader.hpp"
 #include "io/sensing_reader.hpp"
 #include "io/yaml_map.hpp"
 #include "schema/body_part_names.hpp"
@@ -69,6 +70,8 @@ PersonSpec read_person(const YamlNode& node, BodyMeshReader& body_meshes, Diagno
   }
   person.body_mesh_file = map.text("body_mesh");
   person.body_meshes = body_meshes.read(person.body_mesh_file, map.where("body_mesh"), faults);
+  person.style = map.choice<MotionStyle>(
+      "style", person.style, {{"choreographed", MotionStyle::choreographed}, {"natural", MotionStyle::natural}});
   person.warmth = read_warmth(map.child("warmth"), faults);
   for (const YamlNode& action : map.list("actions")) person.actions.push_back(read_action(action, faults));
   map.finish();
@@ -118,6 +121,7 @@ std::vector<TrialSpec> read_listed_trials(const YamlNode& list, BodyMeshReader& 
   for (const YamlNode& item : list.items()) {
     YamlMap map(item, faults, "trial");
     trials.push_back({map.required_text("id"), read_people(map.list("people"), {}, body_meshes, faults)});
+    trials.back().duration_s = map.optional_number("duration_s", {.min = 1.0, .max = 1e7});
     if (!ids.insert(trials.back().id).second) faults.error(item.where(), "a second trial '" + trials.back().id + "'");
     map.finish();
   }
@@ -176,6 +180,12 @@ ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::s
   script.summary = read_summary(map.child("summary"), faults);
   BodyMeshReader body_meshes(file.parent_path());
   script.trials = read_trials(map.child("trials"), map.list("people"), body_meshes, faults);
+  if (const auto duration_s = map.optional_number("duration_s", {.min = 1.0, .max = 1e7})) {
+    for (TrialSpec& trial : script.trials) trial.duration_s = trial.duration_s.value_or(*duration_s);
+  }
+  if (const auto schedule = read_schedule(map.child("schedule"), faults)) {
+    for (TrialSpec& trial : script.trials) trial.schedule = schedule;
+  }
   script.effects = read_effects(map.list("effects"), faults);
   if (script.trials.size() * static_cast<std::size_t>(script.replicates) > std::numeric_limits<std::uint32_t>::max()) {
     faults.error(map.where("replicates"), "trials times replicates are more than " +

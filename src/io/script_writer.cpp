@@ -50,6 +50,8 @@ struct ActionWriter {
     for (const double tilt : work.tilt_choices_deg) node["tilt_choices_deg"].push_back(number(tilt));
     node["tilt_choices_deg"].SetStyle(YAML::EmitterStyle::Flow);
     node["tilt_every_s"] = number(work.tilt_every_s);
+    static constexpr std::array<const char*, 4> activities{"typing", "reading", "meeting", "phone"};
+    node["activity"] = activities[static_cast<std::size_t>(work.activity)];
     entry["work"] = node;
   }
   void operator()(const action::Rise&) { entry["rise"] = YAML::Node(YAML::NodeType::Null); }
@@ -74,6 +76,7 @@ YAML::Node write(const PersonSpec& person) {
   node["seat_scatter"]["position_sd_m"] = number(person.seat_scatter.position_sd_m);
   node["seat_scatter"]["heading_sd_deg"] = number(person.seat_scatter.heading_sd_deg);
   if (!person.body_mesh_file.empty()) node["body_mesh"] = person.body_mesh_file;
+  if (person.style == MotionStyle::natural) node["style"] = "natural";
   node["warmth"]["skin_c"] = number(person.warmth.skin_c);
   node["warmth"]["clothing_clo"] = number(person.warmth.clothing_clo);
   node["warmth"]["bare"] = person.warmth.bare;
@@ -136,6 +139,7 @@ std::string to_yaml(const ScriptSpec& script) {
   for (const TrialSpec& trial : script.trials) {
     YAML::Node node;
     node["id"] = trial.id;
+    if (trial.duration_s) node["duration_s"] = number(*trial.duration_s);
     for (const PersonSpec& person : trial.people) node["people"].push_back(write(person));
     root["trials"].push_back(node);
   }

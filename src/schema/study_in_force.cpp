@@ -7,8 +7,13 @@ namespace pirsim {
 StudyInForce as_given(SceneSpec scene, const ScriptSpec& script) {
   StudyInForce study{std::move(scene), {script.sensing, 0.0, {}, {}}, script.seed, {}};
   for (const TrialSpec& trial : script.trials) {
-    TrialInForce& own = study.trials.emplace_back(TrialInForce{trial.id, {}});
-    for (const PersonSpec& person : trial.people) own.people.push_back({person, {}});
+    TrialInForce& own = study.trials.emplace_back(TrialInForce{trial.id, {}, trial.duration_s, trial.schedule});
+    for (const PersonSpec& person : trial.people) own.people.push_back({person, {}, {}});
+    if (!trial.schedule) continue;
+    for (const ScheduledPerson& scheduled : people_of(*trial.schedule, study.scene, script.seed)) {
+      own.people.push_back({scheduled.person, {}, scheduled});
+    }
+    own.duration_s = own.duration_s.value_or(3600.0 * (trial.schedule->to_h - trial.schedule->from_h));
   }
   return study;
 }

@@ -8,6 +8,7 @@
 
 #include "pirsim/scene.hpp"
 #include "pirsim/script.hpp"
+#include "schema/schedule_people.hpp"
 
 namespace pirsim {
 
@@ -49,11 +50,14 @@ struct PersonChanges {
 
 struct PersonInForce : PersonSpec {
   PersonChanges changes;
+  std::optional<ScheduledPerson> part{};  ///< in the trial's schedule; its actions are drawn for each run
 };
 
 struct TrialInForce {
   std::string id;
   std::vector<PersonInForce> people;  ///< those of the script, then whom effects added
+  std::optional<double> duration_s{};
+  std::optional<ScheduleSpec> schedule{};
 };
 
 struct StudyInForce {

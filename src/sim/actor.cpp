@@ -31,12 +31,17 @@ bool leads_elsewhere(const ScriptedAction& action) {
 
 }  // namespace
 
-Actor::Actor(const CompiledStudy& study, std::uint32_t run, std::uint32_t person)
+Actor::Actor(const CompiledStudy& study, std::uint32_t run, std::uint32_t person, std::shared_ptr<const DayPlan> plan)
     : person_(&study.trial_of(run).people[person]),
+      plan_(std::move(plan)),
       index_(person),
       tilt_stream_({study.seed(), run, person, Purpose::spine_tilt}),
       scatter_stream_({study.seed(), run, person, Purpose::seat_scatter}),
-      fidget_stream_({study.seed(), run, person, Purpose::fidgeting}) {}
+      fidget_stream_({study.seed(), run, person, Purpose::fidgeting}) {
+  if (this->person().spec.style == MotionStyle::natural) {
+    natural_.emplace(study.seed(), run, person, study.sensing().tick_rate_hz);
+  }
+}
 
 std::string_view Actor::current_phase() const noexcept {
   if (!done() && begun_ && !action().phase.empty()) return action().phase;
@@ -61,6 +66,7 @@ void Actor::advance(const CompiledStudy& study, std::int64_t tick, std::span<con
   incidents_.clear();
   carry_on({study, others, tick - 1});
   if (body_) {
+    if (natural_) move_naturally();
     if (body_->motion().stage() == Stage::seated) fidget(study);
     body_->advance(others, n_before, tick - 1);
     if (const auto incident = body_->take_incident()) incidents_.push_back(*incident);
@@ -105,11 +111,13 @@ void Actor::finish_action() {
 }
 
 std::optional<std::size_t> Actor::interrupting_action(const Scene& scene) const {
-  const auto& actions = person().spec.actions;
-  for (std::size_t i = actions.size(); i-- > action_ + 1;) {
-    if (actions[i].at_s && scene.now >= ticks(*actions[i].at_s, scene.study)) return i;
+  std::optional<std::size_t> latest;
+  for (std::size_t i = action_ + 1; i < actions().size(); ++i) {
+    const std::optional<double>& at_s = actions()[i].at_s;
+    if (at_s && scene.now < ticks(*at_s, scene.study)) break;  // times ascend
+    if (at_s) latest = i;
   }
-  return std::nullopt;
+  return latest;
 }
 
 /// In ticks, once an action: they are asked for every tick.
@@ -132,6 +140,8 @@ void Actor::plan(const Scene& scene) {
   const bool arrives = std::holds_alternative<action::Appear>(what) || std::holds_alternative<action::Enter>(what) ||
                        std::holds_alternative<action::Wait>(what);
   if (!present() && !arrives) return;  // called away before they came: nothing to do
+  const bool comes_in = std::holds_alternative<action::Appear>(what) || std::holds_alternative<action::Enter>(what);
+  if (present() && comes_in) return;  // called back before they had left
   if (const auto* appear = std::get_if<action::Appear>(&what)) {
     errands_.push_back(ComeIn{appear->point, radians(appear->heading_deg)});
   } else if (const auto* enter = std::get_if<action::Enter>(&what)) {
@@ -148,7 +158,7 @@ void Actor::plan(const Scene& scene) {
     plan_leaving(entrance(leave->entrance));
   } else if (const auto* work_action = std::get_if<action::Work>(&what)) {
     if (body_->motion().stage() == Stage::seated) {
-      body_motion().work({work_action->arm_amplitude_m, work_action->arm_period_s});
+      body_motion().work({natural_ ? 0.0 : work_action->arm_amplitude_m, work_action->arm_period_s});
     } else {
       lasts_ticks_ = 0;  // did without a seat
     }
@@ -156,8 +166,7 @@ void Actor::plan(const Scene& scene) {
 }
 
 void Actor::plan_entering(const EntranceSpec& door) {
-  const auto& actions = person().spec.actions;
-  const ScriptedAction* next = action_ + 1 < actions.size() ? &actions[action_ + 1] : nullptr;
+  const ScriptedAction* next = action_ + 1 < actions().size() ? &actions()[action_ + 1] : nullptr;
   const auto* sit_next = next != nullptr ? std::get_if<action::Sit>(&next->what) : nullptr;
   if (sit_next != nullptr) errands_.push_back(WaitForSeat{sit_next->seat});  // better outside than in the doorway
   errands_.push_back(WaitForDoor{outside(door), Through::in});
@@ -188,19 +197,20 @@ void Actor::plan_sitting(std::string_view id) {
     place.world_from_seat.rotation =
         rotation_from_heading(radians(scatter.heading_sd_deg * turn)) * place.world_from_seat.rotation;
   }
-  const double heading = heading_of(place.world_from_seat);
+  const double heading = heading_of(place.world_from_seat) + place.approach_turn;
   errands_.push_back(WaitForSeat{id});
   errands_.push_back(TakeSeat{id});
-  errands_.push_back(WalkTo{standing_place(place, seat)});
+  const Vec2 stand = standing_place(place, seat);
+  errands_.push_back(WalkTo{stand});
   errands_.push_back(FaceTo{heading});
-  errands_.push_back(SitOn{place});
+  errands_.push_back(SitOn{place, stand, heading});
 }
 
 /// A scattered seat may need a little more room behind it than the seat as it stands in the scene.
 Vec2 Actor::standing_place(const body::SeatPlace& place, const SeatPlan& seat) const {
   constexpr double step_m = 0.02, farthest_m = 0.4;
   const Vec2 pelvis = floor_point(place.world_from_seat.origin);
-  const Vec2 facing = direction_of(heading_of(place.world_from_seat));
+  const Vec2 facing = direction_of(heading_of(place.world_from_seat) + place.approach_turn);
   for (double more = 0.0; more <= farthest_m; more += step_m) {
     const Vec2 stand = pelvis - (seat.stand_back_m + more) * facing;
     if (person().can_stand(stand, facing, seat.half_depth_m)) return stand;
@@ -210,10 +220,32 @@ Vec2 Actor::standing_place(const body::SeatPlace& place, const SeatPlan& seat) c
 
 void Actor::work(const action::Work& work, std::int64_t now) {
   const std::int64_t since = now - began_;
-  if (body_->motion().stage() != Stage::seated) return;
+  if (natural_ || body_->motion().stage() != Stage::seated) return;
   if (work.tilt_choices_deg.empty() || since >= lasts_ticks_ || since % tilt_every_ticks_ != 0) return;
   const auto choice = tilt_stream_.index(static_cast<std::uint32_t>(work.tilt_choices_deg.size()));
   body_motion().tilt_spine(radians(work.tilt_choices_deg[choice]));
+}
+
+void Actor::move_naturally() {
+  std::optional<Activity> activity;
+  if (!done() && begun_) {
+    if (const auto* work_action = std::get_if<action::Work>(&action().what)) activity = work_action->activity;
+  }
+  if (activity != Activity::meeting) attention_ = {};
+  natural_->tick(body_motion(), activity, attention_);
+}
+
+bool Actor::takes_part_in_meeting() const {
+  if (!natural_ || !body_ || done() || !begun_ || body_->motion().stage() != Stage::seated) return false;
+  const auto* work_action = std::get_if<action::Work>(&action().what);
+  return work_action != nullptr && work_action->activity == Activity::meeting;
+}
+
+void Actor::attend(Attention::Talk talk, const std::optional<Vec2>& speaker) {
+  attention_ = {talk, 0.0};
+  if (!speaker || talk != Attention::Talk::listens) return;
+  const Vec2 way = *speaker - body_->motion().position();
+  attention_.towards = std::remainder(heading_of(way) - body_->motion().heading(), 2.0 * pi);
 }
 
 void Actor::fidget(const CompiledStudy& study) {
@@ -222,9 +254,9 @@ void Actor::fidget(const CompiledStudy& study) {
   if (fidget_stream_.uniform() >= -std::expm1(-fidgeting.rate_per_s * study.tick_s())) return;
   const double way = 2.0 * fidget_stream_.uniform() - 1.0;
   if (fidget_stream_.index(2) == 0) {
-    body_motion().sway(radians(fidgeting.tilt_deg) * way);
+    body_motion().adjust(body::Channel::trunk_tilt, radians(fidgeting.tilt_deg) * way, body::fidget_s);
   } else {
-    body_motion().turn_head(radians(fidgeting.turn_deg) * way);
+    body_motion().adjust(body::Channel::head_turn, radians(fidgeting.turn_deg) * way, body::fidget_s);
   }
 }
 
@@ -236,6 +268,7 @@ Progress Actor::carry_out(const ComeIn& come, const Scene& scene) {
   const bool taken = somebody_near(come.point, scene.others);
   if (taken && ++waited_ticks_ < ticks(room_wait_s, scene.study)) return Progress::going_on;
   body_.emplace(scene.study, person(), index_, come.point, come.heading);
+  if (natural_) body_motion().set_pace(natural_->pace(person().spec.walking_speed_m_s));
   if (taken) body_->pass_through(scene.now);
   return Progress::done;
 }
@@ -247,10 +280,9 @@ Progress Actor::carry_out(const WaitForDoor& door, const Scene& scene) {
 
 Progress Actor::carry_out(const WaitForSeat& wait, const Scene& scene) {
   if (std::ranges::find(scene.others, wait.seat, &Presence::seat) == scene.others.end()) return Progress::done;
-  const auto& actions = person().spec.actions;
   const auto* sit = std::get_if<action::Sit>(&action().what);
   const bool before_coming_in = sit == nullptr;
-  if (before_coming_in) sit = &std::get<action::Sit>(actions[action_ + 1].what);
+  if (before_coming_in) sit = &std::get<action::Sit>(actions()[action_ + 1].what);
   const bool for_good = std::ranges::none_of(
       scene.others, [](const Presence& other) { return other.script == Presence::Script::going_on; });
   if (!for_good && ++seat_wait_ticks_ < ticks(sit->wait_s, scene.study)) return Progress::going_on;
@@ -288,6 +320,12 @@ Progress Actor::carry_out(const TakeSeat& take, const Scene&) {
 }
 
 Progress Actor::carry_out(const WalkTo& walk, const Scene& scene) {
+  constexpr double near_m = 1.5;  // assumed (1-2): where somebody stands already, beside them will do
+  if (std::holds_alternative<action::Walk>(action().what) && body_->is_held_up(scene.now) &&
+      somebody_near(walk.target, scene.others) && glm::distance(body_->motion().position(), walk.target) < near_m) {
+    body_->forget_way();
+    return Progress::done;
+  }
   const Progress progress = body_->go_to(walk.target, scene.others, scene.now);
   // A seat is left where the walk away from it begins.
   if (!std::holds_alternative<action::Sit>(action().what) && body_->motion().stage() == Stage::walking) seat_ = {};
@@ -309,7 +347,17 @@ Progress Actor::carry_out(const FaceTo& face, const Scene& scene) {
 
 Progress Actor::carry_out(const SitOn& seat, const Scene&) {
   if (body_->motion().stage() == Stage::seated && body_->motion().settled()) return Progress::done;
-  if (body_->motion().stage() == Stage::standing && body_->motion().settled()) body_motion().sit_down(seat.place);
+  if (body_->motion().stage() != Stage::standing || !body_->motion().settled()) return Progress::going_on;
+  constexpr double there_m = 0.05, facing_rad = 0.02;
+  const bool there = glm::distance(body_->motion().position(), seat.stand) < there_m &&
+                     std::abs(std::remainder(seat.heading - body_->motion().heading(), 2.0 * pi)) < facing_rad;
+  if (there) {
+    body_motion().sit_down(seat.place);
+  } else {
+    const SitOn again = seat;
+    errands_.push_front(FaceTo{again.heading});
+    errands_.push_front(WalkTo{again.stand});
+  }
   return Progress::going_on;
 }
 

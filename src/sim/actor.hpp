@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -11,15 +12,18 @@
 
 #include "pirsim/random.hpp"
 #include "sim/compiled_study.hpp"
+#include "sim/natural_motion.hpp"
 #include "sim/pedestrian.hpp"
 #include "sim/presence.hpp"
+#include "sim/schedule.hpp"
 
 namespace pirsim::sim {
 
 /// A value; all its randomness comes from streams keyed by (seed, run, person).
 class Actor {
  public:
-  Actor(const CompiledStudy& study, std::uint32_t run, std::uint32_t person);
+  /// plan: actions drawn for this run, or null: those of the script.
+  Actor(const CompiledStudy& study, std::uint32_t run, std::uint32_t person, std::shared_ptr<const DayPlan> plan);
 
   /// From tick - 1 to tick: starts, goes on with or interrupts actions, then moves the body. others: everyone else in
   /// the scene, in the order of the script; those before this person go first where ways cross.
@@ -27,7 +31,7 @@ class Actor {
   void advance(const CompiledStudy& study, std::int64_t tick, std::span<const Presence> others, std::size_t n_before);
 
   [[nodiscard]] bool present() const noexcept { return body_.has_value(); }
-  [[nodiscard]] bool done() const noexcept { return action_ == person().spec.actions.size(); }
+  [[nodiscard]] bool done() const noexcept { return action_ == actions().size(); }
   /// What the step to this tick was part of: the action's label, "outside", "working" or what the body did.
   [[nodiscard]] std::string_view phase() const noexcept { return phase_; }
   [[nodiscard]] const PersonModel& person() const noexcept { return *person_; }
@@ -36,6 +40,10 @@ class Actor {
   [[nodiscard]] Presence presence() const;
   /// Taken, from setting out for it to walking away from it; or empty.
   [[nodiscard]] std::string_view seat() const noexcept { return seat_; }
+  /// Sits in a meeting, in natural style.
+  [[nodiscard]] bool takes_part_in_meeting() const;
+  /// From now on; speaker: where who speaks is.
+  void attend(Attention::Talk talk, const std::optional<Vec2>& speaker);
   /// What happened in the step to this tick.
   [[nodiscard]] std::span<const Incident> incidents() const noexcept { return incidents_; }
 
@@ -65,8 +73,11 @@ class Actor {
   struct FaceTo {
     double heading;
   };
+  /// From where one has to stand and face before; goes back there first if somebody made them leave it.
   struct SitOn {
     body::SeatPlace place;
+    Vec2 stand;
+    double heading;
   };
   struct StandUp {};
   /// Walks to the first point, or to the second if somebody stands there.
@@ -91,6 +102,7 @@ class Actor {
   void plan_sitting(std::string_view seat);
   void work(const action::Work& work, std::int64_t now);
   void fidget(const CompiledStudy& study);
+  void move_naturally();
   void carry_on(const Scene& scene);
   void finish_action();
   void note(IncidentKind kind, std::int64_t tick);
@@ -116,19 +128,25 @@ class Actor {
   void do_without_seat(const Scene& scene);
   [[nodiscard]] const SeatSpec* nearest_free_seat(const Scene& scene) const;
   [[nodiscard]] Vec2 standing_place(const body::SeatPlace& place, const SeatPlan& seat) const;
-  [[nodiscard]] const ScriptedAction& action() const { return person().spec.actions[action_]; }
+  [[nodiscard]] const ScriptedAction& action() const { return actions()[action_]; }
+  [[nodiscard]] const std::vector<ScriptedAction>& actions() const {
+    return plan_ ? (*plan_)[index_] : person().spec.actions;
+  }
   [[nodiscard]] body::Motion& body_motion() { return body_->motion(); }
 
   const PersonModel* person_ = nullptr;
-  std::uint32_t index_ = 0;            ///< of the person in the trial
-  std::optional<Pedestrian> body_;     ///< while in the scene
-  std::size_t action_ = 0;             ///< index of the current action
-  bool begun_ = false;                 ///< the current action has begun
-  std::int64_t began_ = 0;             ///< tick at which it did
-  std::int64_t lasts_ticks_ = 0;       ///< of a wait or work; others end when their errands are done
-  std::int64_t tilt_every_ticks_ = 1;  ///< of work
-  std::deque<Errand> errands_;         ///< still to do for the current action
-  std::string_view seat_;              ///< taken, or empty
+  std::shared_ptr<const DayPlan> plan_;
+  std::uint32_t index_ = 0;         ///< of the person in the trial
+  std::optional<Pedestrian> body_;  ///< while in the scene
+  Attention attention_;
+  std::optional<NaturalMotion> natural_;  ///< of who is of that style
+  std::size_t action_ = 0;                ///< index of the current action
+  bool begun_ = false;                    ///< the current action has begun
+  std::int64_t began_ = 0;                ///< tick at which it did
+  std::int64_t lasts_ticks_ = 0;          ///< of a wait or work; others end when their errands are done
+  std::int64_t tilt_every_ticks_ = 1;     ///< of work
+  std::deque<Errand> errands_;            ///< still to do for the current action
+  std::string_view seat_;                 ///< taken, or empty
   std::string_view phase_ = "outside";
   std::int64_t waited_ticks_ = 0;  ///< for the door, or for room to come in
   std::int64_t seat_wait_ticks_ = 0;

@@ -40,8 +40,8 @@ auto fields(const action::Sit& sit) {
   return std::tie(seat, wait_s, if_taken);
 }
 auto fields(const action::Work& work) {
-  const auto& [duration_s, arm_amplitude_m, arm_period_s, tilt_choices_deg, tilt_every_s] = work;
-  return std::tie(duration_s, arm_amplitude_m, arm_period_s, tilt_choices_deg, tilt_every_s);
+  const auto& [duration_s, arm_amplitude_m, arm_period_s, tilt_choices_deg, tilt_every_s, activity] = work;
+  return std::tie(duration_s, arm_amplitude_m, arm_period_s, tilt_choices_deg, tilt_every_s, activity);
 }
 auto fields(const action::Rise&) { return std::tuple<>(); }
 auto fields(const action::Leave& leave) {
@@ -69,14 +69,14 @@ bool same_action(const ScriptedAction& a, const ScriptedAction& b) {
 
 bool same_person(const PersonInForce& a, const PersonInForce& b) {
   const auto parts = [](const PersonInForce& person) {
-    const auto& [id, stature_m, mass_kg, speed, scatter, file, meshes, warmth, actions] =
+    const auto& [id, stature_m, mass_kg, speed, scatter, file, meshes, warmth, style, actions] =
         static_cast<const PersonSpec&>(person);
     const auto& [position_sd_m, heading_sd_deg] = scatter;
     const auto& [seat_shift_m, fidgeting, role] = person.changes;
     const auto& [rate_per_s, tilt_deg, turn_deg] = fidgeting;
     const auto& [skin_c, clothing_clo, bare, parts_c] = warmth;
     return std::tie(id, stature_m, mass_kg, speed, position_sd_m, heading_sd_deg, seat_shift_m, rate_per_s, tilt_deg,
-                    turn_deg, role, file, meshes, skin_c, clothing_clo, bare, parts_c);
+                    turn_deg, role, style, file, meshes, skin_c, clothing_clo, bare, parts_c);
   };
   return parts(a) == parts(b) && std::ranges::equal(a.actions, b.actions, same_action);
 }
@@ -99,7 +99,7 @@ bool same_size(const PersonSpec& a, const PersonSpec& b) {
 }
 
 bool same_trial(const TrialModel& planned, const TrialInForce& trial, double ambient_c) {
-  return planned.id == trial.id &&
+  return planned.id == trial.id && planned.duration_s == trial.duration_s &&
          std::ranges::equal(planned.people, trial.people, [&](const PersonModel& a, const PersonInForce& b) {
            return same_person(a.spec, b) && a.radiance == radiance_of(b.warmth, ambient_c);
          });

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,10 +31,12 @@ struct PersonModel {
   PersonInForce spec;
   body::Humanoid humanoid;
   std::shared_ptr<const body::WalkableFloor> floor;  ///< shared by all who need the same clearance
+  /// For squeezing past others with the arms drawn in; null for who is alone.
+  std::shared_ptr<const body::WalkableFloor> narrow_floor{};
   /// Is there room to stand, facing so, with the clearance radius to the sides and half_depth_m before and behind?
   [[nodiscard]] bool can_stand(const Vec2& place, const Vec2& facing, double half_depth_m) const noexcept;
   /// By seat, of those that the script asks for; of all that can be reached if any seat may do.
-  std::map<std::string, SeatPlan, std::less<>> seats;
+  std::map<std::string, SeatPlan, std::less<>> seats{};
   [[nodiscard]] bool can_use(std::string_view seat) const { return seats.contains(seat); }
   [[nodiscard]] const SeatPlan& seat_plan(std::string_view seat) const { return seats.find(seat)->second; }
   BodyRadiance radiance{};
@@ -42,6 +45,8 @@ struct PersonModel {
 struct TrialModel {
   std::string id;
   std::vector<PersonModel> people;
+  std::optional<double> duration_s{};
+  std::optional<ScheduleSpec> schedule{};
 };
 
 class CompiledStudy {

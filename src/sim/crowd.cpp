@@ -4,9 +4,12 @@
 
 namespace pirsim::sim {
 
-Crowd::Crowd(const CompiledStudy& study, std::uint32_t run) {
+Crowd::Crowd(const CompiledStudy& study, std::uint32_t run) : conversation_(study.seed(), run) {
   const std::size_t n_people = study.trial_of(run).people.size();
-  for (std::uint32_t person = 0; person < n_people; ++person) actors_.emplace_back(study, run, person);
+  std::shared_ptr<const DayPlan> plan;
+  const TrialModel& trial = study.trial_of(run);
+  if (trial.schedule) plan = std::make_shared<const DayPlan>(draw_day(study, trial, run));
+  for (std::uint32_t person = 0; person < n_people; ++person) actors_.emplace_back(study, run, person, plan);
   presences_.resize(n_people);
   seated_.resize(n_people, 0);
 }
@@ -21,7 +24,26 @@ std::size_t Crowd::gather_others(std::size_t i) {
   return n_before;
 }
 
+/// Who takes part in a meeting looks at whoever speaks.
+void Crowd::let_speak(const CompiledStudy& study, std::int64_t tick) {
+  participants_.clear();
+  for (std::uint32_t i = 0; i < actors_.size(); ++i) {
+    if (actors_[i].takes_part_in_meeting()) participants_.push_back(i);
+  }
+  if (participants_.empty()) return;
+  const auto speaker = conversation_.speaker(participants_, tick, study.sensing().tick_rate_hz);
+  for (const std::uint32_t i : participants_) {
+    std::optional<Vec2> place;
+    if (speaker) place = actors_[*speaker].motion().position();
+    actors_[i].attend(i == speaker ? Attention::Talk::speaks
+                      : speaker    ? Attention::Talk::listens
+                                   : Attention::Talk::none,
+                      place);
+  }
+}
+
 void Crowd::advance(const CompiledStudy& study, std::int64_t tick) {
+  let_speak(study, tick);
   std::size_t n_before = 0;
   bool gathered = false;
   for (std::size_t i = 0; i < actors_.size(); ++i) {

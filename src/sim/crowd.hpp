@@ -8,6 +8,7 @@
 
 #include "sim/actor.hpp"
 #include "sim/compiled_study.hpp"
+#include "sim/conversation.hpp"
 
 namespace pirsim::sim {
 
@@ -33,12 +34,15 @@ class Crowd {
   /// Fills others_ with everyone in the scene but the i-th person; how many of them come before in the script.
   std::size_t gather_others(std::size_t i);
   void note_seats_left(const CompiledStudy& study);
+  void let_speak(const CompiledStudy& study, std::int64_t tick);
 
   std::vector<Actor> actors_;
   std::vector<std::optional<Presence>> presences_;  ///< (n_actors) as they are now; of those in the scene
   std::vector<std::uint8_t> seated_;                ///< (n_actors) 1 while seated
   std::vector<std::size_t> seats_left_;
-  std::vector<Presence> others_;  ///< scratch
+  Conversation conversation_;
+  std::vector<Presence> others_;             ///< scratch
+  std::vector<std::uint32_t> participants_;  ///< scratch
 };
 
 }  // namespace pirsim::sim

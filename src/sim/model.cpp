@@ -1,5 +1,7 @@
 #include "pirsim/model.hpp"
 
+#include <algorithm>
+
 #include <utility>
 
 #include "sim/compiled_study.hpp"
@@ -16,6 +18,8 @@ const RayBundle& Model::rays() const noexcept { return compiled_->array().clippe
 
 std::vector<std::string> Model::columns() const {
   std::vector<std::string> names{"replicate", "trial", "time_s", "phase", "people"};
+  const auto has_schedule = [](const TrialSpec& trial) { return trial.schedule.has_value(); };
+  if (std::ranges::any_of(script().trials, has_schedule)) names.insert(names.begin() + 3, "time");
   for (const SensorSpec& sensor : scene().sensors) names.push_back(sensor.id);
   return names;
 }

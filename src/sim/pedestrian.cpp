@@ -19,6 +19,8 @@ constexpr double foresight_s = 1.5;       ///< assumed: how long before ways cro
 constexpr double gap_m = 0.1;             ///< assumed: kept between two people on foot beside their radii
 constexpr double behind_sitter_m = 0.07;  ///< assumed: room of a sitter and the chair's back beyond half the trunk
 constexpr double sitter_gap_m = 0.06;     ///< kept beside that in planning: what a rounded corner cuts, and 1 cm
+constexpr double squeeze_gap_m = 0.02;    ///< assumed: between trunks that squeeze past each other
+constexpr double squeeze_speed = 0.5;     ///< assumed: of the usual pace
 constexpr double braking_m_s2 = 1.5;      ///< assumed, as Motion's acceleration
 constexpr double patience_s = 0.5;        ///< assumed: wait before looking for another way (tried 0.3-1)
 constexpr double patience_step_s = 0.35;  ///< more for some, so that two don't dodge alike
@@ -73,13 +75,15 @@ Presence Pedestrian::presence() const {
   if (speed > 0.0) mine.velocity = speed * direction_of(motion_.heading());
   mine.destination = target().value_or(mine.position);
   mine.solidity = solidity_;
-  mine.radius_m = radius_m();
+  mine.radius_m = person_->floor->clearance_m();
+  mine.squeeze_m = person_->humanoid.half_width_m();
   mine.gap_m = gap_m;
   if (!on_feet()) {
     if (motion_.stage() != Stage::seated) {
       mine.back = motion_.place_to_stand();
     } else {
       mine.radius_m = person_->humanoid.half_depth_m() + behind_sitter_m;
+      mine.squeeze_m = person_->humanoid.half_depth_m();
     }
     mine.gap_m = sitter_gap_m;
   }
@@ -92,7 +96,16 @@ Presence Pedestrian::presence() const {
   return mine;
 }
 
+double Pedestrian::kept_from(const Presence& other) const noexcept {
+  return radius_m() + (width_ == Width::narrow ? other.squeeze_m : other.radius_m);
+}
+
+double Pedestrian::gap_to(const Presence& other) const noexcept {
+  return width_ == Width::narrow ? squeeze_gap_m : other.gap_m;
+}
+
 void Pedestrian::forget_way() noexcept {
+  width_ = Width::usual;
   route_.reset();
   target_.reset();
   wished_way_.reset();
@@ -102,6 +115,10 @@ std::optional<Incident> Pedestrian::take_incident() noexcept {
   const auto taken = incident_;
   incident_.reset();
   return taken;
+}
+
+bool Pedestrian::is_held_up(std::int64_t now) const noexcept {
+  return held_up_since_ && now - *held_up_since_ >= ticks(wish_after_s);
 }
 
 void Pedestrian::be_held_up(std::int64_t now) {
@@ -146,7 +163,7 @@ Progress Pedestrian::stand_up(std::span<const Presence> others, std::int64_t now
     held_up_since_.reset();
   } else if (on_seat) {
     be_held_up(now);
-    if (!wished_way_ && held_up_since_ && now - *held_up_since_ >= ticks(wish_after_s)) {
+    if (!wished_way_ && is_held_up(now)) {
       wished_way_ =
           std::make_shared<const std::vector<Vec2>>(std::vector<Vec2>{motion_.position(), motion_.place_to_stand()});
     }
@@ -168,17 +185,20 @@ bool Pedestrian::free_to_rise(std::span<const Presence> others) const {
 }
 
 std::optional<std::vector<Vec2>> Pedestrian::way_among(const Vec2& target, std::span<const Presence> others) const {
-  if (solidity_ != Solidity::solid) return person_->floor->find_way(motion_.position(), target);
+  if (solidity_ != Solidity::solid) return floor().find_way(motion_.position(), target);
   std::vector<body::Disc> discs;
+  constexpr double from_afar_m = 1.5;  // assumed (1-2): who stands at the goal may have gone by then
   for (const Presence& other : others) {
     if (!is_solid(other)) continue;
-    discs.push_back({other.position, other.radius_m + other.gap_m});
+    const double keep_m = kept_from(other) + gap_to(other);
+    if (distance_to(target, other) < keep_m && distance_to(motion_.position(), other) > from_afar_m) continue;
+    discs.push_back({other.position, keep_m - radius_m()});
     if (other.back != other.position) {
-      discs.push_back({0.5 * (other.position + other.back), other.radius_m + other.gap_m});
-      discs.push_back({other.back, other.radius_m + other.gap_m});
+      discs.push_back({0.5 * (other.position + other.back), keep_m - radius_m()});
+      discs.push_back({other.back, keep_m - radius_m()});
     }
   }
-  return person_->floor->find_way(motion_.position(), target, discs);
+  return floor().find_way(motion_.position(), target, discs);
 }
 
 Progress Pedestrian::go_to(const Vec2& target, std::span<const Presence> others, std::int64_t now) {
@@ -197,7 +217,13 @@ Progress Pedestrian::go_to(const Vec2& target, std::span<const Presence> others,
     return Progress::going_on;
   }
   if (!route_) {
-    const auto way = way_among(target, others);
+    width_ = Width::usual;
+    auto way = way_among(target, others);
+    if (!way && is_held_up(now) && person_->narrow_floor) {
+      width_ = Width::narrow;
+      way = way_among(target, others);
+      if (!way) width_ = Width::usual;
+    }
     if (!way) {
       const auto alone = person_->floor->find_way(motion_.position(), target);
       if (!alone) {
@@ -205,7 +231,7 @@ Progress Pedestrian::go_to(const Vec2& target, std::span<const Presence> others,
                     "'" + person_->spec.id + "' finds no way to where they are to go, even if nobody stands in it");
       }
       be_held_up(now);
-      if (held_up_since_ && now - *held_up_since_ >= ticks(wish_after_s)) {
+      if (is_held_up(now)) {
         wished_way_ = std::make_shared<const std::vector<Vec2>>(*alone);
       }
       return Progress::going_on;
@@ -231,9 +257,9 @@ double Pedestrian::free_way_ahead(std::span<const Presence> others) const {
       const Vec2 to_other = place - motion_.position();
       const double along = glm::dot(to_other, ahead);
       const double aside = std::abs(to_other.x * ahead.y - to_other.y * ahead.x);
-      const double reach = radius_m() + other.radius_m;
+      const double reach = kept_from(other);
       if (along > 0.0 && aside < reach) {
-        free_m = std::min(free_m, along - std::sqrt(reach * reach - aside * aside) - other.gap_m);
+        free_m = std::min(free_m, along - std::sqrt(reach * reach - aside * aside) - gap_to(other));
       }
     }
   }
@@ -245,11 +271,11 @@ bool Pedestrian::must_give_way(std::span<const Presence> others) const {
   for (const Presence& other : others) {
     if (!is_solid(other)) continue;
     const Vec2 offset = other.position - motion_.position();
-    const Vec2 closing = other.velocity - person_->humanoid.walking_speed_m_s() * direction_of(motion_.heading());
+    const Vec2 closing = other.velocity - motion_.pace_m_s() * direction_of(motion_.heading());
     const double speed2 = glm::dot(closing, closing);
     if (glm::length(other.velocity) < 0.1 || speed2 < 1e-6) continue;  // who stands is walked round
     const double when = std::clamp(-glm::dot(offset, closing) / speed2, 0.0, foresight_s);
-    if (when > 0.0 && glm::length(offset + when * closing) < radius_m() + other.radius_m + gap_m) return true;
+    if (when > 0.0 && glm::length(offset + when * closing) < kept_from(other) + gap_to(other)) return true;
   }
   return false;
 }
@@ -257,14 +283,15 @@ bool Pedestrian::must_give_way(std::span<const Presence> others) const {
 void Pedestrian::keep_distance(std::span<const Presence> others, std::size_t n_before, std::int64_t now) {
   if (motion_.stage() != Stage::walking) return;
   if (solidity_ != Solidity::solid) {
-    motion_.limit_speed(person_->humanoid.walking_speed_m_s());
+    motion_.limit_speed(motion_.pace_m_s());
     return;
   }
   const double free_m = others.empty() ? look_ahead_m : free_way_ahead(others);
   const bool give_way = must_give_way(others.first(n_before));
   const double safe = give_way ? 0.0 : std::sqrt(2.0 * braking_m_s2 * std::max(0.0, free_m));
-  motion_.limit_speed(std::min(person_->humanoid.walking_speed_m_s(), safe));
-  if (free_m > gap_m) {
+  const double pace = (width_ == Width::narrow ? squeeze_speed : 1.0) * motion_.pace_m_s();
+  motion_.limit_speed(std::min(pace, safe));
+  if (free_m > (width_ == Width::narrow ? 0.0 : gap_m)) {
     blocked_ticks_ = 0;
     return;
   }

@@ -42,8 +42,14 @@ class Pedestrian {
   void forget_way() noexcept;
   /// From now on through others, until clear of them: an incident.
   void pass_through(std::int64_t now);
+  /// Others have been in the way for a second or longer.
+  [[nodiscard]] bool is_held_up(std::int64_t now) const noexcept;
   /// A new errand: what held up the one before doesn't count any more.
-  void set_out() noexcept { held_up_ticks_ = 0; }
+  void set_out() noexcept {
+    held_up_ticks_ = blocked_ticks_ = 0;
+    held_up_since_.reset();
+    wished_way_.reset();
+  }
 
   /// n_before: of the others, those who go first where ways cross.
   void advance(std::span<const Presence> others, std::size_t n_before, std::int64_t now);
@@ -60,7 +66,14 @@ class Pedestrian {
   };
 
   [[nodiscard]] std::int64_t ticks(double seconds) const noexcept;
-  [[nodiscard]] double radius_m() const noexcept { return person_->humanoid.clearance_radius_m(); }
+  /// Squeezing past others, one draws in the arms and goes slowly; who sits pulls in the chair.
+  enum class Width { usual, narrow };
+  [[nodiscard]] const body::WalkableFloor& floor() const noexcept {
+    return width_ == Width::narrow ? *person_->narrow_floor : *person_->floor;
+  }
+  [[nodiscard]] double radius_m() const noexcept { return floor().clearance_m(); }
+  [[nodiscard]] double kept_from(const Presence& other) const noexcept;  ///< between the middles
+  [[nodiscard]] double gap_to(const Presence& other) const noexcept;
   [[nodiscard]] bool on_feet() const noexcept;
   [[nodiscard]] bool free_to_rise(std::span<const Presence> others) const;
   [[nodiscard]] std::optional<std::vector<Vec2>> way_among(const Vec2& target, std::span<const Presence> others) const;
@@ -83,6 +96,7 @@ class Pedestrian {
   Vec2 held_up_at_{0.0};
   std::int64_t blocked_ticks_ = 0;  ///< since somebody came into the way
   std::int64_t held_up_ticks_ = 0;  ///< in all since the errand was set out on
+  Width width_ = Width::usual;
   Presence::Solidity solidity_ = Presence::Solidity::solid;
   std::optional<Incident> incident_;
 };

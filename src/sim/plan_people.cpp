@@ -33,6 +33,7 @@ class Rehearsal {
       : scene_(scene), room_(room), person_(person), diagnostics_(diagnostics) {}
 
   void run() {
+    if (person_.spec.part) rehearse_schedule();
     for (const ScriptedAction& action : person_.spec.actions) {
       if (const auto* appear = std::get_if<action::Appear>(&action.what)) at_ = appear->point;
       if (const auto* enter = std::get_if<action::Enter>(&action.what)) at_ = outside(enter->entrance);
@@ -50,6 +51,19 @@ class Rehearsal {
   }
 
  private:
+  /// Who follows a schedule may get to any seat that can be reached, and has to reach their own.
+  void rehearse_schedule() {
+    const ScheduledPerson& part = *person_.spec.part;
+    at_ = outside(scene_.entrances.front().id);
+    note_other_seats();
+    const bool lacks_seat =
+        part.part == Part::guest ? person_.seats.empty() : !part.seat.empty() && !person_.can_use(part.seat);
+    if (lacks_seat) {
+      diagnostics_.error({scene_.name}, "no way leads '" + person_.spec.id + "' of the schedule to " +
+                                            (part.seat.empty() ? "any seat" : "seat '" + part.seat + "'"));
+    }
+  }
+
   static std::string text(const Vec2& p) {
     const auto round = [](double v) { return std::to_string(v).substr(0, std::to_string(v).find('.') + 3); };
     return "(" + round(p.x) + ", " + round(p.y) + ")";
@@ -93,17 +107,21 @@ class Rehearsal {
 
   static Vec2 place_to_stand(const SeatSpec& seat, const SeatPlan& plan) {
     return floor_point(seat.world_from_seat.origin) -
-           plan.stand_back_m * direction_of(heading_of(seat.world_from_seat));
+           plan.stand_back_m * direction_of(heading_of(seat.world_from_seat) + plan.place.approach_turn);
   }
 
   /// Stands as near to the free fall into the seat as the furniture allows, at most a metre farther back.
   std::optional<SeatPlan> plan_of(const SeatSpec& seat) const {
     const double floor_y = scene_.floor.height_m();
-    SeatPlan plan{{seat.world_from_seat, floor_y, table_height(seat, floor_y, room_)}, 0.0, 0.0};
+    SeatPlan plan{{seat.world_from_seat, floor_y, table_height(seat, floor_y, room_), 0.0}, 0.0, 0.0};
     // Where a table is near a wall nobody has the room of a walker: they squeeze in.
-    for (const double half_depth_m : {person_.humanoid.clearance_radius_m(), person_.humanoid.half_depth_m()}) {
-      plan.half_depth_m = half_depth_m;
-      if (find_place_to_stand(seat, plan)) return plan;
+    // Where a wall is right behind the chair they turn it and sit down from the side.
+    for (const double turn : {0.0, 0.5 * pi, -0.5 * pi}) {
+      plan.place.approach_turn = turn;
+      for (const double half_depth_m : {person_.humanoid.clearance_radius_m(), person_.humanoid.half_depth_m()}) {
+        plan.half_depth_m = half_depth_m;
+        if (find_place_to_stand(seat, plan)) return plan;
+      }
     }
     return std::nullopt;
   }
@@ -111,12 +129,12 @@ class Rehearsal {
   bool find_place_to_stand(const SeatSpec& seat, SeatPlan& plan) const {
     const double fall_back = body::fall_back_m(person_.humanoid, plan.place);
     const Vec2 pelvis = floor_point(seat.world_from_seat.origin);
-    const Vec2 facing = direction_of(heading_of(seat.world_from_seat));
+    const Vec2 facing = direction_of(heading_of(seat.world_from_seat) + plan.place.approach_turn);
     constexpr double step_m = 0.02, farthest_m = 1.0;
     for (double back = -fall_back; back <= farthest_m; back += step_m) {
       const Vec2 stand = pelvis - back * facing;
       if (!person_.can_stand(stand, facing, plan.half_depth_m)) continue;
-      if (!room_behind(seat, back + fall_back, plan.half_depth_m)) continue;
+      if (!room_behind(seat, facing, back + fall_back, plan.half_depth_m)) continue;
       if (!person_.floor->find_way(at_, stand)) continue;
       plan.stand_back_m = back;
       return true;
@@ -125,10 +143,11 @@ class Rehearsal {
   }
 
   /// Can the pelvis go so far back from the seat, on a chair that is drawn back from the table, before a wall?
-  bool room_behind(const SeatSpec& seat, double back_m, double half_depth_m) const {
+  bool room_behind(const SeatSpec& seat, const Vec2& facing, double back_m, double half_depth_m) const {
     constexpr double body_and_chair_m = 0.15;  // assumed, half a body and a chair's back (tried 0.1-0.25)
     const double keep_m = std::min(body_and_chair_m, half_depth_m);
-    const Ray behind{Vec3f(seat.world_from_seat.origin), Vec3f(-seat.world_from_seat.forward())};
+    const Ray behind{Vec3f(seat.world_from_seat.origin),
+                     -Vec3f(static_cast<float>(facing.x), 0.0F, static_cast<float>(facing.y))};
     return back_m <= 0.0 || !room_.first_hit(behind, static_cast<float>(back_m + keep_m));
   }
 
@@ -158,19 +177,43 @@ std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std:
     const std::vector<PersonSpec>& written = study.script_given().trials[planned_trials.size()].people;
     TrialModel& planned = planned_trials.emplace_back();
     planned.id = trial.id;
+    planned.duration_s = trial.duration_s;
+    planned.schedule = trial.schedule;
     for (const PersonInForce& spec : trial.people) {
       body::Humanoid humanoid(spec);
       double clearance_m = humanoid.clearance_radius_m();
       if (planned.people.size() < written.size()) {
         clearance_m = std::min(clearance_m, body::Humanoid(written[planned.people.size()]).clearance_radius_m());
       }
-      auto& floor = floors[clearance_m];
-      if (!floor) {
-        floor = std::make_shared<const body::WalkableFloor>(scene.floor, scene.entrances, scene.meshes, clearance_m);
+      const auto rehearse = [&](double keep_m, Diagnostics& found) {
+        auto& floor = floors[keep_m];
+        if (!floor) {
+          floor = std::make_shared<const body::WalkableFloor>(scene.floor, scene.entrances, scene.meshes, keep_m);
+        }
+        PersonModel person{.spec = spec,
+                           .humanoid = humanoid,
+                           .floor = floor,
+                           .radiance = radiance_of(spec.warmth, study.sensing().ambient_c)};
+        Rehearsal(scene, room, person, found).run();
+        return person;
+      };
+      Diagnostics found;
+      PersonModel person = rehearse(clearance_m, found);
+      // Where there is a narrow place on the way, people draw in their arms.
+      if (found.has_errors() && humanoid.half_width_m() < clearance_m) {
+        person = rehearse(humanoid.half_width_m(), diagnostics);
+      } else {
+        for (const Issue& issue : found.issues()) diagnostics.error(issue.where, issue.message);
       }
-      PersonModel& person = planned.people.emplace_back(
-          PersonModel{spec, humanoid, floor, {}, radiance_of(spec.warmth, study.sensing().ambient_c)});
-      Rehearsal(scene, room, person, diagnostics).run();
+      if (trial.people.size() > 1) {
+        const double narrow_m = std::min(person.floor->clearance_m(), humanoid.half_width_m());
+        auto& narrow = floors[narrow_m];
+        if (!narrow) {
+          narrow = std::make_shared<const body::WalkableFloor>(scene.floor, scene.entrances, scene.meshes, narrow_m);
+        }
+        person.narrow_floor = narrow;
+      }
+      planned.people.push_back(std::move(person));
     }
   }
   diagnostics.throw_if_errors(ErrorCode::infeasible);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pirsim/geometry.hpp"
+#include "pirsim/sample.hpp"
 
 namespace pirsim::sim {
 
@@ -29,20 +30,15 @@ struct Presence {
   std::string_view seat;  ///< taken: from setting out for it to walking away from it; or empty
   enum class Script { going_on, carried_out } script = Script::going_on;
   enum class Solidity { solid, passing_through } solidity = Solidity::solid;
-  double radius_m = 0.0;  ///< what others keep clear of, round the way from `position` to `back`
-  double gap_m = 0.0;     ///< what they keep beside that where they plan their way
+  double radius_m = 0.0;   ///< what others keep clear of, round the way from `position` to `back`
+  double gap_m = 0.0;      ///< what they keep beside that where they plan their way
+  double squeeze_m = 0.0;  ///< instead of radius_m, of who squeezes past
   /// Of somebody who is held up: the way that they would go if nobody were there; others leave it if they can.
   std::shared_ptr<const std::vector<Vec2>> wished_way;
   Precedence precedence;  ///< of that wish
 };
 
-/// What happened between people that a study's user should know of; none of it ends a run.
-enum class IncidentKind {
-  passed_through,  ///< two people who had found no way round each other went through each other
-  seat_changed,    ///< the seat was taken; another one was free
-  seat_missed      ///< the seat stayed taken; the person went on with what comes next
-};
-
+/// See RunIncident.
 struct Incident {
   IncidentKind kind = IncidentKind::passed_through;
   std::int64_t tick = 0;

@@ -1,5 +1,7 @@
 #include "sim/run_state.hpp"
 
+#include "schema/schedule_people.hpp"
+
 namespace pirsim::sim {
 
 RunState::RunState(const CompiledStudy& study, std::uint32_t run_number)
@@ -20,9 +22,14 @@ bool move_tick(const CompiledStudy& study, RunState& state) {
   state.crowd.advance(study, state.tick);
   if (state.tick % study.sensing().ticks_per_window != 0) return false;
   state.sample.time_s = static_cast<double>(state.tick) / study.sensing().tick_rate_hz;
+  if (const auto& schedule = study.trial_of(state.run).schedule) {
+    const std::int64_t day = day_number(schedule->first_day, schedule->where) + study.replicate_of(state.run) - 1;
+    state.sample.clock = clock_text(day, 3600.0 * schedule->from_h + state.sample.time_s);
+  }
   state.sample.phase = state.crowd.phase();
   state.sample.people = state.crowd.n_on_floor(study.scene().floor);
-  state.finished = state.crowd.done();
+  const std::optional<double>& duration_s = study.trial_of(state.run).duration_s;
+  state.finished = duration_s ? state.sample.time_s >= *duration_s : state.crowd.done();
   return true;
 }
 

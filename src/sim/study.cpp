@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "core/parallel.hpp"
+#include "pirsim/error.hpp"
 #include "sim/explainer.hpp"
 #include "sim/run_state.hpp"
 #include "sim/zone_cache_pool.hpp"
@@ -16,27 +17,60 @@ ZoneActivity activity_of(const ZoneSet& zones) {
   return activity;
 }
 
+void note_incidents(const sim::CompiledStudy& study, const sim::RunState& state, std::vector<RunIncident>& incidents) {
+  for (const sim::Actor& actor : state.crowd.actors()) {
+    for (const sim::Incident& incident : actor.incidents()) {
+      incidents.push_back(
+          {incident.kind, static_cast<double>(incident.tick) * study.tick_s(), actor.person().spec.id, incident.place});
+    }
+  }
+}
+
+void add_occupants(const sim::CompiledStudy& study, const sim::RunState& state, std::vector<OccupantRow>& rows) {
+  for (const sim::Actor& actor : state.crowd.actors()) {
+    if (!actor.present()) continue;
+    const Vec2 place = actor.motion().position();
+    rows.push_back({state.sample.time_s, state.sample.clock, actor.person().spec.id, std::string(actor.phase()),
+                    std::string(actor.seat()), place,
+                    study.scene().floor.contains(place) ? OccupantRow::Where::inside : OccupantRow::Where::outside});
+  }
+}
+
 RunResult run_with(sim::ZoneCachePool& caches, const sim::CompiledStudy& study, std::uint32_t run, Record record,
-                   Trace trace) {
-  RunResult result{run, study.replicate_of(run), study.trial_of(run).id, {}, {}, {}};
+                   Trace trace, Occupants occupants) {
+  RunResult result;
+  result.run = run;
+  result.replicate = study.replicate_of(run);
+  result.trial = study.trial_of(run).id;
   sim::RunState state(study, run);
   *state.cache = caches.borrow();
   std::optional<sim::Explainer> explainer;
   if (trace == Trace::signals && study.array().analog() != nullptr) explainer.emplace(study);
-  while (!state.finished) {
-    const bool window_ended = sim::step_tick(study, state);
-    if (record == Record::samples_and_zones) result.zones.push_back(activity_of(state.exposure().zones));
-    if (explainer) explainer->explain(state, result.trace);
-    if (window_ended) result.samples.push_back(state.sample);
+  try {
+    while (!state.finished) {
+      const bool window_ended = sim::step_tick(study, state);
+      if (record == Record::samples_and_zones) result.zones.push_back(activity_of(state.exposure().zones));
+      if (explainer) explainer->explain(state, result.trace);
+      if (window_ended) result.samples.push_back(state.sample);
+      if (window_ended && occupants == Occupants::told) add_occupants(study, state, result.occupants);
+      note_incidents(study, state, result.incidents);
+    }
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::infeasible) throw;
+    result.samples.clear();
+    result.zones.clear();
+    result.trace.clear();
+    result.occupants.clear();
+    result.fault = {static_cast<double>(state.tick) * study.tick_s(), error.what()};
   }
   return result;
 }
 
 }  // namespace
 
-RunResult run_once(const Model& model, std::uint32_t run, Record record, Trace trace) {
+RunResult run_once(const Model& model, std::uint32_t run, Record record, Trace trace, Occupants occupants) {
   sim::ZoneCachePool caches(model.compiled());
-  return run_with(caches, model.compiled(), run, record, trace);
+  return run_with(caches, model.compiled(), run, record, trace, occupants);
 }
 
 void run_study(const Model& model, const StudyOptions& options, const std::function<void(const RunResult&)>& consume) {
@@ -46,7 +80,7 @@ void run_study(const Model& model, const StudyOptions& options, const std::funct
       runs.count(), options.threads,
       [&](std::size_t i) {
         return run_with(caches, model.compiled(), runs.first + static_cast<std::uint32_t>(i), options.record,
-                        options.trace);
+                        options.trace, options.occupants);
       },
       [&](RunResult& result) { consume(result); }, options.goes_on);
 }

@@ -273,6 +273,7 @@ io::Manifest merge_campaign(const fs::path& folder, const fs::path& output, cons
   manifest.shard.reset();
   manifest.runs = {0, manifest.provenance.study_runs};
   manifest.rows = 0;
+  manifest.notes = {};
   const fs::path side_car = io::manifest_path(output);
   io::AtomicFile file(output);
   Merger merger(file, io::compression_of(output), sink);
@@ -283,6 +284,7 @@ io::Manifest merge_campaign(const fs::path& folder, const fs::path& output, cons
     }
     merger.add(entry);
     manifest.rows += entry.brief.rows;
+    manifest.notes += entry.brief.notes;
   }
   if (next_run != manifest.provenance.study_runs) {
     throw Error(ErrorCode::input, Where{folder.string()}, "the last runs of the study are missing");

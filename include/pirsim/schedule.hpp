@@ -1,0 +1,58 @@
+// When people are in the room, drawn a day at a time from published models of occupancy, as plain data.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pirsim/error.hpp"
+
+namespace pirsim {
+
+/// A time of day: normal, cut at three standard deviations.
+struct ClockSpec {
+  double mean_h = 0.0;
+  double sd_min = 30.0;
+};
+
+/// Shares of time and mean stays by role. Ref: [ChenHongLuo2018].
+enum class Role { staff, manager, administrator };
+
+struct StaffSpec {
+  Role role = Role::staff;
+  int count = 1;
+  std::vector<std::string> seats;  ///< their own desks; none: the scene's seats that nobody has, in order
+};
+
+/// Meetings that are held in the simulated room. Ref: [ChenHongLuo2018].
+struct MeetingsSpec {
+  int fewest_a_day = 2, most_a_day = 6;
+  int fewest_people = 2, most_people = 8;
+  std::vector<double> durations_min{30.0, 60.0, 90.0, 120.0};
+  std::vector<double> probabilities{0.13, 0.70, 0.12, 0.05};
+  double from_h = 9.0, to_h = 17.0;  ///< assumed: when they begin and end
+  double lateness_min = 2.0;         ///< mean of an exponential (`assumed`; 1 to 5 tried)
+};
+
+/// Presence as a Markov chain that follows a profile. Ref: [Page2008].
+struct ProfileSpec {
+  std::vector<double> presence;  ///< (24) share of people present in each hour of a working day
+  double mobility = 0.5;         ///< of the chain
+  double step_min = 15.0;
+};
+
+/// What the replicates of a trial are: days that follow each other.
+struct ScheduleSpec {
+  std::string first_day = "2026-03-02";  ///< ISO 8601; a Monday
+  double from_h = 0.0, to_h = 24.0;      ///< the part of the day that a run simulates
+  std::vector<StaffSpec> staff;
+  std::optional<MeetingsSpec> meetings;
+  std::optional<ProfileSpec> profile;  ///< instead of the agents' times and moves
+  ClockSpec arrival{8.5, 30.0}, departure{17.5, 30.0}, lunch{12.0, 30.0};
+  double lunch_min = 60.0, lunch_sd_min = 15.0;
+  std::optional<double> cleaning_h;    ///< somebody cleans then, on working days
+  std::vector<std::string> entrances;  ///< that people use, each their own; none: all of the scene
+  Where where;
+};
+
+}  // namespace pirsim

@@ -1,0 +1,128 @@
+#include "schema/schedule_people.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "pirsim/random.hpp"
+
+namespace pirsim {
+namespace {
+
+// Adults; statures of [DrillisContini1966]'s time were smaller. assumed: mean of men and women in Europe, with their
+// common spread (tried 1.65-1.78, 0.07-0.11).
+constexpr double mean_stature_m = 1.72, stature_sd_m = 0.09, least_stature_m = 1.52, most_stature_m = 1.92;
+constexpr double mean_bmi = 24.5, bmi_sd = 3.0;  // kg/m2, assumed (22-27)
+constexpr double pace_m_s = 1.2;                 // indoors; Ref: [Weidmann1993] has 1.34 in the open
+
+PersonSpec body_of(const std::string& id, std::uint64_t seed, std::uint32_t entity) {
+  Stream stream({seed, 0, entity, Purpose::schedule_body});
+  PersonSpec person;
+  person.id = id;
+  person.style = MotionStyle::natural;
+  person.stature_m = std::clamp(mean_stature_m + stature_sd_m * stream.normal(), least_stature_m, most_stature_m);
+  person.mass_kg = std::clamp(mean_bmi + bmi_sd * stream.normal(), 18.0, 32.0) * person.stature_m * person.stature_m;
+  person.walking_speed_m_s = pace_m_s;
+  person.seat_scatter = {0.03, 4.0};
+  return person;
+}
+
+const SeatSpec* find_seat(const SceneSpec& scene, const std::string& id) {
+  const auto seat = std::ranges::find(scene.seats, id, &SeatSpec::id);
+  return seat == scene.seats.end() ? nullptr : &*seat;
+}
+
+}  // namespace
+
+std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const SceneSpec& scene, std::uint64_t seed) {
+  Diagnostics diagnostics;
+  std::set<std::string> taken;
+  std::vector<std::string> names;
+  for (const SeatSpec& seat : scene.seats) names.push_back(seat.id);
+  for (const StaffSpec& staff : schedule.staff) {
+    for (const std::string& seat : staff.seats) {
+      if (find_seat(scene, seat) == nullptr) {
+        diagnostics.error(schedule.where,
+                          "schedule: seat '" + seat + "' is not in " + scene.name + did_you_mean(seat, names));
+      } else if (!taken.insert(seat).second) {
+        diagnostics.error(schedule.where, "schedule: seat '" + seat + "' is the own desk of two people");
+      }
+    }
+  }
+  std::vector<std::string> doors;
+  for (const EntranceSpec& door : scene.entrances) doors.push_back(door.id);
+  for (const std::string& door : schedule.entrances) {
+    if (std::ranges::find(doors, door) == doors.end()) {
+      diagnostics.error(schedule.where,
+                        "schedule: entrance '" + door + "' is not in " + scene.name + did_you_mean(door, doors));
+    }
+  }
+  if (doors.empty()) diagnostics.error(schedule.where, "schedule: " + scene.name + " has no entrance to come in by");
+  std::vector<ScheduledPerson> people;
+  const auto add = [&](Part part, Role role, const std::string& name, const std::string& seat) {
+    people.push_back({part, role, seat, body_of(name, seed, static_cast<std::uint32_t>(people.size()))});
+  };
+  int number = 0;
+  for (const StaffSpec& staff : schedule.staff) {
+    for (int i = 0; i < staff.count; ++i) {
+      std::string seat;
+      if (static_cast<std::size_t>(i) < staff.seats.size()) {
+        seat = staff.seats[static_cast<std::size_t>(i)];
+      } else {
+        const auto unowned =
+            std::ranges::find_if(names, [&](const std::string& name) { return !taken.contains(name); });
+        if (unowned == names.end()) {
+          diagnostics.error(schedule.where, "schedule: more staff than the " + std::to_string(names.size()) +
+                                                " seats of " + scene.name);
+          break;
+        }
+        seat = *unowned;
+        taken.insert(seat);
+      }
+      add(Part::staff, staff.role, "staff_" + std::to_string(++number), seat);
+    }
+  }
+  if (schedule.meetings) {
+    if (static_cast<std::size_t>(schedule.meetings->fewest_people) > names.size()) {
+      diagnostics.error(schedule.where, "schedule: meetings: fewest_people is more than the " +
+                                            std::to_string(names.size()) + " seats of " + scene.name);
+    }
+    const int most = std::min(schedule.meetings->most_people, static_cast<int>(names.size()));
+    for (int i = 1; i <= most; ++i) add(Part::guest, Role::staff, "guest_" + std::to_string(i), "");
+  }
+  if (schedule.cleaning_h) add(Part::cleaner, Role::staff, "cleaner", "");
+  diagnostics.throw_if_errors();
+  return people;
+}
+
+std::int64_t day_number(const std::string& iso_date, const Where& where) {
+  int year = 0;
+  unsigned month = 0, day = 0;
+  char more = 0;
+  if (iso_date.size() == 10 && std::sscanf(iso_date.c_str(), "%4d-%2u-%2u%c", &year, &month, &day, &more) == 3) {
+    const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(month), std::chrono::day(day)};
+    if (date.ok()) return std::chrono::sys_days(date).time_since_epoch().count();
+  }
+  throw Error(ErrorCode::input, where, "'" + iso_date + "' is no date: expected year-month-day, e.g. 2026-03-02");
+}
+
+bool is_working_day(std::int64_t day) noexcept {
+  const std::chrono::weekday weekday{std::chrono::sys_days(std::chrono::days(day))};
+  return weekday != std::chrono::Saturday && weekday != std::chrono::Sunday;
+}
+
+std::string clock_text(std::int64_t day, double seconds) {
+  const auto whole = static_cast<std::int64_t>(std::floor(seconds + 1e-9));
+  const std::int64_t in_day = whole % 86400;
+  const std::chrono::year_month_day date{std::chrono::sys_days(std::chrono::days(day + whole / 86400))};
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d", static_cast<int>(date.year()),
+                static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()), static_cast<int>(in_day / 3600),
+                static_cast<int>(in_day / 60 % 60), static_cast<int>(in_day % 60));
+  return text.data();
+}
+
+}  // namespace pirsim
