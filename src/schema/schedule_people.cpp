@@ -62,7 +62,7 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
   }
   if (doors.empty()) diagnostics.error(schedule.where, "schedule: " + scene.name + " has no entrance to come in by");
   std::vector<ScheduledPerson> people;
-  const auto add = [&](Part part, Role role, const std::string& name, const std::string& seat) {
+  const auto add = [&](SchedulePart part, Role role, const std::string& name, const std::string& seat) {
     people.push_back({part, role, seat, body_of(name, seed, static_cast<std::uint32_t>(people.size()))});
   };
   int number = 0;
@@ -82,7 +82,7 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
         seat = *unowned;
         taken.insert(seat);
       }
-      add(Part::staff, staff.role, "staff_" + std::to_string(++number), seat);
+      add(SchedulePart::staff, staff.role, "staff_" + std::to_string(++number), seat);
     }
   }
   if (schedule.meetings) {
@@ -91,9 +91,9 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
                                             std::to_string(names.size()) + " seats of " + scene.name);
     }
     const int most = std::min(schedule.meetings->most_people, static_cast<int>(names.size()));
-    for (int i = 1; i <= most; ++i) add(Part::guest, Role::staff, "guest_" + std::to_string(i), "");
+    for (int i = 1; i <= most; ++i) add(SchedulePart::guest, Role::staff, "guest_" + std::to_string(i), "");
   }
-  if (schedule.cleaning_h) add(Part::cleaner, Role::staff, "cleaner", "");
+  if (schedule.cleaning_h) add(SchedulePart::cleaner, Role::staff, "cleaner", "");
   diagnostics.throw_if_errors();
   return people;
 }

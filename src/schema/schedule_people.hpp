@@ -12,10 +12,10 @@
 namespace pirsim {
 
 /// What somebody of a schedule is there for.
-enum class Part { staff, guest, cleaner };
+enum class SchedulePart { staff, guest, cleaner };
 
 struct ScheduledPerson {
-  Part part = Part::staff;
+  SchedulePart part = SchedulePart::staff;
   Role role = Role::staff;  ///< of staff
   std::string seat;         ///< own desk, of staff
   PersonSpec person;        ///< without actions

@@ -57,7 +57,7 @@ class Rehearsal {
     at_ = outside(scene_.entrances.front().id);
     note_other_seats();
     const bool lacks_seat =
-        part.part == Part::guest ? person_.seats.empty() : !part.seat.empty() && !person_.can_use(part.seat);
+        part.part == SchedulePart::guest ? person_.seats.empty() : !part.seat.empty() && !person_.can_use(part.seat);
     if (lacks_seat) {
       diagnostics_.error({scene_.name}, "no way leads '" + person_.spec.id + "' of the schedule to " +
                                             (part.seat.empty() ? "any seat" : "seat '" + part.seat + "'"));

@@ -87,9 +87,9 @@ class Day {
     for (std::size_t i = 0; i < trial_.people.size(); ++i) {
       const auto& part = trial_.people[i].spec.part;
       if (!part) continue;
-      if (part->part == Part::guest) guests.push_back(i);
-      if (part->part == Part::cleaner) plan[i] = clean(i);
-      if (part->part == Part::staff) plan[i] = schedule_.profile ? follow_profile(i) : work(i);
+      if (part->part == SchedulePart::guest) guests.push_back(i);
+      if (part->part == SchedulePart::cleaner) plan[i] = clean(i);
+      if (part->part == SchedulePart::staff) plan[i] = schedule_.profile ? follow_profile(i) : work(i);
     }
     if (schedule_.meetings && !guests.empty()) hold_meetings(guests, plan);
     return plan;
@@ -165,7 +165,7 @@ class Day {
     std::vector<std::string> others;
     for (const PersonModel& other : trial_.people) {
       const auto& part = other.spec.part;
-      if (part && part->part == Part::staff && &other != &trial_.people[person]) others.push_back(part->seat);
+      if (part && part->part == SchedulePart::staff && &other != &trial_.people[person]) others.push_back(part->seat);
     }
     if (others.empty()) return;
     const std::string& seat = others[stream.index(static_cast<std::uint32_t>(others.size()))];
