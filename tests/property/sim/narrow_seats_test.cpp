@@ -55,11 +55,11 @@ TEST_CASE("who sits down between a table and a wall goes through no wall") {
     for (std::uint32_t run = 0; run < model.n_runs(); ++run) {
       const sim::PersonModel& person = model.compiled().trial_of(run).people.front();
       const auto seat =
-          std::ranges::find_if(person.seats, [&](const sim::SeatPlan& s) { return is_narrow(person, s); });
+          std::ranges::find_if(person.seats, [&](const auto& used) { return is_narrow(person, used.second); });
       if (seat == person.seats.end()) continue;
       ++n_narrow;
       INFO(room << ", " << model.trial_of(run));
-      const double beyond_m = farthest_beyond_walls(model, run, *seat);
+      const double beyond_m = farthest_beyond_walls(model, run, seat->second);
       CHECK(beyond_m < 0.0);
       CHECK(beyond_m > -0.5);  // there is a wall
     }
