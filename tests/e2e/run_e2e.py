@@ -51,7 +51,7 @@ COMMANDS = {(): ("studyA.yaml", "-o", "rows.csv"), ("run",): ("studyA.yaml", "-o
 OTHERS = {("reconcile", "open"): ("--answer", "a", "--commitment", "b", "--report", "c"), ("status",): ("shards",),
           ("merge",): ("shards", "-o", "rows.csv", "--script", "other.yaml"), ("effects",): (), ("help",): ()}
 VALUES = {"--set": "name=other", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--format": ".csv",
-          "--summary": "sums.csv", "--zones": "zones.csv", "--trace": "trace.csv", "--shard": "1/2", "--max-time": "5m",
+          "--summary": "sums.csv", "--zones": "zones.csv", "--trace": "trace.csv", "--occupants": "occupants.csv", "--shard": "1/2", "--max-time": "5m",
           "--trial": "S1", "--beams": "all", "--camera": "0,5,0", "--look-at": "1,0,1", "--width": "64",
           "--height": "64", "--measured": "m.csv", "--holdout": "0.3", "--table": "table", "--nuisance": "none",
           "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "each", "--hide": "one",
