@@ -11,12 +11,12 @@
 #include "io/gnuplot.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/version.hpp"
-#include "reconcile/measured.hpp"
-#include "reconcile/outputs.hpp"
-#include "reconcile/plan.hpp"
-#include "reconcile/reconcile.hpp"
-#include "reconcile/selftest.hpp"
-#include "reconcile/selftest_page.hpp"
+#include "reconcile/data/measured.hpp"
+#include "reconcile/report/outputs.hpp"
+#include "reconcile/validation/plan.hpp"
+#include "reconcile/inference/reconcile.hpp"
+#include "reconcile/validation/selftest.hpp"
+#include "reconcile/report/selftest_page.hpp"
 
 namespace pirsim::app {
 namespace {

@@ -9,7 +9,7 @@
 #include "app/session.hpp"
 #include "io/text_input.hpp"
 #include "pirsim/io.hpp"
-#include "reconcile/seal.hpp"
+#include "reconcile/validation/seal.hpp"
 
 namespace pirsim::app {
 namespace {

@@ -18,7 +18,7 @@
 #include "pirsim/state.hpp"
 #include "pirsim/study.hpp"
 #include "pirsim/version.hpp"
-#include "reconcile/reference_table.hpp"
+#include "reconcile/ensemble/reference_table.hpp"
 #include "rt/direct_tracer.hpp"
 #include "sim/compiled_study.hpp"
 #include "sim/run_state.hpp"

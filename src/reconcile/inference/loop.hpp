@@ -1,0 +1,64 @@
+// Effect after effect, until the model with them can have made the data.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reconcile/inference/analyst.hpp"
+#include "reconcile/inference/reconcile.hpp"
+
+namespace pirsim::reconcile {
+
+/// One reconciliation in the making.
+class Loop {
+ public:
+  Loop(const SceneSpec& scene, const ScriptSpec& script, const Measured& measured, const Settings& settings,
+       const Observer& observer)
+      : scene_(scene), script_(script), measured_(measured), settings_(settings), observer_(observer) {}
+  [[nodiscard]] Outcome run();
+
+ private:
+  /// A look at the data with the table of one model.
+  struct Step {
+    Laboratory lab;
+    std::vector<std::string> notes;  ///< what was done with which measured rows
+    std::vector<float> observed;     ///< statistics of the measured data
+    Outcome outcome;
+    SeenRows seen;
+    std::size_t likeliest = 0;  ///< entry
+    FittedEffect best;          ///< of that entry
+  };
+  const Step& look(const Settings& settings, double level);
+  void put_in_more();
+  /// With all that was put in; none if people can hardly get about in that model.
+  const Step* look_for_more(double level);
+  void tell_first(const Step& first);
+  void conclude();
+  void take_back();  ///< the one name that was given
+  void explain();
+  void verify_effects();
+  /// p of the global test of the model with all that has been put in, its data simulated anew.
+  [[nodiscard]] double p_with_all(double level);
+  [[nodiscard]] Settings with_all(double level) const;
+  [[nodiscard]] std::vector<std::string> names() const;
+  [[nodiscard]] std::vector<EffectSpec> patch() const;
+  [[nodiscard]] std::vector<std::size_t> training_trials() const;
+  void begin(const std::string& stage) const {
+    if (observer_.stage) observer_.stage(stage);
+  }
+
+  const SceneSpec& scene_;
+  const ScriptSpec& script_;
+  const Measured& measured_;
+  const Settings& settings_;
+  const Observer& observer_;
+  std::deque<Step> steps_;            ///< addresses stay
+  std::vector<FittedEffect> put_in_;  ///< one of each step
+  bool passes_ = false;               ///< the model with all of them can have made the data
+  std::optional<Verdict> rest_;       ///< of the last look for more, where one was needed
+  Outcome outcome_;
+};
+
+}  // namespace pirsim::reconcile

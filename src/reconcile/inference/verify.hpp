@@ -1,0 +1,92 @@
+// Does the patched model foretell trials that it was not fitted on better than the plain one?
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pirsim/script.hpp"
+#include "reconcile/data/measured.hpp"
+#include "reconcile/inference/name.hpp"
+#include "stats/intervals.hpp"
+
+namespace pirsim::reconcile {
+
+struct Laboratory;
+struct StudyFrame;
+
+/// How far a model lies from data, summed up over held-out trials.
+struct Gap {
+  double energy_score = 0.0;      ///< of what the global test looks at in one trial, mean over trials
+  double area_s = 0.0;            ///< mean absolute difference of measured and simulated seconds, mean over cells
+  std::size_t cells_outside = 0;  ///< of the model's 95 % band
+  std::size_t n_cells = 0;
+  double p = 1.0;  ///< of the global test on the held-out trials together
+};
+
+struct Verification {
+  std::size_t n_folds = 0;
+  Gap before, after;
+  double noise_floor = 0.0;        ///< energy score of the patched model's own datasets
+  stats::Interval gain;            ///< 95 % (Student's) of the mean drop in energy score per trial, over trials
+  double share_closed = 0.0;       ///< (before - after) / (before - noise floor)
+  std::size_t n_trials = 0;        ///< held out and measured; 0: people can hardly get about in the patched model
+  std::size_t n_better = 0;        ///< of them, foretold better by the patched model
+  double sign_p = 1.0;             ///< that so many are better by chance
+  double placebo = 0.0;            ///< energy score after the best effect of another family; as before without one
+  std::string placebo_effect;      ///< its name, in the first fold that has one
+  std::vector<std::string> names;  ///< what each fold found, effects joined by " + "
+  std::vector<std::vector<EffectSpec>> patches;  ///< with the parameters that each fold's other trials gave
+  bool shrunk = false;   ///< the interval excludes 0 and the placebo does less; of sums, sign_p <= 0.05 too
+  bool refused = false;  ///< the plain model fails the global test on the held-out trials
+  bool closed = false;   ///< shrunk, the plain model is refused there and the patched one is not
+};
+
+struct VerifySettings {
+  double alpha = 0.05;
+  std::uint64_t seed = 0;
+  unsigned threads = 0;
+  std::uint32_t n_worlds = 60;  ///< simulated with each patched model; more if these couldn't refuse it at alpha
+  std::size_t trees = 100;
+};
+
+/// One effect put into the model: where it was found, and by which data.
+struct PutIn {
+  const Laboratory* lab = nullptr;  ///< of the model with all effects before this one
+  std::span<const float> observed;  ///< statistics of the measured data in that laboratory
+  std::string effect;
+  SeenRows seen;  ///< of the table, with all trials
+};
+
+/// What is said to be missing, about one measured dataset.
+struct Claim {
+  std::vector<PutIn> steps;         ///< effects put in one after the other
+  std::vector<std::string> rivals;  ///< effects that explain the data as well: none of their families is a placebo
+};
+
+/// Trials (indices, ascending) that are held out together; those of no fold are never judged.
+using Folds = std::vector<std::vector<std::size_t>>;
+
+/// One a claim. Naming and fitting are repeated in every fold without its trials, step by step, and all effects
+/// together are judged on them against the plain model, that of the first step. What is not repeated is the simulation
+/// of the later steps' tables: they hold the earlier effects as all trials gave them. A fold that finds another effect
+/// than was put in stops there. on_judged is told how many claims are done.
+[[nodiscard]] std::vector<Verification> verify(std::span<const Claim> claims, const Folds& folds,
+                                               const VerifySettings& settings,
+                                               const std::function<void(std::size_t)>& on_judged = {});
+
+/// Every trial is held out once: in five folds, or by itself if the data are sums, which say little a trial.
+[[nodiscard]] Folds usual_folds(std::string_view digest, std::vector<std::size_t> trials, Measured::Kind kind);
+/// Folds of about the same size over the given trials, from the data's digest alone: fixed before anything is named.
+[[nodiscard]] Folds folds_of(std::string_view digest, std::vector<std::size_t> trials, std::size_t n_folds);
+
+/// Which measured trials (ascending) `asked` means: a share of them, "0.3", drawn by the data's digest, or names,
+/// "S3,S8"; empty: none. Throws Error(usage): a trial that is unknown or wasn't measured, or fewer than two held out or
+/// left.
+[[nodiscard]] std::vector<std::size_t> holdout_of(const std::string& asked, const StudyFrame& frame,
+                                                  const Measured& measured);
+
+}  // namespace pirsim::reconcile

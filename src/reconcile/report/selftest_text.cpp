@@ -1,0 +1,80 @@
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "pirsim/csv.hpp"
+#include "reconcile/validation/selftest.hpp"
+#include "reconcile/report/sentences.hpp"
+#include "reconcile/report/share_grids.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+std::string share(const Rate& rate) {
+  if (rate.of == 0) return "no case";
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(3) << rate.value() << " (" << rate.interval.low << "-" << rate.interval.high
+      << ", " << rate.hits << " of " << rate.of << ")";
+  return out.str();
+}
+
+/// Share of the gap that was closed, shrunk, closed; empty fields if nothing was put in.
+std::string verification(const PlantedCase& c) {
+  if (!c.verification) return ",,";
+  const Verification& v = *c.verification;
+  return io::csv_number(v.share_closed) + ',' + (v.shrunk ? '1' : '0') + ',' + (v.closed ? '1' : '0');
+}
+
+}  // namespace
+
+std::string to_markdown(const SelftestResult& result) {
+  std::ostringstream out;
+  out << "| how often | share (95 % interval) |\n|---|---|\n";
+  for (const Rate& rate : rates_of(result)) out << "| " << rate.what << " | " << share(rate) << " |\n";
+  out << "| calibration error of the probabilities | " << calibration_error(result) << " |\n\n| effect |";
+  for (const char* strength : {"weak", "medium", "strong"}) out << ' ' << strength << ": seen | and in the set |";
+  out << "\n|---|---|---|---|---|---|---|\n";
+  for (std::size_t entry = 1; entry < result.entries.size(); ++entry) {
+    out << "| " << result.entries[entry] << " |";
+    for (const Rate& rate : power_of(result, result.entries[entry])) {
+      out << ' ' << (rate.of == 0 ? "no case" : fixed(rate.value(), 2)) << " |";
+    }
+    out << '\n';
+  }
+  out << "\nConfusion: of the cases with a disagreement (of nothing: of all), the share in which the column's entry is "
+         "the likeliest; less than 0.05 left out.\n\n| hidden | taken for |\n|---|---|\n";
+  const auto confusion = confusion_of(result);
+  for (std::size_t row = 0; row < confusion.size(); ++row) {
+    out << "| " << result.entries[row] << " |";
+    std::string list;
+    for (std::size_t column = 0; column < confusion.size(); ++column) {
+      if (confusion[row][column] < 0.05) continue;
+      list += (list.empty() ? " " : ", ") + result.entries[column] + " " + fixed(confusion[row][column], 2);
+    }
+    out << list << " |\n";
+  }
+  return out.str();
+}
+
+std::string to_csv(const SelftestResult& result) {
+  std::ostringstream out;
+  out << "kind,truth,strength,verdict,named,family,likeliest,p,parameters,covered,share_closed,shrunk,closed,p_put_in,"
+         "hidden\n";
+  for (const PlantedCase& c : result.cases) {
+    std::string named, hidden;
+    for (const std::string& effect : c.named) named += (named.empty() ? "" : " ") + effect;
+    for (const EffectSpec& effect : c.effects) {
+      for (const auto& [parameter, value] : effect.parameters) {
+        hidden += (hidden.empty() ? "" : " ") + parameter + "=" + io::csv_number(value);
+      }
+      for (const auto& [choice, value] : effect.choices) hidden += " " + choice + "=" + value;
+    }
+    out << name(c.kind) << ',' << c.truth << ',' << name(c.strength) << ',' << name(c.verdict) << ',' << named << ','
+        << (c.family ? name(*c.family) : "") << ',' << c.likeliest << ',' << io::csv_number(c.p) << ','
+        << c.n_parameters << ',' << c.n_covered << ',' << verification(c) << ','
+        << (c.put_in ? io::csv_number(c.put_in->p) : "") << ',' << io::csv_field(hidden) << '\n';
+  }
+  return out.str();
+}
+
+}  // namespace pirsim::reconcile

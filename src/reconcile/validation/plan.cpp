@@ -1,0 +1,251 @@
+#include "reconcile/validation/plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "core/parallel.hpp"
+#include "reconcile/inference/analyst.hpp"
+#include "reconcile/data/longer_study.hpp"
+#include "reconcile/report/sentences.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+/// What became of the datasets that took no part in training.
+struct Judged {
+  std::vector<std::size_t> rows;  ///< of the table
+  std::vector<double> bits;       ///< told about the truth
+  std::vector<std::size_t> likeliest;
+  std::vector<double> p;  ///< of the global test
+};
+
+Judged judge_held_back(const Laboratory& lab, std::vector<std::size_t> trials, const Settings& settings) {
+  std::ranges::sort(trials);
+  const Analyst analyst(lab.view(std::move(trials), settings.threads),
+                        {settings.alpha, settings.seed, settings.threads, settings.trees});
+  Judged judged;
+  for (std::size_t row = 0; row < lab.table.rows.size(); ++row) {
+    if (is_for_calibration(lab.table.rows[row].world)) judged.rows.push_back(row);
+  }
+  const double prior = 1.0 / static_cast<double>(lab.table.n_entries());
+  constexpr double least_probability = 1e-4;
+  ordered_parallel<Judgement>(
+      judged.rows.size(), settings.threads,
+      [&](std::size_t i) { return analyst.judge(lab.table.statistics.row(judged.rows[i])); },
+      [&](Judgement& one) {
+        const std::size_t truth = lab.table.rows[judged.rows[judged.p.size()]].entry;
+        judged.bits.push_back(std::log2(std::max(least_probability, one.scores[truth].probability) / prior));
+        const auto best = std::ranges::max_element(one.scores, {}, &EntryScore::probability);
+        judged.likeliest.push_back(static_cast<std::size_t>(best - one.scores.begin()));
+        judged.p.push_back(one.p);
+      });
+  return judged;
+}
+
+/// Bits by world, each the mean over its datasets: worlds are independent, datasets of one world aren't.
+std::map<std::uint32_t, double> by_world(const Laboratory& lab, const Judged& judged) {
+  std::map<std::uint32_t, std::pair<double, double>> sums;
+  for (std::size_t i = 0; i < judged.rows.size(); ++i) {
+    auto& [sum, n] = sums[lab.table.rows[judged.rows[i]].world];
+    sum += judged.bits[i];
+    n += 1.0;
+  }
+  std::map<std::uint32_t, double> means;
+  for (const auto& [world, sum] : sums) means[world] = sum.first / sum.second;
+  return means;
+}
+
+/// Mean difference, and its 95 % interval from the scatter between worlds.
+void compare(const std::map<std::uint32_t, double>& with, const std::map<std::uint32_t, double>& without,
+             Design& design) {
+  double n = 0.0, sum = 0.0, squares = 0.0;
+  for (const auto& [world, bits] : with) {
+    const double d = bits - without.at(world);
+    n += 1.0;
+    sum += d;
+    squares += d * d;
+  }
+  design.more_bits = sum / n;
+  const double variance = std::max(0.0, squares / n - design.more_bits * design.more_bits);
+  const double half = 1.96 * std::sqrt(variance / std::max(1.0, n - 1.0));
+  design.more_bits_95 = {design.more_bits - half, design.more_bits + half};
+}
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) /
+         static_cast<double>(std::max<std::size_t>(1, values.size()));
+}
+
+double share_right(const Laboratory& lab, const Judged& judged) {
+  double hits = 0.0;
+  for (std::size_t i = 0; i < judged.rows.size(); ++i) {
+    hits += lab.table.rows[judged.rows[i]].entry == judged.likeliest[i] ? 1.0 : 0.0;
+  }
+  return hits / static_cast<double>(std::max<std::size_t>(1, judged.rows.size()));
+}
+
+/// The planned trial whose cells differ most between effects, compared with how they differ within: worth repeating.
+std::size_t most_telling_trial(const Laboratory& lab, std::size_t n_planned) {
+  const std::size_t n_entries = lab.table.n_entries(), per_trial = lab.frame.sensors.size() * n_cell_statistics;
+  std::vector<double> ratio(n_planned, 0.0);
+  for (std::size_t column = 0; column < n_planned * per_trial; ++column) {
+    std::vector<double> n(n_entries, 0.0), sum(n_entries, 0.0);
+    double all = 0.0, squares = 0.0, count = 0.0;
+    for (std::size_t row = 0; row < lab.table.rows.size(); ++row) {
+      const auto value = static_cast<double>(lab.table.statistics(row, column));
+      if (std::isnan(value)) continue;
+      n[lab.table.rows[row].entry] += 1.0;
+      sum[lab.table.rows[row].entry] += value;
+      all += value;
+      squares += value * value;
+      count += 1.0;
+    }
+    if (count == 0.0) continue;
+    double between = 0.0;
+    for (std::size_t e = 0; e < n_entries; ++e) between += n[e] > 0.0 ? sum[e] * sum[e] / n[e] : 0.0;
+    between -= all * all / count;
+    const double total = squares - all * all / count;
+    if (total > 1e-9 * count) ratio[column / per_trial] += between / total;
+  }
+  return static_cast<std::size_t>(std::ranges::max_element(ratio) - ratio.begin());
+}
+
+std::vector<PlannedPower> power_of(const Laboratory& lab, const Judged& judged, double alpha) {
+  std::vector<PlannedPower> power;
+  for (std::size_t entry = 1; entry < lab.table.n_entries(); ++entry) {
+    for (const Strength strength : {Strength::weak, Strength::medium, Strength::strong}) {
+      PlannedPower one{lab.table.entry_name(entry), strength, {"seen", 0, 0, {0.0, 1.0}}};
+      for (std::size_t i = 0; i < judged.rows.size(); ++i) {
+        const TableRow& row = lab.table.rows[judged.rows[i]];
+        if (row.entry != entry || strength_of(row.effects.front()) != strength) continue;
+        ++one.seen.of;
+        one.seen.hits += judged.p[i] <= alpha ? 1 : 0;
+      }
+      if (one.seen.of > 0) one.seen.interval = stats::clopper_pearson(one.seen.hits, one.seen.of);
+      power.push_back(std::move(one));
+    }
+  }
+  return power;
+}
+
+std::vector<std::vector<double>> confusion_of(const Laboratory& lab, const Judged& judged) {
+  const std::size_t n = lab.table.n_entries();
+  std::vector<std::vector<double>> shares(n, std::vector<double>(n, 0.0));
+  for (std::size_t i = 0; i < judged.rows.size(); ++i) {
+    shares[lab.table.rows[judged.rows[i]].entry][judged.likeliest[i]] += 1.0;
+  }
+  for (std::vector<double>& row : shares) {
+    const double sum = std::accumulate(row.begin(), row.end(), 0.0);
+    for (double& share : row) share = sum > 0.0 ? share / sum : 0.0;
+  }
+  return shares;
+}
+
+/// A tenth of what naming takes: designs are compared on the same worlds, so that few suffice.
+Settings with_fewer_worlds(Settings settings) {
+  for (std::uint32_t* n : {&settings.table.n_worlds, &settings.table.n_remembered, &settings.table.n_traced}) {
+    *n = std::max(fewest_datasets_to_refuse(settings.alpha), *n / 10);
+  }
+  return settings;
+}
+
+/// A design before it is judged.
+struct Idea {
+  std::string name, what;
+  std::vector<std::size_t> more;  ///< trials beside those planned
+};
+
+std::vector<Idea> ideas_of(const LongerStudy& study, const Laboratory& lab) {
+  const std::size_t n = study.n_planned;
+  std::vector<Idea> ideas;
+  const std::size_t best = most_telling_trial(lab, n);
+  if (n > 1) {
+    const std::string name = study.script.trials[best].id;
+    ideas.push_back({"trial " + name + " again", "trial " + name + " once more", {n + best}});
+  }
+  Idea again{"all again", "every trial once more", {}};
+  for (std::size_t trial = n; trial < 2 * n; ++trial) again.more.push_back(trial);
+  ideas.push_back(std::move(again));
+  if (!study.walk.empty()) ideas.push_back({"slow walk", "one person walking slowly through the room", study.walk});
+  if (!study.empty.empty()) ideas.push_back({"empty room", "the empty room", study.empty});
+  return ideas;
+}
+
+double minutes_of(const Laboratory& lab, const std::vector<std::size_t>& trials) {
+  double rows = 0.0;
+  for (const DataShape::Run& run : lab.shape.runs) {
+    if (std::ranges::find(trials, run.trial) != trials.end()) rows += static_cast<double>(run.n_main);
+  }
+  return rows * lab.frame.window_s / 60.0;
+}
+
+std::string best_of(const PlanResult& result) {
+  const Design& planned = result.designs.front();
+  const Design* best = nullptr;
+  for (const Design& design : result.designs) {
+    if (&design == &planned || design.more_bits_95.low <= 0.0) continue;
+    if (best == nullptr || design.surely_per_minute() > best->surely_per_minute()) best = &design;
+  }
+  const std::string now = "what is planned makes the right effect the likeliest in " + percent(planned.right) +
+                          " of cases (" + short_number(planned.bits) + " bits)";
+  if (best == nullptr) return "None of the further measurements tried is shown to help: " + now + ".";
+  return "The best next measurement is " + best->what + " (" + short_number(best->minutes) + " min more): " + now +
+         ", with it " + percent(best->right) + " (" + short_number(best->more_bits) + " bits more, 95 % interval " +
+         short_number(best->more_bits_95.low) + " to " + short_number(best->more_bits_95.high) + ").";
+}
+
+}  // namespace
+
+PlanResult plan(const SceneSpec& scene, const ScriptSpec& script, const PlanSettings& asked, const Observer& observer) {
+  const PlanSettings settings{with_fewer_worlds(asked.analysis), asked.kind, asked.n_replicates};
+  LongerStudy study = longer_study(scene, script);
+  const auto laboratory = [&](Measured::Kind kind) {
+    return make_laboratory(
+        scene, study.script, settings.analysis,
+        [&](const StudyFrame& frame, std::span<const Series> pilot) {
+          return full_shape(frame, kind, settings.n_replicates, pilot);
+        },
+        observer);
+  };
+  const Laboratory lab = laboratory(settings.kind);
+  std::vector<std::size_t> planned(study.n_planned);
+  std::iota(planned.begin(), planned.end(), std::size_t{0});
+  const auto judged = [&](const Laboratory& in, const std::vector<std::size_t>& more, const std::string& what) {
+    if (observer.stage) observer.stage("judging " + what);
+    std::vector<std::size_t> trials = planned;
+    trials.insert(trials.end(), more.begin(), more.end());
+    return judge_held_back(in, std::move(trials), settings.analysis);
+  };
+  const Judged base = judged(lab, {}, "what is planned");
+  const auto base_bits = by_world(lab, base);
+  PlanResult result;
+  result.notes = std::move(study.notes);
+  result.n_datasets = base.rows.size();
+  for (std::size_t entry = 0; entry < lab.table.n_entries(); ++entry)
+    result.entries.push_back(lab.table.entry_name(entry));
+  result.designs.push_back({"as planned",
+                            "what is planned",
+                            minutes_of(lab, planned),
+                            mean(base.bits),
+                            share_right(lab, base),
+                            0.0,
+                            {0.0, 0.0}});
+  const auto add = [&](const Laboratory& in, const Idea& idea) {
+    const Judged with = judged(in, idea.more, idea.what);
+    Design design{idea.name, idea.what, minutes_of(in, idea.more), mean(with.bits), share_right(in, with), 0.0, {}};
+    compare(by_world(in, with), base_bits, design);
+    result.designs.push_back(std::move(design));
+  };
+  for (const Idea& idea : ideas_of(study, lab)) add(lab, idea);
+  if (settings.kind == Measured::Kind::sums) {
+    add(laboratory(Measured::Kind::series), {"second by second", "the same, second by second instead of sums", {}});
+  }
+  result.power = power_of(lab, base, settings.analysis.alpha);
+  result.confusion = confusion_of(lab, base);
+  result.sentence = best_of(result);
+  return result;
+}
+
+}  // namespace pirsim::reconcile

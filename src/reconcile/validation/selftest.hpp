@@ -1,0 +1,130 @@
+// Does the workflow find what was hidden? Effects are planted in simulated data that no table has seen.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "effects/catalogue.hpp"
+#include "reconcile/inference/reconcile.hpp"
+#include "stats/calibration.hpp"
+#include "stats/intervals.hpp"
+
+namespace pirsim::reconcile {
+
+enum class LeaveOut {
+  none,
+  each  ///< judge the datasets with one effect a second time, by a catalogue that lacks it
+};
+
+struct SelftestSettings {
+  Settings analysis;
+  Measured::Kind kind = Measured::Kind::series;
+  int n_replicates = 1;          ///< runs of every trial in a planted dataset
+  std::uint32_t n_nulls = 60;    ///< datasets with nothing hidden
+  std::uint32_t n_planted = 10;  ///< datasets of every effect and strength
+  std::uint32_t n_beyond = 0;    ///< of every effect, stronger than its prior, in rooms wider than theirs
+  std::uint32_t n_pairs = 0;     ///< datasets with two effects
+  std::uint32_t n_aliens = 0;    ///< of every alien
+  LeaveOut leave_out = LeaveOut::none;
+  /// Datasets with the right name, spread over effects and strengths, whose effect is put in and judged on held-out
+  /// trials; if any, so are all with nothing hidden in which something is suspected. And so many names each that are
+  /// right, that an effect got which the catalogue lacks, and that an alien got, are put in to see whether the model
+  /// with them can have made the data.
+  std::uint32_t n_verified = 0;
+  /// Keeps finished datasets; its name is made longer by what they depend on. Empty: they are not kept.
+  std::filesystem::path planted_folder = {};
+};
+
+/// What is hidden in a dataset, and from whom.
+enum class CaseKind {
+  nothing,
+  one,           ///< effect of the catalogue, strength from its prior
+  beyond_prior,  ///< stronger than any in the table, in a room drawn from a wider nuisance
+  left_out,      ///< effect that the catalogue lacks when this dataset is judged
+  two,           ///< effects together
+  alien          ///< something that no catalogue has
+};
+enum class Strength { none, weak, medium, strong, beyond };  ///< thirds of the prior, by distance from off
+[[nodiscard]] std::string_view name(CaseKind kind) noexcept;
+[[nodiscard]] std::string_view name(Strength strength) noexcept;
+/// By the parameter that names an effect's strength; medium for an effect that is there or not.
+[[nodiscard]] Strength strength_of(const EffectSpec& effect);
+
+/// A dataset in which something is hidden, made to see whether it is found.
+struct Planted {
+  CaseKind kind = CaseKind::nothing;
+  Strength strength = Strength::none;
+  std::string alien;                ///< name; empty without one
+  std::vector<EffectSpec> effects;  ///< as drawn
+  std::vector<float> statistics;    ///< (n_statistics)
+
+  [[nodiscard]] std::string truth() const;  ///< effects and alien in words; "nothing"
+};
+
+/// One dataset and what became of it.
+struct PlantedCase {
+  CaseKind kind = CaseKind::nothing;
+  std::string truth;  ///< "nothing", an effect, an alien, or "one + another"
+  Strength strength = Strength::none;
+  std::vector<EffectSpec> effects;
+  Verdict verdict = Verdict::no_disagreement;
+  std::vector<std::string> named;         ///< or not to be told apart
+  std::optional<effects::Family> family;  ///< of the named effect, or one whose effects together are sure
+  std::string likeliest;                  ///< entry with the greatest probability
+  std::vector<double> probabilities;      ///< (n_entries) as SelftestResult::entries
+  double p = 1.0;                         ///< of the global test
+  std::size_t n_parameters = 0;           ///< fitted, if the right effect was named
+  std::size_t n_covered = 0;              ///< of them, whose interval holds the truth
+
+  std::size_t planted = 0;             ///< which dataset it is of those that were planted
+  std::optional<FittedEffect> fitted;  ///< of the effect named
+
+  std::optional<Verification> verification;  ///< of the effect named, or of the first that can't be ruled out
+  std::optional<Look> put_in;                ///< what the model with the effect named looks like
+
+  [[nodiscard]] bool seen() const noexcept { return verdict != Verdict::no_disagreement; }
+};
+
+/// A share with its exact 95 % interval.
+struct Rate {
+  std::string what;
+  std::size_t hits = 0, of = 0;
+  stats::Interval interval;  ///< empty (0 to 1) without any case
+  [[nodiscard]] double value() const noexcept {
+    return of == 0 ? 0.0 : static_cast<double>(hits) / static_cast<double>(of);
+  }
+};
+
+struct SelftestResult {
+  std::vector<PlantedCase> cases;
+  std::vector<std::string> entries;  ///< of the table, nothing first
+  stats::Reliability reliability;    ///< of the probabilities, over cases of the kind `one` with a disagreement
+};
+
+/// What the settings ask for, in worlds that no table has seen; those in which people can't get about are missing.
+[[nodiscard]] std::vector<Planted> plant(const Laboratory& lab, const SelftestSettings& settings,
+                                         const Observer& observer = {});
+/// What a laboratory's table says of them.
+[[nodiscard]] SelftestResult judge(const Laboratory& lab, const std::vector<Planted>& planted,
+                                   const SelftestSettings& settings, const Observer& observer = {});
+/// Both, with a laboratory for full data of the settings' kind.
+[[nodiscard]] SelftestResult selftest(const SceneSpec& scene, const ScriptSpec& script,
+                                      const SelftestSettings& settings, const Observer& observer = {});
+
+/// The design's rates: alarms and names on nulls, power, right name, right family, wrong name, truth in the set,
+/// coverage; gaps closed on held-out trials; what becomes of effects that the catalogue lacks, of pairs and of
+/// strengths beyond the prior.
+[[nodiscard]] std::vector<Rate> rates_of(const SelftestResult& result);
+/// Of one effect and strength: how often a disagreement is seen, and how often the effect is then in the set.
+[[nodiscard]] std::vector<Rate> power_of(const SelftestResult& result, const std::string& effect);
+/// (n_entries x n_entries) row: truth, column: likeliest entry; shares of the row, of cases with a disagreement.
+[[nodiscard]] std::vector<std::vector<double>> confusion_of(const SelftestResult& result);
+
+[[nodiscard]] std::string to_markdown(const SelftestResult& result);
+[[nodiscard]] std::string to_csv(const SelftestResult& result);  ///< a row a case
+
+}  // namespace pirsim::reconcile
