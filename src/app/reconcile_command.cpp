@@ -12,11 +12,11 @@
 #include "pirsim/io.hpp"
 #include "pirsim/version.hpp"
 #include "reconcile/data/measured.hpp"
-#include "reconcile/report/outputs.hpp"
-#include "reconcile/validation/plan.hpp"
 #include "reconcile/inference/reconcile.hpp"
-#include "reconcile/validation/selftest.hpp"
+#include "reconcile/report/outputs.hpp"
 #include "reconcile/report/selftest_page.hpp"
+#include "reconcile/validation/plan.hpp"
+#include "reconcile/validation/selftest.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -49,7 +49,7 @@ struct SelftestOptions {
   std::filesystem::path output = "reconcile_selftest";  ///< folder
   reconcile::Measured::Kind kind = reconcile::Measured::Kind::series;
   int runs = 1;
-  std::uint32_t nulls = 60, planted = 10, beyond = 0, pairs = 0, aliens = 0, verified = 0;
+  std::uint32_t nulls = 60, injected = 10, beyond = 0, pairs = 0, out_of_catalogue = 0, verified = 0;
   reconcile::LeaveOut leave_out = reconcile::LeaveOut::none;
 };
 
@@ -66,14 +66,14 @@ reconcile::Settings settings_of(const AnalysisOptions& options, const std::files
   };
   for (const std::string& effect : options.effects) {
     const std::string& name = effects::find(effect).info.name;
-    if (std::ranges::find(settings.table.entries, name) != settings.table.entries.end())
+    if (std::ranges::find(settings.table.effects, name) != settings.table.effects.end())
       throw Error(ErrorCode::usage, "--effects: " + name + " twice");
     if (std::ranges::find(script.effects, name, &EffectSpec::name) != script.effects.end())
       throw Error(ErrorCode::usage, "--effects: the script has " + name + " already, it isn't looked for again");
-    settings.table.entries.push_back(name);
+    settings.table.effects.push_back(name);
   }
   settings.table.threads = options.threads;
-  settings.table.n_worlds = scaled(settings.table.n_worlds);
+  settings.table.n_realizations = scaled(settings.table.n_realizations);
   settings.table.n_remembered = scaled(settings.table.n_remembered);
   settings.table.n_traced = scaled(settings.table.n_traced);
   settings.table_folder = options.table.empty() ? output / "table" : options.table;
@@ -104,7 +104,7 @@ class Teller {
       if (verbosity_ != Verbosity::quiet) std::cerr << stage << " ...\n";
     };
     observer.progress = [this](std::uint32_t done, std::uint32_t total) {
-      if (!progress_) progress_.emplace(total, verbosity_, "worlds");
+      if (!progress_) progress_.emplace(total, verbosity_, "realizations");
       for (; told_ < done; ++told_) progress_->run_finished();
     };
     return observer;
@@ -137,14 +137,14 @@ void reconcile_selftest(const Inputs& inputs, const AnalysisOptions& analysis, c
                                        options.kind,
                                        options.runs,
                                        options.nulls,
-                                       options.planted,
+                                       options.injected,
                                        options.beyond,
                                        options.pairs,
-                                       options.aliens,
+                                       options.out_of_catalogue,
                                        options.leave_out,
                                        options.verified};
   require_writable(options.output);
-  settings.planted_folder = settings.analysis.table_folder / "planted";
+  settings.injected_folder = settings.analysis.table_folder / "injected";
   Teller teller(inputs.verbosity);
   const reconcile::SelftestResult result = reconcile::selftest(scene, script, settings, teller.observer());
   teller.finish();
@@ -225,7 +225,7 @@ void add_selftest_command(CLI::App& reconcile_command) {
   CLI::App& command =
       add_command(reconcile_command, "selftest", "hide effects in simulated data and see which are found", R"(
   pirsim reconcile selftest --scene room.gltf --script study.yaml --budget 0.2
-  pirsim reconcile selftest --scene room.gltf --script study.yaml --effects dead_time,sensor_yaw --planted 40
+  pirsim reconcile selftest --scene room.gltf --script study.yaml --effects dead_time,sensor_yaw --injected 40
 )");
   const auto inputs = std::make_shared<Inputs>();
   const auto analysis = std::make_shared<AnalysisOptions>();
@@ -234,23 +234,24 @@ void add_selftest_command(CLI::App& reconcile_command) {
   using reconcile::LeaveOut;
   command.add_option("-o,--out", options->output, "folder for rates and pictures (default: reconcile_selftest)")
       ->option_text("DIR");
-  offer_kind(command, options->kind, "what is planted in");
+  offer_kind(command, options->kind, "what faults are injected into");
   command.add_option("--runs", options->runs, "runs of every trial (default: 1)")
       ->option_text("N")
       ->check(CLI::Range(1, 100));
   command.add_option("--nulls", options->nulls, "datasets with nothing hidden (default: 60)")->option_text("N");
-  command.add_option("--planted", options->planted, "datasets of every effect and strength (default: 10)")
+  command.add_option("--injected", options->injected, "datasets of every effect and strength (default: 10)")
       ->option_text("N");
   command.add_option("--beyond", options->beyond, "of every effect, stronger than any in the table (default: 0)")
       ->option_text("N");
   command.add_option("--pairs", options->pairs, "datasets with two effects (default: 0)")->option_text("N");
-  command.add_option("--aliens", options->aliens, "of every fault that no catalogue has (default: 0)")
+  command
+      .add_option("--out-of-catalogue", options->out_of_catalogue, "of every fault that no catalogue has (default: 0)")
       ->option_text("N");
   command
       .add_option(
           "--verify", options->verified,
           "with the right name, judged on held-out trials; and all with nothing hidden and something suspected; "
-          "and names put in, to see whether the model passes (default: 0)")
+          "and named effects applied, to see whether the model passes (default: 0)")
       ->option_text("N");
   command.add_option("--leave-out", options->leave_out, "none, or each: judge by catalogues that lack the effect, too")
       ->option_text("HOW")
@@ -301,7 +302,7 @@ void add_reconcile_command(CLI::App& app) {
                   "share (0.3) or names (S3,S8) of trials kept from naming and fitting, to be judged on "
                   "(default: every trial once, in folds)")
       ->option_text("TRIALS");
-  command.add_option("--max-effects", options->max_effects, "most effects to put in (default: 3)")
+  command.add_option("--max-effects", options->max_effects, "most effects to apply (default: 3)")
       ->option_text("N")
       ->check(CLI::Range(1, 5));
   offer_analysis(command, *analysis);

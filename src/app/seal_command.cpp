@@ -125,13 +125,13 @@ void add_seal_command(CLI::App& reconcile_command) {
       ->option_text("FILE");
   command.add_option("--nuisance", options->nuisance, "what is uncertain about the room, YAML; or none")
       ->option_text("FILE");
-  command.add_option("--hide", options->hidden, "any, nothing, one, two or alien (default: any)")
+  command.add_option("--hide", options->hidden, "any, nothing, one, two or out-of-catalogue (default: any)")
       ->option_text("KIND")
       ->transform(one_of<Hidden>({{"any", Hidden::any},
                                   {"nothing", Hidden::nothing},
                                   {"one", Hidden::one},
                                   {"two", Hidden::two},
-                                  {"alien", Hidden::alien}}));
+                                  {"out-of-catalogue", Hidden::out_of_catalogue}}));
   command.add_option("--runs", options->runs, "runs of every trial (default: 1)")
       ->option_text("N")
       ->check(CLI::Range(1, 100));

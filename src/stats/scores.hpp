@@ -1,4 +1,4 @@
-// How well an ensemble foretells what was observed, and how far two samples lie apart.
+// How well an ensemble predicts what was observed, and how far two samples lie apart.
 #pragma once
 
 #include <span>

@@ -22,7 +22,7 @@ struct Profile {
   };
   std::vector<Trial> trials;
 };
-/// runs: simulated by the base model in many worlds.
+/// runs: simulated by the base model in many realizations.
 [[nodiscard]] Profile profile_of(const StudyFrame& frame, const ScriptSpec& script, std::span<const Series> runs);
 
 /// Per cell (trial x sensor), over the main part unless it says otherwise; mean over a cell's runs.

@@ -85,15 +85,15 @@ void change_people(ScriptSpec& script, const Draw& draw) {
 
 }  // namespace
 
-World draw_world(const SceneSpec& scene, const ScriptSpec& script, const NuisanceSpec& nuisance, std::uint64_t seed,
-                 std::uint32_t index, std::uint32_t attempt) {
-  World world{scene, script};
+Realization draw_realization(const SceneSpec& scene, const ScriptSpec& script, const NuisanceSpec& nuisance,
+                             std::uint64_t seed, std::uint32_t index, std::uint32_t attempt) {
+  Realization realization{scene, script};
   const Draw draw{nuisance, seed, index, attempt};
-  move_sensors(world.scene, draw);
-  move_seats(world.scene, draw);
-  change_people(world.script, draw);
-  world.script.seed = seed_of(draw);
-  return world;
+  move_sensors(realization.scene, draw);
+  move_seats(realization.scene, draw);
+  change_people(realization.script, draw);
+  realization.script.seed = seed_of(draw);
+  return realization;
 }
 
 }  // namespace pirsim::reconcile

@@ -9,16 +9,17 @@
 namespace pirsim::reconcile {
 
 /// Scene and script of one dataset: one room, one set of people, one sequence of random choices.
-struct World {
+struct Realization {
   SceneSpec scene;
   ScriptSpec script;
 };
 
-/// Draws world `index` of the stream `seed`: seats, sensors, bodies and arms moved as the nuisance says, and a seed of
-/// its own for everything random in the simulation. A world is a pure function of the arguments, so that two effects
-/// can be compared in the same world. A world that people can't get about in is no room that the data may come from:
-/// take the next attempt.
-[[nodiscard]] World draw_world(const SceneSpec& scene, const ScriptSpec& script, const NuisanceSpec& nuisance,
-                               std::uint64_t seed, std::uint32_t index, std::uint32_t attempt = 0);
+/// Draws realization `index` of the stream `seed`: seats, sensors, bodies and arms moved as the nuisance says, and a
+/// seed of its own for everything random in the simulation. A realization is a pure function of the arguments, so that
+/// two effects can be compared in the same realization. A realization that people can't get about in is no room that
+/// the data may come from: take the next attempt.
+[[nodiscard]] Realization draw_realization(const SceneSpec& scene, const ScriptSpec& script,
+                                           const NuisanceSpec& nuisance, std::uint64_t seed, std::uint32_t index,
+                                           std::uint32_t attempt = 0);
 
 }  // namespace pirsim::reconcile

@@ -10,14 +10,15 @@
 namespace pirsim::reconcile {
 namespace {
 
-constexpr std::uint32_t entries_per_attempt = 4096;  ///< keeps the streams of attempts apart
-/// What a profile was made of looks less strange beside it than new data do: no world of a table.
-constexpr std::uint32_t first_pilot_world = 1U << 26U;
+constexpr std::uint32_t effects_per_attempt = 4096;  ///< keeps the streams of attempts apart
+/// What a profile was made of looks less strange beside it than new data do: no realization of a table.
+constexpr std::uint32_t first_pilot_realization = 1U << 26U;
 
-/// Number of worlds for calibration before the n-th world.
+/// Number of realizations for calibration before the n-th realization.
 std::uint32_t n_for_calibration(std::uint32_t n) {
   std::uint32_t count = n / 5 * 2;
-  for (std::uint32_t world = n / 5 * 5; world < n; ++world) count += is_for_calibration(world) ? 1 : 0;
+  for (std::uint32_t realization = n / 5 * 5; realization < n; ++realization)
+    count += is_for_calibration(realization) ? 1 : 0;
   return count;
 }
 
@@ -25,44 +26,47 @@ std::uint32_t place_in_catalogue(const effects::Effect& effect) {
   return static_cast<std::uint32_t>(std::ranges::find(effects::catalogue(), &effect) - effects::catalogue().begin());
 }
 
-/// Simulates the datasets of single worlds.
-class WorldJob {
+/// Simulates the datasets of single realizations.
+class RealizationJob {
  public:
-  WorldJob(const WorldSource& source, const StudyFrame& frame, int n_replicates, const TableSettings& settings)
+  RealizationJob(const RealizationSource& source, const StudyFrame& frame, int n_replicates,
+                 const TableSettings& settings)
       : source_(source), frame_(frame), n_replicates_(n_replicates), settings_(settings) {
-    for (const std::string& entry : settings.entries) effects_.push_back(&effects::find(entry));
+    for (const std::string& hypothesis : settings.effects) effects_.push_back(&effects::find(hypothesis));
   }
 
   [[nodiscard]] TableChunk run(std::uint32_t index) const {
     TableChunk chunk;
-    const SimulatedWorld world(source_, frame_, index, n_replicates_);
-    chunk.datasets.push_back({{0, index, {}}, world.plain(0, n_replicates_)});
+    const SimulatedRealization realization(source_, frame_, index, n_replicates_);
+    chunk.datasets.push_back({{0, index, {}}, realization.plain(0, n_replicates_)});
     for (std::uint32_t e = 0; e < effects_.size(); ++e) {
-      if (has_dataset(*effects_[e], index)) add_effect(chunk, world, index, e);
+      if (has_dataset(*effects_[e], index)) add_effect(chunk, realization, index, e);
     }
     return chunk;
   }
 
  private:
-  /// All effects are trained in the same worlds, so that what is between two of them isn't the worlds' doing. They are
-  /// calibrated in worlds that differ as far as there are enough: a few strange ones shall not set the levels of all.
-  [[nodiscard]] bool has_dataset(const effects::Effect& effect, std::uint32_t world) const {
+  /// All effects are trained in the same realizations, so that what is between two of them isn't the realizations'
+  /// doing. They are calibrated in realizations that differ as far as there are enough: a few strange ones shall not
+  /// set the levels of all.
+  [[nodiscard]] bool has_dataset(const effects::Effect& effect, std::uint32_t realization) const {
     const std::uint32_t wanted =
         effect.info.reach == effects::Reach::geometry ? settings_.n_traced : settings_.n_remembered;
-    if (!is_for_calibration(world)) return world < wanted;
-    const std::uint32_t n = n_for_calibration(settings_.n_worlds);
+    if (!is_for_calibration(realization)) return realization < wanted;
+    const std::uint32_t n = n_for_calibration(settings_.n_realizations);
     const auto first =
         static_cast<std::uint32_t>(std::size_t{place_in_catalogue(effect)} * n / effects::catalogue().size());
-    return (n_for_calibration(world) + n - first) % n < n_for_calibration(wanted);
+    return (n_for_calibration(realization) + n - first) % n < n_for_calibration(wanted);
   }
-  void add_effect(TableChunk& chunk, const SimulatedWorld& world, std::uint32_t index, std::uint32_t e) const {
+  void add_effect(TableChunk& chunk, const SimulatedRealization& realization, std::uint32_t index,
+                  std::uint32_t e) const {
     // What is drawn for an effect doesn't depend on which others are looked for.
     const std::uint32_t place = place_in_catalogue(*effects_[e]);
     for (std::uint32_t attempt = 0; attempt < most_attempts; ++attempt) {
-      Stream stream({source_.seed, index, place + attempt * entries_per_attempt, Purpose::reference_parameters});
+      Stream stream({source_.seed, index, place + attempt * effects_per_attempt, Purpose::reference_parameters});
       const EffectSpec effect =
-          effects::draw_from_prior(*effects_[e], world.world().scene, world.world().script, stream);
-      auto data = world.with_effects(std::span(&effect, 1), 0, n_replicates_);
+          effects::draw_from_prior(*effects_[e], realization.drawn().scene, realization.drawn().script, stream);
+      auto data = realization.with_effects(std::span(&effect, 1), 0, n_replicates_);
       if (!data) continue;
       chunk.datasets.push_back({{e + 1, index, {effect}}, std::move(*data)});
       return;
@@ -70,7 +74,7 @@ class WorldJob {
     ++chunk.n_left_out;
   }
 
-  const WorldSource& source_;
+  const RealizationSource& source_;
   const StudyFrame& frame_;
   int n_replicates_;
   const TableSettings& settings_;
@@ -79,42 +83,43 @@ class WorldJob {
 
 }  // namespace
 
-std::vector<Series> pilot_runs(const WorldSource& source, const StudyFrame& frame, std::uint32_t n_worlds,
+std::vector<Series> pilot_runs(const RealizationSource& source, const StudyFrame& frame, std::uint32_t n_realizations,
                                unsigned threads) {
   std::vector<Series> all;
   ordered_parallel<std::vector<Series>>(
-      n_worlds, threads,
+      n_realizations, threads,
       [&](std::size_t i) {
-        return SimulatedWorld(source, frame, first_pilot_world + static_cast<std::uint32_t>(i), 1).plain(0, 1);
+        return SimulatedRealization(source, frame, first_pilot_realization + static_cast<std::uint32_t>(i), 1)
+            .plain(0, 1);
       },
       [&](std::vector<Series>& runs) { std::ranges::move(runs, std::back_inserter(all)); });
   return all;
 }
 
-ReferenceTable make_reference_table(const WorldSource& source, const StudyFrame& frame, const DataShape& shape,
+ReferenceTable make_reference_table(const RealizationSource& source, const StudyFrame& frame, const DataShape& shape,
                                     const Profile& profile, const TableSettings& asked,
                                     const std::filesystem::path& folder, const TableProgress& progress) {
   TableSettings settings = asked;
-  if (settings.entries.empty()) {
+  if (settings.effects.empty()) {
     for (const effects::Effect* effect : effects::catalogue()) {
-      if (effect->info.same_as.empty()) settings.entries.push_back(effect->info.name);
+      if (effect->info.same_as.empty()) settings.effects.push_back(effect->info.name);
     }
   }
   // What the script has is not looked for a second time: two of a kind on one sensor are refused.
-  std::erase_if(settings.entries, [&](const std::string& entry) {
-    return std::ranges::find(source.script.effects, entry, &EffectSpec::name) != source.script.effects.end();
+  std::erase_if(settings.effects, [&](const std::string& hypothesis) {
+    return std::ranges::find(source.script.effects, hypothesis, &EffectSpec::name) != source.script.effects.end();
   });
-  if (settings.entries.empty())
+  if (settings.effects.empty())
     throw Error(ErrorCode::usage, "nothing is left to be looked for: the script has every effect that is asked for");
   ReferenceTable table;
   table.key = table_key(source, frame, shape.n_replicates, settings);
   const TableStore store(folder, table.key);
-  const WorldJob job(source, frame, shape.n_replicates, settings);
-  table.effects = settings.entries;
+  const RealizationJob job(source, frame, shape.n_replicates, settings);
+  table.effects = settings.effects;
   table.profile = profile;
-  table.n_worlds = settings.n_worlds;
+  table.n_realizations = settings.n_realizations;
   for_each_chunk(
-      store, settings.n_worlds, settings.threads, [&](std::uint32_t index) { return job.run(index); }, progress,
+      store, settings.n_realizations, settings.threads, [&](std::uint32_t index) { return job.run(index); }, progress,
       [&](TableChunk& chunk) {
         append_statistics(frame, shape, profile, chunk, settings.threads, table.statistics);
         for (SimulatedDataset& dataset : chunk.datasets) table.rows.push_back(std::move(dataset.row));

@@ -1,8 +1,8 @@
 #include <cstring>
 
 #include "core/digest.hpp"
-#include "geom/triangle_surface.hpp"
 #include "effects/catalogue.hpp"
+#include "geom/triangle_surface.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/version.hpp"
 #include "reconcile/ensemble/reference_table.hpp"
@@ -106,9 +106,9 @@ void add(Fingerprint& print, const NuisanceSpec& nuisance) {
   }
 }
 
-void add_catalogue(Fingerprint& print, const std::vector<std::string>& entries) {
-  for (const std::string& entry : entries) {
-    const effects::EffectInfo& info = effects::find(entry).info;
+void add_catalogue(Fingerprint& print, const std::vector<std::string>& hypotheses) {
+  for (const std::string& hypothesis : hypotheses) {
+    const effects::EffectInfo& info = effects::find(hypothesis).info;
     print.add(info.name);
     for (const effects::ParameterInfo& parameter : info.parameters) {
       print.add(parameter.name);
@@ -121,22 +121,22 @@ void add_catalogue(Fingerprint& print, const std::vector<std::string>& entries) 
 
 }  // namespace
 
-std::string table_key(const WorldSource& source, const StudyFrame& frame, int n_replicates,
+std::string table_key(const RealizationSource& source, const StudyFrame& frame, int n_replicates,
                       const TableSettings& settings) {
   Fingerprint print;
   print.add(version());
   print.add(git_revision());
   add(print, source.scene);
   ScriptSpec script = source.script;
-  script.seed = 0;  // worlds have seeds of their own
+  script.seed = 0;  // realizations have seeds of their own
   script.replicates = 1;
   print.add(io::to_yaml(script));
   add_body_meshes(print, script);
   add(print, source.nuisance);
   print.add_number(source.seed);
   print.add_number(n_replicates);
-  for (const auto n : {settings.n_worlds, settings.n_remembered, settings.n_traced}) print.add_number(n);
-  add_catalogue(print, settings.entries);
+  for (const auto n : {settings.n_realizations, settings.n_remembered, settings.n_traced}) print.add_number(n);
+  add_catalogue(print, settings.effects);
   for (const std::string& phase : frame.counted_phases) print.add(phase);
   return print.digest();
 }

@@ -77,8 +77,8 @@ TableChunk read_chunk(std::istream& stream) {
   chunk.n_left_out = in.read<std::uint32_t>();
   for (auto n = in.read<std::uint32_t>(); n > 0; --n) {
     SimulatedDataset dataset;
-    dataset.row.entry = in.read<std::uint32_t>();
-    dataset.row.world = in.read<std::uint32_t>();
+    dataset.row.hypothesis = in.read<std::uint32_t>();
+    dataset.row.realization = in.read<std::uint32_t>();
     for (auto m = in.read<std::uint32_t>(); m > 0; --m) dataset.row.effects.push_back(read_effect(in));
     for (auto m = in.read<std::uint32_t>(); m > 0; --m) dataset.runs.push_back(read_series(in));
     chunk.datasets.push_back(std::move(dataset));
@@ -114,7 +114,7 @@ TableStore::TableStore(std::filesystem::path folder, const std::string& key) : f
 
 std::filesystem::path TableStore::file(std::uint32_t number) const {
   const std::string digits = std::to_string(number);
-  return folder_ / ("worlds_" + std::string(digits.size() < 4 ? 4 - digits.size() : 0, '0') + digits + ".bin");
+  return folder_ / ("realizations_" + std::string(digits.size() < 4 ? 4 - digits.size() : 0, '0') + digits + ".bin");
 }
 
 std::optional<TableChunk> TableStore::find(std::uint32_t number) const {
@@ -124,7 +124,7 @@ std::optional<TableChunk> TableStore::find(std::uint32_t number) const {
     return read_chunk(stream);
   } catch (const Error& error) {
     throw Error(ErrorCode::input, {file(number).string(), 0, 0},
-                error.issues().front().message + "; remove this file, and only its worlds are simulated again");
+                error.issues().front().message + "; remove this file, and only its realizations are simulated again");
   }
 }
 
@@ -135,8 +135,8 @@ void TableStore::keep(std::uint32_t number, const TableChunk& chunk) const {
   out.write(chunk.n_left_out);
   out.write(static_cast<std::uint32_t>(chunk.datasets.size()));
   for (const SimulatedDataset& dataset : chunk.datasets) {
-    out.write(dataset.row.entry);
-    out.write(dataset.row.world);
+    out.write(dataset.row.hypothesis);
+    out.write(dataset.row.realization);
     out.write(static_cast<std::uint32_t>(dataset.row.effects.size()));
     for (const EffectSpec& effect : dataset.row.effects) write(out, effect);
     out.write(static_cast<std::uint32_t>(dataset.runs.size()));
@@ -159,7 +159,7 @@ void for_each_chunk(const TableStore& store, std::uint32_t n_items, unsigned thr
       store.keep(first / items_per_chunk, *chunk);
     }
     use(*chunk);
-    if (progress.worlds) progress.worlds(first + n, n_items);
+    if (progress.realizations) progress.realizations(first + n, n_items);
   }
 }
 

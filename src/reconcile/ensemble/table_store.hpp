@@ -1,5 +1,5 @@
-// Simulated datasets on disk: a folder with the key of what they depend on and chunks of finished worlds. Private to
-// reconcile.
+// Simulated datasets on disk: a folder with the key of what they depend on and chunks of finished realizations. Private
+// to reconcile.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct SimulatedDataset {
   TableRow row;
   std::vector<Series> runs;
 };
-/// Datasets of some worlds that follow each other.
+/// Datasets of some realizations that follow each other.
 struct TableChunk {
   std::vector<SimulatedDataset> datasets;
   std::uint32_t n_left_out = 0;
@@ -38,7 +38,7 @@ class TableStore {
   std::filesystem::path folder_;
 };
 
-/// Simulates item `index` (a world) with all of its datasets.
+/// Simulates item `index` (a realization) with all of its datasets.
 using ItemJob = std::function<TableChunk(std::uint32_t index)>;
 /// Calls use(chunk) for the datasets of items 0 to n_items - 1, in order: those that aren't in the store are simulated,
 /// on several threads, and kept there.

@@ -22,10 +22,10 @@ struct AnalystSettings {
 
 /// What the tests say, before anything is fitted.
 struct Judgement {
-  double p = 1.0;                  ///< of the global test
-  std::vector<EntryScore> scores;  ///< (n_entries) nothing first
-  FamilyScore family;              ///< the likeliest
-  stats::Decision decision;        ///< candidates are numbered as the table's entries
+  double p = 1.0;                       ///< of the global test
+  std::vector<HypothesisScore> scores;  ///< (n_hypotheses) nothing first
+  FamilyScore family;                   ///< the likeliest
+  stats::Decision decision;             ///< candidates are numbered as the table's hypotheses
 };
 
 /// Learns from the table's datasets, as the view shows them. Immutable.
@@ -37,24 +37,25 @@ class Analyst {
   [[nodiscard]] Judgement judge(std::span<const float> measured) const;
   /// Verdict without verification, for statistics of the table's shape.
   [[nodiscard]] Outcome analyse(std::span<const float> measured) const;
-  /// The entry that fits best (at least 1), whatever the tests say, among those for which `wanted` holds; 0 if none.
+  /// The hypothesis that fits best (at least 1), whatever the tests say, among those for which `wanted` holds; 0 if
+  /// none.
   [[nodiscard]] std::size_t likeliest(std::span<const float> measured,
                                       const std::function<bool(std::size_t)>& wanted) const;
-  [[nodiscard]] FittedEffect fit(std::size_t entry, std::span<const float> measured) const;
+  [[nodiscard]] FittedEffect fit(std::size_t hypothesis, std::span<const float> measured) const;
   /// A name is taken back if the effect's strength may as well be none; unless the global test, whose p is given,
   /// refuses the plain model at a fifth of the level: then it isn't none, but poorly known.
   [[nodiscard]] bool takes_back(const FittedEffect& fitted, double p) const noexcept {
     return fitted.includes_off && p > settings_.alpha / 5.0;
   }
   [[nodiscard]] const FeatureMap& map() const noexcept { return view_->map(); }
-  [[nodiscard]] const Namer& namer() const noexcept { return namer_; }
+  [[nodiscard]] const HypothesisClassifier& classifier() const noexcept { return classifier_; }
 
  private:
   void fit_named(Outcome& outcome, std::span<const float> measured) const;
 
   std::shared_ptr<const TableView> view_;
   AnalystSettings settings_;
-  Namer namer_;
+  HypothesisClassifier classifier_;
   EffectFitter fitter_;
 };
 

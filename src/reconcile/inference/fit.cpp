@@ -6,9 +6,9 @@
 #include <optional>
 #include <utility>
 
-#include "reconcile/inference/entry_guess.hpp"
 #include "reconcile/inference/flat_scale.hpp"
 #include "reconcile/inference/locate.hpp"
+#include "reconcile/inference/point_estimate.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -19,26 +19,27 @@ constexpr double accepted_share = 0.3;
 constexpr std::size_t fewest_accepted = 40;    ///< or all, in a small table
 constexpr std::size_t fewest_neighbours = 80;  ///< whose intervals are tried; or all
 
-/// The posterior at a guess, from these held-back datasets.
-stats::AbcPosterior posterior_of(const EntryGuess& entry, std::span<const double> guess,
+/// The posterior at an estimate, from these held-back datasets.
+stats::AbcPosterior posterior_of(const PointEstimator& hypothesis, std::span<const double> estimate,
                                  const std::vector<std::size_t>& rows) {
   const auto n = static_cast<double>(rows.size());
   const double share = std::clamp(static_cast<double>(fewest_accepted) / n, accepted_share, 1.0);
-  return stats::abc_posterior(entry.parameters().select_rows(rows), entry.guesses().select_rows(rows), guess,
-                              {share, entry.bounds()});
+  return stats::abc_posterior(hypothesis.parameters().select_rows(rows), hypothesis.estimates().select_rows(rows),
+                              estimate, {share, hypothesis.bounds()});
 }
 
-/// Those of these datasets whose guesses lie nearest to the measured one, by the guesses' own scatter.
-std::vector<std::size_t> nearest_of(const EntryGuess& entry, std::span<const double> guess,
+/// Those of these datasets whose estimates lie nearest to the measured one, by the estimates' own scatter.
+std::vector<std::size_t> nearest_of(const PointEstimator& hypothesis, std::span<const double> estimate,
                                     const std::vector<std::size_t>& rows) {
-  const stats::Matrix<double> guesses = entry.guesses().select_rows(rows);
+  const stats::Matrix<double> estimates = hypothesis.estimates().select_rows(rows);
   std::vector<std::pair<double, std::size_t>> near(rows.size());
   for (std::size_t i = 0; i < near.size(); ++i) near[i].second = rows[i];
-  for (std::size_t p = 0; p < guess.size(); ++p) {
+  for (std::size_t p = 0; p < estimate.size(); ++p) {
     std::vector<double> values;
-    for (std::size_t i = 0; i < guesses.rows(); ++i) values.push_back(guesses(i, p));
+    for (std::size_t i = 0; i < estimates.rows(); ++i) values.push_back(estimates(i, p));
     const double scatter = stats::quantile(values, 0.84) - stats::quantile(values, 0.16) + 1e-12;
-    for (std::size_t i = 0; i < near.size(); ++i) near[i].first += std::pow((guesses(i, p) - guess[p]) / scatter, 2);
+    for (std::size_t i = 0; i < near.size(); ++i)
+      near[i].first += std::pow((estimates(i, p) - estimate[p]) / scatter, 2);
   }
   std::ranges::sort(near);
   near.resize(std::min(near.size(), std::max(fewest_neighbours, near.size() / 4)));
@@ -62,13 +63,14 @@ double reach(const stats::AbcPosterior& posterior, std::size_t parameter, double
 
 /// (n_parameters) By how much intervals must be stretched about their medians so that of these datasets near the
 /// measured one `confidence` lie in theirs: a conformal interval, the posterior being the measure of strangeness.
-std::vector<double> widening_of(const EntryGuess& entry, std::span<const double> guess,
+std::vector<double> widening_of(const PointEstimator& hypothesis, std::span<const double> estimate,
                                 const std::vector<std::size_t>& rows, double confidence) {
-  const std::size_t n = entry.infos().size();
+  const std::size_t n = hypothesis.infos().size();
   std::vector<std::vector<double>> reaches(n);
-  for (const std::size_t row : nearest_of(entry, guess, rows)) {
-    const stats::AbcPosterior own = posterior_of(entry, entry.guesses().row(row), without(rows, row));
-    for (std::size_t p = 0; p < n; ++p) reaches[p].push_back(reach(own, p, confidence, entry.parameters()(row, p)));
+  for (const std::size_t row : nearest_of(hypothesis, estimate, rows)) {
+    const stats::AbcPosterior own = posterior_of(hypothesis, hypothesis.estimates().row(row), without(rows, row));
+    for (std::size_t p = 0; p < n; ++p)
+      reaches[p].push_back(reach(own, p, confidence, hypothesis.parameters()(row, p)));
   }
   std::vector<double> widening;
   for (std::vector<double>& values : reaches) {
@@ -83,7 +85,7 @@ std::vector<double> widening_of(const EntryGuess& entry, std::span<const double>
 
 struct EffectFitter::Learnt {
   std::once_flag once;
-  std::optional<EntryGuess> guess;
+  std::optional<PointEstimator> estimate;
 };
 
 EffectFitter::EffectFitter(const SceneSpec& scene, const ReferenceTable& table, const FeatureMap& map,
@@ -93,43 +95,43 @@ EffectFitter::EffectFitter(const SceneSpec& scene, const ReferenceTable& table, 
       map_(&map),
       held_back_(std::move(held_back)),
       settings_(settings),
-      learnt_(std::make_unique<Learnt[]>(table.n_entries())) {}
+      learnt_(std::make_unique<Learnt[]>(table.n_hypotheses())) {}
 EffectFitter::~EffectFitter() = default;
 EffectFitter::EffectFitter(EffectFitter&&) noexcept = default;
 EffectFitter& EffectFitter::operator=(EffectFitter&&) noexcept = default;
 
-const EffectFitter::Learnt& EffectFitter::learnt(std::size_t entry) const {
-  Learnt& learnt = learnt_[entry];
+const EffectFitter::Learnt& EffectFitter::learnt(std::size_t hypothesis) const {
+  Learnt& learnt = learnt_[hypothesis];
   std::call_once(learnt.once, [&] {
     const auto datasets = [&](std::span<const std::size_t> rows) {
-      return EntryDatasets{rows, map_->features(table_->statistics.select_rows(rows), settings_.threads)};
+      return HypothesisDatasets{rows, map_->features(table_->statistics.select_rows(rows), settings_.threads)};
     };
-    const std::vector<std::size_t> training = rows_of(*table_, entry, Part::training);
-    learnt.guess.emplace(*table_, entry, datasets(training), datasets(held_back_[entry]));
+    const std::vector<std::size_t> training = rows_of(*table_, hypothesis, Part::training);
+    learnt.estimate.emplace(*table_, hypothesis, datasets(training), datasets(held_back_[hypothesis]));
   });
   return learnt;
 }
 
-FittedEffect EffectFitter::fit(std::size_t entry, std::span<const float> measured) const {
-  const EntryGuess& guess = *learnt(entry).guess;
+FittedEffect EffectFitter::fit(std::size_t hypothesis, std::span<const float> measured) const {
+  const PointEstimator& estimate = *learnt(hypothesis).estimate;
   const std::vector<float> features = map_->features(measured);
   FittedEffect fitted;
-  fitted.effect.name = table_->entry_name(entry);
-  const EffectSpec& alike = guess.kind_of(features);
+  fitted.effect.name = table_->hypothesis_name(hypothesis);
+  const EffectSpec& alike = estimate.kind_of(features);
   fitted.effect.choices = alike.choices;
   for (const ParameterInfo& info : effects::find(fitted.effect.name).info.parameters) {
     if (applies(info, alike)) fitted.effect.parameters[info.name] = alike.parameters.at(info.name);
   }
-  if (guess.infos().empty()) return fitted;
+  if (estimate.infos().empty()) return fitted;
 
-  const std::vector<double> observed = guess.of(features);
-  const std::vector<std::size_t> rows = guess.rows_like(alike);
-  const stats::AbcPosterior posterior = posterior_of(guess, observed, rows);
-  const std::vector<double> widening = widening_of(guess, observed, rows, settings_.confidence);
+  const std::vector<double> observed = estimate.of(features);
+  const std::vector<std::size_t> rows = estimate.rows_like(alike);
+  const stats::AbcPosterior posterior = posterior_of(estimate, observed, rows);
+  const std::vector<double> widening = widening_of(estimate, observed, rows, settings_.confidence);
   fitted.includes_off = true;
   bool any_strength = false;
-  for (std::size_t p = 0; p < guess.infos().size(); ++p) {
-    const ParameterInfo& info = *guess.infos()[p];
+  for (std::size_t p = 0; p < estimate.infos().size(); ++p) {
+    const ParameterInfo& info = *estimate.infos()[p];
     if (!applies(info, alike)) continue;
     const stats::Interval flat = posterior.interval(p, settings_.confidence, widening[p]);
     FittedParameter parameter{info.name, info.unit, from_flat(info, posterior.quantile(p, 0.5)),

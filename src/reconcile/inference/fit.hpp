@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "reconcile/inference/feature_map.hpp"
 #include "reconcile/ensemble/reference_table.hpp"
+#include "reconcile/inference/feature_map.hpp"
 #include "stats/intervals.hpp"
 
 namespace pirsim::reconcile {
@@ -32,35 +32,35 @@ struct FitSettings {
   double confidence = 0.9;
 };
 
-/// Fits effects from the datasets of one entry of a table alone: a linear guess of its parameters, then
+/// Fits effects from the datasets of one hypothesis of a table alone: a linear estimate of its parameters, then
 /// regression-adjusted ABC on it, widened until held-back datasets like the measured one are covered as often as
 /// promised. What is no matter of more or less (which sensor, which wall, which way) is the likeliest kind by a
 /// discriminant between the kinds; and where the room has no place for what comes out, it is moved to the nearest. Ref:
 /// [FearnheadPrangle2012], [Beaumont2002]
 class EffectFitter {
  public:
-  /// scene, table and map must outlive it. held_back: (n_entries) rows of each entry outside the training part: give
-  /// those in which a disagreement is seen, since nothing else is fitted.
+  /// scene, table and map must outlive it. held_back: (n_hypotheses) rows of each hypothesis outside the training part:
+  /// give those in which a disagreement is seen, since nothing else is fitted.
   EffectFitter(const SceneSpec& scene, const ReferenceTable& table, const FeatureMap& map,
                std::vector<std::vector<std::size_t>> held_back, const FitSettings& settings);
   ~EffectFitter();
   EffectFitter(EffectFitter&&) noexcept;
   EffectFitter& operator=(EffectFitter&&) noexcept;
 
-  /// entry: 1 or more; measured: statistics. What is learnt about an entry is kept for the next time. Safe to call from
-  /// several threads.
-  [[nodiscard]] FittedEffect fit(std::size_t entry, std::span<const float> measured) const;
+  /// hypothesis: 1 or more; measured: statistics. What is learnt about a hypothesis is kept for the next time. Safe to
+  /// call from several threads.
+  [[nodiscard]] FittedEffect fit(std::size_t hypothesis, std::span<const float> measured) const;
 
  private:
   struct Learnt;
-  [[nodiscard]] const Learnt& learnt(std::size_t entry) const;
+  [[nodiscard]] const Learnt& learnt(std::size_t hypothesis) const;
 
   const SceneSpec* scene_;
   const ReferenceTable* table_;
   const FeatureMap* map_;
   std::vector<std::vector<std::size_t>> held_back_;
   FitSettings settings_;
-  std::unique_ptr<Learnt[]> learnt_;  ///< (n_entries)
+  std::unique_ptr<Learnt[]> learnt_;  ///< (n_hypotheses)
 };
 
 }  // namespace pirsim::reconcile

@@ -12,7 +12,7 @@ namespace pirsim::reconcile {
 namespace {
 
 constexpr std::size_t fewest_in_part = 10;  ///< 10 and 20 were tried: no difference
-constexpr std::size_t most_parts = 3;       ///< by strength; 1, 2 and 3 were tried: 3 part the entries best
+constexpr std::size_t most_parts = 3;       ///< by strength; 1, 2 and 3 were tried: 3 part the hypotheses best
 
 /// What isn't a matter of more or less: choices, and for each strength on which side of `off` it lies.
 using Kind = std::pair<std::map<std::string, std::string, std::less<>>, std::vector<int>>;
@@ -35,7 +35,7 @@ double strength_of(const EffectSpec& effect) {
 }  // namespace
 
 std::vector<int> number_alike(const ReferenceTable& table, std::span<const std::size_t> rows, std::size_t fewest) {
-  if (rows.empty() || table.rows[rows.front()].entry == 0) return std::vector<int>(rows.size(), 0);
+  if (rows.empty() || table.rows[rows.front()].hypothesis == 0) return std::vector<int>(rows.size(), 0);
   std::map<Kind, std::vector<std::pair<double, std::size_t>>> by_kind;  // strength and place of each
   for (std::size_t place = 0; place < rows.size(); ++place) {
     const EffectSpec& drawn = table.rows[rows[place]].effects.front();

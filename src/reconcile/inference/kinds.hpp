@@ -9,9 +9,9 @@
 
 namespace pirsim::reconcile {
 
-/// (n) numbers from 0 on of datasets of one entry that are alike: with the same choices, strengths on the same side of
-/// `off`, and, as far as ten datasets remain in each, in the same third by the parameter that names the strength. Kinds
-/// with fewer than `fewest` datasets are one group.
+/// (n) numbers from 0 on of datasets of one hypothesis that are alike: with the same choices, strengths on the same
+/// side of `off`, and, as far as ten datasets remain in each, in the same third by the parameter that names the
+/// strength. Kinds with fewer than `fewest` datasets are one group.
 [[nodiscard]] std::vector<int> number_alike(const ReferenceTable& table, std::span<const std::size_t> rows,
                                             std::size_t fewest);
 
@@ -19,7 +19,7 @@ namespace pirsim::reconcile {
 /// datasets.
 class KindFinder {
  public:
-  /// rows: of one entry of the table; features: (n_rows x n_features).
+  /// rows: of one hypothesis of the table; features: (n_rows x n_features).
   KindFinder(const ReferenceTable& table, std::span<const std::size_t> rows, const stats::Matrix<float>& features);
   /// Place in `rows` of a dataset with the likeliest choices and sides.
   [[nodiscard]] std::size_t one_like(std::span<const float> features) const;

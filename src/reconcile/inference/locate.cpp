@@ -23,47 +23,47 @@ LocatedCell cell_of(const StudyFrame& frame, const stats::Matrix<float>& plain, 
 
 }  // namespace
 
-std::vector<std::size_t> rows_of(const ReferenceTable& table, std::size_t entry, Part part) {
+std::vector<std::size_t> rows_of(const ReferenceTable& table, std::size_t hypothesis, Part part) {
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    if (table.rows[i].entry != entry) continue;
-    const bool held_back = is_for_calibration(table.rows[i].world);
+    if (table.rows[i].hypothesis != hypothesis) continue;
+    const bool held_back = is_for_calibration(table.rows[i].realization);
     if (part == Part::all || held_back == (part == Part::calibration)) rows.push_back(i);
   }
   return rows;
 }
 
-std::size_t entry_of(const ReferenceTable& table, const std::string& effect) {
+std::size_t hypothesis_of(const ReferenceTable& table, const std::string& effect) {
   return 1 + static_cast<std::size_t>(std::ranges::find(table.effects, effect) - table.effects.begin());
 }
 
 std::vector<double> tested_features(const FeatureMap& map, std::span<const float> features) {
-  std::vector<double> entries;
-  for (const std::size_t column : map.envelope_columns()) entries.push_back(static_cast<double>(features[column]));
-  return entries;
+  std::vector<double> hypotheses;
+  for (const std::size_t column : map.envelope_columns()) hypotheses.push_back(static_cast<double>(features[column]));
+  return hypotheses;
 }
 
 stats::Matrix<double> tested_features(const FeatureMap& map, const stats::Matrix<float>& features) {
-  stats::Matrix<double> entries(features.rows(), map.envelope_columns().size());
+  stats::Matrix<double> hypotheses(features.rows(), map.envelope_columns().size());
   for (std::size_t row = 0; row < features.rows(); ++row)
-    std::ranges::copy(tested_features(map, features.row(row)), entries.row(row).begin());
-  return entries;
+    std::ranges::copy(tested_features(map, features.row(row)), hypotheses.row(row).begin());
+  return hypotheses;
 }
 
-std::vector<double> envelope_entries(const FeatureMap& map, std::span<const float> statistics) {
+std::vector<double> tested_statistics(const FeatureMap& map, std::span<const float> statistics) {
   return tested_features(map, map.features(statistics));
 }
 
-stats::Matrix<double> envelope_entries(const FeatureMap& map, const stats::Matrix<float>& statistics,
-                                       unsigned threads) {
+stats::Matrix<double> tested_statistics(const FeatureMap& map, const stats::Matrix<float>& statistics,
+                                        unsigned threads) {
   return tested_features(map, map.features(statistics, threads));
 }
 
 Location locate(const StudyFrame& frame, const FeatureMap& map, const stats::Matrix<float>& plain,
                 std::span<const float> measured, const LocateSettings& settings) {
   const std::vector<std::size_t>& columns = map.envelope_columns();
-  const stats::Matrix<double> simulated = envelope_entries(map, plain, settings.threads);
-  const std::vector<double> observed = envelope_entries(map, measured);
+  const stats::Matrix<double> simulated = tested_statistics(map, plain, settings.threads);
+  const std::vector<double> observed = tested_statistics(map, measured);
   const stats::GlobalEnvelope test = stats::global_envelope_test(
       observed, simulated, {settings.alpha, stats::PointwiseRank::continuous, settings.seed, settings.threads});
 

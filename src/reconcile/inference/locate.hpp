@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "reconcile/inference/feature_map.hpp"
 #include "reconcile/ensemble/reference_table.hpp"
+#include "reconcile/inference/feature_map.hpp"
 
 namespace pirsim::reconcile {
 
@@ -20,8 +20,8 @@ struct LocatedCell {
   double adjusted_p = 1.0;           ///< of the global test: below alpha, the cell differs whatever the others do
 };
 
-/// One entry of the envelope: a feature with its band.
-struct EnvelopeEntry {
+/// One number of the envelope: a feature with its band.
+struct EnvelopeFeature {
   std::string name;
   double observed = 0.0, median = 0.0, lower = 0.0, upper = 0.0;  ///< in the feature's own scale
   double adjusted_p = 1.0;
@@ -30,7 +30,7 @@ struct EnvelopeEntry {
 struct Location {
   double p = 1.0;  ///< of the whole comparison
   std::vector<LocatedCell> cells;
-  std::vector<EnvelopeEntry> envelope;
+  std::vector<EnvelopeFeature> envelope;
   double band_s = 0.0;  ///< half the width of the mean cell's 95 % band: what this experiment can't see
   std::size_t n_simulated = 0;
 };
@@ -45,19 +45,19 @@ struct LocateSettings {
 [[nodiscard]] Location locate(const StudyFrame& frame, const FeatureMap& map, const stats::Matrix<float>& plain,
                               std::span<const float> measured, const LocateSettings& settings);
 
-/// What the global test looks at of features that are known: (n_envelope_entries) of a dataset, (n_datasets x
-/// n_envelope_entries) of many.
+/// What the global test looks at of features that are known: (n_tested_statistics) of a dataset, (n_datasets x
+/// n_tested_statistics) of many.
 [[nodiscard]] std::vector<double> tested_features(const FeatureMap& map, std::span<const float> features);
 [[nodiscard]] stats::Matrix<double> tested_features(const FeatureMap& map, const stats::Matrix<float>& features);
 /// The same from statistics.
-[[nodiscard]] std::vector<double> envelope_entries(const FeatureMap& map, std::span<const float> statistics);
-[[nodiscard]] stats::Matrix<double> envelope_entries(const FeatureMap& map, const stats::Matrix<float>& statistics,
-                                                     unsigned threads);
+[[nodiscard]] std::vector<double> tested_statistics(const FeatureMap& map, std::span<const float> statistics);
+[[nodiscard]] stats::Matrix<double> tested_statistics(const FeatureMap& map, const stats::Matrix<float>& statistics,
+                                                      unsigned threads);
 
-/// Statistics of the datasets of one entry, all or those of training or calibration worlds.
+/// Statistics of the datasets of one hypothesis, all or those of training or calibration realizations.
 enum class Part { all, training, calibration };
-[[nodiscard]] std::vector<std::size_t> rows_of(const ReferenceTable& table, std::size_t entry, Part part);
+[[nodiscard]] std::vector<std::size_t> rows_of(const ReferenceTable& table, std::size_t hypothesis, Part part);
 /// Of an effect that is in the table.
-[[nodiscard]] std::size_t entry_of(const ReferenceTable& table, const std::string& effect);
+[[nodiscard]] std::size_t hypothesis_of(const ReferenceTable& table, const std::string& effect);
 
 }  // namespace pirsim::reconcile

@@ -17,12 +17,12 @@ Outcome Loop::run() {
   const bool named = outcome_.verdict == Verdict::named;
   const bool worth_a_try = outcome_.verdict == Verdict::none_in_catalogue && settings_.max_effects > 1;
   if (named || worth_a_try) {
-    put_in_.push_back(named ? outcome_.fits.front() : first.best);
-    put_in_more();
+    applied_.push_back(named ? outcome_.fits.front() : first.best);
+    apply_more();
     conclude();
   }
   if (outcome_.verdict == Verdict::none_in_catalogue) explain();
-  if (const auto& asked = settings_.table.entries; !asked.empty())
+  if (const auto& asked = settings_.table.effects; !asked.empty())
     outcome_.sentence = "The catalogue was cut down to " + joined(asked, "and") + ". " + outcome_.sentence;
   verify_effects();
   return std::move(outcome_);
@@ -35,16 +35,16 @@ void Loop::explain() {
   }
   begin("what the residuals follow");
   outcome_.residuals =
-      explain_residuals(steps_.front().lab, measured_, outcome_.family, {settings_.alpha, settings_.threads});
+      explain_residuals(steps_.front().reference, measured_, outcome_.family, {settings_.alpha, settings_.threads});
   outcome_.sentence += " " + outcome_.residuals->sentence;
   outcome_.trail.push_back("residuals: " + outcome_.residuals->sentence);
 }
 
 const Loop::Step& Loop::look(const Settings& settings, double level) {
   ScriptSpec script = script_;
-  for (const FittedEffect& effect : put_in_) script.effects.push_back(effect.effect);
+  for (const FittedEffect& effect : applied_) script.effects.push_back(effect.effect);
   Step& step = steps_.emplace_back();
-  step.lab = make_laboratory(
+  step.reference = make_reference_study(
       scene_, script, settings,
       [&](const StudyFrame& frame, std::span<const Series> pilot) {
         DataShape shape = shape_of(frame, measured_, pilot);
@@ -52,30 +52,30 @@ const Loop::Step& Loop::look(const Settings& settings, double level) {
         return shape;
       },
       observer_);
-  step.observed = statistics_of(step.lab.frame, step.lab.shape, step.lab.table.profile, measured_);
+  step.observed = statistics_of(step.reference.frame, step.reference.shape, step.reference.table.profile, measured_);
   begin("where they differ, and which effects can have made the data");
-  const Analyst analyst(step.lab.view(training_trials(), settings_.threads),
+  const Analyst analyst(step.reference.view(training_trials(), settings_.threads),
                         {level, settings_.seed, settings_.threads, settings_.trees});
   step.outcome = analyst.analyse(step.observed);
-  step.seen = analyst.namer().seen_rows();
+  step.seen = analyst.classifier().seen_rows();
   step.likeliest = analyst.likeliest(step.observed, [](std::size_t) { return true; });
   if (step.likeliest > 0) step.best = analyst.fit(step.likeliest, step.observed);
   return step;
 }
 
 void Loop::tell_first(const Step& first) {
-  const Laboratory& lab = first.lab;
+  const ReferenceStudy& reference = first.reference;
   std::vector<std::string> trail{"data " + measured_.digest + ", analysis seed " + std::to_string(settings_.seed)};
   outcome_.notes = first.notes;
   for (const std::string& note : measured_.notes) trail.push_back("data: " + note);
   for (const std::string& note : outcome_.notes) trail.push_back("data: " + note);
   std::string held_out;
-  for (const std::size_t trial : settings_.holdout) held_out += " " + lab.frame.trials[trial];
+  for (const std::size_t trial : settings_.holdout) held_out += " " + reference.frame.trials[trial];
   if (!held_out.empty()) trail.push_back("held out from naming and fitting:" + held_out);
-  trail.push_back("table " + lab.key + ": " + std::to_string(lab.table.rows.size()) + " datasets, " +
-                  std::to_string(lab.table.n_left_out) + " left out because people couldn't get about");
+  trail.push_back("table " + reference.key + ": " + std::to_string(reference.table.rows.size()) + " datasets, " +
+                  std::to_string(reference.table.n_left_out) + " left out because people couldn't get about");
   outcome_.trail.insert(outcome_.trail.begin(), trail.begin(), trail.end());
-  outcome_.table_key = lab.key;
+  outcome_.table_key = reference.key;
 }
 
 /// Fewer datasets: what is left to be found is found in a third of them, if these can rule anything out at the lower
@@ -84,29 +84,29 @@ Settings Loop::with_all(double level) const {
   Settings settings = settings_;
   const auto third = [level](std::uint32_t n) { return std::max(fewest_datasets_to_refuse(level), n / 3); };
   settings.alpha = level;
-  settings.table.n_worlds = third(settings.table.n_worlds);
+  settings.table.n_realizations = third(settings.table.n_realizations);
   settings.table.n_remembered = third(settings.table.n_remembered);
   settings.table.n_traced = third(settings.table.n_traced);
   if (settings.table_folder.empty()) return settings;
   ScriptSpec only;  // other data give another strength, and so another table
   only.effects = patch();
   settings.table_folder += "_with";
-  for (const FittedEffect& effect : put_in_) settings.table_folder += "_" + effect.effect.name;
+  for (const FittedEffect& effect : applied_) settings.table_folder += "_" + effect.effect.name;
   settings.table_folder += "_" + sha256(io::to_yaml(only)).substr(0, 8);
   return settings;
 }
 
-void Loop::put_in_more() {
+void Loop::apply_more() {
   for (;;) {
-    const double level = level_with(put_in_.size(), settings_.alpha);
+    const double level = level_with(applied_.size(), settings_.alpha);
     const double p = p_with_all(level);
     outcome_.looks.push_back({names(), level, p});
     passes_ = outcome_.looks.back().passes();
-    outcome_.trail.push_back("with " + boost::algorithm::join(names(), " + ") + " put in, at level " +
+    outcome_.trail.push_back("with " + boost::algorithm::join(names(), " + ") + " applied, at level " +
                              short_number(level) + ": p " + short_number(p));
-    if (passes_ || static_cast<int>(put_in_.size()) >= settings_.max_effects) return;
-    const std::size_t n_asked = settings_.table.entries.size();  // 0: the whole catalogue
-    if (n_asked != 0 && put_in_.size() >= n_asked) return;
+    if (passes_ || static_cast<int>(applied_.size()) >= settings_.max_effects) return;
+    const std::size_t n_asked = settings_.table.effects.size();  // 0: the whole catalogue
+    if (n_asked != 0 && applied_.size() >= n_asked) return;
     begin("what is missing beside " + boost::algorithm::join(names(), " + "));
     const Step* more = look_for_more(level);
     if (more == nullptr) return;
@@ -114,7 +114,7 @@ void Loop::put_in_more() {
     outcome_.trail.push_back("looked for more: " + std::string(name(*rest_)));
     if (more->outcome.verdict == Verdict::one_of) outcome_.looks.back().one_of = more->outcome.named;
     if (more->outcome.verdict != Verdict::named) return;
-    put_in_.push_back(more->outcome.fits.front());
+    applied_.push_back(more->outcome.fits.front());
   }
 }
 
@@ -134,31 +134,31 @@ const Loop::Step* Loop::look_for_more(double level) {
 /// was named by itself, or if the model with all of them passes.
 void Loop::conclude() {
   const bool only_one = std::ranges::count(outcome_.candidates, true, &Candidate::kept) == 1;
-  if (outcome_.verdict == Verdict::named && put_in_.size() == 1 && only_one && !passes_ &&
+  if (outcome_.verdict == Verdict::named && applied_.size() == 1 && only_one && !passes_ &&
       rest_ == Verdict::none_in_catalogue) {
     take_back();
     return;
   }
-  if (put_in_.size() > 1 && (passes_ || outcome_.verdict == Verdict::named)) {
+  if (applied_.size() > 1 && (passes_ || outcome_.verdict == Verdict::named)) {
     outcome_.verdict = Verdict::several;
     outcome_.named = names();
-    outcome_.fits = put_in_;
+    outcome_.fits = applied_;
     for (Candidate& candidate : outcome_.candidates) {
-      if (std::ranges::find(outcome_.named, candidate.score.entry) == outcome_.named.end()) continue;
+      if (std::ranges::find(outcome_.named, candidate.score.hypothesis) == outcome_.named.end()) continue;
       candidate.kept = true;
       candidate.reason = "Kept, together with the others named. By itself: " + candidate.reason;
     }
   } else if (outcome_.verdict == Verdict::none_in_catalogue) {
-    put_in_.clear();
+    applied_.clear();
   }
   outcome_.sentence = verdict_sentence(outcome_, settings_.alpha);
   if (passes_ && outcome_.verdict == Verdict::none_in_catalogue) {
     const Look& look = outcome_.looks.back();
-    const auto nearest = std::ranges::find(outcome_.candidates, look.put_in.front(),
-                                           [](const Candidate& candidate) { return candidate.score.entry; });
+    const auto nearest = std::ranges::find(outcome_.candidates, look.applied.front(),
+                                           [](const Candidate& candidate) { return candidate.score.hypothesis; });
     outcome_.sentence += " " + sentence_of_nearest(look, nearest->reason);
   }
-  if (!passes_ && !put_in_.empty()) {
+  if (!passes_ && !applied_.empty()) {
     outcome_.sentence += " That is not all. " + what_a_look_showed(outcome_.looks.back());
   }
 }
@@ -170,7 +170,7 @@ void Loop::take_back() {
   outcome_.verdict = Verdict::none_in_catalogue;
   outcome_.named.clear();
   outcome_.fits.clear();
-  put_in_.clear();
+  applied_.clear();
   outcome_.sentence = sentence_of_refused(outcome_, settings_.alpha);
   outcome_.trail.push_back("the name is taken back: the model with it can't have made the data");
 }
@@ -179,22 +179,22 @@ void Loop::verify_effects() {
   if (outcome_.named.empty()) return;
   const bool one_of = outcome_.verdict == Verdict::one_of;
   Claim claim{{}, outcome_.named};
-  const std::size_t n = one_of ? 1 : put_in_.size();
+  const std::size_t n = one_of ? 1 : applied_.size();
   for (std::size_t i = 0; i < n; ++i)
-    claim.steps.push_back(
-        {&steps_[i].lab, steps_[i].observed, one_of ? outcome_.named.front() : put_in_[i].effect.name, steps_[i].seen});
-  const Laboratory& lab = steps_.front().lab;
+    claim.steps.push_back({&steps_[i].reference, steps_[i].observed,
+                           one_of ? outcome_.named.front() : applied_[i].effect.name, steps_[i].seen});
+  const ReferenceStudy& reference = steps_.front().reference;
   const std::vector<std::size_t> trials = measured_.trials();
   if (trials.size() < 2) {
     outcome_.trail.push_back("one trial only: nothing can be held out");
     return;
   }
   begin("does it help on held-out trials");
-  const Folds folds =
-      settings_.holdout.empty() ? usual_folds(measured_.digest, trials, lab.shape.kind) : Folds{settings_.holdout};
-  Verification v =
-      verify(std::span(&claim, 1), folds, {settings_.alpha, settings_.seed, settings_.threads, settings_.verify_worlds})
-          .front();
+  const Folds folds = settings_.holdout.empty() ? usual_folds(measured_.digest, trials, reference.shape.kind)
+                                                : Folds{settings_.holdout};
+  Verification v = verify(std::span(&claim, 1), folds,
+                          {settings_.alpha, settings_.seed, settings_.threads, settings_.verify_realizations})
+                       .front();
   if (v.n_trials == 0) {
     outcome_.trail.push_back("people can hardly get about in the patched model: it can't be judged on held-out trials");
     return;
@@ -209,29 +209,30 @@ void Loop::verify_effects() {
 }
 
 double Loop::p_with_all(double level) {
-  begin("does the model with " + boost::algorithm::join(names(), " + ") + " put in pass");
+  begin("does the model with " + boost::algorithm::join(names(), " + ") + " applied pass");
   const Step& plain = steps_.front();
-  const PatchedModel model{put_in_, plain.observed};
-  return p_with(std::span(&model, 1), plain.lab, plain.lab.map(training_trials()),
+  const PatchedModel model{applied_, plain.observed};
+  return p_with(std::span(&model, 1), plain.reference, plain.reference.map(training_trials()),
                 {level, settings_.seed, settings_.threads})
       .front();
 }
 
 std::vector<std::string> Loop::names() const {
   std::vector<std::string> all;
-  for (const FittedEffect& effect : put_in_) all.push_back(effect.effect.name);
+  for (const FittedEffect& effect : applied_) all.push_back(effect.effect.name);
   return all;
 }
 
 std::vector<EffectSpec> Loop::patch() const {
   std::vector<EffectSpec> all;
-  for (const FittedEffect& effect : put_in_) all.push_back(effect.effect);
+  for (const FittedEffect& effect : applied_) all.push_back(effect.effect);
   return all;
 }
 
 std::vector<std::size_t> Loop::training_trials() const {
   std::vector<std::size_t> trials;
-  std::ranges::set_difference(all_trials(steps_.front().lab.frame), settings_.holdout, std::back_inserter(trials));
+  std::ranges::set_difference(all_trials(steps_.front().reference.frame), settings_.holdout,
+                              std::back_inserter(trials));
   return trials;
 }
 

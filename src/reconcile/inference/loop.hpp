@@ -22,24 +22,24 @@ class Loop {
  private:
   /// A look at the data with the table of one model.
   struct Step {
-    Laboratory lab;
+    ReferenceStudy reference;
     std::vector<std::string> notes;  ///< what was done with which measured rows
     std::vector<float> observed;     ///< statistics of the measured data
     Outcome outcome;
     SeenRows seen;
-    std::size_t likeliest = 0;  ///< entry
-    FittedEffect best;          ///< of that entry
+    std::size_t likeliest = 0;  ///< hypothesis
+    FittedEffect best;          ///< of that hypothesis
   };
   const Step& look(const Settings& settings, double level);
-  void put_in_more();
-  /// With all that was put in; none if people can hardly get about in that model.
+  void apply_more();
+  /// With all that was applied; none if people can hardly get about in that model.
   const Step* look_for_more(double level);
   void tell_first(const Step& first);
   void conclude();
   void take_back();  ///< the one name that was given
   void explain();
   void verify_effects();
-  /// p of the global test of the model with all that has been put in, its data simulated anew.
+  /// p of the global test of the model with all that has been applied, its data simulated anew.
   [[nodiscard]] double p_with_all(double level);
   [[nodiscard]] Settings with_all(double level) const;
   [[nodiscard]] std::vector<std::string> names() const;
@@ -54,10 +54,10 @@ class Loop {
   const Measured& measured_;
   const Settings& settings_;
   const Observer& observer_;
-  std::deque<Step> steps_;            ///< addresses stay
-  std::vector<FittedEffect> put_in_;  ///< one of each step
-  bool passes_ = false;               ///< the model with all of them can have made the data
-  std::optional<Verdict> rest_;       ///< of the last look for more, where one was needed
+  std::deque<Step> steps_;             ///< addresses stay
+  std::vector<FittedEffect> applied_;  ///< one of each step
+  bool passes_ = false;                ///< the model with all of them can have made the data
+  std::optional<Verdict> rest_;        ///< of the last look for more, where one was needed
   Outcome outcome_;
 };
 

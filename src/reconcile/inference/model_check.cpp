@@ -8,18 +8,18 @@
 #include "core/parallel.hpp"
 #include "effects/catalogue.hpp"
 #include "pirsim/random.hpp"
+#include "reconcile/ensemble/simulated_realization.hpp"
 #include "reconcile/inference/locate.hpp"
-#include "reconcile/ensemble/simulated_world.hpp"
 
 namespace pirsim::reconcile {
 namespace {
 
-constexpr std::uint32_t first_check_world = 1U << 23U;       ///< worlds that no table has seen
-constexpr std::array<std::uint32_t, 2> first_looks{20, 60};  ///< worlds (assumed: only time depends on them)
-constexpr double n_as_strange = 5.0;                         ///< datasets, the data among them (assumed)
-/// Worlds in which a model is simulated before it is refused, times the level (assumed: fewer would refuse as seldom
-/// where nothing is wrong, and not as surely where something is).
-constexpr double worlds_to_refuse = 5.0;
+constexpr std::uint32_t first_check_realization = 1U << 23U;  ///< realizations that no table has seen
+constexpr std::array<std::uint32_t, 2> first_looks{20, 60};   ///< realizations (assumed: only time depends on them)
+constexpr double n_as_strange = 5.0;                          ///< datasets, the data among them (assumed)
+/// Realizations in which a model is simulated before it is refused, times the level (assumed: fewer would refuse as
+/// seldom where nothing is wrong, and not as surely where something is).
+constexpr double realizations_to_refuse = 5.0;
 
 /// A quarter of the datasets are as strange, five at least: of 20 with p 0.025 once in 10,000 models.
 bool surely_passes(double p, std::size_t n_datasets) {
@@ -30,10 +30,10 @@ bool surely_passes(double p, std::size_t n_datasets) {
 /// With fewer datasets no data are strange enough.
 bool can_refuse(std::size_t n_datasets, double level) { return static_cast<double>(n_datasets + 1) * level >= 1.0; }
 
-/// As they are in one world.
-std::vector<EffectSpec> drawn(std::span<const FittedEffect> effects, const Laboratory& lab, std::uint64_t seed,
-                              std::uint32_t world) {
-  Stream stream({seed, world, 0, Purpose::model_check});
+/// As they are in one realization.
+std::vector<EffectSpec> drawn(std::span<const FittedEffect> effects, const ReferenceStudy& reference,
+                              std::uint64_t seed, std::uint32_t realization) {
+  Stream stream({seed, realization, 0, Purpose::model_check});
   std::vector<EffectSpec> all;
   for (const FittedEffect& fitted : effects) {
     all.push_back(fitted.effect);
@@ -42,31 +42,32 @@ std::vector<EffectSpec> drawn(std::span<const FittedEffect> effects, const Labor
       if (values.empty()) continue;
       all.back().parameters.at(parameter.name) = values[stream.index(static_cast<std::uint32_t>(values.size()))];
     }
-    all.back() = effects::settled(std::move(all.back()), lab.source.scene);
+    all.back() = effects::settled(std::move(all.back()), reference.source.scene);
   }
   return all;
 }
 
-/// Simulates datasets of some models, more and more. Of each model one in a world: those of one world share the room,
-/// so that data of another room would be stranger than any of them.
+/// Simulates datasets of some models, more and more. Of each model one in a realization: those of one realization share
+/// the room, so that data of another room would be stranger than any of them.
 class Ensembles {
  public:
-  Ensembles(std::span<const PatchedModel> models, const Laboratory& lab, const ModelCheckSettings& settings)
-      : models_(models), lab_(lab), settings_(settings), datasets_(models.size()) {}
+  Ensembles(std::span<const PatchedModel> models, const ReferenceStudy& reference, const ModelCheckSettings& settings)
+      : models_(models), reference_(reference), settings_(settings), datasets_(models.size()) {}
 
-  /// Simulates those models, by index, in all worlds up to this one. Call with fewer models and more worlds each time.
-  void extend(std::span<const std::size_t> which, std::uint32_t n_worlds) {
+  /// Simulates those models, by index, in all realizations up to this one. Call with fewer models and more realizations
+  /// each time.
+  void extend(std::span<const std::size_t> which, std::uint32_t n_realizations) {
     ordered_parallel<Rows>(
-        n_worlds - n_worlds_, settings_.threads,
+        n_realizations - n_realizations_, settings_.threads,
         [&](std::size_t i) {
-          return datasets_in(first_check_world + n_worlds_ + static_cast<std::uint32_t>(i), which);
+          return datasets_in(first_check_realization + n_realizations_ + static_cast<std::uint32_t>(i), which);
         },
         [&](const Rows& rows) {
           for (std::size_t k = 0; k < which.size(); ++k) {
             if (!rows[k].empty()) datasets_[which[k]].append_row(std::span<const float>(rows[k]));
           }
         });
-    n_worlds_ = n_worlds;
+    n_realizations_ = n_realizations;
   }
 
   /// (n x n_statistics) of one model.
@@ -77,45 +78,47 @@ class Ensembles {
   using Rows = std::vector<std::vector<float>>;  ///< one a model; empty: people can't get about
 
   [[nodiscard]] Rows datasets_in(std::uint32_t index, std::span<const std::size_t> which) const {
-    const int n = lab_.shape.n_replicates;
-    const SimulatedWorld world(lab_.source, lab_.frame, index, n);
+    const int n = reference_.shape.n_replicates;
+    const SimulatedRealization realization(reference_.source, reference_.frame, index, n);
     Rows rows;
     for (const std::size_t k : which) {
-      const auto data = world.with_effects(drawn(models_[k].put_in, lab_, settings_.seed, index), 0, n);
-      rows.push_back(data ? statistics_of(lab_.frame, lab_.shape, lab_.table.profile, *data) : std::vector<float>());
+      const auto data = realization.with_effects(drawn(models_[k].applied, reference_, settings_.seed, index), 0, n);
+      rows.push_back(data ? statistics_of(reference_.frame, reference_.shape, reference_.table.profile, *data)
+                          : std::vector<float>());
     }
     return rows;
   }
 
   std::span<const PatchedModel> models_;
-  const Laboratory& lab_;
+  const ReferenceStudy& reference_;
   const ModelCheckSettings& settings_;
   std::vector<stats::Matrix<float>> datasets_;  // one a model
-  std::uint32_t n_worlds_ = 0;
+  std::uint32_t n_realizations_ = 0;
 };
 
 }  // namespace
 
-double level_with(std::size_t n_put_in, double alpha) { return alpha * std::pow(0.5, static_cast<double>(n_put_in)); }
+double level_with(std::size_t n_applied, double alpha) { return alpha * std::pow(0.5, static_cast<double>(n_applied)); }
 
-std::vector<double> p_with(std::span<const PatchedModel> models, const Laboratory& lab, const FeatureMap& map,
+std::vector<double> p_with(std::span<const PatchedModel> models, const ReferenceStudy& reference, const FeatureMap& map,
                            const ModelCheckSettings& settings,
                            const std::function<void(std::size_t, std::uint32_t)>& on_look) {
-  Ensembles ensembles(models, lab, settings);
+  Ensembles ensembles(models, reference, settings);
   std::vector<double> p(models.size());
   std::vector<std::size_t> in_doubt(models.size());
   std::iota(in_doubt.begin(), in_doubt.end(), std::size_t{0});
-  const auto n_to_refuse = static_cast<std::uint32_t>(std::ceil(worlds_to_refuse / settings.level));
-  for (const std::uint32_t n_worlds : {first_looks[0], first_looks[1], std::max(n_to_refuse, first_looks[1])}) {
+  const auto n_to_refuse = static_cast<std::uint32_t>(std::ceil(realizations_to_refuse / settings.level));
+  for (const std::uint32_t n_realizations : {first_looks[0], first_looks[1], std::max(n_to_refuse, first_looks[1])}) {
     if (in_doubt.empty()) break;
-    if (on_look) on_look(in_doubt.size(), n_worlds);
-    ensembles.extend(in_doubt, n_worlds);
+    if (on_look) on_look(in_doubt.size(), n_realizations);
+    ensembles.extend(in_doubt, n_realizations);
     std::vector<std::size_t> still;
     for (const std::size_t k : in_doubt) {
       const stats::Matrix<float>& datasets = ensembles.of(k);
       if (datasets.rows() > 1)
-        p[k] =
-            locate(lab.frame, map, datasets, models[k].observed, {settings.level, settings.seed, settings.threads}).p;
+        p[k] = locate(reference.frame, map, datasets, models[k].observed,
+                      {settings.level, settings.seed, settings.threads})
+                   .p;
       if (surely_passes(p[k], datasets.rows()))
         ensembles.forget(k);
       else

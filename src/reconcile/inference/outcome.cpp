@@ -12,12 +12,12 @@ std::vector<Candidate> with_twins(const std::vector<Candidate>& candidates) {
   std::vector<Candidate> all;
   for (const Candidate& candidate : candidates) {
     all.push_back(candidate);
-    for (const std::string& twin : effects::twins_of(candidate.score.entry)) {
-      const auto is_twin = [&](const Candidate& other) { return other.score.entry == twin; };
+    for (const std::string& twin : effects::twins_of(candidate.score.hypothesis)) {
+      const auto is_twin = [&](const Candidate& other) { return other.score.hypothesis == twin; };
       if (std::ranges::any_of(candidates, is_twin)) continue;  // it was asked for
       all.push_back(candidate);
-      all.back().score.entry = twin;
-      all.back().reason = "Judged as " + candidate.score.entry + ", which changes the model in the same way.";
+      all.back().score.hypothesis = twin;
+      all.back().reason = "Judged as " + candidate.score.hypothesis + ", which changes the model in the same way.";
     }
   }
   return all;

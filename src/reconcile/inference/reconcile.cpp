@@ -7,37 +7,40 @@
 namespace pirsim::reconcile {
 namespace {
 
-constexpr std::uint32_t n_pilot_worlds = 40;
+constexpr std::uint32_t n_pilot_realizations = 40;
 
 }  // namespace
 
-Laboratory make_laboratory(const SceneSpec& scene, const ScriptSpec& script, const Settings& settings,
-                           const std::function<DataShape(const StudyFrame&, std::span<const Series>)>& shape_of_data,
-                           const Observer& observer) {
+ReferenceStudy make_reference_study(
+    const SceneSpec& scene, const ScriptSpec& script, const Settings& settings,
+    const std::function<DataShape(const StudyFrame&, std::span<const Series>)>& shape_of_data,
+    const Observer& observer) {
   const auto begin = [&](const std::string& stage) {
     if (observer.stage) observer.stage(stage);
   };
-  Laboratory lab{{scene, script, settings.nuisance, settings.seed},
-                 frame_of(scene, script),
-                 cell_knowledge(scene, script),
-                 {},
-                 {},
-                 {}};
+  ReferenceStudy reference{{scene, script, settings.nuisance, settings.seed},
+                           frame_of(scene, script),
+                           cell_knowledge(scene, script),
+                           {},
+                           {},
+                           {}};
   begin("pilot runs");
-  const std::vector<Series> pilot = pilot_runs(lab.source, lab.frame, n_pilot_worlds, settings.threads);
-  lab.shape = shape_of_data(lab.frame, pilot);
+  const std::vector<Series> pilot =
+      pilot_runs(reference.source, reference.frame, n_pilot_realizations, settings.threads);
+  reference.shape = shape_of_data(reference.frame, pilot);
   begin("reference table");
-  lab.table = make_reference_table(lab.source, lab.frame, lab.shape, profile_of(lab.frame, script, pilot),
-                                   settings.table, settings.table_folder, {observer.progress});
-  lab.key = lab.table.key;
-  return lab;
+  reference.table = make_reference_table(reference.source, reference.frame, reference.shape,
+                                         profile_of(reference.frame, script, pilot), settings.table,
+                                         settings.table_folder, {observer.progress});
+  reference.key = reference.table.key;
+  return reference;
 }
 
-FeatureMap Laboratory::map(std::vector<std::size_t> trials) const {
+FeatureMap ReferenceStudy::map(std::vector<std::size_t> trials) const {
   return {frame, knowledge, table.statistics.select_rows(rows_of(table, 0, Part::training)), std::move(trials)};
 }
 
-std::shared_ptr<const TableView> Laboratory::view(std::vector<std::size_t> trials, unsigned threads) const {
+std::shared_ptr<const TableView> ReferenceStudy::view(std::vector<std::size_t> trials, unsigned threads) const {
   return std::make_shared<const TableView>(source.scene, frame, knowledge, table, std::move(trials), threads);
 }
 

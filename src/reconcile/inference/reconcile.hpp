@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "reconcile/data/measured.hpp"
-#include "reconcile/inference/outcome.hpp"
 #include "reconcile/ensemble/reference_table.hpp"
+#include "reconcile/inference/outcome.hpp"
 #include "reconcile/inference/table_view.hpp"
 
 namespace pirsim::reconcile {
@@ -25,7 +25,7 @@ struct Settings {
   TableSettings table;
   std::filesystem::path table_folder;  ///< empty: the table is not kept
   std::size_t trees = 300;
-  std::uint32_t verify_worlds = 60;  ///< simulated with each patched model
+  std::uint32_t verify_realizations = 60;  ///< simulated with each patched model
   std::vector<std::size_t> holdout;  ///< trials (ascending) kept from naming and fitting, to be judged on; none: folds
 };
 
@@ -36,8 +36,8 @@ struct Observer {
 };
 
 /// A study with the reference table for one shape of data.
-struct Laboratory {
-  WorldSource source;
+struct ReferenceStudy {
+  RealizationSource source;
   StudyFrame frame;
   std::vector<CellKnowledge> knowledge;
   DataShape shape;
@@ -46,10 +46,10 @@ struct Laboratory {
 
   /// What the plain model's training datasets say of these trials (sorted).
   [[nodiscard]] FeatureMap map(std::vector<std::size_t> trials) const;
-  /// The table as it looks in these trials (sorted); must not outlive the laboratory.
+  /// The table as it looks in these trials (sorted); must not outlive the reference study.
   [[nodiscard]] std::shared_ptr<const TableView> view(std::vector<std::size_t> trials, unsigned threads) const;
 };
-[[nodiscard]] Laboratory make_laboratory(
+[[nodiscard]] ReferenceStudy make_reference_study(
     const SceneSpec& scene, const ScriptSpec& script, const Settings& settings,
     const std::function<DataShape(const StudyFrame&, std::span<const Series> pilot)>& shape_of_data,
     const Observer& observer = {});

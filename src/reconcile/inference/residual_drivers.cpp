@@ -9,11 +9,11 @@
 namespace pirsim::reconcile {
 namespace {
 
-Who who(const Laboratory& lab, std::string name, bool any_seat,
+Who who(const ReferenceStudy& reference, std::string name, bool any_seat,
         const std::function<bool(std::size_t trial, std::size_t sensor)>& holds) {
   Who one{std::move(name), {}, any_seat};
-  for (std::size_t trial = 0; trial < lab.frame.trials.size(); ++trial) {
-    for (std::size_t sensor = 0; sensor < lab.frame.sensors.size(); ++sensor)
+  for (std::size_t trial = 0; trial < reference.frame.trials.size(); ++trial) {
+    for (std::size_t sensor = 0; sensor < reference.frame.sensors.size(); ++sensor)
       one.cells.push_back(holds(trial, sensor) ? 1 : 0);
   }
   return one;
@@ -23,16 +23,16 @@ Who who(const Laboratory& lab, std::string name, bool any_seat,
 /// run, so that a seat or a sensor that sees more all the time isn't taken for a matter of time.
 class Times {
  public:
-  explicit Times(const Laboratory& lab) : lab_(lab) {}
+  explicit Times(const ReferenceStudy& reference) : reference_(reference) {}
 
   void add(const std::string& name, const std::function<double(double time_s, double length_s)>& weight) {
     When when{name, false, {}};
-    for (const Profile::Trial& trial : lab_.table.profile.trials) {
+    for (const Profile::Trial& trial : reference_.table.profile.trials) {
       when.weight.emplace_back();
-      const double length_s = static_cast<double>(trial.n_main) * lab_.frame.window_s;
+      const double length_s = static_cast<double>(trial.n_main) * reference_.frame.window_s;
       double mean = 0.0;
       for (std::size_t row = 0; row < trial.n_main; ++row) {
-        when.weight.back().push_back(weight((static_cast<double>(row) + 0.5) * lab_.frame.window_s, length_s));
+        when.weight.back().push_back(weight((static_cast<double>(row) + 0.5) * reference_.frame.window_s, length_s));
         mean += when.weight.back().back() / static_cast<double>(trial.n_main);
       }
       if (name.empty()) continue;  // always
@@ -57,7 +57,7 @@ class Times {
   std::vector<When> all;
 
  private:
-  const Laboratory& lab_;
+  const ReferenceStudy& reference_;
 };
 
 std::string seconds(double value) { return std::to_string(std::lround(value)); }
@@ -99,35 +99,35 @@ void add_waves(Times& times, double longest_s) {
 
 }  // namespace
 
-std::vector<Who> all_who(const Laboratory& lab) {
-  std::vector<Who> all{who(lab, "all sensors", true, [](auto, auto) { return true; })};
-  const StudyFrame& frame = lab.frame;
+std::vector<Who> all_who(const ReferenceStudy& reference) {
+  std::vector<Who> all{who(reference, "all sensors", true, [](auto, auto) { return true; })};
+  const StudyFrame& frame = reference.frame;
   for (std::size_t s = 0; s < frame.sensors.size(); ++s)
-    all.push_back(who(lab, frame.sensors[s], true, [s](auto, std::size_t sensor) { return sensor == s; }));
+    all.push_back(who(reference, frame.sensors[s], true, [s](auto, std::size_t sensor) { return sensor == s; }));
   for (std::size_t t = 0; t < frame.trials.size(); ++t)
-    all.push_back(who(lab, frame.trials[t], false, [t](std::size_t trial, auto) { return trial == t; }));
+    all.push_back(who(reference, frame.trials[t], false, [t](std::size_t trial, auto) { return trial == t; }));
   const auto knowledge = [&](std::size_t trial, std::size_t sensor) -> const CellKnowledge& {
-    return lab.knowledge[trial * frame.sensors.size() + sensor];
+    return reference.knowledge[trial * frame.sensors.size() + sensor];
   };
   std::vector<double> distances;
-  for (const CellKnowledge& cell : lab.knowledge) distances.push_back(cell.distance_m);
+  for (const CellKnowledge& cell : reference.knowledge) distances.push_back(cell.distance_m);
   const double near = stats::quantile(distances, 1.0 / 3.0), far = stats::quantile(distances, 2.0 / 3.0);
-  all.push_back(who(lab, "sensors near the seat", true,
+  all.push_back(who(reference, "sensors near the seat", true,
                     [&](std::size_t t, std::size_t s) { return knowledge(t, s).distance_m < near; }));
-  all.push_back(who(lab, "sensors far from the seat", true,
+  all.push_back(who(reference, "sensors far from the seat", true,
                     [&](std::size_t t, std::size_t s) { return knowledge(t, s).distance_m > far; }));
-  all.push_back(who(lab, "sensors that the sitter faces", true,
+  all.push_back(who(reference, "sensors that the sitter faces", true,
                     [&](std::size_t t, std::size_t s) { return knowledge(t, s).facing > 0.5; }));
-  all.push_back(who(lab, "sensors behind the sitter", true,
+  all.push_back(who(reference, "sensors behind the sitter", true,
                     [&](std::size_t t, std::size_t s) { return knowledge(t, s).facing < -0.5; }));
   return all;
 }
 
-std::vector<When> all_when(const Laboratory& lab) {
-  Times times(lab);
+std::vector<When> all_when(const ReferenceStudy& reference) {
+  Times times(reference);
   double longest_s = 0.0;
-  for (const Profile::Trial& trial : lab.table.profile.trials)
-    longest_s = std::max(longest_s, static_cast<double>(trial.n_main) * lab.frame.window_s);
+  for (const Profile::Trial& trial : reference.table.profile.trials)
+    longest_s = std::max(longest_s, static_cast<double>(trial.n_main) * reference.frame.window_s);
   times.add("", [](double, double) { return 1.0; });
   times.add_part("in the first half of each run", 0.0, 0.5);
   times.add_part("in the second half of each run", 0.5, 1.0);
@@ -141,7 +141,7 @@ std::vector<When> all_when(const Laboratory& lab) {
                           : "from second " + seconds(begin) + " to " + seconds(end) + " of each minute";
     });
   }
-  if (const action::Work* work = first_work(lab.source.script)) {
+  if (const action::Work* work = first_work(reference.source.script)) {
     if (longest_s >= 2.0 * work->tilt_every_s && work->tilt_choices_deg.size() > 1)
       add_posture(times, work->tilt_every_s);
     times.add_phases(work->arm_period_s, 3, [&](double begin, double end) {

@@ -23,8 +23,8 @@ struct When {
 };
 enum class How { more, more_where_little, more_where_much, opposite, beside };
 
-[[nodiscard]] std::vector<Who> all_who(const Laboratory& lab);
-[[nodiscard]] std::vector<When> all_when(const Laboratory& lab);
+[[nodiscard]] std::vector<Who> all_who(const ReferenceStudy& reference);
+[[nodiscard]] std::vector<When> all_when(const ReferenceStudy& reference);
 /// up: the weight of the driver is positive; other: name of the sensor beside which it acts.
 [[nodiscard]] std::string in_words(How how, bool up, const std::string& other);
 

@@ -12,7 +12,8 @@
 namespace pirsim::reconcile {
 namespace {
 
-constexpr std::uint32_t first_residual_world = 1U << 22U;  ///< worlds that neither profile nor table has seen
+constexpr std::uint32_t first_residual_realization = 1U
+                                                     << 22U;  ///< realizations that neither profile nor table has seen
 constexpr double least_chance = 0.01;  ///< of motion in a window (assumed): profiles are means of few runs
 constexpr double little = 0.05, much = 0.3;
 constexpr double least_information = 1.0;  ///< bits' worth of variance (assumed): one bit alone proves nothing
@@ -25,9 +26,9 @@ struct Place {
 /// The main parts of all measured runs as one list of bits: the same places in every dataset.
 class Bits {
  public:
-  Bits(const Laboratory& lab, const Profile& profile) : lab_(lab) {
-    const std::size_t n = lab.frame.sensors.size();
-    for (const DataShape::Run& run : lab.shape.runs) {
+  Bits(const ReferenceStudy& reference, const Profile& profile) : reference_(reference) {
+    const std::size_t n = reference.frame.sensors.size();
+    for (const DataShape::Run& run : reference.shape.runs) {
       const Profile::Trial& trial = profile.trials[run.trial];
       for (std::size_t i = 0; i < std::min(run.n_main, trial.n_main) * n; ++i) {
         places.push_back({run.trial, i / n, i % n});
@@ -40,9 +41,9 @@ class Bits {
   }
   /// (n_places) 0 or 1; 0 where nothing was measured.
   [[nodiscard]] std::vector<std::uint8_t> of(std::span<const Series> runs, const Profile& profile) const {
-    const std::size_t n = lab_.frame.sensors.size();
+    const std::size_t n = reference_.frame.sensors.size();
     std::vector<std::uint8_t> bits;
-    for (const DataShape::Run& wanted : lab_.shape.runs) {
+    for (const DataShape::Run& wanted : reference_.shape.runs) {
       const std::size_t size = std::min(wanted.n_main, profile.trials[wanted.trial].n_main) * n;
       const auto run = std::ranges::find_if(
           runs, [&](const Series& s) { return s.trial == wanted.trial && s.replicate == wanted.replicate; });
@@ -60,7 +61,7 @@ class Bits {
   std::vector<std::uint8_t> known;
 
  private:
-  const Laboratory& lab_;
+  const ReferenceStudy& reference_;
 };
 
 struct Driver {
@@ -73,8 +74,9 @@ struct Driver {
 /// Every driver's score in a dataset: the derivative of the log likelihood for its coefficient.
 class Scores {
  public:
-  Scores(const Laboratory& lab, const Bits& bits) : lab_(lab), bits_(bits), who_(all_who(lab)), when_(all_when(lab)) {
-    const std::size_t n_sensors = lab.frame.sensors.size();
+  Scores(const ReferenceStudy& reference, const Bits& bits)
+      : reference_(reference), bits_(bits), who_(all_who(reference)), when_(all_when(reference)) {
+    const std::size_t n_sensors = reference.frame.sensors.size();
     std::vector<std::pair<How, std::size_t>> hows{
         {How::more, 0}, {How::more_where_little, 0}, {How::more_where_much, 0}, {How::opposite, 0}};
     for (std::size_t s = 0; n_sensors > 1 && s < n_sensors; ++s) hows.emplace_back(How::beside, s);
@@ -93,7 +95,7 @@ class Scores {
   /// What the driver multiplies its coefficient with, at one place of a dataset.
   [[nodiscard]] double value(const Driver& driver, std::span<const std::uint8_t> bits, std::size_t place) const {
     const Place& at = bits_.places[place];
-    const std::size_t cell = at.trial * lab_.frame.sensors.size() + at.sensor;
+    const std::size_t cell = at.trial * reference_.frame.sensors.size() + at.sensor;
     if (who_[driver.who].cells[cell] == 0) return 0.0;
     return when_[driver.when].weight[at.trial][at.row] * factor(driver.how, driver.other, bits, place);
   }
@@ -103,13 +105,13 @@ class Scores {
   [[nodiscard]] std::vector<double> sums(std::span<const std::uint8_t> bits, std::span<const double> residuals,
                                          Power power = Power::one) const {
     std::vector<double> all(drivers_.size(), 0.0);
-    const std::size_t n_cells = lab_.frame.n_cells();
+    const std::size_t n_cells = reference_.frame.n_cells();
     for (std::size_t first = 0; first < drivers_.size(); first += who_.size() * when_.size()) {
       const std::vector<std::vector<double>> by_row = rows_of_cells(drivers_[first], bits, residuals, power);
       for (std::size_t when = 0; when < when_.size(); ++when) {
         std::vector<double> of_cells(n_cells, 0.0);
         for (std::size_t cell = 0; cell < n_cells; ++cell) {
-          const std::vector<double>& weight = when_[when].weight[cell / lab_.frame.sensors.size()];
+          const std::vector<double>& weight = when_[when].weight[cell / reference_.frame.sensors.size()];
           for (std::size_t row = 0; row < by_row[cell].size(); ++row)
             of_cells[cell] += by_row[cell][row] * (power == Power::one ? weight[row] : weight[row] * weight[row]);
         }
@@ -142,8 +144,8 @@ class Scores {
   }
   [[nodiscard]] std::vector<std::vector<double>> rows_of_cells(const Driver& driver, std::span<const std::uint8_t> bits,
                                                                std::span<const double> residuals, Power power) const {
-    std::vector<std::vector<double>> by_row(lab_.frame.n_cells());
-    const std::size_t n_sensors = lab_.frame.sensors.size();
+    std::vector<std::vector<double>> by_row(reference_.frame.n_cells());
+    const std::size_t n_sensors = reference_.frame.sensors.size();
     for (std::size_t cell = 0; cell < by_row.size(); ++cell)
       by_row[cell].assign(when_.front().weight[cell / n_sensors].size(), 0.0);
     for (std::size_t place = 0; place < bits_.places.size(); ++place) {
@@ -155,7 +157,7 @@ class Scores {
     return by_row;
   }
 
-  const Laboratory& lab_;
+  const ReferenceStudy& reference_;
   const Bits& bits_;
   std::vector<Who> who_;
   std::vector<When> when_;
@@ -235,18 +237,19 @@ std::vector<double> residuals_of(const std::vector<std::uint8_t>& bits, const st
   return residuals;
 }
 
-Usual simulate_usual(const Laboratory& lab, const Bits& bits, const Scores& scores,
+Usual simulate_usual(const ReferenceStudy& reference, const Bits& bits, const Scores& scores,
                      const std::vector<std::uint8_t>& measured, const ResidualSettings& settings) {
   std::vector<std::vector<double>> simulated;
-  const Profile& profile = lab.table.profile;
+  const Profile& profile = reference.table.profile;
   ordered_parallel<std::vector<double>>(
       std::max(settings.n_simulated,
                static_cast<std::uint32_t>(std::ceil(static_cast<double>(n_kinds) / settings.alpha))),
       settings.threads,
       [&](std::size_t i) {
-        const SimulatedWorld world(lab.source, lab.frame, first_residual_world + static_cast<std::uint32_t>(i),
-                                   lab.shape.n_replicates);
-        const std::vector<std::uint8_t> own = bits.of(world.plain(0, lab.shape.n_replicates), profile);
+        const SimulatedRealization realization(reference.source, reference.frame,
+                                               first_residual_realization + static_cast<std::uint32_t>(i),
+                                               reference.shape.n_replicates);
+        const std::vector<std::uint8_t> own = bits.of(realization.plain(0, reference.shape.n_replicates), profile);
         return scores.sums(own, residuals_of(own, bits.chance));
       },
       [&](std::vector<double>& one) { simulated.push_back(std::move(one)); });
@@ -337,13 +340,13 @@ std::string sentence_of(const Residuals& result, const FamilyScore& family) {
 
 }  // namespace
 
-Residuals explain_residuals(const Laboratory& lab, const Measured& measured, const FamilyScore& family,
+Residuals explain_residuals(const ReferenceStudy& reference, const Measured& measured, const FamilyScore& family,
                             const ResidualSettings& settings) {
-  const Profile& profile = lab.table.profile;
-  const Bits bits(lab, profile);
-  const Scores scores(lab, bits);
+  const Profile& profile = reference.table.profile;
+  const Bits bits(reference, profile);
+  const Scores scores(reference, bits);
   const std::vector<std::uint8_t> measured_bits = bits.of(measured.runs, profile);
-  const Usual usual = simulate_usual(lab, bits, scores, measured_bits, settings);
+  const Usual usual = simulate_usual(reference, bits, scores, measured_bits, settings);
   Regression regression(bits, scores, measured_bits);
   Residuals result;
   while (result.drivers.size() < settings.most_drivers) {
@@ -356,7 +359,7 @@ Residuals explain_residuals(const Laboratory& lab, const Measured& measured, con
     const Who& who = scores.who(driver);
     std::string when = scores.when(driver).name;
     if (who.any_seat) when += (when.empty() ? "" : ", ") + std::string("whatever the seat");
-    result.drivers.push_back({who.name, when, in_words(driver.how, z > 0.0, lab.frame.sensors[driver.other]),
+    result.drivers.push_back({who.name, when, in_words(driver.how, z > 0.0, reference.frame.sensors[driver.other]),
                               regression.log_odds(), regression.standard_error(), z, p});
   }
   result.sentence = sentence_of(result, family);

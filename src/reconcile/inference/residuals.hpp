@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "reconcile/data/measured.hpp"
-#include "reconcile/inference/name.hpp"
+#include "reconcile/inference/classifier.hpp"
 
 namespace pirsim::reconcile {
 
-struct Laboratory;
+struct ReferenceStudy;
 
 /// One thing that the bits do and the model doesn't.
 struct ResidualDriver {
@@ -41,7 +41,7 @@ struct ResidualSettings {
 /// much is expected, the opposite, together with another sensor). Scores are compared with those of simulated datasets
 /// with nuisance, the strongest with the strongest, so that neither dependent seconds nor the number of drivers tried
 /// makes one up. measured: series only; family: the likeliest.
-[[nodiscard]] Residuals explain_residuals(const Laboratory& lab, const Measured& measured, const FamilyScore& family,
-                                          const ResidualSettings& settings);
+[[nodiscard]] Residuals explain_residuals(const ReferenceStudy& reference, const Measured& measured,
+                                          const FamilyScore& family, const ResidualSettings& settings);
 
 }  // namespace pirsim::reconcile

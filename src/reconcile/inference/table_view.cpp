@@ -18,8 +18,8 @@ TableView::TableView(const SceneSpec& scene, const StudyFrame& frame, const std:
       plain_reference_(tested_features(map_, features_.select_rows(rows_of(table, 0, Part::all)))),
       p_of_rows_(table.rows.size(), 1.0) {
   std::vector<std::size_t> rows;
-  for (std::size_t entry = 1; entry < table.n_entries(); ++entry) {
-    const std::vector<std::size_t> own = rows_of(table, entry, Part::calibration);
+  for (std::size_t hypothesis = 1; hypothesis < table.n_hypotheses(); ++hypothesis) {
+    const std::vector<std::size_t> own = rows_of(table, hypothesis, Part::calibration);
     rows.insert(rows.end(), own.begin(), own.end());
   }
   std::size_t next = 0;
@@ -30,7 +30,7 @@ TableView::TableView(const SceneSpec& scene, const StudyFrame& frame, const std:
 }
 
 double TableView::p(std::span<const float> statistics) const {
-  return plain_reference_.p(envelope_entries(map_, statistics));
+  return plain_reference_.p(tested_statistics(map_, statistics));
 }
 
 }  // namespace pirsim::reconcile

@@ -18,9 +18,9 @@
 namespace pirsim::reconcile {
 namespace {
 
-constexpr std::uint32_t first_verify_world = 1U << 24U;  ///< worlds that no table has seen
-constexpr std::size_t most_own_scores = 40;              ///< members whose distance to the others makes the noise floor
-constexpr double sign_level = 0.05;                      ///< of ten trials nine must be better
+constexpr std::uint32_t first_verify_realization = 1U << 24U;  ///< realizations that no table has seen
+constexpr std::size_t most_own_scores = 40;  ///< members whose distance to the others makes the noise floor
+constexpr double sign_level = 0.05;          ///< of ten trials nine must be better
 
 using Patch = std::vector<EffectSpec>;
 
@@ -44,14 +44,14 @@ class FoldSearch {
 
   [[nodiscard]] FoldPatches search(const Claim& claim) {
     FoldPatches found;
-    for (const PutIn& step : claim.steps) {
+    for (const AppliedEffect& step : claim.steps) {
       learn(step);
       const std::vector<double> probabilities = learnt_->probabilities.of(step.observed);
-      const std::size_t best = likeliest_entry(probabilities, [](std::size_t) { return true; });
+      const std::size_t best = likeliest_hypothesis(probabilities, [](std::size_t) { return true; });
       if (best == 0) break;
       if (found.patch.empty()) find_placebo(claim, probabilities, found);
       found.patch.push_back(fitted(best, step));
-      const std::string name = step.lab->table.entry_name(best);
+      const std::string name = step.reference->table.hypothesis_name(best);
       found.names += (found.names.empty() ? "" : " + ") + name;
       if (name != step.effect) break;  // the later tables are of another model
     }
@@ -62,41 +62,41 @@ class FoldSearch {
  private:
   /// The table as it looks without the trials that are held out.
   struct Learnt {
-    Learnt(const PutIn& step, const std::vector<std::size_t>& trials, const VerifySettings& settings)
-        : lab(step.lab),
-          map(lab->map(trials)),
-          probabilities(lab->table, map, step.seen,
+    Learnt(const AppliedEffect& step, const std::vector<std::size_t>& trials, const VerifySettings& settings)
+        : reference(step.reference),
+          map(reference->map(trials)),
+          probabilities(reference->table, map, step.seen,
                         {.trees = {.trees = settings.trees, .seed = settings.seed, .threads = settings.threads},
                          .threads = settings.threads}),
-          fitter(lab->source.scene, lab->table, map, step.seen, {settings.threads}) {}
+          fitter(reference->source.scene, reference->table, map, step.seen, {settings.threads}) {}
     Learnt(const Learnt&) = delete;  // the others point to the map
     Learnt& operator=(const Learnt&) = delete;
 
-    const Laboratory* lab;
+    const ReferenceStudy* reference;
     FeatureMap map;
-    EntryProbabilities probabilities;
+    HypothesisProbabilities probabilities;
     EffectFitter fitter;
   };
 
   /// One is kept: it takes long and much memory, and claims about the same study come one after the other.
-  void learn(const PutIn& step) {
-    if (!learnt_ || learnt_->lab != step.lab) learnt_.emplace(step, trials_, settings_);
+  void learn(const AppliedEffect& step) {
+    if (!learnt_ || learnt_->reference != step.reference) learnt_.emplace(step, trials_, settings_);
   }
-  [[nodiscard]] EffectSpec fitted(std::size_t entry, const PutIn& step) const {
-    return learnt_->fitter.fit(entry, step.observed).effect;
+  [[nodiscard]] EffectSpec fitted(std::size_t hypothesis, const AppliedEffect& step) const {
+    return learnt_->fitter.fit(hypothesis, step.observed).effect;
   }
   void find_placebo(const Claim& claim, std::span<const double> probabilities, FoldPatches& found) const {
     std::set<effects::Family> families;
-    for (const PutIn& step : claim.steps) families.insert(effects::find(step.effect).info.family);
+    for (const AppliedEffect& step : claim.steps) families.insert(effects::find(step.effect).info.family);
     for (const std::string& rival : claim.rivals) families.insert(effects::find(rival).info.family);
-    const PutIn& plain = claim.steps.front();
-    const ReferenceTable& table = plain.lab->table;
-    const std::size_t other = likeliest_entry(probabilities, [&](std::size_t entry) {
-      return !families.contains(effects::find(table.entry_name(entry)).info.family);
+    const AppliedEffect& plain = claim.steps.front();
+    const ReferenceTable& table = plain.reference->table;
+    const std::size_t other = likeliest_hypothesis(probabilities, [&](std::size_t hypothesis) {
+      return !families.contains(effects::find(table.hypothesis_name(hypothesis)).info.family);
     });
     if (other == 0) return;
     found.placebo = {fitted(other, plain)};
-    found.placebo_name = table.entry_name(other);
+    found.placebo_name = table.hypothesis_name(other);
   }
 
   std::vector<std::size_t> trials_;
@@ -104,30 +104,32 @@ class FoldSearch {
   std::optional<Learnt> learnt_;
 };
 
-/// Datasets of the same worlds (n_worlds x n_statistics): of the plain model, and with each fold's patch or placebo in
-/// the trials that the fold holds out. Worlds in which people can't get about with it are left out.
+/// Datasets of the same realizations (n_realizations x n_statistics): of the plain model, and with each fold's patch or
+/// placebo in the trials that the fold holds out. Realizations in which people can't get about with it are left out.
 struct Ensembles {
   stats::Matrix<float> before, after, placebo;
 };
 
 class Simulation {
  public:
-  Simulation(const Laboratory& lab, const Folds& folds, const std::vector<FoldPatches>& found)
-      : lab_(lab), folds_(folds), found_(found) {}
+  Simulation(const ReferenceStudy& reference, const Folds& folds, const std::vector<FoldPatches>& found)
+      : reference_(reference), folds_(folds), found_(found) {}
 
   /// None if people can hardly get about with the patches.
   [[nodiscard]] std::optional<Ensembles> run(const VerifySettings& settings) const {
     using Rows = std::vector<std::vector<float>>;  // before, after, placebo
     Ensembles all;
     ordered_parallel<Rows>(
-        std::max(settings.n_worlds, static_cast<std::uint32_t>(std::ceil(1.0 / settings.alpha))), settings.threads,
+        std::max(settings.n_realizations, static_cast<std::uint32_t>(std::ceil(1.0 / settings.alpha))),
+        settings.threads,
         [&](std::size_t i) -> Rows {
-          const SimulatedWorld world(lab_.source, lab_.frame, first_verify_world + static_cast<std::uint32_t>(i),
-                                     lab_.shape.n_replicates);
-          const auto after = patched(world);
+          const SimulatedRealization realization(reference_.source, reference_.frame,
+                                                 first_verify_realization + static_cast<std::uint32_t>(i),
+                                                 reference_.shape.n_replicates);
+          const auto after = patched(realization);
           if (!after) return {};
-          return {statistics_of(world.plain(0, lab_.shape.n_replicates)), statistics_of(*after),
-                  statistics_of(with_placebos(world))};
+          return {statistics_of(realization.plain(0, reference_.shape.n_replicates)), statistics_of(*after),
+                  statistics_of(with_placebos(realization))};
         },
         [&](Rows& rows) {
           if (rows.empty()) return;
@@ -141,29 +143,29 @@ class Simulation {
 
  private:
   [[nodiscard]] std::vector<float> statistics_of(const std::vector<Series>& runs) const {
-    return reconcile::statistics_of(lab_.frame, lab_.shape, lab_.table.profile, runs);
+    return reconcile::statistics_of(reference_.frame, reference_.shape, reference_.table.profile, runs);
   }
-  [[nodiscard]] std::optional<std::vector<Series>> patched(const SimulatedWorld& world) const {
+  [[nodiscard]] std::optional<std::vector<Series>> patched(const SimulatedRealization& realization) const {
     std::vector<Series> all;
     for (std::size_t f = 0; f < folds_.size(); ++f) {
-      auto own = world.with_effects(found_[f].patch, 0, lab_.shape.n_replicates, folds_[f]);
+      auto own = realization.with_effects(found_[f].patch, 0, reference_.shape.n_replicates, folds_[f]);
       if (!own) return std::nullopt;
       std::ranges::move(*own, std::back_inserter(all));
     }
     return all;
   }
   /// A placebo with which people can't get about explains nothing: the plain model is taken in that fold.
-  [[nodiscard]] std::vector<Series> with_placebos(const SimulatedWorld& world) const {
+  [[nodiscard]] std::vector<Series> with_placebos(const SimulatedRealization& realization) const {
     std::vector<Series> all;
     for (std::size_t f = 0; f < folds_.size(); ++f) {
-      auto own = world.with_effects(found_[f].placebo, 0, lab_.shape.n_replicates, folds_[f]);
-      if (!own) own = world.with_effects({}, 0, lab_.shape.n_replicates, folds_[f]);
+      auto own = realization.with_effects(found_[f].placebo, 0, reference_.shape.n_replicates, folds_[f]);
+      if (!own) own = realization.with_effects({}, 0, reference_.shape.n_replicates, folds_[f]);
       std::ranges::move(*own, std::back_inserter(all));
     }
     return all;
   }
 
-  const Laboratory& lab_;
+  const ReferenceStudy& reference_;
   const Folds& folds_;
   const std::vector<FoldPatches>& found_;
 };
@@ -201,28 +203,30 @@ void add_cells(const StudyFrame& frame, const stats::Matrix<float>& ensemble, st
 /// Scores of the held-out trials, one after the other.
 class Judge {
  public:
-  Judge(const PutIn& plain, const Ensembles& ensembles, const VerifySettings& settings)
-      : lab_(*plain.lab),
+  Judge(const AppliedEffect& plain, const Ensembles& ensembles, const VerifySettings& settings)
+      : reference_(*plain.reference),
         measured_(plain.observed),
         ensembles_(ensembles),
         settings_(settings),
-        scales_(lab_.table.statistics.select_rows(rows_of(lab_.table, 0, Part::training))) {}
+        scales_(reference_.table.statistics.select_rows(rows_of(reference_.table, 0, Part::training))) {}
 
   void add_trial(std::size_t trial, Verification& result) {
-    const FeatureMap map(lab_.frame, lab_.knowledge, scales_, {trial});
+    const FeatureMap map(reference_.frame, reference_.knowledge, scales_, {trial});
     if (map.envelope_columns().empty()) return;
-    const auto entries = [&](const stats::Matrix<float>& all) { return envelope_entries(map, all, settings_.threads); };
-    const std::vector<double> real = envelope_entries(map, measured_);
-    const stats::Matrix<double> after = entries(ensembles_.after);
-    const double score_before = stats::energy_score(entries(ensembles_.before), real);
+    const auto hypotheses = [&](const stats::Matrix<float>& all) {
+      return tested_statistics(map, all, settings_.threads);
+    };
+    const std::vector<double> real = tested_statistics(map, measured_);
+    const stats::Matrix<double> after = hypotheses(ensembles_.after);
+    const double score_before = stats::energy_score(hypotheses(ensembles_.before), real);
     const double score_after = stats::energy_score(after, real);
     result.before.energy_score += score_before;
     result.after.energy_score += score_after;
-    result.placebo += stats::energy_score(entries(ensembles_.placebo), real);
+    result.placebo += stats::energy_score(hypotheses(ensembles_.placebo), real);
     result.noise_floor += own_score(after);
     drops_.push_back(score_before - score_after);
-    add_cells(lab_.frame, ensembles_.before, measured_, trial, result.before);
-    add_cells(lab_.frame, ensembles_.after, measured_, trial, result.after);
+    add_cells(reference_.frame, ensembles_.before, measured_, trial, result.before);
+    add_cells(reference_.frame, ensembles_.after, measured_, trial, result.after);
   }
 
   /// Means, intervals and tests over all trials that were added.
@@ -232,9 +236,9 @@ class Judge {
       *sum /= n;
     for (Gap* gap : {&result.before, &result.after})
       gap->area_s /= static_cast<double>(std::max<std::size_t>(1, gap->n_cells));
-    const FeatureMap map(lab_.frame, lab_.knowledge, scales_, held_out);
+    const FeatureMap map(reference_.frame, reference_.knowledge, scales_, held_out);
     const auto p = [&](const stats::Matrix<float>& ensemble) {
-      return locate(lab_.frame, map, ensemble, measured_, {settings_.alpha, settings_.seed, settings_.threads}).p;
+      return locate(reference_.frame, map, ensemble, measured_, {settings_.alpha, settings_.seed, settings_.threads}).p;
     };
     result.before.p = p(ensembles_.before);
     result.after.p = p(ensembles_.after);
@@ -248,7 +252,7 @@ class Judge {
   }
 
  private:
-  const Laboratory& lab_;
+  const ReferenceStudy& reference_;
   std::span<const float> measured_;
   const Ensembles& ensembles_;
   const VerifySettings& settings_;
@@ -258,7 +262,7 @@ class Judge {
 
 Verification judge_claim(const Claim& claim, const Folds& folds, const std::vector<std::size_t>& held_out,
                          const std::vector<FoldPatches>& found, const VerifySettings& settings) {
-  const PutIn& plain = claim.steps.front();
+  const AppliedEffect& plain = claim.steps.front();
   Verification result;
   result.n_folds = folds.size();
   for (const FoldPatches& fold : found) {
@@ -266,13 +270,13 @@ Verification judge_claim(const Claim& claim, const Folds& folds, const std::vect
     result.patches.push_back(fold.patch);
     if (result.placebo_effect.empty()) result.placebo_effect = fold.placebo_name;
   }
-  const std::optional<Ensembles> ensembles = Simulation(*plain.lab, folds, found).run(settings);
+  const std::optional<Ensembles> ensembles = Simulation(*plain.reference, folds, found).run(settings);
   if (!ensembles) return result;
   Judge judge(plain, *ensembles, settings);
   for (const std::size_t trial : held_out) judge.add_trial(trial, result);
   judge.sum_up(held_out, result);
   const bool enough_signs =
-      plain.lab->shape.kind == Measured::Kind::series || result.sign_p <= sign_level;  // sums tell little a trial
+      plain.reference->shape.kind == Measured::Kind::series || result.sign_p <= sign_level;  // sums tell little a trial
   result.shrunk = result.gain.low > 0.0 && result.placebo > result.after.energy_score && enough_signs;
   result.refused = result.before.p <= settings.alpha;
   result.closed = result.shrunk && result.refused && result.after.p > settings.alpha;
@@ -343,7 +347,7 @@ std::vector<Verification> verify(std::span<const Claim> claims, const Folds& fol
   std::vector<std::size_t> held_out;
   for (const auto& fold : folds) {
     held_out.insert(held_out.end(), fold.begin(), fold.end());
-    FoldSearch search(all_but(fold, all_trials(claims.front().steps.front().lab->frame)), settings);
+    FoldSearch search(all_but(fold, all_trials(claims.front().steps.front().reference->frame)), settings);
     for (std::size_t i = 0; i < claims.size(); ++i) found[i].push_back(search.search(claims[i]));
   }
   std::ranges::sort(held_out);

@@ -1,4 +1,4 @@
-// Does the patched model foretell trials that it was not fitted on better than the plain one?
+// Does the patched model predict trials that it was not fitted on better than the plain one?
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 #include "pirsim/script.hpp"
 #include "reconcile/data/measured.hpp"
-#include "reconcile/inference/name.hpp"
+#include "reconcile/inference/classifier.hpp"
 #include "stats/intervals.hpp"
 
 namespace pirsim::reconcile {
 
-struct Laboratory;
+struct ReferenceStudy;
 struct StudyFrame;
 
 /// How far a model lies from data, summed up over held-out trials.
@@ -34,7 +34,7 @@ struct Verification {
   stats::Interval gain;            ///< 95 % (Student's) of the mean drop in energy score per trial, over trials
   double share_closed = 0.0;       ///< (before - after) / (before - noise floor)
   std::size_t n_trials = 0;        ///< held out and measured; 0: people can hardly get about in the patched model
-  std::size_t n_better = 0;        ///< of them, foretold better by the patched model
+  std::size_t n_better = 0;        ///< of them, predicted better by the patched model
   double sign_p = 1.0;             ///< that so many are better by chance
   double placebo = 0.0;            ///< energy score after the best effect of another family; as before without one
   std::string placebo_effect;      ///< its name, in the first fold that has one
@@ -49,22 +49,22 @@ struct VerifySettings {
   double alpha = 0.05;
   std::uint64_t seed = 0;
   unsigned threads = 0;
-  std::uint32_t n_worlds = 60;  ///< simulated with each patched model; more if these couldn't refuse it at alpha
+  std::uint32_t n_realizations = 60;  ///< simulated with each patched model; more if these couldn't refuse it at alpha
   std::size_t trees = 100;
 };
 
-/// One effect put into the model: where it was found, and by which data.
-struct PutIn {
-  const Laboratory* lab = nullptr;  ///< of the model with all effects before this one
-  std::span<const float> observed;  ///< statistics of the measured data in that laboratory
+/// One effect applied to the model: where it was found, and by which data.
+struct AppliedEffect {
+  const ReferenceStudy* reference = nullptr;  ///< of the model with all effects before this one
+  std::span<const float> observed;            ///< statistics of the measured data in that reference study
   std::string effect;
   SeenRows seen;  ///< of the table, with all trials
 };
 
 /// What is said to be missing, about one measured dataset.
 struct Claim {
-  std::vector<PutIn> steps;         ///< effects put in one after the other
-  std::vector<std::string> rivals;  ///< effects that explain the data as well: none of their families is a placebo
+  std::vector<AppliedEffect> steps;  ///< effects applied one after the other
+  std::vector<std::string> rivals;   ///< effects that explain the data as well: none of their families is a placebo
 };
 
 /// Trials (indices, ascending) that are held out together; those of no fold are never judged.
@@ -73,7 +73,7 @@ using Folds = std::vector<std::vector<std::size_t>>;
 /// One a claim. Naming and fitting are repeated in every fold without its trials, step by step, and all effects
 /// together are judged on them against the plain model, that of the first step. What is not repeated is the simulation
 /// of the later steps' tables: they hold the earlier effects as all trials gave them. A fold that finds another effect
-/// than was put in stops there. on_judged is told how many claims are done.
+/// than was applied stops there. on_judged is told how many claims are done.
 [[nodiscard]] std::vector<Verification> verify(std::span<const Claim> claims, const Folds& folds,
                                                const VerifySettings& settings,
                                                const std::function<void(std::size_t)>& on_judged = {});

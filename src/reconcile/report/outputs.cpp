@@ -26,12 +26,12 @@ Json to_json(const Location& location) {
                      {"band_s", {cell.low_s, cell.high_s}},
                      {"adjusted_p", cell.adjusted_p}});
   }
-  for (const EnvelopeEntry& entry : location.envelope) {
-    envelope.push_back({{"feature", entry.name},
-                        {"observed", entry.observed},
-                        {"median", entry.median},
-                        {"envelope", {entry.lower, entry.upper}},
-                        {"adjusted_p", entry.adjusted_p}});
+  for (const EnvelopeFeature& feature : location.envelope) {
+    envelope.push_back({{"feature", feature.name},
+                        {"observed", feature.observed},
+                        {"median", feature.median},
+                        {"envelope", {feature.lower, feature.upper}},
+                        {"adjusted_p", feature.adjusted_p}});
   }
   return {{"p", location.p},
           {"simulated_datasets", location.n_simulated},
@@ -40,7 +40,7 @@ Json to_json(const Location& location) {
           {"envelope", envelope}};
 }
 
-Json to_json(const EntryScore& score) {
+Json to_json(const HypothesisScore& score) {
   return {{"probability", score.probability},
           {"p", score.p},
           {"p_relative", score.p_relative},
@@ -48,7 +48,7 @@ Json to_json(const EntryScore& score) {
 }
 
 Json to_json(const Candidate& candidate) {
-  Json json = {{"effect", candidate.score.entry}, {"family", candidate.family}, {"kept", candidate.kept}};
+  Json json = {{"effect", candidate.score.hypothesis}, {"family", candidate.family}, {"kept", candidate.kept}};
   json.update(to_json(candidate.score));
   json["reason"] = candidate.reason;
   return json;
@@ -149,7 +149,7 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
   json["fits"] = fits;
   Json looks = Json::array();
   for (const Look& look : outcome.looks)
-    looks.push_back({{"put_in", look.put_in}, {"level", look.level}, {"p", look.p}, {"one_of", look.one_of}});
+    looks.push_back({{"applied", look.applied}, {"level", look.level}, {"p", look.p}, {"one_of", look.one_of}});
   json["looks"] = looks;
   json["verification"] = outcome.verification ? to_json(*outcome.verification) : Json();
   json["residuals"] = outcome.residuals ? to_json(*outcome.residuals) : Json();
@@ -174,9 +174,10 @@ std::string candidates_csv(const Outcome& outcome) {
   std::ostringstream out;
   out << "effect,family,kept,probability,p,p_relative,p_absolute,reason\n";
   for (const Candidate& c : with_twins(outcome.candidates)) {
-    out << c.score.entry << ',' << c.family << ',' << (c.kept ? 1 : 0) << ',' << io::csv_number(c.score.probability)
-        << ',' << io::csv_number(c.score.p) << ',' << io::csv_number(c.score.p_relative) << ','
-        << io::csv_number(c.score.p_absolute) << ',' << io::csv_field(c.reason) << '\n';
+    out << c.score.hypothesis << ',' << c.family << ',' << (c.kept ? 1 : 0) << ','
+        << io::csv_number(c.score.probability) << ',' << io::csv_number(c.score.p) << ','
+        << io::csv_number(c.score.p_relative) << ',' << io::csv_number(c.score.p_absolute) << ','
+        << io::csv_field(c.reason) << '\n';
   }
   return out.str();
 }

@@ -3,10 +3,10 @@
 
 #include "io/atomic_file.hpp"
 #include "pirsim/csv.hpp"
-#include "reconcile/validation/plan.hpp"
 #include "reconcile/report/report_charts.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "reconcile/report/share_grids.hpp"
+#include "reconcile/validation/plan.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -48,7 +48,7 @@ io::GridChart power_grid(const PlanResult& result) {
 }
 
 io::GridChart confusion_chart(const PlanResult& result) {
-  io::GridChart chart = confusion_grid(result.entries, result.confusion);
+  io::GridChart chart = confusion_grid(result.hypotheses, result.confusion);
   chart.title = "What would be hidden (rows), and what it would look like most (columns), % of cases";
   chart.note =
       "Dark squares on the diagonal are right; dark squares beside it are pairs that what is planned can hardly "
@@ -109,7 +109,7 @@ std::string to_json(const PlanResult& result) {
                   {"sentence", result.sentence},
                   {"designs", designs},
                   {"power", power},
-                  {"entries", result.entries},
+                  {"hypotheses", result.hypotheses},
                   {"confusion", result.confusion},
                   {"datasets", result.n_datasets},
                   {"notes", result.notes}};

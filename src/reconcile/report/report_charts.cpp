@@ -35,21 +35,21 @@ io::GridChart::Cell square(const LocatedCell& cell, double alpha) {
 }
 
 /// Where a number lies if its envelope is stretched to reach from -1 to 1, with the median at 0.
-double beside_band(const EnvelopeEntry& entry) {
-  const double d = entry.observed - entry.median;
-  const double half = d > 0.0 ? entry.upper - entry.median : entry.median - entry.lower;
+double beside_band(const EnvelopeFeature& feature) {
+  const double d = feature.observed - feature.median;
+  const double half = d > 0.0 ? feature.upper - feature.median : feature.median - feature.lower;
   constexpr double beyond_any_limit = 1e3;
   if (half > 0.0) return std::clamp(d / half, -beyond_any_limit, beyond_any_limit);
   return d == 0.0 ? 0.0 : std::copysign(beyond_any_limit, d);
 }
 
 /// "S1 PIR1 seconds", "PIR1 seconds", "mean seconds": what is measured is the last word.
-std::string statistic_of(const EnvelopeEntry& entry) { return entry.name.substr(entry.name.rfind(' ') + 1); }
+std::string statistic_of(const EnvelopeFeature& feature) { return feature.name.substr(feature.name.rfind(' ') + 1); }
 
-std::string place_of(const EnvelopeEntry& entry) {
-  const std::size_t end = entry.name.rfind(' ');
+std::string place_of(const EnvelopeFeature& feature) {
+  const std::size_t end = feature.name.rfind(' ');
   if (end == std::string::npos) return {};
-  const std::string place = entry.name.substr(0, end);
+  const std::string place = feature.name.substr(0, end);
   if (place == "mean") return "all cells, mean";
   if (place == "size of") return "all cells, mean size of the differences";
   return place;
@@ -120,15 +120,15 @@ io::BandChart envelope_chart(const Location& location, double alpha) {
   chart.high = "more than the model";
   chart.label = "deviation, in half-widths of the band";
   std::map<std::string, std::size_t> row_of;
-  for (const EnvelopeEntry& entry : location.envelope) {
-    const std::string statistic = statistic_of(entry);
+  for (const EnvelopeFeature& feature : location.envelope) {
+    const std::string statistic = statistic_of(feature);
     const auto [row, is_new] = row_of.try_emplace(statistic, chart.rows.size());
     if (is_new) chart.rows.push_back({in_plain_words(statistic), {}});
-    const bool outside = entry.adjusted_p <= alpha;
+    const bool outside = feature.adjusted_p <= alpha;
     chart.rows[row->second].points.push_back(
-        {beside_band(entry),
-         place_of(entry) + "\n" + in_plain_words(statistic) + "\n" + (outside ? "outside" : "inside") +
-             " the band, adjusted p " + short_number(entry.adjusted_p),
+        {beside_band(feature),
+         place_of(feature) + "\n" + in_plain_words(statistic) + "\n" + (outside ? "outside" : "inside") +
+             " the band, adjusted p " + short_number(feature.adjusted_p),
          outside ? io::BandChart::Point::Mark::outside : io::BandChart::Point::Mark::inside});
   }
   return chart;
@@ -140,16 +140,16 @@ io::BarChart ranking_chart(const Outcome& outcome) {
   chart.note =
       "Long bars: likelier than the others. That alone decides nothing: only effects that can also make such data by "
       "themselves are kept (coloured).";
-  chart.label = "probability among all entries of the catalogue";
+  chart.label = "probability among all hypotheses of the catalogue";
   constexpr double worth_drawing = 0.005;
   std::size_t left_out = 0;
   for (const Candidate& candidate : outcome.candidates) {
-    const EntryScore& score = candidate.score;
+    const HypothesisScore& score = candidate.score;
     if (!candidate.kept && score.probability < worth_drawing) {
       ++left_out;
       continue;
     }
-    chart.bars.push_back({score.entry,
+    chart.bars.push_back({score.hypothesis,
                           score.probability,
                           fixed(100.0 * score.probability, 0) + " %" + (candidate.kept ? ", kept" : ""),
                           candidate.kept ? io::BarChart::Weight::strong : io::BarChart::Weight::faint,

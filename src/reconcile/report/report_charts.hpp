@@ -10,7 +10,7 @@ namespace pirsim::reconcile {
 [[nodiscard]] io::GridChart difference_chart(const Location& location, double alpha);
 /// Every number that the global test looked at, beside the band that it has to leave to be refused.
 [[nodiscard]] io::BandChart envelope_chart(const Location& location, double alpha);
-/// All entries of the catalogue by probability; those kept stand out.
+/// All hypotheses of the catalogue by probability; those kept stand out.
 [[nodiscard]] io::BarChart ranking_chart(const Outcome& outcome);
 /// One a parameter: twenty equally likely values within the range looked at.
 [[nodiscard]] std::vector<io::DotsChart> posterior_charts(const FittedEffect& fitted);

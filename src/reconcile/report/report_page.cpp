@@ -62,8 +62,9 @@ io::ReportSection reasons(const Outcome& outcome, double alpha) {
       short_number(alpha) + " speaks against the effect."};
   io::Table table{{"effect", "family", "probability", "p", "why"}, {}};
   for (const Candidate& candidate : with_twins(outcome.candidates)) {
-    table.rows.push_back({candidate.score.entry, candidate.family, fixed(100.0 * candidate.score.probability, 0) + " %",
-                          short_number(candidate.score.p), candidate.reason});
+    table.rows.push_back({candidate.score.hypothesis, candidate.family,
+                          fixed(100.0 * candidate.score.probability, 0) + " %", short_number(candidate.score.p),
+                          candidate.reason});
   }
   section.tables.push_back(std::move(table));
   return section;
@@ -89,12 +90,12 @@ io::ReportSection strength(const std::vector<FittedEffect>& fits) {
 }
 
 std::string what_is_shown(const Verification& v) {
-  if (v.closed) return "With what was put in, the model agrees with trials that it was not fitted on.";
-  const std::string closer = "With what was put in, the model is closer to trials that it was not fitted on, ";
+  if (v.closed) return "With what was applied, the model agrees with trials that it was not fitted on.";
+  const std::string closer = "With what was applied, the model is closer to trials that it was not fitted on, ";
   if (v.shrunk && v.refused)
     return closer + "but the test of everything still finds a difference there (p = " + short_number(v.after.p) + ").";
   if (v.shrunk) return closer + "but these trials alone are too few to tell even the model as it is from the data.";
-  return "That the model is closer with what was put in is not shown.";
+  return "That the model is closer with what was applied is not shown.";
 }
 
 /// Chance carries a share beyond all that can be closed.
@@ -137,8 +138,8 @@ io::Report report_page(const Outcome& outcome, double alpha) {
   if (!outcome.fits.empty()) report.sections.push_back(strength(outcome.fits));
   if (outcome.verification) {
     const bool undecided = outcome.verdict == Verdict::one_of;
-    const std::string put_in = undecided ? "the likeliest of each fold" : joined(outcome.named, "and");
-    report.sections.push_back(held_out(*outcome.verification, put_in));
+    const std::string applied = undecided ? "the likeliest of each fold" : joined(outcome.named, "and");
+    report.sections.push_back(held_out(*outcome.verification, applied));
   }
   if (outcome.verdict != Verdict::no_disagreement) report.sections.push_back(reasons(outcome, alpha));
   return report;

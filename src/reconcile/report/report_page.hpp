@@ -7,7 +7,7 @@
 namespace pirsim::reconcile {
 
 /// The verdict first; then where model and measurement differ, which effects were looked at and why each was kept or
-/// dropped, how strong the named ones are, and whether held-out trials are foretold better with them.
+/// dropped, how strong the named ones are, and whether held-out trials are predicted better with them.
 [[nodiscard]] io::Report report_page(const Outcome& outcome, double alpha);
 
 }  // namespace pirsim::reconcile

@@ -67,8 +67,8 @@ io::ReportSection power(const SelftestResult& result) {
   section.paragraphs = {
       "Each picture is one effect. Blue: how often a disagreement was seen at all; red: how often the effect was then "
       "among those kept. Lines show what chance leaves open (95 %)."};
-  for (std::size_t entry = 1; entry < result.entries.size(); ++entry) {
-    section.charts.emplace_back(power_chart(result, result.entries[entry]));
+  for (std::size_t hypothesis = 1; hypothesis < result.hypotheses.size(); ++hypothesis) {
+    section.charts.emplace_back(power_chart(result, result.hypotheses[hypothesis]));
   }
   return section;
 }
@@ -76,7 +76,7 @@ io::ReportSection power(const SelftestResult& result) {
 }  // namespace
 
 io::GridChart confusion_chart(const SelftestResult& result) {
-  io::GridChart chart = confusion_grid(result.entries, confusion_of(result));
+  io::GridChart chart = confusion_grid(result.hypotheses, confusion_of(result));
   chart.title = "What was hidden (rows), and what it looked like most (columns)";
   chart.note =
       "Dark squares on the diagonal are right; dark squares beside it are two effects that look alike. Cases of an "
@@ -108,9 +108,9 @@ io::GridChart power_grid(const SelftestResult& result) {
   chart.title = "How often a disagreement is seen, by strength of the effect";
   chart.label = "share seen";
   chart.columns = {"weak", "medium", "strong"};
-  for (std::size_t entry = 1; entry < result.entries.size(); ++entry) {
-    chart.rows.push_back(result.entries[entry]);
-    const std::vector<Rate> rates = power_of(result, result.entries[entry]);
+  for (std::size_t hypothesis = 1; hypothesis < result.hypotheses.size(); ++hypothesis) {
+    chart.rows.push_back(result.hypotheses[hypothesis]);
+    const std::vector<Rate> rates = power_of(result, result.hypotheses[hypothesis]);
     for (std::size_t i = 0; i < rates.size(); i += 2) chart.cells.push_back(share_cell(rates[i]));
   }
   return chart;
@@ -122,10 +122,10 @@ io::LineChart reliability_chart(const SelftestResult& result) {
   chart.note =
       "On the dashed line, what is called 70 % likely is right in 70 % of cases; below it, the program is too "
       "sure of itself.";
-  chart.x_label = "probability of the likeliest entry";
+  chart.x_label = "probability of the likeliest hypothesis";
   chart.y_label = "share in which it was right";
   chart.guide = io::LineChart::Guide::diagonal;
-  chart.lines = {{"likeliest entry", {}}};
+  chart.lines = {{"likeliest hypothesis", {}}};
   for (const stats::ReliabilityBin& bin : result.reliability.bins) {
     if (bin.rows == 0) continue;
     const auto hits = static_cast<std::size_t>(bin.share_right * static_cast<double>(bin.rows) + 0.5);
@@ -144,16 +144,16 @@ io::BarChart coverage_chart(const SelftestResult& result) {
       "Should be near 90 %. Lines show what chance leaves open (95 %); effects without a fitted case are left "
       "out.";
   chart.label = "share of parameters covered";
-  for (const std::string& entry : result.entries) {
+  for (const std::string& hypothesis : result.hypotheses) {
     std::size_t hits = 0, of = 0;
-    for (const PlantedCase& c : result.cases) {
-      if (c.kind != CaseKind::one || c.truth != entry) continue;
+    for (const InjectedCase& c : result.cases) {
+      if (c.kind != CaseKind::one || c.truth != hypothesis) continue;
       hits += c.n_covered;
       of += c.n_parameters;
     }
     if (of == 0) continue;
-    const Rate rate{entry, hits, of, stats::clopper_pearson(hits, of)};
-    chart.bars.push_back({entry, rate.value(), percent(rate.value()) + " of " + std::to_string(of),
+    const Rate rate{hypothesis, hits, of, stats::clopper_pearson(hits, of)};
+    chart.bars.push_back({hypothesis, rate.value(), percent(rate.value()) + " of " + std::to_string(of),
                           io::BarChart::Weight::plain, rate.interval.low, rate.interval.high, with_interval(rate)});
   }
   return chart;

@@ -3,9 +3,9 @@
 #include <sstream>
 
 #include "pirsim/csv.hpp"
-#include "reconcile/validation/selftest.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "reconcile/report/share_grids.hpp"
+#include "reconcile/validation/selftest.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -18,8 +18,8 @@ std::string share(const Rate& rate) {
   return out.str();
 }
 
-/// Share of the gap that was closed, shrunk, closed; empty fields if nothing was put in.
-std::string verification(const PlantedCase& c) {
+/// Share of the gap that was closed, shrunk, closed; empty fields if nothing was applied.
+std::string verification(const InjectedCase& c) {
   if (!c.verification) return ",,";
   const Verification& v = *c.verification;
   return io::csv_number(v.share_closed) + ',' + (v.shrunk ? '1' : '0') + ',' + (v.closed ? '1' : '0');
@@ -34,22 +34,23 @@ std::string to_markdown(const SelftestResult& result) {
   out << "| calibration error of the probabilities | " << calibration_error(result) << " |\n\n| effect |";
   for (const char* strength : {"weak", "medium", "strong"}) out << ' ' << strength << ": seen | and in the set |";
   out << "\n|---|---|---|---|---|---|---|\n";
-  for (std::size_t entry = 1; entry < result.entries.size(); ++entry) {
-    out << "| " << result.entries[entry] << " |";
-    for (const Rate& rate : power_of(result, result.entries[entry])) {
+  for (std::size_t hypothesis = 1; hypothesis < result.hypotheses.size(); ++hypothesis) {
+    out << "| " << result.hypotheses[hypothesis] << " |";
+    for (const Rate& rate : power_of(result, result.hypotheses[hypothesis])) {
       out << ' ' << (rate.of == 0 ? "no case" : fixed(rate.value(), 2)) << " |";
     }
     out << '\n';
   }
-  out << "\nConfusion: of the cases with a disagreement (of nothing: of all), the share in which the column's entry is "
+  out << "\nConfusion: of the cases with a disagreement (of nothing: of all), the share in which the column's "
+         "hypothesis is "
          "the likeliest; less than 0.05 left out.\n\n| hidden | taken for |\n|---|---|\n";
   const auto confusion = confusion_of(result);
   for (std::size_t row = 0; row < confusion.size(); ++row) {
-    out << "| " << result.entries[row] << " |";
+    out << "| " << result.hypotheses[row] << " |";
     std::string list;
     for (std::size_t column = 0; column < confusion.size(); ++column) {
       if (confusion[row][column] < 0.05) continue;
-      list += (list.empty() ? " " : ", ") + result.entries[column] + " " + fixed(confusion[row][column], 2);
+      list += (list.empty() ? " " : ", ") + result.hypotheses[column] + " " + fixed(confusion[row][column], 2);
     }
     out << list << " |\n";
   }
@@ -58,9 +59,9 @@ std::string to_markdown(const SelftestResult& result) {
 
 std::string to_csv(const SelftestResult& result) {
   std::ostringstream out;
-  out << "kind,truth,strength,verdict,named,family,likeliest,p,parameters,covered,share_closed,shrunk,closed,p_put_in,"
+  out << "kind,truth,strength,verdict,named,family,likeliest,p,parameters,covered,share_closed,shrunk,closed,p_applied,"
          "hidden\n";
-  for (const PlantedCase& c : result.cases) {
+  for (const InjectedCase& c : result.cases) {
     std::string named, hidden;
     for (const std::string& effect : c.named) named += (named.empty() ? "" : " ") + effect;
     for (const EffectSpec& effect : c.effects) {
@@ -72,7 +73,7 @@ std::string to_csv(const SelftestResult& result) {
     out << name(c.kind) << ',' << c.truth << ',' << name(c.strength) << ',' << name(c.verdict) << ',' << named << ','
         << (c.family ? name(*c.family) : "") << ',' << c.likeliest << ',' << io::csv_number(c.p) << ','
         << c.n_parameters << ',' << c.n_covered << ',' << verification(c) << ','
-        << (c.put_in ? io::csv_number(c.put_in->p) : "") << ',' << io::csv_field(hidden) << '\n';
+        << (c.applied ? io::csv_number(c.applied->p) : "") << ',' << io::csv_field(hidden) << '\n';
   }
   return out.str();
 }

@@ -43,13 +43,13 @@ std::string no_effect(const Outcome& outcome, double alpha) {
   double together = 0.0;
   for (const Candidate& candidate : outcome.candidates) {
     if (candidate.score.p <= alpha) continue;
-    possible.push_back(candidate.score.entry);
+    possible.push_back(candidate.score.hypothesis);
     together += candidate.score.probability;
   }
   if (possible.empty()) return "no effect of the catalogue is likely to have made the data";
   const std::string& likeliest = std::ranges::max_element(outcome.candidates, {}, [](const Candidate& c) {
                                    return c.score.probability;
-                                 })->score.entry;
+                                 })->score.hypothesis;
   const bool likeliest_is_possible = std::ranges::find(possible, likeliest) != possible.end();
   return (likeliest_is_possible ? "most effects" : "the likelier effects") +
          std::string(" of the catalogue can hardly have made the data; ") + joined(possible, "and") +
@@ -60,7 +60,8 @@ std::string no_effect(const Outcome& outcome, double alpha) {
 std::string rivals(const Outcome& outcome) {
   std::vector<std::string> names;
   for (const Candidate& candidate : outcome.candidates) {
-    if (candidate.kept && candidate.score.entry != outcome.named.front()) names.push_back(candidate.score.entry);
+    if (candidate.kept && candidate.score.hypothesis != outcome.named.front())
+      names.push_back(candidate.score.hypothesis);
   }
   if (names.empty()) return ", and no other effect of the catalogue explains the data.";
   return "; with probability " + short_number(outcome.candidates.front().score.probability) + " it is this one, " +
@@ -83,13 +84,13 @@ std::string next_step(const Outcome& outcome) {
       return "What to do next: nothing, unless smaller differences matter; more runs make the experiment sharper.";
     case Verdict::named:
     case Verdict::several:
-      return "What to do next: run script_patched.yaml, the same script with what was found put in, and see below "
+      return "What to do next: run script_patched.yaml, the same script with what was found applied, and see below "
              "whether it comes closer to trials that it was not fitted on.";
     case Verdict::one_of:
       if (outcome.named.size() < 2)
-        return "What to do next: measure more before anything is put in; pirsim reconcile plan finds what would tell "
+        return "What to do next: measure more before anything is applied; pirsim reconcile plan finds what would tell "
                "most.";
-      return "What to do next: measure more before one of them is put in. pirsim reconcile plan --effects " +
+      return "What to do next: measure more before one of them is applied. pirsim reconcile plan --effects " +
              boost::algorithm::join(outcome.named, ",") +
              " finds the measurement that separates them best. What each does to the data: " +
              fingerprints_of(outcome.named) + ".";
@@ -155,7 +156,7 @@ std::string verdict_sentence(const Outcome& outcome, double alpha) {
 }
 
 std::string what_a_look_showed(const Look& look) {
-  std::string text = "With " + joined(look.put_in, "and") + " put in, the model " +
+  std::string text = "With " + joined(look.applied, "and") + " applied, the model " +
                      (look.passes() ? "can have made these data" : "still differs from the data") +
                      " (p = " + short_number(look.p) + ").";
   if (look.one_of.size() == 1) text += " What is missing beside it may be " + look.one_of.front() + ".";
@@ -165,32 +166,33 @@ std::string what_a_look_showed(const Look& look) {
 }
 
 std::string reason_of_unlikely(const Candidate& candidate, const Candidate& named) {
-  return "Not ruled out (p " + short_number(candidate.score.p) + "), but much less likely than " + named.score.entry +
-         " (" + short_number(candidate.score.probability) + " against " + short_number(named.score.probability) + ").";
+  return "Not ruled out (p " + short_number(candidate.score.p) + "), but much less likely than " +
+         named.score.hypothesis + " (" + short_number(candidate.score.probability) + " against " +
+         short_number(named.score.probability) + ").";
 }
 
 std::string reason_of_refused(const Look& look) {
-  return "Dropped: with it put in, the model still differs from the data (p " + short_number(look.p) +
+  return "Dropped: with it applied, the model still differs from the data (p " + short_number(look.p) +
          "), and no other effect of the catalogue explains what is left.";
 }
 
 std::string sentence_of_refused(const Outcome& outcome, double alpha) {
   const Look& look = outcome.looks.back();
   return "The model lacks something that is not in the catalogue: " + where(outcome, alpha) +
-         ". What resembles it most, " + joined(look.put_in, "and") +
-         ", doesn't explain it: with that put in, the model still differs from the data (p = " + short_number(look.p) +
+         ". What resembles it most, " + joined(look.applied, "and") +
+         ", doesn't explain it: with that applied, the model still differs from the data (p = " + short_number(look.p) +
          "), and no other effect of the catalogue explains what is left.";
 }
 
 std::string sentence_of_nearest(const Look& look, const std::string& reason) {
   const std::string why = reason.substr(reason.find(": ") + 2);
-  return look.put_in.front() +
-         " comes nearest: with it put in, the test of everything together sees no difference (p = " +
+  return look.applied.front() +
+         " comes nearest: with it applied, the test of everything together sees no difference (p = " +
          short_number(look.p) + "). It was dropped all the same: " + why;
 }
 
 std::string reason_of(const Candidate& candidate, double alpha) {
-  const EntryScore& score = candidate.score;
+  const HypothesisScore& score = candidate.score;
   if (candidate.kept && score.p <= alpha) {
     return "Kept, though data of its own seldom look like these (p " + short_number(score.p) + "): with probability " +
            short_number(score.probability) + " it is this one of the catalogue, if any.";

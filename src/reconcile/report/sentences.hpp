@@ -18,7 +18,7 @@ namespace pirsim::reconcile {
 /// Of the likeliest effect if it was dropped, though the model with it passes; reason: its reason_of, "Dropped: ...".
 [[nodiscard]] std::string sentence_of_nearest(const Look& look, const std::string& reason);
 [[nodiscard]] std::string in_words(const FittedEffect& fitted);
-/// Of the model with effects put in.
+/// Of the model with effects applied.
 [[nodiscard]] std::string what_a_look_showed(const Look& look);
 /// What a reader may do with the verdict.
 [[nodiscard]] std::string next_step(const Outcome& outcome);

@@ -26,11 +26,12 @@ io::GridChart::Cell share_cell(const Rate& rate) {
   return cell;
 }
 
-io::GridChart confusion_grid(const std::vector<std::string>& entries, const std::vector<std::vector<double>>& shares) {
+io::GridChart confusion_grid(const std::vector<std::string>& hypotheses,
+                             const std::vector<std::vector<double>>& shares) {
   constexpr double worth_a_number = 0.05;
   io::GridChart chart;
   chart.label = "share of a row";
-  chart.rows = chart.columns = entries;
+  chart.rows = chart.columns = hypotheses;
   for (const std::vector<double>& row : shares) {
     const bool any = std::ranges::any_of(row, [](double share) { return share > 0.0; });
     for (const double share : row) {

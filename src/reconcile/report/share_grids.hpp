@@ -15,9 +15,9 @@ namespace pirsim::reconcile {
 [[nodiscard]] std::string calibration_error(const SelftestResult& result);
 /// A square with the share in percent; an empty one without any case.
 [[nodiscard]] io::GridChart::Cell share_cell(const Rate& rate);
-/// What was hidden (rows) against what it was taken for (columns). shares: (n_entries x n_entries) of each row; a row
-/// of zeros has no case and stays empty. Title and note are the caller's.
-[[nodiscard]] io::GridChart confusion_grid(const std::vector<std::string>& entries,
+/// What was hidden (rows) against what it was taken for (columns). shares: (n_hypotheses x n_hypotheses) of each row; a
+/// row of zeros has no case and stays empty. Title and note are the caller's.
+[[nodiscard]] io::GridChart confusion_grid(const std::vector<std::string>& hypotheses,
                                            const std::vector<std::vector<double>>& shares);
 
 }  // namespace pirsim::reconcile

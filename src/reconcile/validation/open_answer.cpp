@@ -69,12 +69,13 @@ struct Truth {
       effects.push_back(answer.get<std::string>("/effects/" + std::to_string(i) + "/name"));
     answer.require_effects(effects);
     std::ranges::sort(effects);
-    if (!answer.get<Json>("/alien").is_null()) alien = answer.get<std::string>("/alien/name");
+    if (!answer.get<Json>("/out_of_catalogue_fault").is_null())
+      fault = answer.get<std::string>("/out_of_catalogue_fault/name");
   }
 
   Hidden kind;
   std::vector<std::string> effects;
-  std::string alien;     ///< empty: none
+  std::string fault;     ///< empty: none
   std::string measured;  ///< SHA-256
 };
 
@@ -122,7 +123,7 @@ Mark mark_of_effects(const Truth& hidden, const Finding& finding) {
 Mark mark_of(const Truth& hidden, const Finding& finding) {
   const bool sees_nothing = finding.verdict == Verdict::no_disagreement;
   if (hidden.kind == Hidden::nothing) return sees_nothing ? Mark::exact : Mark::wrong;
-  if (hidden.kind != Hidden::alien) return mark_of_effects(hidden, finding);
+  if (hidden.kind != Hidden::out_of_catalogue) return mark_of_effects(hidden, finding);
   if (finding.verdict == Verdict::none_in_catalogue) return Mark::exact;
   return sees_nothing ? Mark::none : Mark::wrong;
 }
@@ -146,7 +147,7 @@ Score open_answer(const Document& answer, std::string_view commitment, const Doc
   if (hidden.measured != finding.measured) judged.refuse("the report is about other data than those of this challenge");
   Score score;
   score.hidden = hidden.effects;
-  if (!hidden.alien.empty()) score.hidden.push_back(hidden.alien);
+  if (!hidden.fault.empty()) score.hidden.push_back(hidden.fault);
   score.mark = mark_of(hidden, finding);
   score.sentence = std::string(name(score.mark)) + ": hidden was " +
                    (score.hidden.empty() ? "nothing" : boost::algorithm::join(score.hidden, ", ")) +

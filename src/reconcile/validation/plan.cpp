@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "core/parallel.hpp"
-#include "reconcile/inference/analyst.hpp"
 #include "reconcile/data/longer_study.hpp"
+#include "reconcile/inference/analyst.hpp"
 #include "reconcile/report/sentences.hpp"
 
 namespace pirsim::reconcile {
@@ -21,48 +21,49 @@ struct Judged {
   std::vector<double> p;  ///< of the global test
 };
 
-Judged judge_held_back(const Laboratory& lab, std::vector<std::size_t> trials, const Settings& settings) {
+Judged judge_held_back(const ReferenceStudy& reference, std::vector<std::size_t> trials, const Settings& settings) {
   std::ranges::sort(trials);
-  const Analyst analyst(lab.view(std::move(trials), settings.threads),
+  const Analyst analyst(reference.view(std::move(trials), settings.threads),
                         {settings.alpha, settings.seed, settings.threads, settings.trees});
   Judged judged;
-  for (std::size_t row = 0; row < lab.table.rows.size(); ++row) {
-    if (is_for_calibration(lab.table.rows[row].world)) judged.rows.push_back(row);
+  for (std::size_t row = 0; row < reference.table.rows.size(); ++row) {
+    if (is_for_calibration(reference.table.rows[row].realization)) judged.rows.push_back(row);
   }
-  const double prior = 1.0 / static_cast<double>(lab.table.n_entries());
+  const double prior = 1.0 / static_cast<double>(reference.table.n_hypotheses());
   constexpr double least_probability = 1e-4;
   ordered_parallel<Judgement>(
       judged.rows.size(), settings.threads,
-      [&](std::size_t i) { return analyst.judge(lab.table.statistics.row(judged.rows[i])); },
+      [&](std::size_t i) { return analyst.judge(reference.table.statistics.row(judged.rows[i])); },
       [&](Judgement& one) {
-        const std::size_t truth = lab.table.rows[judged.rows[judged.p.size()]].entry;
+        const std::size_t truth = reference.table.rows[judged.rows[judged.p.size()]].hypothesis;
         judged.bits.push_back(std::log2(std::max(least_probability, one.scores[truth].probability) / prior));
-        const auto best = std::ranges::max_element(one.scores, {}, &EntryScore::probability);
+        const auto best = std::ranges::max_element(one.scores, {}, &HypothesisScore::probability);
         judged.likeliest.push_back(static_cast<std::size_t>(best - one.scores.begin()));
         judged.p.push_back(one.p);
       });
   return judged;
 }
 
-/// Bits by world, each the mean over its datasets: worlds are independent, datasets of one world aren't.
-std::map<std::uint32_t, double> by_world(const Laboratory& lab, const Judged& judged) {
+/// Bits by realization, each the mean over its datasets: realizations are independent, datasets of one realization
+/// aren't.
+std::map<std::uint32_t, double> by_realization(const ReferenceStudy& reference, const Judged& judged) {
   std::map<std::uint32_t, std::pair<double, double>> sums;
   for (std::size_t i = 0; i < judged.rows.size(); ++i) {
-    auto& [sum, n] = sums[lab.table.rows[judged.rows[i]].world];
+    auto& [sum, n] = sums[reference.table.rows[judged.rows[i]].realization];
     sum += judged.bits[i];
     n += 1.0;
   }
   std::map<std::uint32_t, double> means;
-  for (const auto& [world, sum] : sums) means[world] = sum.first / sum.second;
+  for (const auto& [realization, sum] : sums) means[realization] = sum.first / sum.second;
   return means;
 }
 
-/// Mean difference, and its 95 % interval from the scatter between worlds.
+/// Mean difference, and its 95 % interval from the scatter between realizations.
 void compare(const std::map<std::uint32_t, double>& with, const std::map<std::uint32_t, double>& without,
              Design& design) {
   double n = 0.0, sum = 0.0, squares = 0.0;
-  for (const auto& [world, bits] : with) {
-    const double d = bits - without.at(world);
+  for (const auto& [realization, bits] : with) {
+    const double d = bits - without.at(realization);
     n += 1.0;
     sum += d;
     squares += d * d;
@@ -78,33 +79,34 @@ double mean(const std::vector<double>& values) {
          static_cast<double>(std::max<std::size_t>(1, values.size()));
 }
 
-double share_right(const Laboratory& lab, const Judged& judged) {
+double share_right(const ReferenceStudy& reference, const Judged& judged) {
   double hits = 0.0;
   for (std::size_t i = 0; i < judged.rows.size(); ++i) {
-    hits += lab.table.rows[judged.rows[i]].entry == judged.likeliest[i] ? 1.0 : 0.0;
+    hits += reference.table.rows[judged.rows[i]].hypothesis == judged.likeliest[i] ? 1.0 : 0.0;
   }
   return hits / static_cast<double>(std::max<std::size_t>(1, judged.rows.size()));
 }
 
 /// The planned trial whose cells differ most between effects, compared with how they differ within: worth repeating.
-std::size_t most_telling_trial(const Laboratory& lab, std::size_t n_planned) {
-  const std::size_t n_entries = lab.table.n_entries(), per_trial = lab.frame.sensors.size() * n_cell_statistics;
+std::size_t most_telling_trial(const ReferenceStudy& reference, std::size_t n_planned) {
+  const std::size_t n_hypotheses = reference.table.n_hypotheses(),
+                    per_trial = reference.frame.sensors.size() * n_cell_statistics;
   std::vector<double> ratio(n_planned, 0.0);
   for (std::size_t column = 0; column < n_planned * per_trial; ++column) {
-    std::vector<double> n(n_entries, 0.0), sum(n_entries, 0.0);
+    std::vector<double> n(n_hypotheses, 0.0), sum(n_hypotheses, 0.0);
     double all = 0.0, squares = 0.0, count = 0.0;
-    for (std::size_t row = 0; row < lab.table.rows.size(); ++row) {
-      const auto value = static_cast<double>(lab.table.statistics(row, column));
+    for (std::size_t row = 0; row < reference.table.rows.size(); ++row) {
+      const auto value = static_cast<double>(reference.table.statistics(row, column));
       if (std::isnan(value)) continue;
-      n[lab.table.rows[row].entry] += 1.0;
-      sum[lab.table.rows[row].entry] += value;
+      n[reference.table.rows[row].hypothesis] += 1.0;
+      sum[reference.table.rows[row].hypothesis] += value;
       all += value;
       squares += value * value;
       count += 1.0;
     }
     if (count == 0.0) continue;
     double between = 0.0;
-    for (std::size_t e = 0; e < n_entries; ++e) between += n[e] > 0.0 ? sum[e] * sum[e] / n[e] : 0.0;
+    for (std::size_t e = 0; e < n_hypotheses; ++e) between += n[e] > 0.0 ? sum[e] * sum[e] / n[e] : 0.0;
     between -= all * all / count;
     const double total = squares - all * all / count;
     if (total > 1e-9 * count) ratio[column / per_trial] += between / total;
@@ -112,14 +114,14 @@ std::size_t most_telling_trial(const Laboratory& lab, std::size_t n_planned) {
   return static_cast<std::size_t>(std::ranges::max_element(ratio) - ratio.begin());
 }
 
-std::vector<PlannedPower> power_of(const Laboratory& lab, const Judged& judged, double alpha) {
+std::vector<PlannedPower> power_of(const ReferenceStudy& reference, const Judged& judged, double alpha) {
   std::vector<PlannedPower> power;
-  for (std::size_t entry = 1; entry < lab.table.n_entries(); ++entry) {
+  for (std::size_t hypothesis = 1; hypothesis < reference.table.n_hypotheses(); ++hypothesis) {
     for (const Strength strength : {Strength::weak, Strength::medium, Strength::strong}) {
-      PlannedPower one{lab.table.entry_name(entry), strength, {"seen", 0, 0, {0.0, 1.0}}};
+      PlannedPower one{reference.table.hypothesis_name(hypothesis), strength, {"seen", 0, 0, {0.0, 1.0}}};
       for (std::size_t i = 0; i < judged.rows.size(); ++i) {
-        const TableRow& row = lab.table.rows[judged.rows[i]];
-        if (row.entry != entry || strength_of(row.effects.front()) != strength) continue;
+        const TableRow& row = reference.table.rows[judged.rows[i]];
+        if (row.hypothesis != hypothesis || strength_of(row.effects.front()) != strength) continue;
         ++one.seen.of;
         one.seen.hits += judged.p[i] <= alpha ? 1 : 0;
       }
@@ -130,11 +132,11 @@ std::vector<PlannedPower> power_of(const Laboratory& lab, const Judged& judged, 
   return power;
 }
 
-std::vector<std::vector<double>> confusion_of(const Laboratory& lab, const Judged& judged) {
-  const std::size_t n = lab.table.n_entries();
+std::vector<std::vector<double>> confusion_of(const ReferenceStudy& reference, const Judged& judged) {
+  const std::size_t n = reference.table.n_hypotheses();
   std::vector<std::vector<double>> shares(n, std::vector<double>(n, 0.0));
   for (std::size_t i = 0; i < judged.rows.size(); ++i) {
-    shares[lab.table.rows[judged.rows[i]].entry][judged.likeliest[i]] += 1.0;
+    shares[reference.table.rows[judged.rows[i]].hypothesis][judged.likeliest[i]] += 1.0;
   }
   for (std::vector<double>& row : shares) {
     const double sum = std::accumulate(row.begin(), row.end(), 0.0);
@@ -143,9 +145,9 @@ std::vector<std::vector<double>> confusion_of(const Laboratory& lab, const Judge
   return shares;
 }
 
-/// A tenth of what naming takes: designs are compared on the same worlds, so that few suffice.
-Settings with_fewer_worlds(Settings settings) {
-  for (std::uint32_t* n : {&settings.table.n_worlds, &settings.table.n_remembered, &settings.table.n_traced}) {
+/// A tenth of what naming takes: designs are compared on the same realizations, so that few suffice.
+Settings with_fewer_realizations(Settings settings) {
+  for (std::uint32_t* n : {&settings.table.n_realizations, &settings.table.n_remembered, &settings.table.n_traced}) {
     *n = std::max(fewest_datasets_to_refuse(settings.alpha), *n / 10);
   }
   return settings;
@@ -157,10 +159,10 @@ struct Idea {
   std::vector<std::size_t> more;  ///< trials beside those planned
 };
 
-std::vector<Idea> ideas_of(const LongerStudy& study, const Laboratory& lab) {
+std::vector<Idea> ideas_of(const LongerStudy& study, const ReferenceStudy& reference) {
   const std::size_t n = study.n_planned;
   std::vector<Idea> ideas;
-  const std::size_t best = most_telling_trial(lab, n);
+  const std::size_t best = most_telling_trial(reference, n);
   if (n > 1) {
     const std::string name = study.script.trials[best].id;
     ideas.push_back({"trial " + name + " again", "trial " + name + " once more", {n + best}});
@@ -173,12 +175,12 @@ std::vector<Idea> ideas_of(const LongerStudy& study, const Laboratory& lab) {
   return ideas;
 }
 
-double minutes_of(const Laboratory& lab, const std::vector<std::size_t>& trials) {
+double minutes_of(const ReferenceStudy& reference, const std::vector<std::size_t>& trials) {
   double rows = 0.0;
-  for (const DataShape::Run& run : lab.shape.runs) {
+  for (const DataShape::Run& run : reference.shape.runs) {
     if (std::ranges::find(trials, run.trial) != trials.end()) rows += static_cast<double>(run.n_main);
   }
-  return rows * lab.frame.window_s / 60.0;
+  return rows * reference.frame.window_s / 60.0;
 }
 
 std::string best_of(const PlanResult& result) {
@@ -199,51 +201,52 @@ std::string best_of(const PlanResult& result) {
 }  // namespace
 
 PlanResult plan(const SceneSpec& scene, const ScriptSpec& script, const PlanSettings& asked, const Observer& observer) {
-  const PlanSettings settings{with_fewer_worlds(asked.analysis), asked.kind, asked.n_replicates};
+  const PlanSettings settings{with_fewer_realizations(asked.analysis), asked.kind, asked.n_replicates};
   LongerStudy study = longer_study(scene, script);
-  const auto laboratory = [&](Measured::Kind kind) {
-    return make_laboratory(
+  const auto reference_study = [&](Measured::Kind kind) {
+    return make_reference_study(
         scene, study.script, settings.analysis,
         [&](const StudyFrame& frame, std::span<const Series> pilot) {
           return full_shape(frame, kind, settings.n_replicates, pilot);
         },
         observer);
   };
-  const Laboratory lab = laboratory(settings.kind);
+  const ReferenceStudy reference = reference_study(settings.kind);
   std::vector<std::size_t> planned(study.n_planned);
   std::iota(planned.begin(), planned.end(), std::size_t{0});
-  const auto judged = [&](const Laboratory& in, const std::vector<std::size_t>& more, const std::string& what) {
+  const auto judged = [&](const ReferenceStudy& in, const std::vector<std::size_t>& more, const std::string& what) {
     if (observer.stage) observer.stage("judging " + what);
     std::vector<std::size_t> trials = planned;
     trials.insert(trials.end(), more.begin(), more.end());
     return judge_held_back(in, std::move(trials), settings.analysis);
   };
-  const Judged base = judged(lab, {}, "what is planned");
-  const auto base_bits = by_world(lab, base);
+  const Judged base = judged(reference, {}, "what is planned");
+  const auto base_bits = by_realization(reference, base);
   PlanResult result;
   result.notes = std::move(study.notes);
   result.n_datasets = base.rows.size();
-  for (std::size_t entry = 0; entry < lab.table.n_entries(); ++entry)
-    result.entries.push_back(lab.table.entry_name(entry));
+  for (std::size_t hypothesis = 0; hypothesis < reference.table.n_hypotheses(); ++hypothesis)
+    result.hypotheses.push_back(reference.table.hypothesis_name(hypothesis));
   result.designs.push_back({"as planned",
                             "what is planned",
-                            minutes_of(lab, planned),
+                            minutes_of(reference, planned),
                             mean(base.bits),
-                            share_right(lab, base),
+                            share_right(reference, base),
                             0.0,
                             {0.0, 0.0}});
-  const auto add = [&](const Laboratory& in, const Idea& idea) {
+  const auto add = [&](const ReferenceStudy& in, const Idea& idea) {
     const Judged with = judged(in, idea.more, idea.what);
     Design design{idea.name, idea.what, minutes_of(in, idea.more), mean(with.bits), share_right(in, with), 0.0, {}};
-    compare(by_world(in, with), base_bits, design);
+    compare(by_realization(in, with), base_bits, design);
     result.designs.push_back(std::move(design));
   };
-  for (const Idea& idea : ideas_of(study, lab)) add(lab, idea);
+  for (const Idea& idea : ideas_of(study, reference)) add(reference, idea);
   if (settings.kind == Measured::Kind::sums) {
-    add(laboratory(Measured::Kind::series), {"second by second", "the same, second by second instead of sums", {}});
+    add(reference_study(Measured::Kind::series),
+        {"second by second", "the same, second by second instead of sums", {}});
   }
-  result.power = power_of(lab, base, settings.analysis.alpha);
-  result.confusion = confusion_of(lab, base);
+  result.power = power_of(reference, base, settings.analysis.alpha);
+  result.confusion = confusion_of(reference, base);
   result.sentence = best_of(result);
   return result;
 }

@@ -23,7 +23,7 @@ struct Design {
   std::string name;
   std::string what;        ///< is measured, as part of a sentence
   double minutes = 0.0;    ///< more than what is planned; of the plan itself, all of it
-  double bits = 0.0;       ///< told about which effect it is, mean over datasets; 0: no better than guessing
+  double bits = 0.0;       ///< told about which effect it is, mean over datasets; 0: no better than chance
   double right = 0.0;      ///< share of datasets whose effect is the likeliest
   double more_bits = 0.0;  ///< than what is planned
   stats::Interval more_bits_95;
@@ -43,8 +43,8 @@ struct PlannedPower {
 struct PlanResult {
   std::string sentence;                        ///< the best next measurement
   std::vector<Design> designs;                 ///< first what is planned
-  std::vector<std::string> entries;            ///< nothing first
-  std::vector<std::vector<double>> confusion;  ///< (n_entries x n_entries) as confusion_of(), of what is planned
+  std::vector<std::string> hypotheses;         ///< nothing first
+  std::vector<std::vector<double>> confusion;  ///< (n_hypotheses x n_hypotheses) as confusion_of(), of what is planned
   std::vector<PlannedPower> power;
   std::size_t n_datasets = 0;  ///< judged, for each design
   std::vector<std::string> notes;

@@ -5,12 +5,12 @@
 #include <sstream>
 
 #include "core/digest.hpp"
-#include "pirsim/csv.hpp"
 #include "effects/catalogue.hpp"
+#include "pirsim/csv.hpp"
 #include "pirsim/error.hpp"
-#include "reconcile/validation/aliens.hpp"
-#include "reconcile/ensemble/simulated_world.hpp"
 #include "pirsim/study.hpp"
+#include "reconcile/ensemble/simulated_realization.hpp"
+#include "reconcile/validation/out_of_catalogue.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -20,15 +20,15 @@ using Json = nlohmann::ordered_json;
 struct Answer {
   Hidden kind = Hidden::nothing;
   std::vector<EffectSpec> effects;
-  const Alien* alien = nullptr;
-  std::size_t alien_sensor = 0;
+  const OutOfCatalogueFault* fault = nullptr;
+  std::size_t faulty_sensor = 0;
 };
 
 Hidden draw_kind(Stream& stream) {
   const double u = stream.uniform();
   if (u < 0.55) return Hidden::one;
   if (u < 0.70) return Hidden::nothing;
-  return u < 0.85 ? Hidden::two : Hidden::alien;
+  return u < 0.85 ? Hidden::two : Hidden::out_of_catalogue;
 }
 
 std::size_t most_effects(Hidden kind) {
@@ -52,9 +52,10 @@ Answer draw_answer(const SceneSpec& scene, const ScriptSpec& script, Hidden want
   Answer answer;
   answer.kind = wanted == Hidden::any ? draw_kind(stream) : wanted;
   const auto& catalogue = effects::catalogue();
-  if (answer.kind == Hidden::alien) {
-    answer.alien = &aliens()[stream.index(static_cast<std::uint32_t>(aliens().size()))];
-    answer.alien_sensor = stream.index(static_cast<std::uint32_t>(scene.sensors.size()));
+  if (answer.kind == Hidden::out_of_catalogue) {
+    answer.fault =
+        &out_of_catalogue_faults()[stream.index(static_cast<std::uint32_t>(out_of_catalogue_faults().size()))];
+    answer.faulty_sensor = stream.index(static_cast<std::uint32_t>(scene.sensors.size()));
   }
   while (answer.effects.size() < most_effects(answer.kind)) {
     const effects::Effect& effect = *catalogue[stream.index(static_cast<std::uint32_t>(catalogue.size()))];
@@ -64,13 +65,13 @@ Answer draw_answer(const SceneSpec& scene, const ScriptSpec& script, Hidden want
   return answer;
 }
 
-std::string simulate(const World& world, const Answer& answer, Stream& stream) {
-  const Model model = compile(world.scene, world.script);
+std::string simulate(const Realization& realization, const Answer& answer, Stream& stream) {
+  const Model model = compile(realization.scene, realization.script);
   std::ostringstream text;
-  io::MeasuredCsvWriter csv(text, frame_of(world.scene, world.script).sensors);
+  io::MeasuredCsvWriter csv(text, frame_of(realization.scene, realization.script).sensors);
   run_study(model, {.threads = 1}, [&](const RunResult& result) {
     std::vector<Sample> rows = result.samples;
-    if (answer.alien != nullptr) answer.alien->apply(rows, answer.alien_sensor, stream);
+    if (answer.fault != nullptr) answer.fault->apply(rows, answer.faulty_sensor, stream);
     for (const Sample& row : rows) csv.write(row);
   });
   return text.str();
@@ -86,9 +87,9 @@ std::string to_json(const Answer& answer, const SealSettings& settings, const Sc
     effects.push_back({{"name", effect.name}, {"parameters", parameters}, {"choices", choices}});
   }
   Json json = {{"pirsim_sealed_answer", answer_schema}, {"hidden", name(answer.kind)}, {"effects", effects}};
-  json["alien"] = answer.alien == nullptr
-                      ? Json()
-                      : Json{{"name", answer.alien->name}, {"sensor", scene.sensors[answer.alien_sensor].id}};
+  json["out_of_catalogue_fault"] =
+      answer.fault == nullptr ? Json()
+                              : Json{{"name", answer.fault->name}, {"sensor", scene.sensors[answer.faulty_sensor].id}};
   json["seed"] = settings.secret_seed;
   json["salt"] = settings.salt;
   json["measured_sha256"] = sha256(rows);
@@ -103,14 +104,14 @@ Challenge seal(const SceneSpec& scene, const ScriptSpec& script, const SealSetti
   require_effects_left(script, settings.hidden);
   for (std::uint32_t attempt = 0;; ++attempt) {
     Stream stream({settings.secret_seed, 0, attempt, Purpose::sealed_answer});
-    const std::uint64_t world_seed = (std::uint64_t{stream.next_u32()} << 32U) | stream.next_u32();
+    const std::uint64_t realization_seed = (std::uint64_t{stream.next_u32()} << 32U) | stream.next_u32();
     const Answer answer = draw_answer(scene, script, settings.hidden, stream);
-    // Not from the secret itself: an analysis that happens to have the same seed would simulate this very world.
-    World world = draw_world(scene, script, settings.nuisance, world_seed, 0, attempt);
-    world.script.replicates = settings.n_replicates;
-    world.script.effects.insert(world.script.effects.end(), answer.effects.begin(), answer.effects.end());
+    // Not from the secret itself: an analysis that happens to have the same seed would simulate this very realization.
+    Realization realization = draw_realization(scene, script, settings.nuisance, realization_seed, 0, attempt);
+    realization.script.replicates = settings.n_replicates;
+    realization.script.effects.insert(realization.script.effects.end(), answer.effects.begin(), answer.effects.end());
     try {
-      Challenge challenge{simulate(world, answer, stream), {}, {}};
+      Challenge challenge{simulate(realization, answer, stream), {}, {}};
       challenge.answer = to_json(answer, settings, scene, challenge.rows);
       challenge.commitment = sha256(challenge.answer);
       return challenge;

@@ -14,14 +14,14 @@ namespace pirsim::reconcile {
 
 /// What may be hidden.
 enum class Hidden {
-  any,      ///< one of the following: one 55 %, the others 15 % each (assumed)
-  nothing,  ///< the plain model with nuisance
-  one,      ///< an effect of the catalogue, from its prior
-  two,      ///< two different ones
-  alien     ///< something that the catalogue lacks
+  any,              ///< one of the following: one 55 %, the others 15 % each (assumed)
+  nothing,          ///< the plain model with nuisance
+  one,              ///< an effect of the catalogue, from its prior
+  two,              ///< two different ones
+  out_of_catalogue  ///< something that the catalogue lacks
 };
 /// In the order of the enumeration.
-inline constexpr std::array<std::string_view, 5> hidden_names{"any", "nothing", "one", "two", "alien"};
+inline constexpr std::array<std::string_view, 5> hidden_names{"any", "nothing", "one", "two", "out-of-catalogue"};
 [[nodiscard]] std::string_view name(Hidden hidden) noexcept;
 
 struct SealSettings {
@@ -50,13 +50,13 @@ enum class Mark {
   one_of,  ///< the truth is among several that could not be told apart
   part,    ///< one of two was named, and nothing else
   wrong,   ///< something else was named
-  none     ///< nothing was named, though something of the catalogue or an alien was there
+  none     ///< nothing was named, though something of the catalogue or an out-of-catalogue fault was there
 };
 [[nodiscard]] std::string_view name(Mark mark) noexcept;
 
 struct Score {
   Mark mark = Mark::none;
-  std::vector<std::string> hidden;  ///< effects, or the alien's name
+  std::vector<std::string> hidden;  ///< effects, or the fault's name
   std::string sentence;             ///< the score for a reader
 };
 /// A file that was read.

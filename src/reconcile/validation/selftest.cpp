@@ -18,11 +18,11 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
 }
 
-bool is_named(const PlantedCase& c, const std::string& effect) {
+bool is_named(const InjectedCase& c, const std::string& effect) {
   return c.verdict == Verdict::named && c.named.front() == effect;
 }
 
-void check_coverage(const FittedEffect& fitted, const EffectSpec& truth, PlantedCase& result) {
+void check_coverage(const FittedEffect& fitted, const EffectSpec& truth, InjectedCase& result) {
   for (const FittedParameter& parameter : fitted.parameters) {
     const auto true_value = truth.parameters.find(parameter.name);
     if (true_value == truth.parameters.end()) continue;  // of another kind
@@ -31,24 +31,25 @@ void check_coverage(const FittedEffect& fitted, const EffectSpec& truth, Planted
   }
 }
 
-PlantedCase judged(const Laboratory& lab, const Analyst& analyst, const Planted& planted, CaseKind kind) {
-  const Judgement judgement = analyst.judge(planted.statistics);
-  PlantedCase result;
+InjectedCase judged(const ReferenceStudy& reference, const Analyst& analyst, const InjectedDataset& injected,
+                    CaseKind kind) {
+  const Judgement judgement = analyst.judge(injected.statistics);
+  InjectedCase result;
   result.kind = kind;
-  result.truth = planted.truth();
-  result.strength = planted.strength;
-  result.effects = planted.effects;
+  result.truth = injected.truth();
+  result.strength = injected.strength;
+  result.effects = injected.effects;
   result.verdict = judgement.decision.verdict;
-  for (const std::size_t entry : judgement.decision.kept) {
-    if (entry > 0) result.named.push_back(lab.table.entry_name(entry));
+  for (const std::size_t hypothesis : judgement.decision.kept) {
+    if (hypothesis > 0) result.named.push_back(reference.table.hypothesis_name(hypothesis));
   }
   result.p = judgement.p;
-  for (const EntryScore& score : judgement.scores) result.probabilities.push_back(score.probability);
-  const auto best = std::ranges::max_element(judgement.scores, {}, &EntryScore::probability);
-  result.likeliest = best->entry;
+  for (const HypothesisScore& score : judgement.scores) result.probabilities.push_back(score.probability);
+  const auto best = std::ranges::max_element(judgement.scores, {}, &HypothesisScore::probability);
+  result.likeliest = best->hypothesis;
   if (!result.named.empty() && judgement.family.is_sure()) result.family = judgement.family.family;
   if (result.verdict != Verdict::named) return result;
-  const FittedEffect fitted = analyst.fit(entry_of(lab.table, result.named.front()), planted.statistics);
+  const FittedEffect fitted = analyst.fit(hypothesis_of(reference.table, result.named.front()), injected.statistics);
   if (analyst.takes_back(fitted, result.p)) {
     result.verdict = Verdict::one_of;
     return result;
@@ -57,29 +58,29 @@ PlantedCase judged(const Laboratory& lab, const Analyst& analyst, const Planted&
   result.fitted = fitted;
   result.family = effects::find(result.named.front()).info.family;
   if (kind == CaseKind::one && is_named(result, result.truth)) {
-    check_coverage(fitted, planted.effects.front(), result);
+    check_coverage(fitted, injected.effects.front(), result);
   }
   return result;
 }
 
-/// which: of the planted datasets, by index.
-void judge_all(const Laboratory& lab, const Analyst& analyst, const std::vector<Planted>& planted,
+/// which: of the injected datasets, by index.
+void judge_all(const ReferenceStudy& reference, const Analyst& analyst, const std::vector<InjectedDataset>& injected,
                const std::vector<std::size_t>& which, std::optional<CaseKind> kind, unsigned threads,
-               std::vector<PlantedCase>& cases) {
-  ordered_parallel<PlantedCase>(
+               std::vector<InjectedCase>& cases) {
+  ordered_parallel<InjectedCase>(
       which.size(), threads,
       [&](std::size_t i) {
-        const Planted& one = planted[which[i]];
-        PlantedCase result = judged(lab, analyst, one, kind.value_or(one.kind));
-        result.planted = which[i];
+        const InjectedDataset& one = injected[which[i]];
+        InjectedCase result = judged(reference, analyst, one, kind.value_or(one.kind));
+        result.injected = which[i];
         return result;
       },
-      [&](PlantedCase& one) { cases.push_back(std::move(one)); });
+      [&](InjectedCase& one) { cases.push_back(std::move(one)); });
 }
 
 /// n of the cases that are asked for, by index, evenly spread.
 template <typename Asked>
-std::vector<std::size_t> some_of(const std::vector<PlantedCase>& cases, std::size_t n, const Asked& asked) {
+std::vector<std::size_t> some_of(const std::vector<InjectedCase>& cases, std::size_t n, const Asked& asked) {
   std::vector<std::size_t> all, chosen;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     if (asked(cases[i])) all.push_back(i);
@@ -89,43 +90,44 @@ std::vector<std::size_t> some_of(const std::vector<PlantedCase>& cases, std::siz
   return chosen;
 }
 
-bool has_right_name(const PlantedCase& c) { return c.kind == CaseKind::one && is_named(c, c.truth); }
-bool has_name_though(CaseKind kind, const PlantedCase& c) { return c.kind == kind && c.verdict == Verdict::named; }
+bool has_right_name(const InjectedCase& c) { return c.kind == CaseKind::one && is_named(c, c.truth); }
+bool has_name_though(CaseKind kind, const InjectedCase& c) { return c.kind == kind && c.verdict == Verdict::named; }
 
 /// Which datasets are judged on held-out trials, by index.
-std::vector<std::size_t> to_verify(const std::vector<PlantedCase>& cases, std::size_t n_right) {
+std::vector<std::size_t> to_verify(const std::vector<InjectedCase>& cases, std::size_t n_right) {
   std::vector<std::size_t> chosen = some_of(
-      cases, cases.size(), [](const PlantedCase& c) { return c.kind == CaseKind::nothing && !c.named.empty(); });
+      cases, cases.size(), [](const InjectedCase& c) { return c.kind == CaseKind::nothing && !c.named.empty(); });
   std::ranges::copy(some_of(cases, n_right, has_right_name), std::back_inserter(chosen));
   return chosen;
 }
 
-void verify_some(const Laboratory& lab, const SeenRows& seen, const std::vector<Planted>& planted,
+void verify_some(const ReferenceStudy& reference, const SeenRows& seen, const std::vector<InjectedDataset>& injected,
                  const SelftestSettings& settings, const std::function<void(const std::string&)>& begin,
-                 std::vector<PlantedCase>& cases) {
-  const std::vector<std::size_t> chosen = to_verify(cases, settings.n_verified), trials = all_trials(lab.frame);
+                 std::vector<InjectedCase>& cases) {
+  const std::vector<std::size_t> chosen = to_verify(cases, settings.n_verified), trials = all_trials(reference.frame);
   if (chosen.empty() || trials.size() < 2) return;  // of one trial nothing can be held out
   begin("finding anew without held-out trials what is in " + std::to_string(chosen.size()) + " datasets");
   std::vector<Claim> claims;
   for (const std::size_t i : chosen) {
     const std::vector<std::string>& named = cases[i].named;
-    claims.push_back({{{&lab, planted[cases[i].planted].statistics, named.front(), seen}}, named});
+    claims.push_back({{{&reference, injected[cases[i].injected].statistics, named.front(), seen}}, named});
   }
   const Settings& analysis = settings.analysis;
-  const Folds folds = usual_folds(sha256(lab.key), trials, lab.shape.kind);
-  std::vector<Verification> found = verify(
-      claims, folds, {analysis.alpha, analysis.seed, analysis.threads, analysis.verify_worlds}, [&](std::size_t done) {
-        begin("judged on held-out trials: " + std::to_string(done) + " of " + std::to_string(claims.size()));
-      });
+  const Folds folds = usual_folds(sha256(reference.key), trials, reference.shape.kind);
+  std::vector<Verification> found =
+      verify(claims, folds, {analysis.alpha, analysis.seed, analysis.threads, analysis.verify_realizations},
+             [&](std::size_t done) {
+               begin("judged on held-out trials: " + std::to_string(done) + " of " + std::to_string(claims.size()));
+             });
   for (std::size_t k = 0; k < chosen.size(); ++k) cases[chosen[k]].verification = std::move(found[k]);
 }
 
 /// Can the model with the effect named have made the data?
-void put_in_some(const Laboratory& lab, const FeatureMap& map, const std::vector<Planted>& planted,
-                 const SelftestSettings& settings, const std::function<void(const std::string&)>& begin,
-                 std::vector<PlantedCase>& cases) {
+void apply_some(const ReferenceStudy& reference, const FeatureMap& map, const std::vector<InjectedDataset>& injected,
+                const SelftestSettings& settings, const std::function<void(const std::string&)>& begin,
+                std::vector<InjectedCase>& cases) {
   std::vector<std::size_t> chosen = some_of(cases, settings.n_verified, has_right_name);
-  for (const CaseKind kind : {CaseKind::left_out, CaseKind::alien}) {
+  for (const CaseKind kind : {CaseKind::left_out, CaseKind::out_of_catalogue}) {
     std::ranges::copy(some_of(cases, settings.n_verified, [&](const auto& c) { return has_name_though(kind, c); }),
                       std::back_inserter(chosen));
   }
@@ -134,23 +136,24 @@ void put_in_some(const Laboratory& lab, const FeatureMap& map, const std::vector
   const double level = level_with(1, analysis.alpha);
   std::vector<PatchedModel> models;
   for (const std::size_t i : chosen)
-    models.push_back({std::span(&*cases[i].fitted, 1), planted[cases[i].planted].statistics});
+    models.push_back({std::span(&*cases[i].fitted, 1), injected[cases[i].injected].statistics});
   const std::vector<double> p =
-      p_with(models, lab, map, {level, analysis.seed, analysis.threads}, [&](std::size_t n, std::uint32_t n_worlds) {
-        begin("names put in: " + std::to_string(n) + " of " + std::to_string(models.size()) + " in " +
-              std::to_string(n_worlds) + " worlds");
-      });
-  for (std::size_t k = 0; k < chosen.size(); ++k) cases[chosen[k]].put_in = Look{cases[chosen[k]].named, level, p[k]};
+      p_with(models, reference, map, {level, analysis.seed, analysis.threads},
+             [&](std::size_t n, std::uint32_t n_realizations) {
+               begin("named effects applied: " + std::to_string(n) + " of " + std::to_string(models.size()) + " in " +
+                     std::to_string(n_realizations) + " realizations");
+             });
+  for (std::size_t k = 0; k < chosen.size(); ++k) cases[chosen[k]].applied = Look{cases[chosen[k]].named, level, p[k]};
 }
 
 /// Of datasets with a disagreement: elsewhere no probability is told.
 stats::Reliability reliability_of(const SelftestResult& result) {
   stats::Matrix<double> probabilities;
   std::vector<int> labels;
-  for (const PlantedCase& c : result.cases) {
+  for (const InjectedCase& c : result.cases) {
     if (c.kind != CaseKind::one || !c.seen()) continue;
     probabilities.append_row(std::span<const double>(c.probabilities));
-    labels.push_back(static_cast<int>(std::ranges::find(result.entries, c.truth) - result.entries.begin()));
+    labels.push_back(static_cast<int>(std::ranges::find(result.hypotheses, c.truth) - result.hypotheses.begin()));
   }
   return labels.empty() ? stats::Reliability{} : stats::reliability(probabilities, labels);
 }
@@ -179,7 +182,7 @@ class Counter {
 
 void count_nulls(const SelftestResult& result, std::vector<Rate>& rates) {
   Counter alarm("a disagreement although nothing is hidden"), named("a name although nothing is hidden");
-  for (const PlantedCase& c : result.cases) {
+  for (const InjectedCase& c : result.cases) {
     if (c.kind != CaseKind::nothing) continue;
     alarm.count(c.seen());
     named.count(c.verdict == Verdict::named);
@@ -187,13 +190,13 @@ void count_nulls(const SelftestResult& result, std::vector<Rate>& rates) {
   rates.insert(rates.end(), {alarm.rate(), named.rate()});
 }
 
-void count_planted(const SelftestResult& result, std::vector<Rate>& rates) {
+void count_injected(const SelftestResult& result, std::vector<Rate>& rates) {
   Counter power("a disagreement seen"), exact("exactly the right name, given a disagreement"),
       named("a name, given a disagreement"), right("the right name, given a name"),
       family("the right family, given a disagreement"), wrong("one wrong name"), wrong_family("one wrong family"),
       in_set("the truth in the set, given a disagreement"), none("none in the catalogue, given a disagreement"),
       coverage("parameters within their 90 % intervals");
-  for (const PlantedCase& c : result.cases) {
+  for (const InjectedCase& c : result.cases) {
     if (c.kind != CaseKind::one) continue;
     power.count(c.seen());
     wrong.count(c.verdict == Verdict::named && !is_named(c, c.truth));
@@ -217,7 +220,7 @@ void count_verified(const SelftestResult& result, std::vector<Rate>& rates) {
       closed("a gap closed on held-out trials, given the right name"),
       most("nine tenths of what can be closed, given the right name"),
       on_nulls("a gap that shrunk although nothing is hidden");
-  for (const PlantedCase& c : result.cases) {
+  for (const InjectedCase& c : result.cases) {
     if (c.kind == CaseKind::nothing) on_nulls.count(c.verification && c.verification->shrunk);
     if (c.kind != CaseKind::one || !c.verification) continue;
     shrunk.count(c.verification->shrunk);
@@ -229,24 +232,24 @@ void count_verified(const SelftestResult& result, std::vector<Rate>& rates) {
   if (shrunk.rate().of > 0) rates.insert(rates.end(), {shrunk.rate(), closed.rate(), most.rate(), on_nulls.rate()});
 }
 
-void count_put_in(const SelftestResult& result, std::vector<Rate>& rates) {
+void count_applied(const SelftestResult& result, std::vector<Rate>& rates) {
   const std::array<std::pair<CaseKind, std::string>, 3> kinds{
       {{CaseKind::one, "the right name"},
        {CaseKind::left_out, "the name of an effect that the catalogue lacks"},
-       {CaseKind::alien, "the name of an alien"}}};
+       {CaseKind::out_of_catalogue, "the name of an out-of-catalogue fault"}}};
   for (const auto& [kind, whose] : kinds) {
-    Counter passes("put in, " + whose + ": the model passes");
-    for (const PlantedCase& c : result.cases) {
-      if (c.kind == kind && c.put_in) passes.count(c.put_in->passes());
+    Counter passes("applied, " + whose + ": the model passes");
+    for (const InjectedCase& c : result.cases) {
+      if (c.kind == kind && c.applied) passes.count(c.applied->passes());
     }
     if (passes.rate().of > 0) rates.push_back(passes.rate());
   }
 }
 
-void count_strangers(const SelftestResult& result, CaseKind kind, const std::string& who, std::vector<Rate>& rates) {
+void count_uncatalogued(const SelftestResult& result, CaseKind kind, const std::string& who, std::vector<Rate>& rates) {
   Counter seen(who + ": a disagreement seen"), none(who + ": called none in the catalogue, given a disagreement"),
       misnamed(who + ": called by one name");
-  for (const PlantedCase& c : result.cases) {
+  for (const InjectedCase& c : result.cases) {
     if (c.kind != kind) continue;
     seen.count(c.seen());
     misnamed.count(c.verdict == Verdict::named);
@@ -258,7 +261,7 @@ void count_strangers(const SelftestResult& result, CaseKind kind, const std::str
 void count_beyond(const SelftestResult& result, std::vector<Rate>& rates) {
   Counter exact("beyond the prior: exactly the right name, given a disagreement"),
       wrong("beyond the prior: one wrong name");
-  for (const PlantedCase& c : result.cases) {
+  for (const InjectedCase& c : result.cases) {
     if (c.kind != CaseKind::beyond_prior) continue;
     wrong.count(c.verdict == Verdict::named && !is_named(c, c.truth));
     if (c.seen()) exact.count(is_named(c, c.truth));
@@ -270,7 +273,7 @@ void count_pairs(const SelftestResult& result, std::vector<Rate>& rates) {
   Counter one("two effects, first look: one or both in the set, given a disagreement"),
       none("two effects, first look: no single effect will do, given a disagreement"),
       wrong("two effects, first look: one wrong name");
-  for (const PlantedCase& c : result.cases) {
+  for (const InjectedCase& c : result.cases) {
     if (c.kind != CaseKind::two) continue;
     const auto is_hidden = [&](const std::string& name) {
       return std::ranges::any_of(c.effects, [&](const EffectSpec& effect) { return effect.name == name; });
@@ -287,7 +290,8 @@ void count_pairs(const SelftestResult& result, std::vector<Rate>& rates) {
 }  // namespace
 
 std::string_view name(CaseKind kind) noexcept {
-  constexpr std::array<std::string_view, 6> names{"nothing", "one", "beyond_prior", "left_out", "two", "alien"};
+  constexpr std::array<std::string_view, 6> names{"nothing",  "one", "beyond_prior",
+                                                  "left_out", "two", "out_of_catalogue"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -296,59 +300,59 @@ std::string_view name(Strength strength) noexcept {
   return names[static_cast<std::size_t>(strength)];
 }
 
-SelftestResult judge(const Laboratory& lab, const std::vector<Planted>& planted, const SelftestSettings& settings,
-                     const Observer& observer) {
+SelftestResult judge(const ReferenceStudy& reference, const std::vector<InjectedDataset>& injected,
+                     const SelftestSettings& settings, const Observer& observer) {
   const auto begin = [&](const std::string& stage) {
     if (observer.stage) observer.stage(stage);
   };
   const Settings& analysis = settings.analysis;
-  const auto view = lab.view(all_trials(lab.frame), analysis.threads);
+  const auto view = reference.view(all_trials(reference.frame), analysis.threads);
   const auto analyst_without = [&](const std::string& effect) {
     return Analyst(view, {analysis.alpha, analysis.seed, analysis.threads, analysis.trees, effect});
   };
   SelftestResult result;
-  for (std::size_t entry = 0; entry < lab.table.n_entries(); ++entry)
-    result.entries.push_back(lab.table.entry_name(entry));
+  for (std::size_t hypothesis = 0; hypothesis < reference.table.n_hypotheses(); ++hypothesis)
+    result.hypotheses.push_back(reference.table.hypothesis_name(hypothesis));
   begin("judging");
-  std::vector<std::size_t> all(planted.size());
+  std::vector<std::size_t> all(injected.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  judge_all(lab, analyst_without(""), planted, all, {}, analysis.threads, result.cases);
+  judge_all(reference, analyst_without(""), injected, all, {}, analysis.threads, result.cases);
   result.reliability = reliability_of(result);
   if (settings.n_verified > 0)
-    verify_some(lab, seen_rows(*view, analysis.alpha), planted, settings, begin, result.cases);
+    verify_some(reference, seen_rows(*view, analysis.alpha), injected, settings, begin, result.cases);
   if (settings.leave_out == LeaveOut::each) {
-    for (const std::string& effect : lab.table.effects) {
+    for (const std::string& effect : reference.table.effects) {
       begin("judging by a catalogue that lacks " + effect);
       std::vector<std::size_t> own;
       for (const std::size_t i : all) {
-        if (planted[i].kind == CaseKind::one && planted[i].effects.front().name == effect) own.push_back(i);
+        if (injected[i].kind == CaseKind::one && injected[i].effects.front().name == effect) own.push_back(i);
       }
-      judge_all(lab, analyst_without(effect), planted, own, CaseKind::left_out, analysis.threads, result.cases);
+      judge_all(reference, analyst_without(effect), injected, own, CaseKind::left_out, analysis.threads, result.cases);
     }
   }
-  put_in_some(lab, view->map(), planted, settings, begin, result.cases);
+  apply_some(reference, view->map(), injected, settings, begin, result.cases);
   return result;
 }
 
 SelftestResult selftest(const SceneSpec& scene, const ScriptSpec& script, const SelftestSettings& settings,
                         const Observer& observer) {
-  const Laboratory lab = make_laboratory(
+  const ReferenceStudy reference = make_reference_study(
       scene, script, settings.analysis,
       [&](const StudyFrame& frame, std::span<const Series> pilot) {
         return full_shape(frame, settings.kind, settings.n_replicates, pilot);
       },
       observer);
-  return judge(lab, plant(lab, settings, observer), settings, observer);
+  return judge(reference, inject(reference, settings, observer), settings, observer);
 }
 
 std::vector<Rate> rates_of(const SelftestResult& result) {
   std::vector<Rate> rates;
   count_nulls(result, rates);
-  count_planted(result, rates);
+  count_injected(result, rates);
   count_verified(result, rates);
-  count_put_in(result, rates);
-  count_strangers(result, CaseKind::left_out, "an effect that the catalogue lacks", rates);
-  count_strangers(result, CaseKind::alien, "an alien", rates);
+  count_applied(result, rates);
+  count_uncatalogued(result, CaseKind::left_out, "an effect that the catalogue lacks", rates);
+  count_uncatalogued(result, CaseKind::out_of_catalogue, "an out-of-catalogue fault", rates);
   count_beyond(result, rates);
   count_pairs(result, rates);
   return rates;
@@ -358,7 +362,7 @@ std::vector<Rate> power_of(const SelftestResult& result, const std::string& effe
   std::vector<Rate> rates;
   for (const Strength strength : {Strength::weak, Strength::medium, Strength::strong}) {
     Counter seen(std::string(name(strength)) + ": seen"), found(std::string(name(strength)) + ": seen and in the set");
-    for (const PlantedCase& c : result.cases) {
+    for (const InjectedCase& c : result.cases) {
       if (c.kind != CaseKind::one || c.truth != effect || c.strength != strength) continue;
       seen.count(c.seen());
       found.count(contains(c.named, effect));
@@ -370,12 +374,12 @@ std::vector<Rate> power_of(const SelftestResult& result, const std::string& effe
 }
 
 std::vector<std::vector<double>> confusion_of(const SelftestResult& result) {
-  const std::size_t n = result.entries.size();
+  const std::size_t n = result.hypotheses.size();
   std::vector<std::vector<double>> shares(n, std::vector<double>(n, 0.0));
-  const auto index = [&](const std::string& entry) {
-    return static_cast<std::size_t>(std::ranges::find(result.entries, entry) - result.entries.begin());
+  const auto index = [&](const std::string& hypothesis) {
+    return static_cast<std::size_t>(std::ranges::find(result.hypotheses, hypothesis) - result.hypotheses.begin());
   };
-  for (const PlantedCase& c : result.cases) {
+  for (const InjectedCase& c : result.cases) {
     if (c.kind == CaseKind::nothing || (c.kind == CaseKind::one && c.seen())) {
       shares[index(c.truth)][index(c.likeliest)] += 1.0;
     }

@@ -1,4 +1,4 @@
-// Does the workflow find what was hidden? Effects are planted in simulated data that no table has seen.
+// Does the workflow find what was hidden? Effects are injected into simulated data that no table has seen.
 #pragma once
 
 #include <cstdint>
@@ -23,30 +23,30 @@ enum class LeaveOut {
 struct SelftestSettings {
   Settings analysis;
   Measured::Kind kind = Measured::Kind::series;
-  int n_replicates = 1;          ///< runs of every trial in a planted dataset
-  std::uint32_t n_nulls = 60;    ///< datasets with nothing hidden
-  std::uint32_t n_planted = 10;  ///< datasets of every effect and strength
-  std::uint32_t n_beyond = 0;    ///< of every effect, stronger than its prior, in rooms wider than theirs
-  std::uint32_t n_pairs = 0;     ///< datasets with two effects
-  std::uint32_t n_aliens = 0;    ///< of every alien
+  int n_replicates = 1;                  ///< runs of every trial in an injected dataset
+  std::uint32_t n_nulls = 60;            ///< datasets with nothing hidden
+  std::uint32_t n_injected = 10;         ///< datasets of every effect and strength
+  std::uint32_t n_beyond = 0;            ///< of every effect, stronger than its prior, in rooms wider than theirs
+  std::uint32_t n_pairs = 0;             ///< datasets with two effects
+  std::uint32_t n_out_of_catalogue = 0;  ///< of every out-of-catalogue fault
   LeaveOut leave_out = LeaveOut::none;
-  /// Datasets with the right name, spread over effects and strengths, whose effect is put in and judged on held-out
+  /// Datasets with the right name, spread over effects and strengths, whose effect is applied and judged on held-out
   /// trials; if any, so are all with nothing hidden in which something is suspected. And so many names each that are
-  /// right, that an effect got which the catalogue lacks, and that an alien got, are put in to see whether the model
-  /// with them can have made the data.
+  /// right, that an effect got which the catalogue lacks, and that an out-of-catalogue fault got, are applied to see
+  /// whether the model with them can have made the data.
   std::uint32_t n_verified = 0;
   /// Keeps finished datasets; its name is made longer by what they depend on. Empty: they are not kept.
-  std::filesystem::path planted_folder = {};
+  std::filesystem::path injected_folder = {};
 };
 
 /// What is hidden in a dataset, and from whom.
 enum class CaseKind {
   nothing,
-  one,           ///< effect of the catalogue, strength from its prior
-  beyond_prior,  ///< stronger than any in the table, in a room drawn from a wider nuisance
-  left_out,      ///< effect that the catalogue lacks when this dataset is judged
-  two,           ///< effects together
-  alien          ///< something that no catalogue has
+  one,              ///< effect of the catalogue, strength from its prior
+  beyond_prior,     ///< stronger than any in the table, in a room drawn from a wider nuisance
+  left_out,         ///< effect that the catalogue lacks when this dataset is judged
+  two,              ///< effects together
+  out_of_catalogue  ///< something that no catalogue has
 };
 enum class Strength { none, weak, medium, strong, beyond };  ///< thirds of the prior, by distance from off
 [[nodiscard]] std::string_view name(CaseKind kind) noexcept;
@@ -55,36 +55,36 @@ enum class Strength { none, weak, medium, strong, beyond };  ///< thirds of the 
 [[nodiscard]] Strength strength_of(const EffectSpec& effect);
 
 /// A dataset in which something is hidden, made to see whether it is found.
-struct Planted {
+struct InjectedDataset {
   CaseKind kind = CaseKind::nothing;
   Strength strength = Strength::none;
-  std::string alien;                ///< name; empty without one
+  std::string fault;                ///< name; empty without one
   std::vector<EffectSpec> effects;  ///< as drawn
   std::vector<float> statistics;    ///< (n_statistics)
 
-  [[nodiscard]] std::string truth() const;  ///< effects and alien in words; "nothing"
+  [[nodiscard]] std::string truth() const;  ///< effects and fault in words; "nothing"
 };
 
 /// One dataset and what became of it.
-struct PlantedCase {
+struct InjectedCase {
   CaseKind kind = CaseKind::nothing;
-  std::string truth;  ///< "nothing", an effect, an alien, or "one + another"
+  std::string truth;  ///< "nothing", an effect, an out-of-catalogue fault, or "one + another"
   Strength strength = Strength::none;
   std::vector<EffectSpec> effects;
   Verdict verdict = Verdict::no_disagreement;
   std::vector<std::string> named;         ///< or not to be told apart
   std::optional<effects::Family> family;  ///< of the named effect, or one whose effects together are sure
-  std::string likeliest;                  ///< entry with the greatest probability
-  std::vector<double> probabilities;      ///< (n_entries) as SelftestResult::entries
+  std::string likeliest;                  ///< hypothesis with the greatest probability
+  std::vector<double> probabilities;      ///< (n_hypotheses) as SelftestResult::hypotheses
   double p = 1.0;                         ///< of the global test
   std::size_t n_parameters = 0;           ///< fitted, if the right effect was named
   std::size_t n_covered = 0;              ///< of them, whose interval holds the truth
 
-  std::size_t planted = 0;             ///< which dataset it is of those that were planted
+  std::size_t injected = 0;            ///< which dataset it is of those that were injected
   std::optional<FittedEffect> fitted;  ///< of the effect named
 
   std::optional<Verification> verification;  ///< of the effect named, or of the first that can't be ruled out
-  std::optional<Look> put_in;                ///< what the model with the effect named looks like
+  std::optional<Look> applied;               ///< what the model with the effect named looks like
 
   [[nodiscard]] bool seen() const noexcept { return verdict != Verdict::no_disagreement; }
 };
@@ -100,18 +100,19 @@ struct Rate {
 };
 
 struct SelftestResult {
-  std::vector<PlantedCase> cases;
-  std::vector<std::string> entries;  ///< of the table, nothing first
-  stats::Reliability reliability;    ///< of the probabilities, over cases of the kind `one` with a disagreement
+  std::vector<InjectedCase> cases;
+  std::vector<std::string> hypotheses;  ///< of the table, nothing first
+  stats::Reliability reliability;       ///< of the probabilities, over cases of the kind `one` with a disagreement
 };
 
-/// What the settings ask for, in worlds that no table has seen; those in which people can't get about are missing.
-[[nodiscard]] std::vector<Planted> plant(const Laboratory& lab, const SelftestSettings& settings,
-                                         const Observer& observer = {});
-/// What a laboratory's table says of them.
-[[nodiscard]] SelftestResult judge(const Laboratory& lab, const std::vector<Planted>& planted,
+/// What the settings ask for, in realizations that no table has seen; those in which people can't get about are
+/// missing.
+[[nodiscard]] std::vector<InjectedDataset> inject(const ReferenceStudy& reference, const SelftestSettings& settings,
+                                                  const Observer& observer = {});
+/// What a reference study's table says of them.
+[[nodiscard]] SelftestResult judge(const ReferenceStudy& reference, const std::vector<InjectedDataset>& injected,
                                    const SelftestSettings& settings, const Observer& observer = {});
-/// Both, with a laboratory for full data of the settings' kind.
+/// Both, with a reference study for full data of the settings' kind.
 [[nodiscard]] SelftestResult selftest(const SceneSpec& scene, const ScriptSpec& script,
                                       const SelftestSettings& settings, const Observer& observer = {});
 
@@ -121,7 +122,8 @@ struct SelftestResult {
 [[nodiscard]] std::vector<Rate> rates_of(const SelftestResult& result);
 /// Of one effect and strength: how often a disagreement is seen, and how often the effect is then in the set.
 [[nodiscard]] std::vector<Rate> power_of(const SelftestResult& result, const std::string& effect);
-/// (n_entries x n_entries) row: truth, column: likeliest entry; shares of the row, of cases with a disagreement.
+/// (n_hypotheses x n_hypotheses) row: truth, column: likeliest hypothesis; shares of the row, of cases with a
+/// disagreement.
 [[nodiscard]] std::vector<std::vector<double>> confusion_of(const SelftestResult& result);
 
 [[nodiscard]] std::string to_markdown(const SelftestResult& result);

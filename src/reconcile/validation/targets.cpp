@@ -47,8 +47,8 @@ std::vector<Target> targets(Geometry geometry) {
           {"parameters within their 90 % intervals", 0.87, 0.93},
           {"nine tenths of what can be closed, given the right name", 0.50, 1.0},  // a median share of 0.90
           {"a gap that shrunk although nothing is hidden", 0.0, 0.05},
-          {"an alien: called none in the catalogue, given a disagreement", 0.80, 1.0},
-          {"an alien: called by one name", 0.0, 0.10},
+          {"an out-of-catalogue fault: called none in the catalogue, given a disagreement", 0.80, 1.0},
+          {"an out-of-catalogue fault: called by one name", 0.0, 0.10},
           {"an effect that the catalogue lacks: called none in the catalogue, given a disagreement", 0.80, 1.0},
           {"an effect that the catalogue lacks: called by one name", 0.0, 0.10}};
 }
@@ -75,7 +75,7 @@ std::vector<TargetResult> compare_with_targets(const SelftestResult& result, Geo
 std::vector<ConfusedPair> confused_pairs(const SelftestResult& result, double least_share) {
   std::map<std::string, std::size_t> cases;
   std::map<std::pair<std::string, std::string>, std::size_t> taken;  // in alphabetical order
-  for (const PlantedCase& c : result.cases) {
+  for (const InjectedCase& c : result.cases) {
     if (c.kind != CaseKind::one || !c.seen()) continue;
     ++cases[c.truth];
     if (c.likeliest != c.truth && c.likeliest != "nothing") ++taken[std::minmax(c.truth, c.likeliest)];

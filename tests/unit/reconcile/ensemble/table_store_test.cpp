@@ -17,7 +17,7 @@ TEST_CASE("a damaged chunk of a table is named, and what to do about it", "[reco
   chunk.datasets.push_back({{1, 7, {{"dead_time", {{"dead_s", 2.0}}, {}, {}}}}, {}});
   store.keep(3, chunk);
   REQUIRE(store.find(3)->datasets.size() == 1);
-  const std::filesystem::path file = folder.path() / "worlds_0003.bin";
+  const std::filesystem::path file = folder.path() / "realizations_0003.bin";
   std::filesystem::resize_file(file, std::filesystem::file_size(file) - 9);
   CHECK_THROWS_AS(store.find(3), Error);
   CHECK_THROWS_WITH(store.find(3), contains(file.string()) && contains("ends too early") && contains("remove"));

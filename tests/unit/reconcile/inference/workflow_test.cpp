@@ -10,8 +10,8 @@
 #include "pirsim/io.hpp"
 #include "pirsim/random.hpp"
 #include "reconcile/inference/analyst.hpp"
-#include "reconcile/report/outputs.hpp"
 #include "reconcile/inference/reconcile.hpp"
+#include "reconcile/report/outputs.hpp"
 #include "sim/compiled_study.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
@@ -29,38 +29,40 @@ Settings quick() {
   Settings settings;
   settings.table = {250, 250, 250, 0, {"false_triggers", "missed_triggers", "pulse_stretching"}};
   settings.trees = 60;
-  settings.verify_worlds = 20;
+  settings.verify_realizations = 20;
   return settings;
 }
 
-const Laboratory& laboratory() {
-  static const Laboratory lab = make_laboratory(test::shipped_scene("meeting_room.gltf"), short_study(), quick(),
-                                                [](const StudyFrame& frame, std::span<const Series> pilot) {
-                                                  return full_shape(frame, Measured::Kind::series, 1, pilot);
-                                                });
-  return lab;
+const ReferenceStudy& reference_study() {
+  static const ReferenceStudy reference =
+      make_reference_study(test::shipped_scene("meeting_room.gltf"), short_study(), quick(),
+                           [](const StudyFrame& frame, std::span<const Series> pilot) {
+                             return full_shape(frame, Measured::Kind::series, 1, pilot);
+                           });
+  return reference;
 }
 
 const Analyst& analyst() {
-  static const Analyst one(laboratory().view(all_trials(laboratory().frame), 0), {0.05, 1, 0, 60});
+  static const Analyst one(reference_study().view(all_trials(reference_study().frame), 0), {0.05, 1, 0, 60});
   return one;
 }
 
-std::vector<float> planted(std::uint32_t world, const std::vector<EffectSpec>& effects) {
-  const Laboratory& lab = laboratory();
-  const SimulatedWorld fresh(lab.source, lab.frame, 500000 + world, 1);
-  return statistics_of(lab.frame, lab.shape, lab.table.profile, *fresh.with_effects(effects, 0, 1));
+std::vector<float> injected(std::uint32_t realization, const std::vector<EffectSpec>& effects) {
+  const ReferenceStudy& reference = reference_study();
+  const SimulatedRealization fresh(reference.source, reference.frame, 500000 + realization, 1);
+  return statistics_of(reference.frame, reference.shape, reference.table.profile, *fresh.with_effects(effects, 0, 1));
 }
 
 const EffectSpec many_false_triggers{"false_triggers", {{"rate_per_s", 0.05}}, {}, {}};
 
 }  // namespace
 
-TEST_CASE("a world is a pure function of seed and index and stays within the nuisance", "[reconcile]") {
+TEST_CASE("a realization is a pure function of seed and index and stays within the nuisance", "[reconcile]") {
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
   const ScriptSpec script = short_study();
-  const World a = draw_world(scene, script, {}, 3, 17), b = draw_world(scene, script, {}, 3, 17);
-  const World other = draw_world(scene, script, {}, 3, 18), again = draw_world(scene, script, {}, 3, 17, 1);
+  const Realization a = draw_realization(scene, script, {}, 3, 17), b = draw_realization(scene, script, {}, 3, 17);
+  const Realization other = draw_realization(scene, script, {}, 3, 18),
+                    again = draw_realization(scene, script, {}, 3, 17, 1);
   CHECK(a.scene.seats[0].world_from_seat == b.scene.seats[0].world_from_seat);
   CHECK(a.script.seed == b.script.seed);
   CHECK(a.script.seed != other.script.seed);
@@ -76,83 +78,86 @@ TEST_CASE("a world is a pure function of seed and index and stays within the nui
   for (const TrialSpec& trial : a.script.trials) {
     CHECK(trial.people.front().stature_m == a.script.trials.front().people.front().stature_m);
   }
-  const World exact = draw_world(scene, script, {0, 0, 0, 0, 0}, 3, 17);
+  const Realization exact = draw_realization(scene, script, {0, 0, 0, 0, 0}, 3, 17);
   CHECK(exact.scene.seats[2].world_from_seat == scene.seats[2].world_from_seat);
   CHECK(exact.script.trials[0].people[0].stature_m == script.trials[0].people[0].stature_m);
 }
 
-TEST_CASE("effects on a remembered world give what a study with them gives", "[reconcile][three-seats]") {
-  const Laboratory& lab = laboratory();
-  const SimulatedWorld world(lab.source, lab.frame, 5, 1);
-  ScriptSpec script = world.world().script;
+TEST_CASE("effects on a remembered realization give what a study with them gives", "[reconcile][three-seats]") {
+  const ReferenceStudy& reference = reference_study();
+  const SimulatedRealization realization(reference.source, reference.frame, 5, 1);
+  ScriptSpec script = realization.drawn().script;
   script.effects = {many_false_triggers};
-  const Model model = compile(world.world().scene, script);
-  const auto data = world.with_effects(script.effects, 0, 1);
+  const Model model = compile(realization.drawn().scene, script);
+  const auto data = realization.with_effects(script.effects, 0, 1);
   REQUIRE(data->size() == 3);
   for (std::uint32_t run = 0; run < 3; ++run) {
     const RunResult result = run_once(model, run);
-    CHECK((*data)[run] == *series_of(lab.frame, 1, result.trial, result.samples));
+    CHECK((*data)[run] == *series_of(reference.frame, 1, result.trial, result.samples));
   }
 }
 
 TEST_CASE("a table goes on where it was interrupted and refuses another study's chunks", "[reconcile][three-seats]") {
-  const Laboratory& lab = laboratory();
+  const ReferenceStudy& reference = reference_study();
   const TemporaryFolder folder;
   const TableSettings settings{30, 30, 30, 0, {"false_triggers"}};
-  const auto make = [&](const WorldSource& source) {
-    return make_reference_table(source, lab.frame, lab.shape, lab.table.profile, settings, folder.path() / "t");
+  const auto make = [&](const RealizationSource& source) {
+    return make_reference_table(source, reference.frame, reference.shape, reference.table.profile, settings,
+                                folder.path() / "t");
   };
-  const ReferenceTable first = make(lab.source);
-  std::filesystem::remove(folder.path() / "t" / "worlds_0001.bin");
-  const ReferenceTable again = make(lab.source);
+  const ReferenceTable first = make(reference.source);
+  std::filesystem::remove(folder.path() / "t" / "realizations_0001.bin");
+  const ReferenceTable again = make(reference.source);
   // NaN differs from itself: compare bytes.
   const auto bytes = [](const ReferenceTable& t) {
     return sha256({reinterpret_cast<const char*>(t.statistics.values().data()), t.statistics.values().size_bytes()});
   };
   CHECK(bytes(first) == bytes(again));
   CHECK(first.rows.size() == 60);
-  WorldSource other = lab.source;
+  RealizationSource other = reference.source;
   other.nuisance.seat_position_m = 0.05;
   CHECK_THROWS_WITH(make(other), contains("holds simulated datasets of other inputs"));
 }
 
-TEST_CASE("pilot runs are of worlds that no table has", "[reconcile][three-seats]") {
-  const Laboratory& lab = laboratory();
-  const std::vector<Series> pilot = pilot_runs(lab.source, lab.frame, 2, 0);
-  REQUIRE(pilot.size() == 2 * lab.frame.trials.size());
-  for (const std::uint32_t world : {0U, 1U}) {
-    const Series own = SimulatedWorld(lab.source, lab.frame, world, 1).plain(0, 1).front();
+TEST_CASE("pilot runs are of realizations that no table has", "[reconcile][three-seats]") {
+  const ReferenceStudy& reference = reference_study();
+  const std::vector<Series> pilot = pilot_runs(reference.source, reference.frame, 2, 0);
+  REQUIRE(pilot.size() == 2 * reference.frame.trials.size());
+  for (const std::uint32_t realization : {0U, 1U}) {
+    const Series own = SimulatedRealization(reference.source, reference.frame, realization, 1).plain(0, 1).front();
     CHECK(
         std::ranges::none_of(pilot, [&](const Series& run) { return run.trial == own.trial && run.bits == own.bits; }));
   }
 }
 
-TEST_CASE("effects are trained in the same worlds and calibrated in worlds that differ", "[reconcile][three-seats]") {
-  const Laboratory& lab = laboratory();
-  const std::vector<std::string> entries{"seats_shifted", "sensor_tilt", "dual_polarity"};
-  const ReferenceTable table = make_reference_table(lab.source, lab.frame, lab.shape, lab.table.profile,
-                                                    {50, 20, 20, 0, entries}, std::filesystem::path());
-  const auto worlds = [&](std::size_t entry, Part part) {
+TEST_CASE("effects are trained in the same realizations and calibrated in realizations that differ",
+          "[reconcile][three-seats]") {
+  const ReferenceStudy& reference = reference_study();
+  const std::vector<std::string> hypotheses{"seats_shifted", "sensor_tilt", "dual_polarity"};
+  const ReferenceTable table =
+      make_reference_table(reference.source, reference.frame, reference.shape, reference.table.profile,
+                           {50, 20, 20, 0, hypotheses}, std::filesystem::path());
+  const auto realizations = [&](std::size_t hypothesis, Part part) {
     std::set<std::uint32_t> found;
-    for (const std::size_t row : rows_of(table, entry, part)) found.insert(table.rows[row].world);
+    for (const std::size_t row : rows_of(table, hypothesis, part)) found.insert(table.rows[row].realization);
     return found;
   };
-  CHECK(worlds(0, Part::all).size() == 50);
-  std::set<std::uint32_t> of_any, of_all = worlds(1, Part::calibration);
-  for (std::size_t entry = 1; entry <= entries.size(); ++entry) {
-    CHECK(worlds(entry, Part::training) == worlds(1, Part::training));
-    const std::set<std::uint32_t> own = worlds(entry, Part::calibration);
+  CHECK(realizations(0, Part::all).size() == 50);
+  std::set<std::uint32_t> of_any, of_all = realizations(1, Part::calibration);
+  for (std::size_t hypothesis = 1; hypothesis <= hypotheses.size(); ++hypothesis) {
+    CHECK(realizations(hypothesis, Part::training) == realizations(1, Part::training));
+    const std::set<std::uint32_t> own = realizations(hypothesis, Part::calibration);
     CHECK(own.size() == 8);
     of_any.insert(own.begin(), own.end());
-    std::erase_if(of_all, [&](std::uint32_t world) { return !own.contains(world); });
+    std::erase_if(of_all, [&](std::uint32_t realization) { return !own.contains(realization); });
   }
-  CHECK(worlds(1, Part::training).size() == 12);
-  CHECK(of_any == worlds(0, Part::calibration));
+  CHECK(realizations(1, Part::training).size() == 12);
+  CHECK(of_any == realizations(0, Part::calibration));
   CHECK(of_all.empty());
 }
 
-TEST_CASE("a planted effect is located and named and nothing is not", "[reconcile][three-seats]") {
-  const Outcome found = analyst().analyse(planted(1, {many_false_triggers}));
+TEST_CASE("a injected effect is located and named and nothing is not", "[reconcile][three-seats]") {
+  const Outcome found = analyst().analyse(injected(1, {many_false_triggers}));
   CHECK(found.verdict == Verdict::named);
   REQUIRE_FALSE(found.named.empty());
   CHECK(found.named.front() == "false_triggers");
@@ -160,26 +165,27 @@ TEST_CASE("a planted effect is located and named and nothing is not", "[reconcil
   // Of 20 datasets without an effect at most 5 may differ at the 5 % level: P(6 or more) = 0.0003.
   int alarms = 0;
   for (std::uint32_t i = 0; i < 20; ++i) {
-    alarms += analyst().analyse(planted(100 + i, {})).verdict == Verdict::no_disagreement ? 0 : 1;
+    alarms += analyst().analyse(injected(100 + i, {})).verdict == Verdict::no_disagreement ? 0 : 1;
   }
   CHECK(alarms <= 5);
 }
 
 TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile][three-seats]") {
-  ReferenceTable shuffled = laboratory().table;
+  ReferenceTable shuffled = reference_study().table;
   Stream stream({5, 0, 0, Purpose::test});
   for (std::size_t i = shuffled.rows.size(); i > 1; --i) {
     TableRow &a = shuffled.rows[i - 1], &b = shuffled.rows[stream.index(static_cast<std::uint32_t>(i))];
-    std::swap(a.entry, b.entry);
+    std::swap(a.hypothesis, b.hypothesis);
     std::swap(a.effects, b.effects);
   }
-  const Laboratory& lab = laboratory();
-  const TableView shuffled_view(lab.source.scene, lab.frame, lab.knowledge, shuffled, all_trials(lab.frame), 0);
-  const Namer& honest = analyst().namer();
-  const Namer confused(shuffled_view, {0.05, 60, 1, 0});
+  const ReferenceStudy& reference = reference_study();
+  const TableView shuffled_view(reference.source.scene, reference.frame, reference.knowledge, shuffled,
+                                all_trials(reference.frame), 0);
+  const HypothesisClassifier& honest = analyst().classifier();
+  const HypothesisClassifier confused(shuffled_view, {0.05, 60, 1, 0});
   double sure_of_truth = 0.0, sure_of_truth_when_confused = 0.0;  // chance is a quarter
   for (std::uint32_t i = 0; i < 10; ++i) {
-    const std::vector<float> data = planted(200 + i, {many_false_triggers});
+    const std::vector<float> data = injected(200 + i, {many_false_triggers});
     sure_of_truth += honest.probabilities(data)[1] / 10.0;
     sure_of_truth_when_confused += confused.probabilities(data)[1] / 10.0;
   }
@@ -189,20 +195,20 @@ TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile][three-se
 
 TEST_CASE("which way an effect goes is told even if its size is but one number", "[reconcile][three-seats]") {
   // A table in which false triggers are what comes of one way, missed ones of the other.
-  const Laboratory& lab = laboratory();
-  ReferenceTable table = lab.table;
+  const ReferenceStudy& reference = reference_study();
+  ReferenceTable table = reference.table;
   table.effects.front() = "seats_shifted";
   for (TableRow& row : table.rows) {
-    if (row.entry != 1 && row.entry != 2) continue;
-    row.effects = {{"seats_shifted", {{"places", row.entry == 1 ? 1.0 : -1.0}}, {}, {}}};
-    row.entry = 1;
+    if (row.hypothesis != 1 && row.hypothesis != 2) continue;
+    row.effects = {{"seats_shifted", {{"places", row.hypothesis == 1 ? 1.0 : -1.0}}, {}, {}}};
+    row.hypothesis = 1;
   }
   const EffectSpec many_missed_triggers{"missed_triggers", {{"probability", 0.5}}, {}, {}};
-  const EffectFitter fitter(lab.source.scene, table, analyst().map(),
-                            std::vector<std::vector<std::size_t>>(table.n_entries()), {});
+  const EffectFitter fitter(reference.source.scene, table, analyst().map(),
+                            std::vector<std::vector<std::size_t>>(table.n_hypotheses()), {});
   for (std::uint32_t i = 0; i < 5; ++i) {
     const auto places = [&](const EffectSpec& hidden) {
-      return fitter.fit(1, planted(400 + i, {hidden})).effect.parameters.at("places");
+      return fitter.fit(1, injected(400 + i, {hidden})).effect.parameters.at("places");
     };
     CHECK(places(many_false_triggers) == 1.0);
     CHECK(places(many_missed_triggers) == -1.0);
@@ -219,35 +225,35 @@ TEST_CASE("a name is taken back whose strength may be none, unless the plain mod
 
 TEST_CASE("an effect is calibrated on held-back datasets in which the global test sees it",
           "[reconcile][three-seats]") {
-  const ReferenceTable& table = laboratory().table;
-  const auto view = laboratory().view(all_trials(laboratory().frame), 0);
+  const ReferenceTable& table = reference_study().table;
+  const auto view = reference_study().view(all_trials(reference_study().frame), 0);
   const SeenRows seen = seen_rows(*view, 0.05);
-  REQUIRE(seen.size() == table.n_entries());
+  REQUIRE(seen.size() == table.n_hypotheses());
   CHECK(seen[0] == rows_of(table, 0, Part::calibration));
-  for (std::size_t entry = 1; entry < table.n_entries(); ++entry) {
+  for (std::size_t hypothesis = 1; hypothesis < table.n_hypotheses(); ++hypothesis) {
     double greatest_taken = 0.0, least_left = 1.0;
     std::size_t n_seen = 0;
-    const std::vector<std::size_t> own = rows_of(table, entry, Part::calibration);
+    const std::vector<std::size_t> own = rows_of(table, hypothesis, Part::calibration);
     for (const std::size_t row : own) {
       const double p = view->p(table.statistics.row(row));
       n_seen += p <= 0.05 ? 1 : 0;
-      if (std::ranges::binary_search(seen[entry], row)) {
+      if (std::ranges::binary_search(seen[hypothesis], row)) {
         greatest_taken = std::max(greatest_taken, p);
       } else {
         least_left = std::min(least_left, p);
       }
     }
-    CHECK(seen[entry].size() == std::max<std::size_t>(n_seen, 60));  // 3 / alpha are taken, seen or not
-    CHECK(seen[entry].size() < own.size());
+    CHECK(seen[hypothesis].size() == std::max<std::size_t>(n_seen, 60));  // 3 / alpha are taken, seen or not
+    CHECK(seen[hypothesis].size() < own.size());
     CHECK(greatest_taken <= least_left);
   }
 }
 
 TEST_CASE("the likeliest is among those that are wanted and can be at all", "[reconcile]") {
   const std::vector<double> probabilities{0.4, 0.1, 0.3, 0.2, 0.0};
-  CHECK(likeliest_entry(probabilities, [](std::size_t) { return true; }) == 2);
-  CHECK(likeliest_entry(probabilities, [](std::size_t entry) { return entry != 2; }) == 3);
-  CHECK(likeliest_entry(probabilities, [](std::size_t entry) { return entry == 4; }) == 0);
+  CHECK(likeliest_hypothesis(probabilities, [](std::size_t) { return true; }) == 2);
+  CHECK(likeliest_hypothesis(probabilities, [](std::size_t hypothesis) { return hypothesis != 2; }) == 3);
+  CHECK(likeliest_hypothesis(probabilities, [](std::size_t hypothesis) { return hypothesis == 4; }) == 0);
 }
 
 TEST_CASE("folds follow from the data alone and hold out every trial once", "[reconcile]") {
@@ -267,25 +273,25 @@ TEST_CASE("folds follow from the data alone and hold out every trial once", "[re
 }
 
 TEST_CASE("features keep their places in a dataset that lacks a trial", "[reconcile][three-seats]") {
-  const Laboratory& lab = laboratory();
-  const FeatureMap map(lab.frame, lab.knowledge,
-                       lab.table.statistics.select_rows(rows_of(lab.table, 0, Part::training)), {1});
-  const std::vector<float> nothing_measured(n_statistics(lab.frame), std::nanf(""));
+  const ReferenceStudy& reference = reference_study();
+  const FeatureMap map(reference.frame, reference.knowledge,
+                       reference.table.statistics.select_rows(rows_of(reference.table, 0, Part::training)), {1});
+  const std::vector<float> nothing_measured(n_statistics(reference.frame), std::nanf(""));
   CHECK(map.features(nothing_measured).size() == map.names().size());
 }
 
 TEST_CASE("a held-out trial has no part in features and names", "[reconcile][three-seats]") {
-  const Laboratory& lab = laboratory();
-  std::vector<float> data = planted(300, {many_false_triggers});
-  const Analyst without(lab.view({0, 2}, 0), {0.05, 1, 0, 30});
+  const ReferenceStudy& reference = reference_study();
+  std::vector<float> data = injected(300, {many_false_triggers});
+  const Analyst without(reference.view({0, 2}, 0), {0.05, 1, 0, 30});
   const auto before = without.map().features(data);
-  for (std::size_t sensor = 0; sensor < lab.frame.sensors.size(); ++sensor) {
+  for (std::size_t sensor = 0; sensor < reference.frame.sensors.size(); ++sensor) {
     for (std::size_t k = 0; k < n_cell_statistics; ++k) {
-      data[cell_index(lab.frame, 1, sensor, static_cast<CellStatistic>(k))] += 50.0F;
+      data[cell_index(reference.frame, 1, sensor, static_cast<CellStatistic>(k))] += 50.0F;
     }
   }
   CHECK(without.map().features(data) == before);
-  CHECK(analyst().map().features(data) != analyst().map().features(planted(300, {many_false_triggers})));
+  CHECK(analyst().map().features(data) != analyst().map().features(injected(300, {many_false_triggers})));
 }
 
 TEST_CASE("the whole loop writes a patched script that runs and closes the gap", "[reconcile][three-seats]") {
@@ -298,7 +304,7 @@ TEST_CASE("the whole loop writes a patched script that runs and closes the gap",
   Measured measured;
   measured.digest = sha256("hidden");
   run_study(model, {}, [&](const RunResult& result) {
-    measured.runs.push_back(*series_of(laboratory().frame, 1, result.trial, result.samples));
+    measured.runs.push_back(*series_of(reference_study().frame, 1, result.trial, result.samples));
   });
   const Settings settings = quick();
   const Outcome outcome = reconcile::reconcile(scene, short_study(), measured, settings);
@@ -307,10 +313,10 @@ TEST_CASE("the whole loop writes a patched script that runs and closes the gap",
              contains("The catalogue was cut down to false_triggers, missed_triggers and pulse_stretching. The model"));
   // One effect was hidden: with it the model passes, and nothing more is looked for.
   REQUIRE(outcome.looks.size() == 1);
-  CHECK(outcome.looks[0].put_in == outcome.named);
+  CHECK(outcome.looks[0].applied == outcome.named);
   CHECK(outcome.looks[0].level == settings.alpha / 2.0);
   CHECK(outcome.looks[0].p > outcome.looks[0].level);
-  // It passes at first sight: p is a share of the datasets of twenty worlds and the measured one.
+  // It passes at first sight: p is a share of the datasets of twenty realizations and the measured one.
   const double as_strange = 21.0 * outcome.looks[0].p;
   CHECK(as_strange == Approx(std::round(as_strange)).margin(1e-9));
   REQUIRE(outcome.verification);
@@ -331,7 +337,7 @@ TEST_CASE("the whole loop writes a patched script that runs and closes the gap",
   std::ifstream page_file(folder.path() / "report.html");
   const std::string page{std::istreambuf_iterator<char>(page_file), {}};
   CHECK_THAT(page, contains(outcome.sentence) && contains("Does it help"));
-  for (const Candidate& candidate : outcome.candidates) CHECK_THAT(page, contains(candidate.score.entry));
+  for (const Candidate& candidate : outcome.candidates) CHECK_THAT(page, contains(candidate.score.hypothesis));
 }
 
 TEST_CASE("with the fewest datasets that can refuse p falls below the level, with an eighth fewer it can't",
@@ -354,10 +360,10 @@ TEST_CASE("two effects at once are found one after the other", "[reconcile][thre
   Measured measured;
   measured.digest = sha256("two hidden");
   run_study(compile(scene, hidden), {}, [&](const RunResult& result) {
-    measured.runs.push_back(*series_of(laboratory().frame, 1, result.trial, result.samples));
+    measured.runs.push_back(*series_of(reference_study().frame, 1, result.trial, result.samples));
   });
   Settings settings = quick();
-  settings.table.entries = {"false_triggers", "labels_swapped"};
+  settings.table.effects = {"false_triggers", "labels_swapped"};
   const Outcome outcome = reconcile::reconcile(scene, short_study(), measured, settings);
   CHECK(outcome.verdict == Verdict::several);
   CHECK(std::set(outcome.named.begin(), outcome.named.end()) ==
@@ -378,8 +384,8 @@ TEST_CASE("two effects at once are found one after the other", "[reconcile][thre
   }
   std::ifstream page_file(folder.path() / "report.html");
   const std::string page{std::istreambuf_iterator<char>(page_file), {}};
-  CHECK_THAT(page, contains("With labels_swapped put in, the model still differs") &&
-                       contains("With labels_swapped and false_triggers put in, the model can have made these data"));
+  CHECK_THAT(page, contains("With labels_swapped applied, the model still differs") &&
+                       contains("With labels_swapped and false_triggers applied, the model can have made these data"));
   for (const Candidate& candidate : outcome.candidates) {
     CHECK(candidate.kept);
     CHECK_THAT(candidate.reason, contains("together with the others named. By itself: Dropped"));
@@ -396,16 +402,16 @@ TEST_CASE("a name is taken back if the model with it can't have made the data", 
   ScriptSpec hidden = short_study();
   hidden.seed = 7;
   Measured measured;
-  measured.digest = sha256("alien");
+  measured.digest = sha256("out-of-catalogue");
   run_study(compile(scene, hidden), {}, [&](const RunResult& result) {
-    measured.runs.push_back(*series_of(laboratory().frame, 1, result.trial, result.samples));
+    measured.runs.push_back(*series_of(reference_study().frame, 1, result.trial, result.samples));
     Series& run = measured.runs.back();  // one sensor says the opposite for a third of the time
-    const std::size_t n = laboratory().frame.sensors.size(), n_main = run.main_end - run.main_begin;
+    const std::size_t n = reference_study().frame.sensors.size(), n_main = run.main_end - run.main_begin;
     for (std::size_t row = run.main_begin + n_main / 3; row < run.main_begin + 2 * n_main / 3; ++row)
       run.bits[row * n + 1] = run.bits[row * n + 1] == 0 ? 1 : 0;
   });
   Settings settings = quick();
-  settings.table.entries = {"false_triggers", "trigger_bursts"};
+  settings.table.effects = {"false_triggers", "trigger_bursts"};
   const TemporaryFolder folder;
   settings.table_folder = folder.path() / "table";
   const Outcome outcome = reconcile::reconcile(scene, short_study(), measured, settings);
@@ -415,13 +421,13 @@ TEST_CASE("a name is taken back if the model with it can't have made the data", 
   REQUIRE(outcome.looks.size() == 1);
   CHECK_FALSE(outcome.looks.front().passes());
   for (const Candidate& candidate : outcome.candidates) CHECK(!candidate.kept);
-  CHECK_THAT(outcome.candidates.front().reason, contains("Dropped: with it put in, the model still differs"));
+  CHECK_THAT(outcome.candidates.front().reason, contains("Dropped: with it applied, the model still differs"));
   REQUIRE(outcome.residuals);
   CHECK_THAT(outcome.residuals->sentence, contains("PIR2, in the middle third") && contains("the opposite"));
   settings.max_effects = 1;  // nothing else is looked for: the name stands, and the rest is told
   const Outcome one = reconcile::reconcile(scene, short_study(), measured, settings);
   CHECK((one.verdict == Verdict::named && one.named == std::vector<std::string>{"trigger_bursts"}));
-  CHECK_THAT(one.sentence, contains("That is not all. With trigger_bursts put in, the model still differs"));
+  CHECK_THAT(one.sentence, contains("That is not all. With trigger_bursts applied, the model still differs"));
 }
 
 TEST_CASE("the seed of the script plays no part in the analysis", "[reconcile][three-seats]") {
@@ -434,7 +440,7 @@ TEST_CASE("the seed of the script plays no part in the analysis", "[reconcile][t
   ScriptSpec hidden = short_study();
   hidden.effects = {many_false_triggers};
   run_study(compile(scene, hidden), {}, [&](const RunResult& result) {
-    measured.runs.push_back(*series_of(laboratory().frame, 1, result.trial, result.samples));
+    measured.runs.push_back(*series_of(reference_study().frame, 1, result.trial, result.samples));
   });
   Settings settings = quick();
   settings.table = {100, 100, 100, 0, {"false_triggers"}};
@@ -448,7 +454,7 @@ TEST_CASE("the seed of the script plays no part in the analysis", "[reconcile][t
   CHECK(first != report(one));
 }
 
-TEST_CASE("a script may fix the tilts that are known and foretells that run bit by bit", "[reconcile]") {
+TEST_CASE("a script may fix the tilts that are known and predicts that run bit by bit", "[reconcile]") {
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
   const auto rows = [&](const ScriptSpec& script) {
     std::vector<Series> all;

@@ -153,12 +153,12 @@ TEST_CASE("the page says what held-out trials show and no more", "[report]") {
 TEST_CASE("an effect that changes the model as another does stands beside it wherever candidates are listed",
           "[report]") {
   Outcome outcome = named();
-  outcome.candidates[1].score.entry = "range_scale";
+  outcome.candidates[1].score.hypothesis = "range_scale";
   const std::vector<Candidate> all = with_twins(outcome.candidates);
   REQUIRE(all.size() == 3);
-  CHECK(all[2].score.entry == "thermal_contrast");
+  CHECK(all[2].score.hypothesis == "thermal_contrast");
   CHECK_THAT(all[2].reason, contains("Judged as range_scale"));
   CHECK(says(to_html(report_page(outcome, 0.05)), "thermal_contrast"));
-  outcome.candidates[0].score.entry = "thermal_contrast";  // asked for by itself
+  outcome.candidates[0].score.hypothesis = "thermal_contrast";  // asked for by itself
   CHECK(with_twins(outcome.candidates).size() == 2);
 }

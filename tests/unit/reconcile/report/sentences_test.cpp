@@ -45,30 +45,31 @@ TEST_CASE("the reason of a rival compares it with the one that is named", "[reco
   CHECK_THAT(reason, contains("much less likely than seat_shift (0.06 against 0.9)"));
 }
 
-TEST_CASE("of a model with effects put in it is said whether it passes, and what may be missing beside them",
+TEST_CASE("of a model with effects applied it is said whether it passes, and what may be missing beside them",
           "[reconcile]") {
   CHECK(what_a_look_showed({{"clock_lag"}, 0.025, 0.4, {}}) ==
-        "With clock_lag put in, the model can have made these data (p = 0.4).");
-  CHECK(what_a_look_showed({{"clock_lag", "dead_time"}, 0.0125, 0.01, {"seat_shift", "body_size"}}) ==
-        "With clock_lag and dead_time put in, the model still differs from the data (p = 0.01). What is missing beside "
-        "it may be seat_shift or body_size: these data can't tell.");
+        "With clock_lag applied, the model can have made these data (p = 0.4).");
+  CHECK(
+      what_a_look_showed({{"clock_lag", "dead_time"}, 0.0125, 0.01, {"seat_shift", "body_size"}}) ==
+      "With clock_lag and dead_time applied, the model still differs from the data (p = 0.01). What is missing beside "
+      "it may be seat_shift or body_size: these data can't tell.");
   CHECK_THAT(what_a_look_showed({{"clock_lag"}, 0.025, 0.01, {"seat_shift"}}), contains("may be seat_shift."));
 }
 
-TEST_CASE("a name that doesn't do when it is put in is taken back with that reason", "[reconcile]") {
+TEST_CASE("a name that doesn't do when it is applied is taken back with that reason", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"trigger_bursts", 0.99}});
   outcome.looks.push_back({{"trigger_bursts"}, 0.025, 0.005, {}});
   const std::string sentence = sentence_of_refused(outcome, 0.05);
   CHECK_THAT(sentence, contains("The model lacks something that is not in the catalogue"));
   CHECK_THAT(sentence,
              contains("What resembles it most, trigger_bursts, doesn't explain it") && contains("(p = 0.005)"));
-  CHECK_THAT(reason_of_refused(outcome.looks.back()), contains("Dropped: with it put in") && contains("(p 0.005)"));
+  CHECK_THAT(reason_of_refused(outcome.looks.back()), contains("Dropped: with it applied") && contains("(p 0.005)"));
 }
 
-TEST_CASE("of an effect that does when it is put in and was dropped all the same both is said", "[reconcile]") {
+TEST_CASE("of an effect that does when it is applied and was dropped all the same both is said", "[reconcile]") {
   CHECK(
       sentence_of_nearest({{"labels_swapped"}, 0.025, 0.524, {}}, "Dropped: data of its own seldom look like these.") ==
-      "labels_swapped comes nearest: with it put in, the test of everything together sees no difference (p = 0.524). "
+      "labels_swapped comes nearest: with it applied, the test of everything together sees no difference (p = 0.524). "
       "It was dropped all the same: data of its own seldom look like these.");
 }
 
@@ -97,7 +98,7 @@ TEST_CASE("improbable effects that might have made the data are told with their 
 TEST_CASE("where no name is given the family is said if it is clear", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}, {"dead_time", 0.05}});
   outcome.family = likeliest_family(
-      std::vector<EntryScore>{{"nothing", 0.05}, {"dead_time", 0.05}, {"seat_shift", 0.5}, {"body_size", 0.4}});
+      std::vector<HypothesisScore>{{"nothing", 0.05}, {"dead_time", 0.05}, {"seat_shift", 0.5}, {"body_size", 0.4}});
   CHECK(outcome.family.family == effects::Family::person);
   CHECK(outcome.family.probability == Approx(0.9));
   CHECK_THAT(verdict_sentence(outcome, 0.05), contains("with probability 0.9 something of the family person"));

@@ -21,7 +21,7 @@ ScriptSpec one_seat() { return test::short_study({"S4"}, 30.0); }
 
 PlanResult planned(const std::filesystem::path& table, unsigned threads) {
   PlanSettings settings;
-  settings.analysis.table.entries = {"false_triggers", "missed_triggers", "dead_sensor"};
+  settings.analysis.table.effects = {"false_triggers", "missed_triggers", "dead_sensor"};
   settings.analysis.table_folder = table;
   settings.analysis.threads = settings.analysis.table.threads = threads;
   settings.analysis.trees = 60;
@@ -69,13 +69,13 @@ TEST_CASE("a plan is the same for any number of threads and its numbers hold tog
   const TemporaryFolder folder;
   const PlanResult result = planned(folder.path() / "t", 2);
   CHECK(to_json(result) == to_json(planned(folder.path() / "t", 1)));
-  CHECK(result.entries == std::vector<std::string>{"nothing", "false_triggers", "missed_triggers", "dead_sensor"});
+  CHECK(result.hypotheses == std::vector<std::string>{"nothing", "false_triggers", "missed_triggers", "dead_sensor"});
   REQUIRE(result.designs.size() == 4);  // one trial: repeating it and repeating all are one and the same
   CHECK(result.designs[0].minutes == Approx(0.5).margin(0.04));
   CHECK(result.designs[1].minutes == result.designs[0].minutes);
   CHECK(result.designs[3].minutes == Approx(empty_room_min).margin(0.04));
   for (const Design& design : result.designs) {
-    CHECK(design.bits <= 2.0);  // two bits: log2 of four entries
+    CHECK(design.bits <= 2.0);  // two bits: log2 of four hypotheses
     CHECK(design.right <= 1.0);
   }
   for (const auto& row : result.confusion) CHECK(std::accumulate(row.begin(), row.end(), 0.0) == Approx(1.0));

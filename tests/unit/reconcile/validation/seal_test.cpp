@@ -4,11 +4,11 @@
 #include <sstream>
 
 #include "core/digest.hpp"
-#include "pirsim/csv.hpp"
 #include "effects/catalogue.hpp"
+#include "pirsim/csv.hpp"
 #include "pirsim/error.hpp"
-#include "reconcile/ensemble/simulated_world.hpp"
 #include "pirsim/study.hpp"
+#include "reconcile/ensemble/simulated_realization.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 #include "support/short_study.hpp"
@@ -20,10 +20,10 @@ namespace {
 
 ScriptSpec one_seat() { return test::short_study({"S4"}, 30.0); }
 
-std::string rows_of(const World& world) {
-  const Model model = compile(world.scene, world.script);
+std::string rows_of(const Realization& realization) {
+  const Model model = compile(realization.scene, realization.script);
   std::ostringstream text;
-  io::MeasuredCsvWriter csv(text, frame_of(world.scene, world.script).sensors);
+  io::MeasuredCsvWriter csv(text, frame_of(realization.scene, realization.script).sensors);
   run_study(model, {.threads = 1}, [&](const RunResult& result) {
     for (const Sample& row : result.samples) csv.write(row);
   });
@@ -52,7 +52,7 @@ std::string without_sensors(const std::string& rows) {
 }
 
 const std::string valid_answer =
-    R"({"pirsim_sealed_answer": 1, "hidden": "one", "effects": [{"name": "thermal_contrast"}], "alien": null,)"
+    R"({"pirsim_sealed_answer": 1, "hidden": "one", "effects": [{"name": "thermal_contrast"}], "out-of-catalogue": null,)"
     R"( "measured_sha256": "x"})";
 const std::string valid_report =
     R"({"pirsim_reconcile_report": 1, "measured": {"sha256": "x"}, "verdict": "named", "effects": ["range_scale"]})";
@@ -68,7 +68,8 @@ std::string changed(std::string text, const std::string& old, const std::string&
 
 }  // namespace
 
-TEST_CASE("a challenge is none of the worlds that an analysis with the same seed simulates", "[reconcile][seal]") {
+TEST_CASE("a challenge is none of the realizations that an analysis with the same seed simulates",
+          "[reconcile][seal]") {
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
   const ScriptSpec script = one_seat();
   constexpr std::uint64_t seed = 1;  // the analysis' own, which somebody may well take for a secret
@@ -76,7 +77,7 @@ TEST_CASE("a challenge is none of the worlds that an analysis with the same seed
   CHECK(challenge.rows == seal(scene, script, {{}, Hidden::nothing, 1, seed, "pepper"}).rows);
   CHECK(challenge.rows != seal(scene, script, {{}, Hidden::nothing, 1, seed + 1, "salt"}).rows);
   for (std::uint32_t index = 0; index < 3; ++index) {
-    CHECK(challenge.rows != rows_of(draw_world(scene, script, {}, seed, index, 0)));
+    CHECK(challenge.rows != rows_of(draw_realization(scene, script, {}, seed, index, 0)));
   }
 }
 
@@ -122,7 +123,7 @@ TEST_CASE("what can't be hidden beside the script's own effects is refused", "[r
   CHECK(both.find("clock_lag") != std::string::npos);
   CHECK(both.find("dead_sensor") != std::string::npos);
   CHECK_NOTHROW(sealed(Hidden::nothing, {}));
-  CHECK_NOTHROW(sealed(Hidden::alien, {}));
+  CHECK_NOTHROW(sealed(Hidden::out_of_catalogue, {}));
 }
 
 TEST_CASE("a report or an answer that isn't understood is refused by its name", "[reconcile][seal]") {
@@ -159,11 +160,12 @@ TEST_CASE("a report or an answer that isn't understood is refused by its name", 
   for (const auto& [old, now, message] : std::vector<Fault>{
            {"thermal_contrast", "thermal_contrasts",
             "'thermal_contrasts' is not an effect (did you mean 'thermal_contrast'?)"},
-           {R"("one")", R"("three")", "'/hidden' is 'three', not one of any, nothing, one, two, alien"},
+           {R"("one")", R"("three")", "'/hidden' is 'three', not one of any, nothing, one, two, out-of-catalogue"},
            {"answer\": 1", "answer\": \"1\"", "'pirsim_sealed_answer' isn't 1, the only one that this pirsim reads"},
            {R"("name")", R"("nom")", "'/effects/0/name' isn't there, or isn't what it should be"},
-           {"null", "{}", "'/alien/name' isn't there, or isn't what it should be"},
-           {R"("alien": null,)", "", "'/alien' isn't there, or isn't what it should be"},
+           {"null", "{}", "'/out_of_catalogue_fault/name' isn't there, or isn't what it should be"},
+           {R"("out_of_catalogue_fault": null,)", "",
+            "'/out_of_catalogue_fault' isn't there, or isn't what it should be"},
            {"{", "[{", "expected a JSON object with 'pirsim_sealed_answer'"}}) {
     refused(changed(valid_answer, old, now), valid_report, "secret.json: error: " + message);
   }

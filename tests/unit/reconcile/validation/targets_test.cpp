@@ -12,8 +12,8 @@ using namespace pirsim::reconcile;
 
 namespace {
 
-PlantedCase planted(const std::string& truth, const std::string& taken_for, Verdict verdict) {
-  PlantedCase c;
+InjectedCase injected(const std::string& truth, const std::string& taken_for, Verdict verdict) {
+  InjectedCase c;
   c.kind = truth == "nothing" ? CaseKind::nothing : CaseKind::one;
   c.truth = truth;
   c.strength = truth == "nothing" ? Strength::none : Strength::strong;
@@ -26,9 +26,9 @@ PlantedCase planted(const std::string& truth, const std::string& taken_for, Verd
 
 SelftestResult result_of(std::size_t nulls, std::size_t alarms) {
   SelftestResult result;
-  result.entries = {"nothing", "soft_zone_edges", "fidgeting", "sensor_yaw"};
+  result.hypotheses = {"nothing", "soft_zone_edges", "fidgeting", "sensor_yaw"};
   for (std::size_t i = 0; i < nulls; ++i) {
-    result.cases.push_back(planted("nothing", "nothing", i < alarms ? Verdict::one_of : Verdict::no_disagreement));
+    result.cases.push_back(injected("nothing", "nothing", i < alarms ? Verdict::one_of : Verdict::no_disagreement));
   }
   return result;
 }
@@ -60,8 +60,8 @@ TEST_CASE("a target is met only if the whole interval is within its bounds", "[s
 
 TEST_CASE("every target but those of known geometry has a rate that a full self-test counts", "[selftest]") {
   SelftestResult result = result_of(1, 0);
-  for (const CaseKind kind : {CaseKind::one, CaseKind::left_out, CaseKind::alien}) {
-    PlantedCase c = planted("sensor_yaw", "sensor_yaw", Verdict::named);
+  for (const CaseKind kind : {CaseKind::one, CaseKind::left_out, CaseKind::out_of_catalogue}) {
+    InjectedCase c = injected("sensor_yaw", "sensor_yaw", Verdict::named);
     c.kind = kind;
     c.n_parameters = c.n_covered = 1;
     c.verification.emplace().before.energy_score = 1.0;  // there is something to close
@@ -82,7 +82,7 @@ TEST_CASE("what had no case is neither met nor a number", "[selftest]") {
   CHECK(count(to_html(selftest_page(result, Geometry::uncertain)), "probability and share: no case") == 1);
 }
 
-TEST_CASE("gaps that are closed are counted where the right name was put in and claims where nothing is hidden",
+TEST_CASE("gaps that are closed are counted where the right name was applied and claims where nothing is hidden",
           "[selftest]") {
   SelftestResult result = result_of(10, 2);
   for (std::size_t i = 0; i < 2; ++i) {
@@ -90,15 +90,15 @@ TEST_CASE("gaps that are closed are counted where the right name was put in and 
     result.cases[i].verification->shrunk = i == 0;
   }
   for (const double share : {0.95, 0.5, 0.92, 0.91}) {
-    result.cases.push_back(planted("sensor_yaw", "sensor_yaw", Verdict::named));
+    result.cases.push_back(injected("sensor_yaw", "sensor_yaw", Verdict::named));
     result.cases.back().verification.emplace();
     result.cases.back().verification->before.energy_score = 1.0;
     result.cases.back().verification->share_closed = share;
     result.cases.back().verification->shrunk = true;
     result.cases.back().verification->closed = share > 0.6;
   }
-  result.cases.push_back(planted("sensor_yaw", "sensor_yaw", Verdict::named));  // not among those tried
-  result.cases.push_back(planted("sensor_yaw", "sensor_yaw", Verdict::named));
+  result.cases.push_back(injected("sensor_yaw", "sensor_yaw", Verdict::named));  // not among those tried
+  result.cases.push_back(injected("sensor_yaw", "sensor_yaw", Verdict::named));
   result.cases.back().verification.emplace().n_trials = 3;  // shrunk by nothing: there was nothing to close
   const std::vector<Rate> rates = rates_of(result);
   const auto rate = [&](const std::string& what) {
@@ -113,33 +113,33 @@ TEST_CASE("gaps that are closed are counted where the right name was put in and 
   CHECK(rate("nine tenths of what can be closed, given the right name") == std::pair<std::size_t, std::size_t>(3, 4));
 }
 
-TEST_CASE("names that were put in are counted by whose they are", "[selftest]") {
+TEST_CASE("names that were applied are counted by whose they are", "[selftest]") {
   SelftestResult result = result_of(1, 0);
   const auto add = [&](CaseKind kind, double p) {
-    result.cases.push_back(planted("sensor_yaw", "sensor_yaw", Verdict::named));
+    result.cases.push_back(injected("sensor_yaw", "sensor_yaw", Verdict::named));
     result.cases.back().kind = kind;
-    result.cases.back().put_in = Look{{"sensor_yaw"}, 0.025, p, {}};
+    result.cases.back().applied = Look{{"sensor_yaw"}, 0.025, p, {}};
   };
   for (const double p : {0.3, 0.03, 0.02}) add(CaseKind::one, p);
   for (const double p : {0.026, 0.025, 0.001, 0.002}) add(CaseKind::left_out, p);
-  result.cases.push_back(planted("sensor_yaw", "sensor_yaw", Verdict::named));  // not among those tried
+  result.cases.push_back(injected("sensor_yaw", "sensor_yaw", Verdict::named));  // not among those tried
   const std::vector<Rate> rates = rates_of(result);
   const auto rate = [&](const std::string& what) { return std::ranges::find(rates, what, &Rate::what); };
-  const auto right = rate("put in, the right name: the model passes");
-  const auto neighbour = rate("put in, the name of an effect that the catalogue lacks: the model passes");
+  const auto right = rate("applied, the right name: the model passes");
+  const auto neighbour = rate("applied, the name of an effect that the catalogue lacks: the model passes");
   REQUIRE((right != rates.end() && neighbour != rates.end()));
   CHECK((right->hits == 2 && right->of == 3));
   CHECK((neighbour->hits == 1 && neighbour->of == 4));
-  CHECK(rate("put in, the name of an alien: the model passes") == rates.end());
+  CHECK(rate("applied, the name of an out-of-catalogue fault: the model passes") == rates.end());
 }
 
 TEST_CASE("a family counts as said if the named effect is of it or its effects are sure together", "[selftest]") {
   SelftestResult result = result_of(1, 0);
   for (const auto family : {effects::Family::mounting, effects::Family::optics}) {
-    result.cases.push_back(planted("sensor_yaw", "sensor_tilt", Verdict::one_of));
+    result.cases.push_back(injected("sensor_yaw", "sensor_tilt", Verdict::one_of));
     result.cases.back().family = family;
   }
-  result.cases.push_back(planted("sensor_yaw", "sensor_tilt", Verdict::one_of));  // no family is sure
+  result.cases.push_back(injected("sensor_yaw", "sensor_tilt", Verdict::one_of));  // no family is sure
   const std::vector<Rate> rates = rates_of(result);
   const auto right = std::ranges::find(rates, "the right family, given a disagreement", &Rate::what);
   const auto wrong = std::ranges::find(rates, "one wrong family", &Rate::what);
@@ -155,9 +155,9 @@ TEST_CASE("pairs that are taken for each other are listed with what the catalogu
   SelftestResult result = result_of(1, 0);
   for (int i = 0; i < 8; ++i) {
     const bool swapped = i < 3;
-    result.cases.push_back(planted("soft_zone_edges", swapped ? "fidgeting" : "soft_zone_edges", Verdict::one_of));
-    result.cases.push_back(planted("fidgeting", i < 1 ? "soft_zone_edges" : "fidgeting", Verdict::one_of));
-    result.cases.push_back(planted("sensor_yaw", "sensor_yaw", Verdict::named));
+    result.cases.push_back(injected("soft_zone_edges", swapped ? "fidgeting" : "soft_zone_edges", Verdict::one_of));
+    result.cases.push_back(injected("fidgeting", i < 1 ? "soft_zone_edges" : "fidgeting", Verdict::one_of));
+    result.cases.push_back(injected("sensor_yaw", "sensor_yaw", Verdict::named));
   }
   const auto pairs = confused_pairs(result, 0.1);
   REQUIRE(pairs.size() == 1);
@@ -174,10 +174,10 @@ TEST_CASE("pairs that are taken for each other are listed with what the catalogu
 TEST_CASE("the pictures of a self-test hold its shares", "[selftest]") {
   SelftestResult result = result_of(4, 0);
   for (int i = 0; i < 4; ++i) {
-    result.cases.push_back(planted("fidgeting", i < 1 ? "sensor_yaw" : "fidgeting", Verdict::one_of));
+    result.cases.push_back(injected("fidgeting", i < 1 ? "sensor_yaw" : "fidgeting", Verdict::one_of));
   }
   const io::GridChart confusion = confusion_chart(result);
-  CHECK(confusion.rows == result.entries);
+  CHECK(confusion.rows == result.hypotheses);
   CHECK(*confusion.cells[2 * 4 + 3].value == Approx(0.25));
   CHECK(confusion.cells[2 * 4 + 2].text == "75");
   CHECK_FALSE(confusion.cells[3 * 4 + 3].value);  // sensor_yaw was never hidden

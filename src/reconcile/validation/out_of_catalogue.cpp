@@ -1,4 +1,4 @@
-#include "reconcile/validation/aliens.hpp"
+#include "reconcile/validation/out_of_catalogue.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -29,10 +29,10 @@ void pick_up_neighbour(std::vector<Sample>& rows, std::size_t sensor, Stream& /*
 
 }  // namespace
 
-const std::vector<Alien>& aliens() {
-  static const std::vector<Alien> all = {{"inverted_for_a_while", invert_for_a_while},
-                                         {"waxing_and_waning", wax_and_wane},
-                                         {"picked_up_neighbour", pick_up_neighbour}};
+const std::vector<OutOfCatalogueFault>& out_of_catalogue_faults() {
+  static const std::vector<OutOfCatalogueFault> all = {{"inverted_for_a_while", invert_for_a_while},
+                                                       {"waxing_and_waning", wax_and_wane},
+                                                       {"picked_up_neighbour", pick_up_neighbour}};
   return all;
 }
 

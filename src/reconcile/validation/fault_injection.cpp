@@ -4,16 +4,16 @@
 
 #include "core/digest.hpp"
 #include "effects/catalogue.hpp"
-#include "reconcile/validation/aliens.hpp"
-#include "reconcile/inference/flat_scale.hpp"
-#include "reconcile/validation/selftest.hpp"
 #include "reconcile/ensemble/table_store.hpp"
+#include "reconcile/inference/flat_scale.hpp"
+#include "reconcile/validation/out_of_catalogue.hpp"
+#include "reconcile/validation/selftest.hpp"
 
 namespace pirsim::reconcile {
 namespace {
 
-constexpr std::uint32_t first_planted_world = 1U << 25U;  ///< worlds that no table has seen
-constexpr std::uint32_t most_draws = 200;                 ///< for parameters of the strength wanted
+constexpr std::uint32_t first_injected_realization = 1U << 25U;  ///< realizations that no table has seen
+constexpr std::uint32_t most_draws = 200;                        ///< for parameters of the strength wanted
 constexpr double beyond = 1.25;  ///< strengths and nuisance outside their priors, times their width (assumed)
 
 /// What one dataset is to be.
@@ -21,7 +21,7 @@ struct Plan {
   CaseKind kind = CaseKind::nothing;
   Strength strength = Strength::none;
   const effects::Effect* effect = nullptr;  ///< of one effect, or one beyond the prior
-  const Alien* alien = nullptr;
+  const OutOfCatalogueFault* fault = nullptr;
 };
 
 bool comes_in_strengths(const EffectSpec& spec) {
@@ -45,25 +45,26 @@ void push_beyond(EffectSpec& spec) {
   value = std::clamp(first.scale == effects::Scale::whole ? std::round(natural) : natural, first.least, first.most);
 }
 
-std::vector<Plan> plans_of(const Laboratory& lab, const SelftestSettings& settings) {
+std::vector<Plan> plans_of(const ReferenceStudy& reference, const SelftestSettings& settings) {
   std::vector<Plan> plans(settings.n_nulls);
-  for (const std::string& name : lab.table.effects) {
+  for (const std::string& name : reference.table.effects) {
     const effects::Effect* effect = &effects::find(name);
     for (const Strength strength : {Strength::weak, Strength::medium, Strength::strong}) {
-      plans.insert(plans.end(), settings.n_planted, Plan{CaseKind::one, strength, effect, nullptr});
+      plans.insert(plans.end(), settings.n_injected, Plan{CaseKind::one, strength, effect, nullptr});
     }
     plans.insert(plans.end(), settings.n_beyond, Plan{CaseKind::beyond_prior, Strength::beyond, effect, nullptr});
   }
-  const std::uint32_t n_pairs = lab.table.effects.size() < 2 ? 0 : settings.n_pairs;
+  const std::uint32_t n_pairs = reference.table.effects.size() < 2 ? 0 : settings.n_pairs;
   plans.insert(plans.end(), n_pairs, Plan{CaseKind::two, Strength::none, nullptr, nullptr});
-  for (const Alien& alien : aliens()) {
-    plans.insert(plans.end(), settings.n_aliens, Plan{CaseKind::alien, Strength::none, nullptr, &alien});
+  for (const OutOfCatalogueFault& fault : out_of_catalogue_faults()) {
+    plans.insert(plans.end(), settings.n_out_of_catalogue,
+                 Plan{CaseKind::out_of_catalogue, Strength::none, nullptr, &fault});
   }
   return plans;
 }
 
-/// The alien in every run of a dataset.
-void invade(const Alien& alien, const StudyFrame& frame, std::vector<Series>& data, Stream& stream) {
+/// The fault in every run of a dataset.
+void apply_fault(const OutOfCatalogueFault& fault, const StudyFrame& frame, std::vector<Series>& data, Stream& stream) {
   const std::size_t n_sensors = frame.sensors.size();
   const std::size_t sensor = stream.index(static_cast<std::uint32_t>(n_sensors));
   for (Series& series : data) {
@@ -73,17 +74,20 @@ void invade(const Alien& alien, const StudyFrame& frame, std::vector<Series>& da
       rows[i].time_s = frame.window_s * static_cast<double>(i + 1);
       rows[i].bits.assign(first, first + static_cast<std::ptrdiff_t>(n_sensors));
     }
-    alien.apply(rows, sensor, stream);
+    fault.apply(rows, sensor, stream);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       std::ranges::copy(rows[i].bits, series.bits.begin() + static_cast<std::ptrdiff_t>(i * n_sensors));
     }
   }
 }
 
-class PlantingJob {
+class InjectionJob {
  public:
-  PlantingJob(const Laboratory& lab, const SelftestSettings& settings)
-      : lab_(lab), settings_(settings), plans_(plans_of(lab, settings)), wide_source_(lab.source) {
+  InjectionJob(const ReferenceStudy& reference, const SelftestSettings& settings)
+      : reference_(reference),
+        settings_(settings),
+        plans_(plans_of(reference, settings)),
+        wide_source_(reference.source) {
     NuisanceSpec& wide = wide_source_.nuisance;
     for (double* width :
          {&wide.seat_position_m, &wide.sensor_yaw_deg, &wide.sensor_tilt_deg, &wide.body_size, &wide.arm_amplitude}) {
@@ -95,16 +99,17 @@ class PlantingJob {
   [[nodiscard]] TableChunk run(std::uint32_t index) const {
     const Plan& plan = plans_[index];
     TableChunk chunk;
-    const WorldSource& source = plan.kind == CaseKind::beyond_prior ? wide_source_ : lab_.source;
-    const SimulatedWorld world(source, lab_.frame, first_planted_world + index, settings_.n_replicates);
+    const RealizationSource& source = plan.kind == CaseKind::beyond_prior ? wide_source_ : reference_.source;
+    const SimulatedRealization realization(source, reference_.frame, first_injected_realization + index,
+                                           settings_.n_replicates);
     for (std::uint32_t attempt = 0; attempt < most_draws; ++attempt) {
       Stream stream({settings_.analysis.seed, index, attempt, Purpose::sealed_answer});
-      const std::optional<std::vector<EffectSpec>> effects = draw(plan, world.world(), stream);
+      const std::optional<std::vector<EffectSpec>> effects = draw(plan, realization.drawn(), stream);
       if (!effects) continue;
-      auto data = world.with_effects(*effects, 0, settings_.n_replicates);
+      auto data = realization.with_effects(*effects, 0, settings_.n_replicates);
       if (!data) continue;
-      if (plan.alien != nullptr) invade(*plan.alien, lab_.frame, *data, stream);
-      chunk.datasets.push_back({{index, first_planted_world + index, *effects}, std::move(*data)});
+      if (plan.fault != nullptr) apply_fault(*plan.fault, reference_.frame, *data, stream);
+      chunk.datasets.push_back({{index, first_injected_realization + index, *effects}, std::move(*data)});
       return chunk;
     }
     ++chunk.n_left_out;
@@ -113,35 +118,35 @@ class PlantingJob {
 
  private:
   /// None if the draw isn't what the plan wants.
-  [[nodiscard]] std::optional<std::vector<EffectSpec>> draw(const Plan& plan, const World& world,
+  [[nodiscard]] std::optional<std::vector<EffectSpec>> draw(const Plan& plan, const Realization& realization,
                                                             Stream& stream) const {
     std::vector<const effects::Effect*> wanted;
     if (plan.effect != nullptr) wanted.push_back(plan.effect);
     while (plan.kind == CaseKind::two && wanted.size() < 2) {
-      const auto n = static_cast<std::uint32_t>(lab_.table.effects.size());
-      const effects::Effect* one = &effects::find(lab_.table.effects[stream.index(n)]);
+      const auto n = static_cast<std::uint32_t>(reference_.table.effects.size());
+      const effects::Effect* one = &effects::find(reference_.table.effects[stream.index(n)]);
       if (wanted.empty() || wanted.front() != one) wanted.push_back(one);
     }
     std::vector<EffectSpec> drawn;
     for (const effects::Effect* effect : wanted) {
-      drawn.push_back(effects::draw_from_prior(*effect, world.scene, world.script, stream));
+      drawn.push_back(effects::draw_from_prior(*effect, realization.scene, realization.script, stream));
       if (plan.kind == CaseKind::one && !has_strength(drawn.back(), plan.strength)) return std::nullopt;
       if (plan.kind == CaseKind::beyond_prior) push_beyond(drawn.back());
     }
     return drawn;
   }
 
-  const Laboratory& lab_;
+  const ReferenceStudy& reference_;
   const SelftestSettings& settings_;
   std::vector<Plan> plans_;
-  WorldSource wide_source_;
+  RealizationSource wide_source_;
 };
 
-std::string key_of(const Laboratory& lab, const SelftestSettings& settings) {
-  std::string text = "planted in " + lab.key;
+std::string key_of(const ReferenceStudy& reference, const SelftestSettings& settings) {
+  std::string text = "injected in " + reference.key;
   for (const std::uint64_t n :
-       {std::uint64_t{settings.n_nulls}, std::uint64_t{settings.n_planted}, std::uint64_t{settings.n_beyond},
-        std::uint64_t{settings.n_pairs}, std::uint64_t{settings.n_aliens}, settings.analysis.seed}) {
+       {std::uint64_t{settings.n_nulls}, std::uint64_t{settings.n_injected}, std::uint64_t{settings.n_beyond},
+        std::uint64_t{settings.n_pairs}, std::uint64_t{settings.n_out_of_catalogue}, settings.analysis.seed}) {
     text += ' ' + std::to_string(n);
   }
   return sha256(text);
@@ -149,8 +154,8 @@ std::string key_of(const Laboratory& lab, const SelftestSettings& settings) {
 
 /// Other numbers are kept beside the first, so that nobody has to remove these.
 std::filesystem::path folder_of(const SelftestSettings& settings, const std::string& key) {
-  if (settings.planted_folder.empty()) return {};
-  return settings.planted_folder.string() + "_" + key.substr(0, 8);
+  if (settings.injected_folder.empty()) return {};
+  return settings.injected_folder.string() + "_" + key.substr(0, 8);
 }
 
 }  // namespace
@@ -165,38 +170,40 @@ Strength strength_of(const EffectSpec& spec) {
   return static_cast<Strength>(1 + std::min(2, static_cast<int>(3.0 * distance)));
 }
 
-std::string Planted::truth() const {
-  std::string text = alien;
+std::string InjectedDataset::truth() const {
+  std::string text = fault;
   for (const EffectSpec& effect : effects) text += (text.empty() ? "" : " + ") + effect.name;
   return text.empty() ? "nothing" : text;
 }
 
-std::vector<Planted> plant(const Laboratory& lab, const SelftestSettings& settings, const Observer& observer) {
-  if (observer.stage) observer.stage("planted datasets");
-  const PlantingJob job(lab, settings);
-  const std::string key = key_of(lab, settings);
+std::vector<InjectedDataset> inject(const ReferenceStudy& reference, const SelftestSettings& settings,
+                                    const Observer& observer) {
+  if (observer.stage) observer.stage("datasets with injected faults");
+  const InjectionJob job(reference, settings);
+  const std::string key = key_of(reference, settings);
   const TableStore store(folder_of(settings, key), key);
-  std::vector<Planted> planted;
+  std::vector<InjectedDataset> injected;
   stats::Matrix<float> statistics;
   for_each_chunk(
       store, static_cast<std::uint32_t>(job.plans().size()), settings.analysis.threads,
       [&](std::uint32_t index) { return job.run(index); }, {observer.progress},
       [&](TableChunk& chunk) {
-        append_statistics(lab.frame, lab.shape, lab.table.profile, chunk, settings.analysis.threads, statistics);
+        append_statistics(reference.frame, reference.shape, reference.table.profile, chunk, settings.analysis.threads,
+                          statistics);
         for (SimulatedDataset& dataset : chunk.datasets) {
-          const Plan& plan = job.plans()[dataset.row.entry];
-          planted.push_back({plan.kind,
-                             plan.strength,
-                             plan.alien == nullptr ? "" : plan.alien->name,
-                             std::move(dataset.row.effects),
-                             {}});
+          const Plan& plan = job.plans()[dataset.row.hypothesis];
+          injected.push_back({plan.kind,
+                              plan.strength,
+                              plan.fault == nullptr ? "" : plan.fault->name,
+                              std::move(dataset.row.effects),
+                              {}});
         }
       });
-  for (std::size_t i = 0; i < planted.size(); ++i) {
+  for (std::size_t i = 0; i < injected.size(); ++i) {
     const auto row = std::as_const(statistics).row(i);
-    planted[i].statistics.assign(row.begin(), row.end());
+    injected[i].statistics.assign(row.begin(), row.end());
   }
-  return planted;
+  return injected;
 }
 
 }  // namespace pirsim::reconcile

@@ -1,5 +1,5 @@
 // Which sensor, which way, how much: a made-up study in which the truth is known.
-#include "reconcile/inference/entry_guess.hpp"
+#include "reconcile/inference/point_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -97,29 +97,29 @@ TEST_CASE("the sensor and the side are found although a sensor turns one way as 
   CHECK(found_by_sensor < 0.7 * n_clear);  // the twin: sensors have the same mean
 }
 
-TEST_CASE("a strength is guessed as well as if the sensor were known", "[reconcile]") {
+TEST_CASE("a strength is estimated as well as if the sensor were known", "[reconcile]") {
   const Study training(600, 4), fresh(400, 5);
-  const EntryGuess guess(training.table, 1, {training.rows, training.features}, {fresh.rows, fresh.features});
-  REQUIRE(guess.guesses().columns() == 2);  // all datasets, and those with the same sensor
+  const PointEstimator estimate(training.table, 1, {training.rows, training.features}, {fresh.rows, fresh.features});
+  REQUIRE(estimate.estimates().columns() == 2);  // all datasets, and those with the same sensor
   stats::Matrix<double> wide(600, n_features), yaws(600, 1), fresh_wide(400, n_features);
   std::ranges::copy(training.features.values(), wide.values().begin());
   std::ranges::copy(fresh.features.values(), fresh_wide.values().begin());
   for (std::size_t i = 0; i < 600; ++i) yaws(i, 0) = training.drawn(i).parameters.at("yaw_deg");
-  const stats::Matrix<double> one_for_all = stats::ParameterGuess::fit(wide, yaws).guess(fresh_wide);
+  const stats::Matrix<double> one_for_all = stats::ParameterEstimator::fit(wide, yaws).estimate(fresh_wide);
   double own = 0.0, all = 0.0, n = 0.0;
   for (std::size_t i = 0; i < 400; ++i) {
     const double yaw = fresh.drawn(i).parameters.at("yaw_deg");
     if (std::abs(yaw) < clear) continue;
-    own += std::pow(guess.guesses()(i, 1) - yaw, 2);
+    own += std::pow(estimate.estimates()(i, 1) - yaw, 2);
     all += std::pow(one_for_all(i, 0) - yaw, 2);
     n += 1.0;
   }
   REQUIRE(n > 150.0);
   // Of a known sensor eight features tell a yaw to noise / sqrt(8) = 0.18 or four to 0.25: together 0.20; a quarter
-  // more for a guess learnt from 200 datasets.
+  // more for an estimate learnt from 200 datasets.
   CHECK(std::sqrt(own / n) < 0.25);
-  // The twin: one guess for all sensors can only use what they have in common, noise / (0.25 * sqrt(4)) = 1 for two of
-  // three.
+  // The twin: one estimate for all sensors can only use what they have in common, noise / (0.25 * sqrt(4)) = 1 for two
+  // of three.
   CHECK(std::sqrt(all / n) > 0.6);
 }
 
@@ -148,16 +148,16 @@ TEST_CASE("what is no parameter of a kind says nothing about it", "[reconcile]")
   const auto [training, training_rows] = draw(300, 0);
   const auto [held_back, held_back_rows] = draw(90, 1);
   const auto [few, few_rows] = draw(30, 2);
-  const EntryGuess guess(table, 1, {training_rows, training}, {held_back_rows, held_back});
+  const PointEstimator estimate(table, 1, {training_rows, training}, {held_back_rows, held_back});
   const std::vector<float> like_box{15.0F, 0.0F, 0.0F};
-  const EffectSpec& kind = guess.kind_of(like_box);
+  const EffectSpec& kind = estimate.kind_of(like_box);
   CHECK(kind.choices.at("what") == "box");
-  const std::vector<std::size_t> rows = guess.rows_like(kind);
+  const std::vector<std::size_t> rows = estimate.rows_like(kind);
   CHECK(rows.size() == 30);
   for (const std::size_t row : rows) CHECK(table.rows[held_back_rows[row]].effects.front().choices.at("what") == "box");
   std::size_t at = 0;
-  while (guess.infos()[at]->name != "box_height_m") ++at;
-  CHECK(guess.of(like_box)[guess.infos().size() + at] == Approx(1.5).margin(0.05));  // learnt from boxes
-  const EntryGuess of_few(table, 1, {training_rows, training}, {few_rows, few});
+  while (estimate.infos()[at]->name != "box_height_m") ++at;
+  CHECK(estimate.of(like_box)[estimate.infos().size() + at] == Approx(1.5).margin(0.05));  // learnt from boxes
+  const PointEstimator of_few(table, 1, {training_rows, training}, {few_rows, few});
   CHECK(of_few.rows_like(kind).size() == 30);  // ten boxes are too few
 }

@@ -1,4 +1,4 @@
-#include "reconcile/ensemble/simulated_world.hpp"
+#include "reconcile/ensemble/simulated_realization.hpp"
 
 #include <algorithm>
 
@@ -47,22 +47,25 @@ struct Emitter {
 
 }  // namespace
 
-struct SimulatedWorld::Traced {
-  explicit Traced(const World& world)
-      : model(compile(world.scene, world.script)), family(model, runs_of(model, {})), emitter(model, family.first()) {}
+struct SimulatedRealization::Traced {
+  explicit Traced(const Realization& realization)
+      : model(compile(realization.scene, realization.script)),
+        family(model, runs_of(model, {})),
+        emitter(model, family.first()) {}
 
   Model model;
   sim::RecordingFamily family;
   Emitter emitter;
 };
 
-SimulatedWorld::SimulatedWorld(const WorldSource& source, const StudyFrame& frame, std::uint32_t index, int n_runs)
+SimulatedRealization::SimulatedRealization(const RealizationSource& source, const StudyFrame& frame,
+                                           std::uint32_t index, int n_runs)
     : frame_(&frame) {
   for (std::uint32_t attempt = 0;; ++attempt) {
-    world_ = draw_world(source.scene, source.script, source.nuisance, source.seed, index, attempt);
-    world_.script.replicates = n_runs;
+    realization_ = draw_realization(source.scene, source.script, source.nuisance, source.seed, index, attempt);
+    realization_.script.replicates = n_runs;
     try {
-      traced_ = std::make_unique<Traced>(world_);
+      traced_ = std::make_unique<Traced>(realization_);
       return;
     } catch (const Error& error) {
       if (error.code() != ErrorCode::infeasible || attempt + 1 == most_rooms) throw;
@@ -70,19 +73,19 @@ SimulatedWorld::SimulatedWorld(const WorldSource& source, const StudyFrame& fram
   }
 }
 
-SimulatedWorld::~SimulatedWorld() = default;
-SimulatedWorld::SimulatedWorld(SimulatedWorld&&) noexcept = default;
-SimulatedWorld& SimulatedWorld::operator=(SimulatedWorld&&) noexcept = default;
+SimulatedRealization::~SimulatedRealization() = default;
+SimulatedRealization::SimulatedRealization(SimulatedRealization&&) noexcept = default;
+SimulatedRealization& SimulatedRealization::operator=(SimulatedRealization&&) noexcept = default;
 
-std::vector<Series> SimulatedWorld::with(std::span<const EffectSpec> more, int first, int n) const {
-  std::vector<EffectSpec> all = world_.script.effects;
+std::vector<Series> SimulatedRealization::with(std::span<const EffectSpec> more, int first, int n) const {
+  std::vector<EffectSpec> all = realization_.script.effects;
   all.insert(all.end(), more.begin(), more.end());
   return traced_->emitter.emit(*frame_, sim::make_stages(traced_->model, all), first, n);
 }
 
-std::vector<Series> SimulatedWorld::anew(std::span<const EffectSpec> more, int n,
-                                         std::span<const std::size_t> trials) const {
-  World altered = world_;
+std::vector<Series> SimulatedRealization::anew(std::span<const EffectSpec> more, int n,
+                                               std::span<const std::size_t> trials) const {
+  Realization altered = realization_;
   altered.script.effects.insert(altered.script.effects.end(), more.begin(), more.end());
   altered.script.replicates = n;
   const Model model = compile(altered.scene, altered.script, {.like = &traced_->model});
@@ -90,8 +93,9 @@ std::vector<Series> SimulatedWorld::anew(std::span<const EffectSpec> more, int n
   return Emitter(model, tracks).emit(*frame_, model.compiled().stages(), 0, n);
 }
 
-std::optional<std::vector<Series>> SimulatedWorld::with_effects(std::span<const EffectSpec> more, int first, int n,
-                                                                std::span<const std::size_t> trials) const {
+std::optional<std::vector<Series>> SimulatedRealization::with_effects(std::span<const EffectSpec> more, int first,
+                                                                      int n,
+                                                                      std::span<const std::size_t> trials) const {
   try {
     auto data = acts_on_remembered_zones(more) ? with(more, first, n) : anew(more, n, trials);
     std::erase_if(data, [&](const Series& run) {

@@ -1,4 +1,4 @@
-#include "reconcile/inference/entry_guess.hpp"
+#include "reconcile/inference/point_estimate.hpp"
 
 #include <algorithm>
 
@@ -10,7 +10,7 @@ namespace {
 using effects::ParameterInfo;
 using effects::Role;
 
-constexpr std::size_t fewest_own = 20;  ///< assumed: a guess learnt from fewer datasets is worse than one from all
+constexpr std::size_t fewest_own = 20;  ///< assumed: an estimate learnt from fewer datasets is worse than one from all
 
 stats::Matrix<double> in_double(const stats::Matrix<float>& narrow) {
   stats::Matrix<double> wide(narrow.rows(), narrow.columns());
@@ -42,10 +42,10 @@ stats::Matrix<double> parameters_of(const std::vector<const EffectSpec*>& drawn,
 
 }  // namespace
 
-EntryGuess::EntryGuess(const ReferenceTable& table, std::size_t entry, const EntryDatasets& training,
-                       const EntryDatasets& held_back)
+PointEstimator::PointEstimator(const ReferenceTable& table, std::size_t hypothesis, const HypothesisDatasets& training,
+                               const HypothesisDatasets& held_back)
     : drawn_(drawn_in(table, training.rows)), finder_(table, training.rows, training.features) {
-  for (const ParameterInfo& info : effects::find(table.entry_name(entry)).info.parameters) {
+  for (const ParameterInfo& info : effects::find(table.hypothesis_name(hypothesis)).info.parameters) {
     if (info.low < info.high) infos_.push_back(&info);
   }
   if (infos_.empty()) return;
@@ -58,7 +58,7 @@ EntryGuess::EntryGuess(const ReferenceTable& table, std::size_t entry, const Ent
     Alike& alike = alike_[choices];
     alike.number = alike_.size() - 1;
     if (rows.size() >= fewest_own)
-      alike.from_own = stats::ParameterGuess::fit(features.select_rows(rows), parameters.select_rows(rows));
+      alike.from_own = stats::ParameterEstimator::fit(features.select_rows(rows), parameters.select_rows(rows));
     for (std::size_t i = 0; i < drawn_.size(); ++i) {
       for (std::size_t p = 0; p < n; ++p) {
         const bool acts = drawn_[i]->choices == choices || infos_[p]->role != Role::strength;
@@ -66,20 +66,20 @@ EntryGuess::EntryGuess(const ReferenceTable& table, std::size_t entry, const Ent
       }
     }
   }
-  from_all_ = stats::ParameterGuess::fit(features, targets);
+  from_all_ = stats::ParameterEstimator::fit(features, targets);
   held_back_ = drawn_in(table, held_back.rows);
   parameters_ = parameters_of(held_back_, infos_);
   for (std::size_t i = 0; i < held_back.rows.size(); ++i)
-    guesses_.append_row(std::span<const double>(of(held_back.features.row(i))));
+    estimates_.append_row(std::span<const double>(of(held_back.features.row(i))));
 }
 
-std::vector<stats::Interval> EntryGuess::bounds() const {
+std::vector<stats::Interval> PointEstimator::bounds() const {
   std::vector<stats::Interval> bounds;
   for (const ParameterInfo* info : infos_) bounds.push_back({to_flat(*info, info->low), to_flat(*info, info->high)});
   return bounds;
 }
 
-std::vector<std::size_t> EntryGuess::rows_like(const EffectSpec& kind) const {
+std::vector<std::size_t> PointEstimator::rows_like(const EffectSpec& kind) const {
   const auto is_like = [&](const EffectSpec* drawn) {
     return std::ranges::all_of(infos_, [&](auto* info) { return applies(*info, *drawn) == applies(*info, kind); });
   };
@@ -91,20 +91,20 @@ std::vector<std::size_t> EntryGuess::rows_like(const EffectSpec& kind) const {
   return rows.size() < fewest_own ? all : rows;
 }
 
-const EffectSpec& EntryGuess::kind_of(std::span<const float> features) const {
+const EffectSpec& PointEstimator::kind_of(std::span<const float> features) const {
   return *drawn_[finder_.one_like(features)];
 }
 
-std::vector<double> EntryGuess::of(std::span<const float> features) const {
+std::vector<double> PointEstimator::of(std::span<const float> features) const {
   const std::vector<double> wide(features.begin(), features.end());
   const Alike& alike = alike_.at(kind_of(features).choices);
-  const std::vector<double> all = from_all_.guess(wide);
+  const std::vector<double> all = from_all_.estimate(wide);
   const auto own = all.begin() + static_cast<std::ptrdiff_t>(alike.number * infos_.size());
-  std::vector<double> guesses(own, own + static_cast<std::ptrdiff_t>(infos_.size()));
-  if (alike_.size() == 1) return guesses;
-  const std::vector<double> more = alike.from_own ? alike.from_own->guess(wide) : guesses;
-  guesses.insert(guesses.end(), more.begin(), more.end());
-  return guesses;
+  std::vector<double> estimates(own, own + static_cast<std::ptrdiff_t>(infos_.size()));
+  if (alike_.size() == 1) return estimates;
+  const std::vector<double> more = alike.from_own ? alike.from_own->estimate(wide) : estimates;
+  estimates.insert(estimates.end(), more.begin(), more.end());
+  return estimates;
 }
 
 }  // namespace pirsim::reconcile

@@ -1,4 +1,4 @@
-// Datasets of one world: people and rays are followed once, effects are put on top.
+// Datasets of one realization: people and rays are followed once, effects are put on top.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace pirsim::reconcile {
 
-/// What worlds are drawn from.
-struct WorldSource {
+/// What realizations are drawn from.
+struct RealizationSource {
   SceneSpec scene;
   ScriptSpec script;  ///< with the effects that the model already has
   NuisanceSpec nuisance;
@@ -26,20 +26,20 @@ inline constexpr std::uint32_t most_attempts = 12;  ///< at an effect with which
 inline constexpr std::uint32_t most_rooms = 200;
 
 /// Belongs to one thread at a time.
-class SimulatedWorld {
+class SimulatedRealization {
  public:
-  /// Traces n_runs runs of every trial. Throws Error(infeasible) if no attempt gives a world to get about in.
-  SimulatedWorld(const WorldSource& source, const StudyFrame& frame, std::uint32_t index, int n_runs);
-  ~SimulatedWorld();
-  SimulatedWorld(SimulatedWorld&&) noexcept;
-  SimulatedWorld& operator=(SimulatedWorld&&) noexcept;
-  SimulatedWorld(const SimulatedWorld&) = delete;
-  SimulatedWorld& operator=(const SimulatedWorld&) = delete;
+  /// Traces n_runs runs of every trial. Throws Error(infeasible) if no attempt gives a realization to get about in.
+  SimulatedRealization(const RealizationSource& source, const StudyFrame& frame, std::uint32_t index, int n_runs);
+  ~SimulatedRealization();
+  SimulatedRealization(SimulatedRealization&&) noexcept;
+  SimulatedRealization& operator=(SimulatedRealization&&) noexcept;
+  SimulatedRealization(const SimulatedRealization&) = delete;
+  SimulatedRealization& operator=(const SimulatedRealization&) = delete;
 
-  [[nodiscard]] const World& world() const noexcept { return world_; }
+  [[nodiscard]] const Realization& drawn() const noexcept { return realization_; }
   /// The model as it is: runs first + 1 to first + n of every trial, numbered from 1.
   [[nodiscard]] std::vector<Series> plain(int first, int n) const { return with({}, first, n); }
-  /// With more effects, in the same world: bit for bit what a study with all of them gives, of these trials (none
+  /// With more effects, in the same realization: bit for bit what a study with all of them gives, of these trials (none
   /// given: all). None if people can't get about in it.
   [[nodiscard]] std::optional<std::vector<Series>> with_effects(std::span<const EffectSpec> more, int first, int n,
                                                                 std::span<const std::size_t> trials = {}) const;
@@ -51,7 +51,7 @@ class SimulatedWorld {
                                          std::span<const std::size_t> trials) const;
 
   const StudyFrame* frame_;
-  World world_;
+  Realization realization_;
   std::unique_ptr<Traced> traced_;
 };
 

@@ -9,10 +9,10 @@
 
 namespace pirsim::reconcile {
 
-struct Alien {
+struct OutOfCatalogueFault {
   std::string name;
   void (*apply)(std::vector<Sample>& rows, std::size_t sensor, Stream& stream);  ///< to the rows of one run
 };
-[[nodiscard]] const std::vector<Alien>& aliens();
+[[nodiscard]] const std::vector<OutOfCatalogueFault>& out_of_catalogue_faults();
 
 }  // namespace pirsim::reconcile
