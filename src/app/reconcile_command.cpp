@@ -12,9 +12,10 @@
 #include "pirsim/io.hpp"
 #include "pirsim/version.hpp"
 #include "reconcile/data/measured.hpp"
-#include "reconcile/inference/reconcile.hpp"
-#include "reconcile/report/outputs.hpp"
-#include "reconcile/report/selftest_page.hpp"
+#include "reconcile/inference/verify.hpp"
+#include "reconcile/report/charts.hpp"
+#include "reconcile/report/pages.hpp"
+#include "reconcile/report/sentences.hpp"
 #include "reconcile/validation/plan.hpp"
 #include "reconcile/validation/selftest.hpp"
 
@@ -58,8 +59,6 @@ reconcile::Settings settings_of(const AnalysisOptions& options, const std::files
   reconcile::Settings settings;
   settings.nuisance = nuisance_of(options.nuisance);
   settings.alpha = options.alpha;
-  settings.seed = options.seed;
-  settings.threads = options.threads;
   const auto scaled = [&](std::uint32_t n) {
     return std::max(reconcile::fewest_datasets_to_refuse(options.alpha),
                     static_cast<std::uint32_t>(static_cast<double>(n) * options.budget));
@@ -72,7 +71,6 @@ reconcile::Settings settings_of(const AnalysisOptions& options, const std::files
       throw Error(ErrorCode::usage, "--effects: the script has " + name + " already, it isn't looked for again");
     settings.table.effects.push_back(name);
   }
-  settings.table.threads = options.threads;
   settings.table.n_realizations = scaled(settings.table.n_realizations);
   settings.table.n_remembered = scaled(settings.table.n_remembered);
   settings.table.n_traced = scaled(settings.table.n_traced);
@@ -87,9 +85,9 @@ void require_writable(const std::filesystem::path& folder) {
   const io::AtomicFile never_committed(folder / "report.json");
 }
 
-void tell_notes(const std::vector<std::string>& notes, Verbosity verbosity) {
+void tell_notes(const std::vector<reconcile::DataNote>& notes, Verbosity verbosity) {
   if (verbosity == Verbosity::quiet) return;
-  for (const std::string& note : notes) std::cerr << note << '\n';
+  for (const reconcile::DataNote& note : notes) std::cerr << reconcile::in_words(note) << '\n';
 }
 
 /// Tells stages and progress on standard error.
@@ -98,10 +96,10 @@ class Teller {
   explicit Teller(Verbosity verbosity) : verbosity_(verbosity) {}
   [[nodiscard]] reconcile::Observer observer() {
     reconcile::Observer observer;
-    observer.stage = [this](const std::string& stage) {
+    observer.stage = [this](const reconcile::Stage& stage) {
       progress_.reset();
       told_ = 0;
-      if (verbosity_ != Verbosity::quiet) std::cerr << stage << " ...\n";
+      if (verbosity_ != Verbosity::quiet) std::cerr << reconcile::in_words(stage) << " ...\n";
     };
     observer.progress = [this](std::uint32_t done, std::uint32_t total) {
       if (!progress_) progress_.emplace(total, verbosity_, "realizations");
@@ -116,6 +114,10 @@ class Teller {
   std::optional<Progress> progress_;
   std::uint32_t told_ = 0;
 };
+
+reconcile::Context context_of(const AnalysisOptions& options, Teller& teller) {
+  return {options.seed, options.threads, teller.observer()};
+}
 
 std::string made_by(const Inputs& inputs) {
   return "pirsim " + version() + " " + git_revision() + ", " + inputs.scene.filename().string() + ", " +
@@ -146,7 +148,7 @@ void reconcile_selftest(const Inputs& inputs, const AnalysisOptions& analysis, c
   require_writable(options.output);
   settings.injected_folder = settings.analysis.table_folder / "injected";
   Teller teller(inputs.verbosity);
-  const reconcile::SelftestResult result = reconcile::selftest(scene, script, settings, teller.observer());
+  const reconcile::SelftestResult result = reconcile::selftest(scene, script, settings, context_of(analysis, teller));
   teller.finish();
   std::cout << reconcile::to_markdown(result);
   require_written();
@@ -162,9 +164,9 @@ void reconcile_plan(const Inputs& inputs, const AnalysisOptions& analysis, const
   reconcile::PlanSettings settings{settings_of(analysis, options.output, script), options.kind, options.runs};
   require_writable(options.output);
   Teller teller(inputs.verbosity);
-  const reconcile::PlanResult result = reconcile::plan(scene, script, settings, teller.observer());
+  const reconcile::PlanResult result = reconcile::plan(scene, script, settings, context_of(analysis, teller));
   teller.finish();
-  std::cout << result.sentence << '\n';
+  std::cout << reconcile::sentence(result) << '\n';
   require_written();
   reconcile::write_plan(options.output, result, made_by(inputs));
 }
@@ -185,14 +187,15 @@ void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const
   settings.holdout = reconcile::holdout_of(options.holdout, frame, measured);
 
   Teller teller(inputs.verbosity);
-  const reconcile::Outcome outcome = reconcile::reconcile(scene, script, measured, settings, teller.observer());
+  const reconcile::Context context = context_of(analysis, teller);
+  const reconcile::Outcome outcome = reconcile::reconcile(scene, script, measured, settings, context);
   teller.finish();
   tell_notes(outcome.notes, inputs.verbosity);
-  std::cout << outcome.sentence << '\n';
+  std::cout << reconcile::sentence(outcome, settings.alpha) << '\n';
   require_written();
-  reconcile::write_outputs(options.output, outcome, measured, script, settings,
-                           {"pirsim " + version() + " " + git_revision(), inputs.scene.filename().string(),
-                            inputs.script.filename().string(), options.measured.filename().string()});
+  reconcile::write_report(options.output, outcome, measured, script, settings, context,
+                          {"pirsim " + version() + " " + git_revision(), inputs.scene.filename().string(),
+                           inputs.script.filename().string(), options.measured.filename().string()});
 }
 
 void offer_analysis(CLI::App& command, AnalysisOptions& options) {

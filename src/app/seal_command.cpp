@@ -9,6 +9,7 @@
 #include "app/session.hpp"
 #include "io/text_input.hpp"
 #include "pirsim/io.hpp"
+#include "reconcile/report/sentences.hpp"
 #include "reconcile/validation/seal.hpp"
 
 namespace pirsim::app {
@@ -105,7 +106,7 @@ void open_challenge(const OpenOptions& options) {
     throw Error(ErrorCode::input, {options.commitment.string(), 1, 1}, "expected a SHA-256 of 64 hexadecimal digits");
   const reconcile::Score score =
       reconcile::open_answer(read_document(options.answer), published, read_document(options.report));
-  std::cout << score.sentence << '\n';
+  std::cout << reconcile::sentence(score) << '\n';
   require_written();
 }
 

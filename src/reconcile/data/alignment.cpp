@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
+#include <utility>
 
 #include "pirsim/csv.hpp"
 #include "pirsim/error.hpp"
@@ -9,8 +10,8 @@
 namespace pirsim::reconcile {
 namespace {
 
-constexpr std::size_t a_row = 1;     ///< by which walks of people with another gait may be shorter (assumed)
-constexpr double longer_by = 1.05;   ///< times as long may main parts be, or as short: who sits down earlier (assumed)
+constexpr std::size_t a_row = 1;    ///< by which walks of people with another gait may be shorter (assumed)
+constexpr double longer_by = 1.05;  ///< times as long may main parts be, or as short: who sits down earlier (assumed)
 
 /// Rows of the runs of one trial.
 struct Lengths {
@@ -156,8 +157,8 @@ DataShape shape_of(const StudyFrame& frame, const Measured& measured, std::span<
   return shape;
 }
 
-std::vector<std::string> notes_on(const StudyFrame& frame, const DataShape& shape, const Measured& measured,
-                                  std::span<const Series> pilot) {
+std::vector<DataNote> notes_on(const StudyFrame& frame, const DataShape& shape, const Measured& measured,
+                               std::span<const Series> pilot) {
   const std::size_t n = frame.sensors.size();
   std::size_t leads = 0, tails = 0, begun = 0, shorter = 0, longer = 0;
   for (std::size_t i = 0; i < measured.runs.size(); ++i) {
@@ -177,24 +178,13 @@ std::vector<std::string> notes_on(const StudyFrame& frame, const DataShape& shap
     shorter += longer_by * static_cast<double>(n_main) < static_cast<double>(usual.shortest_main) ? 1 : 0;
     longer += of_run.n_main < n_main ? 1 : 0;
   }
-  std::vector<std::string> notes;
-  const auto runs = [](std::size_t count) { return std::to_string(count) + (count == 1 ? " run" : " runs"); };
-  const auto left_out = [&](std::size_t count, const std::string& which, const std::string& because) {
-    if (count == 0) return;
-    notes.push_back("What comes " + which + " the counted phases is left out of the comparison in " + runs(count) +
-                    ", of all sensors or some: " + because + ", or some readings are unknown.");
-  };
-  left_out(leads, "before", "the recording begins later than any simulated one");
-  left_out(tails, "after", "the recording ends earlier than any simulated one");
-  if (begun > 0)
-    notes.push_back(runs(begun) + " of the file " + (begun == 1 ? "begins" : "begin") +
-                    " in a counted phase: the first row is taken for its beginning.");
-  if (shorter > 0)
-    notes.push_back("The main part of " + runs(shorter) + " of the file ends before any simulated one, by a " +
-                    "twentieth or more: compared as far as it goes.");
-  if (longer > 0)
-    notes.push_back("What goes on after the end of the longest simulated run is left out of the comparison in " +
-                    runs(longer) + ".");
+  std::vector<DataNote> notes;
+  using What = DataNote::What;
+  for (const auto& [what, n_runs] : {std::pair{What::lead_left_out, leads}, std::pair{What::tail_left_out, tails},
+                                     std::pair{What::runs_begin_late, begun}, std::pair{What::runs_end_early, shorter},
+                                     std::pair{What::runs_go_on, longer}}) {
+    if (n_runs > 0) notes.push_back({what, n_runs});
+  }
   return notes;
 }
 

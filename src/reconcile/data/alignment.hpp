@@ -31,9 +31,9 @@ struct DataShape {
 /// far as the longest of theirs goes. Throws Error(input) for what can't be of this study: sums longer than its main
 /// parts, or rows that are, if the file doesn't tell phases.
 [[nodiscard]] DataShape shape_of(const StudyFrame& frame, const Measured& measured, std::span<const Series> pilot);
-/// Sentences: which rows of the file are left out in this shape of it, and what others are taken for.
-[[nodiscard]] std::vector<std::string> notes_on(const StudyFrame& frame, const DataShape& shape,
-                                                const Measured& measured, std::span<const Series> pilot);
+/// Which rows of the file are left out in this shape of it, and what others are taken for.
+[[nodiscard]] std::vector<DataNote> notes_on(const StudyFrame& frame, const DataShape& shape, const Measured& measured,
+                                             std::span<const Series> pilot);
 /// Everything is known: n_replicates runs of every trial, with the main parts of these pilot runs.
 [[nodiscard]] DataShape full_shape(const StudyFrame& frame, Measured::Kind kind, int n_replicates,
                                    std::span<const Series> pilot);

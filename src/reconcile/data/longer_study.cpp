@@ -65,7 +65,7 @@ TrialSpec empty_room(const ScriptSpec& script) {
 
 /// Adds a trial if a person can carry it out in the room as it is drawn.
 template <typename Make>
-void add(LongerStudy& study, const SceneSpec& scene, std::vector<std::size_t>& index, const char* what, Make make) {
+void add(LongerStudy& study, const SceneSpec& scene, std::vector<std::size_t>& index, LeftOut::Trial which, Make make) {
   try {
     TrialSpec trial = make();
     ScriptSpec only = study.script;
@@ -75,7 +75,7 @@ void add(LongerStudy& study, const SceneSpec& scene, std::vector<std::size_t>& i
     index = {study.script.trials.size()};
     study.script.trials.push_back(std::move(trial));
   } catch (const Error& error) {
-    study.notes.push_back(std::string(what) + " is left out: " + error.what());
+    study.left_out.push_back({which, error.what()});
   }
 }
 
@@ -87,8 +87,8 @@ LongerStudy longer_study(const SceneSpec& scene, const ScriptSpec& script) {
     study.script.trials.push_back(trial);
     study.script.trials.back().id += " again";
   }
-  add(study, scene, study.walk, "a slow walk", [&] { return slow_walk(scene, script); });
-  add(study, scene, study.empty, "the empty room", [&] { return empty_room(script); });
+  add(study, scene, study.walk, LeftOut::Trial::slow_walk, [&] { return slow_walk(scene, script); });
+  add(study, scene, study.empty, LeftOut::Trial::empty_room, [&] { return empty_room(script); });
   return study;
 }
 

@@ -74,4 +74,13 @@ Measured read_measured(const std::filesystem::path& file, const StudyFrame& fram
   return parse_measured(io::read_text_file(file), file.string(), frame);
 }
 
+Measured read_measured(const std::filesystem::path& file, const SceneSpec& scene, const ScriptSpec& script) {
+  return read_measured(file, frame_of(scene, script));
+}
+
+Measured parse_measured(std::string_view text, const std::string& file, const SceneSpec& scene,
+                        const ScriptSpec& script) {
+  return parse_measured(text, file, frame_of(scene, script));
+}
+
 }  // namespace pirsim::reconcile

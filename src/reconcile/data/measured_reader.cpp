@@ -98,7 +98,7 @@ void MeasuredReader::read_sums() {
     measured_.sums.push_back({*trial, *which, replicate, *value});
   }
   if (missing > 0) {
-    measured_.notes.push_back(plural(missing, "sum is", "sums are") + " empty and left out of every comparison.");
+    measured_.notes.push_back({DataNote::What::sums_empty, missing});
   }
   std::set<std::pair<std::size_t, std::size_t>> cells;
   std::set<std::size_t> trials;
@@ -108,8 +108,7 @@ void MeasuredReader::read_sums() {
   }
   const std::size_t absent = trials.size() * frame_.sensors.size() - cells.size();
   if (absent > 0) {
-    measured_.notes.push_back(plural(absent, "cell", "cells") + " (trial and sensor) of the trials in the file " +
-                              (absent == 1 ? "has" : "have") + " no sum: left out of every comparison.");
+    measured_.notes.push_back({DataNote::What::cells_absent, absent});
   }
 }
 
@@ -125,8 +124,7 @@ std::vector<std::optional<std::size_t>> MeasuredReader::sensor_columns() {
                                      boost::algorithm::join(frame_.sensors, ", ") +
                                      "): is this the data of another scene?");
   } else if (!absent.empty()) {
-    measured_.notes.push_back("The file has no column for " + boost::algorithm::join(absent, ", ") +
-                              ": left out of every comparison.");
+    measured_.notes.push_back({DataNote::What::sensors_absent, absent.size(), absent});
   }
   return columns;
 }
@@ -168,22 +166,16 @@ void MeasuredReader::read_rows() {
   }
   measured_.tells_phases = phase_.has_value();
   if (!phase_ && !frame_.counted_phases.empty()) {
-    measured_.notes.push_back("The file has no column 'phase': its rows are taken for those of the phase '" +
-                              boost::algorithm::join(frame_.counted_phases, ", ") + "', from its beginning.");
+    measured_.notes.push_back({DataNote::What::phases_unknown, frame_.counted_phases.size(), frame_.counted_phases});
   }
   if (inserted_rows_ > 0) {
-    measured_.notes.push_back(plural(inserted_rows_, "row is", "rows are") +
-                              " missing: taken for unknown, in the simulation too.");
+    measured_.notes.push_back({DataNote::What::rows_missing, inserted_rows_});
   }
   if (unknown_bits_ > 0) {
-    measured_.notes.push_back(plural(unknown_bits_, "reading is", "readings are") +
-                              " empty: taken for unknown, in the simulation too.");
+    measured_.notes.push_back({DataNote::What::readings_empty, unknown_bits_});
   }
   if (unread_runs_ > 0) {
-    const std::string phases = boost::algorithm::join(frame_.counted_phases, ", ");
-    measured_.notes.push_back(plural(unread_runs_, "run has", "runs have") + " no reading" +
-                              (phases.empty() ? "" : " in a counted phase (" + phases + ")") + " and " +
-                              (unread_runs_ == 1 ? "is" : "are") + " left out.");
+    measured_.notes.push_back({DataNote::What::runs_unread, unread_runs_, frame_.counted_phases});
   }
 }
 
@@ -336,8 +328,7 @@ void MeasuredReader::note_missing_trials() {
     if (!seen) absent.push_back(frame_.trials[trial]);
   }
   if (absent.empty()) return;
-  measured_.notes.push_back("The file has nothing of " + boost::algorithm::join(absent, ", ") +
-                            ": left out of every comparison.");
+  measured_.notes.push_back({DataNote::What::trials_absent, absent.size(), absent});
 }
 
 }  // namespace pirsim::reconcile

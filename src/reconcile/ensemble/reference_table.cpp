@@ -84,10 +84,10 @@ class RealizationJob {
 }  // namespace
 
 std::vector<Series> pilot_runs(const RealizationSource& source, const StudyFrame& frame, std::uint32_t n_realizations,
-                               unsigned threads) {
+                               const Context& context) {
   std::vector<Series> all;
   ordered_parallel<std::vector<Series>>(
-      n_realizations, threads,
+      n_realizations, context.threads,
       [&](std::size_t i) {
         return SimulatedRealization(source, frame, first_pilot_realization + static_cast<std::uint32_t>(i), 1)
             .plain(0, 1);
@@ -98,7 +98,7 @@ std::vector<Series> pilot_runs(const RealizationSource& source, const StudyFrame
 
 ReferenceTable make_reference_table(const RealizationSource& source, const StudyFrame& frame, const DataShape& shape,
                                     const Profile& profile, const TableSettings& asked,
-                                    const std::filesystem::path& folder, const TableProgress& progress) {
+                                    const std::filesystem::path& folder, const Context& context) {
   TableSettings settings = asked;
   if (settings.effects.empty()) {
     for (const effects::Effect* effect : effects::catalogue()) {
@@ -119,9 +119,9 @@ ReferenceTable make_reference_table(const RealizationSource& source, const Study
   table.profile = profile;
   table.n_realizations = settings.n_realizations;
   for_each_chunk(
-      store, settings.n_realizations, settings.threads, [&](std::uint32_t index) { return job.run(index); }, progress,
+      store, settings.n_realizations, context, [&](std::uint32_t index) { return job.run(index); },
       [&](TableChunk& chunk) {
-        append_statistics(frame, shape, profile, chunk, settings.threads, table.statistics);
+        append_statistics(frame, shape, profile, chunk, context.threads, table.statistics);
         for (SimulatedDataset& dataset : chunk.datasets) table.rows.push_back(std::move(dataset.row));
         table.n_left_out += chunk.n_left_out;
       });

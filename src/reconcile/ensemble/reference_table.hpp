@@ -14,22 +14,6 @@
 
 namespace pirsim::reconcile {
 
-struct TableSettings {
-  std::uint32_t n_realizations = 1500;  ///< of the plain model, a dataset each
-  std::uint32_t n_remembered = 1000;    ///< datasets of an effect that acts on remembered zones
-  std::uint32_t n_traced = 400;         ///< datasets of an effect that needs new tracing
-  unsigned threads = 0;                 ///< 0: all cores; never changes the table
-  std::vector<std::string> effects;     ///< names of effects; empty: the whole catalogue
-  bool operator==(const TableSettings&) const = default;
-};
-
-/// Two fifths calibrate, and two tests are combined, so that p of a hypothesis can't fall below 5 / (its number of
-/// datasets): with fewer than these, which leave a tenth for realizations in which nobody can get about, nothing is
-/// ever ruled out at the level.
-[[nodiscard]] constexpr std::uint32_t fewest_datasets_to_refuse(double level) {
-  return static_cast<std::uint32_t>(5.5 / level + 0.5);
-}
-
 /// One simulated dataset. The same realization gives the same room and people for every hypothesis.
 struct TableRow {
   std::uint32_t hypothesis = 0;  ///< 0: nothing; else 1 + index into ReferenceTable::effects
@@ -56,21 +40,17 @@ class ReferenceTable {
 /// Realizations are held back for calibration as wholes: nothing of them is seen in training.
 [[nodiscard]] inline bool is_for_calibration(std::uint32_t realization) noexcept { return realization % 5 < 2; }
 
-struct TableProgress {
-  std::function<void(std::uint32_t done, std::uint32_t total)> realizations;  ///< may be empty
-};
-
 /// Simulates what isn't in the folder yet; chunks of realizations are kept there as they finish, so that an interrupted
 /// table goes on where it stopped. An empty folder name keeps nothing. Throws Error(input) if the folder holds the
 /// table of something else.
 [[nodiscard]] ReferenceTable make_reference_table(const RealizationSource& source, const StudyFrame& frame,
                                                   const DataShape& shape, const Profile& profile,
                                                   const TableSettings& settings, const std::filesystem::path& folder,
-                                                  const TableProgress& progress = {});
+                                                  const Context& context = {});
 
 /// Pilot runs of the plain model, for profiles and shapes, in realizations that no table has.
 [[nodiscard]] std::vector<Series> pilot_runs(const RealizationSource& source, const StudyFrame& frame,
-                                             std::uint32_t n_realizations, unsigned threads);
+                                             std::uint32_t n_realizations, const Context& context = {});
 
 /// Everything that a table's simulated datasets depend on, as a digest: scene, script, nuisance, runs of every trial,
 /// settings, catalogue, build.

@@ -146,20 +146,20 @@ void TableStore::keep(std::uint32_t number, const TableChunk& chunk) const {
   file_out.commit();
 }
 
-void for_each_chunk(const TableStore& store, std::uint32_t n_items, unsigned threads, const ItemJob& job,
-                    const TableProgress& progress, const std::function<void(TableChunk&)>& use) {
+void for_each_chunk(const TableStore& store, std::uint32_t n_items, const Context& context, const ItemJob& job,
+                    const std::function<void(TableChunk&)>& use) {
   for (std::uint32_t first = 0; first < n_items; first += items_per_chunk) {
     const std::uint32_t n = std::min(items_per_chunk, n_items - first);
     std::optional<TableChunk> chunk = store.find(first / items_per_chunk);
     if (!chunk) {
       chunk.emplace();
       ordered_parallel<TableChunk>(
-          n, threads, [&](std::size_t i) { return job(first + static_cast<std::uint32_t>(i)); },
+          n, context.threads, [&](std::size_t i) { return job(first + static_cast<std::uint32_t>(i)); },
           [&](TableChunk& one) { append(*chunk, one); });
       store.keep(first / items_per_chunk, *chunk);
     }
     use(*chunk);
-    if (progress.realizations) progress.realizations(first + n, n_items);
+    if (context.observer.progress) context.observer.progress(first + n, n_items);
   }
 }
 

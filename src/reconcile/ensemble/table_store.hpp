@@ -41,9 +41,9 @@ class TableStore {
 /// Simulates item `index` (a realization) with all of its datasets.
 using ItemJob = std::function<TableChunk(std::uint32_t index)>;
 /// Calls use(chunk) for the datasets of items 0 to n_items - 1, in order: those that aren't in the store are simulated,
-/// on several threads, and kept there.
-void for_each_chunk(const TableStore& store, std::uint32_t n_items, unsigned threads, const ItemJob& job,
-                    const TableProgress& progress, const std::function<void(TableChunk&)>& use);
+/// on several threads, and kept there; the context is told how many are done.
+void for_each_chunk(const TableStore& store, std::uint32_t n_items, const Context& context, const ItemJob& job,
+                    const std::function<void(TableChunk&)>& use);
 
 /// A row a dataset.
 void append_statistics(const StudyFrame& frame, const DataShape& shape, const Profile& profile, const TableChunk& chunk,

@@ -1,4 +1,4 @@
-// LOCATE, NAME and FIT with one reference table, ready for any number of datasets.
+// Locating, naming and fitting with one reference table, ready for any number of datasets.
 #pragma once
 
 #include <functional>
@@ -7,33 +7,28 @@
 #include <string>
 #include <vector>
 
-#include "reconcile/inference/outcome.hpp"
+#include "pirsim/reconcile.hpp"
+#include "reconcile/inference/classifier.hpp"
+#include "reconcile/inference/fit.hpp"
 #include "reconcile/inference/table_view.hpp"
 
 namespace pirsim::reconcile {
-
-struct AnalystSettings {
-  double alpha = 0.05;
-  std::uint64_t seed = 1;
-  unsigned threads = 0;
-  std::size_t trees = 300;
-  std::string left_out = {};  ///< effect of the table that is not to be a candidate; empty: none
-};
 
 /// What the tests say, before anything is fitted.
 struct Judgement {
   double p = 1.0;                       ///< of the global test
   std::vector<HypothesisScore> scores;  ///< (n_hypotheses) nothing first
   FamilyScore family;                   ///< the likeliest
-  stats::Decision decision;             ///< candidates are numbered as the table's hypotheses
+  Verdict verdict = Verdict::no_disagreement;
+  std::vector<std::size_t> kept;  ///< hypotheses that survive, the named one first, then by p
 };
 
 /// Learns from the table's datasets, as the view shows them. Immutable.
 class Analyst {
  public:
-  Analyst(std::shared_ptr<const TableView> view, const AnalystSettings& settings);
+  Analyst(std::shared_ptr<const TableView> view, const ClassifierSettings& settings, const Context& context);
 
-  /// LOCATE's p and NAME, and what they decide. Without a disagreement no name is looked for.
+  /// The global test's p, the hypotheses' scores, and what they decide. Without a disagreement no name is looked for.
   [[nodiscard]] Judgement judge(std::span<const float> measured) const;
   /// Verdict without verification, for statistics of the table's shape.
   [[nodiscard]] Outcome analyse(std::span<const float> measured) const;
@@ -54,7 +49,8 @@ class Analyst {
   void fit_named(Outcome& outcome, std::span<const float> measured) const;
 
   std::shared_ptr<const TableView> view_;
-  AnalystSettings settings_;
+  ClassifierSettings settings_;
+  Context context_;
   HypothesisClassifier classifier_;
   EffectFitter fitter_;
 };

@@ -112,17 +112,18 @@ std::vector<double> HypothesisProbabilities::of(std::span<const float> statistic
   return data_.by_hypothesis(classifier_.probabilities(map_->features(statistics)));
 }
 
-HypothesisClassifier::HypothesisClassifier(const TableView& view, const ClassifierSettings& settings)
+HypothesisClassifier::HypothesisClassifier(const TableView& view, const ClassifierSettings& settings,
+                                           const Context& context)
     : map_(&view.map()),
       seen_rows_(reconcile::seen_rows(view, settings.alpha)),
       data_(view.table(), seen_rows_, settings.left_out) {
   for (std::size_t hypothesis = 0; hypothesis < view.table().n_hypotheses(); ++hypothesis)
     names_.push_back(view.table().hypothesis_name(hypothesis));
   stats::ConformalSettings conformal;
-  conformal.pooled.trees = {.trees = settings.trees, .seed = settings.seed, .threads = settings.threads};
-  conformal.pooled.threads = settings.threads;
-  conformal.shapes.seed = settings.seed;
-  conformal.shapes.threads = settings.threads;
+  conformal.pooled.trees = {.trees = settings.trees, .seed = context.seed, .threads = context.threads};
+  conformal.pooled.threads = context.threads;
+  conformal.shapes.seed = context.seed;
+  conformal.shapes.threads = context.threads;
   conformal.blocks = view.map().blocks();
   classifier_ =
       stats::ConformalClassifier::fit(view.features().select_rows(data_.rows), data_.labels,

@@ -16,24 +16,6 @@
 
 namespace pirsim::reconcile {
 
-/// How one hypothesis of the table fits the data.
-struct HypothesisScore {
-  std::string hypothesis;
-  double probability = 0.0;  ///< calibrated, among all hypotheses, each as likely as the others beforehand
-  double p_relative = 0.0;   ///< share of the hypothesis's own datasets that another hypothesis explains as well
-  double p_absolute = 0.0;   ///< share of the hypothesis's own datasets that lie as far from the rest of them
-  double p = 0.0;            ///< of both: min(1, 2 min)
-  double least_p = 0.0;      ///< no data give a smaller one: the hypothesis has too few datasets
-};
-
-/// Effects of one family taken together.
-struct FamilyScore {
-  effects::Family family = effects::Family::data;
-  double probability = 0.0;
-  /// It is told to the reader, with its probability. Fitted: at 0.85 of the injected datasets 0.905 are told the right
-  /// family and 0.005 a wrong one, at 0.75 0.922 and 0.007, at 0.6 0.935 and 0.010 (docs/validation.md).
-  [[nodiscard]] bool is_sure() const noexcept { return probability >= 0.75; }
-};
 /// The likeliest family. scores: (n_hypotheses) nothing first.
 [[nodiscard]] FamilyScore likeliest_family(std::span<const HypothesisScore> scores);
 
@@ -46,8 +28,6 @@ using SeenRows = std::vector<std::vector<std::size_t>>;
 struct ClassifierSettings {
   double alpha = 0.05;  ///< level of the global test
   std::size_t trees = 300;
-  std::uint64_t seed = 0;
-  unsigned threads = 0;
   std::string left_out = {};  ///< effect that is not to be a candidate; empty: none
 };
 
@@ -93,7 +73,7 @@ class HypothesisProbabilities {
 class HypothesisClassifier {
  public:
   /// view must outlive it. The p of what is no candidate is 0.
-  HypothesisClassifier(const TableView& view, const ClassifierSettings& settings);
+  HypothesisClassifier(const TableView& view, const ClassifierSettings& settings, const Context& context);
 
   /// (n_hypotheses) of a dataset's statistics; nothing first.
   [[nodiscard]] std::vector<HypothesisScore> judge(std::span<const float> statistics) const;

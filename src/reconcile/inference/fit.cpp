@@ -15,23 +15,24 @@ namespace {
 
 using effects::ParameterInfo;
 
+constexpr double confidence = 0.9;
 constexpr double accepted_share = 0.3;
 constexpr std::size_t fewest_accepted = 40;    ///< or all, in a small table
 constexpr std::size_t fewest_neighbours = 80;  ///< whose intervals are tried; or all
 
 /// The posterior at an estimate, from these held-back datasets.
-stats::AbcPosterior posterior_of(const PointEstimator& hypothesis, std::span<const double> estimate,
+stats::AbcPosterior posterior_of(const PointEstimator& estimator, std::span<const double> estimate,
                                  const std::vector<std::size_t>& rows) {
   const auto n = static_cast<double>(rows.size());
   const double share = std::clamp(static_cast<double>(fewest_accepted) / n, accepted_share, 1.0);
-  return stats::abc_posterior(hypothesis.parameters().select_rows(rows), hypothesis.estimates().select_rows(rows),
-                              estimate, {share, hypothesis.bounds()});
+  return stats::abc_posterior(estimator.parameters().select_rows(rows), estimator.estimates().select_rows(rows),
+                              estimate, {share, estimator.bounds()});
 }
 
 /// Those of these datasets whose estimates lie nearest to the measured one, by the estimates' own scatter.
-std::vector<std::size_t> nearest_of(const PointEstimator& hypothesis, std::span<const double> estimate,
+std::vector<std::size_t> nearest_of(const PointEstimator& estimator, std::span<const double> estimate,
                                     const std::vector<std::size_t>& rows) {
-  const stats::Matrix<double> estimates = hypothesis.estimates().select_rows(rows);
+  const stats::Matrix<double> estimates = estimator.estimates().select_rows(rows);
   std::vector<std::pair<double, std::size_t>> near(rows.size());
   for (std::size_t i = 0; i < near.size(); ++i) near[i].second = rows[i];
   for (std::size_t p = 0; p < estimate.size(); ++p) {
@@ -54,7 +55,7 @@ std::vector<std::size_t> without(std::vector<std::size_t> rows, std::size_t row)
 }
 
 /// How far beyond its interval's ends, as a share of the way from the median, a known truth lies.
-double reach(const stats::AbcPosterior& posterior, std::size_t parameter, double confidence, double truth) {
+double reach(const stats::AbcPosterior& posterior, std::size_t parameter, double truth) {
   const stats::Interval interval = posterior.interval(parameter, confidence);
   const double median = posterior.quantile(parameter, 0.5);
   const double half = truth < median ? median - interval.low : interval.high - median;
@@ -63,14 +64,13 @@ double reach(const stats::AbcPosterior& posterior, std::size_t parameter, double
 
 /// (n_parameters) By how much intervals must be stretched about their medians so that of these datasets near the
 /// measured one `confidence` lie in theirs: a conformal interval, the posterior being the measure of strangeness.
-std::vector<double> widening_of(const PointEstimator& hypothesis, std::span<const double> estimate,
-                                const std::vector<std::size_t>& rows, double confidence) {
-  const std::size_t n = hypothesis.infos().size();
+std::vector<double> widening_of(const PointEstimator& estimator, std::span<const double> estimate,
+                                const std::vector<std::size_t>& rows) {
+  const std::size_t n = estimator.infos().size();
   std::vector<std::vector<double>> reaches(n);
-  for (const std::size_t row : nearest_of(hypothesis, estimate, rows)) {
-    const stats::AbcPosterior own = posterior_of(hypothesis, hypothesis.estimates().row(row), without(rows, row));
-    for (std::size_t p = 0; p < n; ++p)
-      reaches[p].push_back(reach(own, p, confidence, hypothesis.parameters()(row, p)));
+  for (const std::size_t row : nearest_of(estimator, estimate, rows)) {
+    const stats::AbcPosterior own = posterior_of(estimator, estimator.estimates().row(row), without(rows, row));
+    for (std::size_t p = 0; p < n; ++p) reaches[p].push_back(reach(own, p, estimator.parameters()(row, p)));
   }
   std::vector<double> widening;
   for (std::vector<double>& values : reaches) {
@@ -85,16 +85,16 @@ std::vector<double> widening_of(const PointEstimator& hypothesis, std::span<cons
 
 struct EffectFitter::Learnt {
   std::once_flag once;
-  std::optional<PointEstimator> estimate;
+  std::optional<PointEstimator> estimator;
 };
 
 EffectFitter::EffectFitter(const SceneSpec& scene, const ReferenceTable& table, const FeatureMap& map,
-                           std::vector<std::vector<std::size_t>> held_back, const FitSettings& settings)
+                           std::vector<std::vector<std::size_t>> held_back, const Context& context)
     : scene_(&scene),
       table_(&table),
       map_(&map),
       held_back_(std::move(held_back)),
-      settings_(settings),
+      threads_(context.threads),
       learnt_(std::make_unique<Learnt[]>(table.n_hypotheses())) {}
 EffectFitter::~EffectFitter() = default;
 EffectFitter::EffectFitter(EffectFitter&&) noexcept = default;
@@ -104,36 +104,36 @@ const EffectFitter::Learnt& EffectFitter::learnt(std::size_t hypothesis) const {
   Learnt& learnt = learnt_[hypothesis];
   std::call_once(learnt.once, [&] {
     const auto datasets = [&](std::span<const std::size_t> rows) {
-      return HypothesisDatasets{rows, map_->features(table_->statistics.select_rows(rows), settings_.threads)};
+      return HypothesisDatasets{rows, map_->features(table_->statistics.select_rows(rows), threads_)};
     };
     const std::vector<std::size_t> training = rows_of(*table_, hypothesis, Part::training);
-    learnt.estimate.emplace(*table_, hypothesis, datasets(training), datasets(held_back_[hypothesis]));
+    learnt.estimator.emplace(*table_, hypothesis, datasets(training), datasets(held_back_[hypothesis]));
   });
   return learnt;
 }
 
 FittedEffect EffectFitter::fit(std::size_t hypothesis, std::span<const float> measured) const {
-  const PointEstimator& estimate = *learnt(hypothesis).estimate;
+  const PointEstimator& estimator = *learnt(hypothesis).estimator;
   const std::vector<float> features = map_->features(measured);
   FittedEffect fitted;
   fitted.effect.name = table_->hypothesis_name(hypothesis);
-  const EffectSpec& alike = estimate.kind_of(features);
+  const EffectSpec& alike = estimator.kind_of(features);
   fitted.effect.choices = alike.choices;
   for (const ParameterInfo& info : effects::find(fitted.effect.name).info.parameters) {
     if (applies(info, alike)) fitted.effect.parameters[info.name] = alike.parameters.at(info.name);
   }
-  if (estimate.infos().empty()) return fitted;
+  if (estimator.infos().empty()) return fitted;
 
-  const std::vector<double> observed = estimate.of(features);
-  const std::vector<std::size_t> rows = estimate.rows_like(alike);
-  const stats::AbcPosterior posterior = posterior_of(estimate, observed, rows);
-  const std::vector<double> widening = widening_of(estimate, observed, rows, settings_.confidence);
+  const std::vector<double> observed = estimator.of(features);
+  const std::vector<std::size_t> rows = estimator.rows_like(alike);
+  const stats::AbcPosterior posterior = posterior_of(estimator, observed, rows);
+  const std::vector<double> widening = widening_of(estimator, observed, rows);
   fitted.includes_off = true;
   bool any_strength = false;
-  for (std::size_t p = 0; p < estimate.infos().size(); ++p) {
-    const ParameterInfo& info = *estimate.infos()[p];
+  for (std::size_t p = 0; p < estimator.infos().size(); ++p) {
+    const ParameterInfo& info = *estimator.infos()[p];
     if (!applies(info, alike)) continue;
-    const stats::Interval flat = posterior.interval(p, settings_.confidence, widening[p]);
+    const stats::Interval flat = posterior.interval(p, confidence, widening[p]);
     FittedParameter parameter{info.name, info.unit, from_flat(info, posterior.quantile(p, 0.5)),
                               {},        info.off,  info.role == effects::Role::strength,
                               {}};

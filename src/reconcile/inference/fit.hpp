@@ -12,26 +12,6 @@
 
 namespace pirsim::reconcile {
 
-struct FittedParameter {
-  std::string name, unit;
-  double value = 0.0;
-  stats::Interval interval;  ///< 90 %, nuisance included
-  double off = 0.0;
-  bool is_strength = true;             ///< has an `off` at which nothing happens
-  std::vector<double> equally_likely;  ///< quantiles in the middles of twenty equal parts, ascending
-};
-
-struct FittedEffect {
-  EffectSpec effect;  ///< with the fitted parameters, as a script takes it
-  std::vector<FittedParameter> parameters;
-  bool includes_off = false;  ///< every strength's interval holds its `off`
-};
-
-struct FitSettings {
-  unsigned threads = 0;
-  double confidence = 0.9;
-};
-
 /// Fits effects from the datasets of one hypothesis of a table alone: a linear estimate of its parameters, then
 /// regression-adjusted ABC on it, widened until held-back datasets like the measured one are covered as often as
 /// promised. What is no matter of more or less (which sensor, which wall, which way) is the likeliest kind by a
@@ -42,7 +22,7 @@ class EffectFitter {
   /// scene, table and map must outlive it. held_back: (n_hypotheses) rows of each hypothesis outside the training part:
   /// give those in which a disagreement is seen, since nothing else is fitted.
   EffectFitter(const SceneSpec& scene, const ReferenceTable& table, const FeatureMap& map,
-               std::vector<std::vector<std::size_t>> held_back, const FitSettings& settings);
+               std::vector<std::vector<std::size_t>> held_back, const Context& context);
   ~EffectFitter();
   EffectFitter(EffectFitter&&) noexcept;
   EffectFitter& operator=(EffectFitter&&) noexcept;
@@ -59,7 +39,7 @@ class EffectFitter {
   const ReferenceTable* table_;
   const FeatureMap* map_;
   std::vector<std::vector<std::size_t>> held_back_;
-  FitSettings settings_;
+  unsigned threads_;
   std::unique_ptr<Learnt[]> learnt_;  ///< (n_hypotheses)
 };
 

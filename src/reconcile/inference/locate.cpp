@@ -60,12 +60,12 @@ stats::Matrix<double> tested_statistics(const FeatureMap& map, const stats::Matr
 }
 
 Location locate(const StudyFrame& frame, const FeatureMap& map, const stats::Matrix<float>& plain,
-                std::span<const float> measured, const LocateSettings& settings) {
+                std::span<const float> measured, double alpha, const Context& context) {
   const std::vector<std::size_t>& columns = map.envelope_columns();
-  const stats::Matrix<double> simulated = tested_statistics(map, plain, settings.threads);
+  const stats::Matrix<double> simulated = tested_statistics(map, plain, context.threads);
   const std::vector<double> observed = tested_statistics(map, measured);
   const stats::GlobalEnvelope test = stats::global_envelope_test(
-      observed, simulated, {settings.alpha, stats::PointwiseRank::continuous, settings.seed, settings.threads});
+      observed, simulated, {alpha, stats::PointwiseRank::continuous, context.seed, context.threads});
 
   Location location;
   location.p = test.p;

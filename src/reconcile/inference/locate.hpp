@@ -11,39 +11,9 @@
 
 namespace pirsim::reconcile {
 
-/// One trial x sensor.
-struct LocatedCell {
-  std::string trial, sensor;
-  double measured_s = 0.0;           ///< seconds with motion a run
-  double expected_s = 0.0;           ///< mean of the simulated datasets
-  double low_s = 0.0, high_s = 0.0;  ///< 95 % of the simulated datasets lie between
-  double adjusted_p = 1.0;           ///< of the global test: below alpha, the cell differs whatever the others do
-};
-
-/// One number of the envelope: a feature with its band.
-struct EnvelopeFeature {
-  std::string name;
-  double observed = 0.0, median = 0.0, lower = 0.0, upper = 0.0;  ///< in the feature's own scale
-  double adjusted_p = 1.0;
-};
-
-struct Location {
-  double p = 1.0;  ///< of the whole comparison
-  std::vector<LocatedCell> cells;
-  std::vector<EnvelopeFeature> envelope;
-  double band_s = 0.0;  ///< half the width of the mean cell's 95 % band: what this experiment can't see
-  std::size_t n_simulated = 0;
-};
-
-struct LocateSettings {
-  double alpha = 0.05;
-  std::uint64_t seed = 0;
-  unsigned threads = 0;
-};
-
 /// plain: statistics of simulated datasets of the model in question (n x n_statistics).
 [[nodiscard]] Location locate(const StudyFrame& frame, const FeatureMap& map, const stats::Matrix<float>& plain,
-                              std::span<const float> measured, const LocateSettings& settings);
+                              std::span<const float> measured, double alpha, const Context& context);
 
 /// What the global test looks at of features that are known: (n_tested_statistics) of a dataset, (n_datasets x
 /// n_tested_statistics) of many.

@@ -1,12 +1,13 @@
 #include "reconcile/inference/loop.hpp"
 
 #include <algorithm>
-#include <boost/algorithm/string/join.hpp>
+#include <utility>
 
 #include "core/digest.hpp"
 #include "pirsim/io.hpp"
 #include "reconcile/inference/model_check.hpp"
-#include "reconcile/report/sentences.hpp"
+#include "reconcile/inference/residuals.hpp"
+#include "reconcile/inference/verify.hpp"
 
 namespace pirsim::reconcile {
 
@@ -22,22 +23,19 @@ Outcome Loop::run() {
     conclude();
   }
   if (outcome_.verdict == Verdict::none_in_catalogue) explain();
-  if (const auto& asked = settings_.table.effects; !asked.empty())
-    outcome_.sentence = "The catalogue was cut down to " + joined(asked, "and") + ". " + outcome_.sentence;
+  outcome_.looked_for = settings_.table.effects;
   verify_effects();
   return std::move(outcome_);
 }
 
 void Loop::explain() {
   if (measured_.kind != Measured::Kind::series) {
-    outcome_.trail.push_back("sums don't tell when motion was seen: the residuals are not looked into");
+    tell(trail::Remark::sums_without_residuals);
     return;
   }
-  begin("what the residuals follow");
-  outcome_.residuals =
-      explain_residuals(steps_.front().reference, measured_, outcome_.family, {settings_.alpha, settings_.threads});
-  outcome_.sentence += " " + outcome_.residuals->sentence;
-  outcome_.trail.push_back("residuals: " + outcome_.residuals->sentence);
+  context_.begin({Stage::What::explaining_residuals});
+  outcome_.residuals = explain_residuals(steps_.front().reference, measured_, settings_.alpha, context_);
+  tell(trail::Explained{*outcome_.residuals, outcome_.family});
 }
 
 const Loop::Step& Loop::look(const Settings& settings, double level) {
@@ -51,11 +49,10 @@ const Loop::Step& Loop::look(const Settings& settings, double level) {
         step.notes = notes_on(frame, shape, measured_, pilot);
         return shape;
       },
-      observer_);
+      context_);
   step.observed = statistics_of(step.reference.frame, step.reference.shape, step.reference.table.profile, measured_);
-  begin("where they differ, and which effects can have made the data");
-  const Analyst analyst(step.reference.view(training_trials(), settings_.threads),
-                        {level, settings_.seed, settings_.threads, settings_.trees});
+  context_.begin({Stage::What::comparing});
+  const Analyst analyst(step.reference.view(training_trials(), context_.threads), {level, settings_.trees}, context_);
   step.outcome = analyst.analyse(step.observed);
   step.seen = analyst.classifier().seen_rows();
   step.likeliest = analyst.likeliest(step.observed, [](std::size_t) { return true; });
@@ -65,15 +62,14 @@ const Loop::Step& Loop::look(const Settings& settings, double level) {
 
 void Loop::tell_first(const Step& first) {
   const ReferenceStudy& reference = first.reference;
-  std::vector<std::string> trail{"data " + measured_.digest + ", analysis seed " + std::to_string(settings_.seed)};
+  std::vector<TrailEvent> trail{trail::Begun{measured_.digest, context_.seed}};
   outcome_.notes = first.notes;
-  for (const std::string& note : measured_.notes) trail.push_back("data: " + note);
-  for (const std::string& note : outcome_.notes) trail.push_back("data: " + note);
-  std::string held_out;
-  for (const std::size_t trial : settings_.holdout) held_out += " " + reference.frame.trials[trial];
-  if (!held_out.empty()) trail.push_back("held out from naming and fitting:" + held_out);
-  trail.push_back("table " + reference.key + ": " + std::to_string(reference.table.rows.size()) + " datasets, " +
-                  std::to_string(reference.table.n_left_out) + " left out because people couldn't get about");
+  trail.insert(trail.end(), measured_.notes.begin(), measured_.notes.end());
+  trail.insert(trail.end(), outcome_.notes.begin(), outcome_.notes.end());
+  trail::HeldOut held_out;
+  for (const std::size_t trial : settings_.holdout) held_out.trials.push_back(reference.frame.trials[trial]);
+  if (!held_out.trials.empty()) trail.emplace_back(std::move(held_out));
+  trail.emplace_back(trail::Table{reference.key, reference.table.rows.size(), reference.table.n_left_out});
   outcome_.trail.insert(outcome_.trail.begin(), trail.begin(), trail.end());
   outcome_.table_key = reference.key;
 }
@@ -102,16 +98,15 @@ void Loop::apply_more() {
     const double p = p_with_all(level);
     outcome_.looks.push_back({names(), level, p});
     passes_ = outcome_.looks.back().passes();
-    outcome_.trail.push_back("with " + boost::algorithm::join(names(), " + ") + " applied, at level " +
-                             short_number(level) + ": p " + short_number(p));
+    tell(outcome_.looks.back());
     if (passes_ || static_cast<int>(applied_.size()) >= settings_.max_effects) return;
     const std::size_t n_asked = settings_.table.effects.size();  // 0: the whole catalogue
     if (n_asked != 0 && applied_.size() >= n_asked) return;
-    begin("what is missing beside " + boost::algorithm::join(names(), " + "));
+    context_.begin({Stage::What::looking_for_more, names()});
     const Step* more = look_for_more(level);
     if (more == nullptr) return;
     rest_ = more->outcome.verdict;
-    outcome_.trail.push_back("looked for more: " + std::string(name(*rest_)));
+    tell(trail::LookedForMore{*rest_});
     if (more->outcome.verdict == Verdict::one_of) outcome_.looks.back().one_of = more->outcome.named;
     if (more->outcome.verdict != Verdict::named) return;
     applied_.push_back(more->outcome.fits.front());
@@ -124,7 +119,7 @@ const Loop::Step* Loop::look_for_more(double level) {
   } catch (const Error& error) {
     if (error.code() != ErrorCode::infeasible) throw;
     steps_.pop_back();
-    outcome_.trail.push_back("people can hardly get about in that model: nothing more is looked for in it");
+    tell(trail::Remark::nothing_more_simulated);
     return nullptr;
   }
 }
@@ -146,33 +141,22 @@ void Loop::conclude() {
     for (Candidate& candidate : outcome_.candidates) {
       if (std::ranges::find(outcome_.named, candidate.score.hypothesis) == outcome_.named.end()) continue;
       candidate.kept = true;
-      candidate.reason = "Kept, together with the others named. By itself: " + candidate.reason;
+      candidate.named_together = true;
     }
   } else if (outcome_.verdict == Verdict::none_in_catalogue) {
     applied_.clear();
-  }
-  outcome_.sentence = verdict_sentence(outcome_, settings_.alpha);
-  if (passes_ && outcome_.verdict == Verdict::none_in_catalogue) {
-    const Look& look = outcome_.looks.back();
-    const auto nearest = std::ranges::find(outcome_.candidates, look.applied.front(),
-                                           [](const Candidate& candidate) { return candidate.score.hypothesis; });
-    outcome_.sentence += " " + sentence_of_nearest(look, nearest->reason);
-  }
-  if (!passes_ && !applied_.empty()) {
-    outcome_.sentence += " That is not all. " + what_a_look_showed(outcome_.looks.back());
   }
 }
 
 void Loop::take_back() {
   const auto refused = std::ranges::find(outcome_.candidates, true, &Candidate::kept);
   refused->kept = false;
-  refused->reason = reason_of_refused(outcome_.looks.back());
+  refused->reason = reason::RefusedWhenApplied{outcome_.looks.back().p};
   outcome_.verdict = Verdict::none_in_catalogue;
   outcome_.named.clear();
   outcome_.fits.clear();
   applied_.clear();
-  outcome_.sentence = sentence_of_refused(outcome_, settings_.alpha);
-  outcome_.trail.push_back("the name is taken back: the model with it can't have made the data");
+  tell(trail::Remark::refused_when_applied);
 }
 
 void Loop::verify_effects() {
@@ -186,35 +170,28 @@ void Loop::verify_effects() {
   const ReferenceStudy& reference = steps_.front().reference;
   const std::vector<std::size_t> trials = measured_.trials();
   if (trials.size() < 2) {
-    outcome_.trail.push_back("one trial only: nothing can be held out");
+    tell(trail::Remark::one_trial_only);
     return;
   }
-  begin("does it help on held-out trials");
+  context_.begin({Stage::What::verifying});
   const Folds folds = settings_.holdout.empty() ? usual_folds(measured_.digest, trials, reference.shape.kind)
                                                 : Folds{settings_.holdout};
-  Verification v = verify(std::span(&claim, 1), folds,
-                          {settings_.alpha, settings_.seed, settings_.threads, settings_.verify_realizations})
-                       .front();
+  Verification v =
+      verify(std::span(&claim, 1), folds, {settings_.alpha, settings_.verify_realizations}, context_).front();
   if (v.n_trials == 0) {
-    outcome_.trail.push_back("people can hardly get about in the patched model: it can't be judged on held-out trials");
+    tell(trail::Remark::patched_impassable);
     return;
   }
-  outcome_.trail.push_back("held-out trials: energy score " + short_number(v.before.energy_score) + " before, " +
-                           short_number(v.after.energy_score) + " after, " + std::to_string(v.n_better) + " of " +
-                           std::to_string(v.n_trials) + " trials better; global test p " + short_number(v.before.p) +
-                           " before, " + short_number(v.after.p) + " after");
-  if (!v.refused)
-    outcome_.trail.push_back("the held-out trials alone don't refuse the plain model: too weak to call the gap closed");
+  tell(trail::JudgedOnHeldOut{v});
+  if (!v.refused) tell(trail::Remark::held_out_too_weak);
   outcome_.verification = std::move(v);
 }
 
 double Loop::p_with_all(double level) {
-  begin("does the model with " + boost::algorithm::join(names(), " + ") + " applied pass");
+  context_.begin({Stage::What::checking_model, names()});
   const Step& plain = steps_.front();
   const PatchedModel model{applied_, plain.observed};
-  return p_with(std::span(&model, 1), plain.reference, plain.reference.map(training_trials()),
-                {level, settings_.seed, settings_.threads})
-      .front();
+  return p_with(std::span(&model, 1), plain.reference, plain.reference.map(training_trials()), level, context_).front();
 }
 
 std::vector<std::string> Loop::names() const {
@@ -234,6 +211,11 @@ std::vector<std::size_t> Loop::training_trials() const {
   std::ranges::set_difference(all_trials(steps_.front().reference.frame), settings_.holdout,
                               std::back_inserter(trials));
   return trials;
+}
+
+Outcome reconcile(const SceneSpec& scene, const ScriptSpec& script, const Measured& measured, const Settings& settings,
+                  const Context& context) {
+  return Loop(scene, script, measured, settings, context).run();
 }
 
 }  // namespace pirsim::reconcile

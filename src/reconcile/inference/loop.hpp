@@ -4,10 +4,11 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "reconcile/inference/analyst.hpp"
-#include "reconcile/inference/reconcile.hpp"
+#include "reconcile/inference/reference_study.hpp"
 
 namespace pirsim::reconcile {
 
@@ -15,16 +16,16 @@ namespace pirsim::reconcile {
 class Loop {
  public:
   Loop(const SceneSpec& scene, const ScriptSpec& script, const Measured& measured, const Settings& settings,
-       const Observer& observer)
-      : scene_(scene), script_(script), measured_(measured), settings_(settings), observer_(observer) {}
+       const Context& context)
+      : scene_(scene), script_(script), measured_(measured), settings_(settings), context_(context) {}
   [[nodiscard]] Outcome run();
 
  private:
   /// A look at the data with the table of one model.
   struct Step {
     ReferenceStudy reference;
-    std::vector<std::string> notes;  ///< what was done with which measured rows
-    std::vector<float> observed;     ///< statistics of the measured data
+    std::vector<DataNote> notes;  ///< what was done with which measured rows
+    std::vector<float> observed;  ///< statistics of the measured data
     Outcome outcome;
     SeenRows seen;
     std::size_t likeliest = 0;  ///< hypothesis
@@ -35,6 +36,7 @@ class Loop {
   /// With all that was applied; none if people can hardly get about in that model.
   const Step* look_for_more(double level);
   void tell_first(const Step& first);
+  void tell(TrailEvent event) { outcome_.trail.push_back(std::move(event)); }
   void conclude();
   void take_back();  ///< the one name that was given
   void explain();
@@ -45,15 +47,12 @@ class Loop {
   [[nodiscard]] std::vector<std::string> names() const;
   [[nodiscard]] std::vector<EffectSpec> patch() const;
   [[nodiscard]] std::vector<std::size_t> training_trials() const;
-  void begin(const std::string& stage) const {
-    if (observer_.stage) observer_.stage(stage);
-  }
 
   const SceneSpec& scene_;
   const ScriptSpec& script_;
   const Measured& measured_;
   const Settings& settings_;
-  const Observer& observer_;
+  const Context& context_;
   std::deque<Step> steps_;             ///< addresses stay
   std::vector<FittedEffect> applied_;  ///< one of each step
   bool passes_ = false;                ///< the model with all of them can have made the data

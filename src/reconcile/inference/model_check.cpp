@@ -51,14 +51,14 @@ std::vector<EffectSpec> drawn(std::span<const FittedEffect> effects, const Refer
 /// the room, so that data of another room would be stranger than any of them.
 class Ensembles {
  public:
-  Ensembles(std::span<const PatchedModel> models, const ReferenceStudy& reference, const ModelCheckSettings& settings)
-      : models_(models), reference_(reference), settings_(settings), datasets_(models.size()) {}
+  Ensembles(std::span<const PatchedModel> models, const ReferenceStudy& reference, const Context& context)
+      : models_(models), reference_(reference), context_(context), datasets_(models.size()) {}
 
   /// Simulates those models, by index, in all realizations up to this one. Call with fewer models and more realizations
   /// each time.
   void extend(std::span<const std::size_t> which, std::uint32_t n_realizations) {
     ordered_parallel<Rows>(
-        n_realizations - n_realizations_, settings_.threads,
+        n_realizations - n_realizations_, context_.threads,
         [&](std::size_t i) {
           return datasets_in(first_check_realization + n_realizations_ + static_cast<std::uint32_t>(i), which);
         },
@@ -82,7 +82,7 @@ class Ensembles {
     const SimulatedRealization realization(reference_.source, reference_.frame, index, n);
     Rows rows;
     for (const std::size_t k : which) {
-      const auto data = realization.with_effects(drawn(models_[k].applied, reference_, settings_.seed, index), 0, n);
+      const auto data = realization.with_effects(drawn(models_[k].applied, reference_, context_.seed, index), 0, n);
       rows.push_back(data ? statistics_of(reference_.frame, reference_.shape, reference_.table.profile, *data)
                           : std::vector<float>());
     }
@@ -91,7 +91,7 @@ class Ensembles {
 
   std::span<const PatchedModel> models_;
   const ReferenceStudy& reference_;
-  const ModelCheckSettings& settings_;
+  const Context& context_;
   std::vector<stats::Matrix<float>> datasets_;  // one a model
   std::uint32_t n_realizations_ = 0;
 };
@@ -101,13 +101,13 @@ class Ensembles {
 double level_with(std::size_t n_applied, double alpha) { return alpha * std::pow(0.5, static_cast<double>(n_applied)); }
 
 std::vector<double> p_with(std::span<const PatchedModel> models, const ReferenceStudy& reference, const FeatureMap& map,
-                           const ModelCheckSettings& settings,
+                           double level, const Context& context,
                            const std::function<void(std::size_t, std::uint32_t)>& on_look) {
-  Ensembles ensembles(models, reference, settings);
+  Ensembles ensembles(models, reference, context);
   std::vector<double> p(models.size());
   std::vector<std::size_t> in_doubt(models.size());
   std::iota(in_doubt.begin(), in_doubt.end(), std::size_t{0});
-  const auto n_to_refuse = static_cast<std::uint32_t>(std::ceil(realizations_to_refuse / settings.level));
+  const auto n_to_refuse = static_cast<std::uint32_t>(std::ceil(realizations_to_refuse / level));
   for (const std::uint32_t n_realizations : {first_looks[0], first_looks[1], std::max(n_to_refuse, first_looks[1])}) {
     if (in_doubt.empty()) break;
     if (on_look) on_look(in_doubt.size(), n_realizations);
@@ -115,10 +115,7 @@ std::vector<double> p_with(std::span<const PatchedModel> models, const Reference
     std::vector<std::size_t> still;
     for (const std::size_t k : in_doubt) {
       const stats::Matrix<float>& datasets = ensembles.of(k);
-      if (datasets.rows() > 1)
-        p[k] = locate(reference.frame, map, datasets, models[k].observed,
-                      {settings.level, settings.seed, settings.threads})
-                   .p;
+      if (datasets.rows() > 1) p[k] = locate(reference.frame, map, datasets, models[k].observed, level, context).p;
       if (surely_passes(p[k], datasets.rows()))
         ensembles.forget(k);
       else
@@ -127,7 +124,7 @@ std::vector<double> p_with(std::span<const PatchedModel> models, const Reference
     in_doubt = std::move(still);
   }
   for (const std::size_t k : in_doubt) {
-    if (!can_refuse(ensembles.of(k).rows(), settings.level)) p[k] = 0.0;
+    if (!can_refuse(ensembles.of(k).rows(), level)) p[k] = 0.0;
   }
   return p;
 }

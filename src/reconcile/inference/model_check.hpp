@@ -7,15 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "reconcile/inference/reconcile.hpp"
+#include "reconcile/inference/reference_study.hpp"
 
 namespace pirsim::reconcile {
-
-struct ModelCheckSettings {
-  double level = 0.025;  ///< of the global test
-  std::uint64_t seed = 0;
-  unsigned threads = 0;
-};
 
 /// Level of the global test of a model into which so many effects were applied: halved with every one.
 [[nodiscard]] double level_with(std::size_t n_applied, double alpha);
@@ -31,9 +25,10 @@ struct PatchedModel {
 /// simulated only until they surely don't refuse the model, and all of them if they do, so that looking more than once
 /// refuses no more models than the level allows. 0 if people can hardly get about in it. A realization is traced once
 /// for all models; what is said of one doesn't depend on the others. map: of the plain model, with the trials to be
-/// looked at; on_look is told how many models are still simulated, and in how many realizations.
+/// looked at; level: of the global test; on_look is told how many models are still simulated, and in how many
+/// realizations.
 [[nodiscard]] std::vector<double> p_with(std::span<const PatchedModel> models, const ReferenceStudy& reference,
-                                         const FeatureMap& map, const ModelCheckSettings& settings,
+                                         const FeatureMap& map, double level, const Context& context,
                                          const std::function<void(std::size_t, std::uint32_t)>& on_look = {});
 
 }  // namespace pirsim::reconcile

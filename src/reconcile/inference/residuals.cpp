@@ -6,7 +6,7 @@
 
 #include "core/parallel.hpp"
 #include "reconcile/inference/residual_drivers.hpp"
-#include "reconcile/report/sentences.hpp"
+#include "stats/intervals.hpp"
 #include "stats/logistic.hpp"
 
 namespace pirsim::reconcile {
@@ -14,7 +14,9 @@ namespace {
 
 constexpr std::uint32_t first_residual_realization = 1U
                                                      << 22U;  ///< realizations that neither profile nor table has seen
-constexpr double least_chance = 0.01;  ///< of motion in a window (assumed): profiles are means of few runs
+constexpr double least_chance = 0.01;       ///< of motion in a window (assumed): profiles are means of few runs
+constexpr std::uint32_t n_simulated = 100;  ///< datasets that scores are compared with; more if alpha needs them
+constexpr std::size_t most_drivers = 3;
 constexpr double little = 0.05, much = 0.3;
 constexpr double least_information = 1.0;  ///< bits' worth of variance (assumed): one bit alone proves nothing
 
@@ -64,6 +66,8 @@ class Bits {
   const ReferenceStudy& reference_;
 };
 
+using How = ResidualDriver::How;
+
 struct Driver {
   std::size_t who = 0, when = 0;
   How how = How::more;
@@ -83,7 +87,7 @@ class Scores {
     for (const auto& [how, other] : hows) {
       for (std::size_t when = 0; when < when_.size(); ++when) {
         const bool makes_sense =
-            how == How::beside ? when_[when].name.empty() : how == How::more || !when_[when].is_wave;
+            how == How::beside ? when_[when].is_always() : how == How::more || !when_[when].is_wave();
         for (std::size_t who = 0; who < who_.size(); ++who) drivers_.push_back({who, when, how, other, makes_sense});
       }
     }
@@ -238,13 +242,12 @@ std::vector<double> residuals_of(const std::vector<std::uint8_t>& bits, const st
 }
 
 Usual simulate_usual(const ReferenceStudy& reference, const Bits& bits, const Scores& scores,
-                     const std::vector<std::uint8_t>& measured, const ResidualSettings& settings) {
+                     const std::vector<std::uint8_t>& measured, double alpha, const Context& context) {
   std::vector<std::vector<double>> simulated;
   const Profile& profile = reference.table.profile;
   ordered_parallel<std::vector<double>>(
-      std::max(settings.n_simulated,
-               static_cast<std::uint32_t>(std::ceil(static_cast<double>(n_kinds) / settings.alpha))),
-      settings.threads,
+      std::max(n_simulated, static_cast<std::uint32_t>(std::ceil(static_cast<double>(n_kinds) / alpha))),
+      context.threads,
       [&](std::size_t i) {
         const SimulatedRealization realization(reference.source, reference.frame,
                                                first_residual_realization + static_cast<std::uint32_t>(i),
@@ -257,7 +260,7 @@ Usual simulate_usual(const ReferenceStudy& reference, const Bits& bits, const Sc
   for (const double p : bits.chance) independent.push_back(p * (1.0 - p));
   std::vector<Kind> kinds;
   for (const Driver& driver : scores.drivers())
-    kinds.push_back(driver.how == How::beside ? neighbour : scores.when(driver).name.empty() ? level : time_of_run);
+    kinds.push_back(driver.how == How::beside ? neighbour : scores.when(driver).is_always() ? level : time_of_run);
   return {std::move(simulated), scores.sums(measured, independent, Scores::Power::two), std::move(kinds)};
 }
 
@@ -325,44 +328,30 @@ std::size_t strongest(const Usual& usual, const Scores& scores, const std::vecto
   return best;
 }
 
-std::string in_words(const ResidualDriver& driver) {
-  return driver.who + (driver.when.empty() ? "" : ", " + driver.when) + ": " + driver.what + " (p " +
-         short_number(driver.p) + ")";
-}
-
-std::string sentence_of(const Residuals& result, const FamilyScore& family) {
-  std::string text;
-  for (const ResidualDriver& driver : result.drivers) text += (text.empty() ? "" : "; ") + in_words(driver);
-  text = text.empty() ? "What is left follows no sensor, seat, time or neighbour that was tried."
-                      : "What is left: " + text + ".";
-  return text + " The nearest family of effects is " + std::string(name(family.family)) + ".";
-}
-
 }  // namespace
 
-Residuals explain_residuals(const ReferenceStudy& reference, const Measured& measured, const FamilyScore& family,
-                            const ResidualSettings& settings) {
+Residuals explain_residuals(const ReferenceStudy& reference, const Measured& measured, double alpha,
+                            const Context& context) {
   const Profile& profile = reference.table.profile;
   const Bits bits(reference, profile);
   const Scores scores(reference, bits);
   const std::vector<std::uint8_t> measured_bits = bits.of(measured.runs, profile);
-  const Usual usual = simulate_usual(reference, bits, scores, measured_bits, settings);
+  const Usual usual = simulate_usual(reference, bits, scores, measured_bits, alpha, context);
   Regression regression(bits, scores, measured_bits);
   Residuals result;
-  while (result.drivers.size() < settings.most_drivers) {
+  while (result.drivers.size() < most_drivers) {
     const std::vector<double> now = regression.scores();
     const std::size_t best = strongest(usual, scores, now);
     const double z = usual.z(best, now[best]), p = usual.p(best, now[best]);
-    if (p > settings.alpha) break;
+    if (p > alpha) break;
     const Driver& driver = scores.drivers()[best];
     regression.add(driver);
     const Who& who = scores.who(driver);
-    std::string when = scores.when(driver).name;
-    if (who.any_seat) when += (when.empty() ? "" : ", ") + std::string("whatever the seat");
-    result.drivers.push_back({who.name, when, in_words(driver.how, z > 0.0, reference.frame.sensors[driver.other]),
-                              regression.log_odds(), regression.standard_error(), z, p});
+    const When& when = scores.when(driver);
+    result.drivers.push_back({who.who, who.name, when.when, when.from, when.to, driver.how, z > 0.0,
+                              reference.frame.sensors[driver.other], regression.log_odds(), regression.standard_error(),
+                              z, p});
   }
-  result.sentence = sentence_of(result, family);
   return result;
 }
 

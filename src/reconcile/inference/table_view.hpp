@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "reconcile/inference/feature_map.hpp"
 #include "reconcile/ensemble/reference_table.hpp"
+#include "reconcile/inference/feature_map.hpp"
 #include "stats/envelope.hpp"
 
 namespace pirsim::reconcile {

@@ -12,7 +12,7 @@
 #include "effects/catalogue.hpp"
 #include "reconcile/inference/fit.hpp"
 #include "reconcile/inference/locate.hpp"
-#include "reconcile/inference/reconcile.hpp"
+#include "reconcile/inference/reference_study.hpp"
 #include "stats/scores.hpp"
 
 namespace pirsim::reconcile {
@@ -39,8 +39,8 @@ std::vector<std::size_t> all_but(const std::vector<std::size_t>& held_out, const
 /// Finds effects again, step by step, with the given trials only.
 class FoldSearch {
  public:
-  FoldSearch(std::vector<std::size_t> trials, const VerifySettings& settings)
-      : trials_(std::move(trials)), settings_(settings) {}
+  FoldSearch(std::vector<std::size_t> trials, const VerifySettings& settings, const Context& context)
+      : trials_(std::move(trials)), settings_(settings), context_(context) {}
 
   [[nodiscard]] FoldPatches search(const Claim& claim) {
     FoldPatches found;
@@ -62,13 +62,14 @@ class FoldSearch {
  private:
   /// The table as it looks without the trials that are held out.
   struct Learnt {
-    Learnt(const AppliedEffect& step, const std::vector<std::size_t>& trials, const VerifySettings& settings)
+    Learnt(const AppliedEffect& step, const std::vector<std::size_t>& trials, const VerifySettings& settings,
+           const Context& context)
         : reference(step.reference),
           map(reference->map(trials)),
           probabilities(reference->table, map, step.seen,
-                        {.trees = {.trees = settings.trees, .seed = settings.seed, .threads = settings.threads},
-                         .threads = settings.threads}),
-          fitter(reference->source.scene, reference->table, map, step.seen, {settings.threads}) {}
+                        {.trees = {.trees = settings.trees, .seed = context.seed, .threads = context.threads},
+                         .threads = context.threads}),
+          fitter(reference->source.scene, reference->table, map, step.seen, context) {}
     Learnt(const Learnt&) = delete;  // the others point to the map
     Learnt& operator=(const Learnt&) = delete;
 
@@ -80,7 +81,7 @@ class FoldSearch {
 
   /// One is kept: it takes long and much memory, and claims about the same study come one after the other.
   void learn(const AppliedEffect& step) {
-    if (!learnt_ || learnt_->reference != step.reference) learnt_.emplace(step, trials_, settings_);
+    if (!learnt_ || learnt_->reference != step.reference) learnt_.emplace(step, trials_, settings_, context_);
   }
   [[nodiscard]] EffectSpec fitted(std::size_t hypothesis, const AppliedEffect& step) const {
     return learnt_->fitter.fit(hypothesis, step.observed).effect;
@@ -100,7 +101,8 @@ class FoldSearch {
   }
 
   std::vector<std::size_t> trials_;
-  VerifySettings settings_;
+  const VerifySettings& settings_;
+  const Context& context_;
   std::optional<Learnt> learnt_;
 };
 
@@ -116,12 +118,11 @@ class Simulation {
       : reference_(reference), folds_(folds), found_(found) {}
 
   /// None if people can hardly get about with the patches.
-  [[nodiscard]] std::optional<Ensembles> run(const VerifySettings& settings) const {
+  [[nodiscard]] std::optional<Ensembles> run(const VerifySettings& settings, unsigned threads) const {
     using Rows = std::vector<std::vector<float>>;  // before, after, placebo
     Ensembles all;
     ordered_parallel<Rows>(
-        std::max(settings.n_realizations, static_cast<std::uint32_t>(std::ceil(1.0 / settings.alpha))),
-        settings.threads,
+        std::max(settings.n_realizations, static_cast<std::uint32_t>(std::ceil(1.0 / settings.alpha))), threads,
         [&](std::size_t i) -> Rows {
           const SimulatedRealization realization(reference_.source, reference_.frame,
                                                  first_verify_realization + static_cast<std::uint32_t>(i),
@@ -203,18 +204,19 @@ void add_cells(const StudyFrame& frame, const stats::Matrix<float>& ensemble, st
 /// Scores of the held-out trials, one after the other.
 class Judge {
  public:
-  Judge(const AppliedEffect& plain, const Ensembles& ensembles, const VerifySettings& settings)
+  Judge(const AppliedEffect& plain, const Ensembles& ensembles, double alpha, const Context& context)
       : reference_(*plain.reference),
         measured_(plain.observed),
         ensembles_(ensembles),
-        settings_(settings),
+        alpha_(alpha),
+        context_(context),
         scales_(reference_.table.statistics.select_rows(rows_of(reference_.table, 0, Part::training))) {}
 
   void add_trial(std::size_t trial, Verification& result) {
     const FeatureMap map(reference_.frame, reference_.knowledge, scales_, {trial});
     if (map.envelope_columns().empty()) return;
     const auto hypotheses = [&](const stats::Matrix<float>& all) {
-      return tested_statistics(map, all, settings_.threads);
+      return tested_statistics(map, all, context_.threads);
     };
     const std::vector<double> real = tested_statistics(map, measured_);
     const stats::Matrix<double> after = hypotheses(ensembles_.after);
@@ -238,7 +240,7 @@ class Judge {
       gap->area_s /= static_cast<double>(std::max<std::size_t>(1, gap->n_cells));
     const FeatureMap map(reference_.frame, reference_.knowledge, scales_, held_out);
     const auto p = [&](const stats::Matrix<float>& ensemble) {
-      return locate(reference_.frame, map, ensemble, measured_, {settings_.alpha, settings_.seed, settings_.threads}).p;
+      return locate(reference_.frame, map, ensemble, measured_, alpha_, context_).p;
     };
     result.before.p = p(ensembles_.before);
     result.after.p = p(ensembles_.after);
@@ -248,20 +250,25 @@ class Judge {
     result.sign_p = stats::sign_test_greater(result.n_better, static_cast<std::size_t>(worse));
     const double closable = result.before.energy_score - result.noise_floor;
     if (closable > 0.0) result.share_closed = (result.before.energy_score - result.after.energy_score) / closable;
-    if (drops_.size() > 1) result.gain = stats::mean_interval(drops_);
+    if (drops_.size() > 1) {
+      const stats::Interval mean = stats::mean_interval(drops_);
+      result.gain = {mean.low, mean.high};
+    }
   }
 
  private:
   const ReferenceStudy& reference_;
   std::span<const float> measured_;
   const Ensembles& ensembles_;
-  const VerifySettings& settings_;
+  double alpha_;
+  const Context& context_;
   stats::Matrix<float> scales_;
   std::vector<double> drops_;
 };
 
 Verification judge_claim(const Claim& claim, const Folds& folds, const std::vector<std::size_t>& held_out,
-                         const std::vector<FoldPatches>& found, const VerifySettings& settings) {
+                         const std::vector<FoldPatches>& found, const VerifySettings& settings,
+                         const Context& context) {
   const AppliedEffect& plain = claim.steps.front();
   Verification result;
   result.n_folds = folds.size();
@@ -270,9 +277,9 @@ Verification judge_claim(const Claim& claim, const Folds& folds, const std::vect
     result.patches.push_back(fold.patch);
     if (result.placebo_effect.empty()) result.placebo_effect = fold.placebo_name;
   }
-  const std::optional<Ensembles> ensembles = Simulation(*plain.reference, folds, found).run(settings);
+  const std::optional<Ensembles> ensembles = Simulation(*plain.reference, folds, found).run(settings, context.threads);
   if (!ensembles) return result;
-  Judge judge(plain, *ensembles, settings);
+  Judge judge(plain, *ensembles, settings.alpha, context);
   for (const std::size_t trial : held_out) judge.add_trial(trial, result);
   judge.sum_up(held_out, result);
   const bool enough_signs =
@@ -342,18 +349,18 @@ std::vector<std::size_t> holdout_of(const std::string& asked, const StudyFrame& 
 }
 
 std::vector<Verification> verify(std::span<const Claim> claims, const Folds& folds, const VerifySettings& settings,
-                                 const std::function<void(std::size_t)>& on_judged) {
+                                 const Context& context, const std::function<void(std::size_t)>& on_judged) {
   std::vector<std::vector<FoldPatches>> found(claims.size());
   std::vector<std::size_t> held_out;
   for (const auto& fold : folds) {
     held_out.insert(held_out.end(), fold.begin(), fold.end());
-    FoldSearch search(all_but(fold, all_trials(claims.front().steps.front().reference->frame)), settings);
+    FoldSearch search(all_but(fold, all_trials(claims.front().steps.front().reference->frame)), settings, context);
     for (std::size_t i = 0; i < claims.size(); ++i) found[i].push_back(search.search(claims[i]));
   }
   std::ranges::sort(held_out);
   std::vector<Verification> results;
   for (std::size_t i = 0; i < claims.size(); ++i) {
-    results.push_back(judge_claim(claims[i], folds, held_out, found[i], settings));
+    results.push_back(judge_claim(claims[i], folds, held_out, found[i], settings, context));
     if (on_judged) on_judged(results.size());
   }
   return results;

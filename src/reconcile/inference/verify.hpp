@@ -16,39 +16,9 @@
 namespace pirsim::reconcile {
 
 struct ReferenceStudy;
-struct StudyFrame;
-
-/// How far a model lies from data, summed up over held-out trials.
-struct Gap {
-  double energy_score = 0.0;      ///< of what the global test looks at in one trial, mean over trials
-  double area_s = 0.0;            ///< mean absolute difference of measured and simulated seconds, mean over cells
-  std::size_t cells_outside = 0;  ///< of the model's 95 % band
-  std::size_t n_cells = 0;
-  double p = 1.0;  ///< of the global test on the held-out trials together
-};
-
-struct Verification {
-  std::size_t n_folds = 0;
-  Gap before, after;
-  double noise_floor = 0.0;        ///< energy score of the patched model's own datasets
-  stats::Interval gain;            ///< 95 % (Student's) of the mean drop in energy score per trial, over trials
-  double share_closed = 0.0;       ///< (before - after) / (before - noise floor)
-  std::size_t n_trials = 0;        ///< held out and measured; 0: people can hardly get about in the patched model
-  std::size_t n_better = 0;        ///< of them, predicted better by the patched model
-  double sign_p = 1.0;             ///< that so many are better by chance
-  double placebo = 0.0;            ///< energy score after the best effect of another family; as before without one
-  std::string placebo_effect;      ///< its name, in the first fold that has one
-  std::vector<std::string> names;  ///< what each fold found, effects joined by " + "
-  std::vector<std::vector<EffectSpec>> patches;  ///< with the parameters that each fold's other trials gave
-  bool shrunk = false;   ///< the interval excludes 0 and the placebo does less; of sums, sign_p <= 0.05 too
-  bool refused = false;  ///< the plain model fails the global test on the held-out trials
-  bool closed = false;   ///< shrunk, the plain model is refused there and the patched one is not
-};
 
 struct VerifySettings {
   double alpha = 0.05;
-  std::uint64_t seed = 0;
-  unsigned threads = 0;
   std::uint32_t n_realizations = 60;  ///< simulated with each patched model; more if these couldn't refuse it at alpha
   std::size_t trees = 100;
 };
@@ -75,7 +45,7 @@ using Folds = std::vector<std::vector<std::size_t>>;
 /// of the later steps' tables: they hold the earlier effects as all trials gave them. A fold that finds another effect
 /// than was applied stops there. on_judged is told how many claims are done.
 [[nodiscard]] std::vector<Verification> verify(std::span<const Claim> claims, const Folds& folds,
-                                               const VerifySettings& settings,
+                                               const VerifySettings& settings, const Context& context,
                                                const std::function<void(std::size_t)>& on_judged = {});
 
 /// Every trial is held out once: in five folds, or by itself if the data are sums, which say little a trial.

@@ -8,7 +8,9 @@
 #include "io/text_input.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/io.hpp"
-#include "reconcile/report/report_page.hpp"
+#include "reconcile/report/pages.hpp"
+#include "reconcile/report/sentences.hpp"
+#include "reconcile/validation/seal.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -48,9 +50,9 @@ Json to_json(const HypothesisScore& score) {
 }
 
 Json to_json(const Candidate& candidate) {
-  Json json = {{"effect", candidate.score.hypothesis}, {"family", candidate.family}, {"kept", candidate.kept}};
+  Json json = {{"effect", candidate.score.hypothesis}, {"family", name(candidate.family)}, {"kept", candidate.kept}};
   json.update(to_json(candidate.score));
-  json["reason"] = candidate.reason;
+  json["reason"] = in_words(candidate);
   return json;
 }
 
@@ -97,29 +99,30 @@ Json to_json(const Verification& v) {
           {"closed", v.closed}};
 }
 
-Json to_json(const Residuals& residuals) {
+Json to_json(const Residuals& residuals, const FamilyScore& family) {
   Json drivers = Json::array();
   for (const ResidualDriver& driver : residuals.drivers) {
-    drivers.push_back({{"who", driver.who},
-                       {"when", driver.when},
-                       {"what", driver.what},
+    drivers.push_back({{"who", who_of(driver)},
+                       {"when", when_of(driver)},
+                       {"what", what_of(driver)},
                        {"log_odds", driver.log_odds},
                        {"standard_error", driver.standard_error},
                        {"z", driver.z},
                        {"p", driver.p}});
   }
-  return {{"sentence", residuals.sentence}, {"drivers", drivers}};
+  return {{"sentence", sentence(residuals, family)}, {"drivers", drivers}};
 }
 
 }  // namespace
 
-std::string to_json(const Outcome& outcome, const Measured& measured, const Settings& settings,
+std::string to_json(const Outcome& outcome, const Measured& measured, const Settings& settings, const Context& context,
                     const Provenance& provenance) {
-  std::vector<std::string> notes = measured.notes;
-  notes.insert(notes.end(), outcome.notes.begin(), outcome.notes.end());
+  std::vector<std::string> notes;
+  for (const DataNote& note : measured.notes) notes.push_back(in_words(note));
+  for (const DataNote& note : outcome.notes) notes.push_back(in_words(note));
   Json json = {{"pirsim_reconcile_report", report_schema},
                {"verdict", name(outcome.verdict)},
-               {"sentence", outcome.sentence},
+               {"sentence", sentence(outcome, settings.alpha)},
                {"effects", outcome.named},
                {"program", provenance.program},
                {"scene", provenance.scene},
@@ -131,7 +134,7 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
                  {"runs", measured.n_replicates()},
                  {"notes", notes}}},
                {"alpha", settings.alpha},
-               {"seed", settings.seed},
+               {"seed", context.seed},
                {"table", outcome.table_key},
                {"nuisance",
                 {{"seat_position_m", settings.nuisance.seat_position_m},
@@ -152,7 +155,7 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
     looks.push_back({{"applied", look.applied}, {"level", look.level}, {"p", look.p}, {"one_of", look.one_of}});
   json["looks"] = looks;
   json["verification"] = outcome.verification ? to_json(*outcome.verification) : Json();
-  json["residuals"] = outcome.residuals ? to_json(*outcome.residuals) : Json();
+  json["residuals"] = outcome.residuals ? to_json(*outcome.residuals, outcome.family) : Json();
   json["telling_features"] = outcome.telling_features;
   json["calibration_error"] = outcome.calibration_error;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
@@ -174,10 +177,10 @@ std::string candidates_csv(const Outcome& outcome) {
   std::ostringstream out;
   out << "effect,family,kept,probability,p,p_relative,p_absolute,reason\n";
   for (const Candidate& c : with_twins(outcome.candidates)) {
-    out << c.score.hypothesis << ',' << c.family << ',' << (c.kept ? 1 : 0) << ','
+    out << c.score.hypothesis << ',' << name(c.family) << ',' << (c.kept ? 1 : 0) << ','
         << io::csv_number(c.score.probability) << ',' << io::csv_number(c.score.p) << ','
         << io::csv_number(c.score.p_relative) << ',' << io::csv_number(c.score.p_absolute) << ','
-        << io::csv_field(c.reason) << '\n';
+        << io::csv_field(in_words(c)) << '\n';
   }
   return out.str();
 }
@@ -206,8 +209,9 @@ ScriptSpec patched(const ScriptSpec& script, const Outcome& outcome) {
   return with;
 }
 
-void write_outputs(const std::filesystem::path& folder, const Outcome& outcome, const Measured& measured,
-                   const ScriptSpec& script, const Settings& settings, const Provenance& provenance) {
+void write_report(const std::filesystem::path& folder, const Outcome& outcome, const Measured& measured,
+                  const ScriptSpec& script, const Settings& settings, const Context& context,
+                  const Provenance& provenance) {
   std::error_code fault;
   std::filesystem::create_directories(folder, fault);
   io::write_text_file(folder / "where.csv", where_csv(outcome));
@@ -221,13 +225,13 @@ void write_outputs(const std::filesystem::path& folder, const Outcome& outcome, 
   std::string trail = earlier_trail(folder);
   const std::size_t before = times_analysed(trail, measured.digest);
   if (!trail.empty()) trail += '\n';
-  for (const std::string& line : outcome.trail) trail += line + '\n';
+  for (const TrailEvent& event : outcome.trail) trail += in_words(event) + '\n';
   trail += "these data were analysed " + std::to_string(before) + " times before in this folder\n";
   io::write_text_file(folder / "trail.log", trail);
   io::Report page = report_page(outcome, settings.alpha);
   page.footer = provenance.program + ", " + provenance.scene + ", " + provenance.script + ", " + provenance.measured;
   io::write_text_file(folder / "report.html", io::to_html(page));
-  io::write_text_file(folder / "report.json", to_json(outcome, measured, settings, provenance));
+  io::write_text_file(folder / "report.json", to_json(outcome, measured, settings, context, provenance));
 }
 
 }  // namespace pirsim::reconcile

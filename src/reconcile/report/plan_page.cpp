@@ -3,10 +3,9 @@
 
 #include "io/atomic_file.hpp"
 #include "pirsim/csv.hpp"
-#include "reconcile/report/report_charts.hpp"
+#include "reconcile/report/charts.hpp"
+#include "reconcile/report/pages.hpp"
 #include "reconcile/report/sentences.hpp"
-#include "reconcile/report/share_grids.hpp"
-#include "reconcile/validation/plan.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -23,7 +22,7 @@ io::BarChart gain_chart(const PlanResult& result) {
   for (std::size_t i = 1; i < result.designs.size(); ++i) {
     const Design& d = result.designs[i];
     chart.bars.push_back(
-        {d.what, d.more_bits, short_number(d.more_bits) + " bits in " + short_number(d.minutes) + " min",
+        {what_of(d), d.more_bits, short_number(d.more_bits) + " bits in " + short_number(d.minutes) + " min",
          d.more_bits_95.low > 0.0 ? io::BarChart::Weight::strong : io::BarChart::Weight::faint, d.more_bits_95.low,
          d.more_bits_95.high,
          "right effect the likeliest in " + percent(d.right) + "\n" +
@@ -61,12 +60,12 @@ io::GridChart confusion_chart(const PlanResult& result) {
 io::Report plan_page(const PlanResult& result) {
   io::Report report;
   report.title = "What to measure";
-  report.finding = result.sentence;
+  report.finding = sentence(result);
   report.paragraphs = {
       "Everything here comes from simulation, before any measuring: every effect of the catalogue in "
       "many rooms like this one, and what the data would then say. " +
       std::to_string(result.n_datasets) + " datasets that took no part in training were judged."};
-  report.paragraphs.insert(report.paragraphs.end(), result.notes.begin(), result.notes.end());
+  for (const LeftOut& left_out : result.left_out) report.paragraphs.push_back(in_words(left_out));
   io::ReportSection gain{"What to measure next", {}, {}, {}};
   gain.charts.emplace_back(gain_chart(result));
   io::ReportSection table{"The same in numbers", {}, {}, {}};
@@ -74,7 +73,7 @@ io::Report plan_page(const PlanResult& result) {
       {"measured", "min", "right effect the likeliest", "bits", "bits more", "95 %", "bits more a minute"}, {}};
   for (const Design& d : result.designs) {
     const bool planned = &d == &result.designs.front();
-    numbers.rows.push_back({d.what, short_number(d.minutes), percent(d.right), fixed(d.bits, 2),
+    numbers.rows.push_back({what_of(d), short_number(d.minutes), percent(d.right), fixed(d.bits, 2),
                             planned ? "" : fixed(d.more_bits, 2),
                             planned ? "" : fixed(d.more_bits_95.low, 2) + " to " + fixed(d.more_bits_95.high, 2),
                             planned           ? ""
@@ -93,8 +92,8 @@ io::Report plan_page(const PlanResult& result) {
 std::string to_json(const PlanResult& result) {
   Json designs = Json::array(), power = Json::array();
   for (const Design& d : result.designs) {
-    designs.push_back({{"name", d.name},
-                       {"what", d.what},
+    designs.push_back({{"name", name(d)},
+                       {"what", what_of(d)},
                        {"minutes", d.minutes},
                        {"bits", d.bits},
                        {"right", d.right},
@@ -105,14 +104,16 @@ std::string to_json(const PlanResult& result) {
     power.push_back(
         {{"effect", one.effect}, {"strength", name(one.strength)}, {"seen", one.seen.hits}, {"of", one.seen.of}});
   }
+  Json notes = Json::array();
+  for (const LeftOut& left_out : result.left_out) notes.push_back(in_words(left_out));
   const Json json{{"pirsim_reconcile_plan", 1},
-                  {"sentence", result.sentence},
+                  {"sentence", sentence(result)},
                   {"designs", designs},
                   {"power", power},
                   {"hypotheses", result.hypotheses},
                   {"confusion", result.confusion},
                   {"datasets", result.n_datasets},
-                  {"notes", result.notes}};
+                  {"notes", notes}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
@@ -120,7 +121,7 @@ std::string to_csv(const PlanResult& result) {
   std::ostringstream out;
   out << "design,minutes,bits,right,more_bits,more_bits_low,more_bits_high\n";
   for (const Design& d : result.designs) {
-    out << io::csv_field(d.name) << ',' << io::csv_number(d.minutes) << ',' << io::csv_number(d.bits) << ','
+    out << io::csv_field(name(d)) << ',' << io::csv_number(d.minutes) << ',' << io::csv_number(d.bits) << ','
         << io::csv_number(d.right) << ',' << io::csv_number(d.more_bits) << ',' << io::csv_number(d.more_bits_95.low)
         << ',' << io::csv_number(d.more_bits_95.high) << '\n';
   }

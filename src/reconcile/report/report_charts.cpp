@@ -1,4 +1,4 @@
-#include "reconcile/report/report_charts.hpp"
+#include "reconcile/report/charts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -155,7 +155,7 @@ io::BarChart ranking_chart(const Outcome& outcome) {
                           candidate.kept ? io::BarChart::Weight::strong : io::BarChart::Weight::faint,
                           {},
                           {},
-                          candidate.reason});
+                          in_words(candidate)});
   }
   if (left_out > 0) chart.note += " " + std::to_string(left_out) + " effects below 0.5 % are not drawn.";
   return chart;

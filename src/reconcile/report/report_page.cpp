@@ -1,8 +1,8 @@
-#include "reconcile/report/report_page.hpp"
+#include "reconcile/report/pages.hpp"
 
 #include <algorithm>
 
-#include "reconcile/report/report_charts.hpp"
+#include "reconcile/report/charts.hpp"
 #include "reconcile/report/sentences.hpp"
 
 namespace pirsim::reconcile {
@@ -50,7 +50,7 @@ io::ReportSection candidates(const Outcome& outcome) {
   }
   section.paragraphs.push_back("Every effect of the catalogue was simulated many times in rooms like this one.");
   section.charts.emplace_back(ranking_chart(outcome));
-  for (const Look& look : outcome.looks) section.paragraphs.push_back(what_a_look_showed(look));
+  for (const Look& look : outcome.looks) section.paragraphs.push_back(in_words(look));
   return section;
 }
 
@@ -62,9 +62,9 @@ io::ReportSection reasons(const Outcome& outcome, double alpha) {
       short_number(alpha) + " speaks against the effect."};
   io::Table table{{"effect", "family", "probability", "p", "why"}, {}};
   for (const Candidate& candidate : with_twins(outcome.candidates)) {
-    table.rows.push_back({candidate.score.hypothesis, candidate.family,
+    table.rows.push_back({candidate.score.hypothesis, std::string(name(candidate.family)),
                           fixed(100.0 * candidate.score.probability, 0) + " %", short_number(candidate.score.p),
-                          candidate.reason});
+                          in_words(candidate)});
   }
   section.tables.push_back(std::move(table));
   return section;
@@ -132,7 +132,7 @@ io::ReportSection held_out(const Verification& v, const std::string& named) {
 io::Report report_page(const Outcome& outcome, double alpha) {
   io::Report report;
   report.title = "Model and measurement";
-  report.finding = outcome.sentence;
+  report.finding = sentence(outcome, alpha);
   report.paragraphs = {next_step(outcome)};
   report.sections = {where(outcome, alpha), envelope(outcome.location, alpha), candidates(outcome)};
   if (!outcome.fits.empty()) report.sections.push_back(strength(outcome.fits));

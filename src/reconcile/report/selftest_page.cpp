@@ -1,10 +1,10 @@
-#include "reconcile/report/selftest_page.hpp"
+#include "reconcile/report/pages.hpp"
 
 #include <map>
 
 #include "io/atomic_file.hpp"
+#include "reconcile/report/charts.hpp"
 #include "reconcile/report/sentences.hpp"
-#include "reconcile/report/share_grids.hpp"
 #include "stats/intervals.hpp"
 
 namespace pirsim::reconcile {
@@ -16,21 +16,23 @@ io::Table target_table(const SelftestResult& result, Geometry geometry) {
     std::string target = one.target.at_least > 0.0 ? "at least " + percent(one.target.at_least) : "";
     if (one.target.at_most < 1.0) target += (target.empty() ? "" : ", ") + ("at most " + percent(one.target.at_most));
     table.rows.push_back(
-        {std::string(one.target.rate), target, with_interval(one.rate), std::string(name(one.reached))});
+        {std::string(in_words(one.target.rate)), target, with_interval(one.rate), std::string(in_words(one.reached))});
   }
   return table;
 }
 
 io::Table rate_table(const SelftestResult& result) {
   io::Table table{{"how often", "share (95 % interval)"}, {}};
-  for (const Rate& rate : rates_of(result)) table.rows.push_back({rate.what, with_interval(rate)});
+  for (const Rate& rate : rates_of(result))
+    table.rows.push_back({std::string(in_words(rate.what)), with_interval(rate)});
   return table;
 }
 
 io::Table pair_table(const std::vector<ConfusedPair>& pairs) {
   io::Table table{{"pair", "share", "in the catalogue", "what each does to the data"}, {}};
   for (const ConfusedPair& pair : pairs) {
-    table.rows.push_back({pair.rate.what, with_interval(pair.rate), pair.expected ? "foreseen" : "not foreseen",
+    table.rows.push_back({pair.first + ", " + pair.second, with_interval(pair.rate),
+                          pair.expected ? "foreseen" : "not foreseen",
                           pair.first + ": " + pair.first_does + ". " + pair.second + ": " + pair.second_does + "."});
   }
   return table;
@@ -73,6 +75,10 @@ io::ReportSection power(const SelftestResult& result) {
   return section;
 }
 
+std::string strength_and(const Rate& rate) {
+  return std::string(name(rate.strength)) + (rate.what == Counted::seen ? ": seen" : ": seen and in the set");
+}
+
 }  // namespace
 
 io::GridChart confusion_chart(const SelftestResult& result) {
@@ -98,7 +104,8 @@ io::LineChart power_chart(const SelftestResult& result, const std::string& effec
     const auto strength = static_cast<double>(1 + i / 2);
     const double beside = i % 2 == 0 ? -0.02 : 0.02;  // so that the ranges don't cover each other
     chart.lines[i % 2].points.push_back({strength + beside, rates[i].value(), rates[i].interval.low,
-                                         rates[i].interval.high, rates[i].what + ": " + with_interval(rates[i])});
+                                         rates[i].interval.high,
+                                         strength_and(rates[i]) + ": " + with_interval(rates[i])});
   }
   return chart;
 }
@@ -152,7 +159,7 @@ io::BarChart coverage_chart(const SelftestResult& result) {
       of += c.n_parameters;
     }
     if (of == 0) continue;
-    const Rate rate{hypothesis, hits, of, stats::clopper_pearson(hits, of)};
+    const Rate rate{Counted::parameters_covered, hits, of, stats::clopper_pearson(hits, of), Strength::none};
     chart.bars.push_back({hypothesis, rate.value(), percent(rate.value()) + " of " + std::to_string(of),
                           io::BarChart::Weight::plain, rate.interval.low, rate.interval.high, with_interval(rate)});
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iomanip>
 #include <sstream>
+#include <variant>
 
 #include "effects/catalogue.hpp"
 
@@ -66,6 +67,32 @@ std::string rivals(const Outcome& outcome) {
   if (names.empty()) return ", and no other effect of the catalogue explains the data.";
   return "; with probability " + short_number(outcome.candidates.front().score.probability) + " it is this one, " +
          joined(names, "and") + " can't be ruled out.";
+}
+
+/// The one effect that would have been named was dropped since the model with it can't have made the data.
+bool was_refused(const Outcome& outcome) {
+  return std::ranges::any_of(outcome.candidates, [](const Candidate& candidate) {
+    return std::holds_alternative<reason::RefusedWhenApplied>(candidate.reason);
+  });
+}
+
+/// The verdict then.
+std::string sentence_of_refused(const Outcome& outcome, double alpha) {
+  const Look& look = outcome.looks.back();
+  return "The model lacks something that is not in the catalogue: " + where(outcome, alpha) +
+         ". What resembles it most, " + joined(look.applied, "and") +
+         ", doesn't explain it: with that applied, the model still differs from the data (p = " + short_number(look.p) +
+         "), and no other effect of the catalogue explains what is left.";
+}
+
+/// Of the likeliest effect if it was dropped, though the model with it passes.
+std::string sentence_of_nearest(const Outcome& outcome) {
+  const Look& look = outcome.looks.back();
+  const auto nearest = std::ranges::find(outcome.candidates, look.applied.front(),
+                                         [](const Candidate& candidate) { return candidate.score.hypothesis; });
+  return look.applied.front() +
+         " comes nearest: with it applied, the test of everything together sees no difference (p = " +
+         short_number(look.p) + "). It was dropped all the same: " + why(nearest->reason);
 }
 
 }  // namespace
@@ -155,7 +182,7 @@ std::string verdict_sentence(const Outcome& outcome, double alpha) {
          no_effect(outcome, alpha) + ".";
 }
 
-std::string what_a_look_showed(const Look& look) {
+std::string in_words(const Look& look) {
   std::string text = "With " + joined(look.applied, "and") + " applied, the model " +
                      (look.passes() ? "can have made these data" : "still differs from the data") +
                      " (p = " + short_number(look.p) + ").";
@@ -165,55 +192,36 @@ std::string what_a_look_showed(const Look& look) {
   return text;
 }
 
-std::string reason_of_unlikely(const Candidate& candidate, const Candidate& named) {
-  return "Not ruled out (p " + short_number(candidate.score.p) + "), but much less likely than " +
-         named.score.hypothesis + " (" + short_number(candidate.score.probability) + " against " +
-         short_number(named.score.probability) + ").";
-}
-
-std::string reason_of_refused(const Look& look) {
-  return "Dropped: with it applied, the model still differs from the data (p " + short_number(look.p) +
-         "), and no other effect of the catalogue explains what is left.";
-}
-
-std::string sentence_of_refused(const Outcome& outcome, double alpha) {
-  const Look& look = outcome.looks.back();
-  return "The model lacks something that is not in the catalogue: " + where(outcome, alpha) +
-         ". What resembles it most, " + joined(look.applied, "and") +
-         ", doesn't explain it: with that applied, the model still differs from the data (p = " + short_number(look.p) +
-         "), and no other effect of the catalogue explains what is left.";
-}
-
-std::string sentence_of_nearest(const Look& look, const std::string& reason) {
-  const std::string why = reason.substr(reason.find(": ") + 2);
-  return look.applied.front() +
-         " comes nearest: with it applied, the test of everything together sees no difference (p = " +
-         short_number(look.p) + "). It was dropped all the same: " + why;
-}
-
-std::string reason_of(const Candidate& candidate, double alpha) {
-  const HypothesisScore& score = candidate.score;
-  if (candidate.kept && score.p <= alpha) {
-    return "Kept, though data of its own seldom look like these (p " + short_number(score.p) + "): with probability " +
-           short_number(score.probability) + " it is this one of the catalogue, if any.";
+std::string sentence(const Outcome& outcome, double alpha) {
+  std::string text;
+  if (!outcome.looked_for.empty()) text = "The catalogue was cut down to " + joined(outcome.looked_for, "and") + ". ";
+  const bool none = outcome.verdict == Verdict::none_in_catalogue;
+  const bool taken_back = none && !outcome.looks.empty() && !outcome.looks.back().passes() && was_refused(outcome);
+  text += taken_back ? sentence_of_refused(outcome, alpha) : verdict_sentence(outcome, alpha);
+  if (!outcome.looks.empty()) {
+    const Look& look = outcome.looks.back();
+    if (none && look.passes()) text += " " + sentence_of_nearest(outcome);
+    const bool applied = outcome.verdict == Verdict::named || outcome.verdict == Verdict::several;
+    if (applied && !look.passes()) text += " That is not all. " + in_words(look);
   }
-  if (candidate.kept) {
-    return "Kept: it can have made these data (p " + short_number(score.p) +
-           "), and no other effect explains them so "
-           "much better that it can be ruled out.";
+  if (outcome.residuals) text += " " + sentence(*outcome.residuals, outcome.family);
+  return text;
+}
+
+std::vector<Candidate> with_twins(const std::vector<Candidate>& candidates) {
+  std::vector<Candidate> all;
+  for (const Candidate& candidate : candidates) {
+    all.push_back(candidate);
+    for (const std::string& twin : effects::twins_of(candidate.score.hypothesis)) {
+      const auto is_twin = [&](const Candidate& other) { return other.score.hypothesis == twin; };
+      if (std::ranges::any_of(candidates, is_twin)) continue;  // it was asked for
+      all.push_back(candidate);
+      all.back().score.hypothesis = twin;
+      all.back().reason = reason::SameAs{candidate.score.hypothesis};
+      all.back().named_together = false;
+    }
   }
-  if (score.p > alpha) {
-    return "Dropped: by itself it might have made these data (p " + short_number(score.p) +
-           "), but all that isn't ruled out is improbable together.";
-  }
-  if (score.p == 0.0) return "Dropped: it could hardly be simulated in this room.";
-  const bool relative = 2.0 * score.p_relative <= alpha, absolute = 2.0 * score.p_absolute <= alpha;
-  std::string text = "Dropped: ";
-  if (relative)
-    text += "another explains the data better than is usual for its own (p " + short_number(score.p_relative) + ")";
-  if (relative && absolute) text += "; and ";
-  if (absolute) text += "data of its own hardly ever look like these (p " + short_number(score.p_absolute) + ")";
-  return text + ".";
+  return all;
 }
 
 }  // namespace pirsim::reconcile

@@ -1,4 +1,4 @@
-#include "reconcile/report/share_grids.hpp"
+#include "reconcile/report/charts.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -83,9 +83,10 @@ void apply_fault(const OutOfCatalogueFault& fault, const StudyFrame& frame, std:
 
 class InjectionJob {
  public:
-  InjectionJob(const ReferenceStudy& reference, const SelftestSettings& settings)
+  InjectionJob(const ReferenceStudy& reference, const SelftestSettings& settings, std::uint64_t seed)
       : reference_(reference),
         settings_(settings),
+        seed_(seed),
         plans_(plans_of(reference, settings)),
         wide_source_(reference.source) {
     NuisanceSpec& wide = wide_source_.nuisance;
@@ -103,7 +104,7 @@ class InjectionJob {
     const SimulatedRealization realization(source, reference_.frame, first_injected_realization + index,
                                            settings_.n_replicates);
     for (std::uint32_t attempt = 0; attempt < most_draws; ++attempt) {
-      Stream stream({settings_.analysis.seed, index, attempt, Purpose::sealed_answer});
+      Stream stream({seed_, index, attempt, Purpose::sealed_answer});
       const std::optional<std::vector<EffectSpec>> effects = draw(plan, realization.drawn(), stream);
       if (!effects) continue;
       auto data = realization.with_effects(*effects, 0, settings_.n_replicates);
@@ -138,15 +139,16 @@ class InjectionJob {
 
   const ReferenceStudy& reference_;
   const SelftestSettings& settings_;
+  std::uint64_t seed_;
   std::vector<Plan> plans_;
   RealizationSource wide_source_;
 };
 
-std::string key_of(const ReferenceStudy& reference, const SelftestSettings& settings) {
+std::string key_of(const ReferenceStudy& reference, const SelftestSettings& settings, std::uint64_t seed) {
   std::string text = "injected in " + reference.key;
   for (const std::uint64_t n :
        {std::uint64_t{settings.n_nulls}, std::uint64_t{settings.n_injected}, std::uint64_t{settings.n_beyond},
-        std::uint64_t{settings.n_pairs}, std::uint64_t{settings.n_out_of_catalogue}, settings.analysis.seed}) {
+        std::uint64_t{settings.n_pairs}, std::uint64_t{settings.n_out_of_catalogue}, seed}) {
     text += ' ' + std::to_string(n);
   }
   return sha256(text);
@@ -177,18 +179,18 @@ std::string InjectedDataset::truth() const {
 }
 
 std::vector<InjectedDataset> inject(const ReferenceStudy& reference, const SelftestSettings& settings,
-                                    const Observer& observer) {
-  if (observer.stage) observer.stage("datasets with injected faults");
-  const InjectionJob job(reference, settings);
-  const std::string key = key_of(reference, settings);
+                                    const Context& context) {
+  context.begin({Stage::What::injecting_faults});
+  const InjectionJob job(reference, settings, context.seed);
+  const std::string key = key_of(reference, settings, context.seed);
   const TableStore store(folder_of(settings, key), key);
   std::vector<InjectedDataset> injected;
   stats::Matrix<float> statistics;
   for_each_chunk(
-      store, static_cast<std::uint32_t>(job.plans().size()), settings.analysis.threads,
-      [&](std::uint32_t index) { return job.run(index); }, {observer.progress},
+      store, static_cast<std::uint32_t>(job.plans().size()), context,
+      [&](std::uint32_t index) { return job.run(index); },
       [&](TableChunk& chunk) {
-        append_statistics(reference.frame, reference.shape, reference.table.profile, chunk, settings.analysis.threads,
+        append_statistics(reference.frame, reference.shape, reference.table.profile, chunk, context.threads,
                           statistics);
         for (SimulatedDataset& dataset : chunk.datasets) {
           const Plan& plan = job.plans()[dataset.row.hypothesis];

@@ -6,8 +6,7 @@
 #include "core/digest.hpp"
 #include "effects/catalogue.hpp"
 #include "pirsim/error.hpp"
-#include "reconcile/inference/outcome.hpp"
-#include "reconcile/report/outputs.hpp"
+#include "pirsim/reconcile.hpp"
 #include "reconcile/validation/seal.hpp"
 
 namespace pirsim::reconcile {
@@ -149,10 +148,8 @@ Score open_answer(const Document& answer, std::string_view commitment, const Doc
   score.hidden = hidden.effects;
   if (!hidden.fault.empty()) score.hidden.push_back(hidden.fault);
   score.mark = mark_of(hidden, finding);
-  score.sentence = std::string(name(score.mark)) + ": hidden was " +
-                   (score.hidden.empty() ? "nothing" : boost::algorithm::join(score.hidden, ", ")) +
-                   ", the verdict was " + std::string(name(finding.verdict)) +
-                   (finding.effects.empty() ? "" : " (" + boost::algorithm::join(finding.effects, ", ") + ")");
+  score.verdict = finding.verdict;
+  score.named = finding.effects;
   return score;
 }
 

@@ -1,6 +1,7 @@
 #include "reconcile/validation/plan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -8,7 +9,6 @@
 #include "core/parallel.hpp"
 #include "reconcile/data/longer_study.hpp"
 #include "reconcile/inference/analyst.hpp"
-#include "reconcile/report/sentences.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -21,10 +21,10 @@ struct Judged {
   std::vector<double> p;  ///< of the global test
 };
 
-Judged judge_held_back(const ReferenceStudy& reference, std::vector<std::size_t> trials, const Settings& settings) {
+Judged judge_held_back(const ReferenceStudy& reference, std::vector<std::size_t> trials, const Settings& settings,
+                       const Context& context) {
   std::ranges::sort(trials);
-  const Analyst analyst(reference.view(std::move(trials), settings.threads),
-                        {settings.alpha, settings.seed, settings.threads, settings.trees});
+  const Analyst analyst(reference.view(std::move(trials), context.threads), {settings.alpha, settings.trees}, context);
   Judged judged;
   for (std::size_t row = 0; row < reference.table.rows.size(); ++row) {
     if (is_for_calibration(reference.table.rows[row].realization)) judged.rows.push_back(row);
@@ -32,7 +32,7 @@ Judged judge_held_back(const ReferenceStudy& reference, std::vector<std::size_t>
   const double prior = 1.0 / static_cast<double>(reference.table.n_hypotheses());
   constexpr double least_probability = 1e-4;
   ordered_parallel<Judgement>(
-      judged.rows.size(), settings.threads,
+      judged.rows.size(), context.threads,
       [&](std::size_t i) { return analyst.judge(reference.table.statistics.row(judged.rows[i])); },
       [&](Judgement& one) {
         const std::size_t truth = reference.table.rows[judged.rows[judged.p.size()]].hypothesis;
@@ -118,7 +118,8 @@ std::vector<PlannedPower> power_of(const ReferenceStudy& reference, const Judged
   std::vector<PlannedPower> power;
   for (std::size_t hypothesis = 1; hypothesis < reference.table.n_hypotheses(); ++hypothesis) {
     for (const Strength strength : {Strength::weak, Strength::medium, Strength::strong}) {
-      PlannedPower one{reference.table.hypothesis_name(hypothesis), strength, {"seen", 0, 0, {0.0, 1.0}}};
+      PlannedPower one{
+          reference.table.hypothesis_name(hypothesis), strength, {Counted::seen, 0, 0, {0.0, 1.0}, strength}};
       for (std::size_t i = 0; i < judged.rows.size(); ++i) {
         const TableRow& row = reference.table.rows[judged.rows[i]];
         if (row.hypothesis != hypothesis || strength_of(row.effects.front()) != strength) continue;
@@ -155,7 +156,8 @@ Settings with_fewer_realizations(Settings settings) {
 
 /// A design before it is judged.
 struct Idea {
-  std::string name, what;
+  Design::Kind kind = Design::Kind::as_planned;
+  std::string trial;              ///< of trial_again
   std::vector<std::size_t> more;  ///< trials beside those planned
 };
 
@@ -164,14 +166,13 @@ std::vector<Idea> ideas_of(const LongerStudy& study, const ReferenceStudy& refer
   std::vector<Idea> ideas;
   const std::size_t best = most_telling_trial(reference, n);
   if (n > 1) {
-    const std::string name = study.script.trials[best].id;
-    ideas.push_back({"trial " + name + " again", "trial " + name + " once more", {n + best}});
+    ideas.push_back({Design::Kind::trial_again, study.script.trials[best].id, {n + best}});
   }
-  Idea again{"all again", "every trial once more", {}};
+  Idea again{Design::Kind::all_again, {}, {}};
   for (std::size_t trial = n; trial < 2 * n; ++trial) again.more.push_back(trial);
   ideas.push_back(std::move(again));
-  if (!study.walk.empty()) ideas.push_back({"slow walk", "one person walking slowly through the room", study.walk});
-  if (!study.empty.empty()) ideas.push_back({"empty room", "the empty room", study.empty});
+  if (!study.walk.empty()) ideas.push_back({Design::Kind::slow_walk, {}, study.walk});
+  if (!study.empty.empty()) ideas.push_back({Design::Kind::empty_room, {}, study.empty});
   return ideas;
 }
 
@@ -183,24 +184,27 @@ double minutes_of(const ReferenceStudy& reference, const std::vector<std::size_t
   return rows * reference.frame.window_s / 60.0;
 }
 
-std::string best_of(const PlanResult& result) {
-  const Design& planned = result.designs.front();
-  const Design* best = nullptr;
-  for (const Design& design : result.designs) {
-    if (&design == &planned || design.more_bits_95.low <= 0.0) continue;
-    if (best == nullptr || design.surely_per_minute() > best->surely_per_minute()) best = &design;
-  }
-  const std::string now = "what is planned makes the right effect the likeliest in " + percent(planned.right) +
-                          " of cases (" + short_number(planned.bits) + " bits)";
-  if (best == nullptr) return "None of the further measurements tried is shown to help: " + now + ".";
-  return "The best next measurement is " + best->what + " (" + short_number(best->minutes) + " min more): " + now +
-         ", with it " + percent(best->right) + " (" + short_number(best->more_bits) + " bits more, 95 % interval " +
-         short_number(best->more_bits_95.low) + " to " + short_number(best->more_bits_95.high) + ").";
+Stage stage_of(const Idea& idea) {
+  using What = Stage::What;
+  constexpr std::array stages{What::judging_planned, What::judging_trial,      What::judging_all_again,
+                              What::judging_walk,    What::judging_empty_room, What::judging_series};
+  Stage stage{stages[static_cast<std::size_t>(idea.kind)]};
+  if (!idea.trial.empty()) stage.effects = {idea.trial};
+  return stage;
 }
 
 }  // namespace
 
-PlanResult plan(const SceneSpec& scene, const ScriptSpec& script, const PlanSettings& asked, const Observer& observer) {
+const Design* PlanResult::best() const {
+  const Design* best = nullptr;
+  for (const Design& design : designs) {
+    if (&design == &designs.front() || design.more_bits_95.low <= 0.0) continue;
+    if (best == nullptr || design.surely_per_minute() > best->surely_per_minute()) best = &design;
+  }
+  return best;
+}
+
+PlanResult plan(const SceneSpec& scene, const ScriptSpec& script, const PlanSettings& asked, const Context& context) {
   const PlanSettings settings{with_fewer_realizations(asked.analysis), asked.kind, asked.n_replicates};
   LongerStudy study = longer_study(scene, script);
   const auto reference_study = [&](Measured::Kind kind) {
@@ -209,45 +213,43 @@ PlanResult plan(const SceneSpec& scene, const ScriptSpec& script, const PlanSett
         [&](const StudyFrame& frame, std::span<const Series> pilot) {
           return full_shape(frame, kind, settings.n_replicates, pilot);
         },
-        observer);
+        context);
   };
   const ReferenceStudy reference = reference_study(settings.kind);
   std::vector<std::size_t> planned(study.n_planned);
   std::iota(planned.begin(), planned.end(), std::size_t{0});
-  const auto judged = [&](const ReferenceStudy& in, const std::vector<std::size_t>& more, const std::string& what) {
-    if (observer.stage) observer.stage("judging " + what);
+  const auto judged = [&](const ReferenceStudy& in, const Idea& idea) {
+    context.begin(stage_of(idea));
     std::vector<std::size_t> trials = planned;
-    trials.insert(trials.end(), more.begin(), more.end());
-    return judge_held_back(in, std::move(trials), settings.analysis);
+    trials.insert(trials.end(), idea.more.begin(), idea.more.end());
+    return judge_held_back(in, std::move(trials), settings.analysis, context);
   };
-  const Judged base = judged(reference, {}, "what is planned");
+  const Judged base = judged(reference, {});
   const auto base_bits = by_realization(reference, base);
   PlanResult result;
-  result.notes = std::move(study.notes);
+  result.left_out = std::move(study.left_out);
   result.n_datasets = base.rows.size();
   for (std::size_t hypothesis = 0; hypothesis < reference.table.n_hypotheses(); ++hypothesis)
     result.hypotheses.push_back(reference.table.hypothesis_name(hypothesis));
-  result.designs.push_back({"as planned",
-                            "what is planned",
+  result.designs.push_back({Design::Kind::as_planned,
+                            {},
                             minutes_of(reference, planned),
                             mean(base.bits),
                             share_right(reference, base),
                             0.0,
                             {0.0, 0.0}});
   const auto add = [&](const ReferenceStudy& in, const Idea& idea) {
-    const Judged with = judged(in, idea.more, idea.what);
-    Design design{idea.name, idea.what, minutes_of(in, idea.more), mean(with.bits), share_right(in, with), 0.0, {}};
+    const Judged with = judged(in, idea);
+    Design design{idea.kind, idea.trial, minutes_of(in, idea.more), mean(with.bits), share_right(in, with), 0.0, {}};
     compare(by_realization(in, with), base_bits, design);
     result.designs.push_back(std::move(design));
   };
   for (const Idea& idea : ideas_of(study, reference)) add(reference, idea);
   if (settings.kind == Measured::Kind::sums) {
-    add(reference_study(Measured::Kind::series),
-        {"second by second", "the same, second by second instead of sums", {}});
+    add(reference_study(Measured::Kind::series), {Design::Kind::second_by_second, {}, {}});
   }
   result.power = power_of(reference, base, settings.analysis.alpha);
   result.confusion = confusion_of(reference, base);
-  result.sentence = best_of(result);
   return result;
 }
 

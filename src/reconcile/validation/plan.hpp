@@ -1,12 +1,11 @@
 // Before any measuring: which effects could this experiment tell apart, and what would be worth measuring next?
 #pragma once
 
-#include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "io/report.hpp"
+#include "reconcile/data/longer_study.hpp"
 #include "reconcile/validation/selftest.hpp"
 #include "stats/intervals.hpp"
 
@@ -20,8 +19,9 @@ struct PlanSettings {
 
 /// One way to go on measuring, judged on simulated datasets that took no part in training.
 struct Design {
-  std::string name;
-  std::string what;        ///< is measured, as part of a sentence
+  enum class Kind { as_planned, trial_again, all_again, slow_walk, empty_room, second_by_second };
+  Kind kind = Kind::as_planned;
+  std::string trial;       ///< of trial_again
   double minutes = 0.0;    ///< more than what is planned; of the plan itself, all of it
   double bits = 0.0;       ///< told about which effect it is, mean over datasets; 0: no better than chance
   double right = 0.0;      ///< share of datasets whose effect is the likeliest
@@ -41,25 +41,21 @@ struct PlannedPower {
 };
 
 struct PlanResult {
-  std::string sentence;                        ///< the best next measurement
   std::vector<Design> designs;                 ///< first what is planned
   std::vector<std::string> hypotheses;         ///< nothing first
   std::vector<std::vector<double>> confusion;  ///< (n_hypotheses x n_hypotheses) as confusion_of(), of what is planned
   std::vector<PlannedPower> power;
   std::size_t n_datasets = 0;  ///< judged, for each design
-  std::vector<std::string> notes;
+  std::vector<LeftOut> left_out;
+
+  /// The best next measurement, if one is shown to help.
+  [[nodiscard]] const Design* best() const;
 };
 
 /// One reference table of the planned trials, of each of them once more, of a slow walk through the room and of the
 /// empty room serves all designs: each looks at its own trials. Choreographies that this room doesn't allow are left
-/// out, and noted.
+/// out.
 [[nodiscard]] PlanResult plan(const SceneSpec& scene, const ScriptSpec& script, const PlanSettings& settings,
-                              const Observer& observer = {});
-
-[[nodiscard]] std::string to_json(const PlanResult& result);
-[[nodiscard]] std::string to_csv(const PlanResult& result);  ///< a row a design
-[[nodiscard]] io::Report plan_page(const PlanResult& result);
-/// plan.html, plan.json, plan.csv; the folder is made. Throws Error(io).
-void write_plan(const std::filesystem::path& folder, const PlanResult& result, const std::string& made_by);
+                              const Context& context = {});
 
 }  // namespace pirsim::reconcile

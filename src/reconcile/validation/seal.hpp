@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pirsim/reconcile.hpp"
 #include "pirsim/sample.hpp"
 #include "reconcile/ensemble/nuisance.hpp"
 
@@ -33,6 +34,7 @@ struct SealSettings {
 };
 
 inline constexpr int answer_schema = 1;
+inline constexpr int report_schema = 1;  ///< of report.json, which is scored
 
 struct Challenge {
   std::string rows;    ///< CSV as docs/formats/rows.md has it, but nothing that nobody can measure: neither `people`,
@@ -57,7 +59,8 @@ enum class Mark {
 struct Score {
   Mark mark = Mark::none;
   std::vector<std::string> hidden;  ///< effects, or the fault's name
-  std::string sentence;             ///< the score for a reader
+  Verdict verdict = Verdict::no_disagreement;
+  std::vector<std::string> named;  ///< what the report names
 };
 /// A file that was read.
 struct Document {

@@ -9,6 +9,7 @@
 #include "core/parallel.hpp"
 #include "effects/catalogue.hpp"
 #include "reconcile/inference/analyst.hpp"
+#include "reconcile/inference/locate.hpp"
 #include "reconcile/inference/model_check.hpp"
 
 namespace pirsim::reconcile {
@@ -39,8 +40,8 @@ InjectedCase judged(const ReferenceStudy& reference, const Analyst& analyst, con
   result.truth = injected.truth();
   result.strength = injected.strength;
   result.effects = injected.effects;
-  result.verdict = judgement.decision.verdict;
-  for (const std::size_t hypothesis : judgement.decision.kept) {
+  result.verdict = judgement.verdict;
+  for (const std::size_t hypothesis : judgement.kept) {
     if (hypothesis > 0) result.named.push_back(reference.table.hypothesis_name(hypothesis));
   }
   result.p = judgement.p;
@@ -102,11 +103,10 @@ std::vector<std::size_t> to_verify(const std::vector<InjectedCase>& cases, std::
 }
 
 void verify_some(const ReferenceStudy& reference, const SeenRows& seen, const std::vector<InjectedDataset>& injected,
-                 const SelftestSettings& settings, const std::function<void(const std::string&)>& begin,
-                 std::vector<InjectedCase>& cases) {
+                 const SelftestSettings& settings, const Context& context, std::vector<InjectedCase>& cases) {
   const std::vector<std::size_t> chosen = to_verify(cases, settings.n_verified), trials = all_trials(reference.frame);
   if (chosen.empty() || trials.size() < 2) return;  // of one trial nothing can be held out
-  begin("finding anew without held-out trials what is in " + std::to_string(chosen.size()) + " datasets");
+  context.begin({Stage::What::searching_anew, {}, chosen.size()});
   std::vector<Claim> claims;
   for (const std::size_t i : chosen) {
     const std::vector<std::string>& named = cases[i].named;
@@ -115,17 +115,16 @@ void verify_some(const ReferenceStudy& reference, const SeenRows& seen, const st
   const Settings& analysis = settings.analysis;
   const Folds folds = usual_folds(sha256(reference.key), trials, reference.shape.kind);
   std::vector<Verification> found =
-      verify(claims, folds, {analysis.alpha, analysis.seed, analysis.threads, analysis.verify_realizations},
-             [&](std::size_t done) {
-               begin("judged on held-out trials: " + std::to_string(done) + " of " + std::to_string(claims.size()));
-             });
+      verify(claims, folds, {analysis.alpha, analysis.verify_realizations}, context, [&](std::size_t done) {
+        context.begin({Stage::What::verified, {}, done, claims.size()});
+      });
+
   for (std::size_t k = 0; k < chosen.size(); ++k) cases[chosen[k]].verification = std::move(found[k]);
 }
 
 /// Can the model with the effect named have made the data?
 void apply_some(const ReferenceStudy& reference, const FeatureMap& map, const std::vector<InjectedDataset>& injected,
-                const SelftestSettings& settings, const std::function<void(const std::string&)>& begin,
-                std::vector<InjectedCase>& cases) {
+                const SelftestSettings& settings, const Context& context, std::vector<InjectedCase>& cases) {
   std::vector<std::size_t> chosen = some_of(cases, settings.n_verified, has_right_name);
   for (const CaseKind kind : {CaseKind::left_out, CaseKind::out_of_catalogue}) {
     std::ranges::copy(some_of(cases, settings.n_verified, [&](const auto& c) { return has_name_though(kind, c); }),
@@ -137,12 +136,10 @@ void apply_some(const ReferenceStudy& reference, const FeatureMap& map, const st
   std::vector<PatchedModel> models;
   for (const std::size_t i : chosen)
     models.push_back({std::span(&*cases[i].fitted, 1), injected[cases[i].injected].statistics});
-  const std::vector<double> p =
-      p_with(models, reference, map, {level, analysis.seed, analysis.threads},
-             [&](std::size_t n, std::uint32_t n_realizations) {
-               begin("named effects applied: " + std::to_string(n) + " of " + std::to_string(models.size()) + " in " +
-                     std::to_string(n_realizations) + " realizations");
-             });
+  const std::vector<double> p = p_with(models, reference, map, level, context, [&](std::size_t n, std::uint32_t in) {
+    context.begin({Stage::What::checking_models, {}, n, models.size(), in});
+  });
+
   for (std::size_t k = 0; k < chosen.size(); ++k) cases[chosen[k]].applied = Look{cases[chosen[k]].named, level, p[k]};
 }
 
@@ -161,7 +158,10 @@ stats::Reliability reliability_of(const SelftestResult& result) {
 /// Counts cases.
 class Counter {
  public:
-  explicit Counter(std::string what) { rate_.what = std::move(what); }
+  explicit Counter(Counted what, Strength strength = Strength::none) {
+    rate_.what = what;
+    rate_.strength = strength;
+  }
   void count(bool hit) {
     ++rate_.of;
     rate_.hits += hit ? 1 : 0;
@@ -181,7 +181,7 @@ class Counter {
 };
 
 void count_nulls(const SelftestResult& result, std::vector<Rate>& rates) {
-  Counter alarm("a disagreement although nothing is hidden"), named("a name although nothing is hidden");
+  Counter alarm(Counted::alarm_on_nothing), named(Counted::name_on_nothing);
   for (const InjectedCase& c : result.cases) {
     if (c.kind != CaseKind::nothing) continue;
     alarm.count(c.seen());
@@ -191,11 +191,9 @@ void count_nulls(const SelftestResult& result, std::vector<Rate>& rates) {
 }
 
 void count_injected(const SelftestResult& result, std::vector<Rate>& rates) {
-  Counter power("a disagreement seen"), exact("exactly the right name, given a disagreement"),
-      named("a name, given a disagreement"), right("the right name, given a name"),
-      family("the right family, given a disagreement"), wrong("one wrong name"), wrong_family("one wrong family"),
-      in_set("the truth in the set, given a disagreement"), none("none in the catalogue, given a disagreement"),
-      coverage("parameters within their 90 % intervals");
+  Counter power(Counted::seen), exact(Counted::exact_name), named(Counted::any_name), right(Counted::right_of_names),
+      family(Counted::right_family), wrong(Counted::wrong_name), wrong_family(Counted::wrong_family),
+      in_set(Counted::truth_in_set), none(Counted::none_in_catalogue), coverage(Counted::parameters_covered);
   for (const InjectedCase& c : result.cases) {
     if (c.kind != CaseKind::one) continue;
     power.count(c.seen());
@@ -216,10 +214,8 @@ void count_injected(const SelftestResult& result, std::vector<Rate>& rates) {
 
 void count_verified(const SelftestResult& result, std::vector<Rate>& rates) {
   constexpr double nearly_all = 0.9;
-  Counter shrunk("a gap that shrunk on held-out trials, given the right name"),
-      closed("a gap closed on held-out trials, given the right name"),
-      most("nine tenths of what can be closed, given the right name"),
-      on_nulls("a gap that shrunk although nothing is hidden");
+  Counter shrunk(Counted::shrunk), closed(Counted::closed), most(Counted::most_closed),
+      on_nulls(Counted::shrunk_on_nothing);
   for (const InjectedCase& c : result.cases) {
     if (c.kind == CaseKind::nothing) on_nulls.count(c.verification && c.verification->shrunk);
     if (c.kind != CaseKind::one || !c.verification) continue;
@@ -233,12 +229,13 @@ void count_verified(const SelftestResult& result, std::vector<Rate>& rates) {
 }
 
 void count_applied(const SelftestResult& result, std::vector<Rate>& rates) {
-  const std::array<std::pair<CaseKind, std::string>, 3> kinds{
-      {{CaseKind::one, "the right name"},
-       {CaseKind::left_out, "the name of an effect that the catalogue lacks"},
-       {CaseKind::out_of_catalogue, "the name of an out-of-catalogue fault"}}};
-  for (const auto& [kind, whose] : kinds) {
-    Counter passes("applied, " + whose + ": the model passes");
+  constexpr std::array<std::pair<CaseKind, Counted>, 3> kinds{
+      {{CaseKind::one, Counted::right_passes},
+       {CaseKind::left_out, Counted::left_out_passes},
+       {CaseKind::out_of_catalogue, Counted::out_of_catalogue_passes}}};
+  for (const auto& [kind, what] : kinds) {
+    Counter passes(what);
+
     for (const InjectedCase& c : result.cases) {
       if (c.kind == kind && c.applied) passes.count(c.applied->passes());
     }
@@ -246,9 +243,9 @@ void count_applied(const SelftestResult& result, std::vector<Rate>& rates) {
   }
 }
 
-void count_uncatalogued(const SelftestResult& result, CaseKind kind, const std::string& who, std::vector<Rate>& rates) {
-  Counter seen(who + ": a disagreement seen"), none(who + ": called none in the catalogue, given a disagreement"),
-      misnamed(who + ": called by one name");
+void count_uncatalogued(const SelftestResult& result, CaseKind kind, const std::array<Counted, 3>& what,
+                        std::vector<Rate>& rates) {
+  Counter seen(what[0]), none(what[1]), misnamed(what[2]);
   for (const InjectedCase& c : result.cases) {
     if (c.kind != kind) continue;
     seen.count(c.seen());
@@ -259,8 +256,7 @@ void count_uncatalogued(const SelftestResult& result, CaseKind kind, const std::
 }
 
 void count_beyond(const SelftestResult& result, std::vector<Rate>& rates) {
-  Counter exact("beyond the prior: exactly the right name, given a disagreement"),
-      wrong("beyond the prior: one wrong name");
+  Counter exact(Counted::beyond_exact), wrong(Counted::beyond_wrong);
   for (const InjectedCase& c : result.cases) {
     if (c.kind != CaseKind::beyond_prior) continue;
     wrong.count(c.verdict == Verdict::named && !is_named(c, c.truth));
@@ -270,9 +266,7 @@ void count_beyond(const SelftestResult& result, std::vector<Rate>& rates) {
 }
 
 void count_pairs(const SelftestResult& result, std::vector<Rate>& rates) {
-  Counter one("two effects, first look: one or both in the set, given a disagreement"),
-      none("two effects, first look: no single effect will do, given a disagreement"),
-      wrong("two effects, first look: one wrong name");
+  Counter one(Counted::pair_in_set), none(Counted::pair_none), wrong(Counted::pair_wrong);
   for (const InjectedCase& c : result.cases) {
     if (c.kind != CaseKind::two) continue;
     const auto is_hidden = [&](const std::string& name) {
@@ -301,48 +295,45 @@ std::string_view name(Strength strength) noexcept {
 }
 
 SelftestResult judge(const ReferenceStudy& reference, const std::vector<InjectedDataset>& injected,
-                     const SelftestSettings& settings, const Observer& observer) {
-  const auto begin = [&](const std::string& stage) {
-    if (observer.stage) observer.stage(stage);
-  };
+                     const SelftestSettings& settings, const Context& context) {
   const Settings& analysis = settings.analysis;
-  const auto view = reference.view(all_trials(reference.frame), analysis.threads);
+  const auto view = reference.view(all_trials(reference.frame), context.threads);
   const auto analyst_without = [&](const std::string& effect) {
-    return Analyst(view, {analysis.alpha, analysis.seed, analysis.threads, analysis.trees, effect});
+    return Analyst(view, {analysis.alpha, analysis.trees, effect}, context);
   };
   SelftestResult result;
   for (std::size_t hypothesis = 0; hypothesis < reference.table.n_hypotheses(); ++hypothesis)
     result.hypotheses.push_back(reference.table.hypothesis_name(hypothesis));
-  begin("judging");
+  context.begin({Stage::What::judging});
   std::vector<std::size_t> all(injected.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  judge_all(reference, analyst_without(""), injected, all, {}, analysis.threads, result.cases);
+  judge_all(reference, analyst_without(""), injected, all, {}, context.threads, result.cases);
   result.reliability = reliability_of(result);
   if (settings.n_verified > 0)
-    verify_some(reference, seen_rows(*view, analysis.alpha), injected, settings, begin, result.cases);
+    verify_some(reference, seen_rows(*view, analysis.alpha), injected, settings, context, result.cases);
   if (settings.leave_out == LeaveOut::each) {
     for (const std::string& effect : reference.table.effects) {
-      begin("judging by a catalogue that lacks " + effect);
+      context.begin({Stage::What::judging_without, {effect}});
       std::vector<std::size_t> own;
       for (const std::size_t i : all) {
         if (injected[i].kind == CaseKind::one && injected[i].effects.front().name == effect) own.push_back(i);
       }
-      judge_all(reference, analyst_without(effect), injected, own, CaseKind::left_out, analysis.threads, result.cases);
+      judge_all(reference, analyst_without(effect), injected, own, CaseKind::left_out, context.threads, result.cases);
     }
   }
-  apply_some(reference, view->map(), injected, settings, begin, result.cases);
+  apply_some(reference, view->map(), injected, settings, context, result.cases);
   return result;
 }
 
 SelftestResult selftest(const SceneSpec& scene, const ScriptSpec& script, const SelftestSettings& settings,
-                        const Observer& observer) {
+                        const Context& context) {
   const ReferenceStudy reference = make_reference_study(
       scene, script, settings.analysis,
       [&](const StudyFrame& frame, std::span<const Series> pilot) {
         return full_shape(frame, settings.kind, settings.n_replicates, pilot);
       },
-      observer);
-  return judge(reference, inject(reference, settings, observer), settings, observer);
+      context);
+  return judge(reference, inject(reference, settings, context), settings, context);
 }
 
 std::vector<Rate> rates_of(const SelftestResult& result) {
@@ -351,8 +342,11 @@ std::vector<Rate> rates_of(const SelftestResult& result) {
   count_injected(result, rates);
   count_verified(result, rates);
   count_applied(result, rates);
-  count_uncatalogued(result, CaseKind::left_out, "an effect that the catalogue lacks", rates);
-  count_uncatalogued(result, CaseKind::out_of_catalogue, "an out-of-catalogue fault", rates);
+  count_uncatalogued(result, CaseKind::left_out,
+                     {Counted::left_out_seen, Counted::left_out_none, Counted::left_out_named}, rates);
+  count_uncatalogued(result, CaseKind::out_of_catalogue,
+                     {Counted::out_of_catalogue_seen, Counted::out_of_catalogue_none, Counted::out_of_catalogue_named},
+                     rates);
   count_beyond(result, rates);
   count_pairs(result, rates);
   return rates;
@@ -361,7 +355,7 @@ std::vector<Rate> rates_of(const SelftestResult& result) {
 std::vector<Rate> power_of(const SelftestResult& result, const std::string& effect) {
   std::vector<Rate> rates;
   for (const Strength strength : {Strength::weak, Strength::medium, Strength::strong}) {
-    Counter seen(std::string(name(strength)) + ": seen"), found(std::string(name(strength)) + ": seen and in the set");
+    Counter seen(Counted::seen, strength), found(Counted::seen_and_in_set, strength);
     for (const InjectedCase& c : result.cases) {
       if (c.kind != CaseKind::one || c.truth != effect || c.strength != strength) continue;
       seen.count(c.seen());

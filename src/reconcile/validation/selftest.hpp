@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "effects/catalogue.hpp"
-#include "reconcile/inference/reconcile.hpp"
+#include "reconcile/inference/analyst.hpp"
+#include "reconcile/inference/reference_study.hpp"
+#include "reconcile/inference/verify.hpp"
 #include "stats/calibration.hpp"
 #include "stats/intervals.hpp"
 
@@ -89,11 +91,48 @@ struct InjectedCase {
   [[nodiscard]] bool seen() const noexcept { return verdict != Verdict::no_disagreement; }
 };
 
+/// What a self-test counts.
+enum class Counted {
+  alarm_on_nothing,  ///< a disagreement although nothing is hidden
+  name_on_nothing,
+  seen,        ///< a disagreement
+  exact_name,  ///< given a disagreement, as the family, any name, the truth in the set and none in the catalogue
+  right_family,
+  any_name,
+  right_of_names,  ///< given a name
+  wrong_name,
+  wrong_family,
+  truth_in_set,
+  none_in_catalogue,
+  parameters_covered,  ///< by their 90 % intervals
+  shrunk,              ///< gaps on held-out trials, given the right name, as the next two
+  closed,
+  most_closed,  ///< nine tenths of what can be closed
+  shrunk_on_nothing,
+  right_passes,  ///< the model with the right name applied
+  left_out_passes,
+  out_of_catalogue_passes,
+  left_out_seen,
+  left_out_none,  ///< called none in the catalogue, given a disagreement
+  left_out_named,
+  out_of_catalogue_seen,
+  out_of_catalogue_none,
+  out_of_catalogue_named,
+  beyond_exact,
+  beyond_wrong,
+  pair_in_set,
+  pair_none,
+  pair_wrong,
+  seen_and_in_set,  ///< of one effect and strength
+  confused          ///< two effects taken for each other
+};
+
 /// A share with its exact 95 % interval.
 struct Rate {
-  std::string what;
+  Counted what = Counted::seen;
   std::size_t hits = 0, of = 0;
-  stats::Interval interval;  ///< empty (0 to 1) without any case
+  stats::Interval interval;            ///< empty (0 to 1) without any case
+  Strength strength = Strength::none;  ///< of one effect, where only that is counted
   [[nodiscard]] double value() const noexcept {
     return of == 0 ? 0.0 : static_cast<double>(hits) / static_cast<double>(of);
   }
@@ -108,13 +147,13 @@ struct SelftestResult {
 /// What the settings ask for, in realizations that no table has seen; those in which people can't get about are
 /// missing.
 [[nodiscard]] std::vector<InjectedDataset> inject(const ReferenceStudy& reference, const SelftestSettings& settings,
-                                                  const Observer& observer = {});
+                                                  const Context& context = {});
 /// What a reference study's table says of them.
 [[nodiscard]] SelftestResult judge(const ReferenceStudy& reference, const std::vector<InjectedDataset>& injected,
-                                   const SelftestSettings& settings, const Observer& observer = {});
+                                   const SelftestSettings& settings, const Context& context = {});
 /// Both, with a reference study for full data of the settings' kind.
 [[nodiscard]] SelftestResult selftest(const SceneSpec& scene, const ScriptSpec& script,
-                                      const SelftestSettings& settings, const Observer& observer = {});
+                                      const SelftestSettings& settings, const Context& context = {});
 
 /// The design's rates: alarms and names on nulls, power, right name, right family, wrong name, truth in the set,
 /// coverage; gaps closed on held-out trials; what becomes of effects that the catalogue lacks, of pairs and of
@@ -125,8 +164,5 @@ struct SelftestResult {
 /// (n_hypotheses x n_hypotheses) row: truth, column: likeliest hypothesis; shares of the row, of cases with a
 /// disagreement.
 [[nodiscard]] std::vector<std::vector<double>> confusion_of(const SelftestResult& result);
-
-[[nodiscard]] std::string to_markdown(const SelftestResult& result);
-[[nodiscard]] std::string to_csv(const SelftestResult& result);  ///< a row a case
 
 }  // namespace pirsim::reconcile

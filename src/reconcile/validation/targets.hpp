@@ -14,7 +14,7 @@ enum class Geometry { known, uncertain };  ///< whether nuisance is drawn
 
 /// A rate of the self-test with its bounds.
 struct Target {
-  std::string_view rate;  ///< Rate::what
+  Counted rate = Counted::seen;
   double at_least = 0.0, at_most = 1.0;
 };
 /// Ref for the right name: [Wilson2019], 0.90 of five models.
@@ -28,7 +28,6 @@ enum class Reached {
   no,         ///< the whole interval is outside
   not_tested  ///< no case
 };
-[[nodiscard]] std::string_view name(Reached reached) noexcept;
 
 struct TargetResult {
   Target target;
@@ -47,8 +46,5 @@ struct ConfusedPair {
 };
 /// Pairs whose share is at least so great, in three cases or more; the most confused first.
 [[nodiscard]] std::vector<ConfusedPair> confused_pairs(const SelftestResult& result, double least_share = 0.1);
-
-/// Targets, met or not, and the pairs that can't be told apart, as Markdown.
-[[nodiscard]] std::string targets_markdown(const SelftestResult& result, Geometry geometry);
 
 }  // namespace pirsim::reconcile

@@ -16,7 +16,7 @@ constexpr double level = 0.1;
 const ReferenceStudy& reference_study() {
   static const ReferenceStudy reference = [] {
     Settings settings;
-    settings.table = {60, 60, 60, 0, {"false_triggers"}};
+    settings.table = {60, 60, 60, {"false_triggers"}};
     return make_reference_study(test::shipped_scene("meeting_room.gltf"), test::short_study({"S1", "S4", "S8"}, 60.0),
                                 settings, [](const StudyFrame& frame, std::span<const Series> pilot) {
                                   return full_shape(frame, Measured::Kind::series, 1, pilot);
@@ -45,7 +45,7 @@ FittedEffect false_triggers(double rate_per_s, std::vector<double> equally_likel
 
 std::vector<double> p_of(std::span<const PatchedModel> models, unsigned threads = 0) {
   const ReferenceStudy& reference = reference_study();
-  return p_with(models, reference, reference.map(all_trials(reference.frame)), {level, 1, threads});
+  return p_with(models, reference, reference.map(all_trials(reference.frame)), level, {1, threads});
 }
 
 double p_of(const std::vector<FittedEffect>& applied, std::span<const float> observed, unsigned threads = 0) {
@@ -76,7 +76,7 @@ TEST_CASE("right models fail as often as the level says, and oftener if their ro
   std::vector<PatchedModel> models;
   for (const std::vector<float>& one : observed) models.push_back({std::span(&right, 1), one});
   const auto n_refused = [&](const ReferenceStudy& reference) {
-    return std::ranges::count_if(p_with(models, reference, reference.map(all_trials(reference.frame)), {level, 1, 0}),
+    return std::ranges::count_if(p_with(models, reference, reference.map(all_trials(reference.frame)), level, {}),
                                  [](double p) { return p <= level; });
   };
   // 4 expected, standard error 1.9: more than 9 once in 200 seeds.

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "pirsim/study.hpp"
-#include "reconcile/inference/outcome.hpp"
-#include "reconcile/inference/reconcile.hpp"
+#include "reconcile/inference/reference_study.hpp"
+#include "reconcile/report/sentences.hpp"
 #include "reconcile/validation/out_of_catalogue.hpp"
 #include "support/catch.hpp"
 #include "support/short_study.hpp"
@@ -21,7 +21,7 @@ ReferenceStudy make_reference_study(const NuisanceSpec& nuisance) {
   one.source = {test::shipped_scene("meeting_room.gltf"), test::short_study({"S2", "S5", "S9"}, work_s), nuisance, 4};
   one.frame = frame_of(one.source.scene, one.source.script);
   one.knowledge = cell_knowledge(one.source.scene, one.source.script);
-  const std::vector<Series> pilot = pilot_runs(one.source, one.frame, 30, 0);
+  const std::vector<Series> pilot = pilot_runs(one.source, one.frame, 30);
   one.shape = full_shape(one.frame, Measured::Kind::series, 1, pilot);
   one.table.profile = profile_of(one.frame, one.source.script, pilot);
   return one;
@@ -49,11 +49,7 @@ Measured injected(std::uint32_t realization, const Change& change) {
   return measured;
 }
 
-Residuals explained(const Measured& measured) {
-  ResidualSettings settings;
-  settings.n_simulated = 60;
-  return explain_residuals(reference_study(), measured, {}, settings);
-}
+Residuals explained(const Measured& measured) { return explain_residuals(reference_study(), measured, 0.05, {}); }
 
 Change fault(const std::string& name, std::size_t sensor) {
   const auto& all = out_of_catalogue_faults();
@@ -66,10 +62,10 @@ Change fault(const std::string& name, std::size_t sensor) {
 TEST_CASE("residuals name the sensor that says the opposite for a while", "[reconcile]") {
   for (const std::size_t sensor : {std::size_t{0}, std::size_t{3}}) {
     const Residuals found = explained(injected(1, fault("inverted_for_a_while", sensor)));
-    INFO(found.sentence);
+    INFO(sentence(found, {}));
     REQUIRE_FALSE(found.drivers.empty());
-    CHECK(found.drivers.front().who == reference_study().frame.sensors[sensor]);
-    CHECK_THAT(found.drivers.front().when, contains("middle third"));
+    CHECK(who_of(found.drivers.front()) == reference_study().frame.sensors[sensor]);
+    CHECK_THAT(when_of(found.drivers.front()), contains("middle third"));
   }
 }
 
@@ -81,10 +77,10 @@ TEST_CASE("residuals tell the seconds of each minute in which a sensor is trigge
       if ((i - begin) % 60 < 6 && stream.uniform() < 0.8) rows[i].bits[2] = 1;
     }
   }));
-  INFO(found.sentence);
+  INFO(sentence(found, {}));
   REQUIRE_FALSE(found.drivers.empty());
-  CHECK(found.drivers.front().who == reference_study().frame.sensors[2]);
-  CHECK_THAT(found.drivers.front().when, contains("first 6 s of each minute") && contains("whatever the seat"));
+  CHECK(who_of(found.drivers.front()) == reference_study().frame.sensors[2]);
+  CHECK_THAT(when_of(found.drivers.front()), contains("first 6 s of each minute") && contains("whatever the seat"));
 }
 
 TEST_CASE("residuals of the model itself follow nothing", "[reconcile]") {
@@ -101,12 +97,11 @@ TEST_CASE("sensors that are dead or stuck are explained as well", "[reconcile]")
     const Measured measured = injected(2, [bit](std::vector<Sample>& rows, Stream&) {
       for (Sample& row : rows) std::ranges::fill(row.bits, bit);
     });
-    ResidualSettings settings;
-    settings.n_simulated = 60;
-    const Residuals found = explain_residuals(known, measured, {}, settings);
-    INFO(found.sentence);
+    const Residuals found = explain_residuals(known, measured, 0.05, {});
+    INFO(sentence(found, {}));
     REQUIRE_FALSE(found.drivers.empty());
-    CHECK_THAT(found.drivers.front().what, contains(bit == 1 ? "motion where hardly any is expected" : "less motion"));
+    CHECK_THAT(what_of(found.drivers.front()),
+               contains(bit == 1 ? "motion where hardly any is expected" : "less motion"));
     for (const ResidualDriver& driver : found.drivers) {
       CHECK(std::isfinite(driver.log_odds));
       CHECK(driver.standard_error > 0.0);

@@ -6,7 +6,8 @@
 #include "core/digest.hpp"
 #include "pirsim/random.hpp"
 #include "reconcile/inference/analyst.hpp"
-#include "reconcile/inference/reconcile.hpp"
+#include "reconcile/inference/locate.hpp"
+#include "reconcile/inference/reference_study.hpp"
 #include "support/catch.hpp"
 #include "support/short_study.hpp"
 
@@ -17,13 +18,13 @@ namespace {
 
 const EffectSpec false_triggers{"false_triggers", {{"rate_per_s", 0.05}}, {}, {}};
 const EffectSpec stretching{"pulse_stretching", {{"hold_s", 2.5}, {"spread", 0.0}}, {}, {}};
-const VerifySettings quick{0.05, 1, 0, 40, 40};
+const VerifySettings quick{0.05, 40, 40};
 
 ReferenceStudy make(const std::vector<EffectSpec>& already, Measured::Kind kind) {
   ScriptSpec script = test::short_study({"S1", "S2", "S4", "S6", "S8", "S10"}, 60.0);
   script.effects = already;
   Settings settings;
-  settings.table = {110, 110, 110, 0, {"false_triggers", "missed_triggers", "pulse_stretching"}};
+  settings.table = {110, 110, 110, {"false_triggers", "missed_triggers", "pulse_stretching"}};
   return make_reference_study(
       test::shipped_scene("meeting_room.gltf"), script, settings,
       [&](const StudyFrame& frame, std::span<const Series> pilot) { return full_shape(frame, kind, 1, pilot); });
@@ -64,7 +65,7 @@ AppliedEffect applied(const ReferenceStudy& reference, std::span<const float> da
 
 Verification verify_one(const std::vector<AppliedEffect>& steps, const Folds& folds) {
   const Claim claim{steps, {}};
-  return verify(std::span(&claim, 1), folds, quick).front();
+  return verify(std::span(&claim, 1), folds, quick, {}).front();
 }
 
 }  // namespace
@@ -130,10 +131,10 @@ TEST_CASE("claims that are judged together are judged as each by itself", "[reco
   const std::vector<Claim> claims{{{applied(reference, one, "false_triggers")}, {}},
                                   {{applied(again, one, "false_triggers")}, {}},
                                   {{applied(reference, other, "pulse_stretching")}, {"false_triggers"}}};
-  const std::vector<Verification> together = verify(claims, three_folds(reference), quick);
+  const std::vector<Verification> together = verify(claims, three_folds(reference), quick, {});
   REQUIRE(together.size() == 3);
   for (std::size_t i = 0; i < claims.size(); ++i) {
-    const Verification alone = verify(std::span(claims).subspan(i, 1), three_folds(reference), quick).front();
+    const Verification alone = verify(std::span(claims).subspan(i, 1), three_folds(reference), quick, {}).front();
     CHECK(together[i].names == alone.names);
     CHECK(together[i].after.energy_score == alone.after.energy_score);
     CHECK(together[i].placebo == alone.placebo);
@@ -173,7 +174,7 @@ TEST_CASE("a patch with which nobody can get about is said not to be judged, and
   const std::vector<float> data = injected(plain_reference(), 1, {false_triggers});
   const std::vector<Claim> claims{{{applied(blocked, data, "second_person")}, {}},
                                   {{applied(plain_reference(), data, "false_triggers")}, {}}};
-  const std::vector<Verification> found = verify(claims, three_folds(plain_reference()), quick);
+  const std::vector<Verification> found = verify(claims, three_folds(plain_reference()), quick, {});
   CHECK(found[0].n_trials == 0);
   CHECK_FALSE(found[0].shrunk);
   CHECK(found[1].n_trials == plain_reference().frame.trials.size());
@@ -181,7 +182,7 @@ TEST_CASE("a patch with which nobody can get about is said not to be judged, and
 
 TEST_CASE("an effect that is no candidate is never the likeliest", "[reconcile][six-seats]") {
   const ReferenceStudy& reference = plain_reference();
-  const Analyst analyst(reference.view(all_trials(reference.frame), 0), {0.05, 1, 0, 40, "false_triggers"});
+  const Analyst analyst(reference.view(all_trials(reference.frame), 0), {0.05, 40, "false_triggers"}, {});
   const std::vector<float> data = injected(reference, 60, {false_triggers});
   const std::size_t left_out = hypothesis_of(reference.table, "false_triggers");
   CHECK(analyst.likeliest(data, [&](std::size_t hypothesis) { return hypothesis == left_out; }) == 0);
@@ -191,7 +192,7 @@ TEST_CASE("an effect that is no candidate is never the likeliest", "[reconcile][
 TEST_CASE("two effects are judged together and close more than one of them", "[reconcile][six-seats]") {
   const std::vector<EffectSpec> both{false_triggers, stretching};
   const std::vector<float> data = injected(plain_reference(), 30, both);
-  const Analyst analyst(plain_reference().view(all_trials(plain_reference().frame), 0), {0.05, 1, 0, 40});
+  const Analyst analyst(plain_reference().view(all_trials(plain_reference().frame), 0), {0.05, 40}, {});
   const FittedEffect likeliest = analyst.fit(analyst.likeliest(data, [](std::size_t) { return true; }), data);
   const std::string name = likeliest.effect.name,
                     rest = name == "false_triggers" ? "pulse_stretching" : "false_triggers";

@@ -10,8 +10,11 @@
 #include "pirsim/io.hpp"
 #include "pirsim/random.hpp"
 #include "reconcile/inference/analyst.hpp"
-#include "reconcile/inference/reconcile.hpp"
+#include "reconcile/inference/locate.hpp"
+#include "reconcile/inference/reference_study.hpp"
+#include "reconcile/inference/verify.hpp"
 #include "reconcile/report/outputs.hpp"
+#include "reconcile/report/sentences.hpp"
 #include "sim/compiled_study.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
@@ -27,7 +30,7 @@ ScriptSpec short_study() { return test::short_study({"S1", "S4", "S8"}, 60.0); }
 
 Settings quick() {
   Settings settings;
-  settings.table = {250, 250, 250, 0, {"false_triggers", "missed_triggers", "pulse_stretching"}};
+  settings.table = {250, 250, 250, {"false_triggers", "missed_triggers", "pulse_stretching"}};
   settings.trees = 60;
   settings.verify_realizations = 20;
   return settings;
@@ -43,7 +46,7 @@ const ReferenceStudy& reference_study() {
 }
 
 const Analyst& analyst() {
-  static const Analyst one(reference_study().view(all_trials(reference_study().frame), 0), {0.05, 1, 0, 60});
+  static const Analyst one(reference_study().view(all_trials(reference_study().frame), 0), {0.05, 60}, {});
   return one;
 }
 
@@ -100,7 +103,7 @@ TEST_CASE("effects on a remembered realization give what a study with them gives
 TEST_CASE("a table goes on where it was interrupted and refuses another study's chunks", "[reconcile][three-seats]") {
   const ReferenceStudy& reference = reference_study();
   const TemporaryFolder folder;
-  const TableSettings settings{30, 30, 30, 0, {"false_triggers"}};
+  const TableSettings settings{30, 30, 30, {"false_triggers"}};
   const auto make = [&](const RealizationSource& source) {
     return make_reference_table(source, reference.frame, reference.shape, reference.table.profile, settings,
                                 folder.path() / "t");
@@ -121,7 +124,7 @@ TEST_CASE("a table goes on where it was interrupted and refuses another study's 
 
 TEST_CASE("pilot runs are of realizations that no table has", "[reconcile][three-seats]") {
   const ReferenceStudy& reference = reference_study();
-  const std::vector<Series> pilot = pilot_runs(reference.source, reference.frame, 2, 0);
+  const std::vector<Series> pilot = pilot_runs(reference.source, reference.frame, 2);
   REQUIRE(pilot.size() == 2 * reference.frame.trials.size());
   for (const std::uint32_t realization : {0U, 1U}) {
     const Series own = SimulatedRealization(reference.source, reference.frame, realization, 1).plain(0, 1).front();
@@ -136,7 +139,7 @@ TEST_CASE("effects are trained in the same realizations and calibrated in realiz
   const std::vector<std::string> hypotheses{"seats_shifted", "sensor_tilt", "dual_polarity"};
   const ReferenceTable table =
       make_reference_table(reference.source, reference.frame, reference.shape, reference.table.profile,
-                           {50, 20, 20, 0, hypotheses}, std::filesystem::path());
+                           {50, 20, 20, hypotheses}, std::filesystem::path());
   const auto realizations = [&](std::size_t hypothesis, Part part) {
     std::set<std::uint32_t> found;
     for (const std::size_t row : rows_of(table, hypothesis, part)) found.insert(table.rows[row].realization);
@@ -182,7 +185,7 @@ TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile][three-se
   const TableView shuffled_view(reference.source.scene, reference.frame, reference.knowledge, shuffled,
                                 all_trials(reference.frame), 0);
   const HypothesisClassifier& honest = analyst().classifier();
-  const HypothesisClassifier confused(shuffled_view, {0.05, 60, 1, 0});
+  const HypothesisClassifier confused(shuffled_view, {0.05, 60}, {});
   double sure_of_truth = 0.0, sure_of_truth_when_confused = 0.0;  // chance is a quarter
   for (std::uint32_t i = 0; i < 10; ++i) {
     const std::vector<float> data = injected(200 + i, {many_false_triggers});
@@ -283,7 +286,7 @@ TEST_CASE("features keep their places in a dataset that lacks a trial", "[reconc
 TEST_CASE("a held-out trial has no part in features and names", "[reconcile][three-seats]") {
   const ReferenceStudy& reference = reference_study();
   std::vector<float> data = injected(300, {many_false_triggers});
-  const Analyst without(reference.view({0, 2}, 0), {0.05, 1, 0, 30});
+  const Analyst without(reference.view({0, 2}, 0), {0.05, 30}, {});
   const auto before = without.map().features(data);
   for (std::size_t sensor = 0; sensor < reference.frame.sensors.size(); ++sensor) {
     for (std::size_t k = 0; k < n_cell_statistics; ++k) {
@@ -309,7 +312,7 @@ TEST_CASE("the whole loop writes a patched script that runs and closes the gap",
   const Settings settings = quick();
   const Outcome outcome = reconcile::reconcile(scene, short_study(), measured, settings);
   CHECK(outcome.verdict == Verdict::named);
-  CHECK_THAT(outcome.sentence,
+  CHECK_THAT(sentence(outcome),
              contains("The catalogue was cut down to false_triggers, missed_triggers and pulse_stretching. The model"));
   // One effect was hidden: with it the model passes, and nothing more is looked for.
   REQUIRE(outcome.looks.size() == 1);
@@ -323,10 +326,10 @@ TEST_CASE("the whole loop writes a patched script that runs and closes the gap",
   CHECK(outcome.verification->after.energy_score < outcome.verification->before.energy_score);
   CHECK(outcome.verification->share_closed > 0.7);
   CHECK(outcome.candidates.size() == 3);
-  for (const Candidate& candidate : outcome.candidates) CHECK_FALSE(candidate.reason.empty());
-  write_outputs(folder.path(), outcome, measured, short_study(), settings, {"p", "s", "t", "m"});
+  for (const Candidate& candidate : outcome.candidates) CHECK_FALSE(in_words(candidate).empty());
+  write_report(folder.path(), outcome, measured, short_study(), settings, {}, {"p", "s", "t", "m"});
   // The trail is added to, and counts.
-  write_outputs(folder.path(), outcome, measured, short_study(), settings, {"p", "s", "t", "m"});
+  write_report(folder.path(), outcome, measured, short_study(), settings, {}, {"p", "s", "t", "m"});
   std::ifstream trail_file(folder.path() / "trail.log");
   const std::string trail{std::istreambuf_iterator<char>(trail_file), {}};
   CHECK_THAT(trail, contains("analysed 0 times before") && contains("analysed 1 times before"));
@@ -336,7 +339,7 @@ TEST_CASE("the whole loop writes a patched script that runs and closes the gap",
   CHECK(compile(scene, patched_script).compiled().stages().size() == 1);
   std::ifstream page_file(folder.path() / "report.html");
   const std::string page{std::istreambuf_iterator<char>(page_file), {}};
-  CHECK_THAT(page, contains(outcome.sentence) && contains("Does it help"));
+  CHECK_THAT(page, contains(sentence(outcome)) && contains("Does it help"));
   for (const Candidate& candidate : outcome.candidates) CHECK_THAT(page, contains(candidate.score.hypothesis));
 }
 
@@ -376,7 +379,7 @@ TEST_CASE("two effects at once are found one after the other", "[reconcile][thre
   CHECK(outcome.looks[1].p > outcome.looks[1].level);
   REQUIRE(outcome.verification);
   CHECK(outcome.verification->n_better == 3);
-  write_outputs(folder.path(), outcome, measured, short_study(), settings, {"p", "s", "t", "m"});
+  write_report(folder.path(), outcome, measured, short_study(), settings, {}, {"p", "s", "t", "m"});
   const ScriptSpec patched = io::read_script(folder.path() / "script_patched.yaml");
   REQUIRE(patched.effects.size() == 2);
   for (const EffectSpec& effect : patched.effects) {
@@ -388,12 +391,12 @@ TEST_CASE("two effects at once are found one after the other", "[reconcile][thre
                        contains("With labels_swapped and false_triggers applied, the model can have made these data"));
   for (const Candidate& candidate : outcome.candidates) {
     CHECK(candidate.kept);
-    CHECK_THAT(candidate.reason, contains("together with the others named. By itself: Dropped"));
+    CHECK_THAT(in_words(candidate), contains("together with the others named. By itself: Dropped"));
   }
   // What another analysis finds replaces it.
   Outcome nothing = outcome;
   nothing.verdict = Verdict::no_disagreement;
-  write_outputs(folder.path(), nothing, measured, short_study(), settings, {"p", "s", "t", "m"});
+  write_report(folder.path(), nothing, measured, short_study(), settings, {}, {"p", "s", "t", "m"});
   CHECK_FALSE(std::filesystem::exists(folder.path() / "script_patched.yaml"));
 }
 
@@ -417,17 +420,17 @@ TEST_CASE("a name is taken back if the model with it can't have made the data", 
   const Outcome outcome = reconcile::reconcile(scene, short_study(), measured, settings);
   CHECK(outcome.verdict == Verdict::none_in_catalogue);
   CHECK((outcome.named.empty() && outcome.fits.empty() && !outcome.verification));
-  CHECK_THAT(outcome.sentence, contains("What resembles it most, trigger_bursts, doesn't explain it"));
+  CHECK_THAT(sentence(outcome), contains("What resembles it most, trigger_bursts, doesn't explain it"));
   REQUIRE(outcome.looks.size() == 1);
   CHECK_FALSE(outcome.looks.front().passes());
   for (const Candidate& candidate : outcome.candidates) CHECK(!candidate.kept);
-  CHECK_THAT(outcome.candidates.front().reason, contains("Dropped: with it applied, the model still differs"));
+  CHECK_THAT(in_words(outcome.candidates.front()), contains("Dropped: with it applied, the model still differs"));
   REQUIRE(outcome.residuals);
-  CHECK_THAT(outcome.residuals->sentence, contains("PIR2, in the middle third") && contains("the opposite"));
+  CHECK_THAT(sentence(outcome), contains("PIR2, in the middle third") && contains("the opposite"));
   settings.max_effects = 1;  // nothing else is looked for: the name stands, and the rest is told
   const Outcome one = reconcile::reconcile(scene, short_study(), measured, settings);
   CHECK((one.verdict == Verdict::named && one.named == std::vector<std::string>{"trigger_bursts"}));
-  CHECK_THAT(one.sentence, contains("That is not all. With trigger_bursts applied, the model still differs"));
+  CHECK_THAT(sentence(one), contains("That is not all. With trigger_bursts applied, the model still differs"));
 }
 
 TEST_CASE("the seed of the script plays no part in the analysis", "[reconcile][three-seats]") {
@@ -443,15 +446,15 @@ TEST_CASE("the seed of the script plays no part in the analysis", "[reconcile][t
     measured.runs.push_back(*series_of(reference_study().frame, 1, result.trial, result.samples));
   });
   Settings settings = quick();
-  settings.table = {100, 100, 100, 0, {"false_triggers"}};
+  settings.table = {100, 100, 100, {"false_triggers"}};
   settings.trees = 20;
-  const auto report = [&](const ScriptSpec& script) {
-    return to_json(reconcile::reconcile(scene, script, measured, settings), measured, settings, {"p", "s", "t", "m"});
+  const auto report = [&](const ScriptSpec& script, const Context& context = {}) {
+    return to_json(reconcile::reconcile(scene, script, measured, settings, context), measured, settings, context,
+                   {"p", "s", "t", "m"});
   };
   const std::string first = report(one);
   CHECK(first == report(other));
-  settings.seed = 2;
-  CHECK(first != report(one));
+  CHECK(first != report(one, {.seed = 2}));
 }
 
 TEST_CASE("a script may fix the tilts that are known and predicts that run bit by bit", "[reconcile]") {

@@ -1,9 +1,10 @@
 // The page of a reconciliation, from outcomes made by hand.
-#include "reconcile/report/report_page.hpp"
+#include "reconcile/report/pages.hpp"
 
 #include <cmath>
 
-#include "reconcile/report/report_charts.hpp"
+#include "reconcile/report/charts.hpp"
+#include "reconcile/report/sentences.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;
@@ -36,10 +37,10 @@ FittedEffect fitted() {
 Outcome named() {
   Outcome outcome;
   outcome.verdict = Verdict::named;
-  outcome.sentence = "The model lacks soft_zone_edges.";
   outcome.location = two_cells();
-  outcome.candidates = {{{"soft_zone_edges", 0.9, 0.5, 0.6, 1.0}, "optics", true, "Kept: it fits."},
-                        {{"fidgeting", 0.1, 0.01, 0.6, 0.02}, "motion", false, "Dropped: it does not."}};
+  outcome.candidates = {
+      {{"soft_zone_edges", 0.9, 0.5, 0.6, 1.0}, effects::Family::optics, true, reason::NotRuledOut{1.0}},
+      {{"fidgeting", 0.1, 0.01, 0.6, 0.02}, effects::Family::motion, false, reason::RuledOut{0.01, {}}}};
   outcome.named = {"soft_zone_edges"};
   outcome.fits = {fitted()};
   outcome.verification.emplace();
@@ -101,7 +102,7 @@ TEST_CASE("candidates that were kept stand out from the merely probable", "[repo
   REQUIRE(chart.bars.size() == 2);
   CHECK(chart.bars[0].weight == io::BarChart::Weight::strong);
   CHECK(chart.bars[1].weight == io::BarChart::Weight::faint);
-  CHECK(chart.bars[1].hint == "Dropped: it does not.");
+  CHECK(chart.bars[1].hint == "Dropped: another explains the data better than is usual for its own (p 0.01).");
 }
 
 TEST_CASE("a posterior shows its values on the scale of its prior", "[report]") {
@@ -117,7 +118,7 @@ TEST_CASE("the page says the verdict first and shows what each verdict has", "[r
   Outcome outcome = named();
   const std::string page = to_html(report_page(outcome, 0.05));
   const auto at = [&](const char* what) { return page.find(what); };
-  CHECK(at("The model lacks soft_zone_edges.") < at("Where they differ</h2>"));
+  CHECK(at("The model lacks soft_zone_edges with sigma_deg 0.9") < at("Where they differ</h2>"));
   for (const char* kind : {"grid", "band", "bars", "dots"}) {
     CHECK(says(page, "<div class=\"charts " + std::string(kind) + "\">"));
   }
@@ -157,7 +158,7 @@ TEST_CASE("an effect that changes the model as another does stands beside it whe
   const std::vector<Candidate> all = with_twins(outcome.candidates);
   REQUIRE(all.size() == 3);
   CHECK(all[2].score.hypothesis == "thermal_contrast");
-  CHECK_THAT(all[2].reason, contains("Judged as range_scale"));
+  CHECK_THAT(in_words(all[2]), contains("Judged as range_scale"));
   CHECK(says(to_html(report_page(outcome, 0.05)), "thermal_contrast"));
   outcome.candidates[0].score.hypothesis = "thermal_contrast";  // asked for by itself
   CHECK(with_twins(outcome.candidates).size() == 2);

@@ -16,7 +16,7 @@ Outcome outcome_of(Verdict verdict, const std::vector<std::pair<std::string, dou
   Outcome outcome;
   outcome.verdict = verdict;
   for (const auto& [effect, probability] : kept) {
-    outcome.candidates.push_back({{effect, probability, 0.3, 0.4, 0.6}, "person", true, ""});
+    outcome.candidates.push_back({{effect, probability, 0.3, 0.4, 0.6}, effects::Family::person, true, {}});
     if (verdict != Verdict::named || outcome.named.empty()) outcome.named.push_back(effect);
   }
   if (verdict == Verdict::named) outcome.fits.push_back({{kept.front().first, {}, {}, {}}, {}, false});
@@ -40,37 +40,40 @@ TEST_CASE("a name says whether it has rivals and how probable it is", "[reconcil
 }
 
 TEST_CASE("the reason of a rival compares it with the one that is named", "[reconcile]") {
-  const Outcome outcome = outcome_of(Verdict::named, {{"seat_shift", 0.9}, {"body_size", 0.06}});
-  const std::string reason = reason_of_unlikely(outcome.candidates[1], outcome.candidates[0]);
+  const std::string reason = in_words(reason::LessLikely{0.6, 0.06, "seat_shift", 0.9});
   CHECK_THAT(reason, contains("much less likely than seat_shift (0.06 against 0.9)"));
 }
 
 TEST_CASE("of a model with effects applied it is said whether it passes, and what may be missing beside them",
           "[reconcile]") {
-  CHECK(what_a_look_showed({{"clock_lag"}, 0.025, 0.4, {}}) ==
+  CHECK(in_words(Look{{"clock_lag"}, 0.025, 0.4, {}}) ==
         "With clock_lag applied, the model can have made these data (p = 0.4).");
   CHECK(
-      what_a_look_showed({{"clock_lag", "dead_time"}, 0.0125, 0.01, {"seat_shift", "body_size"}}) ==
+      in_words(Look{{"clock_lag", "dead_time"}, 0.0125, 0.01, {"seat_shift", "body_size"}}) ==
       "With clock_lag and dead_time applied, the model still differs from the data (p = 0.01). What is missing beside "
       "it may be seat_shift or body_size: these data can't tell.");
-  CHECK_THAT(what_a_look_showed({{"clock_lag"}, 0.025, 0.01, {"seat_shift"}}), contains("may be seat_shift."));
+  CHECK_THAT(in_words(Look{{"clock_lag"}, 0.025, 0.01, {"seat_shift"}}), contains("may be seat_shift."));
 }
 
 TEST_CASE("a name that doesn't do when it is applied is taken back with that reason", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"trigger_bursts", 0.99}});
   outcome.looks.push_back({{"trigger_bursts"}, 0.025, 0.005, {}});
-  const std::string sentence = sentence_of_refused(outcome, 0.05);
-  CHECK_THAT(sentence, contains("The model lacks something that is not in the catalogue"));
-  CHECK_THAT(sentence,
-             contains("What resembles it most, trigger_bursts, doesn't explain it") && contains("(p = 0.005)"));
-  CHECK_THAT(reason_of_refused(outcome.looks.back()), contains("Dropped: with it applied") && contains("(p 0.005)"));
+  outcome.candidates.front().kept = false;
+  outcome.candidates.front().reason = reason::RefusedWhenApplied{0.005};
+  const std::string told = sentence(outcome, 0.05);
+  CHECK_THAT(told, contains("The model lacks something that is not in the catalogue"));
+  CHECK_THAT(told, contains("What resembles it most, trigger_bursts, doesn't explain it") && contains("(p = 0.005)"));
+  CHECK_THAT(in_words(outcome.candidates.front()), contains("Dropped: with it applied") && contains("(p 0.005)"));
 }
 
 TEST_CASE("of an effect that does when it is applied and was dropped all the same both is said", "[reconcile]") {
-  CHECK(
-      sentence_of_nearest({{"labels_swapped"}, 0.025, 0.524, {}}, "Dropped: data of its own seldom look like these.") ==
-      "labels_swapped comes nearest: with it applied, the test of everything together sees no difference (p = 0.524). "
-      "It was dropped all the same: data of its own seldom look like these.");
+  Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"labels_swapped", 0.99}});
+  outcome.candidates.front().reason = reason::RuledOut{{}, 0.01};
+  outcome.looks.push_back({{"labels_swapped"}, 0.025, 0.524, {}});
+  CHECK_THAT(sentence(outcome, 0.05),
+             contains(". labels_swapped comes nearest: with it applied, the test of everything together sees no "
+                      "difference (p = 0.524). It was dropped all the same: data of its own hardly ever look like "
+                      "these (p 0.01)."));
 }
 
 TEST_CASE("where no name is given the sentence says why", "[reconcile]") {
@@ -86,11 +89,9 @@ TEST_CASE("improbable effects that might have made the data are told with their 
   CHECK_THAT(
       verdict_sentence(outcome, 0.05),
       contains("most effects") && contains("seat_shift and body_size might, but with a probability of only 0.13"));
-  outcome.candidates.push_back({{"dead_time", 0.6, 0.0, 0.0, 0.01}, "electronics", false, ""});
+  outcome.candidates.push_back({{"dead_time", 0.6, 0.0, 0.0, 0.01}, effects::Family::electronics, false, {}});
   CHECK_THAT(verdict_sentence(outcome, 0.05), contains("the likelier effects"));
-  outcome.candidates[0].kept = false;
-  CHECK_THAT(reason_of(outcome.candidates[0], 0.05),
-             contains("Dropped: by itself it might have made these data (p 0.6)"));
+  CHECK_THAT(in_words(reason::Improbable{0.6}), contains("Dropped: by itself it might have made these data (p 0.6)"));
   for (Candidate& candidate : outcome.candidates) candidate.score.p = 0.01;
   CHECK_THAT(verdict_sentence(outcome, 0.05), contains("no effect of the catalogue is likely"));
 }
@@ -112,8 +113,19 @@ TEST_CASE("what to do next names a plan only for effects that are to be told apa
   CHECK_THAT(next_step(outcome_of(Verdict::one_of, {{"seat_shift", 0.13}})), !contains("--effects"));
 }
 
+TEST_CASE("of a rest that the model still differs by, and of a catalogue cut down, is told", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::named, {{"seat_shift", 0.9}});
+  outcome.looks.push_back({{"seat_shift"}, 0.025, 0.01, {}});
+  outcome.looked_for = {"seat_shift", "body_size"};
+  CHECK_THAT(sentence(outcome, 0.05),
+             contains("The catalogue was cut down to seat_shift and body_size. The model lacks"));
+  CHECK_THAT(sentence(outcome, 0.05), contains("That is not all. With seat_shift applied, the model still differs"));
+  outcome.looks.back().p = 0.5;
+  CHECK_THAT(sentence(outcome, 0.05), !contains("That is not all"));
+}
+
 TEST_CASE("a fitted effect names its twin and others name none", "[reconcile]") {
-  CHECK_THAT(in_words({{"range_scale", {}, {}, {}}, {}, false}),
+  CHECK_THAT(in_words(FittedEffect{{"range_scale", {}, {}, {}}, {}, false}),
              contains("or thermal_contrast, the same in the model"));
-  CHECK(in_words({{"seat_shift", {}, {}, {}}, {}, false}) == "seat_shift");
+  CHECK(in_words(FittedEffect{{"seat_shift", {}, {}, {}}, {}, false}) == "seat_shift");
 }

@@ -25,7 +25,7 @@ ReferenceStudy reference_study(const Settings& analysis) {
 
 TEST_CASE("strengths beyond the prior lie on both sides of it where it has two", "[reconcile][selftest]") {
   SelftestSettings settings;
-  settings.analysis.table = {60, 60, 60, 0, {"range_scale", "false_triggers"}};
+  settings.analysis.table = {60, 60, 60, {"range_scale", "false_triggers"}};
   settings.n_nulls = 0;
   settings.n_injected = 0;
   settings.n_beyond = 12;  // of one side only: once in 2,000 seeds
@@ -49,7 +49,7 @@ TEST_CASE("strengths beyond the prior lie on both sides of it where it has two",
 TEST_CASE("datasets that were injected are kept beside those of other numbers", "[reconcile][selftest]") {
   const TemporaryFolder folder;
   SelftestSettings settings;
-  settings.analysis.table = {20, 20, 20, 0, {"false_triggers"}};
+  settings.analysis.table = {20, 20, 20, {"false_triggers"}};
   settings.n_nulls = 2;
   settings.n_injected = 0;
   settings.injected_folder = folder.path() / "injected";

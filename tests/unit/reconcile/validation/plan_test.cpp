@@ -7,6 +7,8 @@
 
 #include "pirsim/io.hpp"
 #include "reconcile/data/longer_study.hpp"
+#include "reconcile/report/pages.hpp"
+#include "reconcile/report/sentences.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 #include "support/short_study.hpp"
@@ -23,9 +25,8 @@ PlanResult planned(const std::filesystem::path& table, unsigned threads) {
   PlanSettings settings;
   settings.analysis.table.effects = {"false_triggers", "missed_triggers", "dead_sensor"};
   settings.analysis.table_folder = table;
-  settings.analysis.threads = settings.analysis.table.threads = threads;
   settings.analysis.trees = 60;
-  return plan(test::shipped_scene("meeting_room.gltf"), one_seat(), settings);
+  return plan(test::shipped_scene("meeting_room.gltf"), one_seat(), settings, {1, threads});
 }
 
 }  // namespace
@@ -38,7 +39,7 @@ TEST_CASE("a longer study repeats every trial and adds a slow walk and the empty
   CHECK(study.script.trials[13].id == "S4 again");
   CHECK(study.walk == std::vector<std::size_t>{20});
   CHECK(study.empty == std::vector<std::size_t>{21});
-  CHECK(study.notes.empty());
+  CHECK(study.left_out.empty());
   for (const ScriptedAction& action : study.script.trials[20].people.front().actions) CHECK(action.phase == "working");
 }
 
@@ -46,11 +47,11 @@ TEST_CASE("the walker of a longer study is the first person of any trial", "[pla
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
   ScriptSpec script = one_seat();
   script.trials.insert(script.trials.begin(), TrialSpec{"empty", {}});
-  CHECK(longer_study(scene, script).notes.empty());
+  CHECK(longer_study(scene, script).left_out.empty());
   script.trials.resize(1);
   const LongerStudy nobody = longer_study(scene, script);
-  REQUIRE(nobody.notes.size() == 2);
-  CHECK_THAT(nobody.notes.front(), contains("nobody is in any trial"));
+  REQUIRE(nobody.left_out.size() == 2);
+  CHECK_THAT(in_words(nobody.left_out.front()), contains("nobody is in any trial"));
 }
 
 TEST_CASE("a room without an entrance has no slow walk and the plan says so", "[plan]") {
@@ -61,8 +62,8 @@ TEST_CASE("a room without an entrance has no slow walk and the plan says so", "[
                                                   {action::Wait{30.0}, {}, "working", {}}};
   const LongerStudy study = longer_study(scene, script);
   CHECK(study.walk.empty());
-  REQUIRE(study.notes.size() == 1);
-  CHECK_THAT(study.notes.front(), contains("a slow walk is left out"));
+  REQUIRE(study.left_out.size() == 1);
+  CHECK_THAT(in_words(study.left_out.front()), contains("a slow walk is left out"));
 }
 
 TEST_CASE("a plan is the same for any number of threads and its numbers hold together", "[plan]") {
@@ -81,7 +82,7 @@ TEST_CASE("a plan is the same for any number of threads and its numbers hold tog
   for (const auto& row : result.confusion) CHECK(std::accumulate(row.begin(), row.end(), 0.0) == Approx(1.0));
   // Ten minutes of an empty room show a rate of false triggers as half a minute of work can't, whatever else they tell.
   CHECK(result.designs[3].more_bits_95.low > 0.0);
-  CHECK(result.sentence.find("The best next measurement is ") == 0);
+  CHECK(sentence(result).find("The best next measurement is ") == 0);
   const std::string page = to_html(plan_page(result));
   for (const char* kind : {"bars", "grid"})
     CHECK_THAT(page, contains("<div class=\"charts " + std::string(kind) + "\">"));

@@ -4,7 +4,9 @@
 #include <algorithm>
 
 #include "io/gnuplot.hpp"
-#include "reconcile/report/selftest_page.hpp"
+#include "reconcile/report/charts.hpp"
+#include "reconcile/report/pages.hpp"
+#include "reconcile/report/sentences.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;
@@ -35,8 +37,7 @@ SelftestResult result_of(std::size_t nulls, std::size_t alarms) {
 
 Reached alarm_rate(std::size_t nulls, std::size_t alarms) {
   const auto all = compare_with_targets(result_of(nulls, alarms), Geometry::uncertain);
-  return std::ranges::find(all, "a disagreement although nothing is hidden",
-                           [](const TargetResult& one) { return one.target.rate; })
+  return std::ranges::find(all, Counted::alarm_on_nothing, [](const TargetResult& one) { return one.target.rate; })
       ->reached;
 }
 
@@ -68,7 +69,7 @@ TEST_CASE("every target but those of known geometry has a rate that a full self-
     result.cases.push_back(c);
   }
   for (const TargetResult& one : compare_with_targets(result, Geometry::uncertain)) {
-    INFO(one.target.rate);
+    INFO(in_words(one.target.rate));
     CHECK(one.rate.of > 0);
   }
 }
@@ -102,7 +103,7 @@ TEST_CASE("gaps that are closed are counted where the right name was applied and
   result.cases.back().verification.emplace().n_trials = 3;  // shrunk by nothing: there was nothing to close
   const std::vector<Rate> rates = rates_of(result);
   const auto rate = [&](const std::string& what) {
-    const auto found = std::ranges::find(rates, what, &Rate::what);
+    const auto found = std::ranges::find(rates, what, [](const Rate& one) { return in_words(one.what); });
     REQUIRE(found != rates.end());
     return std::pair(found->hits, found->of);
   };
@@ -124,7 +125,9 @@ TEST_CASE("names that were applied are counted by whose they are", "[selftest]")
   for (const double p : {0.026, 0.025, 0.001, 0.002}) add(CaseKind::left_out, p);
   result.cases.push_back(injected("sensor_yaw", "sensor_yaw", Verdict::named));  // not among those tried
   const std::vector<Rate> rates = rates_of(result);
-  const auto rate = [&](const std::string& what) { return std::ranges::find(rates, what, &Rate::what); };
+  const auto rate = [&](const std::string& what) {
+    return std::ranges::find(rates, what, [](const Rate& one) { return in_words(one.what); });
+  };
   const auto right = rate("applied, the right name: the model passes");
   const auto neighbour = rate("applied, the name of an effect that the catalogue lacks: the model passes");
   REQUIRE((right != rates.end() && neighbour != rates.end()));
@@ -141,8 +144,8 @@ TEST_CASE("a family counts as said if the named effect is of it or its effects a
   }
   result.cases.push_back(injected("sensor_yaw", "sensor_tilt", Verdict::one_of));  // no family is sure
   const std::vector<Rate> rates = rates_of(result);
-  const auto right = std::ranges::find(rates, "the right family, given a disagreement", &Rate::what);
-  const auto wrong = std::ranges::find(rates, "one wrong family", &Rate::what);
+  const auto right = std::ranges::find(rates, Counted::right_family, &Rate::what);
+  const auto wrong = std::ranges::find(rates, Counted::wrong_family, &Rate::what);
   REQUIRE(right != rates.end());
   REQUIRE(wrong != rates.end());
   CHECK(right->hits == 1);
