@@ -56,7 +56,7 @@ TEST_CASE(
     "[stats]") {
   // Given one calibration set of 160 rows a class the level itself varies by sqrt(.1 x .9 / 160) = 0.024, and the share
   // of 900 rows by 0.010; three tables average: 0.014 + 0.006.
-  double wrongly = 0.0, relative_only = 0.0, aliens_refused = 0.0, aliens_refused_by_margin = 0.0, least = 1.0;
+  double wrongly = 0.0, relative_only = 0.0, unknown_refused = 0.0, unknown_refused_by_margin = 0.0, least = 1.0;
   for (std::uint32_t study = 0; study < 3; ++study) {
     const ConformalClassifier classifier = fit(10 * study);
     const Labelled known = draw(300, {0, 1, 2}, 10 * study + 1),
@@ -69,16 +69,16 @@ TEST_CASE(
     }
     for (const Classification& one : classifier.classify(out - of - catalogue fault.features)) {
       for (std::size_t k = 0; k < one.p.size(); ++k) least = std::min(least, one.p[k] - classifier.least_p(k));
-      aliens_refused += all_refused(one.p, 0.1) ? 1.0 / 900 : 0.0;
-      aliens_refused_by_margin += all_refused(one.p_relative, 0.1) ? 1.0 / 900 : 0.0;
+      unknown_refused += all_refused(one.p, 0.1) ? 1.0 / 900 : 0.0;
+      unknown_refused_by_margin += all_refused(one.p_relative, 0.1) ? 1.0 / 900 : 0.0;
     }
   }
   CHECK(wrongly < 0.1 + 3 * 0.015);
   CHECK(wrongly > 0.02);
   CHECK(std::abs(relative_only - 0.1) < 3 * 0.015);
   // Columns 20 to 22 are 3 sd off: chi-squared of 27 over 30, four-sigma with 3 columns known.
-  CHECK(aliens_refused > 0.8);
-  CHECK(aliens_refused_by_margin < 0.3);
+  CHECK(unknown_refused > 0.8);
+  CHECK(unknown_refused_by_margin < 0.3);
   CHECK(least == 0.0);  // what is stranger than all known rows has the least p there is, and no row a smaller one
 }
 
