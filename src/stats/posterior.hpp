@@ -10,7 +10,7 @@
 namespace pirsim::stats {
 
 /// Statistics chosen for the parameters: the best linear estimate of each parameter from many statistics (ridge
-/// regression, its strength by generalised cross-validation). Guesses are few, so ABC on them loses least.
+/// regression, its strength by generalised cross-validation). Estimates are few, so ABC on them loses least.
 /// Ref: [FearnheadPrangle2012]
 class ParameterEstimator {
  public:

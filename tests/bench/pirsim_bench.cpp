@@ -384,7 +384,7 @@ void first_runs() {
   }
 }
 
-/// What a world of a reconciliation's reference table costs, and each effect in it.
+/// What a realization of a reconciliation's reference table costs, and each effect in it.
 void realizations() {
   const reconcile::RealizationSource source{
       shipped_scene("meeting_room.gltf"), shipped_script("studyA.yaml", {"replicates=1"}), {}, 1};

@@ -159,7 +159,7 @@ TEST_CASE("effects are trained in the same realizations and calibrated in realiz
   CHECK(of_all.empty());
 }
 
-TEST_CASE("a injected effect is located and named and nothing is not", "[reconcile][three-seats]") {
+TEST_CASE("an injected effect is located and named and nothing is not", "[reconcile][three-seats]") {
   const Outcome found = analyst().analyse(injected(1, {many_false_triggers}));
   CHECK(found.verdict == Verdict::named);
   REQUIRE_FALSE(found.named.empty());
