@@ -1,8 +1,8 @@
-# `cmake --install` gives a static library that find_package(pirsim) and pkg-config find, the command, and the data.
+# `cmake --install` gives static libraries that find_package(pirsim) and pkg-config find, the command, and the data.
 include(CMakePackageConfigHelpers)
 
 set(PIRSIM_DATA_INSTALL_DIR "${CMAKE_INSTALL_DATADIR}/pirsim")
-install(TARGETS pirsim EXPORT pirsimTargets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+install(TARGETS pirsim pirsim_reconcile EXPORT pirsimTargets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
   FILE_SET HEADERS DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 if(TARGET pirsim_app)
   install(TARGETS pirsim_app RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
@@ -19,5 +19,7 @@ install(FILES "${PROJECT_BINARY_DIR}/pirsimConfig.cmake" "${PROJECT_BINARY_DIR}/
 
 # Relative to the .pc file itself, so that an installation can be moved.
 file(RELATIVE_PATH PIRSIM_PC_TO_PREFIX "/prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/prefix")
-configure_file("${CMAKE_CURRENT_LIST_DIR}/pirsim.pc.in" "${PROJECT_BINARY_DIR}/pirsim.pc" @ONLY)
-install(FILES "${PROJECT_BINARY_DIR}/pirsim.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+foreach(package IN ITEMS pirsim pirsim-reconcile)
+  configure_file("${CMAKE_CURRENT_LIST_DIR}/${package}.pc.in" "${PROJECT_BINARY_DIR}/${package}.pc" @ONLY)
+  install(FILES "${PROJECT_BINARY_DIR}/${package}.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+endforeach()

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Checks the layers of pirsim: who may include whom, no cycles, each third-party library in its one place.
+"""Checks the layers of pirsim and the rooms of a layer: who may include whom, no cycles, each third-party library in its one place.
 
 Usage: check_layers.py [ROOT]; prints every violation as file:line: message and exits with 1 if there is any.
-The table below is the one in docs/architecture.md.
+The tables below are those in docs/architecture.md.
 """
 import pathlib
 import re
@@ -19,10 +19,20 @@ BELOW = {
     "io": {"effects", "schema", "geom", "core"},
     "effects": {"schema", "geom", "core"},
     "sim": {"effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
-    "studies": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "stats", "core"},
+    "studies": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
     "reconcile": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "stats", "core"},
 }
 BELOW["app"] = set(BELOW)
+# rooms of a layer: who may include whom; only the app may include the last
+ROOMS = {
+    "reconcile": {
+        "data": set(),
+        "ensemble": {"data"},
+        "inference": {"data", "ensemble"},
+        "validation": {"data", "ensemble", "inference"},
+        "report": {"data", "ensemble", "inference", "validation"},
+    },
+}
 # public header -> the layer that it belongs to; include/pirsim/pirsim.hpp is the umbrella and belongs to none
 PUBLIC = {
     "error": "core", "random": "core", "version": "core",
@@ -32,6 +42,7 @@ PUBLIC = {
     "model": "sim", "state": "sim", "study": "sim", "recording": "sim",
     "coverage": "studies", "walk_test": "studies",
     "csv": "io", "io": "io",
+    "reconcile": "reconcile", "reconcile_outcome": "reconcile",
 }
 # header prefix of a third-party library -> the only layers that may include it
 THIRD_PARTY = {
@@ -70,6 +81,27 @@ def included_layer(name: str):
     return parts[0] if parts[0] in BELOW and len(parts) > 1 else None
 
 
+def room_of(parts):
+    """Layer and room, of a path below src or an include."""
+    return (parts[0], parts[1]) if parts[0] in ROOMS and len(parts) > 2 else None
+
+
+def room_fault(here: pathlib.Path, name: str):
+    own, other = room_of(here.parts[1:]) if here.parts[0] == "src" else None, room_of(name.split("/"))
+    if own and other and own[0] == other[0] and own[1] != other[1] and other[1] not in ROOMS[own[0]][own[1]]:
+        return f"{own[0]}/{own[1]} must not include {other[0]}/{other[1]} ({name})"
+    return None
+
+
+def stray_files(root: pathlib.Path):
+    """Every file of a layer with rooms is in one of them."""
+    for layer, rooms in ROOMS.items():
+        for file in sorted((root / "src" / layer).rglob("*.?pp")):
+            room = file.relative_to(root / "src" / layer).parts[0]
+            if room not in rooms:
+                yield f"{file.relative_to(root)}:1: not in a room of {layer}: {', '.join(rooms)}"
+
+
 def violations(root: pathlib.Path):
     files = sorted([*root.glob("include/**/*.hpp"), *root.glob("src/**/*.hpp"), *root.glob("src/**/*.cpp")])
     graph = {}
@@ -88,6 +120,9 @@ def violations(root: pathlib.Path):
             target = included_layer(name)
             if layer and target and target != layer and target not in BELOW[layer]:
                 yield f"{here}:{number}: layer {layer} must not include layer {target} ({name})"
+            fault = room_fault(here, name) if match.group(1) == '"' else None
+            if fault:
+                yield f"{here}:{number}: {fault}"
             for prefix, gate in GATES.items():
                 if match.group(1) == "<" and name.startswith(prefix + "/") and str(here) != gate:
                     yield f"{here}:{number}: {name} may only be included in {gate}"
@@ -96,6 +131,7 @@ def violations(root: pathlib.Path):
                                               or (prefix == "embree" and name.startswith("embree"))):
                     if layer not in homes or here.parts[0] == "include":
                         yield f"{here}:{number}: {name} may only be included in src/{'/, src/'.join(sorted(homes))}/"
+    yield from stray_files(root)
     yield from cycles(graph)
 
 

@@ -37,7 +37,7 @@ enum class Purpose : std::uint32_t {
   reference_parameters = 202,  ///< parameters of effects, from their priors
   analysis = 203,              ///< ties, forests, splits
   sealed_answer = 204,         ///< what a sealed challenge hides
-  model_check = 205,           ///< parameters of a fitted effect in the worlds that its model is checked in
+  model_check = 205,           ///< parameters of a fitted effect in the realizations that its model is checked in
   // Of the physical response, from 300 on.
   detector_noise = 300,  ///< of one sensor's element and amplifier
   reader_phase = 301,    ///< when in its window each sensor is read

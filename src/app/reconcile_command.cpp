@@ -11,12 +11,13 @@
 #include "io/gnuplot.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/version.hpp"
-#include "reconcile/measured.hpp"
-#include "reconcile/outputs.hpp"
-#include "reconcile/plan.hpp"
-#include "reconcile/reconcile.hpp"
-#include "reconcile/selftest.hpp"
-#include "reconcile/selftest_page.hpp"
+#include "reconcile/data/measured.hpp"
+#include "reconcile/inference/verify.hpp"
+#include "reconcile/report/charts.hpp"
+#include "reconcile/report/pages.hpp"
+#include "reconcile/report/sentences.hpp"
+#include "reconcile/validation/plan.hpp"
+#include "reconcile/validation/selftest.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -49,7 +50,7 @@ struct SelftestOptions {
   std::filesystem::path output = "reconcile_selftest";  ///< folder
   reconcile::Measured::Kind kind = reconcile::Measured::Kind::series;
   int runs = 1;
-  std::uint32_t nulls = 60, planted = 10, beyond = 0, pairs = 0, aliens = 0, verified = 0;
+  std::uint32_t nulls = 60, injected = 10, beyond = 0, pairs = 0, out_of_catalogue = 0, verified = 0;
   reconcile::LeaveOut leave_out = reconcile::LeaveOut::none;
 };
 
@@ -58,22 +59,19 @@ reconcile::Settings settings_of(const AnalysisOptions& options, const std::files
   reconcile::Settings settings;
   settings.nuisance = nuisance_of(options.nuisance);
   settings.alpha = options.alpha;
-  settings.seed = options.seed;
-  settings.threads = options.threads;
   const auto scaled = [&](std::uint32_t n) {
     return std::max(reconcile::fewest_datasets_to_refuse(options.alpha),
                     static_cast<std::uint32_t>(static_cast<double>(n) * options.budget));
   };
   for (const std::string& effect : options.effects) {
     const std::string& name = effects::find(effect).info.name;
-    if (std::ranges::find(settings.table.entries, name) != settings.table.entries.end())
+    if (std::ranges::find(settings.table.effects, name) != settings.table.effects.end())
       throw Error(ErrorCode::usage, "--effects: " + name + " twice");
     if (std::ranges::find(script.effects, name, &EffectSpec::name) != script.effects.end())
       throw Error(ErrorCode::usage, "--effects: the script has " + name + " already, it isn't looked for again");
-    settings.table.entries.push_back(name);
+    settings.table.effects.push_back(name);
   }
-  settings.table.threads = options.threads;
-  settings.table.n_worlds = scaled(settings.table.n_worlds);
+  settings.table.n_realizations = scaled(settings.table.n_realizations);
   settings.table.n_remembered = scaled(settings.table.n_remembered);
   settings.table.n_traced = scaled(settings.table.n_traced);
   settings.table_folder = options.table.empty() ? output / "table" : options.table;
@@ -87,9 +85,9 @@ void require_writable(const std::filesystem::path& folder) {
   const io::AtomicFile never_committed(folder / "report.json");
 }
 
-void tell_notes(const std::vector<std::string>& notes, Verbosity verbosity) {
+void tell_notes(const std::vector<reconcile::DataNote>& notes, Verbosity verbosity) {
   if (verbosity == Verbosity::quiet) return;
-  for (const std::string& note : notes) std::cerr << note << '\n';
+  for (const reconcile::DataNote& note : notes) std::cerr << reconcile::in_words(note) << '\n';
 }
 
 /// Tells stages and progress on standard error.
@@ -98,13 +96,13 @@ class Teller {
   explicit Teller(Verbosity verbosity) : verbosity_(verbosity) {}
   [[nodiscard]] reconcile::Observer observer() {
     reconcile::Observer observer;
-    observer.stage = [this](const std::string& stage) {
+    observer.stage = [this](const reconcile::Stage& stage) {
       progress_.reset();
       told_ = 0;
-      if (verbosity_ != Verbosity::quiet) std::cerr << stage << " ...\n";
+      if (verbosity_ != Verbosity::quiet) std::cerr << reconcile::in_words(stage) << " ...\n";
     };
     observer.progress = [this](std::uint32_t done, std::uint32_t total) {
-      if (!progress_) progress_.emplace(total, verbosity_, "worlds");
+      if (!progress_) progress_.emplace(total, verbosity_, "realizations");
       for (; told_ < done; ++told_) progress_->run_finished();
     };
     return observer;
@@ -116,6 +114,10 @@ class Teller {
   std::optional<Progress> progress_;
   std::uint32_t told_ = 0;
 };
+
+reconcile::Context context_of(const AnalysisOptions& options, Teller& teller) {
+  return {options.seed, options.threads, teller.observer()};
+}
 
 std::string made_by(const Inputs& inputs) {
   return "pirsim " + version() + " " + git_revision() + ", " + inputs.scene.filename().string() + ", " +
@@ -137,16 +139,16 @@ void reconcile_selftest(const Inputs& inputs, const AnalysisOptions& analysis, c
                                        options.kind,
                                        options.runs,
                                        options.nulls,
-                                       options.planted,
+                                       options.injected,
                                        options.beyond,
                                        options.pairs,
-                                       options.aliens,
+                                       options.out_of_catalogue,
                                        options.leave_out,
                                        options.verified};
   require_writable(options.output);
-  settings.planted_folder = settings.analysis.table_folder / "planted";
+  settings.injected_folder = settings.analysis.table_folder / "injected";
   Teller teller(inputs.verbosity);
-  const reconcile::SelftestResult result = reconcile::selftest(scene, script, settings, teller.observer());
+  const reconcile::SelftestResult result = reconcile::selftest(scene, script, settings, context_of(analysis, teller));
   teller.finish();
   std::cout << reconcile::to_markdown(result);
   require_written();
@@ -162,9 +164,9 @@ void reconcile_plan(const Inputs& inputs, const AnalysisOptions& analysis, const
   reconcile::PlanSettings settings{settings_of(analysis, options.output, script), options.kind, options.runs};
   require_writable(options.output);
   Teller teller(inputs.verbosity);
-  const reconcile::PlanResult result = reconcile::plan(scene, script, settings, teller.observer());
+  const reconcile::PlanResult result = reconcile::plan(scene, script, settings, context_of(analysis, teller));
   teller.finish();
-  std::cout << result.sentence << '\n';
+  std::cout << reconcile::sentence(result) << '\n';
   require_written();
   reconcile::write_plan(options.output, result, made_by(inputs));
 }
@@ -185,14 +187,15 @@ void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const
   settings.holdout = reconcile::holdout_of(options.holdout, frame, measured);
 
   Teller teller(inputs.verbosity);
-  const reconcile::Outcome outcome = reconcile::reconcile(scene, script, measured, settings, teller.observer());
+  const reconcile::Context context = context_of(analysis, teller);
+  const reconcile::Outcome outcome = reconcile::reconcile(scene, script, measured, settings, context);
   teller.finish();
   tell_notes(outcome.notes, inputs.verbosity);
-  std::cout << outcome.sentence << '\n';
+  std::cout << reconcile::sentence(outcome, settings.alpha) << '\n';
   require_written();
-  reconcile::write_outputs(options.output, outcome, measured, script, settings,
-                           {"pirsim " + version() + " " + git_revision(), inputs.scene.filename().string(),
-                            inputs.script.filename().string(), options.measured.filename().string()});
+  reconcile::write_report(options.output, outcome, measured, script, settings, context,
+                          {"pirsim " + version() + " " + git_revision(), inputs.scene.filename().string(),
+                           inputs.script.filename().string(), options.measured.filename().string()});
 }
 
 void offer_analysis(CLI::App& command, AnalysisOptions& options) {
@@ -225,7 +228,7 @@ void add_selftest_command(CLI::App& reconcile_command) {
   CLI::App& command =
       add_command(reconcile_command, "selftest", "hide effects in simulated data and see which are found", R"(
   pirsim reconcile selftest --scene room.gltf --script study.yaml --budget 0.2
-  pirsim reconcile selftest --scene room.gltf --script study.yaml --effects dead_time,sensor_yaw --planted 40
+  pirsim reconcile selftest --scene room.gltf --script study.yaml --effects dead_time,sensor_yaw --injected 40
 )");
   const auto inputs = std::make_shared<Inputs>();
   const auto analysis = std::make_shared<AnalysisOptions>();
@@ -234,23 +237,24 @@ void add_selftest_command(CLI::App& reconcile_command) {
   using reconcile::LeaveOut;
   command.add_option("-o,--out", options->output, "folder for rates and pictures (default: reconcile_selftest)")
       ->option_text("DIR");
-  offer_kind(command, options->kind, "what is planted in");
+  offer_kind(command, options->kind, "what faults are injected into");
   command.add_option("--runs", options->runs, "runs of every trial (default: 1)")
       ->option_text("N")
       ->check(CLI::Range(1, 100));
   command.add_option("--nulls", options->nulls, "datasets with nothing hidden (default: 60)")->option_text("N");
-  command.add_option("--planted", options->planted, "datasets of every effect and strength (default: 10)")
+  command.add_option("--injected", options->injected, "datasets of every effect and strength (default: 10)")
       ->option_text("N");
   command.add_option("--beyond", options->beyond, "of every effect, stronger than any in the table (default: 0)")
       ->option_text("N");
   command.add_option("--pairs", options->pairs, "datasets with two effects (default: 0)")->option_text("N");
-  command.add_option("--aliens", options->aliens, "of every fault that no catalogue has (default: 0)")
+  command
+      .add_option("--out-of-catalogue", options->out_of_catalogue, "of every fault that no catalogue has (default: 0)")
       ->option_text("N");
   command
       .add_option(
           "--verify", options->verified,
           "with the right name, judged on held-out trials; and all with nothing hidden and something suspected; "
-          "and names put in, to see whether the model passes (default: 0)")
+          "and named effects applied, to see whether the model passes (default: 0)")
       ->option_text("N");
   command.add_option("--leave-out", options->leave_out, "none, or each: judge by catalogues that lack the effect, too")
       ->option_text("HOW")
@@ -301,7 +305,7 @@ void add_reconcile_command(CLI::App& app) {
                   "share (0.3) or names (S3,S8) of trials kept from naming and fitting, to be judged on "
                   "(default: every trial once, in folds)")
       ->option_text("TRIALS");
-  command.add_option("--max-effects", options->max_effects, "most effects to put in (default: 3)")
+  command.add_option("--max-effects", options->max_effects, "most effects to apply (default: 3)")
       ->option_text("N")
       ->check(CLI::Range(1, 5));
   offer_analysis(command, *analysis);

@@ -9,7 +9,8 @@
 #include "app/session.hpp"
 #include "io/text_input.hpp"
 #include "pirsim/io.hpp"
-#include "reconcile/seal.hpp"
+#include "reconcile/report/sentences.hpp"
+#include "reconcile/validation/seal.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -105,7 +106,7 @@ void open_challenge(const OpenOptions& options) {
     throw Error(ErrorCode::input, {options.commitment.string(), 1, 1}, "expected a SHA-256 of 64 hexadecimal digits");
   const reconcile::Score score =
       reconcile::open_answer(read_document(options.answer), published, read_document(options.report));
-  std::cout << score.sentence << '\n';
+  std::cout << reconcile::sentence(score) << '\n';
   require_written();
 }
 
@@ -125,13 +126,13 @@ void add_seal_command(CLI::App& reconcile_command) {
       ->option_text("FILE");
   command.add_option("--nuisance", options->nuisance, "what is uncertain about the room, YAML; or none")
       ->option_text("FILE");
-  command.add_option("--hide", options->hidden, "any, nothing, one, two or alien (default: any)")
+  command.add_option("--hide", options->hidden, "any, nothing, one, two or out-of-catalogue (default: any)")
       ->option_text("KIND")
       ->transform(one_of<Hidden>({{"any", Hidden::any},
                                   {"nothing", Hidden::nothing},
                                   {"one", Hidden::one},
                                   {"two", Hidden::two},
-                                  {"alien", Hidden::alien}}));
+                                  {"out-of-catalogue", Hidden::out_of_catalogue}}));
   command.add_option("--runs", options->runs, "runs of every trial (default: 1)")
       ->option_text("N")
       ->check(CLI::Range(1, 100));

@@ -11,7 +11,7 @@ enum class Verdict {
   no_disagreement,    ///< the model without any effect isn't refused
   named,              ///< one effect survives, or one of several is far likelier than the others
   one_of,             ///< several survive: these data can't tell them apart
-  several,            ///< effects put in one after the other made the data together; decide() never says so
+  several,            ///< effects applied one after the other made the data together; decide() never says so
   none_in_catalogue,  ///< nothing known makes such data, or only what is improbable
 };
 
@@ -25,17 +25,17 @@ struct Candidate {
 struct DecisionLevels {
   double alpha = 0.05;  ///< a candidate survives if its p exceeds it
   /// An effect at least as probable is named though others survive: their own tests lack the power to refuse them. On
-  /// 1,620 planted datasets (Study A, one run) 0.8, 0.85, 0.9 and 0.95 gave the right name in 0.80, 0.79, 0.78 and 0.76
-  /// of the disagreements and a wrong one in 0.9, 0.6, 0.4 and 0.3 % of all.
+  /// 1,620 injected datasets (Study A, one run) 0.8, 0.85, 0.9 and 0.95 gave the right name in 0.80, 0.79, 0.78 and
+  /// 0.76 of the disagreements and a wrong one in 0.9, 0.6, 0.4 and 0.3 % of all.
   double sure = 0.85;
   /// What survives must be as probable together, else too much that is as likely was ruled out, and nothing of the
-  /// catalogue made the data. One half: more probable than not. On planted datasets it drops the truth in 5 of 1,124
+  /// catalogue made the data. One half: more probable than not. On injected datasets it drops the truth in 5 of 1,124
   /// disagreements and recognises 171 instead of 140 of 180 things that the catalogue lacks; smaller levels do less of
   /// both.
   double plausible = 0.5;
   /// An effect at least as probable is ruled out only at two fifths of alpha, or by the least p that there is: that the
   /// data are among the strangest twentieth of its own is then likelier than that nothing of the catalogue made them.
-  /// On the planted datasets of two seeds, and with the geometry known, 0.849, 0.844 and 0.939 instead of 0.840, 0.832
+  /// On the injected datasets of two seeds, and with the geometry known, 0.849, 0.844 and 0.939 instead of 0.840, 0.832
   /// and 0.920 of the disagreements get the right name, no more get a wrong one. Of 180 things each that the catalogue
   /// lacks 4 and none more are named, and of the effects left out of it 7 in 1,000 more.
   double certain = 0.99;

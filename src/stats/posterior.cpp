@@ -81,11 +81,11 @@ Eigen::MatrixXd adjust(const Eigen::MatrixXd& parameters, const Eigen::MatrixXd&
 
 }  // namespace
 
-ParameterGuess ParameterGuess::fit(const Matrix<double>& statistics, const Matrix<double>& parameters) {
+ParameterEstimator ParameterEstimator::fit(const Matrix<double>& statistics, const Matrix<double>& parameters) {
   require(statistics.rows() == parameters.rows() && statistics.rows() > 1,
-          "guess: rows differ in number or are too few");
-  require_finite(statistics.values(), "guess: a statistic is not finite");
-  require_finite(parameters.values(), "guess: a parameter is not finite");
+          "estimate: rows differ in number or are too few");
+  require_finite(statistics.values(), "estimate: a statistic is not finite");
+  require_finite(parameters.values(), "estimate: a parameter is not finite");
   const Eigen::RowVectorXd mean = as_eigen(statistics).colwise().mean();
   Eigen::MatrixXd centred = as_eigen(statistics).rowwise() - mean;
   const Eigen::RowVectorXd sd = (centred.colwise().squaredNorm() / static_cast<double>(statistics.rows())).cwiseSqrt();
@@ -99,8 +99,8 @@ ParameterGuess ParameterGuess::fit(const Matrix<double>& statistics, const Matri
   const Eigen::MatrixXd rotated = svd.matrixU().transpose() * targets;
   const auto n = static_cast<double>(statistics.rows());
 
-  ParameterGuess guess;
-  guess.slopes_ = Matrix<double>(parameters.columns(), statistics.columns());
+  ParameterEstimator estimate;
+  estimate.slopes_ = Matrix<double>(parameters.columns(), statistics.columns());
   for (Eigen::Index p = 0; p < targets.cols(); ++p) {
     double best_score = std::numeric_limits<double>::infinity();
     Eigen::ArrayXd best_shrink = Eigen::ArrayXd::Zero(squares.size());
@@ -120,27 +120,27 @@ ParameterGuess ParameterGuess::fit(const Matrix<double>& statistics, const Matri
         svd.matrixV() *
         ((squares > 1e-12 * squares(0)).select(best_shrink / safe, 0.0) * rotated.col(p).array()).matrix();
     const Eigen::VectorXd scaled = slopes.cwiseProduct(inverse.transpose());
-    std::copy(scaled.begin(), scaled.end(), guess.slopes_.row(static_cast<std::size_t>(p)).begin());
-    guess.intercept_.push_back(parameter_mean(p) - mean.dot(scaled));
+    std::copy(scaled.begin(), scaled.end(), estimate.slopes_.row(static_cast<std::size_t>(p)).begin());
+    estimate.intercept_.push_back(parameter_mean(p) - mean.dot(scaled));
   }
-  return guess;
+  return estimate;
 }
 
-std::vector<double> ParameterGuess::guess(std::span<const double> statistics) const {
-  require(statistics.size() == slopes_.columns(), "guess: another number of statistics than was fitted");
+std::vector<double> ParameterEstimator::estimate(std::span<const double> statistics) const {
+  require(statistics.size() == slopes_.columns(), "estimate: another number of statistics than was fitted");
   std::vector<double> values = intercept_;
   for (std::size_t p = 0; p < values.size(); ++p)
     values[p] += std::inner_product(statistics.begin(), statistics.end(), slopes_.row(p).begin(), 0.0);
   return values;
 }
 
-Matrix<double> ParameterGuess::guess(const Matrix<double>& statistics) const {
-  Matrix<double> guesses(statistics.rows(), intercept_.size());
+Matrix<double> ParameterEstimator::estimate(const Matrix<double>& statistics) const {
+  Matrix<double> estimates(statistics.rows(), intercept_.size());
   for (std::size_t r = 0; r < statistics.rows(); ++r) {
-    const std::vector<double> values = guess(statistics.row(r));
-    std::copy(values.begin(), values.end(), guesses.row(r).begin());
+    const std::vector<double> values = estimate(statistics.row(r));
+    std::copy(values.begin(), values.end(), estimates.row(r).begin());
   }
-  return guesses;
+  return estimates;
 }
 
 double AbcPosterior::mean(std::size_t parameter) const {

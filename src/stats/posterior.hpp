@@ -9,16 +9,16 @@
 
 namespace pirsim::stats {
 
-/// Statistics chosen for the parameters: the best linear guess of each parameter from many statistics (ridge
-/// regression, its strength by generalised cross-validation). Guesses are few, so ABC on them loses least.
+/// Statistics chosen for the parameters: the best linear estimate of each parameter from many statistics (ridge
+/// regression, its strength by generalised cross-validation). Estimates are few, so ABC on them loses least.
 /// Ref: [FearnheadPrangle2012]
-class ParameterGuess {
+class ParameterEstimator {
  public:
-  ParameterGuess() = default;
+  ParameterEstimator() = default;
   /// statistics: (n_rows x n_statistics); parameters: (n_rows x n_parameters); two rows or more.
-  [[nodiscard]] static ParameterGuess fit(const Matrix<double>& statistics, const Matrix<double>& parameters);
-  [[nodiscard]] std::vector<double> guess(std::span<const double> statistics) const;  ///< (n_parameters)
-  [[nodiscard]] Matrix<double> guess(const Matrix<double>& statistics) const;         ///< (n_rows x n_parameters)
+  [[nodiscard]] static ParameterEstimator fit(const Matrix<double>& statistics, const Matrix<double>& parameters);
+  [[nodiscard]] std::vector<double> estimate(std::span<const double> statistics) const;  ///< (n_parameters)
+  [[nodiscard]] Matrix<double> estimate(const Matrix<double>& statistics) const;         ///< (n_rows x n_parameters)
 
  private:
   std::vector<double> intercept_;
@@ -41,7 +41,7 @@ struct AbcPosterior {
 };
 
 /// Local-linear regression adjustment. parameters: (n_rows x n_parameters) drawn from the prior; statistics: (n_rows x
-/// n_statistics) simulated with them, few (use ParameterGuess); observed: (n_statistics). Bounded parameters are
+/// n_statistics) simulated with them, few (use ParameterEstimator); observed: (n_statistics). Bounded parameters are
 /// adjusted on the logit scale of their range. Throws Error(usage) for sizes that differ or fewer than
 /// n_statistics + 2 accepted rows. Ref: [Beaumont2002]
 [[nodiscard]] AbcPosterior abc_posterior(const Matrix<double>& parameters, const Matrix<double>& statistics,

@@ -35,20 +35,6 @@ double crps(std::span<const double> ensemble, double observed) {
   return error / n - pairs / (n * n);
 }
 
-double crps(const Tally& ensemble, double observed) {
-  require(!ensemble.empty(), "crps: no member");
-  double n = 0.0;
-  for (const auto& [value, times] : ensemble) n += static_cast<double>(times);
-  double error = 0.0, pairs = 0.0, below = 0.0;
-  for (const auto& [value, count] : ensemble) {
-    const auto x = static_cast<double>(value), times = static_cast<double>(count);
-    error += times * std::abs(x - observed);
-    pairs += x * times * (2.0 * below + times - n);  // as above, `times` members at once
-    below += times;
-  }
-  return error / n - pairs / (n * n);
-}
-
 double energy_score(const Matrix<double>& ensemble, std::span<const double> observed) {
   require(ensemble.rows() > 0, "energy_score: no member");
   require(ensemble.columns() == observed.size(), "energy_score: members and observation differ in length");

@@ -1,9 +1,8 @@
-// How well an ensemble foretells what was observed, and how far two samples lie apart.
+// How well an ensemble predicts what was observed, and how far two samples lie apart.
 #pragma once
 
 #include <span>
 
-#include "core/tally.hpp"
 #include "stats/matrix.hpp"
 
 namespace pirsim::stats {
@@ -12,8 +11,6 @@ namespace pirsim::stats {
 /// all pairs of members, each with itself too. 0 is perfect; with one member it is the absolute error.
 /// In the unit of the values. Ref: [Gneiting2007] equation 21.
 [[nodiscard]] double crps(std::span<const double> ensemble, double observed);
-/// The same of an ensemble of whole numbers.
-[[nodiscard]] double crps(const Tally& ensemble, double observed);
 
 /// The same for vectors, with Euclidean distances: the energy score. ensemble: (n_members x n_entries); scale the
 /// entries first if their units differ. Ref: [Gneiting2007] equation 22.

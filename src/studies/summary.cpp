@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "pirsim/error.hpp"
-#include "stats/scores.hpp"
+#include "studies/crps.hpp"
 
 namespace pirsim::studies {
 namespace {
@@ -97,7 +97,7 @@ std::vector<CellSummary> Summary::cells() const {
       cell.mean = static_cast<double>(total) / static_cast<double>(cell.runs);
       if (cell.measured) {
         cell.inside = cell.min <= cell.measured->real && cell.measured->real <= cell.max;
-        cell.crps = stats::crps(cell.counts, cell.measured->real);
+        cell.crps = crps(cell.counts, cell.measured->real);
       }
     }
     cells.push_back(std::move(cell));

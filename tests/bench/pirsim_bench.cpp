@@ -18,7 +18,7 @@
 #include "pirsim/state.hpp"
 #include "pirsim/study.hpp"
 #include "pirsim/version.hpp"
-#include "reconcile/reference_table.hpp"
+#include "reconcile/ensemble/reference_table.hpp"
 #include "rt/direct_tracer.hpp"
 #include "sim/compiled_study.hpp"
 #include "sim/run_state.hpp"
@@ -384,33 +384,35 @@ void first_runs() {
   }
 }
 
-/// What a world of a reconciliation's reference table costs, and each effect in it.
-void worlds() {
-  const reconcile::WorldSource source{
+/// What a realization of a reconciliation's reference table costs, and each effect in it.
+void realizations() {
+  const reconcile::RealizationSource source{
       shipped_scene("meeting_room.gltf"), shipped_script("studyA.yaml", {"replicates=1"}), {}, 1};
   const reconcile::StudyFrame frame = reconcile::frame_of(source.scene, source.script);
-  constexpr std::uint32_t n_worlds = 4;
+  constexpr std::uint32_t n_realizations = 4;
   std::map<std::string, double> seconds;
-  for (std::uint32_t index = 0; index < n_worlds; ++index) {
+  for (std::uint32_t index = 0; index < n_realizations; ++index) {
     Stopwatch stopwatch;
-    const reconcile::SimulatedWorld world(source, frame, index, 1);
-    (void)world.plain(0, 1);
+    const reconcile::SimulatedRealization realization(source, frame, index, 1);
+    (void)realization.plain(0, 1);
     seconds["plain model"] += stopwatch.seconds();
     for (const effects::Effect* effect : effects::catalogue()) {
       Stream stream({1, index, 0, Purpose::test});
-      const EffectSpec spec = effects::draw_from_prior(*effect, world.world().scene, world.world().script, stream);
+      const EffectSpec spec =
+          effects::draw_from_prior(*effect, realization.drawn().scene, realization.drawn().script, stream);
       stopwatch = {};
-      (void)world.with_effects(std::span(&spec, 1), 0, 1);
+      (void)realization.with_effects(std::span(&spec, 1), 0, 1);
       seconds[effect->info.name] += stopwatch.seconds();
     }
   }
-  for (const auto& [what, all] : seconds) report("worlds", what, all / n_worlds, "s");
-  const auto pilot = reconcile::pilot_runs(source, frame, n_worlds, 1);
+  for (const auto& [what, all] : seconds) report("realizations", what, all / n_realizations, "s");
+  const auto pilot = reconcile::pilot_runs(source, frame, n_realizations, {1, 1});
   const auto shape = reconcile::full_shape(frame, reconcile::Measured::Kind::series, 1, pilot);
   const auto profile = reconcile::profile_of(frame, source.script, pilot);
   const Stopwatch stopwatch;
-  (void)reconcile::make_reference_table(source, frame, shape, profile, {n_worlds, n_worlds, n_worlds, 1, {}}, {});
-  report("worlds", "all entries of the table", stopwatch.seconds() / n_worlds, "s");
+  (void)reconcile::make_reference_table(source, frame, shape, profile,
+                                        {n_realizations, n_realizations, n_realizations, {}}, {}, {1, 1});
+  report("realizations", "all hypotheses of the table", stopwatch.seconds() / n_realizations, "s");
 }
 
 }  // namespace
@@ -425,8 +427,9 @@ int main(int argc, char** argv) {
   describe_machine();
   for (const Section& section :
        {Section{"start-up", start_up}, Section{"first", first_runs}, Section{"anew", postures_anew},
-        Section{"limit", limit}, Section{"people", people}, Section{"known", people_known}, Section{"worlds", worlds},
-        Section{"ticks", ticks_by_phase}, Section{"responses", responses}, Section{"runs", runs_per_second}}) {
+        Section{"limit", limit}, Section{"people", people}, Section{"known", people_known},
+        Section{"realizations", realizations}, Section{"ticks", ticks_by_phase}, Section{"responses", responses},
+        Section{"runs", runs_per_second}}) {
     if (wanted.empty() || wanted == section.name) section.run();
   }
 }

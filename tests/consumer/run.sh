@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs a build of pirsim under a scratch prefix and is its user there: the README's program by find_package and by
 # pkg-config, one with a room made in memory, one with a detector of its own, one that
-# surveys a room, and every public header by itself.
+# surveys a room, one that compares a model with measurements, and every public header by itself.
 # Usage: run.sh BUILD_DIR SOURCE_DIR CXX "CXXFLAGS"
 set -euo pipefail
 build=$1 source=$2 cxx=$3 flags=$4
@@ -16,6 +16,7 @@ export PKG_CONFIG_PATH=$(dirname "$(find "$scratch/prefix" -name pirsim.pc)")
 # shellcheck disable=SC2046
 "$cxx" -std=c++20 $flags "$source/tests/consumer/main.cpp" -o "$scratch/by_pkg_config" \
   $(pkg-config --static --cflags --libs pirsim)
+pkg-config --static --libs pirsim-reconcile | grep -q -- '-lpirsim_reconcile.*-lpirsim '
 
 data="$scratch/prefix/share/pirsim"
 scene="$data/rooms/meeting_room.gltf" script="$data/studies/studyA.yaml"
@@ -41,7 +42,19 @@ awk 'NR > 1 && $2 > before { bad = 1 } { before = $2 } NR == 1 { first = $2 } EN
 awk -F, 'NR > 1 { for (i = 3; i <= NF; ++i) n += $i } END { print NR - 1, n }' "$scratch/coverage/coverage.csv" |
   cmp - <(head -1 "$scratch/own_survey.txt")
 awk 'NR == 2 { exit !($1 > 0 && $2 > 0) }' "$scratch/own_survey.txt"
+# What is missing: of the wing for measured data, the simulator's own library holds nothing.
+library=$(find "$scratch/prefix" -name libpirsim.a) wing=$(find "$scratch/prefix" -name libpirsim_reconcile.a)
+symbols() { nm -C "$1" 2>/dev/null | grep -c ' [TWBDRV] .*pirsim::\(reconcile\|stats\)::' || true; }
+[ "$(symbols "$library")" -eq 0 ] && [ "$(symbols "$scratch/build/main")" -eq 0 ] && [ "$(symbols "$wing")" -gt 100 ]
+short=(--set 'trials.for_each.seat=[S4]' --set people.0.actions.3.work.duration_s=30 --set replicates=1)
+"$scratch/prefix/bin/pirsim" --scene "$scene" --script "$script" "${short[@]}" --print-config >"$data/studies/short.yaml"
+"$scratch/prefix/bin/pirsim" --scene "$scene" --script "$data/studies/short.yaml" -q --seed 5 \
+  --set 'effects=[{false_triggers: {rate_per_s: 0.2}}]' >"$scratch/measured.csv"
+"$scratch/build/own_analysis" "$scene" "$data/studies/short.yaml" "$scratch/measured.csv" "$scratch/found" \
+  >"$scratch/sentence.txt"
+grep -qF "\"sentence\": \"$(cat "$scratch/sentence.txt")\"" "$scratch/found/report.json"
+[ -s "$scratch/found/report.html" ]
 n_headers=$(find "$scratch/prefix/include/pirsim" -name '*.hpp' | wc -l)
 [ "$n_headers" -le 24 ] || { echo "consumer: $n_headers public headers" >&2; exit 1; }
 [ "$(find "$scratch/prefix/include/pirsim" -mindepth 1 -type d | wc -l)" -eq 0 ]
-echo "consumer: own room, own detector, own survey, $n_headers headers each alone"
+echo "consumer: own room, own detector, own survey, own analysis, $n_headers headers each alone"

@@ -45,7 +45,7 @@ def run_example(pirsim, source, folder):
     report = json.loads((folder / "found/report.json").read_text())
     if report["verdict"] in ("named", "several"):
         assert result.returncode == 0, result.stderr
-    else:  # nothing to put in: so little data may not tell
+    else:  # nothing to apply: so little data may not tell
         assert not (folder / "found/script_patched.yaml").exists()
     assert report["sentence"] in result.stdout, result.stdout
     assert report["where"]["p"] <= 1.0
@@ -72,7 +72,7 @@ def main():
         # Each into its own folder, where none is asked for.
         sentence = reconcile("plan", "--effects", "missed_triggers,false_triggers").strip()
         plan = json.loads((folder / "reconcile_plan/plan.json").read_text())
-        assert plan["sentence"] == sentence and plan["entries"] == ["nothing", "missed_triggers", "false_triggers"]
+        assert plan["sentence"] == sentence and plan["hypotheses"] == ["nothing", "missed_triggers", "false_triggers"]
         designs = list(csv.DictReader((folder / "reconcile_plan/plan.csv").open()))
         assert [d["design"] for d in designs][:2] == ["as planned", "all again"], designs
         assert {"slow walk", "empty room"} <= {d["design"] for d in designs}, (designs, plan["notes"])
@@ -87,7 +87,7 @@ def main():
         for row in plan["confusion"]:
             assert abs(sum(row) - 1.0) < 1e-9, row
 
-        reconcile("selftest", "--nulls", "5", "--planted", "1", "--table", folder / "found/table")
+        reconcile("selftest", "--nulls", "5", "--injected", "1", "--table", folder / "found/table")
         self_test = folder / "reconcile_selftest"
         assert "| a name although nothing is hidden | at most 0.01 |" in (self_test / "targets.md").read_text()
         assert not (folder / "reconcile").exists()

@@ -81,8 +81,8 @@ def main():
         (one / "answer.json").write_text(honest)
         opened(one, "named", [effect])
 
-        alien = sealed(two, "alien", 3)
-        assert alien["effects"] == [] and alien["alien"]["name"]
+        fault = sealed(two, "out-of-catalogue", 3)
+        assert fault["effects"] == [] and fault["out_of_catalogue_fault"]["name"]
         assert opened(two, "none-in-catalogue", []).stdout.startswith("exact:")
         assert opened(two, "named", ["clock_lag"]).stdout.startswith("wrong:")
         assert opened(two, "no-disagreement", []).stdout.startswith("none:")

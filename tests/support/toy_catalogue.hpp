@@ -1,4 +1,4 @@
-// A small world for tests of locating and naming: bits of 10 trials x 5 sensors, unknowns that are always there, six
+// A small study for tests of locating and naming: bits of 10 trials x 5 sensors, unknowns that are always there, six
 // known effects and two that no catalogue has.
 #pragma once
 
@@ -22,14 +22,14 @@ enum Effect {
   dead_sensor,     ///< one sensor is silent from some second on
   soft,            ///< the cells' log-odds are drawn together
   n_known,
-  alien_bursts = n_known,  ///< all sensors fire together now and then
-  alien_fading,            ///< sensors tire over each trial
+  unknown_bursts = n_known,  ///< all sensors fire together now and then
+  unknown_fading,            ///< sensors tire over each trial
 };
 
 constexpr std::size_t n_trials = 10, n_sensors = 5;
 
 /// What is true in one dataset besides chance.
-struct World {
+struct Realization {
   std::array<double, n_trials * n_sensors> log_odds{};
   double loss = 0.0, extra = 0.0, follow = 0.0, burst = 0.0, fading = 0.0;
   std::size_t dead = n_sensors;
@@ -40,8 +40,8 @@ inline double pattern(double trial, double sensor) {
   return -1.2 + 1.5 * std::sin(1.3 * trial + 2.1 * sensor) + 0.9 * std::cos(0.7 * trial - 1.1 * sensor);
 }
 
-inline World draw_world(Effect effect, int seconds, pirsim::Stream& stream) {
-  World world;
+inline Realization draw_realization(Effect effect, int seconds, pirsim::Stream& stream) {
+  Realization realization;
   // Nuisance: a small shift, a gain per sensor and an offset per trial, never known exactly.
   double shift = 0.06 * stream.normal(), flat = 0.0;
   std::array<double, n_sensors> gain{};
@@ -52,29 +52,29 @@ inline World draw_world(Effect effect, int seconds, pirsim::Stream& stream) {
   const double sign = stream.uniform() < 0.5 ? -1.0 : 1.0;
   switch (effect) {
     case missed:
-      world.loss = 0.15 + 0.45 * strength;
+      realization.loss = 0.15 + 0.45 * strength;
       break;
     case false_triggers:
-      world.extra = 0.01 * std::pow(10.0, strength);
+      realization.extra = 0.01 * std::pow(10.0, strength);
       break;
     case shifted:
       shift += sign * (0.25 + 0.5 * strength);
       break;
     case stretched:
-      world.follow = 0.2 + 0.6 * strength;
+      realization.follow = 0.2 + 0.6 * strength;
       break;
     case dead_sensor:
-      world.dead = stream.index(n_sensors);
-      world.dead_from = static_cast<int>(0.6 * strength * seconds);
+      realization.dead = stream.index(n_sensors);
+      realization.dead_from = static_cast<int>(0.6 * strength * seconds);
       break;
     case soft:
       flat = 0.25 + 0.6 * strength;
       break;
-    case alien_bursts:
-      world.burst = 0.05 + 0.1 * strength;
+    case unknown_bursts:
+      realization.burst = 0.05 + 0.1 * strength;
       break;
-    case alien_fading:
-      world.fading = 1.5 + 2.0 * strength;
+    case unknown_fading:
+      realization.fading = 1.5 + 2.0 * strength;
       break;
     default:
       break;
@@ -82,10 +82,10 @@ inline World draw_world(Effect effect, int seconds, pirsim::Stream& stream) {
   for (std::size_t t = 0; t < n_trials; ++t) {
     for (std::size_t s = 0; s < n_sensors; ++s) {
       const double exact = pattern(static_cast<double>(t) + shift, static_cast<double>(s) + 0.5 * shift);
-      world.log_odds[t * n_sensors + s] = exact + flat * (-0.5 - exact) + gain[s] + offset[t];
+      realization.log_odds[t * n_sensors + s] = exact + flat * (-0.5 - exact) + gain[s] + offset[t];
     }
   }
-  return world;
+  return realization;
 }
 
 constexpr std::size_t n_per_cell = 4;
@@ -122,24 +122,24 @@ inline std::vector<std::vector<std::size_t>> blocks() {
 
 /// Per cell: sum, number of runs, second half less first half, pairs of bits two seconds apart; per trial: seconds in
 /// which three sensors or more are on; and sums, see add_sums().
-inline std::vector<float> draw_statistics(const World& world, int seconds, pirsim::Stream& stream) {
+inline std::vector<float> draw_statistics(const Realization& realization, int seconds, pirsim::Stream& stream) {
   std::vector<float> statistics, in_company;
   for (std::size_t t = 0; t < n_trials; ++t) {
     std::array<std::array<int, 3>, n_sensors> last{};
     std::array<std::array<int, 4>, n_sensors> found{};
     int together = 0;
     for (int second = 0; second < seconds; ++second) {
-      const bool burst = stream.uniform() < world.burst;
-      const double tired = world.fading * second / seconds;
+      const bool burst = stream.uniform() < realization.burst;
+      const double tired = realization.fading * second / seconds;
       int on = 0;
       for (std::size_t s = 0; s < n_sensors; ++s) {
-        const double odds = world.log_odds[t * n_sensors + s] - tired + 0.5 * world.fading;
+        const double odds = realization.log_odds[t * n_sensors + s] - tired + 0.5 * realization.fading;
         bool bit = stream.uniform() < 1.0 / (1.0 + std::exp(-odds));
-        bit = bit && stream.uniform() >= world.loss;
-        bit = bit || stream.uniform() < world.extra;
+        bit = bit && stream.uniform() >= realization.loss;
+        bit = bit || stream.uniform() < realization.extra;
         bit = bit || burst;
-        bit = bit || (last[s][0] == 1 && stream.uniform() < world.follow);
-        bit = bit && !(s == world.dead && second >= world.dead_from);
+        bit = bit || (last[s][0] == 1 && stream.uniform() < realization.follow);
+        bit = bit && !(s == realization.dead && second >= realization.dead_from);
         const int value = bit ? 1 : 0;
         found[s][0] += value;
         found[s][1] += value == 1 && last[s][0] == 0 ? 1 : 0;
@@ -158,14 +158,14 @@ inline std::vector<float> draw_statistics(const World& world, int seconds, pirsi
   return statistics;
 }
 
-/// (rows x n_statistics) datasets of one effect, each in a world of its own.
+/// (rows x n_statistics) datasets of one effect, each in a realization of its own.
 inline pirsim::stats::Matrix<float> draw_datasets(Effect effect, std::size_t rows, int seconds, std::uint64_t seed) {
   pirsim::stats::Matrix<float> drawn;
   for (std::size_t row = 0; row < rows; ++row) {
     pirsim::Stream stream(
         {seed, static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(effect), pirsim::Purpose::test});
-    const World world = draw_world(effect, seconds, stream);
-    drawn.append_row(draw_statistics(world, seconds, stream));
+    const Realization realization = draw_realization(effect, seconds, stream);
+    drawn.append_row(draw_statistics(realization, seconds, stream));
   }
   return drawn;
 }

@@ -54,7 +54,7 @@ TEST_CASE("strangeness of a class's own fresh rows has the mean that normal theo
   CHECK(mahalanobis == Approx(9.0).epsilon(0.06));
 }
 
-TEST_CASE("a pair of common values is strange where one foretells the other otherwise", "[stats]") {
+TEST_CASE("a pair of common values is strange where one predicts the other otherwise", "[stats]") {
   // Column 1 follows column 0 closely in class 0: (1.5, -1.5) times their sd is a rare pair of common values.
   const Labelled table = draw(4000, 4);
   const ClassShapes shapes = ClassShapes::fit(table.features, table.labels, 2, {.subspace = 1, .curved = 0});

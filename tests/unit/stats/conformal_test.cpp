@@ -56,28 +56,29 @@ TEST_CASE(
     "[stats]") {
   // Given one calibration set of 160 rows a class the level itself varies by sqrt(.1 x .9 / 160) = 0.024, and the share
   // of 900 rows by 0.010; three tables average: 0.014 + 0.006.
-  double wrongly = 0.0, relative_only = 0.0, aliens_refused = 0.0, aliens_refused_by_margin = 0.0, least = 1.0;
+  double wrongly = 0.0, relative_only = 0.0, unknown_refused = 0.0, unknown_refused_by_margin = 0.0, least = 1.0;
   for (std::uint32_t study = 0; study < 3; ++study) {
     const ConformalClassifier classifier = fit(10 * study);
-    const Labelled known = draw(300, {0, 1, 2}, 10 * study + 1), alien = draw(300, {3}, 10 * study + 2);
+    const Labelled known = draw(300, {0, 1, 2}, 10 * study + 1),
+                   out - of - catalogue fault = draw(300, {3}, 10 * study + 2);
     const auto of_known = classifier.classify(known.features);
     for (std::size_t r = 0; r < of_known.size(); ++r) {
       const auto own = static_cast<std::size_t>(known.labels[r]);
       wrongly += of_known[r].p[own] <= 0.1 ? 1.0 / 2700 : 0.0;
       relative_only += of_known[r].p_relative[own] <= 0.1 ? 1.0 / 2700 : 0.0;
     }
-    for (const Classification& one : classifier.classify(alien.features)) {
+    for (const Classification& one : classifier.classify(out - of - catalogue fault.features)) {
       for (std::size_t k = 0; k < one.p.size(); ++k) least = std::min(least, one.p[k] - classifier.least_p(k));
-      aliens_refused += all_refused(one.p, 0.1) ? 1.0 / 900 : 0.0;
-      aliens_refused_by_margin += all_refused(one.p_relative, 0.1) ? 1.0 / 900 : 0.0;
+      unknown_refused += all_refused(one.p, 0.1) ? 1.0 / 900 : 0.0;
+      unknown_refused_by_margin += all_refused(one.p_relative, 0.1) ? 1.0 / 900 : 0.0;
     }
   }
   CHECK(wrongly < 0.1 + 3 * 0.015);
   CHECK(wrongly > 0.02);
   CHECK(std::abs(relative_only - 0.1) < 3 * 0.015);
   // Columns 20 to 22 are 3 sd off: chi-squared of 27 over 30, four-sigma with 3 columns known.
-  CHECK(aliens_refused > 0.8);
-  CHECK(aliens_refused_by_margin < 0.3);
+  CHECK(unknown_refused > 0.8);
+  CHECK(unknown_refused_by_margin < 0.3);
   CHECK(least == 0.0);  // what is stranger than all known rows has the least p there is, and no row a smaller one
 }
 
@@ -106,7 +107,8 @@ TEST_CASE("a conformal classifier is the same for any number of threads", "[stat
 }
 
 TEST_CASE("a small change of every column is strange where a block holds their sum", "[stats]") {
-  // 40 columns of unit noise and their sum; the alien moves each by half a standard deviation, the sum by 3.2 of them.
+  // 40 columns of unit noise and their sum; the out-of-catalogue fault moves each by half a standard deviation, the sum
+  // by 3.2 of them.
   Stream stream({82, 0, 0, Purpose::test});
   const auto draw_rows = [&](std::size_t rows, float change) {
     Matrix<float> drawn(rows, 41);

@@ -83,8 +83,8 @@ TEST_CASE("the posterior of a bounded parameter stays in its bounds", "[stats]")
   CHECK_THROWS_AS(abc_posterior(parameters, statistics, std::vector<double>{0.5}, {.accepted = 0.002}), Error);
 }
 
-TEST_CASE("guessed parameters from many statistics are near the best guess there is", "[stats]") {
-  // 200 statistics: theta plus noise of sd 4 each and 100 of noise alone; the best guess has variance 1 / (1 + 100 /
+TEST_CASE("estimated parameters from many statistics are near the best estimate there is", "[stats]") {
+  // 200 statistics: theta plus noise of sd 4 each and 100 of noise alone; the best estimate has variance 1 / (1 + 100 /
   // 16).
   Stream stream({53, 0, 0, Purpose::test});
   const auto draw = [&](std::size_t rows) {
@@ -97,10 +97,10 @@ TEST_CASE("guessed parameters from many statistics are near the best guess there
     return drawn;
   };
   const Conjugate train = draw(1000), test = draw(1000);
-  const ParameterGuess fitted = ParameterGuess::fit(train.statistics, train.parameters);
-  const Matrix<double> guesses = fitted.guess(test.statistics);
+  const ParameterEstimator fitted = ParameterEstimator::fit(train.statistics, train.parameters);
+  const Matrix<double> estimates = fitted.estimate(test.statistics);
   double squares = 0.0;
-  for (std::size_t r = 0; r < 1000; ++r) squares += std::pow(guesses(r, 0) - test.parameters(r, 0), 2) / 1000;
+  for (std::size_t r = 0; r < 1000; ++r) squares += std::pow(estimates(r, 0) - test.parameters(r, 0), 2) / 1000;
   const double best = 1.0 / (1.0 + 100.0 / 16.0);
   CHECK(squares > best * 0.8);
   CHECK(squares < best * 1.45);  // 200 slopes from 1,000 rows cost about a fifth each way

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pirsim/error.hpp"
+#include "studies/crps.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim::stats;
@@ -48,8 +49,9 @@ TEST_CASE("the ensemble CRPS agrees with its pairs and with its integral", "[sta
   CHECK(crps(std::vector<double>{4}, 9) == 5.0);
   CHECK(crps(std::vector<double>{4, 4}, 4) == 0.0);
   // Counted, an ensemble of whole numbers gives the same bits: all sums are of whole numbers.
-  CHECK(crps(pirsim::Tally{{-2, 1}, {3, 4}, {11, 2}}, 5) == crps(std::vector<double>{3, 11, 3, -2, 3, 11, 3}, 5));
-  CHECK_THROWS_AS(crps(pirsim::Tally{}, 5), pirsim::Error);
+  CHECK(pirsim::studies::crps(pirsim::Tally{{-2, 1}, {3, 4}, {11, 2}}, 5) ==
+        crps(std::vector<double>{3, 11, 3, -2, 3, 11, 3}, 5));
+  CHECK_THROWS_AS(pirsim::studies::crps(pirsim::Tally{}, 5), pirsim::Error);
 }
 
 TEST_CASE("the CRPS of a large uniform ensemble is that of the uniform distribution", "[stats]") {

@@ -1,4 +1,4 @@
-// Locate and name from end to end on a toy world whose truth is known, beside what chance allows.
+// Locate and name from end to end on a toy realization whose truth is known, beside what chance allows.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -115,7 +115,7 @@ TEST_CASE("a toy study is located and named with the rates that are promised", "
 
   // The sums over trials and sensors give the fading away. Bursts look like false triggers in most statistics: with
   // a table this small half of them are found out, still far more than a ranking finds.
-  const Rates fading = study.rates(toy::alien_fading, rows), bursts = study.rates(toy::alien_bursts, rows);
+  const Rates fading = study.rates(toy::unknown_fading, rows), bursts = study.rates(toy::unknown_bursts, rows);
   CHECK(fading.none > 0.8);
   CHECK(fading.named_wrong < 0.1);
   CHECK(fading.by_margin > 0.3);

@@ -1,0 +1,161 @@
+// Model against measurement: do they agree, where don't they, which effect is missing, how strong is it, and does it
+// help on trials that it wasn't fitted on? Link pirsim::reconcile. What every word means: docs/howto/reconcile.md.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pirsim/reconcile_outcome.hpp"
+#include "pirsim/scene.hpp"
+#include "pirsim/script.hpp"
+
+namespace pirsim::reconcile {
+
+inline constexpr std::uint8_t unknown_bit = 2;
+
+/// The rows of one run of one trial, one after the other without a gap. The main part, which is compared in time, goes
+/// from the first to the last row in a counted phase.
+struct Series {
+  std::size_t trial = 0;  ///< of the script
+  int replicate = 1;
+  std::size_t main_begin = 0, main_end = 0;  ///< rows
+  std::vector<std::uint8_t> bits;            ///< (n_rows x n_sensors) 0, 1 or unknown_bit
+
+  [[nodiscard]] std::size_t n_rows(std::size_t n_sensors) const noexcept { return bits.size() / n_sensors; }
+  bool operator==(const Series&) const = default;
+};
+
+/// What was measured in the real room, checked against the study that it is compared with.
+struct Measured {
+  enum class Kind {
+    series,  ///< a bit a window
+    sums     ///< seconds with motion in the counted phases only
+  };
+  /// Seconds of one cell in one repetition.
+  struct Sum {
+    std::size_t trial = 0, sensor = 0;
+    int replicate = 1;
+    double seconds = 0.0;
+  };
+  Kind kind = Kind::series;
+  std::vector<Series> runs;     ///< of series: by trial, then replicate, numbered from 1 in every trial
+  std::vector<Sum> sums;        ///< of sums; cells that aren't there weren't measured
+  std::vector<DataNote> notes;  ///< what was done with which rows
+  std::string file;             ///< its name, for messages
+  std::string digest;           ///< SHA-256 of the file
+  bool tells_phases = true;     ///< or all rows are taken for the counted ones
+
+  [[nodiscard]] int n_replicates() const noexcept;        ///< the greatest number of runs of a trial
+  [[nodiscard]] std::vector<std::size_t> trials() const;  ///< ascending; of which anything was measured
+};
+/// Reads pirsim's own rows (docs/formats/rows.md), or sums with the columns trial (or seat), sensor, seconds (or real)
+/// and, if it is there, replicate. Empty fields are missing values. Throws Error: io (no such file), input (all faults
+/// with file:line:column: unknown names, other values than 0 and 1, rows that aren't a window apart, too little data).
+[[nodiscard]] Measured read_measured(const std::filesystem::path& file, const SceneSpec& scene,
+                                     const ScriptSpec& script);
+/// The same of a text; file: its name in messages.
+[[nodiscard]] Measured parse_measured(std::string_view text, const std::string& file, const SceneSpec& scene,
+                                      const ScriptSpec& script);
+
+struct TableSettings {
+  std::uint32_t n_realizations = 1500;  ///< of the plain model, a dataset each
+  std::uint32_t n_remembered = 1000;    ///< datasets of an effect that acts on remembered zones
+  std::uint32_t n_traced = 400;         ///< datasets of an effect that needs new tracing
+  std::vector<std::string> effects;     ///< names; empty: the whole catalogue
+  bool operator==(const TableSettings&) const = default;
+};
+/// Two fifths calibrate, and two tests are combined, so that p of a hypothesis can't fall below 5 / (its number of
+/// datasets): with fewer than these, which leave a tenth for realizations in which nobody can get about, nothing is
+/// ever ruled out at the level.
+[[nodiscard]] constexpr std::uint32_t fewest_datasets_to_refuse(double level) {
+  return static_cast<std::uint32_t>(5.5 / level + 0.5);
+}
+
+struct Settings {
+  NuisanceSpec nuisance;  ///< what is uncertain about the room
+  double alpha = 0.05;    ///< level of the tests
+  int max_effects = 3;    ///< applied one after the other
+  TableSettings table;
+  std::filesystem::path table_folder;  ///< keeps the simulated datasets; empty: they are not kept
+  std::size_t trees = 300;
+  std::uint32_t verify_realizations = 60;  ///< simulated with each patched model
+  std::vector<std::size_t> holdout;        ///< trials (ascending) kept from naming and fitting; none: folds
+};
+
+/// What an analysis does now.
+struct Stage {
+  enum class What {
+    pilot_runs,
+    reference_table,
+    comparing,             ///< where they differ, and which effects can have made the data
+    checking_model,        ///< with `effects` applied
+    looking_for_more,      ///< beside `effects`
+    explaining_residuals,  ///< if nothing of the catalogue fits
+    verifying,             ///< on held-out trials
+    injecting_faults,      ///< of the self-test, as all that follows but the last
+    judging,
+    judging_without,  ///< by a catalogue that lacks `effects`
+    searching_anew,   ///< without held-out trials, in n datasets
+    verified,         ///< n of `of` datasets
+    checking_models,  ///< n of `of`, in n_realizations
+    judging_planned,  ///< of a plan: what is planned
+    judging_trial,    ///< with `effects`' only element, a trial, once more
+    judging_all_again,
+    judging_walk,
+    judging_empty_room,
+    judging_series  ///< instead of sums
+  };
+  What what = What::pilot_runs;
+  std::vector<std::string> effects = {};
+  std::size_t n = 0, of = 0, n_realizations = 0;
+};
+
+/// What a caller may tell its user while it waits. Functions may be empty.
+struct Observer {
+  std::function<void(const Stage&)> stage;
+  std::function<void(std::uint32_t done, std::uint32_t total)> progress;  ///< of the table's realizations
+};
+
+/// What every part of an analysis needs.
+struct Context {
+  std::uint64_t seed = 1;  ///< of everything random in the analysis; has nothing to do with the script's
+  unsigned threads = 0;    ///< 0: all cores; never changes a result
+  Observer observer = {};
+
+  void begin(const Stage& stage) const {
+    if (observer.stage) observer.stage(stage);
+  }
+};
+
+/// Compares, names, fits, applies and verifies. Takes minutes; what it simulates is found again in
+/// settings.table_folder. Throws Error: input (data that can't be of this study, a folder that holds the table of
+/// another), usage (nothing is left to look for), infeasible (people can hardly get about in this room).
+[[nodiscard]] Outcome reconcile(const SceneSpec& scene, const ScriptSpec& script, const Measured& measured,
+                                const Settings& settings = {}, const Context& context = {});
+
+/// The verdict for a reader.
+[[nodiscard]] std::string sentence(const Outcome& outcome, double alpha = 0.05);
+/// Why an effect was kept or dropped.
+[[nodiscard]] std::string in_words(const Candidate& candidate);
+[[nodiscard]] std::string in_words(const DataNote& note);
+[[nodiscard]] std::string in_words(const TrailEvent& event);
+[[nodiscard]] std::string in_words(const Stage& stage);
+
+/// The script with the named effects added, which plain `pirsim` runs.
+[[nodiscard]] ScriptSpec patched(const ScriptSpec& script, const Outcome& outcome);
+
+/// What made the results, for the report: file names as given.
+struct Provenance {
+  std::string program, scene, script, measured;
+};
+/// report.json, report.html, where.csv, candidates.csv, script_patched.yaml (if an effect was named) and trail.log
+/// (docs/formats/reconcile.md), each complete or not at all; the folder is made. Throws Error(io).
+void write_report(const std::filesystem::path& folder, const Outcome& outcome, const Measured& measured,
+                  const ScriptSpec& script, const Settings& settings, const Context& context,
+                  const Provenance& provenance);
+
+}  // namespace pirsim::reconcile

@@ -1,0 +1,291 @@
+// What a reconciliation of model and measurement found: typed, with its numbers. Words for it: pirsim/reconcile.hpp.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "pirsim/effects.hpp"
+#include "pirsim/script.hpp"
+
+namespace pirsim::reconcile {
+
+struct Interval {
+  double low = 0.0, high = 0.0;
+  [[nodiscard]] bool contains(double value) const noexcept { return low <= value && value <= high; }
+  bool operator==(const Interval&) const = default;
+};
+
+enum class Verdict {
+  no_disagreement,   ///< the model without any effect isn't refused
+  named,             ///< one effect explains the data, or one of several is far likelier than the others
+  one_of,            ///< several can have made the data, which can't tell them apart
+  several,           ///< effects applied one after the other made the data together
+  none_in_catalogue  ///< nothing known makes such data, or only what is improbable
+};
+/// In the order of the enumeration.
+inline constexpr std::array<std::string_view, 5> verdict_names{"no-disagreement", "named", "one-of", "several",
+                                                               "none-in-catalogue"};
+[[nodiscard]] constexpr std::string_view name(Verdict verdict) noexcept {
+  return verdict_names[static_cast<std::size_t>(verdict)];
+}
+
+/// How one hypothesis fits the data: `nothing` (the model as it is), or an effect of the catalogue by its name.
+struct HypothesisScore {
+  std::string hypothesis;
+  double probability = 0.0;  ///< calibrated, among all hypotheses, each as likely as the others beforehand
+  double p_relative = 0.0;   ///< share of the hypothesis's own datasets that another hypothesis explains as well
+  double p_absolute = 0.0;   ///< share of the hypothesis's own datasets that lie as far from the rest of them
+  double p = 0.0;            ///< of both: min(1, 2 min)
+  double least_p = 0.0;      ///< no data give a smaller one: the hypothesis has too few datasets
+};
+
+/// Effects of one family taken together.
+struct FamilyScore {
+  effects::Family family = effects::Family::data;
+  double probability = 0.0;
+  /// It is told to the reader, with its probability. Fitted: at 0.85 of the injected datasets 0.905 are told the right
+  /// family and 0.005 a wrong one, at 0.75 0.922 and 0.007, at 0.6 0.935 and 0.010 (docs/validation.md).
+  [[nodiscard]] bool is_sure() const noexcept { return probability >= 0.75; }
+};
+
+/// Why an effect was kept or dropped.
+namespace reason {
+struct NotLookedFor {};  ///< there is no disagreement
+struct NotRuledOut {     ///< kept
+  double p = 0.0;
+};
+struct Sure {  ///< kept, though data of its own seldom look like these
+  double p = 0.0, probability = 0.0;
+};
+struct MayBeNone {};  ///< kept, but not named: its strength may as well be none
+struct LessLikely {   ///< not ruled out, but another is named
+  double p = 0.0, probability = 0.0;
+  std::string named;
+  double probability_of_named = 0.0;
+};
+struct Improbable {  ///< dropped: all that isn't ruled out is improbable together
+  double p = 0.0;
+};
+struct HardlySimulated {};  ///< dropped: people can hardly get about with it in this room
+struct RuledOut {           ///< dropped by one test or both
+  std::optional<double> p_relative, p_absolute;
+};
+struct RefusedWhenApplied {  ///< dropped: with it applied the model still differs, and nothing explains the rest
+  double p = 0.0;
+};
+struct SameAs {  ///< judged as that effect, which changes the model in the same way
+  std::string effect;
+};
+}  // namespace reason
+using Reason = std::variant<reason::NotLookedFor, reason::NotRuledOut, reason::Sure, reason::MayBeNone,
+                            reason::LessLikely, reason::Improbable, reason::HardlySimulated, reason::RuledOut,
+                            reason::RefusedWhenApplied, reason::SameAs>;
+
+/// What became of one effect of the catalogue.
+struct Candidate {
+  HypothesisScore score;
+  effects::Family family = effects::Family::data;
+  bool kept = false;
+  Reason reason;                ///< by itself
+  bool named_together = false;  ///< kept all the same, together with the others named
+};
+
+/// One trial x sensor.
+struct LocatedCell {
+  std::string trial, sensor;
+  double measured_s = 0.0;           ///< seconds with motion a run
+  double expected_s = 0.0;           ///< mean of the simulated datasets
+  double low_s = 0.0, high_s = 0.0;  ///< 95 % of the simulated datasets lie between
+  double adjusted_p = 1.0;           ///< of the global test: below alpha, the cell differs whatever the others do
+};
+/// A number that the global test looks at, with its band, in the number's own scale.
+struct EnvelopeFeature {
+  std::string name;
+  double observed = 0.0, median = 0.0, lower = 0.0, upper = 0.0;
+  double adjusted_p = 1.0;
+};
+struct Location {
+  double p = 1.0;  ///< of the whole comparison
+  std::vector<LocatedCell> cells;
+  std::vector<EnvelopeFeature> envelope;
+  double band_s = 0.0;  ///< half the width of the mean cell's 95 % band: what this experiment can't see
+  std::size_t n_simulated = 0;
+};
+
+struct FittedParameter {
+  std::string name, unit;
+  double value = 0.0;
+  Interval interval;  ///< 90 %, nuisance included
+  double off = 0.0;
+  bool is_strength = true;             ///< has an `off` at which nothing happens
+  std::vector<double> equally_likely;  ///< quantiles in the middles of twenty equal parts, ascending
+};
+struct FittedEffect {
+  EffectSpec effect;  ///< with the fitted parameters, as a script takes it
+  std::vector<FittedParameter> parameters;
+  bool includes_off = false;  ///< every strength's interval holds its `off`
+};
+
+/// A look at the measured data with some effects applied to the model.
+struct Look {
+  std::vector<std::string> applied;
+  double level = 0.05;                   ///< of the global test; halved with every effect
+  double p = 1.0;                        ///< of the global test
+  std::vector<std::string> one_of = {};  ///< effects, one of which may be missing beside these and can't be told
+  [[nodiscard]] bool passes() const noexcept { return p > level; }
+};
+
+/// How far a model lies from data, summed up over held-out trials.
+struct Gap {
+  double energy_score = 0.0;      ///< of what the global test looks at in one trial, mean over trials
+  double area_s = 0.0;            ///< mean absolute difference of measured and simulated seconds, mean over cells
+  std::size_t cells_outside = 0;  ///< of the model's 95 % band
+  std::size_t n_cells = 0;
+  double p = 1.0;  ///< of the global test on the held-out trials together
+};
+/// Whether the model with the effects predicts trials that it was not fitted on better than the model without.
+struct Verification {
+  std::size_t n_folds = 0;
+  Gap before, after;
+  double noise_floor = 0.0;        ///< energy score of the patched model's own datasets
+  Interval gain;                   ///< 95 % (Student's) of the mean drop in energy score per trial, over trials
+  double share_closed = 0.0;       ///< (before - after) / (before - noise floor)
+  std::size_t n_trials = 0;        ///< held out and measured; 0: people can hardly get about in the patched model
+  std::size_t n_better = 0;        ///< of them, predicted better by the patched model
+  double sign_p = 1.0;             ///< that so many are better by chance
+  double placebo = 0.0;            ///< energy score after the best effect of another family; as before without one
+  std::string placebo_effect;      ///< its name, in the first fold that has one
+  std::vector<std::string> names;  ///< what each fold found, effects joined by " + "
+  std::vector<std::vector<EffectSpec>> patches;  ///< with the parameters that each fold's other trials gave
+  bool shrunk = false;   ///< the interval excludes 0 and the placebo does less; of sums, sign_p <= 0.05 too
+  bool refused = false;  ///< the plain model fails the global test on the held-out trials
+  bool closed = false;   ///< shrunk, the plain model is refused there and the patched one is not
+};
+
+/// One thing that the bits do and the model doesn't: which sensors, when, and what they do.
+struct ResidualDriver {
+  enum class Who { all_sensors, sensor, trial, near_seat, far_from_seat, faced, behind };
+  enum class When {
+    always,
+    first_half,
+    second_half,
+    first_third,
+    middle_third,
+    last_third,
+    of_minute,       ///< from, to: seconds of each minute
+    after_posture,   ///< from, to: seconds after each change of posture
+    before_posture,  ///< to - from: seconds before each change of posture
+    of_arm_cycle,    ///< from, to: shares of the arm's cycle in percent
+    wave             ///< from: the period in seconds; to: the second of its top
+  };
+  enum class How { more, more_where_little, more_where_much, opposite, beside };
+  Who who = Who::all_sensors;
+  std::string name;  ///< of the sensor or the trial
+  When when = When::always;
+  double from = 0.0, to = 0.0;
+  How how = How::more;
+  bool up = true;         ///< or the contrary: less motion, silence
+  std::string beside;     ///< of How::beside: the other sensor
+  double log_odds = 0.0;  ///< of a logistic regression of the bits on this driver and those before it
+  double standard_error = 0.0;
+  double z = 0.0;  ///< the score against that of simulated datasets, in their standard deviations
+  double p = 1.0;  ///< that the strongest of all drivers tried is so strong in a dataset of the model
+};
+struct Residuals {
+  std::vector<ResidualDriver> drivers;  ///< strongest first; none: the residuals follow nothing that was tried
+};
+
+/// What was done with which measured rows, or what is odd about them.
+struct DataNote {
+  enum class What {
+    sums_empty,       ///< n sums
+    cells_absent,     ///< n cells of trials that are there
+    sensors_absent,   ///< names: no column
+    phases_unknown,   ///< names: the counted phases, for which all rows are taken
+    rows_missing,     ///< n
+    readings_empty,   ///< n
+    runs_unread,      ///< n runs without a reading in the counted phases (names)
+    trials_absent,    ///< names
+    lead_left_out,    ///< what comes before the counted phases, of n runs
+    tail_left_out,    ///< what comes after them
+    runs_begin_late,  ///< n runs begin in a counted phase
+    runs_end_early,   ///< n runs end before any simulated one
+    runs_go_on        ///< n runs go on after any simulated one
+  };
+  What what = What::rows_missing;
+  std::size_t n = 0;
+  std::vector<std::string> names = {};
+};
+
+/// The decisions of an analysis, in order.
+namespace trail {
+struct Begun {
+  std::string digest;  ///< of the data
+  std::uint64_t seed = 0;
+};
+struct HeldOut {
+  std::vector<std::string> trials;
+};
+struct Table {
+  std::string key;
+  std::size_t n_datasets = 0, n_left_out = 0;
+};
+struct Tested {
+  double p = 1.0;  ///< of the global test
+};
+struct NotRuledOut {
+  std::vector<std::string> hypotheses;  ///< `nothing` among them, first
+};
+struct IncludesOff {
+  std::string effect;
+};
+struct LookedForMore {
+  Verdict verdict = Verdict::no_disagreement;
+};
+struct Explained {
+  Residuals residuals;
+  FamilyScore family;
+};
+struct JudgedOnHeldOut {
+  Verification verification;
+};
+enum class Remark {
+  may_be_none,             ///< the name is taken back
+  refused_when_applied,    ///< the name is taken back: the model with it can't have made the data
+  nothing_more_simulated,  ///< people can hardly get about in that model: nothing more is looked for in it
+  sums_without_residuals,  ///< sums don't tell when motion was seen
+  one_trial_only,          ///< nothing can be held out
+  patched_impassable,      ///< people can hardly get about in the patched model
+  held_out_too_weak        ///< the held-out trials alone don't refuse the plain model
+};
+}  // namespace trail
+using TrailEvent = std::variant<trail::Begun, DataNote, trail::HeldOut, trail::Table, trail::Tested, trail::NotRuledOut,
+                                trail::IncludesOff, Look, trail::LookedForMore, trail::Explained,
+                                trail::JudgedOnHeldOut, trail::Remark>;
+
+struct Outcome {
+  Verdict verdict = Verdict::no_disagreement;
+  Location location;
+  std::vector<Candidate> candidates;  ///< most probable first; without `nothing` and effects that are the same change
+  HypothesisScore nothing;            ///< how well the plain model fits
+  FamilyScore family;                 ///< whose effects are likeliest together
+  std::vector<std::string> named;     ///< effects applied to the model, or those that can't be told apart; of `one_of`
+                                      ///< the plain model is one more if nothing.p exceeds the level
+  std::vector<FittedEffect> fits;     ///< of the effects that were applied
+  std::vector<Look> looks;            ///< with the effects applied, one after the other
+  std::optional<Verification> verification;
+  std::optional<Residuals> residuals;  ///< if nothing fits and the data are series
+  std::vector<std::string> telling_features;
+  double calibration_error = 0.0;
+  std::string table_key;
+  std::vector<std::string> looked_for;  ///< effects, if not the whole catalogue
+  std::vector<DataNote> notes;          ///< beside the data's own
+  std::vector<TrailEvent> trail;
+};
+
+}  // namespace pirsim::reconcile

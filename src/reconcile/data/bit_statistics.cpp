@@ -1,0 +1,154 @@
+#include "reconcile/data/bit_statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "pirsim/geometry.hpp"
+#include "reconcile/data/correlation.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+constexpr float silent_below = 0.02F;  ///< expected share of rows with motion
+constexpr std::size_t block_rows = 10;
+constexpr std::size_t shortest_period_rows = 8;
+
+double& at(CellValues& values, CellStatistic statistic) { return values[static_cast<std::size_t>(statistic)]; }
+
+void add_counts(const BitSeries& series, double window_s, CellValues& values) {
+  const std::size_t n = series.bits.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    if (series.bits[i] != 1) continue;
+    at(values, CellStatistic::seconds) += window_s;
+    if (series.busy[i] != 0) at(values, CellStatistic::busy_seconds) += window_s;
+    if (series.expected[i] < silent_below) at(values, CellStatistic::silent_seconds) += window_s;
+    at(values, CellStatistic::half_difference) += 2 * i < n ? window_s : -window_s;
+    values[static_cast<std::size_t>(CellStatistic::sixth_1) + 6 * i / n] += window_s;
+  }
+}
+
+/// Stretches of equal bits; an unknown bit ends a stretch of either kind.
+void add_stretches(const BitSeries& series, CellValues& values) {
+  const std::size_t n = series.bits.size();
+  double longest_run = 0.0, longest_gap = 0.0;
+  for (std::size_t begin = 0; begin < n;) {
+    std::size_t end = begin + 1;
+    while (end < n && series.bits[end] == series.bits[begin]) ++end;
+    const std::size_t length = end - begin;
+    const bool inner = begin > 0 && end < n && series.bits[begin - 1] != unknown_bit && series.bits[end] != unknown_bit;
+    if (series.bits[begin] == 1) {
+      longest_run = std::max(longest_run, static_cast<double>(length));
+      if (begin > 0 && series.bits[begin - 1] == 0) at(values, CellStatistic::onsets) += 1.0;
+      if (inner && length == 1) at(values, CellStatistic::isolated) += 1.0;
+    } else if (series.bits[begin] == 0) {
+      longest_gap = std::max(longest_gap, static_cast<double>(length));
+      if (inner && length == 1) at(values, CellStatistic::single_gaps) += 1.0;
+      if (inner && length == 2) at(values, CellStatistic::double_gaps) += 1.0;
+    }
+    begin = end;
+  }
+  at(values, CellStatistic::longest_run) += longest_run;
+  at(values, CellStatistic::longest_gap) += longest_gap;
+}
+
+double share_again_after(std::span<const std::uint8_t> bits, std::size_t lag) {
+  std::uint32_t followed = 0, known = 0;
+  for (std::size_t i = 0; i + lag < bits.size(); ++i) {  // without branches: bits are hard to foresee
+    const std::uint32_t moved = bits[i] == 1 ? 1 : 0;
+    followed += moved & (bits[i + lag] == 1 ? 1U : 0U);
+    known += moved & (bits[i + lag] != unknown_bit ? 1U : 0U);
+  }
+  return known > 0 ? static_cast<double>(followed) / known : 0.0;
+}
+
+/// Sum of squared deviations of block counts over what independent rows would give; 1 by chance, 0 without motion.
+double dispersion(std::span<const std::uint8_t> bits) {
+  std::vector<double> counts;
+  for (std::size_t begin = 0; begin + block_rows <= bits.size(); begin += block_rows) {
+    const auto block = bits.subspan(begin, block_rows);
+    counts.push_back(static_cast<double>(std::ranges::count(block, 1)));
+  }
+  if (counts.size() < 2) return 0.0;
+  double mean = 0.0;
+  for (const double count : counts) mean += count / static_cast<double>(counts.size());
+  double squares = 0.0;
+  for (const double count : counts) squares += (count - mean) * (count - mean);
+  const double by_chance =
+      static_cast<double>(counts.size() - 1) * mean * (1.0 - mean / static_cast<double>(block_rows));
+  return mean > 0.0 ? squares / (by_chance + 0.5) : 0.0;
+}
+
+/// (n) exp(2 pi i k / n), made once for every n.
+const std::vector<std::complex<double>>& roots_of_unity(std::size_t n) {
+  thread_local std::map<std::size_t, std::vector<std::complex<double>>> known;
+  std::vector<std::complex<double>>& roots = known[n];
+  for (std::size_t k = roots.size(); k < n; ++k) {
+    const double angle = 2.0 * pi * static_cast<double>(k) / static_cast<double>(n);
+    roots.emplace_back(std::cos(angle), std::sin(angle));
+  }
+  return roots;
+}
+
+/// Greatest |sum of exp(2 pi i f t / n)|^2 over the rows t with motion, divided by its expectation by chance: of the
+/// frequencies f from 1 on whose period is no shorter than the shortest.
+double period_power(std::span<const std::uint8_t> bits) {
+  const std::size_t n = bits.size();
+  const auto count = static_cast<double>(std::ranges::count(bits, 1));
+  if (count < 3.0 || count + 3.0 > static_cast<double>(n)) return 0.0;
+  const std::vector<std::complex<double>>& roots = roots_of_unity(n);
+  std::vector<std::complex<double>> sums(n / shortest_period_rows);
+  for (std::size_t row = 0; row < n; ++row) {
+    if (bits[row] != 1) continue;
+    std::size_t k = 0;  // f * row modulo n
+    for (std::complex<double>& sum : sums) {
+      k = k + row < n ? k + row : k + row - n;
+      sum += roots[k];
+    }
+  }
+  double greatest = 0.0;
+  for (const std::complex<double>& sum : sums) greatest = std::max(greatest, std::norm(sum));
+  return greatest / (count * (1.0 - count / static_cast<double>(n)));
+}
+
+double cycle_strength(std::span<const std::uint8_t> bits, double cycle_rows) {
+  double real = 0.0, imaginary = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < bits.size(); ++i) {
+    if (bits[i] != 1) continue;
+    const double angle = 2.0 * pi * static_cast<double>(i) / cycle_rows;
+    real += std::cos(angle);
+    imaginary += std::sin(angle);
+    count += 1.0;
+  }
+  return count > 0.0 ? std::hypot(real, imaginary) / count : 0.0;
+}
+
+double agreement(const BitSeries& series) {
+  Correlation correlation;
+  for (std::size_t i = 0; i < series.bits.size(); ++i) {
+    if (series.bits[i] != unknown_bit) correlation.add(series.bits[i], series.expected[i]);
+  }
+  return correlation.value();
+}
+
+}  // namespace
+
+void add_main_statistics(const BitSeries& series, double window_s, CellValues& values) {
+  add_counts(series, window_s, values);
+  add_stretches(series, values);
+  constexpr std::array<std::pair<CellStatistic, std::size_t>, 5> lags{{{CellStatistic::again_after_1, 1},
+                                                                       {CellStatistic::again_after_2, 2},
+                                                                       {CellStatistic::again_after_3, 3},
+                                                                       {CellStatistic::again_after_4, 4},
+                                                                       {CellStatistic::again_after_6, 6}}};
+  for (const auto& [statistic, lag] : lags) at(values, statistic) += share_again_after(series.bits, lag);
+  at(values, CellStatistic::dispersion) += dispersion(series.bits);
+  at(values, CellStatistic::period_power) += period_power(series.bits);
+  at(values, CellStatistic::cycle_strength) += cycle_strength(series.bits, series.cycle_rows);
+  at(values, CellStatistic::agreement) += agreement(series);
+}
+
+}  // namespace pirsim::reconcile

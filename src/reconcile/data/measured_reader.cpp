@@ -1,0 +1,334 @@
+#include "reconcile/data/measured_reader.hpp"
+
+#include <algorithm>
+#include <boost/algorithm/string/join.hpp>
+#include <cmath>
+#include <set>
+#include <span>
+
+#include "core/digest.hpp"
+#include "pirsim/csv.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+constexpr std::size_t fewest_rows = 30;  ///< of the main parts together
+constexpr std::size_t most_faults_told = 10;
+constexpr double most_missing_rows = 3600.0;
+constexpr std::size_t fewest_cells = 5;  ///< of sums
+
+std::string plural(std::size_t n, const std::string& one, const std::string& many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+}  // namespace
+
+MeasuredReader::MeasuredReader(std::string_view text, const std::string& file, const StudyFrame& frame)
+    : frame_(frame), file_(file), table_(io::CsvTable::parse(text, file)) {
+  measured_.file = file;
+  measured_.digest = sha256(text);
+}
+
+Measured MeasuredReader::read() {
+  trial_ = table_.column("trial") ? table_.column("trial") : table_.column("seat");
+  replicate_ = table_.column("replicate");
+  phase_ = table_.column("phase");
+  time_ = table_.column("time_s");
+  refuse_both("trial", "seat");
+  if (!trial_ && frame_.trials.size() > 1) {
+    static_cast<void>(table_.required_column("trial", faults_));
+    faults_.throw_if_errors();
+  }
+  if (table_.column("sensor")) {
+    read_sums();
+  } else {
+    read_rows();
+  }
+  faults_.throw_if_errors();
+  number_runs();
+  refuse_too_little();
+  note_missing_trials();
+  return std::move(measured_);
+}
+
+std::optional<std::size_t> MeasuredReader::find(const std::vector<std::string>& names, const std::string& what,
+                                                std::size_t row, std::size_t column) {
+  const std::string& name = table_.text(row, column);
+  const auto known = std::ranges::find(names, name);
+  if (known != names.end()) return static_cast<std::size_t>(known - names.begin());
+  if (unknown_names_.insert(name).second)  // each is told once
+    faults_.error(table_.where(row, column), what + " '" + name + "' is not in the study" + did_you_mean(name, names));
+  return std::nullopt;
+}
+
+std::optional<std::size_t> MeasuredReader::trial_of(std::size_t row) {
+  if (!trial_) return 0;
+  return find(frame_.trials, "trial", row, *trial_);
+}
+
+int MeasuredReader::replicate_of(std::size_t row) {
+  if (!replicate_) return 1;
+  return table_.integer(row, *replicate_, faults_).value_or(1);
+}
+
+void MeasuredReader::read_sums() {
+  measured_.kind = Measured::Kind::sums;
+  const std::size_t sensor = *table_.column("sensor");
+  const auto seconds = table_.column("real") ? table_.column("real") : table_.required_column("seconds", faults_);
+  refuse_both("real", "seconds");
+  refuse_unknown_columns({"trial", "seat", "sensor", "replicate", "seconds", "real", "min_sim", "max_sim", "mean_sim",
+                          "in_range"});  // the last four: simulated by others, in the table that is shipped
+  faults_.throw_if_errors();
+  std::set<std::pair<RunKey, std::size_t>> seen;
+  std::size_t missing = 0;
+  for (std::size_t row = 0; row < table_.n_rows(); ++row) {
+    const auto trial = trial_of(row);
+    const auto which = find(frame_.sensors, "sensor", row, sensor);
+    const int replicate = replicate_of(row);
+    const auto value = table_.number(row, *seconds, faults_);
+    if (!trial || !which) continue;
+    if (!seen.insert({{*trial, replicate}, *which}).second) {
+      faults_.error(table_.where(row, sensor), "this trial and sensor appear twice");
+    }
+    if (value && *value < 0.0) faults_.error(table_.where(row, *seconds), "seconds with motion can't be negative");
+    if (!value) {
+      ++missing;
+      continue;
+    }
+    measured_.sums.push_back({*trial, *which, replicate, *value});
+  }
+  if (missing > 0) {
+    measured_.notes.push_back({DataNote::What::sums_empty, missing});
+  }
+  std::set<std::pair<std::size_t, std::size_t>> cells;
+  std::set<std::size_t> trials;
+  for (const auto& [run, which] : seen) {
+    cells.insert({run.first, which});
+    trials.insert(run.first);
+  }
+  const std::size_t absent = trials.size() * frame_.sensors.size() - cells.size();
+  if (absent > 0) {
+    measured_.notes.push_back({DataNote::What::cells_absent, absent});
+  }
+}
+
+std::vector<std::optional<std::size_t>> MeasuredReader::sensor_columns() {
+  std::vector<std::optional<std::size_t>> columns;
+  std::vector<std::string> absent;
+  for (const std::string& sensor : frame_.sensors) {
+    columns.push_back(table_.column(sensor));
+    if (!columns.back()) absent.push_back(sensor);
+  }
+  if (absent.size() == frame_.sensors.size()) {
+    faults_.error({file_, 1, 1}, "none of the columns is a sensor of the scene (" +
+                                     boost::algorithm::join(frame_.sensors, ", ") +
+                                     "): is this the data of another scene?");
+  } else if (!absent.empty()) {
+    measured_.notes.push_back({DataNote::What::sensors_absent, absent.size(), absent});
+  }
+  return columns;
+}
+
+void MeasuredReader::refuse_both(const std::string& one, const std::string& other) {
+  if (table_.column(one) && table_.column(other))
+    faults_.error({file_, 1, 1}, "columns '" + one + "' and '" + other + "' mean the same: give one of them");
+}
+
+void MeasuredReader::refuse_unknown_columns(const std::vector<std::string>& known) {
+  const std::vector<std::string> names = table_.names();
+  for (const std::string& name : names) {
+    if (std::ranges::find(known, name) != known.end()) continue;
+    faults_.error({file_, 1, 1}, "unknown column '" + name + "'" + did_you_mean(name, known));
+  }
+}
+
+void MeasuredReader::read_rows() {
+  if (!time_) static_cast<void>(table_.required_column("time_s", faults_));
+  const auto columns = sensor_columns();
+  std::vector<std::string> known{"replicate", "trial", "seat", "time_s", "phase", "people"};
+  known.insert(known.end(), frame_.sensors.begin(), frame_.sensors.end());
+  if (!faults_.has_errors()) refuse_unknown_columns(known);
+  faults_.throw_if_errors();
+
+  std::map<RunKey, std::vector<Row>> runs;
+  for (std::size_t row = 0; row < table_.n_rows(); ++row) {
+    const auto trial = trial_of(row);
+    const auto time = table_.number(row, *time_, faults_);
+    if (!time && table_.text(row, *time_).empty())
+      faults_.error(table_.where(row, *time_), "time_s: expected a number");
+    if (trial && time) runs[{*trial, replicate_of(row)}].push_back({row, *time});
+  }
+  faults_.throw_if_errors();
+  for (auto& [key, rows] : runs) add_run(key, std::move(rows), columns);
+  if (bad_bits_ > most_faults_told) {
+    faults_.error({file_, 0, 0},
+                  plural(bad_bits_ - most_faults_told, "more reading is", "more readings are") + " neither 0 nor 1");
+  }
+  measured_.tells_phases = phase_.has_value();
+  if (!phase_ && !frame_.counted_phases.empty()) {
+    measured_.notes.push_back({DataNote::What::phases_unknown, frame_.counted_phases.size(), frame_.counted_phases});
+  }
+  if (inserted_rows_ > 0) {
+    measured_.notes.push_back({DataNote::What::rows_missing, inserted_rows_});
+  }
+  if (unknown_bits_ > 0) {
+    measured_.notes.push_back({DataNote::What::readings_empty, unknown_bits_});
+  }
+  if (unread_runs_ > 0) {
+    measured_.notes.push_back({DataNote::What::runs_unread, unread_runs_, frame_.counted_phases});
+  }
+}
+
+bool MeasuredReader::check_times(const std::vector<Row>& rows) {
+  std::map<double, std::size_t> steps;  // how often rows are so far apart
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const double step = rows[i].time_s - rows[i - 1].time_s;
+    if (step <= 0.0) {
+      faults_.error(table_.where(rows[i].line, *time_), "time_s doesn't grow: " + io::csv_number(rows[i].time_s) +
+                                                            " after " + io::csv_number(rows[i - 1].time_s));
+      return false;
+    }
+    ++steps[std::round(step * 1e6) / 1e6];
+  }
+  if (frame_.counted_phases.empty() && rows.front().time_s > most_missing_rows * frame_.window_s) {
+    faults_.error(table_.where(rows.front().line, *time_), "time_s counts from the beginning of the trial; this one " +
+                                                               std::string("begins with ") +
+                                                               io::csv_number(rows.front().time_s));
+    return false;
+  }
+  if (steps.empty()) return true;
+  const auto usual = std::ranges::max_element(steps, {}, &std::pair<const double, std::size_t>::second);
+  if (std::abs(usual->first - frame_.window_s) > 1e-6 * frame_.window_s) {
+    faults_.error(table_.where(rows.front().line, *time_), "rows are " + io::csv_number(usual->first) +
+                                                               " s apart, the script's window is " +
+                                                               io::csv_number(frame_.window_s) + " s");
+    return false;
+  }
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const double windows = (rows[i].time_s - rows[i - 1].time_s) / frame_.window_s;
+    if (windows > most_missing_rows) {
+      faults_.error(table_.where(rows[i].line, *time_), "this row comes " + io::csv_number(std::round(windows)) +
+                                                            " windows after the one before: too long a gap");
+      return false;
+    }
+    if (std::abs(windows - std::round(windows)) < 1e-3) continue;
+    faults_.error(table_.where(rows[i].line, *time_), "this row isn't a whole number of windows after the one before");
+    return false;
+  }
+  return true;
+}
+
+std::vector<std::uint8_t> MeasuredReader::bits_of(std::size_t row,
+                                                  const std::vector<std::optional<std::size_t>>& columns) {
+  std::vector<std::uint8_t> bits;
+  for (const auto& column : columns) {
+    bits.push_back(unknown_bit);
+    if (!column) continue;
+    const std::string& text = table_.text(row, *column);
+    if (text == "0" || text == "1") {
+      bits.back() = text == "1" ? 1 : 0;
+    } else if (text.empty()) {
+      ++unknown_bits_;
+    } else if (++bad_bits_ <= most_faults_told) {
+      faults_.error(table_.where(row, *column), table_.names()[*column] + ": expected 0 or 1, got '" + text + "'");
+    }
+  }
+  return bits;
+}
+
+void MeasuredReader::mark_main(Series& series, const std::vector<Row>& rows, const std::vector<std::size_t>& places) {
+  const std::size_t n_rows = places.back() + 1;
+  series.main_end = n_rows;
+  if (!phase_ || frame_.counted_phases.empty()) return;
+  bool begun = false;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::string& phase = table_.text(rows[i].line, *phase_);
+    if (std::ranges::find(frame_.counted_phases, phase) == frame_.counted_phases.end()) continue;
+    if (!begun) series.main_begin = places[i];
+    begun = true;
+    series.main_end = places[i] + 1;
+  }
+  if (!begun) series.main_end = 0;
+}
+
+/// Where the first row lies in its run. If phases are counted, they tell where the main part begins, not the clock.
+std::size_t MeasuredReader::first_place(double time_s) const {
+  if (!frame_.counted_phases.empty()) return 0;
+  return static_cast<std::size_t>(std::max(0L, std::lround(time_s / frame_.window_s) - 1));
+}
+
+void MeasuredReader::add_run(RunKey key, std::vector<Row> rows,
+                             const std::vector<std::optional<std::size_t>>& columns) {
+  if (!check_times(rows)) return;
+  Series series{key.first, key.second, 0, 0, {}};
+  std::vector<std::size_t> places;  // of the rows, gaps counted
+  const std::size_t first = first_place(rows.front().time_s);
+  for (const Row& row : rows) {
+    const double windows = (row.time_s - rows.front().time_s) / frame_.window_s;
+    const std::size_t place = first + static_cast<std::size_t>(std::lround(windows));
+    while (series.bits.size() < place * frame_.sensors.size()) {
+      series.bits.insert(series.bits.end(), frame_.sensors.size(), unknown_bit);
+      ++inserted_rows_;
+    }
+    const auto bits = bits_of(row.line, columns);
+    series.bits.insert(series.bits.end(), bits.begin(), bits.end());
+    places.push_back(place);
+  }
+  mark_main(series, rows, places);
+  const auto main = std::span(series.bits)
+                        .subspan(series.main_begin * frame_.sensors.size(),
+                                 (series.main_end - series.main_begin) * frame_.sensors.size());
+  if (std::ranges::all_of(main, [](std::uint8_t bit) { return bit == unknown_bit; })) {
+    ++unread_runs_;
+    return;
+  }
+  measured_.runs.push_back(std::move(series));
+}
+
+/// From 1 in every trial, as simulated runs are: numbers may begin anywhere and have gaps.
+void MeasuredReader::number_runs() {
+  std::map<std::size_t, std::set<int>> known;  // of a trial
+  for (const Series& run : measured_.runs) known[run.trial].insert(run.replicate);
+  for (const Measured::Sum& sum : measured_.sums) known[sum.trial].insert(sum.replicate);
+  const auto rank = [&](std::size_t trial, int replicate) {
+    const std::set<int>& numbers = known.at(trial);
+    return 1 + static_cast<int>(std::distance(numbers.begin(), numbers.find(replicate)));
+  };
+  for (Series& run : measured_.runs) run.replicate = rank(run.trial, run.replicate);
+  for (Measured::Sum& sum : measured_.sums) sum.replicate = rank(sum.trial, sum.replicate);
+}
+
+void MeasuredReader::refuse_too_little() {
+  if (measured_.kind == Measured::Kind::sums) {
+    if (measured_.sums.size() >= fewest_cells) return;
+    throw Error(ErrorCode::input, {file_, 0, 0},
+                "too little data: " + plural(measured_.sums.size(), "sum", "sums") + ", needed are " +
+                    std::to_string(fewest_cells));
+  }
+  std::size_t known = 0;
+  for (const Series& run : measured_.runs) {
+    const std::size_t n = frame_.sensors.size();
+    for (std::size_t row = run.main_begin; row < run.main_end; ++row) {
+      const auto first = run.bits.begin() + static_cast<std::ptrdiff_t>(row * n);
+      known +=
+          std::any_of(first, first + static_cast<std::ptrdiff_t>(n), [](auto b) { return b != unknown_bit; }) ? 1 : 0;
+    }
+  }
+  if (known >= fewest_rows) return;
+  throw Error(
+      ErrorCode::input, {file_, 0, 0},
+      "too little data: " + plural(known, "row", "rows") + " to compare, needed are " + std::to_string(fewest_rows));
+}
+
+void MeasuredReader::note_missing_trials() {
+  std::vector<std::string> absent;
+  for (std::size_t trial = 0; trial < frame_.trials.size(); ++trial) {
+    const bool seen = std::ranges::any_of(measured_.runs, [&](const Series& run) { return run.trial == trial; }) ||
+                      std::ranges::any_of(measured_.sums, [&](const Measured::Sum& sum) { return sum.trial == trial; });
+    if (!seen) absent.push_back(frame_.trials[trial]);
+  }
+  if (absent.empty()) return;
+  measured_.notes.push_back({DataNote::What::trials_absent, absent.size(), absent});
+}
+
+}  // namespace pirsim::reconcile

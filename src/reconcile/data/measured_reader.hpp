@@ -1,0 +1,58 @@
+// Reads measured rows or sums, and says what is wrong or odd about them. Private to reconcile.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "io/csv_reader.hpp"
+#include "reconcile/data/measured.hpp"
+
+namespace pirsim::reconcile {
+
+class MeasuredReader {
+ public:
+  MeasuredReader(std::string_view text, const std::string& file, const StudyFrame& frame);
+  /// Throws Error(input) with every fault.
+  [[nodiscard]] Measured read();
+
+ private:
+  using RunKey = std::pair<std::size_t, int>;  ///< trial, replicate
+  struct Row {
+    std::size_t line = 0;  ///< row of the table
+    double time_s = 0.0;
+  };
+
+  void read_sums();
+  void read_rows();
+  [[nodiscard]] std::vector<std::optional<std::size_t>> sensor_columns();
+  void refuse_both(const std::string& one, const std::string& other);
+  void refuse_unknown_columns(const std::vector<std::string>& known);
+  [[nodiscard]] std::optional<std::size_t> trial_of(std::size_t row);
+  [[nodiscard]] int replicate_of(std::size_t row);
+  [[nodiscard]] std::optional<std::size_t> find(const std::vector<std::string>& names, const std::string& what,
+                                                std::size_t row, std::size_t column);
+  [[nodiscard]] std::size_t first_place(double time_s) const;
+  void add_run(RunKey key, std::vector<Row> rows, const std::vector<std::optional<std::size_t>>& columns);
+  [[nodiscard]] bool check_times(const std::vector<Row>& rows);
+  [[nodiscard]] std::vector<std::uint8_t> bits_of(std::size_t row,
+                                                  const std::vector<std::optional<std::size_t>>& columns);
+  void mark_main(Series& series, const std::vector<Row>& rows, const std::vector<std::size_t>& places);
+  void number_runs();
+  void refuse_too_little();
+  void note_missing_trials();
+
+  const StudyFrame& frame_;
+  std::string file_;
+  io::CsvTable table_;
+  Diagnostics faults_;
+  Measured measured_;
+  std::optional<std::size_t> trial_, replicate_, phase_, time_;
+  std::set<std::string> unknown_names_;
+  std::size_t inserted_rows_ = 0, unknown_bits_ = 0, bad_bits_ = 0, unread_runs_ = 0;
+};
+
+}  // namespace pirsim::reconcile

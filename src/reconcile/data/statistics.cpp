@@ -1,0 +1,302 @@
+#include "reconcile/data/statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "reconcile/data/bit_statistics.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+constexpr float nothing_known = std::numeric_limits<float>::quiet_NaN();
+constexpr double busy_share = 0.12;  ///< of the rows
+
+constexpr auto first_sixth = static_cast<std::size_t>(CellStatistic::sixth_1);
+constexpr std::array<std::string_view, first_sixth> cell_names{
+    "seconds",       "busy_seconds",  "silent_seconds", "half_difference",   "onsets",        "longest_run",
+    "isolated",      "single_gaps",   "double_gaps",    "again_after_1",     "again_after_2", "again_after_3",
+    "again_after_4", "again_after_6", "longest_gap",    "dispersion",        "period_power",  "cycle_strength",
+    "agreement",     "lead_seconds",  "tail_seconds",   "late_tail_seconds", "run_variance"};
+constexpr auto first_slice = static_cast<std::size_t>(TrialStatistic::slice_1);
+constexpr std::size_t n_slices = n_trial_statistics - first_slice;
+constexpr std::array<std::string_view, first_slice> trial_names{
+    "lag_minus_4", "lag_minus_2", "lag_minus_1", "lag_0",      "lag_1",      "lag_2",        "lag_3",       "lag_5",
+    "lag_8",       "lag_11",      "lag_15",      "any_active", "two_active", "three_active", "coactivation"};
+constexpr std::array<int, 11> lags{-4, -2, -1, 0, 1, 2, 3, 5, 8, 11, 15};
+
+/// A run's main part, as long as the shape says and blind where it is: (n_main x n_sensors).
+std::vector<std::uint8_t> main_bits(const Series& run, const DataShape::Run& shape, std::size_t n_sensors) {
+  const std::size_t first = run.main_begin * n_sensors;
+  const std::size_t last = std::min(run.main_end, run.main_begin + shape.n_main) * n_sensors;
+  std::vector<std::uint8_t> bits(run.bits.begin() + static_cast<std::ptrdiff_t>(first),
+                                 run.bits.begin() + static_cast<std::ptrdiff_t>(last));
+  bits.resize(shape.n_main * n_sensors, 0);  // people have left: no motion
+  for (std::size_t i = 0; i < shape.unknown.size(); ++i) {
+    if (shape.unknown[i] != 0) bits[i] = unknown_bit;
+  }
+  return bits;
+}
+
+/// (n_main) of one sensor.
+template <typename Value>
+std::vector<Value> column(const std::vector<Value>& table, std::size_t n_columns, std::size_t which) {
+  std::vector<Value> values;
+  values.reserve(table.size() / n_columns);
+  for (std::size_t i = which; i < table.size(); i += n_columns) values.push_back(table[i]);
+  return values;
+}
+
+double seconds_between(const Series& run, std::size_t begin, std::size_t end, std::size_t sensor, std::size_t n_sensors,
+                       double window_s) {
+  std::size_t rows = 0;
+  for (std::size_t row = begin; row < end; ++row) rows += run.bits[row * n_sensors + sensor] == 1 ? 1 : 0;
+  return static_cast<double>(rows) * window_s;
+}
+
+/// Collects the statistics of the runs of one trial.
+class TrialStatistics {
+ public:
+  TrialStatistics(const StudyFrame& frame, const Profile::Trial& profile)
+      : frame_(frame),
+        profile_(profile),
+        cells_(frame.sensors.size()),
+        seconds_(frame.sensors.size()),
+        pairs_(n_pairs(frame), 0.0),
+        lead_known_(frame.sensors.size(), 1),
+        tail_known_(frame.sensors.size(), 1) {}
+
+  void add(const Series& run, const DataShape::Run& shape, Measured::Kind kind) {
+    const std::vector<std::uint8_t> bits = main_bits(run, shape, frame_.sensors.size());
+    for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+      if (!knows(shape, sensor)) continue;
+      add_cell(run, shape, bits, sensor);
+      lead_known_[sensor] &= shape.lead_known[sensor];
+      tail_known_[sensor] &= shape.tail_known[sensor];
+    }
+    if (kind == Measured::Kind::series) add_trial(bits);
+    ++n_runs_;
+  }
+
+  void write(std::size_t trial, const DataShape& shape, std::vector<float>& out) const {
+    if (n_runs_ == 0) return;
+    for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+      if (shape.known_cells[trial * frame_.sensors.size() + sensor] == 0) continue;
+      for (std::size_t i = 0; i < n_cell_statistics; ++i) {
+        const auto statistic = static_cast<CellStatistic>(i);
+        if (!known(sensor, statistic, shape.kind)) continue;
+        out[cell_index(frame_, trial, sensor, statistic)] = static_cast<float>(value_of(sensor, statistic));
+      }
+    }
+    if (shape.kind != Measured::Kind::series) return;
+    for (std::size_t i = 0; i < n_trial_statistics; ++i) {
+      out[trial_index(frame_, trial, static_cast<TrialStatistic>(i))] = static_cast<float>(trial_[i] / n_runs_);
+    }
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      out[pair_index(frame_, trial, 0, 1) + i] = static_cast<float>(pairs_[i] / n_runs_);
+    }
+  }
+
+ private:
+  [[nodiscard]] bool knows(const DataShape::Run& shape, std::size_t sensor) const {
+    return knows_main_part(shape, sensor, frame_.sensors.size());
+  }
+  [[nodiscard]] bool known(std::size_t sensor, CellStatistic statistic, Measured::Kind kind) const {
+    if (statistic == CellStatistic::run_variance) return seconds_[sensor].size() > 1;
+    if (statistic == CellStatistic::seconds) return true;
+    if (kind == Measured::Kind::sums) return false;
+    if (statistic == CellStatistic::lead_seconds) return lead_known_[sensor] != 0;
+    if (statistic != CellStatistic::tail_seconds && statistic != CellStatistic::late_tail_seconds) return true;
+    return tail_known_[sensor] != 0;
+  }
+  [[nodiscard]] double value_of(std::size_t sensor, CellStatistic statistic) const {
+    const auto n_runs = static_cast<double>(seconds_[sensor].size());
+    if (statistic != CellStatistic::run_variance) {
+      return cells_[sensor][static_cast<std::size_t>(statistic)] / n_runs;
+    }
+    const double mean = cells_[sensor][static_cast<std::size_t>(CellStatistic::seconds)] / n_runs;
+    double squares = 0.0;
+    for (const double seconds : seconds_[sensor]) squares += (seconds - mean) * (seconds - mean);
+    return squares / (n_runs - 1.0);
+  }
+
+  void add_cell(const Series& run, const DataShape::Run& shape, const std::vector<std::uint8_t>& bits,
+                std::size_t sensor) {
+    const std::size_t n = frame_.sensors.size();
+    const std::vector<std::uint8_t> own = column(bits, n, sensor);
+    std::vector<float> expected = column(profile_.expected, n, sensor);
+    std::vector<std::uint8_t> busy = profile_.busy;
+    expected.resize(shape.n_main, 0.0F);
+    busy.resize(shape.n_main, 0);
+    CellValues values{};
+    add_main_statistics({own, expected, busy, profile_.cycle_rows}, frame_.window_s, values);
+    const std::size_t n_rows = run.n_rows(n), half_tail = run.main_end + (n_rows - run.main_end) / 2;
+    const auto set = [&](CellStatistic statistic, std::size_t begin, std::size_t end) {
+      values[static_cast<std::size_t>(statistic)] = seconds_between(run, begin, end, sensor, n, frame_.window_s);
+    };
+    set(CellStatistic::lead_seconds, 0, run.main_begin);
+    set(CellStatistic::tail_seconds, run.main_end, n_rows);
+    set(CellStatistic::late_tail_seconds, half_tail, n_rows);
+    for (std::size_t i = 0; i < n_cell_statistics; ++i) cells_[sensor][i] += values[i];
+    seconds_[sensor].push_back(values[static_cast<std::size_t>(CellStatistic::seconds)]);
+  }
+
+  void add_trial(const std::vector<std::uint8_t>& bits) {
+    const std::size_t n = frame_.sensors.size(), n_rows = bits.size() / n;
+    std::vector<double> active(n_rows, 0.0), share(n, 0.0);
+    for (std::size_t i = 0; i < bits.size(); ++i) {
+      if (bits[i] != 1) continue;
+      active[i / n] += 1.0;
+      share[i % n] += 1.0 / static_cast<double>(n_rows);
+      trial_[first_slice + i / n * n_slices / n_rows] += frame_.window_s;
+    }
+    add_pairs(bits);
+    add_lags(active);
+    const auto with_at_least = [&](double least) {
+      return static_cast<double>(std::ranges::count_if(active, [&](double a) { return a >= least; }));
+    };
+    trial_[static_cast<std::size_t>(TrialStatistic::any_active)] += with_at_least(1.0);
+    trial_[static_cast<std::size_t>(TrialStatistic::two_active)] += with_at_least(2.0);
+    trial_[static_cast<std::size_t>(TrialStatistic::three_active)] += with_at_least(3.0);
+    double mean = 0.0, independent = 0.0, variance = 0.0;
+    for (const double s : share) {
+      mean += s;
+      independent += s * (1.0 - s);
+    }
+    for (const double a : active) variance += (a - mean) * (a - mean) / static_cast<double>(n_rows);
+    trial_[static_cast<std::size_t>(TrialStatistic::coactivation)] += variance / (independent + 0.01);
+  }
+
+  void add_pairs(const std::vector<std::uint8_t>& bits) {
+    const std::size_t n = frame_.sensors.size();
+    std::size_t pair = 0;
+    for (std::size_t first = 0; first < n; ++first) {
+      for (std::size_t second = 0; second < n; ++second) {
+        if (first == second) continue;
+        std::uint32_t rows = 0;  // counted without branches: bits are hard to foresee
+        for (std::size_t row = 0; row < bits.size(); row += n)
+          rows += (bits[row + second] == 1 ? 1U : 0U) & (bits[row + first] == 0 ? 1U : 0U);
+        pairs_[pair++] += rows;
+      }
+    }
+  }
+
+  void add_lags(const std::vector<double>& active) {
+    const auto n_rows = static_cast<std::ptrdiff_t>(std::min(active.size(), profile_.movement.size()));
+    for (std::size_t i = 0; i < lags.size(); ++i) {
+      double sum = 0.0;
+      for (std::ptrdiff_t row = std::max(0, lags[i]); row < std::min(n_rows, n_rows + lags[i]); ++row) {
+        sum += active[static_cast<std::size_t>(row)] *
+               static_cast<double>(profile_.movement[static_cast<std::size_t>(row - lags[i])]);
+      }
+      trial_[i] += sum;
+    }
+  }
+
+  const StudyFrame& frame_;
+  const Profile::Trial& profile_;
+  std::vector<CellValues> cells_;             ///< (n_sensors) sums over runs
+  std::vector<std::vector<double>> seconds_;  ///< (n_sensors x n_runs that know anything of the sensor)
+  std::array<double, n_trial_statistics> trial_{};
+  std::vector<double> pairs_;                          ///< (n_pairs) sums over runs
+  std::vector<std::uint8_t> lead_known_, tail_known_;  ///< (n_sensors) in all runs
+  int n_runs_ = 0;
+};
+
+/// Of the first desk work in a trial; any other number where there is none.
+double arm_period_s(const TrialSpec& trial) {
+  for (const PersonSpec& person : trial.people) {
+    for (const ScriptedAction& action : person.actions) {
+      if (const auto* work = std::get_if<action::Work>(&action.what)) return work->arm_period_s;
+    }
+  }
+  return action::Work{}.arm_period_s;
+}
+
+}  // namespace
+
+std::string name(CellStatistic statistic) {
+  const auto index = static_cast<std::size_t>(statistic);
+  return index < first_sixth ? std::string(cell_names[index]) : "sixth_" + std::to_string(index - first_sixth + 1);
+}
+std::string name(TrialStatistic statistic) {
+  const auto index = static_cast<std::size_t>(statistic);
+  return index < first_slice ? std::string(trial_names[index]) : "slice_" + std::to_string(index - first_slice + 1);
+}
+
+std::size_t n_statistics(const StudyFrame& frame) noexcept {
+  return frame.n_cells() * n_cell_statistics + frame.trials.size() * (n_trial_statistics + n_pairs(frame));
+}
+
+Profile profile_of(const StudyFrame& frame, const ScriptSpec& script, std::span<const Series> runs) {
+  const std::size_t n = frame.sensors.size();
+  Profile profile;
+  profile.trials.resize(frame.trials.size());
+  std::vector<double> n_runs(frame.trials.size(), 0.0);
+  for (const Series& run : runs) {
+    Profile::Trial& trial = profile.trials[run.trial];
+    trial.n_main = std::max(trial.n_main, run.main_end - run.main_begin);
+    trial.expected.resize(trial.n_main * n, 0.0F);
+    for (std::size_t i = run.main_begin * n; i < run.main_end * n; ++i) {
+      if (run.bits[i] == 1) trial.expected[i - run.main_begin * n] += 1.0F;
+    }
+    n_runs[run.trial] += 1.0;
+  }
+  for (std::size_t t = 0; t < profile.trials.size(); ++t) {
+    Profile::Trial& trial = profile.trials[t];
+    trial.movement.assign(trial.n_main, 0.0F);
+    for (std::size_t i = 0; i < trial.expected.size(); ++i) {
+      trial.expected[i] /= static_cast<float>(n_runs[t]);
+      trial.movement[i / n] += trial.expected[i];
+    }
+    std::vector<float> sorted = trial.movement;
+    std::ranges::sort(sorted, std::greater<>());
+    const auto last_busy = static_cast<std::size_t>(busy_share * static_cast<double>(trial.n_main));
+    float mean = 0.0F;
+    for (const float m : sorted) mean += m / static_cast<float>(trial.n_main);
+    for (float& m : trial.movement) {
+      trial.busy.push_back(!sorted.empty() && m > 0.0F && m >= sorted[last_busy] ? 1 : 0);
+      m -= mean;
+    }
+    trial.cycle_rows = arm_period_s(script.trials[t]) / frame.window_s;
+  }
+  return profile;
+}
+
+std::vector<float> statistics_of(const StudyFrame& frame, const DataShape& shape, const Profile& profile,
+                                 std::span<const Series> runs) {
+  std::vector<TrialStatistics> trials;
+  trials.reserve(frame.trials.size());
+  for (std::size_t t = 0; t < frame.trials.size(); ++t) trials.emplace_back(frame, profile.trials[t]);
+  for (const DataShape::Run& wanted : shape.runs) {
+    const auto run = std::ranges::find_if(
+        runs, [&](const Series& s) { return s.trial == wanted.trial && s.replicate == wanted.replicate; });
+    if (run != runs.end()) trials[wanted.trial].add(*run, wanted, shape.kind);
+  }
+  std::vector<float> values(n_statistics(frame), nothing_known);
+  for (std::size_t t = 0; t < trials.size(); ++t) trials[t].write(t, shape, values);
+  return values;
+}
+
+std::vector<float> statistics_of(const StudyFrame& frame, const DataShape& shape, const Profile& profile,
+                                 const Measured& measured) {
+  if (measured.kind == Measured::Kind::series) return statistics_of(frame, shape, profile, measured.runs);
+  std::vector<std::vector<double>> sums(frame.n_cells());
+  for (const Measured::Sum& sum : measured.sums)
+    sums[sum.trial * frame.sensors.size() + sum.sensor].push_back(sum.seconds);
+  std::vector<float> values(n_statistics(frame), nothing_known);
+  for (std::size_t cell = 0; cell < sums.size(); ++cell) {
+    if (sums[cell].empty()) continue;
+    double mean = 0.0, squares = 0.0;
+    for (const double seconds : sums[cell]) mean += seconds / static_cast<double>(sums[cell].size());
+    for (const double seconds : sums[cell]) squares += (seconds - mean) * (seconds - mean);
+    const std::size_t first = cell * n_cell_statistics;
+    values[first + static_cast<std::size_t>(CellStatistic::seconds)] = static_cast<float>(mean);
+    if (sums[cell].size() < 2) continue;
+    values[first + static_cast<std::size_t>(CellStatistic::run_variance)] =
+        static_cast<float>(squares / static_cast<double>(sums[cell].size() - 1));
+  }
+  return values;
+}
+
+}  // namespace pirsim::reconcile

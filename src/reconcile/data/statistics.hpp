@@ -1,0 +1,115 @@
+// A dataset in numbers: the same numbers of measured and of simulated data.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "reconcile/data/alignment.hpp"
+
+namespace pirsim::reconcile {
+
+/// What the base model expects, row by row, and where and when people move.
+struct Profile {
+  struct Trial {
+    std::size_t n_main = 0;
+    std::vector<float> expected;     ///< (n_main x n_sensors) share of simulated datasets with motion
+    std::vector<std::uint8_t> busy;  ///< (n_main) among the rows with most expected motion
+    std::vector<float> movement;     ///< (n_main) expected motion of all sensors, less its mean
+    double cycle_rows = 3.0;         ///< period of desk work
+  };
+  std::vector<Trial> trials;
+};
+/// runs: simulated by the base model in many realizations.
+[[nodiscard]] Profile profile_of(const StudyFrame& frame, const ScriptSpec& script, std::span<const Series> runs);
+
+/// Per cell (trial x sensor), over the main part unless it says otherwise; mean over a cell's runs.
+enum class CellStatistic : std::uint8_t {
+  seconds,          ///< with motion
+  busy_seconds,     ///< of them, in rows where much motion is expected: changes of posture
+  silent_seconds,   ///< in rows where this sensor is expected to be silent
+  half_difference,  ///< first half less second half
+  onsets,           ///< motion after none
+  longest_run,      ///< rows with motion in a row
+  isolated,         ///< single rows with motion
+  single_gaps,      ///< single rows without
+  double_gaps,      ///< two rows without
+  again_after_1,    ///< share of the rows with motion that are followed by motion so many rows later
+  again_after_2,
+  again_after_3,
+  again_after_4,
+  again_after_6,
+  longest_gap,
+  dispersion,         ///< of the counts in blocks of ten rows, against chance
+  period_power,       ///< greatest of the periodogram, periods of 8 rows and more, against chance
+  cycle_strength,     ///< how much motion keeps to one phase of the arm's cycle, 0 to 1
+  agreement,          ///< correlation with what the base model expects row by row
+  lead_seconds,       ///< before the main part
+  tail_seconds,       ///< after it
+  late_tail_seconds,  ///< in the second half of that
+  run_variance,       ///< of the seconds, from run to run
+  sixth_1,            ///< seconds in the first sixth of the time
+  sixth_6 = sixth_1 + 5,
+  count
+};
+/// Per trial, over all sensors.
+enum class TrialStatistic : std::uint8_t {
+  lag_minus_4,  ///< covariance of motion and expected motion so many rows earlier
+  lag_minus_2,
+  lag_minus_1,
+  lag_0,
+  lag_1,
+  lag_2,
+  lag_3,
+  lag_5,
+  lag_8,
+  lag_11,
+  lag_15,
+  any_active,  ///< rows with motion of at least one sensor
+  two_active,
+  three_active,
+  coactivation,  ///< variance of the number of active sensors, against independent ones
+  slice_1,       ///< seconds of all sensors in the first of eighteen parts of the time
+  slice_18 = slice_1 + 17,
+  count
+};
+inline constexpr std::size_t n_cell_statistics = static_cast<std::size_t>(CellStatistic::count);
+inline constexpr std::size_t n_trial_statistics = static_cast<std::size_t>(TrialStatistic::count);
+[[nodiscard]] std::string name(CellStatistic statistic);
+[[nodiscard]] std::string name(TrialStatistic statistic);
+
+/// Besides there is one number per trial and ordered pair of sensors: rows in which the second one has motion and the
+/// first one has none, mean over runs.
+///
+/// All statistics of a dataset: (n_cells x n_cell_statistics) by trial, then sensor; (n_trials x n_trial_statistics);
+/// (n_trials x n_pairs). NaN where the shape knows nothing. Of sums there is only CellStatistic::seconds.
+[[nodiscard]] std::size_t n_statistics(const StudyFrame& frame) noexcept;
+[[nodiscard]] inline std::size_t cell_index(const StudyFrame& frame, std::size_t trial, std::size_t sensor,
+                                            CellStatistic statistic) noexcept {
+  return (trial * frame.sensors.size() + sensor) * n_cell_statistics + static_cast<std::size_t>(statistic);
+}
+[[nodiscard]] inline std::size_t trial_index(const StudyFrame& frame, std::size_t trial,
+                                             TrialStatistic statistic) noexcept {
+  return frame.n_cells() * n_cell_statistics + trial * n_trial_statistics + static_cast<std::size_t>(statistic);
+}
+/// Ordered pairs of different sensors.
+[[nodiscard]] inline std::size_t n_pairs(const StudyFrame& frame) noexcept {
+  return frame.sensors.size() * (frame.sensors.size() - 1);
+}
+/// first != second.
+[[nodiscard]] inline std::size_t pair_index(const StudyFrame& frame, std::size_t trial, std::size_t first,
+                                            std::size_t second) noexcept {
+  return frame.n_cells() * n_cell_statistics + frame.trials.size() * n_trial_statistics + trial * n_pairs(frame) +
+         first * (frame.sensors.size() - 1) + (second < first ? second : second - 1);
+}
+
+/// Of simulated or measured series; runs that the shape doesn't have are left out.
+[[nodiscard]] std::vector<float> statistics_of(const StudyFrame& frame, const DataShape& shape, const Profile& profile,
+                                               std::span<const Series> runs);
+/// Of measured data of either kind.
+[[nodiscard]] std::vector<float> statistics_of(const StudyFrame& frame, const DataShape& shape, const Profile& profile,
+                                               const Measured& measured);
+
+}  // namespace pirsim::reconcile

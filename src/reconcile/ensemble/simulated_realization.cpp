@@ -1,0 +1,117 @@
+#include "reconcile/ensemble/simulated_realization.hpp"
+
+#include <algorithm>
+
+#include "effects/catalogue.hpp"
+#include "sim/recording_family.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+/// Of these trials; none given: of all.
+std::vector<std::uint32_t> runs_of(const Model& model, std::span<const std::size_t> trials) {
+  std::vector<std::uint32_t> runs;
+  const std::size_t n_trials = model.script().trials.size();
+  for (std::uint32_t run = 0; run < model.n_runs(); ++run) {
+    if (trials.empty() || std::ranges::find(trials, run % n_trials) != trials.end()) runs.push_back(run);
+  }
+  return runs;
+}
+
+void add_series(const StudyFrame& frame, const RunResult& result, int first, std::vector<Series>& data) {
+  if (result.samples.empty()) return;
+  auto series = series_of(frame, result.replicate - first, result.samples.front().trial, result.samples);
+  if (series) data.push_back(std::move(*series));
+}
+
+/// Zones as a Model's detector takes them.
+struct Emitter {
+  Emitter(const Model& of, const Recording& from) : model(of), tracks(from), logic(sim::make_logic(of)) {
+    logic->prepare(tracks.sets);
+  }
+  [[nodiscard]] std::vector<Series> emit(const StudyFrame& frame, const effects::Pipeline& pipeline, int first,
+                                         int n) const {
+    std::vector<Series> data;
+    for (std::size_t i = 0; i < tracks.runs.size(); ++i) {
+      const int replicate = tracks.runs[i].rows.replicate;
+      if (replicate <= first || replicate > first + n) continue;
+      add_series(frame, sim::replay(tracks, i, *logic, model.script().seed, pipeline), first, data);
+    }
+    return data;
+  }
+
+  const Model& model;
+  const Recording& tracks;
+  std::unique_ptr<DetectorLogic> logic;
+};
+
+}  // namespace
+
+struct SimulatedRealization::Traced {
+  explicit Traced(const Realization& realization)
+      : model(compile(realization.scene, realization.script)),
+        family(model, runs_of(model, {})),
+        emitter(model, family.first()) {}
+
+  Model model;
+  sim::RecordingFamily family;
+  Emitter emitter;
+};
+
+SimulatedRealization::SimulatedRealization(const RealizationSource& source, const StudyFrame& frame,
+                                           std::uint32_t index, int n_runs)
+    : frame_(&frame) {
+  for (std::uint32_t attempt = 0;; ++attempt) {
+    realization_ = draw_realization(source.scene, source.script, source.nuisance, source.seed, index, attempt);
+    realization_.script.replicates = n_runs;
+    try {
+      traced_ = std::make_unique<Traced>(realization_);
+      return;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::infeasible || attempt + 1 == most_rooms) throw;
+    }
+  }
+}
+
+SimulatedRealization::~SimulatedRealization() = default;
+SimulatedRealization::SimulatedRealization(SimulatedRealization&&) noexcept = default;
+SimulatedRealization& SimulatedRealization::operator=(SimulatedRealization&&) noexcept = default;
+
+std::vector<Series> SimulatedRealization::with(std::span<const EffectSpec> more, int first, int n) const {
+  std::vector<EffectSpec> all = realization_.script.effects;
+  all.insert(all.end(), more.begin(), more.end());
+  return traced_->emitter.emit(*frame_, sim::make_stages(traced_->model, all), first, n);
+}
+
+std::vector<Series> SimulatedRealization::anew(std::span<const EffectSpec> more, int n,
+                                               std::span<const std::size_t> trials) const {
+  Realization altered = realization_;
+  altered.script.effects.insert(altered.script.effects.end(), more.begin(), more.end());
+  altered.script.replicates = n;
+  const Model model = compile(altered.scene, altered.script, {.like = &traced_->model});
+  const Recording tracks = traced_->family.record(model, runs_of(model, trials));
+  return Emitter(model, tracks).emit(*frame_, model.compiled().stages(), 0, n);
+}
+
+std::optional<std::vector<Series>> SimulatedRealization::with_effects(std::span<const EffectSpec> more, int first,
+                                                                      int n,
+                                                                      std::span<const std::size_t> trials) const {
+  try {
+    auto data = acts_on_remembered_zones(more) ? with(more, first, n) : anew(more, n, trials);
+    std::erase_if(data, [&](const Series& run) {
+      return !trials.empty() && std::ranges::find(trials, run.trial) == trials.end();
+    });
+    return data;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::infeasible) throw;
+    return std::nullopt;
+  }
+}
+
+bool acts_on_remembered_zones(std::span<const EffectSpec> effects) {
+  return std::ranges::all_of(effects, [](const EffectSpec& effect) {
+    return effects::find(effect.name).info.reach != effects::Reach::geometry;
+  });
+}
+
+}  // namespace pirsim::reconcile

@@ -1,0 +1,52 @@
+// Simulated datasets on disk: a folder with the key of what they depend on and chunks of finished realizations. Private
+// to reconcile.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "reconcile/ensemble/reference_table.hpp"
+
+namespace pirsim::reconcile {
+
+/// The runs of one dataset as they were simulated: statistics are taken when they are needed, so that data with other
+/// gaps, and other statistics, need no new simulation.
+struct SimulatedDataset {
+  TableRow row;
+  std::vector<Series> runs;
+};
+/// Datasets of some realizations that follow each other.
+struct TableChunk {
+  std::vector<SimulatedDataset> datasets;
+  std::uint32_t n_left_out = 0;
+};
+
+class TableStore {
+ public:
+  /// An empty folder name keeps nothing. Throws Error(input) if the folder holds a table with another key.
+  TableStore(std::filesystem::path folder, const std::string& key);
+  /// None if the chunk isn't there. Throws Error(input) if it is damaged.
+  [[nodiscard]] std::optional<TableChunk> find(std::uint32_t number) const;
+  void keep(std::uint32_t number, const TableChunk& chunk) const;
+
+ private:
+  [[nodiscard]] std::filesystem::path file(std::uint32_t number) const;
+  std::filesystem::path folder_;
+};
+
+/// Simulates item `index` (a realization) with all of its datasets.
+using ItemJob = std::function<TableChunk(std::uint32_t index)>;
+/// Calls use(chunk) for the datasets of items 0 to n_items - 1, in order: those that aren't in the store are simulated,
+/// on several threads, and kept there; the context is told how many are done.
+void for_each_chunk(const TableStore& store, std::uint32_t n_items, const Context& context, const ItemJob& job,
+                    const std::function<void(TableChunk&)>& use);
+
+/// A row a dataset.
+void append_statistics(const StudyFrame& frame, const DataShape& shape, const Profile& profile, const TableChunk& chunk,
+                       unsigned threads, stats::Matrix<float>& statistics);
+
+}  // namespace pirsim::reconcile

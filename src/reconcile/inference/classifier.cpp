@@ -1,0 +1,165 @@
+#include "reconcile/inference/classifier.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "pirsim/error.hpp"
+#include "reconcile/inference/kinds.hpp"
+#include "reconcile/inference/locate.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+constexpr std::size_t fewest_training = 20;  ///< datasets of a hypothesis: fewer have no shape
+constexpr std::size_t fewest_calibration = 10;
+constexpr std::size_t fewest_of_kind = 10;  ///< training datasets: the mean of fewer is noise
+
+/// The rows that the global test sees something in; if they are few the next ones too, so that p can fall below alpha:
+/// two tests in one need 2 / alpha rows, half as many again tell more than whether it does (40 to 80 rows were tried).
+std::vector<std::size_t> rows_seen(const TableView& view, std::vector<std::size_t> rows, double alpha) {
+  std::vector<std::pair<double, std::size_t>> by_p;
+  for (const std::size_t row : rows) by_p.emplace_back(view.p_of_row(row), row);
+  std::ranges::sort(by_p);
+  const auto fewest = static_cast<std::size_t>(3.0 / alpha);
+  const auto n_seen =
+      static_cast<std::size_t>(std::ranges::count_if(by_p, [&](const auto& row) { return row.first <= alpha; }));
+  by_p.resize(std::min(by_p.size(), std::max(n_seen, fewest)));
+  rows.clear();
+  for (const auto& [p, row] : by_p) rows.push_back(row);
+  std::ranges::sort(rows);
+  return rows;
+}
+
+}  // namespace
+
+FamilyScore likeliest_family(std::span<const HypothesisScore> scores) {
+  std::map<effects::Family, double> sums;
+  for (const HypothesisScore& score : scores.subspan(1))
+    sums[effects::find(score.hypothesis).info.family] += score.probability;
+  const auto likeliest = std::ranges::max_element(sums, {}, [](const auto& sum) { return sum.second; });
+  return likeliest == sums.end() ? FamilyScore{} : FamilyScore{likeliest->first, likeliest->second};
+}
+
+SeenRows seen_rows(const TableView& view, double alpha) {
+  const ReferenceTable& table = view.table();
+  SeenRows seen{rows_of(table, 0, Part::calibration)};
+  for (std::size_t hypothesis = 1; hypothesis < table.n_hypotheses(); ++hypothesis)
+    seen.push_back(rows_seen(view, rows_of(table, hypothesis, Part::calibration), alpha));
+  return seen;
+}
+
+LabelledRows::LabelledRows(const ReferenceTable& table, const SeenRows& seen, std::string_view left_out)
+    : n_hypotheses(table.n_hypotheses()) {
+  const auto add = [&](const std::vector<std::size_t>& more, const std::vector<int>& kinds_of_more,
+                       std::vector<std::size_t>& part) {
+    for (std::size_t i = 0; i < more.size(); ++i) {
+      part.push_back(rows.size());
+      rows.push_back(more[i]);
+      labels.push_back(static_cast<int>(hypotheses.size()));
+      kinds.push_back(kinds_of_more[i]);
+    }
+  };
+  int n_kinds = 0;
+  for (std::size_t hypothesis = 0; hypothesis < n_hypotheses; ++hypothesis) {
+    if (table.hypothesis_name(hypothesis) == left_out) continue;
+    const std::vector<std::size_t> training = rows_of(table, hypothesis, Part::training);
+    const std::size_t n_calibration = rows_of(table, hypothesis, Part::calibration).size();
+    if (training.size() < fewest_training || n_calibration < fewest_calibration) {
+      if (hypothesis > 0) continue;
+      throw Error(ErrorCode::infeasible,
+                  "reconcile: people could get about in too few realizations of the plain model (" +
+                      std::to_string(training.size() + n_calibration) + "): simulate more realizations");
+    }
+    std::vector<int> alike = number_alike(table, training, fewest_of_kind);
+    for (int& kind : alike) kind += n_kinds;
+    n_kinds = std::ranges::max(alike) + 1;
+    add(training, alike, split.fitting);
+    add(seen.at(hypothesis), std::vector<int>(seen.at(hypothesis).size(), -1), split.calibration);
+    hypotheses.push_back(hypothesis);
+  }
+  if (hypotheses.size() < 2)
+    throw Error(ErrorCode::infeasible,
+                "reconcile: no effect to look for is left; of each too few realizations could be "
+                "simulated in this room");
+}
+
+std::vector<double> LabelledRows::by_hypothesis(std::span<const double> of_classes) const {
+  std::vector<double> values(n_hypotheses, 0.0);
+  for (std::size_t c = 0; c < hypotheses.size(); ++c) values[hypotheses[c]] = of_classes[c];
+  return values;
+}
+
+std::size_t likeliest_hypothesis(std::span<const double> probabilities,
+                                 const std::function<bool(std::size_t)>& wanted) {
+  std::size_t best = 0;
+  for (std::size_t hypothesis = 1; hypothesis < probabilities.size(); ++hypothesis) {
+    const double most = best == 0 ? 0.0 : probabilities[best];  // what is no candidate has 0
+    if (wanted(hypothesis) && probabilities[hypothesis] > most) best = hypothesis;
+  }
+  return best;
+}
+
+HypothesisProbabilities::HypothesisProbabilities(const ReferenceTable& table, const FeatureMap& map,
+                                                 const SeenRows& seen, const stats::PooledClassifierSettings& settings)
+    : map_(&map),
+      data_(table, seen, ""),
+      classifier_(stats::PooledClassifier::fit(map.features(table.statistics.select_rows(data_.rows), settings.threads),
+                                               data_.labels, static_cast<int>(data_.hypotheses.size()), data_.split,
+                                               settings, data_.kinds)) {}
+
+std::vector<double> HypothesisProbabilities::of(std::span<const float> statistics) const {
+  return data_.by_hypothesis(classifier_.probabilities(map_->features(statistics)));
+}
+
+HypothesisClassifier::HypothesisClassifier(const TableView& view, const ClassifierSettings& settings,
+                                           const Context& context)
+    : map_(&view.map()),
+      seen_rows_(reconcile::seen_rows(view, settings.alpha)),
+      data_(view.table(), seen_rows_, settings.left_out) {
+  for (std::size_t hypothesis = 0; hypothesis < view.table().n_hypotheses(); ++hypothesis)
+    names_.push_back(view.table().hypothesis_name(hypothesis));
+  stats::ConformalSettings conformal;
+  conformal.pooled.trees = {.trees = settings.trees, .seed = context.seed, .threads = context.threads};
+  conformal.pooled.threads = context.threads;
+  conformal.shapes.seed = context.seed;
+  conformal.shapes.threads = context.threads;
+  conformal.blocks = view.map().blocks();
+  classifier_ =
+      stats::ConformalClassifier::fit(view.features().select_rows(data_.rows), data_.labels,
+                                      static_cast<int>(data_.hypotheses.size()), data_.split, conformal, data_.kinds);
+  std::vector<int> labels;
+  for (const std::size_t place : data_.split.calibration) labels.push_back(data_.labels[place]);
+  reliability_ = stats::reliability(classifier_.calibration_probabilities(), labels);
+}
+
+std::vector<double> HypothesisClassifier::probabilities(std::span<const float> statistics) const {
+  return data_.by_hypothesis(classifier_.pooled().probabilities(map_->features(statistics)));
+}
+
+std::vector<HypothesisScore> HypothesisClassifier::judge(std::span<const float> statistics) const {
+  const stats::Classification found = classifier_.classify(map_->features(statistics));
+  std::vector<HypothesisScore> scores;
+  for (const std::string& name : names_) scores.push_back({name});
+  for (std::size_t c = 0; c < data_.hypotheses.size(); ++c) {
+    HypothesisScore& score = scores[data_.hypotheses[c]];
+    score.probability = found.probabilities[c];
+    score.p_relative = found.p_relative[c];
+    score.p_absolute = found.p_absolute[c];
+    score.p = found.p[c];
+    score.least_p = classifier_.least_p(c);
+  }
+  return scores;
+}
+
+std::vector<std::string> HypothesisClassifier::telling_features(std::size_t n) const {
+  std::vector<std::size_t> order(map_->names().size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const std::vector<double>& importance = classifier_.pooled().trees().importance();
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return importance[a] > importance[b]; });
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < std::min(n, order.size()); ++i) names.push_back(map_->names()[order[i]]);
+  return names;
+}
+
+}  // namespace pirsim::reconcile

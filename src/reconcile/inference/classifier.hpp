@@ -1,0 +1,97 @@
+// Which effects of the catalogue can have made these data?
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "effects/catalogue.hpp"
+#include "reconcile/inference/table_view.hpp"
+#include "stats/calibration.hpp"
+#include "stats/conformal.hpp"
+#include "stats/decision.hpp"
+
+namespace pirsim::reconcile {
+
+/// The likeliest family. scores: (n_hypotheses) nothing first.
+[[nodiscard]] FamilyScore likeliest_family(std::span<const HypothesisScore> scores);
+
+/// (n_hypotheses) Datasets (rows of the table) that nothing is learnt from and in which the global test sees something,
+/// as in data that a name is given to; or, of few, the likeliest to be seen.
+using SeenRows = std::vector<std::vector<std::size_t>>;
+/// alpha: level of the global test.
+[[nodiscard]] SeenRows seen_rows(const TableView& view, double alpha);
+
+struct ClassifierSettings {
+  double alpha = 0.05;  ///< level of the global test
+  std::size_t trees = 300;
+  std::string left_out = {};  ///< effect that is not to be a candidate; empty: none
+};
+
+/// Rows of the table that its hypotheses are told apart by, with their classes. Hypotheses without enough datasets are
+/// none.
+struct LabelledRows {
+  /// left_out: effect that is not to be a candidate; empty: none. Throws Error(infeasible) without rows of nothing.
+  LabelledRows(const ReferenceTable& table, const SeenRows& seen, std::string_view left_out);
+  /// (n_classes) -> (n_hypotheses); what is no candidate has 0.
+  [[nodiscard]] std::vector<double> by_hypothesis(std::span<const double> of_classes) const;
+
+  std::vector<std::size_t> rows;        ///< (n) of the table
+  std::vector<int> labels;              ///< (n)
+  std::vector<int> kinds;               ///< (n) finer classes of the training rows: datasets that are alike; else -1
+  stats::Split split;                   ///< training realizations and seen rows, by place in `rows`
+  std::vector<std::size_t> hypotheses;  ///< (n_classes)
+  std::size_t n_hypotheses = 0;
+};
+
+/// The hypothesis of the greatest probability (at least 1) for which `wanted` holds; 0 if there is none above 0.
+[[nodiscard]] std::size_t likeliest_hypothesis(std::span<const double> probabilities,
+                                               const std::function<bool(std::size_t)>& wanted);
+
+/// How probable each hypothesis is, seen in some of the trials only, without a test of whether it can have made the
+/// data.
+class HypothesisProbabilities {
+ public:
+  /// map must outlive it.
+  HypothesisProbabilities(const ReferenceTable& table, const FeatureMap& map, const SeenRows& seen,
+                          const stats::PooledClassifierSettings& settings);
+  /// (n_hypotheses) of a dataset's statistics.
+  [[nodiscard]] std::vector<double> of(std::span<const float> statistics) const;
+
+ private:
+  const FeatureMap* map_;
+  LabelledRows data_;
+  stats::PooledClassifier classifier_;
+};
+
+/// Trained on the training realizations of a table, calibrated on the others. Names are given only where the global
+/// test sees a disagreement, so an effect is calibrated on those of its datasets in which the test sees one: weak
+/// datasets, which look like anything, would make every effect hard to rule out.
+class HypothesisClassifier {
+ public:
+  /// view must outlive it. The p of what is no candidate is 0.
+  HypothesisClassifier(const TableView& view, const ClassifierSettings& settings, const Context& context);
+
+  /// (n_hypotheses) of a dataset's statistics; nothing first.
+  [[nodiscard]] std::vector<HypothesisScore> judge(std::span<const float> statistics) const;
+  /// (n_hypotheses) probabilities only.
+  [[nodiscard]] std::vector<double> probabilities(std::span<const float> statistics) const;
+  [[nodiscard]] const SeenRows& seen_rows() const noexcept { return seen_rows_; }
+  /// How well the probabilities of the calibration datasets mean what they say.
+  [[nodiscard]] const stats::Reliability& reliability() const noexcept { return reliability_; }
+  /// Names of the features with the greatest share in the trees' decisions.
+  [[nodiscard]] std::vector<std::string> telling_features(std::size_t n) const;
+
+ private:
+  const FeatureMap* map_;
+  std::vector<std::string> names_;  ///< of all hypotheses
+  SeenRows seen_rows_;
+  LabelledRows data_;
+  stats::ConformalClassifier classifier_;
+  stats::Reliability reliability_;
+};
+
+}  // namespace pirsim::reconcile

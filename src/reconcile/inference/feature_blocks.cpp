@@ -1,0 +1,273 @@
+// The features of a dataset, block by block.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "reconcile/data/correlation.hpp"
+#include "reconcile/inference/feature_writer.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+constexpr std::size_t n_sixths = n_cell_statistics - n_told_of_cells;
+constexpr std::size_t n_slices = n_trial_statistics - n_told_of_trials;
+/// Statistics whose means over the sensors of a trial are looked at one by one.
+constexpr std::array told_by_trial{CellStatistic::seconds,       CellStatistic::half_difference,
+                                   CellStatistic::onsets,        CellStatistic::isolated,
+                                   CellStatistic::again_after_1, CellStatistic::agreement,
+                                   CellStatistic::lead_seconds,  CellStatistic::tail_seconds};
+/// Statistics by whose means the sensors are put in order.
+constexpr std::array told_in_order{CellStatistic::seconds,      CellStatistic::silent_seconds,
+                                   CellStatistic::onsets,       CellStatistic::again_after_1,
+                                   CellStatistic::period_power, CellStatistic::half_difference};
+
+}  // namespace
+
+void FeatureMap::write_cells(const Scaled& data, Writer& out) const {
+  for (const std::size_t trial : trials_) {
+    for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+      if (!known(trial, sensor, 0)) continue;
+      out.test_next();
+      out.add(data.values[cell_index(frame_, trial, sensor, CellStatistic::seconds)],
+              [&] { return frame_.trials[trial] + " " + frame_.sensors[sensor] + " seconds"; });
+    }
+  }
+}
+
+void FeatureMap::write_sensors(const Scaled& data, Writer& out) const {
+  for (std::size_t k = 0; k < n_told_of_cells; ++k) {
+    std::vector<double> means;
+    for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+      double sum = 0.0, count = 0.0;
+      for (const std::size_t trial : trials_) {
+        if (!known(trial, sensor, k)) continue;
+        sum += data.values[cell_index(frame_, trial, sensor, static_cast<CellStatistic>(k))];
+        count += 1.0;
+      }
+      if (count == 0.0) continue;
+      means.push_back(sum / count);
+      out.test_next();
+      out.add(means.back(), [&] { return frame_.sensors[sensor] + " " + name(static_cast<CellStatistic>(k)); });
+    }
+    if (std::ranges::find(told_in_order, static_cast<CellStatistic>(k)) == told_in_order.end()) continue;
+    if (means.size() < 3) continue;
+    std::ranges::sort(means);
+    const auto label = [&](const char* which) { return which + name(static_cast<CellStatistic>(k)); };
+    out.add(means[means.size() - 1] - means[means.size() - 2], [&] { return label("first less second sensor: "); });
+    out.add(means[1] - means[0], [&] { return label("last but one less last sensor: "); });
+    out.add(means.back() - means.front(), [&] { return label("first less last sensor: "); });
+  }
+}
+
+void FeatureMap::write_trials(const Scaled& data, Writer& out) const {
+  for (const CellStatistic statistic : told_by_trial) {
+    for (const std::size_t trial : trials_) {
+      double sum = 0.0, count = 0.0;
+      for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+        if (!known(trial, sensor, static_cast<std::size_t>(statistic))) continue;
+        sum += data.values[cell_index(frame_, trial, sensor, statistic)];
+        count += 1.0;
+      }
+      if (count > 0.0) out.add(sum / count, [&] { return frame_.trials[trial] + " " + name(statistic); });
+    }
+  }
+  for (std::size_t k = 0; k < n_told_of_trials; ++k) {
+    double sum = 0.0, squares = 0.0, count = 0.0;
+    for (const std::size_t trial : trials_) {
+      const std::size_t i = trial_index(frame_, trial, static_cast<TrialStatistic>(k));
+      if (known_[i] == 0) continue;
+      sum += data.values[i];
+      squares += data.values[i] * data.values[i];
+      count += 1.0;
+    }
+    if (count == 0.0) continue;
+    const auto label = [&](const char* which) { return which + name(static_cast<TrialStatistic>(k)); };
+    out.add(sum / count, [&] { return label("mean "); });
+    out.add(std::sqrt(squares / count), [&] { return label("size of "); });
+  }
+}
+
+/// Sum of a statistic over the trials in which it is known; none if there are no such trials. What a dataset has
+/// depends on the shape alone: a trial that one dataset lacks adds nothing.
+std::optional<double> FeatureMap::total(std::span<const float> statistics,
+                                        const std::function<std::size_t(std::size_t)>& index) const {
+  std::optional<double> sum;
+  for (const std::size_t trial : trials_) {
+    const std::size_t i = index(trial);
+    if (known_[i] == 0) continue;
+    sum = sum.value_or(0.0) + (std::isnan(statistics[i]) ? 0.0 : static_cast<double>(statistics[i]));
+  }
+  return sum;
+}
+
+/// How motion spreads over the time, whatever there is of it: logarithms of shares, of all sensors and of each.
+void FeatureMap::write_time(std::span<const float> statistics, Writer& out) const {
+  const auto write_shares = [&](std::size_t n, const auto& part, const std::string& whose) {
+    std::vector<double> totals;
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::optional<double> seconds = part(k);
+      if (!seconds) return;
+      totals.push_back(*seconds);
+    }
+    const double all = std::accumulate(totals.begin(), totals.end(), 0.0) + static_cast<double>(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      out.test_next();
+      out.add(std::log((totals[k] + 1.0) / all),
+              [&] { return whose + ", part " + std::to_string(k + 1) + " of " + std::to_string(n) + " of the time"; });
+    }
+  };
+  write_shares(
+      n_slices,
+      [&](std::size_t k) {
+        return total(statistics,
+                     [&](std::size_t trial) { return trial_index(frame_, trial, TrialStatistic::slice_1) + k; });
+      },
+      "all sensors");
+  for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+    write_shares(
+        n_sixths,
+        [&](std::size_t k) {
+          return total(statistics, [&](std::size_t trial) {
+            return cell_index(frame_, trial, sensor, CellStatistic::sixth_1) + k;
+          });
+        },
+        frame_.sensors[sensor]);
+  }
+}
+
+/// How much oftener than not a sensor moves while another does: logarithms of odds over all trials.
+void FeatureMap::write_pairs(std::span<const float> statistics, Writer& out) const {
+  std::vector<double> odds;
+  for (std::size_t first = 0; first < frame_.sensors.size(); ++first) {
+    for (std::size_t second = 0; second < frame_.sensors.size(); ++second) {
+      if (first == second) continue;
+      const auto alone = total(statistics, [&](std::size_t t) { return pair_index(frame_, t, first, second); });
+      const auto seconds =
+          total(statistics, [&](std::size_t t) { return cell_index(frame_, t, second, CellStatistic::seconds); });
+      if (!alone || !seconds) continue;
+      const double together = std::max(0.0, *seconds / frame_.window_s - *alone);
+      odds.push_back(std::log((together + 0.5) / (*alone + 0.5)));
+      out.test_next();
+      out.add(odds.back(), [&] { return frame_.sensors[first] + " while " + frame_.sensors[second] + " moves"; });
+    }
+  }
+  if (odds.empty()) return;
+  out.add(*std::ranges::max_element(odds), [] { return std::string("most together"); });
+  out.add(*std::ranges::min_element(odds), [] { return std::string("least together"); });
+}
+
+void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
+  for (std::size_t k = 0; k < n_told_of_cells; ++k) {
+    double count = 0.0, sum = 0.0, size = 0.0, greatest = -1e9, least = 1e9;
+    std::vector<double> slopes(covariates_.size(), 0.0);
+    for (const std::size_t trial : trials_) {
+      for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+        if (!known(trial, sensor, k)) continue;
+        const std::size_t cell = trial * frame_.sensors.size() + sensor;
+        const double value = data.values[cell * n_cell_statistics + k];
+        count += 1.0;
+        sum += value;
+        size += std::abs(value);
+        greatest = std::max(greatest, value);
+        least = std::min(least, value);
+        for (std::size_t c = 0; c < slopes.size(); ++c) slopes[c] += value * covariates_[c][cell];
+      }
+    }
+    if (count == 0.0) continue;
+    const std::string statistic = name(static_cast<CellStatistic>(k));
+    const auto label = [&](std::string_view which) { return std::string(which) + " " + statistic; };
+    out.test_next();
+    out.add(sum / count, [&] { return label("mean"); });
+    out.test_next();
+    out.add(size / count, [&] { return label("size of"); });
+    out.add(greatest, [&] { return label("greatest"); });
+    out.add(least, [&] { return label("least"); });
+    for (std::size_t c = 0; c < slopes.size(); ++c) {
+      out.add(slopes[c] / count, [&] { return label("slope on " + covariate_names_[c] + " of"); });
+    }
+  }
+}
+
+double FeatureMap::likeness(std::span<const double> values, std::span<const std::size_t> trial_order,
+                            std::span<const std::size_t> sensor_order) const {
+  const std::size_t n_sensors = frame_.sensors.size();
+  Correlation correlation;
+  for (const std::size_t trial : trials_) {
+    for (std::size_t sensor = 0; sensor < n_sensors; ++sensor) {
+      const std::size_t from = trial_order[trial] * n_sensors + sensor_order[sensor];
+      const std::size_t cell = trial * n_sensors + sensor;
+      if (known_[cell * n_cell_statistics] == 0 || known_[from * n_cell_statistics] == 0) continue;
+      correlation.add(values[cell], expected_log_[from]);
+    }
+  }
+  return correlation.value();
+}
+
+void FeatureMap::write_permutations(std::span<const float> statistics, Writer& out) const {
+  const std::size_t n_trials = frame_.trials.size(), n_sensors = frame_.sensors.size();
+  std::vector<double> values(frame_.n_cells(), 0.0);
+  for (std::size_t cell = 0; cell < values.size(); ++cell) {
+    const float seconds = statistics[cell * n_cell_statistics];
+    if (!std::isnan(seconds)) values[cell] = std::log1p(static_cast<double>(seconds));
+  }
+  std::vector<std::size_t> trials(n_trials), sensors(n_sensors);
+  std::iota(trials.begin(), trials.end(), std::size_t{0});
+  std::iota(sensors.begin(), sensors.end(), std::size_t{0});
+  const double as_it_is = likeness(values, trials, sensors);
+  out.add(as_it_is, [] { return std::string("likeness"); });
+  const auto add = [&](const auto& trial_order, const auto& sensor_order, const char* what) {
+    out.add(likeness(values, trial_order, sensor_order) - as_it_is,
+            [&] { return std::string("likeness gained by ") + what; });
+  };
+  const auto rotated = [](std::vector<std::size_t> order, std::ptrdiff_t by) {
+    std::rotate(order.begin(), order.begin() + (by > 0 ? by : static_cast<std::ptrdiff_t>(order.size()) + by),
+                order.end());
+    return order;
+  };
+  const auto best_swap = [&](std::vector<std::size_t> order, const auto& likeness_of) {
+    double best = -2.0;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      for (std::size_t j = i + 1; j < order.size(); ++j) {
+        std::swap(order[i], order[j]);
+        best = std::max(best, likeness_of(order));
+        std::swap(order[i], order[j]);
+      }
+    }
+    return best - as_it_is;
+  };
+  if (n_trials > 1) {
+    add(rotated(trials, 1), sensors, "trials shifted by one");
+    add(rotated(trials, -1), sensors, "trials shifted back by one");
+    add(std::vector<std::size_t>(trials.rbegin(), trials.rend()), sensors, "trials in reverse");
+    out.add(best_swap(trials, [&](const auto& order) { return likeness(values, order, sensors); }),
+            [] { return std::string("likeness gained by two trials swapped"); });
+  }
+  if (n_sensors > 1) {
+    add(trials, rotated(sensors, 1), "sensors shifted by one");
+    add(trials, rotated(sensors, -1), "sensors shifted back by one");
+    add(trials, std::vector<std::size_t>(sensors.rbegin(), sensors.rend()), "sensors in reverse");
+    out.add(best_swap(sensors, [&](const auto& order) { return likeness(values, trials, order); }),
+            [] { return std::string("likeness gained by two sensors swapped"); });
+  }
+}
+
+void FeatureMap::write_all(std::span<const float> statistics, Writer& out) const {
+  const Scaled data = scaled(statistics);
+  write_cells(data, out);
+  out.end_block();
+  write_sensors(data, out);
+  out.end_block();
+  write_trials(data, out);
+  out.end_block();
+  write_time(statistics, out);
+  out.end_block();
+  write_pairs(statistics, out);
+  out.end_block();
+  write_contrasts(data, out);
+  out.end_block();
+  write_permutations(statistics, out);
+  out.end_block();
+}
+
+}  // namespace pirsim::reconcile

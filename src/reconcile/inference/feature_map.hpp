@@ -1,0 +1,77 @@
+// From a dataset's statistics to what classifiers and tests look at.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "reconcile/data/statistics.hpp"
+#include "stats/matrix.hpp"
+
+namespace pirsim::reconcile {
+
+/// What the simulator knows about a cell and the data don't tell.
+struct CellKnowledge {
+  double distance_m = 0.0;  ///< from the sensor to the first seat that the trial's first person takes; 0 without one
+  double facing = 0.0;      ///< cosine between where the sitter faces and the way to the sensor; 0 without a seat
+};
+/// (n_cells), by trial, then sensor.
+[[nodiscard]] std::vector<CellKnowledge> cell_knowledge(const SceneSpec& scene, const ScriptSpec& script);
+
+/// Statistics as deviations from the plain model, cell by cell, and what sums them up: means over sensors and trials,
+/// greatest and least, slopes on what the simulator knows, order of the sensors, likeness to permuted rooms.
+class FeatureMap {
+ public:
+  /// plain: statistics of datasets of the plain model (n x n_statistics); trials: those that are looked at (sorted).
+  /// Statistics that are NaN in all of them are unknown and left out; so are those of single datasets.
+  FeatureMap(const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge, const stats::Matrix<float>& plain,
+             std::vector<std::size_t> trials);
+
+  [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }
+  [[nodiscard]] const std::vector<std::size_t>& trials() const noexcept { return trials_; }
+  [[nodiscard]] bool knows_cell(std::size_t trial, std::size_t sensor) const { return known(trial, sensor, 0); }
+  /// What the global test looks at: first the cells' seconds, by trial, then sensor; then the sensors' means and the
+  /// means and sizes over all cells.
+  [[nodiscard]] const std::vector<std::size_t>& envelope_columns() const noexcept { return envelope_columns_; }
+  /// Columns of one kind each: cells, sensors, trials, time, pairs of sensors, contrasts over all cells, likeness to
+  /// permuted rooms.
+  [[nodiscard]] const std::vector<std::vector<std::size_t>>& blocks() const noexcept { return blocks_; }
+  [[nodiscard]] std::vector<float> features(std::span<const float> statistics) const;
+  [[nodiscard]] stats::Matrix<float> features(const stats::Matrix<float>& statistics, unsigned threads = 0) const;
+
+ private:
+  struct Writer;
+  struct Scaled;
+  void learn_scales(const stats::Matrix<float>& plain);
+  void learn_covariates(const std::vector<CellKnowledge>& knowledge);
+  [[nodiscard]] Scaled scaled(std::span<const float> statistics) const;
+  void write_cells(const Scaled& data, Writer& out) const;
+  void write_sensors(const Scaled& data, Writer& out) const;
+  void write_trials(const Scaled& data, Writer& out) const;
+  void write_time(std::span<const float> statistics, Writer& out) const;
+  void write_pairs(std::span<const float> statistics, Writer& out) const;
+  void write_contrasts(const Scaled& data, Writer& out) const;
+  void write_permutations(std::span<const float> statistics, Writer& out) const;
+  void write_all(std::span<const float> statistics, Writer& out) const;
+  [[nodiscard]] std::optional<double> total(std::span<const float> statistics,
+                                            const std::function<std::size_t(std::size_t trial)>& index) const;
+  [[nodiscard]] bool known(std::size_t trial, std::size_t sensor, std::size_t statistic) const;
+  [[nodiscard]] double likeness(std::span<const double> values, std::span<const std::size_t> trial_order,
+                                std::span<const std::size_t> sensor_order) const;
+
+  StudyFrame frame_;
+  std::vector<std::size_t> trials_;
+  std::vector<std::uint8_t> known_;   ///< (n_statistics)
+  std::vector<double> mean_, scale_;  ///< (n_statistics) of the plain model
+  std::vector<double> expected_log_;  ///< (n_cells) mean of log(1 + seconds)
+  std::vector<std::string> covariate_names_;
+  std::vector<std::vector<double>> covariates_;  ///< (n_covariates x n_cells) mean 0, variance 1 over known cells
+  std::vector<std::string> names_;
+  std::vector<std::size_t> envelope_columns_;
+  std::vector<std::vector<std::size_t>> blocks_;
+};
+
+}  // namespace pirsim::reconcile

@@ -1,0 +1,221 @@
+#include "reconcile/inference/loop.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/digest.hpp"
+#include "pirsim/io.hpp"
+#include "reconcile/inference/model_check.hpp"
+#include "reconcile/inference/residuals.hpp"
+#include "reconcile/inference/verify.hpp"
+
+namespace pirsim::reconcile {
+
+Outcome Loop::run() {
+  const Step& first = look(settings_, settings_.alpha);
+  outcome_ = first.outcome;
+  tell_first(first);
+  const bool named = outcome_.verdict == Verdict::named;
+  const bool worth_a_try = outcome_.verdict == Verdict::none_in_catalogue && settings_.max_effects > 1;
+  if (named || worth_a_try) {
+    applied_.push_back(named ? outcome_.fits.front() : first.best);
+    apply_more();
+    conclude();
+  }
+  if (outcome_.verdict == Verdict::none_in_catalogue) explain();
+  outcome_.looked_for = settings_.table.effects;
+  verify_effects();
+  return std::move(outcome_);
+}
+
+void Loop::explain() {
+  if (measured_.kind != Measured::Kind::series) {
+    tell(trail::Remark::sums_without_residuals);
+    return;
+  }
+  context_.begin({Stage::What::explaining_residuals});
+  outcome_.residuals = explain_residuals(steps_.front().reference, measured_, settings_.alpha, context_);
+  tell(trail::Explained{*outcome_.residuals, outcome_.family});
+}
+
+const Loop::Step& Loop::look(const Settings& settings, double level) {
+  ScriptSpec script = script_;
+  for (const FittedEffect& effect : applied_) script.effects.push_back(effect.effect);
+  Step& step = steps_.emplace_back();
+  step.reference = make_reference_study(
+      scene_, script, settings,
+      [&](const StudyFrame& frame, std::span<const Series> pilot) {
+        DataShape shape = shape_of(frame, measured_, pilot);
+        step.notes = notes_on(frame, shape, measured_, pilot);
+        return shape;
+      },
+      context_);
+  step.observed = statistics_of(step.reference.frame, step.reference.shape, step.reference.table.profile, measured_);
+  context_.begin({Stage::What::comparing});
+  const Analyst analyst(step.reference.view(training_trials(), context_.threads), {level, settings_.trees}, context_);
+  step.outcome = analyst.analyse(step.observed);
+  step.seen = analyst.classifier().seen_rows();
+  step.likeliest = analyst.likeliest(step.observed, [](std::size_t) { return true; });
+  if (step.likeliest > 0) step.best = analyst.fit(step.likeliest, step.observed);
+  return step;
+}
+
+void Loop::tell_first(const Step& first) {
+  const ReferenceStudy& reference = first.reference;
+  std::vector<TrailEvent> trail{trail::Begun{measured_.digest, context_.seed}};
+  outcome_.notes = first.notes;
+  trail.insert(trail.end(), measured_.notes.begin(), measured_.notes.end());
+  trail.insert(trail.end(), outcome_.notes.begin(), outcome_.notes.end());
+  trail::HeldOut held_out;
+  for (const std::size_t trial : settings_.holdout) held_out.trials.push_back(reference.frame.trials[trial]);
+  if (!held_out.trials.empty()) trail.emplace_back(std::move(held_out));
+  trail.emplace_back(trail::Table{reference.key, reference.table.rows.size(), reference.table.n_left_out});
+  outcome_.trail.insert(outcome_.trail.begin(), trail.begin(), trail.end());
+  outcome_.table_key = reference.key;
+}
+
+/// Fewer datasets: what is left to be found is found in a third of them, if these can rule anything out at the lower
+/// level. Kept beside the first table.
+Settings Loop::with_all(double level) const {
+  Settings settings = settings_;
+  const auto third = [level](std::uint32_t n) { return std::max(fewest_datasets_to_refuse(level), n / 3); };
+  settings.alpha = level;
+  settings.table.n_realizations = third(settings.table.n_realizations);
+  settings.table.n_remembered = third(settings.table.n_remembered);
+  settings.table.n_traced = third(settings.table.n_traced);
+  if (settings.table_folder.empty()) return settings;
+  ScriptSpec only;  // other data give another strength, and so another table
+  only.effects = patch();
+  settings.table_folder += "_with";
+  for (const FittedEffect& effect : applied_) settings.table_folder += "_" + effect.effect.name;
+  settings.table_folder += "_" + sha256(io::to_yaml(only)).substr(0, 8);
+  return settings;
+}
+
+void Loop::apply_more() {
+  for (;;) {
+    const double level = level_with(applied_.size(), settings_.alpha);
+    const double p = p_with_all(level);
+    outcome_.looks.push_back({names(), level, p});
+    passes_ = outcome_.looks.back().passes();
+    tell(outcome_.looks.back());
+    if (passes_ || static_cast<int>(applied_.size()) >= settings_.max_effects) return;
+    const std::size_t n_asked = settings_.table.effects.size();  // 0: the whole catalogue
+    if (n_asked != 0 && applied_.size() >= n_asked) return;
+    context_.begin({Stage::What::looking_for_more, names()});
+    const Step* more = look_for_more(level);
+    if (more == nullptr) return;
+    rest_ = more->outcome.verdict;
+    tell(trail::LookedForMore{*rest_});
+    if (more->outcome.verdict == Verdict::one_of) outcome_.looks.back().one_of = more->outcome.named;
+    if (more->outcome.verdict != Verdict::named) return;
+    applied_.push_back(more->outcome.fits.front());
+  }
+}
+
+const Loop::Step* Loop::look_for_more(double level) {
+  try {
+    return &look(with_all(level), level);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::infeasible) throw;
+    steps_.pop_back();
+    tell(trail::Remark::nothing_more_simulated);
+    return nullptr;
+  }
+}
+
+/// One effect that was named stands, unless it is the only one that isn't ruled out, the model with it can't have made
+/// the data, and nothing known explains the rest; that two or more together made the data is said if the first of them
+/// was named by itself, or if the model with all of them passes.
+void Loop::conclude() {
+  const bool only_one = std::ranges::count(outcome_.candidates, true, &Candidate::kept) == 1;
+  if (outcome_.verdict == Verdict::named && applied_.size() == 1 && only_one && !passes_ &&
+      rest_ == Verdict::none_in_catalogue) {
+    take_back();
+    return;
+  }
+  if (applied_.size() > 1 && (passes_ || outcome_.verdict == Verdict::named)) {
+    outcome_.verdict = Verdict::several;
+    outcome_.named = names();
+    outcome_.fits = applied_;
+    for (Candidate& candidate : outcome_.candidates) {
+      if (std::ranges::find(outcome_.named, candidate.score.hypothesis) == outcome_.named.end()) continue;
+      candidate.kept = true;
+      candidate.named_together = true;
+    }
+  } else if (outcome_.verdict == Verdict::none_in_catalogue) {
+    applied_.clear();
+  }
+}
+
+void Loop::take_back() {
+  const auto refused = std::ranges::find(outcome_.candidates, true, &Candidate::kept);
+  refused->kept = false;
+  refused->reason = reason::RefusedWhenApplied{outcome_.looks.back().p};
+  outcome_.verdict = Verdict::none_in_catalogue;
+  outcome_.named.clear();
+  outcome_.fits.clear();
+  applied_.clear();
+  tell(trail::Remark::refused_when_applied);
+}
+
+void Loop::verify_effects() {
+  if (outcome_.named.empty()) return;
+  const bool one_of = outcome_.verdict == Verdict::one_of;
+  Claim claim{{}, outcome_.named};
+  const std::size_t n = one_of ? 1 : applied_.size();
+  for (std::size_t i = 0; i < n; ++i)
+    claim.steps.push_back({&steps_[i].reference, steps_[i].observed,
+                           one_of ? outcome_.named.front() : applied_[i].effect.name, steps_[i].seen});
+  const ReferenceStudy& reference = steps_.front().reference;
+  const std::vector<std::size_t> trials = measured_.trials();
+  if (trials.size() < 2) {
+    tell(trail::Remark::one_trial_only);
+    return;
+  }
+  context_.begin({Stage::What::verifying});
+  const Folds folds = settings_.holdout.empty() ? usual_folds(measured_.digest, trials, reference.shape.kind)
+                                                : Folds{settings_.holdout};
+  Verification v =
+      verify(std::span(&claim, 1), folds, {settings_.alpha, settings_.verify_realizations}, context_).front();
+  if (v.n_trials == 0) {
+    tell(trail::Remark::patched_impassable);
+    return;
+  }
+  tell(trail::JudgedOnHeldOut{v});
+  if (!v.refused) tell(trail::Remark::held_out_too_weak);
+  outcome_.verification = std::move(v);
+}
+
+double Loop::p_with_all(double level) {
+  context_.begin({Stage::What::checking_model, names()});
+  const Step& plain = steps_.front();
+  const PatchedModel model{applied_, plain.observed};
+  return p_with(std::span(&model, 1), plain.reference, plain.reference.map(training_trials()), level, context_).front();
+}
+
+std::vector<std::string> Loop::names() const {
+  std::vector<std::string> all;
+  for (const FittedEffect& effect : applied_) all.push_back(effect.effect.name);
+  return all;
+}
+
+std::vector<EffectSpec> Loop::patch() const {
+  std::vector<EffectSpec> all;
+  for (const FittedEffect& effect : applied_) all.push_back(effect.effect);
+  return all;
+}
+
+std::vector<std::size_t> Loop::training_trials() const {
+  std::vector<std::size_t> trials;
+  std::ranges::set_difference(all_trials(steps_.front().reference.frame), settings_.holdout,
+                              std::back_inserter(trials));
+  return trials;
+}
+
+Outcome reconcile(const SceneSpec& scene, const ScriptSpec& script, const Measured& measured, const Settings& settings,
+                  const Context& context) {
+  return Loop(scene, script, measured, settings, context).run();
+}
+
+}  // namespace pirsim::reconcile

@@ -1,0 +1,63 @@
+// Effect after effect, until the model with them can have made the data.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "reconcile/inference/analyst.hpp"
+#include "reconcile/inference/reference_study.hpp"
+
+namespace pirsim::reconcile {
+
+/// One reconciliation in the making.
+class Loop {
+ public:
+  Loop(const SceneSpec& scene, const ScriptSpec& script, const Measured& measured, const Settings& settings,
+       const Context& context)
+      : scene_(scene), script_(script), measured_(measured), settings_(settings), context_(context) {}
+  [[nodiscard]] Outcome run();
+
+ private:
+  /// A look at the data with the table of one model.
+  struct Step {
+    ReferenceStudy reference;
+    std::vector<DataNote> notes;  ///< what was done with which measured rows
+    std::vector<float> observed;  ///< statistics of the measured data
+    Outcome outcome;
+    SeenRows seen;
+    std::size_t likeliest = 0;  ///< hypothesis
+    FittedEffect best;          ///< of that hypothesis
+  };
+  const Step& look(const Settings& settings, double level);
+  void apply_more();
+  /// With all that was applied; none if people can hardly get about in that model.
+  const Step* look_for_more(double level);
+  void tell_first(const Step& first);
+  void tell(TrailEvent event) { outcome_.trail.push_back(std::move(event)); }
+  void conclude();
+  void take_back();  ///< the one name that was given
+  void explain();
+  void verify_effects();
+  /// p of the global test of the model with all that has been applied, its data simulated anew.
+  [[nodiscard]] double p_with_all(double level);
+  [[nodiscard]] Settings with_all(double level) const;
+  [[nodiscard]] std::vector<std::string> names() const;
+  [[nodiscard]] std::vector<EffectSpec> patch() const;
+  [[nodiscard]] std::vector<std::size_t> training_trials() const;
+
+  const SceneSpec& scene_;
+  const ScriptSpec& script_;
+  const Measured& measured_;
+  const Settings& settings_;
+  const Context& context_;
+  std::deque<Step> steps_;             ///< addresses stay
+  std::vector<FittedEffect> applied_;  ///< one of each step
+  bool passes_ = false;                ///< the model with all of them can have made the data
+  std::optional<Verdict> rest_;        ///< of the last look for more, where one was needed
+  Outcome outcome_;
+};
+
+}  // namespace pirsim::reconcile

@@ -1,0 +1,42 @@
+#include "reconcile/inference/reference_study.hpp"
+
+#include <utility>
+
+#include "reconcile/inference/locate.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+constexpr std::uint32_t n_pilot_realizations = 40;
+
+}  // namespace
+
+ReferenceStudy make_reference_study(
+    const SceneSpec& scene, const ScriptSpec& script, const Settings& settings,
+    const std::function<DataShape(const StudyFrame&, std::span<const Series>)>& shape_of_data, const Context& context) {
+  ReferenceStudy reference{{scene, script, settings.nuisance, context.seed},
+                           frame_of(scene, script),
+                           cell_knowledge(scene, script),
+                           {},
+                           {},
+                           {}};
+  context.begin({Stage::What::pilot_runs});
+  const std::vector<Series> pilot = pilot_runs(reference.source, reference.frame, n_pilot_realizations, context);
+  reference.shape = shape_of_data(reference.frame, pilot);
+  context.begin({Stage::What::reference_table});
+  reference.table =
+      make_reference_table(reference.source, reference.frame, reference.shape,
+                           profile_of(reference.frame, script, pilot), settings.table, settings.table_folder, context);
+  reference.key = reference.table.key;
+  return reference;
+}
+
+FeatureMap ReferenceStudy::map(std::vector<std::size_t> trials) const {
+  return {frame, knowledge, table.statistics.select_rows(rows_of(table, 0, Part::training)), std::move(trials)};
+}
+
+std::shared_ptr<const TableView> ReferenceStudy::view(std::vector<std::size_t> trials, unsigned threads) const {
+  return std::make_shared<const TableView>(source.scene, frame, knowledge, table, std::move(trials), threads);
+}
+
+}  // namespace pirsim::reconcile

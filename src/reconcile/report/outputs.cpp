@@ -1,0 +1,237 @@
+#include "reconcile/report/outputs.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "io/atomic_file.hpp"
+#include "io/text_input.hpp"
+#include "pirsim/csv.hpp"
+#include "pirsim/io.hpp"
+#include "reconcile/report/pages.hpp"
+#include "reconcile/report/sentences.hpp"
+#include "reconcile/validation/seal.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const Location& location) {
+  Json cells = Json::array(), envelope = Json::array();
+  for (const LocatedCell& cell : location.cells) {
+    cells.push_back({{"trial", cell.trial},
+                     {"sensor", cell.sensor},
+                     {"measured_s", cell.measured_s},
+                     {"expected_s", cell.expected_s},
+                     {"difference_s", cell.measured_s - cell.expected_s},
+                     {"band_s", {cell.low_s, cell.high_s}},
+                     {"adjusted_p", cell.adjusted_p}});
+  }
+  for (const EnvelopeFeature& feature : location.envelope) {
+    envelope.push_back({{"feature", feature.name},
+                        {"observed", feature.observed},
+                        {"median", feature.median},
+                        {"envelope", {feature.lower, feature.upper}},
+                        {"adjusted_p", feature.adjusted_p}});
+  }
+  return {{"p", location.p},
+          {"simulated_datasets", location.n_simulated},
+          {"mean_half_band_s", location.band_s},
+          {"cells", cells},
+          {"envelope", envelope}};
+}
+
+Json to_json(const HypothesisScore& score) {
+  return {{"probability", score.probability},
+          {"p", score.p},
+          {"p_relative", score.p_relative},
+          {"p_absolute", score.p_absolute}};
+}
+
+Json to_json(const Candidate& candidate) {
+  Json json = {{"effect", candidate.score.hypothesis}, {"family", name(candidate.family)}, {"kept", candidate.kept}};
+  json.update(to_json(candidate.score));
+  json["reason"] = in_words(candidate);
+  return json;
+}
+
+Json to_json(const FittedEffect& fitted) {
+  Json parameters = Json::array();
+  for (const FittedParameter& p : fitted.parameters) {
+    parameters.push_back({{"name", p.name},
+                          {"unit", p.unit},
+                          {"value", p.value},
+                          {"interval_90", {p.interval.low, p.interval.high}},
+                          {"equally_likely", p.equally_likely},
+                          {"off", p.is_strength ? Json(p.off) : Json()}});
+  }
+  Json choices = Json::object();
+  for (const auto& [name, value] : fitted.effect.choices) choices[name] = value;
+  return {{"effect", fitted.effect.name},
+          {"parameters", parameters},
+          {"choices", choices},
+          {"interval_includes_off", fitted.includes_off}};
+}
+
+Json to_json(const Gap& gap) {
+  return {{"energy_score", gap.energy_score},
+          {"area_s", gap.area_s},
+          {"cells_outside", gap.cells_outside},
+          {"cells", gap.n_cells},
+          {"p", gap.p}};
+}
+
+Json to_json(const Verification& v) {
+  return {{"folds", v.n_folds},
+          {"named_in_folds", v.names},
+          {"before", to_json(v.before)},
+          {"after", to_json(v.after)},
+          {"noise_floor", v.noise_floor},
+          {"gain_95", {v.gain.low, v.gain.high}},
+          {"trials", v.n_trials},
+          {"trials_better", v.n_better},
+          {"sign_p", v.sign_p},
+          {"share_closed", v.share_closed},
+          {"placebo", {{"effect", v.placebo_effect}, {"energy_score", v.placebo}}},
+          {"shrunk", v.shrunk},
+          {"plain_model_refused", v.refused},
+          {"closed", v.closed}};
+}
+
+Json to_json(const Residuals& residuals, const FamilyScore& family) {
+  Json drivers = Json::array();
+  for (const ResidualDriver& driver : residuals.drivers) {
+    drivers.push_back({{"who", who_of(driver)},
+                       {"when", when_of(driver)},
+                       {"what", what_of(driver)},
+                       {"log_odds", driver.log_odds},
+                       {"standard_error", driver.standard_error},
+                       {"z", driver.z},
+                       {"p", driver.p}});
+  }
+  return {{"sentence", sentence(residuals, family)}, {"drivers", drivers}};
+}
+
+}  // namespace
+
+std::string to_json(const Outcome& outcome, const Measured& measured, const Settings& settings, const Context& context,
+                    const Provenance& provenance) {
+  std::vector<std::string> notes;
+  for (const DataNote& note : measured.notes) notes.push_back(in_words(note));
+  for (const DataNote& note : outcome.notes) notes.push_back(in_words(note));
+  Json json = {{"pirsim_reconcile_report", report_schema},
+               {"verdict", name(outcome.verdict)},
+               {"sentence", sentence(outcome, settings.alpha)},
+               {"effects", outcome.named},
+               {"program", provenance.program},
+               {"scene", provenance.scene},
+               {"script", provenance.script},
+               {"measured",
+                {{"file", provenance.measured},
+                 {"sha256", measured.digest},
+                 {"kind", measured.kind == Measured::Kind::series ? "series" : "sums"},
+                 {"runs", measured.n_replicates()},
+                 {"notes", notes}}},
+               {"alpha", settings.alpha},
+               {"seed", context.seed},
+               {"table", outcome.table_key},
+               {"nuisance",
+                {{"seat_position_m", settings.nuisance.seat_position_m},
+                 {"sensor_yaw_deg", settings.nuisance.sensor_yaw_deg},
+                 {"sensor_tilt_deg", settings.nuisance.sensor_tilt_deg},
+                 {"body_size", settings.nuisance.body_size},
+                 {"arm_amplitude", settings.nuisance.arm_amplitude}}}};
+  json["where"] = to_json(outcome.location);
+  Json candidates = Json::array(), fits = Json::array();
+  for (const Candidate& candidate : with_twins(outcome.candidates)) candidates.push_back(to_json(candidate));
+  for (const FittedEffect& fitted : outcome.fits) fits.push_back(to_json(fitted));
+  json["nothing"] = to_json(outcome.nothing);
+  json["family"] = {{"name", name(outcome.family.family)}, {"probability", outcome.family.probability}};
+  json["candidates"] = candidates;
+  json["fits"] = fits;
+  Json looks = Json::array();
+  for (const Look& look : outcome.looks)
+    looks.push_back({{"applied", look.applied}, {"level", look.level}, {"p", look.p}, {"one_of", look.one_of}});
+  json["looks"] = looks;
+  json["verification"] = outcome.verification ? to_json(*outcome.verification) : Json();
+  json["residuals"] = outcome.residuals ? to_json(*outcome.residuals, outcome.family) : Json();
+  json["telling_features"] = outcome.telling_features;
+  json["calibration_error"] = outcome.calibration_error;
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::string where_csv(const Outcome& outcome) {
+  std::ostringstream out;
+  out << "trial,sensor,measured_s,expected_s,difference_s,low_s,high_s,adjusted_p\n";
+  for (const LocatedCell& cell : outcome.location.cells) {
+    out << io::csv_field(cell.trial) << ',' << io::csv_field(cell.sensor) << ',' << io::csv_number(cell.measured_s)
+        << ',' << io::csv_number(cell.expected_s) << ',' << io::csv_number(cell.measured_s - cell.expected_s) << ','
+        << io::csv_number(cell.low_s) << ',' << io::csv_number(cell.high_s) << ',' << io::csv_number(cell.adjusted_p)
+        << '\n';
+  }
+  return out.str();
+}
+
+std::string candidates_csv(const Outcome& outcome) {
+  std::ostringstream out;
+  out << "effect,family,kept,probability,p,p_relative,p_absolute,reason\n";
+  for (const Candidate& c : with_twins(outcome.candidates)) {
+    out << c.score.hypothesis << ',' << name(c.family) << ',' << (c.kept ? 1 : 0) << ','
+        << io::csv_number(c.score.probability) << ',' << io::csv_number(c.score.p) << ','
+        << io::csv_number(c.score.p_relative) << ',' << io::csv_number(c.score.p_absolute) << ','
+        << io::csv_field(in_words(c)) << '\n';
+  }
+  return out.str();
+}
+
+namespace {
+
+/// What is in the folder's trail already; it is never overwritten.
+std::string earlier_trail(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "trail.log";
+  return std::filesystem::exists(file) ? io::read_text_file(file) : std::string();
+}
+
+/// Each analysis begins its trail with the data's digest.
+std::size_t times_analysed(const std::string& trail, const std::string& digest) {
+  std::size_t times = 0;
+  std::istringstream lines(trail);
+  for (std::string line; std::getline(lines, line);) times += line.starts_with("data " + digest) ? 1 : 0;
+  return times;
+}
+
+}  // namespace
+
+ScriptSpec patched(const ScriptSpec& script, const Outcome& outcome) {
+  ScriptSpec with = script;
+  for (const FittedEffect& fitted : outcome.fits) with.effects.push_back(fitted.effect);
+  return with;
+}
+
+void write_report(const std::filesystem::path& folder, const Outcome& outcome, const Measured& measured,
+                  const ScriptSpec& script, const Settings& settings, const Context& context,
+                  const Provenance& provenance) {
+  std::error_code fault;
+  std::filesystem::create_directories(folder, fault);
+  io::write_text_file(folder / "where.csv", where_csv(outcome));
+  io::write_text_file(folder / "candidates.csv", candidates_csv(outcome));
+  const std::filesystem::path patch = folder / "script_patched.yaml";
+  if (outcome.verdict == Verdict::named || outcome.verdict == Verdict::several) {
+    io::write_text_file(patch, io::to_yaml(io::moved(patched(script, outcome), folder)));
+  } else {
+    std::filesystem::remove(patch, fault);  // of an earlier analysis
+  }
+  std::string trail = earlier_trail(folder);
+  const std::size_t before = times_analysed(trail, measured.digest);
+  if (!trail.empty()) trail += '\n';
+  for (const TrailEvent& event : outcome.trail) trail += in_words(event) + '\n';
+  trail += "these data were analysed " + std::to_string(before) + " times before in this folder\n";
+  io::write_text_file(folder / "trail.log", trail);
+  io::Report page = report_page(outcome, settings.alpha);
+  page.footer = provenance.program + ", " + provenance.scene + ", " + provenance.script + ", " + provenance.measured;
+  io::write_text_file(folder / "report.html", io::to_html(page));
+  io::write_text_file(folder / "report.json", to_json(outcome, measured, settings, context, provenance));
+}
+
+}  // namespace pirsim::reconcile

@@ -1,0 +1,148 @@
+#include "reconcile/report/pages.hpp"
+
+#include <algorithm>
+
+#include "reconcile/report/charts.hpp"
+#include "reconcile/report/sentences.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+std::string count_of(std::size_t n, std::size_t of) { return std::to_string(n) + " of " + std::to_string(of); }
+
+io::ReportSection where(const Outcome& outcome, double alpha) {
+  const Location& location = outcome.location;
+  const auto differing = std::ranges::count_if(location.cells, [&](const auto& c) { return c.adjusted_p <= alpha; });
+  io::ReportSection section{"Where they differ", {}, {}, {}};
+  section.paragraphs = {
+      count_of(static_cast<std::size_t>(differing), location.cells.size()) +
+          " cells (one trial and one sensor) differ by more than chance.",
+      "The model was run " + std::to_string(location.n_simulated) +
+          " times, each time in a slightly different room, since nobody knows seats and sensors exactly. On average, a "
+          "difference below " +
+          fixed(location.band_s, 0) +
+          " s in one cell can't be told from chance here. Of so many cells some lie outside their usual range "
+          "by chance alone; a frame marks those that do with that allowed for."};
+  section.charts.emplace_back(difference_chart(location, alpha));
+  return section;
+}
+
+io::ReportSection envelope(const Location& location, double alpha) {
+  io::ReportSection section{"Seen as a whole", {}, {}, {}};
+  const auto outside = std::ranges::count_if(location.envelope, [&](const auto& e) { return e.adjusted_p <= alpha; });
+  section.paragraphs = {
+      "One test for everything together, and its picture: if the model were right, even one red dot would be there in "
+      "only " +
+      short_number(100.0 * alpha) + " % of cases. Here, " +
+      count_of(static_cast<std::size_t>(outside), location.envelope.size()) +
+      " lie outside (p = " + short_number(location.p) +
+      "). Each number is counted in units of its own scatter in the model, with very great ones drawn in, not in "
+      "seconds."};
+  section.charts.emplace_back(envelope_chart(location, alpha));
+  return section;
+}
+
+io::ReportSection candidates(const Outcome& outcome) {
+  io::ReportSection section{"What it may be", {}, {}, {}};
+  if (outcome.verdict == Verdict::no_disagreement) {
+    section.paragraphs.push_back("Nothing was looked for, since nothing differs.");
+    return section;
+  }
+  section.paragraphs.push_back("Every effect of the catalogue was simulated many times in rooms like this one.");
+  section.charts.emplace_back(ranking_chart(outcome));
+  for (const Look& look : outcome.looks) section.paragraphs.push_back(in_words(look));
+  return section;
+}
+
+io::ReportSection reasons(const Outcome& outcome, double alpha) {
+  io::ReportSection section{"Every candidate, and why it was kept or dropped", {}, {}, {}};
+  section.paragraphs = {
+      "p: of two tests, whether the effect's own data look like these and whether another effect explains these "
+      "better, the smaller p, doubled since there are two. At most " +
+      short_number(alpha) + " speaks against the effect."};
+  io::Table table{{"effect", "family", "probability", "p", "why"}, {}};
+  for (const Candidate& candidate : with_twins(outcome.candidates)) {
+    table.rows.push_back({candidate.score.hypothesis, std::string(name(candidate.family)),
+                          fixed(100.0 * candidate.score.probability, 0) + " %", short_number(candidate.score.p),
+                          in_words(candidate)});
+  }
+  section.tables.push_back(std::move(table));
+  return section;
+}
+
+io::ReportSection strength(const std::vector<FittedEffect>& fits) {
+  io::ReportSection section{"How strong it is", {}, {}, {}};
+  io::Table table{{"effect", "parameter", "fitted", "from", "to", "unit", "without the effect"}, {}};
+  for (const FittedEffect& fit : fits) {
+    for (const FittedParameter& p : fit.parameters) {
+      table.rows.push_back({fit.effect.name, p.name, short_number(p.value), short_number(p.interval.low),
+                            short_number(p.interval.high), p.unit, p.is_strength ? short_number(p.off) : ""});
+    }
+    for (const auto& [choice, value] : fit.effect.choices) {
+      table.rows.push_back({fit.effect.name, choice, value, "", "", "", ""});
+    }
+    for (io::DotsChart& chart : posterior_charts(fit)) section.charts.emplace_back(std::move(chart));
+  }
+  section.paragraphs.push_back(table.rows.empty() ? "The effect is there or not: nothing about it can be stronger."
+                                                  : "Fitted to these data, with the room's uncertainty included.");
+  if (!table.rows.empty()) section.tables.push_back(std::move(table));
+  return section;
+}
+
+std::string what_is_shown(const Verification& v) {
+  if (v.closed) return "With what was applied, the model agrees with trials that it was not fitted on.";
+  const std::string closer = "With what was applied, the model is closer to trials that it was not fitted on, ";
+  if (v.shrunk && v.refused)
+    return closer + "but the test of everything still finds a difference there (p = " + short_number(v.after.p) + ").";
+  if (v.shrunk) return closer + "but these trials alone are too few to tell even the model as it is from the data.";
+  return "That the model is closer with what was applied is not shown.";
+}
+
+/// Chance carries a share beyond all that can be closed.
+std::string what_is_closed(const Verification& v) {
+  if (v.before.energy_score <= v.noise_floor)
+    return "the model as it is was as near to these trials already as two runs of the new one are to each other.";
+  if (v.share_closed >= 1.0)
+    return "with it, the data are as near to the model as two of its own runs are to each other, on average.";
+  if (v.share_closed < 0.0) return "on average these trials are farther from the model with it than without.";
+  return fixed(100.0 * v.share_closed, 0) +
+         " % of what can be closed is closed; how far two runs of the model are apart can't be.";
+}
+
+io::ReportSection held_out(const Verification& v, const std::string& named) {
+  io::ReportSection section{"Does it help", {}, {}, {}};
+  section.paragraphs = {
+      what_is_shown(v),
+      "Trials were set aside, what is missing was sought and fitted without them, and then they were compared with the "
+      "model before and after, " +
+          std::to_string(v.n_folds) + " times over. A trial gets nearer by " + short_number(v.gain.low) + " to " +
+          short_number(v.gain.high) + " on average (95 % interval); " + what_is_closed(v)};
+  section.charts.emplace_back(held_out_chart(v, named));
+  io::Table table{{"on trials set aside", "before", "after"}, {}};
+  table.rows = {{"seconds between model and data, mean", fixed(v.before.area_s, 1), fixed(v.after.area_s, 1)},
+                {"cells outside the model's range", count_of(v.before.cells_outside, v.before.n_cells),
+                 count_of(v.after.cells_outside, v.after.n_cells)},
+                {"p of the test of everything", short_number(v.before.p), short_number(v.after.p)}};
+  section.tables.push_back(std::move(table));
+  return section;
+}
+
+}  // namespace
+
+io::Report report_page(const Outcome& outcome, double alpha) {
+  io::Report report;
+  report.title = "Model and measurement";
+  report.finding = sentence(outcome, alpha);
+  report.paragraphs = {next_step(outcome)};
+  report.sections = {where(outcome, alpha), envelope(outcome.location, alpha), candidates(outcome)};
+  if (!outcome.fits.empty()) report.sections.push_back(strength(outcome.fits));
+  if (outcome.verification) {
+    const bool undecided = outcome.verdict == Verdict::one_of;
+    const std::string applied = undecided ? "the likeliest of each fold" : joined(outcome.named, "and");
+    report.sections.push_back(held_out(*outcome.verification, applied));
+  }
+  if (outcome.verdict != Verdict::no_disagreement) report.sections.push_back(reasons(outcome, alpha));
+  return report;
+}
+
+}  // namespace pirsim::reconcile

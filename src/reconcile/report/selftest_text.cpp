@@ -1,0 +1,123 @@
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+#include "pirsim/csv.hpp"
+#include "reconcile/report/charts.hpp"
+#include "reconcile/report/pages.hpp"
+#include "reconcile/report/sentences.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+std::string share(const Rate& rate) {
+  if (rate.of == 0) return "no case";
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(3) << rate.value() << " (" << rate.interval.low << "-" << rate.interval.high
+      << ", " << rate.hits << " of " << rate.of << ")";
+  return out.str();
+}
+
+/// Share of the gap that was closed, shrunk, closed; empty fields if nothing was applied.
+std::string verification(const InjectedCase& c) {
+  if (!c.verification) return ",,";
+  const Verification& v = *c.verification;
+  return io::csv_number(v.share_closed) + ',' + (v.shrunk ? '1' : '0') + ',' + (v.closed ? '1' : '0');
+}
+
+std::string bounds_of(const Target& target) {
+  if (target.at_least > 0.0 && target.at_most < 1.0) {
+    return fixed(target.at_least, 2) + " to " + fixed(target.at_most, 2);
+  }
+  return target.at_least > 0.0 ? "at least " + fixed(target.at_least, 2) : "at most " + fixed(target.at_most, 2);
+}
+
+}  // namespace
+
+std::string to_markdown(const SelftestResult& result) {
+  std::ostringstream out;
+  out << "| how often | share (95 % interval) |\n|---|---|\n";
+  for (const Rate& rate : rates_of(result)) out << "| " << in_words(rate.what) << " | " << share(rate) << " |\n";
+  out << "| calibration error of the probabilities | " << calibration_error(result) << " |\n\n| effect |";
+  for (const char* strength : {"weak", "medium", "strong"}) out << ' ' << strength << ": seen | and in the set |";
+  out << "\n|---|---|---|---|---|---|---|\n";
+  for (std::size_t hypothesis = 1; hypothesis < result.hypotheses.size(); ++hypothesis) {
+    out << "| " << result.hypotheses[hypothesis] << " |";
+    for (const Rate& rate : power_of(result, result.hypotheses[hypothesis])) {
+      out << ' ' << (rate.of == 0 ? "no case" : fixed(rate.value(), 2)) << " |";
+    }
+    out << '\n';
+  }
+  out << "\nConfusion: of the cases with a disagreement (of nothing: of all), the share in which the column's "
+         "hypothesis is "
+         "the likeliest; less than 0.05 left out.\n\n| hidden | taken for |\n|---|---|\n";
+  const auto confusion = confusion_of(result);
+  for (std::size_t row = 0; row < confusion.size(); ++row) {
+    out << "| " << result.hypotheses[row] << " |";
+    std::string list;
+    for (std::size_t column = 0; column < confusion.size(); ++column) {
+      if (confusion[row][column] < 0.05) continue;
+      list += (list.empty() ? " " : ", ") + result.hypotheses[column] + " " + fixed(confusion[row][column], 2);
+    }
+    out << list << " |\n";
+  }
+  return out.str();
+}
+
+std::string to_csv(const SelftestResult& result) {
+  std::ostringstream out;
+  out << "kind,truth,strength,verdict,named,family,likeliest,p,parameters,covered,share_closed,shrunk,closed,p_applied,"
+         "hidden\n";
+  for (const InjectedCase& c : result.cases) {
+    std::string named, hidden;
+    for (const std::string& effect : c.named) named += (named.empty() ? "" : " ") + effect;
+    for (const EffectSpec& effect : c.effects) {
+      for (const auto& [parameter, value] : effect.parameters) {
+        hidden += (hidden.empty() ? "" : " ") + parameter + "=" + io::csv_number(value);
+      }
+      for (const auto& [choice, value] : effect.choices) hidden += " " + choice + "=" + value;
+    }
+    out << name(c.kind) << ',' << c.truth << ',' << name(c.strength) << ',' << name(c.verdict) << ',' << named << ','
+        << (c.family ? name(*c.family) : "") << ',' << c.likeliest << ',' << io::csv_number(c.p) << ','
+        << c.n_parameters << ',' << c.n_covered << ',' << verification(c) << ','
+        << (c.applied ? io::csv_number(c.applied->p) : "") << ',' << io::csv_field(hidden) << '\n';
+  }
+  return out.str();
+}
+
+std::string targets_markdown(const SelftestResult& result, Geometry geometry) {
+  std::ostringstream out;
+  out << "| quantity | target | share (95 % interval) | cases | |\n|---|---|---|---:|---|\n";
+  for (const TargetResult& one : compare_with_targets(result, geometry)) {
+    out << "| " << in_words(one.target.rate) << " | " << bounds_of(one.target) << " | ";
+    if (one.rate.of > 0) {
+      out << fixed(one.rate.value(), 3) << " (" << fixed(one.rate.interval.low, 3) << "-"
+          << fixed(one.rate.interval.high, 3) << ")";
+    }
+    out << " | " << one.rate.of << " | " << in_words(one.reached) << " |\n";
+  }
+  out << "| calibration error of the probabilities | at most " << fixed(largest_calibration_error, 2) << " | ";
+  if (const stats::Reliability& counted = result.reliability; counted.bins.empty()) {
+    out << "| | " << in_words(Reached::not_tested) << " |\n";
+  } else {
+    const double error = counted.expected_calibration_error;
+    out << fixed(error, 3) << " | | " << in_words(error <= largest_calibration_error ? Reached::yes : Reached::no)
+        << " |\n";
+  }
+  const std::vector<ConfusedPair> pairs = confused_pairs(result);
+  if (pairs.empty()) {
+    out << "\nNo two effects are taken for each other in a tenth of their cases.\n";
+    return out.str();
+  }
+  out << "\nPairs that are taken for each other in a tenth of their cases or more (three cases at least):\n\n"
+         "| pair | share (95 % interval) | in the catalogue | why: what each does to the data |\n|---|---|---|---|\n";
+  for (const ConfusedPair& pair : pairs) {
+    out << "| " << pair.first << ", " << pair.second << " | " << fixed(pair.rate.value(), 2) << " ("
+        << fixed(pair.rate.interval.low, 2) << "-" << fixed(pair.rate.interval.high, 2) << ") | "
+        << (pair.expected ? "foreseen" : "not foreseen") << " | " << pair.first_does << " / " << pair.second_does
+        << " |\n";
+  }
+  return out.str();
+}
+
+}  // namespace pirsim::reconcile

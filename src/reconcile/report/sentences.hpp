@@ -1,0 +1,52 @@
+// Results in words.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pirsim/reconcile.hpp"
+#include "reconcile/data/longer_study.hpp"
+#include "reconcile/validation/plan.hpp"
+#include "reconcile/validation/seal.hpp"
+#include "reconcile/validation/targets.hpp"
+
+namespace pirsim::reconcile {
+
+/// The verdict alone, without what was found on the way to it.
+[[nodiscard]] std::string verdict_sentence(const Outcome& outcome, double alpha);
+[[nodiscard]] std::string sentence(const PlanResult& result);
+[[nodiscard]] std::string sentence(const Score& score);
+[[nodiscard]] std::string sentence(const Residuals& residuals, const FamilyScore& family);
+
+[[nodiscard]] std::string in_words(const Reason& reason);
+/// Without the word that says whether it was kept.
+[[nodiscard]] std::string why(const Reason& reason);
+[[nodiscard]] std::string in_words(const FittedEffect& fitted);
+/// Of the model with effects applied.
+[[nodiscard]] std::string in_words(const Look& look);
+[[nodiscard]] std::string in_words(const LeftOut& left_out);
+/// Which sensors or trial, when, and what they do.
+[[nodiscard]] std::string who_of(const ResidualDriver& driver);
+[[nodiscard]] std::string when_of(const ResidualDriver& driver);
+[[nodiscard]] std::string what_of(const ResidualDriver& driver);
+[[nodiscard]] std::string_view in_words(Counted counted) noexcept;
+[[nodiscard]] std::string_view in_words(Reached reached) noexcept;
+/// Short, and as part of a sentence: what is measured.
+[[nodiscard]] std::string name(const Design& design);
+[[nodiscard]] std::string what_of(const Design& design);
+/// What a reader may do with the verdict.
+[[nodiscard]] std::string next_step(const Outcome& outcome);
+/// The candidates, and after each those that change the model in the same way and were judged as one with it.
+[[nodiscard]] std::vector<Candidate> with_twins(const std::vector<Candidate>& candidates);
+
+/// "a, b or c"
+[[nodiscard]] std::string joined(const std::vector<std::string>& names, const std::string& last);
+/// Three significant digits.
+[[nodiscard]] std::string short_number(double value);
+/// So many digits after the point; never "-0".
+[[nodiscard]] std::string fixed(double value, int digits);
+/// Of a share: "12 %".
+[[nodiscard]] std::string percent(double share);
+
+}  // namespace pirsim::reconcile

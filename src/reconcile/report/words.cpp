@@ -1,0 +1,406 @@
+// Reasons, notes, events and names in words.
+#include <array>
+#include <boost/algorithm/string/join.hpp>
+#include <cmath>
+#include <utility>
+
+#include "reconcile/report/sentences.hpp"
+
+namespace pirsim::reconcile {
+namespace {
+
+template <typename... Cases>
+struct Overloaded : Cases... {
+  using Cases::operator()...;
+};
+
+std::string plural(std::size_t n, const std::string& one, const std::string& many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+std::string runs(std::size_t n) { return plural(n, "run", "runs"); }
+std::string whole(double value) { return std::to_string(std::lround(value)); }
+std::string list(const std::vector<std::string>& names) { return boost::algorithm::join(names, ", "); }
+std::string sum(const std::vector<std::string>& names) { return boost::algorithm::join(names, " + "); }
+
+struct Worded {
+  std::string head, body;  ///< "Kept", and why
+};
+
+Worded worded(const Reason& of) {
+  const auto p = [](double value) { return "(p " + short_number(value) + ")"; };
+  return std::visit(
+      Overloaded{[](const reason::NotLookedFor&) {
+                   return Worded{"Not looked for", "there is no disagreement."};
+                 },
+                 [&](const reason::NotRuledOut& r) {
+                   return Worded{"Kept",
+                                 "it can have made these data " + p(r.p) +
+                                     ", and no other effect explains them so much better that it can be ruled out."};
+                 },
+                 [&](const reason::Sure& r) {
+                   return Worded{
+                       "Kept, though data of its own seldom look like these " + p(r.p),
+                       "with probability " + short_number(r.probability) + " it is this one of the catalogue, if any."};
+                 },
+                 [](const reason::MayBeNone&) {
+                   return Worded{"Kept, but not named", "its strength may as well be none."};
+                 },
+                 [&](const reason::LessLikely& r) {
+                   return Worded{"", "Not ruled out " + p(r.p) + ", but much less likely than " + r.named + " (" +
+                                         short_number(r.probability) + " against " +
+                                         short_number(r.probability_of_named) + ")."};
+                 },
+                 [&](const reason::Improbable& r) {
+                   return Worded{"Dropped", "by itself it might have made these data " + p(r.p) +
+                                                ", but all that isn't ruled out is improbable together."};
+                 },
+                 [](const reason::HardlySimulated&) {
+                   return Worded{"Dropped", "it could hardly be simulated in this room."};
+                 },
+                 [&](const reason::RuledOut& r) {
+                   std::string text;
+                   if (r.p_relative)
+                     text += "another explains the data better than is usual for its own " + p(*r.p_relative);
+                   if (r.p_relative && r.p_absolute) text += "; and ";
+                   if (r.p_absolute) text += "data of its own hardly ever look like these " + p(*r.p_absolute);
+                   return Worded{"Dropped", text + "."};
+                 },
+                 [&](const reason::RefusedWhenApplied& r) {
+                   return Worded{"Dropped", "with it applied, the model still differs from the data " + p(r.p) +
+                                                ", and no other effect of the catalogue explains what is left."};
+                 },
+                 [](const reason::SameAs& r) {
+                   return Worded{"", "Judged as " + r.effect + ", which changes the model in the same way."};
+                 }},
+      of);
+}
+
+std::string in_words(const trail::JudgedOnHeldOut& event) {
+  const Verification& v = event.verification;
+  return "held-out trials: energy score " + short_number(v.before.energy_score) + " before, " +
+         short_number(v.after.energy_score) + " after, " + std::to_string(v.n_better) + " of " +
+         std::to_string(v.n_trials) + " trials better; global test p " + short_number(v.before.p) + " before, " +
+         short_number(v.after.p) + " after";
+}
+
+std::string_view in_words(trail::Remark remark) noexcept {
+  constexpr std::array<std::string_view, 7> texts{
+      "the name is taken back",
+      "the name is taken back: the model with it can't have made the data",
+      "people can hardly get about in that model: nothing more is looked for in it",
+      "sums don't tell when motion was seen: the residuals are not looked into",
+      "one trial only: nothing can be held out",
+      "people can hardly get about in the patched model: it can't be judged on held-out trials",
+      "the held-out trials alone don't refuse the plain model: too weak to call the gap closed"};
+  return texts[static_cast<std::size_t>(remark)];
+}
+
+std::string left_out_of(std::size_t n, const std::string& which, const std::string& because) {
+  return "What comes " + which + " the counted phases is left out of the comparison in " + runs(n) +
+         ", of all sensors or some: " + because + ", or some readings are unknown.";
+}
+
+std::string in_words(const ResidualDriver& driver) {
+  const std::string when = when_of(driver);
+  return who_of(driver) + (when.empty() ? "" : ", " + when) + ": " + what_of(driver) + " (p " + short_number(driver.p) +
+         ")";
+}
+
+}  // namespace
+
+std::string why(const Reason& reason) { return worded(reason).body; }
+
+std::string in_words(const Reason& reason) {
+  const Worded words = worded(reason);
+  return (words.head.empty() ? "" : words.head + ": ") + words.body;
+}
+
+std::string in_words(const Candidate& candidate) {
+  return (candidate.named_together ? "Kept, together with the others named. By itself: " : "") +
+         in_words(candidate.reason);
+}
+
+std::string in_words(const DataNote& note) {
+  using What = DataNote::What;
+  switch (note.what) {
+    case What::sums_empty:
+      return plural(note.n, "sum is", "sums are") + " empty and left out of every comparison.";
+    case What::cells_absent:
+      return plural(note.n, "cell", "cells") + " (trial and sensor) of the trials in the file " +
+             (note.n == 1 ? "has" : "have") + " no sum: left out of every comparison.";
+    case What::sensors_absent:
+      return "The file has no column for " + list(note.names) + ": left out of every comparison.";
+    case What::phases_unknown:
+      return "The file has no column 'phase': its rows are taken for those of the phase '" + list(note.names) +
+             "', from its beginning.";
+    case What::rows_missing:
+      return plural(note.n, "row is", "rows are") + " missing: taken for unknown, in the simulation too.";
+    case What::readings_empty:
+      return plural(note.n, "reading is", "readings are") + " empty: taken for unknown, in the simulation too.";
+    case What::runs_unread:
+      return plural(note.n, "run has", "runs have") + " no reading" +
+             (note.names.empty() ? "" : " in a counted phase (" + list(note.names) + ")") + " and " +
+             (note.n == 1 ? "is" : "are") + " left out.";
+    case What::trials_absent:
+      return "The file has nothing of " + list(note.names) + ": left out of every comparison.";
+    case What::lead_left_out:
+      return left_out_of(note.n, "before", "the recording begins later than any simulated one");
+    case What::tail_left_out:
+      return left_out_of(note.n, "after", "the recording ends earlier than any simulated one");
+    case What::runs_begin_late:
+      return runs(note.n) + " of the file " + (note.n == 1 ? "begins" : "begin") +
+             " in a counted phase: the first row is taken for its beginning.";
+    case What::runs_end_early:
+      return "The main part of " + runs(note.n) +
+             " of the file ends before any simulated one, by a twentieth or more: compared as far as it goes.";
+    case What::runs_go_on:
+      break;
+  }
+  return "What goes on after the end of the longest simulated run is left out of the comparison in " + runs(note.n) +
+         ".";
+}
+
+std::string in_words(const TrailEvent& event) {
+  return std::visit(
+      Overloaded{[](const trail::Begun& e) { return "data " + e.digest + ", analysis seed " + std::to_string(e.seed); },
+                 [](const DataNote& e) { return "data: " + in_words(e); },
+                 [](const trail::HeldOut& e) {
+                   return "held out from naming and fitting: " + boost::algorithm::join(e.trials, " ");
+                 },
+                 [](const trail::Table& e) {
+                   return "table " + e.key + ": " + std::to_string(e.n_datasets) + " datasets, " +
+                          std::to_string(e.n_left_out) + " left out because people couldn't get about";
+                 },
+                 [](const trail::Tested& e) { return "global test: p " + short_number(e.p); },
+                 [](const trail::NotRuledOut& e) {
+                   return "hypotheses that can have made the data: " +
+                          (e.hypotheses.empty() ? "none" : boost::algorithm::join(e.hypotheses, " "));
+                 },
+                 [](const trail::IncludesOff& e) { return "the interval of " + e.effect + " includes off"; },
+                 [](const Look& e) {
+                   return "with " + sum(e.applied) + " applied, at level " + short_number(e.level) + ": p " +
+                          short_number(e.p);
+                 },
+                 [](const trail::LookedForMore& e) { return "looked for more: " + std::string(name(e.verdict)); },
+                 [](const trail::Explained& e) { return "residuals: " + sentence(e.residuals, e.family); },
+                 [](const trail::JudgedOnHeldOut& e) { return in_words(e); },
+                 [](trail::Remark e) { return std::string(in_words(e)); }},
+      event);
+}
+
+std::string in_words(const Stage& stage) {
+  using What = Stage::What;
+  switch (stage.what) {
+    case What::pilot_runs:
+      return "pilot runs";
+    case What::reference_table:
+      return "reference table";
+    case What::comparing:
+      return "where they differ, and which effects can have made the data";
+    case What::checking_model:
+      return "does the model with " + sum(stage.effects) + " applied pass";
+    case What::looking_for_more:
+      return "what is missing beside " + sum(stage.effects);
+    case What::explaining_residuals:
+      return "what the residuals follow";
+    case What::verifying:
+      return "does it help on held-out trials";
+    case What::injecting_faults:
+      return "datasets with injected faults";
+    case What::judging:
+      return "judging";
+    case What::judging_without:
+      return "judging by a catalogue that lacks " + sum(stage.effects);
+    case What::searching_anew:
+      return "finding anew without held-out trials what is in " + std::to_string(stage.n) + " datasets";
+    case What::verified:
+      return "judged on held-out trials: " + std::to_string(stage.n) + " of " + std::to_string(stage.of);
+    case What::checking_models:
+      return "named effects applied: " + std::to_string(stage.n) + " of " + std::to_string(stage.of) + " in " +
+             std::to_string(stage.n_realizations) + " realizations";
+    case What::judging_planned:
+      return "judging what is planned";
+    case What::judging_trial:
+      return "judging trial " + sum(stage.effects) + " once more";
+    case What::judging_all_again:
+      return "judging every trial once more";
+    case What::judging_walk:
+      return "judging one person walking slowly through the room";
+    case What::judging_empty_room:
+      return "judging the empty room";
+    case What::judging_series:
+      break;
+  }
+  return "judging the same, second by second instead of sums";
+}
+
+std::string in_words(const LeftOut& left_out) {
+  const bool walk = left_out.trial == LeftOut::Trial::slow_walk;
+  return std::string(walk ? "a slow walk" : "the empty room") + " is left out: " + left_out.error;
+}
+
+std::string who_of(const ResidualDriver& driver) {
+  using enum ResidualDriver::Who;
+  switch (driver.who) {
+    case all_sensors:
+      return "all sensors";
+    case sensor:
+    case trial:
+      return driver.name;
+    case near_seat:
+      return "sensors near the seat";
+    case far_from_seat:
+      return "sensors far from the seat";
+    case faced:
+      return "sensors that the sitter faces";
+    case behind:
+      break;
+  }
+  return "sensors behind the sitter";
+}
+
+namespace {
+
+std::string time_of(const ResidualDriver& driver) {
+  using enum ResidualDriver::When;
+  const std::string from = whole(driver.from), to = whole(driver.to);
+  switch (driver.when) {
+    case always:
+      return {};
+    case first_half:
+      return "in the first half of each run";
+    case second_half:
+      return "in the second half of each run";
+    case first_third:
+      return "in the first third of each run";
+    case middle_third:
+      return "in the middle third of each run";
+    case last_third:
+      return "in the last third of each run";
+    case of_minute:
+      return driver.from == 0.0 ? "in the first " + to + " s of each minute"
+                                : "from second " + from + " to " + to + " of each minute";
+    case after_posture:
+      return (driver.from == 0.0 ? "in the first " + to + " s" : "from " + from + " to " + to + " s") +
+             " after each change of posture";
+    case before_posture:
+      return "in the last " + whole(driver.to - driver.from) + " s before each change of posture";
+    case of_arm_cycle:
+      return "from " + from + " to " + to + " % of the arm's cycle";
+    case wave:
+      break;
+  }
+  return "rising and falling every " + from + " s, most around second " + to;
+}
+
+}  // namespace
+
+std::string when_of(const ResidualDriver& driver) {
+  std::string when = time_of(driver);
+  if (driver.who != ResidualDriver::Who::trial) when += (when.empty() ? "" : ", ") + std::string("whatever the seat");
+  return when;
+}
+
+std::string what_of(const ResidualDriver& driver) {
+  using enum ResidualDriver::How;
+  const bool up = driver.up;
+  switch (driver.how) {
+    case more:
+      return up ? "more motion than expected" : "less motion than expected";
+    case more_where_little:
+      return up ? "motion where hardly any is expected" : "still less motion where hardly any is expected";
+    case more_where_much:
+      return up ? "still more motion where much is expected" : "less motion where much is expected";
+    case opposite:
+      return up ? "the opposite of what is expected" : "what is expected, but too surely";
+    case beside:
+      break;
+  }
+  return up ? "motion whenever " + driver.beside + " sees some" : "silence whenever " + driver.beside + " sees motion";
+}
+
+std::string sentence(const Residuals& residuals, const FamilyScore& family) {
+  std::string text;
+  for (const ResidualDriver& driver : residuals.drivers) text += (text.empty() ? "" : "; ") + in_words(driver);
+  text = text.empty() ? "What is left follows no sensor, seat, time or neighbour that was tried."
+                      : "What is left: " + text + ".";
+  return text + " The nearest family of effects is " + std::string(name(family.family)) + ".";
+}
+
+std::string sentence(const Score& score) {
+  return std::string(name(score.mark)) + ": hidden was " + (score.hidden.empty() ? "nothing" : list(score.hidden)) +
+         ", the verdict was " + std::string(name(score.verdict)) +
+         (score.named.empty() ? "" : " (" + list(score.named) + ")");
+}
+
+std::string name(const Design& design) {
+  constexpr std::array<std::string_view, 6> names{"as planned", "",           "all again",
+                                                  "slow walk",  "empty room", "second by second"};
+  if (design.kind == Design::Kind::trial_again) return "trial " + design.trial + " again";
+  return std::string(names[static_cast<std::size_t>(design.kind)]);
+}
+
+std::string what_of(const Design& design) {
+  constexpr std::array<std::string_view, 6> texts{
+      "what is planned",       "",
+      "every trial once more", "one person walking slowly through the room",
+      "the empty room",        "the same, second by second instead of sums"};
+  if (design.kind == Design::Kind::trial_again) return "trial " + design.trial + " once more";
+  return std::string(texts[static_cast<std::size_t>(design.kind)]);
+}
+
+std::string sentence(const PlanResult& result) {
+  const Design& planned = result.designs.front();
+  const std::string now = "what is planned makes the right effect the likeliest in " + percent(planned.right) +
+                          " of cases (" + short_number(planned.bits) + " bits)";
+  const Design* best = result.best();
+  if (best == nullptr) return "None of the further measurements tried is shown to help: " + now + ".";
+  return "The best next measurement is " + what_of(*best) + " (" + short_number(best->minutes) + " min more): " + now +
+         ", with it " + percent(best->right) + " (" + short_number(best->more_bits) + " bits more, 95 % interval " +
+         short_number(best->more_bits_95.low) + " to " + short_number(best->more_bits_95.high) + ").";
+}
+
+std::string_view in_words(Counted counted) noexcept {
+  constexpr std::array<std::string_view, 32> texts{
+      "a disagreement although nothing is hidden",
+      "a name although nothing is hidden",
+      "a disagreement seen",
+      "exactly the right name, given a disagreement",
+      "the right family, given a disagreement",
+      "a name, given a disagreement",
+      "the right name, given a name",
+      "one wrong name",
+      "one wrong family",
+      "the truth in the set, given a disagreement",
+      "none in the catalogue, given a disagreement",
+      "parameters within their 90 % intervals",
+      "a gap that shrunk on held-out trials, given the right name",
+      "a gap closed on held-out trials, given the right name",
+      "nine tenths of what can be closed, given the right name",
+      "a gap that shrunk although nothing is hidden",
+      "applied, the right name: the model passes",
+      "applied, the name of an effect that the catalogue lacks: the model passes",
+      "applied, the name of an out-of-catalogue fault: the model passes",
+      "an effect that the catalogue lacks: a disagreement seen",
+      "an effect that the catalogue lacks: called none in the catalogue, given a disagreement",
+      "an effect that the catalogue lacks: called by one name",
+      "an out-of-catalogue fault: a disagreement seen",
+      "an out-of-catalogue fault: called none in the catalogue, given a disagreement",
+      "an out-of-catalogue fault: called by one name",
+      "beyond the prior: exactly the right name, given a disagreement",
+      "beyond the prior: one wrong name",
+      "two effects, first look: one or both in the set, given a disagreement",
+      "two effects, first look: no single effect will do, given a disagreement",
+      "two effects, first look: one wrong name",
+      "seen and in the set",
+      "taken for each other"};
+  return texts[static_cast<std::size_t>(counted)];
+}
+
+std::string_view in_words(Reached reached) noexcept {
+  constexpr std::array<std::string_view, 5> names{"met", "met, but too few cases to be sure",
+                                                  "not met, but too few cases to be sure", "not met", "not tested"};
+  return names[static_cast<std::size_t>(reached)];
+}
+
+}  // namespace pirsim::reconcile

@@ -1,0 +1,88 @@
+// A realization with effects on top, however it gets there, against the slow way: a study of its own with these
+// effects.
+#include <algorithm>
+
+#include "reconcile/ensemble/simulated_realization.hpp"
+#include "support/catch.hpp"
+#include "support/effects.hpp"
+
+using namespace pirsim;
+using namespace pirsim::test;
+using reconcile::frame_of;
+using reconcile::Realization;
+using reconcile::RealizationSource;
+using reconcile::Series;
+using reconcile::SimulatedRealization;
+using reconcile::StudyFrame;
+
+namespace {
+
+/// None if people can't get about in it.
+std::optional<std::vector<Series>> study_with(const StudyFrame& frame, const Realization& realization,
+                                              const std::vector<EffectSpec>& more, int n_replicates) {
+  ScriptSpec script = realization.script;
+  script.replicates = n_replicates;
+  script.effects.insert(script.effects.end(), more.begin(), more.end());
+  try {
+    std::vector<Series> data;
+    for (const RunResult& result : results_of(compile(realization.scene, script))) {
+      data.push_back(*series_of(frame, result.replicate, result.trial, result.samples));
+    }
+    return data;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::infeasible) throw;
+    return std::nullopt;
+  }
+}
+
+constexpr int n_replicates = 2;
+
+void check_every_effect(const RealizationSource& source, int n_draws) {
+  const StudyFrame frame = frame_of(source.scene, source.script);
+  Stream stream({source.seed, 0, 0, Purpose::test});
+  const SimulatedRealization realization(source, frame, 3, n_replicates);
+  CHECK(realization.plain(0, n_replicates) == *study_with(frame, realization.drawn(), {}, n_replicates));
+  for (const effects::Effect* effect : effects::catalogue()) {
+    const auto& own = source.script.effects;  // none is looked for a second time
+    if (std::ranges::find(own, effect->info.name, &EffectSpec::name) != own.end()) continue;
+    for (int draw = 0; draw < n_draws; ++draw) {
+      INFO(effect->info.name << ", draw " << draw);
+      const EffectSpec spec =
+          effects::draw_from_prior(*effect, realization.drawn().scene, realization.drawn().script, stream);
+      const auto data = realization.with_effects(std::span(&spec, 1), 0, n_replicates);
+      CHECK((data == study_with(frame, realization.drawn(), {spec}, n_replicates)));
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a realization with any effect of the catalogue gives the rows of a study with it") {
+  check_every_effect({shipped_scene("meeting_room.gltf"), short_study_a(), {}, 11}, 3);
+}
+
+TEST_CASE("the same with several people who keep out of each other's way") {
+  check_every_effect({shipped_scene("open_office.gltf"), short_office(), {}, 12}, 1);
+}
+
+TEST_CASE("the same on top of a model that has effects already: soft edges and two elements") {
+  const EffectSpec edges{"soft_zone_edges", {{"sigma_deg", 1.0}}, {}, {}};
+  const EffectSpec elements{"dual_polarity", {{"threshold", 0.6}}, {}, {}};
+  for (const EffectSpec& own : {edges, elements}) {
+    check_every_effect({shipped_scene("meeting_room.gltf"), with(short_study_a(), {own}), {}, 13}, 1);
+  }
+}
+
+TEST_CASE("who tries the same few steps round somebody for ever gives up") {
+  // Found in a reference table: a bystander so near a bend of the way that every try ended after 5 cm.
+  const RealizationSource source{shipped_scene("open_office.gltf"), shipped_script("office.yaml"), {}, 1};
+  const SimulatedRealization realization(source, frame_of(source.scene, source.script), 23, n_replicates);
+  const auto& all = effects::catalogue();
+  const auto second_person =
+      std::ranges::find(all, "second_person", [](const auto* effect) { return effect->info.name; });
+  const auto place = static_cast<std::uint32_t>(second_person - all.begin());
+  Stream stream({source.seed, 23, place, Purpose::reference_parameters});
+  const EffectSpec effect =
+      effects::draw_from_prior(**second_person, realization.drawn().scene, realization.drawn().script, stream);
+  CHECK_FALSE(realization.with_effects(std::span(&effect, 1), 0, n_replicates).has_value());
+}

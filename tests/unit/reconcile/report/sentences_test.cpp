@@ -1,0 +1,131 @@
+#include "reconcile/report/sentences.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/catch.hpp"
+
+using namespace pirsim;
+using namespace pirsim::reconcile;
+
+namespace {
+
+/// A disagreement in which these effects aren't ruled out, with these probabilities, the named or likeliest first.
+Outcome outcome_of(Verdict verdict, const std::vector<std::pair<std::string, double>>& kept) {
+  Outcome outcome;
+  outcome.verdict = verdict;
+  for (const auto& [effect, probability] : kept) {
+    outcome.candidates.push_back({{effect, probability, 0.3, 0.4, 0.6}, effects::Family::person, true, {}});
+    if (verdict != Verdict::named || outcome.named.empty()) outcome.named.push_back(effect);
+  }
+  if (verdict == Verdict::named) outcome.fits.push_back({{kept.front().first, {}, {}, {}}, {}, false});
+  return outcome;
+}
+
+std::string sentence_of(Verdict verdict, const std::vector<std::pair<std::string, double>>& kept) {
+  return verdict_sentence(outcome_of(verdict, kept), 0.05);
+}
+
+}  // namespace
+
+TEST_CASE("a name says whether it has rivals and how probable it is", "[reconcile]") {
+  CHECK_THAT(sentence_of(Verdict::named, {{"seat_shift", 0.6}}), contains("no other effect of the catalogue explains"));
+  const std::string rivals =
+      sentence_of(Verdict::named, {{"seat_shift", 0.9}, {"body_size", 0.06}, {"dead_time", 0.01}});
+  CHECK_THAT(rivals, contains("The model lacks seat_shift"));
+  CHECK_THAT(rivals, contains("with probability 0.9"));
+  CHECK_THAT(rivals, contains("body_size and dead_time can't be ruled out"));
+  CHECK_THAT(rivals, !contains("no other effect"));
+}
+
+TEST_CASE("the reason of a rival compares it with the one that is named", "[reconcile]") {
+  const std::string reason = in_words(reason::LessLikely{0.6, 0.06, "seat_shift", 0.9});
+  CHECK_THAT(reason, contains("much less likely than seat_shift (0.06 against 0.9)"));
+}
+
+TEST_CASE("of a model with effects applied it is said whether it passes, and what may be missing beside them",
+          "[reconcile]") {
+  CHECK(in_words(Look{{"clock_lag"}, 0.025, 0.4, {}}) ==
+        "With clock_lag applied, the model can have made these data (p = 0.4).");
+  CHECK(
+      in_words(Look{{"clock_lag", "dead_time"}, 0.0125, 0.01, {"seat_shift", "body_size"}}) ==
+      "With clock_lag and dead_time applied, the model still differs from the data (p = 0.01). What is missing beside "
+      "it may be seat_shift or body_size: these data can't tell.");
+  CHECK_THAT(in_words(Look{{"clock_lag"}, 0.025, 0.01, {"seat_shift"}}), contains("may be seat_shift."));
+}
+
+TEST_CASE("a name that doesn't do when it is applied is taken back with that reason", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"trigger_bursts", 0.99}});
+  outcome.looks.push_back({{"trigger_bursts"}, 0.025, 0.005, {}});
+  outcome.candidates.front().kept = false;
+  outcome.candidates.front().reason = reason::RefusedWhenApplied{0.005};
+  const std::string told = sentence(outcome, 0.05);
+  CHECK_THAT(told, contains("The model lacks something that is not in the catalogue"));
+  CHECK_THAT(told, contains("What resembles it most, trigger_bursts, doesn't explain it") && contains("(p = 0.005)"));
+  CHECK_THAT(in_words(outcome.candidates.front()), contains("Dropped: with it applied") && contains("(p 0.005)"));
+}
+
+TEST_CASE("of an effect that does when it is applied and was dropped all the same both is said", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"labels_swapped", 0.99}});
+  outcome.candidates.front().reason = reason::RuledOut{{}, 0.01};
+  outcome.looks.push_back({{"labels_swapped"}, 0.025, 0.524, {}});
+  CHECK_THAT(sentence(outcome, 0.05),
+             contains(". labels_swapped comes nearest: with it applied, the test of everything together sees no "
+                      "difference (p = 0.524). It was dropped all the same: data of its own hardly ever look like "
+                      "these (p 0.01)."));
+}
+
+TEST_CASE("where no name is given the sentence says why", "[reconcile]") {
+  CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}}), contains("can't tell apart"));
+  CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.9}}), contains("its strength may as well be none"));
+  Outcome weak = outcome_of(Verdict::one_of, {{"seat_shift", 0.9}, {"body_size", 0.05}});
+  weak.nothing.p = 0.2;
+  CHECK_THAT(verdict_sentence(weak, 0.05), contains("or nothing: the disagreement is weak"));
+}
+
+TEST_CASE("improbable effects that might have made the data are told with their probability", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"seat_shift", 0.1}, {"body_size", 0.03}});
+  CHECK_THAT(
+      verdict_sentence(outcome, 0.05),
+      contains("most effects") && contains("seat_shift and body_size might, but with a probability of only 0.13"));
+  outcome.candidates.push_back({{"dead_time", 0.6, 0.0, 0.0, 0.01}, effects::Family::electronics, false, {}});
+  CHECK_THAT(verdict_sentence(outcome, 0.05), contains("the likelier effects"));
+  CHECK_THAT(in_words(reason::Improbable{0.6}), contains("Dropped: by itself it might have made these data (p 0.6)"));
+  for (Candidate& candidate : outcome.candidates) candidate.score.p = 0.01;
+  CHECK_THAT(verdict_sentence(outcome, 0.05), contains("no effect of the catalogue is likely"));
+}
+
+TEST_CASE("where no name is given the family is said if it is clear", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}, {"dead_time", 0.05}});
+  outcome.family = likeliest_family(
+      std::vector<HypothesisScore>{{"nothing", 0.05}, {"dead_time", 0.05}, {"seat_shift", 0.5}, {"body_size", 0.4}});
+  CHECK(outcome.family.family == effects::Family::person);
+  CHECK(outcome.family.probability == Approx(0.9));
+  CHECK_THAT(verdict_sentence(outcome, 0.05), contains("with probability 0.9 something of the family person"));
+  outcome.family.probability = 0.7;
+  CHECK_THAT(verdict_sentence(outcome, 0.05), !contains("family"));
+}
+
+TEST_CASE("what to do next names a plan only for effects that are to be told apart", "[reconcile]") {
+  CHECK_THAT(next_step(outcome_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}})),
+             contains("--effects seat_shift,body_size"));
+  CHECK_THAT(next_step(outcome_of(Verdict::one_of, {{"seat_shift", 0.13}})), !contains("--effects"));
+}
+
+TEST_CASE("of a rest that the model still differs by, and of a catalogue cut down, is told", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::named, {{"seat_shift", 0.9}});
+  outcome.looks.push_back({{"seat_shift"}, 0.025, 0.01, {}});
+  outcome.looked_for = {"seat_shift", "body_size"};
+  CHECK_THAT(sentence(outcome, 0.05),
+             contains("The catalogue was cut down to seat_shift and body_size. The model lacks"));
+  CHECK_THAT(sentence(outcome, 0.05), contains("That is not all. With seat_shift applied, the model still differs"));
+  outcome.looks.back().p = 0.5;
+  CHECK_THAT(sentence(outcome, 0.05), !contains("That is not all"));
+}
+
+TEST_CASE("a fitted effect names its twin and others name none", "[reconcile]") {
+  CHECK_THAT(in_words(FittedEffect{{"range_scale", {}, {}, {}}, {}, false}),
+             contains("or thermal_contrast, the same in the model"));
+  CHECK(in_words(FittedEffect{{"seat_shift", {}, {}, {}}, {}, false}) == "seat_shift");
+}

@@ -1,0 +1,72 @@
+// What a self-test hides.
+#include "reconcile/validation/selftest.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "support/catch.hpp"
+#include "support/shipped.hpp"
+#include "support/short_study.hpp"
+#include "support/temporary_folder.hpp"
+
+using namespace pirsim;
+using namespace pirsim::reconcile;
+
+namespace {
+
+ReferenceStudy reference_study(const Settings& analysis) {
+  return make_reference_study(test::shipped_scene("meeting_room.gltf"), test::short_study({"S4"}, 60.0), analysis,
+                              [](const StudyFrame& frame, std::span<const Series> pilot) {
+                                return full_shape(frame, Measured::Kind::series, 1, pilot);
+                              });
+}
+
+}  // namespace
+
+TEST_CASE("strengths beyond the prior lie on both sides of it where it has two", "[reconcile][selftest]") {
+  SelftestSettings settings;
+  settings.analysis.table = {60, 60, 60, {"range_scale", "false_triggers"}};
+  settings.n_nulls = 0;
+  settings.n_injected = 0;
+  settings.n_beyond = 12;  // of one side only: once in 2,000 seeds
+  const ReferenceStudy reference = reference_study(settings.analysis);
+  std::size_t n_weaker = 0, n_stronger = 0, n_rates = 0;
+  for (const InjectedDataset& injected : inject(reference, settings)) {
+    const EffectSpec& effect = injected.effects.front();
+    const effects::ParameterInfo& first = effects::strength_parameter(effect);
+    const double value = effect.parameters.at(first.name);
+    INFO(effect.name << ' ' << value);
+    CHECK((value < first.low || value > first.high));
+    if (effect.name == "range_scale") ++(value < 1.0 ? n_weaker : n_stronger);
+    if (effect.name == "false_triggers") ++n_rates;
+  }
+  CHECK(n_weaker > 0);
+  CHECK(n_stronger > 0);
+  CHECK(n_weaker + n_stronger == settings.n_beyond);
+  CHECK(n_rates == settings.n_beyond);
+}
+
+TEST_CASE("datasets that were injected are kept beside those of other numbers", "[reconcile][selftest]") {
+  const TemporaryFolder folder;
+  SelftestSettings settings;
+  settings.analysis.table = {20, 20, 20, {"false_triggers"}};
+  settings.n_nulls = 2;
+  settings.n_injected = 0;
+  settings.injected_folder = folder.path() / "injected";
+  const ReferenceStudy reference = reference_study(settings.analysis);
+  const auto inject_so_many = [&](std::uint32_t n) {
+    settings.n_nulls = n;
+    return inject(reference, settings);
+  };
+  const auto changed_last = [&] {
+    std::filesystem::file_time_type last{};
+    for (const auto& hypothesis : std::filesystem::recursive_directory_iterator(folder.path()))
+      last = std::max(last, hypothesis.last_write_time());
+    return last;
+  };
+  CHECK(inject_so_many(2).size() == 2);
+  CHECK(inject_so_many(3).size() == 3);
+  const auto before = changed_last();
+  CHECK(inject_so_many(2).size() == 2);
+  CHECK(changed_last() == before);  // nothing was simulated again
+}
