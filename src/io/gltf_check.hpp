@@ -5,8 +5,8 @@
 
 namespace pirsim::io::detail {
 
-/// Adds a fault for whatever tinygltf would silently leave out, cut short or index with. Buffers' contents are not
-/// looked at.
+/// Adds a fault for every member that pirsim reads whose type, size or reference is not as glTF asks. Buffers' contents
+/// are not looked at.
 void check_structure(const JsonText& text, Diagnostics& faults);
 
 }  // namespace pirsim::io::detail

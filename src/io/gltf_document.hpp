@@ -1,4 +1,5 @@
-// A glTF file in memory: its JSON with places, tinygltf's view of it, and its buffers. Private to io.
+// A glTF file in memory: its JSON with places, what pirsim reads of it as tinygltf's structures, and its buffers.
+// Private to io.
 #pragma once
 
 #include <tiny_gltf.h>

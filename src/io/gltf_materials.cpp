@@ -1,6 +1,7 @@
 #include "io/gltf_materials.hpp"
 
 #include <string>
+#include <utility>
 
 namespace pirsim::io::detail {
 namespace {
@@ -39,8 +40,11 @@ std::vector<std::optional<double>> material_temperatures_c(const GltfDocument& d
     const auto extras = (*materials)[i].find("extras");
     if (extras == (*materials)[i].end() || !extras->is_object() || !extras->contains("pirsim")) continue;
     const json& given = (*extras)["pirsim"];
-    // As with nodes, editors may write the object as a text.
-    const json mark = given.is_string() ? json::parse(given.get<std::string>(), nullptr, false) : given;
+    json mark = given;
+    if (given.is_string()) {  // as with nodes
+      auto parsed = parse_json(given.get<std::string>());
+      mark = std::holds_alternative<json>(parsed) ? std::get<json>(std::move(parsed)) : json();
+    }
     const std::string pointer = "/materials/" + std::to_string(i) + "/extras/pirsim";
     temperatures[i] = temperature_of(mark, document, pointer, remarks);
   }

@@ -152,13 +152,13 @@ std::optional<Markup> read_markup(const GltfDocument& document, int node, Diagno
   const json& value = (*extras)["pirsim"];
   if (!value.is_string()) return MarkupReader(document, node, value, remarks).read();
   // Editors such as Blender offer texts as custom properties, so the object may come as one.
-  const auto text = value.get<std::string>();
-  if (const auto excess = excess_of_json(text)) {
-    remarks.error(document.text.where(markup_pointer(node)), node_label(document.model, node) + ": " + excess->what);
+  const auto parsed = parse_json(value.get<std::string>());
+  if (const auto* fault = std::get_if<JsonFault>(&parsed)) {
+    remarks.error(document.text.where(markup_pointer(node)),
+                  node_label(document.model, node) + ": the text at 'pirsim' is " + fault->message);
     return std::nullopt;
   }
-  const json parsed = json::parse(text, nullptr, false);
-  return MarkupReader(document, node, parsed, remarks).read();
+  return MarkupReader(document, node, std::get<json>(parsed), remarks).read();
 }
 
 }  // namespace pirsim::io::detail
