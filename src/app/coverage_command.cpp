@@ -8,9 +8,8 @@
 #include "io/atomic_file.hpp"
 #include "io/png.hpp"
 #include "pirsim/io.hpp"
-#include "studies/coverage_figures.hpp"
+#include "studies/coverage.hpp"
 #include "studies/coverage_report.hpp"
-#include "studies/row_store.hpp"
 
 namespace pirsim::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/gltf_check.hpp"
+#include "io/gltf_document.hpp"
 
 #include <array>
 #include <cstdint>

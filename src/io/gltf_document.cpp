@@ -5,9 +5,6 @@
 #include <map>
 #include <utility>
 
-#include "io/gltf_check.hpp"
-#include "io/gltf_container.hpp"
-
 namespace pirsim::io::detail {
 namespace {
 
