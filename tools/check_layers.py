@@ -18,7 +18,7 @@ BELOW = {
     "pir": {"schema", "geom", "core"},
     "io": {"effects", "schema", "geom", "core"},
     "effects": {"schema", "geom", "core"},
-    "sim": {"effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
+    "sim": {"effects", "rt", "body", "pir", "schema", "geom", "core"},
     "studies": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
     "reconcile": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "stats", "core"},
 }

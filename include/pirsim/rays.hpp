@@ -28,7 +28,7 @@ struct RayBundle {
   [[nodiscard]] std::size_t n_sensors() const noexcept { return sensor_clusters_begin.size() - 1; }
 };
 
-/// Activity of every zone at one tick: 1 where at least one of the zone's rays meets a person. (n_zones)
+/// Activity of every zone at one tick: 1 where at least one of the zone's rays hits a person. (n_zones)
 using ZoneActivity = std::vector<std::uint8_t>;
 
 // Which zones are active, one bit a zone.

@@ -6,11 +6,10 @@
 #include "app/outputs.hpp"
 #include "app/session.hpp"
 #include "io/atomic_file.hpp"
-#include "io/gnuplot.hpp"
+#include "io/png.hpp"
 #include "pirsim/io.hpp"
-#include "studies/coverage_figures.hpp"
+#include "studies/coverage.hpp"
 #include "studies/coverage_report.hpp"
-#include "studies/row_store.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -53,15 +52,11 @@ CoverageMap compute(const studies::CoverageStudy& study, const Inputs& inputs, c
   return map;
 }
 
-void draw_maps(const studies::CoverageStudy& study, const CoverageMap& map, const Inputs& inputs,
-               const std::filesystem::path& folder) {
-  std::vector<std::string> programs;
+void draw_maps(const studies::CoverageStudy& study, const CoverageMap& map, const std::filesystem::path& folder) {
   for (std::size_t i = 0; i < map.sensors.size(); ++i) {
-    io::MapChart chart = studies::map_chart(study, map, i);
-    chart.title = study.spec().name + ", " + chart.title;
-    programs.push_back(io::gnuplot_program(chart, folder / (map.sensors[i] + ".png")));
+    const io::Pixels picture = io::drawn(studies::map_chart(study, map, i));
+    io::write_png(folder / (map.sensors[i] + ".png"), picture.width, picture.height, picture.rgb);
   }
-  draw(programs, inputs.verbosity);
 }
 
 void coverage(const Inputs& inputs, const CoverageOptions& options) {
@@ -72,7 +67,7 @@ void coverage(const Inputs& inputs, const CoverageOptions& options) {
   const CoverageMap map = compute(study, inputs, options);
   const studies::CoverageFigures figures = studies::figures_of(map);
   io::write_text_file(options.output / "coverage.csv", studies::to_csv(map));
-  draw_maps(study, map, inputs, options.output);
+  draw_maps(study, map, options.output);
   if (report_file) write_page(*report_file, studies::coverage_report(study, map, figures), inputs);
   if (inputs.verbosity != Verbosity::quiet) std::cout << studies::to_text(map, figures);
 }

@@ -2,7 +2,7 @@
 
 #include "app/commands.hpp"
 #include "app/outputs.hpp"
-#include "effects/describe.hpp"
+#include "effects/catalogue.hpp"
 #include "pirsim/csv.hpp"
 
 namespace pirsim::app {

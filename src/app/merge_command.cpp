@@ -6,7 +6,6 @@
 #include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
 #include "studies/campaign.hpp"
-#include "studies/row_tally.hpp"
 
 namespace pirsim::app {
 namespace {

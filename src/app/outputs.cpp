@@ -4,8 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
-#include <cstdio>
 #include <iostream>
 #include <map>
 
@@ -46,19 +44,6 @@ std::string identity(const fs::path& file) {
   std::error_code fault;
   const fs::path whole = fs::weakly_canonical(fs::absolute(file, fault), fault);
   return fault ? file.lexically_normal().string() : whole.string();
-}
-
-/// Whether gnuplot ran the program to its end.
-bool runs(const std::string& program) {
-  // A gnuplot that isn't there or gives up must not end us with SIGPIPE.
-  const auto before = std::signal(SIGPIPE, SIG_IGN);
-  bool done = false;
-  if (std::FILE* pipe = ::popen("exec gnuplot 2>/dev/null", "w")) {
-    const bool written = std::fwrite(program.data(), 1, program.size(), pipe) == program.size();
-    done = ::pclose(pipe) == 0 && written;
-  }
-  std::signal(SIGPIPE, before);
-  return done;
 }
 
 }  // namespace
@@ -116,14 +101,6 @@ void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs) {
                   inputs.script.filename().string();
   file.stream() << io::to_html(report);
   file.commit();
-}
-
-void draw(const std::vector<std::string>& gnuplot_programs, Verbosity verbosity) {
-  if (std::ranges::all_of(gnuplot_programs, runs)) return;
-  Issue warning;
-  warning.severity = Severity::warning;
-  warning.message = "not all pictures could be drawn: gnuplot (package gnuplot-nox) isn't there or failed";
-  tell({warning}, verbosity);
 }
 
 void require_written() {

@@ -38,8 +38,6 @@ void write_summary(const studies::Summary& summary, io::AtomicFile& file, const 
                    const std::string& title, Verbosity verbosity);
 /// Writes a report with what made it in the footer, and commits the file.
 void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs);
-/// Has gnuplot run one program after the other. Without gnuplot, or where it fails, a warning is all that happens.
-void draw(const std::vector<std::string>& gnuplot_programs, Verbosity verbosity);
 
 /// Thrown when nobody reads standard output any more, as in `pirsim ... | head`.
 struct ClosedPipe {};

@@ -8,7 +8,6 @@
 #include "app/session.hpp"
 #include "effects/catalogue.hpp"
 #include "io/atomic_file.hpp"
-#include "io/gnuplot.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/version.hpp"
 #include "reconcile/data/measured.hpp"
@@ -124,14 +123,6 @@ std::string made_by(const Inputs& inputs) {
          inputs.script.filename().string();
 }
 
-void draw_selftest(const std::filesystem::path& folder, const reconcile::SelftestResult& result, Verbosity verbosity) {
-  draw({io::gnuplot_program(reconcile::confusion_chart(result), folder / "confusion.png"),
-        io::gnuplot_program(reconcile::power_grid(result), folder / "power.png"),
-        io::gnuplot_program(reconcile::reliability_chart(result), folder / "reliability.png"),
-        io::gnuplot_program(reconcile::coverage_chart(result), folder / "coverage.png")},
-       verbosity);
-}
-
 void reconcile_selftest(const Inputs& inputs, const AnalysisOptions& analysis, const SelftestOptions& options) {
   const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
@@ -155,7 +146,6 @@ void reconcile_selftest(const Inputs& inputs, const AnalysisOptions& analysis, c
   const reconcile::Geometry geometry =
       analysis.nuisance == "none" ? reconcile::Geometry::known : reconcile::Geometry::uncertain;
   reconcile::write_selftest(options.output, result, geometry, made_by(inputs));
-  draw_selftest(options.output, result, inputs.verbosity);
 }
 
 void reconcile_plan(const Inputs& inputs, const AnalysisOptions& analysis, const PlanOptions& options) {

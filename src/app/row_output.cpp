@@ -11,7 +11,7 @@
 #include "pirsim/version.hpp"
 #include "rt/tracer.hpp"
 #include "sim/compiled_study.hpp"
-#include "studies/shards.hpp"
+#include "studies/campaign.hpp"
 
 namespace pirsim::app {
 namespace {

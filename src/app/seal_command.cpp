@@ -7,7 +7,7 @@
 #include "app/commands.hpp"
 #include "app/outputs.hpp"
 #include "app/session.hpp"
-#include "io/text_input.hpp"
+#include "io/atomic_file.hpp"
 #include "pirsim/io.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "reconcile/validation/seal.hpp"

@@ -5,8 +5,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
-#include <stdexcept>
 #include <string>
+
+#include "pirsim/error.hpp"
 
 namespace pirsim::body {
 
@@ -39,7 +40,7 @@ constexpr double backmost_tilt = -20 * degree;  // within the spine's limits, wi
 constexpr double foremost_tilt = 50 * degree;
 
 [[noreturn]] void refuse(const char* command, Stage stage) {
-  throw std::logic_error(std::string(command) + " is not possible while " + std::string(name(stage)));
+  throw Error(ErrorCode::internal, std::string(command) + " is not possible while " + std::string(name(stage)));
 }
 
 bool rests_at(const MinJerk& motion, double target) { return motion.settled() && motion.target() == target; }
@@ -100,7 +101,7 @@ void Motion::begin_turn(double angle) {
 void Motion::walk(const Route& route) {
   if (stage_ != Stage::standing) refuse("walking off", stage_);
   if (glm::distance(route.position(0.0), stand_.position) > furthest_from_route_m) {
-    throw std::logic_error("a route begins where the person stands");
+    throw Error(ErrorCode::internal, "a route begins where the person stands");
   }
   if (route.length_m() > 0.0) walk_from(route, 0.0);
   update_stance();

@@ -63,7 +63,7 @@ class Motion {
   /// Standing still, feet together. floor_height_m: y of the floor.
   Motion(const Humanoid& humanoid, const Vec2& position, double heading, double floor_height_m, double tick_s);
 
-  // Commands. A command that needs another stage first (walk while seated) throws std::logic_error: the caller
+  // Commands. A command that needs another stage first (walk while seated) throws Error(internal): the caller
   // sequences them; stop() and rise() lead back to standing from anywhere.
   /// From standing; the route starts here. Turns first where it leads off by more than 20 degrees, and at pivots.
   void walk(const Route& route);

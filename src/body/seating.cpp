@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
-#include <stdexcept>
 
 #include "pirsim/error.hpp"
 
@@ -80,7 +79,7 @@ Seating::Seating(const Humanoid& humanoid, const SeatPlace& seat, const Placemen
   const double off_heading = wrapped(seat_heading - standing.heading);
   if (off_axis > furthest_off_axis_m || std::abs(slide) > furthest_slide_m ||
       std::abs(off_heading) > furthest_off_heading) {
-    throw std::logic_error("a person sits down from a place on the seat's axis, facing as the seat does");
+    throw Error(ErrorCode::internal, "a person sits down from a place on the seat's axis, facing as the seat does");
   }
   if (std::abs(slide) < negligible_slide_m) slide = 0.0;
   const double before_m = fall_back_m(humanoid, seat) - slide;

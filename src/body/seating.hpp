@@ -28,7 +28,7 @@ struct SeatPlace {
 class Seating {
  public:
   Seating() = default;
-  /// Throws Error(infeasible) if the seat's height can't be sat on, std::logic_error if the person stands elsewhere
+  /// Throws Error(infeasible) if the seat's height can't be sat on, Error(internal) if the person stands elsewhere
   /// than before or behind the seat on its axis, or faces another way.
   Seating(const Humanoid& humanoid, const SeatPlace& seat, const Placement& standing, const Feet& feet);
 

@@ -1,7 +1,5 @@
 // Arms don't keep to the script.
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
-#include "effects/parameter.hpp"
 
 namespace pirsim::effects {
 namespace {

@@ -1,7 +1,5 @@
 // People are taller or smaller than the script says.
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
-#include "effects/parameter.hpp"
 
 namespace pirsim::effects {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "effects/entries.hpp"
+#include "effects/kit.hpp"
 
 namespace pirsim::effects {
 

@@ -1,7 +1,6 @@
 // The logger's clock isn't the choreography's.
 #include <deque>
 
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
 
 namespace pirsim::effects {

@@ -1,7 +1,5 @@
 // A sensor that says nothing any more, or less and less.
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
-#include "effects/parameter.hpp"
 
 namespace pirsim::effects {
 namespace {

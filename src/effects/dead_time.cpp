@@ -1,5 +1,4 @@
 // After a pulse the circuit is blind for a while.
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
 
 namespace pirsim::effects {

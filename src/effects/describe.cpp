@@ -1,4 +1,4 @@
-#include "effects/describe.hpp"
+#include "effects/catalogue.hpp"
 
 #include <array>
 #include <boost/algorithm/string/join.hpp>

@@ -1,6 +1,5 @@
 // Two elements of opposite sign, an amplifier with a pass band, a threshold: what a real detector has in place of
 // "something changed".
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
 
 namespace pirsim::effects {

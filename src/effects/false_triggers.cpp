@@ -1,5 +1,4 @@
 // Triggers without a person: noise of element and amplifier, draughts.
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
 
 namespace pirsim::effects {

@@ -1,7 +1,5 @@
 // People move though the script says nothing of it.
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
-#include "effects/parameter.hpp"
 
 namespace pirsim::effects {
 namespace {

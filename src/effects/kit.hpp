@@ -1,4 +1,4 @@
-// What the files of single effects share.
+// What the files of single effects share, and the catalogue's entries.
 #pragma once
 
 #include <cmath>
@@ -6,8 +6,84 @@
 #include <vector>
 
 #include "effects/catalogue.hpp"
+#include "pirsim/scene.hpp"
 
 namespace pirsim::effects {
+
+// The catalogue's entries, one file each.
+
+const Effect& seats_shifted();
+const Effect& mirrored_room();
+const Effect& missing_occluder();
+const Effect& second_person();
+const Effect& seat_shift();
+const Effect& seat_scatter();
+const Effect& body_size();
+const Effect& sensor_yaw();
+const Effect& sensor_tilt();
+const Effect& sensor_height();
+const Effect& arm_motion();
+const Effect& trunk_tilt();
+const Effect& fidgeting();
+const Effect& thermal_contrast();
+const Effect& range_scale();
+const Effect& soft_zone_edges();
+const Effect& wall_reflection();
+const Effect& dual_polarity();
+const Effect& warm_chair();
+const Effect& false_triggers();
+const Effect& trigger_bursts();
+const Effect& missed_triggers();
+const Effect& dead_time();
+const Effect& pulse_stretching();
+const Effect& clock_lag();
+const Effect& dead_sensor();
+const Effect& labels_swapped();
+
+// Short forms of parameters that many effects have alike.
+
+/// A factor on what the model has; 1 is off.
+[[nodiscard]] inline ParameterInfo factor(std::string name, double low, double high, double typical,
+                                          std::string source) {
+  return {.name = std::move(name),
+          .unit = "",
+          .off = 1.0,
+          .typical = typical,
+          .low = low,
+          .high = high,
+          .least = 0.05,
+          .most = 20.0,
+          .scale = Scale::logarithmic,
+          .source = std::move(source)};
+}
+
+/// Something to either side of what the model has; 0 is off.
+[[nodiscard]] inline ParameterInfo offset(std::string name, std::string unit, double reach, double typical, double most,
+                                          std::string source) {
+  return {.name = std::move(name),
+          .unit = std::move(unit),
+          .off = 0.0,
+          .typical = typical,
+          .low = -reach,
+          .high = reach,
+          .least = -most,
+          .most = most,
+          .source = std::move(source)};
+}
+
+/// Happens (1) or not (0).
+[[nodiscard]] inline ParameterInfo whether(std::string name, std::string source) {
+  return {.name = std::move(name),
+          .unit = "",
+          .off = 0.0,
+          .typical = 1.0,
+          .low = 1.0,
+          .high = 1.0,
+          .least = 0.0,
+          .most = 1.0,
+          .scale = Scale::whole,
+          .source = std::move(source)};
+}
 
 /// One of the scene's sensors, or all.
 [[nodiscard]] ChoiceInfo sensor_choice();
@@ -37,5 +113,13 @@ class CloneableRowStage : public RowStage {
     return std::make_unique<Stage>(static_cast<const Stage&>(*this));
   }
 };
+
+// Where in a room something more has its place.
+
+/// Points of a grid on the floor with `clear_m` to everything solid below a person's height, to seats and to
+/// entrances; the one farthest from all seats first. Empty in a room without such a place.
+[[nodiscard]] std::vector<Vec2> free_places(const SceneSpec& scene, double clear_m);
+/// The place itself if it is within a cell of the grid of a free one, else the nearest of these; the place if none is.
+[[nodiscard]] Vec2 nearest_free(const SceneSpec& scene, double clear_m, const Vec2& place);
 
 }  // namespace pirsim::effects

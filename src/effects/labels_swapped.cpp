@@ -1,9 +1,7 @@
 // Two sensors' columns are swapped.
 #include <algorithm>
 
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
-#include "effects/parameter.hpp"
 
 namespace pirsim::effects {
 namespace {

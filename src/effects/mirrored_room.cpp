@@ -1,9 +1,7 @@
 // The plan was read from its back.
 #include <algorithm>
 
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
-#include "effects/parameter.hpp"
 #include "pirsim/geometry.hpp"
 
 namespace pirsim::effects {

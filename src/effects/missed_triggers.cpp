@@ -1,5 +1,4 @@
 // What the zones saw and nobody was told: a poll that came to nothing, a threshold set too high.
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
 
 namespace pirsim::effects {

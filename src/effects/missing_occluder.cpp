@@ -1,8 +1,5 @@
 // Something hides people that the plan leaves out.
-#include "effects/entries.hpp"
-#include "effects/free_places.hpp"
 #include "effects/kit.hpp"
-#include "effects/parameter.hpp"
 
 namespace pirsim::effects {
 namespace {

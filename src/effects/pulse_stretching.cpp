@@ -1,7 +1,6 @@
 // The output stays high for a while after a trigger, so that the next poll finds it too.
 #include <algorithm>
 
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
 
 namespace pirsim::effects {

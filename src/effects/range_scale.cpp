@@ -1,7 +1,5 @@
 // A lens reaches further than its data sheet promises, or less far.
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
-#include "effects/parameter.hpp"
 
 namespace pirsim::effects {
 namespace {

@@ -1,7 +1,5 @@
 // Nobody sits on the point that is drawn.
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
-#include "effects/parameter.hpp"
 
 namespace pirsim::effects {
 namespace {

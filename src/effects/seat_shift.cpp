@@ -1,7 +1,5 @@
 // People sit nearer to the table than the plan says, or further back.
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
-#include "effects/parameter.hpp"
 
 namespace pirsim::effects {
 namespace {

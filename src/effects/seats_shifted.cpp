@@ -1,7 +1,5 @@
 // The plan's seat numbers are off by one.
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
-#include "effects/parameter.hpp"
 
 namespace pirsim::effects {
 namespace {

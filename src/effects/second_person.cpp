@@ -3,10 +3,7 @@
 #include <glm/geometric.hpp>
 #include <string>
 
-#include "effects/entries.hpp"
-#include "effects/free_places.hpp"
 #include "effects/kit.hpp"
-#include "effects/parameter.hpp"
 #include "pirsim/geometry.hpp"
 
 namespace pirsim::effects {

@@ -1,10 +1,8 @@
 // A sensor hangs higher or lower than drawn.
 #include <algorithm>
 
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
-#include "effects/parameter.hpp"
-#include "geom/triangle_test.hpp"
+#include "geom/triangle_surface.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::effects {

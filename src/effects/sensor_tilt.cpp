@@ -1,9 +1,7 @@
 // A sensor looks further down than drawn, or less far.
 #include "pirsim/geometry.hpp"
 
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
-#include "effects/parameter.hpp"
 
 namespace pirsim::effects {
 namespace {

@@ -1,9 +1,7 @@
 // A sensor is screwed on a little turned.
 #include "pirsim/geometry.hpp"
 
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
-#include "effects/parameter.hpp"
 
 namespace pirsim::effects {
 namespace {

@@ -1,5 +1,4 @@
 // A lens throws a blurred image of its element: whether somebody at a zone's edge is seen is a matter of chance.
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
 
 namespace pirsim::effects {

@@ -1,7 +1,5 @@
 // A rated distance holds at the rated contrast of temperature; signals fall with the square of the distance.
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
-#include "effects/parameter.hpp"
 
 namespace pirsim::effects {
 namespace {

@@ -1,7 +1,5 @@
 // The trunk doesn't keep to the script.
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
-#include "effects/parameter.hpp"
 
 namespace pirsim::effects {
 namespace {

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
 
 namespace pirsim::effects {

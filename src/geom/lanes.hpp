@@ -1,4 +1,4 @@
-// A pack of floats as wide as the including file's instruction set, for the templates of ray_tests.hpp. Every
+// A SIMD vector of floats as wide as the including file's instruction set, for the templates of ray_tests.hpp. Every
 // operation rounds each lane as the same operation on a float does; there is no fused multiply-add. All of it has
 // internal linkage, so that no file takes another's instructions.
 #pragma once

@@ -1,4 +1,4 @@
-// The arithmetic of the three ray tests, written once for any number type: float here, a pack of lanes in a
+// The arithmetic of the three ray tests, written once for any number type: float here, a SIMD vector in a
 // vectorised tracer. Only + - * /, square root, comparison and selection are used, each rounded on its own (no
 // fused multiply-add), so a lane and a float get the same bits. Everything is a sum of products in which a
 // mirrored coordinate changes sign twice or not at all: mirroring x changes no bit of a distance.

@@ -7,7 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include "geom/triangle_test.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim {

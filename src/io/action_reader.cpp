@@ -1,4 +1,4 @@
-#include "io/action_reader.hpp"
+#include "io/reader_parts.hpp"
 
 #include <algorithm>
 #include <array>

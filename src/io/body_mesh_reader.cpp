@@ -1,4 +1,4 @@
-#include "io/body_mesh_reader.hpp"
+#include "io/reader_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,6 @@
 
 #include "geom/triangle_surface.hpp"
 #include "io/gltf_geometry.hpp"
-#include "io/gltf_nodes.hpp"
 #include "schema/body_part_names.hpp"
 
 namespace pirsim::io::detail {

@@ -1,4 +1,4 @@
-#include "io/chart_json.hpp"
+#include "io/page_parts.hpp"
 
 #include "pirsim/geometry.hpp"
 

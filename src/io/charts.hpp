@@ -1,4 +1,4 @@
-// Charts as plain data: report pages draw them with Vega, gnuplot programs as pictures.
+// Charts as plain data. Report pages draw them with Vega.
 #pragma once
 
 #include <optional>

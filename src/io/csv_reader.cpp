@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "io/text_input.hpp"
+#include "io/atomic_file.hpp"
 
 namespace pirsim::io {
 

@@ -1,4 +1,4 @@
-#include "io/detector_reader.hpp"
+#include "io/reader_parts.hpp"
 
 namespace pirsim::io {
 namespace {

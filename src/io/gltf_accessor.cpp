@@ -1,4 +1,4 @@
-#include "io/gltf_accessor.hpp"
+#include "io/gltf_geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -124,6 +124,10 @@ bool AccessorReader::locate(int view_index, std::size_t byte_offset, std::size_t
     return fault("/bufferViews/" + std::to_string(view_index), view_name + " ends at byte " +
                                                                    std::to_string(view.byteOffset + view.byteLength) +
                                                                    ", its buffer has " + std::to_string(buffer.size()));
+  }
+  if (view.byteStride % 4 != 0 || view.byteStride > 252) {  // glTF 2.0 section 5.11.4
+    return fault("/bufferViews/" + std::to_string(view_index) + "/byteStride",
+                 view_name + ": stride " + std::to_string(view.byteStride) + " is not a multiple of 4 up to 252");
   }
   range.stride = view.byteStride == 0 ? element_size : view.byteStride;
   if (range.stride < element_size) {

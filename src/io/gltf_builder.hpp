@@ -1,15 +1,26 @@
-// A glTF document under construction: nodes, and arrays packed into its one buffer.
+// Arrays, meshes and nodes of a glTF document that is written, solids as triangles among them. Private to io.
 #pragma once
 
 #include <tiny_gltf.h>
-
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "pirsim/geometry.hpp"
+#include "pirsim/shapes.hpp"
 
 namespace pirsim::io {
+
+// Triangles of solids, for pictures: rays are traced against the solids themselves.
+
+struct SolidMesh {
+  std::vector<Vec3> positions;         ///< on the solid's surface, in its frame
+  std::vector<Vec3> normals;           ///< outward, unit, one a position
+  std::vector<std::uint32_t> indices;  ///< three a triangle, counter-clockwise from outside
+};
+
+/// Of primitives closed; a sphere of radius r is missed by 0.02 r at most. A mesh is its own, flat shaded.
+[[nodiscard]] SolidMesh tessellated(const Shape& shape);
 
 /// All functions that add something return its index in the document.
 class GltfBuilder {

@@ -1,4 +1,4 @@
-#include "io/gltf_check.hpp"
+#include "io/gltf_document.hpp"
 
 #include <array>
 #include <cstdint>
@@ -37,6 +37,7 @@ constexpr std::array mesh_rules{Rule{"name", Kind::text}};
 constexpr std::array primitive_rules{
     Rule{"attributes", Kind::object, Need::required},
     Rule{"indices", Kind::index, Need::optional, "accessors"},
+    Rule{"material", Kind::count},
     Rule{"mode", Kind::count},
 };
 constexpr std::array accessor_rules{

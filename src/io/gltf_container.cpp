@@ -1,4 +1,4 @@
-#include "io/gltf_container.hpp"
+#include "io/gltf_document.hpp"
 
 #include <tiny_gltf.h>
 

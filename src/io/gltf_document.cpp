@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <utility>
-
-#include "io/gltf_check.hpp"
-#include "io/gltf_container.hpp"
 
 namespace pirsim::io::detail {
 namespace {
@@ -51,21 +49,101 @@ void check_extensions(const JsonText& text, Diagnostics& faults) {
   }
 }
 
-/// Only what is read goes to tinygltf: no images are opened, no buffer is loaded behind our back.
-tinygltf::Model parse_structure(const JsonText& text) {
-  json reduced = json::object();
-  for (const char* key : {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews"}) {
-    if (text.root().contains(key)) reduced[key] = text.root()[key];
+/// Of a member that was checked, if it is there.
+template <typename T>
+void take(const json& object, const char* key, T& target) {
+  if (const auto member = object.find(key); member != object.end()) target = member->get<T>();
+}
+
+tinygltf::Node node_of(const json& given) {
+  tinygltf::Node node;
+  take(given, "name", node.name);
+  take(given, "mesh", node.mesh);
+  take(given, "children", node.children);
+  take(given, "matrix", node.matrix);
+  take(given, "translation", node.translation);
+  take(given, "rotation", node.rotation);
+  take(given, "scale", node.scale);
+  return node;
+}
+
+tinygltf::Mesh mesh_of(const json& given) {
+  tinygltf::Mesh mesh;
+  take(given, "name", mesh.name);
+  for (const json& part : given["primitives"]) {
+    tinygltf::Primitive& primitive = mesh.primitives.emplace_back();
+    primitive.mode = TINYGLTF_MODE_TRIANGLES;
+    take(part, "attributes", primitive.attributes);
+    take(part, "indices", primitive.indices);
+    take(part, "material", primitive.material);
+    take(part, "mode", primitive.mode);
+    if (part.contains("targets")) primitive.targets.resize(part["targets"].size());
   }
-  const std::string dumped = reduced.dump();
+  return mesh;
+}
+
+/// -1 for what glTF doesn't know.
+int accessor_type(const std::string& name) {
+  static const std::map<std::string, int> types{{"SCALAR", TINYGLTF_TYPE_SCALAR}, {"VEC2", TINYGLTF_TYPE_VEC2},
+                                                {"VEC3", TINYGLTF_TYPE_VEC3},     {"VEC4", TINYGLTF_TYPE_VEC4},
+                                                {"MAT2", TINYGLTF_TYPE_MAT2},     {"MAT3", TINYGLTF_TYPE_MAT3},
+                                                {"MAT4", TINYGLTF_TYPE_MAT4}};
+  const auto known = types.find(name);
+  return known == types.end() ? -1 : known->second;
+}
+
+tinygltf::Accessor accessor_of(const json& given) {
+  tinygltf::Accessor accessor;
+  accessor.type = accessor_type(given["type"].get<std::string>());
+  take(given, "bufferView", accessor.bufferView);
+  take(given, "byteOffset", accessor.byteOffset);
+  take(given, "componentType", accessor.componentType);
+  take(given, "normalized", accessor.normalized);
+  take(given, "count", accessor.count);
+  const auto part = given.find("sparse");
+  accessor.sparse.isSparse = part != given.end();
+  if (!accessor.sparse.isSparse) return accessor;
+  auto& sparse = accessor.sparse;
+  sparse.indices.byteOffset = sparse.values.byteOffset = 0;
+  take(*part, "count", sparse.count);
+  take((*part)["indices"], "bufferView", sparse.indices.bufferView);
+  take((*part)["indices"], "byteOffset", sparse.indices.byteOffset);
+  take((*part)["indices"], "componentType", sparse.indices.componentType);
+  take((*part)["values"], "bufferView", sparse.values.bufferView);
+  take((*part)["values"], "byteOffset", sparse.values.byteOffset);
+  return accessor;
+}
+
+tinygltf::BufferView view_of(const json& given) {
+  tinygltf::BufferView view;
+  take(given, "buffer", view.buffer);
+  take(given, "byteOffset", view.byteOffset);
+  take(given, "byteLength", view.byteLength);
+  take(given, "byteStride", view.byteStride);
+  return view;
+}
+
+template <typename T, typename Make>
+void take_each(const json& root, const char* collection, std::vector<T>& target, Make make) {
+  const auto array = root.find(collection);
+  if (array == root.end()) return;
+  target.reserve(array->size());
+  for (const json& element : *array) target.push_back(make(element));
+}
+
+/// The parts that pirsim reads, of a document whose structure was checked.
+tinygltf::Model model_of(const json& root) {
   tinygltf::Model model;
-  tinygltf::TinyGLTF loader;
-  std::string fault, warning;
-  if (!loader.LoadASCIIFromString(&model, &fault, &warning, dumped.data(), static_cast<unsigned>(dumped.size()), "",
-                                  tinygltf::NO_REQUIRE)) {
-    while (!fault.empty() && fault.back() == '\n') fault.pop_back();
-    throw Error(ErrorCode::input, text.where(""), "not a valid glTF: " + fault);
-  }
+  take(root, "scene", model.defaultScene);
+  take_each(root, "scenes", model.scenes, [](const json& given) {
+    tinygltf::Scene scene;
+    take(given, "nodes", scene.nodes);
+    return scene;
+  });
+  take_each(root, "nodes", model.nodes, node_of);
+  take_each(root, "meshes", model.meshes, mesh_of);
+  take_each(root, "accessors", model.accessors, accessor_of);
+  take_each(root, "bufferViews", model.bufferViews, view_of);
   return model;
 }
 
@@ -94,7 +172,7 @@ GltfDocument load_gltf(const std::filesystem::path& file, Diagnostics& remarks) 
   faults.throw_if_errors();
   auto buffers = read_buffers(document.text, container, file.parent_path(), faults);
   faults.throw_if_errors();
-  document.model = parse_structure(document.text);
+  document.model = model_of(document.text.root());
   document.files = std::move(container.files);
   for (auto& bytes : buffers) document.model.buffers.emplace_back().data = std::move(bytes);
   for (const Issue& warning : faults.warnings()) remarks.warning(warning.where, warning.message);

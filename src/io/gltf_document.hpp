@@ -1,8 +1,8 @@
-// A glTF file in memory: its JSON with places, tinygltf's view of it, and its buffers. Private to io.
+// A glTF file in memory: its JSON with places, what pirsim reads of it as tinygltf's structures, and its buffers.
+// Private to io.
 #pragma once
 
 #include <tiny_gltf.h>
-
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -25,5 +25,31 @@ struct GltfDocument {
 /// "node 'PIR1'" or "node 4".
 [[nodiscard]] std::string node_label(const tinygltf::Model& model, int node);
 [[nodiscard]] std::string mesh_label(const tinygltf::Model& model, int mesh);
+
+// The parts of a glTF JSON that pirsim reads, checked for type, size and reference.
+
+/// Adds a fault for every member that pirsim reads whose type, size or reference is not as glTF asks. Buffers' contents
+/// are not looked at.
+void check_structure(const JsonText& text, Diagnostics& faults);
+
+// The file behind a glTF: plain JSON, or chunks in a .glb, and buffers in files beside it.
+
+struct GltfContainer {
+  enum class Kind { json, binary };
+  Kind kind = Kind::json;
+  std::string json;
+  std::vector<unsigned char> binary_chunk;  ///< of a .glb, may be empty
+  std::vector<std::string> files{};         ///< all that was read
+};
+
+/// Throws Error(io) for a missing or unreadable file, Error(input) for a file that is no glTF or is cut short.
+[[nodiscard]] GltfContainer read_container(const std::filesystem::path& file);
+
+/// Contents of all `buffers`, at least `byteLength` long each. Files are read from the scene's folder only: no
+/// absolute paths, no `..`, no links that lead out. Faults are added and leave an empty buffer. Names of files go to
+/// the container.
+[[nodiscard]] std::vector<std::vector<unsigned char>> read_buffers(const JsonText& text, GltfContainer& container,
+                                                                   const std::filesystem::path& folder,
+                                                                   Diagnostics& faults);
 
 }  // namespace pirsim::io::detail

@@ -5,8 +5,6 @@
 #include <glm/matrix.hpp>
 #include <utility>
 
-#include "io/gltf_accessor.hpp"
-
 namespace pirsim::io::detail {
 namespace {
 

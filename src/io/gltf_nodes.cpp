@@ -1,4 +1,4 @@
-#include "io/gltf_nodes.hpp"
+#include "io/gltf_geometry.hpp"
 
 #include <algorithm>
 #include <cmath>

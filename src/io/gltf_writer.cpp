@@ -8,7 +8,6 @@
 
 #include "io/atomic_file.hpp"
 #include "io/gltf_builder.hpp"
-#include "io/solid_mesh.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::io {

@@ -1,6 +1,7 @@
 #include "io/json_text.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <optional>
 #include <utility>
@@ -127,35 +128,59 @@ std::size_t start_of_token(std::string_view text, std::size_t last) {
   return begin == std::string_view::npos ? last : begin;
 }
 
-/// nlohmann's message without its prefix and without the text it read last, which may be a whole buffer.
-std::string plain_message(std::string message) {
-  if (const auto begin = message.find(": syntax error"); begin != std::string::npos) message.erase(0, begin + 2);
-  if (const auto last_read = message.find("; last read:"); last_read != std::string::npos) {
-    const auto expected = message.find("; expected", last_read);
-    message.erase(last_read, expected == std::string::npos ? std::string::npos : expected - last_read);
-  }
-  return "not valid JSON: " + message;
+/// The token at an offset as messages tell it: cut, since it may be a whole buffer, and fit for a terminal.
+std::string token_told(std::string_view text, std::size_t offset) {
+  constexpr std::size_t longest = 40;
+  const std::size_t end = text[offset] == '"' ? end_of_string(text, offset) + 1
+                                              : std::max(offset + 1, text.find_first_of(",:]} \t\r\n", offset));
+  std::string token(text.substr(offset, std::min(end, text.size()) - offset));
+  if (token.size() > longest) token = token.substr(0, longest) + "...";
+  std::ranges::replace_if(
+      token, [](unsigned char c) { return std::iscntrl(c) != 0; }, '?');
+  return token;
 }
 
-}  // namespace
+/// Keeps what the parser says of the first fault, and nothing else.
+class FaultFinder : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  explicit FaultFinder(std::string_view text) : text_(text) {}
+  [[nodiscard]] JsonFault fault() && { return std::move(fault_); }
 
-JsonText::JsonText(std::string file, std::string text, Places places)
-    : file_(std::move(file)), text_(std::move(text)), places_(places) {
-  if (const auto excess = excess_of_json(text_)) throw Error(ErrorCode::input, at(excess->offset), excess->what);
-  try {
-    root_ = nlohmann::json::parse(text_);
-  } catch (const nlohmann::json::parse_error& fault) {
-    throw Error(ErrorCode::input, at(start_of_token(text_, fault.byte == 0 ? 0 : fault.byte - 1)),
-                plain_message(fault.what()));
-  } catch (const nlohmann::json::out_of_range& fault) {
-    const std::string_view message = fault.what();
-    const std::size_t begin = message.find('\'') + 1;
-    const std::string number(message.substr(begin, message.rfind('\'') - begin));
-    throw Error(ErrorCode::input, at(offset_of_number(number)), "number " + number + " is too large");
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return true; }
+  bool key(string_t&) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+
+  /// `n_read`: bytes up to the end of the token.
+  bool parse_error(std::size_t n_read, const std::string& token, const nlohmann::detail::exception& fault) override {
+    constexpr int number_too_large = 406;  // the library's documented id
+    if (fault.id == number_too_large) {
+      fault_.offset = n_read - std::min(n_read, token.size());
+      fault_.message = "number " + token_told(text_, fault_.offset) + " is too large";
+    } else {
+      fault_.offset = start_of_token(text_, n_read == 0 ? 0 : n_read - 1);
+      const bool at_end = fault_.offset >= text_.size();
+      fault_.message =
+          "not valid JSON: " + (at_end ? "it ends too early" : "unexpected " + token_told(text_, fault_.offset));
+    }
+    return false;
   }
-}
 
-std::optional<JsonExcess> excess_of_json(std::string_view text) {
+ private:
+  std::string_view text_;
+  JsonFault fault_;
+};
+
+/// Too many levels or values, if there are. Looked for before parsing.
+std::optional<JsonFault> excess_of_json(std::string_view text) {
   int depth = 0;
   std::size_t values = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -175,15 +200,24 @@ std::optional<JsonExcess> excess_of_json(std::string_view text) {
   return std::nullopt;
 }
 
-std::size_t JsonText::offset_of_number(std::string_view number) const {
-  for (std::size_t i = 0; i < text_.size(); ++i) {
-    if (text_[i] == '"') {
-      i = end_of_string(text_, i);
-    } else if (text_.compare(i, number.size(), number) == 0) {
-      return i;
-    }
+}  // namespace
+
+std::variant<nlohmann::json, JsonFault> parse_json(std::string_view text) {
+  if (auto excess = excess_of_json(text)) return *std::move(excess);
+  nlohmann::json root = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!root.is_discarded()) return root;
+  FaultFinder finder(text);
+  nlohmann::json::sax_parse(text, &finder);
+  return std::move(finder).fault();
+}
+
+JsonText::JsonText(std::string file, std::string text, Places places)
+    : file_(std::move(file)), text_(std::move(text)), places_(places) {
+  auto parsed = parse_json(text_);
+  if (const auto* fault = std::get_if<JsonFault>(&parsed)) {
+    throw Error(ErrorCode::input, at(fault->offset), fault->message);
   }
-  return 0;
+  root_ = std::get<nlohmann::json>(std::move(parsed));
 }
 
 Where JsonText::where(std::string_view pointer) const { return find(pointer, Target::value); }

@@ -2,28 +2,28 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 
 #include "pirsim/error.hpp"
 
 namespace pirsim::io::detail {
 
-/// What no scene needs and would exhaust stack or memory.
-struct JsonExcess {
+/// Why a text is not read as JSON: its syntax, a number too large, or more levels or values than any scene needs, which
+/// would exhaust stack or memory.
+struct JsonFault {
   std::size_t offset = 0;
-  std::string what;
+  std::string message;
 };
-/// To be asked before parsing: too many levels or values, if there are.
-[[nodiscard]] std::optional<JsonExcess> excess_of_json(std::string_view text);
+[[nodiscard]] std::variant<nlohmann::json, JsonFault> parse_json(std::string_view text);
 
 /// Places are found by scanning the text again: they are wanted only for the few values that a message is about.
 class JsonText {
  public:
   enum class Places { known, unknown };  ///< unknown: the text is not a file of its own (a chunk of a .glb)
 
-  /// Throws Error(input) with the place of a syntax error, or of nesting that is too deep.
+  /// Throws Error(input) with the place of a JsonFault.
   JsonText(std::string file, std::string text, Places places);
 
   [[nodiscard]] const nlohmann::json& root() const noexcept { return root_; }
@@ -36,7 +36,6 @@ class JsonText {
   enum class Target { value, key };
   [[nodiscard]] Where find(std::string_view pointer, Target target) const;
   [[nodiscard]] Where at(std::size_t offset) const;
-  [[nodiscard]] std::size_t offset_of_number(std::string_view number) const;
 
   std::string file_;
   std::string text_;

@@ -5,7 +5,6 @@
 #include "core/digest.hpp"
 #include "io/atomic_file.hpp"
 #include "io/posix_file.hpp"
-#include "io/text_input.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::io {

@@ -1,5 +1,9 @@
 #include "io/png.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <ostream>
 #include <utility>
@@ -34,5 +38,123 @@ void write_png(const std::filesystem::path& path, int width, int height, std::sp
   }
   file.commit();
 }
+
+namespace {
+
+constexpr int wanted_px = 900;  ///< width of the squares
+constexpr int margin_px = 16;   ///< white, on all sides
+constexpr Vec3 black(0.0), white(255.0), marker_red(255.0, 77.0, 109.0);
+
+/// Viridis by nine of its colours (Smith and van der Walt, CC0); `share` is from 0 to 1.
+Vec3 viridis(double share) {
+  constexpr std::array<std::uint32_t, 9> colours{0x440154, 0x472c7a, 0x3b518b, 0x2c718e, 0x21908d,
+                                                 0x27ad81, 0x5cc863, 0xaadc32, 0xfde725};
+  const auto rgb = [&](std::size_t i) {
+    return Vec3(colours[i] >> 16U & 0xFFU, colours[i] >> 8U & 0xFFU, colours[i] & 0xFFU);
+  };
+  const double place = std::clamp(share, 0.0, 1.0) * (colours.size() - 1);
+  const auto below = std::min(static_cast<std::size_t>(place), colours.size() - 2);
+  return glm::mix(rgb(below), rgb(below + 1), place - static_cast<double>(below));
+}
+
+class MapPicture {
+ public:
+  explicit MapPicture(const MapChart& chart)
+      : chart_(chart), square_px_(std::max(1, wanted_px / std::max(1, chart.columns))) {
+    pixels_.width = chart.columns * square_px_ + 2 * margin_px;
+    pixels_.height = chart.rows * square_px_ + 2 * margin_px;
+    pixels_.rgb.assign(static_cast<std::size_t>(pixels_.width) * static_cast<std::size_t>(pixels_.height) * 3, 255);
+  }
+
+  Pixels draw() {
+    for (int row = 0; row < chart_.rows; ++row) {
+      for (int column = 0; column < chart_.columns; ++column) square(column, row);
+    }
+    for (const auto& loop : chart_.outline) polygon(loop, black, no_dashes);
+    for (const auto& loop : chart_.dashed) polygon(loop, white, 10.0);
+    for (const MapChart::Marker& marker : chart_.markers) arrow(marker);
+    return std::move(pixels_);
+  }
+
+ private:
+  static constexpr double no_dashes = 0.0;
+
+  [[nodiscard]] Vec2 pixel_of(const Vec2& point) const {
+    return Vec2(margin_px) + (point - chart_.lower) * (square_px_ / chart_.spacing_m);
+  }
+
+  void square(int column, int row) {
+    const auto& value = chart_.values[static_cast<std::size_t>(row * chart_.columns + column)];
+    if (!value) return;
+    const Vec3 colour = viridis(*value / chart_.max);
+    for (int y = 0; y < square_px_; ++y) {
+      for (int x = 0; x < square_px_; ++x) {
+        blend(margin_px + column * square_px_ + x, margin_px + row * square_px_ + y, colour, 1.0);
+      }
+    }
+  }
+
+  void polygon(const std::vector<Vec2>& loop, const Vec3& colour, double dash_px) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      line(pixel_of(loop[i]), pixel_of(loop[(i + 1) % loop.size()]), colour, dash_px);
+    }
+  }
+
+  /// A shaft, and a head that narrows towards its tip.
+  void arrow(const MapChart::Marker& marker) {
+    constexpr double shaft_px = 30.0, head_px = 14.0;
+    const Vec2 ahead = direction_of(marker.heading), from = pixel_of(marker.point), tip = from + shaft_px * ahead;
+    disc(from, 6.0);
+    line(from, tip - head_px * ahead, marker_red, no_dashes);
+    for (double back = 0.0; back <= head_px; back += 0.5) disc(tip - back * ahead, 0.45 * back);
+  }
+
+  /// 3 pixels wide, with smooth edges; every second stretch of `dash_px` is left out, if that isn't 0.
+  void line(const Vec2& a, const Vec2& b, const Vec3& colour, double dash_px) {
+    const double length = glm::distance(a, b);
+    const Vec2 along = length > 0.0 ? (b - a) / length : Vec2(1.0, 0.0);
+    each_near(glm::min(a, b), glm::max(a, b), 2.0, [&](int x, int y, const Vec2& centre) {
+      const double t = std::clamp(glm::dot(centre - a, along), 0.0, length);
+      if (dash_px > 0.0 && static_cast<int>(t / dash_px) % 2 == 1) return;
+      blend(x, y, colour, 2.0 - glm::distance(centre, a + t * along));
+    });
+  }
+
+  void disc(const Vec2& centre, double radius_px) {
+    each_near(centre, centre, radius_px + 1.0, [&](int x, int y, const Vec2& pixel) {
+      blend(x, y, marker_red, radius_px + 0.5 - glm::distance(pixel, centre));
+    });
+  }
+
+  /// Calls paint(x, y, centre of the pixel) for all pixels in a box grown by `margin`.
+  template <typename Paint>
+  void each_near(const Vec2& lower, const Vec2& upper, double margin, Paint paint) {
+    const auto first = [&](double v) { return static_cast<int>(std::clamp(v - margin, 0.0, 1e9)); };
+    const auto last = [&](double v, int size) {
+      return static_cast<int>(std::clamp(v + margin, -1.0, static_cast<double>(size - 1)));
+    };
+    for (int y = first(lower.y); y <= last(upper.y, pixels_.height); ++y) {
+      for (int x = first(lower.x); x <= last(upper.x, pixels_.width); ++x) paint(x, y, Vec2(x + 0.5, y + 0.5));
+    }
+  }
+
+  void blend(int x, int y, const Vec3& colour, double opacity) {
+    const double share = std::clamp(opacity, 0.0, 1.0);
+    const auto at =
+        3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(pixels_.width) + static_cast<std::size_t>(x));
+    for (int channel = 0; channel < 3; ++channel) {
+      std::uint8_t& value = pixels_.rgb[at + static_cast<std::size_t>(channel)];
+      value = static_cast<std::uint8_t>(std::lround(glm::mix(static_cast<double>(value), colour[channel], share)));
+    }
+  }
+
+  const MapChart& chart_;
+  int square_px_;
+  Pixels pixels_;
+};
+
+}  // namespace
+
+Pixels drawn(const MapChart& chart) { return MapPicture(chart).draw(); }
 
 }  // namespace pirsim::io

@@ -1,14 +1,25 @@
-// Pictures.
+// Pictures as PNG files.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <vector>
+
+#include "io/charts.hpp"
 
 namespace pirsim::io {
 
-/// rgb: (height x width x 3), row by row from the top left, 8 bits a channel as sRGB. Atomically; Error(io) if it
-/// can't be written, Error(usage) if the sizes don't match.
+struct Pixels {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;  ///< (height x width x 3), row by row from the top left, sRGB
+};
+
+/// The map without any text: squares in the colours that pages use (viridis, from 0 to `max`), white off the floor,
+/// outlines black, `dashed` polygons white, and a red arrow from each marker the way it faces.
+[[nodiscard]] Pixels drawn(const MapChart& chart);
+
+/// rgb as in Pixels. Atomically; Error(io) if it can't be written, Error(usage) if the sizes don't match.
 void write_png(const std::filesystem::path& path, int width, int height, std::span<const std::uint8_t> rgb);
 
 }  // namespace pirsim::io

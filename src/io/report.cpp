@@ -5,8 +5,7 @@
 #include <sstream>
 
 #include "io/atomic_file.hpp"
-#include "io/chart_json.hpp"
-#include "io/page_texts.hpp"
+#include "io/page_parts.hpp"
 
 namespace pirsim::io {
 namespace {

@@ -10,7 +10,6 @@
 #include "core/digest.hpp"
 #include "io/atomic_file.hpp"
 #include "io/compression.hpp"
-#include "io/output_path.hpp"
 #include "io/posix_file.hpp"
 #include "pirsim/error.hpp"
 

@@ -1,4 +1,4 @@
-#include "io/scene_floor.hpp"
+#include "io/scene_parts.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,11 +6,8 @@
 #include <utility>
 
 #include "io/gltf_geometry.hpp"
-#include "io/gltf_materials.hpp"
-#include "io/gltf_nodes.hpp"
-#include "io/scene_floor.hpp"
-#include "io/scene_markup.hpp"
-#include "io/sensor_lookup.hpp"
+#include "io/reader_parts.hpp"
+#include "io/scene_parts.hpp"
 
 namespace pirsim::io {
 namespace {

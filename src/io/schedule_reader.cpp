@@ -1,4 +1,4 @@
-#include "io/schedule_reader.hpp"
+#include "io/reader_parts.hpp"
 
 #include <cmath>
 #include <cstdio>

@@ -5,11 +5,7 @@
 #include <limits>
 #include <set>
 
-#include "io/action_reader.hpp"
-#include "io/body_mesh_reader.hpp"
-#include "io/effect_reader.hpp"
-#include "io/schedule_reader.hpp"
-#include "io/sensing_reader.hpp"
+#include "io/reader_parts.hpp"
 #include "io/yaml_map.hpp"
 #include "schema/body_part_names.hpp"
 
@@ -18,7 +14,6 @@ namespace {
 
 using detail::BodyMeshReader;
 
-constexpr int format_version = 1;
 constexpr std::size_t max_trials = 20'000;  // assumed: each is written out in memory, some 10 kB; 200 is a large study
 
 SummarySpec read_summary(const std::optional<YamlNode>& node, Diagnostics& faults) {
@@ -165,12 +160,7 @@ ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::s
   const YamlNode root = YamlNode::load(file, overrides);
   Diagnostics faults;
   YamlMap map(root, faults, "script");
-  const int version = map.required_integer("pirsim_script");
-  if (map.has("pirsim_script") && version != format_version) {
-    faults.error(map.where("pirsim_script"), "format version " + std::to_string(version) +
-                                                 " isn't known: this pirsim reads version " +
-                                                 std::to_string(format_version));
-  }
+  check_version(map, "pirsim_script");
   ScriptSpec script;
   script.name = map.text("name", file.stem().string());
   script.directory = file.parent_path().string();

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <set>
 
-#include "io/detector_reader.hpp"
+#include "io/reader_parts.hpp"
 #include "io/yaml_map.hpp"
 
 namespace pirsim::io {
@@ -266,6 +268,60 @@ SensorModelSpec read_sensor_model(const std::filesystem::path& path) {
   map.finish();
   faults.throw_if_errors();
   return model;
+}
+
+}  // namespace pirsim::io
+
+namespace pirsim::io::detail {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> sensor_directories(const SceneOptions& options, const fs::path& scene_folder) {
+  std::vector<fs::path> result = options.sensor_directories;
+  result.push_back(scene_folder / "sensors");
+  result.push_back(scene_folder / ".." / "sensors");
+  if (const char* data = std::getenv("PIRSIM_DATA_DIR"); data != nullptr && *data != '\0') {
+    result.push_back(fs::path(data) / "sensors");
+  }
+  for (const fs::path& data : options.data_directories) result.push_back(data / "sensors");
+#ifdef PIRSIM_INSTALLED_DATA_DIR
+  result.push_back(fs::path(PIRSIM_INSTALLED_DATA_DIR) / "sensors");
+#endif
+  return result;
+}
+
+fs::path find_sensor_file(const std::string& model, const std::vector<fs::path>& directories) {
+  for (const fs::path& directory : directories) {
+    std::error_code fault;
+    if (const fs::path file = directory / (model + ".yaml"); fs::is_regular_file(file, fault)) return file;
+  }
+  return {};
+}
+
+std::vector<std::string> available_sensor_models(const std::vector<fs::path>& directories) {
+  std::set<std::string> names;
+  for (const fs::path& directory : directories) {
+    std::error_code fault;
+    for (fs::directory_iterator entry(directory, fault), end; !fault && entry != end; entry.increment(fault)) {
+      if (entry->path().extension() == ".yaml") names.insert(entry->path().stem().string());
+    }
+  }
+  return {names.begin(), names.end()};
+}
+
+}  // namespace pirsim::io::detail
+
+namespace pirsim::io {
+
+SensorModelSpec find_sensor_model(const std::string& model, const std::filesystem::path& scene_file,
+                                  const SceneOptions& options) {
+  const auto folders = detail::sensor_directories(options, scene_file.parent_path());
+  const std::filesystem::path file = detail::find_sensor_file(model, folders);
+  if (file.empty()) {
+    throw Error(ErrorCode::input,
+                "no sensor model '" + model + "'" + did_you_mean(model, detail::available_sensor_models(folders)));
+  }
+  return read_sensor_model(file);
 }
 
 }  // namespace pirsim::io

@@ -1,4 +1,4 @@
-#include "io/solid_mesh.hpp"
+#include "io/gltf_builder.hpp"
 
 #include <array>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "io/yaml_tree.hpp"
+#include "io/yaml_node.hpp"
 
 namespace pirsim::io {
 

@@ -5,8 +5,7 @@
 #include <optional>
 #include <sstream>
 
-#include "io/text_input.hpp"
-#include "io/yaml_tree.hpp"
+#include "io/atomic_file.hpp"
 
 namespace pirsim::io {
 namespace {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <optional>
 
-#include "io/text_input.hpp"
-#include "io/yaml_tree.hpp"
+#include "io/atomic_file.hpp"
+#include "io/yaml_node.hpp"
 
 namespace pirsim::io {
 namespace {

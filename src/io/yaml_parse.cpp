@@ -9,7 +9,7 @@
 #include <sstream>
 #include <utility>
 
-#include "io/yaml_tree.hpp"
+#include "io/yaml_node.hpp"
 
 namespace pirsim::io {
 namespace {

@@ -1,12 +1,89 @@
-// A whole detector behind its lens: element, amplifier, comparator.
+// The analog circuit: radiant power through element and amplifier to comparator.
 #pragma once
 
-#include "pir/analog_filter.hpp"
-#include "pir/comparator.hpp"
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
 #include "pirsim/random.hpp"
 #include "pirsim/sensor.hpp"
 
 namespace pirsim::pir {
+
+// Pyroelectric element and amplifier as one linear filter.
+
+/// A cascade of first-order sections: the element's thermal high-pass and electrical low-pass, then the amplifier's
+/// high-passes and low-passes. Advances by whole ticks, without error for an input that is linear over each tick; for
+/// any other the error is at most tick^2 / 8 * max |input''| * integral of |impulse response|.
+/// Noise is white over the ticks and enters behind the thermal section, where the charge leaks; its stationary
+/// variance at the output is that of the spec at any tick. Derivation: docs/physics/analog.md.
+class AnalogFilter {
+ public:
+  static constexpr std::size_t max_sections = 8;
+  using Sections = std::array<double, max_sections>;  ///< what each section remembers, volts; unused ones 0
+
+  /// Throws Error(usage) unless all time constants and corners are positive and the order is 1 to 3.
+  AnalogFilter(const DetectorSpec& spec, double volts_per_watt, double tick_s);
+
+  /// All transients gone after a long time at this power, without noise.
+  [[nodiscard]] Sections at_rest(double power_w) const noexcept;
+  /// Adds noise as it stands at a moment long after it was switched on.
+  void add_stationary_noise(Sections& sections, Stream& stream) const noexcept;
+  /// One tick on, during which the power goes linearly from one value to the other. white: a standard normal number.
+  void advance(Sections& sections, double from_w, double to_w, double white) const noexcept;
+  /// Volts above the offset, not yet saturated.
+  [[nodiscard]] double output(const Sections& sections) const noexcept { return sections[n_ - 1]; }
+  [[nodiscard]] bool noisy() const noexcept { return noisy_; }
+
+ private:
+  using Matrix = std::array<Sections, max_sections>;
+
+  std::size_t n_ = 0;
+  double volts_per_watt_ = 1.0;
+  bool noisy_ = false;
+  Matrix advance_{};     ///< lower triangular
+  Sections from_{};      ///< per volt of the power at the tick's beginning
+  Sections to_{};        ///< per volt of the power at its end
+  Sections white_{};     ///< per standard normal number
+  Matrix noise_root_{};  ///< lower triangular root of the noise's stationary covariance
+};
+
+// From a signal to an output that is on or off.
+
+/// A window comparator that counts pulses, with hold and blind time; time in ticks.
+///
+/// A *pulse* begins with the tick at which the signal is outside the window, having been inside or on the other side
+/// the tick before. `pulse_count` pulses that begin within `pulse_window_s` switch the output on with the last of them.
+/// It goes off with the first tick at which the signal has been inside for `hold_s`; then, for `blind_s`, no pulse
+/// counts and those counted before are forgotten. With one pulse, no hold and no blind time the output is on just while
+/// the signal is outside.
+class Comparator {
+ public:
+  static constexpr int most_pulses = 8;
+
+  struct State {
+    std::int8_t side = 0;  ///< +1 above the window, -1 below, 0 inside
+    std::int8_t last_pulse_side = 0;
+    bool on = false;
+    std::int8_t pulses = 0;                    ///< counted
+    std::int32_t pulse_age[most_pulses] = {};  ///< ticks since each began, the oldest first
+    std::int32_t since_outside = 0;            ///< ticks
+    std::int32_t blind_left = 0;               ///< ticks
+    bool operator==(const State&) const = default;
+  };
+
+  /// Throws Error(usage) for thresholds that aren't positive, negative times or a count outside 1 to most_pulses.
+  Comparator(const ComparatorSpec& spec, double tick_s);
+
+  /// One tick on. volts: above the offset.
+  void advance(State& state, double volts) const noexcept;
+
+ private:
+  void count_pulse(State& state) const noexcept;
+
+  ComparatorSpec spec_;
+  std::int32_t pulse_window_ = 0, hold_ = 0, blind_ = 0;  ///< ticks
+};
 
 /// Immutable, shared by all sensors of one model.
 class AnalogDetector {

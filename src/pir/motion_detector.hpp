@@ -1,12 +1,15 @@
-// From zone activity to motion, on bits.
+// Detectors without a circuit: active zones to triggers.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "pirsim/random.hpp"
 #include "pirsim/rays.hpp"
+#include "pirsim/scene.hpp"
 #include "pirsim/script.hpp"
+#include "schema/study_in_force.hpp"
 
 namespace pirsim::pir {
 
@@ -37,6 +40,63 @@ class MotionDetector {
   std::size_t n_sensors_ = 0;
   std::vector<std::uint32_t> channel_of_zone_;
   std::vector<ZoneSet::Word> sensor_masks_;  ///< (n_sensors x words of a channel set)
+};
+
+// The pyroelectric pair: zones of either sign, a band-pass, a threshold.
+
+/// A sensor triggers while the filtered sum of its active zones, each with its element's sign, is beyond the threshold
+/// on either side. Zones of both signs under one person cancel, slow changes leak away. A value.
+class PolarityDetector {
+ public:
+  /// n_levels: copies of every zone (pir::append), which share its weight.
+  PolarityDetector(const SceneSpec& scene, const DualPolaritySpec& spec, std::size_t n_levels, double tick_s);
+
+  /// rest: (n_sensors) sums of the signs of zones that have been active for long.
+  void begin_run(std::span<const double> rest) noexcept;
+  /// sums: (n_sensors) of the signs of active zones.
+  void add_up(const ZoneSet& zones, std::span<double> sums) const noexcept;
+  /// One tick; sets triggers[s] (n_sensors) where sensor s triggers.
+  void tick(std::span<const double> sums, std::span<std::uint8_t> triggers) noexcept;
+  [[nodiscard]] std::size_t n_sensors() const noexcept { return filters_.size(); }
+
+ private:
+  struct Filter {
+    double fast = 0.0;  ///< low-passed sum
+    double slow = 0.0;  ///< what the high-pass takes off it
+  };
+  std::vector<double> weight_;         ///< (n_zones)
+  std::vector<std::uint32_t> sensor_;  ///< (n_zones)
+  double threshold_;
+  double fast_share_, slow_share_;  ///< of the difference that is taken over in a tick
+  std::vector<Filter> filters_;     ///< (n_sensors)
+};
+
+// Soft edges of zones: every window draws anew where each channel's edges are.
+
+/// Which channels are watched at a tick. Each channel has n_levels nested copies (pir::append); in a window one of
+/// them, drawn with even odds, tells whether there was motion. Somebody who stands still changes none of them. With one
+/// level it is that one, and nothing is drawn. A value.
+class EdgeDraw {
+ public:
+  EdgeDraw() = default;
+  EdgeDraw(const MotionDetector& detector, std::size_t n_levels, int ticks_per_window);
+
+  void begin_run(std::uint64_t seed, std::uint32_t run);
+  /// Once a tick, from the first on.
+  void tick() noexcept;
+  /// (n_sensors x words of a channel set)
+  [[nodiscard]] std::span<const ZoneSet::Word> watched() const noexcept { return watched_; }
+
+ private:
+  void draw() noexcept;
+
+  std::size_t n_levels_ = 1;
+  int ticks_per_window_ = 1;
+  int ticks_left_ = 0;  ///< of the window
+  std::size_t n_words_ = 0;
+  std::vector<std::size_t> channels_begin_;  ///< (n_sensors + 1)
+  std::vector<Stream> streams_;              ///< (n_sensors)
+  std::vector<ZoneSet::Word> watched_;
 };
 
 }  // namespace pirsim::pir

@@ -1,9 +1,10 @@
-// From a sensor's lens data to rays.
+// A sensor's lens as rays: for hard zones, and with weights for radiant power.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "pirsim/geometry.hpp"
 #include "pirsim/rays.hpp"
 #include "pirsim/scene.hpp"
 #include "pirsim/script.hpp"
@@ -16,7 +17,7 @@ namespace pirsim::pir {
 [[nodiscard]] std::vector<Vec3> zone_directions(const SensorModelSpec& model, const ZoneSpec& zone, RaysPerZone rays);
 
 /// The zone with every edge moved outward by `angle` (radians, as the sensor sees it; negative: inward, at most until
-/// an edge meets the centre).
+/// an edge passes through the centre).
 [[nodiscard]] ZoneSpec grown(const SensorModelSpec& model, const ZoneSpec& zone, double angle);
 
 /// By how much the nested copies of a zone are grown that together stand for an edge blurred by a normal distribution:
@@ -27,5 +28,36 @@ namespace pirsim::pir {
 /// level of growth.
 void append(RayBundle& bundle, const SensorSpec& sensor, const SensorModelSpec& model, RaysPerZone rays,
             std::span<const double> levels = {});
+
+// A zone with soft edges as a few rays with weights.
+
+struct WeightedDirection {
+  Vec3 direction{0.0};          ///< unit, in the sensor's frame
+  double solid_angle_sr = 0.0;  ///< that it stands for
+};
+
+/// Of the zone's outline as drawn, steradian. Ref: [VanOosterom1983].
+[[nodiscard]] double solid_angle_sr(const SensorModelSpec& model, const ZoneSpec& zone);
+
+/// `n` >= 1 directions spread evenly (a rank-1 lattice of the golden ratio) over the zone as the lens' point spread
+/// blurs it: where the zone is half as sensitive they lie half as dense. Their weights sum to the zone's solid angle.
+[[nodiscard]] std::vector<WeightedDirection> zone_quadrature(const SensorModelSpec& model, const ZoneSpec& zone, int n);
+
+// The rays of the physical response, each with what it is worth.
+
+/// No rated distance cuts these rays; this far they reach where no room does, metres.
+inline constexpr float out_of_sight_m = 1000.0F;
+
+struct PowerRays {
+  RayBundle bundle;
+  /// (n_rays) polarity x facet's aperture x solid angle, m^2 sr: times a difference of radiance it is a power.
+  std::vector<double> weights;
+};
+
+/// Appends a sensor's rays; apertures_m2: (n_clusters of the model).
+void append(PowerRays& rays, const SensorSpec& sensor, const SensorModelSpec& model,
+            std::span<const double> apertures_m2, int rays_per_zone);
+/// Appends a sensor without any.
+void append_blind(PowerRays& rays);
 
 }  // namespace pirsim::pir

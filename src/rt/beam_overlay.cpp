@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/vec2.hpp>
 
-#include "rt/picture.hpp"
+#include "rt/renderer.hpp"
 
 namespace pirsim::rt {
 namespace {

@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "pirsim/rays.hpp"
-#include "rt/near_rays.hpp"
+#include "rt/culling.hpp"
 #include "rt/ray_kernel.hpp"
-#include "rt/ray_packets.hpp"
 #include "rt/tracer.hpp"
 
 namespace pirsim::rt {

@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
+#include "rt/culling.hpp"
 #include "rt/room_impl.hpp"
-#include "rt/tracers.hpp"
-#include "rt/view_cones.hpp"
+#include "rt/tracer.hpp"
 
 namespace pirsim::rt {
 namespace {

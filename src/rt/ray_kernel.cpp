@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "rt/ray_kernel_impl.hpp"
+
 namespace pirsim::rt {
 
 #if defined(__x86_64__)
@@ -25,5 +27,8 @@ const RayKernel& best_ray_kernel() noexcept {
       **std::ranges::find_if(all_ray_kernels(), [](const RayKernel* kernel) { return kernel->is_available(); });
   return best;
 }
+
+extern const RayKernel ray_kernel_baseline;
+const RayKernel ray_kernel_baseline = make_kernel("baseline", [] { return true; });
 
 }  // namespace pirsim::rt

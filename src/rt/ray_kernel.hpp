@@ -7,8 +7,7 @@
 #include <string_view>
 
 #include "pirsim/shapes.hpp"
-#include "rt/ray_packets.hpp"
-#include "rt/view_cones.hpp"
+#include "rt/culling.hpp"
 
 namespace pirsim::rt {
 

@@ -1,11 +1,9 @@
-#include "rt/ray_packets.hpp"
+#include "rt/culling.hpp"
 
 #include <algorithm>
 #include <array>
 #include <numeric>
 #include <span>
-
-#include "rt/view_cones.hpp"
 
 namespace pirsim::rt {
 namespace {

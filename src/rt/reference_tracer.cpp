@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "rt/room_impl.hpp"
-#include "rt/tracers.hpp"
+#include "rt/tracer.hpp"
 
 namespace pirsim::rt {
 namespace {

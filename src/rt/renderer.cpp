@@ -10,9 +10,8 @@
 
 #include "core/parallel.hpp"
 #include "pirsim/error.hpp"
-#include "rt/picture.hpp"
+#include "rt/culling.hpp"
 #include "rt/room_impl.hpp"
-#include "rt/view_cones.hpp"
 
 namespace pirsim::rt {
 namespace {

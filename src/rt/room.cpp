@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "geom/triangle_test.hpp"
+#include "geom/triangle_surface.hpp"
 #include "pirsim/error.hpp"
 #include "rt/room_impl.hpp"
 

@@ -44,4 +44,10 @@ struct TracerSetup {
 [[nodiscard]] std::string_view direct_instruction_set() noexcept;
 [[nodiscard]] std::unique_ptr<Tracer> make_tracer(TracerKind kind, const TracerSetup& setup);
 
+// The tracers' makers.
+
+[[nodiscard]] std::unique_ptr<Tracer> make_reference_tracer(const TracerSetup& setup);
+[[nodiscard]] std::unique_ptr<Tracer> make_embree_tracer(const TracerSetup& setup);
+[[nodiscard]] std::unique_ptr<Tracer> make_direct_tracer(const TracerSetup& setup);
+
 }  // namespace pirsim::rt

@@ -1,4 +1,4 @@
-#include "rt/tracers.hpp"
+#include "rt/tracer.hpp"
 
 #include <cassert>
 

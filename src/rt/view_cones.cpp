@@ -1,4 +1,4 @@
-#include "rt/view_cones.hpp"
+#include "rt/culling.hpp"
 
 #include <algorithm>
 #include <cmath>

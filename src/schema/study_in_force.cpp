@@ -2,6 +2,9 @@
 
 #include <utility>
 
+#include "pirsim/geometry.hpp"
+#include "pirsim/survey.hpp"
+
 namespace pirsim {
 
 StudyInForce as_given(SceneSpec scene, const ScriptSpec& script) {
@@ -16,6 +19,10 @@ StudyInForce as_given(SceneSpec scene, const ScriptSpec& script) {
     own.duration_s = own.duration_s.value_or(3600.0 * (trial.schedule->to_h - trial.schedule->from_h));
   }
   return study;
+}
+
+Frame mounted(const Vec3& position, double yaw_deg, double tilt_deg) {
+  return {rotation_from_heading(radians(yaw_deg)) * glm::angleAxis(radians(-tilt_deg), Vec3(1, 0, 0)), position};
 }
 
 }  // namespace pirsim

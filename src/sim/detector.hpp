@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "pir/analog_detector.hpp"
-#include "pir/edge_draw.hpp"
-#include "pir/polarity_detector.hpp"
+#include "pir/motion_detector.hpp"
 #include "sim/sensor_array.hpp"
 
 namespace pirsim::sim {

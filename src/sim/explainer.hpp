@@ -6,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "pir/analog_filter.hpp"
+#include "pir/analog_detector.hpp"
 #include "pirsim/sample.hpp"
 #include "sim/power_meter.hpp"
 #include "sim/run_state.hpp"

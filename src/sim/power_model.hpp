@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "body/body_part.hpp"
-#include "pir/power_rays.hpp"
+#include "pir/optics.hpp"
 #include "pirsim/script.hpp"
 #include "rt/tracer.hpp"
 

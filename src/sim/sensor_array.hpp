@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "pir/motion_detector.hpp"
-#include "pir/polarity_detector.hpp"
 #include "pirsim/rays.hpp"
 #include "rt/room.hpp"
 #include "rt/tracer.hpp"

@@ -11,32 +11,15 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the byte order of the format is that of the machine");
 
-constexpr std::uint64_t checksum_start = 14695981039346656037ULL;
-
-/// FNV-1a, eight bytes at a time. Ref: [FNV]
-void update(std::uint64_t& checksum, const void* bytes, std::size_t count) {
-  const auto* at = static_cast<const unsigned char*>(bytes);
-  while (count > 0) {
-    std::uint64_t word = 0;
-    const std::size_t taken = count < 8 ? count : 8;
-    for (std::size_t i = 0; i < taken; ++i) word |= std::uint64_t{at[i]} << (8 * i);
-    checksum = (checksum ^ word) * 1099511628211ULL;
-    checksum ^= checksum >> 32U;  // a multiplication alone carries nothing downwards
-    at += taken;
-    count -= taken;
-  }
-}
-
 }  // namespace
 
-BinaryWriter::BinaryWriter(std::ostream& out, std::string_view kind, std::uint32_t version)
-    : out_(out), checksum_(checksum_start) {
+BinaryWriter::BinaryWriter(std::ostream& out, std::string_view kind, std::uint32_t version) : out_(out) {
   write(kind);
   write(version);
 }
 
 void BinaryWriter::put(const void* bytes, std::size_t count) {
-  update(checksum_, bytes, count);
+  digest_.add({static_cast<const char*>(bytes), count});
   out_.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count));
 }
 
@@ -46,13 +29,11 @@ void BinaryWriter::write(std::string_view text) {
 }
 
 void BinaryWriter::finish() {
-  const std::uint64_t checksum = checksum_;
-  out_.write(reinterpret_cast<const char*>(&checksum), sizeof checksum);
+  out_ << digest_.hex();
   if (!out_) throw Error(ErrorCode::io, "can't write a fitted object: the stream failed");
 }
 
-BinaryReader::BinaryReader(std::istream& in, std::string_view kind, std::uint32_t version)
-    : in_(in), kind_(kind), checksum_(checksum_start) {
+BinaryReader::BinaryReader(std::istream& in, std::string_view kind, std::uint32_t version) : in_(in), kind_(kind) {
   const auto length = read<std::uint64_t>();
   std::string found(length == kind.size() ? kind.size() : 0, '\0');
   get(found.data(), found.size());
@@ -65,7 +46,7 @@ BinaryReader::BinaryReader(std::istream& in, std::string_view kind, std::uint32_
 void BinaryReader::get(void* bytes, std::size_t count) {
   in_.read(static_cast<char*>(bytes), static_cast<std::streamsize>(count));
   if (static_cast<std::size_t>(in_.gcount()) != count) fail("ends too early");
-  update(checksum_, bytes, count);
+  digest_.add({static_cast<const char*>(bytes), count});
 }
 
 std::string BinaryReader::read_text() {
@@ -75,8 +56,10 @@ std::string BinaryReader::read_text() {
 }
 
 void BinaryReader::finish() {
-  const std::uint64_t expected = checksum_;
-  if (read<std::uint64_t>() != expected) fail("is damaged: its checksum differs");
+  const std::string expected = digest_.hex();
+  std::string found(expected.size(), '\0');
+  get(found.data(), found.size());
+  if (found != expected) fail("is damaged: its digest differs");
 }
 
 void BinaryReader::fail(const std::string& what) const { throw Error(ErrorCode::input, kind_ + " " + what); }

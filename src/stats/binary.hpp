@@ -1,4 +1,4 @@
-// Numbers to a stream of bytes and back, little-endian, with a checksum: how fitted objects are kept.
+// Numbers to a stream of bytes and back, little-endian, with a digest: how fitted objects are kept.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/digest.hpp"
 #include "stats/matrix.hpp"
 
 namespace pirsim::stats {
@@ -16,7 +17,7 @@ namespace pirsim::stats {
 template <typename T>
 concept Number = std::is_arithmetic_v<T>;
 
-/// Starts with `kind` and a version, ends with a checksum of all bytes between; call finish() last.
+/// Starts with `kind` and a version, ends with the SHA-256 of all bytes between; call finish() last.
 class BinaryWriter {
  public:
   BinaryWriter(std::ostream& out, std::string_view kind, std::uint32_t version);
@@ -36,13 +37,13 @@ class BinaryWriter {
     put(matrix.values().data(), matrix.values().size() * sizeof(T));
   }
   void write(std::string_view text);
-  /// Writes the checksum. Throws Error(io) if the stream has failed.
+  /// Writes the digest. Throws Error(io) if the stream has failed.
   void finish();
 
  private:
   void put(const void* bytes, std::size_t count);
   std::ostream& out_;
-  std::uint64_t checksum_;
+  Sha256 digest_;
 };
 
 /// Reads what BinaryWriter wrote, in the same order. Every fault is Error(input) that names the kind.
@@ -73,7 +74,7 @@ class BinaryReader {
     return matrix;
   }
   [[nodiscard]] std::string read_text();
-  /// Compares the checksum; throws Error(input) if it differs.
+  /// Compares the digest; throws Error(input) if it differs.
   void finish();
 
  private:
@@ -92,7 +93,7 @@ class BinaryReader {
   [[noreturn]] void fail(const std::string& what) const;
   std::istream& in_;
   std::string kind_;
-  std::uint64_t checksum_;
+  Sha256 digest_;
 };
 
 }  // namespace pirsim::stats

@@ -8,7 +8,7 @@
 #include "stats/discriminant.hpp"
 #include "stats/eigen.hpp"
 #include "stats/groups.hpp"
-#include "stats/require.hpp"
+#include "stats/kit.hpp"
 
 namespace pirsim::stats {
 namespace {

@@ -48,4 +48,59 @@ class Discriminant {
   double shrinkage_ = 0.0;
 };
 
+// Classes as layers of normal distributions: how likely is a row in each class, and is it likely at all.
+
+struct NormalLayersSettings {
+  std::size_t layers = 3;        ///< of each class but the first; 1, 2 and 3 were tried: 3 part classes best
+  std::size_t fewest_rows = 60;  ///< of a layer, assumed: a class with few rows has fewer layers
+};
+
+/// A class whose rows run from "hardly another than the first class" to "far away" isn't one normal distribution. Its
+/// rows are sorted by their distance from the first class and cut into layers of equal size; each layer is normal with
+/// a shrunk covariance, and the class is the even mixture of its layers. Places are a discriminant's coordinates.
+class NormalLayers {
+ public:
+  NormalLayers() = default;
+  /// places: (n_rows x n_coordinates), finite; labels: (n_rows) in [0, n_classes), each class ten times or more.
+  [[nodiscard]] static NormalLayers fit(const Matrix<double>& places, std::span<const int> labels, int n_classes,
+                                        const NormalLayersSettings& settings = {});
+  /// (n_classes) log of the classes' densities at the place, up to a number that all share.
+  [[nodiscard]] std::vector<double> log_densities(std::span<const double> place) const;
+
+  struct Layer {
+    std::vector<double> mean;      ///< (n_coordinates)
+    Matrix<double> whitening;      ///< (n_coordinates x n_coordinates) inverse of the covariance's Cholesky factor
+    double log_determinant = 0.0;  ///< of the whitening
+  };
+
+ private:
+  std::vector<std::vector<Layer>> classes_;
+};
+
+// Discriminant analysis of classes that are several things each.
+
+/// Each class is a mixture of subclasses, normal distributions that all have one covariance. A class that moves its
+/// rows one way as often as the other has the mean of no class, and its subclasses have their own. Ref:
+/// [HastieTibshirani1996], with subclasses that are given
+class MixtureDiscriminant {
+ public:
+  MixtureDiscriminant() = default;
+  /// features: (n_rows x n_columns), finite; labels: (n_rows) in [0, n_classes), each at least once; subclasses:
+  /// (n_rows) in [0, n), each at least once and within one class.
+  [[nodiscard]] static MixtureDiscriminant fit(const Matrix<float>& features, std::span<const int> labels,
+                                               int n_classes, std::span<const int> subclasses);
+
+  /// Between the subclasses: its coordinates part these.
+  [[nodiscard]] const Discriminant& discriminant() const noexcept { return discriminant_; }
+  /// place: a row as projected by discriminant(). (n_classes) probabilities, classes equally likely beforehand; too
+  /// sure of themselves: calibrate.
+  [[nodiscard]] std::vector<double> probabilities_at(std::span<const double> place) const;
+
+ private:
+  Discriminant discriminant_;
+  std::size_t n_classes_ = 0;
+  std::vector<std::size_t> class_of_;  ///< (n_subclasses)
+  std::vector<double> log_share_;      ///< (n_subclasses) of its class's rows
+};
+
 }  // namespace pirsim::stats

@@ -7,8 +7,8 @@
 
 #include "core/parallel.hpp"
 #include "pirsim/random.hpp"
+#include "stats/kit.hpp"
 #include "stats/pointwise_rank.hpp"
-#include "stats/require.hpp"
 
 namespace pirsim::stats {
 namespace {

@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "stats/envelope.hpp"
+#include "stats/kit.hpp"
 #include "stats/pointwise_rank.hpp"
-#include "stats/require.hpp"
 
 namespace pirsim::stats {
 namespace {

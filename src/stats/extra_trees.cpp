@@ -5,9 +5,7 @@
 
 #include "core/parallel.hpp"
 #include "stats/groups.hpp"
-#include "stats/require.hpp"
-#include "stats/row_blocks.hpp"
-#include "stats/tree_grower.hpp"
+#include "stats/kit.hpp"
 
 namespace pirsim::stats {
 namespace {

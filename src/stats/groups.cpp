@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "stats/require.hpp"
+#include "stats/kit.hpp"
 
 namespace pirsim::stats::detail {
 

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "stats/require.hpp"
+#include "stats/kit.hpp"
 
 namespace pirsim::stats {
 namespace {

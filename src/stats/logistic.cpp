@@ -5,7 +5,7 @@
 #include <map>
 
 #include "stats/eigen.hpp"
-#include "stats/require.hpp"
+#include "stats/kit.hpp"
 
 namespace pirsim::stats {
 namespace {

@@ -4,9 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
-#include "stats/require.hpp"
-#include "stats/select.hpp"
-#include "stats/softmax.hpp"
+#include "stats/kit.hpp"
 
 namespace pirsim::stats {
 namespace {

@@ -5,9 +5,8 @@
 #include <vector>
 
 #include "stats/calibration.hpp"
+#include "stats/discriminant.hpp"
 #include "stats/extra_trees.hpp"
-#include "stats/mixture_discriminant.hpp"
-#include "stats/normal_layers.hpp"
 
 namespace pirsim::stats {
 

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "stats/eigen.hpp"
-#include "stats/require.hpp"
+#include "stats/kit.hpp"
 
 namespace pirsim::stats {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "stats/require.hpp"
+#include "stats/kit.hpp"
 
 namespace pirsim::stats {
 namespace {

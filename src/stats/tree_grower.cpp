@@ -1,4 +1,4 @@
-#include "stats/tree_grower.hpp"
+#include "stats/extra_trees.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,6 @@
 #include "io/compression.hpp"
 #include "io/row_file.hpp"
 #include "pirsim/error.hpp"
-#include "studies/shards.hpp"
 
 namespace pirsim::studies {
 namespace {

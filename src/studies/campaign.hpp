@@ -1,16 +1,67 @@
-// A folder of shards as one dataset: what is missing, and the whole of it as one file.
+// A study in shards: its parts, their state, and their rows joined.
 #pragma once
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "io/manifest.hpp"
 #include "pirsim/sample.hpp"
+#include "studies/summary.hpp"
 
 namespace pirsim::studies {
+
+// Which part of a study a task of a job array computes, and what its file is called.
+
+/// A variable's value, if it is set.
+using Environment = std::function<std::optional<std::string>(const char* name)>;
+[[nodiscard]] std::optional<std::string> process_environment(const char* name);
+
+/// "3/100" is the third of a hundred. "auto/100" takes the task's number, 1 to 100, from the job array. "auto" takes
+/// the number of shards from it too: it needs the whole array, of evenly spaced numbers, and so doesn't serve to submit
+/// a part of an array again. Read are SLURM_ARRAY_TASK_{ID,MIN,STEP,COUNT}, SGE_TASK_{ID,FIRST,LAST,STEPSIZE}, and
+/// PBS_ARRAY_INDEX or PBS_ARRAYID (number only). Throws Error(usage).
+[[nodiscard]] Shard parse_shard(std::string_view text, const Environment& environment = process_environment);
+
+/// "shard-0003-of-0100"
+[[nodiscard]] std::string shard_name(const Shard& shard);
+/// The shard that a file name begins with, if it does.
+[[nodiscard]] std::optional<Shard> shard_of(std::string_view file_name);
+
+// Sums of a study's rows from the bytes of its file, where there is no process that still has the runs.
+
+/// Takes a row file (docs/formats/rows.md) piece by piece, from its header on, and counts each run into a Summary.
+/// Needs memory for the counts alone.
+class RowTally {
+ public:
+  /// trials: ids of the study, in order. measured: as Summary takes them.
+  RowTally(std::vector<std::string> trials, SummarySpec spec, std::vector<MeasuredCell> measured);
+
+  /// Throws Error(input) where the bytes aren't rows of this study.
+  void add(std::string_view bytes);
+  /// After the last piece. Throws Error(input) if there was no header, or the last line has no end.
+  [[nodiscard]] const Summary& finish();
+
+ private:
+  void end_line();
+  void take_header();
+  void end_run();
+
+  std::vector<std::string> trials_;
+  SummarySpec spec_;
+  std::vector<MeasuredCell> measured_;
+  std::optional<Summary> summary_;  ///< once the header is known
+  std::optional<RunCounts> counts_;
+  Sample row_;
+  std::string replicate_;  ///< of the run whose rows come in; empty before the first
+  std::string trial_;
+  std::vector<std::string> fields_{1};  ///< of the line so far
+  std::size_t n_lines_ = 0;
+  enum class Quotes { none, open, closed } quotes_ = Quotes::none;  ///< of the field so far
+};
 
 struct ShardReport {
   enum class State {

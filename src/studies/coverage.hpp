@@ -1,17 +1,47 @@
-// A coverage study, compiled and computed row by row.
+// Coverage: where each sensor sees a target that turns on the spot, in figures too, kept while it is computed.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "pirsim/coverage.hpp"
+#include "pirsim/shapes.hpp"
+#include "pirsim/survey.hpp"
 #include "studies/survey_base.hpp"
-#include "studies/turning_target.hpp"
 
 namespace pirsim::studies {
+
+// The turning crosses of a coverage study, posed once for all squares.
+
+/// Bars that turn about a common middle.
+struct TurningCross {
+  Vec3 middle{0.0};                         ///< relative to the square's centre on the floor
+  double reach_m = 0.0;                     ///< from the middle to the farthest surface point
+  Capsule bar;                              ///< every bar's solid
+  std::vector<std::vector<Quat>> rotation;  ///< (n_bars x n_poses) world from bar
+};
+
+/// What turns alike in every square. Poses repeat after n_poses() ticks.
+class TurningTarget {
+ public:
+  /// Poses of the ticks [0, n_ticks]; fewer if they repeat exactly before. n_ticks > 0.
+  TurningTarget(const XShapesSpec& spec, int tick_rate_hz, std::int64_t n_ticks);
+
+  [[nodiscard]] const std::vector<TurningCross>& crosses() const noexcept { return crosses_; }
+  [[nodiscard]] std::size_t n_poses() const noexcept { return n_poses_; }
+  /// World-space solids at a tick: what a tracer is given. `foot`: the square's centre on the floor.
+  [[nodiscard]] std::vector<PosedShape> solids(const Vec3& foot, std::int64_t tick) const;
+
+ private:
+  std::vector<TurningCross> crosses_;
+  std::size_t n_poses_ = 0;
+};
 
 /// A compiled coverage study: immutable, shared by threads. The crosses have stood at tick 0, so appearing isn't
 /// motion.
@@ -54,5 +84,55 @@ void run_rows(const CoverageStudy& study, std::size_t first_row, unsigned thread
               const std::function<void(std::size_t row, const std::vector<MotionCount>& counts)>& consume);
 /// All rows, in memory.
 [[nodiscard]] CoverageMap run_coverage(const CoverageStudy& study, unsigned threads = 0);
+
+// What a coverage map says in a few numbers.
+
+/// Neighbours are squares that share a side. Ref: [Stefansson2021] section 4.2, which gives the first two.
+struct MapFigures {
+  double mean_step = 0.0;       ///< mean |difference| between neighbours that both have motion; 0 without such pairs
+  int greatest_step = 0;        ///< between any two neighbours
+  std::size_t pairs = 0;        ///< neighbours that both have motion
+  double blind_fraction = 0.0;  ///< of the squares
+  double seen_area_m2 = 0.0;    ///< of the squares with motion
+};
+
+struct CoverageFigures {
+  std::vector<MapFigures> sensors;  ///< (n_sensors)
+  MapFigures all;                   ///< steps: pairs of all sensors together; areas: seen by at least one sensor
+};
+
+[[nodiscard]] CoverageFigures figures_of(const CoverageMap& map);
+
+/// x_m, z_m and one column a sensor; a line a square on the floor.
+[[nodiscard]] std::string to_csv(const CoverageMap& map);
+/// Aligned, for a terminal.
+[[nodiscard]] std::string to_text(const CoverageMap& map, const CoverageFigures& figures);
+
+// Finished rows of a coverage map on disk, so that an interrupted study goes on where it stopped.
+
+/// A number for everything that the counts depend on: rays as cut, squares, poses, sensing, the build.
+[[nodiscard]] std::string fingerprint(const CoverageStudy& study);
+
+/// A text file: a line with the fingerprint, then a line a row of squares with its counts and their digest.
+/// Rows of another study, and everything from the first damaged line on, are thrown away.
+class RowStore {
+ public:
+  /// Opens or begins the file. Throws Error(io).
+  RowStore(std::filesystem::path file, const CoverageStudy& study);
+
+  /// Counts of the first rows, as found: (n x n_columns x n_sensors).
+  [[nodiscard]] const std::vector<MotionCount>& found() const noexcept { return found_; }
+  [[nodiscard]] std::size_t n_found_rows() const noexcept { return n_found_rows_; }
+  /// The next row. It is on disk when this returns. Throws Error(io).
+  void append(const std::vector<MotionCount>& counts);
+  /// The study is complete: the file goes.
+  void remove();
+
+ private:
+  std::filesystem::path file_;
+  std::vector<MotionCount> found_;
+  std::size_t n_found_rows_ = 0;
+  std::ofstream stream_;
+};
 
 }  // namespace pirsim::studies

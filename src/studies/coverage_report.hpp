@@ -3,7 +3,6 @@
 
 #include "io/report.hpp"
 #include "studies/coverage.hpp"
-#include "studies/coverage_figures.hpp"
 
 namespace pirsim::studies {
 

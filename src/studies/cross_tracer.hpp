@@ -26,7 +26,7 @@ void pose_bar(const std::vector<Vec3>& half_axes, const Vec3& middle, double rad
 /// active[pose] becomes 1 where entry_distance(ray, capsule of the pose, range) has a value. (padded n_poses)
 void mark_active(const Ray& ray, float range, const BarPoses& poses, std::vector<std::uint8_t>& active) noexcept;
 
-/// Whether the ray passes a ball within its range; a millimetre is added to be on the safe side of rounding.
+/// Whether the ray passes through a sphere within its range; a millimetre is added to be on the safe side of rounding.
 [[nodiscard]] bool may_hit(const Ray& ray, float range, const Vec3& middle, double reach_m) noexcept;
 
 }  // namespace pirsim::studies

@@ -8,7 +8,7 @@
 #include <sstream>
 #include <utility>
 
-#include "studies/coverage_figures.hpp"
+#include "studies/coverage.hpp"
 
 namespace pirsim::studies {
 namespace {

@@ -1,4 +1,4 @@
-#include "studies/row_store.hpp"
+#include "studies/coverage.hpp"
 
 #include <span>
 #include <sstream>
@@ -6,23 +6,20 @@
 #include <system_error>
 #include <utility>
 
+#include "core/digest.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/version.hpp"
 
 namespace pirsim::studies {
 namespace {
 
-/// FNV-1a, 64 bits.
+/// The digest of values as they lie in memory.
 class Hash {
  public:
-  void add_bytes(const void* data, std::size_t size) {
-    const auto* bytes = static_cast<const unsigned char*>(data);
-    for (std::size_t i = 0; i < size; ++i) value_ = (value_ ^ bytes[i]) * 0x100000001b3ULL;
-  }
   template <typename Value>
   void add(const Value& value) {
     static_assert(std::has_unique_object_representations_v<Value> || std::is_floating_point_v<Value>);
-    add_bytes(&value, sizeof value);
+    digest_.add({reinterpret_cast<const char*>(&value), sizeof value});
   }
   template <typename Value>
   void add(const std::vector<Value>& values) {
@@ -32,10 +29,12 @@ class Hash {
   void add(const Vec3f& v) {
     for (const float coordinate : {v.x, v.y, v.z}) add(coordinate);
   }
-  [[nodiscard]] std::uint64_t value() const noexcept { return value_; }
+  /// With its end, so that no two lists of texts are alike.
+  void add_text(const std::string& text) { digest_.add({text.c_str(), text.size() + 1}); }
+  [[nodiscard]] std::string value() const { return digest_.hex(); }
 
  private:
-  std::uint64_t value_ = 0xcbf29ce484222325ULL;
+  Sha256 digest_;
 };
 
 std::string text_of(const std::vector<MotionCount>& counts) {
@@ -44,11 +43,7 @@ std::string text_of(const std::vector<MotionCount>& counts) {
   return text;
 }
 
-std::string checksum(const std::string& text) {
-  Hash hash;
-  hash.add_bytes(text.data(), text.size());
-  return std::to_string(hash.value());
-}
+std::string checksum(const std::string& text) { return sha256(text).substr(0, 16); }
 
 /// Counts of a line as append() writes it; none if it is damaged.
 std::vector<MotionCount> parse(const std::string& line, std::size_t n_counts) {
@@ -60,9 +55,7 @@ std::vector<MotionCount> parse(const std::string& line, std::size_t n_counts) {
   return counts.size() == n_counts ? counts : std::vector<MotionCount>{};
 }
 
-std::string header(const CoverageStudy& study) {
-  return "pirsim coverage rows of study " + std::to_string(fingerprint(study));
-}
+std::string header(const CoverageStudy& study) { return "pirsim coverage rows of study " + fingerprint(study); }
 
 void add_detector(Hash& hash, const DetectorSpec& detector) {
   const auto& [element, amplifier, comparator] = detector;
@@ -99,26 +92,24 @@ void add_analog(Hash& hash, const CoverageStudy& study) {
 void add_effects(Hash& hash, const CoverageSpec& spec) {
   hash.add(spec.seed);
   hash.add(spec.sensing.reader);
-  const auto add_text = [&](const std::string& text) { hash.add_bytes(text.c_str(), text.size() + 1); };
   for (const EffectSpec& effect : spec.effects) {
-    add_text(effect.name);
+    hash.add_text(effect.name);
     for (const auto& [name, value] : effect.parameters) {
-      add_text(name);
+      hash.add_text(name);
       hash.add(value);
     }
     for (const auto& [name, value] : effect.choices) {
-      add_text(name);
-      add_text(value);
+      hash.add_text(name);
+      hash.add_text(value);
     }
   }
 }
 
 }  // namespace
 
-std::uint64_t fingerprint(const CoverageStudy& study) {
+std::string fingerprint(const CoverageStudy& study) {
   Hash hash;
-  const std::string build = version() + git_revision();
-  hash.add_bytes(build.data(), build.size());
+  hash.add_text(version() + git_revision());
   const RayBundle& rays = study.survey().array().clipped();
   for (const Ray& ray : rays.rays) {
     hash.add(ray.origin);

@@ -1,4 +1,4 @@
-#include "studies/row_tally.hpp"
+#include "studies/campaign.hpp"
 
 #include <array>
 #include <utility>

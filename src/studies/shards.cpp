@@ -1,4 +1,4 @@
-#include "studies/shards.hpp"
+#include "studies/campaign.hpp"
 
 #include <algorithm>
 #include <charconv>

@@ -1,4 +1,4 @@
-#include "studies/turning_target.hpp"
+#include "studies/coverage.hpp"
 
 #include <cmath>
 #include <glm/geometric.hpp>

@@ -91,9 +91,7 @@ def main():
         self_test = folder / "reconcile_selftest"
         assert "| a name although nothing is hidden | at most 0.01 |" in (self_test / "targets.md").read_text()
         assert not (folder / "reconcile").exists()
-        if shutil.which("gnuplot"):
-            for picture in ("confusion", "power", "reliability"):
-                assert (self_test / f"{picture}.png").read_bytes().startswith(b"\x89PNG"), picture
+        assert (self_test / "selftest.html").stat().st_size > 400_000
 
         if chromium:
             fits = sum(p["unit"] is not None for fit in report["fits"] for p in fit["parameters"])

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 
-#include "effects/free_places.hpp"
+#include "effects/kit.hpp"
 #include "pirsim/model.hpp"
 #include "pirsim/study.hpp"
 

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <set>
 
-#include "io/text_input.hpp"
+#include "io/atomic_file.hpp"
 #include "reconcile/data/measured_reader.hpp"
 
 namespace pirsim::reconcile {

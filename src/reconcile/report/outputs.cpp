@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "io/atomic_file.hpp"
-#include "io/text_input.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/io.hpp"
 #include "reconcile/report/pages.hpp"

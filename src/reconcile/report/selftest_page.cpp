@@ -67,8 +67,10 @@ std::string finding(const SelftestResult& result, Geometry geometry) {
 io::ReportSection power(const SelftestResult& result) {
   io::ReportSection section{"How strong an effect must be", {}, {}, {}};
   section.paragraphs = {
-      "Each picture is one effect. Blue: how often a disagreement was seen at all; red: how often the effect was then "
+      "First all effects, then a picture for each. Blue: how often a disagreement was seen at all; red: how often the "
+      "effect was then "
       "among those kept. Lines show what chance leaves open (95 %)."};
+  section.charts.emplace_back(power_grid(result));
   for (std::size_t hypothesis = 1; hypothesis < result.hypotheses.size(); ++hypothesis) {
     section.charts.emplace_back(power_chart(result, result.hypotheses[hypothesis]));
   }

@@ -2,7 +2,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "effects/describe.hpp"
+#include "effects/catalogue.hpp"
 #include "property/effects/warm_up.cpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"

@@ -2,9 +2,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "pir/edge_draw.hpp"
+#include "pir/motion_detector.hpp"
 #include "pir/optics.hpp"
-#include "pir/polarity_detector.hpp"
 #include "pirsim/geometry.hpp"
 #include "pirsim/state.hpp"
 #include "sim/compiled_study.hpp"

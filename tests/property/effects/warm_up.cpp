@@ -1,5 +1,4 @@
 // A sensor says nothing until its element has warmed up after power came on.
-#include "effects/entries.hpp"
 #include "effects/kit.hpp"
 
 namespace pirsim::effects {

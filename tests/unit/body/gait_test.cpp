@@ -1,6 +1,7 @@
 // Walking and turning.
 #include <vector>
 
+#include "pirsim/error.hpp"
 #include "support/body_checks.hpp"
 
 using namespace pirsim;
@@ -286,11 +287,11 @@ TEST_CASE("a smaller person makes smaller and lower steps", "[motion]") {
 
 TEST_CASE("a walk that starts elsewhere or from a seat is refused", "[motion]") {
   Motion motion = standing();
-  CHECK_THROWS_AS(motion.walk(Route({{1, 0}, {0, -5}})), std::logic_error);
-  CHECK_THROWS_AS(motion.tilt_spine(0.1), std::logic_error);
-  CHECK_THROWS_AS(motion.rise(), std::logic_error);
-  CHECK_THROWS_AS(motion.work({}), std::logic_error);
+  CHECK_THROWS_AS(motion.walk(Route({{1, 0}, {0, -5}})), pirsim::Error);
+  CHECK_THROWS_AS(motion.tilt_spine(0.1), pirsim::Error);
+  CHECK_THROWS_AS(motion.rise(), pirsim::Error);
+  CHECK_THROWS_AS(motion.work({}), pirsim::Error);
   motion.walk(Route({{0, 0}, {0, -5}}));
-  CHECK_THROWS_AS(motion.turn_to(1.0), std::logic_error);
-  CHECK_THROWS_AS(motion.sit_down(desk_seat()), std::logic_error);
+  CHECK_THROWS_AS(motion.turn_to(1.0), pirsim::Error);
+  CHECK_THROWS_AS(motion.sit_down(desk_seat()), pirsim::Error);
 }

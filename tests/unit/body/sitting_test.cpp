@@ -164,8 +164,8 @@ TEST_CASE("seats out of reach are refused", "[motion]") {
   CHECK_THROWS_AS(before_seat(0.4).sit_down(seat), Error);
   seat.world_from_seat.origin.y = 0.1;
   CHECK_THROWS_AS(before_seat(0.4).sit_down(seat), Error);
-  CHECK_THROWS_AS(before_seat(0.4, 0.6).sit_down(desk_seat()), std::logic_error);
-  CHECK_THROWS_AS(before_seat(0.4, 0.0, 1.5).sit_down(desk_seat()), std::logic_error);
+  CHECK_THROWS_AS(before_seat(0.4, 0.6).sit_down(desk_seat()), pirsim::Error);
+  CHECK_THROWS_AS(before_seat(0.4, 0.0, 1.5).sit_down(desk_seat()), pirsim::Error);
 }
 
 TEST_CASE("hands follow plus and minus 0.1 sin(2 pi t / 3) m from the tick of the work command on", "[motion]") {

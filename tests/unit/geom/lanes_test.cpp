@@ -24,7 +24,7 @@ TEST_CASE("a lane gets the bits that a float gets", "[lanes]") {
     const Vec3 from = draw.inside({-8, 0, -8}, {8, 3, 8}), middle = draw.inside({-4, 0, -4}, {4, 2, 4});
     const Ray ray = testing::ray_through(from, middle + draw.inside(Vec3(-0.25), Vec3(0.25)));
     Vec3f a(middle + 0.2 * draw.direction()), b(middle - 0.2 * draw.direction());
-    if (i % 50 == 0) b = a;                  // a ball
+    if (i % 50 == 0) b = a;                  // a sphere
     if (i % 50 == 1) b = a + ray.direction;  // along the ray
     const float radius = static_cast<float>(draw.between(0.01, 0.2)),
                 range = static_cast<float>(draw.between(0.0, 20.0));

@@ -1,5 +1,6 @@
 #include "io/png.hpp"
 
+#include <array>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -56,6 +57,40 @@ TEST_CASE("a picture is a PNG of its size in 8-bit RGB with sound chunks from he
   CHECK(big_endian(bytes, 20) == 3);
   CHECK(bytes[24] == 8);
   CHECK(bytes[25] == 2);
+}
+
+TEST_CASE("a map is drawn in viridis, white off the floor, with the edge in black and an arrow", "[png]") {
+  MapChart chart;
+  chart.columns = 3;
+  chart.rows = 1;
+  chart.spacing_m = 0.5;
+  chart.values = {0.0, 60.0, std::nullopt};
+  chart.max = 60;
+  const auto colour = [](const Pixels& picture, int x, int y) {
+    const auto at = static_cast<std::size_t>(3 * (y * picture.width + x));
+    return std::array<int, 3>{picture.rgb[at], picture.rgb[at + 1], picture.rgb[at + 2]};
+  };
+  const std::array<int, 3> violet{0x44, 0x01, 0x54}, yellow{0xfd, 0xe7, 0x25}, white{255, 255, 255}, black{0, 0, 0};
+  const Pixels plain = drawn(chart);
+  REQUIRE(plain.width == 3 * 300 + 2 * 16);
+  REQUIRE(plain.height == 300 + 2 * 16);
+  CHECK(plain.rgb.size() == static_cast<std::size_t>(plain.width * plain.height * 3));
+  CHECK(colour(plain, 5, 100) == white);
+  CHECK(colour(plain, 100, 100) == violet);
+  CHECK(colour(plain, 500, 100) == yellow);
+  CHECK(colour(plain, 800, 100) == white);
+
+  chart.outline = {{{0, 0}, {1, 0}, {1, 0.5}, {0, 0.5}}};
+  chart.markers = {{"PIR1", {0.25, 0.25}, -pi / 2}};  // looks along +X: to the right
+  const Pixels marked = drawn(chart);
+  CHECK(colour(marked, 16, 166) == black);
+  CHECK(colour(marked, 616, 166) == black);
+  CHECK(colour(marked, 166, 166) == std::array<int, 3>{255, 77, 109});
+  CHECK(colour(marked, 186, 166) == std::array<int, 3>{255, 77, 109});
+  CHECK(colour(marked, 146, 166) == violet);
+  chart.markers.front().point = {-40.0, 90.0};  // outside of the picture
+  chart.outline.front().front() = {-1e6, 0.1};
+  CHECK(drawn(chart).rgb.size() == plain.rgb.size());
 }
 
 TEST_CASE("a picture of the wrong size is refused and nothing is written", "[png]") {

@@ -1,6 +1,5 @@
 #include "io/report.hpp"
 
-#include "io/gnuplot.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;
@@ -54,14 +53,6 @@ TEST_CASE("maps go into the page as numbers, holes as null", "[report]") {
   Report report;
   report.sections = {{"maps", {}, {}, {small_map()}}};
   CHECK(count(to_html(report), "\"values\":[3,null]") == 1);
-}
-
-TEST_CASE("gnuplot gets quotes doubled, and no value off the floor", "[report]") {
-  const std::string program = gnuplot_program(small_map(), "a'b.png");
-  CHECK(count(program, "set title 'it''s'") == 1);
-  CHECK(count(program, "set output 'a''b.png'") == 1);
-  CHECK(count(program, "0.25 0.25 3\n") == 1);
-  CHECK(count(program, "0.75 0.25 NaN\n") == 1);
 }
 
 TEST_CASE("a grid goes into the page square by square with its colours", "[report]") {

@@ -1,4 +1,4 @@
-#include "pir/analog_filter.hpp"
+#include "pir/analog_detector.hpp"
 
 #include <cmath>
 #include <complex>

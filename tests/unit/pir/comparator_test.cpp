@@ -1,4 +1,4 @@
-#include "pir/comparator.hpp"
+#include "pir/analog_detector.hpp"
 
 #include <string>
 

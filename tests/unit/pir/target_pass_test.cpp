@@ -1,11 +1,11 @@
-#include "pir/target_pass.hpp"
+#include "pir/calibration.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "pir/optics.hpp"
 #include "pir/planck.hpp"
-#include "pir/zone_quadrature.hpp"
 #include "pirsim/io.hpp"
 #include "support/catch.hpp"
 #include "support/paths.hpp"

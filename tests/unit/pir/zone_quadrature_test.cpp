@@ -1,4 +1,4 @@
-#include "pir/zone_quadrature.hpp"
+#include "pir/optics.hpp"
 
 #include <cmath>
 #include <glm/geometric.hpp>

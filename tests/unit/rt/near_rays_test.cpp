@@ -1,4 +1,4 @@
-#include "rt/near_rays.hpp"
+#include "rt/culling.hpp"
 
 #include <bit>
 

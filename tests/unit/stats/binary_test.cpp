@@ -58,7 +58,7 @@ TEST_CASE("bytes of another kind or version, cut off or damaged are refused", "[
   CHECK_THROWS_WITH(read_all(""), contains("ends too early"));
   std::string last_bit = sample();
   last_bit.back() = static_cast<char>(last_bit.back() ^ 1);
-  CHECK_THROWS_WITH(read_all(last_bit), contains("checksum"));
+  CHECK_THROWS_WITH(read_all(last_bit), contains("digest"));
 }
 
 TEST_CASE("any single damaged byte is noticed", "[stats]") {

@@ -1,4 +1,4 @@
-#include "stats/mixture_discriminant.hpp"
+#include "stats/discriminant.hpp"
 
 #include <algorithm>
 #include <array>

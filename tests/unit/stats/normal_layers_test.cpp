@@ -1,4 +1,4 @@
-#include "stats/normal_layers.hpp"
+#include "stats/discriminant.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "stats/strangest_measure.hpp"
+#include "stats/conformal.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "studies/coverage_figures.hpp"
+#include "studies/coverage.hpp"
 
 #include "support/catch.hpp"
 

@@ -1,4 +1,4 @@
-#include "studies/row_store.hpp"
+#include "studies/coverage.hpp"
 
 #include <fstream>
 #include <sstream>

@@ -1,4 +1,4 @@
-#include "studies/row_tally.hpp"
+#include "studies/campaign.hpp"
 
 #include "pirsim/error.hpp"
 #include "support/catch.hpp"

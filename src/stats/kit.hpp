@@ -1,13 +1,58 @@
-// One result row per data row, computed in parallel.
+// What several methods share.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "pirsim/error.hpp"
 #include "stats/matrix.hpp"
 
+namespace pirsim::stats {
+
+// One way to refuse an argument.
+
+/// Throws Error(usage) unless the condition holds.
+inline void require(bool condition, const char* message) {
+  if (!condition) throw Error(ErrorCode::usage, message);
+}
+
+template <typename Range>
+void require_finite(const Range& values, const char* message) {
+  for (const auto value : values) require(std::isfinite(value), message);
+}
+
+}  // namespace pirsim::stats
+
 namespace pirsim::stats::detail {
+
+// Some of a list.
+
+/// The values at the given places, in their order.
+template <typename T>
+[[nodiscard]] std::vector<T> select(std::span<const T> values, std::span<const std::size_t> places) {
+  std::vector<T> selected;
+  selected.reserve(places.size());
+  for (const std::size_t place : places) selected.push_back(values[place]);
+  return selected;
+}
+
+// Logs of odds as probabilities.
+
+/// Sums to 1; logs: at least one, up to a number that all share.
+inline std::vector<double> softmax(std::vector<double> logs) {
+  const double largest = *std::max_element(logs.begin(), logs.end());
+  double sum = 0.0;
+  for (double& log : logs) sum += log = std::exp(log - largest);
+  for (double& log : logs) log /= sum;
+  return logs;
+}
+
+// One result row per data row, computed in parallel.
 
 /// (n_rows x n_columns): row i is compute(i), a std::vector<double> of n_columns. Blocks of rows go to the threads.
 template <typename Compute>

@@ -1,0 +1,23 @@
+// What pages carry: charts as JSON for their script, and texts that are built in. Private to io.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "io/charts.hpp"
+
+namespace pirsim::io::detail {
+
+// Charts as the JSON that io/page/report.js draws.
+
+using ChartJson = nlohmann::ordered_json;
+/// `kind` says which chart it is.
+[[nodiscard]] ChartJson to_json(const Chart& chart);
+
+// Texts that are built into the library for pages that work without a network.
+
+[[nodiscard]] std::string_view vega_script() noexcept;    ///< defines `vega`; made by tools/make_vega_bundle.py
+[[nodiscard]] std::string_view report_script() noexcept;  ///< src/io/page/report.js
+[[nodiscard]] std::string_view report_style() noexcept;   ///< src/io/page/report.css
+
+}  // namespace pirsim::io::detail

@@ -1,0 +1,92 @@
+// Parts of scripts, studies and sensor files, each read by one function. Private to io.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/yaml_map.hpp"
+#include "io/yaml_node.hpp"
+#include "pirsim/io.hpp"
+#include "pirsim/schedule.hpp"
+#include "pirsim/script.hpp"
+#include "pirsim/sensor.hpp"
+
+namespace pirsim::io {
+
+/// A format version at the top of a file, which has to be 1.
+void check_version(YamlMap& map, const std::string& key);
+
+// The `sensing` block, which all kinds of studies share.
+
+[[nodiscard]] SensingSpec read_sensing(const std::optional<YamlNode>& node, Diagnostics& faults);
+
+// `effects:` of a script.
+
+/// Items are `name` or `name: {parameter: number, choice: text}`. What names mean is the catalogue's business.
+[[nodiscard]] std::vector<EffectSpec> read_effects(const std::vector<YamlNode>& items, Diagnostics& faults);
+
+// One entry of a person's `actions`.
+
+/// `- sit: S1`, with `at_s` and `phase` beside the action where wanted; `- rise` alone may be a plain word.
+[[nodiscard]] ScriptedAction read_action(const YamlNode& node, Diagnostics& faults);
+
+// The `schedule` of a script.
+
+[[nodiscard]] std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, Diagnostics& faults);
+
+}  // namespace pirsim::io
+
+namespace pirsim::io::detail {
+
+// Bodies as glTF meshes, one a part.
+
+/// Reads each file once, however many people wear it.
+class BodyMeshReader {
+ public:
+  /// folder: what file names are relative to.
+  explicit BodyMeshReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// The mesh of every node that has one; a node's name is its part's, a node's frame is its part's frame. Faults of
+  /// the file go to `faults` with their place in it; a missing file is a fault at `where`.
+  [[nodiscard]] BodyMeshes read(const std::string& file, const Where& where, Diagnostics& faults);
+  [[nodiscard]] const std::vector<std::string>& files() const noexcept { return files_; }  ///< all that was read
+
+ private:
+  std::filesystem::path folder_;
+  std::map<std::string, BodyMeshes> known_;
+  std::vector<std::string> files_;
+};
+
+}  // namespace pirsim::io::detail
+
+namespace pirsim::io {
+
+// A sensor file's element, amplifier and comparator.
+
+/// Reads the maps `element`, `amplifier` and `comparator` of a sensor file; what isn't there keeps its default.
+[[nodiscard]] DetectorSpec read_detector(YamlMap& sensor);
+
+/// The names of their keys that need a source.
+[[nodiscard]] const std::vector<std::string>& sourced_detector_keys();
+
+}  // namespace pirsim::io
+
+namespace pirsim::io::detail {
+
+// Which file describes a sensor model.
+
+/// `first`, then `sensors` in the scene's folder and beside it, `$PIRSIM_DATA_DIR/sensors`, the installed data.
+[[nodiscard]] std::vector<std::filesystem::path> sensor_directories(const SceneOptions& options,
+                                                                    const std::filesystem::path& scene_folder);
+
+/// Empty if no folder has `<model>.yaml`.
+[[nodiscard]] std::filesystem::path find_sensor_file(const std::string& model,
+                                                     const std::vector<std::filesystem::path>& directories);
+
+/// Names of all models in the folders, sorted, each once.
+[[nodiscard]] std::vector<std::string> available_sensor_models(const std::vector<std::filesystem::path>& directories);
+
+}  // namespace pirsim::io::detail

@@ -1,0 +1,87 @@
+// What the markup of a scene says, and its floor. Private to io.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "io/gltf_document.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/geometry.hpp"
+
+namespace pirsim::io::detail {
+
+// What materials say about heat: `extras.pirsim.temperature_c`.
+
+/// Degrees Celsius, within what surfaces in rooms may have.
+inline constexpr double coldest_surface_c = -50.0, hottest_surface_c = 200.0;
+
+/// (n_materials) nothing for those that say nothing, or something faulty (the faults are added).
+[[nodiscard]] std::vector<std::optional<double>> material_temperatures_c(const GltfDocument& document,
+                                                                         Diagnostics& remarks);
+
+// What a node is, if it isn't just geometry: `extras.pirsim`.
+
+namespace mark {
+struct Sensor {
+  std::string id, model;
+};
+struct Seat {
+  std::string id;
+};
+struct Entrance {
+  std::string id;
+  double width_m = 0.9;
+  double outside_m = 1.5;
+};
+enum class Occludes { yes, no };
+struct Floor {
+  std::optional<std::vector<Vec2>> polygon;  ///< in the node's local XZ; otherwise the outline of the node's mesh
+  Occludes occludes = Occludes::yes;
+};
+/// Says something of the node's mesh.
+struct Surface {
+  double temperature_c = 0.0;
+};
+struct Ignore {};
+}  // namespace mark
+
+using Markup = std::variant<mark::Sensor, mark::Seat, mark::Entrance, mark::Floor, mark::Surface, mark::Ignore>;
+
+/// JSON pointer of a node's markup.
+[[nodiscard]] std::string markup_pointer(int node);
+
+/// Nothing for a node without markup, or with a faulty one (the faults are added).
+[[nodiscard]] std::optional<Markup> read_markup(const GltfDocument& document, int node, Diagnostics& remarks);
+
+// The floor area of a scene, joined from all nodes that are marked as floor.
+
+class FloorBuilder {
+ public:
+  explicit FloorBuilder(Diagnostics& faults) : faults_(faults) {}
+
+  /// Outline of a flat horizontal mesh, world frame.
+  void add_mesh(const TriMesh& mesh, const Where& where, const std::string& label);
+  /// Corners in the world.
+  void add_polygon(const std::vector<Vec3>& corners, const Where& where, const std::string& label);
+
+  /// Adds a fault if parts overlap or differ in height.
+  [[nodiscard]] FloorArea build();
+
+ private:
+  struct Part {
+    std::vector<std::vector<Vec2>> loops;
+    double height_m = 0.0;
+    Where where;
+    std::string label;
+  };
+  void add(Part part);
+  [[nodiscard]] bool flat(const std::vector<Vec3>& points, const Where& where, const std::string& label);
+
+  Diagnostics& faults_;
+  std::vector<Part> parts_;
+  std::size_t n_corners_ = 0;
+};
+
+}  // namespace pirsim::io::detail

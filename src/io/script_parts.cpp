@@ -1,0 +1,99 @@
+#include "io/reader_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/atomic_file.hpp"
+#include "io/yaml_map.hpp"
+#include "pirsim/effects.hpp"
+
+namespace pirsim::io {
+
+void check_version(YamlMap& map, const std::string& key) {
+  constexpr int format_version = 1;
+  const int version = map.required_integer(key);
+  if (!map.has(key) || version == format_version) return;
+  map.faults().error(map.where(key), "format version " + std::to_string(version) +
+                                         " isn't known: this pirsim reads version " + std::to_string(format_version));
+}
+
+SensingSpec read_sensing(const std::optional<YamlNode>& node, Diagnostics& faults) {
+  SensingSpec sensing;
+  if (!node) return sensing;
+  YamlMap map(*node, faults, "sensing");
+  sensing.tick_rate_hz = map.integer("tick_rate_hz", sensing.tick_rate_hz, {.min = 1, .max = 10000});
+  const double window_s = map.number("window_s", 1.0, {.above = 0.0, .max = 3600.0});
+  const double ticks = window_s * sensing.tick_rate_hz;
+  if (std::abs(ticks - std::round(ticks)) > 1e-9 * ticks || ticks < 1.0) {
+    faults.error(map.where("window_s"),
+                 "window_s: expected a whole number of ticks of 1/" + std::to_string(sensing.tick_rate_hz) + " s");
+  }
+  sensing.ticks_per_window = static_cast<int>(std::lround(ticks));
+  sensing.rays_per_zone = map.choice<RaysPerZone>(
+      "rays_per_zone", sensing.rays_per_zone,
+      {{"1", RaysPerZone::one}, {"5", RaysPerZone::five}, {"9", RaysPerZone::nine}, {"16", RaysPerZone::sixteen}});
+  sensing.change_per = map.choice<ChangePer>("change_per", sensing.change_per,
+                                             {{"cluster", ChangePer::cluster}, {"beam", ChangePer::beam}});
+  sensing.reader = map.choice<Reader>("reader", sensing.reader,
+                                      {{"in_step", Reader::in_step}, {"free_running", Reader::free_running}});
+  sensing.response = map.choice<std::optional<Response>>("response", sensing.response,
+                                                         {{"zones", Response::zones}, {"analog", Response::analog}});
+  sensing.ambient_c = map.number("ambient_c", sensing.ambient_c, {.min = -50.0, .max = 60.0});
+  sensing.analog_rays_per_zone =
+      map.integer("analog_rays_per_zone", sensing.analog_rays_per_zone, {.min = 1, .max = 10000});
+  map.finish();
+  return sensing;
+}
+
+namespace {
+
+/// Then the value is a name, and may look like a number: `sensor: 1`.
+bool is_choice(const std::string& effect, const std::string& setting) {
+  const std::vector<effects::EffectInfo> known = effects::list();
+  return std::ranges::any_of(known, [&](const effects::EffectInfo& info) {
+    return info.name == effect &&
+           std::ranges::find(info.choices, setting, &effects::ChoiceInfo::name) != info.choices.end();
+  });
+}
+
+void read_setting(const YamlKey& key, const YamlNode& value, EffectSpec& effect, Diagnostics& faults) {
+  const std::string what = effect.name + "." + key.name;
+  const std::string text = value.text(faults, what);
+  if (!value.is_scalar()) return;
+  if (!is_choice(effect.name, key.name) && parse_number<double>(text)) {
+    effect.parameters[key.name] = value.number(faults, what);
+  } else {
+    effect.choices[key.name] = text;
+  }
+}
+
+}  // namespace
+
+std::vector<EffectSpec> read_effects(const std::vector<YamlNode>& items, Diagnostics& faults) {
+  std::vector<EffectSpec> effects;
+  for (const YamlNode& item : items) {
+    EffectSpec& effect = effects.emplace_back();
+    effect.where = item.where();
+    if (item.is_scalar()) {
+      effect.name = item.text(faults, "effect");
+      continue;
+    }
+    const std::vector<YamlKey> names = item.keys();
+    if (names.size() != 1) {
+      faults.error(item.where(), "an effect an entry, as `- dead_time: {dead_s: 2}`");
+      continue;
+    }
+    effect.name = names[0].name;
+    effect.where = names[0].where;
+    const YamlNode settings = item.items()[0];
+    if (!settings.is_map() && !settings.is_null()) {
+      faults.error(settings.where(), effect.name + ": expected parameters by name");
+    }
+    const std::vector<YamlKey> keys = settings.keys();
+    const std::vector<YamlNode> values = settings.items();
+    for (std::size_t i = 0; i < keys.size(); ++i) read_setting(keys[i], values[i], effect, faults);
+  }
+  return effects;
+}
+
+}  // namespace pirsim::io
