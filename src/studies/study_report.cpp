@@ -56,11 +56,20 @@ std::string note_of(const CellSummary& cell) {
 
 StudyReport::StudyReport(const Model& model) : model_(&model) {
   for (const SensorSpec& sensor : model.scene().sensors) sensors_.push_back(sensor.id);
-  for (const TrialSpec& trial : model.script().trials) trials_.push_back({trial.id, {}});
+  for (const TrialSpec& trial : model.script().trials) {
+    trials_.push_back({trial.id, {}, {}});
+    if (trial.schedule) trials_.back().days.emplace(model, *trial.schedule);
+  }
+}
+
+bool StudyReport::needs_occupants() const noexcept {
+  return std::ranges::any_of(trials_, [](const Trial& trial) { return trial.days.has_value(); });
 }
 
 void StudyReport::add_run(const RunResult& result) {
-  if (result.replicate == 1) trials_[result.run % trials_.size()].samples = result.samples;
+  Trial& trial = trials_[result.run % trials_.size()];
+  if (trial.days) return trial.days->add_run(result);
+  if (result.replicate == 1) trial.samples = result.samples;
 }
 
 io::SeriesChart StudyReport::series_of(const Trial& trial) const {
@@ -102,6 +111,10 @@ io::Report StudyReport::finish(const Summary& summary) const {
   report.sections.push_back(std::move(numbers));
 
   for (std::size_t t = 0; t < trials_.size(); ++t) {
+    if (trials_[t].days) {
+      report.sections.push_back(trials_[t].days->section(trials_.size() == 1 ? "Days" : "Days of " + trials_[t].id));
+      continue;
+    }
     io::ReportSection section{trials_[t].id, {}, {}, {}};
     if (t == 0) {
       section.paragraphs = {
