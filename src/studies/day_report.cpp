@@ -157,10 +157,11 @@ io::GridChart DayReport::count_chart() const {
 
 io::MapChart DayReport::floor_chart() const {
   io::MapChart chart;
-  chart.title = "Where people were; triangles: who was there at " + busiest_.clock;
-  chart.note = "minutes a day in each square of 25 cm; the colours end at five";
-  chart.label = "minutes a day";
-  chart.unit = "min a day";
+  chart.title = "Where people were";
+  chart.note = "minutes a day in each square of 25 cm, seats many more than five; triangles: who was there at " +
+               busiest_.clock;
+  chart.label = "min a day";
+  chart.unit = "min a day (5: or more)";
   chart.lower = model_->scene().floor.lower();
   chart.spacing_m = square_m;
   chart.columns = static_cast<int>(columns_);
@@ -171,11 +172,11 @@ io::MapChart DayReport::floor_chart() const {
                                                       static_cast<double>(i / columns_) + 0.5);
     const double minutes = squares_[i] / 60.0 / std::max(1, days_);
     const bool shown = squares_[i] > 0.0 || model_->scene().floor.contains(centre);
-    chart.values.push_back(shown ? std::optional(std::round(100.0 * std::min(minutes, 1e6)) / 100.0) : std::nullopt);
+    chart.values.push_back(shown ? std::optional(std::round(100.0 * std::min(minutes, chart.max)) / 100.0) : std::nullopt);
   }
   chart.outline = model_->scene().floor.loops();
   for (const OccupantRow& row : busiest_.people) {
-    chart.markers.push_back({row.person + ", " + row.activity, row.place_m, 0.0});
+    chart.markers.push_back({row.person, row.place_m, 0.0});
   }
   return chart;
 }
@@ -186,11 +187,23 @@ io::ReportSection DayReport::section(const std::string& heading) const {
     section.paragraphs.push_back("Nobody came.");
     return section;
   }
-  section.paragraphs.push_back(std::to_string(days_) +
-                               " days on which somebody came. Above: how many people were in the room, by the time of "
-                               "day. Below: how much motion each sensor reported at that time.");
+  section.paragraphs.push_back((days_ == 1 ? "One day" : std::to_string(days_) + " days") +
+                               " on which somebody came. First how many people were in the room, by the time of day, "
+                               "then how much motion each sensor reported at that time.");
+  io::Table table{{"at " + busiest_.clock, "does", "seat"}, {}};
+  for (const OccupantRow& row : busiest_.people) table.rows.push_back({row.person, row.activity, row.seat});
+  section.tables.push_back(std::move(table));
   section.charts.emplace_back(people_chart());
-  for (std::size_t i = 0; i < model_->scene().sensors.size(); ++i) section.charts.emplace_back(sensor_chart(i));
+  std::vector<io::LineChart> sensors;
+  double most = 0.05;
+  for (std::size_t i = 0; i < model_->scene().sensors.size(); ++i) {
+    sensors.push_back(sensor_chart(i));
+    for (const auto& point : sensors.back().lines.front().points) most = std::max(most, point.y);
+  }
+  for (io::LineChart& chart : sensors) {
+    chart.y_high = std::ceil(20.0 * most) / 20.0;
+    section.charts.emplace_back(std::move(chart));
+  }
   section.charts.emplace_back(count_chart());
   section.charts.emplace_back(floor_chart());
   return section;

@@ -52,6 +52,17 @@ std::string note_of(const CellSummary& cell) {
   return note;
 }
 
+/// What was run, and what a count is.
+std::string introduction(const Model& model, const std::vector<std::string>& sensors) {
+  const ScriptSpec& script = model.script();
+  return std::to_string(script.trials.size()) + " trials in " + model.scene().name + ", each run " +
+         std::to_string(script.replicates) + " times, watched by " + boost::algorithm::join(sensors, ", ") +
+         ". A count is the number of windows in which a sensor reported motion" +
+         (script.summary.phases.empty()
+              ? "."
+              : " while the phase was " + boost::algorithm::join(script.summary.phases, ", ") + ".");
+}
+
 }  // namespace
 
 StudyReport::StudyReport(const Model& model) : model_(&model) {
@@ -94,21 +105,19 @@ io::Report StudyReport::finish(const Summary& summary) const {
   const std::vector<CellSummary> cells = summary.cells();  // trials in order, sensors within each
   io::Report report;
   report.title = script.name;
-  report.paragraphs = {std::to_string(trials_.size()) + " trials in " + model_->scene().name + ", each run " +
-                       std::to_string(script.replicates) + " times, watched by " +
-                       boost::algorithm::join(sensors_, ", ") +
-                       ". A count is the "
-                       "number of windows in which a sensor reported motion" +
-                       (script.summary.phases.empty()
-                            ? "."
-                            : " while the phase was " + boost::algorithm::join(script.summary.phases, ", ") + ".")};
-  io::ReportSection numbers{"In numbers", {}, {}, {}};
-  if (summary.overall().cells > 0) {
-    numbers.tables.push_back(overall_table(summary.overall()));
+  if (needs_occupants()) {
+    report.paragraphs = {std::to_string(script.replicates) + (script.replicates == 1 ? " day in " : " days in ") +
+                         model_->scene().name + ", watched by " + boost::algorithm::join(sensors_, ", ") + "."};
   } else {
-    numbers.paragraphs.push_back("Nothing measured was given to compare with.");
+    report.paragraphs = {introduction(*model_, sensors_)};
+    io::ReportSection numbers{"In numbers", {}, {}, {}};
+    if (summary.overall().cells > 0) {
+      numbers.tables.push_back(overall_table(summary.overall()));
+    } else {
+      numbers.paragraphs.push_back("Nothing measured was given to compare with.");
+    }
+    report.sections.push_back(std::move(numbers));
   }
-  report.sections.push_back(std::move(numbers));
 
   for (std::size_t t = 0; t < trials_.size(); ++t) {
     if (trials_[t].days) {
