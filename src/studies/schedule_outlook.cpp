@@ -12,6 +12,7 @@ namespace {
 
 /// Somebody is in the room from one moment of the day to another.
 struct Visit {
+  std::size_t person;
   double from_s, to_s;
 };
 
@@ -21,13 +22,13 @@ bool is_in_room(const sim::Stay& stay) {
 
 std::vector<Visit> visits_of(const sim::DayDraw& draw) {
   std::vector<Visit> visits;
-  for (const auto& stays : draw.stays) {
-    for (const sim::Stay& stay : stays) {
-      if (is_in_room(stay)) visits.push_back({stay.from_s, stay.to_s});
+  for (std::size_t i = 0; i < draw.stays.size(); ++i) {
+    for (const sim::Stay& stay : draw.stays[i]) {
+      if (is_in_room(stay)) visits.push_back({i, stay.from_s, stay.to_s});
     }
   }
   for (const sim::Meeting& meeting : draw.meetings) {
-    for (const sim::Attendance& who : meeting.people) visits.push_back({who.comes_s, who.goes_s});
+    for (const sim::Attendance& who : meeting.people) visits.push_back({who.person, who.comes_s, who.goes_s});
   }
   return visits;
 }
@@ -35,10 +36,12 @@ std::vector<Visit> visits_of(const sim::DayDraw& draw) {
 void note_most(ScheduleOutlook& outlook, const sim::DayDraw& draw, std::int64_t day) {
   const std::vector<Visit> visits = visits_of(draw);
   for (const Visit& one : visits) {
-    const auto n = static_cast<std::size_t>(std::ranges::count_if(
-        visits, [&](const Visit& other) { return other.from_s <= one.from_s && one.from_s < other.to_s; }));
-    if (n <= outlook.most_at_once) continue;
-    outlook.most_at_once = n;
+    std::set<std::size_t> people;  // who goes from one meeting to the next is one
+    for (const Visit& other : visits) {
+      if (other.from_s <= one.from_s && one.from_s < other.to_s) people.insert(other.person);
+    }
+    if (people.size() <= outlook.most_at_once) continue;
+    outlook.most_at_once = people.size();
     outlook.most_when = clock_text(day, one.from_s);
   }
 }
