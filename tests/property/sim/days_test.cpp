@@ -83,6 +83,10 @@ TEST_CASE("Rows tell the time of day, and what the room is used for") {
     CHECK((row.phase == "empty") == (row.people == 0));
   }
   CHECK(phases == std::set<std::string>{"empty", "meeting", "occupied"});
+  for (const std::string to : {"09:01", "09:05", "09:07", "09:40"}) {
+    const Model part = model_of("  from: 09:00\n  to: " + to + "\n  cleaning: 19:00\n");
+    CHECK(run_once(part, 0).samples.back().clock == "2026-03-02T" + to + ":00");
+  }
   const Model midnight = model_of("  from: 23:59\n  to: 24:00\n  meetings: {}\n");
   CHECK(run_once(midnight, 0).samples.back().clock == "2026-03-03T00:00:00");
 }
