@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pirsim/scene.hpp"
@@ -32,6 +33,10 @@ struct SceneOptions {
 /// Reads and validates a script. Each override is `sensing.rays_per_zone=9`: it replaces a value before reading.
 /// Throws Error (io: no such file; input: all faults with file:line:column; usage: an override).
 [[nodiscard]] ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+
+/// The same from memory; `name` stands in messages, and files that it refers to are found from the working folder.
+[[nodiscard]] ScriptSpec parse_script(std::string_view text, const std::string& name,
+                                      std::span<const std::string> overrides = {});
 
 /// The script as YAML that read_script() reads back to the same spec: trials and people written out.
 [[nodiscard]] std::string to_yaml(const ScriptSpec& script);

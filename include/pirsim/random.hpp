@@ -26,6 +26,7 @@ enum class Purpose : std::uint32_t {
   schedule = 15,           ///< when one person of a schedule comes, what they do and when they go
   schedule_meetings = 16,  ///< when meetings are held, and who comes
   schedule_body = 17,      ///< how large the people of a schedule are
+  schedule_conduct = 18,   ///< whom one of them visits, where they stand, what they do at their desk
   effect_prior = 11,       ///< parameters drawn from the catalogue's priors
   // Of statistics, from 100 on.
   tied_ranks = 100,    ///< order of equal values in a rank test

@@ -22,16 +22,29 @@ struct StaffSpec {
   Role role = Role::staff;
   int count = 1;
   std::vector<std::string> seats;  ///< their own desks; none: the scene's seats that nobody has, in order
+  Where where;
+};
+
+/// A meeting whose time is known.
+struct HeldMeetingSpec {
+  double at_h = 10.0;
+  double duration_min = 60.0;
+  int people = 4;
+  Where where;
 };
 
 /// Meetings that are held in the simulated room. Ref: [ChenHongLuo2018].
 struct MeetingsSpec {
   int fewest_a_day = 2, most_a_day = 6;
-  int fewest_people = 2, most_people = 8;
+  int fewest_people = 2;
+  std::optional<int> most_people;  ///< none: 8, or as many as there are seats
   std::vector<double> durations_min{30.0, 60.0, 90.0, 120.0};
   std::vector<double> probabilities{0.13, 0.70, 0.12, 0.05};
-  double from_h = 9.0, to_h = 17.0;  ///< assumed: when they begin and end
-  double lateness_min = 2.0;         ///< mean of an exponential (`assumed`; 1 to 5 tried)
+  double from_h = 9.0, to_h = 18.0;   ///< assumed: when they begin and end
+  double lateness_min = 2.0;          ///< mean of how much later than its beginning people come (`assumed`; 0 to 5 tried)
+  std::vector<HeldMeetingSpec> held;  ///< these, every working day, instead of drawn ones
+  std::vector<std::string> seats;     ///< none: those that are nobody's own desk
+  Where where;
 };
 
 /// Presence as a Markov chain that follows a profile. Ref: [Page2008].

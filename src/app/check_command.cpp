@@ -5,6 +5,7 @@
 #include "app/outputs.hpp"
 #include "app/session.hpp"
 #include "sim/compiled_study.hpp"
+#include "studies/schedule_outlook.hpp"
 #include "studies/sight.hpp"
 
 namespace pirsim::app {
@@ -20,6 +21,9 @@ void print(std::ostream& out, const Model& model, const studies::SightReport& re
       << std::setprecision(2) << scene.floor.area_m2() << " m2\n";
   out << model.script().name << ": " << model.script().trials.size() << " trials x " << model.script().replicates
       << " replicates = " << model.n_runs() << " runs\n\n";
+  if (!model.script().trials.empty() && model.script().trials.front().schedule) {
+    studies::print(out, studies::outlook(model.compiled(), 0), model.compiled());
+  }
   out << "what each sensor sees of a person standing on one of " << report.places << " places (every "
       << report.spacing_m << " m), and seated at rest:\n";
   for (const studies::SensorSight& sight : report.sensors) {

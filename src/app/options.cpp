@@ -8,8 +8,8 @@
 namespace pirsim::app {
 namespace {
 
-void require_study(const Inputs& inputs) {
-  if (!inputs.scene.empty() && !inputs.script.empty()) return;
+void require_inputs(const Inputs& inputs, Needs needs) {
+  if (!inputs.scene.empty() && (needs == Needs::scene || !inputs.script.empty())) return;
   throw Error(ErrorCode::usage,
               std::string(inputs.scene.empty() ? "--scene" : "--script") + " FILE is missing; see pirsim --help");
 }
@@ -54,9 +54,13 @@ const CLI::Option* repeated_option(const CLI::App& app) {
 
 }  // namespace
 
-void offer_study(CLI::App& command, Inputs& inputs) {
+namespace {
+
+void offer_scene_file(CLI::App& command, Inputs& inputs) {
   command.add_option("--scene", inputs.scene, "room: a glTF 2.0 file (.gltf or .glb)")->option_text("FILE");
-  command.add_option("--script", inputs.script, "study: a YAML file")->option_text("FILE");
+}
+
+void offer_changes(CLI::App& command, Inputs& inputs) {
   command
       .add_option_function<std::vector<std::string>>(
           "--set",
@@ -70,6 +74,19 @@ void offer_study(CLI::App& command, Inputs& inputs) {
       ->option_text("DIR")
       ->allow_extra_args(false);
   offer_quiet(command, inputs.verbosity);
+}
+
+}  // namespace
+
+void offer_scene(CLI::App& command, Inputs& inputs) {
+  offer_scene_file(command, inputs);
+  offer_changes(command, inputs);
+}
+
+void offer_study(CLI::App& command, Inputs& inputs) {
+  offer_scene_file(command, inputs);
+  command.add_option("--script", inputs.script, "study: a YAML file")->option_text("FILE");
+  offer_changes(command, inputs);
 }
 
 void offer_tracer(CLI::App& command, Inputs& inputs) {
@@ -129,10 +146,11 @@ CLI::App& add_command(CLI::App& parent, const std::string& name, const std::stri
   return command;
 }
 
-void on_call(CLI::App& command, std::shared_ptr<const Inputs> inputs, std::function<void(const Inputs&)> work) {
-  command.callback([&command, inputs = std::move(inputs), work = std::move(work)] {
+void on_call(CLI::App& command, std::shared_ptr<const Inputs> inputs, std::function<void(const Inputs&)> work,
+             Needs needs) {
+  command.callback([&command, inputs = std::move(inputs), work = std::move(work), needs] {
     if (!command.get_subcommands().empty()) return;
-    require_study(*inputs);
+    require_inputs(*inputs, needs);
     work(*inputs);
   });
 }

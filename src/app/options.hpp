@@ -31,7 +31,9 @@ struct RunChoice {
   int replicate = 1;
 };
 
-/// --scene, --script, --set, --sensors and --quiet: every command that reads a room uses them.
+/// --scene, --set, --sensors and --quiet: for commands that make the script themselves.
+void offer_scene(CLI::App& command, Inputs& inputs);
+/// The same and --script: every other command that reads a room uses them.
 void offer_study(CLI::App& command, Inputs& inputs);
 /// For commands that trace rays by load().
 void offer_tracer(CLI::App& command, Inputs& inputs);
@@ -49,8 +51,10 @@ void offer_map_report(CLI::App& command, std::filesystem::path& report);
 /// A subcommand. `examples` are whole lines, and stand at the end of its help.
 [[nodiscard]] CLI::App& add_command(CLI::App& parent, const std::string& name, const std::string& what,
                                     const std::string& examples);
-/// Does the work if the command itself is called, not one of its subcommands. It refuses to without scene and script.
-void on_call(CLI::App& command, std::shared_ptr<const Inputs> inputs, std::function<void(const Inputs&)> work);
+enum class Needs { scene, scene_and_script };
+/// Does the work if the command itself is called, not one of its subcommands. It refuses to without what it needs.
+void on_call(CLI::App& command, std::shared_ptr<const Inputs> inputs, std::function<void(const Inputs&)> work,
+             Needs needs = Needs::scene_and_script);
 
 /// Options before a command's name count as if they stood after it: `pirsim --scene room.gltf check`. What the command
 /// doesn't take is refused by Error(usage). Holds for all subcommands that the app has, however deep.

@@ -1,381 +1,42 @@
-#include <atomic>
 #include <iostream>
 #include <memory>
-#include <optional>
-#include <sstream>
 
 #include "app/commands.hpp"
-#include "app/long_work.hpp"
 #include "app/outputs.hpp"
-#include "app/row_output.hpp"
 #include "app/session.hpp"
+#include "app/study_run.hpp"
 #include "effects/catalogue.hpp"
-#include "io/atomic_file.hpp"
-#include "io/compression.hpp"
-#include "io/manifest.hpp"
-#include "pirsim/csv.hpp"
-#include "pirsim/io.hpp"
-#include "pirsim/study.hpp"
-#include "sim/compiled_study.hpp"
-#include "studies/sight.hpp"
-#include "studies/study_report.hpp"
-#include "studies/summary.hpp"
 
 namespace pirsim::app {
 namespace {
 
-struct RunOptions {
-  RowOptions rows;
-  std::filesystem::path summary;    ///< .csv or .md
-  std::filesystem::path zones;      ///< .csv, .csv.gz or .csv.zst
-  std::filesystem::path trace;      ///< the same
-  std::filesystem::path occupants;  ///< as zones
-  std::filesystem::path report;     ///< .html
-  std::optional<double> max_time_s;
-  unsigned threads = 0;
-  enum class Action { run, print_config } action = Action::run;
-  enum class Faults { note, stop } faults = Faults::note;  ///< of single runs
-};
-
-std::vector<std::string> sensor_ids(const Model& model) {
-  std::vector<std::string> ids;
-  for (const SensorSpec& sensor : model.scene().sensors) ids.push_back(sensor.id);
-  return ids;
-}
-
-std::vector<std::size_t> first_zones(const Model& model) {
-  const RayBundle& rays = model.rays();
-  std::vector<std::size_t> begins;
-  for (const auto cluster : rays.sensor_clusters_begin) begins.push_back(rays.cluster_zones_begin[cluster]);
-  return begins;
-}
-
-studies::Summary make_summary(const Model& model, const RunOptions& options) {
-  std::vector<std::string> trials;
-  for (const TrialSpec& trial : model.script().trials) trials.push_back(trial.id);
-  const bool compared = !options.summary.empty() || !options.report.empty();
-  const std::vector<MeasuredCell> measured = compared ? measured_cells(model.script()) : std::vector<MeasuredCell>{};
-  return {trials, sensor_ids(model), measured};
-}
-
-/// Lines of all runs, compressed by the ending of the file's name.
-class LineOutput {
- public:
-  explicit LineOutput(const std::filesystem::path& file)
-      : file_(file), writer_(file_.stream(), io::compression_of(file)) {}
-
-  /// What is written here is in the file after the next pass_on().
-  [[nodiscard]] std::ostream& lines() { return lines_; }
-  void pass_on() {
-    writer_.write(lines_.view());
-    lines_.str({});
-    if (!file_.stream()) file_.commit();  // says why it can't be written
-  }
-  void commit() {
-    pass_on();
-    writer_.finish();
-    file_.commit();
-  }
-
- private:
-  io::AtomicFile file_;
-  io::DataWriter writer_;
-  std::ostringstream lines_;
-};
-
-/// Zones of all runs.
-class ZoneOutput {
- public:
-  ZoneOutput(const std::filesystem::path& file, const Model& model)
-      : output_(file), csv_(output_.lines(), sensor_ids(model), first_zones(model)) {}
-
-  void add(const RunResult& result) {
-    for (std::size_t i = 0; i < result.zones.size(); ++i) {
-      csv_.write(result.replicate, result.trial, static_cast<std::int64_t>(i) + 1, result.zones[i]);
-    }
-    output_.pass_on();
-  }
-  void commit() { output_.commit(); }
-
- private:
-  LineOutput output_;
-  io::ZoneCsvWriter csv_;
-};
-
-/// Signals of all runs and what is behind them.
-class TraceOutput {
- public:
-  TraceOutput(const std::filesystem::path& file, const Model& model)
-      : output_(file), csv_(output_.lines(), sensor_ids(model), model.script().sensing.tick_rate_hz) {
-    if (model.compiled().array().analog() == nullptr)
-      throw Error(ErrorCode::usage, "--trace: no sensor has an analog response");
-  }
-
-  void add(const RunResult& result) {
-    for (const TraceRow& row : result.trace) csv_.write(result.replicate, result.trial, row);
-    output_.pass_on();
-  }
-  void commit() { output_.commit(); }
-
- private:
-  LineOutput output_;
-  io::TraceCsvWriter csv_;
-};
-
-/// Who is where in all runs.
-class OccupantOutput {
- public:
-  explicit OccupantOutput(const std::filesystem::path& file) : output_(file), csv_(output_.lines()) {}
-
-  void add(const RunResult& result) {
-    for (const OccupantRow& row : result.occupants) csv_.write(result.replicate, result.trial, row);
-    output_.pass_on();
-  }
-  void commit() { output_.commit(); }
-
- private:
-  LineOutput output_;
-  io::OccupantCsvWriter csv_;
-};
-
-/// The outputs that need all runs at once; nothing of them is left if the study ends early.
-class WholeStudyOutputs {
- public:
-  WholeStudyOutputs(const Model& model, const Inputs& inputs, const RunOptions& options)
-      : inputs_(inputs), options_(options), summary_(make_summary(model, options)), report_(model), model_(model) {
-    if (!options.zones.empty()) zones_.emplace(options.zones, model);
-    if (!options.trace.empty()) trace_.emplace(options.trace, model);
-    if (!options.occupants.empty()) occupants_.emplace(options.occupants);
-    if (!options.summary.empty()) summary_file_.emplace(options.summary);
-    if (!options.report.empty()) report_file_.emplace(options.report);
-  }
-  void add(const RunResult& result) {
-    if (result.fault) return;
-    if (zones_) zones_->add(result);
-    if (trace_) trace_->add(result);
-    if (occupants_) occupants_->add(result);
-    if (report_file_) report_.add_run(result);
-    if (!summary_file_ && !report_file_) return;
-    studies::RunCounts counts(model_.scene().sensors.size(), model_.script().summary);
-    for (const Sample& sample : result.samples) counts.add(sample);
-    summary_.add_run(result.trial, counts.counts());
-  }
-  void commit() {
-    if (zones_) zones_->commit();
-    if (trace_) trace_->commit();
-    if (occupants_) occupants_->commit();
-    if (summary_file_)
-      write_summary(summary_, *summary_file_, options_.summary, model_.script().name, inputs_.verbosity);
-    if (report_file_) write_page(*report_file_, report_.finish(summary_), inputs_);
-  }
-
- private:
-  const Inputs& inputs_;
-  const RunOptions& options_;
-  studies::Summary summary_;
-  studies::StudyReport report_;
-  const Model& model_;
-  std::optional<ZoneOutput> zones_;
-  std::optional<TraceOutput> trace_;
-  std::optional<OccupantOutput> occupants_;
-  std::optional<io::AtomicFile> summary_file_, report_file_;
-};
-
-bool has_whole_study_outputs(const RunOptions& options) {
-  return !options.summary.empty() || !options.zones.empty() || !options.trace.empty() || !options.report.empty() ||
-         !options.occupants.empty();
-}
-
-void check_options(const Inputs& inputs, const RunOptions& options) {
-  const bool sharded = !options.rows.shard.empty();
-  const std::filesystem::path rows = sharded ? std::filesystem::path{} : options.rows.output;
-  std::vector<NamedOutput> outputs{{"-o", rows, table_endings()},
-                                   {"--summary", options.summary, {".csv", ".md"}},
-                                   {"--zones", options.zones, table_endings()},
-                                   {"--trace", options.trace, table_endings()},
-                                   {"--occupants", options.occupants, table_endings()},
-                                   {"--report", options.report, {".html"}}};
-  if (!rows.empty()) outputs.push_back({"the manifest of -o", io::manifest_path(rows), {".json"}});
-  check_outputs(outputs, inputs);
-  const char* partial = sharded                                           ? "--shard"
-                        : options.rows.start == RowOptions::Start::resume ? "--resume"
-                        : options.max_time_s                              ? "--max-time"
-                                                                          : nullptr;
-  if (partial == nullptr) return;
-  if (options.rows.output.empty()) {
-    throw Error(ErrorCode::usage, std::string(partial) + " needs -o " + (sharded ? "DIR" : "FILE"));
-  }
-  if (!sharded && io::is_written_directly(options.rows.output)) {
-    throw Error(ErrorCode::usage, std::string(partial) + ": '" + options.rows.output.string() +
-                                      "' is no regular file, its rows can't be gone on with");
-  }
-  if (has_whole_study_outputs(options)) {
-    throw Error(ErrorCode::usage,
-                std::string(partial) +
-                    " goes with none of --summary, --zones, --trace, --occupants and --report: they " +
-                    "need all runs at once");
-  }
-}
-
-io::FailedRun failed_run(const RunResult& result) {
-  return {result.run, result.trial, result.replicate, result.fault->time_s, result.fault->message};
-}
-
-io::RunNotes notes_of(const RunResult& result) {
-  io::RunNotes notes;
-  for (const RunIncident& incident : result.incidents) {
-    switch (incident.kind) {
-      case IncidentKind::passed_through:
-        ++notes.passes_through;
-        break;
-      case IncidentKind::seat_changed:
-        ++notes.seats_changed;
-        break;
-      case IncidentKind::seat_missed:
-        ++notes.seats_missed;
-        break;
-    }
-  }
-  if (result.fault) notes.failed.push_back(failed_run(result));
-  return notes;
-}
-
-std::string describe(const io::FailedRun& run) {
-  std::ostringstream text;
-  text << "trial " << run.trial << ", replicate " << run.replicate << ", second " << run.time_s << ": " << run.message;
-  return text.str();
-}
-
-/// What rows don't say. Throws Error(incomplete) if there were runs that could not go on.
-void tell(const io::RunNotes& notes, Verbosity verbosity) {
-  const auto warn = [&](std::uint64_t n, const char* what) {
-    if (n > 0 && verbosity != Verbosity::quiet) std::cerr << "warning: " << n << what << '\n';
-  };
-  warn(notes.passes_through, " times somebody who found no way round others for 20 s walked through them");
-  warn(notes.seats_changed, " times somebody took another seat, since theirs stayed taken");
-  warn(notes.seats_missed, " times somebody went without a seat, since theirs stayed taken");
-  if (notes.failed.empty()) return;
-  constexpr std::size_t most_told = 10;
-  std::string message = std::to_string(notes.failed.size()) + " runs could not go on and have no rows";
-  for (std::size_t i = 0; i < std::min(notes.failed.size(), most_told); ++i) {
-    message += "\n  " + describe(notes.failed[i]);
-  }
-  throw Error(ErrorCode::incomplete, message);
-}
-
-std::string stop_message(const RunOptions& options, const std::string& cause, const Model& model,
-                         const RowOutput& rows) {
-  const RunRange left = rows.missing_runs();
-  std::string message = "stopped by " + cause;
-  if (options.rows.output.empty() || io::is_written_directly(options.rows.output)) return message;
-  message += ", " + std::to_string(left.count()) + " of " + std::to_string(model.n_runs()) + " runs are left";
-  return message + "; --resume goes on";
-}
-
-void run(const Inputs& inputs, const RunOptions& options) {
-  if (options.action == RunOptions::Action::print_config) {
-    const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
-    Diagnostics diagnostics;
-    effects::check(script.effects, diagnostics);
-    diagnostics.throw_if_errors();
-    std::cout << io::to_yaml(script);
-    require_written();
-    return;
-  }
-  check_options(inputs, options);
-  const Model model = load(inputs);
-  if (inputs.verbosity != Verbosity::quiet) {
-    tell(studies::warnings(studies::look_around(model), model.scene().name), inputs.verbosity);
-  }
-
-  // Rows that only go to a stream can end anywhere, as by Ctrl-C.
-  std::optional<StopRequest> stop;
-  if (!options.rows.output.empty() || has_whole_study_outputs(options)) stop.emplace();
-  const std::unique_ptr<RowOutput> rows = open_rows(model, options.rows);
-  WholeStudyOutputs others(model, inputs, options);
-  const std::uint32_t wanted = rows->missing_runs().count();
-  Progress progress(wanted, inputs.verbosity);
-  std::atomic<std::uint32_t> done = 0;
-  const auto out_of_time = [&] { return options.max_time_s && done > 0 && progress.seconds() >= *options.max_time_s; };
-  StudyOptions study;
-  study.threads = options.threads;
-  study.record = options.zones.empty() ? Record::samples : Record::samples_and_zones;
-  study.trace = options.trace.empty() ? Trace::none : Trace::signals;
-  study.occupants = options.occupants.empty() ? Occupants::counted : Occupants::told;
-  study.runs = rows->missing_runs();
-  study.goes_on = [&] { return !(stop && stop->was_made()) && !out_of_time(); };
-  try {
-    run_study(model, study, [&](const RunResult& result) {
-      if (result.fault && options.faults == RunOptions::Faults::stop) {
-        throw Error(ErrorCode::infeasible, describe(failed_run(result)));
-      }
-      rows->add_run(result.samples, notes_of(result));
-      others.add(result);
-      ++done;
-      progress.run_finished();
-    });
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::io) rows->discard();
-    throw;
-  }
-  if (done < wanted) {
-    const std::string cause = stop && stop->was_made() ? stop->signal_name() : "--max-time";
-    throw Error(ErrorCode::stopped, stop_message(options, cause, model, *rows));
-  }
-  rows->commit();
-  others.commit();
-  tell(rows->notes(), inputs.verbosity);
-  if (inputs.verbosity == Verbosity::verbose) {
-    std::cerr << done << " runs, " << rows->rows() << " rows in " << progress.seconds() << " s\n";
-  }
+void print_config(const Inputs& inputs) {
+  const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
+  Diagnostics diagnostics;
+  effects::check(script.effects, diagnostics);
+  diagnostics.throw_if_errors();
+  std::cout << io::to_yaml(script);
+  require_written();
 }
 
 void offer_run(CLI::App& command) {
+  enum class Action { run, print_config };
   const auto inputs = std::make_shared<Inputs>();
   const auto options = std::make_shared<RunOptions>();
+  const auto action = std::make_shared<Action>(Action::run);
   offer_study(command, *inputs);
   offer_verbose(command, inputs->verbosity);
   offer_tracer(command, *inputs);
   offer_seed(command, *inputs);
   offer_replicates(command, *inputs);
-  offer_output(command, options->rows.output, "FILE",
-               "rows, .csv, .csv.gz or .csv.zst (default: as CSV on standard output)");
-  command.add_option("--summary", options->summary, "table of sums per trial and sensor, .csv or .md")
-      ->option_text("FILE");
-  command.add_option("--report", options->report, "counts and time series as one self-contained page, .html")
-      ->option_text("FILE");
-  command.add_option("--zones", options->zones, "every zone's activity at every tick, .csv, .csv.gz or .csv.zst")
-      ->option_text("FILE");
-  command
-      .add_option("--trace", options->trace,
-                  "analog sensors' power, signal and what is behind it at every tick, .csv, .csv.gz or .csv.zst")
-      ->option_text("FILE");
-  command
-      .add_option("--occupants", options->occupants,
-                  "who is where and does what, a row a second and person, .csv, .csv.gz or .csv.zst")
-      ->option_text("FILE");
-  offer_threads(command, options->threads);
-  command
-      .add_option("--shard", options->rows.shard,
-                  "only this block of the runs: I/N, auto/N or auto (in a job array); -o names a folder")
-      ->option_text("I/N");
-  command.add_option("--format", options->rows.format, "of a shard: .csv, .csv.gz or .csv.zst (default: .csv)")
-      ->option_text("ENDING")
-      ->check(CLI::IsMember(table_endings()));
+  offer_run_options(command, options);
   command.add_flag_callback(
-      "--resume", [options] { options->rows.start = RowOptions::Start::resume; },
-      "go on at the last whole run; nothing to do if all is done");
-  command.add_flag_callback(
-      "--strict", [options] { options->faults = RunOptions::Faults::stop; },
-      "end at the first run that can't go on (default: note it, go on with the others, exit code 6)");
-  command.add_option("--max-time", options->max_time_s, "stop at the end of a run after so long: 3000, 50m, 2h")
-      ->option_text("TIME")
-      ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1.0}, {"m", 60.0}, {"h", 3600.0}},
-                                        CLI::AsNumberWithUnit::CASE_SENSITIVE, "TIME"));
-  command.add_flag_callback(
-      "--print-config", [options] { options->action = RunOptions::Action::print_config; },
-      "print the resolved script and stop");
-  on_call(command, inputs, [options](const Inputs& given) { run(given, *options); });
+      "--print-config", [action] { *action = Action::print_config; }, "print the resolved script and stop");
+  on_call(command, inputs, [options, action](const Inputs& given) {
+    if (*action == Action::print_config) return print_config(given);
+    check_options(given, *options);
+    run(load(given), given, *options);
+  });
 }
 
 constexpr const char* examples = R"(

@@ -43,8 +43,12 @@ io::SceneOptions scene_options(const Inputs& inputs) {
 }
 
 Model load(const Inputs& inputs) {
+  static_cast<void>(tracer_kind(inputs.tracer));  // before any file
+  return load(inputs, io::read_script(inputs.script, inputs.overrides));
+}
+
+Model load(const Inputs& inputs, ScriptSpec script) {
   const TracerKind tracer = tracer_kind(inputs.tracer);
-  ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
   tell(script.warnings, inputs.verbosity);

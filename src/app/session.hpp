@@ -12,6 +12,8 @@ namespace pirsim::app {
 
 /// Reads and compiles; warnings of the readers go to standard error unless quiet.
 [[nodiscard]] Model load(const Inputs& inputs);
+/// The same for a script that the command made.
+[[nodiscard]] Model load(const Inputs& inputs, ScriptSpec script);
 /// Index of a run. Throws Error(usage).
 [[nodiscard]] std::uint32_t find_run(const Model& model, const RunChoice& choice);
 /// Resolves "all", "none" and sensor names to indices. Throws Error(usage).

@@ -61,6 +61,8 @@ class Pipeline {
   void add(std::unique_ptr<RowStage> stage) { row_stages_.push_back(std::move(stage)); }
   [[nodiscard]] std::size_t size() const noexcept { return trigger_stages_.size() + row_stages_.size(); }
 
+  [[nodiscard]] bool acts_on_triggers() const noexcept { return !trigger_stages_.empty(); }
+
   void begin_run(std::uint64_t seed, std::uint32_t run);
   void seat_left(std::size_t seat);
   void tick(std::int64_t tick, std::span<std::uint8_t> triggers) noexcept;

@@ -10,8 +10,6 @@
 namespace pirsim::io {
 namespace {
 
-constexpr NumberRange hours{.min = 0.0, .max = 24.0};
-
 /// "08:30", as hours.
 double read_time(YamlMap& map, const std::string& key, double otherwise, Diagnostics& faults) {
   if (!map.has(key)) {
@@ -41,35 +39,72 @@ ClockSpec read_clock(YamlMap& map, const std::string& key, const ClockSpec& othe
 StaffSpec read_staff(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "staff");
   StaffSpec staff;
+  staff.where = node.where();
   staff.role = map.choice<Role>(
       "role", staff.role, {{"staff", Role::staff}, {"manager", Role::manager}, {"administrator", Role::administrator}});
-  for (const YamlNode& seat : map.list("seats")) staff.seats.push_back(seat.text(faults, "seats"));
+  staff.seats = map.texts("seats");
   const int own = static_cast<int>(staff.seats.size());
   staff.count = map.integer("count", std::max(1, own), {.min = std::max(1, own), .max = 200});
   map.finish();
   return staff;
 }
 
+HeldMeetingSpec read_held(const YamlNode& node, Diagnostics& faults) {
+  YamlMap map(node, faults, "held");
+  HeldMeetingSpec held;
+  held.where = node.where();
+  if (!map.has("at")) faults.error(node.where(), "held: `at` is missing");
+  held.at_h = read_time(map, "at", held.at_h, faults);
+  held.duration_min = map.number("duration_min", held.duration_min, {.min = 1.0, .max = 1440.0});
+  held.people = map.integer("people", held.people, {.min = 1, .max = 200});
+  if (held.at_h + held.duration_min / 60.0 > 24.0) {
+    faults.error(node.where(), "held: a meeting at " + map.text("at") + " that lasts beyond midnight");
+  }
+  map.finish();
+  return held;
+}
+
+void check_held(const std::vector<HeldMeetingSpec>& meetings, Diagnostics& faults) {
+  for (std::size_t i = 0; i < meetings.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const HeldMeetingSpec& one = meetings[j];
+      const HeldMeetingSpec& other = meetings[i];
+      if (one.at_h + one.duration_min / 60.0 <= other.at_h || other.at_h + other.duration_min / 60.0 <= one.at_h) continue;
+      faults.error(other.where, "held: overlaps the meeting of line " + std::to_string(one.where.line) +
+                                    ", and there is one room");
+    }
+  }
+}
+
+void check_durations(const MeetingsSpec& spec, const Where& where, Diagnostics& faults) {
+  if (spec.durations_min.size() != spec.probabilities.size() || spec.durations_min.empty()) {
+    faults.error(where, "probabilities: expected one for each of durations_min");
+  } else if (std::accumulate(spec.probabilities.begin(), spec.probabilities.end(), 0.0) <= 0.0) {
+    faults.error(where, "probabilities: expected a sum above 0");
+  }
+}
+
 MeetingsSpec read_meetings(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "meetings");
   MeetingsSpec spec;
+  spec.where = node.where();
   spec.fewest_a_day = map.integer("fewest_a_day", spec.fewest_a_day, {.min = 0, .max = 100});
   spec.most_a_day =
       map.integer("most_a_day", std::max(spec.fewest_a_day, spec.most_a_day), {.min = spec.fewest_a_day, .max = 100});
   spec.fewest_people = map.integer("fewest_people", spec.fewest_people, {.min = 1, .max = 200});
-  spec.most_people = map.integer("most_people", std::max(spec.fewest_people, spec.most_people),
-                                 {.min = spec.fewest_people, .max = 200});
+  if (map.has("most_people")) {
+    spec.most_people = map.integer("most_people", spec.fewest_people, {.min = spec.fewest_people, .max = 200});
+  }
   spec.durations_min = map.numbers("durations_min", spec.durations_min, {.min = 1.0, .max = 1440.0});
   spec.probabilities = map.numbers("probabilities", spec.probabilities, {.min = 0.0, .max = 1.0});
+  check_durations(spec, map.where(map.has("probabilities") ? "probabilities" : "durations_min"), faults);
   spec.from_h = read_time(map, "from", spec.from_h, faults);
   spec.to_h = read_time(map, "to", spec.to_h, faults);
-  spec.lateness_min = map.number("lateness_min", spec.lateness_min, {.min = 0.0, .max = 60.0});
-  if (spec.durations_min.size() != spec.probabilities.size() || spec.durations_min.empty()) {
-    faults.error(map.where("probabilities"), "probabilities: expected one for each of durations_min");
-  } else if (std::accumulate(spec.probabilities.begin(), spec.probabilities.end(), 0.0) <= 0.0) {
-    faults.error(map.where("probabilities"), "probabilities: expected a sum above 0");
-  }
   if (spec.from_h >= spec.to_h) faults.error(map.where("to"), "meetings: `to` is not after `from`");
+  spec.lateness_min = map.number("lateness_min", spec.lateness_min, {.min = 0.0, .max = 60.0});
+  for (const YamlNode& held : map.list("held")) spec.held.push_back(read_held(held, faults));
+  check_held(spec.held, faults);
+  spec.seats = map.texts("seats");
   map.finish();
   return spec;
 }
@@ -124,7 +159,7 @@ std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, D
   } else {
     static_cast<void>(map.text("cleaning"));
   }
-  for (const YamlNode& door : map.list("entrances")) spec.entrances.push_back(door.text(faults, "entrances"));
+  spec.entrances = map.texts("entrances");
   if (spec.staff.empty() && !spec.meetings && !spec.cleaning_h) {
     faults.error(node->where(), "schedule: nobody comes: give `staff`, `meetings` or `cleaning`");
   }

@@ -154,10 +154,7 @@ std::vector<TrialSpec> read_trials(const std::optional<YamlNode>& node, const st
   return trials;
 }
 
-}  // namespace
-
-ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::string> overrides) {
-  const YamlNode root = YamlNode::load(file, overrides);
+ScriptSpec script_of(const YamlNode& root, const std::filesystem::path& file) {
   Diagnostics faults;
   YamlMap map(root, faults, "script");
   check_version(map, "pirsim_script");
@@ -174,7 +171,12 @@ ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::s
     for (TrialSpec& trial : script.trials) trial.duration_s = trial.duration_s.value_or(*duration_s);
   }
   if (const auto schedule = read_schedule(map.child("schedule"), faults)) {
-    for (TrialSpec& trial : script.trials) trial.schedule = schedule;
+    for (TrialSpec& trial : script.trials) {
+      if (trial.duration_s) {
+        faults.error(schedule->where, "schedule: a run lasts from its `from` to its `to`: leave out duration_s");
+      }
+      trial.schedule = schedule;
+    }
   }
   script.effects = read_effects(map.list("effects"), faults);
   if (script.trials.size() * static_cast<std::size_t>(script.replicates) > std::numeric_limits<std::uint32_t>::max()) {
@@ -184,9 +186,20 @@ ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::s
   map.finish();
   faults.throw_if_errors();
   script.files = body_meshes.files();
-  script.files.insert(script.files.begin(), file.string());
   script.warnings = faults.warnings();
   return script;
+}
+
+}  // namespace
+
+ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  ScriptSpec script = script_of(YamlNode::load(file, overrides), file);
+  script.files.insert(script.files.begin(), file.string());
+  return script;
+}
+
+ScriptSpec parse_script(std::string_view text, const std::string& name, std::span<const std::string> overrides) {
+  return script_of(YamlNode::parse(text, name, overrides), name);
 }
 
 }  // namespace pirsim::io

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "io/schedule_writer.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/io.hpp"
 
@@ -136,6 +137,10 @@ std::string to_yaml(const ScriptSpec& script) {
   root["sensing"] = write(script.sensing);
   root["summary"]["phases"] = script.summary.phases;
   root["summary"]["reference"] = script.summary.reference_file;
+  // Read scripts have one schedule for all trials.
+  if (!script.trials.empty() && script.trials.front().schedule) {
+    root["schedule"] = to_node(*script.trials.front().schedule);
+  }
   for (const TrialSpec& trial : script.trials) {
     YAML::Node node;
     node["id"] = trial.id;

@@ -58,11 +58,13 @@ class PolarityDetector {
   /// One tick; sets triggers[s] (n_sensors) where sensor s triggers.
   void tick(std::span<const double> sums, std::span<std::uint8_t> triggers) noexcept;
   [[nodiscard]] std::size_t n_sensors() const noexcept { return filters_.size(); }
+  bool operator==(const PolarityDetector&) const = default;
 
  private:
   struct Filter {
     double fast = 0.0;  ///< low-passed sum
     double slow = 0.0;  ///< what the high-pass takes off it
+    bool operator==(const Filter&) const = default;
   };
   std::vector<double> weight_;         ///< (n_zones)
   std::vector<std::uint32_t> sensor_;  ///< (n_zones)

@@ -1,5 +1,6 @@
 #include "pir/window_reader.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace pirsim::pir {
@@ -20,6 +21,11 @@ void WindowReader::advance(std::span<const std::uint8_t> triggers) noexcept {
       readings_[sensor] = std::exchange(latches_[sensor], std::uint8_t{0});
     }
   }
+}
+
+bool WindowReader::is_at_rest() const noexcept {
+  const auto none = [](std::uint8_t bit) { return bit == 0; };
+  return std::ranges::all_of(latches_, none) && std::ranges::all_of(readings_, none);
 }
 
 std::vector<std::int32_t> drawn_leads(std::size_t n_sensors, std::int32_t ticks_per_window, std::uint64_t seed,

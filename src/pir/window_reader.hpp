@@ -22,6 +22,8 @@ class WindowReader {
   void advance(std::span<const std::uint8_t> triggers) noexcept;
   /// (n_sensors) what was read last: 1 for motion, at first 0.
   [[nodiscard]] std::span<const std::uint8_t> readings() const noexcept { return readings_; }
+  /// Neither latched nor read any motion: whole windows without triggers leave it as it is.
+  [[nodiscard]] bool is_at_rest() const noexcept;
   bool operator==(const WindowReader&) const = default;
 
  private:

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <set>
 
 #include "pirsim/random.hpp"
@@ -30,37 +31,94 @@ PersonSpec body_of(const std::string& id, std::uint64_t seed, std::uint32_t enti
   return person;
 }
 
-const SeatSpec* find_seat(const SceneSpec& scene, const std::string& id) {
-  const auto seat = std::ranges::find(scene.seats, id, &SeatSpec::id);
-  return seat == scene.seats.end() ? nullptr : &*seat;
+/// Who owns which desk: seats that are asked for, then those that nobody has.
+class Desks {
+ public:
+  Desks(const ScheduleSpec& schedule, const SceneSpec& scene, Diagnostics& diagnostics)
+      : scene_(scene), diagnostics_(diagnostics) {
+    for (const SeatSpec& seat : scene.seats) names_.push_back(seat.id);
+    for (const StaffSpec& staff : schedule.staff) {
+      for (const std::string& seat : staff.seats) {
+        if (require(seat, staff.where) && !taken_.insert(seat).second) {
+          diagnostics_.error(staff.where, "schedule: seat '" + seat + "' is the own desk of two people");
+        }
+      }
+    }
+  }
+
+  bool require(const std::string& seat, const Where& where) {
+    if (std::ranges::find(names_, seat) != names_.end()) return true;
+    diagnostics_.error(where, "schedule: seat '" + seat + "' is not in " + scene_.name + did_you_mean(seat, names_));
+    return false;
+  }
+
+  /// Of the i-th of these; none if there are no more.
+  std::optional<std::string> own(const StaffSpec& staff, std::size_t i) {
+    if (i < staff.seats.size()) return staff.seats[i];
+    const auto free = std::ranges::find_if(names_, [&](const std::string& name) { return !taken_.contains(name); });
+    if (free == names_.end()) return std::nullopt;
+    taken_.insert(*free);
+    return *free;
+  }
+
+ private:
+  const SceneSpec& scene_;
+  Diagnostics& diagnostics_;
+  std::vector<std::string> names_;
+  std::set<std::string> taken_;
+};
+
+void check_entrances(const ScheduleSpec& schedule, const SceneSpec& scene, Diagnostics& diagnostics) {
+  std::vector<std::string> doors;
+  for (const EntranceSpec& door : scene.entrances) doors.push_back(door.id);
+  for (const std::string& door : schedule.entrances) {
+    if (std::ranges::find(doors, door) != doors.end()) continue;
+    diagnostics.error(schedule.where,
+                      "schedule: entrance '" + door + "' is not in " + scene.name + did_you_mean(door, doors));
+  }
+  if (doors.empty()) diagnostics.error(schedule.where, "schedule: " + scene.name + " has no entrance to come in by");
+}
+
+/// As many as ever meet at once.
+int guests_of(const ScheduleSpec& schedule, const SceneSpec& scene, Diagnostics& diagnostics) {
+  if (!schedule.meetings) return 0;
+  constexpr int usual = 8;  // Ref: [ChenHongLuo2018]
+  const MeetingsSpec& meetings = *schedule.meetings;
+  const int seats = static_cast<int>(meeting_seats(meetings, scene, schedule).size());
+  int most = meetings.most_people.value_or(std::min(usual, seats));
+  const auto require = [&](int people, const Where& where) {
+    if (people <= seats) return;
+    diagnostics.error(where, "schedule: meetings: " + std::to_string(people) + " people for the " +
+                                 std::to_string(seats) + " seats of " + scene.name + " that are left for meetings");
+  };
+  if (!meetings.held.empty()) most = 0;
+  for (const HeldMeetingSpec& held : meetings.held) {
+    require(held.people, held.where);
+    most = std::max(most, held.people);
+  }
+  require(std::max(meetings.held.empty() ? meetings.fewest_people : 0, most), meetings.where);
+  return most;
 }
 
 }  // namespace
 
+std::vector<std::string> meeting_seats(const MeetingsSpec& meetings, const SceneSpec& scene,
+                                       const ScheduleSpec& schedule) {
+  if (!meetings.seats.empty()) return meetings.seats;
+  Diagnostics told_elsewhere;
+  Desks desks(schedule, scene, told_elsewhere);
+  for (const StaffSpec& staff : schedule.staff) {
+    for (std::size_t i = staff.seats.size(); i < static_cast<std::size_t>(staff.count); ++i) desks.own(staff, i);
+  }
+  std::vector<std::string> free;
+  while (const auto seat = desks.own({}, 0)) free.push_back(*seat);
+  return free;
+}
+
 std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const SceneSpec& scene, std::uint64_t seed) {
   Diagnostics diagnostics;
-  std::set<std::string> taken;
-  std::vector<std::string> names;
-  for (const SeatSpec& seat : scene.seats) names.push_back(seat.id);
-  for (const StaffSpec& staff : schedule.staff) {
-    for (const std::string& seat : staff.seats) {
-      if (find_seat(scene, seat) == nullptr) {
-        diagnostics.error(schedule.where,
-                          "schedule: seat '" + seat + "' is not in " + scene.name + did_you_mean(seat, names));
-      } else if (!taken.insert(seat).second) {
-        diagnostics.error(schedule.where, "schedule: seat '" + seat + "' is the own desk of two people");
-      }
-    }
-  }
-  std::vector<std::string> doors;
-  for (const EntranceSpec& door : scene.entrances) doors.push_back(door.id);
-  for (const std::string& door : schedule.entrances) {
-    if (std::ranges::find(doors, door) == doors.end()) {
-      diagnostics.error(schedule.where,
-                        "schedule: entrance '" + door + "' is not in " + scene.name + did_you_mean(door, doors));
-    }
-  }
-  if (doors.empty()) diagnostics.error(schedule.where, "schedule: " + scene.name + " has no entrance to come in by");
+  Desks desks(schedule, scene, diagnostics);
+  check_entrances(schedule, scene, diagnostics);
   std::vector<ScheduledPerson> people;
   const auto add = [&](SchedulePart part, Role role, const std::string& name, const std::string& seat) {
     people.push_back({part, role, seat, body_of(name, seed, static_cast<std::uint32_t>(people.size()))});
@@ -68,33 +126,22 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
   int number = 0;
   for (const StaffSpec& staff : schedule.staff) {
     for (int i = 0; i < staff.count; ++i) {
-      std::string seat;
-      if (static_cast<std::size_t>(i) < staff.seats.size()) {
-        seat = staff.seats[static_cast<std::size_t>(i)];
-      } else {
-        const auto unowned =
-            std::ranges::find_if(names, [&](const std::string& name) { return !taken.contains(name); });
-        if (unowned == names.end()) {
-          diagnostics.error(schedule.where, "schedule: more staff than the " + std::to_string(names.size()) +
-                                                " seats of " + scene.name);
-          break;
-        }
-        seat = *unowned;
-        taken.insert(seat);
+      const auto seat = desks.own(staff, static_cast<std::size_t>(i));
+      if (!seat) {
+        diagnostics.error(staff.where, "schedule: more staff than the " + std::to_string(scene.seats.size()) +
+                                           " seats of " + scene.name);
+        break;
       }
-      add(SchedulePart::staff, staff.role, "staff_" + std::to_string(++number), seat);
+      add(SchedulePart::staff, staff.role, "staff_" + std::to_string(++number), *seat);
     }
   }
   if (schedule.meetings) {
-    if (static_cast<std::size_t>(schedule.meetings->fewest_people) > names.size()) {
-      diagnostics.error(schedule.where, "schedule: meetings: fewest_people is more than the " +
-                                            std::to_string(names.size()) + " seats of " + scene.name);
-    }
-    const int most = std::min(schedule.meetings->most_people, static_cast<int>(names.size()));
-    for (int i = 1; i <= most; ++i) add(SchedulePart::guest, Role::staff, "guest_" + std::to_string(i), "");
+    for (const std::string& seat : schedule.meetings->seats) desks.require(seat, schedule.meetings->where);
   }
-  if (schedule.cleaning_h) add(SchedulePart::cleaner, Role::staff, "cleaner", "");
+  const int guests = guests_of(schedule, scene, diagnostics);
   diagnostics.throw_if_errors();
+  for (int i = 1; i <= guests; ++i) add(SchedulePart::guest, Role::staff, "guest_" + std::to_string(i), "");
+  if (schedule.cleaning_h) add(SchedulePart::cleaner, Role::staff, "cleaner", "");
   return people;
 }
 

@@ -26,6 +26,10 @@ struct ScheduledPerson {
 [[nodiscard]] std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const SceneSpec& scene,
                                                      std::uint64_t seed);
 
+/// Where meetings are held: the seats that are asked for, or those that are nobody's own desk.
+[[nodiscard]] std::vector<std::string> meeting_seats(const MeetingsSpec& meetings, const SceneSpec& scene,
+                                                     const ScheduleSpec& schedule);
+
 /// Days since 1970-01-01 of "2026-03-02". Throws Error(input) for what is no date.
 [[nodiscard]] std::int64_t day_number(const std::string& iso_date, const Where& where);
 [[nodiscard]] bool is_working_day(std::int64_t day) noexcept;  ///< Monday to Friday

@@ -1,5 +1,6 @@
 #include "schema/study_in_force.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "pirsim/geometry.hpp"
@@ -16,7 +17,7 @@ StudyInForce as_given(SceneSpec scene, const ScriptSpec& script) {
     for (const ScheduledPerson& scheduled : people_of(*trial.schedule, study.scene, script.seed)) {
       own.people.push_back({scheduled.person, {}, scheduled});
     }
-    own.duration_s = own.duration_s.value_or(3600.0 * (trial.schedule->to_h - trial.schedule->from_h));
+    own.duration_s = std::round(3600.0 * (trial.schedule->to_h - trial.schedule->from_h));  // times are whole minutes
   }
   return study;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pirsim/error.hpp"
 #include "pirsim/geometry.hpp"
@@ -96,6 +97,19 @@ void Actor::carry_on(const Scene& scene) {
     finish_action();
     if (next) action_ = *next;
   }
+}
+
+std::int64_t Actor::away_until(const CompiledStudy& study, std::int64_t tick) const {
+  constexpr auto for_good = std::numeric_limits<std::int64_t>::max();
+  if (present()) return tick;
+  if (done()) return for_good;
+  std::int64_t until = for_good;
+  for (std::size_t i = action_ + (begun_ ? 1 : 0); i < actions().size() && until == for_good; ++i) {
+    if (actions()[i].at_s) until = ticks(*actions()[i].at_s, study);
+  }
+  if (!begun_) return action().at_s ? until : tick;
+  const bool waits = errands_.empty() && std::holds_alternative<action::Wait>(action().what);
+  return waits ? std::min(until, began_ + lasts_ticks_ - 1) : tick;
 }
 
 void Actor::finish_action() {

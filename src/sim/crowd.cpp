@@ -1,6 +1,7 @@
 #include "sim/crowd.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace pirsim::sim {
 
@@ -8,7 +9,7 @@ Crowd::Crowd(const CompiledStudy& study, std::uint32_t run) : conversation_(stud
   const std::size_t n_people = study.trial_of(run).people.size();
   std::shared_ptr<const DayPlan> plan;
   const TrialModel& trial = study.trial_of(run);
-  if (trial.schedule) plan = std::make_shared<const DayPlan>(draw_day(study, trial, run));
+  if (trial.schedule) plan = std::make_shared<const DayPlan>(draw_day(study, run));
   for (std::uint32_t person = 0; person < n_people; ++person) actors_.emplace_back(study, run, person, plan);
   presences_.resize(n_people);
   seated_.resize(n_people, 0);
@@ -71,6 +72,12 @@ void Crowd::note_seats_left(const CompiledStudy& study) {
     }
     seated_[i] = seated ? 1 : 0;
   }
+}
+
+std::int64_t Crowd::away_until(const CompiledStudy& study, std::int64_t tick) const {
+  std::int64_t until = std::numeric_limits<std::int64_t>::max();
+  for (const Actor& actor : actors_) until = std::min(until, actor.away_until(study, tick));
+  return until;
 }
 
 int Crowd::n_on_floor(const FloorArea& floor) const {

@@ -24,6 +24,8 @@ class Crowd {
   [[nodiscard]] const std::vector<Actor>& actors() const noexcept { return actors_; }
   /// Indices (into the scene's seats) of the seats from which somebody rose in the step to this tick.
   [[nodiscard]] const std::vector<std::size_t>& seats_left() const noexcept { return seats_left_; }
+  /// Up to this tick nobody comes, and nothing of anybody changes; the present one (`tick`) if somebody is there.
+  [[nodiscard]] std::int64_t away_until(const CompiledStudy& study, std::int64_t tick) const;
   [[nodiscard]] int n_on_floor(const FloorArea& floor) const;
   /// What the first person does: the rows' phase.
   [[nodiscard]] std::string_view phase() const noexcept;

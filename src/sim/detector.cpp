@@ -33,11 +33,35 @@ void Detector::tick(const Exposure& before, const Exposure& after, std::span<std
     edge_draw_.tick();
     array_->channels().mark(before.channels.words(), after.channels.words(), edge_draw_.watched(), triggers);
   }
+  advance_analog(after, triggers);
+}
+
+void Detector::tick_unchanged(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept {
+  std::ranges::fill(triggers, std::uint8_t{0});
+  if (polarity_) {
+    polarity_->tick(exposure.sums, triggers);
+  } else {
+    edge_draw_.tick();
+  }
+  advance_analog(exposure, triggers);
+}
+
+void Detector::advance_analog(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept {
   for (std::size_t i = 0; i < analog_.size(); ++i) {
     if (!analog_[i]) continue;
-    array_->analog()->sensors()[i]->detector.advance(*analog_[i], watts(after.powers[i]));
+    array_->analog()->sensors()[i]->detector.advance(*analog_[i], watts(exposure.powers[i]));
     triggers[i] = pir::AnalogDetector::on(*analog_[i]) ? 1 : 0;
   }
+}
+
+bool Detector::is_at_rest(const Exposure& exposure) const {
+  if (is_memoryless()) return true;
+  if (!polarity_ && array_->n_levels() > 1) return false;  // draws the edges of every window
+  Detector next(*this);
+  std::vector<std::uint8_t> triggers(array_->n_sensors());
+  next.tick_unchanged(exposure, triggers);
+  const auto off = [](std::uint8_t trigger) { return trigger == 0; };
+  return next.polarity_ == polarity_ && next.analog_ == analog_ && std::ranges::all_of(triggers, off);
 }
 
 bool Detector::is_memoryless() const noexcept { return !polarity_ && analog_.empty() && array_->n_levels() == 1; }

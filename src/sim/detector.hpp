@@ -23,6 +23,10 @@ class Detector {
   void begin_run(std::uint64_t seed, std::uint32_t run, const Exposure& rest);
   /// From one tick to the next. triggers: (n_sensors) set to 1 where a sensor triggers at the later one, else to 0.
   void tick(const Exposure& before, const Exposure& after, std::span<std::uint8_t> triggers) noexcept;
+  /// tick() where nothing that is seen changes.
+  void tick_unchanged(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept;
+  /// Would tick_unchanged() leave everything as it is, without a trigger?
+  [[nodiscard]] bool is_at_rest(const Exposure& exposure) const;
   /// Whether a tick's triggers follow from its two exposures alone, in any run.
   [[nodiscard]] bool is_memoryless() const noexcept;
 
@@ -32,6 +36,8 @@ class Detector {
   }
 
  private:
+  void advance_analog(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept;
+
   const SensorArray* array_;
   pir::EdgeDraw edge_draw_;
   std::optional<pir::PolarityDetector> polarity_;

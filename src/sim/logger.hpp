@@ -22,6 +22,8 @@ class Logger {
   void seat_left(std::size_t seat) { stages_.seat_left(seat); }
   /// triggers: (n_sensors) what the detectors said at this tick (1, 2, ...); the effects change them.
   void tick(std::int64_t tick, std::span<std::uint8_t> triggers) noexcept;
+  /// Whole windows without triggers leave it as it is.
+  [[nodiscard]] bool is_at_rest() const noexcept { return !stages_.acts_on_triggers() && reader_.is_at_rest(); }
   /// The row's bits as they were read last, then what the effects do to the row.
   void complete(Sample& row) noexcept;
 

@@ -1,8 +1,38 @@
 #include "sim/run_state.hpp"
 
+#include <algorithm>
+
 #include "schema/schedule_people.hpp"
+#include "sim/schedule.hpp"
 
 namespace pirsim::sim {
+namespace {
+
+/// What a room is used for, by those who are on its floor.
+std::string_view use_of(const CompiledStudy& study, const Crowd& crowd) {
+  int n = 0, cleaners = 0, in_meeting = 0;
+  for (const Actor& actor : crowd.actors()) {
+    if (!actor.present() || !study.scene().floor.contains(actor.motion().position())) continue;
+    const auto& part = actor.person().spec.part;
+    ++n;
+    cleaners += part && part->part == SchedulePart::cleaner ? 1 : 0;
+    in_meeting += actor.takes_part_in_meeting() ? 1 : 0;
+  }
+  if (n == 0) return "empty";
+  return in_meeting > 1 ? "meeting" : cleaners == n ? "cleaning" : "occupied";
+}
+
+void end_window(const CompiledStudy& study, RunState& state) {
+  const TrialModel& trial = study.trial_of(state.run);
+  Sample& sample = state.sample;
+  sample.time_s = static_cast<double>(state.tick) / study.sensing().tick_rate_hz;
+  if (state.day) sample.clock = clock_text(*state.day, 3600.0 * trial.schedule->from_h + sample.time_s);
+  sample.phase = state.day ? use_of(study, state.crowd) : state.crowd.phase();
+  sample.people = state.crowd.n_on_floor(study.scene().floor);
+  state.finished = trial.duration_s ? sample.time_s >= *trial.duration_s : state.crowd.done();
+}
+
+}  // namespace
 
 RunState::RunState(const CompiledStudy& study, std::uint32_t run_number)
     : run(run_number),
@@ -15,21 +45,17 @@ RunState::RunState(const CompiledStudy& study, std::uint32_t run_number)
   logger.begin_run(study.seed(), run);
   sample.replicate = study.replicate_of(run);
   sample.trial = study.trial_of(run).id;
+  if (study.trial_of(run).schedule) day = day_of(study, run);
 }
 
 bool move_tick(const CompiledStudy& study, RunState& state) {
   ++state.tick;
   state.crowd.advance(study, state.tick);
+  const auto& actors = state.crowd.actors();
+  state.empty_ticks = std::ranges::any_of(actors, &Actor::present) ? 0 : state.empty_ticks + 1;
+  state.at_rest = false;
   if (state.tick % study.sensing().ticks_per_window != 0) return false;
-  state.sample.time_s = static_cast<double>(state.tick) / study.sensing().tick_rate_hz;
-  if (const auto& schedule = study.trial_of(state.run).schedule) {
-    const std::int64_t day = day_number(schedule->first_day, schedule->where) + study.replicate_of(state.run) - 1;
-    state.sample.clock = clock_text(day, 3600.0 * schedule->from_h + state.sample.time_s);
-  }
-  state.sample.phase = state.crowd.phase();
-  state.sample.people = state.crowd.n_on_floor(study.scene().floor);
-  const std::optional<double>& duration_s = study.trial_of(state.run).duration_s;
-  state.finished = duration_s ? state.sample.time_s >= *duration_s : state.crowd.done();
+  end_window(study, state);
   return true;
 }
 
@@ -43,6 +69,26 @@ bool step_tick(const CompiledStudy& study, RunState& state) {
   state.logger.tick(state.tick, state.triggers);
   if (window_ended) state.logger.complete(state.sample);
   return window_ended;
+}
+
+bool pass_empty_window(const CompiledStudy& study, RunState& state) {
+  const std::int64_t n_ticks = study.sensing().ticks_per_window;
+  // Two ticks, so that both exposures show the empty room.
+  if (state.finished || state.empty_ticks < 2 || state.tick % n_ticks != 0) return false;
+  if (state.crowd.away_until(study, state.tick) < state.tick + n_ticks) return false;
+  if (state.at_rest) {
+    state.tick += n_ticks;
+  } else {
+    for (std::int64_t i = 0; i < n_ticks; ++i) {
+      state.detector.tick_unchanged(state.exposure(), state.triggers);
+      state.logger.tick(++state.tick, state.triggers);
+    }
+    state.at_rest = state.logger.is_at_rest() && state.detector.is_at_rest(state.exposure());
+  }
+  state.empty_ticks += n_ticks;
+  end_window(study, state);
+  state.logger.complete(state.sample);
+  return true;
 }
 
 }  // namespace pirsim::sim

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "pirsim/sample.hpp"
@@ -31,6 +32,9 @@ struct RunState {
   std::array<Exposure, 2> exposures;  ///< of this tick and of the one before, by turns
   Detector detector;
   Logger logger;
+  std::int64_t empty_ticks = 0;     ///< for how many of the latest ticks nobody was there
+  bool at_rest = false;             ///< nothing changes before somebody comes
+  std::optional<std::int64_t> day;  ///< since 1970-01-01, of a schedule
   std::vector<std::uint8_t> triggers;  ///< (n_sensors) at this tick
   Sample sample;                       ///< at the end of the last whole window
   /// What has been traced before; changes no result. Made when first needed, unless whoever runs many lends theirs.
@@ -42,5 +46,8 @@ struct RunState {
 bool move_tick(const CompiledStudy& study, RunState& state);
 /// Advances one tick: people, optics, detectors, logger. True if a window ended with it.
 bool step_tick(const CompiledStudy& study, RunState& state);
+/// Advances by a window in which nobody is there and nobody comes, at next to no cost, to what step_tick() comes to in
+/// as many ticks, bit for bit. False, and nothing done, if there may be somebody.
+bool pass_empty_window(const CompiledStudy& study, RunState& state);
 
 }  // namespace pirsim::sim

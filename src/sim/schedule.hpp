@@ -1,9 +1,7 @@
-// Draws the days of a schedule: who comes when, what they do, and when they leave.
+// A schedule's day as actions in a room: what was drawn as times and places, with the seats and ways that it takes.
 #pragma once
 
 #include <cstdint>
-#include <memory>
-#include <string>
 #include <vector>
 
 #include "pirsim/schedule.hpp"
@@ -11,15 +9,17 @@
 
 namespace pirsim::sim {
 
+struct DayDraw;
+
 /// Actions of every person of a trial on one day, in the order of its people; times are seconds of the run.
 using DayPlan = std::vector<std::vector<ScriptedAction>>;
 
-/// The day that a run simulates: replicates are days that follow each other. The same seed gives the same days.
-/// trial: one with a schedule. People without a part in it keep the actions that they have.
-[[nodiscard]] DayPlan draw_day(const CompiledStudy& study, const TrialModel& trial, std::uint32_t run);
+/// Days since 1970-01-01 of the day that a run simulates: replicates are days that follow each other.
+[[nodiscard]] std::int64_t day_of(const CompiledStudy& study, std::uint32_t run);
 
-/// Rates of a Markov chain over places from the share of time spent in each and the mean stay, in any one unit of time:
-/// (i x n + j) is the rate from i to j. Solves x_i (sum x - x_i) = share_i / stay_i. Ref: [ChenHongLuo2018].
-[[nodiscard]] std::vector<double> markov_rates(const std::vector<double>& shares, const std::vector<double>& stays);
+/// The times and places of that day. The same seed gives the same days. The run is of a trial with a schedule.
+[[nodiscard]] DayDraw draw_times(const CompiledStudy& study, std::uint32_t run);
+/// The same as actions. People without a part in the schedule keep the actions that they have.
+[[nodiscard]] DayPlan draw_day(const CompiledStudy& study, std::uint32_t run);
 
 }  // namespace pirsim::sim

@@ -23,6 +23,7 @@ bool step_tick(const Model& model, State& state) { return sim::step_tick(model.c
 
 bool step(const Model& model, State& state) {
   if (state.finished()) return false;
+  if (sim::pass_empty_window(model.compiled(), state.run_state())) return true;
   while (!step_tick(model, state)) {
   }
   return true;

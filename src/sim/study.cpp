@@ -46,8 +46,14 @@ RunResult run_with(sim::ZoneCachePool& caches, const sim::CompiledStudy& study, 
   *state.cache = caches.borrow();
   std::optional<sim::Explainer> explainer;
   if (trace == Trace::signals && study.array().analog() != nullptr) explainer.emplace(study);
+  // Zones and signals are told of every tick.
+  const bool may_pass = record == Record::samples && !explainer;
   try {
     while (!state.finished) {
+      if (may_pass && sim::pass_empty_window(study, state)) {
+        result.samples.push_back(state.sample);
+        continue;
+      }
       const bool window_ended = sim::step_tick(study, state);
       if (record == Record::samples_and_zones) result.zones.push_back(activity_of(state.exposure().zones));
       if (explainer) explainer->explain(state, result.trace);

@@ -52,15 +52,35 @@ std::string note_of(const CellSummary& cell) {
   return note;
 }
 
+/// What was run, and what a count is.
+std::string introduction(const Model& model, const std::vector<std::string>& sensors) {
+  const ScriptSpec& script = model.script();
+  return std::to_string(script.trials.size()) + " trials in " + model.scene().name + ", each run " +
+         std::to_string(script.replicates) + " times, watched by " + boost::algorithm::join(sensors, ", ") +
+         ". A count is the number of windows in which a sensor reported motion" +
+         (script.summary.phases.empty()
+              ? "."
+              : " while the phase was " + boost::algorithm::join(script.summary.phases, ", ") + ".");
+}
+
 }  // namespace
 
 StudyReport::StudyReport(const Model& model) : model_(&model) {
   for (const SensorSpec& sensor : model.scene().sensors) sensors_.push_back(sensor.id);
-  for (const TrialSpec& trial : model.script().trials) trials_.push_back({trial.id, {}});
+  for (const TrialSpec& trial : model.script().trials) {
+    trials_.push_back({trial.id, {}, {}});
+    if (trial.schedule) trials_.back().days.emplace(model, *trial.schedule);
+  }
+}
+
+bool StudyReport::needs_occupants() const noexcept {
+  return std::ranges::any_of(trials_, [](const Trial& trial) { return trial.days.has_value(); });
 }
 
 void StudyReport::add_run(const RunResult& result) {
-  if (result.replicate == 1) trials_[result.run % trials_.size()].samples = result.samples;
+  Trial& trial = trials_[result.run % trials_.size()];
+  if (trial.days) return trial.days->add_run(result);
+  if (result.replicate == 1) trial.samples = result.samples;
 }
 
 io::SeriesChart StudyReport::series_of(const Trial& trial) const {
@@ -85,23 +105,25 @@ io::Report StudyReport::finish(const Summary& summary) const {
   const std::vector<CellSummary> cells = summary.cells();  // trials in order, sensors within each
   io::Report report;
   report.title = script.name;
-  report.paragraphs = {std::to_string(trials_.size()) + " trials in " + model_->scene().name + ", each run " +
-                       std::to_string(script.replicates) + " times, watched by " +
-                       boost::algorithm::join(sensors_, ", ") +
-                       ". A count is the "
-                       "number of windows in which a sensor reported motion" +
-                       (script.summary.phases.empty()
-                            ? "."
-                            : " while the phase was " + boost::algorithm::join(script.summary.phases, ", ") + ".")};
-  io::ReportSection numbers{"In numbers", {}, {}, {}};
-  if (summary.overall().cells > 0) {
-    numbers.tables.push_back(overall_table(summary.overall()));
+  if (needs_occupants()) {
+    report.paragraphs = {std::to_string(script.replicates) + (script.replicates == 1 ? " day in " : " days in ") +
+                         model_->scene().name + ", watched by " + boost::algorithm::join(sensors_, ", ") + "."};
   } else {
-    numbers.paragraphs.push_back("Nothing measured was given to compare with.");
+    report.paragraphs = {introduction(*model_, sensors_)};
+    io::ReportSection numbers{"In numbers", {}, {}, {}};
+    if (summary.overall().cells > 0) {
+      numbers.tables.push_back(overall_table(summary.overall()));
+    } else {
+      numbers.paragraphs.push_back("Nothing measured was given to compare with.");
+    }
+    report.sections.push_back(std::move(numbers));
   }
-  report.sections.push_back(std::move(numbers));
 
   for (std::size_t t = 0; t < trials_.size(); ++t) {
+    if (trials_[t].days) {
+      report.sections.push_back(trials_[t].days->section(trials_.size() == 1 ? "Days" : "Days of " + trials_[t].id));
+      continue;
+    }
     io::ReportSection section{trials_[t].id, {}, {}, {}};
     if (t == 0) {
       section.paragraphs = {

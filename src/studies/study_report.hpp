@@ -1,11 +1,13 @@
 // A study's counts and time series as a page for a reader.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "io/report.hpp"
 #include "pirsim/study.hpp"
+#include "studies/day_report.hpp"
 #include "studies/summary.hpp"
 
 namespace pirsim::studies {
@@ -16,14 +18,17 @@ class StudyReport {
   explicit StudyReport(const Model& model);
 
   void add_run(const RunResult& result);
-  /// Histograms a trial and sensor as in [Stefansson2021] Figure 8, with the summary's measured counts as lines, and
+  /// Days are shown with where people were.
+  [[nodiscard]] bool needs_occupants() const noexcept;
+  /// Of days of a schedule: people and sensors over the day, and so on. Otherwise: histograms a trial and sensor as in [Stefansson2021] Figure 8, with the summary's measured counts as lines, and
   /// the first replicate's time series as in Figure 9.
   [[nodiscard]] io::Report finish(const Summary& summary) const;
 
  private:
   struct Trial {
     std::string id;
-    std::vector<Sample> samples;  ///< of the first replicate
+    std::vector<Sample> samples;    ///< of the first replicate
+    std::optional<DayReport> days;  ///< of a schedule
   };
   [[nodiscard]] io::SeriesChart series_of(const Trial& trial) const;
 

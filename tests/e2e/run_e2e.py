@@ -48,7 +48,8 @@ COMMANDS = {(): ("studyA.yaml", "-o", "rows.csv"), ("run",): ("studyA.yaml", "-o
             ("reconcile",): ("studyA.yaml", "--measured", "m.csv"), ("reconcile", "plan"): ("studyA.yaml",),
             ("reconcile", "selftest"): ("studyA.yaml",),
             ("reconcile", "seal"): ("studyA.yaml", "--answer", "answer.json")}
-OTHERS = {("reconcile", "open"): ("--answer", "a", "--commitment", "b", "--report", "c"), ("status",): ("shards",),
+OTHERS = {("day",): ("--scene", "nowhere.gltf", "--staff", "2", "-o", "rows.csv"),
+          ("reconcile", "open"): ("--answer", "a", "--commitment", "b", "--report", "c"), ("status",): ("shards",),
           ("merge",): ("shards", "-o", "rows.csv", "--script", "other.yaml"), ("effects",): (), ("help",): ()}
 VALUES = {"--set": "name=other", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--format": ".csv",
           "--summary": "sums.csv", "--zones": "zones.csv", "--trace": "trace.csv", "--occupants": "occupants.csv", "--shard": "1/2", "--max-time": "5m",
@@ -162,6 +163,69 @@ class Options(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             file = write(folder, "file", "")
             self.assertIn(f"'{file}' isn't a folder", study("-o", file / "x.csv", code=4).stderr)
+
+
+class Days(unittest.TestCase):
+    OFFICE = "--scene", None, "--staff", 8, "--from", "09:00", "--to", "09:05", "-q"
+
+    def day(self, *args, **kwargs):
+        scene = DATA / "rooms" / "open_office.gltf"
+        return pirsim("day", *(scene if arg is None else arg for arg in self.OFFICE), *args, **kwargs)
+
+    def test_a_week_of_an_office_and_the_script_that_it_makes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            week = self.day("--occupants", f"{folder}/who.csv", "--report", f"{folder}/week.html").stdout
+            script = write(folder, "week.yaml", self.day("--print-script").stdout)
+            self.assertEqual(study("-q", scene="open_office.gltf", script=script).stdout, week)
+            table = rows(week)
+            self.assertEqual(len(table), 5 * 300)
+            self.assertEqual((table[0]["time"], table[-1]["time"]), ("2026-03-02T09:00:01", "2026-03-06T09:05:00"))
+            self.assertGreater(max(int(row["people"]) for row in table), 3)
+            who = rows((pathlib.Path(folder) / "who.csv").read_text())
+            inside = {}
+            for row in who:
+                key = row["replicate"], row["time_s"]
+                inside[key] = inside.get(key, 0) + (row["where"] == "inside")
+            for row in table:
+                self.assertEqual(int(row["people"]), inside.get((row["replicate"], row["time_s"]), 0))
+            self.assertIn("People in the room", (pathlib.Path(folder) / "week.html").read_text())
+
+    def test_days_are_blocks_of_an_array_and_go_on_where_they_stopped(self):
+        with tempfile.TemporaryDirectory() as folder:
+            whole = self.day("--threads", 1).stdout
+            for i in (1, 2):
+                self.day("--shard", f"{i}/2", "-o", f"{folder}/shards", "--threads", 2)
+            pirsim("merge", f"{folder}/shards", "-o", f"{folder}/merged.csv", "-q")
+            self.assertEqual((pathlib.Path(folder) / "merged.csv").read_text(), whole)
+            self.day("-o", f"{folder}/days.csv", "--max-time", "0.001s", "--threads", 1, code=75)
+            self.day("-o", f"{folder}/days.csv", "--resume")
+            self.assertEqual((pathlib.Path(folder) / "days.csv").read_text(), whole)
+            refused = self.day("-o", f"{folder}/days.csv", "--resume", "--cleaning", "20:00", code=3).stderr
+            self.assertIn("days.csv", refused)
+
+    def test_a_day_of_meetings(self):
+        held = "schedule.meetings.held=[{at: '10:00', duration_min: 5, people: 4}]"
+        table = rows(pirsim("day", "--scene", DATA / "rooms" / "meeting_room.gltf", "--meetings", "--days", 1, "--from",
+                            "09:55", "--to", "10:12", "--set", held, "-q").stdout)
+        self.assertEqual(max(int(row["people"]) for row in table), 4)
+        self.assertEqual({row["phase"] for row in table}, {"empty", "occupied", "meeting"})
+        self.assertEqual(table[-1]["people"], "0")
+
+    def test_check_tells_what_a_schedule_holds(self):
+        told = study("check", scene="open_office.gltf", script="office_week.yaml").stdout
+        self.assertIn("schedule: 5 days from 2026-03-02 (5 working days)", told)
+        self.assertRegex(told, r"staff_1 +seat S1 +first day \d\d:\d\d-\d\d:\d\d, mean of 5 days")
+        self.assertRegex(told, r"at most [5-8] at once, first at 2026-03-0\dT")
+        told = study("check", script="meeting_day.yaml").stdout
+        self.assertRegex(told, r"2026-03-02T\d\d:\d\d-\d\d:\d\d, \d people")
+
+    def test_what_a_room_can_not_hold_is_refused(self):
+        room = "--scene", DATA / "rooms" / "open_office.gltf"
+        self.assertIn("say who comes", pirsim("day", *room, code=2).stderr)
+        self.assertIn("more staff than the 9 seats", pirsim("day", *room, "--staff", 10, code=3).stderr)
+        self.assertIn(":9:7: error: to: expected a time of day",
+                      pirsim("day", *room, "--staff", 2, "--to", "25:00", code=3).stderr)
+        self.assertIn("is no date", pirsim("day", *room, "--staff", 2, "--first-day", "2026-13-01", code=3).stderr)
 
 
 class Help(unittest.TestCase):

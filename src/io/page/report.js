@@ -295,7 +295,7 @@
       y: { scale: "y", field: "low" }, y2: { scale: "y", field: "high" }, stroke: colour, strokeWidth: { value: 1.5 },
       strokeOpacity: { value: 0.6 } }, at) } });
     marks.push({ type: "symbol", from: { data: "points" }, encode: { enter: Object.assign({ y: { scale: "y", field: "y" },
-      size: { value: 60 }, fill: colour, tooltip: { field: "tip" } }, at) } });
+      size: { value: points.length > 60 ? 9 : 60 }, fill: colour, tooltip: { field: "tip" } }, at) } });
     const names = chart.x_names.length > 0, ticks = chart.x_names.map((name, i) => i + 1);
     return {
       width: inner, height, padding: 4,

@@ -1,0 +1,124 @@
+// An ordinary day, or many, from a room alone: makes a script with a schedule and runs it.
+#include <iostream>
+#include <memory>
+#include <sstream>
+
+#include "app/commands.hpp"
+#include "app/outputs.hpp"
+#include "app/session.hpp"
+#include "app/study_run.hpp"
+
+namespace pirsim::app {
+namespace {
+
+struct DayOptions {
+  RunOptions run;
+  int staff = 0;
+  int days = 5;
+  std::string first_day = "2026-03-02";
+  std::string from = "00:00", to = "24:00";
+  std::string cleaning = "19:00";
+  enum class Meetings { none, held } meetings = Meetings::none;
+  enum class Action { run, print_script } action = Action::run;
+};
+
+constexpr const char* staff_lines = R"(  staff:
+    - {role: staff, count: @staff@}    # or manager, administrator; seats: [S1, ...] for desks of their own
+  arrival: {mean: 08:30, sd_min: 30}
+  departure: {mean: 17:30, sd_min: 30}
+  lunch: {mean: 12:00, sd_min: 30}
+  lunch_min: 60
+  lunch_sd_min: 15
+)";
+
+constexpr const char* meeting_lines = R"(  meetings:
+    fewest_a_day: 2
+    most_a_day: 6
+    fewest_people: 2                   # most_people: 8, or as many as there are seats
+    durations_min: [30, 60, 90, 120]
+    probabilities: [0.13, 0.70, 0.12, 0.05]
+    from: 09:00
+    to: 18:00
+    lateness_min: 2
+)";
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
+    text.replace(at, what.size(), by);
+  }
+  return text;
+}
+
+std::string script_text(const DayOptions& options) {
+  std::ostringstream text;
+  text << "# Ordinary days. Each replicate is a day, from first_day on; nobody comes on Saturdays and Sundays.\n"
+       << "pirsim_script: 1\n"
+       << "name: " << (options.staff > 0 ? "office days" : "meeting days") << '\n'
+       << "seed: 1\n"
+       << "replicates: " << options.days << '\n'
+       << "schedule:\n"
+       << "  first_day: " << options.first_day << '\n'
+       << "  from: " << options.from << "                          # the part of each day that is simulated\n"
+       << "  to: " << options.to << '\n';
+  if (options.staff > 0) text << replaced(staff_lines, "@staff@", std::to_string(options.staff));
+  if (options.meetings == DayOptions::Meetings::held) text << meeting_lines;
+  if (options.cleaning != "none") text << "  cleaning: " << options.cleaning << '\n';
+  return text.str();
+}
+
+void day(const Inputs& inputs, const DayOptions& options) {
+  if (options.staff == 0 && options.meetings == DayOptions::Meetings::none) {
+    throw Error(ErrorCode::usage, "say who comes: --staff N, --meetings or both");
+  }
+  const std::string text = script_text(options);
+  ScriptSpec script = io::parse_script(text, "the script of pirsim day", inputs.overrides);
+  if (options.action == DayOptions::Action::print_script) {
+    std::cout << (inputs.overrides.empty() ? text : io::to_yaml(script));
+    require_written();
+    return;
+  }
+  check_options(inputs, options.run);
+  run(load(inputs, std::move(script)), inputs, options.run);
+}
+
+constexpr const char* examples = R"(
+  pirsim day --scene office.gltf --staff 8 -o week.csv --report week.html     a working week of an office
+  pirsim day --scene meeting_room.gltf --meetings --days 1 -o day.csv         a day of meetings
+  pirsim day --scene office.gltf --staff 8 --days 1000 --shard 3/100 -o out   a block of a thousand days
+  pirsim day --scene office.gltf --staff 8 --print-script > week.yaml         to be edited; then pirsim run
+)";
+
+}  // namespace
+
+void add_day_command(CLI::App& app) {
+  CLI::App& command = add_command(app, "day", "run ordinary days of an office or a meeting room", examples);
+  const auto inputs = std::make_shared<Inputs>();
+  const auto options = std::make_shared<DayOptions>();
+  offer_scene(command, *inputs);
+  offer_verbose(command, inputs->verbosity);
+  offer_tracer(command, *inputs);
+  offer_seed(command, *inputs);
+  command.add_option("--staff", options->staff, "how many people have a desk in the room")
+      ->option_text("N")
+      ->check(CLI::Range(0, 200));
+  command.add_flag_callback(
+      "--meetings", [options] { options->meetings = DayOptions::Meetings::held; },
+      "people from elsewhere meet in the room, on the seats that are nobody's desk");
+  command.add_option("--days", options->days, "how many days follow each other (default: 5)")
+      ->option_text("N")
+      ->check(CLI::Range(1, 10000000));
+  command.add_option("--first-day", options->first_day, "default: 2026-03-02, a Monday")->option_text("DATE");
+  command.add_option("--from", options->from, "time of day at which each run begins (default: 00:00)")
+      ->option_text("TIME");
+  command.add_option("--to", options->to, "time of day at which each run ends (default: 24:00)")->option_text("TIME");
+  command.add_option("--cleaning", options->cleaning, "about when somebody cleans, or none (default: 19:00)")
+      ->option_text("TIME");
+  offer_run_options(command, std::shared_ptr<RunOptions>(options, &options->run));
+  command.add_flag_callback(
+      "--print-script", [options] { options->action = DayOptions::Action::print_script; },
+      "print the script that this makes and stop");
+  on_call(
+      command, inputs, [options](const Inputs& given) { day(given, *options); }, Needs::scene);
+}
+
+}  // namespace pirsim::app

@@ -1,0 +1,190 @@
+#include "app/study_run.hpp"
+
+#include <atomic>
+#include <iostream>
+#include <sstream>
+
+#include "app/long_work.hpp"
+#include "app/outputs.hpp"
+#include "app/session.hpp"
+#include "app/whole_study_outputs.hpp"
+#include "io/manifest.hpp"
+#include "pirsim/study.hpp"
+#include "studies/sight.hpp"
+
+namespace pirsim::app {
+namespace {
+
+io::FailedRun failed_run(const RunResult& result) {
+  return {result.run, result.trial, result.replicate, result.fault->time_s, result.fault->message};
+}
+
+io::RunNotes notes_of(const RunResult& result) {
+  io::RunNotes notes;
+  for (const RunIncident& incident : result.incidents) {
+    switch (incident.kind) {
+      case IncidentKind::passed_through:
+        ++notes.passes_through;
+        break;
+      case IncidentKind::seat_changed:
+        ++notes.seats_changed;
+        break;
+      case IncidentKind::seat_missed:
+        ++notes.seats_missed;
+        break;
+    }
+  }
+  if (result.fault) notes.failed.push_back(failed_run(result));
+  return notes;
+}
+
+std::string describe(const io::FailedRun& run) {
+  std::ostringstream text;
+  text << "trial " << run.trial << ", replicate " << run.replicate << ", second " << run.time_s << ": " << run.message;
+  return text.str();
+}
+
+/// What rows don't say. Throws Error(incomplete) if there were runs that could not go on.
+void tell(const io::RunNotes& notes, Verbosity verbosity) {
+  const auto warn = [&](std::uint64_t n, const char* what) {
+    if (n > 0 && verbosity != Verbosity::quiet) std::cerr << "warning: " << n << what << '\n';
+  };
+  warn(notes.passes_through, " times somebody who found no way round others for 20 s walked through them");
+  warn(notes.seats_changed, " times somebody took another seat, since theirs stayed taken");
+  warn(notes.seats_missed, " times somebody went without a seat, since theirs stayed taken");
+  if (notes.failed.empty()) return;
+  constexpr std::size_t most_told = 10;
+  std::string message = std::to_string(notes.failed.size()) + " runs could not go on and have no rows";
+  for (std::size_t i = 0; i < std::min(notes.failed.size(), most_told); ++i) {
+    message += "\n  " + describe(notes.failed[i]);
+  }
+  throw Error(ErrorCode::incomplete, message);
+}
+
+std::string stop_message(const RunOptions& options, const std::string& cause, const Model& model,
+                         const RowOutput& rows) {
+  const RunRange left = rows.missing_runs();
+  std::string message = "stopped by " + cause;
+  if (options.rows.output.empty() || io::is_written_directly(options.rows.output)) return message;
+  message += ", " + std::to_string(left.count()) + " of " + std::to_string(model.n_runs()) + " runs are left";
+  return message + "; --resume goes on";
+}
+
+}  // namespace
+
+void check_options(const Inputs& inputs, const RunOptions& options) {
+  const bool sharded = !options.rows.shard.empty();
+  const std::filesystem::path rows = sharded ? std::filesystem::path{} : options.rows.output;
+  std::vector<NamedOutput> outputs{{"-o", rows, table_endings()},
+                                   {"--summary", options.summary, {".csv", ".md"}},
+                                   {"--zones", options.zones, table_endings()},
+                                   {"--trace", options.trace, table_endings()},
+                                   {"--occupants", options.occupants, table_endings()},
+                                   {"--report", options.report, {".html"}}};
+  if (!rows.empty()) outputs.push_back({"the manifest of -o", io::manifest_path(rows), {".json"}});
+  check_outputs(outputs, inputs);
+  const char* partial = sharded                                           ? "--shard"
+                        : options.rows.start == RowOptions::Start::resume ? "--resume"
+                        : options.max_time_s                              ? "--max-time"
+                                                                          : nullptr;
+  if (partial == nullptr) return;
+  if (options.rows.output.empty()) {
+    throw Error(ErrorCode::usage, std::string(partial) + " needs -o " + (sharded ? "DIR" : "FILE"));
+  }
+  if (!sharded && io::is_written_directly(options.rows.output)) {
+    throw Error(ErrorCode::usage, std::string(partial) + ": '" + options.rows.output.string() +
+                                      "' is no regular file, its rows can't be gone on with");
+  }
+  if (has_whole_study_outputs(options)) {
+    throw Error(ErrorCode::usage,
+                std::string(partial) +
+                    " goes with none of --summary, --zones, --trace, --occupants and --report: they " +
+                    "need all runs at once");
+  }
+}
+
+void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
+  if (inputs.verbosity != Verbosity::quiet) {
+    tell(studies::warnings(studies::look_around(model), model.scene().name), inputs.verbosity);
+  }
+
+  // Rows that only go to a stream can end anywhere, as by Ctrl-C.
+  std::optional<StopRequest> stop;
+  if (!options.rows.output.empty() || has_whole_study_outputs(options)) stop.emplace();
+  const std::unique_ptr<RowOutput> rows = open_rows(model, options.rows);
+  WholeStudyOutputs others(model, inputs, options);
+  const std::uint32_t wanted = rows->missing_runs().count();
+  Progress progress(wanted, inputs.verbosity);
+  std::atomic<std::uint32_t> done = 0;
+  const auto out_of_time = [&] { return options.max_time_s && done > 0 && progress.seconds() >= *options.max_time_s; };
+  StudyOptions study;
+  study.threads = options.threads;
+  study.record = options.zones.empty() ? Record::samples : Record::samples_and_zones;
+  study.trace = options.trace.empty() ? Trace::none : Trace::signals;
+  study.occupants = others.occupants();
+  study.runs = rows->missing_runs();
+  study.goes_on = [&] { return !(stop && stop->was_made()) && !out_of_time(); };
+  try {
+    run_study(model, study, [&](const RunResult& result) {
+      if (result.fault && options.faults == RunOptions::Faults::stop) {
+        throw Error(ErrorCode::infeasible, describe(failed_run(result)));
+      }
+      rows->add_run(result.samples, notes_of(result));
+      others.add(result);
+      ++done;
+      progress.run_finished();
+    });
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::io) rows->discard();
+    throw;
+  }
+  if (done < wanted) {
+    const std::string cause = stop && stop->was_made() ? stop->signal_name() : "--max-time";
+    throw Error(ErrorCode::stopped, stop_message(options, cause, model, *rows));
+  }
+  rows->commit();
+  others.commit();
+  tell(rows->notes(), inputs.verbosity);
+  if (inputs.verbosity == Verbosity::verbose) {
+    std::cerr << done << " runs, " << rows->rows() << " rows in " << progress.seconds() << " s\n";
+  }
+}
+
+void offer_run_options(CLI::App& command, const std::shared_ptr<RunOptions>& options) {
+  offer_output(command, options->rows.output, "FILE",
+               "rows, .csv, .csv.gz or .csv.zst (default: as CSV on standard output)");
+  command.add_option("--summary", options->summary, "table of sums per trial and sensor, .csv or .md")
+      ->option_text("FILE");
+  command.add_option("--report", options->report, "counts and time series as one self-contained page, .html")
+      ->option_text("FILE");
+  command.add_option("--zones", options->zones, "every zone's activity at every tick, .csv, .csv.gz or .csv.zst")
+      ->option_text("FILE");
+  command
+      .add_option("--trace", options->trace,
+                  "analog sensors' power, signal and what is behind it at every tick, .csv, .csv.gz or .csv.zst")
+      ->option_text("FILE");
+  command
+      .add_option("--occupants", options->occupants,
+                  "who is where and does what, a row a second and person, .csv, .csv.gz or .csv.zst")
+      ->option_text("FILE");
+  offer_threads(command, options->threads);
+  command
+      .add_option("--shard", options->rows.shard,
+                  "only this block of the runs: I/N, auto/N or auto (in a job array); -o names a folder")
+      ->option_text("I/N");
+  command.add_option("--format", options->rows.format, "of a shard: .csv, .csv.gz or .csv.zst (default: .csv)")
+      ->option_text("ENDING")
+      ->check(CLI::IsMember(table_endings()));
+  command.add_flag_callback(
+      "--resume", [options] { options->rows.start = RowOptions::Start::resume; },
+      "go on at the last whole run; nothing to do if all is done");
+  command.add_flag_callback(
+      "--strict", [options] { options->faults = RunOptions::Faults::stop; },
+      "end at the first run that can't go on (default: note it, go on with the others, exit code 6)");
+  command.add_option("--max-time", options->max_time_s, "stop at the end of a run after so long: 3000, 50m, 2h")
+      ->option_text("TIME")
+      ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1.0}, {"m", 60.0}, {"h", 3600.0}},
+                                        CLI::AsNumberWithUnit::CASE_SENSITIVE, "TIME"));
+}
+
+}  // namespace pirsim::app

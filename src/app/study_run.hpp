@@ -1,0 +1,32 @@
+// Running a study with all that it can write: what `run` and the commands that make a study of their own share.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "app/options.hpp"
+#include "app/row_output.hpp"
+
+namespace pirsim::app {
+
+struct RunOptions {
+  RowOptions rows;
+  std::filesystem::path summary;    ///< .csv or .md
+  std::filesystem::path zones;      ///< .csv, .csv.gz or .csv.zst
+  std::filesystem::path trace;      ///< the same
+  std::filesystem::path occupants;  ///< as zones
+  std::filesystem::path report;     ///< .html
+  std::optional<double> max_time_s;
+  unsigned threads = 0;
+  enum class Faults { note, stop } faults = Faults::note;  ///< of single runs
+};
+
+/// Where rows and all else go, and how much of the study is run.
+void offer_run_options(CLI::App& command, const std::shared_ptr<RunOptions>& options);
+/// Throws Error(usage) for options that don't go together or can't be written; before any work.
+void check_options(const Inputs& inputs, const RunOptions& options);
+/// Runs what is asked for and writes it.
+void run(const Model& model, const Inputs& inputs, const RunOptions& options);
+
+}  // namespace pirsim::app

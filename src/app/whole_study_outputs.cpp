@@ -1,0 +1,178 @@
+#include "app/whole_study_outputs.hpp"
+
+#include <optional>
+#include <sstream>
+
+#include "app/outputs.hpp"
+#include "io/atomic_file.hpp"
+#include "io/compression.hpp"
+#include "pirsim/csv.hpp"
+#include "sim/compiled_study.hpp"
+#include "studies/study_report.hpp"
+#include "studies/summary.hpp"
+
+namespace pirsim::app {
+namespace {
+
+std::vector<std::string> sensor_ids(const Model& model) {
+  std::vector<std::string> ids;
+  for (const SensorSpec& sensor : model.scene().sensors) ids.push_back(sensor.id);
+  return ids;
+}
+
+std::vector<std::size_t> first_zones(const Model& model) {
+  const RayBundle& rays = model.rays();
+  std::vector<std::size_t> begins;
+  for (const auto cluster : rays.sensor_clusters_begin) begins.push_back(rays.cluster_zones_begin[cluster]);
+  return begins;
+}
+
+studies::Summary make_summary(const Model& model, const RunOptions& options) {
+  std::vector<std::string> trials;
+  for (const TrialSpec& trial : model.script().trials) trials.push_back(trial.id);
+  const bool compared = !options.summary.empty() || !options.report.empty();
+  const std::vector<MeasuredCell> measured = compared ? measured_cells(model.script()) : std::vector<MeasuredCell>{};
+  return {trials, sensor_ids(model), measured};
+}
+
+/// Lines of all runs, compressed by the ending of the file's name.
+class LineOutput {
+ public:
+  explicit LineOutput(const std::filesystem::path& file)
+      : file_(file), writer_(file_.stream(), io::compression_of(file)) {}
+
+  /// What is written here is in the file after the next pass_on().
+  [[nodiscard]] std::ostream& lines() { return lines_; }
+  void pass_on() {
+    writer_.write(lines_.view());
+    lines_.str({});
+    if (!file_.stream()) file_.commit();  // says why it can't be written
+  }
+  void commit() {
+    pass_on();
+    writer_.finish();
+    file_.commit();
+  }
+
+ private:
+  io::AtomicFile file_;
+  io::DataWriter writer_;
+  std::ostringstream lines_;
+};
+
+/// Zones of all runs.
+class ZoneOutput {
+ public:
+  ZoneOutput(const std::filesystem::path& file, const Model& model)
+      : output_(file), csv_(output_.lines(), sensor_ids(model), first_zones(model)) {}
+
+  void add(const RunResult& result) {
+    for (std::size_t i = 0; i < result.zones.size(); ++i) {
+      csv_.write(result.replicate, result.trial, static_cast<std::int64_t>(i) + 1, result.zones[i]);
+    }
+    output_.pass_on();
+  }
+  void commit() { output_.commit(); }
+
+ private:
+  LineOutput output_;
+  io::ZoneCsvWriter csv_;
+};
+
+/// Signals of all runs and what is behind them.
+class TraceOutput {
+ public:
+  TraceOutput(const std::filesystem::path& file, const Model& model)
+      : output_(file), csv_(output_.lines(), sensor_ids(model), model.script().sensing.tick_rate_hz) {
+    if (model.compiled().array().analog() == nullptr)
+      throw Error(ErrorCode::usage, "--trace: no sensor has an analog response");
+  }
+
+  void add(const RunResult& result) {
+    for (const TraceRow& row : result.trace) csv_.write(result.replicate, result.trial, row);
+    output_.pass_on();
+  }
+  void commit() { output_.commit(); }
+
+ private:
+  LineOutput output_;
+  io::TraceCsvWriter csv_;
+};
+
+/// Who is where in all runs.
+class OccupantOutput {
+ public:
+  explicit OccupantOutput(const std::filesystem::path& file) : output_(file), csv_(output_.lines()) {}
+
+  void add(const RunResult& result) {
+    for (const OccupantRow& row : result.occupants) csv_.write(result.replicate, result.trial, row);
+    output_.pass_on();
+  }
+  void commit() { output_.commit(); }
+
+ private:
+  LineOutput output_;
+  io::OccupantCsvWriter csv_;
+};
+
+}  // namespace
+
+bool has_whole_study_outputs(const RunOptions& options) {
+  return !options.summary.empty() || !options.zones.empty() || !options.trace.empty() || !options.report.empty() ||
+         !options.occupants.empty();
+}
+
+struct WholeStudyOutputs::Files {
+  const Model& model;
+  const Inputs& inputs;
+  const RunOptions& options;
+  studies::Summary summary;
+  studies::StudyReport report;
+  std::optional<ZoneOutput> zones{};
+  std::optional<TraceOutput> trace{};
+  std::optional<OccupantOutput> occupants{};
+  std::optional<io::AtomicFile> summary_file{}, report_file{};
+};
+
+WholeStudyOutputs::WholeStudyOutputs(const Model& model, const Inputs& inputs, const RunOptions& options)
+    : files_(new Files{model, inputs, options, make_summary(model, options), studies::StudyReport(model)}) {
+  if (!options.zones.empty()) files_->zones.emplace(options.zones, model);
+  if (!options.trace.empty()) files_->trace.emplace(options.trace, model);
+  if (!options.occupants.empty()) files_->occupants.emplace(options.occupants);
+  if (!options.summary.empty()) files_->summary_file.emplace(options.summary);
+  if (!options.report.empty()) files_->report_file.emplace(options.report);
+}
+
+WholeStudyOutputs::~WholeStudyOutputs() = default;
+
+Occupants WholeStudyOutputs::occupants() const noexcept {
+  const bool reported = files_->report_file && files_->report.needs_occupants();
+  return files_->occupants || reported ? Occupants::told : Occupants::counted;
+}
+
+void WholeStudyOutputs::add(const RunResult& result) {
+  Files& files = *files_;
+  if (result.fault) return;
+  if (files.zones) files.zones->add(result);
+  if (files.trace) files.trace->add(result);
+  if (files.occupants) files.occupants->add(result);
+  if (files.report_file) files.report.add_run(result);
+  if (!files.summary_file && !files.report_file) return;
+  studies::RunCounts counts(files.model.scene().sensors.size(), files.model.script().summary);
+  for (const Sample& sample : result.samples) counts.add(sample);
+  files.summary.add_run(result.trial, counts.counts());
+}
+
+void WholeStudyOutputs::commit() {
+  Files& files = *files_;
+  if (files.zones) files.zones->commit();
+  if (files.trace) files.trace->commit();
+  if (files.occupants) files.occupants->commit();
+  if (files.summary_file) {
+    write_summary(files.summary, *files.summary_file, files.options.summary, files.model.script().name,
+                  files.inputs.verbosity);
+  }
+  if (files.report_file) write_page(*files.report_file, files.report.finish(files.summary), files.inputs);
+}
+
+}  // namespace pirsim::app

@@ -1,0 +1,292 @@
+#include "sim/day_draw.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace pirsim::sim {
+namespace {
+
+constexpr double hour_s = 3600.0, minute_s = 60.0, day_s = 24.0 * hour_s;
+
+double cut_normal(Stream& stream) { return std::clamp(stream.normal(), -3.0, 3.0); }
+double around(Stream& stream, const ClockSpec& clock) {
+  return clock.mean_h * hour_s + clock.sd_min * minute_s * cut_normal(stream);
+}
+double exponential(Stream& stream, double mean) { return -mean * std::log(1.0 - stream.uniform()); }
+
+/// Index drawn with these weights.
+std::size_t pick(Stream& stream, std::span<const double> weights) {
+  double left = stream.uniform() * std::accumulate(weights.begin(), weights.end(), 0.0);
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (weights[i] <= 0.0) continue;
+    last = i;
+    if ((left -= weights[i]) < 0.0) break;
+  }
+  return last;
+}
+
+void shuffle(Stream& stream, std::vector<std::size_t>& list) {
+  for (std::size_t i = list.size(); i > 1; --i)
+    std::swap(list[i - 1], list[stream.index(static_cast<std::uint32_t>(i))]);
+}
+
+double stay_s(Stream& stream, double mean_s) {
+  const double least_s = std::min(shortest_stay_s, mean_s);
+  return least_s + exponential(stream, mean_s - least_s);
+}
+
+/// What is left of a stay that one finds going on.
+double rest_of_stay_s(Stream& stream, double mean_s) {
+  const double least_s = std::min(shortest_stay_s, mean_s);
+  if (stream.uniform() * mean_s < least_s) return least_s * stream.uniform();
+  return stay_s(stream, mean_s);
+}
+
+/// One person's moves between places, as found going on at any moment: shares of time hold from the first second.
+class Moves {
+ public:
+  explicit Moves(Role role) : habits_(habits_of(role)) {
+    for (std::size_t i = 0; i < n_places; ++i) stays_s_[i] = habits_.stays_min[i] * minute_s;
+    rates_ = markov_rates(habits_.shares, stays_s_);
+  }
+
+  void spend(double from_s, double to_s, Stream& stream, std::vector<Stay>& stays) const {
+    std::size_t place = pick(stream, habits_.shares);
+    double until_s = from_s + rest_of_stay_s(stream, stays_s_[place]);
+    for (double now = from_s; now < to_s;) {
+      stays.push_back({static_cast<Place>(place), now, std::min(until_s, to_s)});
+      now = until_s;
+      place = pick(stream, std::span(rates_).subspan(place * n_places, n_places));
+      until_s = now + stay_s(stream, stays_s_[place]);
+    }
+  }
+
+ private:
+  Habits habits_;
+  std::array<double, n_places> stays_s_{};
+  std::vector<double> rates_;
+};
+
+std::vector<Stay> draw_agent(const ScheduleSpec& schedule, Role role, Stream& stream) {
+  const double arrival = std::max(0.0, around(stream, schedule.arrival));
+  const double departure = std::clamp(around(stream, schedule.departure), arrival, day_s - minute_s);
+  const double lunch = around(stream, schedule.lunch);
+  const double lunch_s =
+      minute_s * std::max(0.0, schedule.lunch_min + schedule.lunch_sd_min * cut_normal(stream));
+  std::vector<Stay> stays;
+  const Moves moves(role);
+  if (lunch_s > 0.0 && lunch > arrival && lunch + lunch_s < departure) {
+    moves.spend(arrival, lunch, stream, stays);
+    stays.push_back({Place::lunch, lunch, lunch + lunch_s});
+    moves.spend(lunch + lunch_s, departure, stream, stays);
+  } else {
+    moves.spend(arrival, departure, stream, stays);
+  }
+  return stays;
+}
+
+std::vector<Stay> draw_presence(const ProfileSpec& profile, Stream& stream) {
+  const auto share = [&](double at_s) {
+    return profile.presence[std::min<std::size_t>(static_cast<std::size_t>(at_s / hour_s), 23)];
+  };
+  const double step_s = profile.step_min * minute_s;
+  std::vector<Stay> stays;
+  bool present = stream.uniform() < share(0.0);
+  double since_s = 0.0;
+  for (double now = 0.0; now + step_s < day_s; now += step_s) {
+    const ProfileStep chances = profile_step(share(now), share(now + step_s), profile.mobility);
+    const bool then = stream.uniform() < (present ? chances.stays : chances.comes);
+    const double at_s = now + step_s * stream.uniform();
+    if (then && !present) since_s = at_s;
+    if (!then && present) stays.push_back({Place::desk, since_s, at_s});
+    present = then;
+  }
+  if (present) stays.push_back({Place::desk, since_s, day_s});
+  return stays;
+}
+
+const Stay* stay_at(const std::vector<Stay>& stays, double at_s) {
+  const auto stay = std::ranges::find_if(stays, [&](const Stay& s) { return s.from_s <= at_s && at_s < s.to_s; });
+  return stay == stays.end() ? nullptr : &*stay;
+}
+
+/// Visits go to somebody who is at their desk then.
+void find_hosts(const DaySource& source, DayDraw& draw) {
+  for (std::size_t i = 0; i < draw.stays.size(); ++i) {
+    Stream stream({source.seed, source.run, static_cast<std::uint32_t>(i), Purpose::schedule_conduct});
+    for (Stay& stay : draw.stays[i]) {
+      if (stay.place != Place::others_desk) continue;
+      std::vector<std::size_t> hosts;
+      for (std::size_t other = 0; other < draw.stays.size(); ++other) {
+        const Stay* theirs = other == i ? nullptr : stay_at(draw.stays[other], stay.from_s);
+        if (theirs != nullptr && theirs->place == Place::desk) hosts.push_back(other);
+      }
+      if (!hosts.empty()) stay.host = hosts[stream.index(static_cast<std::uint32_t>(hosts.size()))];
+    }
+  }
+}
+
+struct Slot {
+  double begin_s, end_s;
+  int people;
+};
+
+std::vector<Slot> held_slots(const MeetingsSpec& spec) {
+  std::vector<Slot> slots;
+  for (const HeldMeetingSpec& held : spec.held) {
+    slots.push_back({held.at_h * hour_s, held.at_h * hour_s + held.duration_min * minute_s, held.people});
+  }
+  std::ranges::sort(slots, {}, &Slot::begin_s);
+  return slots;
+}
+
+/// Number and lengths first, then where they lie among the free quarters of an hour, all ways equally likely: so their
+/// lengths are as asked for. The last ones drawn are left out if all together are longer than the day.
+std::vector<Slot> drawn_slots(const MeetingsSpec& spec, int most_people, Stream& stream) {
+  constexpr double quarter_s = 15.0 * minute_s;
+  const auto range = [&](int low, int high) {
+    return low + static_cast<int>(stream.index(static_cast<std::uint32_t>(std::max(0, high - low) + 1)));
+  };
+  const auto all = static_cast<std::int64_t>((spec.to_h - spec.from_h) * hour_s / quarter_s + 1e-9);
+  std::int64_t used = 0;
+  std::vector<double> lengths;
+  for (int left = range(spec.fewest_a_day, spec.most_a_day); left > 0; --left) {
+    const double length_s = spec.durations_min[pick(stream, spec.probabilities)] * minute_s;
+    const auto quarters = static_cast<std::int64_t>(std::ceil(length_s / quarter_s - 1e-9));
+    if (used + quarters > all) break;
+    used += quarters;
+    lengths.push_back(length_s);
+  }
+  // The free quarters before each of n meetings: n of (free + n) places, none taken twice.
+  std::vector<std::size_t> places(static_cast<std::size_t>(all - used) + lengths.size());
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  shuffle(stream, places);
+  places.resize(lengths.size());
+  std::ranges::sort(places);
+  std::vector<Slot> slots;
+  double before_s = 0.0;
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    const double begin_s = spec.from_h * hour_s + static_cast<double>(places[i] - i) * quarter_s + before_s;
+    slots.push_back({begin_s, begin_s + lengths[i], range(spec.fewest_people, most_people)});
+    before_s += std::ceil(lengths[i] / quarter_s - 1e-9) * quarter_s;
+  }
+  return slots;
+}
+
+Attendance attend(const Slot& slot, double lateness_s, Stream& stream) {
+  constexpr double punctual_s = 3.0 * minute_s;  // assumed (0-5 min): the first come so long before
+  constexpr double leaves_early = 0.1;           // assumed (0-0.2)
+  const double length_s = slot.end_s - slot.begin_s;
+  Attendance person;
+  const double late_s = exponential(stream, lateness_s + punctual_s) - punctual_s;
+  person.comes_s = slot.begin_s + std::min(late_s, 0.5 * length_s);
+  const double share = stream.uniform(), within = stream.uniform();
+  person.goes_s = share < leaves_early ? slot.begin_s + (0.6 + 0.3 * within) * length_s : slot.end_s + minute_s * within;
+  return person;
+}
+
+std::vector<Meeting> draw_meetings(const MeetingsSpec& spec, const std::vector<std::size_t>& guests, Stream& stream) {
+  constexpr double presented = 0.5;  // assumed (0.3-0.7): share of meetings in which somebody stands at the screen
+  const int most = static_cast<int>(guests.size());
+  std::vector<Meeting> meetings;
+  for (const Slot& slot : spec.held.empty() ? drawn_slots(spec, most, stream) : held_slots(spec)) {
+    std::vector<std::size_t> who = guests;
+    shuffle(stream, who);
+    who.resize(static_cast<std::size_t>(std::min(slot.people, most)));
+    Meeting& meeting = meetings.emplace_back(Meeting{slot.begin_s, slot.end_s, {}});
+    for (const std::size_t person : who) {
+      meeting.people.push_back(attend(slot, spec.lateness_min * minute_s, stream));
+      meeting.people.back().person = person;
+    }
+    const double shown = stream.uniform(), share = stream.uniform();
+    if (shown >= presented || who.size() < 2) continue;
+    Attendance& speaker = *std::ranges::min_element(meeting.people, {}, &Attendance::comes_s);
+    speaker.goes_s = std::max(speaker.goes_s, slot.end_s);
+    speaker.presents_until_s = slot.begin_s + (0.3 + 0.4 * share) * (slot.end_s - slot.begin_s);
+  }
+  return meetings;
+}
+
+}  // namespace
+
+Habits habits_of(Role role) {
+  constexpr std::array<double, n_places> stays_min{60.0, 20.0, 60.0, 20.0};
+  switch (role) {
+    case Role::staff:
+      return {{0.60, 0.20, 0.15, 0.05}, stays_min};
+    case Role::manager:
+      return {{0.50, 0.20, 0.20, 0.10}, stays_min};
+    case Role::administrator:
+      return {{0.70, 0.15, 0.05, 0.10}, stays_min};
+  }
+  return {};
+}
+
+DayDraw draw_times(const DaySource& source) {
+  DayDraw draw;
+  draw.stays.resize(source.people.size());
+  if (!is_working_day(source.day)) return draw;
+  std::vector<std::size_t> guests;
+  for (std::size_t i = 0; i < source.people.size(); ++i) {
+    if (source.people[i] == SchedulePart::guest) guests.push_back(i);
+    if (source.people[i] == SchedulePart::cleaner) {
+      Stream stream({source.seed, source.run, static_cast<std::uint32_t>(i), Purpose::schedule});
+      draw.cleaning_s = source.schedule.cleaning_h.value_or(0.0) * hour_s + 10.0 * minute_s * cut_normal(stream);
+    }
+    if (source.people[i] != SchedulePart::staff) continue;
+    Stream stream({source.seed, source.run, static_cast<std::uint32_t>(i), Purpose::schedule});
+    draw.stays[i] = source.schedule.profile ? draw_presence(*source.schedule.profile, stream)
+                                            : draw_agent(source.schedule, source.roles[i], stream);
+  }
+  find_hosts(source, draw);
+  if (source.schedule.meetings && !guests.empty()) {
+    Stream stream({source.seed, source.run, 0, Purpose::schedule_meetings});
+    draw.meetings = draw_meetings(*source.schedule.meetings, guests, stream);
+  }
+  return draw;
+}
+
+ProfileStep profile_step(double now, double next, double mobility) {
+  if (now >= 1.0) return {1.0, next};
+  const double least = std::max(0.0, (next - now) / (1.0 - now)), most = std::min(1.0, next / (1.0 - now));
+  const double comes = std::clamp((mobility - 1.0) / (mobility + 1.0) * now + next, least, most);
+  return {comes, now > 0.0 ? std::clamp((next - (1.0 - now) * comes) / now, 0.0, 1.0) : 1.0};
+}
+
+std::vector<double> markov_rates(std::span<const double> shares, std::span<const double> stays) {
+  const std::size_t n = shares.size();
+  std::vector<double> flow(n);
+  for (std::size_t i = 0; i < n; ++i) flow[i] = shares[i] / stays[i];
+  // x_i = (S - sqrt(S^2 - 4 f_i)) / 2 for all but the largest flow, whose x may be beyond S / 2; S by bisection.
+  const std::size_t largest = static_cast<std::size_t>(std::ranges::max_element(flow) - flow.begin());
+  const auto share_of = [&](double sum, std::size_t i, double sign) {
+    return 0.5 * (sum + sign * std::sqrt(std::max(0.0, sum * sum - 4.0 * flow[i])));
+  };
+  const double least = 2.0 * std::sqrt(flow[largest]);
+  const auto excess = [&](double sum, double sign) {
+    double total = -sum;
+    for (std::size_t i = 0; i < n; ++i) total += share_of(sum, i, i == largest ? sign : -1.0);
+    return total;
+  };
+  // At the least S both branches of the largest meet: with too much there it stays on the lower one, else on the upper.
+  const double sign = excess(least, -1.0) >= 0.0 ? -1.0 : 1.0;
+  double low = least, high = least;
+  while ((excess(high, sign) > 0.0) == (excess(least, sign) > 0.0) && high < 1e6 * least) high *= 2.0;
+  for (int i = 0; i < 200; ++i) {
+    const double middle = 0.5 * (low + high);
+    ((excess(middle, sign) > 0.0) == (excess(least, sign) > 0.0) ? low : high) = middle;
+  }
+  std::vector<double> rates(n * n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      if (i == j) continue;
+      rates[i * n + j] =
+          share_of(low, i, i == largest ? sign : -1.0) * share_of(low, j, j == largest ? sign : -1.0) / shares[i];
+    }
+  }
+  return rates;
+}
+
+}  // namespace pirsim::sim

@@ -1,0 +1,79 @@
+// A day of a schedule as times and places, before anybody has walked anywhere.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pirsim/random.hpp"
+#include "schema/schedule_people.hpp"
+
+namespace pirsim::sim {
+
+/// The first four are those of the chain; lunch comes beside it.
+enum class Place { desk, others_desk, meeting, outside, lunch };
+inline constexpr std::size_t n_places = 4;
+
+/// Of staff, in order of time and without gaps between arrival and departure. Times are seconds of the day.
+struct Stay {
+  Place place = Place::desk;
+  double from_s = 0.0, to_s = 0.0;
+  /// Whose desk, as an index into the day's people; none: somewhere else in the building.
+  std::optional<std::size_t> host{};
+};
+
+struct Attendance {
+  std::size_t person = 0;
+  double comes_s = 0.0, goes_s = 0.0;
+  std::optional<double> presents_until_s{};  ///< stands at the screen from the meeting's beginning
+};
+
+struct Meeting {
+  double begin_s = 0.0, end_s = 0.0;
+  std::vector<Attendance> people;
+};
+
+/// All of it empty on days off.
+struct DayDraw {
+  std::vector<std::vector<Stay>> stays;  ///< (n_people) empty for who isn't staff
+  std::vector<Meeting> meetings;         ///< in the simulated room, in order of time
+  std::optional<double> cleaning_s;
+};
+
+/// What a day is drawn from. people: those of the trial; none for who is no part of the schedule.
+struct DaySource {
+  const ScheduleSpec& schedule;
+  std::span<const std::optional<SchedulePart>> people;
+  std::span<const Role> roles;
+  std::uint64_t seed = 1;
+  std::uint32_t run = 0;
+  std::int64_t day = 0;
+};
+
+[[nodiscard]] DayDraw draw_times(const DaySource& source);
+
+/// Share of time in each Place and mean stay. Ref: [ChenHongLuo2018].
+struct Habits {
+  std::array<double, n_places> shares;
+  std::array<double, n_places> stays_min;
+};
+[[nodiscard]] Habits habits_of(Role role);
+
+/// Stays are exponential beyond this, so that their mean is the published one; assumed: nobody gets up for less.
+inline constexpr double shortest_stay_s = 120.0;
+
+/// Rates of a Markov chain over places from the share of time spent in each and the mean stay, in any one unit of time:
+/// (i x n + j) is the rate from i to j. Solves x_i (sum x - x_i) = share_i / stay_i. Ref: [ChenHongLuo2018].
+[[nodiscard]] std::vector<double> markov_rates(std::span<const double> shares, std::span<const double> stays);
+
+/// Chances of Page's chain to be present a step later, for who is absent and who is present, where the share of people
+/// present goes from `now` to `next`. Whatever the mobility, the shares follow the profile exactly: where the published
+/// formula leaves [0, 1], the nearest chain that follows it is taken. Ref: [Page2008].
+struct ProfileStep {
+  double comes = 0.0, stays = 0.0;
+};
+[[nodiscard]] ProfileStep profile_step(double now, double next, double mobility);
+
+}  // namespace pirsim::sim

@@ -1,0 +1,136 @@
+// Days of a schedule in a room: empty hours that aren't ticked, clock times, the same bytes however they are run.
+#include <algorithm>
+#include <set>
+
+#include "pirsim/state.hpp"
+#include "sim/compiled_study.hpp"
+#include "studies/schedule_outlook.hpp"
+#include "support/catch.hpp"
+#include "support/shipped.hpp"
+
+using namespace pirsim;
+using namespace pirsim::test;
+
+namespace {
+
+Model model_of(const std::string& schedule, const std::string& more = "", const std::string& room = "meeting_room.gltf") {
+  return compile(shipped_scene(room), io::parse_script("pirsim_script: 1\n" + more + "schedule:\n" + schedule, "s.yaml"));
+}
+
+/// Every tick, whether there is anybody or not.
+std::vector<Sample> ticked(const Model& model, std::uint32_t run) {
+  std::vector<Sample> samples;
+  State state(model, run);
+  while (!state.finished()) {
+    if (step_tick(model, state)) samples.push_back(state.sample());
+  }
+  return samples;
+}
+
+/// Two meet for two minutes; before and after there is nobody.
+const std::string short_meeting =
+    "  from: 09:50\n  to: 10:15\n  meetings: {held: [{at: 10:00, duration_min: 2, people: 2}], lateness_min: 0}\n";
+
+}  // namespace
+
+TEST_CASE("Empty hours that are passed over leave every bit as if they had been ticked") {
+  const std::vector<std::string> variants{
+      "",
+      "sensing: {reader: free_running}\n",
+      "sensing: {response: analog, analog_rays_per_zone: 4}\n",
+      "effects: [soft_zone_edges]\n",
+      "effects: [dual_polarity]\n",
+      "effects: [{false_triggers: {rate_per_s: 0.05}}, pulse_stretching, {trigger_bursts: {length_s: 5}}]\n",
+      "effects: [warm_chair, missed_triggers, clock_lag, dead_time, dead_sensor]\n"};
+  for (const std::string& more : variants) {
+    INFO(more);
+    const Model model = model_of(short_meeting, more);
+    const std::vector<Sample> expected = ticked(model, 0);
+    CHECK(run_once(model, 0).samples == expected);
+    std::vector<Sample> stepped;
+    State state(model, 0);
+    while (step(model, state)) stepped.push_back(state.sample());
+    CHECK(stepped == expected);
+    CHECK(std::ranges::any_of(expected, [](const Sample& row) { return row.people == 2; }));
+    const auto n_empty = std::ranges::count(expected, 0, &Sample::people);
+    CHECK(n_empty > 1000);
+    if (more.find("false_triggers") == std::string::npos) continue;
+    CHECK(std::ranges::any_of(expected, [](const Sample& row) {
+      return row.people == 0 && std::ranges::any_of(row.bits, [](auto bit) { return bit != 0; });
+    }));
+  }
+}
+
+TEST_CASE("A script with pauses is passed over in the same way") {
+  const Model model = compile(
+      shipped_scene("meeting_room.gltf"),
+      io::parse_script("pirsim_script: 1\nduration_s: 300\npeople:\n  - id: a\n    actions: [{wait_s: 60.4, phase: early},"
+                       " {enter: door}, {leave: door}, {wait_s: 30}, {enter: door, at_s: 150.02}, {leave: door}]\n",
+                       "s.yaml"));
+  CHECK(run_once(model, 0).samples == ticked(model, 0));
+}
+
+TEST_CASE("Rows tell the time of day, and what the room is used for") {
+  const Model model = model_of(short_meeting);
+  CHECK(model.columns()[3] == "time");
+  const std::vector<Sample> rows = run_once(model, 0).samples;
+  REQUIRE(rows.size() == 25 * 60);
+  CHECK(rows.front().clock == "2026-03-02T09:50:01");
+  CHECK(rows.back().clock == "2026-03-02T10:15:00");
+  std::set<std::string> phases;
+  for (const Sample& row : rows) {
+    phases.insert(row.phase);
+    CHECK((row.phase == "empty") == (row.people == 0));
+  }
+  CHECK(phases == std::set<std::string>{"empty", "meeting", "occupied"});
+  for (const std::string to : {"09:01", "09:05", "09:07", "09:40"}) {
+    const Model part = model_of("  from: 09:00\n  to: " + to + "\n  cleaning: 19:00\n");
+    CHECK(run_once(part, 0).samples.back().clock == "2026-03-02T" + to + ":00");
+  }
+  const Model midnight = model_of("  from: 23:59\n  to: 24:00\n  meetings: {}\n");
+  CHECK(run_once(midnight, 0).samples.back().clock == "2026-03-03T00:00:00");
+}
+
+TEST_CASE("Days are the same for any threads and in any part of the study") {
+  const Model model = model_of("  from: 09:58\n  to: 10:06\n  meetings: {held: [{at: 10:00, duration_min: 4, people: 3}]}\n",
+                               "replicates: 3\n");
+  const auto rows_of = [&](StudyOptions options) {
+    std::vector<std::vector<Sample>> rows;
+    run_study(model, options, [&](const RunResult& result) { rows.push_back(result.samples); });
+    return rows;
+  };
+  const auto one = rows_of({.threads = 1});
+  CHECK(rows_of({.threads = 3}) == one);
+  CHECK(rows_of({.runs = RunRange{1, 2}}).front() == one[1]);
+  CHECK(one[0] != one[1]);
+  CHECK(one[1].front().clock == "2026-03-03T09:58:01");
+}
+
+TEST_CASE("All come at once through one door") {
+  const Model model = model_of(
+      "  from: 08:59\n  to: 09:04\n  staff: [{count: 8}]\n"
+      "  profile: {presence: [0,0,0,0,0,0,0,0,0,1,1,1,1,1,1,1,1,0,0,0,0,0,0,0], step_min: 1}\n");
+  const RunResult result = run_once(model, 0);
+  CHECK(!result.fault);
+  CHECK(result.samples.back().people == 8);
+}
+
+TEST_CASE("Who is there when the part of a day begins comes in first") {
+  const Model model = model_of("  from: 10:00\n  to: 10:05\n  staff: [{count: 3}]\n", "", "open_office.gltf");
+  const studies::ScheduleOutlook expected = studies::outlook(model.compiled(), 0);
+  CHECK(expected.staff.size() == 3);
+  CHECK(expected.working_days == 1);
+  CHECK((expected.most_at_once >= 1 && expected.most_at_once <= 3));
+  CHECK(expected.seats == std::vector<std::string>{"S1", "S2", "S3"});
+  const RunResult result = run_once(model, 0, Record::samples, Trace::none, Occupants::told);
+  CHECK(!result.fault);
+  std::set<std::string> seen;
+  for (const OccupantRow& row : result.occupants) seen.insert(row.person);
+  CHECK(!seen.empty());
+  for (const Sample& row : result.samples) {
+    const auto there = std::ranges::count_if(result.occupants, [&](const OccupantRow& other) {
+      return other.time_s == row.time_s && other.where == OccupantRow::Where::inside;
+    });
+    CHECK(there == row.people);
+  }
+}

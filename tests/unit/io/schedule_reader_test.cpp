@@ -1,0 +1,89 @@
+// Schedules as users write them, and what is said of those that can't be.
+#include "pirsim/io.hpp"
+#include "schema/schedule_people.hpp"
+#include "support/catch.hpp"
+
+using namespace pirsim;
+
+namespace {
+
+ScriptSpec script_with(const std::string& schedule, const std::string& more = "") {
+  return io::parse_script("pirsim_script: 1\n" + more + "schedule:\n" + schedule, "s.yaml");
+}
+
+void refused(const std::string& schedule, const std::string& message, const std::string& more = "") {
+  INFO(schedule);
+  CHECK_THROWS_WITH(script_with(schedule, more), contains(message));
+}
+
+SceneSpec scene_with(int seats) {
+  SceneSpec scene;
+  scene.name = "room";
+  for (int i = 1; i <= seats; ++i) scene.seats.emplace_back().id = "S" + std::to_string(i);
+  scene.entrances.emplace_back().id = "door";
+  return scene;
+}
+
+void refused_in_room(const std::string& schedule, int seats, const std::string& message) {
+  INFO(schedule);
+  const ScriptSpec script = script_with(schedule);
+  CHECK_THROWS_WITH(people_of(*script.trials.front().schedule, scene_with(seats), 1), contains(message));
+}
+
+}  // namespace
+
+TEST_CASE("A schedule is read, written and read again to the same") {
+  const ScriptSpec script = script_with(
+      "  first_day: 2026-05-04\n  from: 07:30\n  to: 20:00\n  staff: [{role: manager, seats: [S2]}, {count: 3}]\n"
+      "  arrival: {mean: 09:15, sd_min: 20}\n  cleaning: 18:30\n  entrances: [door]\n"
+      "  meetings: {most_a_day: 4, most_people: 5, held: [{at: 10:00, duration_min: 45, people: 3}], seats: [S5]}\n");
+  const ScheduleSpec& schedule = *script.trials.front().schedule;
+  CHECK(schedule.from_h == 7.5);
+  CHECK(schedule.arrival.mean_h == 9.25);
+  CHECK(schedule.staff[0].role == Role::manager);
+  CHECK(schedule.staff[1].count == 3);
+  CHECK(schedule.meetings->held[0].duration_min == 45.0);
+  const std::string text = io::to_yaml(script);
+  CHECK(io::to_yaml(io::parse_script(text, "again.yaml")) == text);
+  CHECK_THAT(text, contains("first_day: 2026-05-04"));
+}
+
+TEST_CASE("What can't be in a schedule is refused with its place") {
+  refused("  staf: [{count: 2}]\n", "s.yaml:3:3: error: schedule: unknown key 'staf'");
+  refused("  staff: [{count: 2}]\n  to: 25:00\n", "s.yaml:4:7: error: to: expected a time of day from 00:00 to 24:00");
+  refused("  staff: [{count: 2}]\n  from: 18:00\n  to: 9:00\n", "s.yaml:5:7: error: schedule: `to` is not after `from`");
+  refused("  staff: [{count: 2}]\n  arrival: {mean: 18:00}\n  departure: {mean: 09:00}\n",
+          "s.yaml:5:14: error: schedule: people leave before they come");
+  refused("  staff: [{count: 2}]\n  arrival: {mean: half past eight}\n", "s.yaml:4:19: error: mean: expected a time");
+  refused("  first_day: 2026-02-30\n  staff: [{count: 2}]\n", "s.yaml:3:14: error: '2026-02-30' is no date");
+  refused("  from: 08:00\n", "s.yaml:3:3: error: schedule: nobody comes");
+  refused("  staff: [{role: manger}]\n", "(did you mean 'manager'?)");
+  refused("  meetings: {held: [{at: 10:00, duration_min: 60}, {at: 10:30, duration_min: 60}]}\n", "error: held: overlaps");
+  refused("  meetings: {held: [{at: 23:30, duration_min: 60}]}\n", "beyond midnight");
+  refused("  meetings: {probabilities: [1, 2]}\n", "probabilities: expected");
+  refused("  meetings: {probabilities: [0.5, 0.5]}\n", "probabilities: expected one for each of durations_min");
+  refused("  staff: [{count: 2}]\n  profile: {presence: [0, 1]}\n", "presence: expected 24 shares");
+  refused("  staff: [{count: 2}]\n", "leave out duration_s", "duration_s: 90000\n");
+}
+
+TEST_CASE("What a room can't hold is refused with its place, and the nearest name") {
+  refused_in_room("  staff:\n    - {count: 2}\n    - {count: 5}\n", 4, "s.yaml:5:7: error: schedule: more staff than the 4 seats");
+  refused_in_room("  staff: [{seats: [s1]}]\n", 4, "seat 's1' is not in room (did you mean 'S1'?)");
+  refused_in_room("  staff: [{seats: [S1]}, {seats: [S1]}]\n", 4, "'S1' is the own desk of two people");
+  refused_in_room("  staff: [{count: 1}]\n  entrances: [dor]\n", 4, "entrance 'dor' is not in room (did you mean 'door'?)");
+  refused_in_room("  meetings: {most_people: 6}\n", 4, "6 people for the 4 seats of room");
+  refused_in_room("  staff: [{count: 3}]\n  meetings: {}\n", 4, "2 people for the 1 seats");
+  refused_in_room("  meetings: {held: [{at: 10:00, people: 9}]}\n", 4, "9 people for the 4 seats");
+}
+
+TEST_CASE("Meetings take the seats that are nobody's desk") {
+  const ScriptSpec script = script_with("  staff: [{seats: [S2]}, {count: 2}]\n  meetings: {}\n");
+  const ScheduleSpec& schedule = *script.trials.front().schedule;
+  const SceneSpec scene = scene_with(6);
+  CHECK(meeting_seats(*schedule.meetings, scene, schedule) == std::vector<std::string>{"S4", "S5", "S6"});
+  const auto people = people_of(schedule, scene, 1);
+  REQUIRE(people.size() == 6);
+  CHECK(people[0].seat == "S2");
+  CHECK(people[2].seat == "S3");
+  CHECK(people[5].part == SchedulePart::guest);
+}
