@@ -100,6 +100,8 @@ Outline Motion::outline() const noexcept {
   outline.reach = std::clamp(reach_.value(), 0.0, 1.0);
   outline.head_turn = channel(Channel::head_turn).value();
   outline.spine_lean = channel(Channel::trunk_lean).value();
+  outline.hand_to_head = {std::clamp(channel(Channel::left_hand_to_head).value(), 0.0, 1.0),
+                          std::clamp(channel(Channel::right_hand_to_head).value(), 0.0, 1.0)};
   if (outline.fall > 0.0) outline.thigh_angle = seating_.thigh_angle(1.0);
   if (outline.reach > 0.0) {
     const double thighs = outline.hip_height_m + humanoid_.radius_m(Part::left_thigh);
@@ -132,6 +134,10 @@ std::array<ArmPose, 2> arms_of(const Humanoid& humanoid, const Outline& outline,
         HandPlace{-outline.hand_offset_m + outline.hand_ahead_m[1], outline.hand_up_m[1]}};
     const auto working = arms_on_table(humanoid, torso_rotation(pose), table_above_hips_m, hands);
     for (std::size_t side : {0U, 1U}) arms[side] = reach_over(arms[side], working[side], outline.reach);
+  }
+  if (outline.hand_to_head != std::array<double, 2>{}) {
+    const auto raised = arms_at_head(humanoid);
+    for (std::size_t side : {0U, 1U}) arms[side] = blend(arms[side], raised[side], outline.hand_to_head[side]);
   }
   return arms;
 }
