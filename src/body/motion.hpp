@@ -23,11 +23,13 @@ enum class Stage { standing, walking, turning, sitting_down, seated, rising };
 
 /// Small movements on top of what a stage does. Each goes to a target and stays there until it gets another.
 enum class Channel : std::size_t {
-  trunk_tilt,       ///< radians, positive forward
-  trunk_lean,       ///< radians, positive to the right
-  head_turn,        ///< radians, positive to the left
-  chair_turn,       ///< radians, positive to the left; while seated
-  left_hand_ahead,  ///< metres along the table, as the next three; while the forearms are on it
+  trunk_tilt,  ///< radians, positive forward
+  trunk_lean,  ///< radians, positive to the right
+  head_turn,   ///< radians, positive to the left
+  chair_turn,  ///< radians, positive to the left; while seated
+  /// Metres along the table, as the next three, of somebody 1.86 m tall, in proportion to stature; while the forearms
+  /// are on it.
+  left_hand_ahead,
   right_hand_ahead,
   left_hand_up,  ///< metres above the table
   right_hand_up,

@@ -12,6 +12,7 @@ namespace pirsim::body {
 namespace {
 
 constexpr double pi = std::numbers::pi;
+constexpr double reference_stature_m = 1.86;
 constexpr double furthest_extension = 0.998;  // of a stretched leg that stands off to the side; assumed (0.995-1)
 /// Within the spine's limits; tilts alone are within them already.
 double swayed(double tilt) { return std::clamp(tilt, -20 * pi / 180, 50 * pi / 180); }
@@ -107,8 +108,10 @@ Outline Motion::outline() const noexcept {
     const double thighs = outline.hip_height_m + humanoid_.radius_m(Part::left_thigh);
     outline.table_height_m = seating_.seat().table_height_m.value_or(thighs);
     outline.hand_offset_m = hand_offset_m();
-    outline.hand_ahead_m = {channel(Channel::left_hand_ahead).value(), channel(Channel::right_hand_ahead).value()};
-    outline.hand_up_m = {channel(Channel::left_hand_up).value(), channel(Channel::right_hand_up).value()};
+    const double scale = humanoid_.measures().stature_m / reference_stature_m;
+    const auto way = [&](Channel which) { return scale * channel(which).value(); };
+    outline.hand_ahead_m = {way(Channel::left_hand_ahead), way(Channel::right_hand_ahead)};
+    outline.hand_up_m = {way(Channel::left_hand_up), way(Channel::right_hand_up)};
   }
   return outline;
 }

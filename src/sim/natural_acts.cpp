@@ -40,7 +40,7 @@ constexpr Act fidgets_of_all[]{{"look round", 1, look, 0.7, 1, 2, returns, assum
 
 constexpr Stroke type[]{{Channel::left_hand_ahead, -0.025, 0.025}, {Channel::right_hand_ahead, -0.025, 0.025}};
 constexpr Stroke mouse[]{{Channel::right_hand_ahead, -0.05, 0.05}};
-constexpr Stroke reach[]{{Channel::right_hand_ahead, 0.08, 0.12}, {Channel::trunk_tilt, 2 * degree, 8 * degree}};
+constexpr Stroke reach[]{{Channel::right_hand_ahead, 0.03, 0.08}, {Channel::trunk_tilt, 6 * degree, 14 * degree}};
 constexpr Act typing[]{{"type", 2, type, 0.3, 3, 14, returns, assumed},
                        {"use the mouse", 1, mouse, 0.5, 2, 6, returns, assumed},
                        {"reach for something", 1, reach, 1.0, 1, 1, returns, assumed}};
@@ -59,10 +59,10 @@ constexpr Stroke take_notes[]{{Channel::right_hand_ahead, -0.03, 0.03}};
 constexpr Act listening[]{{"nod", 1, nod, 0.4, 1, 3, returns, assumed},
                           {"take notes", 1, take_notes, 0.3, 2, 12, returns, assumed},
                           {"glance", 1, glance, 0.6, 1, 1, returns, assumed}};
-constexpr Act speaking[]{{"gesture", 1, gesture, 0.5, 2, 8, returns, assumed}};
+constexpr Act speaking[]{{"gesture", 1, gesture, 0.7, 2, 6, returns, assumed}};
 
 constexpr Stroke one_hand[]{{Channel::right_hand_up, 0.03, 0.15}, {Channel::right_hand_ahead, -0.06, 0.06}};
-constexpr Act phoning[]{{"gesture with one hand", 1, one_hand, 0.5, 1, 5, returns, assumed},
+constexpr Act phoning[]{{"gesture with one hand", 1, one_hand, 0.7, 1, 4, returns, assumed},
                         {"look round", 1, look, 0.7, 1, 2, returns, assumed}};
 constexpr Hold at_the_ear[]{{Channel::left_hand_to_head, 1.0}};
 

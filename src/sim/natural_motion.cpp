@@ -28,7 +28,7 @@ constexpr double farthest_look = 50 * degree;
 struct Bounds {
   double low, high;
 };
-/// Where channels may come to lie, beside home; within the joints' limits whatever the others do.
+/// Where channels may come to lie: within the joints' limits whatever the others do, and within an arm's reach.
 constexpr Bounds bounds_of(Channel channel) noexcept {
   switch (channel) {
     case Channel::trunk_tilt:
@@ -39,7 +39,7 @@ constexpr Bounds bounds_of(Channel channel) noexcept {
       return {-55 * degree, 55 * degree};
     case Channel::left_hand_ahead:
     case Channel::right_hand_ahead:
-      return {-0.15, 0.15};
+      return {-0.15, 0.08};
     case Channel::left_hand_up:
     case Channel::right_hand_up:
       return {0.0, 0.3};
