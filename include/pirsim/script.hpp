@@ -1,6 +1,7 @@
 // What happens in a study as plain data: people and their actions, the trials, how sensors are read.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -63,13 +64,15 @@ enum class MotionStyle {
   choreographed,  ///< as the paper's: nothing moves that the script doesn't say; forearms swing steadily
   natural         ///< stillness and small movements by turns, breathing, a pace of one's own
 };
-/// What a sitter of natural style is busy with.
-enum class Activity { typing, reading, meeting, phone };
+/// What people of natural style are busy with, beside their choreography.
+enum class Activity { typing, reading, meeting, phone, whiteboard };
+inline constexpr std::array<const char*, 5> activity_names{"typing", "reading", "meeting", "phone", "whiteboard"};
 
 // Actions, carried out one after the other. Names are resolved against the scene when a Model is compiled.
 namespace action {
 struct Wait {
   double duration_s = 0.0;
+  std::optional<Activity> activity{};  ///< of natural style, as in other actions
 };
 /// Stands on the floor from now on, without having entered.
 struct Appear {
@@ -83,6 +86,7 @@ struct Enter {
 /// Walks to each of the given floor points in turn.
 struct Walk {
   std::vector<Vec2> points;
+  std::optional<Activity> activity{};
 };
 /// What somebody does whose seat stays taken.
 enum class IfTaken { next_action, other_seat };
@@ -99,7 +103,7 @@ struct Work {
   double arm_period_s = 3.0;
   std::vector<double> tilt_choices_deg{-15.0, 0.0, 15.0};  ///< positive forward
   double tilt_every_s = 30.0;
-  Activity activity = Activity::typing;  ///< of natural style, which has no use for the swing and the tilts
+  std::optional<Activity> activity{};  ///< of natural style, which has no use for swing and tilts; none: typing
 };
 /// Rises from the seat and stays standing behind it.
 struct Rise {};

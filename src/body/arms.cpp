@@ -29,6 +29,12 @@ constexpr double elbow_beside_m = 0.260;
 constexpr double hand_beside_m = 0.247;
 constexpr double arm_follows_torso = 1.0;
 
+// The hand that holds a phone or touches the face, from the head's centre, in radii of the head: assumed; nearer, the
+// elbow would bend beyond its limit.
+constexpr double beside_head = 1.15;
+constexpr double below_head = 0.45;
+constexpr double before_head = 1.2;
+
 constexpr double longest_reach = 0.995;  // of the stretched arm, assumed (0.98-1): an elbow isn't locked
 // The elbow swings out by at least acos of this from the lowest point it could have. assumed (0.94-0.99): 14 degrees,
 // as in the fitted base place. The transition has this width, so that the elbow's speed stays bounded.
@@ -122,6 +128,21 @@ std::array<ArmPose, 2> arms_on_table(const Humanoid& humanoid, const Quat& hips_
     const Vec3 hand = within_reach(from, wanted, longest_reach * (m.upper_arm_m + m.forearm_m));
     const Vec3 elbow = elbow_on_table(from, hand, hand.y - hands[side].up_m, m.upper_arm_m, m.forearm_m, side);
     arms[side] = arm_through(torso_from_hips * from, torso_from_hips * elbow, torso_from_hips * hand);
+  }
+  return arms;
+}
+
+std::array<ArmPose, 2> arms_at_head(const Humanoid& humanoid) noexcept {
+  const Measures& m = humanoid.measures();
+  const double r = humanoid.radius_m(Part::head);
+  const double centre = m.stature_m - r - m.hip_height_m;
+  std::array<ArmPose, 2> arms;
+  for (std::size_t side : {0U, 1U}) {
+    const Vec3 from = shoulder(m, side);
+    const Vec3 hand(sign_of(side) * beside_head * r, centre - below_head * r, -before_head * r);
+    const Vec3 pole(0.5 * sign_of(side), -0.8, -0.4);
+    const Vec3 elbow = two_bone_joint(from, hand, m.upper_arm_m, m.forearm_m, pole);
+    arms[side] = arm_through(from, elbow, hand);
   }
   return arms;
 }

@@ -33,6 +33,9 @@ struct HandPlace {
                                                    double table_above_hips_m,
                                                    const std::array<HandPlace, 2>& hands) noexcept;
 
+/// Hands beside mouth and ears, as with a phone.
+[[nodiscard]] std::array<ArmPose, 2> arms_at_head(const Humanoid& humanoid) noexcept;
+
 /// From thighs (0) to table (1): hands are lifted on the way, so that they pass over the table's edge.
 [[nodiscard]] ArmPose reach_over(const ArmPose& on_thigh, const ArmPose& on_table, double progress) noexcept;
 

@@ -128,8 +128,9 @@ JointPlaces joint_places(const Humanoid& humanoid, const Posture& posture, Joint
       break;
   }
   if (joint == Joint::neck) {
-    in_child = Vec3(0, -humanoid.radius_m(Part::head), 0);
-    in_parent = Vec3(0, m.stature_m - 2.0 * humanoid.radius_m(Part::head) - m.hip_height_m + hips_in_torso.y, 0);
+    const double behind = neck_behind_m(m);
+    in_child = Vec3(0, -humanoid.radius_m(Part::head), behind);
+    in_parent = Vec3(0, m.stature_m - 2.0 * humanoid.radius_m(Part::head) - m.hip_height_m + hips_in_torso.y, behind);
   }
   return {posture[at(link.parent)] * in_parent, posture[at(link.child)] * in_child};
 }

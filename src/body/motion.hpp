@@ -23,16 +23,20 @@ enum class Stage { standing, walking, turning, sitting_down, seated, rising };
 
 /// Small movements on top of what a stage does. Each goes to a target and stays there until it gets another.
 enum class Channel : std::size_t {
-  trunk_tilt,       ///< radians, positive forward
-  trunk_lean,       ///< radians, positive to the right
-  head_turn,        ///< radians, positive to the left
-  chair_turn,       ///< radians, positive to the left; while seated
-  left_hand_ahead,  ///< metres along the table, as the next three; while the forearms are on it
+  trunk_tilt,  ///< radians, positive forward
+  trunk_lean,  ///< radians, positive to the right
+  head_turn,   ///< radians, positive to the left
+  chair_turn,  ///< radians, positive to the left; while seated
+  /// Metres along the table, as the next three, of somebody 1.86 m tall, in proportion to stature; while the forearms
+  /// are on it.
+  left_hand_ahead,
   right_hand_ahead,
   left_hand_up,  ///< metres above the table
   right_hand_up,
+  left_hand_to_head,  ///< 0: as otherwise; 1: beside mouth and ear; whatever the legs do
+  right_hand_to_head,
 };
-inline constexpr std::size_t n_channels = 8;
+inline constexpr std::size_t n_channels = 10;
 inline constexpr double fidget_s = 0.6;  ///< assumed (0.4-1): a small move of trunk or head
 
 /// What a person's posture depends on beside their measures. Equal outlines give equal postures, bit for bit, and a
@@ -52,6 +56,7 @@ struct Outline {
   double spine_lean = 0.0;               ///< to the right
   std::array<double, 2> hand_ahead_m{};  ///< left, right; beyond hand_offset_m; 0 while reach is 0, as the next
   std::array<double, 2> hand_up_m{};
+  std::array<double, 2> hand_to_head{};  ///< left, right; 0 to 1
   bool operator==(const Outline&) const = default;
 };
 [[nodiscard]] Posture posture_of(const Humanoid& humanoid, const Outline& outline) noexcept;
@@ -78,6 +83,9 @@ class Motion {
   void tilt_spine(double radians);       ///< target of the spine's tilt, positive forward; only while seated
   /// Anywhere but on the way onto or off a seat; rising brings all channels back to 0.
   void adjust(Channel channel, double target, double seconds);
+  /// Where it goes or rests.
+  [[nodiscard]] double target(Channel which) const noexcept { return channel(which).target(); }
+  [[nodiscard]] double breath() const noexcept { return breath_; }
   void breathe(double radians) noexcept { breath_ = radians; }  ///< tilt of the spine from now on, as it is
   /// Walking speed from the next tick on, instead of the person's own.
   [[nodiscard]] double pace_m_s() const noexcept { return pace_m_s_; }

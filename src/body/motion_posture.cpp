@@ -12,6 +12,7 @@ namespace pirsim::body {
 namespace {
 
 constexpr double pi = std::numbers::pi;
+constexpr double reference_stature_m = 1.86;
 constexpr double furthest_extension = 0.998;  // of a stretched leg that stands off to the side; assumed (0.995-1)
 /// Within the spine's limits; tilts alone are within them already.
 double swayed(double tilt) { return std::clamp(tilt, -20 * pi / 180, 50 * pi / 180); }
@@ -100,13 +101,17 @@ Outline Motion::outline() const noexcept {
   outline.reach = std::clamp(reach_.value(), 0.0, 1.0);
   outline.head_turn = channel(Channel::head_turn).value();
   outline.spine_lean = channel(Channel::trunk_lean).value();
+  outline.hand_to_head = {std::clamp(channel(Channel::left_hand_to_head).value(), 0.0, 1.0),
+                          std::clamp(channel(Channel::right_hand_to_head).value(), 0.0, 1.0)};
   if (outline.fall > 0.0) outline.thigh_angle = seating_.thigh_angle(1.0);
   if (outline.reach > 0.0) {
     const double thighs = outline.hip_height_m + humanoid_.radius_m(Part::left_thigh);
     outline.table_height_m = seating_.seat().table_height_m.value_or(thighs);
     outline.hand_offset_m = hand_offset_m();
-    outline.hand_ahead_m = {channel(Channel::left_hand_ahead).value(), channel(Channel::right_hand_ahead).value()};
-    outline.hand_up_m = {channel(Channel::left_hand_up).value(), channel(Channel::right_hand_up).value()};
+    const double scale = humanoid_.measures().stature_m / reference_stature_m;
+    const auto way = [&](Channel which) { return scale * channel(which).value(); };
+    outline.hand_ahead_m = {way(Channel::left_hand_ahead), way(Channel::right_hand_ahead)};
+    outline.hand_up_m = {way(Channel::left_hand_up), way(Channel::right_hand_up)};
   }
   return outline;
 }
@@ -132,6 +137,10 @@ std::array<ArmPose, 2> arms_of(const Humanoid& humanoid, const Outline& outline,
         HandPlace{-outline.hand_offset_m + outline.hand_ahead_m[1], outline.hand_up_m[1]}};
     const auto working = arms_on_table(humanoid, torso_rotation(pose), table_above_hips_m, hands);
     for (std::size_t side : {0U, 1U}) arms[side] = reach_over(arms[side], working[side], outline.reach);
+  }
+  if (outline.hand_to_head != std::array<double, 2>{}) {
+    const auto raised = arms_at_head(humanoid);
+    for (std::size_t side : {0U, 1U}) arms[side] = blend(arms[side], raised[side], outline.hand_to_head[side]);
   }
   return arms;
 }

@@ -22,7 +22,8 @@ Limbs changes(const Outline& a, const Outline& b) noexcept {
   changed.arms = changed.hips || changed.spine || changed.ankles[0] || changed.ankles[1] || differ(a.fall, b.fall) ||
                  differ(a.reach, b.reach) || differ(a.thigh_angle, b.thigh_angle) ||
                  differ(a.table_height_m, b.table_height_m) || differ(a.hand_offset_m, b.hand_offset_m) ||
-                 differ(a.hand_ahead_m, b.hand_ahead_m) || differ(a.hand_up_m, b.hand_up_m);
+                 differ(a.hand_ahead_m, b.hand_ahead_m) || differ(a.hand_up_m, b.hand_up_m) ||
+                 differ(a.hand_to_head, b.hand_to_head);
   return changed;
 }
 

@@ -45,7 +45,7 @@ double head_centre(const Humanoid& humanoid) {
 Frame world_from_head(const Humanoid& humanoid, const Frame& torso, double turn) {
   const Vec3 centre(0, head_centre(humanoid), 0);
   if (turn == 0.0) return {torso.rotation, torso * centre};
-  const double ahead = 0.016 * humanoid.measures().stature_m;  // assumed (0.01-0.03): 3 cm
+  const double ahead = neck_behind_m(humanoid.measures());
   const Quat turned = rotation_from_heading(turn);
   return torso * Frame{turned, centre + Vec3(0, 0, ahead) + turned * Vec3(0, 0, -ahead)};
 }
@@ -85,6 +85,10 @@ Quat torso_rotation(const Pose& pose) noexcept {
 
 Frame world_from_torso(const Pose& pose) noexcept {
   return pose.world_from_hips * Frame{torso_rotation(pose), Vec3(0.0)};
+}
+
+double neck_behind_m(const Measures& measures) noexcept {
+  return 0.016 * measures.stature_m;  // assumed (0.01-0.03): 3 cm
 }
 
 Vec3 shoulder(const Measures& measures, std::size_t side) noexcept {

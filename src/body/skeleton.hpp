@@ -32,6 +32,8 @@ struct Pose {
 [[nodiscard]] Quat torso_rotation(const Pose& pose) noexcept;
 /// Frame of the torso with its origin midway between the hips.
 [[nodiscard]] Frame world_from_torso(const Pose& pose) noexcept;
+/// The neck's axis, behind the head's centre.
+[[nodiscard]] double neck_behind_m(const Measures& measures) noexcept;
 /// The shoulder joint in that frame.
 [[nodiscard]] Vec3 shoulder(const Measures& measures, std::size_t side) noexcept;
 /// The arm whose elbow and hand are at these points of the torso's frame; bone lengths win over the hand's place.

@@ -19,8 +19,21 @@ Vec2 read_point(const YamlNode& node, Diagnostics& faults, std::string_view what
   return Vec2(0.0);
 }
 
-Action read_wait(const YamlNode& node, Diagnostics& faults) {
+/// Of somebody of natural style: read_person() refuses it for others.
+std::optional<Activity> read_activity(YamlMap& map) {
+  std::vector<std::pair<std::string, std::optional<Activity>>> names;
+  for (std::size_t i = 0; i < activity_names.size(); ++i) names.emplace_back(activity_names[i], Activity(i));
+  return map.choice<std::optional<Activity>>("activity", std::nullopt, names);
+}
+
+Action read_wait_s(const YamlNode& node, Diagnostics& faults) {
   return action::Wait{node.number(faults, "wait_s", {.min = 0.0, .max = 1e6})};
+}
+Action read_wait(const YamlNode& node, Diagnostics& faults) {
+  YamlMap map(node, faults, "wait");
+  const action::Wait wait{map.required_number("duration_s", {.min = 0.0, .max = 1e6}), read_activity(map)};
+  map.finish();
+  return wait;
 }
 Action read_appear(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "appear");
@@ -34,6 +47,7 @@ Action read_walk(const YamlNode& node, Diagnostics& faults) {
   action::Walk walk;
   for (const YamlNode& point : map.required_list("to_xz_m"))
     walk.points.push_back(read_point(point, faults, "to_xz_m"));
+  walk.activity = read_activity(map);
   map.finish();
   return walk;
 }
@@ -57,11 +71,7 @@ Action read_work(const YamlNode& node, Diagnostics& faults) {
   work.arm_period_s = map.number("arm_period_s", work.arm_period_s, {.min = 0.2, .max = 1e6});
   work.tilt_choices_deg = map.numbers("tilt_choices_deg", work.tilt_choices_deg, {.min = -30.0, .max = 45.0});
   work.tilt_every_s = map.number("tilt_every_s", work.tilt_every_s, positive);
-  work.activity = map.choice<Activity>("activity", work.activity,
-                                       {{"typing", Activity::typing},
-                                        {"reading", Activity::reading},
-                                        {"meeting", Activity::meeting},
-                                        {"phone", Activity::phone}});
+  work.activity = read_activity(map);
   map.finish();
   return work;
 }
@@ -81,15 +91,16 @@ struct ActionKind {
   const char* key;
   Action (*read)(const YamlNode&, Diagnostics&);
 };
-constexpr std::array<ActionKind, 9> kinds{{{"wait_s", read_wait},
-                                           {"appear", read_appear},
-                                           {"enter", read_enter},
-                                           {"walk", read_walk},
-                                           {"sit", read_sit},
-                                           {"work", read_work},
-                                           {"rise", read_rise},
-                                           {"turn", read_turn},
-                                           {"leave", read_leave}}};
+constexpr std::array<ActionKind, 10> kinds{{{"wait_s", read_wait_s},
+                                            {"wait", read_wait},
+                                            {"appear", read_appear},
+                                            {"enter", read_enter},
+                                            {"walk", read_walk},
+                                            {"sit", read_sit},
+                                            {"work", read_work},
+                                            {"rise", read_rise},
+                                            {"turn", read_turn},
+                                            {"leave", read_leave}}};
 
 ScriptedAction read_action_map(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "action");

@@ -50,13 +50,28 @@ WarmthSpec read_warmth(const std::optional<YamlNode>& node, Diagnostics& faults)
   return warmth;
 }
 
+constexpr double natural_speed_m_s = 1.2;  // indoors; Ref: [Weidmann1993] has 1.34 in the open
+
+/// The choreographed style would ignore them.
+void refuse_activities(const PersonSpec& person, Diagnostics& faults) {
+  if (person.style == MotionStyle::natural) return;
+  for (const ScriptedAction& action : person.actions) {
+    const bool has_activity = std::visit(
+        [](const auto& what) {
+          if constexpr (requires { what.activity; }) return what.activity.has_value();
+          return false;
+        },
+        action.what);
+    if (has_activity) faults.error(action.where, "an activity needs `style: natural` of the person");
+  }
+}
+
 PersonSpec read_person(const YamlNode& node, BodyMeshReader& body_meshes, Diagnostics& faults) {
   YamlMap map(node, faults, "person");
   PersonSpec person;
   person.id = map.required_text("id");
   person.stature_m = map.number("stature_m", person.stature_m, {.min = 0.8, .max = 2.3});
   person.mass_kg = map.number("mass_kg", person.mass_kg, {.min = 10.0, .max = 250.0});
-  person.walking_speed_m_s = map.number("walking_speed_m_s", person.walking_speed_m_s, {.min = 0.1, .max = 3.0});
   if (const auto child = map.child("seat_scatter")) {
     YamlMap scatter(*child, faults, "seat_scatter");
     person.seat_scatter.position_sd_m = scatter.number("position_sd_m", 0.0, {.min = 0.0, .max = 0.2});
@@ -67,8 +82,11 @@ PersonSpec read_person(const YamlNode& node, BodyMeshReader& body_meshes, Diagno
   person.body_meshes = body_meshes.read(person.body_mesh_file, map.where("body_mesh"), faults);
   person.style = map.choice<MotionStyle>(
       "style", person.style, {{"choreographed", MotionStyle::choreographed}, {"natural", MotionStyle::natural}});
+  const double speed_m_s = person.style == MotionStyle::natural ? natural_speed_m_s : person.walking_speed_m_s;
+  person.walking_speed_m_s = map.number("walking_speed_m_s", speed_m_s, {.min = 0.1, .max = 3.0});
   person.warmth = read_warmth(map.child("warmth"), faults);
   for (const YamlNode& action : map.list("actions")) person.actions.push_back(read_action(action, faults));
+  refuse_activities(person, faults);
   map.finish();
   return person;
 }

@@ -19,11 +19,20 @@ YAML::Node point(const Vec2& p) {
   return node;
 }
 
+const char* name(Activity activity) { return activity_names[static_cast<std::size_t>(activity)]; }
+
 /// Adds an action's key and value to its entry.
 struct ActionWriter {
   YAML::Node entry;
 
-  void operator()(const action::Wait& wait) { entry["wait_s"] = number(wait.duration_s); }
+  void operator()(const action::Wait& wait) {
+    if (wait.activity) {
+      entry["wait"]["duration_s"] = number(wait.duration_s);
+      entry["wait"]["activity"] = name(*wait.activity);
+    } else {
+      entry["wait_s"] = number(wait.duration_s);
+    }
+  }
   void operator()(const action::Appear& appear) {
     entry["appear"]["at_xz_m"] = point(appear.point);
     entry["appear"]["heading_deg"] = number(appear.heading_deg);
@@ -31,6 +40,7 @@ struct ActionWriter {
   void operator()(const action::Enter& enter) { entry["enter"] = enter.entrance; }
   void operator()(const action::Walk& walk) {
     for (const Vec2& p : walk.points) entry["walk"]["to_xz_m"].push_back(point(p));
+    if (walk.activity) entry["walk"]["activity"] = name(*walk.activity);
   }
   void operator()(const action::Sit& sit) {
     const action::Sit plain{sit.seat};
@@ -51,8 +61,7 @@ struct ActionWriter {
     for (const double tilt : work.tilt_choices_deg) node["tilt_choices_deg"].push_back(number(tilt));
     node["tilt_choices_deg"].SetStyle(YAML::EmitterStyle::Flow);
     node["tilt_every_s"] = number(work.tilt_every_s);
-    static constexpr std::array<const char*, 4> activities{"typing", "reading", "meeting", "phone"};
-    node["activity"] = activities[static_cast<std::size_t>(work.activity)];
+    if (work.activity) node["activity"] = name(*work.activity);
     entry["work"] = node;
   }
   void operator()(const action::Rise&) { entry["rise"] = YAML::Node(YAML::NodeType::Null); }

@@ -241,23 +241,28 @@ void Actor::work(const action::Work& work, std::int64_t now) {
 }
 
 void Actor::move_naturally() {
-  std::optional<Activity> activity;
-  if (!done() && begun_) {
-    if (const auto* work_action = std::get_if<action::Work>(&action().what)) activity = work_action->activity;
-  }
-  if (activity != Activity::meeting) attention_ = {};
-  natural_->tick(body_motion(), activity, attention_);
+  const std::optional<Activity> busy_with = activity();
+  if (busy_with != Activity::meeting) attention_ = {};
+  natural_->tick(body_motion(), busy_with, attention_);
+}
+
+std::optional<Activity> Actor::activity() const {
+  if (done() || !begun_) return std::nullopt;
+  if (const auto* work = std::get_if<action::Work>(&action().what)) return work->activity.value_or(Activity::typing);
+  if (const auto* wait = std::get_if<action::Wait>(&action().what)) return wait->activity;
+  if (const auto* walk = std::get_if<action::Walk>(&action().what)) return walk->activity;
+  return std::nullopt;
 }
 
 bool Actor::takes_part_in_meeting() const {
-  if (!natural_ || !body_ || done() || !begun_ || body_->motion().stage() != Stage::seated) return false;
-  const auto* work_action = std::get_if<action::Work>(&action().what);
-  return work_action != nullptr && work_action->activity == Activity::meeting;
+  if (!natural_ || !body_ || activity() != Activity::meeting) return false;
+  const Stage stage = body_->motion().stage();
+  return stage == Stage::seated || stage == Stage::standing;
 }
 
-void Actor::attend(Attention::Talk talk, const std::optional<Vec2>& speaker) {
+void Actor::attend(Talk talk, const std::optional<Vec2>& speaker) {
   attention_ = {talk, 0.0};
-  if (!speaker || talk != Attention::Talk::listens) return;
+  if (!speaker || talk != Talk::listens) return;
   const Vec2 way = *speaker - body_->motion().position();
   attention_.towards = std::remainder(heading_of(way) - body_->motion().heading(), 2.0 * pi);
 }

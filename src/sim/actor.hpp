@@ -42,10 +42,10 @@ class Actor {
   [[nodiscard]] Presence presence() const;
   /// Taken, from setting out for it to walking away from it; or empty.
   [[nodiscard]] std::string_view seat() const noexcept { return seat_; }
-  /// Sits in a meeting, in natural style.
+  /// Sits or stands in a meeting, in natural style.
   [[nodiscard]] bool takes_part_in_meeting() const;
   /// From now on; speaker: where who speaks is.
-  void attend(Attention::Talk talk, const std::optional<Vec2>& speaker);
+  void attend(Talk talk, const std::optional<Vec2>& speaker);
   /// What happened in the step to this tick.
   [[nodiscard]] std::span<const Incident> incidents() const noexcept { return incidents_; }
 
@@ -105,6 +105,8 @@ class Actor {
   void work(const action::Work& work, std::int64_t now);
   void fidget(const CompiledStudy& study);
   void move_naturally();
+  /// What somebody of natural style is busy with by the current action.
+  [[nodiscard]] std::optional<Activity> activity() const;
   void carry_on(const Scene& scene);
   void finish_action();
   void note(IncidentKind kind, std::int64_t tick);

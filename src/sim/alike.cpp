@@ -20,8 +20,8 @@ auto fields(const SeatSpec& seat) {
   return std::tie(id, world_from_seat);
 }
 auto fields(const action::Wait& wait) {
-  const auto& [duration_s] = wait;
-  return std::tie(duration_s);
+  const auto& [duration_s, activity] = wait;
+  return std::tie(duration_s, activity);
 }
 auto fields(const action::Appear& appear) {
   const auto& [point, heading_deg] = appear;
@@ -32,8 +32,8 @@ auto fields(const action::Enter& enter) {
   return std::tie(entrance);
 }
 auto fields(const action::Walk& walk) {
-  const auto& [points] = walk;
-  return std::tie(points);
+  const auto& [points, activity] = walk;
+  return std::tie(points, activity);
 }
 auto fields(const action::Sit& sit) {
   const auto& [seat, wait_s, if_taken] = sit;

@@ -36,10 +36,7 @@ void Crowd::let_speak(const CompiledStudy& study, std::int64_t tick) {
   for (const std::uint32_t i : participants_) {
     std::optional<Vec2> place;
     if (speaker) place = actors_[*speaker].motion().position();
-    actors_[i].attend(i == speaker ? Attention::Talk::speaks
-                      : speaker    ? Attention::Talk::listens
-                                   : Attention::Talk::none,
-                      place);
+    actors_[i].attend(i == speaker ? Talk::speaks : speaker ? Talk::listens : Talk::none, place);
   }
 }
 

@@ -1,48 +1,25 @@
-// What people of natural style do beside their choreography: stillness and small movements by turns, and breathing.
+// How people of natural style move beside their choreography: stillness and small acts by turns, and breathing.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
-#include <span>
-#include <vector>
 
 #include "body/motion.hpp"
 #include "pirsim/random.hpp"
-#include "pirsim/script.hpp"
+#include "sim/natural_acts.hpp"
 
 namespace pirsim::sim {
 
-/// What a small movement is, for those who count them.
-enum class ActKind { shift, fidget, task };
-
-/// One movement of one channel: to a target drawn between the bounds, to either side if `either_side`.
-struct Stroke {
-  enum class Side { as_drawn, either };
-  body::Channel channel;
-  double low, high;  ///< metres or radians
-  Side side = Side::as_drawn;
-};
-
-/// A small movement as data: strokes that begin together, repeated, each time with targets of their own.
-struct Act {
-  enum class After { returns, stays };
-  const char* name;
-  ActKind kind;
-  std::span<const Stroke> strokes;
-  double stroke_s;
-  int fewest, most;  ///< repeats
-  After after;
-  const char* source;
-};
-
-/// All small movements that belong to an activity: its tasks, and the shifts and fidgets of every sitter.
-[[nodiscard]] std::vector<Act> acts_of(Activity activity);
-
-/// What a sitter has to do with who speaks in a meeting.
+/// What a person has to do with who speaks.
 struct Attention {
-  enum class Talk { none, listens, speaks } talk = Talk::none;
+  Talk talk = Talk::none;
   double towards = 0.0;  ///< of a listener: the turn of the head that looks at who speaks, radians to the left
 };
+
+/// Posture shifts and fidgets of seated office workers, a second. Ref: [ApplErgon2024]: 9 and 13 in 15 minutes.
+inline constexpr double shift_rate_per_s = 9.0 / 900.0;
+inline constexpr double fidget_rate_per_s = 13.0 / 900.0;
 
 /// A value; draws from a stream of its own.
 class NaturalMotion {
@@ -51,7 +28,9 @@ class NaturalMotion {
 
   /// Metres per second, this person's in this run: normal about the script's, cut at two standard deviations.
   [[nodiscard]] double pace(double scripted_m_s) const noexcept;
-  /// One tick of somebody who sits or stands or walks; activity: of a sitter at work.
+  /// This person's rate of shifts and fidgets relative to the mean person's.
+  [[nodiscard]] double liveliness() const noexcept { return liveliness_; }
+  /// One tick of somebody who sits, stands or walks, before the body moves. activity: as the script says.
   void tick(body::Motion& motion, std::optional<Activity> activity, const Attention& attention);
 
   /// The act under way, if there is one.
@@ -60,23 +39,45 @@ class NaturalMotion {
   [[nodiscard]] std::int64_t begun(ActKind kind) const noexcept { return begun_[static_cast<std::size_t>(kind)]; }
 
  private:
-  void begin_act(std::optional<Activity> activity, Attention::Talk talk);
+  /// What the person is in the middle of; a change of it ends whatever was under way.
+  struct Situation {
+    Bearing bearing = Bearing::standing;
+    std::optional<Activity> activity;
+    bool operator==(const Situation&) const = default;
+  };
+  enum class Phase { still, moving, returning };
+
+  void enter(body::Motion& motion, const Situation& situation);
+  void attend(const Attention& attention);
+  void begin_act();
   void stroke(body::Motion& motion);
-  void end_act(body::Motion& motion);
+  /// The seconds that it takes.
+  double return_to_rest(body::Motion& motion);
   void be_still();
   void breathe(body::Motion& motion) const;
-  [[nodiscard]] const Act& draw(std::span<const Act> acts);
+  void wait(double seconds);
+  [[nodiscard]] ActKind draw_kind();
+  [[nodiscard]] double& rest_of(body::Channel channel) { return rest_[static_cast<std::size_t>(channel)]; }
+  [[nodiscard]] const Repertoire& repertoire() const noexcept {
+    return sim::repertoire(situation_->bearing, situation_->activity, talk_);
+  }
 
   Stream stream_;
   int tick_rate_hz_ = 50;
-  double liveliness_ = 1.0;  ///< rate relative to the mean person's
-  double pace_ = 0.0;        ///< standard normal
+  double liveliness_ = 1.0;
+  double pace_ = 0.0;  ///< standard normal
+  double breath_hz_ = 0.25;
   double breath_phase_ = 0.0;
+  std::optional<Situation> situation_;  ///< none on the way onto or off a seat
+  Talk talk_ = Talk::none;
+  /// Of each channel: where it belongs in this situation, and where it rests since the last shift.
+  std::array<double, body::n_channels> home_{}, rest_{};
+  Phase phase_ = Phase::still;
   const Act* act_ = nullptr;
   int repeats_left_ = 0;
   std::int64_t tick_ = 0;
-  std::int64_t next_ = 0;  ///< tick at which the next stroke or act begins
-  std::int64_t begun_[3] = {};
+  std::int64_t next_ = 0;  ///< tick at which the next stroke, way back or stillness begins
+  std::array<std::int64_t, 3> begun_{};
 };
 
 }  // namespace pirsim::sim

@@ -297,6 +297,48 @@ void people_known() {
   }
 }
 
+/// The first of Study A's seats with a person of this style each, who work for ever.
+ScriptSpec full_room(std::size_t n_people, MotionStyle style, Response response) {
+  const ScriptSpec alone = shipped_script("studyA.yaml");
+  ScriptSpec script = alone;
+  script.sensing.response = response;
+  script.trials.resize(1);
+  script.trials.front().people.clear();
+  constexpr std::array activities{Activity::typing, Activity::typing, Activity::reading, Activity::phone};
+  for (std::size_t i = 0; i < n_people; ++i) {
+    PersonSpec person = alone.trials[i].people.front();
+    person.id += std::to_string(i);
+    person.style = style;
+    for (ScriptedAction& action : person.actions) {
+      auto* work = std::get_if<action::Work>(&action.what);
+      if (work == nullptr) continue;
+      work->duration_s = 1e6;
+      if (style == MotionStyle::natural) work->activity = activities[i % activities.size()];
+    }
+    script.trials.front().people.push_back(person);
+  }
+  return script;
+}
+
+/// How fast people at work are simulated, from the moment on when all of them sit.
+void hours_per_second() {
+  const SceneSpec scene = shipped_scene("meeting_room.gltf");
+  for (const Response response : {Response::zones, Response::analog}) {
+    for (const MotionStyle style : {MotionStyle::choreographed, MotionStyle::natural}) {
+      for (const std::size_t n_people : {1U, 3U, 8U, 10U}) {
+        const Office office(scene, full_room(n_people, style, response));
+        constexpr int n_ticks = 60000;
+        const double ns = tick_ns(office.model, office.state, n_ticks);
+        const std::string what = std::string(response == Response::analog ? "analog, " : "zones, ") +
+                                 (style == MotionStyle::natural ? "natural, " : "the paper's, ") +
+                                 std::to_string(n_people) + " people";
+        report("people at work", what, ns, "ns a tick");
+        report("people at work", what, 1e9 / (ns * 50.0 * 3600.0), "hours a second");
+      }
+    }
+  }
+}
+
 /// Seconds of wall clock until every one of some independent ensembles of 300 runs is done.
 double seconds_of_ensembles(const std::vector<std::string>& overrides, unsigned n_ensembles, unsigned threads_each) {
   const auto begin = Clock::now();
@@ -428,8 +470,8 @@ int main(int argc, char** argv) {
   for (const Section& section :
        {Section{"start-up", start_up}, Section{"first", first_runs}, Section{"anew", postures_anew},
         Section{"limit", limit}, Section{"people", people}, Section{"known", people_known},
-        Section{"realizations", realizations}, Section{"ticks", ticks_by_phase}, Section{"responses", responses},
-        Section{"runs", runs_per_second}}) {
+         Section{"hours", hours_per_second}, Section{"realizations", realizations}, Section{"ticks", ticks_by_phase},
+         Section{"responses", responses}, Section{"runs", runs_per_second}}) {
     if (wanted.empty() || wanted == section.name) section.run();
   }
 }

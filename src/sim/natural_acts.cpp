@@ -1,0 +1,141 @@
+#include "sim/natural_acts.hpp"
+
+#include <array>
+#include <cmath>
+#include <iterator>
+
+namespace pirsim::sim {
+namespace {
+
+using body::Channel;
+using Side = Stroke::Side;
+using enum Act::After;
+
+constexpr double degree = pi / 180.0;
+
+// The exponent: Ref: [Nakamura2007], near 0.9 for the locomotor activity of healthy people. The ends are assumed
+// (shortest 0.5-2 s, longest 300-1200 s).
+constexpr StillPeriods by_power_law{0.9, 1.0, 600.0};
+constexpr StillPeriods while_speaking{0.9, 0.3, 3.0};  // assumed (longest 2-5 s): hands rest between two gestures
+constexpr StillPeriods while_walking{0.9, 2.0, 30.0};  // assumed (longest 10-60 s): looks ahead in between
+
+constexpr const char* assumed = "assumed; half and twice the amplitudes tried";
+constexpr const char* reading_speed = "weight: a page of 300 words takes 75 s at 238 words a minute [Brysbaert2019]";
+
+// Shifts: the body comes to rest in another posture.
+constexpr Stroke lean[]{{Channel::trunk_tilt, -10 * degree, 14 * degree}};
+constexpr Stroke shift_on_chair[]{{Channel::trunk_lean, 2 * degree, 7 * degree, Side::either},
+                                  {Channel::trunk_tilt, -6 * degree, 8 * degree}};
+constexpr Stroke turn_chair[]{{Channel::chair_turn, 4 * degree, 18 * degree, Side::either}};
+constexpr Act seated_shifts[]{{"lean", 1, lean, 1.4, 1, 1, stays, assumed},
+                              {"shift on the chair", 1, shift_on_chair, 1.0, 1, 1, stays, assumed},
+                              {"turn the chair", 1, turn_chair, 1.5, 1, 1, stays, assumed}};
+
+constexpr Stroke look[]{{Channel::head_turn, 15 * degree, 50 * degree, Side::either}};
+constexpr Stroke sway[]{{Channel::trunk_tilt, 1 * degree, 4 * degree, Side::either}};
+constexpr Stroke touch_face[]{{Channel::right_hand_to_head, 0.8, 1.0}};
+constexpr Act fidgets_of_all[]{{"look round", 1, look, 0.7, 1, 2, returns, assumed},
+                               {"sway", 1, sway, 0.6, 1, 3, returns, assumed},
+                               {"touch the face", 1, touch_face, 1.0, 1, 1, returns, assumed}};
+
+constexpr Stroke type[]{{Channel::left_hand_ahead, -0.025, 0.025}, {Channel::right_hand_ahead, -0.025, 0.025}};
+constexpr Stroke mouse[]{{Channel::right_hand_ahead, -0.05, 0.05}};
+constexpr Stroke reach[]{{Channel::right_hand_ahead, 0.03, 0.08}, {Channel::trunk_tilt, 6 * degree, 14 * degree}};
+constexpr Act typing[]{{"type", 2, type, 0.3, 3, 14, returns, assumed},
+                       {"use the mouse", 1, mouse, 0.5, 2, 6, returns, assumed},
+                       {"reach for something", 1, reach, 1.0, 1, 1, returns, assumed}};
+
+constexpr Stroke turn_page[]{{Channel::right_hand_up, 0.03, 0.07}, {Channel::right_hand_ahead, -0.10, 0.04}};
+constexpr Stroke glance[]{{Channel::head_turn, 4 * degree, 12 * degree, Side::either}};
+constexpr Act reading[]{{"follow the lines", 7, glance, 0.8, 1, 4, returns, assumed},
+                        {"turn a page", 1, turn_page, 0.7, 1, 2, returns, reading_speed}};
+
+constexpr Stroke gesture[]{{Channel::left_hand_up, 0.04, 0.18},
+                           {Channel::right_hand_up, 0.04, 0.18},
+                           {Channel::left_hand_ahead, -0.08, 0.08},
+                           {Channel::right_hand_ahead, -0.08, 0.08}};
+constexpr Stroke nod[]{{Channel::trunk_tilt, 0.5 * degree, 2 * degree}};
+constexpr Stroke take_notes[]{{Channel::right_hand_ahead, -0.03, 0.03}};
+constexpr Act listening[]{{"nod", 1, nod, 0.4, 1, 3, returns, assumed},
+                          {"take notes", 1, take_notes, 0.3, 2, 12, returns, assumed},
+                          {"glance", 1, glance, 0.6, 1, 1, returns, assumed}};
+constexpr Act speaking[]{{"gesture", 1, gesture, 0.7, 2, 6, returns, assumed}};
+
+constexpr Stroke one_hand[]{{Channel::right_hand_up, 0.03, 0.15}, {Channel::right_hand_ahead, -0.06, 0.06}};
+constexpr Act phoning[]{{"gesture with one hand", 1, one_hand, 0.7, 1, 4, returns, assumed},
+                        {"look round", 1, look, 0.7, 1, 2, returns, assumed}};
+constexpr Hold at_the_ear[]{{Channel::left_hand_to_head, 1.0}};
+
+constexpr Act sitting_idly[]{{"look round", 1, look, 0.7, 1, 2, returns, assumed},
+                             {"sway", 1, sway, 0.6, 1, 3, returns, assumed}};
+
+// On the feet. Hands that hang are raised part of the way to the head.
+constexpr Stroke shift_weight[]{{Channel::trunk_lean, 1 * degree, 3 * degree, Side::either}};
+constexpr Act standing_shifts[]{{"shift the weight", 1, shift_weight, 1.2, 1, 1, stays, assumed}};
+constexpr Act looking[]{{"look round", 1, look, 0.7, 1, 2, returns, assumed}};
+constexpr Stroke raise_hands[]{{Channel::left_hand_to_head, 0.15, 0.45}, {Channel::right_hand_to_head, 0.15, 0.45}};
+constexpr Stroke raise_one_hand[]{{Channel::right_hand_to_head, 0.15, 0.45}};
+constexpr Stroke write_high[]{{Channel::right_hand_to_head, 0.45, 0.65}, {Channel::trunk_tilt, 0.0, 4 * degree}};
+constexpr Stroke turn_trunk[]{{Channel::head_turn, 30 * degree, 55 * degree, Side::either},
+                              {Channel::trunk_lean, 1 * degree, 4 * degree, Side::either}};
+constexpr Act standing_listening[]{{"nod", 1, nod, 0.4, 1, 3, returns, assumed},
+                                   {"glance", 1, glance, 0.6, 1, 1, returns, assumed}};
+constexpr Act standing_speaking[]{{"gesture", 1, raise_hands, 0.6, 2, 8, returns, assumed}};
+constexpr Act standing_phoning[]{{"gesture with one hand", 1, raise_one_hand, 0.6, 1, 5, returns, assumed},
+                                 {"look round", 1, look, 0.7, 1, 2, returns, assumed}};
+constexpr Act at_whiteboard[]{{"write", 2, write_high, 0.5, 4, 20, returns, assumed},
+                              {"point", 1, raise_one_hand, 0.8, 1, 2, returns, assumed},
+                              {"turn to the others", 1, turn_trunk, 0.9, 1, 1, returns, assumed}};
+
+constexpr Repertoire seated[]{{seated_shifts, fidgets_of_all, typing, {}, by_power_law},
+                              {seated_shifts, fidgets_of_all, reading, {}, by_power_law},
+                              {seated_shifts, fidgets_of_all, listening, {}, by_power_law},
+                              {seated_shifts, fidgets_of_all, phoning, at_the_ear, by_power_law},
+                              {seated_shifts, fidgets_of_all, sitting_idly, {}, by_power_law}};
+constexpr Repertoire seated_speaker{seated_shifts, fidgets_of_all, speaking, {}, while_speaking};
+constexpr Repertoire standing[]{{standing_shifts, fidgets_of_all, looking, {}, by_power_law},
+                                {standing_shifts, fidgets_of_all, looking, {}, by_power_law},
+                                {standing_shifts, fidgets_of_all, standing_listening, {}, by_power_law},
+                                {standing_shifts, fidgets_of_all, standing_phoning, at_the_ear, by_power_law},
+                                {standing_shifts, fidgets_of_all, at_whiteboard, {}, while_speaking}};
+constexpr Repertoire standing_idly{standing_shifts, fidgets_of_all, looking, {}, by_power_law};
+constexpr Repertoire standing_speaker{standing_shifts, fidgets_of_all, standing_speaking, {}, while_speaking};
+constexpr Repertoire walking{{}, {}, looking, {}, while_walking};
+constexpr Repertoire walking_on_phone{{}, {}, looking, at_the_ear, while_walking};
+
+/// The integral of x^power between two points, relative to that between the ends; inverted.
+double within(double low, double high, double power, double share) noexcept {
+  const double p = power + 1.0;
+  return std::pow(std::pow(low, p) + share * (std::pow(high, p) - std::pow(low, p)), 1.0 / p);
+}
+
+}  // namespace
+
+double StillPeriods::mean_s() const noexcept {
+  const double ratio = longest_s / shortest_s;
+  return exponent / (1.0 - exponent) * shortest_s * (std::pow(ratio, 1.0 - exponent) - 1.0) /
+         (1.0 - std::pow(ratio, -exponent));
+}
+
+double StillPeriods::length_s(double u) const noexcept { return within(shortest_s, longest_s, -exponent - 1.0, u); }
+
+/// A period is met in proportion to its length, anywhere in it.
+double StillPeriods::rest_s(double u, double v) const noexcept {
+  return v * within(shortest_s, longest_s, -exponent, u);
+}
+
+const Repertoire& repertoire(Bearing bearing, std::optional<Activity> activity, Talk talk) noexcept {
+  const auto index = static_cast<std::size_t>(activity.value_or(Activity::whiteboard));
+  switch (bearing) {
+    case Bearing::walking:
+      return activity == Activity::phone ? walking_on_phone : walking;
+    case Bearing::standing:
+      if (talk == Talk::speaks) return standing_speaker;
+      return activity ? standing[index] : standing_idly;
+    case Bearing::seated:
+      break;
+  }
+  return talk == Talk::speaks ? seated_speaker : seated[index];
+}
+
+}  // namespace pirsim::sim
