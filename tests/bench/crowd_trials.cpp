@@ -31,7 +31,10 @@ struct Options {
 
 Options parse(const std::vector<std::string>& words) {
   if (words.size() < 4) throw Error(ErrorCode::usage, "SCENE CASE PEOPLE RUNS are needed");
-  Options options{.scene = words[0], .kind = words[1], .plan = {}, .n_runs = std::uint32_t(std::stoul(words[3]))};
+  Options options;
+  options.scene = words[0];
+  options.kind = words[1];
+  options.n_runs = std::uint32_t(std::stoul(words[3]));
   options.plan.kind = cases.at(words[1]);
   options.plan.n_people = std::uint32_t(std::stoul(words[2]));
   if (options.plan.kind == CrowdPlan::Case::in_turn) options.plan.statures = CrowdPlan::Statures::one;
@@ -136,7 +139,8 @@ void run(Options& options) {
           }
           if (record.least_gap_m < 0.0) {
             options.incidents << trial << ",overlap," << record.least_gap_at_s << ",p" << record.least_gap_of[0] + 1
-                              << "+p" << record.least_gap_of[1] + 1 << ',' << record.least_gap_m << ",\n";
+                              << "+p" << record.least_gap_of[1] + 1 << ',' << record.least_gap_m << ','
+                              << body::name(record.least_gap_in[0]) << '+' << body::name(record.least_gap_in[1]) << '\n';
           }
           ++trial;
         });

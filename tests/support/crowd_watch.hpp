@@ -108,6 +108,7 @@ struct CrowdRecord {
   double least_gap_m = 1e9;  ///< between two trunks of which neither passes through the other
   double least_gap_at_s = 0.0;
   std::array<std::uint32_t, 2> least_gap_of{};
+  std::array<body::Stage, 2> least_gap_in{};
   double end_s = 0.0;
   [[nodiscard]] std::size_t count(IncidentKind kind) const {
     return static_cast<std::size_t>(std::ranges::count(incidents, kind, &sim::Incident::kind));
@@ -162,6 +163,7 @@ CrowdRecord watch_crowd(const Model& model, std::uint32_t run, int look_every, c
         record.least_gap_m = gap;
         record.least_gap_at_s = now;
         record.least_gap_of = {j, i};
+        record.least_gap_in = {actors[j].motion().stage(), actors[i].motion().stage()};
       }
     }
   }
