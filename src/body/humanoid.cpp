@@ -124,6 +124,14 @@ double Humanoid::half_width_m() const noexcept {
   return std::get<Box>(primitives_[static_cast<std::size_t>(Part::torso)]).half_extents.x + to_spare_m;
 }
 
+double Humanoid::trunk_radius_m() const noexcept {
+  const Vec3& torso = std::get<Box>(primitives_[static_cast<std::size_t>(Part::torso)]).half_extents;
+  const auto& pelvis = std::get<Capsule>(primitives_[static_cast<std::size_t>(Part::pelvis)]);
+  return std::max(std::hypot(torso.x, torso.z), pelvis.half_length + pelvis.radius);
+}
+
+double Humanoid::trunk_height_m() const noexcept { return torso_top * measures_.stature_m - measures_.hip_height_m; }
+
 double Humanoid::radius_m(Part part) const noexcept {
   const Shape& shape = primitives_[static_cast<std::size_t>(part)];
   if (const auto* capsule = std::get_if<Capsule>(&shape)) return capsule->radius;

@@ -46,6 +46,10 @@ class Humanoid {
   /// From a standing person's middle to the side of the trunk: what they keep clear of in narrow places, with their
   /// arms drawn in.
   [[nodiscard]] double half_width_m() const noexcept;
+  /// From a standing person's middle to the farthest point of the trunk, whichever way they face.
+  [[nodiscard]] double trunk_radius_m() const noexcept;
+  /// From the hip joints to the base of the neck.
+  [[nodiscard]] double trunk_height_m() const noexcept;
   [[nodiscard]] double walking_speed_m_s() const noexcept { return walking_speed_m_s_; }
   /// Of a part that is a sphere or a capsule.
   [[nodiscard]] double radius_m(Part part) const noexcept;

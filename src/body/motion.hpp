@@ -103,6 +103,7 @@ class Motion {
   [[nodiscard]] Vec2 place_to_stand() const noexcept { return on_seat() ? stand_.position : position(); }
   [[nodiscard]] double heading() const noexcept;
   [[nodiscard]] double speed_m_s() const noexcept;
+  [[nodiscard]] double spine_tilt() const noexcept;  ///< positive forward
   [[nodiscard]] Outline outline() const noexcept;
   [[nodiscard]] Posture posture() const noexcept { return posture_of(humanoid_, outline()); }
   bool operator==(const Motion&) const = default;
@@ -121,7 +122,6 @@ class Motion {
   [[nodiscard]] Placement pelvis() const noexcept;
   [[nodiscard]] Feet feet() const noexcept;
   [[nodiscard]] double hip_height_m(const Placement& pelvis, const Feet& feet) const noexcept;
-  [[nodiscard]] double spine_tilt() const noexcept;
   [[nodiscard]] const MinJerk& channel(Channel which) const noexcept {
     return channels_[static_cast<std::size_t>(which)];
   }

@@ -391,7 +391,7 @@ Progress Actor::carry_out(const Vanish&, const Scene&) {
 bool Actor::somebody_near(const Vec2& point, std::span<const Presence> others) const {
   const double radius = person().humanoid.clearance_radius_m();
   return std::ranges::any_of(others, [&](const Presence& other) {
-    return glm::distance(other.position, point) < other.radius_m + radius + gap_m;
+    return glm::distance(other.position, point) < other.room.radius_m + radius + gap_m;
   });
 }
 

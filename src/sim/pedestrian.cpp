@@ -17,9 +17,10 @@ using Solidity = Presence::Solidity;
 constexpr double look_ahead_m = 1.2;      ///< assumed: how far ahead a walker minds others (tried 0.8-2)
 constexpr double foresight_s = 1.5;       ///< assumed: how long before ways cross one gives way (tried 1-2)
 constexpr double gap_m = 0.1;             ///< assumed: kept between two people on foot beside their radii
-constexpr double behind_sitter_m = 0.07;  ///< assumed: room of a sitter and the chair's back beyond half the trunk
-constexpr double sitter_gap_m = 0.06;     ///< kept beside that in planning: what a rounded corner cuts, and 1 cm
-constexpr double squeeze_gap_m = 0.02;    ///< assumed: between trunks that squeeze past each other
+constexpr double leaning_back_rad = 0.26;  ///< how far back a sitter leans: 15 degrees, as in the paper
+constexpr double sitter_gap_m = 0.06;      ///< kept beside that in planning: what a rounded corner cuts, and 1 cm
+constexpr double squeeze_gap_m = 0.03;     ///< assumed: between trunks that squeeze past each other (tried 0.02-0.05)
+constexpr double squeeze_corner_m = 0.1;   ///< radius of their corners: little is cut off them
 constexpr double squeeze_speed = 0.5;     ///< assumed: of the usual pace
 constexpr double braking_m_s2 = 1.5;      ///< assumed, as Motion's acceleration
 constexpr double patience_s = 0.5;        ///< assumed: wait before looking for another way (tried 0.3-1)
@@ -33,9 +34,19 @@ constexpr double passed_m = 0.8;          ///< who passes through others goes at
 constexpr double stuck_s = 20.0;          ///< then people pass through each other (people.md)
 constexpr double stuck_in_all_s = 60.0;   ///< assumed: held up so long in one errand is stuck too (tried 40-120)
 
-/// From a point to somebody's middle, wherever it gets between sitting and standing.
-double distance_to(const Vec2& point, const Presence& other) {
-  return body::distance(point, other.position, other.back);
+double distance(const Vec2& point, const Stadium& stadium) {
+  return body::distance(point, stadium.a, stadium.b) - stadium.radius_m;
+}
+
+/// Discs that cover it, but for a centimetre between them.
+void append_discs(const Stadium& stadium, double more_m, std::vector<body::Disc>& discs) {
+  constexpr double spacing_m = 0.2;
+  const double length = glm::distance(stadium.a, stadium.b);
+  const int n_more = static_cast<int>(std::ceil(length / spacing_m));
+  for (int i = 0; i <= n_more; ++i) {
+    const double share = n_more == 0 ? 0.0 : static_cast<double>(i) / n_more;
+    discs.push_back({stadium.a + share * (stadium.b - stadium.a), stadium.radius_m + more_m});
+  }
 }
 
 double distance_to_way(const Vec2& point, const std::vector<Vec2>& way, double reach_m) {
@@ -70,22 +81,31 @@ bool Pedestrian::on_feet() const noexcept {
 Presence Pedestrian::presence() const {
   Presence mine;
   mine.person = index_;
-  mine.position = mine.back = motion_.position();
+  mine.position = motion_.position();
   const double speed = motion_.speed_m_s();
   if (speed > 0.0) mine.velocity = speed * direction_of(motion_.heading());
   mine.destination = target().value_or(mine.position);
   mine.solidity = solidity_;
-  mine.radius_m = person_->floor->clearance_m();
-  mine.squeeze_m = person_->humanoid.half_width_m();
-  mine.gap_m = gap_m;
-  if (!on_feet()) {
-    if (motion_.stage() != Stage::seated) {
-      mine.back = motion_.place_to_stand();
-    } else {
-      mine.radius_m = person_->humanoid.half_depth_m() + behind_sitter_m;
-      mine.squeeze_m = person_->humanoid.half_depth_m();
-    }
+  mine.stride = width_ == Width::narrow && speed > 0.0 ? Presence::Stride::squeezing : Presence::Stride::usual;
+  const body::Humanoid& body = person_->humanoid;
+  const double clearance_m = person_->floor->clearance_m();
+  if (on_feet()) {
+    mine.gap_m = gap_m;
+    mine.room = {mine.position, mine.position, clearance_m};
+    mine.trunk = {mine.position, mine.position, body.trunk_radius_m()};
+  } else if (motion_.stage() == Stage::seated) {
+    const Vec2 ahead = direction_of(motion_.heading()), right(-ahead.y, ahead.x);
+    const auto back_m = [&](double tilt) { return std::max(0.0, -std::sin(tilt)) * body.trunk_height_m(); };
+    const double beside_m = body.half_width_m() - body.half_depth_m();
     mine.gap_m = sitter_gap_m;
+    mine.room = {mine.position, mine.position - back_m(-leaning_back_rad) * ahead, body.trunk_radius_m()};
+    const Vec2 middle = mine.position - 0.5 * back_m(motion_.spine_tilt()) * ahead;
+    mine.trunk = {middle - beside_m * right, middle + beside_m * right,
+                  body.half_depth_m() + 0.5 * back_m(motion_.spine_tilt())};
+  } else {
+    mine.gap_m = sitter_gap_m;
+    mine.room = {mine.position, motion_.place_to_stand(), clearance_m};
+    mine.trunk = {mine.position, motion_.place_to_stand(), body.trunk_radius_m()};
   }
   mine.wished_way = wished_way_;
   if (aside_) {
@@ -94,10 +114,6 @@ Presence Pedestrian::presence() const {
     mine.precedence = {*held_up_since_, index_};
   }
   return mine;
-}
-
-double Pedestrian::kept_from(const Presence& other) const noexcept {
-  return radius_m() + (width_ == Width::narrow ? other.squeeze_m : other.radius_m);
 }
 
 double Pedestrian::gap_to(const Presence& other) const noexcept {
@@ -148,9 +164,10 @@ void Pedestrian::pass_through(std::int64_t now) {
 void Pedestrian::end_passing(std::span<const Presence> others) noexcept {
   if (solidity_ == Solidity::solid) return;
   const bool clear = std::ranges::none_of(others, [&](const Presence& other) {
-    return distance_to(motion_.position(), other) < radius_m() + other.radius_m;
+    return distance(motion_.position(), other.trunk) < person_->humanoid.trunk_radius_m();
   });
-  const bool done = on_feet() && (!target_ || glm::distance(motion_.position(), held_up_at_) > passed_m);
+  const bool done = on_feet() ? !target_ || glm::distance(motion_.position(), held_up_at_) > passed_m
+                              : motion_.stage() == Stage::seated;
   if (clear && done) solidity_ = Solidity::solid;
 }
 
@@ -177,10 +194,16 @@ bool Pedestrian::free_to_rise(std::span<const Presence> others) const {
   const Vec2 from = motion_.position(), to = motion_.place_to_stand();
   return std::ranges::none_of(others, [&](const Presence& other) {
     if (!is_solid(other)) return false;
-    const double reach = other.radius_m + radius_m() - sitter_gap_m;
-    // Who sits beside is as near as ever; it is the way back that has to be free.
-    return body::distance(other.position, from, to) < reach &&
-           glm::distance(other.position, to) < glm::distance(other.position, from) + sitter_gap_m;
+    const double reach = other.room.radius_m + radius_m();
+    // Who walks needs a way to stop.
+    const Vec2 stops = other.position + glm::length(other.velocity) / (2.0 * braking_m_s2) * other.velocity;
+    for (const Vec2& place : {other.position, stops}) {
+      // Who sits beside is as near as ever; it is the way back that has to be free.
+      if (body::distance(place, from, to) < reach &&
+          glm::distance(place, to) < glm::distance(place, from) + sitter_gap_m)
+        return true;
+    }
+    return false;
   });
 }
 
@@ -190,13 +213,10 @@ std::optional<std::vector<Vec2>> Pedestrian::way_among(const Vec2& target, std::
   constexpr double from_afar_m = 1.5;  // assumed (1-2): who stands at the goal may have gone by then
   for (const Presence& other : others) {
     if (!is_solid(other)) continue;
-    const double keep_m = kept_from(other) + gap_to(other);
-    if (distance_to(target, other) < keep_m && distance_to(motion_.position(), other) > from_afar_m) continue;
-    discs.push_back({other.position, keep_m - radius_m()});
-    if (other.back != other.position) {
-      discs.push_back({0.5 * (other.position + other.back), keep_m - radius_m()});
-      discs.push_back({other.back, keep_m - radius_m()});
-    }
+    const Stadium& taken = taken_by(other);
+    if (distance(target, taken) < radius_m() + gap_to(other) && distance(motion_.position(), taken) > from_afar_m)
+      continue;
+    append_discs(taken, gap_to(other), discs);
   }
   return floor().find_way(motion_.position(), target, discs);
 }
@@ -236,7 +256,7 @@ Progress Pedestrian::go_to(const Vec2& target, std::span<const Presence> others,
       }
       return Progress::going_on;
     }
-    route_.emplace(*way);
+    route_ = width_ == Width::narrow ? body::Route(*way, squeeze_corner_m) : body::Route(*way);
   }
   constexpr double facing_rad = 1e-6;
   const double off = std::remainder(route_->heading(0.0) - motion_.heading(), 2.0 * pi);
@@ -253,11 +273,12 @@ double Pedestrian::free_way_ahead(std::span<const Presence> others) const {
   const Vec2 ahead = direction_of(motion_.heading());
   for (const Presence& other : others) {
     if (!is_solid(other)) continue;
-    for (const Vec2& place : {other.position, other.back}) {
+    const Stadium& taken = taken_by(other);
+    for (const Vec2& place : {taken.a, taken.b}) {
       const Vec2 to_other = place - motion_.position();
       const double along = glm::dot(to_other, ahead);
       const double aside = std::abs(to_other.x * ahead.y - to_other.y * ahead.x);
-      const double reach = kept_from(other);
+      const double reach = radius_m() + taken.radius_m;
       if (along > 0.0 && aside < reach) {
         free_m = std::min(free_m, along - std::sqrt(reach * reach - aside * aside) - gap_to(other));
       }
@@ -275,7 +296,7 @@ bool Pedestrian::must_give_way(std::span<const Presence> others) const {
     const double speed2 = glm::dot(closing, closing);
     if (glm::length(other.velocity) < 0.1 || speed2 < 1e-6) continue;  // who stands is walked round
     const double when = std::clamp(-glm::dot(offset, closing) / speed2, 0.0, foresight_s);
-    if (when > 0.0 && glm::length(offset + when * closing) < kept_from(other) + gap_to(other)) return true;
+    if (when > 0.0 && glm::length(offset + when * closing) < radius_m() + taken_by(other).radius_m + gap_to(other)) return true;
   }
   return false;
 }
@@ -306,10 +327,10 @@ void Pedestrian::keep_distance(std::span<const Presence> others, std::size_t n_b
 std::optional<Vec2> Pedestrian::passing_place(const Presence& whom, std::span<const Presence> others) const {
   constexpr int n_directions = 16;
   constexpr double step_m = 0.15, farthest_m = 3.0;
-  const double keep_m = radius_m() + whom.radius_m + 0.5 * gap_m;
+  const double keep_m = radius_m() + whom.room.radius_m + 0.5 * gap_m;
   std::vector<body::Disc> discs;
   for (const Presence& other : others) {
-    if (is_solid(other)) discs.push_back({other.position, other.radius_m});
+    if (is_solid(other)) append_discs(other.room, 0.0, discs);
   }
   for (double away = step_m; away <= farthest_m; away += step_m) {
     for (int k = 0; k < n_directions; ++k) {
@@ -331,7 +352,7 @@ bool Pedestrian::makes_way(std::span<const Presence> others, std::int64_t now) {
     const bool gone = whom == others.end() || !whom->wished_way ||
                       distance_to_way(motion_.position(), *whom->wished_way, wish_reaches_m) > wish_reaches_m;
     const bool past = whom == others.end() || (!whom->wished_way && glm::distance(whom->position, motion_.position()) >
-                                                                        2.0 * (radius_m() + whom->radius_m));
+                                                                        2.0 * (radius_m() + whom->room.radius_m));
     if (now >= aside_->until || (gone && past)) {
       aside_.reset();
       forget_way();
@@ -350,7 +371,7 @@ bool Pedestrian::makes_way(std::span<const Presence> others, std::int64_t now) {
   const Presence* first = nullptr;
   for (const Presence& other : others) {
     if (!other.wished_way || (held_up_since_ && Precedence{*held_up_since_, index_} < other.precedence)) continue;
-    if (distance_to_way(motion_.position(), *other.wished_way, wish_reaches_m) > radius_m() + other.radius_m + gap_m) {
+    if (distance_to_way(motion_.position(), *other.wished_way, wish_reaches_m) > radius_m() + other.room.radius_m + gap_m) {
       continue;
     }
     if (first == nullptr || other.precedence < first->precedence) first = &other;
@@ -364,7 +385,22 @@ bool Pedestrian::makes_way(std::span<const Presence> others, std::int64_t now) {
   return true;
 }
 
+/// While somebody squeezes past, or wants to, a sitter who leans back leans forward instead.
+void Pedestrian::sit_up(std::span<const Presence> others, std::int64_t now) {
+  if (motion_.stage() != Stage::seated) leans_forward_ = false;
+  if (motion_.stage() != Stage::seated || now % ticks(search_every_s) != 0) return;
+  constexpr double near_m = 1.5, upright_rad = 0.01, lean_s = 0.6;
+  const bool asked = std::ranges::any_of(others, [&](const Presence& other) {
+    return (other.stride == Presence::Stride::squeezing || other.wished_way) &&
+           glm::distance(other.position, motion_.position()) < near_m;
+  });
+  if (asked == leans_forward_ || (asked && motion_.spine_tilt() > -upright_rad)) return;
+  motion_.adjust(body::Channel::trunk_tilt, asked ? leaning_back_rad : 0.0, lean_s);
+  leans_forward_ = asked;
+}
+
 void Pedestrian::advance(std::span<const Presence> others, std::size_t n_before, std::int64_t now) {
+  if (!others.empty()) sit_up(others, now);
   keep_distance(others, n_before, now);
   motion_.advance();
   end_passing(others);

@@ -19,8 +19,8 @@ enum class Progress { going_on, done };
 /// A value. Commands are repeated every tick until they are done; advance() ends the tick.
 ///
 /// Who is held up for a second tells others the way that they wish to go; whoever stands on it and has not been held
-/// up for longer steps aside, to the nearest place off that way, with the precedence of whom they make way for. After
-/// 20 s the person walks through the others, which is an incident.
+/// up for longer steps aside, to the nearest place off that way, with the precedence of whom they make way for. Sitters
+/// lean forward for who squeezes past. After 20 s the person walks through the others, which is an incident.
 class Pedestrian {
  public:
   Pedestrian(const CompiledStudy& study, const PersonModel& person, std::uint32_t index, const Vec2& point,
@@ -72,7 +72,9 @@ class Pedestrian {
     return width_ == Width::narrow ? *person_->narrow_floor : *person_->floor;
   }
   [[nodiscard]] double radius_m() const noexcept { return floor().clearance_m(); }
-  [[nodiscard]] double kept_from(const Presence& other) const noexcept;  ///< between the middles
+  [[nodiscard]] const Stadium& taken_by(const Presence& other) const noexcept {
+    return width_ == Width::narrow ? other.trunk : other.room;
+  }
   [[nodiscard]] double gap_to(const Presence& other) const noexcept;
   [[nodiscard]] bool on_feet() const noexcept;
   [[nodiscard]] bool free_to_rise(std::span<const Presence> others) const;
@@ -82,6 +84,7 @@ class Pedestrian {
   [[nodiscard]] std::optional<Vec2> passing_place(const Presence& whom, std::span<const Presence> others) const;
   void keep_distance(std::span<const Presence> others, std::size_t n_before, std::int64_t now);
   void be_held_up(std::int64_t now);
+  void sit_up(std::span<const Presence> others, std::int64_t now);
   void end_passing(std::span<const Presence> others) noexcept;
 
   const PersonModel* person_ = nullptr;
@@ -98,6 +101,7 @@ class Pedestrian {
   std::int64_t held_up_ticks_ = 0;  ///< in all since the errand was set out on
   Width width_ = Width::usual;
   Presence::Solidity solidity_ = Presence::Solidity::solid;
+  bool leans_forward_ = false;  ///< for somebody who squeezes past
   std::optional<Incident> incident_;
 };
 

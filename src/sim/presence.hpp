@@ -20,19 +20,26 @@ struct Precedence {
   auto operator<=>(const Precedence&) const = default;  ///< the lesser goes first
 };
 
+/// What a body takes up of the floor: everything within radius_m of the segment ab.
+struct Stadium {
+  Vec2 a{0.0}, b{0.0};
+  double radius_m = 0.0;
+};
+
 /// What others need to know to keep out of a person's way.
 struct Presence {
   std::uint32_t person = 0;  ///< index in the trial
   Vec2 position{0.0};
-  Vec2 back{0.0};         ///< where a sitter gets to when rising or sitting down; else the position
   Vec2 velocity{0.0};     ///< m/s
   Vec2 destination{0.0};  ///< where the current walk leads; the position of who isn't walking
   std::string_view seat;  ///< taken: from setting out for it to walking away from it; or empty
   enum class Script { going_on, carried_out } script = Script::going_on;
   enum class Solidity { solid, passing_through } solidity = Solidity::solid;
-  double radius_m = 0.0;   ///< what others keep clear of, round the way from `position` to `back`
-  double gap_m = 0.0;      ///< what they keep beside that where they plan their way
-  double squeeze_m = 0.0;  ///< instead of radius_m, of who squeezes past
+  enum class Stride { usual, squeezing } stride = Stride::usual;
+  /// What others keep clear of: with arms and, of a sitter, leaning back; all the way between sitting and standing.
+  Stadium room;
+  Stadium trunk;       ///< instead of room, of who squeezes past: the trunk as it is now
+  double gap_m = 0.0;  ///< what others keep beside `room` where they plan their way
   /// Of somebody who is held up: the way that they would go if nobody were there; others leave it if they can.
   std::shared_ptr<const std::vector<Vec2>> wished_way;
   Precedence precedence;  ///< of that wish
