@@ -20,6 +20,7 @@ BELOW = {
     "effects": {"schema", "geom", "core"},
     "sim": {"effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
     "studies": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "stats", "core"},
+    "dataset": {"studies", "sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "stats", "core"},
     "reconcile": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "stats", "core"},
 }
 BELOW["app"] = set(BELOW)
@@ -31,6 +32,7 @@ PUBLIC = {
     "effects": "effects",
     "model": "sim", "state": "sim", "study": "sim", "recording": "sim",
     "coverage": "studies", "walk_test": "studies",
+    "room": "dataset", "dataset": "dataset",
     "csv": "io", "io": "io",
 }
 # header prefix of a third-party library -> the only layers that may include it
@@ -38,7 +40,7 @@ THIRD_PARTY = {
     "embree": {"rt"},
     "tiny_gltf": {"io"},
     "yaml-cpp": {"io"},
-    "nlohmann": {"io", "reconcile"},
+    "nlohmann": {"io", "reconcile", "dataset"},
     "stb": {"io"},
     "zlib": {"io"},
     "zstd": {"io"},
