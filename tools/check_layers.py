@@ -20,6 +20,7 @@ BELOW = {
     "effects": {"schema", "geom", "core"},
     "sim": {"effects", "rt", "body", "pir", "schema", "geom", "core"},
     "studies": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
+    "dataset": {"studies", "sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
     "reconcile": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "stats", "core"},
 }
 BELOW["app"] = set(BELOW)
@@ -41,6 +42,7 @@ PUBLIC = {
     "effects": "effects",
     "model": "sim", "state": "sim", "study": "sim", "recording": "sim",
     "coverage": "studies", "walk_test": "studies",
+    "room": "dataset", "dataset": "dataset",
     "csv": "io", "io": "io",
     "reconcile": "reconcile", "reconcile_outcome": "reconcile",
 }
@@ -49,7 +51,7 @@ THIRD_PARTY = {
     "embree": {"rt"},
     "tiny_gltf": {"io"},
     "yaml-cpp": {"io"},
-    "nlohmann": {"io", "reconcile"},
+    "nlohmann": {"io", "reconcile", "dataset"},
     "stb": {"io"},
     "zlib": {"io"},
     "zstd": {"io"},

@@ -28,6 +28,10 @@ struct SceneOptions {
 /// apart; what was repaired or ignored stands in SceneSpec::warnings.
 [[nodiscard]] SceneSpec read_scene(const std::filesystem::path& file, const SceneOptions& options = {});
 
+/// Writes a scene that read_scene() reads back: .glb, or by any other extension .gltf with its buffer embedded. Positions
+/// are stored in single precision. Throws Error(io), and Error(usage) for a floor with holes or of several parts.
+void write_scene(const std::filesystem::path& file, const SceneSpec& scene);
+
 // Studies as YAML; the format is described in docs/formats/script.md.
 
 /// Reads and validates a script. Each override is `sensing.rays_per_zone=9`: it replaces a value before reading.

@@ -1,0 +1,103 @@
+// Datasets of many rooms and days: what a recipe asks for, and how it is made. docs/formats/dataset.md
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pirsim/room.hpp"
+#include "pirsim/sample.hpp"
+#include "pirsim/schedule.hpp"
+#include "pirsim/script.hpp"
+#include "pirsim/study.hpp"
+
+namespace pirsim::dataset {
+
+/// An effect of the catalogue, drawn anew for every room or every day of every room.
+struct VariedEffectSpec {
+  enum class Per { room, day };
+  std::string name;
+  Per per = Per::room;
+  double chance = 1.0;                                      ///< of being there at all
+  std::map<std::string, Range, std::less<>> parameters;     ///< those that are missing: the catalogue's prior
+  std::map<std::string, std::string, std::less<>> choices;  ///< `sensor: each`: one a sensor, each with its own draw
+  Where where;
+};
+
+/// Rooms that are alike: drawn from ranges, or scenes of the user's own.
+struct RoomGroupSpec {
+  int count = 1;
+  RoomSpec rooms;
+  std::vector<std::filesystem::path> scenes;  ///< if not empty: these, in order, instead
+  ScheduleSpec schedule;
+  /// How many of the schedule's staff a room has, at most one a seat; none: all of them.
+  std::optional<CountRange> people;
+  Where where;
+};
+
+/// Shares of the whole; at least one of what is asked for.
+struct SplitSpec {
+  double validation_rooms = 0.15;  ///< with all of their days
+  double test_rooms = 0.15;        ///< the same
+  double test_days = 0.2;          ///< of the rooms that are trained on: the last ones
+};
+
+/// train: rooms and days to learn from. test_days: the same rooms on later days. The others: rooms of their own.
+enum class Part { train, validation, test_days, test_rooms };
+
+enum class Export { uci864, casas, energyplus };
+
+struct RecipeSpec {
+  std::string name;
+  std::uint64_t seed = 1;
+  std::vector<RoomGroupSpec> rooms;
+  int days = 5;  ///< of each room, one after the other
+  SensingSpec sensing;
+  std::vector<VariedEffectSpec> effects;
+  SplitSpec split;
+  Occupants occupants = Occupants::counted;
+  std::vector<Export> exports;
+  std::string ending = ".csv.gz";  ///< of rows: .csv, .csv.gz or .csv.zst
+  std::filesystem::path file;
+  std::string text;  ///< the file's
+  [[nodiscard]] int n_rooms() const;
+  [[nodiscard]] std::uint32_t n_room_days() const { return static_cast<std::uint32_t>(n_rooms() * days); }
+};
+
+/// Throws Error (io; input: all faults with file:line:column).
+[[nodiscard]] RecipeSpec read_recipe(const std::filesystem::path& file);
+
+/// A room of a recipe by its number, from 1 on: drawn, or read. Throws as draw_room() and io::read_scene() do.
+[[nodiscard]] SceneSpec room_of(const RecipeSpec& recipe, int number, const io::SceneOptions& options);
+
+/// Which rooms and days are for what: (n_rooms x days), room by room. The same for the same recipe.
+[[nodiscard]] std::vector<Part> parts_of(const RecipeSpec& recipe);
+
+struct DatasetOptions {
+  io::SceneOptions scenes;
+  unsigned threads = 0;  ///< 0: all cores; changes no byte
+  std::optional<Shard> shard;
+  enum class Start { anew, resume } start = Start::anew;
+  std::function<bool()> goes_on{};           ///< asked before each room-day
+  std::function<void()> made_one{};          ///< after each room-day
+  std::function<void(const Issue&)> tell{};  ///< of what a user should know, from one thread at a time
+};
+
+/// Makes the room-days of the recipe, or a shard of them, each a file of its own that appears whole or not at all; what
+/// is there already of the same recipe and build is kept if it is to be resumed. Throws Error(input) for a folder that
+/// holds another dataset. False if it was stopped.
+bool make_room_days(const RecipeSpec& recipe, const std::filesystem::path& folder, const DatasetOptions& options);
+
+/// Room-days that aren't there yet, by index (room by room).
+[[nodiscard]] std::vector<std::uint32_t> missing_room_days(const RecipeSpec& recipe,
+                                                           const std::filesystem::path& folder);
+
+/// When all room-days are there: tables, datapackage.json, README.md, pictures, exports of the whole. Throws
+/// Error(input) if some are missing.
+void finish_dataset(const RecipeSpec& recipe, const std::filesystem::path& folder, const io::SceneOptions& options);
+
+}  // namespace pirsim::dataset

@@ -1,0 +1,87 @@
+#include <iostream>
+
+#include "app/commands.hpp"
+#include "app/long_work.hpp"
+#include "app/session.hpp"
+#include "pirsim/dataset.hpp"
+#include "studies/shards.hpp"
+
+namespace pirsim::app {
+namespace {
+
+struct DatasetCommand {
+  std::filesystem::path recipe, folder;
+  std::string shard;
+  enum class Work { make, finish } work = Work::make;
+  dataset::DatasetOptions::Start start = dataset::DatasetOptions::Start::anew;
+  unsigned threads = 0;
+  Inputs inputs;
+};
+
+void finish(const DatasetCommand& command, const dataset::RecipeSpec& recipe) {
+  dataset::finish_dataset(recipe, command.folder, scene_options(command.inputs));
+  if (command.inputs.verbosity != Verbosity::quiet)
+    std::cerr << "wrote " << (command.folder / "datapackage.json").string() << ": " << recipe.n_rooms() << " rooms, "
+              << recipe.n_room_days() << " room-days\n";
+}
+
+void make(const DatasetCommand& command, const dataset::RecipeSpec& recipe) {
+  dataset::DatasetOptions options;
+  options.scenes = scene_options(command.inputs);
+  options.threads = command.threads;
+  options.start = command.start;
+  if (!command.shard.empty()) options.shard = studies::parse_shard(command.shard);
+  const RunRange range = runs_of(options.shard.value_or(Shard{}), recipe.n_room_days());
+  const StopRequest stop;
+  Progress progress(range.count(), command.inputs.verbosity, "room-days");
+  options.goes_on = [&] { return !stop.was_made(); };
+  options.made_one = [&] { progress.run_finished(); };
+  options.tell = [&](const Issue& issue) { tell({issue}, command.inputs.verbosity); };
+  if (!dataset::make_room_days(recipe, command.folder, options)) {
+    throw Error(ErrorCode::stopped, stop.signal_name() + ": stopped at the end of a room-day; go on with --resume");
+  }
+}
+
+void run(const DatasetCommand& command) {
+  if (command.folder.empty()) throw Error(ErrorCode::usage, "-o DIR is missing");
+  const dataset::RecipeSpec recipe = dataset::read_recipe(command.recipe);
+  if (command.work == DatasetCommand::Work::make) make(command, recipe);
+  if (command.work == DatasetCommand::Work::finish || command.shard.empty()) return finish(command, recipe);
+  const std::size_t missing = dataset::missing_room_days(recipe, command.folder).size();
+  if (command.inputs.verbosity == Verbosity::quiet) return;
+  if (missing == 0) {
+    std::cerr << "all " << recipe.n_room_days() << " room-days are there: finish with --finish\n";
+  } else {
+    std::cerr << missing << " of " << recipe.n_room_days() << " room-days aren't there yet\n";
+  }
+}
+
+}  // namespace
+
+void add_dataset_command(CLI::App& app) {
+  CLI::App& command = add_command(app, "dataset", "make a dataset of many rooms and days from a recipe", R"(
+  pirsim dataset recipe.yaml -o DIR                       rows, datapackage.json, README.md, pictures
+  pirsim dataset recipe.yaml -o DIR --resume              go on where it was stopped
+  pirsim dataset recipe.yaml -o DIR --shard 3/100         one part of a job array ...
+  pirsim dataset recipe.yaml -o DIR --finish              ... and when all are through
+)");
+  const auto options = std::make_shared<DatasetCommand>();
+  command.add_option("RECIPE", options->recipe, "what the rooms, people and days are like: a YAML file")->required();
+  offer_output(command, options->folder, "DIR", "folder of the dataset");
+  command.add_option("--shard", options->shard, "only the I-th of N parts, or auto/N from the job array")
+      ->option_text("I/N");
+  command.add_flag_callback(
+      "--resume", [raw = options.get()] { raw->start = dataset::DatasetOptions::Start::resume; },
+      "keep the room-days that are there");
+  command.add_flag_callback(
+      "--finish", [raw = options.get()] { raw->work = DatasetCommand::Work::finish; },
+      "only describe what is there: tables, datapackage.json, README.md");
+  command.add_option("--sensors", options->inputs.sensor_directories, "folder with sensor models, searched first")
+      ->option_text("DIR")
+      ->allow_extra_args(false);
+  offer_threads(command, options->threads);
+  offer_quiet(command, options->inputs.verbosity);
+  command.callback([options] { run(*options); });
+}
+
+}  // namespace pirsim::app

@@ -1,0 +1,38 @@
+// What a dataset says of itself: tables of rooms, sensors, days and effects; datapackage.json; README.md.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "dataset/room_day.hpp"
+
+namespace pirsim::dataset {
+
+struct DescribedRoom {
+  int number = 0;
+  Part part = Part::train;  ///< of its first day
+  RoomKind kind = RoomKind::office;
+  std::string scene_file;  ///< relative to the dataset, or as the user named it
+  SceneSpec scene;
+  int staff = 0;
+};
+
+/// All there is to say, of a dataset that is complete.
+struct Description {
+  const RecipeSpec& recipe;
+  std::string provenance;
+  std::vector<std::string> sensor_columns;
+  std::vector<DescribedRoom> rooms;
+  std::vector<RoomDayRecord> days;    ///< room by room
+  std::vector<Part> parts;            ///< (n_days)
+  std::vector<std::string> pictures;  ///< of rooms, relative to the dataset
+};
+
+/// By file name: rooms.csv, sensors.csv, days.csv, effects.csv.
+[[nodiscard]] std::map<std::string, std::string> tables(const Description& described);
+/// tables: as written, by name.
+[[nodiscard]] std::string data_package(const Description& described, const std::map<std::string, WrittenFile>& tables);
+[[nodiscard]] std::string readme(const Description& described);
+
+}  // namespace pirsim::dataset

@@ -1,0 +1,107 @@
+#include "dataset/exports.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "pirsim/csv.hpp"
+
+namespace pirsim::dataset {
+namespace {
+
+std::string rounded(double value) { return io::csv_number(std::round(1000.0 * value) / 1000.0); }
+
+/// "2026-03-02" and "08:30:00" of a clock.
+std::string date_of(const std::string& clock) { return clock.substr(0, 10); }
+std::string time_of(const std::string& clock) { return clock.size() > 11 ? clock.substr(11) : std::string{}; }
+
+const DayProfile* profile_of(const RoomProfile& room, unsigned weekday, std::size_t week) {
+  const auto pick = [&](const std::vector<DayProfile>& days) { return &days[week % days.size()]; };
+  if (!room.weekdays[weekday].empty()) return pick(room.weekdays[weekday]);
+  constexpr unsigned saturday = 5;
+  for (unsigned k = 1; k < 7; ++k) {
+    const unsigned other = (weekday + k) % 7;
+    if ((other >= saturday) == (weekday >= saturday) && !room.weekdays[other].empty())
+      return pick(room.weekdays[other]);
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+bool Reading::any() const {
+  return std::ranges::find_if(bits, [](std::uint8_t bit) { return bit != 0; }) != bits.end();
+}
+
+std::vector<Reading> readings(std::span<const Sample> rows, int rows_per_reading) {
+  std::vector<Reading> result;
+  const auto step = static_cast<std::size_t>(rows_per_reading);
+  for (std::size_t first = 0; first + step <= rows.size(); first += step) {
+    const Sample& last = rows[first + step - 1];
+    Reading& reading = result.emplace_back(Reading{last.clock, last.people, last.bits});
+    for (const Sample& row : rows.subspan(first, step)) {
+      for (std::size_t i = 0; i < row.bits.size(); ++i) reading.bits[i] |= row.bits[i];
+    }
+  }
+  return result;
+}
+
+std::string to_uci864(std::span<const Reading> readings, const std::vector<std::string>& sensors) {
+  std::string text = "Date,Time";
+  for (const std::string& sensor : sensors) text += ',' + sensor + "_PIR";
+  text += ",Room_Occupancy_Count\n";
+  for (const Reading& reading : readings) {
+    std::string date = date_of(reading.clock);
+    std::ranges::replace(date, '-', '/');
+    text += date + ',' + time_of(reading.clock);
+    for (const std::uint8_t bit : reading.bits) text += bit != 0 ? ",1" : ",0";
+    text += ',' + std::to_string(reading.people) + '\n';
+  }
+  return text;
+}
+
+std::string to_casas(std::span<const Sample> rows, const std::vector<std::string>& sensors) {
+  std::string text;
+  std::vector<std::uint8_t> on(sensors.size(), 0);
+  for (const Sample& row : rows) {
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+      const std::uint8_t now = row.bits[i] != 0 ? 1 : 0;
+      if (now == on[i]) continue;
+      on[i] = now;
+      text += date_of(row.clock) + ' ' + time_of(row.clock) + ' ' + sensors[i] + (now != 0 ? " ON\n" : " OFF\n");
+    }
+  }
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    if (on[i] != 0) text += date_of(rows.back().clock) + ' ' + time_of(rows.back().clock) + ' ' + sensors[i] + " OFF\n";
+  }
+  return text;
+}
+
+std::string to_energyplus(std::span<const RoomProfile> rooms, int year) {
+  using namespace std::chrono;
+  std::string text;
+  for (const RoomProfile& room : rooms)
+    text += (text.empty() ? "" : ",") + room.room + "_presence," + room.room + "_people";
+  text += '\n';
+  const sys_days first{year_month_day{std::chrono::year(year), January, day(1)}};
+  std::size_t days = 0;
+  for (sys_days date = first; days < 365; date += std::chrono::days(1)) {
+    const year_month_day calendar{date};
+    if (calendar.month() == February && calendar.day() == day(29)) continue;
+    const unsigned weekday_index = (weekday(date).iso_encoding() - 1) % 7;
+    const std::size_t week = static_cast<std::size_t>((date - first).count()) / 7;
+    ++days;
+    for (std::size_t hour = 0; hour < 24; ++hour) {
+      std::string line;
+      for (const RoomProfile& room : rooms) {
+        const DayProfile* profile = profile_of(room, weekday_index, week);
+        line += (line.empty() ? "" : ",") + rounded(profile ? profile->presence[hour] : 0.0) + ',' +
+                rounded(profile ? profile->people[hour] : 0.0);
+      }
+      text += line + '\n';
+    }
+  }
+  return text;
+}
+
+}  // namespace pirsim::dataset

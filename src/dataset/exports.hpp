@@ -1,0 +1,41 @@
+// A room-day in the shapes that other tools read.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pirsim/sample.hpp"
+
+namespace pirsim::dataset {
+
+/// 30 s of rows: motion in any of them, and the people at their end.
+struct Reading {
+  std::string clock;  ///< of its end
+  int people = 0;
+  std::vector<std::uint8_t> bits;
+  [[nodiscard]] bool any() const;
+};
+[[nodiscard]] std::vector<Reading> readings(std::span<const Sample> rows, int rows_per_reading);
+
+/// Shaped like UCI's Room Occupancy Estimation (864): Date,Time,<sensor>_PIR,...,Room_Occupancy_Count.
+[[nodiscard]] std::string to_uci864(std::span<const Reading> readings, const std::vector<std::string>& sensors);
+/// Shaped like CASAS: `date time sensor ON|OFF`, a line a change.
+[[nodiscard]] std::string to_casas(std::span<const Sample> rows, const std::vector<std::string>& sensors);
+
+/// Hours of a day: share of the hour with anybody there, people on average.
+struct DayProfile {
+  std::array<double, 24> presence{}, people{};
+};
+struct RoomProfile {
+  std::string room;
+  /// (7) from Monday on: the days of this weekday that were simulated, in order.
+  std::array<std::vector<DayProfile>, 7> weekdays;
+};
+/// For EnergyPlus' Schedule:File: a line of headings, then 8760 hours from 1 January of `year` (29 February left out),
+/// columns `<room>_presence` and `<room>_people`. Each date takes the simulated days of its weekday by turns; a weekday
+/// that wasn't simulated takes those of the other days of its kind, working or weekend, or is empty.
+[[nodiscard]] std::string to_energyplus(std::span<const RoomProfile> rooms, int year);
+
+}  // namespace pirsim::dataset

@@ -1,0 +1,71 @@
+// The plan of a parametric room: walls, what stands on the floor, and what must stay free. All sides along the axes.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pirsim/random.hpp"
+#include "pirsim/room.hpp"
+
+namespace pirsim::dataset {
+
+/// Something put down on the floor, turned by a whole number of quarters to the left. Its own axes are those of what
+/// faces -Z: x to its right.
+struct Spot {
+  Vec2 origin{0.0};
+  int quarters = 0;
+  [[nodiscard]] Vec2 operator*(const Vec2& own) const;
+  [[nodiscard]] Rectangle operator*(const Rectangle& own) const;
+  [[nodiscard]] Frame frame(double height_m) const;
+};
+
+/// A straight wall, seen from inside the room.
+struct Wall {
+  enum class Kind { outer, of_missing_corner };
+  Vec2 from{0.0}, to{0.0};  ///< counter-clockwise round the room seen from above
+  Kind kind = Kind::outer;
+  /// Whether the room's corner at that end is an outer one, where sensors hang and walls meet outside.
+  bool convex_at_from = true, convex_at_to = true;
+  [[nodiscard]] double length_m() const;
+  [[nodiscard]] Vec2 along() const;   ///< unit
+  [[nodiscard]] Vec2 inward() const;  ///< unit
+  [[nodiscard]] Vec2 at(double along_m, double inward_m = 0.0) const {
+    return from + along_m * along() + inward_m * inward();
+  }
+  /// What stands with its back to the wall and faces the room there: its origin is on the wall.
+  [[nodiscard]] Spot facing_room(double along_m) const;
+  [[nodiscard]] Spot facing_wall(double along_m, double inward_m) const;
+};
+
+class FloorPlan {
+ public:
+  FloorPlan(double width_m, double depth_m, std::optional<Rectangle> missing_corner);
+
+  [[nodiscard]] const std::vector<Vec2>& outline() const noexcept { return outline_; }
+  [[nodiscard]] const std::vector<Wall>& walls() const noexcept { return walls_; }
+  [[nodiscard]] bool contains(const Rectangle& rectangle) const noexcept;
+  [[nodiscard]] bool is_free(const Rectangle& rectangle) const noexcept;
+  void occupy(const Rectangle& rectangle) { occupied_.push_back(rectangle); }
+  [[nodiscard]] const Rectangle& bounds() const noexcept { return bounds_; }
+
+ private:
+  Rectangle bounds_;
+  std::optional<Rectangle> missing_;
+  std::vector<Vec2> outline_;
+  std::vector<Wall> walls_;
+  std::vector<Rectangle> occupied_;
+};
+
+[[nodiscard]] bool overlap(const Rectangle& a, const Rectangle& b) noexcept;
+
+[[nodiscard]] double draw(const Range& range, Stream& stream);
+[[nodiscard]] int draw(const CountRange& range, Stream& stream);
+/// Whole centimetres.
+[[nodiscard]] double draw_length(const Range& range, Stream& stream);
+template <typename Item>
+[[nodiscard]] const Item& one_of(const std::vector<Item>& items, Stream& stream) {
+  return items[stream.index(static_cast<std::uint32_t>(items.size()))];
+}
+
+}  // namespace pirsim::dataset

@@ -1,0 +1,19 @@
+// One attempt at a parametric room: everything is drawn and put where there is space for it, or the attempt fails.
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "dataset/floor_plan.hpp"
+
+namespace pirsim::dataset {
+
+/// Why an attempt failed, in words that fit behind "n times".
+struct NoPlace {
+  std::string reason;
+};
+
+/// A room that isn't checked yet. Sensors have their models' names, but not the models.
+[[nodiscard]] std::variant<DrawnRoom, NoPlace> furnish(const RoomSpec& spec, Stream& stream);
+
+}  // namespace pirsim::dataset

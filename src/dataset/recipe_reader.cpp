@@ -1,0 +1,220 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "dataset/room_reader.hpp"
+#include "io/schedule_reader.hpp"
+#include "io/sensing_reader.hpp"
+#include "io/text_input.hpp"
+#include "pirsim/dataset.hpp"
+#include "pirsim/effects.hpp"
+
+namespace pirsim::dataset {
+namespace {
+
+constexpr int format_version = 1;
+constexpr int most_rooms = 100'000, most_days = 3'660;  // assumed: ten years
+
+using io::YamlMap;
+using io::YamlNode;
+
+// -- effects ---------------------------------------------------------------------------------------------------------
+
+void read_setting(const io::YamlKey& key, const YamlNode& value, const effects::EffectInfo* info,
+                  VariedEffectSpec& effect, Diagnostics& faults) {
+  const std::string what = effect.name + "." + key.name;
+  const bool is_choice =
+      info != nullptr && std::ranges::find(info->choices, key.name, &effects::ChoiceInfo::name) != info->choices.end();
+  if (is_choice) {
+    effect.choices[key.name] = value.text(faults, what);
+  } else if (value.is_list()) {
+    const std::vector<double> ends = io::read_numbers(value, faults, what);
+    if (ends.size() != 2) return faults.error(value.where(), what + ": expected a number, or [least, most]");
+    if (ends[1] < ends[0]) return faults.error(value.where(), what + ": the second number is less than the first");
+    effect.parameters[key.name] = {ends[0], ends[1]};
+  } else {
+    const double one = value.number(faults, what);
+    effect.parameters[key.name] = {one, one};
+  }
+}
+
+/// Names and bounds by the catalogue, of both ends of each range.
+void check_by_catalogue(const VariedEffectSpec& effect, Diagnostics& faults) {
+  EffectSpec least{effect.name, {}, effect.choices, effect.where}, most = least;
+  for (auto* spec : {&least, &most}) {
+    if (const auto sensor = spec->choices.find("sensor"); sensor != spec->choices.end() && sensor->second == "each")
+      spec->choices.erase(sensor);
+  }
+  for (const auto& [name, range] : effect.parameters) {
+    least.parameters[name] = range.least;
+    most.parameters[name] = range.most;
+  }
+  Diagnostics found;
+  effects::check(std::vector<EffectSpec>{least}, found);
+  if (!found.has_errors()) effects::check(std::vector<EffectSpec>{most}, found);
+  for (const Issue& issue : found.issues()) faults.error(issue.where, issue.message);
+}
+
+VariedEffectSpec read_effect(const YamlNode& node, Diagnostics& faults) {
+  VariedEffectSpec effect;
+  effect.where = node.where();
+  if (node.is_scalar()) {
+    effect.name = node.text(faults, "effect");
+    check_by_catalogue(effect, faults);
+    return effect;
+  }
+  YamlMap map(node, faults, "effect");
+  effect.per = map.choice<VariedEffectSpec::Per>(
+      "per", effect.per, {{"room", VariedEffectSpec::Per::room}, {"day", VariedEffectSpec::Per::day}});
+  effect.chance = map.number("chance", effect.chance, {.min = 0.0, .max = 1.0});
+  std::optional<YamlNode> settings;
+  for (const io::YamlKey& key : node.keys()) {
+    if (key.name == "per" || key.name == "chance") continue;
+    if (settings) faults.error(key.where, "a second effect in one entry: '" + key.name + "'");
+    effect.name = key.name;
+    effect.where = key.where;
+    settings = map.child(key.name);
+  }
+  if (!settings) {
+    faults.error(node.where(), "an entry of effects is `name`, or `{name: {parameter: [least, most]}, per: day}`");
+    return effect;
+  }
+  const auto known = effects::list();
+  const auto info = std::ranges::find(known, effect.name, &effects::EffectInfo::name);
+  if (!settings->is_map() && !settings->is_null())
+    faults.error(settings->where(), effect.name + ": expected parameters by name");
+  const auto keys = settings->keys();
+  const auto values = settings->items();
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    read_setting(keys[i], values[i], info == known.end() ? nullptr : &*info, effect, faults);
+  map.finish();
+  check_by_catalogue(effect, faults);
+  return effect;
+}
+
+// -- rooms and who is in them ----------------------------------------------------------------------------------------
+
+/// Where a recipe says nothing: a desk each, or the usual meetings.
+ScheduleSpec usual_schedule(RoomKind kind, int most_seats, const Where& where) {
+  ScheduleSpec schedule;
+  schedule.where = where;
+  if (kind == RoomKind::meeting) {
+    schedule.meetings.emplace();
+  } else {
+    schedule.staff.push_back({Role::staff, most_seats, {}});
+  }
+  return schedule;
+}
+
+std::optional<CountRange> read_people(YamlMap& map, std::optional<CountRange> otherwise) {
+  if (!map.has("people")) {
+    static_cast<void>(map.child("people"));
+    return otherwise;
+  }
+  return read_count(map, "people", {}, {.min = 0, .max = 200});
+}
+
+RoomGroupSpec read_group(const YamlNode& node, const RecipeSpec& recipe, const std::optional<ScheduleSpec>& schedule,
+                         const std::optional<CountRange>& people, Diagnostics& faults) {
+  YamlMap map(node, faults, "rooms");
+  RoomGroupSpec group;
+  group.where = node.where();
+  if (map.has("scenes")) {
+    for (const YamlNode& scene : map.required_list("scenes"))
+      group.scenes.push_back(recipe.file.parent_path() / scene.text(faults, "scenes"));
+    group.count = static_cast<int>(group.scenes.size());
+  } else {
+    static_cast<void>(map.list("scenes"));
+    group.count = map.integer("count", group.count, {.min = 1, .max = most_rooms});
+    group.rooms = read_room_keys(map);
+  }
+  group.people = read_people(map, people);
+  constexpr int many = 200;  // of staff; a room takes as many as it has seats
+  const auto own = io::read_schedule(map.child("schedule"), faults);
+  group.schedule = own ? *own : schedule ? *schedule : usual_schedule(group.rooms.kind, many, group.where);
+  map.finish();
+  return group;
+}
+
+SplitSpec read_split(YamlMap& map, const RecipeSpec& recipe) {
+  SplitSpec split;
+  const auto node = map.child("split");
+  // What is too small to be divided isn't, unless a recipe says how.
+  if (recipe.n_rooms() < 3) split.validation_rooms = split.test_rooms = 0.0;
+  if (recipe.days < 2) split.test_days = 0.0;
+  if (!node) return split;
+  constexpr io::NumberRange share{.min = 0.0, .max = 1.0};
+  YamlMap own(*node, map.faults(), "split");
+  split.validation_rooms = own.number("validation_rooms", split.validation_rooms, share);
+  split.test_rooms = own.number("test_rooms", split.test_rooms, share);
+  split.test_days = own.number("test_days", split.test_days, share);
+  own.finish();
+  return split;
+}
+
+void read_outputs(YamlMap& map, RecipeSpec& recipe) {
+  recipe.occupants = map.flag("occupants", false) ? Occupants::told : Occupants::counted;
+  for (const YamlNode& item : map.list("exports")) {
+    constexpr std::array all{Export::uci864, Export::casas, Export::energyplus};
+    const auto index = item.choice(map.faults(), "exports", {"uci864", "casas", "energyplus"});
+    if (index) recipe.exports.push_back(all[*index]);
+  }
+  const std::vector<std::pair<std::string, std::string>> endings{
+      {".csv", ".csv"}, {".csv.gz", ".csv.gz"}, {".csv.zst", ".csv.zst"}};
+  recipe.ending = map.choice<std::string>("rows", recipe.ending, endings);
+  const double reading_s = 30.0,
+               window_s = static_cast<double>(recipe.sensing.ticks_per_window) / recipe.sensing.tick_rate_hz;
+  const bool fits = std::abs(std::remainder(reading_s, window_s)) < 1e-9;
+  if (std::ranges::find(recipe.exports, Export::uci864) != recipe.exports.end() && !fits) {
+    map.faults().error(map.where("exports"),
+                       "exports: uci864 has a reading every 30 s, which isn't a whole number of "
+                       "the rows of sensing.window_s");
+  }
+}
+
+}  // namespace
+
+int RecipeSpec::n_rooms() const {
+  int n = 0;
+  for (const RoomGroupSpec& group : rooms) n += group.count;
+  return n;
+}
+
+RecipeSpec read_recipe(const std::filesystem::path& file) {
+  const YamlNode root = YamlNode::load(file);
+  Diagnostics faults;
+  YamlMap map(root, faults, "recipe");
+  const int version = map.required_integer("pirsim_recipe");
+  if (map.has("pirsim_recipe") && version != format_version) {
+    faults.error(map.where("pirsim_recipe"), "format version " + std::to_string(version) +
+                                                 " isn't known: this pirsim reads version " +
+                                                 std::to_string(format_version));
+  }
+  RecipeSpec recipe;
+  recipe.file = file;
+  recipe.text = io::read_text_file(file);
+  recipe.name = map.text("name", file.stem().string());
+  recipe.seed = map.unsigned_integer("seed", recipe.seed);
+  recipe.days = map.integer("days", recipe.days, {.min = 1, .max = most_days});
+  recipe.sensing = io::read_sensing(map.child("sensing"), faults);
+  const auto schedule = io::read_schedule(map.child("schedule"), faults);
+  const auto people = read_people(map, std::nullopt);
+  for (const YamlNode& node : map.required_list("rooms"))
+    recipe.rooms.push_back(read_group(node, recipe, schedule, people, faults));
+  for (const YamlNode& node : map.list("effects")) recipe.effects.push_back(read_effect(node, faults));
+  recipe.split = read_split(map, recipe);
+  read_outputs(map, recipe);
+  map.finish();
+  if (!faults.has_errors()) {
+    if (recipe.n_rooms() > most_rooms) faults.error(map.where("rooms"), "rooms: more than 100000");
+    try {
+      static_cast<void>(parts_of(recipe));
+    } catch (const Error& error) {
+      faults.error(map.where("split"), error.issues().front().message);
+    }
+  }
+  faults.throw_if_errors();
+  return recipe;
+}
+
+}  // namespace pirsim::dataset

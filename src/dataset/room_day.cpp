@@ -1,0 +1,289 @@
+#include "dataset/room_day.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "core/digest.hpp"
+#include "dataset/exports.hpp"
+#include "io/compression.hpp"
+#include "pirsim/csv.hpp"
+#include "pirsim/io.hpp"
+#include "schema/schedule_people.hpp"
+
+namespace pirsim::dataset {
+namespace {
+
+constexpr int reading_s = 30;
+
+/// Compressed as the ending of its name says.
+std::string packed(const std::string& path, const std::string& text) {
+  std::ostringstream out;
+  io::DataWriter writer(out, io::compression_of(path));
+  writer.write(text);
+  writer.finish();
+  return out.str();
+}
+
+/// Arrivals and departures in each window, by name, from who is over the floor at its end.
+struct Movements {
+  std::vector<int> arrivals, departures;  ///< (n_rows)
+};
+
+Movements movements(const RunResult& result) {
+  Movements moved;
+  std::set<std::string_view> before;
+  std::size_t next = 0;
+  for (const Sample& row : result.samples) {
+    std::set<std::string_view> now;
+    for (; next < result.occupants.size() && result.occupants[next].time_s <= row.time_s; ++next) {
+      if (result.occupants[next].where == OccupantRow::Where::inside) now.insert(result.occupants[next].person);
+    }
+    const auto beyond = [](const auto& some, const auto& others) {
+      return static_cast<int>(std::ranges::count_if(some, [&](const auto& one) { return !others.contains(one); }));
+    };
+    moved.arrivals.push_back(beyond(now, before));
+    moved.departures.push_back(beyond(before, now));
+    before = std::move(now);
+  }
+  return moved;
+}
+
+class DayWriter {
+ public:
+  DayWriter(const RecipeSpec& recipe, const SceneSpec& scene, const std::vector<std::string>& columns, RoomDay& made)
+      : recipe_(recipe), made_(made), room_(made.record.room), day_(made.record.day) {
+    for (const SensorSpec& sensor : scene.sensors) sensors_.push_back(sensor.id);
+    for (const std::string& column : columns) {
+      const auto found = std::ranges::find(sensors_, column);
+      sensor_of_column_.push_back(found == sensors_.end() ? -1 : static_cast<int>(found - sensors_.begin()));
+      header_ += ',' + io::csv_field(column);
+    }
+  }
+
+  void write(const RunResult& result) {
+    const Movements moved = movements(result);
+    note(result, moved);
+    add(rows_path(recipe_, room_, day_), rows(result.samples, moved));
+    if (recipe_.occupants == Occupants::told)
+      add("occupants/" + room_name(room_) + '/' + day_name(day_) + recipe_.ending, occupants(result.occupants));
+    const std::string where = '/' + room_name(room_) + '/' + day_name(day_);
+    for (const Export shape : recipe_.exports) {
+      if (shape == Export::uci864) {
+        const int a_reading = static_cast<int>(std::lround(reading_s / window_s()));
+        add("exports/uci864" + where + ".csv", to_uci864(readings(result.samples, a_reading), sensors_));
+      }
+      if (shape == Export::casas) add("exports/casas" + where + ".txt", to_casas(result.samples, sensors_));
+    }
+  }
+
+  void add(const std::string& path, const std::string& text) {
+    std::string bytes = packed(path, text);
+    made_.record.files.push_back({path, bytes.size(), sha256(bytes)});
+    made_.contents.emplace(path, std::move(bytes));
+  }
+
+ private:
+  [[nodiscard]] double window_s() const {
+    return static_cast<double>(recipe_.sensing.ticks_per_window) / recipe_.sensing.tick_rate_hz;
+  }
+
+  [[nodiscard]] std::string rows(const std::vector<Sample>& samples, const Movements& moved) const {
+    std::string text = "room,day,time,time_s,people,presence,arrivals,departures" + header_ + '\n';
+    text.reserve(samples.size() * (60 + 2 * sensor_of_column_.size()));
+    const std::string begin = std::to_string(room_) + ',' + std::to_string(day_) + ',';
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const Sample& row = samples[i];
+      text += begin + row.clock + ',' + io::csv_number(row.time_s) + ',' + std::to_string(row.people) +
+              (row.people > 0 ? ",1," : ",0,") + std::to_string(moved.arrivals[i]) + ',' +
+              std::to_string(moved.departures[i]);
+      for (const int sensor : sensor_of_column_) {
+        text += sensor < 0 ? "," : row.bits[static_cast<std::size_t>(sensor)] != 0 ? ",1" : ",0";
+      }
+      text += '\n';
+    }
+    return text;
+  }
+
+  [[nodiscard]] std::string occupants(const std::vector<OccupantRow>& rows) const {
+    std::string text = "room,day,time,time_s,person,where,activity,seat,x_m,z_m\n";
+    const std::string begin = std::to_string(room_) + ',' + std::to_string(day_) + ',';
+    const auto millimetres = [](double metres) { return io::csv_number(std::round(1000.0 * metres) / 1000.0); };
+    for (const OccupantRow& row : rows) {
+      text += begin + row.clock + ',' + io::csv_number(row.time_s) + ',' + io::csv_field(row.person) +
+              (row.where == OccupantRow::Where::inside ? ",inside," : ",outside,") + io::csv_field(row.activity) + ',' +
+              io::csv_field(row.seat) + ',' + millimetres(row.place_m.x) + ',' + millimetres(row.place_m.y) + '\n';
+    }
+    return text;
+  }
+
+  void note(const RunResult& result, const Movements& moved) {
+    RoomDayRecord& record = made_.record;
+    record.rows = result.samples.size();
+    record.seconds = static_cast<double>(record.rows) * window_s();
+    std::array<double, 24> rows_in_hour{};
+    for (std::size_t i = 0; i < result.samples.size(); ++i) {
+      const Sample& row = result.samples[i];
+      record.most_people = std::max(record.most_people, row.people);
+      record.arrivals += static_cast<std::uint64_t>(moved.arrivals[i]);
+      record.departures += static_cast<std::uint64_t>(moved.departures[i]);
+      MotionCount& count = record.rows_by_people[row.people];
+      ++count.all;
+      if (std::ranges::any_of(row.bits, [](auto bit) { return bit != 0; })) ++count.with_motion;
+      const std::size_t hour = hour_of(row);
+      rows_in_hour[hour] += 1.0;
+      record.presence[hour] += row.people > 0 ? 1.0 : 0.0;
+      record.people[hour] += row.people;
+    }
+    for (std::size_t hour = 0; hour < 24; ++hour) {
+      if (rows_in_hour[hour] == 0.0) continue;
+      record.presence[hour] /= rows_in_hour[hour];
+      record.people[hour] /= rows_in_hour[hour];
+    }
+    const int a_reading = std::max(1, static_cast<int>(std::lround(reading_s / window_s())));
+    for (const Reading& reading : readings(result.samples, a_reading)) {
+      MotionCount& count = record.readings_by_people[reading.people];
+      ++count.all;
+      if (reading.any()) ++count.with_motion;
+    }
+    for (const RunIncident& incident : result.incidents)
+      record.passes_through += incident.kind == IncidentKind::passed_through ? 1 : 0;
+  }
+
+  /// A window that ends on the hour belongs to the hour before.
+  static std::size_t hour_of(const Sample& row) {
+    const auto digits = [&](std::size_t at) { return 10 * (row.clock[at] - '0') + (row.clock[at + 1] - '0'); };
+    const int seconds = 3600 * digits(11) + 60 * digits(14) + digits(17);
+    return static_cast<std::size_t>((seconds + 24 * 3600 - 1) % (24 * 3600) / 3600);
+  }
+
+  const RecipeSpec& recipe_;
+  RoomDay& made_;
+  int room_, day_;
+  std::vector<std::string> sensors_;
+  std::vector<int> sensor_of_column_;  ///< -1: the room has no such sensor
+  std::string header_;
+};
+
+std::string script_path(int room, int day) { return "scripts/" + room_name(room) + '/' + day_name(day) + ".yaml"; }
+
+}  // namespace
+
+std::string rows_path(const RecipeSpec& recipe, int room, int day) {
+  return "rows/" + room_name(room) + '/' + day_name(day) + recipe.ending;
+}
+std::string record_path(int room, int day) { return "rows/" + room_name(room) + '/' + day_name(day) + ".json"; }
+
+RoomDay simulate(const RecipeSpec& recipe, const SceneSpec& scene, const std::vector<std::string>& sensor_columns,
+                 int room, int day) {
+  RoomDay made;
+  RoomDayRecord& record = made.record;
+  record.room = room;
+  record.day = day;
+  const ScheduleSpec& schedule = group_of(recipe, room).schedule;
+  record.date = clock_text(day_number(schedule.first_day, schedule.where) + day - 1, 0.0).substr(0, 10);
+  ScriptSpec script = script_of(recipe, scene, room, day);
+  for (const StaffSpec& staff : script.trials.front().schedule->staff) record.staff += staff.count;
+  record.effects = script.effects;
+  DayWriter writer(recipe, scene, sensor_columns, made);
+  const std::string script_text = io::to_yaml(script);
+  try {
+    const Model model = compile(scene, std::move(script));
+    const RunResult result =
+        run_once(model, static_cast<std::uint32_t>(day - 1), Record::samples, Trace::none, Occupants::told);
+    if (result.fault) {
+      record.fault = result.fault->message;
+    } else {
+      writer.write(result);
+    }
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::infeasible) throw;
+    record.fault = error.what();
+  }
+  if (record.fault.empty()) writer.add(script_path(room, day), script_text);
+  return made;
+}
+
+// -- as JSON ---------------------------------------------------------------------------------------------------------
+
+namespace {
+
+using nlohmann::json;
+
+json counts_to_json(const std::map<int, MotionCount>& counts) {
+  json list = json::array();
+  for (const auto& [people, count] : counts) list.push_back({people, count.all, count.with_motion});
+  return list;
+}
+std::map<int, MotionCount> counts_from_json(const json& list) {
+  std::map<int, MotionCount> counts;
+  for (const json& one : list) {
+    counts[one.at(0).get<int>()] = {one.at(1).get<std::uint64_t>(), one.at(2).get<std::uint64_t>()};
+  }
+  return counts;
+}
+
+}  // namespace
+
+std::string to_json(const RoomDayRecord& r, const std::string& made_by) {
+  json effects = json::array(), files = json::array();
+  for (const EffectSpec& effect : r.effects)
+    effects.push_back({{"name", effect.name}, {"parameters", effect.parameters}, {"choices", effect.choices}});
+  for (const WrittenFile& file : r.files)
+    files.push_back({{"path", file.path}, {"bytes", file.bytes}, {"sha256", file.sha256}});
+  const json document{{"made_by", made_by},
+                      {"room", r.room},
+                      {"day", r.day},
+                      {"date", r.date},
+                      {"rows", r.rows},
+                      {"seconds", r.seconds},
+                      {"staff", r.staff},
+                      {"most_people", r.most_people},
+                      {"arrivals", r.arrivals},
+                      {"departures", r.departures},
+                      {"passes_through", r.passes_through},
+                      {"rows_by_people", counts_to_json(r.rows_by_people)},
+                      {"readings_by_people", counts_to_json(r.readings_by_people)},
+                      {"presence", r.presence},
+                      {"people", r.people},
+                      {"effects", effects},
+                      {"files", files},
+                      {"fault", r.fault}};
+  return document.dump(1) + '\n';
+}
+
+std::pair<RoomDayRecord, std::string> record_from_json(const std::string& text, const std::string& name) {
+  try {
+    const json d = json::parse(text);
+    RoomDayRecord r;
+    r.room = d.at("room");
+    r.day = d.at("day");
+    r.date = d.at("date");
+    r.rows = d.at("rows");
+    r.seconds = d.at("seconds");
+    r.staff = d.at("staff");
+    r.most_people = d.at("most_people");
+    r.arrivals = d.at("arrivals");
+    r.departures = d.at("departures");
+    r.passes_through = d.at("passes_through");
+    r.rows_by_people = counts_from_json(d.at("rows_by_people"));
+    r.readings_by_people = counts_from_json(d.at("readings_by_people"));
+    r.presence = d.at("presence").get<std::array<double, 24>>();
+    r.people = d.at("people").get<std::array<double, 24>>();
+    for (const json& e : d.at("effects")) {
+      EffectSpec& effect = r.effects.emplace_back();
+      effect.name = e.at("name");
+      for (const auto& [key, value] : e.at("parameters").items()) effect.parameters[key] = value;
+      for (const auto& [key, value] : e.at("choices").items()) effect.choices[key] = value;
+    }
+    for (const json& f : d.at("files")) r.files.push_back({f.at("path"), f.at("bytes"), f.at("sha256")});
+    r.fault = d.at("fault");
+    return {std::move(r), d.at("made_by").get<std::string>()};
+  } catch (const json::exception& fault) {
+    throw Error(ErrorCode::input, Where{name}, std::string("isn't what pirsim writes beside rows: ") + fault.what());
+  }
+}
+
+}  // namespace pirsim::dataset

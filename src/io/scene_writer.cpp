@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <array>
+#include <exception>
+
+#include "io/atomic_file.hpp"
+#include "io/gltf_builder.hpp"
+#include "pirsim/error.hpp"
+#include "pirsim/io.hpp"
+
+namespace pirsim::io {
+namespace {
+
+using Value = tinygltf::Value;
+
+tinygltf::Node placed_node(const std::string& name, const Frame& frame, Value mark) {
+  tinygltf::Node node;
+  node.name = name;
+  const Vec3& p = frame.origin;
+  const Quat& q = frame.rotation;
+  node.translation = {p.x, p.y, p.z};
+  if (q != Quat(1.0, 0.0, 0.0, 0.0)) node.rotation = {q.x, q.y, q.z, q.w};
+  node.extras = std::move(mark);
+  return node;
+}
+
+/// Materials by what a mesh seems to be, made when first used; looks only.
+class Materials {
+ public:
+  explicit Materials(GltfBuilder& document) : document_(document) {}
+  int of(const TriMesh& mesh, double floor_y) {
+    const auto reaches = [&](double height) {
+      return std::ranges::any_of(mesh.positions, [&](const Vec3& p) { return p.y > floor_y + height; });
+    };
+    constexpr double ground_m = 0.05, furniture_m = 2.05;
+    if (!reaches(ground_m)) return once(0, "floor", {0.45, 0.47, 0.50}, 1.0);
+    if (reaches(furniture_m)) return once(1, "wall", {0.90, 0.90, 0.88}, 0.25);
+    return once(2, "furniture", {0.65, 0.48, 0.32}, 1.0);
+  }
+
+ private:
+  int once(std::size_t which, const std::string& name, const Vec3& colour, double opacity) {
+    if (known_[which] < 0) known_[which] = document_.add_material(name, colour, opacity);
+    return known_[which];
+  }
+  GltfBuilder& document_;
+  std::array<int, 3> known_{-1, -1, -1};
+};
+
+void add_floor(GltfBuilder& document, const FloorArea& floor, const Where& where) {
+  if (floor.loops().size() != 1) {
+    throw Error(ErrorCode::usage, where, "only a floor of one polygon without holes can be written");
+  }
+  Value::Array corners;
+  for (const Vec2& p : floor.loops().front()) corners.emplace_back(Value::Array{Value(p.x), Value(p.y)});
+  document.add_node(placed_node("floor area", {Quat(1, 0, 0, 0), Vec3(0.0, floor.height_m(), 0.0)},
+                                pirsim_extras("floor", {{"polygon_xz_m", Value(std::move(corners))}})));
+}
+
+void add_mesh(GltfBuilder& document, const TriMesh& mesh, int material) {
+  std::vector<std::uint32_t> indices;
+  for (const auto& triangle : mesh.triangles) indices.insert(indices.end(), triangle.begin(), triangle.end());
+  tinygltf::Primitive primitive;
+  primitive.mode = TINYGLTF_MODE_TRIANGLES;
+  primitive.attributes["POSITION"] = document.add_positions(mesh.positions);
+  primitive.indices = document.add_indices(indices);
+  primitive.material = material;
+  tinygltf::Node node;
+  node.name = mesh.name;
+  node.mesh = document.add_mesh(mesh.name, primitive);
+  if (mesh.temperature_c) node.extras = pirsim_extras("surface", {{"temperature_c", Value(*mesh.temperature_c)}});
+  document.add_node(std::move(node));
+}
+
+}  // namespace
+
+void write_scene(const std::filesystem::path& file, const SceneSpec& scene) {
+  const Where where{file.string()};
+  GltfBuilder document(scene.name);
+  Materials materials(document);
+  add_floor(document, scene.floor, where);
+  for (const TriMesh& mesh : scene.meshes) add_mesh(document, mesh, materials.of(mesh, scene.floor.height_m()));
+  for (const EntranceSpec& door : scene.entrances) {
+    document.add_node(placed_node(door.id, door.world_from_entrance,
+                                  pirsim_extras("entrance", {{"id", Value(door.id)},
+                                                             {"width_m", Value(door.width_m)},
+                                                             {"outside_m", Value(door.outside_m)}})));
+  }
+  for (const SensorSpec& sensor : scene.sensors) {
+    document.add_node(placed_node(sensor.id, sensor.world_from_sensor,
+                                  pirsim_extras("sensor", {{"id", Value(sensor.id)}, {"model", Value(sensor.model)}})));
+  }
+  for (const SeatSpec& seat : scene.seats) {
+    document.add_node(placed_node(seat.id, seat.world_from_seat, pirsim_extras("seat", {{"id", Value(seat.id)}})));
+  }
+  AtomicFile output(file);
+  try {
+    const bool binary = file.extension() == ".glb";
+    tinygltf::TinyGLTF().WriteGltfSceneToStream(&document.model(), output.stream(), !binary, binary);
+  } catch (const std::exception& fault) {  // the JSON writer refuses names that aren't UTF-8
+    throw Error(ErrorCode::usage, where, std::string("the scene can't be written as glTF: ") + fault.what());
+  }
+  output.commit();
+}
+
+}  // namespace pirsim::io
