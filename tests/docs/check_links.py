@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+"""Follows every relative link of the pages: the file is there, and so is the heading that an anchor names.
+
+Usage: check_links.py SOURCE_DIRECTORY
+"""
+import pathlib
+import re
+import sys
+
+from pages import pages
+
+LINK = re.compile(r"\]\(([^()\s]+)\)")
+HEADING = re.compile(r"^#+ +(.*?) *$", re.MULTILINE)
+
+
+def without_code(text):
+    """The same lines, with code made empty: brackets in it are no links, # no headings."""
+    return re.sub(r"^```.*?^```$", lambda block: "\n" * block.group().count("\n"), text, flags=re.DOTALL | re.MULTILINE)
+
+
+def anchors(page):
+    """As GitHub makes them of headings."""
+    found, seen = set(), {}
+    for heading in HEADING.findall(without_code(page.read_text(encoding="utf-8"))):
+        text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading).lower()
+        anchor = re.sub(r"[^\w\- ]", "", text).replace(" ", "-")
+        again = seen.get(anchor, 0)
+        seen[anchor] = again + 1
+        found.add(f"{anchor}-{again}" if again else anchor)
+    return found
+
+
+def faults_of(page, source):
+    text = re.sub(r"`[^`\n]*`", "", without_code(page.read_text(encoding="utf-8")))
+    for match in LINK.finditer(text):
+        target = match.group(1)
+        if re.match(r"[a-z]+:", target):
+            continue
+        place = f"{page.relative_to(source)}:{text.count(chr(10), 0, match.start()) + 1}"
+        file, _, anchor = target.partition("#")
+        path = (page.parent / file).resolve() if file else page
+        if not path.exists():
+            yield f"{place}: no file {target}"
+        elif not path.is_relative_to(source):
+            yield f"{place}: {target} leads out of the project"
+        elif anchor and (path.suffix != ".md" or anchor not in anchors(path)):
+            yield f"{place}: no heading for {target}"
+
+
+def main():
+    source = pathlib.Path(sys.argv[1]).resolve()
+    checked = pages(source)
+    faults = [fault for page in checked for fault in faults_of(page, source)]
+    print("\n".join(faults), file=sys.stderr)
+    assert len(checked) > 20, checked
+    # Everything is found from docs/index.md: a page that nobody links to isn't read.
+    linked = {(page.parent / target.partition("#")[0]).resolve() for page in checked
+              for target in LINK.findall(page.read_text(encoding="utf-8"))}
+    lost = [page for page in checked if page.is_relative_to(source / "docs") and page not in linked]
+    for page in lost:
+        print(f"{page.relative_to(source)}: no page links here", file=sys.stderr)
+    print(f"{len(checked)} pages, {len(faults) + len(lost)} faults")
+    return 1 if faults or lost else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
