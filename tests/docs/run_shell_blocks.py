@@ -6,6 +6,8 @@ the path; its marked blocks are worked off in order:
   ```sh run                  runs, and must succeed
   ```text output             each line must be in what the last `run` printed, in this order
 
+room.gltf and study.yaml of docs/howto/my_room.md are there from the beginning: readers of other pages have theirs.
+
 Usage: run_shell_blocks.py PIRSIM SOURCE_DIRECTORY [PAGE...]
 """
 import os
@@ -23,15 +25,19 @@ def check_output(expected, printed, place):
         assert line in lines, f"{place}: not printed in this order: {line}\n--- printed\n{printed}"
 
 
+def write_file(block, folder):
+    file = folder / block.info.removeprefix("file=")
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(block.text, encoding="utf-8")
+
+
 def run_page(page, place, folder, environment):
     """How many blocks were run."""
     ran, printed = 0, ""
     for block in blocks(page):
         here = f"{place}:{block.line}"
         if block.info.startswith("file="):
-            file = folder / block.info.removeprefix("file=")
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(block.text, encoding="utf-8")
+            write_file(block, folder)
         elif block.info == "run":
             result = subprocess.run(["bash", "-euo", "pipefail", "-c", block.text], cwd=folder, env=environment,
                                     stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
@@ -55,6 +61,9 @@ def main():
             folder = pathlib.Path(name) / "work"
             folder.mkdir()
             (folder / "data").symlink_to(source / "data")
+            for block in blocks(source / "docs/howto/my_room.md"):
+                if block.info.startswith("file="):
+                    write_file(block, folder)
             (pathlib.Path(name) / "bin").mkdir()
             (pathlib.Path(name) / "bin/pirsim").symlink_to(pirsim)
             environment = {**os.environ, "PATH": f"{name}/bin:{os.environ['PATH']}",
