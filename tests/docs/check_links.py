@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Follows every relative link of the pages: the file is there, and so is the heading that an anchor names.
+"""Follows every relative link of the pages: the file is there, and so is the heading that an anchor names. A path of the
+project that a page names in `code` must exist as well.
 
 Usage: check_links.py SOURCE_DIRECTORY
 """
@@ -10,6 +11,7 @@ import sys
 from pages import pages
 
 LINK = re.compile(r"\]\(([^()\s]+)\)")
+PATH = re.compile(r"`((?:src|include|tests|tools|data|docs|cmake)/[\w./-]*\w)/?`")
 HEADING = re.compile(r"^#+ +(.*?) *$", re.MULTILINE)
 
 
@@ -30,13 +32,25 @@ def anchors(page):
     return found
 
 
-def faults_of(page, source):
+def place_of(page, source, text, at):
+    line = text.count("\n", 0, at) + 1
+    return f"{page.relative_to(source)}:{line}"
+
+
+def missing_paths(page, source):
+    text = without_code(page.read_text(encoding="utf-8"))
+    for match in PATH.finditer(text):
+        if not (source / match.group(1)).exists():
+            yield f"{place_of(page, source, text, match.start())}: no file {match.group(1)}"
+
+
+def broken_links(page, source):
     text = re.sub(r"`[^`\n]*`", "", without_code(page.read_text(encoding="utf-8")))
     for match in LINK.finditer(text):
         target = match.group(1)
         if re.match(r"[a-z]+:", target):
             continue
-        place = f"{page.relative_to(source)}:{text.count(chr(10), 0, match.start()) + 1}"
+        place = place_of(page, source, text, match.start())
         file, _, anchor = target.partition("#")
         path = (page.parent / file).resolve() if file else page
         if not path.exists():
@@ -50,7 +64,8 @@ def faults_of(page, source):
 def main():
     source = pathlib.Path(sys.argv[1]).resolve()
     checked = pages(source)
-    faults = [fault for page in checked for fault in faults_of(page, source)]
+    faults = [fault for page in checked for check in (broken_links, missing_paths)
+              for fault in check(page, source)]
     print("\n".join(faults), file=sys.stderr)
     assert len(checked) > 20, checked
     # A page that nobody links to, by itself or with its folder, isn't read.
