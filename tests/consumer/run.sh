@@ -7,6 +7,8 @@ set -euo pipefail
 build=$1 source=$2 cxx=$3 flags=$4
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
+# The README shows main.cpp, word for word but for its first line.
+diff <(sed -n '/^```cpp$/,/^```$/p' "$source/README.md" | sed '1d;$d') <(tail -n +2 "$source/tests/consumer/main.cpp")
 cmake --install "$build" --prefix "$scratch/prefix" >/dev/null
 
 cmake -S "$source/tests/consumer" -B "$scratch/build" -DCMAKE_PREFIX_PATH="$scratch/prefix" \
