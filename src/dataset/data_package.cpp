@@ -128,14 +128,12 @@ json resource(const std::string& name, const std::string& title, json paths, jso
 /// The rows, or the occupants, of one part; null if there are none.
 json resource_of_part(const Description& described, Part part, const std::string& folder) {
   json paths = json::array(), files = json::array();
-  std::uint64_t bytes = 0;
   for (std::size_t i = 0; i < described.days.size(); ++i) {
     if (described.parts[i] != part) continue;
     for (const WrittenFile& file : described.days[i].files) {
       if (!file.path.starts_with(folder + '/')) continue;
       paths.push_back(file.path);
       files.push_back({{"path", file.path}, {"bytes", file.bytes}, {"hash", "sha256:" + file.sha256}});
-      bytes += file.bytes;
     }
   }
   if (paths.empty()) return {};
@@ -143,7 +141,7 @@ json resource_of_part(const Description& described, Part part, const std::string
   json one =
       resource((is_rows ? "" : folder + "_") + name_of(part), (is_rows ? "Rows: " : "Who is where: ") + name_of(part),
                std::move(paths), is_rows ? row_fields(described) : occupant_fields());
-  one["bytes"] = bytes;
+  // Neither `bytes` nor `hash` of the whole: readers take them of what is unpacked and joined.
   one["files"] = std::move(files);
   return one;
 }

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "dataset/room_reader.hpp"
-#include "io/schedule_reader.hpp"
+#include "io/reader_parts.hpp"
 #include "io/sensing_reader.hpp"
-#include "io/text_input.hpp"
+#include "io/atomic_file.hpp"
 #include "pirsim/dataset.hpp"
 #include "pirsim/effects.hpp"
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "dataset/room_day.hpp"
-#include "io/text_input.hpp"
+#include "io/atomic_file.hpp"
 
 namespace pirsim::dataset {
 

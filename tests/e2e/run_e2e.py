@@ -50,9 +50,13 @@ COMMANDS = {(): ("studyA.yaml", "-o", "rows.csv"), ("run",): ("studyA.yaml", "-o
             ("reconcile", "seal"): ("studyA.yaml", "--answer", "answer.json")}
 OTHERS = {("day",): ("--scene", "nowhere.gltf", "--staff", "2", "-o", "rows.csv"),
           ("reconcile", "open"): ("--answer", "a", "--commitment", "b", "--report", "c"), ("status",): ("shards",),
-          ("merge",): ("shards", "-o", "rows.csv", "--script", "other.yaml"), ("effects",): (), ("help",): ()}
+          ("merge",): ("shards", "-o", "rows.csv", "--script", "other.yaml"), ("effects",): (), ("help",): (),
+          ("room",): ("-o", "room.gltf"), ("dataset",): ("recipe.yaml", "-o", "out")}
+ROOM_VALUES = {"--set": "cut_share=0.3", "--kind": "meeting", "--desks": "rows", "--width": "6", "--height": "3",
+               "--depth": "5"}
 VALUES = {"--set": "name=other", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--format": ".csv",
-          "--summary": "sums.csv", "--zones": "zones.csv", "--trace": "trace.csv", "--occupants": "occupants.csv", "--shard": "1/2", "--max-time": "5m",
+          "--summary": "sums.csv", "--zones": "zones.csv", "--trace": "trace.csv",
+          "--occupants": "occupants.csv", "--shard": "1/2", "--max-time": "5m",
           "--trial": "S1", "--beams": "all", "--camera": "0,5,0", "--look-at": "1,0,1", "--width": "64",
           "--height": "64", "--measured": "m.csv", "--holdout": "0.3", "--table": "table", "--nuisance": "none",
           "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "each", "--hide": "one",
@@ -72,6 +76,8 @@ def value_of(command, option):
         return OUTPUTS.get(command[0], "x")
     if command == ("effects",) and option == "--format":
         return "csv"
+    if command == ("room",) and option in ROOM_VALUES:
+        return ROOM_VALUES[option]
     return VALUES.get(option, "1" if option not in ("--out", "--answer") else "folder")
 
 

@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+"""Rooms and datasets from the command line.
+
+Usage: run_dataset.py PIRSIM DATA_DIR TOOLS_DIR [unittest arguments]. Needs python3 only.
+"""
+import filecmp
+import gzip
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PIRSIM = DATA = TOOLS = None
+
+
+def pirsim(*args, code=0):
+    result = subprocess.run([PIRSIM, *map(str, args)], capture_output=True, text=True, timeout=300)
+    assert result.returncode == code, f"{args}: exit code {result.returncode}, expected {code}\n{result.stderr}"
+    return result
+
+
+def differing(one, other):
+    """Names of files that aren't the same in both folders."""
+    names = {p.relative_to(root) for root in (one, other) for p in root.rglob("*") if p.is_file()}
+    _, mismatch, errors = filecmp.cmpfiles(one, other, names, shallow=False)
+    return mismatch + errors
+
+
+class Room(unittest.TestCase):
+    def test_a_room_is_drawn_checked_and_looked_at(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            pirsim("room", "--kind", "meeting", "--width", 6, "--depth", 4.6, "--seats", 6, "-o", folder / "a.gltf")
+            pirsim("room", "--kind", "meeting", "--width", 6, "--depth", 4.6, "--seats", 6, "-o", folder / "b.gltf", "-q")
+            self.assertEqual((folder / "a.gltf").read_bytes(), (folder / "b.gltf").read_bytes())
+            script = folder / "day.yaml"
+            script.write_text("pirsim_script: 1\npeople: [{id: a, actions: [{enter: door}, {sit: S6}, {work: {}}]}]\n")
+            text = pirsim("check", "--scene", folder / "a.gltf", "--script", script, "--sensors", DATA / "sensors").stdout
+            self.assertIn("6 seats", text)
+            self.assertIn("floor 27.60 m2", text)
+            pirsim("preview", "--scene", folder / "a.gltf", "--script", script, "--sensors", DATA / "sensors", "--width",
+                   160, "--height", 90, "-o", folder / "a.png")
+
+    def test_faults_name_the_nearest(self):
+        self.assertIn("did you mean 'office'", pirsim("room", "--kind", "ofice", "-o", "x.gltf", code=2).stderr)
+        self.assertIn("did you mean 'seats'", pirsim("room", "--set", "seat=3", "-o", "x.gltf", code=2).stderr)
+        self.assertIn("no place for", pirsim("room", "--width", 2, "--depth", 2, "--seats", 9, "-o", "x.gltf",
+                                             code=5).stderr)
+
+
+class Dataset(unittest.TestCase):
+    def test_shards_make_what_one_process_makes(self):
+        recipe = DATA / "recipes" / "tiny.yaml"
+        with tempfile.TemporaryDirectory() as folder:
+            one, other = pathlib.Path(folder) / "one", pathlib.Path(folder) / "other"
+            pirsim("dataset", recipe, "-o", one)
+            self.assertIn("4 of 8", pirsim("dataset", recipe, "-o", other, "--shard", "2/2").stderr)
+            self.assertIn("4 of 8", pirsim("dataset", recipe, "-o", other, "--finish", code=3).stderr)
+            self.assertIn("--finish", pirsim("dataset", recipe, "-o", other, "--shard", "1/2").stderr)
+            pirsim("dataset", recipe, "-o", other, "--finish")
+            self.assertEqual(differing(one, other), [])
+            pirsim("dataset", recipe, "-o", other, "--resume", "-q")
+            self.assertEqual(differing(one, other), [])
+            check = subprocess.run([sys.executable, TOOLS / "validate_dataset", one], capture_output=True, text=True)
+            self.assertEqual(check.returncode, 0, check.stdout + check.stderr)
+
+            # A day can be run again from what lies there, and gives the same bits.
+            rows = gzip.open(one / "rows/room_0002/day_01.csv.gz", "rt").read().splitlines()
+            again = pirsim("--scene", one / "rooms/room_0002.gltf", "--script", one / "scripts/room_0002/day_01.yaml",
+                           "--replicates", 1, "--sensors", DATA / "sensors").stdout.splitlines()
+            bits = [line.split(",")[8:] for line in rows[1:]]
+            self.assertEqual(bits, [line.split(",")[-len(bits[0]):] for line in again[1:]])
+            self.assertEqual([line.split(",")[4] for line in rows[1:]], [line.split(",")[5] for line in again[1:]])
+
+            # What is damaged is told.
+            (one / "rooms.csv").write_text("room\n")
+            check = subprocess.run([sys.executable, TOOLS / "validate_dataset", one], capture_output=True, text=True)
+            self.assertEqual(check.returncode, 1)
+            self.assertIn("rooms.csv", check.stdout)
+            package = json.loads((one / "datapackage.json").read_text())
+            self.assertIn("train", [resource["name"] for resource in package["resources"]])
+
+    def test_the_shipped_recipes_are_read(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for recipe in (DATA / "recipes").glob("*.yaml"):
+                # An empty shard of many reads the recipe and all it names.
+                pirsim("dataset", recipe, "-o", pathlib.Path(folder) / recipe.stem, "--shard", "1/1000")
+
+    def test_a_hostile_recipe_is_told_by_its_line(self):
+        with tempfile.TemporaryDirectory() as folder:
+            recipe = pathlib.Path(folder) / "recipe.yaml"
+            recipe.write_text("pirsim_recipe: 1\nrooms:\n  - {kind: ofice}\n")
+            fault = pirsim("dataset", recipe, "-o", pathlib.Path(folder) / "out", code=3).stderr
+            self.assertIn("recipe.yaml:3:12: error:", fault)
+            self.assertIn("office", fault)
+
+
+if __name__ == "__main__":
+    PIRSIM, DATA, TOOLS = (pathlib.Path(argument).resolve() for argument in sys.argv[1:4])
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])
