@@ -11,7 +11,7 @@
 #include "support/temporary_folder.hpp"
 
 using namespace pirsim;
-using pirsim::io::write_png;
+using namespace pirsim::io;
 
 namespace {
 
