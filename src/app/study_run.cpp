@@ -1,6 +1,7 @@
 #include "app/study_run.hpp"
 
 #include <atomic>
+#include <cmath>
 #include <iostream>
 #include <sstream>
 
@@ -19,12 +20,21 @@ io::FailedRun failed_run(const RunResult& result) {
   return {result.run, result.trial, result.replicate, result.fault->time_s, result.fault->message};
 }
 
+std::string place_of(const RunIncident& incident, const RunResult& result) {
+  std::ostringstream text;
+  text.precision(3);
+  text << "trial " << result.trial << ", replicate " << result.replicate << ", '" << incident.person << "' at ("
+       << incident.place_m.x << ", " << incident.place_m.y << ") m, second " << std::lround(incident.time_s);
+  return text.str();
+}
+
 io::RunNotes notes_of(const RunResult& result) {
   io::RunNotes notes;
   for (const RunIncident& incident : result.incidents) {
     switch (incident.kind) {
       case IncidentKind::passed_through:
         ++notes.passes_through;
+        if (notes.first_pass.empty()) notes.first_pass = place_of(incident, result);
         break;
       case IncidentKind::seat_changed:
         ++notes.seats_changed;
@@ -46,10 +56,11 @@ std::string describe(const io::FailedRun& run) {
 
 /// What rows don't say. Throws Error(incomplete) if there were runs that could not go on.
 void tell(const io::RunNotes& notes, Verbosity verbosity) {
-  const auto warn = [&](std::uint64_t n, const char* what) {
+  const auto warn = [&](std::uint64_t n, const std::string& what) {
     if (n > 0 && verbosity != Verbosity::quiet) std::cerr << "warning: " << n << what << '\n';
   };
-  warn(notes.passes_through, " times somebody who found no way round others for 20 s walked through them");
+  warn(notes.passes_through, " times somebody who found no way round others for 20 s walked through them; first in " +
+                                 notes.first_pass);
   warn(notes.seats_changed, " times somebody took another seat, since theirs stayed taken");
   warn(notes.seats_missed, " times somebody went without a seat, since theirs stayed taken");
   if (notes.failed.empty()) return;
@@ -135,7 +146,8 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
       progress.run_finished();
     });
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::io) rows->discard();
+    // What --strict ends can be gone on with, as what a full disk ends.
+    if (error.code() != ErrorCode::io && error.code() != ErrorCode::infeasible) rows->discard();
     throw;
   }
   if (done < wanted) {

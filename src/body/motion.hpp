@@ -101,6 +101,8 @@ class Motion {
   [[nodiscard]] Vec2 position() const noexcept;  ///< of the pelvis over the floor
   /// Where the pelvis is, or is to be, when standing: on a seat, where sitting down began.
   [[nodiscard]] Vec2 place_to_stand() const noexcept { return on_seat() ? stand_.position : position(); }
+  /// How far back the pelvis gets on the way onto the seat or off it; elsewhere the position.
+  [[nodiscard]] Vec2 drawn_back() const noexcept { return on_seat() ? seating_.pelvis(1.0, 0.0).position : position(); }
   [[nodiscard]] double heading() const noexcept;
   [[nodiscard]] double speed_m_s() const noexcept;
   [[nodiscard]] double spine_tilt() const noexcept;  ///< positive forward

@@ -36,6 +36,7 @@ void compare_inputs(const std::vector<HashedFile>& one, const std::vector<Hashed
 ordered_json tree_of(const RunNotes& notes) {
   ordered_json tree;
   tree["passes_through"] = notes.passes_through;
+  if (!notes.first_pass.empty()) tree["first_pass"] = notes.first_pass;
   tree["seats_changed"] = notes.seats_changed;
   tree["seats_missed"] = notes.seats_missed;
   tree["failed_runs"] = ordered_json::array();
@@ -76,6 +77,7 @@ ordered_json to_tree(const Manifest& manifest) {
 RunNotes notes_from(const ordered_json& tree) {
   RunNotes notes;
   tree.at("passes_through").get_to(notes.passes_through);
+  notes.first_pass = tree.value("first_pass", "");
   tree.at("seats_changed").get_to(notes.seats_changed);
   tree.at("seats_missed").get_to(notes.seats_missed);
   for (const ordered_json& run : tree.at("failed_runs")) {
@@ -112,6 +114,7 @@ Manifest from_tree(const ordered_json& tree) {
 
 RunNotes& RunNotes::operator+=(const RunNotes& other) {
   passes_through += other.passes_through;
+  if (first_pass.empty()) first_pass = other.first_pass;
   seats_changed += other.seats_changed;
   seats_missed += other.seats_missed;
   failed.insert(failed.end(), other.failed.begin(), other.failed.end());

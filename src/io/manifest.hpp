@@ -40,7 +40,8 @@ struct FailedRun {
 
 /// What happened in runs that their rows don't tell.
 struct RunNotes {
-  std::uint64_t passes_through = 0;  ///< of two people who found no way round each other
+  std::uint64_t passes_through = 0;  ///< of people who found no way round others
+  std::string first_pass;            ///< trial, replicate, second, person and place; empty if there is none
   std::uint64_t seats_changed = 0;
   std::uint64_t seats_missed = 0;
   std::vector<FailedRun> failed;  ///< without rows

@@ -364,14 +364,14 @@ Progress Actor::carry_out(const FaceTo& face, const Scene& scene) {
   return Progress::going_on;
 }
 
-Progress Actor::carry_out(const SitOn& seat, const Scene&) {
+Progress Actor::carry_out(const SitOn& seat, const Scene& scene) {
   if (body_->motion().stage() == Stage::seated && body_->motion().settled()) return Progress::done;
   if (body_->motion().stage() != Stage::standing || !body_->motion().settled()) return Progress::going_on;
   constexpr double there_m = 0.05, facing_rad = 0.02;
   const bool there = glm::distance(body_->motion().position(), seat.stand) < there_m &&
                      std::abs(std::remainder(seat.heading - body_->motion().heading(), 2.0 * pi)) < facing_rad;
   if (there) {
-    body_motion().sit_down(seat.place);
+    body_->sit_down(seat.place, scene.others, scene.now);
   } else {
     const SitOn again = seat;
     errands_.push_front(FaceTo{again.heading});

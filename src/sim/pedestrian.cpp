@@ -86,9 +86,9 @@ Presence Pedestrian::presence() const {
   if (speed > 0.0) mine.velocity = speed * direction_of(motion_.heading());
   mine.destination = target().value_or(mine.position);
   mine.solidity = solidity_;
-  mine.stride = width_ == Width::narrow && speed > 0.0 ? Presence::Stride::squeezing : Presence::Stride::usual;
   const body::Humanoid& body = person_->humanoid;
   const double clearance_m = person_->floor->clearance_m();
+  mine.posture = on_feet() ? Presence::Posture::on_feet : Presence::Posture::on_chair;
   if (on_feet()) {
     mine.gap_m = gap_m;
     mine.room = {mine.position, mine.position, clearance_m};
@@ -96,7 +96,7 @@ Presence Pedestrian::presence() const {
   } else if (motion_.stage() == Stage::seated) {
     const Vec2 ahead = direction_of(motion_.heading()), right(-ahead.y, ahead.x);
     const auto back_m = [&](double tilt) { return std::max(0.0, -std::sin(tilt)) * body.trunk_height_m(); };
-    const double beside_m = body.half_width_m() - body.half_depth_m();
+    const double beside_m = body.half_width_m() - 0.5 * body.half_depth_m();  // covers the trunk's corners
     mine.gap_m = sitter_gap_m;
     mine.room = {mine.position, mine.position - back_m(-leaning_back_rad) * ahead, body.trunk_radius_m()};
     const Vec2 middle = mine.position - 0.5 * back_m(motion_.spine_tilt()) * ahead;
@@ -104,8 +104,8 @@ Presence Pedestrian::presence() const {
                   body.half_depth_m() + 0.5 * back_m(motion_.spine_tilt())};
   } else {
     mine.gap_m = sitter_gap_m;
-    mine.room = {mine.position, motion_.place_to_stand(), clearance_m};
-    mine.trunk = {mine.position, motion_.place_to_stand(), body.trunk_radius_m()};
+    mine.room = {mine.position, motion_.drawn_back(), clearance_m};
+    mine.trunk = {mine.position, motion_.drawn_back(), body.trunk_radius_m()};
   }
   mine.wished_way = wished_way_;
   if (aside_) {
@@ -174,27 +174,41 @@ void Pedestrian::end_passing(std::span<const Presence> others) noexcept {
 Progress Pedestrian::stand_up(std::span<const Presence> others, std::int64_t now) {
   if (motion_.stage() == Stage::standing) return motion_.settled() ? Progress::done : Progress::going_on;
   const bool on_seat = motion_.stage() == Stage::seated || motion_.stage() == Stage::sitting_down;
-  if (on_seat && (solidity_ != Solidity::solid || free_to_rise(others))) {
+  if (on_seat && (solidity_ != Solidity::solid || free_to_draw_back(motion_.drawn_back(), others))) {
     motion_.rise();
     wished_way_.reset();
     held_up_since_.reset();
   } else if (on_seat) {
     be_held_up(now);
-    if (!wished_way_ && is_held_up(now)) {
-      wished_way_ =
-          std::make_shared<const std::vector<Vec2>>(std::vector<Vec2>{motion_.position(), motion_.place_to_stand()});
-    }
+    wish_way({motion_.position(), motion_.drawn_back()}, now);
   }
   // A walk that isn't wanted any more; our own ends by itself.
   if (!on_seat && !route_ && motion_.stage() == Stage::walking) motion_.stop();
   return Progress::going_on;
 }
 
-bool Pedestrian::free_to_rise(std::span<const Presence> others) const {
-  const Vec2 from = motion_.position(), to = motion_.place_to_stand();
+void Pedestrian::sit_down(const body::SeatPlace& seat, std::span<const Presence> others, std::int64_t now) {
+  const Vec2 back =
+      motion_.position() - body::fall_back_m(person_->humanoid, seat) * direction_of(motion_.heading());
+  if (solidity_ != Solidity::solid || free_to_draw_back(back, others)) {
+    motion_.sit_down(seat);
+    wished_way_.reset();
+    held_up_since_.reset();
+  } else {
+    be_held_up(now);
+    wish_way({motion_.position(), back}, now);
+  }
+}
+
+void Pedestrian::wish_way(std::vector<Vec2> way, std::int64_t now) {
+  if (!wished_way_ && is_held_up(now)) wished_way_ = std::make_shared<const std::vector<Vec2>>(std::move(way));
+}
+
+bool Pedestrian::free_to_draw_back(const Vec2& to, std::span<const Presence> others) const {
+  const Vec2 from = motion_.position();
   return std::ranges::none_of(others, [&](const Presence& other) {
     if (!is_solid(other)) return false;
-    const double reach = other.room.radius_m + radius_m();
+    const double reach = other.trunk.radius_m + person_->humanoid.trunk_radius_m() + sitter_gap_m;
     // Who walks needs a way to stop.
     const Vec2 stops = other.position + glm::length(other.velocity) / (2.0 * braking_m_s2) * other.velocity;
     for (const Vec2& place : {other.position, stops}) {
@@ -208,7 +222,10 @@ bool Pedestrian::free_to_rise(std::span<const Presence> others) const {
 }
 
 std::optional<std::vector<Vec2>> Pedestrian::way_among(const Vec2& target, std::span<const Presence> others) const {
-  if (solidity_ != Solidity::solid) return floor().find_way(motion_.position(), target);
+  if (solidity_ != Solidity::solid) {
+    auto way = floor().find_way(motion_.position(), target);
+    return way || !person_->narrow_floor ? way : person_->narrow_floor->find_way(motion_.position(), target);
+  }
   std::vector<body::Disc> discs;
   constexpr double from_afar_m = 1.5;  // assumed (1-2): who stands at the goal may have gone by then
   for (const Presence& other : others) {
@@ -245,15 +262,15 @@ Progress Pedestrian::go_to(const Vec2& target, std::span<const Presence> others,
       if (!way) width_ = Width::usual;
     }
     if (!way) {
-      const auto alone = person_->floor->find_way(motion_.position(), target);
+      auto alone = person_->floor->find_way(motion_.position(), target);
+      if (!alone && person_->narrow_floor) alone = person_->narrow_floor->find_way(motion_.position(), target);
       if (!alone) {
         throw Error(ErrorCode::infeasible,
                     "'" + person_->spec.id + "' finds no way to where they are to go, even if nobody stands in it");
       }
       be_held_up(now);
-      if (is_held_up(now)) {
-        wished_way_ = std::make_shared<const std::vector<Vec2>>(*alone);
-      }
+      wished_way_.reset();
+      wish_way(*alone, now);
       return Progress::going_on;
     }
     route_ = width_ == Width::narrow ? body::Route(*way, squeeze_corner_m) : body::Route(*way);
@@ -264,24 +281,27 @@ Progress Pedestrian::go_to(const Vec2& target, std::span<const Presence> others,
     motion_.turn_to(route_->heading(0.0));
   } else {
     motion_.walk(*route_);
+    walked_m_ = 0.0;
   }
   return Progress::going_on;
 }
 
+/// How far one can go, on the route or straight on to a halt, before one comes too near to somebody, and nearer than one is.
 double Pedestrian::free_way_ahead(std::span<const Presence> others) const {
+  constexpr double step_m = 0.05;
   double free_m = look_ahead_m;
-  const Vec2 ahead = direction_of(motion_.heading());
+  const Vec2 here = motion_.position(), straight = direction_of(motion_.heading());
+  const auto place = [&](double ahead_m) {
+    return route_ ? route_->position(walked_m_ + ahead_m) : here + ahead_m * straight;
+  };
   for (const Presence& other : others) {
     if (!is_solid(other)) continue;
     const Stadium& taken = taken_by(other);
-    for (const Vec2& place : {taken.a, taken.b}) {
-      const Vec2 to_other = place - motion_.position();
-      const double along = glm::dot(to_other, ahead);
-      const double aside = std::abs(to_other.x * ahead.y - to_other.y * ahead.x);
-      const double reach = radius_m() + taken.radius_m;
-      if (along > 0.0 && aside < reach) {
-        free_m = std::min(free_m, along - std::sqrt(reach * reach - aside * aside) - gap_to(other));
-      }
+    const double now_m = distance(here, taken);
+    if (now_m > radius_m() + gap_to(other) + look_ahead_m) continue;
+    const double keep_m = std::min(radius_m(), now_m - 1e-3);
+    for (double ahead_m = 0.0; ahead_m < free_m + gap_to(other); ahead_m += step_m) {
+      if (distance(place(ahead_m + step_m), taken) < keep_m) free_m = ahead_m - gap_to(other);
     }
   }
   return free_m;
@@ -385,16 +405,19 @@ bool Pedestrian::makes_way(std::span<const Presence> others, std::int64_t now) {
   return true;
 }
 
-/// While somebody squeezes past, or wants to, a sitter who leans back leans forward instead.
+/// While somebody squeezes past, or wants to, a sitter leans forward instead of back.
 void Pedestrian::sit_up(std::span<const Presence> others, std::int64_t now) {
   if (motion_.stage() != Stage::seated) leans_forward_ = false;
   if (motion_.stage() != Stage::seated || now % ticks(search_every_s) != 0) return;
-  constexpr double near_m = 1.5, upright_rad = 0.01, lean_s = 0.6;
+  constexpr double near_m = 1.5, ahead_m = 0.3;  // assumed: at which wishes and people are minded (tried 0.1-0.5)
+  constexpr double forward_rad = 0.09, lean_s = 0.6;
+  const Stadium room = presence().room;
   const bool asked = std::ranges::any_of(others, [&](const Presence& other) {
-    return (other.stride == Presence::Stride::squeezing || other.wished_way) &&
-           glm::distance(other.position, motion_.position()) < near_m;
+    if (other.wished_way) return glm::distance(other.position, motion_.position()) < near_m;
+    return other.posture == Presence::Posture::on_feet &&
+           distance(other.position, room) < other.trunk.radius_m + ahead_m;
   });
-  if (asked == leans_forward_ || (asked && motion_.spine_tilt() > -upright_rad)) return;
+  if (asked == leans_forward_ || (asked && motion_.spine_tilt() > forward_rad)) return;
   motion_.adjust(body::Channel::trunk_tilt, asked ? leaning_back_rad : 0.0, lean_s);
   leans_forward_ = asked;
 }
@@ -402,7 +425,9 @@ void Pedestrian::sit_up(std::span<const Presence> others, std::int64_t now) {
 void Pedestrian::advance(std::span<const Presence> others, std::size_t n_before, std::int64_t now) {
   if (!others.empty()) sit_up(others, now);
   keep_distance(others, n_before, now);
+  const Vec2 before = motion_.position();
   motion_.advance();
+  walked_m_ += glm::distance(before, motion_.position());
   end_passing(others);
   if (held_up_since_ && glm::distance(motion_.position(), held_up_at_) > walked_on_m) {
     held_up_since_.reset();

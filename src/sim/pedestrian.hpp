@@ -39,6 +39,8 @@ class Pedestrian {
   Progress go_to(const Vec2& target, std::span<const Presence> others, std::int64_t now);
   /// From a seat as soon as the way back is free; stops a walk that isn't one of go_to().
   Progress stand_up(std::span<const Presence> others, std::int64_t now);
+  /// From where one stands before the seat, as soon as there is room to draw the chair back.
+  void sit_down(const body::SeatPlace& seat, std::span<const Presence> others, std::int64_t now);
   void forget_way() noexcept;
   /// From now on through others, until clear of them: an incident.
   void pass_through(std::int64_t now);
@@ -77,13 +79,14 @@ class Pedestrian {
   }
   [[nodiscard]] double gap_to(const Presence& other) const noexcept;
   [[nodiscard]] bool on_feet() const noexcept;
-  [[nodiscard]] bool free_to_rise(std::span<const Presence> others) const;
+  [[nodiscard]] bool free_to_draw_back(const Vec2& to, std::span<const Presence> others) const;
   [[nodiscard]] std::optional<std::vector<Vec2>> way_among(const Vec2& target, std::span<const Presence> others) const;
   [[nodiscard]] double free_way_ahead(std::span<const Presence> others) const;
   [[nodiscard]] bool must_give_way(std::span<const Presence> others) const;
   [[nodiscard]] std::optional<Vec2> passing_place(const Presence& whom, std::span<const Presence> others) const;
   void keep_distance(std::span<const Presence> others, std::size_t n_before, std::int64_t now);
   void be_held_up(std::int64_t now);
+  void wish_way(std::vector<Vec2> way, std::int64_t now);
   void sit_up(std::span<const Presence> others, std::int64_t now);
   void end_passing(std::span<const Presence> others) noexcept;
 
@@ -92,6 +95,7 @@ class Pedestrian {
   int tick_rate_hz_ = 50;
   body::Motion motion_;
   std::optional<body::Route> route_;  ///< to walk once the body faces its start, or being walked
+  double walked_m_ = 0.0;             ///< on it
   std::optional<Vec2> target_;        ///< of the last go_to()
   std::optional<Aside> aside_;
   std::shared_ptr<const std::vector<Vec2>> wished_way_;

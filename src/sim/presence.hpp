@@ -34,8 +34,8 @@ struct Presence {
   Vec2 destination{0.0};  ///< where the current walk leads; the position of who isn't walking
   std::string_view seat;  ///< taken: from setting out for it to walking away from it; or empty
   enum class Script { going_on, carried_out } script = Script::going_on;
+  enum class Posture { on_feet, on_chair } posture = Posture::on_feet;  ///< on_chair: also on the way onto it or off it
   enum class Solidity { solid, passing_through } solidity = Solidity::solid;
-  enum class Stride { usual, squeezing } stride = Stride::usual;
   /// What others keep clear of: with arms and, of a sitter, leaning back; all the way between sitting and standing.
   Stadium room;
   Stadium trunk;       ///< instead of room, of who squeezes past: the trunk as it is now
