@@ -26,8 +26,8 @@ void add_open_command(CLI::App& reconcile_command);
 
 /// In the order of the help.
 inline constexpr std::array all_commands{
-    add_run_command,      add_day_command,      add_check_command,      add_preview_command,  add_export_command,
-    add_effects_command,  add_coverage_command, add_walktest_command,   add_placements_command, add_status_command,
-    add_merge_command,    add_reconcile_command, add_help_command};
+    add_run_command,     add_day_command,       add_check_command,    add_preview_command,    add_export_command,
+    add_effects_command, add_coverage_command,  add_walktest_command, add_placements_command, add_status_command,
+    add_merge_command,   add_reconcile_command, add_help_command};
 
 }  // namespace pirsim::app
