@@ -40,8 +40,8 @@ struct MeetingsSpec {
   std::optional<int> most_people;  ///< none: 8, or as many as there are seats
   std::vector<double> durations_min{30.0, 60.0, 90.0, 120.0};
   std::vector<double> probabilities{0.13, 0.70, 0.12, 0.05};
-  double from_h = 9.0, to_h = 18.0;   ///< assumed: when they begin and end
-  double lateness_min = 2.0;          ///< mean of how much later than its beginning people come (`assumed`; 0 to 5 tried)
+  double from_h = 9.0, to_h = 18.0;  ///< assumed: when they begin and end
+  double lateness_min = 2.0;  ///< mean of how much later than its beginning people come (`assumed`; 0 to 5 tried)
   std::vector<HeldMeetingSpec> held;  ///< these, every working day, instead of drawn ones
   std::vector<std::string> seats;     ///< none: those that are nobody's own desk
   Where where;

@@ -69,9 +69,10 @@ void check_held(const std::vector<HeldMeetingSpec>& meetings, Diagnostics& fault
     for (std::size_t j = 0; j < i; ++j) {
       const HeldMeetingSpec& one = meetings[j];
       const HeldMeetingSpec& other = meetings[i];
-      if (one.at_h + one.duration_min / 60.0 <= other.at_h || other.at_h + other.duration_min / 60.0 <= one.at_h) continue;
-      faults.error(other.where, "held: overlaps the meeting of line " + std::to_string(one.where.line) +
-                                    ", and there is one room");
+      if (one.at_h + one.duration_min / 60.0 <= other.at_h || other.at_h + other.duration_min / 60.0 <= one.at_h)
+        continue;
+      faults.error(other.where,
+                   "held: overlaps the meeting of line " + std::to_string(one.where.line) + ", and there is one room");
     }
   }
 }

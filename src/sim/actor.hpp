@@ -32,7 +32,8 @@ class Actor {
 
   [[nodiscard]] bool present() const noexcept { return body_.has_value(); }
   [[nodiscard]] bool done() const noexcept { return action_ == actions().size(); }
-  /// Up to this tick nothing of them changes; not beyond the present one (`tick`) of who is in the scene or about to be.
+  /// Up to this tick nothing of them changes; not beyond the present one (`tick`) of who is in the scene or about to
+  /// be.
   [[nodiscard]] std::int64_t away_until(const CompiledStudy& study, std::int64_t tick) const;
   /// What the step to this tick was part of: the action's label, "outside", "working" or what the body did.
   [[nodiscard]] std::string_view phase() const noexcept { return phase_; }

@@ -73,8 +73,7 @@ std::vector<Stay> draw_agent(const ScheduleSpec& schedule, Role role, Stream& st
   const double arrival = std::max(0.0, around(stream, schedule.arrival));
   const double departure = std::clamp(around(stream, schedule.departure), arrival, day_s - minute_s);
   const double lunch = around(stream, schedule.lunch);
-  const double lunch_s =
-      minute_s * std::max(0.0, schedule.lunch_min + schedule.lunch_sd_min * cut_normal(stream));
+  const double lunch_s = minute_s * std::max(0.0, schedule.lunch_min + schedule.lunch_sd_min * cut_normal(stream));
   std::vector<Stay> stays;
   const Moves moves(role);
   if (lunch_s > 0.0 && lunch > arrival && lunch + lunch_s < departure) {
@@ -183,7 +182,8 @@ Attendance attend(const Slot& slot, double lateness_s, Stream& stream) {
   const double late_s = exponential(stream, lateness_s + punctual_s) - punctual_s;
   person.comes_s = slot.begin_s + std::min(late_s, 0.5 * length_s);
   const double share = stream.uniform(), within = stream.uniform();
-  person.goes_s = share < leaves_early ? slot.begin_s + (0.6 + 0.3 * within) * length_s : slot.end_s + minute_s * within;
+  person.goes_s =
+      share < leaves_early ? slot.begin_s + (0.6 + 0.3 * within) * length_s : slot.end_s + minute_s * within;
   return person;
 }
 

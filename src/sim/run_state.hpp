@@ -32,9 +32,9 @@ struct RunState {
   std::array<Exposure, 2> exposures;  ///< of this tick and of the one before, by turns
   Detector detector;
   Logger logger;
-  std::int64_t empty_ticks = 0;     ///< for how many of the latest ticks nobody was there
-  bool at_rest = false;             ///< nothing changes before somebody comes
-  std::optional<std::int64_t> day;  ///< since 1970-01-01, of a schedule
+  std::int64_t empty_ticks = 0;        ///< for how many of the latest ticks nobody was there
+  bool at_rest = false;                ///< nothing changes before somebody comes
+  std::optional<std::int64_t> day;     ///< since 1970-01-01, of a schedule
   std::vector<std::uint8_t> triggers;  ///< (n_sensors) at this tick
   Sample sample;                       ///< at the end of the last whole window
   /// What has been traced before; changes no result. Made when first needed, unless whoever runs many lends theirs.

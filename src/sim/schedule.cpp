@@ -73,8 +73,8 @@ class Day {
  private:
   [[nodiscard]] Stream stream_of(std::size_t person) const {
     // Apart from the draw of times by its entity.
-    return Stream({study_.seed(), run_, static_cast<std::uint32_t>(person + trial_.people.size()),
-                   Purpose::schedule_conduct});
+    return Stream(
+        {study_.seed(), run_, static_cast<std::uint32_t>(person + trial_.people.size()), Purpose::schedule_conduct});
   }
   [[nodiscard]] const std::string& door_of(std::size_t person) const { return doors_[person % doors_.size()]; }
   [[nodiscard]] StandingPlaces places_of(std::size_t person) const {
@@ -110,7 +110,8 @@ class Day {
   }
 
   void sit_and_work(Timeline& line, double for_s, std::size_t person, Stream& stream) const {
-    constexpr double shortest_s = 2.0 * minute_s, further_s = 8.0 * minute_s;  // assumed: an activity (means of 5-20 min)
+    constexpr double shortest_s = 2.0 * minute_s,
+                     further_s = 8.0 * minute_s;  // assumed: an activity (means of 5-20 min)
     action::Sit sit{trial_.people[person].spec.part->seat};
     sit.if_taken = action::IfTaken::other_seat;
     line.then(sit);
@@ -145,8 +146,7 @@ class Day {
   void walk_about(Timeline& line, double at_s, std::size_t person, Stream& stream) const {
     constexpr double within_m = 3.0, pause_s = 6.0;  // assumed: how far one wanders, and how long one stops (means)
     const SeatPlan& desk = trial_.people[person].seat_plan(trial_.people[person].spec.part->seat);
-    const auto places =
-        places_of(person).around(floor_point(desk.place.world_from_seat.origin), within_m, 8, stream);
+    const auto places = places_of(person).around(floor_point(desk.place.world_from_seat.origin), within_m, 8, stream);
     if (places.empty()) return;
     bool first = true;
     for (const Vec2& place : places) {

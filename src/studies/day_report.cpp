@@ -44,7 +44,8 @@ void DayReport::add_run(const RunResult& result) {
   ++days_;
   std::vector<double> people(bins_.size(), 0.0), windows(bins_.size(), 0.0);
   for (const Sample& sample : result.samples) {
-    const std::size_t k = std::min(bins_.size() - 1, static_cast<std::size_t>(std::max(0.0, sample.time_s - 1e-6) / bin_s));
+    const std::size_t k =
+        std::min(bins_.size() - 1, static_cast<std::size_t>(std::max(0.0, sample.time_s - 1e-6) / bin_s));
     const auto n = static_cast<std::size_t>(sample.people);
     if (by_people_.size() <= n) by_people_.resize(n + 1, {0.0, std::vector<double>(sample.bits.size(), 0.0)});
     people[k] += sample.people;
@@ -64,7 +65,8 @@ void DayReport::add_run(const RunResult& result) {
   for (const OccupantRow& row : result.occupants) {
     const Vec2 at = (row.place_m - lower) / square_m;
     if (row.where == OccupantRow::Where::outside || at.x < 0.0 || at.y < 0.0) continue;
-    const std::size_t i = static_cast<std::size_t>(at.y) * columns_ + std::min(columns_ - 1, static_cast<std::size_t>(at.x));
+    const std::size_t i =
+        static_cast<std::size_t>(at.y) * columns_ + std::min(columns_ - 1, static_cast<std::size_t>(at.x));
     if (i < squares_.size()) squares_[i] += 1.0;
   }
   note_moment(result);
@@ -80,7 +82,8 @@ void DayReport::note_moment(const RunResult& result) {
   };
   const auto& rows = result.occupants;
   for (auto first = rows.begin(); first != rows.end();) {
-    const auto last = std::find_if(first, rows.end(), [&](const OccupantRow& row) { return row.time_s != first->time_s; });
+    const auto last =
+        std::find_if(first, rows.end(), [&](const OccupantRow& row) { return row.time_s != first->time_s; });
     const auto n = static_cast<std::size_t>(std::count_if(first, last, inside));
     const std::size_t known = rank(busiest_.people.size(), seated_of(busiest_.people.begin(), busiest_.people.end()));
     if (n > 0 && (busiest_.people.empty() || rank(n, seated_of(first, last)) > known)) {
@@ -107,7 +110,8 @@ io::LineChart DayReport::people_chart() const {
     if (bin.windows == 0.0) continue;
     const double mean = bin.people / bin.windows;
     most = std::max<double>(most, bin.most);
-    line.points.push_back({hour_of(k), mean, bin.fewest, bin.most, text(hour_of(k), 2) + " h: " + text(mean, 2) + " people"});
+    line.points.push_back(
+        {hour_of(k), mean, bin.fewest, bin.most, text(hour_of(k), 2) + " h: " + text(mean, 2) + " people"});
   }
   chart.y_high = most;
   chart.lines.push_back(std::move(line));
@@ -136,7 +140,7 @@ io::GridChart DayReport::count_chart() const {
   io::GridChart chart;
   chart.title = "Seconds with motion by number of people";
   chart.note = "percent; empty where there were never so many";
-  chart.label = "seconds with motion, %";
+  chart.label = "% of seconds";
   chart.row_label = "sensor";
   chart.column_label = "people";
   chart.max = 100.0;
@@ -158,8 +162,8 @@ io::GridChart DayReport::count_chart() const {
 io::MapChart DayReport::floor_chart() const {
   io::MapChart chart;
   chart.title = "Where people were";
-  chart.note = "minutes a day in each square of 25 cm, seats many more than five; triangles: who was there at " +
-               busiest_.clock;
+  chart.note =
+      "minutes a day in each square of 25 cm, seats many more than five; triangles: who was there at " + busiest_.clock;
   chart.label = "min a day";
   chart.unit = "min a day (5: or more)";
   chart.lower = model_->scene().floor.lower();
@@ -168,11 +172,12 @@ io::MapChart DayReport::floor_chart() const {
   chart.rows = static_cast<int>(squares_.size() / columns_);
   chart.max = 5.0;
   for (std::size_t i = 0; i < squares_.size(); ++i) {
-    const Vec2 centre = chart.lower + square_m * Vec2(static_cast<double>(i % columns_) + 0.5,
-                                                      static_cast<double>(i / columns_) + 0.5);
+    const Vec2 centre =
+        chart.lower + square_m * Vec2(static_cast<double>(i % columns_) + 0.5, static_cast<double>(i / columns_) + 0.5);
     const double minutes = squares_[i] / 60.0 / std::max(1, days_);
     const bool shown = squares_[i] > 0.0 || model_->scene().floor.contains(centre);
-    chart.values.push_back(shown ? std::optional(std::round(100.0 * std::min(minutes, chart.max)) / 100.0) : std::nullopt);
+    chart.values.push_back(shown ? std::optional(std::round(100.0 * std::min(minutes, chart.max)) / 100.0)
+                                 : std::nullopt);
   }
   chart.outline = model_->scene().floor.loops();
   for (const OccupantRow& row : busiest_.people) {

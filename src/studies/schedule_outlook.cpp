@@ -60,9 +60,7 @@ void note_person(ExpectedPerson& person, const std::vector<sim::Stay>& stays) {
   for (const sim::Stay& stay : stays) person.mean_present_s += is_in_room(stay) ? stay.to_s - stay.from_s : 0.0;
 }
 
-std::string clock(double seconds) {
-  return seconds >= 86400.0 ? "24:00" : clock_text(0, seconds).substr(11, 5);
-}
+std::string clock(double seconds) { return seconds >= 86400.0 ? "24:00" : clock_text(0, seconds).substr(11, 5); }
 
 void print_person(std::ostream& out, const ExpectedPerson& person) {
   out << "  " << std::left << std::setw(10) << person.id << " seat " << std::setw(5) << person.seat << std::right;
@@ -83,7 +81,8 @@ ScheduleOutlook outlook(const sim::CompiledStudy& study, std::size_t trial, int 
   const auto n_trials = static_cast<std::uint32_t>(study.trials().size());
   ScheduleOutlook result;
   result.first_day = sim::day_of(study, static_cast<std::uint32_t>(trial));
-  result.days = static_cast<int>(std::min<std::uint32_t>(study.n_runs() / n_trials, static_cast<std::uint32_t>(most_days)));
+  result.days =
+      static_cast<int>(std::min<std::uint32_t>(study.n_runs() / n_trials, static_cast<std::uint32_t>(most_days)));
   std::vector<std::size_t> staff;
   for (std::size_t i = 0; i < model.people.size(); ++i) {
     const auto& part = model.people[i].spec.part;

@@ -15,7 +15,7 @@ namespace pirsim::studies {
 /// One of the staff; times are seconds of the day.
 struct ExpectedPerson {
   std::string id, seat;
-  int days = 0;  ///< on which they come
+  int days = 0;                                              ///< on which they come
   std::optional<double> first_arrival_s, first_departure_s;  ///< on the first of these days
   double mean_arrival_s = 0.0, mean_departure_s = 0.0, mean_present_s = 0.0;
 };

@@ -20,8 +20,9 @@ class StudyReport {
   void add_run(const RunResult& result);
   /// Days are shown with where people were.
   [[nodiscard]] bool needs_occupants() const noexcept;
-  /// Of days of a schedule: people and sensors over the day, and so on. Otherwise: histograms a trial and sensor as in [Stefansson2021] Figure 8, with the summary's measured counts as lines, and
-  /// the first replicate's time series as in Figure 9.
+  /// Of days of a schedule: people and sensors over the day, and so on. Otherwise: histograms a trial and sensor as in
+  /// [Stefansson2021] Figure 8, with the summary's measured counts as lines, and the first replicate's time series as
+  /// in Figure 9.
   [[nodiscard]] io::Report finish(const Summary& summary) const;
 
  private:

@@ -217,6 +217,18 @@ class Days(unittest.TestCase):
         self.assertEqual({row["phase"] for row in table}, {"empty", "occupied", "meeting"})
         self.assertEqual(table[-1]["people"], "0")
 
+    def test_the_shipped_days_in_short(self):
+        def part(begin, end, **files):
+            return rows(study("-q", "--set", f"schedule.from='{begin}'", "--set", f"schedule.to='{end}'", **files).stdout)
+        week = part("10:00", "10:03", scene="open_office.gltf", script="office_week.yaml")
+        self.assertEqual(len(week), 5 * 180)
+        self.assertEqual({row["time"][:10] for row in week}, {f"2026-03-0{day}" for day in range(2, 7)})
+        for day in range(1, 6):
+            self.assertGreater(max(int(row["people"]) for row in week if row["replicate"] == str(day)), 1)
+        meetings = part("09:20", "09:36", script="meeting_day.yaml")
+        self.assertIn("meeting", {row["phase"] for row in meetings})
+        self.assertEqual(meetings[-1]["phase"], "empty")
+
     def test_check_tells_what_a_schedule_holds(self):
         told = study("check", scene="open_office.gltf", script="office_week.yaml").stdout
         self.assertIn("schedule: 5 days from 2026-03-02 (5 working days)", told)

@@ -13,8 +13,10 @@ using namespace pirsim::test;
 
 namespace {
 
-Model model_of(const std::string& schedule, const std::string& more = "", const std::string& room = "meeting_room.gltf") {
-  return compile(shipped_scene(room), io::parse_script("pirsim_script: 1\n" + more + "schedule:\n" + schedule, "s.yaml"));
+Model model_of(const std::string& schedule, const std::string& more = "",
+               const std::string& room = "meeting_room.gltf") {
+  return compile(shipped_scene(room),
+                 io::parse_script("pirsim_script: 1\n" + more + "schedule:\n" + schedule, "s.yaml"));
 }
 
 /// Every tick, whether there is anybody or not.
@@ -62,11 +64,12 @@ TEST_CASE("Empty hours that are passed over leave every bit as if they had been 
 }
 
 TEST_CASE("A script with pauses is passed over in the same way") {
-  const Model model = compile(
-      shipped_scene("meeting_room.gltf"),
-      io::parse_script("pirsim_script: 1\nduration_s: 300\npeople:\n  - id: a\n    actions: [{wait_s: 60.4, phase: early},"
-                       " {enter: door}, {leave: door}, {wait_s: 30}, {enter: door, at_s: 150.02}, {leave: door}]\n",
-                       "s.yaml"));
+  const Model model =
+      compile(shipped_scene("meeting_room.gltf"),
+              io::parse_script(
+                  "pirsim_script: 1\nduration_s: 300\npeople:\n  - id: a\n    actions: [{wait_s: 60.4, phase: early},"
+                  " {enter: door}, {leave: door}, {wait_s: 30}, {enter: door, at_s: 150.02}, {leave: door}]\n",
+                  "s.yaml"));
   CHECK(run_once(model, 0).samples == ticked(model, 0));
 }
 
@@ -92,8 +95,8 @@ TEST_CASE("Rows tell the time of day, and what the room is used for") {
 }
 
 TEST_CASE("Days are the same for any threads and in any part of the study") {
-  const Model model = model_of("  from: 09:58\n  to: 10:06\n  meetings: {held: [{at: 10:00, duration_min: 4, people: 3}]}\n",
-                               "replicates: 3\n");
+  const Model model = model_of(
+      "  from: 09:58\n  to: 10:06\n  meetings: {held: [{at: 10:00, duration_min: 4, people: 3}]}\n", "replicates: 3\n");
   const auto rows_of = [&](StudyOptions options) {
     std::vector<std::vector<Sample>> rows;
     run_study(model, options, [&](const RunResult& result) { rows.push_back(result.samples); });

@@ -51,14 +51,16 @@ TEST_CASE("A schedule is read, written and read again to the same") {
 TEST_CASE("What can't be in a schedule is refused with its place") {
   refused("  staf: [{count: 2}]\n", "s.yaml:3:3: error: schedule: unknown key 'staf'");
   refused("  staff: [{count: 2}]\n  to: 25:00\n", "s.yaml:4:7: error: to: expected a time of day from 00:00 to 24:00");
-  refused("  staff: [{count: 2}]\n  from: 18:00\n  to: 9:00\n", "s.yaml:5:7: error: schedule: `to` is not after `from`");
+  refused("  staff: [{count: 2}]\n  from: 18:00\n  to: 9:00\n",
+          "s.yaml:5:7: error: schedule: `to` is not after `from`");
   refused("  staff: [{count: 2}]\n  arrival: {mean: 18:00}\n  departure: {mean: 09:00}\n",
           "s.yaml:5:14: error: schedule: people leave before they come");
   refused("  staff: [{count: 2}]\n  arrival: {mean: half past eight}\n", "s.yaml:4:19: error: mean: expected a time");
   refused("  first_day: 2026-02-30\n  staff: [{count: 2}]\n", "s.yaml:3:14: error: '2026-02-30' is no date");
   refused("  from: 08:00\n", "s.yaml:3:3: error: schedule: nobody comes");
   refused("  staff: [{role: manger}]\n", "(did you mean 'manager'?)");
-  refused("  meetings: {held: [{at: 10:00, duration_min: 60}, {at: 10:30, duration_min: 60}]}\n", "error: held: overlaps");
+  refused("  meetings: {held: [{at: 10:00, duration_min: 60}, {at: 10:30, duration_min: 60}]}\n",
+          "error: held: overlaps");
   refused("  meetings: {held: [{at: 23:30, duration_min: 60}]}\n", "beyond midnight");
   refused("  meetings: {probabilities: [1, 2]}\n", "probabilities: expected");
   refused("  meetings: {probabilities: [0.5, 0.5]}\n", "probabilities: expected one for each of durations_min");
@@ -67,10 +69,12 @@ TEST_CASE("What can't be in a schedule is refused with its place") {
 }
 
 TEST_CASE("What a room can't hold is refused with its place, and the nearest name") {
-  refused_in_room("  staff:\n    - {count: 2}\n    - {count: 5}\n", 4, "s.yaml:5:7: error: schedule: more staff than the 4 seats");
+  refused_in_room("  staff:\n    - {count: 2}\n    - {count: 5}\n", 4,
+                  "s.yaml:5:7: error: schedule: more staff than the 4 seats");
   refused_in_room("  staff: [{seats: [s1]}]\n", 4, "seat 's1' is not in room (did you mean 'S1'?)");
   refused_in_room("  staff: [{seats: [S1]}, {seats: [S1]}]\n", 4, "'S1' is the own desk of two people");
-  refused_in_room("  staff: [{count: 1}]\n  entrances: [dor]\n", 4, "entrance 'dor' is not in room (did you mean 'door'?)");
+  refused_in_room("  staff: [{count: 1}]\n  entrances: [dor]\n", 4,
+                  "entrance 'dor' is not in room (did you mean 'door'?)");
   refused_in_room("  meetings: {most_people: 6}\n", 4, "6 people for the 4 seats of room");
   refused_in_room("  staff: [{count: 3}]\n  meetings: {}\n", 4, "2 people for the 1 seats");
   refused_in_room("  meetings: {held: [{at: 10:00, people: 9}]}\n", 4, "9 people for the 4 seats");

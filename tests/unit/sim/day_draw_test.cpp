@@ -63,8 +63,8 @@ double ks(std::vector<double> values, const std::function<double(double)>& cumul
   double worst = 0.0;
   for (std::size_t i = 0; i < values.size() && values[i] < end; ++i) {
     const double expected = cumulative(values[i]);
-    worst = std::max({worst, std::abs(expected - static_cast<double>(i) / n),
-                      std::abs(expected - static_cast<double>(i + 1) / n)});
+    worst = std::max(
+        {worst, std::abs(expected - static_cast<double>(i) / n), std::abs(expected - static_cast<double>(i + 1) / n)});
   }
   return worst * std::sqrt(n);
 }
@@ -273,8 +273,8 @@ TEST_CASE("Presence follows its profile whatever the mobility") {
 TEST_CASE("Days after a profile show it hour by hour") {
   ScheduleSpec schedule;
   schedule.profile.emplace();
-  schedule.profile->presence = {0, 0,   0,   0,   0,   0,   0.05, 0.1, 0.4, 0.9, 0.95, 0.9, 0.5, 0.8, 0.9, 0.9, 0.85,
-                                0.6, 0.3, 0.1, 0.1, 0.05, 0,   0};
+  schedule.profile->presence = {0,   0,   0,   0,   0,    0,   0.05, 0.1, 0.4, 0.9,  0.95, 0.9,
+                                0.5, 0.8, 0.9, 0.9, 0.85, 0.6, 0.3,  0.1, 0.1, 0.05, 0,    0};
   const auto days = draw_days(schedule, people(SchedulePart::staff, 8));
   const auto worst = [&](const std::vector<double>& profile) {
     double worst_z = 0.0;
