@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <bit>
-
-#include "sim/solids.hpp"
+#include <cstring>
 
 namespace pirsim::sim {
 
@@ -18,10 +17,9 @@ void PowerMeter::measure(const std::vector<Actor>& actors, std::span<PowerSteps>
   std::ranges::fill(powers, PowerSteps{0});
   const auto n_present = std::ranges::count_if(actors, &Actor::present);
   // People hide one another, so only who is alone is remembered. The slow tracers are there to be compared with.
-  if (n_present != 1 || kind_ != TracerKind::direct) {
-    if (n_present > 0) add(actors, powers);
-    return;
-  }
+  if (kind_ != TracerKind::direct) return add(actors, powers);
+  if (n_present == 0) return;
+  if (n_present > 1) return measure_several(actors, powers);
   const auto alone = std::ranges::find_if(actors, &Actor::present);
   const Actor& actor = *alone;
   const auto person = static_cast<std::size_t>(alone - actors.begin());
@@ -35,6 +33,23 @@ void PowerMeter::measure(const std::vector<Actor>& actors, std::span<PowerSteps>
   std::ranges::transform(powers, row_.begin(),
                          [](PowerSteps power) { return std::bit_cast<PostureMemory::Word>(power); });
   memory_.remember(person, row_);
+}
+
+void PowerMeter::measure_several(const std::vector<Actor>& actors, std::span<PowerSteps> powers) {
+  now_.clear();
+  for (std::uint32_t i = 0; i < actors.size(); ++i) {
+    if (actors[i].present()) now_.push_back({i, &actors[i].person().humanoid, actors[i].motion().outline()});
+  }
+  const auto same = [](const Figure& a, const Figure& b) {
+    return a.person == b.person && a.humanoid == b.humanoid &&
+           std::memcmp(&a.outline, &b.outline, sizeof a.outline) == 0;
+  };
+  if (!std::ranges::equal(now_, before_, same)) {
+    add(actors, powers);
+    powers_.assign(powers.begin(), powers.end());
+    std::swap(before_, now_);
+  }
+  std::ranges::copy(powers_, powers.begin());
 }
 
 void PowerMeter::add(const std::vector<Actor>& actors, std::span<PowerSteps> powers) {
@@ -59,9 +74,11 @@ void PowerMeter::trace(const std::vector<Actor>& actors) {
   solids_.clear();
   radiances_.clear();
   people_.clear();
+  if (mannequins_.size() < actors.size()) mannequins_.resize(actors.size());
   for (std::uint32_t i = 0; i < actors.size(); ++i) {
     if (!actors[i].present()) continue;
-    append_solids(actors[i], solids_);
+    const auto posed = mannequins_[i].pose(actors[i].person().humanoid, actors[i].motion().outline());
+    solids_.insert(solids_.end(), posed.begin(), posed.end());
     radiances_.push_back(&actors[i].person().radiance);
     people_.push_back(i);
   }

@@ -8,6 +8,7 @@
 #include "rt/tracer.hpp"
 #include "sim/actor.hpp"
 #include "sim/compiled_study.hpp"
+#include "sim/mannequin.hpp"
 #include "sim/posture_memory.hpp"
 #include "sim/power_model.hpp"
 
@@ -33,12 +34,23 @@ class PowerMeter {
  private:
   void add(const std::vector<Actor>& actors, std::span<PowerSteps> powers);
   void trace(const std::vector<Actor>& actors);
+  /// add() to zeros, of several people; where nobody has moved the powers are those of the last time.
+  void measure_several(const std::vector<Actor>& actors, std::span<PowerSteps> powers);
 
   const PowerModel& power_;
   TracerKind kind_;
   std::unique_ptr<rt::Tracer> tracer_;
   PostureMemory memory_;
+  struct Figure {
+    std::uint32_t person = 0;
+    const body::Humanoid* humanoid = nullptr;
+    body::Outline outline;
+  };
+  std::vector<Figure> before_;      ///< several people, the last time that there were any
+  std::vector<PowerSteps> powers_;  ///< (n_sensors) then
   // Scratch.
+  std::vector<Figure> now_;
+  std::vector<Mannequin> mannequins_;  ///< (n_people)
   std::vector<PosedShape> solids_;
   std::vector<const BodyRadiance*> radiances_;  ///< (n_people in the scene)
   std::vector<std::uint32_t> people_;           ///< likewise: indices of actors

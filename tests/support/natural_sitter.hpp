@@ -74,7 +74,8 @@ class Observer {
 /// Somebody of natural style on a seat at a table, from the moment on when they sit.
 struct Sitter {
   Sitter(std::uint32_t person, const Humanoid& humanoid, const SeatPlace& seat)
-      : motion(humanoid, {0, 0.6}, 0.0, 0.0, 1.0 / tick_rate_hz), natural(11, 0, person, tick_rate_hz) {
+      : motion(humanoid, -0.6 * direction_of(seat.approach_turn), seat.approach_turn, 0.0, 1.0 / tick_rate_hz),
+        natural(11, 0, person, tick_rate_hz) {
     motion.sit_down(seat);
     while (motion.stage() != Stage::seated) tick(std::nullopt);
     motion.work({0.0, 3.0});

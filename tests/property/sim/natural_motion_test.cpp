@@ -216,24 +216,29 @@ TEST_CASE("people of natural style differ in liveliness and pace as they should"
 TEST_CASE("who walks looks round and comes back to looking ahead, who phones has a hand at the ear") {
   for (const std::optional<Activity> activity : {std::optional<Activity>(), std::optional(Activity::phone)}) {
     double widest = 0.0;
-    int ahead = 0, ticks = 0;
+    int ahead = 0, ticks = 0, held = 0, free = 0, leaning = 0;
     for (std::uint32_t person = 0; person < 20; ++person) {
       Motion motion(man(), {0, 0}, 0.0, 0.0, tick_s);
       sim::NaturalMotion natural(3, 0, person, tick_rate_hz);
       motion.walk(Route({{0, 0}, {0, -60}}));
-      for (; !stands(motion); ++ticks) {
+      for (int since_start = 0; !stands(motion); ++since_start, ++ticks) {
         natural.tick(motion, activity, {});
         motion.advance();
         const Outline outline = motion.outline();
         widest = std::max(widest, std::abs(outline.head_turn));
         ahead += outline.head_turn == 0.0 ? 1 : 0;
-        if (ticks % 3000 > 100) CHECK((outline.hand_to_head[0] == 1.0) == (activity == Activity::phone));
-        CHECK(outline.spine_lean == 0.0);
+        if (since_start < 2 * tick_rate_hz) continue;
+        held += outline.hand_to_head[0] == 1.0 ? 1 : 0;
+        free += outline.hand_to_head[0] == 0.0 ? 1 : 0;
+        leaning += outline.spine_lean != 0.0 ? 1 : 0;
       }
     }
     CHECK(widest > 30 * degree);
     CHECK(ahead > ticks / 2);
     CHECK(ahead < 0.95 * ticks);
+    CHECK((activity ? free : held) == 0);
+    CHECK((activity ? held : free) > 10000);
+    CHECK(leaning == 0);
   }
 }
 

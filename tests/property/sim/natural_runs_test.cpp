@@ -109,7 +109,7 @@ TEST_CASE("an analog sensor receives the breathing of a still sitter, which hard
     State state(model, 0);
     body::Outline last;
     int still = 0;
-    std::vector<PowerSteps> powers;
+    std::vector<sim::PowerSteps> powers;
     bool power_changed = false;
     while (!state.finished()) {
       step_tick(model, state);
