@@ -4,7 +4,7 @@
 #include "app/long_work.hpp"
 #include "app/session.hpp"
 #include "pirsim/dataset.hpp"
-#include "studies/shards.hpp"
+#include "studies/campaign.hpp"
 
 namespace pirsim::app {
 namespace {

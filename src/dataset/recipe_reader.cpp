@@ -3,9 +3,8 @@
 #include <cmath>
 
 #include "dataset/room_reader.hpp"
-#include "io/reader_parts.hpp"
-#include "io/sensing_reader.hpp"
 #include "io/atomic_file.hpp"
+#include "io/reader_parts.hpp"
 #include "pirsim/dataset.hpp"
 #include "pirsim/effects.hpp"
 
