@@ -208,7 +208,7 @@ Measured measured_of(Series run) {
   return measured;
 }
 
-std::vector<std::string> notes(const StudyFrame& of, const Series& run, const std::vector<Series>& pilot) {
+std::vector<DataNote> notes(const StudyFrame& of, const Series& run, const std::vector<Series>& pilot) {
   const Measured measured = measured_of(run);
   return notes_on(of, shape_of(of, measured, pilot), measured, pilot);
 }
@@ -216,7 +216,7 @@ std::vector<std::string> notes(const StudyFrame& of, const Series& run, const st
 std::string only_note(const StudyFrame& of, const Series& run, const std::vector<Series>& pilot) {
   const auto all = notes(of, run, pilot);
   REQUIRE(all.size() == 1);
-  return all.front();
+  return in_words(all.front());
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "pirsim/study.hpp"
 #include "reconcile/inference/reference_study.hpp"
+#include "reconcile/inference/residuals.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "reconcile/validation/out_of_catalogue.hpp"
 #include "support/catch.hpp"
