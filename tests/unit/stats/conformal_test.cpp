@@ -60,14 +60,14 @@ TEST_CASE(
   for (std::uint32_t study = 0; study < 3; ++study) {
     const ConformalClassifier classifier = fit(10 * study);
     const Labelled known = draw(300, {0, 1, 2}, 10 * study + 1),
-                   out - of - catalogue fault = draw(300, {3}, 10 * study + 2);
+                   unknown = draw(300, {3}, 10 * study + 2);
     const auto of_known = classifier.classify(known.features);
     for (std::size_t r = 0; r < of_known.size(); ++r) {
       const auto own = static_cast<std::size_t>(known.labels[r]);
       wrongly += of_known[r].p[own] <= 0.1 ? 1.0 / 2700 : 0.0;
       relative_only += of_known[r].p_relative[own] <= 0.1 ? 1.0 / 2700 : 0.0;
     }
-    for (const Classification& one : classifier.classify(out - of - catalogue fault.features)) {
+    for (const Classification& one : classifier.classify(unknown.features)) {
       for (std::size_t k = 0; k < one.p.size(); ++k) least = std::min(least, one.p[k] - classifier.least_p(k));
       unknown_refused += all_refused(one.p, 0.1) ? 1.0 / 900 : 0.0;
       unknown_refused_by_margin += all_refused(one.p_relative, 0.1) ? 1.0 / 900 : 0.0;
