@@ -140,7 +140,7 @@ io::GridChart DayReport::count_chart() const {
   io::GridChart chart;
   chart.title = "Seconds with motion by number of people";
   chart.note = "percent; empty where there were never so many";
-  chart.label = "% of seconds";
+  chart.label = "share, %";
   chart.row_label = "sensor";
   chart.column_label = "people";
   chart.max = 100.0;
