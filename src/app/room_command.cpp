@@ -1,10 +1,12 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <optional>
 
 #include "app/commands.hpp"
 #include "app/outputs.hpp"
 #include "app/session.hpp"
+#include "dataset/recipe.hpp"
 #include "dataset/room_reader.hpp"
 #include "pirsim/room.hpp"
 
@@ -12,20 +14,36 @@ namespace pirsim::app {
 namespace {
 
 struct RoomOptions {
+  std::filesystem::path recipe;  ///< or settings
   std::filesystem::path output;
   std::vector<std::string> settings;  ///< "width_m=6"
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;  ///< default: the recipe's, or 1
   int number = 1;
   Inputs inputs;
 };
 
-dataset::RoomSpec room_of(const RoomOptions& options) {
+dataset::RoomSpec room_by_settings(const RoomOptions& options) {
   Diagnostics faults;
   io::YamlMap map(io::YamlNode::parse("", "command line", options.settings), faults, "room");
   dataset::RoomSpec spec = dataset::read_room_keys(map);
   map.finish();
   faults.throw_if_errors(ErrorCode::usage);
   return spec;
+}
+
+dataset::DrawnRoom draw(const RoomOptions& options) {
+  const io::SceneOptions scenes = scene_options(options.inputs);
+  if (options.recipe.empty())
+    return dataset::draw_room(room_by_settings(options), options.seed.value_or(1), options.number, scenes);
+  if (!options.settings.empty())
+    throw Error(ErrorCode::usage, "a recipe says what its rooms are like: no other options");
+  const dataset::RecipeSpec recipe = dataset::read_recipe(options.recipe);
+  const dataset::RoomGroupSpec& group = dataset::group_of(recipe, options.number);
+  if (!group.scenes.empty()) {
+    throw Error(ErrorCode::usage, "--number: room " + std::to_string(options.number) + " is a file already: '" +
+                                      dataset::own_scene(recipe, options.number).string() + "'");
+  }
+  return dataset::draw_room(group.rooms, options.seed.value_or(recipe.seed), options.number, scenes);
 }
 
 std::string listed(const std::vector<std::string>& ids) {
@@ -47,8 +65,7 @@ void print(const dataset::DrawnRoom& room, const std::filesystem::path& file) {
 void make_room(const RoomOptions& options) {
   if (options.output.empty()) throw Error(ErrorCode::usage, "-o FILE is missing: room.gltf or room.glb");
   check_outputs({{"-o", options.output, {".gltf", ".glb"}}}, {});
-  const dataset::DrawnRoom room =
-      dataset::draw_room(room_of(options), options.seed, options.number, scene_options(options.inputs));
+  const dataset::DrawnRoom room = draw(options);
   io::write_scene(options.output, room.scene);
   if (options.inputs.verbosity != Verbosity::quiet) print(room, options.output);
 }
@@ -69,9 +86,11 @@ void add_room_command(CLI::App& app) {
   pirsim room -o room.gltf                                           a small office
   pirsim room --kind meeting --width 6 --depth 4.6 --seats 8 -o room.gltf
   pirsim room --width [5,8] --seats [2,6] --desks islands --number 3 -o room.gltf
+  pirsim room recipe.yaml --number 3 -o room.gltf                    the third room of a dataset
   pirsim room --set "sensors=[{mount: corner, count: 2, model: EKMC1603111}]" -o room.gltf
 )");
   const auto options = std::make_shared<RoomOptions>();
+  command.add_option("RECIPE", options->recipe, "take the ranges of its rooms: docs/formats/dataset.md");
   offer_setting(command, *options, "--kind", "kind", "KIND", "office or meeting (default: office)");
   offer_setting(command, *options, "--width", "width_m", "M", "along x: metres, or [least,most]");
   offer_setting(command, *options, "--depth", "depth_m", "M", "along -z");
@@ -94,8 +113,8 @@ void add_room_command(CLI::App& app) {
   command.add_option("--sensors", options->inputs.sensor_directories, "folder with sensor models, searched first")
       ->option_text("DIR")
       ->allow_extra_args(false);
-  command.add_option("--seed", options->seed, "of all random streams (default: 1)")->option_text("N");
-  command.add_option("--number", options->number, "which room of this seed (default: 1)")
+  command.add_option("--seed", options->seed, "of all random streams (default: 1, or the recipe's)")->option_text("N");
+  command.add_option("--number", options->number, "which room of this seed or recipe (default: 1)")
       ->option_text("N")
       ->check(CLI::Range(1, 1'000'000));
   offer_output(command, options->output, "FILE", "the room, .gltf or .glb");

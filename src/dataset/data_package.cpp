@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "core/digest.hpp"
@@ -71,7 +72,7 @@ json fields_of_table(const std::string& name) {
   if (name == "rooms.csv") {
     return {room_field(),
             field("part", "string", "train, validation or test_rooms; test_days are days of rooms in train."),
-            field("kind", "string", "office or meeting."),
+            field("kind", "string", "office or meeting; own: a scene of the recipe's author."),
             field("scene", "string", "glTF file of the room."),
             field("floor_m2", "number", "Floor area.", "m2"),
             count("doors", "Entrances."),
@@ -112,6 +113,18 @@ json fields_of_table(const std::string& name) {
           field("sensor", "string", "The sensor that it acts on; empty: all, or the effect's own way."),
           field("parameter", "string", "Its name ends in its unit."),
           field("value", "string", "A number or a word.")};
+}
+
+/// Letters, digits and hyphens, as package names are.
+std::string slug(const std::string& name) {
+  std::string result;
+  for (const char c : name) {
+    const bool fits = std::isalnum(static_cast<unsigned char>(c)) != 0;
+    if (fits) result += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (!fits && !result.empty() && result.back() != '-') result += '-';
+  }
+  while (result.ends_with('-')) result.pop_back();
+  return result.empty() ? "dataset" : result;
 }
 
 json resource(const std::string& name, const std::string& title, json paths, json fields) {
@@ -165,7 +178,7 @@ std::string data_package(const Description& described, const std::map<std::strin
   }
   const json package{
       {"profile", "data-package"},
-      {"name", "pirsim-dataset"},
+      {"name", slug(described.recipe.name)},
       {"title", described.recipe.name},
       {"description",
        "Simulated passive-infrared motion sensors in rooms with people, and the true number of people. "

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,9 +12,9 @@ namespace pirsim::dataset {
 
 struct DescribedRoom {
   int number = 0;
-  Part part = Part::train;  ///< of its first day
-  RoomKind kind = RoomKind::office;
-  std::string scene_file;  ///< relative to the dataset, or as the user named it
+  Part part = Part::train;       ///< of its first day
+  std::optional<RoomKind> kind;  ///< none: the user's own
+  std::string scene_file;        ///< relative to the dataset, or as the user named it
   SceneSpec scene;
   int staff = 0;
 };

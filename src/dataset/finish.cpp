@@ -70,8 +70,8 @@ DescribedRoom described_room(const RecipeSpec& recipe, const fs::path& folder, i
                              const io::SceneOptions& options) {
   DescribedRoom room;
   room.number = number;
-  room.kind = group_of(recipe, number).rooms.kind;
   const fs::path own = own_scene(recipe, number);
+  if (own.empty()) room.kind = group_of(recipe, number).rooms.kind;
   room.scene_file = own.empty() ? "rooms/" + room_name(number) + ".gltf" : own.filename().string();
   room.scene = io::read_scene(own.empty() ? room_file(folder, number) : own, options);
   return room;

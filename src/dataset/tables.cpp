@@ -9,15 +9,19 @@ namespace {
 
 std::string rounded(double value) { return io::csv_number(std::round(1000.0 * value) / 1000.0); }
 
+std::string kind_of(const DescribedRoom& room) {
+  if (!room.kind) return "own";
+  return *room.kind == RoomKind::office ? "office" : "meeting";
+}
+
 std::string rooms_table(const Description& described) {
   std::string text = "room,part,kind,scene,floor_m2,doors,seats,sensors,staff\n";
   for (const DescribedRoom& room : described.rooms) {
     const SceneSpec& scene = room.scene;
     text += std::to_string(room.number) + ',' + (room.part == Part::test_days ? "train" : name_of(room.part)) + ',' +
-            (room.kind == RoomKind::office ? "office" : "meeting") + ',' + io::csv_field(room.scene_file) + ',' +
-            rounded(scene.floor.area_m2()) + ',' + std::to_string(scene.entrances.size()) + ',' +
-            std::to_string(scene.seats.size()) + ',' + std::to_string(scene.sensors.size()) + ',' +
-            std::to_string(room.staff) + '\n';
+            kind_of(room) + ',' + io::csv_field(room.scene_file) + ',' + rounded(scene.floor.area_m2()) + ',' +
+            std::to_string(scene.entrances.size()) + ',' + std::to_string(scene.seats.size()) + ',' +
+            std::to_string(scene.sensors.size()) + ',' + std::to_string(room.staff) + '\n';
   }
   return text;
 }

@@ -74,6 +74,10 @@ class Dataset(unittest.TestCase):
             self.assertEqual(bits, [line.split(",")[-len(bits[0]):] for line in again[1:]])
             self.assertEqual([line.split(",")[4] for line in rows[1:]], [line.split(",")[5] for line in again[1:]])
 
+            pirsim("room", recipe, "--number", 2, "-o", pathlib.Path(folder) / "second.gltf")
+            self.assertEqual((pathlib.Path(folder) / "second.gltf").read_bytes(),
+                             (one / "rooms/room_0002.gltf").read_bytes())
+
             # What is damaged is told.
             (one / "rooms.csv").write_text("room\n")
             check = subprocess.run([sys.executable, TOOLS / "validate_dataset", one], capture_output=True, text=True)
