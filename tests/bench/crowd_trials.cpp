@@ -44,6 +44,7 @@ Options parse(const std::vector<std::string>& words) {
     if (words[i] == "--incidents") options.incidents.open(words.at(++i));
     if (words[i] == "--tracks") {
       options.tracks.open(words.at(++i));
+      options.tracks << "time_s,person,x_m,z_m,heading,stage,seat,passes_through,asks_for_way\n";
       options.tracked_run = std::uint32_t(std::stoul(words.at(++i)));
     }
   }

@@ -275,7 +275,7 @@ void people_known() {
   const SceneSpec scene = shipped_scene("meeting_room.gltf");
   const ScriptSpec alone = shipped_script("studyA.yaml");
   std::map<std::size_t, std::unique_ptr<Office>> offices;
-  for (const std::size_t n_people : {1U, 2U, 4U, 8U}) {
+  for (const std::size_t n_people : {1U, 2U, 4U, 8U, 10U}) {
     ScriptSpec script = alone;
     script.trials.resize(1);
     script.trials.front().people.clear();

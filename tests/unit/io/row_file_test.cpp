@@ -186,3 +186,39 @@ TEST_CASE("what has no sense is discarded", "[io][row_file]") {
   rows.discard();
   CHECK(files_in(folder.path()) == 0);
 }
+
+TEST_CASE("a run that failed has no rows, costs no other run any, and is told after every way to resume",
+          "[io][row_file]") {
+  const auto notes_of = [](std::uint32_t run) {
+    io::RunNotes notes;
+    if (run == 2) notes.failed.push_back({2, "S3", 1, 41.5, "'anna' finds no way"});
+    if (run == 1 || run == 4) notes.passes_through = run;
+    if (run == 1 || run == 4) notes.first_pass = "run " + std::to_string(run);
+    return notes;
+  };
+  for (std::uint32_t until = 0; until <= n_runs; ++until) {
+    INFO("ended before run " << until);
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "rows.csv";
+    for (const std::uint32_t end : {until, n_runs}) {
+      io::RowFile rows(file, made(), header, end == until ? Start::anew : Start::resume);
+      if (rows.finished()) continue;
+      while (rows.next_run() < end) {
+        const std::uint32_t run = rows.next_run();
+        rows.add_run(run == 2 ? "" : rows_of(run), run == 2 ? 0 : run % 3 + 1, notes_of(run));
+      }
+      if (end == n_runs) rows.commit();
+    }
+    std::string expected = header;
+    for (const std::uint32_t run : {0U, 1U, 3U, 4U, 5U}) expected += rows_of(run);
+    CHECK(content(file) == expected);
+    const io::RunNotes told = io::read_manifest(io::manifest_path(file)).notes;
+    REQUIRE(told.failed.size() == 1);
+    CHECK(told.failed.front().trial == "S3");
+    CHECK(told.failed.front().time_s == 41.5);
+    CHECK(told.failed.front().message == "'anna' finds no way");
+    CHECK(told.passes_through == 5);
+    CHECK(told.first_pass == "run 1");
+    CHECK(io::RowFile(file, made(), header, Start::resume).notes().failed.size() == 1);
+  }
+}
