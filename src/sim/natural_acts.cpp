@@ -19,7 +19,7 @@ constexpr StillPeriods by_power_law{0.9, 1.0, 600.0};
 constexpr StillPeriods while_speaking{0.9, 0.3, 3.0};  // assumed (longest 2-5 s): hands rest between two gestures
 constexpr StillPeriods while_walking{0.9, 2.0, 30.0};  // assumed (longest 10-60 s): looks ahead in between
 
-constexpr const char* assumed = "assumed; half and twice the amplitudes tried";
+constexpr const char* assumed = "assumed";
 constexpr const char* reading_speed = "weight: a page of 300 words takes 75 s at 238 words a minute [Brysbaert2019]";
 
 // Shifts: the body comes to rest in another posture.
