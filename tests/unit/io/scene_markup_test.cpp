@@ -82,7 +82,7 @@ TEST_CASE("markup may come as a text, as editors with custom properties write it
   scene.node("chair", GltfBuilder::marked("{\"type\": \"seat\", \"id\": \"S1\"}"));
   CHECK(scene.read().seats.at(0).id == "S1");
   scene.node("broken", GltfBuilder::marked("{\"type\": \"seat\""));
-  CHECK_THAT(fault(scene), contains("node 'broken': 'pirsim' must be an object"));
+  CHECK_THAT(fault(scene), contains("node 'broken': the text at 'pirsim' is not valid JSON: it ends too early"));
 }
 
 TEST_CASE("a floor mesh bounds the floor and occludes unless it says otherwise, ignored meshes do neither", "[scene]") {
