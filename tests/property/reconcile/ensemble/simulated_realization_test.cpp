@@ -73,10 +73,11 @@ TEST_CASE("the same on top of a model that has effects already: soft edges and t
   }
 }
 
-TEST_CASE("who tries the same few steps round somebody for ever gives up") {
+TEST_CASE("who tried the same few steps round somebody for ever gets past them in the end") {
   // Found in a reference table: a bystander so near a bend of the way that every try ended after 5 cm.
   const RealizationSource source{shipped_scene("open_office.gltf"), shipped_script("office.yaml"), {}, 1};
-  const SimulatedRealization realization(source, frame_of(source.scene, source.script), 23, n_replicates);
+  const StudyFrame frame = frame_of(source.scene, source.script);
+  const SimulatedRealization realization(source, frame, 23, n_replicates);
   const auto& all = effects::catalogue();
   const auto second_person =
       std::ranges::find(all, "second_person", [](const auto* effect) { return effect->info.name; });
@@ -84,5 +85,5 @@ TEST_CASE("who tries the same few steps round somebody for ever gives up") {
   Stream stream({source.seed, 23, place, Purpose::reference_parameters});
   const EffectSpec effect =
       effects::draw_from_prior(**second_person, realization.drawn().scene, realization.drawn().script, stream);
-  CHECK_FALSE(realization.with_effects(std::span(&effect, 1), 0, n_replicates).has_value());
+  CHECK(realization.with_effects(std::span(&effect, 1), 0, n_replicates).has_value());
 }

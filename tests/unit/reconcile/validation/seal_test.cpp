@@ -52,7 +52,7 @@ std::string without_sensors(const std::string& rows) {
 }
 
 const std::string valid_answer =
-    R"({"pirsim_sealed_answer": 1, "hidden": "one", "effects": [{"name": "thermal_contrast"}], "out-of-catalogue": null,)"
+    R"({"pirsim_sealed_answer": 1, "hidden": "one", "effects": [{"name": "thermal_contrast"}], "out_of_catalogue_fault": null,)"
     R"( "measured_sha256": "x"})";
 const std::string valid_report =
     R"({"pirsim_reconcile_report": 1, "measured": {"sha256": "x"}, "verdict": "named", "effects": ["range_scale"]})";
