@@ -136,7 +136,7 @@ TEST_CASE("who stays in a doorway for good is walked through after 20 s, which i
   CHECK(record.count(IncidentKind::passed_through) == result.incidents.size());
 }
 
-TEST_CASE("a taken seat is waited for, then another is taken or the next action begins; each is counted") {
+TEST_CASE("a taken seat is waited for, then another is taken or the next action begins, and each is counted") {
   const SceneSpec scene = shipped_scene("meeting_room.gltf");
   const PersonSpec sitter = person("sitter", {act(action::Enter{"door"}), act(action::Sit{"S4"}),
                                               act(action::Work{400.0}), act(action::Leave{"door"})});

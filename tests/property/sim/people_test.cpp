@@ -121,7 +121,7 @@ TEST_CASE("one who leaves and one who comes in pass a door one after the other, 
   }
 }
 
-TEST_CASE("waiting for good ends after 20 s by passing through, or without the seat; no run is endless") {
+TEST_CASE("waiting for good ends after 20 s by passing through, or without the seat, and no run is endless") {
   const SceneSpec scene = shipped_scene("meeting_room.gltf");
   const auto kinds = [&](std::vector<PersonSpec> people) {
     const RunResult result = run_once(compile(scene, script_of(std::move(people))), 0);
