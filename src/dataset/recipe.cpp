@@ -50,8 +50,10 @@ ScheduleSpec schedule_of(const RecipeSpec& recipe, const SceneSpec& scene, int r
   std::vector<StaffSpec> pool;
   for (const StaffSpec& staff : schedule.staff) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(staff.count); ++i) {
-      pool.push_back({staff.role, 1, {}});
-      if (i < staff.seats.size()) pool.back().seats.push_back(staff.seats[i]);
+      StaffSpec& one = pool.emplace_back(staff);
+      one.count = 1;
+      one.seats.clear();
+      if (i < staff.seats.size()) one.seats.push_back(staff.seats[i]);
     }
   }
   Stream stream({recipe.seed, word(room), 0, Purpose::room_people});

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "dataset/room_reader.hpp"
 #include "io/atomic_file.hpp"
@@ -13,6 +15,7 @@ namespace {
 
 constexpr int format_version = 1;
 constexpr int most_rooms = 100'000, most_days = 3'660;  // assumed: ten years
+constexpr std::int64_t most_room_days = 1'000'000;      // assumed: some months of a cluster of a hundred cores
 
 using io::YamlMap;
 using io::YamlNode;
@@ -100,7 +103,7 @@ ScheduleSpec usual_schedule(RoomKind kind, int most_seats, const Where& where) {
   if (kind == RoomKind::meeting) {
     schedule.meetings.emplace();
   } else {
-    schedule.staff.push_back({Role::staff, most_seats, {}});
+    schedule.staff.emplace_back().count = most_seats;
   }
   return schedule;
 }
@@ -174,9 +177,9 @@ void read_outputs(YamlMap& map, RecipeSpec& recipe) {
 }  // namespace
 
 int RecipeSpec::n_rooms() const {
-  int n = 0;
+  std::int64_t n = 0;
   for (const RoomGroupSpec& group : rooms) n += group.count;
-  return n;
+  return static_cast<int>(std::min<std::int64_t>(n, std::numeric_limits<int>::max()));
 }
 
 RecipeSpec read_recipe(const std::filesystem::path& file) {
@@ -204,8 +207,10 @@ RecipeSpec read_recipe(const std::filesystem::path& file) {
   recipe.split = read_split(map, recipe);
   read_outputs(map, recipe);
   map.finish();
+  if (std::int64_t{recipe.n_rooms()} * recipe.days > most_room_days) {
+    faults.error(map.where("rooms"), "rooms: more than " + std::to_string(most_room_days) + " room-days");
+  }
   if (!faults.has_errors()) {
-    if (recipe.n_rooms() > most_rooms) faults.error(map.where("rooms"), "rooms: more than 100000");
     try {
       static_cast<void>(parts_of(recipe));
     } catch (const Error& error) {

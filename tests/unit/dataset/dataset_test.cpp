@@ -409,5 +409,7 @@ TEST_CASE("faults of a recipe are told with their place and the nearest name", "
              contains("r.yaml:3:8") && contains("no room is left"));
   CHECK_THAT(faults_of("pirsim_recipe: 1\nrooms: [{}]\nexports: [uci864]\nsensing: {window_s: 7}\n"),
              contains("r.yaml:3:10") && contains("30 s"));
+  CHECK_THAT(faults_of("pirsim_recipe: 1\nrooms: [{count: 100000}, {count: 100000}]\ndays: 3660\n"),
+             contains("r.yaml:2:8") && contains("1000000 room-days"));
   CHECK_THAT(faults_of("pirsim_recipe: 1\nrooms: [{}]\nschedule: {staf: []}\n"), contains("r.yaml:3:12"));
 }
