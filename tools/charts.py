@@ -1,0 +1,83 @@
+"""Pictures of the documentation: panels with axes, drawn by Vega as report pages draw their charts.
+
+A picture is a list of panels; draw() writes all of them as PNG files. Needs Chromium and libjs-vega
+(tools/install_deps --all).
+"""
+import base64
+import json
+import pathlib
+
+from make_vega_bundle import bundle
+from page_charts import charts_of
+
+VEGA = pathlib.Path("/usr/share/javascript/vega")
+# The colours of all pictures: lines told apart by colour, a light one for lines in the background, one for what was
+# measured or what a formula says.
+COLOURS = ("#1b6ca8", "#d95f02", "#2ca25f", "#756bb1", "#e7298a", "#a6761d", "#17a2b8", "#bcbd22", "#666666", "#c51b1b")
+LIGHT, REFERENCE, GUIDE = "#9ecae1", "#d95f02", "#999999"
+
+
+def scale(name, bounds, pixels, kind="linear"):
+    return {"name": name, "type": kind, "domain": bounds, "range": [0, pixels] if name == "x" else [pixels, 0], "nice": False,
+            "zero": False}
+
+
+def panel(title, size, x, y, marks, legends=(), kinds=("linear", "linear")):
+    """A group with axes. x, y: (label, bounds, ticks or None)."""
+    axes = [{"orient": orient, "scale": name, "title": label or None, "grid": True, "gridColor": "#e0e0e0", "zindex": 0,
+             **({"values": ticks, "format": "~g"} if ticks else {"tickCount": 6})}
+            for orient, name, (label, _, ticks) in (("bottom", "x", x), ("left", "y", y))]
+    return {"type": "group", "title": {"text": title, "fontSize": 12},
+            "encode": {"enter": {"width": {"value": size[0]}, "height": {"value": size[1]}}},
+            "scales": [scale("x", x[1], size[0], kinds[0]), scale("y", y[1], size[1], kinds[1])], "axes": axes,
+            "marks": [{"type": "group", "clip": True, "marks": marks,
+                       "encode": {"enter": {"width": {"value": size[0]}, "height": {"value": size[1]}}}}, *legends]}
+
+
+def at(value, of):
+    return {"scale": of, "value": value} if not isinstance(value, str) else {"scale": of, "field": value}
+
+
+def marks_of(kind, points, look):
+    """Marks at (x, y) points; look: more of Vega's encoding."""
+    values = [{"x": x, "y": y} for x, y in points]
+    mark = {"type": kind, "encode": {"enter": {"x": at("x", "x"), "y": at("y", "y"),
+                                               **{key: {"value": value} for key, value in look.items()}}}}
+    return {"type": "group", "data": [{"name": "points", "values": values}], "marks": [{"from": {"data": "points"}, **mark}]}
+
+
+def line(points, colour, width=1.5, dash=(1, 0)):
+    return marks_of("line", points, {"stroke": colour, "strokeWidth": width, "strokeDash": list(dash)})
+
+
+def key(entries, x, y):
+    """Names beside short lines: (name, colour)."""
+    marks = []
+    for i, (name, colour) in enumerate(entries):
+        row = y + 16 * i
+        marks += [{"type": "rule", "encode": {"enter": {"x": {"value": x}, "x2": {"value": x + 18}, "y": {"value": row},
+                                                        "stroke": {"value": colour}, "strokeWidth": {"value": 2}}}},
+                  {"type": "text", "encode": {"enter": {"x": {"value": x + 24}, "y": {"value": row}, "text": {"value": name},
+                                                        "baseline": {"value": "middle"}, "fontSize": {"value": 11}}}}]
+    return marks
+
+
+def picture(file, x, y, size):
+    """A PNG file at a place of a panel, in pixels."""
+    url = "data:image/png;base64," + base64.b64encode(pathlib.Path(file).read_bytes()).decode()
+    encoding = {"url": url, "x": x, "y": y, "width": size[0], "height": size[1]}
+    return {"type": "image", "encode": {"enter": {key: {"value": value} for key, value in encoding.items()}}}
+
+
+def draw(pictures, folder, columns=3):
+    """Writes folder/NAME.png for each picture, a list of panels by its name; `columns` panels stand side by side."""
+    specs = [{"padding": 8, "layout": {"columns": columns, "padding": 14, "bounds": "full", "align": "each"}, "marks": panels}
+             for panels in pictures.values()]
+    figures = "".join(f"<figure><figcaption>{name}</figcaption><div></div></figure>" for name in pictures)
+    vega = bundle(VEGA).replace("</script", "<\\/script")
+    page = (f"<!DOCTYPE html><html><body>{figures}<script>{vega}</script><script>const specs = {json.dumps(specs)};"
+            "specs.forEach((spec, i) => new vega.View(vega.parse(spec), {renderer: 'canvas'}).initialize("
+            "document.querySelectorAll('figure div')[i]).runAsync());</script></body></html>")
+    pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
+    for name, png in charts_of(page).items():
+        (pathlib.Path(folder) / f"{name}.png").write_bytes(png)
