@@ -12,25 +12,26 @@ Scenes and scripts are files, or objects of `pirsim.specs`.
 from . import errors, specs
 from ._core import __version__, git_revision
 from ._inputs import (EffectInfo, EffectParameter, effects, facing, read_scene, read_script, sensor_model,
-                      write_script)
+                      write_scene, write_script)
 from ._result import Fault, Incident, Result
 from ._study import Model, Poses, Rays, Trace, compile, data_directory, run, trace
 from ._surveys import CoverageMap, Grid, WalkTest, coverage, walk_test
+from ._wings import Candidate, Cell, FittedEffect, Reconciliation, dataset, reconcile, room
 from .errors import (Error, ErrorCode, FileError, IncompleteWarning, InfeasibleError, InputError, InputWarning,
                      InternalError, UsageError)
 from .specs import (Action, Amplifier, Appear, Clock, Cluster, Comparator, Detector, Diagnostic, Effect, Element,
-                    Enter, Entrance, Floor, Frame, Leave, Meetings, Mesh, Optics, Person, Profile, Rise, Scene,
+                    Enter, Entrance, Floor, Frame, HeldMeeting, Leave, Meetings, Mesh, Optics, Person, Profile, Rise, Scene,
                     Schedule, Script, Seat, SeatScatter, Sensing, Sensor, SensorModel, Sit, Staff, Summary, Trial,
                     Turn, Wait, Walk, Warmth, Where, Work, Zone)
 
 __all__ = [
-    "Action", "Amplifier", "Appear", "Clock", "Cluster", "Comparator", "CoverageMap", "Detector", "Diagnostic",
-    "Effect", "EffectInfo", "EffectParameter", "Element", "Enter", "Entrance", "Error", "ErrorCode", "Fault",
-    "FileError", "Floor", "Frame", "Grid", "Incident", "IncompleteWarning", "InfeasibleError", "InputError",
-    "InputWarning", "InternalError", "Leave", "Meetings", "Mesh", "Model", "Optics", "Person", "Poses", "Profile",
-    "Rays", "Result", "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter", "Sensing", "Sensor",
-    "SensorModel", "Sit", "Staff", "Summary", "Trace", "Trial", "Turn", "UsageError", "Wait", "Walk", "WalkTest",
-    "Warmth", "Where", "Work", "Zone", "__version__", "compile", "coverage", "data_directory", "effects", "errors",
-    "facing", "git_revision", "read_scene", "read_script", "run", "sensor_model", "specs", "trace", "walk_test",
-    "write_script",
+    "Action", "Amplifier", "Appear", "Candidate", "Cell", "Clock", "Cluster", "Comparator", "CoverageMap", "Detector",
+    "Diagnostic", "Effect", "EffectInfo", "EffectParameter", "Element", "Enter", "Entrance", "Error", "ErrorCode",
+    "Fault", "FileError", "FittedEffect", "Floor", "Frame", "Grid", "HeldMeeting", "Incident", "IncompleteWarning",
+    "InfeasibleError", "InputError", "InputWarning", "InternalError", "Leave", "Meetings", "Mesh", "Model", "Optics",
+    "Person", "Poses", "Profile", "Rays", "Reconciliation", "Result", "Rise", "Scene", "Schedule", "Script", "Seat",
+    "SeatScatter", "Sensing", "Sensor", "SensorModel", "Sit", "Staff", "Summary", "Trace", "Trial", "Turn",
+    "UsageError", "Wait", "Walk", "WalkTest", "Warmth", "Where", "Work", "Zone", "__version__", "compile", "coverage",
+    "data_directory", "dataset", "effects", "errors", "facing", "git_revision", "read_scene", "read_script",
+    "reconcile", "room", "run", "sensor_model", "specs", "trace", "walk_test", "write_scene", "write_script",
 ]

@@ -44,6 +44,11 @@ def read_script(file: PathOr, *, set: Overrides | None = None) -> Script:
     return _core.read_script(os.fspath(file), as_overrides(set))
 
 
+def write_scene(scene: Scene, file: PathOr) -> None:
+    """Writes a scene as glTF (.glb, or .gltf with its buffer in it); positions in single precision."""
+    _core.write_scene(scene, os.fspath(file))
+
+
 def write_script(script: Script, file: PathOr) -> None:
     """Writes a script as YAML for the command line."""
     with open(file, "w", encoding="utf-8") as out:

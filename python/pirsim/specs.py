@@ -238,6 +238,10 @@ class Scene:
 
 
 # ----------------------------------------------------------------------------------------------------------- scripts
+Activity = Literal["typing", "reading", "meeting", "phone", "whiteboard"]
+"""What people of natural style are busy with."""
+
+
 @dataclass(slots=True, kw_only=True)
 class _Action:
     at_s: float | None = None
@@ -252,6 +256,8 @@ class Wait(_Action):
     """Goes on standing or sitting."""
 
     duration_s: float = 0.0
+    activity: Activity | None = None
+    """Of natural style, as in other actions."""
 
 
 @dataclass(slots=True)
@@ -274,6 +280,7 @@ class Walk(_Action):
     """Walks to each of the floor points in turn."""
 
     points: list[Point2] = field(default_factory=list)
+    activity: Activity | None = None
 
 
 @dataclass(slots=True)
@@ -294,8 +301,8 @@ class Work(_Action):
     arm_period_s: float = 3.0
     tilt_choices_deg: list[float] = field(default_factory=lambda: [-15.0, 0.0, 15.0])
     tilt_every_s: float = 30.0
-    activity: Literal["typing", "reading", "meeting", "phone"] = "typing"
-    """Of natural style, which has no use for the swing and the tilts."""
+    activity: Activity | None = None
+    """Of natural style, which has no use for the swing and the tilts; None: typing."""
 
 
 @dataclass(slots=True)
@@ -370,6 +377,17 @@ class Staff:
     role: Literal["staff", "manager", "administrator"] = "staff"
     count: int = 1
     seats: list[str] = field(default_factory=list)
+    where: Where = _where()
+
+
+@dataclass(slots=True)
+class HeldMeeting:
+    """A meeting whose time is known."""
+
+    at_h: float = 10.0
+    duration_min: float = 60.0
+    people: int = 4
+    where: Where = _where()
 
 
 @dataclass(slots=True)
@@ -379,12 +397,18 @@ class Meetings:
     fewest_a_day: int = 2
     most_a_day: int = 6
     fewest_people: int = 2
-    most_people: int = 8
+    most_people: int | None = None
+    """None: 8, or as many as there are seats."""
     durations_min: list[float] = field(default_factory=lambda: [30.0, 60.0, 90.0, 120.0])
     probabilities: list[float] = field(default_factory=lambda: [0.13, 0.70, 0.12, 0.05])
     from_h: float = 9.0
-    to_h: float = 17.0
+    to_h: float = 18.0
     lateness_min: float = 2.0
+    held: list[HeldMeeting] = field(default_factory=list)
+    """These, every working day, instead of drawn ones."""
+    seats: list[str] = field(default_factory=list)
+    """None given: those that are nobody's own desk."""
+    where: Where = _where()
 
 
 @dataclass(slots=True)

@@ -158,6 +158,7 @@ struct Convert<T> {
                Fields<T>::all);
   }
   static T from(nb::handle value, const std::string& path) {
+    static_assert(has_fields<std::tuple_size_v<std::remove_cvref_t<decltype(Fields<T>::all)>>, T>());
     if (!nb::isinstance(value, spec_class(Fields<T>::name)))
       refuse(value, path, "a pirsim." + std::string(Fields<T>::name));
     T spec;

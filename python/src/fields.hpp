@@ -3,9 +3,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <pirsim/effects.hpp>
 #include <pirsim/pirsim.hpp>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 namespace pirsim::python {
@@ -19,6 +21,29 @@ struct Field {
 /// Specialised for each spec: `name` in Python and `all` fields.
 template <typename Spec>
 struct Fields;
+
+/// Doesn't compile for a spec that has another number of fields than n.
+template <std::size_t n, typename Spec>
+constexpr bool has_fields() {
+  [[maybe_unused]] const auto take = [](Spec& spec) {
+    // clang-format off
+    if constexpr (n == 1) { auto& [a] = spec; (void)a; }
+    else if constexpr (n == 2) { auto& [a, b] = spec; (void)a; }
+    else if constexpr (n == 3) { auto& [a, b, c] = spec; (void)a; }
+    else if constexpr (n == 4) { auto& [a, b, c, d] = spec; (void)a; }
+    else if constexpr (n == 5) { auto& [a, b, c, d, e] = spec; (void)a; }
+    else if constexpr (n == 6) { auto& [a, b, c, d, e, f] = spec; (void)a; }
+    else if constexpr (n == 7) { auto& [a, b, c, d, e, f, g] = spec; (void)a; }
+    else if constexpr (n == 8) { auto& [a, b, c, d, e, f, g, h] = spec; (void)a; }
+    else if constexpr (n == 9) { auto& [a, b, c, d, e, f, g, h, i] = spec; (void)a; }
+    else if constexpr (n == 10) { auto& [a, b, c, d, e, f, g, h, i, j] = spec; (void)a; }
+    else if constexpr (n == 12) { auto& [a, b, c, d, e, f, g, h, i, j, k, l] = spec; (void)a; }
+    else if constexpr (n == 14) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o] = spec; (void)a; }
+    else static_assert(n == 0 && std::is_empty_v<Spec>);
+    // clang-format on
+  };
+  return true;
+}
 
 /// Specialised for each enumeration: its values as words, as scripts have them.
 template <typename Enum>
@@ -53,7 +78,8 @@ struct Words<MotionStyle> {
 template <>
 struct Words<Activity> {
   static constexpr std::array all{std::pair{"typing", Activity::typing}, std::pair{"reading", Activity::reading},
-                                  std::pair{"meeting", Activity::meeting}, std::pair{"phone", Activity::phone}};
+                                  std::pair{"meeting", Activity::meeting}, std::pair{"phone", Activity::phone},
+                                  std::pair{"whiteboard", Activity::whiteboard}};
 };
 template <>
 struct Words<action::IfTaken> {
@@ -190,7 +216,8 @@ struct Fields<SensorModelSpec> {
 template <>
 struct Fields<action::Wait> {
   static constexpr const char* name = "Wait";
-  static constexpr std::tuple all{Field{"duration_s", &action::Wait::duration_s}};
+  static constexpr std::tuple all{Field{"duration_s", &action::Wait::duration_s},
+                                  Field{"activity", &action::Wait::activity}};
 };
 template <>
 struct Fields<action::Appear> {
@@ -206,7 +233,7 @@ struct Fields<action::Enter> {
 template <>
 struct Fields<action::Walk> {
   static constexpr const char* name = "Walk";
-  static constexpr std::tuple all{Field{"points", &action::Walk::points}};
+  static constexpr std::tuple all{Field{"points", &action::Walk::points}, Field{"activity", &action::Walk::activity}};
 };
 template <>
 struct Fields<action::Sit> {
@@ -273,7 +300,14 @@ template <>
 struct Fields<StaffSpec> {
   static constexpr const char* name = "Staff";
   static constexpr std::tuple all{Field{"role", &StaffSpec::role}, Field{"count", &StaffSpec::count},
-                                  Field{"seats", &StaffSpec::seats}};
+                                  Field{"seats", &StaffSpec::seats}, Field{"where", &StaffSpec::where}};
+};
+template <>
+struct Fields<HeldMeetingSpec> {
+  static constexpr const char* name = "HeldMeeting";
+  static constexpr std::tuple all{Field{"at_h", &HeldMeetingSpec::at_h},
+                                  Field{"duration_min", &HeldMeetingSpec::duration_min},
+                                  Field{"people", &HeldMeetingSpec::people}, Field{"where", &HeldMeetingSpec::where}};
 };
 template <>
 struct Fields<MeetingsSpec> {
@@ -286,7 +320,10 @@ struct Fields<MeetingsSpec> {
                                   Field{"probabilities", &MeetingsSpec::probabilities},
                                   Field{"from_h", &MeetingsSpec::from_h},
                                   Field{"to_h", &MeetingsSpec::to_h},
-                                  Field{"lateness_min", &MeetingsSpec::lateness_min}};
+                                  Field{"lateness_min", &MeetingsSpec::lateness_min},
+                                  Field{"held", &MeetingsSpec::held},
+                                  Field{"seats", &MeetingsSpec::seats},
+                                  Field{"where", &MeetingsSpec::where}};
 };
 template <>
 struct Fields<ProfileSpec> {

@@ -8,10 +8,6 @@
 namespace pirsim::python {
 namespace {
 
-io::SceneOptions options_of(const Folders& folders) {
-  return {{folders.sensors.begin(), folders.sensors.end()}, {folders.data.begin(), folders.data.end()}};
-}
-
 template <typename Spec>
 nb::object default_of() {
   return to_python(Spec{});
@@ -34,8 +30,9 @@ nb::dict defaults() {
                  ComparatorSpec, DetectorSpec, ZoneSpec, ClusterSpec, SensorModelSpec, action::Wait, action::Appear,
                  action::Enter, action::Walk, action::Sit, action::Work, action::Rise, action::Leave, action::Turn>*>(
       nullptr));
-  add(static_cast<std::tuple<SeatScatterSpec, WarmthSpec, PersonSpec, ClockSpec, StaffSpec, MeetingsSpec, ProfileSpec,
-                             ScheduleSpec, TrialSpec, SensingSpec, SummarySpec, EffectSpec, ScriptSpec>*>(nullptr));
+  add(static_cast<
+      std::tuple<SeatScatterSpec, WarmthSpec, PersonSpec, ClockSpec, StaffSpec, HeldMeetingSpec, MeetingsSpec,
+                 ProfileSpec, ScheduleSpec, TrialSpec, SensingSpec, SummarySpec, EffectSpec, ScriptSpec>*>(nullptr));
   return all;
 }
 
@@ -55,6 +52,10 @@ nb::list catalogue() {
 }
 
 }  // namespace
+
+io::SceneOptions options_of(const Folders& folders) {
+  return {{folders.sensors.begin(), folders.sensors.end()}, {folders.data.begin(), folders.data.end()}};
+}
 
 SceneSpec scene_of(nb::handle scene, const Folders& folders) {
   if (!nb::isinstance<nb::str>(scene)) return checked_scene(scene);
@@ -96,6 +97,9 @@ void add_inputs(nb::module_& module) {
   module.def(
       "to_yaml", [](nb::handle script) { return io::to_yaml(from_python<ScriptSpec>(script, "script")); },
       nb::arg("script"), "The text of a script file.");
+  module.def(
+      "write_scene", [](nb::handle scene, const std::string& file) { io::write_scene(file, checked_scene(scene)); },
+      nb::arg("scene"), nb::arg("file"), "As glTF.");
   module.def(
       "mounted",
       [](nb::handle position, double yaw_deg, double tilt_deg) {
