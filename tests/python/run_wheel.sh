@@ -41,7 +41,8 @@ if ! debootstrap --variant=minbase --include=python3-venv "$release" "$scratch/r
   exit 77
 fi
 mkdir -p "$scratch/root/try"
-cp -r "$scratch/house" "$source/tests/python" "$source/tests/e2e" "$source/data" "$source/examples" "$scratch/root/try/"
+cp -r "$scratch/house" "$source/tests/python" "$source/tests/e2e" "$source/data" "$source/examples" "$source/docs" \
+  "$scratch/root/try/"
 mkdir -p "$scratch/root/try/tests" && mv "$scratch/root/try/python" "$scratch/root/try/e2e" "$scratch/root/try/tests/"
 env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root PIRSIM_SOURCE=/try chroot "$scratch/root" sh -euc '
   for name in gcc cc g++ clang cmake; do ! command -v $name || exit 1; done

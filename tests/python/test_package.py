@@ -81,3 +81,12 @@ def test_examples_draw_what_they_say(example, source, tmp_path, monkeypatch):
     runpy.run_path(str(source / "examples" / f"{example}.py"), run_name="__main__")
     pictures = list(tmp_path.glob("*.png"))
     assert len(pictures) == 1 and pictures[0].stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("notebook, says", [("room_to_counter", "mean absolute error"),
+                                            ("measurements_to_verdict", "seconds with motion")])
+def test_notebooks_run(notebook, says, source, capsys, monkeypatch):
+    monkeypatch.setattr(sys, "argv", [notebook, "quick"])
+    path = source / "docs" / "notebooks" / f"{notebook}.py"
+    runpy.run_path(str(path), run_name="__main__")
+    assert says in capsys.readouterr().out
