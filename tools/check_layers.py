@@ -69,6 +69,10 @@ GATES = {"Eigen": "src/stats/eigen.hpp"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
+# folders whose files, as any user of the library, may include public headers alone, beside their own
+OUTSIDE = ("python/src",)
+
+
 def layer_of(path: pathlib.Path, root: pathlib.Path):
     parts = path.relative_to(root).parts
     if parts[:2] == ("include", "pirsim"):
@@ -135,6 +139,19 @@ def violations(root: pathlib.Path):
                         yield f"{here}:{number}: {name} may only be included in src/{'/, src/'.join(sorted(homes))}/"
     yield from stray_files(root)
     yield from cycles(graph)
+    for folder in OUTSIDE:
+        yield from private_includes(root, folder)
+
+
+def private_includes(root: pathlib.Path, folder: str):
+    for file in sorted((root / folder).glob("*.[ch]pp")):
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            match = INCLUDE.match(line)
+            if not match or (root / folder / match.group(2)).is_file():
+                continue
+            name = match.group(2)
+            if (root / "src" / name).is_file() or (match.group(1) == '"' and not name.startswith("pirsim/")):
+                yield f"{file.relative_to(root)}:{number}: only public headers may be included here ({name})"
 
 
 def cycles(graph):

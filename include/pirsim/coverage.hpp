@@ -27,6 +27,7 @@ struct CoverageMap {
 
 /// Runs a coverage study. threads 0: all cores; changes no count. Throws Error(input) for a spec that the scene can't
 /// serve: a name in `without` that no mesh has, an unknown effect or sensor.
-[[nodiscard]] CoverageMap run_coverage(SceneSpec scene, CoverageSpec spec, unsigned threads = 0);
+[[nodiscard]] CoverageMap run_coverage(SceneSpec scene, CoverageSpec spec, unsigned threads = 0,
+                                       const RowDone& row_done = {});
 
 }  // namespace pirsim

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,8 +33,10 @@ struct Recording {
 };
 
 /// Follows the given runs of a study on up to `threads` threads (0: all cores), with 4 bytes a tick and run. Throws
-/// Error(usage) for sensors with an analog response, which zones alone don't explain.
-[[nodiscard]] Recording record(const Model& model, std::span<const std::uint32_t> runs, unsigned threads = 0);
+/// Error(usage) for sensors with an analog response, which zones alone don't explain. `run_done`, if given, is called
+/// after each run, from one thread at a time; what it throws ends the work.
+[[nodiscard]] Recording record(const Model& model, std::span<const std::uint32_t> runs, unsigned threads = 0,
+                               const std::function<void()>& run_done = {});
 
 /// How zones become triggers: derive from it to try a detector of your own. One object serves many runs, one after the
 /// other.
@@ -51,5 +55,18 @@ class DetectorLogic {
 /// The rows of recording.runs[index] as this detector gives them, which has been prepared with recording.sets.
 [[nodiscard]] RunResult replay(const Recording& recording, std::size_t index, DetectorLogic& detector,
                                std::uint64_t seed);
+
+struct EmitOptions {
+  /// On triggers and rows, instead of those of the script. What the script's do to people, rays and zones is in the
+  /// recording and stays.
+  std::optional<std::vector<EffectSpec>> effects{};
+  std::optional<std::uint64_t> seed{};  ///< instead of the script's
+};
+
+/// The rows of all recorded runs, in order, as the Model's own detector gives them: without options the study's, bit
+/// for bit. Throws Error(input) for unknown effects, Error(usage) for effects that reach the geometry, which need a
+/// Model of their own; and what `consume` throws.
+void emit(const Model& model, const Recording& recording, const EmitOptions& options,
+          const std::function<void(const RunResult&)>& consume);
 
 }  // namespace pirsim

@@ -45,4 +45,8 @@ struct SceneSpec {
   std::vector<Issue> warnings;                           ///< what the reader noticed and repaired or ignored
 };
 
+/// What the reader of files would have refused: numbers that aren't finite, corners that don't exist, a name twice, a
+/// sensor without its model, no floor.
+void check(const SceneSpec& scene, Diagnostics& diagnostics);
+
 }  // namespace pirsim

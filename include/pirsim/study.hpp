@@ -46,9 +46,10 @@ struct StudyOptions {
   std::function<bool()> goes_on{};  ///< asked before each run; after a false no further one begins
   Trace trace = Trace::none;
   Occupants occupants = Occupants::counted;
+  std::optional<std::vector<std::uint32_t>> chosen{};  ///< instead of `runs`: these, in this order
 };
 
-/// Runs the study, or a range of it, and hands each run's result to `consume` in the order of runs, from one thread at
+/// Runs the study, or a part of it, and hands each run's result to `consume` in the order of runs, from one thread at
 /// a time. Memory is bounded by a few runs a thread. A run that can't go on is handed on with its fault and without
 /// rows, and the others go on. Throws what `consume` throws.
 void run_study(const Model& model, const StudyOptions& options, const std::function<void(const RunResult&)>& consume);

@@ -1,7 +1,9 @@
 // What coverage studies, walk tests and comparisons of placements are asked for, as plain data.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +14,9 @@
 #include "pirsim/script.hpp"
 
 namespace pirsim {
+
+/// Called after each row of the floor's squares or points, from one thread at a time; what it throws ends the work.
+using RowDone = std::function<void(std::size_t n_done, std::size_t n_rows)>;
 
 // A coverage study as plain data: which moving target stands where for how long, and how sensors are read.
 

@@ -38,6 +38,7 @@ struct WalkTestResult {
 
 /// Runs a walk test. threads 0: all cores; changes nothing in the result. Throws Error(input) for a spec that the scene
 /// can't serve.
-[[nodiscard]] WalkTestResult run_walk_test(SceneSpec scene, WalkTestSpec spec, unsigned threads = 0);
+[[nodiscard]] WalkTestResult run_walk_test(SceneSpec scene, WalkTestSpec spec, unsigned threads = 0,
+                                           const RowDone& row_done = {});
 
 }  // namespace pirsim

@@ -220,4 +220,18 @@ ScriptSpec parse_script(std::string_view text, const std::string& name, std::spa
   return script_of(YamlNode::parse(text, name, overrides), name);
 }
 
+void check(const ScriptSpec& script) {
+  ScriptSpec values = script;
+  for (TrialSpec& trial : values.trials) {
+    for (PersonSpec& person : trial.people) person.body_mesh_file.clear();  // whose meshes have been read
+  }
+  try {
+    (void)parse_script(to_yaml(values), script.name);
+  } catch (const Error& error) {
+    std::vector<Issue> issues = error.issues();
+    for (Issue& issue : issues) issue.where = {script.name, 0, 0};  // nobody has the text
+    throw Error(error.code(), std::move(issues));
+  }
+}
+
 }  // namespace pirsim::io

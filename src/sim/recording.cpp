@@ -114,7 +114,8 @@ RunResult replay(const Recording& recording, std::size_t index, DetectorLogic& d
 
 }  // namespace sim
 
-Recording record(const Model& model, std::span<const std::uint32_t> runs, unsigned threads) {
+Recording record(const Model& model, std::span<const std::uint32_t> runs, unsigned threads,
+                 const std::function<void()>& run_done) {
   const sim::CompiledStudy& study = model.compiled();
   Recording recording = sim::empty_recording(study);
   sim::SetNumbering numbering(study.array().channels().n_zones());
@@ -126,6 +127,7 @@ Recording record(const Model& model, std::span<const std::uint32_t> runs, unsign
         for (const ZoneSet& set : recorded.sets) renumbered.push_back(numbering.number(set));
         for (std::uint32_t& number : recorded.track.sets) number = renumbered[number];
         recording.runs.push_back(std::move(recorded.track));
+        if (run_done) run_done();
       });
   recording.sets = std::move(numbering.sets());
   return recording;
@@ -133,6 +135,22 @@ Recording record(const Model& model, std::span<const std::uint32_t> runs, unsign
 
 RunResult replay(const Recording& recording, std::size_t index, DetectorLogic& detector, std::uint64_t seed) {
   return sim::replay(recording, index, detector, seed, {});
+}
+
+void emit(const Model& model, const Recording& recording, const EmitOptions& options,
+          const std::function<void(const RunResult&)>& consume) {
+  for (const EffectSpec& effect : options.effects.value_or(std::vector<EffectSpec>{})) {
+    if (effects::info(effect.name).reach != effects::Reach::geometry) continue;
+    throw Error(ErrorCode::usage,
+                "effect '" + effect.name + "' changes what the zones see: compile a model with it and record that");
+  }
+  const effects::Pipeline stages = sim::make_stages(model, options.effects.value_or(model.script().effects));
+  const std::uint64_t seed = options.seed.value_or(model.script().seed);
+  const std::unique_ptr<DetectorLogic> detector = sim::make_logic(model);
+  detector->prepare(recording.sets);
+  for (std::size_t i = 0; i < recording.runs.size(); ++i) {
+    consume(sim::replay(recording, i, *detector, seed, stages));
+  }
 }
 
 }  // namespace pirsim

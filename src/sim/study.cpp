@@ -80,13 +80,15 @@ RunResult run_once(const Model& model, std::uint32_t run, Record record, Trace t
 }
 
 void run_study(const Model& model, const StudyOptions& options, const std::function<void(const RunResult&)>& consume) {
-  const RunRange runs = options.runs.value_or(RunRange{0, model.n_runs()});
+  const RunRange range = options.runs.value_or(RunRange{0, model.n_runs()});
+  const auto run_of = [&](std::size_t i) {
+    return options.chosen ? (*options.chosen)[i] : range.first + static_cast<std::uint32_t>(i);
+  };
   sim::ZoneCachePool caches(model.compiled());
   ordered_parallel<RunResult>(
-      runs.count(), options.threads,
+      options.chosen ? options.chosen->size() : range.count(), options.threads,
       [&](std::size_t i) {
-        return run_with(caches, model.compiled(), runs.first + static_cast<std::uint32_t>(i), options.record,
-                        options.trace, options.occupants);
+        return run_with(caches, model.compiled(), run_of(i), options.record, options.trace, options.occupants);
       },
       [&](RunResult& result) { consume(result); }, options.goes_on);
 }

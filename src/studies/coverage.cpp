@@ -297,10 +297,11 @@ void run_rows(const CoverageStudy& study, std::size_t first_row, unsigned thread
       [&](std::vector<MotionCount>& counts) { consume(row++, counts); });
 }
 
-CoverageMap run_coverage(const CoverageStudy& study, unsigned threads) {
+CoverageMap run_coverage(const CoverageStudy& study, unsigned threads, const RowDone& row_done) {
   CoverageMap map = empty_map(study);
-  run_rows(study, 0, threads, [&](std::size_t, const std::vector<MotionCount>& counts) {
+  run_rows(study, 0, threads, [&](std::size_t row, const std::vector<MotionCount>& counts) {
     map.counts.insert(map.counts.end(), counts.begin(), counts.end());
+    if (row_done) row_done(row + 1, study.grid().n_rows());
   });
   return map;
 }
@@ -309,8 +310,9 @@ CoverageMap run_coverage(const CoverageStudy& study, unsigned threads) {
 
 namespace pirsim {
 
-CoverageMap run_coverage(SceneSpec scene, CoverageSpec spec, unsigned threads) {
-  return studies::run_coverage(studies::CoverageStudy(std::move(scene), std::move(spec)), threads);
+CoverageMap run_coverage(SceneSpec scene, CoverageSpec spec, unsigned threads, const RowDone& row_done) {
+  const studies::CoverageStudy study(std::move(scene), std::move(spec));
+  return studies::run_coverage(study, threads, row_done);
 }
 
 }  // namespace pirsim

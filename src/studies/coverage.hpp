@@ -83,7 +83,7 @@ class CoverageStudy {
 void run_rows(const CoverageStudy& study, std::size_t first_row, unsigned threads,
               const std::function<void(std::size_t row, const std::vector<MotionCount>& counts)>& consume);
 /// All rows, in memory.
-[[nodiscard]] CoverageMap run_coverage(const CoverageStudy& study, unsigned threads = 0);
+[[nodiscard]] CoverageMap run_coverage(const CoverageStudy& study, unsigned threads = 0, const RowDone& row_done = {});
 
 // What a coverage map says in a few numbers.
 

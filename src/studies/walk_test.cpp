@@ -198,8 +198,13 @@ WalkTestResult run_walk_test(const WalkTest& test, unsigned threads, const std::
 
 namespace pirsim {
 
-WalkTestResult run_walk_test(SceneSpec scene, WalkTestSpec spec, unsigned threads) {
-  return studies::run_walk_test(studies::WalkTest(std::move(scene), std::move(spec)), threads);
+WalkTestResult run_walk_test(SceneSpec scene, WalkTestSpec spec, unsigned threads, const RowDone& row_done) {
+  const studies::WalkTest test(std::move(scene), std::move(spec));
+  std::size_t n_done = 0;
+  return studies::run_walk_test(test, threads, [&] {
+    ++n_done;
+    if (row_done) row_done(n_done, test.grid().n_rows());
+  });
 }
 
 }  // namespace pirsim

@@ -1,0 +1,37 @@
+"""pirsim: simulated passive-infrared motion sensors, with the true number of people beside every bit.
+
+    import pirsim
+    model = pirsim.compile("room.gltf", "study.yaml")
+    result = pirsim.run(model)
+    result.bits      # uint8 [run, second, sensor]
+    result.people    # uint16 [run, second]
+
+Scenes and scripts are files, or objects of `pirsim.specs`.
+"""
+
+from . import errors, specs
+from ._core import __version__, git_revision
+from ._inputs import (EffectInfo, EffectParameter, effects, facing, read_scene, read_script, sensor_model,
+                      write_scene, write_script)
+from ._result import Fault, Incident, Result
+from ._study import Model, Poses, Rays, Trace, compile, data_directory, run, trace
+from ._surveys import CoverageMap, Grid, WalkTest, coverage, walk_test
+from ._wings import Candidate, Cell, FittedEffect, Reconciliation, dataset, reconcile, room
+from .errors import (Error, ErrorCode, FileError, IncompleteWarning, InfeasibleError, InputError, InputWarning,
+                     InternalError, UsageError)
+from .specs import (Action, Amplifier, Appear, Clock, Cluster, Comparator, Detector, Diagnostic, Effect, Element,
+                    Enter, Entrance, Floor, Frame, HeldMeeting, Leave, Meetings, Mesh, Optics, Person, Profile, Rise, Scene,
+                    Schedule, Script, Seat, SeatScatter, Sensing, Sensor, SensorModel, Sit, Staff, Summary, Trial,
+                    Turn, Wait, Walk, Warmth, Where, Work, Zone)
+
+__all__ = [
+    "Action", "Amplifier", "Appear", "Candidate", "Cell", "Clock", "Cluster", "Comparator", "CoverageMap", "Detector",
+    "Diagnostic", "Effect", "EffectInfo", "EffectParameter", "Element", "Enter", "Entrance", "Error", "ErrorCode",
+    "Fault", "FileError", "FittedEffect", "Floor", "Frame", "Grid", "HeldMeeting", "Incident", "IncompleteWarning",
+    "InfeasibleError", "InputError", "InputWarning", "InternalError", "Leave", "Meetings", "Mesh", "Model", "Optics",
+    "Person", "Poses", "Profile", "Rays", "Reconciliation", "Result", "Rise", "Scene", "Schedule", "Script", "Seat",
+    "SeatScatter", "Sensing", "Sensor", "SensorModel", "Sit", "Staff", "Summary", "Trace", "Trial", "Turn",
+    "UsageError", "Wait", "Walk", "WalkTest", "Warmth", "Where", "Work", "Zone", "__version__", "compile", "coverage",
+    "data_directory", "dataset", "effects", "errors", "facing", "git_revision", "read_scene", "read_script",
+    "reconcile", "room", "run", "sensor_model", "specs", "trace", "walk_test", "write_scene", "write_script",
+]

@@ -1,0 +1,157 @@
+"""What runs give, as arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Iterable, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    import pandas
+    import polars
+    import xarray
+
+
+class Fault(NamedTuple):
+    """Why a run could not go on; it has no rows."""
+
+    run: int
+    time_s: float
+    text: str
+
+
+class Incident(NamedTuple):
+    """Something between people, or a person and a seat, that ended no run: `passed_through`, `seat_changed` or
+    `seat_missed`."""
+
+    run: int
+    kind: str
+    time_s: float
+    person: str
+    place_m: tuple[float, float]
+    """(x, z) on the floor."""
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """The rows of some runs. All arrays are read-only and own their memory: they outlive the model.
+
+    Runs differ in length. Arrays over seconds (windows, 1 s each unless the script says otherwise) are as long as the
+    longest run and hold zeros behind the end of a shorter one, where `valid` is False.
+    """
+
+    sensors: tuple[str, ...]
+    """Names, in the order of the last axis of `bits`."""
+    bits: npt.NDArray[np.uint8]
+    """[run, second, sensor] 1 where the sensor saw motion in that second."""
+    people: npt.NDArray[np.uint16]
+    """[run, second] people in the room at the end of that second."""
+    valid: npt.NDArray[np.bool_]
+    """[run, second] False behind the end of a run."""
+    time: npt.NDArray[np.float64]
+    """[second] its end, in seconds since the run began."""
+    phase_code: npt.NDArray[np.uint16]
+    """[run, second] index into `phases`: what the script's first person does."""
+    phases: tuple[str, ...]
+    """Names of phases; the first is empty and stands behind the end of a run."""
+    run: npt.NDArray[np.uint32]
+    """[run] its number in the study, from 0."""
+    replicate: npt.NDArray[np.int32]
+    """[run] from 1."""
+    trial: npt.NDArray[np.str_]
+    """[run] as the script names it."""
+    clock: npt.NDArray[np.datetime64] | None = None
+    """[run, second] local wall-clock time at its end, NaT behind the end of a run; None without a schedule."""
+    zones: list[npt.NDArray[np.uint8]] = field(default_factory=list, repr=False)
+    """A [tick, zone] array for each run, 1 where the zone sees somebody; empty ones unless `run(zones=True)`."""
+    occupants: dict[str, npt.NDArray[Any]] = field(default_factory=dict, repr=False)
+    """Columns of who is where, one entry a second and person who is there: run, time_s, person, activity, seat, x_m,
+    z_m, inside; empty ones unless `run(occupants=True)`."""
+    signals: dict[str, npt.NDArray[Any]] = field(default_factory=dict, repr=False)
+    """Columns of what analog sensors received, one entry a tick and sensor: run, tick, sensor (index), power_w,
+    signal_v, output, and the zone (index), person, part and share_v of the largest share; empty ones unless
+    `run(signals=True)`."""
+    faults: list[Fault] = field(default_factory=list)
+    """Runs that could not go on; they are in the arrays, without a valid second."""
+    incidents: list[Incident] = field(default_factory=list, repr=False)
+
+    @cached_property
+    def phase(self) -> npt.NDArray[np.str_]:
+        """[run, second] name of the phase; empty behind the end of a run."""
+        names = np.array(self.phases)[self.phase_code]
+        names.flags.writeable = False
+        return names
+
+    def motion_windows(self, phases: Iterable[str] | None = None) -> npt.NDArray[np.int64]:
+        """[run, sensor] seconds with motion, of all phases or of these."""
+        if phases is None:
+            return self.bits.sum(axis=1, dtype=np.int64)
+        wanted = np.isin(np.array(self.phases), list(phases))[self.phase_code]
+        return (self.bits * wanted[:, :, np.newaxis]).sum(axis=1, dtype=np.int64)
+
+    def _columns(self) -> dict[str, npt.NDArray[Any]]:
+        """As the command line's CSV has them, but for trial and phase, which are the indices of run and phase."""
+        run, second = np.nonzero(self.valid)
+        columns: dict[str, npt.NDArray[Any]] = {
+            "replicate": self.replicate[run], "trial": run, "time_s": self.time[second]}
+        if self.clock is not None:
+            columns["time"] = self.clock[run, second]
+        columns["phase"] = self.phase_code[run, second]
+        columns["people"] = self.people[run, second]
+        for sensor, name in enumerate(self.sensors):
+            columns[name] = self.bits[run, second, sensor]
+        return columns
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A row a second, with the columns of the command line's CSV; trial and phase are categories."""
+        import pandas as pd
+
+        columns: dict[str, Any] = self._columns()
+        trials, codes = np.unique(self.trial, return_inverse=True)
+        columns["trial"] = pd.Categorical.from_codes(codes[columns["trial"]], trials.tolist())
+        columns["phase"] = pd.Categorical.from_codes(columns["phase"], list(self.phases))
+        return pd.DataFrame(columns)
+
+    def to_polars(self) -> polars.DataFrame:
+        """A row a second, with the columns of the command line's CSV."""
+        import polars as pl
+
+        columns: dict[str, Any] = self._columns()
+        columns["trial"] = pl.Series(self.trial.tolist()).gather(columns["trial"])
+        columns["phase"] = pl.Series(list(self.phases)).gather(columns["phase"])
+        return pl.DataFrame(columns)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """bits (run, time, sensor), people, valid and phase (run, time), with trial and replicate of each run."""
+        import xarray as xr
+
+        rows = ("run", "time")
+        data = {"bits": (("run", "time", "sensor"), self.bits), "people": (rows, self.people),
+                "valid": (rows, self.valid), "phase": (rows, self.phase)}
+        if self.clock is not None:
+            data["clock"] = (rows, self.clock.astype("datetime64[ns]"))
+        return xr.Dataset(data, coords={
+            "run": self.run, "time": ("time", self.time, {"units": "s"}), "sensor": list(self.sensors),
+            "trial": ("run", self.trial), "replicate": ("run", self.replicate)})
+
+
+def _texts(column: npt.NDArray[np.uint16], texts: tuple[str, ...]) -> npt.NDArray[np.str_]:
+    return np.array(texts)[column]
+
+
+def make_result(arrays: dict[str, Any], sensors: tuple[str, ...]) -> Result:
+    """Of what the module gives."""
+    texts = arrays.pop("texts")
+    for table, columns in (("occupants", ("person", "activity", "seat")), ("signals", ("person", "part"))):
+        for column in columns:
+            arrays[table][column] = _texts(arrays[table][column], texts)
+    arrays["faults"] = [Fault(*fault) for fault in arrays["faults"]]
+    arrays["incidents"] = [Incident(*incident) for incident in arrays["incidents"]]
+    arrays["trial"] = np.array(arrays["trial"], dtype=np.str_)
+    arrays["trial"].flags.writeable = False
+    if "clock" in arrays:
+        arrays["clock"] = arrays["clock"].view("datetime64[s]")
+    return Result(sensors=sensors, **arrays)

@@ -1,0 +1,269 @@
+"""Models, runs and recordings."""
+
+from __future__ import annotations
+
+import json
+import os
+import warnings
+from typing import Any, Callable, Iterable, Mapping, NamedTuple, NoReturn, Sequence, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._result import Result, make_result
+from .errors import IncompleteWarning, InputWarning
+from .specs import Effect, Scene, Script
+
+PathOr = Union[str, "os.PathLike[str]"]
+Progress = Callable[[int, int], Any]
+"""Called about ten times a second with what is done and what there is to do."""
+Overrides = Union[Mapping[str, Any], Sequence[str]]
+"""{"people.0.stature_m": 1.7}, or as on the command line ["people.0.stature_m=1.7"]."""
+EffectLike = Union[Effect, str, Mapping[str, Mapping[str, Any]]]
+
+data_directory: str = os.path.join(os.path.dirname(__file__), "data")
+"""Rooms, studies and sensors that come with pirsim, as data/ in its source."""
+
+
+class Poses(NamedTuple):
+    """Names, places and directions of view of sensors or seats."""
+
+    names: tuple[str, ...]
+    position_m: npt.NDArray[np.float64]
+    """[item, 3] (x, y, z), metres."""
+    forward: npt.NDArray[np.float64]
+    """[item, 3] unit vectors."""
+
+
+class Rays(NamedTuple):
+    """All rays of all sensors, world frame, cut at the room."""
+
+    origin: npt.NDArray[np.float32]
+    """[ray, 3] metres."""
+    direction: npt.NDArray[np.float32]
+    """[ray, 3] unit vectors."""
+    range_m: npt.NDArray[np.float32]
+    """[ray] how far it sees."""
+    zone: npt.NDArray[np.uint32]
+    """[ray] as in `Result.zones`."""
+    sensor: npt.NDArray[np.uint32]
+    """[ray] index into the sensors."""
+
+
+def as_overrides(set: Overrides | None) -> list[str]:
+    if set is None:
+        return []
+    if isinstance(set, str):
+        raise TypeError("set: expected a dict, as {'people.0.stature_m': 1.7}, or a list of texts")
+    if isinstance(set, Mapping):
+        return [f"{key}={json.dumps(value, default=_plain)}" for key, value in set.items()]
+    return list(set)
+
+
+def _plain(value: Any) -> Any:
+    """Of numpy's numbers and arrays, for JSON."""
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
+    raise TypeError(f"set: {value!r} can't be written as YAML")
+
+
+def as_input(value: Any, kind: type, set: Overrides | None = None) -> Any:
+    """A file's name as a text, or the object itself."""
+    if isinstance(value, kind):
+        if set:
+            raise TypeError(f"set changes files; change the pirsim.{kind.__name__} itself")
+        return value
+    if not isinstance(value, (str, os.PathLike)):
+        raise TypeError(f"expected the name of a file or a pirsim.{kind.__name__}, got a {type(value).__name__}")
+    return os.fspath(value)
+
+
+def folders(sensors: PathOr | Iterable[PathOr] | None) -> tuple[list[str], list[str]]:
+    """Where sensor models are looked for first, and last."""
+    if sensors is None:
+        return [], [data_directory]
+    if isinstance(sensors, (str, os.PathLike)):
+        sensors = [sensors]
+    return [os.fspath(folder) for folder in sensors], [data_directory]
+
+
+def as_effect(effect: EffectLike) -> Effect:
+    if isinstance(effect, Effect):
+        return effect
+    if isinstance(effect, str):
+        return Effect(effect)
+    if not isinstance(effect, Mapping) or len(effect) != 1:
+        raise TypeError("effects: expected pirsim.Effect, a name, or a dict like {'dead_time': {'dead_s': 2}}")
+    (name, settings), = effect.items()
+    settings = settings or {}
+    return Effect(name, {key: value for key, value in settings.items() if not isinstance(value, str)},
+                  {key: value for key, value in settings.items() if isinstance(value, str)})
+
+
+def _refuse_pickling(self: Any) -> NoReturn:
+    raise TypeError(f"a pirsim.{type(self).__name__} can't be pickled: pickle its scene and script (or their file "
+                    "names) and compile them where they are needed; threads can share it as it is")
+
+
+class Model:
+    """A study compiled for running. Immutable: threads can share it. `pirsim.compile()` makes one."""
+
+    __slots__ = ("_handle", "__weakref__")
+    _handle: _core.Model
+
+    def __init__(self) -> None:
+        raise TypeError("pirsim.compile() makes a Model")
+
+    @classmethod
+    def _of(cls, core: _core.Model) -> Model:
+        model = object.__new__(cls)
+        model._handle = core
+        return model
+
+    @property
+    def n_runs(self) -> int:
+        """Runs are numbered from 0, replicate by replicate, trials in order within each."""
+        return self._handle.n_runs
+
+    @property
+    def tick_s(self) -> float:
+        """Length of a simulation step, seconds."""
+        return self._handle.tick_s
+
+    @property
+    def trials(self) -> tuple[str, ...]:
+        """Names, in order."""
+        return self._handle.trials
+
+    @property
+    def sensors(self) -> Poses:
+        """Of the scene as given, in the order of the last axis of `Result.bits`."""
+        return Poses(*self._handle.sensors)
+
+    @property
+    def seats(self) -> Poses:
+        """Of the scene as given: where the sitter's pelvis rests and where it faces."""
+        return Poses(*self._handle.seats)
+
+    @property
+    def rays(self) -> Rays:
+        """Of all sensors, with every effect applied."""
+        return Rays(*self._handle.rays)
+
+    @property
+    def scene(self) -> Scene:
+        """A copy of the scene as it was given."""
+        return self._handle.scene()
+
+    @property
+    def script(self) -> Script:
+        """A copy of the script as it was given."""
+        return self._handle.script()
+
+    def runs_of(self, trial: str) -> range:
+        """Numbers of all runs of a trial, replicate by replicate."""
+        if trial not in self.trials:
+            raise KeyError(f"there is no trial {trial!r}; there are {', '.join(self.trials[:20])}")
+        return range(self.trials.index(trial), self.n_runs, len(self.trials))
+
+    def __repr__(self) -> str:
+        return f"<pirsim.Model: {self.n_runs} runs of {len(self.trials)} trials, {len(self.sensors.names)} sensors>"
+
+    __reduce__ = _refuse_pickling
+
+
+def compile(scene: PathOr | Scene, script: PathOr | Script, *, set: Overrides | None = None,
+            sensors: PathOr | Iterable[PathOr] | None = None) -> Model:
+    """Validates a scene and a script and makes a Model of them.
+
+    scene: a glTF file, or a Scene. script: a YAML file, or a Script. set: values to replace in the script's file
+    before it is read, by their place in it: {"people.0.stature_m": 1.7, "sensing.response": "analog"}. sensors:
+    folders in which sensor models of a scene's file are looked for first; the shipped ones are always found.
+
+    Raises InputError, with every fault and its place; InfeasibleError for a seat or point that can't be reached;
+    FileError. What was repaired or ignored is an InputWarning.
+    """
+    core = _core.compile(as_input(scene, Scene), as_input(script, Script, set), as_overrides(set), *folders(sensors))
+    for diagnostic in core.warnings:
+        warnings.warn(str(diagnostic), InputWarning, stacklevel=2)
+    return Model._of(core)
+
+
+def _run_numbers(model: Model, runs: int | Iterable[int] | None) -> list[int]:
+    if runs is None:
+        return list(range(model.n_runs))
+    numbers = [int(run) for run in ([runs] if isinstance(runs, (int, np.integer)) else runs)]
+    for run in numbers:
+        if not 0 <= run < model.n_runs:
+            raise IndexError(f"run {run}: the study has runs 0 to {model.n_runs - 1}")
+    return numbers
+
+
+def run(model: Model, runs: int | Iterable[int] | None = None, *, threads: int = 0, zones: bool = False,
+        signals: bool = False, occupants: bool = False, progress: Progress | None = None) -> Result:
+    """Simulates runs of a study, all of them unless `runs` says which (a number, a range or a list).
+
+    threads: 0 for all cores; never changes a byte of the result. zones, signals, occupants: also what zones see, what
+    analog sensors receive and who is where (see Result); these take memory and time. progress: called with the number
+    of runs done and of all runs, about ten times a second.
+
+    Other Python threads run meanwhile; Ctrl-C ends it after the runs that have begun. A run that can't go on has no
+    rows; `Result.faults` says why, and an IncompleteWarning that there are some.
+    """
+    arrays = _core.run(model._handle, _run_numbers(model, runs), threads, zones, signals, occupants, progress)
+    result = make_result(arrays, model.sensors.names)
+    if result.faults:
+        first = result.faults[0]
+        warnings.warn(f"{len(result.faults)} runs could not go on and have no rows; run {first.run} at second "
+                      f"{first.time_s:g}: {first.text}", IncompleteWarning, stacklevel=2)
+    return result
+
+
+class Trace:
+    """What the zones did in some runs, from which rows are made with other electronics and seeds: see trace()."""
+
+    __slots__ = ("_handle", "_model")
+    _handle: _core.Recording
+    _model: Model
+
+    def __init__(self) -> None:
+        raise TypeError("pirsim.trace() makes a Trace")
+
+    @classmethod
+    def _of(cls, core: _core.Recording, model: Model) -> Trace:
+        trace = object.__new__(cls)
+        trace._handle = core
+        trace._model = model
+        return trace
+
+    @property
+    def n_runs(self) -> int:
+        """Of the runs that were followed."""
+        return self._handle.n_runs
+
+    def emit(self, *, effects: Iterable[EffectLike] | None = None, seed: int | None = None,
+             progress: Progress | None = None) -> Result:
+        """The rows of all followed runs. Without arguments they are the study's, bit for bit.
+
+        effects: on triggers and rows, instead of those of the script: `Effect`s, names, or dicts as in a script's
+        file, {"dead_time": {"dead_s": 2}}; effects that change what zones see are refused, they need a model of their
+        own. seed: instead of the script's, of what effects draw.
+        """
+        listed = None if effects is None else [as_effect(effect) for effect in effects]
+        return make_result(_core.emit(self._model._handle, self._handle, listed, seed, progress),
+                           self._model.sensors.names)
+
+    def __repr__(self) -> str:
+        return f"<pirsim.Trace of {self.n_runs} runs>"
+
+    __reduce__ = _refuse_pickling
+
+
+def trace(model: Model, runs: int | Iterable[int] | None = None, *, threads: int = 0,
+          progress: Progress | None = None) -> Trace:
+    """Follows people and rays once, so that `emit()` gives rows with other effects and seeds without doing so again.
+
+    Arguments as of run(). Raises UsageError for sensors with an analog response, which zones alone don't explain.
+    """
+    return Trace._of(_core.record(model._handle, _run_numbers(model, runs), threads, progress), model)

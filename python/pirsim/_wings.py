@@ -1,0 +1,126 @@
+"""Datasets of many rooms and days, and model against measurement."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import warnings
+from dataclasses import dataclass, field
+from typing import Any, Iterable, NamedTuple
+
+from . import _core
+from ._result import Result
+from ._study import Overrides, PathOr, Progress, as_input, as_overrides, folders
+from .errors import InputWarning
+from .specs import Effect, Scene, Script
+
+
+def dataset(recipe: PathOr, folder: PathOr, *, resume: bool = False,
+            sensors: PathOr | Iterable[PathOr] | None = None, threads: int = 0,
+            progress: Progress | None = None) -> None:
+    """Makes a dataset of many rooms and days from a recipe's YAML file (docs/formats/dataset.md).
+
+    folder: gets a file of rows for each room and day, tables, datapackage.json and a README. resume: keeps the days
+    that are there already, as after Ctrl-C. progress is told in days of rooms.
+    """
+    told = _core.dataset(os.fspath(recipe), os.fspath(folder), *folders(sensors), resume, threads, progress)
+    for diagnostic in told:
+        warnings.warn(str(diagnostic), InputWarning, stacklevel=2)
+
+
+def room(recipe: PathOr, number: int, *, sensors: PathOr | Iterable[PathOr] | None = None) -> Scene:
+    """Room `number` (from 1) of a dataset's recipe: always the same for the same recipe."""
+    return _core.room(os.fspath(recipe), number, *folders(sensors))
+
+
+class FittedEffect(NamedTuple):
+    """An effect that the model lacks, with its strength."""
+
+    effect: Effect
+    """As a script takes it."""
+    intervals: dict[str, tuple[float, float]]
+    """Of its parameters, 90 %."""
+
+
+class Candidate(NamedTuple):
+    """What became of one effect of the catalogue."""
+
+    effect: str
+    probability: float
+    p: float
+    kept: bool
+    reason: str
+
+
+class Cell(NamedTuple):
+    """Seconds with motion a run of one trial and sensor."""
+
+    trial: str
+    sensor: str
+    measured_s: float
+    expected_s: float
+    low_s: float
+    """95 % of the simulated datasets lie between low_s and high_s."""
+    high_s: float
+    adjusted_p: float
+
+
+@dataclass(frozen=True)
+class Reconciliation:
+    """Where model and measurement differ, and what the model lacks."""
+
+    verdict: str
+    """no-disagreement, named, one-of, several or none-in-catalogue."""
+    sentence: str
+    """The verdict for a reader."""
+    p: float
+    """Of the model as it is: that it makes such data."""
+    named: list[str]
+    """Effects that were applied, or those that can't be told apart."""
+    fits: list[FittedEffect]
+    candidates: list[Candidate] = field(repr=False)
+    """Most probable first."""
+    cells: list[Cell] = field(repr=False)
+    patched: Script = field(repr=False)
+    """The script with the named effects added."""
+
+
+def _rows_of(result: Result) -> str:
+    """As the command line writes them."""
+    columns: dict[str, Any] = result._columns()
+    columns["trial"] = result.trial[columns["trial"]]
+    columns["phase"] = [result.phases[code] for code in columns["phase"]]
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(zip(*columns.values()))
+    return text.getvalue()
+
+
+def reconcile(scene: PathOr | Scene, script: PathOr | Script, measured: PathOr | Result, *,
+              folder: PathOr | None = None, table: PathOr | None = None, set: Overrides | None = None,
+              sensors: PathOr | Iterable[PathOr] | None = None, alpha: float = 0.05,
+              effects: Iterable[str] | None = None, max_effects: int = 3, nuisance: PathOr | None = None,
+              budget: float = 1.0, seed: int = 1, threads: int = 0,
+              progress: Progress | None = None) -> Reconciliation:
+    """Says whether model and measurement agree, where they don't, and which effect is missing; takes minutes.
+
+    measured: rows in pirsim's own format or sums, as CSV, or a Result. folder: gets the report as a page and tables.
+    table: keeps the simulated datasets, so that the next analysis of the study is quick. alpha: level of the tests.
+    effects: names that are looked for, None: the whole catalogue. nuisance: a file that says what is uncertain about
+    the room, "none", or None for the usual. budget: times the usual number of simulated datasets. scene, script, set
+    and sensors as in compile(); progress is told in simulated datasets of each stage.
+    """
+    question = _core.Question()
+    question.alpha, question.max_effects, question.budget = alpha, max_effects, budget
+    question.effects = list(effects or [])
+    question.nuisance = os.fspath(nuisance or "")
+    question.folder, question.table = os.fspath(folder or ""), os.fspath(table or "")
+    name, text = ("result", _rows_of(measured)) if isinstance(measured, Result) else (os.fspath(measured), "")
+    parts = _core.reconcile(as_input(scene, Scene), as_input(script, Script, set), name, text, as_overrides(set),
+                            *folders(sensors), question, seed, threads, progress)
+    parts["fits"] = [FittedEffect(*fit) for fit in parts["fits"]]
+    parts["candidates"] = [Candidate(*candidate) for candidate in parts["candidates"]]
+    parts["cells"] = [Cell(*cell) for cell in parts["cells"]]
+    return Reconciliation(**parts)

@@ -1,0 +1,123 @@
+// Model against measurement.
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <pirsim/reconcile.hpp>
+#include <pirsim/version.hpp>
+
+#include "attend.hpp"
+#include "bindings.hpp"
+#include "convert.hpp"
+
+namespace pirsim::python {
+namespace {
+
+/// What pirsim.reconcile() asks for, as its arguments.
+struct Question {
+  double alpha = 0.05;
+  int max_effects = 3;
+  double budget = 1.0;
+  std::vector<std::string> effects;
+  std::string nuisance;  ///< file, "none", or empty: the usual
+  std::string folder;    ///< of the report
+  std::string table;     ///< folder of simulated datasets
+};
+
+reconcile::Settings settings_of(const Question& question) {
+  reconcile::Settings settings;
+  settings.alpha = question.alpha;
+  settings.max_effects = question.max_effects;
+  if (question.nuisance == "none") settings.nuisance = {0.0, 0.0, 0.0, 0.0, 0.0};
+  if (question.nuisance != "none" && !question.nuisance.empty()) {
+    settings.nuisance = io::read_nuisance(question.nuisance);
+  }
+  for (const std::string& effect : question.effects) settings.table.effects.push_back(effects::info(effect).name);
+  const std::uint32_t fewest = reconcile::fewest_datasets_to_refuse(question.alpha);
+  for (std::uint32_t* n : {&settings.table.n_realizations, &settings.table.n_remembered, &settings.table.n_traced}) {
+    *n = std::max(fewest, static_cast<std::uint32_t>(*n * question.budget));
+  }
+  settings.table_folder = question.table;
+  return settings;
+}
+
+nb::dict to_dict(const reconcile::Outcome& outcome, const ScriptSpec& script, double alpha) {
+  nb::dict result;
+  result["verdict"] = to_python(std::string(name(outcome.verdict)));
+  result["sentence"] = to_python(reconcile::sentence(outcome, alpha));
+  result["p"] = outcome.location.p;
+  result["named"] = to_python(outcome.named);
+  nb::list fits, candidates, cells;
+  for (const reconcile::FittedEffect& fit : outcome.fits) {
+    nb::dict intervals;
+    for (const reconcile::FittedParameter& p : fit.parameters) {
+      intervals[to_python(p.name)] = nb::make_tuple(p.interval.low, p.interval.high);
+    }
+    fits.append(nb::make_tuple(to_python(fit.effect), intervals));
+  }
+  for (const reconcile::Candidate& candidate : outcome.candidates) {
+    candidates.append(nb::make_tuple(to_python(candidate.score.hypothesis), candidate.score.probability,
+                                     candidate.score.p, nb::bool_(candidate.kept),
+                                     to_python(reconcile::in_words(candidate))));
+  }
+  for (const reconcile::LocatedCell& cell : outcome.location.cells) {
+    cells.append(nb::make_tuple(to_python(cell.trial), to_python(cell.sensor), cell.measured_s, cell.expected_s,
+                                cell.low_s, cell.high_s, cell.adjusted_p));
+  }
+  result["fits"] = fits;
+  result["candidates"] = candidates;
+  result["cells"] = cells;
+  result["patched"] = to_python(reconcile::patched(script, outcome));
+  return result;
+}
+
+/// measured: the name of a file, or with `text` its content. names: of program, scene and script, for the report.
+nb::dict reconcile_study(nb::handle scene, nb::handle script, const std::string& measured, const std::string& text,
+                         const std::vector<std::string>& overrides, std::vector<std::string> sensors,
+                         std::vector<std::string> data, const Question& question, std::uint64_t seed, unsigned threads,
+                         nb::handle progress) {
+  const ScriptSpec script_spec = script_of(script, overrides);
+  const SceneSpec scene_spec = scene_of(scene, {std::move(sensors), std::move(data)});
+  const reconcile::Settings settings = settings_of(question);
+  const reconcile::Measured rows = text.empty() ? reconcile::read_measured(measured, scene_spec, script_spec)
+                                                : reconcile::parse_measured(text, measured, scene_spec, script_spec);
+  reconcile::Outcome outcome;
+  attend(progress, [&](Job& job) {
+    reconcile::Context context{seed, threads};
+    const auto stop = [&] {
+      if (job.stop) throw Job::Stopped{};
+    };
+    context.observer.stage = [&](const reconcile::Stage&) { stop(); };
+    context.observer.progress = [&](std::uint32_t done, std::uint32_t total) {
+      job.n_all = total;
+      job.n_done = done;
+      stop();
+    };
+    outcome = reconcile::reconcile(scene_spec, script_spec, rows, settings, context);
+    if (question.folder.empty()) return;
+    reconcile::write_report(
+        question.folder, outcome, rows, script_spec, settings, context,
+        {"pirsim " + version() + " " + git_revision(), scene_spec.name, script_spec.name, measured});
+  });
+  return to_dict(outcome, script_spec, question.alpha);
+}
+
+}  // namespace
+
+void add_reconcile(nb::module_& module) {
+  nb::class_<Question>(module, "Question", "Arguments of pirsim.reconcile().")
+      .def(nb::init<>())
+      .def_rw("alpha", &Question::alpha)
+      .def_rw("max_effects", &Question::max_effects)
+      .def_rw("budget", &Question::budget)
+      .def_rw("effects", &Question::effects)
+      .def_rw("nuisance", &Question::nuisance)
+      .def_rw("folder", &Question::folder)
+      .def_rw("table", &Question::table);
+  module.def("reconcile", &reconcile_study, nb::arg("scene"), nb::arg("script"), nb::arg("measured"), nb::arg("text"),
+             nb::arg("overrides"), nb::arg("sensors"), nb::arg("data"), nb::arg("question"), nb::arg("seed"),
+             nb::arg("threads"), nb::arg("progress").none(), "Parts of pirsim.Reconciliation, by name.");
+}
+
+}  // namespace pirsim::python

@@ -1,0 +1,164 @@
+"""Threads, Ctrl-C, progress, memory, pickling."""
+
+import copy
+import gc
+import os
+import pickle
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import pirsim
+
+
+@pytest.fixture(scope="module")
+def model(room, study_a):
+    return pirsim.compile(room, study_a, set={"replicates": 2})
+
+
+def test_two_threads_run_two_models_at_once(room, study_a, data):
+    models = [pirsim.compile(room, study_a, set={"replicates": 20}),
+              pirsim.compile(data / "rooms" / "open_office.gltf", data / "studies" / "office.yaml",
+                             set={"replicates": 40})]
+    alone = [pirsim.run(model) for model in models]
+    both_run = threading.Barrier(2, timeout=60)  # is broken if one is never told while the other one runs
+    results = [None, None]
+
+    def work(i):
+        met = []
+
+        def progress(done, of):
+            if not met and done < of:
+                met.append(both_run.wait())
+
+        results[i] = pirsim.run(models[i], threads=1, progress=progress)
+        assert met
+
+    threads = [threading.Thread(target=work, args=(i,)) for i in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for together, before in zip(results, alone):
+        assert np.array_equal(together.bits, before.bits) and np.array_equal(together.people, before.people)
+
+
+def test_threads_share_a_model(model):
+    expected = pirsim.run(model).bits
+    results = []
+    threads = [threading.Thread(target=lambda: results.append(pirsim.run(model, threads=2).bits)) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(results) == 4 and all(np.array_equal(bits, expected) for bits in results)
+
+
+@pytest.mark.parametrize("work", ["run", "trace", "coverage", "walk_test"])
+def test_ctrl_c_ends_long_work(work, room, study_a, data):
+    model = pirsim.compile(room, study_a, set={"replicates": 100_000})
+    calls = {
+        "run": lambda: pirsim.run(model),
+        "trace": lambda: pirsim.trace(model),
+        "coverage": lambda: pirsim.coverage(room, data / "studies" / "studyB.yaml", set={"spacing_m": 0.005}),
+        "walk_test": lambda: pirsim.walk_test(room, data / "studies" / "walk_test.yaml", set={"spacing_m": 0.01}),
+    }
+    pressed = []
+
+    def press():
+        pressed.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    timer = threading.Timer(0.7, press)
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        calls[work]()
+    assert time.monotonic() - pressed[0] < 20  # a row of the walk test's points is the longest step
+    assert pirsim.run(model, [0]).valid.any()  # nothing is left of it
+
+
+def test_progress_is_told_and_may_end_the_work(model, room, study_a):
+    told = []
+    pirsim.run(model, progress=lambda done, of: told.append((done, of)))
+    assert told[-1] == (20, 20) and told == sorted(told)
+
+    class Enough(Exception):
+        pass
+
+    def stop(done, of):
+        raise Enough
+
+    many = pirsim.compile(room, study_a, set={"replicates": 100_000})
+    with pytest.raises(Enough):
+        pirsim.run(many, progress=stop)
+
+
+def resident_bytes():
+    gc.collect()
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+def growth(model, n, keep):
+    """Of resident memory over n results, after as many to warm up."""
+    kept = []
+    for _ in range(n):
+        pirsim.run(model, [0, 1], threads=1)
+    before = resident_bytes()
+    for _ in range(n):
+        result = pirsim.run(model, [0, 1], threads=1)
+        if keep:
+            kept.append(result)
+    return resident_bytes() - before
+
+
+def test_many_results_take_no_memory(room, study_a):
+    model = pirsim.compile(room, study_a, set={"people.0.actions.3.work.duration_s": 60, "replicates": 1})
+    n = 400
+    held = sum(array.nbytes for array in (lambda r: (r.bits, r.people, r.phase_code, r.valid))(pirsim.run(model, [0, 1])))
+    assert growth(model, n, keep=False) < 0.3 * n * held
+    assert growth(model, n, keep=True) > 0.8 * n * held  # the twin that must show a leak
+
+
+def test_a_result_outlives_its_model(room, study_a):
+    model = pirsim.compile(room, study_a, set={"replicates": 1})
+    result = pirsim.run(model)
+    bits, copied = result.bits, result.bits.copy()
+    view = result.bits[3, :, 2]
+    del model, result
+    gc.collect()
+    pirsim.run(pirsim.compile(room, study_a, set={"replicates": 1, "seed": 5}))  # takes memory that was given back
+    assert np.array_equal(bits, copied) and np.array_equal(view, copied[3, :, 2])
+    assert bits.base is not None  # a view of what the library wrote, not a copy
+
+
+def test_pickling_is_refused_with_a_reason_where_it_can_not_work(model, room, study_a):
+    for thing in (model, pirsim.trace(model, [0])):
+        for attempt in (pickle.dumps, copy.deepcopy):
+            with pytest.raises(TypeError, match="can't be pickled: pickle its scene and script"):
+                attempt(thing)
+    scene, script = pickle.loads(pickle.dumps((pirsim.read_scene(room), pirsim.read_script(study_a))))
+    script.replicates = 2
+    result = pirsim.run(pirsim.compile(scene, script))
+    again = pickle.loads(pickle.dumps(result))
+    assert np.array_equal(again.bits, pirsim.run(model).bits) and again.sensors == result.sensors
+    with pytest.raises(TypeError, match="compile"):
+        pirsim.Model()
+
+
+def test_arguments_are_refused_by_name(model, room, study_a):
+    with pytest.raises(IndexError, match="run 20: the study has runs 0 to 19"):
+        pirsim.run(model, range(15, 21))
+    with pytest.raises(IndexError, match="run -1"):
+        pirsim.run(model, -1)
+    with pytest.raises(KeyError, match="no trial 'S11'"):
+        model.runs_of("S11")
+    with pytest.raises(TypeError, match="set"):
+        pirsim.compile(room, study_a, set="seed=1")
+    with pytest.raises(TypeError, match="change the pirsim.Script itself"):
+        pirsim.compile(room, pirsim.read_script(study_a), set={"seed": 1})
+    with pytest.raises(TypeError, match="pirsim.Scene"):
+        pirsim.compile(3, study_a)

@@ -1,0 +1,143 @@
+"""Scenes and scripts as plain objects: the same as the library's specs, the same study as from files."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import pirsim
+from pirsim import _core, specs
+
+ACTIONS = {"Wait", "Appear", "Enter", "Walk", "Sit", "Work", "Rise", "Leave", "Turn"}
+OF_ACTIONS = {"at_s", "phase", "where"}
+
+
+def test_every_class_has_the_specs_fields_and_defaults():
+    defaults = _core.defaults()
+    assert len(defaults) > 30 and ACTIONS < set(defaults)
+    for name, fields in defaults.items():
+        made = getattr(specs, name)()
+        mine = {field.name: getattr(made, field.name) for field in dataclasses.fields(made)}
+        if name in ACTIONS:
+            assert {key: mine.pop(key) for key in OF_ACTIONS} == {"at_s": None, "phase": "", "where": specs.Where()}
+        if name == "Zone":
+            mine["corners"] = tuple(mine["corners"])
+        assert mine == fields, name
+
+
+@pytest.mark.parametrize("study, room", [("studyA", "meeting_room"), ("office", "open_office"),
+                                         ("density", "open_hall")])
+def test_a_study_read_into_objects_is_the_same_study(study, room, data):
+    scene, script = data / "rooms" / f"{room}.gltf", data / "studies" / f"{study}.yaml"
+    model = pirsim.compile(scene, script)
+    objects = pirsim.compile(pirsim.read_scene(scene), pirsim.read_script(script))
+    assert objects.scene == model.scene == pirsim.read_scene(scene)
+    assert objects.script == model.script == pirsim.read_script(script)
+    runs = range(min(model.n_runs, 12))
+    a, b = pirsim.run(model, runs), pirsim.run(objects, runs)
+    assert np.array_equal(a.bits, b.bits) and np.array_equal(a.people, b.people) and a.bits.any()
+    assert np.array_equal(a.phase, b.phase)
+
+
+def test_changing_an_object_is_as_changing_the_file(room, study_a):
+    script = pirsim.read_script(study_a)
+    script.replicates = 1
+    script.effects.append(pirsim.Effect("missed_triggers", {"probability": 0.4}, {"sensor": "PIR2"}))
+    for trial in script.trials:
+        trial.people[0].stature_m = 1.6
+    changed = pirsim.run(pirsim.compile(room, script))
+    told = pirsim.run(pirsim.compile(room, study_a, set={
+        "replicates": 1, "people.0.stature_m": 1.6,
+        "effects": [{"missed_triggers": {"probability": 0.4, "sensor": "PIR2"}}]}))
+    plain = pirsim.run(pirsim.compile(room, study_a, set={"replicates": 1}))
+    assert np.array_equal(changed.bits, told.bits)
+    assert not np.array_equal(changed.bits, plain.bits)
+
+
+def test_a_script_written_to_a_file_is_the_same(room, study_a, tmp_path):
+    script = pirsim.read_script(study_a, set={"replicates": 1})
+    pirsim.write_script(script, tmp_path / "written.yaml")
+    assert np.array_equal(pirsim.run(pirsim.compile(room, tmp_path / "written.yaml")).bits,
+                          pirsim.run(pirsim.compile(room, script)).bits)
+
+
+def own_room():
+    """Five metres by four; a sensor in the middle of a long wall looks across it."""
+    return pirsim.Scene(
+        name="own room", floor=pirsim.Floor.rectangle(0, 0, 5, 4),
+        meshes=[pirsim.Mesh.box("wall", (0, 0, -0.2), (5, 2.5, 0))],
+        sensors=[pirsim.Sensor("PIR", "EKMC1604111", pirsim.facing((2.5, 1.2, 3.9)))],
+        sensor_models={"EKMC1604111": pirsim.sensor_model("EKMC1604111")})
+
+
+def own_script():
+    walker = pirsim.Person("walker", [pirsim.Appear(point=(0.5, 2.0), heading_deg=-90),
+                                      pirsim.Walk(points=[(4.5, 2.0), (0.5, 2.0)], phase="to and fro")])
+    return pirsim.Script("own script", [pirsim.Trial("walk", [walker])])
+
+
+def test_a_room_and_a_person_made_in_python():
+    result = pirsim.run(pirsim.compile(own_room(), own_script()))
+    runs, seconds, sensors = result.bits.shape
+    assert (runs, sensors) == (1, 1)
+    assert 8 <= seconds <= 12  # 8 m at 1 m/s
+    assert 3 < result.bits.sum() <= seconds
+    assert set(result.phase[0]) == {"to and fro"} and (result.people == 1).all()
+    # Behind a box as wide as the room nobody is seen.
+    hidden = own_room()
+    hidden.meshes.append(pirsim.Mesh.box("screen", (0, 0, 2.9), (5, 2.5, 3.0)))
+    assert not pirsim.run(pirsim.compile(hidden, own_script())).bits.any()
+
+
+def test_what_a_reader_would_refuse_is_refused():
+    def scene(change):
+        room = own_room()
+        change(room)
+        return lambda: pirsim.compile(room, own_script())
+
+    def script(change):
+        study = own_script()
+        change(study)
+        return lambda: pirsim.compile(own_room(), study)
+
+    nan = float("nan")
+    for call, message in (
+            (scene(lambda s: s.meshes.append(pirsim.Mesh("m", [(0, 0, nan)] * 3, [(0, 1, 2)]))), "isn't finite"),
+            (scene(lambda s: s.meshes.append(pirsim.Mesh("m", [(0, 0, 0)] * 3, [(0, 1, 3)]))), "doesn't exist"),
+            (scene(lambda s: s.sensors.append(s.sensors[0])), "a second sensor 'PIR'"),
+            (scene(lambda s: s.sensor_models.clear()), "no sensor model 'EKMC1604111'"),
+            (scene(lambda s: setattr(s, "floor", pirsim.Floor())), "no floor"),
+            (scene(lambda s: setattr(s.sensors[0].world_from_sensor, "rotation", (2, 0, 0, 0))), "rotation"),
+            (script(lambda s: setattr(s.sensing, "tick_rate_hz", 0)), "tick_rate_hz"),
+            (script(lambda s: setattr(s.trials[0].people[0], "stature_m", nan)), "stature_m"),
+            (script(lambda s: setattr(s, "replicates", -1)), "replicates"),
+            (script(lambda s: s.trials.append(s.trials[0])), "a second trial 'walk'"),
+            (script(lambda s: s.effects.append(pirsim.Effect("dead_tyme"))), "did you mean 'dead_time'"),
+            (script(lambda s: s.trials[0].people[0].actions.append(pirsim.Sit(seat="S1"))), "seat 'S1'")):
+        with pytest.raises(pirsim.InputError, match=message):
+            call()
+
+
+def test_values_of_a_wrong_type_are_named_by_their_place():
+    def compiled(change):
+        study = own_script()
+        change(study)
+        return lambda: pirsim.compile(own_room(), study)
+
+    person = "script.trials[0].people[0]"
+    for call, place in (
+            (compiled(lambda s: setattr(s.trials[0].people[0], "stature_m", "tall")), f"{person}.stature_m"),
+            (compiled(lambda s: setattr(s.trials[0].people[0], "stature_m", True)), f"{person}.stature_m"),
+            (compiled(lambda s: setattr(s, "replicates", 1.5)), "script.replicates"),
+            (compiled(lambda s: setattr(s, "seed", -1)), "script.seed"),
+            (compiled(lambda s: setattr(s.sensing, "change_per", "claster")), "script.sensing.change_per"),
+            (compiled(lambda s: setattr(s.sensing, "rays_per_zone", 7)), "script.sensing.rays_per_zone"),
+            (compiled(lambda s: s.trials[0].people[0].actions.append("sit")), f"{person}.actions[2]"),
+            (compiled(lambda s: setattr(s.trials[0].people[0].actions[1], "points", [(1, 2, 3)])),
+             f"{person}.actions[1].points[0]"),
+            (compiled(lambda s: setattr(s.trials[0], "people", "nobody")), "script.trials[0].people")):
+        with pytest.raises(TypeError) as caught:
+            call()
+        assert place + ": expected" in str(caught.value)
+    with pytest.raises(AttributeError):
+        own_script().trials[0].people[0].stature = 1.7  # not a field
