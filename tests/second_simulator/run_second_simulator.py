@@ -84,18 +84,18 @@ class SecondSimulator(unittest.TestCase):
         different = (self.windows(turned, second.active_clusters(turned, self.motion)) != self.bits).sum()
         self.assertGreater(different, 10)
 
-    def test_planted_faults_do_what_they_are_called(self):
+    def test_injected_faults_do_what_they_are_called(self):
         class Options:
             missed = dead_s = false_per_s = 0.0
 
         triggers = second.triggers_of(self.rays, self.active)
         random = lambda: np.random.default_rng(1)
-        np.testing.assert_array_equal(second.plant(triggers, 50, 50, Options, random()), self.bits)
+        np.testing.assert_array_equal(second.inject(triggers, 50, 50, Options, random()), self.bits)
         missed, dead, false = type("M", (Options,), {"missed": 0.5}), type("D", (Options,), {"dead_s": 3.0}), type(
             "F", (Options,), {"false_per_s": 0.5})
-        self.assertLess(second.plant(triggers, 50, 50, missed, random()).sum(), 0.8 * self.bits.sum())
-        self.assertGreater(second.plant(triggers, 50, 50, false, random()).sum(), 1.2 * self.bits.sum())
-        for column in second.plant(triggers, 50, 50, dead, random()).T:
+        self.assertLess(second.inject(triggers, 50, 50, missed, random()).sum(), 0.8 * self.bits.sum())
+        self.assertGreater(second.inject(triggers, 50, 50, false, random()).sum(), 1.2 * self.bits.sum())
+        for column in second.inject(triggers, 50, 50, dead, random()).T:
             self.assertGreaterEqual(np.diff(np.flatnonzero(column)).min(initial=3), 2)
 
 

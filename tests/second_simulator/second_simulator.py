@@ -5,7 +5,7 @@
                         [--missed P] [--dead-s S] [--false-per-s R] [--yaw-deg D] [--seed N]
 
 It shares no code with pirsim. Its own are: the reading of glTF and of the sensor's file, the lens law, the ray tests
-(in double precision, other formulas), occlusion, zones, motion, windows, the planted effects and their random
+(in double precision, other formulas), occlusion, zones, motion, windows, the injected effects and their random
 numbers. Not its own: where the thirteen solids of the body are at each tick (`pirsim export`), and the column `phase`
 (pirsim's rows). README.md says what that proves and what not.
 """
@@ -256,8 +256,8 @@ def windows_of(triggers, ticks_per_window):
     return triggers[: n * ticks_per_window].reshape(n, ticks_per_window, -1).any(1)
 
 
-# ---------------------------------------------------------------------------------------------------------- planting
-def plant(triggers, rate_hz, ticks_per_window, options, random):
+# --------------------------------------------------------------------------------------------------------- injecting
+def inject(triggers, rate_hz, ticks_per_window, options, random):
     """Electronics and surroundings gone wrong, in the order of the signal."""
     triggers = triggers.copy()
     if options.false_per_s > 0:
@@ -292,7 +292,7 @@ def main():
     parser.add_argument("--dead-s", type=float, default=0.0, help="blind after a trigger")
     parser.add_argument("--false-per-s", type=float, default=0.0, help="triggers without anybody")
     parser.add_argument("--yaw-deg", type=float, default=0.0, help="all sensors are turned to the left")
-    parser.add_argument("--seed", type=int, default=0, help="of the planted effects")
+    parser.add_argument("--seed", type=int, default=0, help="of the injected effects")
     options = parser.parse_args()
     options.set.append(f"replicates={options.replicates}")
 
@@ -313,7 +313,7 @@ def main():
             motion = Motion(Gltf(exported))
             rate_hz = round(1 / np.diff(motion.times).min())
             per_window = round(rate_hz * float(rows[0]["time_s"]))
-            bits = plant(triggers_of(rays, active_clusters(rays, motion)), rate_hz, per_window, options, random)
+            bits = inject(triggers_of(rays, active_clusters(rays, motion)), rate_hz, per_window, options, random)
             assert len(bits) == len(rows), (len(bits), len(rows))
             for row, sensed in zip(rows, bits):
                 out.writerow([replicate, trial, row["time_s"], row["phase"], *sensed.astype(int)])
