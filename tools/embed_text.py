@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Writes text files into a C++ source, as functions that give them.
+"""Writes text files into a C++ source: functions that give them, or one that gives a table of all by name.
 
 Usage: embed_text.py OUTPUT.cpp HEADER NAMESPACE NAME=FILE...
+       embed_text.py OUTPUT.cpp HEADER NAMESPACE --table NAME FILE...   a span of {stem of FILE, text}
 """
 import pathlib
 import sys
@@ -15,14 +16,26 @@ def literals(text: str) -> str:
     return "\n".join(f'R"text({chunk})text"' for chunk in chunks)
 
 
+def function(name: str, file: str) -> str:
+    text = pathlib.Path(file).read_text(encoding="utf-8")
+    return (f"std::string_view {name}() noexcept {{\n  static constexpr char text[] =\n{literals(text)};\n"
+            f"  return {{text, sizeof text - 1}};\n}}\n")
+
+
+def table(name: str, files: list[str]) -> str:
+    texts = "".join(f"static {function(f'text_{i}', file)}" for i, file in enumerate(files))
+    rows = "".join(f'{{"{pathlib.Path(file).stem}", text_{i}()}}, ' for i, file in enumerate(files))
+    return (f"{texts}std::span<const NamedText> {name}() {{\n"
+            f"  static const NamedText texts[] = {{{rows}}};\n  return texts;\n}}\n")
+
+
 def main():
-    output, header, namespace, *pairs = sys.argv[1:]
+    output, header, namespace, *rest = sys.argv[1:]
     parts = [f'#include "{header}"\n\nnamespace {namespace} {{\n']
-    for pair in pairs:
-        name, file = pair.split("=", 1)
-        text = pathlib.Path(file).read_text(encoding="utf-8")
-        parts.append(f"std::string_view {name}() noexcept {{\n  static constexpr char text[] =\n{literals(text)};\n"
-                     f"  return {{text, sizeof text - 1}};\n}}\n")
+    if rest[0] == "--table":
+        parts.append(table(rest[1], rest[2:]))
+    else:
+        parts += [function(*pair.split("=", 1)) for pair in rest]
     parts.append(f"}}  // namespace {namespace}\n")
     pathlib.Path(output).write_text("\n".join(parts), encoding="utf-8")
 

@@ -18,7 +18,7 @@ namespace pirsim::io {
 
 struct SceneOptions {
   /// Where `<model>.yaml` of a sensor is looked for first; then in `sensors` beside the scene and beside its folder,
-  /// in `$PIRSIM_DATA_DIR/sensors`, in `sensors` of the data_directories and in the installed data.
+  /// in `$PIRSIM_DATA_DIR/sensors` and in `sensors` of the data_directories. The library itself carries the shipped models.
   std::vector<std::filesystem::path> sensor_directories;
   std::vector<std::filesystem::path> data_directories{};
 };

@@ -93,7 +93,7 @@ std::string read_text_file(const std::filesystem::path& path) {
   }
   // In blocks, since most files are small; one byte more than allowed, so that endless devices end too.
   std::string text;
-  std::array<char, 1U << 16U> block;
+  std::array<char, 1U << 13U> block;
   while (text.size() <= max_text_file_bytes && file) {
     file.read(block.data(), static_cast<std::streamsize>(block.size()));
     text.append(block.data(), static_cast<std::size_t>(file.gcount()));

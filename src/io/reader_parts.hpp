@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/yaml_map.hpp"
@@ -76,17 +78,32 @@ namespace pirsim::io {
 
 namespace pirsim::io::detail {
 
-// Which file describes a sensor model.
+// What describes a sensor model: a file, or else a text that the library carries.
 
-/// `first`, then `sensors` in the scene's folder and beside it, `$PIRSIM_DATA_DIR/sensors`, the installed data.
-[[nodiscard]] std::vector<std::filesystem::path> sensor_directories(const SceneOptions& options,
-                                                                    const std::filesystem::path& scene_folder);
+struct NamedText {
+  std::string_view name, text;
+};
+/// The models of data/sensors.
+[[nodiscard]] std::span<const NamedText> shipped_sensors();
 
-/// Empty if no folder has `<model>.yaml`.
-[[nodiscard]] std::filesystem::path find_sensor_file(const std::string& model,
-                                                     const std::vector<std::filesystem::path>& directories);
+struct FoundSensor {
+  SensorModelSpec model;
+  std::string file;  ///< empty for a shipped one
+};
 
-/// Names of all models in the folders, sorted, each once.
-[[nodiscard]] std::vector<std::string> available_sensor_models(const std::vector<std::filesystem::path>& directories);
+/// Where sensors of a scene are looked for.
+class SensorSearch {
+ public:
+  /// `first` of the options, then `sensors` in the scene's folder and beside it, `$PIRSIM_DATA_DIR/sensors`, the data
+  /// directories of the options; last what the library carries.
+  SensorSearch(const SceneOptions& options, const std::filesystem::path& scene_folder);
+
+  /// Nothing for a name that isn't known. Throws Error (io, input) for a faulty file.
+  [[nodiscard]] std::optional<FoundSensor> find(const std::string& model) const;
+  [[nodiscard]] std::vector<std::string> names() const;  ///< of all models, sorted, each once
+
+ private:
+  std::vector<std::filesystem::path> folders_;
+};
 
 }  // namespace pirsim::io::detail

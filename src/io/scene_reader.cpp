@@ -169,24 +169,25 @@ class SceneBuilder {
   }
 
   void read_sensor_models() {
-    const auto directories = sensor_directories(options_, file_.parent_path());
+    const SensorSearch search(options_, file_.parent_path());
     for (const auto& [model, where] : model_places_) {
-      const auto sensor_file = find_sensor_file(model, directories);
-      if (sensor_file.empty()) {
-        const auto available = available_sensor_models(directories);
-        std::string known;
-        for (const std::string& name : available) known += (known.empty() ? "; known are " : ", ") + name;
-        if (available.empty()) known = "; no folder of sensors was found: name one by --sensors or set PIRSIM_DATA_DIR";
-        remarks_.error(where, "sensor model '" + model + "' is not known" + did_you_mean(model, available) + known);
-        continue;
-      }
       try {
-        spec_.sensor_models.emplace(model, read_sensor_model(sensor_file));
-        spec_.files.push_back(sensor_file.string());
+        auto found = search.find(model);
+        if (!found) {
+          unknown_sensor(model, where, search.names());
+          continue;
+        }
+        spec_.sensor_models.emplace(model, std::move(found->model));
+        if (!found->file.empty()) spec_.files.push_back(found->file);
       } catch (const Error& fault) {
         for (const Issue& issue : fault.issues()) remarks_.error(issue.where, issue.message);
       }
     }
+  }
+  void unknown_sensor(const std::string& model, const Where& where, const std::vector<std::string>& names) {
+    std::string known;
+    for (const std::string& name : names) known += (known.empty() ? "; known are " : ", ") + name;
+    remarks_.error(where, "sensor model '" + model + "' is not known" + did_you_mean(model, names) + known);
   }
 
   /// A faulty exporter makes thousands, each of which is looked for in the text.

@@ -239,10 +239,7 @@ FacetLaw read_law(YamlMap& map, double plane_m, const std::optional<double>& ran
   return law;
 }
 
-}  // namespace
-
-SensorModelSpec read_sensor_model(const std::filesystem::path& path) {
-  const YamlNode root = YamlNode::load(path);
+SensorModelSpec read_model(const YamlNode& root) {
   Diagnostics faults;
   YamlMap map(root, faults, "sensor");
   SensorModelSpec model;
@@ -270,39 +267,44 @@ SensorModelSpec read_sensor_model(const std::filesystem::path& path) {
   return model;
 }
 
+}  // namespace
+
+SensorModelSpec read_sensor_model(const std::filesystem::path& path) { return read_model(YamlNode::load(path)); }
+
 }  // namespace pirsim::io
 
 namespace pirsim::io::detail {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> sensor_directories(const SceneOptions& options, const fs::path& scene_folder) {
-  std::vector<fs::path> result = options.sensor_directories;
-  result.push_back(scene_folder / "sensors");
-  result.push_back(scene_folder / ".." / "sensors");
+SensorSearch::SensorSearch(const SceneOptions& options, const fs::path& scene_folder)
+    : folders_(options.sensor_directories) {
+  folders_.push_back(scene_folder / "sensors");
+  folders_.push_back(scene_folder / ".." / "sensors");
   if (const char* data = std::getenv("PIRSIM_DATA_DIR"); data != nullptr && *data != '\0') {
-    result.push_back(fs::path(data) / "sensors");
+    folders_.push_back(fs::path(data) / "sensors");
   }
-  for (const fs::path& data : options.data_directories) result.push_back(data / "sensors");
-#ifdef PIRSIM_INSTALLED_DATA_DIR
-  result.push_back(fs::path(PIRSIM_INSTALLED_DATA_DIR) / "sensors");
-#endif
-  return result;
+  for (const fs::path& data : options.data_directories) folders_.push_back(data / "sensors");
 }
 
-fs::path find_sensor_file(const std::string& model, const std::vector<fs::path>& directories) {
-  for (const fs::path& directory : directories) {
+std::optional<FoundSensor> SensorSearch::find(const std::string& model) const {
+  for (const fs::path& folder : folders_) {
     std::error_code fault;
-    if (const fs::path file = directory / (model + ".yaml"); fs::is_regular_file(file, fault)) return file;
+    const fs::path file = folder / (model + ".yaml");
+    if (fs::is_regular_file(file, fault)) return FoundSensor{read_sensor_model(file), file.string()};
   }
-  return {};
+  for (const NamedText& shipped : shipped_sensors()) {
+    if (shipped.name == model) return FoundSensor{read_model(YamlNode::parse(shipped.text, model + ".yaml")), {}};
+  }
+  return std::nullopt;
 }
 
-std::vector<std::string> available_sensor_models(const std::vector<fs::path>& directories) {
+std::vector<std::string> SensorSearch::names() const {
   std::set<std::string> names;
-  for (const fs::path& directory : directories) {
+  for (const NamedText& shipped : shipped_sensors()) names.emplace(shipped.name);
+  for (const fs::path& folder : folders_) {
     std::error_code fault;
-    for (fs::directory_iterator entry(directory, fault), end; !fault && entry != end; entry.increment(fault)) {
+    for (fs::directory_iterator entry(folder, fault), end; !fault && entry != end; entry.increment(fault)) {
       if (entry->path().extension() == ".yaml") names.insert(entry->path().stem().string());
     }
   }
@@ -315,13 +317,9 @@ namespace pirsim::io {
 
 SensorModelSpec find_sensor_model(const std::string& model, const std::filesystem::path& scene_file,
                                   const SceneOptions& options) {
-  const auto folders = detail::sensor_directories(options, scene_file.parent_path());
-  const std::filesystem::path file = detail::find_sensor_file(model, folders);
-  if (file.empty()) {
-    throw Error(ErrorCode::input,
-                "no sensor model '" + model + "'" + did_you_mean(model, detail::available_sensor_models(folders)));
-  }
-  return read_sensor_model(file);
+  const detail::SensorSearch search(options, scene_file.parent_path());
+  if (auto found = search.find(model)) return std::move(found->model);
+  throw Error(ErrorCode::input, "no sensor model '" + model + "'" + did_you_mean(model, search.names()));
 }
 
 }  // namespace pirsim::io

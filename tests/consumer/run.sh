@@ -28,6 +28,14 @@ scene="$data/rooms/meeting_room.gltf" script="$data/studies/studyA.yaml"
   awk -F, 'NR == 1 || $2 == "S8"' >"$scratch/c.csv"
 cmp "$scratch/a.csv" "$scratch/b.csv"
 cmp "$scratch/a.csv" "$scratch/c.csv"
+# An installation that is moved, and a room far from any folder of sensors: the library carries the shipped ones.
+mkdir "$scratch/alone" "$scratch/moved" && cp "$scene" "$script" "$scratch/alone"
+cp "$scratch/prefix/bin/pirsim" "$scratch/moved"
+mv "$data" "$scratch/hidden_data"
+(cd "$scratch/alone" && "$scratch/build/main" meeting_room.gltf studyA.yaml | cmp - "$scratch/a.csv" &&
+  "$scratch/moved/pirsim" --scene meeting_room.gltf --script studyA.yaml --replicates 1 -q |
+  awk -F, 'NR == 1 || $2 == "S8"' | cmp - "$scratch/c.csv")
+mv "$scratch/hidden_data" "$data"
 echo "consumer: $(wc -l <"$scratch/a.csv") rows, the same three ways"
 
 # 4 m at 1 m/s past sixteen zones, there and back: some second must see it, and nobody is seen before the first.

@@ -162,22 +162,40 @@ TEST_CASE("ids that can't name a column or a file are refused", "[scene]") {
   }
 }
 
-TEST_CASE("sensor files are looked for in the given folders before those beside the scene", "[scene]") {
+TEST_CASE("sensor files are looked for in the given folders before those beside the scene, last in the library",
+          "[scene]") {
   GltfBuilder scene;
   scene.floor();
   scene.node("eye", GltfBuilder::marked(sensor("PIR1")));
   const TemporaryFolder folder;
   const auto file = folder.write("rooms/room.gltf", scene.text());
   const auto read = [&] { return pirsim::io::read_scene(file); };
-  CHECK_THAT(fault_of(read), contains("room.gltf:") && contains("sensor model 'EKMC1604111' is not known; no folder"));
-  REQUIRE(setenv("PIRSIM_DATA_DIR", pirsim::test::data_dir().c_str(), 1) == 0);
+  const auto sensor_file = [&] { return read().files.size() < 2 ? "" : read().files.at(1); };
   CHECK(read().sensor_models.count("EKMC1604111") == 1);
+  CHECK(sensor_file().empty());
+  REQUIRE(setenv("PIRSIM_DATA_DIR", pirsim::test::data_dir().c_str(), 1) == 0);
+  CHECK(sensor_file() == (pirsim::test::data_dir() / "sensors" / "EKMC1604111.yaml").string());
   REQUIRE(unsetenv("PIRSIM_DATA_DIR") == 0);
   std::filesystem::copy(pirsim::test::data_dir() / "sensors", folder.path() / "sensors");
-  CHECK(read().sensor_models.count("EKMC1604111") == 1);
+  CHECK_THAT(sensor_file(), contains(folder.path().string()));
   const auto first = folder.write("first/EKMC1604111.yaml", "not a sensor");
   CHECK_THAT(fault_of([&] { return pirsim::io::read_scene(file, {{folder.path() / "first"}}); }),
              contains("first/EKMC1604111.yaml"));
+}
+
+TEST_CASE("the library carries every shipped sensor as its file has it", "[scene]") {
+  std::size_t n_shipped = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(pirsim::test::data_dir() / "sensors")) {
+    if (entry.path().extension() != ".yaml") continue;
+    const std::string name = entry.path().stem().string();
+    const auto carried = pirsim::io::find_sensor_model(name, "/nowhere/rooms/room.gltf");
+    const auto read = pirsim::io::read_sensor_model(entry.path());
+    CHECK(carried.id == read.id);
+    CHECK(carried.plane_m == read.plane_m);
+    REQUIRE(carried.clusters.size() == read.clusters.size());
+    ++n_shipped;
+  }
+  CHECK(n_shipped == 12);
 }
 
 TEST_CASE("files that can't be read are told apart from files that are no scenes", "[scene]") {
