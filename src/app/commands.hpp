@@ -14,6 +14,7 @@ void add_preview_command(CLI::App& app);
 void add_room_command(CLI::App& app);
 void add_dataset_command(CLI::App& app);
 void add_export_command(CLI::App& app);
+void add_view_command(CLI::App& app);
 void add_effects_command(CLI::App& app);
 void add_coverage_command(CLI::App& app);
 void add_walktest_command(CLI::App& app);
@@ -28,8 +29,9 @@ void add_open_command(CLI::App& reconcile_command);
 
 /// In the order of the help.
 inline constexpr std::array all_commands{
-    add_run_command,        add_day_command,       add_check_command,     add_preview_command,  add_export_command,
-    add_room_command,       add_dataset_command,   add_effects_command,   add_coverage_command, add_walktest_command,
-    add_placements_command, add_status_command,    add_merge_command,     add_reconcile_command, add_help_command};
+    add_run_command,     add_day_command,      add_check_command,     add_preview_command,
+    add_export_command,  add_view_command,     add_room_command,      add_dataset_command,
+    add_effects_command, add_coverage_command, add_walktest_command,  add_placements_command,
+    add_status_command,  add_merge_command,    add_reconcile_command, add_help_command};
 
 }  // namespace pirsim::app

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <exception>
 #include <glm/gtc/quaternion.hpp>
+#include <sstream>
+#include <utility>
 
 #include "io/atomic_file.hpp"
 #include "io/gltf_builder.hpp"
@@ -204,23 +206,35 @@ void add_beams(GltfBuilder& document, const std::vector<ExportedBeams>& all_beam
   }
 }
 
-}  // namespace
+enum class Container { binary, text };
 
-void write_gltf(const std::filesystem::path& file, const ExportedRun& run) {
-  const Where where{file.string()};
+void write(std::ostream& out, const ExportedRun& run, Container container, const Where& where) {
   check(run, where);
   GltfBuilder document(run.title.empty() ? "run" : run.title);
   add_room(document, run.meshes);
   add_people(document, run);
   add_beams(document, run.beams);
-  AtomicFile output(file);
+  const bool binary = container == Container::binary;
   try {
-    const bool binary = file.extension() == ".glb";
-    tinygltf::TinyGLTF().WriteGltfSceneToStream(&document.model(), output.stream(), !binary, binary);
+    tinygltf::TinyGLTF().WriteGltfSceneToStream(&document.model(), out, !binary, binary);
   } catch (const std::exception& fault) {  // the JSON writer refuses names that aren't UTF-8
     throw Error(ErrorCode::usage, where, std::string("the run can't be written as glTF: ") + fault.what());
   }
-  output.commit();
+}
+
+}  // namespace
+
+void write_gltf(const std::filesystem::path& file, const ExportedRun& run) {
+  const Where where{file.string()};
+  std::ostringstream bytes;
+  write(bytes, run, file.extension() == ".glb" ? Container::binary : Container::text, where);
+  write_text_file(file, bytes.view());
+}
+
+std::string to_glb(const ExportedRun& run) {
+  std::ostringstream bytes;
+  write(bytes, run, Container::binary, Where{run.title});
+  return std::move(bytes).str();
 }
 
 }  // namespace pirsim::io

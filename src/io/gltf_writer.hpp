@@ -44,5 +44,7 @@ struct ExportedRun {
 /// single precision. Error(usage) for keys, poses and presences that don't match or aren't finite, Error(io) if the
 /// file can't be written.
 void write_gltf(const std::filesystem::path& file, const ExportedRun& run);
+/// The bytes of the .glb; throws Error(usage) as write_gltf() does.
+[[nodiscard]] std::string to_glb(const ExportedRun& run);
 
 }  // namespace pirsim::io

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 #include <string_view>
 
 #include "io/charts.hpp"
@@ -14,10 +15,17 @@ using ChartJson = nlohmann::ordered_json;
 /// `kind` says which chart it is.
 [[nodiscard]] ChartJson to_json(const Chart& chart);
 
+/// Plain text as HTML.
+[[nodiscard]] std::string escaped(const std::string& text);
+
 // Texts that are built into the library for pages that work without a network.
 
 [[nodiscard]] std::string_view vega_script() noexcept;    ///< defines `vega`; made by tools/make_vega_bundle.py
 [[nodiscard]] std::string_view report_script() noexcept;  ///< src/io/page/report.js
 [[nodiscard]] std::string_view report_style() noexcept;   ///< src/io/page/report.css
+[[nodiscard]] std::string_view three_script() noexcept;   ///< defines `three`; made by tools/vendor_three
+[[nodiscard]] std::string_view view_page() noexcept;      ///< src/io/page/view.html, a template
+[[nodiscard]] std::string_view view_script() noexcept;    ///< src/io/page/view.js
+[[nodiscard]] std::string_view view_style() noexcept;     ///< src/io/page/view.css
 
 }  // namespace pirsim::io::detail

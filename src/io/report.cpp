@@ -8,11 +8,8 @@
 #include "io/page_parts.hpp"
 
 namespace pirsim::io {
-namespace {
 
-using Json = detail::ChartJson;
-
-std::string escaped(const std::string& text) {
+std::string detail::escaped(const std::string& text) {
   std::string result;
   for (const char c : text) {
     switch (c) {
@@ -34,6 +31,11 @@ std::string escaped(const std::string& text) {
   }
   return result;
 }
+
+namespace {
+
+using detail::escaped;
+using Json = detail::ChartJson;
 
 /// JSON inside a script element must not end it.
 std::string inlined(const Json& json) {

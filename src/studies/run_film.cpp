@@ -1,0 +1,104 @@
+#include "studies/run_film.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/beams.hpp"
+#include "sim/run_state.hpp"
+
+namespace pirsim::studies {
+namespace {
+
+io::ExportedPerson without_keys(const sim::Actor& actor) {
+  io::ExportedPerson person{actor.person().spec.id, {}, {}};
+  for (std::size_t i = 0; i < body::n_parts; ++i) {
+    const auto part = static_cast<body::Part>(i);
+    person.parts.push_back({person.id, std::string(body::name(part)), actor.person().humanoid.solids()[i], {}});
+  }
+  return person;
+}
+
+/// While away, a person's parts keep their last place (they are drawn at scale 0).
+void add_key(const sim::Actor& actor, io::ExportedPerson& person) {
+  person.present.push_back(actor.present() ? 1 : 0);
+  const body::Posture posture = actor.present() ? actor.motion().posture() : body::Posture{};
+  for (std::size_t i = 0; i < body::n_parts; ++i) {
+    auto& keys = person.parts[i].world_from_part;
+    keys.push_back(actor.present() || keys.empty() ? posture[i] : keys.back());
+  }
+}
+
+io::ExportedBeams beams(const Model& model, const State& state, std::size_t sensor) {
+  io::ExportedBeams result;
+  result.sensor = model.scene().sensors[sensor].id;
+  for (const sim::BeamSegment& beam : sim::beams_of(model, state, sensor))
+    result.segments.emplace_back(beam.from, beam.to);
+  return result;
+}
+
+std::vector<std::uint32_t> members(const ZoneSet& zones) {
+  std::vector<std::uint32_t> result;
+  for (std::size_t zone = 0; zone < zones.size(); ++zone) {
+    if (zones.test(zone)) result.push_back(static_cast<std::uint32_t>(zone));
+  }
+  return result;
+}
+
+/// Between two keys: of each sensor's signal, what is farthest from its rest.
+class Peaks {
+ public:
+  explicit Peaks(std::size_t n_sensors) : peaks_(n_sensors, 0.0) {}
+
+  void look(const State& state) {
+    const auto& signals = state.run_state().detector.analog();
+    for (std::size_t i = 0; i < signals.size(); ++i) {
+      if (signals[i] && std::abs(signals[i]->volts) >= std::abs(peaks_[i])) peaks_[i] = signals[i]->volts;
+    }
+  }
+  void take(const State& state, std::vector<std::vector<double>>& signals_v) {
+    const auto& signals = state.run_state().detector.analog();
+    for (std::size_t i = 0; i < signals.size(); ++i) {
+      if (signals[i]) signals_v[i].push_back(peaks_[i]);
+      peaks_[i] = 0.0;
+    }
+  }
+
+ private:
+  std::vector<double> peaks_;
+};
+
+}  // namespace
+
+Film film(const Model& model, std::uint32_t run, const FilmSpec& spec) {
+  const int rate = model.script().sensing.tick_rate_hz;
+  const auto ticks_per_key = std::max<std::int64_t>(1, std::llround(rate / spec.keys_per_s));
+  const double window_s = model.tick_s() * model.script().sensing.ticks_per_window;
+  const auto time_s = [&](const State& state) { return static_cast<double>(state.tick()) / rate; };
+
+  State state(model, run);
+  Film result;
+  result.run.title = model.script().name + ", trial " + model.trial_of(run);
+  result.run.meshes = model.compiled().scene().meshes;
+  for (const std::size_t sensor : spec.beams_of) result.run.beams.push_back(beams(model, state, sensor));
+  while (!state.finished() && time_s(state) + window_s <= spec.from_s) step(model, state);
+
+  const std::vector<sim::Actor>& actors = state.run_state().crowd.actors();
+  for (const sim::Actor& actor : actors) result.run.people.push_back(without_keys(actor));
+  result.signals_v.resize(model.scene().sensors.size());
+  Peaks peaks(result.signals_v.size());
+  const std::int64_t first_tick = state.tick();
+  while (true) {
+    peaks.look(state);
+    const bool ends = state.finished() || time_s(state) >= spec.to_s;
+    if ((state.tick() - first_tick) % ticks_per_key == 0 || ends) {
+      result.run.key_times_s.push_back(time_s(state));
+      for (std::size_t i = 0; i < actors.size(); ++i) add_key(actors[i], result.run.people[i]);
+      result.active_zones.push_back(members(state.zones()));
+      peaks.take(state, result.signals_v);
+    }
+    if (ends) return result;
+    step_tick(model, state);
+  }
+}
+
+}  // namespace pirsim::studies
