@@ -1,8 +1,12 @@
 #include "io/gltf_builder.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <glm/vec3.hpp>
 #include <utility>
+
+#include "io/atomic_file.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -135,6 +139,17 @@ void GltfBuilder::animate(int node, const std::string& path, int key_times, int 
   channel.sampler = index_of_last(animation.samplers.size());
   channel.target_node = node;
   channel.target_path = path;
+}
+
+void GltfBuilder::write(const std::filesystem::path& file, const std::string& what) const {
+  AtomicFile output(file);
+  try {
+    const bool binary = file.extension() == ".glb";
+    tinygltf::TinyGLTF().WriteGltfSceneToStream(&model_, output.stream(), !binary, binary);
+  } catch (const std::exception& fault) {  // the JSON writer refuses names that aren't UTF-8
+    throw Error(ErrorCode::usage, Where{file.string()}, "the " + what + " can't be written as glTF: " + fault.what());
+  }
+  output.commit();
 }
 
 tinygltf::Value pirsim_extras(const std::string& type, tinygltf::Value::Object members) {

@@ -3,6 +3,7 @@
 
 #include <tiny_gltf.h>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -42,7 +43,9 @@ class GltfBuilder {
   /// Adds a channel to the one animation; interpolation as glTF spells it.
   void animate(int node, const std::string& path, int key_times, int track, const std::string& interpolation);
 
-  [[nodiscard]] const tinygltf::Model& model() const noexcept { return model_; }
+  /// As .glb if the name ends so, else as .gltf; whole or not at all. what: "run", for the message. Throws Error(usage)
+  /// for names that aren't UTF-8.
+  void write(const std::filesystem::path& file, const std::string& what) const;
 
  private:
   int add_floats(const std::vector<float>& values, int type, int target);

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <exception>
 #include <glm/gtc/quaternion.hpp>
 
-#include "io/atomic_file.hpp"
 #include "io/gltf_builder.hpp"
 #include "pirsim/error.hpp"
 
@@ -213,14 +211,7 @@ void write_gltf(const std::filesystem::path& file, const ExportedRun& run) {
   add_room(document, run.meshes);
   add_people(document, run);
   add_beams(document, run.beams);
-  AtomicFile output(file);
-  try {
-    const bool binary = file.extension() == ".glb";
-    tinygltf::TinyGLTF().WriteGltfSceneToStream(&document.model(), output.stream(), !binary, binary);
-  } catch (const std::exception& fault) {  // the JSON writer refuses names that aren't UTF-8
-    throw Error(ErrorCode::usage, where, std::string("the run can't be written as glTF: ") + fault.what());
-  }
-  output.commit();
+  document.write(file, "run");
 }
 
 }  // namespace pirsim::io
