@@ -2,12 +2,11 @@
 #include <iostream>
 
 #include "app/commands.hpp"
-#include "app/outputs.hpp"
 #include "app/session.hpp"
 #include "io/gltf_writer.hpp"
 #include "pirsim/state.hpp"
-#include "sim/beams.hpp"
 #include "sim/run_state.hpp"
+#include "sim/solids.hpp"
 
 namespace pirsim::app {
 namespace {
