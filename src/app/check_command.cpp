@@ -2,7 +2,6 @@
 #include <iostream>
 
 #include "app/commands.hpp"
-#include "app/outputs.hpp"
 #include "app/session.hpp"
 #include "sim/compiled_study.hpp"
 #include "studies/schedule_outlook.hpp"

@@ -3,13 +3,12 @@
 
 #include "app/commands.hpp"
 #include "app/long_work.hpp"
-#include "app/outputs.hpp"
 #include "app/session.hpp"
 #include "io/atomic_file.hpp"
 #include "io/png.hpp"
 #include "pirsim/io.hpp"
 #include "studies/coverage.hpp"
-#include "studies/coverage_report.hpp"
+#include "studies/study_report.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -36,7 +35,7 @@ CoverageMap compute(const studies::CoverageStudy& study, const Inputs& inputs, c
   CoverageMap map = studies::empty_map(study);
   map.counts = rows.found();
   if (rows.n_found_rows() > 0 && inputs.verbosity != Verbosity::quiet) {
-    std::cerr << "going on after " << rows.n_found_rows() << " of " << study.grid().n_rows() << " rows of squares\n";
+    std::cerr << "continuing after " << rows.n_found_rows() << " of " << study.grid().n_rows() << " rows of squares\n";
   }
   Progress progress(static_cast<std::uint32_t>(study.grid().n_rows() - rows.n_found_rows()), inputs.verbosity,
                     "rows of squares");

@@ -38,7 +38,7 @@ void make(const DatasetCommand& command, const dataset::RecipeSpec& recipe) {
   options.made_one = [&] { progress.run_finished(); };
   options.tell = [&](const Issue& issue) { tell({issue}, command.inputs.verbosity); };
   if (!dataset::make_room_days(recipe, command.folder, options)) {
-    throw Error(ErrorCode::stopped, stop.signal_name() + ": stopped at the end of a room-day; go on with --resume");
+    throw Error(ErrorCode::stopped, stop.signal_name() + ": stopped at the end of a room-day; continue with --resume");
   }
 }
 
@@ -61,7 +61,7 @@ void run(const DatasetCommand& command) {
 void add_dataset_command(CLI::App& app) {
   CLI::App& command = add_command(app, "dataset", "make a dataset of many rooms and days from a recipe", R"(
   pirsim dataset recipe.yaml -o DIR                       rows, datapackage.json, README.md, pictures
-  pirsim dataset recipe.yaml -o DIR --resume              go on where it was stopped
+  pirsim dataset recipe.yaml -o DIR --resume              continue where it was stopped
   pirsim dataset recipe.yaml -o DIR --shard 3/100         one part of a job array ...
   pirsim dataset recipe.yaml -o DIR --finish              ... and when all are through
 )");

@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "app/commands.hpp"
-#include "app/outputs.hpp"
 #include "app/session.hpp"
 #include "app/study_run.hpp"
 

@@ -1,7 +1,7 @@
 #include <iostream>
 
 #include "app/commands.hpp"
-#include "app/outputs.hpp"
+#include "app/session.hpp"
 #include "effects/catalogue.hpp"
 #include "pirsim/csv.hpp"
 

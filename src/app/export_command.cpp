@@ -1,8 +1,8 @@
 #include <iostream>
 
 #include "app/commands.hpp"
-#include "app/outputs.hpp"
 #include "app/session.hpp"
+#include "io/gltf_writer.hpp"
 #include "studies/run_film.hpp"
 
 namespace pirsim::app {

@@ -43,7 +43,7 @@ class StopRequest {
 
   [[nodiscard]] bool was_made() const noexcept;
   [[nodiscard]] std::string signal_name() const;
-  /// For work that can't be gone on with: throws Error(stopped), so that unfinished outputs are removed.
+  /// For work that can't be resumed: throws Error(stopped), so that unfinished outputs are removed.
   void throw_if_made() const;
 };
 

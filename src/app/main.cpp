@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "app/commands.hpp"
-#include "app/outputs.hpp"
+#include "app/session.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/version.hpp"
 #include "rt/room.hpp"

@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "app/commands.hpp"
-#include "app/outputs.hpp"
+#include "app/session.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
 #include "studies/campaign.hpp"
@@ -40,7 +40,7 @@ std::vector<std::string> trial_ids(const ScriptSpec& script) {
 
 void merge(const MergeOptions& options) {
   if (options.output.empty()) throw Error(ErrorCode::usage, "-o FILE is missing");
-  check_outputs({{"-o", options.output, table_endings()}, {"--summary", options.summary, {".csv", ".md"}}}, {});
+  check_outputs({{"-o", options.output, io::table_endings()}, {"--summary", options.summary, summary_endings()}}, {});
   ScriptSpec script;
   std::optional<io::AtomicFile> file;
   std::optional<studies::RowTally> tally;
@@ -67,8 +67,10 @@ void add_merge_command(CLI::App& app) {
   const auto options = std::make_shared<MergeOptions>();
   command.add_option("DIR", options->folder, "folder with the shards")->required();
   offer_quiet(command, options->verbosity);
-  offer_output(command, options->output, "FILE", "rows, .csv, .csv.gz or .csv.zst");
-  command.add_option("--summary", options->summary, "table of sums per trial and sensor, .csv or .md; needs --script")
+  offer_output(command, options->output, "FILE", "rows, " + in_words(io::table_endings()));
+  command
+      .add_option("--summary", options->summary,
+                  "table of sums per trial and sensor, " + in_words(summary_endings()) + "; needs --script")
       ->option_text("FILE");
   command.add_option("--script", options->script, "that of the shards, for the summary")->option_text("FILE");
   command.add_option("--set", options->overrides, "as for the shards")

@@ -120,7 +120,7 @@ void offer_verbose(CLI::App& command, Verbosity& verbosity) {
     if (verbosity == Verbosity::quiet) throw Error(ErrorCode::usage, "--quiet and --verbose exclude each other");
     verbosity = Verbosity::verbose;
   };
-  command.add_flag_callback("-v,--verbose", set, "more about what goes on");
+  command.add_flag_callback("-v,--verbose", set, "more about the work's progress");
 }
 
 void offer_threads(CLI::App& command, unsigned& threads) {

@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "app/commands.hpp"
-#include "app/outputs.hpp"
 #include "app/session.hpp"
 #include "io/png.hpp"
 #include "pirsim/geometry.hpp"

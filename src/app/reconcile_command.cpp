@@ -4,7 +4,6 @@
 
 #include "app/commands.hpp"
 #include "app/long_work.hpp"
-#include "app/outputs.hpp"
 #include "app/session.hpp"
 #include "effects/catalogue.hpp"
 #include "io/atomic_file.hpp"

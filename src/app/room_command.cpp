@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "app/commands.hpp"
-#include "app/outputs.hpp"
 #include "app/session.hpp"
 #include "dataset/recipe.hpp"
 #include "dataset/room_reader.hpp"

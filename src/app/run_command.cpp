@@ -2,7 +2,6 @@
 #include <memory>
 
 #include "app/commands.hpp"
-#include "app/outputs.hpp"
 #include "app/session.hpp"
 #include "app/study_run.hpp"
 #include "effects/catalogue.hpp"

@@ -1,12 +1,18 @@
-// What all commands begin with: read, compile, tell what is odd.
+// What all commands share: they begin by reading and compiling, and end with checked outputs.
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "app/options.hpp"
+#include "io/atomic_file.hpp"
+#include "io/compression.hpp"
+#include "io/report.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/model.hpp"
 #include "pirsim/script.hpp"
+#include "studies/summary.hpp"
 
 namespace pirsim::app {
 
@@ -24,5 +30,38 @@ namespace pirsim::app {
 /// Of --nuisance: a file, "none", or "" for the usual one.
 [[nodiscard]] NuisanceSpec nuisance_of(const std::string& asked);
 void tell(const std::vector<Issue>& issues, Verbosity verbosity);
+
+struct NamedOutput {
+  std::string option;          ///< "--summary"
+  std::filesystem::path file;  ///< empty: not asked for
+  std::vector<std::string> endings;
+};
+
+/// ".csv, .csv.gz or .csv.zst"
+[[nodiscard]] std::string in_words(const std::vector<std::string>& endings);
+/// How the name of a summary may end; write_summary() goes by it.
+[[nodiscard]] const std::vector<std::string>& summary_endings();
+
+/// Tells what is wrong with the names of output files before any work is done. Throws Error(usage) for an ending that
+/// isn't known (unless the file is there and no regular one, as /dev/stdout is), for one file with two outputs, and for
+/// an output that is an input; Error(io) for a folder that is missing.
+void check_outputs(const std::vector<NamedOutput>& outputs, const Inputs& inputs);
+/// Would the file lie in that folder, however deep, or be the folder itself?
+[[nodiscard]] bool is_below(const std::filesystem::path& file, const std::filesystem::path& folder);
+/// With all that it lies in. Throws Error(io).
+void make_folder(const std::filesystem::path& folder);
+
+/// Those that the script's summary refers to; none if it doesn't.
+[[nodiscard]] std::vector<MeasuredCell> measured_cells(const ScriptSpec& script);
+/// A document if `path` ends in .md, else CSV; and a copy on standard error unless all is quiet.
+void write_summary(const studies::Summary& summary, io::AtomicFile& file, const std::filesystem::path& path,
+                   const std::string& title, Verbosity verbosity);
+/// Writes a report with what made it in the footer, and commits the file.
+void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs);
+
+/// Thrown when nobody reads standard output any more, as in `pirsim ... | head`.
+struct ClosedPipe {};
+/// Throws ClosedPipe, or Error(io), if standard output fails.
+void require_written();
 
 }  // namespace pirsim::app

@@ -1,7 +1,7 @@
 #include <iostream>
 
 #include "app/commands.hpp"
-#include "app/outputs.hpp"
+#include "app/session.hpp"
 #include "studies/campaign.hpp"
 
 namespace pirsim::app {

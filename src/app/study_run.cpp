@@ -6,9 +6,8 @@
 #include <sstream>
 
 #include "app/long_work.hpp"
-#include "app/outputs.hpp"
 #include "app/session.hpp"
-#include "app/whole_study_outputs.hpp"
+#include "app/study_outputs.hpp"
 #include "io/manifest.hpp"
 #include "pirsim/study.hpp"
 #include "studies/sight.hpp"
@@ -54,18 +53,17 @@ std::string describe(const io::FailedRun& run) {
   return text.str();
 }
 
-/// What rows don't say. Throws Error(incomplete) if there were runs that could not go on.
+/// What rows don't say. Throws Error(incomplete) if runs failed.
 void tell(const io::RunNotes& notes, Verbosity verbosity) {
   const auto warn = [&](std::uint64_t n, const std::string& what) {
     if (n > 0 && verbosity != Verbosity::quiet) std::cerr << "warning: " << n << what << '\n';
   };
-  warn(notes.passes_through, " times somebody who found no way round others for 20 s walked through them; first in " +
-                                 notes.first_pass);
-  warn(notes.seats_changed, " times somebody took another seat, since theirs stayed taken");
-  warn(notes.seats_missed, " times somebody went without a seat, since theirs stayed taken");
+  warn(notes.passes_through, " times a person blocked for 20 s walked through others; first in " + notes.first_pass);
+  warn(notes.seats_changed, " times a person took another seat because theirs stayed taken");
+  warn(notes.seats_missed, " times a person stayed without a seat because theirs stayed taken");
   if (notes.failed.empty()) return;
   constexpr std::size_t most_told = 10;
-  std::string message = std::to_string(notes.failed.size()) + " runs could not go on and have no rows";
+  std::string message = std::to_string(notes.failed.size()) + " runs failed and have no rows";
   for (std::size_t i = 0; i < std::min(notes.failed.size(), most_told); ++i) {
     message += "\n  " + describe(notes.failed[i]);
   }
@@ -78,7 +76,7 @@ std::string stop_message(const RunOptions& options, const std::string& cause, co
   std::string message = "stopped by " + cause;
   if (options.rows.output.empty() || io::is_written_directly(options.rows.output)) return message;
   message += ", " + std::to_string(left.count()) + " of " + std::to_string(model.n_runs()) + " runs are left";
-  return message + "; --resume goes on";
+  return message + "; --resume continues";
 }
 
 }  // namespace
@@ -86,11 +84,11 @@ std::string stop_message(const RunOptions& options, const std::string& cause, co
 void check_options(const Inputs& inputs, const RunOptions& options) {
   const bool sharded = !options.rows.shard.empty();
   const std::filesystem::path rows = sharded ? std::filesystem::path{} : options.rows.output;
-  std::vector<NamedOutput> outputs{{"-o", rows, table_endings()},
-                                   {"--summary", options.summary, {".csv", ".md"}},
-                                   {"--zones", options.zones, table_endings()},
-                                   {"--trace", options.trace, table_endings()},
-                                   {"--occupants", options.occupants, table_endings()},
+  std::vector<NamedOutput> outputs{{"-o", rows, io::table_endings()},
+                                   {"--summary", options.summary, summary_endings()},
+                                   {"--zones", options.zones, io::table_endings()},
+                                   {"--trace", options.trace, io::table_endings()},
+                                   {"--occupants", options.occupants, io::table_endings()},
                                    {"--report", options.report, {".html"}}};
   if (!rows.empty()) outputs.push_back({"the manifest of -o", io::manifest_path(rows), {".json"}});
   check_outputs(outputs, inputs);
@@ -104,7 +102,7 @@ void check_options(const Inputs& inputs, const RunOptions& options) {
   }
   if (!sharded && io::is_written_directly(options.rows.output)) {
     throw Error(ErrorCode::usage, std::string(partial) + ": '" + options.rows.output.string() +
-                                      "' is no regular file, its rows can't be gone on with");
+                                      "' is not a regular file, so its rows can't be resumed");
   }
   if (has_whole_study_outputs(options)) {
     throw Error(ErrorCode::usage,
@@ -146,7 +144,7 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
       progress.run_finished();
     });
   } catch (const Error& error) {
-    // What --strict ends can be gone on with, as what a full disk ends.
+    // A study that --strict stopped can be resumed, as one that a full disk stopped.
     if (error.code() != ErrorCode::io && error.code() != ErrorCode::infeasible) rows->discard();
     throw;
   }
@@ -163,36 +161,36 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
 }
 
 void offer_run_options(CLI::App& command, const std::shared_ptr<RunOptions>& options) {
-  offer_output(command, options->rows.output, "FILE",
-               "rows, .csv, .csv.gz or .csv.zst (default: as CSV on standard output)");
-  command.add_option("--summary", options->summary, "table of sums per trial and sensor, .csv or .md")
+  const std::string tables = in_words(io::table_endings());
+  offer_output(command, options->rows.output, "FILE", "rows, " + tables + " (default: as CSV on standard output)");
+  command
+      .add_option("--summary", options->summary, "table of sums per trial and sensor, " + in_words(summary_endings()))
       ->option_text("FILE");
   command.add_option("--report", options->report, "counts and time series as one self-contained page, .html")
       ->option_text("FILE");
-  command.add_option("--zones", options->zones, "every zone's activity at every tick, .csv, .csv.gz or .csv.zst")
-      ->option_text("FILE");
+  command.add_option("--zones", options->zones, "every zone's activity at every tick, " + tables)->option_text("FILE");
   command
       .add_option("--trace", options->trace,
-                  "analog sensors' power, signal and what is behind it at every tick, .csv, .csv.gz or .csv.zst")
+                  "analog sensors' power, signal and what is behind it at every tick, " + tables)
       ->option_text("FILE");
   command
       .add_option("--occupants", options->occupants,
-                  "who is where and does what, a row a second and person, .csv, .csv.gz or .csv.zst")
+                  "where everybody is and what they do, a row a window and person, " + tables)
       ->option_text("FILE");
   offer_threads(command, options->threads);
   command
       .add_option("--shard", options->rows.shard,
                   "only this block of the runs: I/N, auto/N or auto (in a job array); -o names a folder")
       ->option_text("I/N");
-  command.add_option("--format", options->rows.format, "of a shard: .csv, .csv.gz or .csv.zst (default: .csv)")
+  command.add_option("--format", options->rows.format, "of a shard: " + tables + " (default: .csv)")
       ->option_text("ENDING")
-      ->check(CLI::IsMember(table_endings()));
+      ->check(CLI::IsMember(io::table_endings()));
   command.add_flag_callback(
       "--resume", [options] { options->rows.start = RowOptions::Start::resume; },
-      "go on at the last whole run; nothing to do if all is done");
+      "continue after the last complete run; does nothing if all runs are complete");
   command.add_flag_callback(
       "--strict", [options] { options->faults = RunOptions::Faults::stop; },
-      "end at the first run that can't go on (default: note it, go on with the others, exit code 6)");
+      "stop at the first run that fails (default: note it, continue with the others, exit code 6)");
   command.add_option("--max-time", options->max_time_s, "stop at the end of a run after so long: 3000, 50m, 2h")
       ->option_text("TIME")
       ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1.0}, {"m", 60.0}, {"h", 3600.0}},

@@ -4,11 +4,19 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "app/options.hpp"
-#include "app/row_output.hpp"
 
 namespace pirsim::app {
+
+/// Where rows go: a stream, or a file that can be resumed.
+struct RowOptions {
+  std::filesystem::path output;  ///< .csv, .csv.gz or .csv.zst; of a shard its folder; empty: standard output
+  std::string shard;             ///< "3/100", "auto"; empty: the whole study
+  std::string format = ".csv";   ///< ending of a shard's file
+  enum class Start { anew, resume } start = Start::anew;
+};
 
 struct RunOptions {
   RowOptions rows;

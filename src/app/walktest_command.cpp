@@ -3,7 +3,6 @@
 
 #include "app/commands.hpp"
 #include "app/long_work.hpp"
-#include "app/outputs.hpp"
 #include "app/session.hpp"
 #include "io/atomic_file.hpp"
 #include "pirsim/io.hpp"

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "body/two_bone_ik.hpp"
+#include "body/skeleton.hpp"
 
 namespace pirsim::body {
 

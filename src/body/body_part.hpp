@@ -1,5 +1,5 @@
 // The thirteen solids of the humanoid (Stefansson et al. 2021, section 2.2: one sphere, three boxes, nine
-// capsules) and a posture of them.
+// capsules), a posture of them, and how warm their surfaces are.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "pirsim/geometry.hpp"
+#include "pirsim/script.hpp"
 #include "pirsim/shapes.hpp"
 
 namespace pirsim::body {
@@ -34,5 +35,10 @@ inline constexpr std::size_t n_parts = 13;
 using Posture = std::array<Frame, n_parts>;
 /// The solids of one person, indexed by Part, in their part's frame.
 using Solids = std::array<Shape, n_parts>;
+
+/// Degrees Celsius, indexed by Part. Bare parts have the skin's temperature. Clothing lies between the skin's and the
+/// room's, as its insulation (0.155 m^2 K/W a clo) does to that of the air around it (8 W/(m^2 K) by convection and
+/// radiation, `assumed`; 6 to 10). Ref: [ISO7730].
+[[nodiscard]] std::array<double, n_parts> surface_temperatures_c(const WarmthSpec& warmth, double ambient_c);
 
 }  // namespace pirsim::body

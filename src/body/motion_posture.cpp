@@ -4,8 +4,8 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-#include "body/limbs.hpp"
 #include "body/motion.hpp"
+#include "body/poser.hpp"
 
 namespace pirsim::body {
 

@@ -1,11 +1,25 @@
-// Postures that follow upon one another.
+// Postures that follow upon one another: only what has moved is worked out anew.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
-#include "body/limbs.hpp"
+#include "body/motion.hpp"
 
 namespace pirsim::body {
+
+/// Of a pose or a posture: all that hangs together. Arrays are left, right.
+struct Limbs {
+  bool hips = true;
+  bool spine = true;
+  bool head = true;
+  bool arms = true;
+  std::array<bool, 2> ankles{true, true};
+};
+
+/// Overwrites what depends on any of these of the outline, or of the pose; the rest stays as it is.
+void update(Pose& pose, const Humanoid& humanoid, const Outline& outline, const Limbs& changed) noexcept;
+void update(Posture& posture, const Humanoid& humanoid, const Pose& pose, const Limbs& changed) noexcept;
 
 /// posture_of(), bit for bit, in less time where only arms or legs have moved since the last call.
 class Poser {

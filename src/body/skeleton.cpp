@@ -6,11 +6,9 @@
 #include <glm/mat3x3.hpp>
 #include <numbers>
 
-#include "body/limbs.hpp"
-#include "body/two_bone_ik.hpp"
+#include "body/poser.hpp"
 
 namespace pirsim::body {
-
 namespace {
 
 const Vec3 x_axis(1, 0, 0);

@@ -8,9 +8,7 @@
 #include <utility>
 
 #include "body/footprint.hpp"
-#include "body/grid_search.hpp"
-#include "body/taut_way.hpp"
-#include "body/way_memory.hpp"
+#include "body/way_search.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::body {

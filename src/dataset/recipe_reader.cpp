@@ -6,6 +6,7 @@
 
 #include "dataset/room_reader.hpp"
 #include "io/atomic_file.hpp"
+#include "io/compression.hpp"
 #include "io/reader_parts.hpp"
 #include "pirsim/dataset.hpp"
 #include "pirsim/effects.hpp"
@@ -161,8 +162,8 @@ void read_outputs(YamlMap& map, RecipeSpec& recipe) {
     const auto index = item.choice(map.faults(), "exports", {"uci864", "casas", "energyplus"});
     if (index) recipe.exports.push_back(all[*index]);
   }
-  const std::vector<std::pair<std::string, std::string>> endings{
-      {".csv", ".csv"}, {".csv.gz", ".csv.gz"}, {".csv.zst", ".csv.zst"}};
+  std::vector<std::pair<std::string, std::string>> endings;
+  for (const std::string& ending : io::table_endings()) endings.emplace_back(ending, ending);
   recipe.ending = map.choice<std::string>("rows", recipe.ending, endings);
   const double reading_s = 30.0,
                window_s = static_cast<double>(recipe.sensing.ticks_per_window) / recipe.sensing.tick_rate_hz;

@@ -5,16 +5,10 @@ namespace pirsim::effects {
 namespace {
 
 void alter(StudyInForce& study, const EffectSpec& effect) {
-  for (TrialInForce& trial : study.trials) {
-    for (PersonInForce& person : trial.people) {
-      for (ScriptedAction& scripted : person.actions) {
-        auto* work = std::get_if<action::Work>(&scripted.what);
-        if (work == nullptr) continue;
-        work->arm_amplitude_m *= effect.parameters.at("amplitude_scale");
-        work->arm_period_s *= effect.parameters.at("period_scale");
-      }
-    }
-  }
+  for_each_work(study, [&](action::Work& work) {
+    work.arm_amplitude_m *= effect.parameters.at("amplitude_scale");
+    work.arm_period_s *= effect.parameters.at("period_scale");
+  });
 }
 
 }  // namespace

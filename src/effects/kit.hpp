@@ -98,6 +98,18 @@ const Effect& labels_swapped();
 /// Ticks to the next event of a Poisson process, at least 1: its chance in each tick is 1 - exp(-mean), mean > 0.
 [[nodiscard]] std::int64_t ticks_to_event(Stream& stream, double mean_per_tick) noexcept;
 
+/// change(action::Work&) for whatever anybody does at a seat.
+template <typename Change>
+void for_each_work(StudyInForce& study, const Change& change) {
+  for (TrialInForce& trial : study.trials) {
+    for (PersonInForce& person : trial.people) {
+      for (ScriptedAction& scripted : person.actions) {
+        if (auto* work = std::get_if<action::Work>(&scripted.what)) change(*work);
+      }
+    }
+  }
+}
+
 /// clone() by copying.
 template <typename Stage>
 class CloneableTriggerStage : public TriggerStage {

@@ -7,13 +7,15 @@
 namespace pirsim::effects {
 namespace {
 
+enum class Across { x, z };
+
 /// Reflection in the vertical plane through the middle of the floor.
 class Mirror {
  public:
-  Mirror(const SceneSpec& scene, bool across_z)
-      : axis_(across_z ? 2 : 0),
-        twice_middle_(across_z ? scene.floor.lower().y + scene.floor.upper().y
-                               : scene.floor.lower().x + scene.floor.upper().x) {}
+  Mirror(const SceneSpec& scene, Across across)
+      : axis_(across == Across::z ? 2 : 0),
+        twice_middle_(across == Across::z ? scene.floor.lower().y + scene.floor.upper().y
+                                          : scene.floor.lower().x + scene.floor.upper().x) {}
 
   [[nodiscard]] Vec3 point(Vec3 p) const {
     p[axis_] = twice_middle_ - p[axis_];
@@ -66,7 +68,7 @@ void mirror_actions(std::vector<ScriptedAction>& actions, const Mirror& mirror) 
 void alter(StudyInForce& study, const EffectSpec& effect) {
   SceneSpec& scene = study.scene;
   const auto across = effect.choices.find("across");
-  const Mirror mirror(scene, across != effect.choices.end() && across->second == "z");
+  const Mirror mirror(scene, across != effect.choices.end() && across->second == "z" ? Across::z : Across::x);
   mirror_meshes(scene.meshes, mirror);
   for (SeatSpec& seat : scene.seats) seat.world_from_seat = mirror.frame(seat.world_from_seat);
   for (EntranceSpec& door : scene.entrances) door.world_from_entrance = mirror.frame(door.world_from_entrance);

@@ -61,6 +61,21 @@ void settle(EffectSpec& effect, const SceneSpec& scene) {
   effect.parameters.at("z_m") = free.y;
 }
 
+/// Of a box.
+ParameterInfo coordinate(std::string name) {
+  return {.name = std::move(name),
+          .unit = "m",
+          .role = Role::detail,
+          .off = 0.0,
+          .typical = 0.0,
+          .low = -50.0,
+          .high = 50.0,
+          .least = -1e4,
+          .most = 1e4,
+          .source = "assumed: a free place",
+          .only_if = {"what", "box"}};
+}
+
 }  // namespace
 
 const Effect& missing_occluder() {
@@ -102,28 +117,8 @@ const Effect& missing_occluder() {
                                .least = 0.01,
                                .most = 20.0,
                                .source = "assumed: a box is as deep as wide"},
-                              {.name = "x_m",
-                               .unit = "m",
-                               .role = Role::detail,
-                               .off = 0.0,
-                               .typical = 0.0,
-                               .low = -50.0,
-                               .high = 50.0,
-                               .least = -1e4,
-                               .most = 1e4,
-                               .source = "assumed: a free place",
-                               .only_if = {"what", "box"}},
-                              {.name = "z_m",
-                               .unit = "m",
-                               .role = Role::detail,
-                               .off = 0.0,
-                               .typical = 0.0,
-                               .low = -50.0,
-                               .high = 50.0,
-                               .least = -1e4,
-                               .most = 1e4,
-                               .source = "assumed: a free place",
-                               .only_if = {"what", "box"}}},
+                              coordinate("x_m"),
+                              coordinate("z_m")},
                .choices = {{"what", ChoiceKind::word, {"chair_backs", "box"}, "chair backs"}},
                .reach = Reach::geometry},
       .alter = alter,

@@ -5,16 +5,10 @@ namespace pirsim::effects {
 namespace {
 
 void alter(StudyInForce& study, const EffectSpec& effect) {
-  for (TrialInForce& trial : study.trials) {
-    for (PersonInForce& person : trial.people) {
-      for (ScriptedAction& scripted : person.actions) {
-        auto* work = std::get_if<action::Work>(&scripted.what);
-        if (work == nullptr) continue;
-        for (double& tilt : work->tilt_choices_deg) tilt *= effect.parameters.at("amplitude_scale");
-        work->tilt_every_s *= effect.parameters.at("period_scale");
-      }
-    }
-  }
+  for_each_work(study, [&](action::Work& work) {
+    for (double& tilt : work.tilt_choices_deg) tilt *= effect.parameters.at("amplitude_scale");
+    work.tilt_every_s *= effect.parameters.at("period_scale");
+  });
 }
 
 }  // namespace

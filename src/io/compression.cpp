@@ -25,6 +25,11 @@ void require_zstd(std::size_t result) {
 
 }  // namespace
 
+const std::vector<std::string>& table_endings() {
+  static const std::vector<std::string> endings{".csv", ".csv.gz", ".csv.zst"};
+  return endings;
+}
+
 Compression compression_of(const std::filesystem::path& file) {
   if (file.extension() == ".gz") return Compression::gzip;
   return file.extension() == ".zst" ? Compression::zstd : Compression::none;

@@ -5,12 +5,16 @@
 #include <filesystem>
 #include <memory>
 #include <ostream>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace pirsim::io {
 
 enum class Compression { none, gzip, zstd };
 
+/// How the names of table files may end: ".csv" and its compressed forms.
+[[nodiscard]] const std::vector<std::string>& table_endings();
 /// By the ending of the name: .gz, .zst, anything else is plain.
 [[nodiscard]] Compression compression_of(const std::filesystem::path& file);
 /// The name without .gz or .zst.

@@ -1,8 +1,12 @@
 #include "io/gltf_builder.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <glm/vec3.hpp>
+#include <sstream>
 #include <utility>
+
+#include "io/atomic_file.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -135,6 +139,22 @@ void GltfBuilder::animate(int node, const std::string& path, int key_times, int 
   channel.sampler = index_of_last(animation.samplers.size());
   channel.target_node = node;
   channel.target_path = path;
+}
+
+std::string GltfBuilder::bytes(Container container, const Where& where, const std::string& what) const {
+  std::ostringstream out;
+  const bool binary = container == Container::binary;
+  try {
+    tinygltf::TinyGLTF().WriteGltfSceneToStream(&model_, out, !binary, binary);
+  } catch (const std::exception& fault) {  // the JSON writer refuses names that aren't UTF-8
+    throw Error(ErrorCode::usage, where, "the " + what + " can't be written as glTF: " + fault.what());
+  }
+  return std::move(out).str();
+}
+
+void GltfBuilder::write(const std::filesystem::path& file, const std::string& what) const {
+  const Container container = file.extension() == ".glb" ? Container::binary : Container::text;
+  write_text_file(file, bytes(container, Where{file.string()}, what));
 }
 
 tinygltf::Value pirsim_extras(const std::string& type, tinygltf::Value::Object members) {

@@ -3,9 +3,11 @@
 
 #include <tiny_gltf.h>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "pirsim/error.hpp"
 #include "pirsim/geometry.hpp"
 #include "pirsim/shapes.hpp"
 
@@ -42,7 +44,11 @@ class GltfBuilder {
   /// Adds a channel to the one animation; interpolation as glTF spells it.
   void animate(int node, const std::string& path, int key_times, int track, const std::string& interpolation);
 
-  [[nodiscard]] const tinygltf::Model& model() const noexcept { return model_; }
+  enum class Container { binary, text };  ///< .glb or .gltf
+  /// The file's bytes. where, what ("run"): for the message. Throws Error(usage) for names that aren't UTF-8.
+  [[nodiscard]] std::string bytes(Container container, const Where& where, const std::string& what) const;
+  /// As .glb if the name ends so, else as .gltf; whole or not at all. Throws as bytes().
+  void write(const std::filesystem::path& file, const std::string& what) const;
 
  private:
   int add_floats(const std::vector<float>& values, int type, int target);

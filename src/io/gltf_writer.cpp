@@ -3,12 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <exception>
 #include <glm/gtc/quaternion.hpp>
-#include <sstream>
-#include <utility>
 
-#include "io/atomic_file.hpp"
 #include "io/gltf_builder.hpp"
 #include "pirsim/error.hpp"
 
@@ -206,35 +202,24 @@ void add_beams(GltfBuilder& document, const std::vector<ExportedBeams>& all_beam
   }
 }
 
-enum class Container { binary, text };
-
-void write(std::ostream& out, const ExportedRun& run, Container container, const Where& where) {
+GltfBuilder document_of(const ExportedRun& run, const Where& where) {
   check(run, where);
   GltfBuilder document(run.title.empty() ? "run" : run.title);
   add_room(document, run.meshes);
   add_people(document, run);
   add_beams(document, run.beams);
-  const bool binary = container == Container::binary;
-  try {
-    tinygltf::TinyGLTF().WriteGltfSceneToStream(&document.model(), out, !binary, binary);
-  } catch (const std::exception& fault) {  // the JSON writer refuses names that aren't UTF-8
-    throw Error(ErrorCode::usage, where, std::string("the run can't be written as glTF: ") + fault.what());
-  }
+  return document;
 }
 
 }  // namespace
 
 void write_gltf(const std::filesystem::path& file, const ExportedRun& run) {
-  const Where where{file.string()};
-  std::ostringstream bytes;
-  write(bytes, run, file.extension() == ".glb" ? Container::binary : Container::text, where);
-  write_text_file(file, bytes.view());
+  document_of(run, Where{file.string()}).write(file, "run");
 }
 
 std::string to_glb(const ExportedRun& run) {
-  std::ostringstream bytes;
-  write(bytes, run, Container::binary, Where{run.title});
-  return std::move(bytes).str();
+  const Where where{run.title};
+  return document_of(run, where).bytes(GltfBuilder::Container::binary, where, "run");
 }
 
 }  // namespace pirsim::io

@@ -55,9 +55,9 @@ void require_fit(const Manifest& found, const Manifest& wanted, const fs::path& 
   if (unlike.empty()) return;
   std::string text;
   for (const std::string& each : unlike) text += (text.empty() ? "" : ", ") + each;
-  throw Error(ErrorCode::input, Where{file.string()},
-              "can't be resumed, it was made from something else: " + text +
-                  "; remove it, or run without --resume to replace it");
+  throw Error(
+      ErrorCode::input, Where{file.string()},
+      "can't be resumed because its inputs differ: " + text + "; remove it, or run without --resume to replace it");
 }
 
 /// How far the rows reached after a run.
@@ -169,7 +169,7 @@ struct RowFile::Work {
     journal->append(to_line(mark));
   }
 
-  /// False if there is nothing that could be gone on with.
+  /// False if there is nothing to resume.
   bool recover() {
     const Journal found = read_journal(journal_path);
     if (!found.last) return false;

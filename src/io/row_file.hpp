@@ -1,4 +1,4 @@
-// A file of rows that survives whatever ends the process: what was written can be gone on with at the last whole run.
+// A file of rows that survives whatever ends the process: it can be resumed after the last complete run.
 #pragma once
 
 #include <cstdint>

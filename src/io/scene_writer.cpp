@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <array>
-#include <exception>
 
-#include "io/atomic_file.hpp"
 #include "io/gltf_builder.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
@@ -92,14 +90,7 @@ void write_scene(const std::filesystem::path& file, const SceneSpec& scene) {
   for (const SeatSpec& seat : scene.seats) {
     document.add_node(placed_node(seat.id, seat.world_from_seat, pirsim_extras("seat", {{"id", Value(seat.id)}})));
   }
-  AtomicFile output(file);
-  try {
-    const bool binary = file.extension() == ".glb";
-    tinygltf::TinyGLTF().WriteGltfSceneToStream(&document.model(), output.stream(), !binary, binary);
-  } catch (const std::exception& fault) {  // the JSON writer refuses names that aren't UTF-8
-    throw Error(ErrorCode::usage, where, std::string("the scene can't be written as glTF: ") + fault.what());
-  }
-  output.commit();
+  document.write(file, "scene");
 }
 
 }  // namespace pirsim::io

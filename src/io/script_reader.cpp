@@ -146,7 +146,8 @@ std::vector<TrialSpec> read_trials(const std::optional<YamlNode>& node, const st
                                    BodyMeshReader& body_meshes, Diagnostics& faults) {
   if (!node) return {{"1", read_people(people, {}, body_meshes, faults)}};
   if (node->is_list()) {
-    if (!people.empty()) faults.error(people.front().where(), "people stand in every listed trial, not beside them");
+    if (!people.empty())
+      faults.error(people.front().where(), "`people` belongs inside each listed trial, not beside `trials`");
     return read_listed_trials(*node, body_meshes, faults);
   }
   YamlMap map(*node, faults, "trials");

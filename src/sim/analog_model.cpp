@@ -2,9 +2,44 @@
 
 #include <map>
 
+#include "body/body_part.hpp"
 #include "pir/calibration.hpp"
+#include "pir/planck.hpp"
 
 namespace pirsim::sim {
+
+PowerModel::PowerModel(const SceneSpec& scene, const SensingSpec& sensing, const rt::Room& room,
+                       std::span<const std::vector<double>> apertures_m2)
+    : rays_(std::make_unique<pir::PowerRays>()) {
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+    const SensorSpec& sensor = scene.sensors[i];
+    if (apertures_m2[i].empty()) {
+      pir::append_blind(*rays_);
+    } else {
+      pir::append(*rays_, sensor, scene.sensor_models.at(sensor.model), apertures_m2[i], sensing.analog_rays_per_zone);
+    }
+    sensors_.resize(rays_->bundle.rays.size(), static_cast<std::uint32_t>(i));
+  }
+  clipped_ = std::make_unique<RayBundle>(rays_->bundle);
+  const double ambient = pir::band_radiance(pir::kelvin(sensing.ambient_c));
+  std::vector<double> mesh_radiances;
+  for (const TriMesh& mesh : scene.meshes) {
+    mesh_radiances.push_back(mesh.temperature_c ? pir::band_radiance(pir::kelvin(*mesh.temperature_c)) : ambient);
+  }
+  for (std::size_t i = 0; i < clipped_->rays.size(); ++i) {
+    const auto hit = room.first_hit(clipped_->rays[i], clipped_->range[i]);
+    if (hit) clipped_->range[i] = hit->distance;
+    backgrounds_.push_back(hit ? mesh_radiances[hit->mesh] : ambient);
+  }
+}
+
+BodyRadiance radiance_of(const WarmthSpec& warmth, double ambient_c) {
+  const auto temperatures_c = body::surface_temperatures_c(warmth, ambient_c);
+  BodyRadiance radiance{};
+  for (std::size_t i = 0; i < radiance.size(); ++i) radiance[i] = pir::band_radiance(pir::kelvin(temperatures_c[i]));
+  return radiance;
+}
+
 namespace {
 
 DetectorSpec without_noise(DetectorSpec spec) {

@@ -13,7 +13,7 @@
 #include "body/walkable_floor.hpp"
 #include "effects/pipeline.hpp"
 #include "schema/study_in_force.hpp"
-#include "sim/power_model.hpp"
+#include "sim/analog_model.hpp"
 #include "sim/sensor_array.hpp"
 
 namespace pirsim::sim {

@@ -1,4 +1,4 @@
-// What motion is: what the sensors' electronics make of what their optics show them.
+// What counts as motion: the sensors' electronics turn what their optics see into triggers.
 #pragma once
 
 #include <cstdint>
@@ -19,13 +19,13 @@ class Detector {
  public:
   explicit Detector(const SensorArray& array);
 
-  /// Forgets everything: before the run, `rest` has stood for long. All randomness follows from seed and run.
+  /// Forgets everything, and settles as if `rest` had been seen for long. Seed and run fix all randomness.
   void begin_run(std::uint64_t seed, std::uint32_t run, const Exposure& rest);
   /// From one tick to the next. triggers: (n_sensors) set to 1 where a sensor triggers at the later one, else to 0.
   void tick(const Exposure& before, const Exposure& after, std::span<std::uint8_t> triggers) noexcept;
-  /// tick() where nothing that is seen changes.
+  /// tick() with the same exposure before and after, without comparing it.
   void tick_unchanged(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept;
-  /// Would tick_unchanged() leave everything as it is, without a trigger?
+  /// True if tick_unchanged() would change nothing and trigger nothing.
   [[nodiscard]] bool is_at_rest(const Exposure& exposure) const;
   /// Whether a tick's triggers follow from its two exposures alone, in any run.
   [[nodiscard]] bool is_memoryless() const noexcept;

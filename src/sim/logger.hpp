@@ -11,18 +11,18 @@
 
 namespace pirsim::sim {
 
-/// A value.
+/// A value: copied with the run that it belongs to.
 class Logger {
  public:
   Logger(const effects::Pipeline& stages, const SensingSpec& sensing, std::size_t n_sensors);
 
-  /// Forgets everything. All randomness follows from these two.
+  /// Forgets everything. Seed and run fix all randomness.
   void begin_run(std::uint64_t seed, std::uint32_t run);
-  /// Somebody rose from a seat (index into the scene's) in the step to the tick that comes next.
+  /// Somebody left a seat (index into the scene's) in the step to the next tick: effects may leave it warm.
   void seat_left(std::size_t seat) { stages_.seat_left(seat); }
-  /// triggers: (n_sensors) what the detectors said at this tick (1, 2, ...); the effects change them.
+  /// triggers: (n_sensors) the detectors' triggers at this tick (1, 2, ...); the effects change them.
   void tick(std::int64_t tick, std::span<std::uint8_t> triggers) noexcept;
-  /// Whole windows without triggers leave it as it is.
+  /// True if whole windows without triggers would leave it as it is.
   [[nodiscard]] bool is_at_rest() const noexcept { return !stages_.acts_on_triggers() && reader_.is_at_rest(); }
   /// The row's bits as they were read last, then what the effects do to the row.
   void complete(Sample& row) noexcept;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/actor.hpp"
-#include "sim/posture_index.hpp"
+#include "sim/posture_memory.hpp"
 #include "sim/replay.hpp"
 
 namespace pirsim::sim {

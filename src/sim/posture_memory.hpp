@@ -1,14 +1,54 @@
-// Remembers what the sensors saw of postures.
+// Postures by number, and what the sensors saw of them: a choreography repeats its postures, bit for bit.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "body/motion.hpp"
 #include "pirsim/rays.hpp"
-#include "sim/posture_index.hpp"
 
 namespace pirsim::sim {
+
+/// A hash table from everything that a posture depends on to numbers 1, 2, 3, ... in the order of remembering.
+class PostureIndex {
+ public:
+  using Number = std::uint32_t;  ///< 0: none
+  using Word = std::uint64_t;
+
+  /// Room for so many without allocating, if it is known.
+  explicit PostureIndex(std::size_t n_expected = 0);
+  /// 0 if the posture isn't known. body: whose measures, as a number or an address. person: counted from 0; what
+  /// followed upon their last posture before is looked at first.
+  [[nodiscard]] Number find(std::size_t person, std::uint64_t body, const body::Outline& outline) noexcept;
+  /// Remembers what find() was last asked for in vain, for the same person.
+  Number remember(std::size_t person);
+  /// People are counted up to here.
+  void make_room_for(std::size_t n_people);
+  /// How many there are: the last number.
+  [[nodiscard]] std::size_t size() const noexcept { return successors_.size() - 1; }
+  [[nodiscard]] std::uint64_t body(Number number) const noexcept { return keys_[number - 1].back(); }
+  [[nodiscard]] body::Outline outline(Number number) const noexcept;
+  /// Forgets all but the first n.
+  void shrink(std::size_t n) noexcept;
+  void forget_all() noexcept;  ///< but what find() was last asked for can still be remembered
+
+ private:
+  using Key = std::array<Word, sizeof(body::Outline) / sizeof(Word) + 1>;
+  [[nodiscard]] static std::size_t hash(const Key& key) noexcept;
+  /// Where the key is, or would be.
+  [[nodiscard]] std::size_t bucket_of(const Key& key) const noexcept;
+  void spread() noexcept;  ///< over twice as many buckets
+  void follow(std::size_t person, Number number) noexcept;
+
+  std::vector<Number> buckets_;  ///< probed one after the other
+  std::vector<Key> keys_;
+  std::vector<Number> successors_;  ///< (1 + n) what came after a posture the last time
+  std::vector<Number> last_;        ///< (n_people)
+  Key wanted_{};
+  std::size_t free_bucket_ = 0;  ///< for wanted_
+};
 
 /// A row of words for each of a bounded number of postures. When it is full it starts anew.
 class PostureMemory {

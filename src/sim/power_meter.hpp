@@ -7,10 +7,10 @@
 
 #include "rt/tracer.hpp"
 #include "sim/actor.hpp"
+#include "sim/analog_model.hpp"
 #include "sim/compiled_study.hpp"
-#include "sim/mannequin.hpp"
 #include "sim/posture_memory.hpp"
-#include "sim/power_model.hpp"
+#include "sim/solids.hpp"
 
 namespace pirsim::sim {
 

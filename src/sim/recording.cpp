@@ -7,8 +7,7 @@
 #include "effects/catalogue.hpp"
 #include "sim/replay.hpp"
 #include "sim/run_state.hpp"
-#include "sim/set_numbering.hpp"
-#include "sim/zone_cache_pool.hpp"
+#include "sim/zone_cache.hpp"
 
 namespace pirsim {
 namespace sim {
@@ -69,7 +68,7 @@ class ReplayedDetector final : public DetectorLogic {
 
 Recording empty_recording(const CompiledStudy& study) {
   if (study.array().analog() != nullptr) {
-    throw Error(ErrorCode::usage, "zones alone don't tell what sensors with an analog response do");
+    throw Error(ErrorCode::usage, "a recording of zones isn't enough for sensors with an analog response");
   }
   return {{}, {}, study.array().n_sensors(), study.sensing()};
 }

@@ -6,10 +6,9 @@
 #include <utility>
 
 #include "rt/tracer.hpp"
-#include "sim/mannequin.hpp"
 #include "sim/people_tracks.hpp"
 #include "sim/replay.hpp"
-#include "sim/set_numbering.hpp"
+#include "sim/solids.hpp"
 
 namespace pirsim::sim {
 namespace {

@@ -8,7 +8,7 @@
 namespace pirsim::sim {
 namespace {
 
-/// What a room is used for, by those who are on its floor.
+/// What the people on the floor use the room for.
 std::string_view use_of(const CompiledStudy& study, const Crowd& crowd) {
   int n = 0, cleaners = 0, in_meeting = 0;
   for (const Actor& actor : crowd.actors()) {

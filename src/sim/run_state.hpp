@@ -5,19 +5,39 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "pirsim/sample.hpp"
 #include "sim/crowd.hpp"
 #include "sim/detector.hpp"
 #include "sim/logger.hpp"
-#include "sim/scratch.hpp"
 #include "sim/sensor_array.hpp"
 #include "sim/zone_cache.hpp"
 
 namespace pirsim::sim {
 
-/// A value: a copy goes on by itself from the same moment. The study outlives it.
+/// A member that changes no result: a copy begins empty, so that its owner can be copied by `= default`.
+template <typename T>
+class Scratch {
+ public:
+  Scratch() = default;
+  Scratch(const Scratch&) noexcept {}
+  Scratch(Scratch&& other) noexcept : value_(std::move(other.value_)) {}
+  Scratch& operator=(const Scratch&) noexcept { return *this; }
+  Scratch& operator=(Scratch&& other) noexcept {
+    value_ = std::move(other.value_);
+    return *this;
+  }
+  ~Scratch() = default;
+
+  [[nodiscard]] T& operator*() noexcept { return value_; }
+
+ private:
+  T value_{};
+};
+
+/// A value: a copy continues independently from the same tick. The study must outlive it.
 struct RunState {
   /// The moment before the first tick of a run, run in [0, study.n_runs()).
   RunState(const CompiledStudy& study, std::uint32_t run);
@@ -27,27 +47,28 @@ struct RunState {
 
   std::uint32_t run = 0;
   std::int64_t tick = 0;
-  bool finished = false;  ///< everybody has carried out all actions and the last window is complete
+  bool finished = false;  ///< all actions are carried out and the last window is complete
   Crowd crowd;
-  std::array<Exposure, 2> exposures;  ///< of this tick and of the one before, by turns
+  std::array<Exposure, 2>
+      exposures;  ///< of this tick and the previous one, at index tick % 2, so that neither is copied
   Detector detector;
   Logger logger;
-  std::int64_t empty_ticks = 0;        ///< for how many of the latest ticks nobody was there
-  bool at_rest = false;                ///< nothing changes before somebody comes
+  std::int64_t empty_ticks = 0;  ///< how many ticks in a row, up to this one, nobody was there
+  bool at_rest = false;  ///< sensors and logger can't change until somebody comes, so windows can be passed over
   std::optional<std::int64_t> day;     ///< since 1970-01-01, of a schedule
   std::vector<std::uint8_t> triggers;  ///< (n_sensors) at this tick
   Sample sample;                       ///< at the end of the last whole window
-  /// What has been traced before; changes no result. Made when first needed, unless whoever runs many lends theirs.
+  /// Remembers what has been traced; changes no result. Made when first needed, unless a pool lends one.
   Scratch<std::shared_ptr<ZoneCache>> cache;
 };
 
-/// Advances people alone by a tick: what sensors do stays as it is. For a state that isn't stepped otherwise. True if
-/// a window ended with it.
+/// Advances people alone by a tick and leaves the sensors as they are; don't mix it with step_tick() on one state. True
+/// if a window ended with it.
 bool move_tick(const CompiledStudy& study, RunState& state);
 /// Advances one tick: people, optics, detectors, logger. True if a window ended with it.
 bool step_tick(const CompiledStudy& study, RunState& state);
-/// Advances by a window in which nobody is there and nobody comes, at next to no cost, to what step_tick() comes to in
-/// as many ticks, bit for bit. False, and nothing done, if there may be somebody.
+/// Advances by a window in which nobody is there and nobody comes: the same bits as step_tick() for as many ticks, at
+/// almost no cost. Does nothing and returns false if somebody may be there.
 bool pass_empty_window(const CompiledStudy& study, RunState& state);
 
 }  // namespace pirsim::sim

@@ -40,7 +40,7 @@ class SensorArray {
   /// Nested copies of every zone that stand for soft edges; 1: hard edges.
   [[nodiscard]] std::size_t n_levels() const noexcept { return n_levels_; }
   [[nodiscard]] int ticks_per_window() const noexcept { return ticks_per_window_; }
-  /// Takes the place of the detector of changes, if an effect says so.
+  /// Replaces the detection of changes if an effect asks for it.
   [[nodiscard]] const std::optional<pir::PolarityDetector>& polarity() const noexcept { return polarity_; }
   /// The sensors that answer physically, or null if none does.
   [[nodiscard]] const AnalogModel* analog() const noexcept { return analog_ ? &*analog_ : nullptr; }

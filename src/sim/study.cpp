@@ -6,7 +6,7 @@
 #include "pirsim/error.hpp"
 #include "sim/explainer.hpp"
 #include "sim/run_state.hpp"
-#include "sim/zone_cache_pool.hpp"
+#include "sim/zone_cache.hpp"
 
 namespace pirsim {
 namespace {
@@ -46,7 +46,7 @@ RunResult run_with(sim::ZoneCachePool& caches, const sim::CompiledStudy& study, 
   *state.cache = caches.borrow();
   std::optional<sim::Explainer> explainer;
   if (trace == Trace::signals && study.array().analog() != nullptr) explainer.emplace(study);
-  // Zones and signals are told of every tick.
+  // Zones and signals are recorded at every tick, so no window may be passed over.
   const bool may_pass = record == Record::samples && !explainer;
   try {
     while (!state.finished) {

@@ -69,7 +69,7 @@ void compare_provenances(std::vector<Entry>& entries) {
       const auto unlike = io::differences(io::read_manifest(io::manifest_path(entry.file)).provenance,
                                           io::read_manifest(io::manifest_path(typical->file)).provenance);
       entry.report.state = State::broken;
-      entry.report.why = "remove it, it was made from something else than " + typical->file.filename().string() + ":";
+      entry.report.why = "remove it: its inputs differ from those of " + typical->file.filename().string() + ":";
       for (const std::string& each : unlike) entry.report.why += ' ' + each;
     } else if (entry.brief.rows > 0 && !by_hash.emplace(entry.brief.sha256, &entry).second) {
       entry.report.state = State::broken;
@@ -159,7 +159,7 @@ class Merger {
       write(part);
     }
     if (bytes != entry.brief.bytes || hash.hex() != entry.brief.sha256) {
-      throw Error(ErrorCode::input, Where{entry.file.string()}, "its content is not what its manifest says");
+      throw Error(ErrorCode::input, Where{entry.file.string()}, "its content differs from what its manifest says");
     }
   }
   /// Fills in bytes and hash.

@@ -67,7 +67,7 @@ struct ShardReport {
   enum class State {
     done,        ///< data and manifest are there and agree with each other and with the other shards
     missing,     ///< nothing is there
-    unfinished,  ///< begun; --resume goes on
+    unfinished,  ///< begun; --resume continues
     broken,      ///< see `why`
   };
   Shard shard;

@@ -1,10 +1,11 @@
-#include "studies/day_report.hpp"
+#include "studies/study_report.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
 
+#include "core/fixed.hpp"
 #include "pirsim/geometry.hpp"
 
 namespace pirsim::studies {
@@ -12,17 +13,7 @@ namespace {
 
 constexpr double bin_s = 600.0, square_m = 0.25;
 
-std::string percent(double share) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(share < 0.0995 ? 1 : 0) << 100.0 * share;
-  return out.str();
-}
-
-std::string text(double value, int digits) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(digits) << value;
-  return out.str();
-}
+std::string percent(double share) { return fixed(100.0 * share, share < 0.0995 ? 1 : 0); }
 
 }  // namespace
 
@@ -111,7 +102,7 @@ io::LineChart DayReport::people_chart() const {
     const double mean = bin.people / bin.windows;
     most = std::max<double>(most, bin.most);
     line.points.push_back(
-        {hour_of(k), mean, bin.fewest, bin.most, text(hour_of(k), 2) + " h: " + text(mean, 2) + " people"});
+        {hour_of(k), mean, bin.fewest, bin.most, fixed(hour_of(k), 2) + " h: " + fixed(mean, 2) + " people"});
   }
   chart.y_high = most;
   chart.lines.push_back(std::move(line));
@@ -130,7 +121,7 @@ io::LineChart DayReport::sensor_chart(std::size_t sensor) const {
   for (std::size_t k = 0; k < bins_.size(); ++k) {
     if (bins_[k].windows == 0.0) continue;
     const double share = bins_[k].motion[sensor] / bins_[k].windows;
-    line.points.push_back({hour_of(k), share, {}, {}, text(hour_of(k), 2) + " h: " + percent(share) + " %"});
+    line.points.push_back({hour_of(k), share, {}, {}, fixed(hour_of(k), 2) + " h: " + percent(share) + " %"});
   }
   chart.lines.push_back(std::move(line));
   return chart;
@@ -153,7 +144,7 @@ io::GridChart DayReport::count_chart() const {
         continue;
       }
       const double share = count.motion[i] / count.windows;
-      chart.cells.push_back({100.0 * share, percent(share), "of " + text(count.windows, 0) + " s"});
+      chart.cells.push_back({100.0 * share, percent(share), "of " + fixed(count.windows, 0) + " s"});
     }
   }
   return chart;

@@ -5,7 +5,6 @@
 #include <glm/geometric.hpp>
 
 #include "pirsim/error.hpp"
-#include "sim/beams.hpp"
 #include "sim/compiled_study.hpp"
 #include "sim/run_state.hpp"
 #include "sim/solids.hpp"

@@ -59,7 +59,7 @@ Task find_task(const Environment& environment) {
   for (const char* name : {"PBS_ARRAY_INDEX", "PBS_ARRAYID"}) {
     if (!environment(name)) continue;
     return {name, variable(environment, name),
-            []() -> Task::Array { refuse("PBS doesn't tell a task how many there are; use --shard auto/N"); }};
+            []() -> Task::Array { refuse("PBS doesn't tell a task how many tasks there are; use --shard auto/N"); }};
   }
   refuse(
       "'auto' takes its number from a job array of Slurm (SLURM_ARRAY_TASK_ID), SGE (SGE_TASK_ID) or PBS "
@@ -75,7 +75,7 @@ Shard shard_in_whole_array(const Task& task) {
   if (!is_even) {
     refuse("the numbers of this array aren't evenly spaced (" + std::to_string(array.count) + " from " +
            std::to_string(array.first) + " to " + std::to_string(array.last) +
-           "), so that the shard can't be told; number the tasks 1 to N and use --shard auto/N");
+           "), so the shard can't be determined; number the tasks 1 to N and use --shard auto/N");
   }
   if (task.id < array.first || task.id > array.last || (task.id - array.first) % array.step != 0) {
     refuse(id + " is not a task of its array");

@@ -1,16 +1,64 @@
-// A study's counts and time series as a page for a reader.
+// Pages for a reader: a coverage study's maps and figures, a study's counts and time series.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "io/report.hpp"
 #include "pirsim/study.hpp"
-#include "studies/day_report.hpp"
+#include "studies/coverage.hpp"
 #include "studies/summary.hpp"
 
 namespace pirsim::studies {
+
+/// One sensor's map with the walls, the sensor and, dashed, what was taken out of the room.
+[[nodiscard]] io::MapChart map_chart(const CoverageStudy& study, const CoverageMap& map, std::size_t sensor);
+
+[[nodiscard]] io::Report coverage_report(const CoverageStudy& study, const CoverageMap& map,
+                                         const CoverageFigures& figures);
+
+/// Days of a schedule: people and sensors over the day, motion by number of people, where people were.
+/// Of one trial; keeps sums alone, so that a year takes no more memory than a day.
+class DayReport {
+ public:
+  DayReport(const Model& model, const ScheduleSpec& schedule);
+
+  /// With occupants. Days on which nobody comes are left out.
+  void add_run(const RunResult& result);
+  [[nodiscard]] io::ReportSection section(const std::string& heading) const;
+
+ private:
+  struct Bin {
+    double windows = 0.0, people = 0.0;
+    int fewest = 0, most = 0;
+    std::vector<double> motion;  ///< (n_sensors) windows
+  };
+  struct Count {
+    double windows = 0.0;
+    std::vector<double> motion;  ///< (n_sensors) windows
+  };
+  struct Moment {
+    std::string clock;
+    std::vector<OccupantRow> people;
+  };
+  void note_moment(const RunResult& result);
+  [[nodiscard]] io::LineChart people_chart() const;
+  [[nodiscard]] io::LineChart sensor_chart(std::size_t sensor) const;
+  [[nodiscard]] io::GridChart count_chart() const;
+  [[nodiscard]] io::MapChart floor_chart() const;
+  [[nodiscard]] double hour_of(std::size_t bin) const;
+
+  const Model* model_;
+  double from_h_, to_h_;
+  std::vector<Bin> bins_;
+  std::vector<Count> by_people_;  ///< (most people + 1)
+  std::size_t columns_ = 0;       ///< of the floor's squares
+  std::vector<double> squares_;   ///< person-seconds
+  Moment busiest_;
+  int days_ = 0;
+};
 
 /// Collects what the page shows beside the summary: the first replicate's rows.
 class StudyReport {

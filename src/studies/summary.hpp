@@ -1,4 +1,4 @@
-// A study's counts against measured ones: per cell (trial x sensor) and over all cells.
+// A study's counts against measured ones: per cell (trial x sensor) and over all cells, and how well they predict them.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +15,11 @@
 #include "schema/measured_cell.hpp"
 
 namespace pirsim::studies {
+
+/// Continuous ranked probability score of an ensemble of whole numbers (at least one): mean |x - y| - 1/2 mean |x -
+/// x'|, over all pairs of members, each with itself too. 0 is perfect. In the unit of the values. Ref: [Gneiting2007]
+/// equation 21.
+[[nodiscard]] double crps(const Tally& ensemble, double observed);
 
 /// One sensor in one trial, over all runs.
 struct CellSummary {

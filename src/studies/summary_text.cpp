@@ -3,16 +3,12 @@
 #include <cstdio>
 #include <functional>
 
+#include "core/fixed.hpp"
 #include "studies/summary.hpp"
 
 namespace pirsim::studies {
 namespace {
 
-std::string fixed(double value, int digits) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof(buffer), "%.*f", digits, value);
-  return buffer;
-}
 /// As few digits as it takes: published means are whole numbers or have a decimal.
 std::string shortest(double value) {
   char buffer[64];

@@ -14,7 +14,7 @@
 #include "pirsim/scene.hpp"
 #include "pirsim/walk_test.hpp"
 #include "rt/tracer.hpp"
-#include "sim/power_model.hpp"
+#include "sim/analog_model.hpp"
 #include "studies/survey_base.hpp"
 
 namespace pirsim::studies {

@@ -1,6 +1,7 @@
 #include <iomanip>
 #include <sstream>
 
+#include "core/fixed.hpp"
 #include "studies/walk_test.hpp"
 
 namespace pirsim::studies {
@@ -24,11 +25,7 @@ PassCount count_passes(const WalkTestResult& result, Tries PointResult::*motion,
   return count;
 }
 
-std::string percent(double share) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(0) << 100.0 * share << " %";
-  return out.str();
-}
+std::string percent(double share) { return fixed(100.0 * share, 0) + " %"; }
 
 std::string seconds(double value) {
   std::ostringstream out;

@@ -168,11 +168,11 @@ class Shards(unittest.TestCase):
             (folder / "shard-0001-of-0006.csv").write_text("")
 
         cases = {
-            "other seed": (other_seed, "made from something else than shard-0001-of-0005.csv: seed (5, not 2021)"),
+            "other seed": (other_seed, "its inputs differ from those of shard-0001-of-0005.csv: seed (5, not 2021)"),
             "copied": (copied, "its manifest is that of another shard"),
             "twice": (twice, "is there more than once"),
-            "swapped": (swapped_data, "its content is not what its manifest says"),
-            "altered bit": (replaced("shard-0004-of-0005.csv", "seated,1,0,0", "seated,1,1,0"), "not what its manifest"),
+            "swapped": (swapped_data, "its content differs from what its manifest says"),
+            "altered bit": (replaced("shard-0004-of-0005.csv", "seated,1,0,0", "seated,1,1,0"), "differs from what its manifest"),
             "other count": (other_count, "holds shards of 5 and of 6"),
             "damaged manifest": (replaced("shard-0003-of-0005.csv.json", "}", ""), "is no manifest of pirsim"),
             "other build": (replaced("shard-0003-of-0005.csv.json", '"compiler": "', '"compiler": "x'), "compiler (x"),

@@ -46,7 +46,7 @@ def main():
         os.kill(process.pid, signal.SIGKILL)
         process.wait()
         again = call("coverage", study_b, *coarse, "-o", folder / "cut")
-        assert "going on after" in again.stderr or process.returncode == 0, again.stderr
+        assert "continuing after" in again.stderr or process.returncode == 0, again.stderr
         assert (folder / "cut/coverage.csv").read_bytes() == csv, "an interruption changes the map"
         assert not rows.exists()
 

@@ -1,5 +1,5 @@
 // Temperatures in scenes and scripts.
-#include "body/warmth.hpp"
+#include "body/body_part.hpp"
 
 #include "gltf_builder.hpp"
 #include "pirsim/io.hpp"

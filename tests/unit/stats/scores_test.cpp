@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pirsim/error.hpp"
-#include "studies/crps.hpp"
+#include "studies/summary.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim::stats;

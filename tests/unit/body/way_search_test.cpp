@@ -1,4 +1,4 @@
-#include "body/grid_search.hpp"
+#include "body/way_search.hpp"
 
 #include <cmath>
 #include <limits>
@@ -73,7 +73,7 @@ double cost_of(const StepGrid& grid, const std::vector<int>& way) {
 
 }  // namespace
 
-TEST_CASE("A* finds ways exactly as short as brute force, and none where there is none", "[grid_search]") {
+TEST_CASE("A* finds ways exactly as short as brute force, and none where there is none", "[way_search]") {
   pirsim::Stream stream({.seed = 11});
   int found = 0;
   int none = 0;
@@ -102,7 +102,7 @@ TEST_CASE("A* finds ways exactly as short as brute force, and none where there i
   CHECK(none > 500);
 }
 
-TEST_CASE("cells have the same label exactly if there is a way between them", "[grid_search]") {
+TEST_CASE("cells have the same label exactly if there is a way between them", "[way_search]") {
   pirsim::Stream stream({.seed = 12});
   for (int round = 0; round < 50; ++round) {
     const StepGrid grid = random_grid(stream, 14, 9, 0.6);
@@ -115,7 +115,7 @@ TEST_CASE("cells have the same label exactly if there is a way between them", "[
   }
 }
 
-TEST_CASE("of equally short ways through an open grid always the same one is taken", "[grid_search]") {
+TEST_CASE("of equally short ways through an open grid always the same one is taken", "[way_search]") {
   pirsim::Stream stream({.seed = 13});
   const StepGrid grid = random_grid(stream, 8, 6, 1.1);
   const std::vector<int> way = shortest_way(grid, 0, 8 * 5 + 7);

@@ -1,4 +1,4 @@
-#include "sim/posture_index.hpp"
+#include "sim/posture_memory.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-// Where a study's rows go: a stream, or a file that can be resumed.
+// What a study writes: rows as runs end, and what needs all runs at once.
 #pragma once
 
 #include <cstdint>
@@ -7,18 +7,13 @@
 #include <span>
 #include <string>
 
+#include "app/study_run.hpp"
 #include "io/manifest.hpp"
 #include "pirsim/model.hpp"
 #include "pirsim/sample.hpp"
+#include "pirsim/study.hpp"
 
 namespace pirsim::app {
-
-struct RowOptions {
-  std::filesystem::path output;  ///< .csv, .csv.gz or .csv.zst; of a shard its folder; empty: standard output
-  std::string shard;             ///< "3/100", "auto"; empty: the whole study
-  std::string format = ".csv";   ///< ending of a shard's file
-  enum class Start { anew, resume } start = Start::anew;
-};
 
 class RowOutput {
  public:
@@ -29,12 +24,29 @@ class RowOutput {
   [[nodiscard]] virtual const io::RunNotes& notes() const = 0;
   /// After the last run.
   virtual void commit() = 0;
-  /// The work ends early for good: nothing is left behind.
+  /// The study ends early and won't be resumed: removes what was written.
   virtual void discard() noexcept = 0;
   [[nodiscard]] virtual std::uint64_t rows() const = 0;
 };
 
 /// Throws Error: usage (a shard without a folder, and the like), io, input (nothing that could be resumed).
 [[nodiscard]] std::unique_ptr<RowOutput> open_rows(const Model& model, const RowOptions& options);
+
+[[nodiscard]] bool has_whole_study_outputs(const RunOptions& options);
+
+/// Nothing of them is left if the study ends early.
+class WholeStudyOutputs {
+ public:
+  WholeStudyOutputs(const Model& model, const Inputs& inputs, const RunOptions& options);
+  ~WholeStudyOutputs();
+  void add(const RunResult& result);
+  void commit();
+  /// What they need of every run.
+  [[nodiscard]] Occupants occupants() const noexcept;
+
+ private:
+  struct Files;
+  std::unique_ptr<Files> files_;
+};
 
 }  // namespace pirsim::app

@@ -1,0 +1,71 @@
+// Ways over the floor: the shortest over a grid of cells, pulled tight, and remembered for the next replicate.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "pirsim/geometry.hpp"
+
+namespace pirsim::body {
+
+/// Which of its eight neighbours can be reached from each cell; cells count row by row.
+struct StepGrid {
+  int columns = 0;
+  int rows = 0;
+  std::vector<std::uint8_t> open;  ///< (rows x columns) bit d is set if the step in direction d can be taken
+};
+
+struct Step {
+  int column = 0;
+  int row = 0;
+};
+inline constexpr int n_directions = 8;
+/// Direction d + 4 is the way back of d; even directions are straight, odd ones diagonal.
+inline constexpr std::array<Step, n_directions> steps{
+    {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
+[[nodiscard]] constexpr int opposite(int direction) noexcept { return (direction + 4) % n_directions; }
+
+/// A* with the octile distance; a straight step costs 1, a diagonal one sqrt 2. Of equally good cells the one of
+/// the lowest index goes first. The cells from start to goal, both included; empty if there is no way.
+[[nodiscard]] std::vector<int> shortest_way(const StepGrid& grid, int start, int goal);
+
+/// A label per cell, equal for cells that are connected (the lowest index of them).
+[[nodiscard]] std::vector<int> connected_parts(const StepGrid& grid);
+
+/// Whether one can go straight from the first point to the second.
+using StraightWay = std::function<bool(const Vec2&, const Vec2&)>;
+
+/// A shorter way with the same ends, each leg of which `straight` allows; `way` itself must be allowed.
+[[nodiscard]] std::vector<Vec2> pulled_tight(std::vector<Vec2> way, const StraightWay& straight);
+
+/// Safe to use from any thread, of bounded size, and without influence on what is found.
+class WayMemory {
+ public:
+  using Way = std::optional<std::vector<Vec2>>;
+
+  /// What search() finds between the points; searched once for points that are the same bit for bit.
+  [[nodiscard]] Way way(const Vec2& from, const Vec2& to, const std::function<Way()>& search) {
+    const std::array<double, 4> ends{from.x, from.y, to.x, to.y};
+    {
+      const std::lock_guard lock(mutex_);
+      if (const auto known = ways_.find(ends); known != ways_.end()) return known->second;
+    }
+    Way found = search();
+    const std::lock_guard lock(mutex_);
+    if (ways_.size() >= most_ways) ways_.clear();
+    ways_.emplace(ends, found);
+    return found;
+  }
+
+ private:
+  static constexpr std::size_t most_ways = 1024;  ///< a study with fixed seats has two a seat
+  std::mutex mutex_;
+  std::map<std::array<double, 4>, Way> ways_;
+};
+
+}  // namespace pirsim::body
