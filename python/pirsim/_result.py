@@ -122,6 +122,8 @@ class Result:
         columns: dict[str, Any] = self._columns()
         columns["trial"] = pl.Series(self.trial.tolist()).gather(columns["trial"])
         columns["phase"] = pl.Series(list(self.phases)).gather(columns["phase"])
+        if "time" in columns:
+            columns["time"] = columns["time"].astype("datetime64[ms]")  # polars has no whole seconds
         return pl.DataFrame(columns)
 
     def to_xarray(self) -> xarray.Dataset:

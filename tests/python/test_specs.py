@@ -80,9 +80,9 @@ def test_a_room_and_a_person_made_in_python():
     result = pirsim.run(pirsim.compile(own_room(), own_script()))
     runs, seconds, sensors = result.bits.shape
     assert (runs, sensors) == (1, 1)
-    assert 8 <= seconds <= 12  # 8 m at 1 m/s
+    assert 8 <= seconds <= 16  # 8 m at 1 m/s, and turns
     assert 3 < result.bits.sum() <= seconds
-    assert set(result.phase[0]) == {"to and fro"} and (result.people == 1).all()
+    assert (result.phase[0] == "to and fro").sum() >= 8 and (result.people == 1).all()
     # Behind a box as wide as the room nobody is seen.
     hidden = own_room()
     hidden.meshes.append(pirsim.Mesh.box("screen", (0, 0, 2.9), (5, 2.5, 3.0)))

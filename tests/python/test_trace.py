@@ -33,11 +33,11 @@ def test_effects_on_a_trace_are_those_of_a_model_that_has_them(study):
             ([pirsim.Effect("missed_triggers", {"probability": 0.5})], [{"missed_triggers": {"probability": 0.5}}]),
             (["dead_time", {"false_triggers": {"sensor": plain.sensors.names[0]}}],
              ["dead_time", {"false_triggers": {"sensor": plain.sensors.names[0]}}])):
-        model = pirsim.compile(scene, script, set={"replicates": 2, "seed": 99, "effects": written})
-        emitted = trace.emit(effects=effects, seed=99)
+        model = pirsim.compile(scene, script, set={"replicates": 2, "effects": written})
+        emitted = trace.emit(effects=effects)
         assert same(emitted, pirsim.run(model))
         assert not np.array_equal(emitted.bits, trace.emit().bits)
-        assert same(emitted, trace.emit(effects=effects, seed=99))
+        assert same(emitted, trace.emit(effects=effects, seed=model.script.seed))
         assert not np.array_equal(emitted.bits, trace.emit(effects=effects, seed=100).bits)
 
 
