@@ -19,7 +19,7 @@ constexpr double foresight_s = 1.5;       ///< assumed: how long before ways cro
 constexpr double gap_m = 0.1;             ///< assumed: kept between two people on foot beside their radii
 constexpr double leaning_back_rad = 0.26;  ///< how far back a sitter leans: 15 degrees, as in the paper
 constexpr double sitter_gap_m = 0.06;      ///< kept beside that in planning: what a rounded corner cuts, and 1 cm
-constexpr double squeeze_gap_m = 0.03;     ///< assumed: between trunks that squeeze past each other (tried 0.02-0.05)
+constexpr double squeeze_gap_m = 0.03;     ///< assumed: between trunks that squeeze past each other (tried 0.02, 0.03)
 constexpr double squeeze_corner_m = 0.1;   ///< radius of their corners: little is cut off them
 constexpr double squeeze_speed = 0.5;     ///< assumed: of the usual pace
 constexpr double braking_m_s2 = 1.5;      ///< assumed, as Motion's acceleration
@@ -409,7 +409,7 @@ bool Pedestrian::makes_way(std::span<const Presence> others, std::int64_t now) {
 void Pedestrian::sit_up(std::span<const Presence> others, std::int64_t now) {
   if (motion_.stage() != Stage::seated) leans_forward_ = false;
   if (motion_.stage() != Stage::seated || now % ticks(search_every_s) != 0) return;
-  constexpr double near_m = 1.5, ahead_m = 0.3;  // assumed: at which wishes and people are minded (tried 0.1-0.5)
+  constexpr double near_m = 1.5, ahead_m = 0.3;  // assumed: at which wishes and people are minded (ahead: tried 0.06, 0.3)
   constexpr double forward_rad = 0.09, lean_s = 0.6;
   const Stadium room = presence().room;
   const bool asked = std::ranges::any_of(others, [&](const Presence& other) {
