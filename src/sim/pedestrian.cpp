@@ -14,25 +14,25 @@ namespace {
 using body::Stage;
 using Solidity = Presence::Solidity;
 
-constexpr double look_ahead_m = 1.2;      ///< assumed: how far ahead a walker minds others (tried 0.8-2)
-constexpr double foresight_s = 1.5;       ///< assumed: how long before ways cross one gives way (tried 1-2)
-constexpr double gap_m = 0.1;             ///< assumed: kept between two people on foot beside their radii
+constexpr double look_ahead_m = 1.2;       ///< assumed: how far ahead a walker minds others (tried 0.8-2)
+constexpr double foresight_s = 1.5;        ///< assumed: how long before ways cross one gives way (tried 1-2)
+constexpr double gap_m = 0.1;              ///< assumed: kept between two people on foot beside their radii
 constexpr double leaning_back_rad = 0.26;  ///< how far back a sitter leans: 15 degrees, as in the paper
 constexpr double sitter_gap_m = 0.06;      ///< kept beside that in planning: what a rounded corner cuts, and 1 cm
-constexpr double squeeze_gap_m = 0.03;     ///< assumed: between trunks that squeeze past each other (tried 0.02-0.05)
+constexpr double squeeze_gap_m = 0.03;     ///< assumed: between trunks that squeeze past each other (tried 0.02, 0.03)
 constexpr double squeeze_corner_m = 0.1;   ///< radius of their corners: little is cut off them
-constexpr double squeeze_speed = 0.5;     ///< assumed: of the usual pace
-constexpr double braking_m_s2 = 1.5;      ///< assumed, as Motion's acceleration
-constexpr double patience_s = 0.5;        ///< assumed: wait before looking for another way (tried 0.3-1)
-constexpr double patience_step_s = 0.35;  ///< more for some, so that two don't dodge alike
-constexpr double search_every_s = 0.2;    ///< how often one who found no way looks again
-constexpr double wish_after_s = 1.0;      ///< assumed: held up for so long one asks others to make way (tried 0.5-2)
-constexpr double walked_on_m = 0.5;       ///< who has come so far isn't held up any more
-constexpr double wish_reaches_m = 3.0;    ///< assumed: who stands farther along a wished way isn't concerned yet
-constexpr double aside_most_s = 10.0;     ///< assumed: nobody waits aside for longer (tried 5-20)
-constexpr double passed_m = 0.8;          ///< who passes through others goes at least so far
-constexpr double stuck_s = 20.0;          ///< then people pass through each other (people.md)
-constexpr double stuck_in_all_s = 60.0;   ///< assumed: held up so long in one errand is stuck too (tried 40-120)
+constexpr double squeeze_speed = 0.5;      ///< assumed: of the usual pace
+constexpr double braking_m_s2 = 1.5;       ///< assumed, as Motion's acceleration
+constexpr double patience_s = 0.5;         ///< assumed: wait before looking for another way (tried 0.3-1)
+constexpr double patience_step_s = 0.35;   ///< more for some, so that two don't dodge alike
+constexpr double search_every_s = 0.2;     ///< how often one who found no way looks again
+constexpr double wish_after_s = 1.0;       ///< assumed: held up for so long one asks others to make way (tried 0.5-2)
+constexpr double walked_on_m = 0.5;        ///< who has come so far isn't held up any more
+constexpr double wish_reaches_m = 3.0;     ///< assumed: who stands farther along a wished way isn't concerned yet
+constexpr double aside_most_s = 10.0;      ///< assumed: nobody waits aside for longer (tried 5-20)
+constexpr double passed_m = 0.8;           ///< who passes through others goes at least so far
+constexpr double stuck_s = 20.0;           ///< then people pass through each other (people.md)
+constexpr double stuck_in_all_s = 60.0;    ///< assumed: held up so long in one errand is stuck too (tried 40-120)
 
 double distance(const Vec2& point, const Stadium& stadium) {
   return body::distance(point, stadium.a, stadium.b) - stadium.radius_m;
@@ -188,8 +188,7 @@ Progress Pedestrian::stand_up(std::span<const Presence> others, std::int64_t now
 }
 
 void Pedestrian::sit_down(const body::SeatPlace& seat, std::span<const Presence> others, std::int64_t now) {
-  const Vec2 back =
-      motion_.position() - body::fall_back_m(person_->humanoid, seat) * direction_of(motion_.heading());
+  const Vec2 back = motion_.position() - body::fall_back_m(person_->humanoid, seat) * direction_of(motion_.heading());
   if (solidity_ != Solidity::solid || free_to_draw_back(back, others)) {
     motion_.sit_down(seat);
     wished_way_.reset();
@@ -286,7 +285,8 @@ Progress Pedestrian::go_to(const Vec2& target, std::span<const Presence> others,
   return Progress::going_on;
 }
 
-/// How far one can go, on the route or straight on to a halt, before one comes too near to somebody, and nearer than one is.
+/// How far one can go, on the route or straight on to a halt, before one comes too near to somebody, and nearer than
+/// one is.
 double Pedestrian::free_way_ahead(std::span<const Presence> others) const {
   constexpr double step_m = 0.05;
   double free_m = look_ahead_m;
@@ -316,7 +316,8 @@ bool Pedestrian::must_give_way(std::span<const Presence> others) const {
     const double speed2 = glm::dot(closing, closing);
     if (glm::length(other.velocity) < 0.1 || speed2 < 1e-6) continue;  // who stands is walked round
     const double when = std::clamp(-glm::dot(offset, closing) / speed2, 0.0, foresight_s);
-    if (when > 0.0 && glm::length(offset + when * closing) < radius_m() + taken_by(other).radius_m + gap_to(other)) return true;
+    if (when > 0.0 && glm::length(offset + when * closing) < radius_m() + taken_by(other).radius_m + gap_to(other))
+      return true;
   }
   return false;
 }
@@ -391,7 +392,8 @@ bool Pedestrian::makes_way(std::span<const Presence> others, std::int64_t now) {
   const Presence* first = nullptr;
   for (const Presence& other : others) {
     if (!other.wished_way || (held_up_since_ && Precedence{*held_up_since_, index_} < other.precedence)) continue;
-    if (distance_to_way(motion_.position(), *other.wished_way, wish_reaches_m) > radius_m() + other.room.radius_m + gap_m) {
+    if (distance_to_way(motion_.position(), *other.wished_way, wish_reaches_m) >
+        radius_m() + other.room.radius_m + gap_m) {
       continue;
     }
     if (first == nullptr || other.precedence < first->precedence) first = &other;
@@ -409,7 +411,8 @@ bool Pedestrian::makes_way(std::span<const Presence> others, std::int64_t now) {
 void Pedestrian::sit_up(std::span<const Presence> others, std::int64_t now) {
   if (motion_.stage() != Stage::seated) leans_forward_ = false;
   if (motion_.stage() != Stage::seated || now % ticks(search_every_s) != 0) return;
-  constexpr double near_m = 1.5, ahead_m = 0.3;  // assumed: at which wishes and people are minded (tried 0.1-0.5)
+  constexpr double near_m = 1.5,
+                   ahead_m = 0.3;  // assumed: at which wishes and people are minded (ahead: tried 0.06, 0.3)
   constexpr double forward_rad = 0.09, lean_s = 0.6;
   const Stadium room = presence().room;
   const bool asked = std::ranges::any_of(others, [&](const Presence& other) {

@@ -12,8 +12,8 @@ using namespace pirsim::test;
 
 namespace {
 
-/// Sitters lean forward only as fast as people do, and walkers brake only so hard: once in some hundred runs trunks
-/// graze each other. docs/physics/people.md tells how often, and how deep.
+/// None should be. In 13 of 1,000 such runs trunks overlap all the same, by up to 18 cm (docs/physics/people.md); in
+/// the ten of this test by 2.7 mm, and no more may come.
 constexpr double uncounted_overlap_m = 0.005;
 
 CrowdRecord watch(const Model& model, std::uint32_t run) {
