@@ -59,8 +59,8 @@ void tell(const io::RunNotes& notes, Verbosity verbosity) {
   const auto warn = [&](std::uint64_t n, const std::string& what) {
     if (n > 0 && verbosity != Verbosity::quiet) std::cerr << "warning: " << n << what << '\n';
   };
-  warn(notes.passes_through, " times somebody who found no way round others for 20 s walked through them; first in " +
-                                 notes.first_pass);
+  warn(notes.passes_through,
+       " times somebody who found no way round others for 20 s walked through them; first in " + notes.first_pass);
   warn(notes.seats_changed, " times somebody took another seat, since theirs stayed taken");
   warn(notes.seats_missed, " times somebody went without a seat, since theirs stayed taken");
   if (notes.failed.empty()) return;
@@ -164,12 +164,21 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
 
 void offer_run_options(CLI::App& command, const std::shared_ptr<RunOptions>& options) {
   offer_output(command, options->rows.output, "FILE",
-               "rows, .csv, .csv.gz or .csv.zst (default: as CSV on standard output)");
+               "rows, .csv, .csv.gz or .csv.zst (default, or -: as CSV on standard output)");
+  command.get_option("--output")
+      ->transform(CLI::Validator(
+          [](std::string& file) {
+            if (file == "-") file.clear();
+            return std::string();
+          },
+          ""));
   command.add_option("--summary", options->summary, "table of sums per trial and sensor, .csv or .md")
       ->option_text("FILE");
   command.add_option("--report", options->report, "counts and time series as one self-contained page, .html")
       ->option_text("FILE");
-  command.add_option("--zones", options->zones, "every zone's activity at every tick, .csv, .csv.gz or .csv.zst")
+  command
+      .add_option("--zones", options->zones,
+                  "every zone's activity at every tick (a run of Study A: 9 MB), .csv, .csv.gz or .csv.zst")
       ->option_text("FILE");
   command
       .add_option("--trace", options->trace,
