@@ -253,6 +253,13 @@ class Outputs(unittest.TestCase):
         self.assertIn("(default: coverage)", pirsim("coverage", "--help").stdout)
         self.assertIn("(default: walk_test.csv)", pirsim("walktest", "--help").stdout)
 
+    def test_a_report_speaks_of_shaded_windows_where_there_are_any(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for change, shaded in (((), True), (("--set", "summary.phases=[]"), False)):
+                page = pathlib.Path(folder) / "page.html"
+                study(*ONE_RUN, *change, "-o", f"{folder}/rows.csv", "--report", page)
+                self.assertEqual("counted windows are shaded" in page.read_text(), shaded)
+
     def test_zones_tell_early_how_much_they_will_write(self):
         with tempfile.TemporaryDirectory() as folder:
             zones = pathlib.Path(folder) / "zones.csv"
