@@ -18,7 +18,8 @@ namespace pirsim::io {
 
 struct SceneOptions {
   /// Where `<model>.yaml` of a sensor is looked for first; then in `sensors` beside the scene and beside its folder,
-  /// in `$PIRSIM_DATA_DIR/sensors` and in `sensors` of the data_directories. The library itself carries the shipped models.
+  /// in `$PIRSIM_DATA_DIR/sensors` and in `sensors` of the data_directories. The library itself carries the shipped
+  /// models.
   std::vector<std::filesystem::path> sensor_directories;
   std::vector<std::filesystem::path> data_directories{};
 };
@@ -28,8 +29,9 @@ struct SceneOptions {
 /// apart; what was repaired or ignored stands in SceneSpec::warnings.
 [[nodiscard]] SceneSpec read_scene(const std::filesystem::path& file, const SceneOptions& options = {});
 
-/// Writes a scene that read_scene() reads back: .glb, or by any other extension .gltf with its buffer embedded. Positions
-/// are stored in single precision. Throws Error(io), and Error(usage) for a floor with holes or of several parts.
+/// Writes a scene that read_scene() reads back: .glb, or by any other extension .gltf with its buffer embedded.
+/// Positions are stored in single precision. Throws Error(io), and Error(usage) for a floor with holes or of several
+/// parts.
 void write_scene(const std::filesystem::path& file, const SceneSpec& scene);
 
 // Studies as YAML; the format is described in docs/formats/script.md.

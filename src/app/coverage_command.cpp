@@ -68,7 +68,10 @@ void coverage(const Inputs& inputs, const CoverageOptions& options) {
   io::write_text_file(options.output / "coverage.csv", studies::to_csv(map));
   draw_maps(study, map, options.output);
   if (report_file) write_page(*report_file, studies::coverage_report(study, map, figures), inputs);
-  if (inputs.verbosity != Verbosity::quiet) std::cout << studies::to_text(map, figures);
+  if (inputs.verbosity == Verbosity::quiet) return;
+  std::cout << studies::to_text(map, figures);
+  require_written();
+  std::cerr << "wrote " << (options.output / "coverage.csv").string() << " and a map of every sensor beside it\n";
 }
 
 }  // namespace
@@ -82,7 +85,7 @@ void add_coverage_command(CLI::App& app) {
   const auto options = std::make_shared<CoverageOptions>();
   offer_study(command, *inputs);
   offer_seed(command, *inputs);
-  offer_output(command, options->output, "DIR", "folder for maps and figures");
+  offer_output(command, options->output, "DIR", "folder for maps and figures (default: coverage)");
   offer_map_report(command, options->report);
   offer_threads(command, options->threads);
   on_call(command, inputs, [options](const Inputs& given) { coverage(given, *options); });

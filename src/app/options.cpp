@@ -1,5 +1,10 @@
 #include "app/options.hpp"
 
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
 #include <boost/algorithm/string/join.hpp>
 #include <utility>
 
@@ -8,7 +13,32 @@
 namespace pirsim::app {
 namespace {
 
+constexpr const char* standard_input = "/dev/stdin";
+
+/// Inputs are opened more than once, as for the manifest: what comes down a pipe is kept in memory, in its place.
+void keep_standard_input() {
+  const int kept = ::memfd_create("stdin", MFD_CLOEXEC);
+  std::array<char, 8192> block;
+  ssize_t n = 0;
+  while (kept >= 0 && (n = ::read(STDIN_FILENO, block.data(), block.size())) > 0) {
+    if (::write(kept, block.data(), static_cast<std::size_t>(n)) != n) break;
+  }
+  if (kept < 0 || n != 0 || ::dup2(kept, STDIN_FILENO) < 0) throw Error(ErrorCode::io, "standard input can't be read");
+  ::close(kept);
+}
+
+/// CLI11's transformation of a file's name.
+std::string take_standard_input(std::string& file) {
+  if (file != "-") return {};
+  struct stat status {};
+  if (::fstat(STDIN_FILENO, &status) != 0 || !S_ISREG(status.st_mode)) keep_standard_input();
+  file = standard_input;
+  return {};
+}
+
 void require_inputs(const Inputs& inputs, Needs needs) {
+  if (inputs.scene == standard_input && inputs.script == standard_input)
+    throw Error(ErrorCode::usage, "--scene and --script can't both be standard input");
   if (!inputs.scene.empty() && (needs == Needs::scene || !inputs.script.empty())) return;
   throw Error(ErrorCode::usage,
               std::string(inputs.scene.empty() ? "--scene" : "--script") + " FILE is missing; see pirsim --help");
@@ -57,7 +87,9 @@ const CLI::Option* repeated_option(const CLI::App& app) {
 namespace {
 
 void offer_scene_file(CLI::App& command, Inputs& inputs) {
-  command.add_option("--scene", inputs.scene, "room: a glTF 2.0 file (.gltf or .glb)")->option_text("FILE");
+  command.add_option("--scene", inputs.scene, "room: a glTF 2.0 file (.gltf or .glb), - for standard input")
+      ->option_text("FILE")
+      ->transform(CLI::Validator(take_standard_input, ""));
 }
 
 void offer_changes(CLI::App& command, Inputs& inputs) {
@@ -85,7 +117,9 @@ void offer_scene(CLI::App& command, Inputs& inputs) {
 
 void offer_study(CLI::App& command, Inputs& inputs) {
   offer_scene_file(command, inputs);
-  command.add_option("--script", inputs.script, "study: a YAML file")->option_text("FILE");
+  command.add_option("--script", inputs.script, "study: a YAML file, - for standard input")
+      ->option_text("FILE")
+      ->transform(CLI::Validator(take_standard_input, ""));
   offer_changes(command, inputs);
 }
 

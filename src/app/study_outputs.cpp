@@ -1,8 +1,10 @@
 #include "app/study_outputs.hpp"
 
+#include <iomanip>
 #include <iostream>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "app/session.hpp"
 #include "io/atomic_file.hpp"
@@ -169,10 +171,12 @@ class LineOutput {
 
   /// What is written here is in the file after the next pass_on().
   [[nodiscard]] std::ostream& lines() { return lines_; }
-  void pass_on() {
+  std::size_t pass_on() {
+    const std::size_t n_bytes = lines_.view().size();
     writer_.write(lines_.view());
     lines_.str({});
     if (!file_.stream()) file_.commit();  // says why it can't be written
+    return n_bytes;
   }
   void commit() {
     pass_on();
@@ -186,17 +190,30 @@ class LineOutput {
   std::ostringstream lines_;
 };
 
+/// Once the first run tells how much a run writes: some studies would fill a disk.
+void announce(std::size_t run_bytes, const Model& model, Verbosity verbosity) {
+  constexpr double worth_telling = 1e8;  // assumed: 0.1 GB surprises nobody
+  const double bytes = static_cast<double>(run_bytes) * model.n_runs();
+  if (verbosity == Verbosity::quiet || bytes < worth_telling) return;
+  std::ostringstream text;
+  text << std::setprecision(2) << "--zones: the first of " << model.n_runs() << " runs has "
+       << static_cast<double>(run_bytes) * 1e-6 << " MB, so all will have about " << bytes * 1e-9
+       << " GB before compression\n";
+  std::cerr << text.str();
+}
+
 /// Zones of all runs.
 class ZoneOutput {
  public:
   ZoneOutput(const std::filesystem::path& file, const Model& model)
       : output_(file), csv_(output_.lines(), sensor_ids(model), first_zones(model)) {}
 
-  void add(const RunResult& result) {
+  /// Bytes before compression.
+  std::size_t add(const RunResult& result) {
     for (std::size_t i = 0; i < result.zones.size(); ++i) {
       csv_.write(result.replicate, result.trial, static_cast<std::int64_t>(i) + 1, result.zones[i]);
     }
-    output_.pass_on();
+    return output_.pass_on();
   }
   void commit() { output_.commit(); }
 
@@ -255,6 +272,7 @@ struct WholeStudyOutputs::Files {
   studies::Summary summary;
   studies::StudyReport report;
   std::optional<ZoneOutput> zones{};
+  bool zones_unannounced = true;
   std::optional<TraceOutput> trace{};
   std::optional<OccupantOutput> occupants{};
   std::optional<io::AtomicFile> summary_file{}, report_file{};
@@ -279,7 +297,10 @@ Occupants WholeStudyOutputs::occupants() const noexcept {
 void WholeStudyOutputs::add(const RunResult& result) {
   Files& files = *files_;
   if (result.fault) return;
-  if (files.zones) files.zones->add(result);
+  if (files.zones) {
+    const std::size_t n_bytes = files.zones->add(result);
+    if (std::exchange(files.zones_unannounced, false)) announce(n_bytes, files.model, files.inputs.verbosity);
+  }
   if (files.trace) files.trace->add(result);
   if (files.occupants) files.occupants->add(result);
   if (files.report_file) files.report.add_run(result);

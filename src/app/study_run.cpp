@@ -162,7 +162,14 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
 
 void offer_run_options(CLI::App& command, const std::shared_ptr<RunOptions>& options) {
   const std::string tables = in_words(io::table_endings());
-  offer_output(command, options->rows.output, "FILE", "rows, " + tables + " (default: as CSV on standard output)");
+  offer_output(command, options->rows.output, "FILE", "rows, " + tables + " (default, or -: as CSV on standard output)");
+  command.get_option("--output")
+      ->transform(CLI::Validator(
+          [](std::string& file) {
+            if (file == "-") file.clear();
+            return std::string();
+          },
+          ""));
   command
       .add_option("--summary", options->summary, "table of sums per trial and sensor, " + in_words(summary_endings()))
       ->option_text("FILE");

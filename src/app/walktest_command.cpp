@@ -24,6 +24,7 @@ void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
   tell(scene.warnings, inputs.verbosity);
   const studies::WalkTest test(std::move(scene), std::move(spec));
   tell(test.warnings(), inputs.verbosity);
+  const bool is_stream = io::is_written_directly(options.output);
   io::AtomicFile file(options.output);
   std::optional<io::AtomicFile> report_file;
   if (!options.report.empty()) report_file.emplace(options.report);
@@ -38,7 +39,10 @@ void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
   file.stream() << to_csv(test, result);
   file.commit();
   if (report_file) write_page(*report_file, studies::walk_test_report(test, result), inputs);
-  if (inputs.verbosity != Verbosity::quiet) std::cout << to_text(test, result);
+  if (inputs.verbosity == Verbosity::quiet) return;
+  (is_stream ? std::cerr : std::cout) << to_text(test, result);
+  require_written();
+  if (!is_stream) std::cerr << "wrote " << options.output.string() << '\n';
 }
 
 }  // namespace
@@ -52,7 +56,7 @@ void add_walktest_command(CLI::App& app) {
   const auto options = std::make_shared<WalkTestOptions>();
   offer_study(command, *inputs);
   offer_seed(command, *inputs);
-  offer_output(command, options->output, "FILE", "points with tries and verdicts, as CSV");
+  offer_output(command, options->output, "FILE", "points with tries and verdicts, as CSV (default: walk_test.csv)");
   offer_map_report(command, options->report);
   offer_threads(command, options->threads);
   on_call(command, inputs, [options](const Inputs& given) { walk_test(given, *options); });

@@ -1,9 +1,12 @@
 #include "body/seating.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <string>
 
 #include "pirsim/error.hpp"
 
@@ -42,6 +45,12 @@ double cosine_when_seated(const Measures& m, const SeatPlace& seat) {
   return (hip_height - standing_leg(m).knee_height_m) / m.thigh_m;
 }
 
+std::string decimals(double metres) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.2f", metres);
+  return text.data();
+}
+
 }  // namespace
 
 double standing_hip_height_m(const Measures& m) noexcept {
@@ -59,9 +68,11 @@ Seating::Seating(const Humanoid& humanoid, const SeatPlace& seat, const Placemen
   const Measures& m = humanoid.measures();
   const double cosine = cosine_when_seated(m, seat);
   if (cosine < std::cos(lowest_thigh) || cosine > std::cos(highest_thigh)) {
-    throw Error(ErrorCode::infeasible,
-                "a seat whose pelvis point is " + std::to_string(seat.world_from_seat.origin.y - seat.floor_height_m) +
-                    " m above the floor can't be sat on by a person of " + std::to_string(m.stature_m) + " m");
+    throw Error(ErrorCode::infeasible, "the seat at (" + decimals(seat.world_from_seat.origin.x) + ", " +
+                                           decimals(seat.world_from_seat.origin.z) + "), whose pelvis point is " +
+                                           decimals(seat.world_from_seat.origin.y - seat.floor_height_m) +
+                                           " m above the floor, can't be sat on by a person of " +
+                                           decimals(m.stature_m) + " m");
   }
   const StandingLeg leg = standing_leg(m);
   thigh_m_ = m.thigh_m;

@@ -1,5 +1,6 @@
 // Faults of `effects:`, all at once.
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <sstream>
 
 #include "effects/catalogue.hpp"
@@ -110,7 +111,9 @@ void check_all(std::span<const EffectSpec> effects, const SceneSpec* scene, Diag
     if (known == catalogue().end()) {
       std::vector<std::string> names;
       for (const Effect* effect : catalogue()) names.push_back(effect->info.name);
-      diagnostics.error(spec.where, "'" + spec.name + "' is not an effect" + did_you_mean(spec.name, names));
+      std::string hint = did_you_mean(spec.name, names);
+      if (hint.empty()) hint = "; known are " + boost::algorithm::join(names, ", ");
+      diagnostics.error(spec.where, "'" + spec.name + "' is not an effect" + hint);
       continue;
     }
     check_parameters(spec, (*known)->info, diagnostics);

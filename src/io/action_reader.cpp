@@ -102,6 +102,21 @@ constexpr std::array<ActionKind, 10> kinds{{{"wait_s", read_wait_s},
                                             {"turn", read_turn},
                                             {"leave", read_leave}}};
 
+std::vector<std::string> action_names() {
+  std::vector<std::string> names;
+  for (const ActionKind& kind : kinds) names.emplace_back(kind.key);
+  return names;
+}
+
+/// The nearest name, or else all that there are.
+std::string hint(const std::string& name) {
+  const std::vector<std::string> names = action_names();
+  std::string text = did_you_mean(name, names);
+  if (!text.empty()) return text;
+  for (const std::string& known : names) text += (text.empty() ? "; known are " : ", ") + known;
+  return text;
+}
+
 ScriptedAction read_action_map(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "action");
   ScriptedAction action;
@@ -118,6 +133,11 @@ ScriptedAction read_action_map(const YamlNode& node, Diagnostics& faults) {
     action.what = kind.read(*map.child(kind.key), faults);
     ++found;
   }
+  const std::vector<YamlKey> keys = node.keys();
+  if (found == 0 && keys.size() == 1 && keys[0].name != "at_s" && keys[0].name != "phase") {
+    faults.error(keys[0].where, "'" + keys[0].name + "' isn't an action" + hint(keys[0].name));
+    return action;
+  }
   map.finish();
   if (found > 1) faults.error(node.where(), "one action an entry: start each with its own '-'");
   const bool nothing_else =
@@ -132,9 +152,7 @@ ScriptedAction read_action(const YamlNode& node, Diagnostics& faults) {
   if (!node.is_scalar()) return read_action_map(node, faults);
   const std::string word = node.text(faults, "action");
   if (word != "rise") {
-    std::vector<std::string> names;
-    for (const ActionKind& kind : kinds) names.emplace_back(kind.key);
-    faults.error(node.where(), "'" + word + "' isn't a whole action" + did_you_mean(word, names));
+    faults.error(node.where(), "'" + word + "' isn't a whole action" + hint(word));
   }
   return {action::Rise{}, std::nullopt, {}, node.where()};
 }

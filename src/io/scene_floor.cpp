@@ -71,8 +71,15 @@ bool FloorBuilder::flat(const std::vector<Vec3>& points, const Where& where, con
   const auto [lowest, highest] =
       std::minmax_element(points.begin(), points.end(), [](const Vec3& a, const Vec3& b) { return a.y < b.y; });
   if (highest->y - lowest->y <= flatness_m) return true;
-  faults_.error(where, label + ": a floor must be flat and level; this one rises by " +
-                           std::to_string(highest->y - lowest->y) + " m");
+  const auto spans = [&](auto member) {
+    const auto [least, most] = std::minmax_element(points.begin(), points.end(),
+                                                   [&](const Vec3& a, const Vec3& b) { return a.*member < b.*member; });
+    return (*most).*member - (*least).*member;
+  };
+  const bool upright = std::min(spans(&Vec3::x), spans(&Vec3::z)) <= flatness_m;
+  faults_.error(where, label + ": a floor must be flat and level; this one " +
+                           (upright ? "stands upright, as in files that are Z-up (glTF's +Y is up), and " : "") +
+                           "rises by " + std::to_string(highest->y - lowest->y) + " m");
   return false;
 }
 

@@ -78,8 +78,9 @@ class MarkupReader {
     return faulty_ ? std::nullopt : result;
   }
 
- private:
   static std::vector<std::string> types() { return {"sensor", "seat", "entrance", "floor", "surface", "ignore"}; }
+
+ private:
   static std::string types_told() { return "known are sensor, seat, entrance, floor, surface and ignore"; }
 
   mark::Sensor sensor() {
@@ -200,11 +201,35 @@ std::optional<Markup> read_markup(const GltfDocument& document, int node, Diagno
   // Editors such as Blender offer texts as custom properties, so the object may come as one.
   const auto parsed = parse_json(value.get<std::string>());
   if (const auto* fault = std::get_if<JsonFault>(&parsed)) {
+    const bool single = value.get<std::string>().find('\'') != std::string::npos;
     remarks.error(document.text.where(markup_pointer(node)),
-                  node_label(document.model, node) + ": the text at 'pirsim' is " + fault->message);
+                  node_label(document.model, node) + ": the text at 'pirsim' is " + fault->message +
+                      (single ? "; JSON's quotes are double: {\"type\": \"seat\", \"id\": \"S1\"}" : ""));
     return std::nullopt;
   }
   return MarkupReader(document, node, std::get<json>(parsed), remarks).read();
+}
+
+void warn_of_near_marks(const GltfDocument& document, int node, Diagnostics& remarks) {
+  const json& given = document.text.root()["nodes"][static_cast<std::size_t>(node)];
+  const std::string pointer = "/nodes/" + std::to_string(node);
+  const auto warn = [&](const std::string& key, const std::string& message) {
+    remarks.warning(document.text.where_key(pointer + key), node_label(document.model, node) + ": " + message);
+  };
+  if (given.contains("pirsim")) warn("/pirsim", "'pirsim' is not read here: it must be in the node's 'extras'");
+  const auto extras = given.find("extras");
+  if (extras == given.end() || !extras->is_object() || extras->contains("pirsim")) return;
+  for (const auto& [key, unused] : extras->items()) {
+    if (!did_you_mean(key, {"pirsim"}).empty()) {
+      return warn("/extras/" + key, "'" + key + "' is not read as a mark: its name is 'pirsim'");
+    }
+  }
+  const auto type = extras->find("type");
+  if (type == extras->end() || !type->is_string()) return;
+  const auto types = MarkupReader::types();
+  if (std::ranges::find(types, type->get<std::string>()) == types.end()) return;
+  warn("/extras/type", "'type' is not read here: a mark's keys must be in extras.pirsim, {\"pirsim\": {\"type\": " +
+                           type->dump() + ", ...}}");
 }
 
 }  // namespace pirsim::io::detail

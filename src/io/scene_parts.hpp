@@ -1,6 +1,7 @@
 // What the markup of a scene says, and its floor. Private to io.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <variant>
@@ -9,6 +10,7 @@
 #include "io/gltf_document.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/geometry.hpp"
+#include "pirsim/scene.hpp"
 
 namespace pirsim::io::detail {
 
@@ -54,6 +56,21 @@ using Markup = std::variant<mark::Sensor, mark::Seat, mark::Entrance, mark::Floo
 
 /// Nothing for a node without markup, or with a faulty one (the faults are added).
 [[nodiscard]] std::optional<Markup> read_markup(const GltfDocument& document, int node, Diagnostics& remarks);
+
+/// Warns of what was meant for a mark but isn't read as one: `PIRSIM`, or its keys without it.
+void warn_of_near_marks(const GltfDocument& document, int node, Diagnostics& remarks);
+
+// What a scene may say, but hardly means.
+
+/// Indices of nodes: seats, entrances and meshes as in the scene.
+struct MarkedNodes {
+  std::vector<int> seats, entrances, meshes;
+  int floor = 0;
+};
+using DoubtSink = std::function<void(int node, const std::string& message)>;
+
+/// An entrance turned round, a seat inside a desk or with its back to one, sizes of another unit than metres.
+void doubt(const SceneSpec& scene, const MarkedNodes& nodes, const DoubtSink& tell);
 
 // The floor area of a scene, joined from all nodes that are marked as floor.
 

@@ -34,6 +34,7 @@ class SceneBuilder {
     spec_.files = document_.files;
     spec_.floor = floor_.build();
     require_floor();
+    if (!remarks_.has_errors()) warn_of_doubts();
     if (spec_.sensors.empty() && !remarks_.has_errors()) {
       remarks_.warning(document_.text.where(""), "the scene has no sensors");
     }
@@ -59,13 +60,25 @@ class SceneBuilder {
         if (extras == (*array)[i].end() || !extras->is_object() || !extras->contains("pirsim")) continue;
         remarks_.warning(
             document_.text.where("/" + std::string(collection) + '/' + std::to_string(i) + "/extras/pirsim"),
-            "'pirsim' counts on nodes only; here it is not read");
+            "'pirsim' counts on nodes only; here, on " + label_of(collection, i) +
+                ", it is not read: put it on the object's node (in Blender: the object's properties, not its data's)");
       }
     }
+  }
+  [[nodiscard]] std::string label_of(const std::string& collection, std::size_t i) const {
+    return collection == "meshes" ? mesh_label(document_.model, static_cast<int>(i)) : "a scene";
+  }
+  void warn_of_doubts() {
+    doubt(spec_, nodes_, [&](int node, const std::string& message) {
+      remarks_.warning(document_.text.where("/nodes/" + std::to_string(node)),
+                       node_label(document_.model, node) + ": " + message);
+    });
   }
 
   void add_node(const PlacedNode& placed) {
     const auto markup = read_markup(document_, placed.node, remarks_);
+    if (!markup) warn_of_near_marks(document_, placed.node, remarks_);
+    if (markup && std::holds_alternative<mark::Floor>(*markup)) nodes_.floor = placed.node;
     if (markup && std::holds_alternative<mark::Ignore>(*markup)) return;
     if (const int mesh = document_.model.nodes[static_cast<std::size_t>(placed.node)].mesh; mesh >= 0) {
       add_mesh(placed, mesh, markup ? &*markup : nullptr);
@@ -98,6 +111,7 @@ class SceneBuilder {
       floor_.add_mesh(cleaned.mesh, markup_place(placed.node), node_label(document_.model, placed.node));
     if (floor && floor->occludes == mark::Occludes::no) return;
     if (surface) cleaned.mesh.temperature_c = surface->temperature_c;
+    nodes_.meshes.resize(spec_.meshes.size() + (surface ? 1 : known->second.size()), placed.node);
     if (surface || known->second.size() == 1) {
       spec_.meshes.push_back(std::move(cleaned.mesh));
     } else {
@@ -133,10 +147,12 @@ class SceneBuilder {
   }
   void add_seat(const PlacedNode& placed, const mark::Seat& seat) {
     check_unique("seat", seat.id, placed.node);
+    nodes_.seats.push_back(placed.node);
     spec_.seats.push_back({seat.id, upright_frame(placed)});
   }
   void add_entrance(const PlacedNode& placed, const mark::Entrance& entrance) {
     check_unique("entrance", entrance.id, placed.node);
+    nodes_.entrances.push_back(placed.node);
     spec_.entrances.push_back({entrance.id, upright_frame(placed), entrance.width_m, entrance.outside_m});
   }
   void add_polygon(const PlacedNode& placed, const mark::Floor& floor) {
@@ -150,7 +166,8 @@ class SceneBuilder {
     const Frame frame = rigid_frame(placed.world_from_node);
     if (frame.up().y < least_upright) {
       remarks_.error(markup_place(placed.node),
-                     node_label(document_.model, placed.node) + ": must stand upright (its +Y up)");
+                     node_label(document_.model, placed.node) + ": must stand upright (its +Y up)" +
+                         (std::abs(frame.up().y) < 1.0 - least_upright ? "; it lies: is the file Z-up?" : ""));
     }
     return frame;
   }
@@ -209,6 +226,7 @@ class SceneBuilder {
   GeometryBudget budget_;
   FloorBuilder floor_;
   SceneSpec spec_;
+  MarkedNodes nodes_;
   std::vector<std::optional<double>> temperatures_c_;       ///< (n_materials)
   std::map<int, std::vector<TriMesh>> meshes_;              ///< in their own frames, by index, in equally warm parts
   std::map<std::string, Where> model_places_;               ///< where each sensor model is first named

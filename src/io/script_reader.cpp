@@ -179,7 +179,8 @@ ScriptSpec script_of(const YamlNode& root, const std::filesystem::path& file) {
   check_version(map, "pirsim_script");
   ScriptSpec script;
   script.name = map.text("name", file.stem().string());
-  script.directory = file.parent_path().string();
+  const bool is_stream = file == "/dev/stdin";  // its own folder has nothing that a script could mean
+  script.directory = is_stream ? std::string() : file.parent_path().string();
   script.seed = map.unsigned_integer("seed", script.seed);
   script.replicates = map.integer("replicates", script.replicates, {.min = 1, .max = 10000000});
   script.sensing = read_sensing(map.child("sensing"), faults);

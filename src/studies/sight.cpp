@@ -47,7 +47,11 @@ body::Posture seated_posture(const Model& model, const body::Humanoid& humanoid,
   const Vec2 stand =
       floor_point(seat.world_from_seat.origin) + body::fall_back_m(humanoid, place) * direction_of(heading);
   body::Motion motion(humanoid, stand, heading, place.floor_height_m, model.tick_s());
-  motion.sit_down(place);
+  try {
+    motion.sit_down(place);
+  } catch (const Error& fault) {  // the body knows no names
+    throw Error(fault.code(), Where{model.scene().name}, "seat '" + seat.id + "': " + fault.issues().front().message);
+  }
   while (!(motion.stage() == body::Stage::seated && motion.settled())) motion.advance();
   return motion.posture();
 }

@@ -229,8 +229,9 @@ io::Report StudyReport::finish(const Summary& summary) const {
     io::ReportSection section{trials_[t].id, {}, {}, {}};
     if (t == 0) {
       section.paragraphs = {
-          "How often each count came out over the runs. The coloured line is the measured count, where "
-          "there is one. Below: the first run, window by window; counted windows are shaded."};
+          "How often each count came out over the runs. The coloured line is the measured count, where " +
+          std::string("there is one. Below: the first run, window by window") +
+          (counted_phases(trials_[t].samples, script.summary, 1.0).empty() ? "." : "; counted windows are shaded.")};
     }
     for (std::size_t s = 0; s < sensors_.size(); ++s) {
       const CellSummary& cell = cells[t * sensors_.size() + s];

@@ -133,9 +133,13 @@ std::string aligned(const std::vector<Row>& table, std::size_t left) {
   return text;
 }
 
+/// As the reader is to see it: no HTML, no end of the column.
 std::string markdown_field(const std::string& text) {
   std::string field;
-  for (const char c : text) field += c == '|' ? std::string("\\|") : std::string(1, c);
+  for (const char c : text) {
+    if (std::string_view("|<>&*_`[]\\").find(c) != std::string_view::npos) field += '\\';
+    field += c == '\n' || c == '\r' ? ' ' : c;
+  }
   return field;
 }
 

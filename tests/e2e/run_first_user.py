@@ -1,0 +1,288 @@
+#!/usr/bin/env python3
+"""What a new user meets: rooms and scripts with common mistakes, and what pirsim says of them.
+
+Usage: run_first_user.py PIRSIM DATA_DIR [unittest arguments]. Needs python3 only.
+"""
+import copy
+import json
+import pathlib
+import resource
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PIRSIM = DATA = None
+
+
+def pirsim(*args, code=0, **kwargs):
+    result = subprocess.run([PIRSIM, *map(str, args)], capture_output=True, text=True, timeout=300, **kwargs)
+    assert result.returncode == code, f"{args}: exit code {result.returncode}, expected {code}\n{result.stderr}"
+    return result
+
+
+def study(*args, script="studyA.yaml", **kwargs):
+    return pirsim("--scene", DATA / "rooms" / "meeting_room.gltf", "--script", DATA / "studies" / script, *args, **kwargs)
+
+
+ONE_RUN = "--replicates", 1, "--set", "trials.for_each.seat=[S1]", "-q"
+
+
+class Room:
+    """The shipped meeting room, to be spoiled."""
+
+    def __init__(self):
+        self.gltf = json.loads((DATA / "rooms" / "meeting_room.gltf").read_text())
+
+    def marked(self, kind, name=None):
+        for node in self.gltf["nodes"]:
+            mark = node.get("extras", {}).get("pirsim", {})
+            if mark.get("type") == kind and name in (None, mark.get("id")):
+                return node
+        raise KeyError(kind)
+
+    def check(self, folder, code=0, line=True):
+        file = pathlib.Path(folder) / "room.gltf"
+        file.write_text(json.dumps(self.gltf, indent=1))
+        told = pirsim("check", "--scene", file, "--script", DATA / "studies" / "studyA.yaml", code=code).stderr
+        for issue in told.splitlines():
+            if "warning: node" in issue or "error: node" in issue:
+                assert issue.startswith(f"{file}:"), issue
+        return told
+
+
+def turned(rotation):
+    """Half a turn about +Y more."""
+    x, y, z, w = rotation
+    return [z, w, -x, -y]
+
+
+class Doubts(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.room = Room()
+
+    def test_shipped_rooms_and_generated_ones_raise_none(self):
+        for file in sorted((DATA / "rooms").glob("*.gltf")):
+            script = "office.yaml" if file.stem == "open_office" else "studyA.yaml"
+            if file.stem == "open_hall":
+                script = "density.yaml"
+            told = pirsim("check", "--scene", file, "--script", DATA / "studies" / script).stderr
+            self.assertNotIn("warning: node", told, file.name)
+        for seed in range(1, 6):
+            file = f"{self.folder.name}/made.gltf"
+            pirsim("room", "-o", file, "--seed", seed)
+            told = pirsim("day", "--scene", file, "--staff", 1, "--from", "09:00", "--to", "09:01", "--days", 1).stderr
+            self.assertNotIn("warning: node", told, seed)
+
+    def test_an_entrance_turned_round(self):
+        door = self.room.marked("entrance")
+        name = door["name"]
+        door["rotation"] = turned(door.get("rotation", [0, 0, 0, 1]))
+        told = self.room.check(self.folder.name)
+        self.assertIn(f"warning: node '{name}': entrance", told)
+        self.assertIn("is turned round", told)
+
+    def test_a_seat_that_faces_away_from_its_table(self):
+        seat = self.room.marked("seat", "S1")
+        seat["rotation"] = turned(seat.get("rotation", [0, 0, 0, 1]))
+        file = pathlib.Path(self.folder.name) / "room.gltf"
+        file.write_text(json.dumps(self.room.gltf))
+        told = subprocess.run([PIRSIM, "check", "--scene", file, "--script", DATA / "studies" / "studyA.yaml"],
+                              capture_output=True, text=True).stderr
+        self.assertIn("seat 'S1' faces away from '", told)
+        self.assertNotIn("seat 'S2'", told)
+
+    def test_a_seat_inside_a_desk(self):
+        seat = self.room.marked("seat", "S1")
+        x, y, z = seat["translation"]
+        rx, ry, rz, rw = seat.get("rotation", [0, 0, 0, 1])
+        ahead = (-2 * (rx * rz + rw * ry), -(1 - 2 * (rx * rx + ry * ry)))  # -Z of the seat, on the floor
+        seat["translation"] = [x + 0.5 * ahead[0], y, z + 0.5 * ahead[1]]
+        file = pathlib.Path(self.folder.name) / "room.gltf"
+        file.write_text(json.dumps(self.room.gltf))
+        told = subprocess.run([PIRSIM, "check", "--scene", file, "--script", DATA / "studies" / "studyA.yaml"],
+                              capture_output=True, text=True).stderr
+        self.assertRegex(told, r"room.gltf:\d+:\d+: warning: node '[^']*': seat 'S1' is inside of '")
+
+    def test_a_desk_a_thousand_times_too_large(self):
+        desk = next(n for n in self.room.gltf["nodes"] if "table" in n["name"] and "mesh" in n)
+        desk["scale"] = [1000, 1000, 1000]
+        file = pathlib.Path(self.folder.name) / "room.gltf"
+        file.write_text(json.dumps(self.room.gltf))
+        told = subprocess.run([PIRSIM, "check", "--scene", file, "--script", DATA / "studies" / "studyA.yaml"],
+                              capture_output=True, text=True).stderr
+        self.assertRegex(told, rf"warning: node '{desk['name']}': its mesh spans \d+ m x \d+ m .*: millimetres\?")
+
+    def test_a_floor_in_millimetres_and_one_that_stands_upright(self):
+        floor = self.room.marked("floor")
+        floor["extras"]["pirsim"] = {"type": "floor", "polygon_xz_m": [[0, 0], [8002, 0], [8002, 6002], [0, 6002]]}
+        told = self.room.check(self.folder.name, code=5)
+        self.assertIn("the floor spans 8002 m x 6002 m: millimetres?", told)
+        floor["extras"]["pirsim"]["polygon_xz_m"] = [[0, 0], [8, 0], [8, 6], [0, 6]]
+        floor["rotation"] = [0.70710678, 0, 0, 0.70710678]
+        self.assertIn("stands upright, as in files that are Z-up", self.room.check(self.folder.name, code=3))
+        self.room = Room()
+        self.room.marked("seat")["rotation"] = [0.70710678, 0, 0, 0.70710678]
+        self.assertIn("it lies: is the file Z-up?", self.room.check(self.folder.name, code=3))
+
+    def test_a_seat_that_nobody_can_sit_on_is_named(self):
+        seat = self.room.marked("seat", "S2")
+        seat["translation"][1] = 0.0
+        told = self.room.check(self.folder.name, code=5)
+        self.assertIn("room.gltf: error: seat 'S2': ", told)
+        self.assertIn("pelvis point is 0.00 m above the floor", told)
+
+
+class Marks(unittest.TestCase):
+    def told(self, change, code=3):
+        room = Room()
+        node = room.marked("seat", "S1")
+        change(room.gltf, node)
+        with tempfile.TemporaryDirectory() as folder:
+            return room.check(folder, code=code)
+
+    def test_a_mark_of_another_name(self):
+        def shout(_, node):
+            node["extras"] = {"PIRSIM": node["extras"]["pirsim"]}
+        self.assertIn("'PIRSIM' is not read as a mark: its name is 'pirsim'", self.told(shout))
+
+        def slip(_, node):
+            node["extras"] = {"pirism": node["extras"]["pirsim"]}
+        self.assertIn("'pirism' is not read as a mark: its name is 'pirsim'", self.told(slip))
+
+    def test_keys_without_their_mark(self):
+        def flat(_, node):
+            node["extras"] = node["extras"]["pirsim"]
+        told = self.told(flat)
+        self.assertIn("'type' is not read here: a mark's keys must be in extras.pirsim", told)
+
+        def foreign(_, node):
+            node["extras"]["type"] = "chair"
+        self.assertNotIn("warning", self.told(foreign, code=0))
+
+    def test_a_mark_beside_extras(self):
+        def beside(_, node):
+            node["pirsim"] = node.pop("extras")["pirsim"]
+        self.assertIn("it must be in the node's 'extras'", self.told(beside))
+
+    def test_single_quotes(self):
+        def python(_, node):
+            node["extras"]["pirsim"] = str(node["extras"]["pirsim"])
+        self.assertIn("JSON's quotes are double", self.told(python))
+
+    def test_a_mark_on_mesh_data(self):
+        def on_mesh(gltf, node):
+            gltf["meshes"][0].setdefault("extras", {})["pirsim"] = copy.deepcopy(node["extras"]["pirsim"])
+        told = self.told(on_mesh, code=0)
+        self.assertIn("'pirsim' counts on nodes only; here, on mesh", told)
+        self.assertIn("put it on the object's node", told)
+
+
+class Scripts(unittest.TestCase):
+    def test_unknown_actions_and_effects_get_the_nearest_name_or_the_list(self):
+        def told(*args):
+            return study(*args, "--print-config", code=3).stderr
+        self.assertIn("'wurk' isn't an action (did you mean 'work'?)", told("--set", "people.0.actions.2={wurk: 3}"))
+        self.assertIn("'dance' isn't an action; known are wait_s, wait, appear, enter, walk",
+                      told("--set", "people.0.actions.2={dance: 3}"))
+        self.assertIn("'jubilate' isn't a whole action; known are", told("--set", "people.0.actions.2=jubilate"))
+        self.assertIn("'zzzzz' is not an effect; known are ", told("--set", "effects=[zzzzz]"))
+
+    def test_names_with_marks_of_markdown_or_html_stay_text_in_the_summary(self):
+        with tempfile.TemporaryDirectory() as folder:
+            script = pathlib.Path(folder) / "trial.yaml"
+            given = study(*ONE_RUN, "--print-config").stdout
+            script.write_text(given.replace("id: S1", 'id: "<b>x|y</b>"', 1))
+            self.assertIn("<b>", script.read_text())
+            pirsim("--scene", DATA / "rooms" / "meeting_room.gltf", "--script", script, "-q", "--set",
+                   "summary={}", "--summary", f"{folder}/sums.md")
+            text = (pathlib.Path(folder) / "sums.md").read_text()
+            self.assertIn(r"| \<b\>x\|y\</b\> |", text)
+
+
+class Streams(unittest.TestCase):
+    def test_scene_and_script_from_standard_input_and_rows_to_standard_output(self):
+        scene, script = DATA / "rooms" / "meeting_room.gltf", DATA / "studies" / "studyA.yaml"
+        expected = study(*ONE_RUN).stdout
+        for given, files in ((script, ("--scene", scene, "--script", "-")), (scene, ("--scene", "-", "--script", script))):
+            piped = pirsim(*files, *ONE_RUN, "-o", "-", input=given.read_text()).stdout
+            self.assertEqual(piped, expected)
+            with tempfile.TemporaryDirectory() as folder:
+                rows = pathlib.Path(folder) / "rows.csv"
+                pirsim(*files, *ONE_RUN, "-o", rows, input=given.read_text())
+                self.assertEqual(rows.read_text(), expected)
+                direct = pathlib.Path(folder) / "direct.csv"
+                study(*ONE_RUN, "-o", direct)
+
+                def hashes(path):
+                    inputs = json.loads(pathlib.Path(f"{path}.json").read_text())["inputs"]
+                    return sorted(value for entry in inputs for value in
+                                  (entry.values() if isinstance(entry, dict) else [entry]) if len(str(value)) == 64)
+                self.assertEqual(hashes(rows), hashes(direct))
+                self.assertGreater(len(hashes(rows)), 1)
+            with open(given, encoding="utf-8") as stream:
+                self.assertEqual(pirsim(*files, *ONE_RUN, stdin=stream).stdout, expected)
+
+    def test_a_binary_scene_from_standard_input(self):
+        with tempfile.TemporaryDirectory() as folder:
+            room = pathlib.Path(folder) / "room.glb"
+            pirsim("room", "-o", room, "--seed", 2)
+            day = "--staff", 1, "--days", 1, "--from", "09:00", "--to", "09:01", "-q"
+            piped = subprocess.run([PIRSIM, "day", "--scene", "-", *map(str, day)], input=room.read_bytes(),
+                                   capture_output=True)
+            self.assertEqual(piped.returncode, 0, piped.stderr)
+            self.assertEqual(piped.stdout.decode(), pirsim("day", "--scene", room, *day).stdout)
+
+    def test_two_inputs_can_not_be_one_stream(self):
+        self.assertIn("can't both be standard input", pirsim("--scene", "-", "--script", "-", code=2, input="").stderr)
+
+
+class Outputs(unittest.TestCase):
+    def test_surveys_say_where_they_write(self):
+        with tempfile.TemporaryDirectory() as folder:
+            scene = "--scene", DATA / "rooms" / "meeting_room.gltf"
+            told = pirsim("coverage", *scene, "--script", DATA / "studies" / "studyB.yaml", "--set", "spacing_m=1",
+                          cwd=folder).stderr
+            self.assertIn("wrote coverage/coverage.csv", told)
+            told = pirsim("walktest", *scene, "--script", DATA / "studies" / "walk_test.yaml", "--set", "spacing_m=2",
+                          cwd=folder).stderr
+            self.assertIn("wrote walk_test.csv", told)
+            self.assertTrue((pathlib.Path(folder) / "walk_test.csv").exists())
+        self.assertIn("(default: coverage)", pirsim("coverage", "--help").stdout)
+        self.assertIn("(default: walk_test.csv)", pirsim("walktest", "--help").stdout)
+
+    def test_a_report_speaks_of_shaded_windows_where_there_are_any(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for change, shaded in (((), True), (("--set", "summary.phases=[]"), False)):
+                page = pathlib.Path(folder) / "page.html"
+                study(*ONE_RUN, *change, "-o", f"{folder}/rows.csv", "--report", page)
+                self.assertEqual("counted windows are shaded" in page.read_text(), shaded)
+
+    def test_zones_tell_early_how_much_they_will_write(self):
+        with tempfile.TemporaryDirectory() as folder:
+            zones = pathlib.Path(folder) / "zones.csv"
+            once = "--set", "trials.for_each.seat=[S1]", "--zones", zones, "-o", f"{folder}/rows.csv"
+            self.assertNotIn("GB", study(*once, "--replicates", 1).stderr)
+            a_run = zones.stat().st_size
+            n = 1 + 2 * 10**8 // a_run
+            process = subprocess.Popen([PIRSIM, "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
+                                        DATA / "studies" / "studyA.yaml", *map(str, once), "--replicates", str(n)],
+                                       stderr=subprocess.PIPE, text=True)
+            line = next(line for line in process.stderr if "--zones" in line)
+            process.kill()
+            process.communicate()
+            self.assertIn(f"the first of {n} runs", line)
+            self.assertIn("about 0.2", line)
+
+    def test_a_stack_of_64_kilobytes_is_enough(self):
+        def small_stack():
+            resource.setrlimit(resource.RLIMIT_STACK, (64 * 1024, 64 * 1024))
+        self.assertEqual(study(*ONE_RUN, preexec_fn=small_stack).stdout, study(*ONE_RUN).stdout)
+
+
+if __name__ == "__main__":
+    PIRSIM = pathlib.Path(sys.argv.pop(1)).resolve()
+    DATA = pathlib.Path(sys.argv.pop(1)).resolve()
+    unittest.main(verbosity=2)
