@@ -44,6 +44,7 @@ def study_files(script="studyA.yaml"):
 # What a command needs besides the option that is tried: a script of its kind, and what it can't be without.
 COMMANDS = {(): ("studyA.yaml", "-o", "rows.csv"), ("run",): ("studyA.yaml", "-o", "rows.csv"),
             ("check",): ("studyA.yaml",), ("preview",): ("studyA.yaml",), ("export",): ("studyA.yaml",),
+            ("view",): ("studyA.yaml",),
             ("coverage",): ("studyB.yaml",), ("walktest",): ("walk_test.yaml",), ("placements",): ("placements.yaml",),
             ("reconcile",): ("studyA.yaml", "--measured", "m.csv"), ("reconcile", "plan"): ("studyA.yaml",),
             ("reconcile", "selftest"): ("studyA.yaml",),
@@ -61,7 +62,7 @@ VALUES = {"--set": "name=other", "--sensors": ".", "--tracer": "direct", "--repo
           "--height": "64", "--measured": "m.csv", "--holdout": "0.3", "--table": "table", "--nuisance": "none",
           "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "each", "--hide": "one",
           "--script": "other.yaml"}
-OUTPUTS = {"preview": "room.png", "export": "run.glb", "coverage": "maps", "walktest": "points.csv"}
+OUTPUTS = {"preview": "room.png", "export": "run.glb", "view": "run.html", "coverage": "maps", "walktest": "points.csv"}
 
 
 def options_of(command):

@@ -305,7 +305,7 @@
       };
       this.labels = [];
       for (const seat of data.seats) add("seat", seat.name, seat.position);
-      for (const door of data.doors) add("door", "door " + door.name, door.position);
+      for (const door of data.doors) add("door", /door/.test(door.name) ? door.name : "door " + door.name, door.position);
       for (const head of this.heads) head.label = add("person", head.id, [0, 0, 0]);
       sensors.forEach((sensor, i) => {
         const { element } = add("sensor", sensor.id, sensor.position, "button");

@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""Opens the page of `pirsim view` in headless Chromium: it fetches nothing and says nothing on the console, its rows are
+those of the CSV at ten moments, the picture changes with them, and slider and keyboard work.
+
+Usage: run_view.py PIRSIM DATA_DIRECTORY; exits with 77 (skipped) where there is no Chromium.
+"""
+import csv
+import html
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+MOMENTS = [3, 5, 8, 12, 15, 30, 60, 100, 150, 190]
+
+DRIVER = """<script>
+(async () => {
+  const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+  while (!document.body.dataset.ready) await wait(50);
+  const slider = document.getElementById("time"), seen = { rows: [], frames: [], keys: [] };
+  const press = (key) => document.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
+  for (const t of MOMENTS) {
+    slider.value = t;
+    slider.dispatchEvent(new Event("input"));
+    await wait(200);
+    seen.rows.push(document.body.dataset.row);
+    seen.frames.push(document.getElementById("view").toDataURL());
+  }
+  press("ArrowLeft"); seen.keys.push(Number(slider.value));
+  press("ArrowRight"); seen.keys.push(Number(slider.value));
+  press("Home"); seen.keys.push(Number(slider.value));
+  press(" "); await wait(1000); press(" ");
+  seen.keys.push(Number(slider.value));
+  seen.frames = new Set(seen.frames).size;
+  document.body.dataset.seen = JSON.stringify(seen);
+})();
+</script>"""
+
+
+def main():
+    pirsim, data = sys.argv[1], pathlib.Path(sys.argv[2])
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if not chromium:
+        print("SKIPPED: no Chromium")
+        sys.exit(77)
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        study = ["-q", "--scene", str(data / "rooms/meeting_room.gltf"), "--script", str(data / "studies/studyA.yaml")]
+        page = folder / "run.html"
+        subprocess.run([pirsim, "view", *study, "--trial", "S1", "-o", str(page)], check=True)
+        subprocess.run([pirsim, "run", *study, "--replicates", "1", "--set", "trials.for_each.seat=[S1]", "-o",
+                        str(folder / "rows.csv")], check=True)
+        with open(folder / "rows.csv", newline="", encoding="utf-8") as file:
+            rows = {float(row[2]): ",".join(row[2:]) for row in list(csv.reader(file))[1:]}
+        text = page.read_text(encoding="utf-8")
+        fetched = re.findall(r'(?:src|href)="(?!#|data:)[^"]*"', re.sub(r"<script.*?</script>", "", text, flags=re.DOTALL))
+        assert not fetched, fetched
+        page.write_text(text.replace("</body>", DRIVER.replace("MOMENTS", json.dumps(MOMENTS)) + "</body>"),
+                        encoding="utf-8")
+        result = subprocess.run(
+            [chromium, "--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
+             "--enable-unsafe-swiftshader", "--disable-background-networking", "--no-first-run",
+             f"--user-data-dir={folder / 'profile'}", "--enable-logging=stderr", "--window-size=900,700",
+             "--virtual-time-budget=20000", "--dump-dom", page.as_uri()], capture_output=True, text=True, timeout=240)
+    console = [line for line in result.stderr.splitlines() if "CONSOLE" in line]
+    assert not console, console
+    assert 'data-ready="room"' in result.stdout, "the room isn't drawn"
+    seen = json.loads(html.unescape(re.search(r'data-seen="(.*?)"', result.stdout, re.DOTALL).group(1)))
+    assert seen["rows"] == [rows[t] for t in MOMENTS], (seen["rows"], [rows[t] for t in MOMENTS])
+    assert seen["frames"] >= 6, f"{seen['frames']} different pictures of ten moments"
+    left, right, home, played = seen["keys"]
+    assert (left, right, home) == (MOMENTS[-1] - 1, MOMENTS[-1], 0), seen["keys"]
+    assert 0 < played < 5, f"a second of playing ended at {played} s"
+    print(f"view: ten moments agree with the rows, {seen['frames']} different pictures")
+
+
+if __name__ == "__main__":
+    main()
