@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "app/commands.hpp"
-#include "app/outputs.hpp"
 #include "app/session.hpp"
 #include "io/run_page.hpp"
 #include "pirsim/study.hpp"

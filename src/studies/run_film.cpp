@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/beams.hpp"
 #include "sim/run_state.hpp"
+#include "sim/solids.hpp"
 
 namespace pirsim::studies {
 namespace {
