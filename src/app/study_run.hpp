@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/options.hpp"
+#include "pirsim/model.hpp"
 
 namespace pirsim::app {
 
