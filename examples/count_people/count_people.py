@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""Makes the datasets, trains counters on them, and writes results.csv, tables.md and learning_curve.csv.
+
+See `run` for how it is called and docs/count_people.md for what came of it.
+"""
+import argparse
+import csv
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+
+import numpy as np
+from readings import read_dataset, read_uci864, whole
+from scores import NAMES
+from table import Results, estimates_of, learning_curve, motion_by_people, real_alone, simulated, trained
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parents[1]
+RECIPES = {"varied": ROOT / "data/recipes/uci_like.yaml",
+           **{name: HERE / "recipes" / f"{name}.yaml" for name in ("one_room", "one_room_effects", "rooms_only", "analog")}}
+REAL = "real: UCI 864"
+
+
+def options():
+    parser = argparse.ArgumentParser(description="train people counters on simulated data and test them")
+    parser.add_argument("--small", action="store_true", help="three rooms and two short mornings, in seconds")
+    parser.add_argument("--real", type=pathlib.Path, help="UCI 864's Occupancy_Estimation.csv")
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("out/count_people"))
+    parser.add_argument("--pirsim", help="the program; default: of this build, or on the path")
+    parser.add_argument("--draws", type=int, default=10, help="of real units, for the learning curve; default 10")
+    return parser.parse_args()
+
+
+def pirsim_of(given):
+    built = [ROOT / "build" / preset / "pirsim" for preset in ("release", "dev")]
+    found = given or next((str(p) for p in built if p.exists()), None) or shutil.which("pirsim")
+    if not found:
+        sys.exit("no pirsim found: build it (tools/demo), or give --pirsim")
+    return found
+
+
+def made(pirsim, recipe, folder):
+    """The dataset of a recipe, made if it isn't there yet."""
+    if not (folder / "datapackage.json").exists():
+        started = time.monotonic()
+        subprocess.run([pirsim, "dataset", recipe, "-o", folder, "--resume", "--sensors", ROOT / "data/sensors", "-q"],
+                       check=True)
+        print(f"{folder.name}: made in {time.monotonic() - started:.0f} s", file=sys.stderr)
+    return read_dataset(folder)
+
+
+def spread(train, test):
+    """Mean absolute error of counters that were each trained on one room: how far it depends on the room."""
+    errors = {}
+    for room in dict.fromkeys(p.stretch.room for p in train):
+        own = [p for p in train if p.stretch.room == room]
+        for name in ("boosted trees", "hidden Markov"):
+            _, people, estimates = estimates_of(trained(name, own), test)
+            errors.setdefault(name, []).append(np.abs(people - estimates).mean())
+    lines = ["| estimator | rooms | least | median | most |", "|---|---|---|---|---|"]
+    lines += [f"| {name} | {len(e)} | {min(e):.2f} | {np.median(e):.2f} | {max(e):.2f} |" for name, e in errors.items()]
+    return "\n".join(lines)
+
+
+def motion_table(sets):
+    lines = ["| data | people | sensor that sees more | that sees less | either |", "|---|---|---|---|---|"]
+    for name, stretches in sets.items():
+        all_rooms = motion_by_people(stretches)
+        for n in sorted({line[1] for line in all_rooms}):
+            seen = np.array([line[2:] for line in all_rooms if line[1] == n and not np.isnan(line[2])])
+            if len(seen) == 0:
+                continue
+            cells = [f"{np.median(c):.3f}" + (f" ({c.min():.3f}-{c.max():.3f})" if len(c) > 1 else "") for c in seen.T]
+            lines.append(f"| {name} | {n} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def real_column(results, real, varied, arguments, sections):
+    real_alone(results, real, REAL)
+    units = len(set(np.concatenate([s.units for s in real])))
+    shares = [max(1, round(units * share)) for share in (0.1, 0.25, 0.5)]
+    lines = learning_curve(real, varied, sorted(set(shares)), arguments.draws)
+    lines += learning_curve(real, [], [n for n in (1, 2, 3, 4, 6, 8, 10, 12) if n < units], arguments.draws)
+    with open(arguments.output / "learning_curve.csv", "w", newline="") as file:
+        out = csv.DictWriter(file, list(lines[0]))
+        out.writeheader()
+        out.writerows(lines)
+    table = ["| trained on | estimator | mean absolute error | least and most of the draws |", "|---|---|---|---|"]
+    for line in lines:
+        name = f"{'varied rooms + ' if line['with simulated'] else ''}{line['real units']} of {units} real units"
+        table.append(f"| {name} | {line['estimator']} | {line['error']:.2f} | {line['low']:.2f}-{line['high']:.2f} |")
+    sections += ["## Real units added", "\n".join(table)]
+
+
+def main():
+    arguments = options()
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    pirsim = pirsim_of(arguments.pirsim)
+    recipes = {"varied": HERE / "recipes" / "small.yaml"} if arguments.small else RECIPES
+    started = time.monotonic()
+    data = {}
+    for name, recipe in recipes.items():
+        data[name] = made(pirsim, recipe, arguments.output / "datasets" / ("small" if arguments.small else name))
+    trainings = {"rooms and effects varied": whole(data["varied"]["train"])}
+    tests = {"new days": (whole(data["varied"]["test_days"]), False),
+             "new rooms": (whole(data["varied"]["test_rooms"]), True)}
+    if not arguments.small:
+        trainings |= {"one room, no variation": whole(data["one_room"]["train"]),
+                      "one room, effects varied": whole(data["one_room_effects"]["train"]),
+                      "rooms varied, no effects": whole(data["rooms_only"]["train"]),
+                      "rooms and effects varied, analog": whole(data["analog"]["train"])}
+        tests["new rooms, analog"] = (whole(data["analog"]["test_rooms"]), True)
+    real = read_uci864(arguments.real) if arguments.real else []
+    if real:
+        tests[REAL] = (whole(real), True)
+    results, sections = Results(), []
+    simulated(results, trainings, tests)
+    results.write(arguments.output / "results.csv")
+    sets = {name: sum(parts.values(), []) for name, parts in data.items()}
+    if real:
+        real_column(results, real, trainings["rooms and effects varied"], arguments, sections)
+        sets[REAL] = real
+        sections += ["## Trained on one room each, tested on the real data",
+                     spread(trainings["rooms and effects varied"], whole(real))]
+    sections += ["## Trained on one room each, tested on new rooms",
+                 spread(trainings["rooms and effects varied"], tests["new rooms"][0]),
+                 "## P(motion in 30 s | people): median of rooms (least-most)", motion_table(sets)]
+    results.write(arguments.output / "results.csv")
+    tables = [f"## {name.capitalize()} (95 % interval over days)\n\n{results.markdown(name)}" for name in NAMES]
+    (arguments.output / "tables.md").write_text("\n\n".join([*tables, *sections]) + "\n")
+    print(f"{arguments.output}/tables.md, after {time.monotonic() - started:.0f} s")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,102 @@
+"""Readings: which sensor saw motion in each half minute, and how many people there were at its end."""
+import csv
+import datetime
+import gzip
+import hashlib
+import json
+import pathlib
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+SECONDS = 30.0      # of a reading, as in UCI 864
+LONGEST_GAP = 300.0  # s; what lies further apart isn't one stretch
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Readings of one room and day without a gap."""
+    room: str
+    motion: np.ndarray  # bool [reading, sensor]
+    people: np.ndarray  # int [reading]
+    units: np.ndarray   # str [reading]: the day, or the hour of a single day; whatever is held back is whole units
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Which readings of a stretch are trained on or scored, and what each of them counts."""
+    stretch: Stretch
+    keep: np.ndarray  # bool [reading]
+    weight: float = 1.0
+
+    def units(self):
+        return set(self.stretch.units[self.keep])
+
+
+def whole(stretches, weight=1.0):
+    return [Piece(s, np.ones(len(s.people), bool), weight) for s in stretches]
+
+
+def among(stretches, units, weight=1.0):
+    """The readings of these units."""
+    pieces = [Piece(s, np.isin(s.units, sorted(units)), weight) for s in stretches]
+    return [p for p in pieces if p.keep.any()]
+
+
+def check_apart(train, test, rooms=False):
+    """Refuses to score what was trained on: no day in both, and with `rooms` no room either."""
+    shared = set().union(*(p.units() for p in train)) & set().union(*(p.units() for p in test))
+    if rooms:
+        shared |= {p.stretch.room for p in train} & {p.stretch.room for p in test}
+    if shared:
+        raise ValueError(f"trained on what is to be tested: {sorted(shared)[:3]}")
+
+
+def read_dataset(folder):
+    """The parts of a dataset of `pirsim dataset`: name to stretches."""
+    folder = pathlib.Path(folder)
+    package = json.loads((folder / "datapackage.json").read_text())
+    parts = {}
+    for resource in package["resources"]:
+        fields = [f["name"] for f in resource.get("schema", {}).get("fields", [])]
+        if resource["name"] in ("train", "validation", "test_days", "test_rooms") and "people" in fields:
+            paths = resource["path"] if isinstance(resource["path"], list) else [resource["path"]]
+            parts[resource["name"]] = [_read_day(folder, path) for path in paths]
+    return parts
+
+
+def _read_day(folder, path):
+    opened = gzip.open(folder / path, "rt") if path.endswith(".gz") else open(folder / path)
+    with opened as file:
+        rows = list(csv.reader(file))
+    columns = {name: i for i, name in enumerate(rows[0])}
+    last = columns["departures"]
+    sensors = [i for name, i in columns.items() if i > last and rows[1][i] != ""]
+    motion = np.array([[row[i] == "1" for i in sensors] for row in rows[1:]], dtype=bool)
+    people = np.array([int(row[columns["people"]]) for row in rows[1:]])
+    per = round(SECONDS / float(rows[1][columns["time_s"]]))
+    n = len(people) // per
+    # The same scene is the same room, whichever dataset it is in.
+    name = pathlib.Path(path).parent.name
+    room = hashlib.sha256((folder / "rooms" / (name + ".gltf")).read_bytes()).hexdigest()[:12]
+    day = f"{room} {rows[1][columns['time']][:10]}"
+    return Stretch(room, motion[:n * per].reshape(n, per, -1).any(axis=1), people[per - 1:n * per:per],
+                   np.full(n, day))
+
+
+def read_uci864(path):
+    """Occupancy_Estimation.csv as UCI publishes it: the PIR columns and the count, in stretches without gaps."""
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    times = [datetime.datetime.fromisoformat(f"{r['Date'].replace('/', '-')} {r['Time']}") for r in rows]
+    motion = np.array([[r["S6_PIR"] == "1", r["S7_PIR"] == "1"] for r in rows])
+    people = np.array([int(r["Room_Occupancy_Count"]) for r in rows])
+    seconds = np.array([(t - times[0]).total_seconds() for t in times])
+    days = np.array([t.date().isoformat() for t in times])
+    cuts = np.flatnonzero((np.diff(seconds) > LONGEST_GAP) | (days[1:] != days[:-1])) + 1
+    stretches = [Stretch("uci864", motion[i], people[i], days[i]) for i in np.split(np.arange(len(rows)), cuts)]
+    if len(set(days)) > 3:
+        return stretches
+    # Too few days to hold one back: hours are, which are less apart from each other than days.
+    hours = np.array([f"{t.date().isoformat()} {t.hour:02d}h" for t in times])
+    return [replace(s, units=hours[i]) for s, i in zip(stretches, np.split(np.arange(len(rows)), cuts))]
