@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+"""The counter's parts against what they must be. Usage: test_count_people.py EXAMPLE_DIR. Needs numpy."""
+import itertools
+import sys
+import unittest
+
+import numpy as np
+
+sys.path.insert(0, sys.argv.pop(1))
+sys.dont_write_bytecode = True
+from features import features, shares  # noqa: E402
+from hidden_markov import forward_filter  # noqa: E402
+from readings import Stretch, among, check_apart, whole  # noqa: E402
+from scores import score, scores_of, tally  # noqa: E402
+
+
+def day(room, name, n=4):
+    return Stretch(room, np.zeros((n, 2), bool), np.zeros(n, int), np.full(n, name))
+
+
+class Leakage(unittest.TestCase):
+    def test_days_and_rooms_apart(self):
+        check_apart(whole([day("a", "a 1")]), whole([day("a", "a 2")]))
+        check_apart(whole([day("a", "a 1")]), whole([day("b", "b 1")]), rooms=True)
+
+    def test_twins_that_must_fail(self):
+        with self.assertRaises(ValueError):
+            check_apart(whole([day("a", "a 1"), day("a", "a 2")]), whole([day("a", "a 2")]))
+        with self.assertRaises(ValueError):
+            check_apart(whole([day("a", "a 1")]), whole([day("a", "a 2")]), rooms=True)
+
+    def test_units_divide_the_readings(self):
+        stretch = Stretch("a", np.zeros((6, 1), bool), np.arange(6), np.array(["x", "x", "y", "y", "z", "z"]))
+        self.assertEqual(list(among([stretch], {"x", "z"})[0].keep), [True, True, False, False, True, True])
+
+
+class Filter(unittest.TestCase):
+    def test_all_paths_of_a_small_chain(self):
+        rng = np.random.default_rng(3)
+        prior, moves, seen = rng.dirichlet([1] * 3), rng.dirichlet([1] * 3, 3), rng.random((5, 3))
+        found = forward_filter(prior, moves, seen)
+        for end in range(5):
+            mass = np.zeros(3)
+            for path in itertools.product(range(3), repeat=end + 1):
+                p = prior[path[0]] * seen[0, path[0]]
+                for t in range(1, end + 1):
+                    p *= moves[path[t - 1], path[t]] * seen[t, path[t]]
+                mass[path[-1]] += p
+            np.testing.assert_allclose(found[end], mass / mass.sum(), rtol=1e-12)
+
+
+class Features(unittest.TestCase):
+    def test_shares_of_a_toy_series(self):
+        motion = np.array([[1, 0], [0, 0], [1, 1], [0, 1]], bool)
+        np.testing.assert_allclose(shares(motion, 2), [[1, 0], [0.5, 0], [0.5, 0.5], [0.5, 1]])
+        np.testing.assert_allclose(features(motion)[:, 12], [0, 1, 0, 0])
+        np.testing.assert_allclose(features(motion)[3, :4], [0.75, 1, 0.5, 1])
+
+    def test_order_of_sensors_and_the_future_do_not_count(self):
+        motion = np.random.default_rng(4).random((50, 3)) < 0.3
+        np.testing.assert_allclose(features(motion), features(motion[:, ::-1]))
+        np.testing.assert_allclose(features(motion)[:20], features(motion[:20]))
+
+
+class Scores(unittest.TestCase):
+    def test_by_hand(self):
+        units, people = np.array(["a", "a", "b", "b"]), np.array([0, 0, 1, 3])
+        estimates = np.array([0.0, 1.0, 1.0, 1.0])
+        np.testing.assert_allclose(scores_of(tally(units, people, estimates, 4).sum(axis=0)), [0.75, 0.75, 0.5])
+        value, low, high = score(units, people, estimates)[0]
+        np.testing.assert_allclose([value, low, high], [0.75, 0.5, 1.0])  # of the days alone: 0.5 and 1
+
+
+if __name__ == "__main__":
+    unittest.main()
