@@ -494,7 +494,7 @@ class Options(unittest.TestCase):
                     (("--resume",), "--resume needs -o FILE"),
                     (("--max-time", "5m"), "--max-time needs -o FILE"),
                     (("--max-time", "5x", "-o", folder / "a.csv"), "--max-time"),
-                    (("--resume", "-o", "/dev/null"), "no regular file"),
+                    (("--resume", "-o", "/dev/null"), "not a regular file"),
                     (("--resume", "-o", folder / "a.csv", "--summary", folder / "s.md"), "need all runs at once"),
                     (("--shard", "1/2", "-o", folder, "--format", ".txt"), "--format"),
                     (("--shard", "auto", "-o", folder), "none of these variables is set")):

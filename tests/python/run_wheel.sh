@@ -13,7 +13,7 @@ bin=$(dirname "$python")
 
 cmake --install "$build" --prefix "$scratch/prefix" >/dev/null
 "$python" -m pip wheel --quiet --disable-pip-version-check --no-build-isolation --no-deps "$source" -w "$scratch/plain" \
-  -C cmake.source-dir=python -C build-dir="$scratch/build" -C cmake.define.CMAKE_PREFIX_PATH="$scratch/prefix"
+  --config-settings cmake.source-dir=python --config-settings build-dir="$scratch/build" --config-settings cmake.define.CMAKE_PREFIX_PATH="$scratch/prefix"
 PATH=$bin:$PATH "$python" -m auditwheel repair --wheel-dir "$wheels" "$scratch"/plain/pirsim-*.whl >"$scratch/repair.log" 2>&1 || {
   cat "$scratch/repair.log" >&2
   exit 1

@@ -81,7 +81,7 @@ TEST_CASE("every fault of a script is told at once, each with its place") {
   const std::string text =
       fault("pirsim_script: 1\nseeds: 3\npeople:\n  - id: a\n    actions:\n      - sti: S1\n      - wait_s: -1\n");
   CHECK(text.find(":2:1: error: script: unknown key 'seeds' (did you mean 'seed'?)") != std::string::npos);
-  CHECK(text.find(":6:9: error: action: unknown key 'sti' (did you mean 'sit'?)") != std::string::npos);
+  CHECK(text.find(":6:9: error: 'sti' isn't an action (did you mean 'sit'?)") != std::string::npos);
   CHECK(text.find(":7:17: error: wait_s") != std::string::npos);
 }
 

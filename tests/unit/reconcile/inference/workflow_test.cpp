@@ -400,7 +400,7 @@ TEST_CASE("two effects at once are found one after the other", "[reconcile][thre
   CHECK_FALSE(std::filesystem::exists(folder.path() / "script_patched.yaml"));
 }
 
-TEST_CASE("a name is taken back if the model with it can't have made the data", "[reconcile][three-seats]") {
+TEST_CASE("what no effect of the catalogue makes gets no name, and the residuals say what is left", "[reconcile][three-seats]") {
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
   ScriptSpec hidden = short_study();
   hidden.seed = 7;
@@ -420,17 +420,11 @@ TEST_CASE("a name is taken back if the model with it can't have made the data", 
   const Outcome outcome = reconcile::reconcile(scene, short_study(), measured, settings);
   CHECK(outcome.verdict == Verdict::none_in_catalogue);
   CHECK((outcome.named.empty() && outcome.fits.empty() && !outcome.verification));
-  CHECK_THAT(sentence(outcome), contains("What resembles it most, trigger_bursts, doesn't explain it"));
   REQUIRE(outcome.looks.size() == 1);
   CHECK_FALSE(outcome.looks.front().passes());
   for (const Candidate& candidate : outcome.candidates) CHECK(!candidate.kept);
-  CHECK_THAT(in_words(outcome.candidates.front()), contains("Dropped: with it applied, the model still differs"));
   REQUIRE(outcome.residuals);
   CHECK_THAT(sentence(outcome), contains("PIR2, in the middle third") && contains("the opposite"));
-  settings.max_effects = 1;  // nothing else is looked for: the name stands, and the rest is told
-  const Outcome one = reconcile::reconcile(scene, short_study(), measured, settings);
-  CHECK((one.verdict == Verdict::named && one.named == std::vector<std::string>{"trigger_bursts"}));
-  CHECK_THAT(sentence(one), contains("That is not all. With trigger_bursts applied, the model still differs"));
 }
 
 TEST_CASE("the seed of the script plays no part in the analysis", "[reconcile][three-seats]") {
