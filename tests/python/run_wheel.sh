@@ -34,7 +34,7 @@ fi
 "$python" -m pip download --quiet --disable-pip-version-check --only-binary :all: -d "$scratch/house" "$wheel" pytest
 release=$(. /etc/os-release && echo "$VERSION_CODENAME")
 mirror=$(sed -nE 's/^deb (\[[^]]*\] )?(http[^ ]*) .*/\2/p; s/^URIs: *([^ ]*).*/\1/p' /etc/apt/sources.list \
-  /etc/apt/sources.list.d/* 2>/dev/null | head -1)
+  /etc/apt/sources.list.d/* 2>/dev/null | head -1 || true)  # one of them may be missing
 if ! debootstrap --variant=minbase --include=python3-venv "$release" "$scratch/root" ${mirror:+"$mirror"} >"$scratch/debootstrap.log" 2>&1; then
   tail -5 "$scratch/debootstrap.log" >&2
   echo "wheel: built and repaired, but NOT tried in a bare system: debootstrap failed" >&2
@@ -44,7 +44,9 @@ mkdir -p "$scratch/root/try"
 cp -r "$scratch/house" "$source/tests/python" "$source/tests/e2e" "$source/data" "$source/examples" "$source/docs" \
   "$scratch/root/try/"
 mkdir -p "$scratch/root/try/tests" && mv "$scratch/root/try/python" "$scratch/root/try/e2e" "$scratch/root/try/tests/"
-env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root PIRSIM_SOURCE=/try chroot "$scratch/root" sh -euc '
+# /proc, which the tests of memory read, is mounted in a namespace that ends with the command.
+env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root PIRSIM_SOURCE=/try unshare --mount sh -euc \
+  'mount -t proc proc "$0/proc"; exec chroot "$0" sh -euc "$1"' "$scratch/root" '
   for name in gcc cc g++ clang cmake; do ! command -v $name || exit 1; done
   ! find / -xdev \( -name "libembree*" -o -name "libtbb*" -o -name "libyaml-cpp*" \) | grep .
   python3 -m venv /venv
