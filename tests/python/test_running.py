@@ -1,10 +1,12 @@
 """Threads, Ctrl-C, progress, memory, pickling."""
 
 import copy
+import ctypes
 import gc
 import os
 import pickle
 import signal
+import sys
 import threading
 import time
 
@@ -99,31 +101,44 @@ def test_progress_is_told_and_may_end_the_work(model, room, study_a):
         pirsim.run(many, progress=stop)
 
 
-def resident_bytes():
+class Mallinfo(ctypes.Structure):
+    _fields_ = [(name, ctypes.c_size_t) for name in ("arena", "ordblks", "smblks", "hblks", "hblkhd", "usmblks",
+                                                     "fsmblks", "uordblks", "fordblks", "keepcost")]
+
+
+def bytes_in_use():
+    """What malloc has given out, and Python's own blocks: exact, unlike the process's resident memory."""
     gc.collect()
-    with open("/proc/self/statm") as file:
-        return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    mallinfo = ctypes.CDLL(None).mallinfo2
+    mallinfo.restype = Mallinfo
+    info = mallinfo()
+    return info.uordblks + info.hblkhd, sys.getallocatedblocks()
 
 
 def growth(model, n, keep):
-    """Of resident memory over n results, after as many to warm up."""
+    """Of bytes and of Python's blocks over n results, after as many to warm up."""
     kept = []
     for _ in range(n):
-        pirsim.run(model, [0, 1], threads=1)
-    before = resident_bytes()
+        pirsim.run(model, [0], threads=1)
+    bytes_in_use()  # which keeps something of its own at its first call
+    before = bytes_in_use()
     for _ in range(n):
-        result = pirsim.run(model, [0, 1], threads=1)
+        result = pirsim.run(model, [0], threads=1)
         if keep:
             kept.append(result)
-    return resident_bytes() - before
+    del result
+    return [after - b for after, b in zip(bytes_in_use(), before)]
 
 
 def test_many_results_take_no_memory(room, study_a):
-    model = pirsim.compile(room, study_a, set={"people.0.actions.3.work.duration_s": 60, "replicates": 1})
-    n = 400
-    held = sum(array.nbytes for array in (lambda r: (r.bits, r.people, r.phase_code, r.valid))(pirsim.run(model, [0, 1])))
-    assert growth(model, n, keep=False) < 0.3 * n * held
-    assert growth(model, n, keep=True) > 0.8 * n * held  # the twin that must show a leak
+    model = pirsim.compile(room, study_a, set={"people.0.actions.3.work.duration_s": 5, "replicates": 1})
+    n = 200
+    result = pirsim.run(model, [0])
+    held = result.bits.nbytes + result.people.nbytes + result.phase_code.nbytes + result.valid.nbytes
+    grown, blocks = growth(model, n, keep=False)
+    assert grown < 0.05 * n * held and blocks < 0.5 * n
+    grown, blocks = growth(model, n, keep=True)  # the twin that must show a leak
+    assert grown > 0.8 * n * held and blocks > 2 * n
 
 
 def test_a_result_outlives_its_model(room, study_a):
