@@ -119,6 +119,17 @@ int GltfBuilder::add_mesh(const std::string& name, const tinygltf::Primitive& pr
   return index_of_last(model_.meshes.size());
 }
 
+int GltfBuilder::add_mesh(const TriMesh& mesh, int material) {
+  std::vector<std::uint32_t> indices;
+  for (const auto& triangle : mesh.triangles) indices.insert(indices.end(), triangle.begin(), triangle.end());
+  tinygltf::Primitive primitive;
+  primitive.mode = TINYGLTF_MODE_TRIANGLES;
+  primitive.attributes["POSITION"] = add_positions(mesh.positions);
+  primitive.indices = add_indices(indices);
+  primitive.material = material;
+  return add_mesh(mesh.name, primitive);
+}
+
 int GltfBuilder::add_node(tinygltf::Node node, int parent) {
   model_.nodes.push_back(std::move(node));
   const int index = index_of_last(model_.nodes.size());

@@ -39,6 +39,7 @@ class GltfBuilder {
   int add_material(const std::string& name, const Vec3& colour, double opacity);
   /// One primitive of the given mode (TINYGLTF_MODE_*); accessor -1: none.
   int add_mesh(const std::string& name, const tinygltf::Primitive& primitive);
+  int add_mesh(const TriMesh& mesh, int material);
   /// A node below `parent`, or of the scene's roots for parent -1.
   int add_node(tinygltf::Node node, int parent = -1);
   /// Adds a channel to the one animation; interpolation as glTF spells it.

@@ -93,15 +93,8 @@ void add_room(GltfBuilder& document, const std::vector<TriMesh>& meshes) {
       material = tall ? document.add_material("wall", wall_colour, wall_opacity)
                       : document.add_material("furniture", furniture_colour, 1.0);
     }
-    std::vector<std::uint32_t> indices;
-    for (const auto& triangle : mesh.triangles) indices.insert(indices.end(), triangle.begin(), triangle.end());
-    tinygltf::Primitive primitive;
-    primitive.mode = TINYGLTF_MODE_TRIANGLES;
-    primitive.attributes["POSITION"] = document.add_positions(mesh.positions);
-    primitive.indices = document.add_indices(indices);
-    primitive.material = material;
     tinygltf::Node node = named(mesh.name);
-    node.mesh = document.add_mesh(mesh.name, primitive);
+    node.mesh = document.add_mesh(mesh, material);
     document.add_node(std::move(node));
   }
 }

@@ -55,16 +55,9 @@ void add_floor(GltfBuilder& document, const FloorArea& floor, const Where& where
 }
 
 void add_mesh(GltfBuilder& document, const TriMesh& mesh, int material) {
-  std::vector<std::uint32_t> indices;
-  for (const auto& triangle : mesh.triangles) indices.insert(indices.end(), triangle.begin(), triangle.end());
-  tinygltf::Primitive primitive;
-  primitive.mode = TINYGLTF_MODE_TRIANGLES;
-  primitive.attributes["POSITION"] = document.add_positions(mesh.positions);
-  primitive.indices = document.add_indices(indices);
-  primitive.material = material;
   tinygltf::Node node;
   node.name = mesh.name;
-  node.mesh = document.add_mesh(mesh.name, primitive);
+  node.mesh = document.add_mesh(mesh, material);
   if (mesh.temperature_c) node.extras = pirsim_extras("surface", {{"temperature_c", Value(*mesh.temperature_c)}});
   document.add_node(std::move(node));
 }

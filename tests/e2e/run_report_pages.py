@@ -6,10 +6,11 @@ Usage: run_report_pages.py PIRSIM DATA_DIRECTORY; exits with 77 (skipped) where 
 """
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
+
+from browser import check_fetches_nothing, chromium_or_skip, opened, without_scripts
 
 # Points at the middle of every chart, and writes down what the page then shows.
 POINTER = """<script>
@@ -32,26 +33,13 @@ setTimeout(() => {
 </script>"""
 
 
-def dump(chromium, page, width, folder):
-    command = [chromium, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-               "--disable-background-networking", "--disable-component-update", "--disable-sync",
-               f"--user-data-dir={folder / 'profile'}", "--enable-logging=stderr", f"--window-size={width},30000",
-               "--virtual-time-budget=20000", "--dump-dom", page.as_uri()]
-    result = subprocess.run(command, capture_output=True, text=True, timeout=240)
-    console = [line for line in result.stderr.splitlines() if "CONSOLE" in line]
-    assert not console, f"{page.name} on the console: {console}"
-    return re.sub(r"<script.*?</script>", "", result.stdout, flags=re.DOTALL)
-
-
 def check_page(chromium, page, expected, folder, widths=(1400, 500)):
+    check_fetches_nothing(page)
     text = page.read_text(encoding="utf-8")
-    markup = re.sub(r"<script.*?</script>", "", text, flags=re.DOTALL)
-    fetched = re.findall(r'(?:src|href)="(?!#|data:)[^"]*"|@import|url\(', markup)
-    assert not fetched, f"{page.name} fetches {fetched}"
     pointed = folder / ("pointed_" + page.name)
     pointed.write_text(text.replace("</body>", POINTER + "</body>"), encoding="utf-8")
     for width in widths:
-        dom = dump(chromium, pointed, width, folder)
+        dom = without_scripts(opened(chromium, pointed, folder, f"{width},30000", "--disable-gpu"))
         plots, canvases = dom.count('class="plot'), dom.count("<canvas")
         assert plots == canvases == expected, f"{page.name}, {width} wide: {canvases} of {plots} charts, not {expected}"
         shown = re.search(r'data-shown="(.*?)"', dom, flags=re.DOTALL)
@@ -62,10 +50,7 @@ def check_page(chromium, page, expected, folder, widths=(1400, 500)):
 
 def main():
     pirsim, data = sys.argv[1], pathlib.Path(sys.argv[2])
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    if not chromium:
-        print("SKIPPED: no Chromium")
-        sys.exit(77)
+    chromium = chromium_or_skip()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         scene = ["-q", "--scene", str(data / "rooms/meeting_room.gltf")]

@@ -9,10 +9,11 @@ import html
 import json
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
+
+from browser import check_fetches_nothing, chromium_or_skip, opened
 
 MOMENTS = [3, 5, 8, 12, 15, 30, 60, 100, 150, 190]
 
@@ -42,10 +43,7 @@ DRIVER = """<script>
 
 def main():
     pirsim, data = sys.argv[1], pathlib.Path(sys.argv[2])
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    if not chromium:
-        print("SKIPPED: no Chromium")
-        sys.exit(77)
+    chromium = chromium_or_skip()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         study = ["-q", "--scene", str(data / "rooms/meeting_room.gltf"), "--script", str(data / "studies/studyA.yaml")]
@@ -55,20 +53,14 @@ def main():
                         str(folder / "rows.csv")], check=True)
         with open(folder / "rows.csv", newline="", encoding="utf-8") as file:
             rows = {float(row[2]): ",".join(row[2:]) for row in list(csv.reader(file))[1:]}
+        check_fetches_nothing(page)
         text = page.read_text(encoding="utf-8")
-        fetched = re.findall(r'(?:src|href)="(?!#|data:)[^"]*"', re.sub(r"<script.*?</script>", "", text, flags=re.DOTALL))
-        assert not fetched, fetched
         page.write_text(text.replace("</body>", DRIVER.replace("MOMENTS", json.dumps(MOMENTS)) + "</body>"),
                         encoding="utf-8")
-        result = subprocess.run(
-            [chromium, "--headless", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader",
-             "--enable-unsafe-swiftshader", "--disable-background-networking", "--no-first-run",
-             f"--user-data-dir={folder / 'profile'}", "--enable-logging=stderr", "--window-size=900,700",
-             "--virtual-time-budget=20000", "--dump-dom", page.as_uri()], capture_output=True, text=True, timeout=240)
-    console = [line for line in result.stderr.splitlines() if "CONSOLE" in line]
-    assert not console, console
-    assert 'data-ready="room"' in result.stdout, "the room isn't drawn"
-    seen = json.loads(html.unescape(re.search(r'data-seen="(.*?)"', result.stdout, re.DOTALL).group(1)))
+        dom = opened(chromium, page, folder, "900,700", "--use-gl=angle", "--use-angle=swiftshader",
+                     "--enable-unsafe-swiftshader")
+    assert 'data-ready="room"' in dom, "the room isn't drawn"
+    seen = json.loads(html.unescape(re.search(r'data-seen="(.*?)"', dom, re.DOTALL).group(1)))
     assert seen["rows"] == [rows[t] for t in MOMENTS], (seen["rows"], [rows[t] for t in MOMENTS])
     assert seen["frames"] >= 6, f"{seen['frames']} different pictures of ten moments"
     left, right, home, played = seen["keys"]
