@@ -391,6 +391,7 @@
       this.stale = false;
       this.renderer.render(this.scene, this.camera);
       this.placeLabels();
+      document.body.dataset.drawn = shown.time;  // the moment that the picture shows
     }
   }
 
