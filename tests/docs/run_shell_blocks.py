@@ -4,7 +4,12 @@ the path; its marked blocks are worked off in order:
 
   ```yaml file=study.yaml    is written to that file
   ```sh run                  runs, and must succeed
+  ```sh run makes=a.md       the same; it must make the file of that name that lies beside the page
   ```text output             each line must be in what the last `run` printed, in this order
+  ```sh tested by FILE       that test does what the block says
+  ```sh not run: REASON      can't be tried here
+
+A shell block without a word on how it is tested is a fault.
 
 room.gltf and study.yaml of docs/howto/my_room.md are there from the beginning: readers of other pages have theirs.
 
@@ -31,24 +36,33 @@ def write_file(block, folder):
     file.write_text(block.text, encoding="utf-8")
 
 
-def run_page(page, place, folder, environment):
+def check_made(names, page, folder, here):
+    for name in names:
+        assert (folder / name).read_bytes() == (page.parent / name).read_bytes(), f"{here}: {name} is another by now"
+
+
+def run_page(page, place, folder, environment, source):
     """How many blocks were run."""
     ran, printed = 0, ""
     for block in blocks(page):
         here = f"{place}:{block.line}"
         if block.info.startswith("file="):
             write_file(block, folder)
-        elif block.info == "run":
+        elif block.info.split(" makes=")[0] == "run":
             result = subprocess.run(["bash", "-euo", "pipefail", "-c", block.text], cwd=folder, env=environment,
                                     stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
             printed = result.stdout
             assert result.returncode == 0, f"{here}: exit code {result.returncode}\n{printed}"
+            check_made(filter(None, block.info.partition(" makes=")[2].split(",")), page, folder, here)
             ran += 1
         elif block.info == "output":
             assert ran, f"{here}: nothing was run before"
             check_output(block.text, printed, here)
+        elif block.info.startswith("tested by "):
+            assert (source / block.info.removeprefix("tested by ")).is_file(), f"{here}: no such test"
         else:
-            assert not block.info, f"{here}: not known: {block.info}"
+            assert block.language == "sh" or not block.info, f"{here}: not known: {block.info}"
+            assert block.language != "sh" or block.info.startswith("not run: "), f"{here}: how is this tested?"
     return ran
 
 
@@ -68,7 +82,7 @@ def main():
             (pathlib.Path(name) / "bin/pirsim").symlink_to(pirsim)
             environment = {**os.environ, "PATH": f"{name}/bin:{os.environ['PATH']}",
                            "PIRSIM_DATA_DIR": str(source / "data")}
-            ran += run_page(page, page.relative_to(source), folder, environment)
+            ran += run_page(page, page.relative_to(source), folder, environment, source)
     print(f"{ran} blocks of {len(chosen)} pages ran")
     assert ran >= len(sys.argv[3:]) and ran > 0
 

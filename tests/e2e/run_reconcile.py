@@ -24,7 +24,7 @@ def readme_example(source):
     """The commands between the fences below the heading."""
     text = (source / "README.md").read_text(encoding="utf-8")
     section = text.split("## What is the model missing?", 1)[1]
-    return re.search(r"```sh\n(.*?)```", section, flags=re.DOTALL).group(1)
+    return re.search(r"```sh[^\n]*\n(.*?)```", section, flags=re.DOTALL).group(1)
 
 
 def run_example(pirsim, source, folder):
