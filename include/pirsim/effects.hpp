@@ -32,7 +32,15 @@ struct ParameterInfo {
   std::string source;   ///< of the range: a paper, a data sheet, or `assumed`
   Condition only_if{};  ///< else it means nothing (a chair's back has no place of its own); empty: always
 };
-enum class ChoiceKind { sensor, mesh, word };
+enum class ChoiceKind {
+  sensor,
+  mesh,
+  word,
+  variant  ///< a word that says how the same cause is modelled
+};
+[[nodiscard]] constexpr bool is_word(ChoiceKind kind) noexcept {
+  return kind == ChoiceKind::word || kind == ChoiceKind::variant;
+}
 struct ChoiceInfo {
   std::string name;
   ChoiceKind kind = ChoiceKind::word;

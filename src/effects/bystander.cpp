@@ -39,7 +39,7 @@ void add_bystander(StudyInForce& study, const BystanderPlan& plan, const Where& 
   for (TrialInForce& trial : study.trials) {
     PersonInForce person;
     person.id = new_id(trial, plan.id);
-    person.changes.role = PersonRole::bystander;
+    person.changes.role = plan.role;
     person.stature_m = plan.stature_m;
     person.mass_kg = plan.mass_kg;
     person.walking_speed_m_s = plan.speed_m_s;

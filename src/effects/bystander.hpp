@@ -12,6 +12,7 @@ namespace pirsim::effects {
 /// What one of them does, again and again until the longest trial is over.
 struct BystanderPlan {
   std::string_view id;  ///< several in one room go by numbers
+  PersonRole role = PersonRole::bystander;
   double stature_m = 1.75;
   double mass_kg = 75.0;
   double speed_m_s = 1.2;

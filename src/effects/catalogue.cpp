@@ -140,7 +140,7 @@ EffectSpec draw_from_prior(const Effect& effect, const SceneSpec& scene, const S
   }
   for (const ChoiceInfo& choice : effect.info.choices) {
     const auto pick = [&](const auto& list) { return list[stream.index(static_cast<std::uint32_t>(list.size()))]; };
-    if (choice.kind == ChoiceKind::word) spec.choices[choice.name] = pick(choice.words);
+    if (is_word(choice.kind)) spec.choices[choice.name] = pick(choice.words);
     if (choice.kind == ChoiceKind::sensor && stream.index(2) == 1) spec.choices[choice.name] = pick(scene.sensors).id;
   }
   if (effect.draw != nullptr) effect.draw(spec, scene, script, stream);

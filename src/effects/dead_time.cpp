@@ -58,7 +58,7 @@ const Effect& dead_time() {
                                .least = 0.0,
                                .most = 600.0,
                                .source = "assumed: lock-out times of common PIR modules are 0.2-5 s"}},
-               .choices = {{"kind", ChoiceKind::word, {"non_paralysable", "paralysable"}, "non_paralysable"},
+               .choices = {{"kind", ChoiceKind::variant, {"non_paralysable", "paralysable"}, "non_paralysable"},
                            sensor_choice()},
                .reach = Reach::triggers},
       .make_stage = make};

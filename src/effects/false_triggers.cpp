@@ -74,7 +74,7 @@ const Effect& false_triggers() {
                                .most = 10.0,
                                .scale = Scale::logarithmic,
                                .source = "assumed: from one in half an hour to one in 17 s"}},
-               .choices = {{"timing", ChoiceKind::word, {"independent", "simultaneous"}, "independent"},
+               .choices = {{"timing", ChoiceKind::variant, {"independent", "simultaneous"}, "independent"},
                            sensor_choice()},
                .reach = Reach::triggers},
       .make_stage = make,

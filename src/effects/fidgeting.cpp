@@ -56,7 +56,7 @@ const Effect& fidgeting() {
                                .least = 0.0,
                                .most = 80.0,
                                .source = "assumed: the head turns to within so much of straight ahead"}},
-               .choices = {{"timing", ChoiceKind::word, {"independent", "still_periods"}, "independent"}},
+               .choices = {{"timing", ChoiceKind::variant, {"independent", "still_periods"}, "independent"}},
                .reach = Reach::geometry},
       .alter = alter};
   return effect;

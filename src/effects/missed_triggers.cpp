@@ -93,7 +93,7 @@ const Effect& missed_triggers() {
                                .most = 1.0,
                                .source = "assumed",
                                .only_if = {"unit", "trigger"}}},
-               .choices = {{"unit", ChoiceKind::word, {"window", "trigger"}, "windows"}, sensor_choice()},
+               .choices = {{"unit", ChoiceKind::variant, {"window", "trigger"}, "windows"}, sensor_choice()},
                .reach = Reach::triggers},
       .make_stage = make};
   return effect;

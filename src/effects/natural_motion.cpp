@@ -42,7 +42,7 @@ const Effect& natural_motion() {
            .fingerprint = "the arms' line in the spectrum is gone; activity comes in bouts of all lengths",
            .confused_with = {"fidgeting", "uneven_arms", "soft_zone_edges"},
            .parameters = {whether("present", "assumed")},
-           .choices = {{"activity", ChoiceKind::word, activity_names(), "typing"}},
+           .choices = {{"activity", ChoiceKind::variant, activity_names(), "typing"}},
            .reach = Reach::geometry},
       .alter = alter};
   return effect;

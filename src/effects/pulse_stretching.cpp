@@ -79,7 +79,7 @@ const Effect& pulse_stretching() {
                                .least = 0.0,
                                .most = 1.0,
                                .source = "assumed: each pulse between (1 - spread) and (1 + spread) times hold_s"}},
-               .choices = {{"retrigger", ChoiceKind::word, {"restarts", "ignored"}, "restarts"}, sensor_choice()},
+               .choices = {{"retrigger", ChoiceKind::variant, {"restarts", "ignored"}, "restarts"}, sensor_choice()},
                .reach = Reach::triggers},
       .make_stage = make};
   return effect;

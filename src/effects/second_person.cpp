@@ -69,7 +69,7 @@ const Effect& second_person() {
                                      "whether there is room to walk depends on the place",
                                      {"moves", "stands"}),
                               detail("every_s", "s", 10.0, 5.0, 30.0, 0.5, 3600.0, "assumed: between two moves")},
-               .choices = {{"moves", ChoiceKind::word, {"stands", "wanders"}, "stands"}, place_choice()},
+               .choices = {{"moves", ChoiceKind::variant, {"stands", "wanders"}, "stands"}, place_choice()},
                .reach = Reach::geometry},
       .alter = alter,
       .draw = draw,

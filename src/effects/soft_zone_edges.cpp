@@ -49,7 +49,7 @@ const Effect& soft_zone_edges() {
                                .most = 1.0,
                                .source = "assumed: share of a zone",
                                .only_if = {"rule", "covered_area"}}},
-               .choices = {{"rule", ChoiceKind::word, {"drawn_edge", "covered_area", "swept_area"}, "drawn edges"}},
+               .choices = {{"rule", ChoiceKind::variant, {"drawn_edge", "covered_area", "swept_area"}, "drawn edges"}},
                .reach = Reach::geometry,
                .acts_on = ActsOn::zone_sensors},
       .alter = alter};

@@ -78,7 +78,7 @@ const Effect& wall_reflection() {
                                .source = "assumed: standard deviation of a mirrored ray's direction; brushed metal, "
                                          "lacquer",
                                .only_if = {"finish", "rough"}}},
-               .choices = {{"finish", ChoiceKind::word, {"smooth", "rough"}, "smooth"},
+               .choices = {{"finish", ChoiceKind::variant, {"smooth", "rough"}, "smooth"},
                            {"wall", ChoiceKind::mesh, {}, "the mesh with the largest upright faces"}},
                .reach = Reach::geometry,
                .acts_on = ActsOn::zone_sensors},

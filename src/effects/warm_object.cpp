@@ -15,6 +15,7 @@ BystanderPlan object(const EffectSpec& effect, const Vec2& place) {
   constexpr double stouter = 2.0;                          // assumed (1-3): four legs or a casing
   const double height_m = effect.parameters.at("height_m");
   return {.id = "warm object",
+          .role = PersonRole::object,
           .stature_m = height_m,
           .mass_kg = stouter * density * height_m * height_m * height_m,
           .speed_m_s = effect.parameters.at("speed_m_s"),
@@ -68,7 +69,7 @@ const Effect& warm_object() {
                            {"moves", "roams"}),
                     detail("sweep_m", "m", 0.3, 0.15, 0.6, 0.05, 5.0, "assumed: so far and back", {"moves", "sweeps"}),
                     detail("heading_deg", "deg", 0.0, -180.0, 180.0, -360.0, 360.0, "any", {"moves", "sweeps"})},
-               .choices = {{"moves", ChoiceKind::word, {"roams", "sweeps"}, "roams"}, place_choice()},
+               .choices = {{"moves", ChoiceKind::variant, {"roams", "sweeps"}, "roams"}, place_choice()},
                .reach = Reach::geometry},
       .alter = alter,
       .draw = draw,

@@ -77,8 +77,11 @@ struct UnevenArmsSpec {
   double pause_share = 0.0;  ///< of the swings; the arms rest on the table meanwhile
 };
 
-/// Whether a run lasts until the person has carried out all actions.
-enum class PersonRole { subject, bystander };
+enum class PersonRole {
+  subject,    ///< a run lasts until they have carried out all actions
+  bystander,  ///< the run doesn't wait for them
+  object      ///< a bystander that is no person: nobody counts it
+};
 
 /// What no script can say about a person, only an effect.
 struct PersonChanges {

@@ -19,10 +19,6 @@ archive=$(ls "$scratch"/packages/pirsim-*.tar.gz)
 # Names of the packages that another one needs, or that tools/install_deps installs, with commas between.
 needs() { dpkg-deb -f "$1" Depends | tr ',' '\n' | sed -E 's/ *([^ ]+).*/\1/' | paste -sd,; }
 packages=$(needs "$command_deb")
-if [ "$extent" = everything ]; then
-  packages+=,$(needs "$library_deb")
-  packages+=,$(sed -n '/^packages=(/,/^)/p' "$source/tools/install_deps" | grep -v '[()]' | xargs | tr ' ' ,)
-fi
 release=$(. /etc/os-release && echo "$VERSION_CODENAME")
 mirror=$(sed -nE 's/^deb (\[[^]]*\] )?(http[^ ]*) .*/\2/p; s/^URIs: *([^ ]*).*/\1/p' /etc/apt/sources.list \
   /etc/apt/sources.list.d/* 2>/dev/null | head -1 || true)  # one of them may be missing
@@ -49,10 +45,22 @@ in_root '
 cmp "$scratch/rows.csv" "$scratch/root/try/rows.csv"
 echo "packages: the command makes the same rows in a bare $release"
 
+in_root '
+  dpkg -P pirsim >>/try/dpkg.log
+  find /usr /etc /opt -xdev | sort >/try/after
+  cmp /try/before /try/after'
+echo "packages: taken out without a trace"
+
 if [ "$extent" = everything ]; then
+  cp -rL /etc/apt /etc/resolv.conf "$scratch/root/etc/"
+  cp -r --parents /usr/share/keyrings "$scratch/root/"
+  build_needs=$(needs "$library_deb" | tr , ' ')
+  build_needs+=\ $(sed -n '/^packages=(/,/^)/p' "$source/tools/install_deps" | grep -v '[()]' | xargs)
+  in_root "export DEBIAN_FRONTEND=noninteractive; apt-get update -qq && apt-get install -y -qq --no-install-recommends $build_needs" \
+    >"$scratch/apt.log" 2>&1 || { tail -5 "$scratch/apt.log" >&2; exit 77; }
   # The README's program, from its own text.
   in_root '
-    dpkg -i /try/libpirsim-dev_*.deb >>/try/dpkg.log
+    dpkg -i /try/pirsim_*.deb /try/libpirsim-dev_*.deb >>/try/dpkg.log
     mkdir /try/program && cd /try/program
     sed -n "/^#include <pirsim\/pirsim.hpp>/,/^\`\`\`/p" ../README.md | grep -v "^\`\`\`" >main.cpp
     printf "%s\n" "cmake_minimum_required(VERSION 3.25)" "project(program CXX)" "find_package(pirsim REQUIRED)" \
@@ -60,7 +68,7 @@ if [ "$extent" = everything ]; then
     cmake -B build -G Ninja >log && cmake --build build >>log
     data=/usr/share/pirsim
     ./build/program $data/rooms/meeting_room.gltf $data/studies/studyA.yaml | head -3
-    dpkg -P libpirsim-dev >>/try/dpkg.log'
+    dpkg -P pirsim libpirsim-dev >>/try/dpkg.log'
   echo "packages: the README's program is built on the library's package"
   in_root '
     mkdir /try/source && tar -xzf /try/pirsim-*.tar.gz -C /try/source --strip-components 1 && cd /try/source
@@ -70,8 +78,3 @@ if [ "$extent" = everything ]; then
   echo "packages: the source archive builds, and makes the same rows"
 fi
 
-in_root '
-  dpkg -P pirsim >>/try/dpkg.log
-  find /usr /etc /opt -xdev | sort >/try/after
-  cmp /try/before /try/after'
-echo "packages: taken out without a trace"
