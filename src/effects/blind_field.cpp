@@ -33,7 +33,8 @@ const Effect& blind_field() {
                                  "any: where the blind part begins, from the lens's right (0) to its upper side (90)")},
            .choices = {sensor_choice()},
            .reach = Reach::geometry,
-           .acts_on = ActsOn::zone_sensors},
+           .acts_on = ActsOn::zone_sensors,
+           .sought = Sought::not_yet},
       .alter = alter};
   return effect;
 }

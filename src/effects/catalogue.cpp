@@ -23,6 +23,15 @@ const std::vector<const Effect*>& catalogue() {
   return effects;
 }
 
+const std::vector<const Effect*>& sought() {
+  static const std::vector<const Effect*> effects = [] {
+    std::vector<const Effect*> all = catalogue();
+    std::erase_if(all, [](const Effect* effect) { return effect->info.sought == Sought::not_yet; });
+    return all;
+  }();
+  return effects;
+}
+
 std::string_view name(Family family) noexcept {
   static constexpr std::array<std::string_view, 8> names{"optics",      "person",      "mounting", "occlusion",
                                                          "electronics", "environment", "motion",   "data"};
@@ -140,7 +149,7 @@ EffectSpec draw_from_prior(const Effect& effect, const SceneSpec& scene, const S
   }
   for (const ChoiceInfo& choice : effect.info.choices) {
     const auto pick = [&](const auto& list) { return list[stream.index(static_cast<std::uint32_t>(list.size()))]; };
-    if (is_word(choice.kind)) spec.choices[choice.name] = pick(choice.words);
+    if (choice.kind == ChoiceKind::word) spec.choices[choice.name] = pick(choice.words);
     if (choice.kind == ChoiceKind::sensor && stream.index(2) == 1) spec.choices[choice.name] = pick(scene.sensors).id;
   }
   if (effect.draw != nullptr) effect.draw(spec, scene, script, stream);

@@ -47,11 +47,6 @@ std::unique_ptr<TriggerStage> make(const EffectSpec& effect, const StageContext&
                                          effect.parameters.at("rate_per_s") / context.sensing.tick_rate_hz);
 }
 
-/// One sensor triggers with nobody.
-void draw(EffectSpec& effect, const SceneSpec&, const ScriptSpec&, Stream&) {
-  if (effect.choices.contains("sensor")) effect.choices["timing"] = "independent";
-}
-
 }  // namespace
 
 const Effect& false_triggers() {
@@ -77,8 +72,7 @@ const Effect& false_triggers() {
                .choices = {{"timing", ChoiceKind::variant, {"independent", "simultaneous"}, "independent"},
                            sensor_choice()},
                .reach = Reach::triggers},
-      .make_stage = make,
-      .draw = draw};
+      .make_stage = make};
   return effect;
 }
 

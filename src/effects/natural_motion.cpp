@@ -43,7 +43,8 @@ const Effect& natural_motion() {
            .confused_with = {"fidgeting", "uneven_arms", "soft_zone_edges"},
            .parameters = {whether("present", "assumed")},
            .choices = {{"activity", ChoiceKind::variant, activity_names(), "typing"}},
-           .reach = Reach::geometry},
+           .reach = Reach::geometry,
+           .sought = Sought::not_yet},
       .alter = alter};
   return effect;
 }

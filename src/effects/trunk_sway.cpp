@@ -32,7 +32,8 @@ const Effect& trunk_sway() {
                                .scale = Scale::logarithmic,
                                .source = "assumed: to either side; quiet sitting to rocking"},
                               detail("period_s", "s", 4.0, 2.0, 6.0, 0.2, 60.0, "assumed: of breathing, or slower")},
-               .reach = Reach::geometry},
+               .reach = Reach::geometry,
+               .sought = Sought::not_yet},
       .alter = alter};
   return effect;
 }

@@ -41,7 +41,8 @@ const Effect& uneven_arms() {
                            .least = 0.0,
                            .most = 1.0,
                            .source = "assumed: of the swings"}},
-           .reach = Reach::geometry},
+           .reach = Reach::geometry,
+           .sought = Sought::not_yet},
       .alter = alter};
   return effect;
 }

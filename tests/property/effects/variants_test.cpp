@@ -283,7 +283,7 @@ TEST_CASE("a blind field takes the stated share of one lens's rays, all on the s
   CHECK(leftmost_blind >= rightmost_seeing - 1e-12);
 }
 
-TEST_CASE("a warm object moves and is seen, and nobody counts it; a second person is counted") {
+TEST_CASE("a warm object moves and is seen and nobody counts it but a second person is counted") {
   const auto plain = results_of(meeting_room({}));
   for (const char* moves : {"roams", "sweeps"}) {
     const auto rows = results_of(meeting_room({effect("warm_object", {}, {{"moves", moves}})}));
