@@ -37,6 +37,18 @@ def whole(stretches, weight=1.0):
     return [Piece(s, np.ones(len(s.people), bool), weight) for s in stretches]
 
 
+def first_mornings(pieces, n):
+    """The first day of every room, then the second ones, until there are n."""
+    days = {}
+    for piece in pieces:
+        days.setdefault(piece.stretch.room, set()).update(piece.units())
+    by_turns = sorted((place, room, day) for room, own in days.items() for place, day in enumerate(sorted(own)))
+    if len(by_turns) < n:
+        raise ValueError(f"{len(by_turns)} mornings where {n} are wanted")
+    chosen = {day for _, _, day in by_turns[:n]}
+    return [piece for piece in pieces if piece.units() <= chosen]
+
+
 def among(stretches, units, weight=1.0):
     """The readings of these units."""
     pieces = [Piece(s, np.isin(s.units, sorted(units)), weight) for s in stretches]

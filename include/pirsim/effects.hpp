@@ -32,7 +32,15 @@ struct ParameterInfo {
   std::string source;   ///< of the range: a paper, a data sheet, or `assumed`
   Condition only_if{};  ///< else it means nothing (a chair's back has no place of its own); empty: always
 };
-enum class ChoiceKind { sensor, mesh, word };
+enum class ChoiceKind {
+  sensor,
+  mesh,
+  word,
+  variant  ///< a word that says how the same cause is modelled
+};
+[[nodiscard]] constexpr bool is_word(ChoiceKind kind) noexcept {
+  return kind == ChoiceKind::word || kind == ChoiceKind::variant;
+}
 struct ChoiceInfo {
   std::string name;
   ChoiceKind kind = ChoiceKind::word;
@@ -56,6 +64,9 @@ enum class ActsOn {
   zone_sensors  ///< does nothing to sensors whose response is analog
 };
 
+/// Whether `reconcile` looks for an effect.
+enum class Sought { yes, not_yet };
+
 struct EffectInfo {
   std::string name;
   Family family = Family::data;
@@ -69,6 +80,7 @@ struct EffectInfo {
   Reach reach = Reach::geometry;
   /// Sensors of which response it acts on: of zones, or of both.
   ActsOn acts_on = ActsOn::all_sensors;
+  Sought sought = Sought::yes;
 };
 
 /// All entries of the catalogue, in the order in which they act.

@@ -27,6 +27,11 @@ enum class Purpose : std::uint32_t {
   schedule_meetings = 16,  ///< when meetings are held, and who comes
   schedule_body = 17,      ///< how large the people of a schedule are
   schedule_conduct = 18,   ///< whom one of them visits, where they stand, what they do at their desk
+  chair_swing = 19,        ///< chair_swing: in which bouts somebody swings on the chair
+  trunk_sway = 20,         ///< trunk_sway: in which bouts somebody sways
+  uneven_arms = 21,        ///< uneven_arms: each swing's amplitude and period
+  rough_surface = 22,      ///< wall_reflection: where each ray goes on
+  swept_area = 23,         ///< soft_zone_edges: whether what swept a zone is noticed
   effect_prior = 11,       ///< parameters drawn from the catalogue's priors
   // Of statistics, from 100 on.
   tied_ranks = 100,    ///< order of equal values in a rank test

@@ -125,10 +125,20 @@ struct FittedParameter {
   bool is_strength = true;             ///< has an `off` at which nothing happens
   std::vector<double> equally_likely;  ///< quantiles in the middles of twenty equal parts, ascending
 };
+/// What of an effect is no matter of more or less: which variant, sensor or wall.
+struct FittedChoice {
+  std::string name;
+  struct Word {
+    std::string word;  ///< empty: what happens if a script doesn't say, as all sensors
+    double probability = 0.0;
+  };
+  std::vector<Word> words;  ///< likeliest first
+};
 struct FittedEffect {
   EffectSpec effect;  ///< with the fitted parameters, as a script takes it
   std::vector<FittedParameter> parameters;
   bool includes_off = false;  ///< every strength's interval holds its `off`
+  std::vector<FittedChoice> choices{};
 };
 
 /// A look at the measured data with some effects applied to the model.

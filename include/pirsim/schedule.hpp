@@ -9,6 +9,12 @@
 
 namespace pirsim {
 
+/// How people move beside their choreography.
+enum class MotionStyle {
+  choreographed,  ///< as the paper's: nothing moves that the script doesn't say; forearms swing steadily
+  natural         ///< stillness and small movements by turns, breathing, a pace of one's own
+};
+
 /// A time of day: normal, cut at three standard deviations.
 struct ClockSpec {
   double mean_h = 0.0;
@@ -65,6 +71,7 @@ struct ScheduleSpec {
   double lunch_min = 60.0, lunch_sd_min = 15.0;
   std::optional<double> cleaning_h;    ///< somebody cleans then, on working days
   std::vector<std::string> entrances;  ///< that people use, each their own; none: all of the scene
+  MotionStyle style = MotionStyle::natural;
   Where where;
 };
 

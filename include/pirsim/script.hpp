@@ -59,11 +59,6 @@ struct SeatScatterSpec {
   double heading_sd_deg = 0.0;
 };
 
-/// How people move beside their choreography.
-enum class MotionStyle {
-  choreographed,  ///< as the paper's: nothing moves that the script doesn't say; forearms swing steadily
-  natural         ///< stillness and small movements by turns, breathing, a pace of one's own
-};
 /// What people of natural style are busy with, beside their choreography.
 enum class Activity { typing, reading, meeting, phone, whiteboard };
 inline constexpr std::array<const char*, 5> activity_names{"typing", "reading", "meeting", "phone", "whiteboard"};

@@ -437,6 +437,7 @@ class Schedule:
     lunch_sd_min: float = 15.0
     cleaning_h: float | None = None
     entrances: list[str] = field(default_factory=list)
+    style: Literal["choreographed", "natural"] = "natural"
     where: Where = _where()
 
 

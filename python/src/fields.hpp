@@ -39,6 +39,7 @@ constexpr bool has_fields() {
     else if constexpr (n == 10) { auto& [a, b, c, d, e, f, g, h, i, j] = spec; (void)a; }
     else if constexpr (n == 12) { auto& [a, b, c, d, e, f, g, h, i, j, k, l] = spec; (void)a; }
     else if constexpr (n == 14) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o] = spec; (void)a; }
+    else if constexpr (n == 15) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p] = spec; (void)a; }
     else static_assert(n == 0 && std::is_empty_v<Spec>);
     // clang-format on
   };
@@ -347,6 +348,7 @@ struct Fields<ScheduleSpec> {
                                   Field{"lunch_sd_min", &ScheduleSpec::lunch_sd_min},
                                   Field{"cleaning_h", &ScheduleSpec::cleaning_h},
                                   Field{"entrances", &ScheduleSpec::entrances},
+                                  Field{"style", &ScheduleSpec::style},
                                   Field{"where", &ScheduleSpec::where}};
 };
 template <>

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <iostream>
 #include <optional>
@@ -63,12 +64,21 @@ void preview(const Inputs& inputs, const PreviewOptions& options) {
   if (names.empty() && !model.scene().sensors.empty()) names.push_back(model.scene().sensors.front().id);
   studies::PictureSpec picture = options.picture;
   picture.beams_of = find_sensors(model, names);
-  const rt::Image image = studies::picture(model, state, picture);
+  const io::Pixels image = studies::picture(model, state, picture);
   io::write_png(options.output, image.width, image.height, image.rgb);
   if (inputs.verbosity != Verbosity::quiet) {
     std::cerr << "wrote " << options.output.string() << ": trial " << model.trial_of(state.run()) << " at "
               << time_s(model, state) << " s\n";
   }
+}
+
+std::vector<studies::Mark> marks_of(const std::vector<std::string>& words) {
+  std::vector<studies::Mark> marks;
+  for (const studies::Mark mark : studies::all_marks) {
+    const bool named = std::ranges::find(words, name(mark)) != words.end();
+    if (named || std::ranges::find(words, "all") != words.end()) marks.push_back(mark);
+  }
+  return marks;
 }
 
 /// One word "X,Y,Z": an option of three values would take the next option for the third.
@@ -95,6 +105,7 @@ void add_preview_command(CLI::App& app) {
   pirsim preview --scene room.gltf --script study.yaml -o room.png  a picture of room, people and beams
   pirsim preview --scene room.gltf --script study.yaml --trial S8 --time 20 --beams PIR4,PIR5
   pirsim preview --scene room.gltf --script study.yaml --camera 0,6,0 --look-at 2,0,2
+  pirsim preview --scene room.gltf --script study.yaml --marks seats,doors   their ids, and nothing else's
 )");
   const auto inputs = std::make_shared<Inputs>();
   const auto options = std::make_shared<PreviewOptions>();
@@ -108,6 +119,15 @@ void add_preview_command(CLI::App& app) {
   command.add_option("--beams", options->beams, "sensors whose beams are drawn, or all or none (default: the first)")
       ->option_text("ID,...")
       ->delimiter(',');
+  std::vector<std::string> words{"all", "none"};
+  for (const studies::Mark mark : studies::all_marks) words.emplace_back(name(mark));
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--marks", [options](const std::vector<std::string>& given) { options->picture.marks = marks_of(given); },
+          "what is marked and named: seats, doors, sensors, people, scale, or all or none (default: all)")
+      ->option_text("WORD,...")
+      ->delimiter(',')
+      ->check(CLI::IsMember(words));
   add_point(command, "--camera", options->picture.camera, "where the camera stands, m");
   add_point(command, "--look-at", options->picture.look_at, "what it looks at, m");
   command.add_option("--fov-deg", options->picture.field_of_view_deg, "vertical field of view (default: 45)")

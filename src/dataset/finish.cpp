@@ -61,7 +61,7 @@ void draw_room_picture(const RecipeSpec& recipe, const SceneSpec& scene, int roo
   spec.width = 960;
   spec.height = 540;
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) spec.beams_of.push_back(i);
-  const rt::Image image = studies::picture(model, State(model, 0), spec);
+  const io::Pixels image = studies::picture(model, State(model, 0), spec);
   make_folders(file.parent_path());
   io::write_png(file, image.width, image.height, image.rgb);
 }

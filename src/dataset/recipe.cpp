@@ -97,6 +97,7 @@ EffectSpec draw_effect(const VariedEffectSpec& varied, const SceneSpec& scene, c
   for (const effects::ParameterInfo& parameter : entry.info.parameters) {
     const bool is_asked_for = varied.parameters.contains(parameter.name);
     if (!is_asked_for && !effects::applies(parameter, effect)) effect.parameters.erase(parameter.name);
+    if (effects::applies(parameter, effect)) effect.parameters.try_emplace(parameter.name, parameter.typical);
   }
   return effect;
 }

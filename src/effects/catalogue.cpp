@@ -12,13 +12,23 @@ namespace pirsim::effects {
 // make of it, and the books.
 const std::vector<const Effect*>& catalogue() {
   static const std::vector<const Effect*> effects{
-      &seats_shifted(),   &mirrored_room(),   &missing_occluder(), &second_person(),    &seat_shift(),
-      &seat_scatter(),    &body_size(),       &sensor_yaw(),       &sensor_tilt(),      &sensor_height(),
-      &arm_motion(),      &trunk_tilt(),      &fidgeting(),        &thermal_contrast(), &range_scale(),
-      &soft_zone_edges(), &wall_reflection(), &dual_polarity(),    &warm_chair(),       &false_triggers(),
-      &trigger_bursts(),  &missed_triggers(), &dead_time(),        &pulse_stretching(), &clock_lag(),
-      &dead_sensor(),     &labels_swapped(),
+      &seats_shifted(),   &mirrored_room(),  &missing_occluder(), &second_person(),    &warm_object(),
+      &seat_shift(),      &seat_scatter(),   &body_size(),        &sensor_yaw(),       &sensor_tilt(),
+      &sensor_height(),   &arm_motion(),     &trunk_tilt(),       &natural_motion(),   &uneven_arms(),
+      &trunk_sway(),      &chair_swing(),    &fidgeting(),        &thermal_contrast(), &range_scale(),
+      &soft_zone_edges(), &blind_field(),    &wall_reflection(),  &dual_polarity(),    &warm_chair(),
+      &false_triggers(),  &trigger_bursts(), &missed_triggers(),  &dead_time(),        &pulse_stretching(),
+      &clock_lag(),       &dead_sensor(),    &labels_swapped(),
   };
+  return effects;
+}
+
+const std::vector<const Effect*>& sought() {
+  static const std::vector<const Effect*> effects = [] {
+    std::vector<const Effect*> all = catalogue();
+    std::erase_if(all, [](const Effect* effect) { return effect->info.sought == Sought::not_yet; });
+    return all;
+  }();
   return effects;
 }
 
@@ -69,8 +79,7 @@ std::vector<std::string> twins_of(std::string_view name) {
 bool applies(const ParameterInfo& parameter, const EffectSpec& effect) {
   const auto& [choice, word] = parameter.only_if;
   if (choice.empty()) return true;
-  if (const auto made = effect.choices.find(choice); made != effect.choices.end()) return made->second == word;
-  return std::ranges::find(find(effect.name).info.choices, choice, &ChoiceInfo::name)->words.front() == word;
+  return effects::word(effect, choice) == word;
 }
 
 const ParameterInfo& strength_parameter(const EffectSpec& effect) {

@@ -30,6 +30,8 @@ struct Effect {
 
 /// In the order in which they act; alter() first, then stages tick by tick, then rows.
 [[nodiscard]] const std::vector<const Effect*>& catalogue();
+/// Those that `reconcile` looks for.
+[[nodiscard]] const std::vector<const Effect*>& sought();
 /// Throws Error(usage) with the nearest name.
 [[nodiscard]] const Effect& find(std::string_view name);
 
@@ -51,7 +53,8 @@ struct Effect {
 /// With every parameter that applies: those not given take the typical value.
 [[nodiscard]] EffectSpec resolved(const Effect& effect, EffectSpec spec);
 [[nodiscard]] EffectSpec off(const Effect& effect);
-/// Parameters that apply, from their priors; a sensor from all and each (even odds between `all` and one of them).
+/// Parameters that apply, from their priors; a sensor from all and each (even odds between `all` and one of them); of
+/// variants the first.
 [[nodiscard]] EffectSpec draw_from_prior(const Effect& effect, const SceneSpec& scene, const ScriptSpec& script,
                                          Stream& stream);
 

@@ -55,14 +55,14 @@ void check_choices(const EffectSpec& spec, const EffectInfo& info, const SceneSp
       continue;
     }
     std::vector<std::string> allowed = known->words;
-    if (known->kind != ChoiceKind::word && scene == nullptr) continue;
+    if (!is_word(known->kind) && scene == nullptr) continue;
     if (known->kind == ChoiceKind::sensor) {
       for (const SensorSpec& sensor : scene->sensors) allowed.push_back(sensor.id);
     } else if (known->kind == ChoiceKind::mesh) {
       allowed = names_of(scene->meshes);
     }
     if (std::ranges::find(allowed, value) != allowed.end()) continue;
-    const std::string place = known->kind == ChoiceKind::word ? "known here" : "in " + scene->name;
+    const std::string place = is_word(known->kind) ? "known here" : "in " + scene->name;
     diagnostics.error(spec.where,
                       info.name + "." + name + ": '" + value + "' is not " + place + did_you_mean(value, allowed));
   }
@@ -77,14 +77,17 @@ void check_sense(const EffectSpec& spec, const Effect& effect, const SceneSpec* 
 std::string made(const EffectSpec& spec, const ChoiceInfo& choice) {
   const auto named = spec.choices.find(choice.name);
   if (named != spec.choices.end()) return named->second;
-  return choice.kind == ChoiceKind::word ? choice.words.front() : "";
+  return is_word(choice.kind) ? choice.words.front() : "";
 }
+
+bool is_where(const ChoiceInfo& choice) { return choice.kind != ChoiceKind::variant; }
 
 /// Whether both of two entries of an effect can act: for two sensors or walls, each named, in two ways, or in one way
 /// at two places. Others would draw the same numbers, or the later would undo the earlier.
 bool apart(const EffectSpec& a, const EffectSpec& b, const EffectInfo& info) {
-  if (info.choices.empty()) return false;
-  const ChoiceInfo& choice = info.choices.front();
+  const auto which = std::ranges::find_if(info.choices, is_where);
+  if (which == info.choices.end()) return false;
+  const ChoiceInfo& choice = *which;
   const std::string x = made(a, choice), y = made(b, choice);
   if (choice.kind != ChoiceKind::word) return !x.empty() && !y.empty() && x != y;
   return x != y || std::ranges::any_of(info.parameters, [&](const ParameterInfo& parameter) {
@@ -99,8 +102,8 @@ bool apart(const EffectSpec& a, const EffectSpec& b, const EffectInfo& info) {
 
 std::string second_time(const EffectInfo& info) {
   std::string text = info.name + " stands here a second time";
-  if (!info.choices.empty() && info.choices.front().kind != ChoiceKind::word)
-    text += " for the same " + info.choices.front().name;
+  const auto which = std::ranges::find_if(info.choices, is_where);
+  if (which != info.choices.end() && which->kind != ChoiceKind::word) text += " for the same " + which->name;
   return text;
 }
 

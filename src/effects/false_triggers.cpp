@@ -4,35 +4,46 @@
 namespace pirsim::effects {
 namespace {
 
-/// A Poisson process a sensor, alike at all times.
+/// A Poisson process a sensor, or one for all of them, alike at all times.
 class FalseTriggers final : public CloneableTriggerStage<FalseTriggers> {
  public:
-  FalseTriggers(std::vector<std::uint32_t> sensors, double mean_per_tick)
-      : sensors_(std::move(sensors)), mean_per_tick_(mean_per_tick) {}
+  /// groups: sensors that trigger together.
+  FalseTriggers(std::vector<std::vector<std::uint32_t>> groups, double mean_per_tick)
+      : groups_(std::move(groups)), mean_per_tick_(mean_per_tick) {
+    for (const auto& group : groups_) first_.push_back(group.front());
+  }
 
   void begin_run(std::uint64_t seed, std::uint32_t run) override {
-    streams_ = streams_of(sensors_, seed, run, Purpose::false_trigger);
+    streams_ = streams_of(first_, seed, run, Purpose::false_trigger);
     next_.clear();
     for (Stream& stream : streams_) next_.push_back(ticks_to_event(stream, mean_per_tick_));
   }
 
   void tick(std::int64_t tick, std::span<std::uint8_t> triggers) noexcept override {
-    for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    for (std::size_t i = 0; i < groups_.size(); ++i) {
       if (tick != next_[i]) continue;
-      triggers[sensors_[i]] = 1;
+      for (const std::uint32_t sensor : groups_[i]) triggers[sensor] = 1;
       next_[i] += ticks_to_event(streams_[i], mean_per_tick_);
     }
   }
 
  private:
-  std::vector<std::uint32_t> sensors_;
+  std::vector<std::vector<std::uint32_t>> groups_;
   double mean_per_tick_;
-  std::vector<Stream> streams_;     ///< (n_sensors)
-  std::vector<std::int64_t> next_;  ///< (n_sensors) tick
+  std::vector<std::uint32_t> first_;  ///< (n_groups) sensor
+  std::vector<Stream> streams_;       ///< (n_groups)
+  std::vector<std::int64_t> next_;    ///< (n_groups) tick
 };
 
 std::unique_ptr<TriggerStage> make(const EffectSpec& effect, const StageContext& context) {
-  return std::make_unique<FalseTriggers>(sensors_of(effect, context.scene),
+  const std::vector<std::uint32_t> sensors = sensors_of(effect, context.scene);
+  std::vector<std::vector<std::uint32_t>> groups;
+  if (word(effect, "timing") == "simultaneous") {
+    groups = {sensors};
+  } else {
+    for (const std::uint32_t sensor : sensors) groups.push_back({sensor});
+  }
+  return std::make_unique<FalseTriggers>(std::move(groups),
                                          effect.parameters.at("rate_per_s") / context.sensing.tick_rate_hz);
 }
 
@@ -43,7 +54,9 @@ const Effect& false_triggers() {
       .info = {.name = "false_triggers",
                .family = Family::environment,
                .stage = "environment",
-               .summary = "Sensors trigger at random moments without anybody's doing, at one rate.",
+               .summary =
+                   "Sensors trigger at random moments without anybody's doing, at one rate: each by itself, or all at "
+                   "the same moments, as a disturbed supply makes them.",
                .fingerprint = "silent cells come alive, all by the same amount; single ones, at any moment",
                .confused_with = {"trigger_bursts", "fidgeting", "soft_zone_edges"},
                .parameters = {{.name = "rate_per_s",
@@ -56,7 +69,8 @@ const Effect& false_triggers() {
                                .most = 10.0,
                                .scale = Scale::logarithmic,
                                .source = "assumed: from one in half an hour to one in 17 s"}},
-               .choices = {sensor_choice()},
+               .choices = {{"timing", ChoiceKind::variant, {"independent", "simultaneous"}, "independent"},
+                           sensor_choice()},
                .reach = Reach::triggers},
       .make_stage = make};
   return effect;

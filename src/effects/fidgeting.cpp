@@ -7,8 +7,9 @@ namespace {
 void alter(StudyInForce& study, const EffectSpec& effect) {
   for (TrialInForce& trial : study.trials) {
     for (PersonInForce& person : trial.people) {
-      person.changes.fidgeting = {effect.parameters.at("rate_per_s"), effect.parameters.at("tilt_deg"),
-                                  effect.parameters.at("turn_deg")};
+      person.changes.fidgeting = {
+          effect.parameters.at("rate_per_s"), effect.parameters.at("tilt_deg"), effect.parameters.at("turn_deg"),
+          word(effect, "timing") == "still_periods" ? FidgetTiming::still_periods : FidgetTiming::independent};
     }
   }
 }
@@ -20,7 +21,9 @@ const Effect& fidgeting() {
       .info = {.name = "fidgeting",
                .family = Family::motion,
                .stage = "body",
-               .summary = "Who sits leans a little or turns the head at random moments.",
+               .summary =
+                   "Who sits leans a little or turns the head at random moments: independent ones, or with still "
+                   "periods of all lengths in between.",
                .fingerprint = "activity without the arms' phase, where a sensor sees head or trunk",
                .confused_with = {"false_triggers", "soft_zone_edges", "pulse_stretching"},
                .parameters = {{.name = "rate_per_s",
@@ -32,7 +35,7 @@ const Effect& fidgeting() {
                                .least = 0.0,
                                .most = 5.0,
                                .scale = Scale::logarithmic,
-                               .source = "assumed: of moves, a Poisson process"},
+                               .source = "assumed: of moves, on average"},
                               {.name = "tilt_deg",
                                .unit = "deg",
                                .role = Role::detail,
@@ -53,6 +56,7 @@ const Effect& fidgeting() {
                                .least = 0.0,
                                .most = 80.0,
                                .source = "assumed: the head turns to within so much of straight ahead"}},
+               .choices = {{"timing", ChoiceKind::variant, {"independent", "still_periods"}, "independent"}},
                .reach = Reach::geometry},
       .alter = alter};
   return effect;

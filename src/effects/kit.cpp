@@ -10,6 +10,11 @@ namespace pirsim::effects {
 
 ChoiceInfo sensor_choice() { return {"sensor", ChoiceKind::sensor, {}, "all sensors"}; }
 
+std::string word(const EffectSpec& effect, std::string_view choice) {
+  if (const auto made = effect.choices.find(choice); made != effect.choices.end()) return made->second;
+  return std::ranges::find(find(effect.name).info.choices, choice, &ChoiceInfo::name)->words.front();
+}
+
 std::vector<std::uint32_t> sensors_of(const EffectSpec& effect, const SceneSpec& scene) {
   const auto named = effect.choices.find("sensor");
   std::vector<std::uint32_t> sensors;

@@ -16,6 +16,7 @@ const Effect& seats_shifted();
 const Effect& mirrored_room();
 const Effect& missing_occluder();
 const Effect& second_person();
+const Effect& warm_object();
 const Effect& seat_shift();
 const Effect& seat_scatter();
 const Effect& body_size();
@@ -24,10 +25,15 @@ const Effect& sensor_tilt();
 const Effect& sensor_height();
 const Effect& arm_motion();
 const Effect& trunk_tilt();
+const Effect& natural_motion();
+const Effect& uneven_arms();
+const Effect& trunk_sway();
+const Effect& chair_swing();
 const Effect& fidgeting();
 const Effect& thermal_contrast();
 const Effect& range_scale();
 const Effect& soft_zone_edges();
+const Effect& blind_field();
 const Effect& wall_reflection();
 const Effect& dual_polarity();
 const Effect& warm_chair();
@@ -71,6 +77,22 @@ const Effect& labels_swapped();
           .source = std::move(source)};
 }
 
+/// How something happens, without an off of its own; all in `unit`.
+[[nodiscard]] inline ParameterInfo detail(std::string name, std::string unit, double typical, double low, double high,
+                                          double least, double most, std::string source, Condition only_if = {}) {
+  return {.name = std::move(name),
+          .unit = std::move(unit),
+          .role = Role::detail,
+          .off = typical,
+          .typical = typical,
+          .low = low,
+          .high = high,
+          .least = least,
+          .most = most,
+          .source = std::move(source),
+          .only_if = std::move(only_if)};
+}
+
 /// Happens (1) or not (0).
 [[nodiscard]] inline ParameterInfo whether(std::string name, std::string source) {
   return {.name = std::move(name),
@@ -84,6 +106,9 @@ const Effect& labels_swapped();
           .scale = Scale::whole,
           .source = std::move(source)};
 }
+
+/// What was chosen, or the default.
+[[nodiscard]] std::string word(const EffectSpec& effect, std::string_view choice);
 
 /// One of the scene's sensors, or all.
 [[nodiscard]] ChoiceInfo sensor_choice();

@@ -21,10 +21,7 @@ TriMesh screen(const std::string& name, const Frame& world_from_box, const Vec3&
   return mesh;
 }
 
-bool is_box(const EffectSpec& effect) {
-  const auto what = effect.choices.find("what");
-  return what != effect.choices.end() && what->second == "box";
-}
+bool is_box(const EffectSpec& effect) { return word(effect, "what") == "box"; }
 
 void alter(StudyInForce& study, const EffectSpec& effect) {
   SceneSpec& scene = study.scene;

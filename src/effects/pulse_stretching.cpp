@@ -6,11 +6,12 @@
 namespace pirsim::effects {
 namespace {
 
-/// Retriggerable: every trigger starts the hold anew.
+enum class Retrigger { restarts, ignored };
+
 class PulseStretching final : public CloneableTriggerStage<PulseStretching> {
  public:
-  PulseStretching(std::vector<std::uint32_t> sensors, double hold_ticks, double spread)
-      : sensors_(std::move(sensors)), hold_ticks_(hold_ticks), spread_(spread) {}
+  PulseStretching(std::vector<std::uint32_t> sensors, double hold_ticks, double spread, Retrigger retrigger)
+      : sensors_(std::move(sensors)), hold_ticks_(hold_ticks), spread_(spread), retrigger_(retrigger) {}
 
   void begin_run(std::uint64_t seed, std::uint32_t run) override {
     streams_ = streams_of(sensors_, seed, run, Purpose::pulse_length);
@@ -20,10 +21,11 @@ class PulseStretching final : public CloneableTriggerStage<PulseStretching> {
   void tick(std::int64_t tick, std::span<std::uint8_t> triggers) noexcept override {
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
       std::uint8_t& trigger = triggers[sensors_[i]];
-      if (trigger != 0) {
+      const bool holds = tick <= high_until_[i];
+      if (trigger != 0 && !(holds && retrigger_ == Retrigger::ignored)) {
         const double factor = spread_ > 0.0 ? 1.0 + spread_ * (2.0 * streams_[i].uniform() - 1.0) : 1.0;
         high_until_[i] = std::max<std::int64_t>(high_until_[i], tick + std::llround(hold_ticks_ * factor));
-      } else if (tick <= high_until_[i]) {
+      } else if (holds) {
         trigger = 1;
       }
     }
@@ -33,14 +35,16 @@ class PulseStretching final : public CloneableTriggerStage<PulseStretching> {
   std::vector<std::uint32_t> sensors_;
   double hold_ticks_;
   double spread_;
+  Retrigger retrigger_;
   std::vector<Stream> streams_;
   std::vector<std::int64_t> high_until_;  ///< (n_sensors) last tick of the pulse
 };
 
 std::unique_ptr<TriggerStage> make(const EffectSpec& effect, const StageContext& context) {
-  return std::make_unique<PulseStretching>(sensors_of(effect, context.scene),
-                                           effect.parameters.at("hold_s") * context.sensing.tick_rate_hz,
-                                           effect.parameters.at("spread"));
+  return std::make_unique<PulseStretching>(
+      sensors_of(effect, context.scene), effect.parameters.at("hold_s") * context.sensing.tick_rate_hz,
+      effect.parameters.at("spread"),
+      word(effect, "retrigger") == "ignored" ? Retrigger::ignored : Retrigger::restarts);
 }
 
 }  // namespace
@@ -50,7 +54,9 @@ const Effect& pulse_stretching() {
       .info = {.name = "pulse_stretching",
                .family = Family::electronics,
                .stage = "electronics",
-               .summary = "A sensor's output stays high for a while after each trigger, across the poll.",
+               .summary =
+                   "A sensor's output stays high for a while after each trigger, across the poll. A trigger meanwhile "
+                   "starts that time anew, or is ignored.",
                .fingerprint = "runs of ones are longer, gaps shorter; cells with much scattered activity rise most",
                .confused_with = {"dead_time", "fidgeting"},
                .parameters = {{.name = "hold_s",
@@ -73,7 +79,7 @@ const Effect& pulse_stretching() {
                                .least = 0.0,
                                .most = 1.0,
                                .source = "assumed: each pulse between (1 - spread) and (1 + spread) times hold_s"}},
-               .choices = {sensor_choice()},
+               .choices = {{"retrigger", ChoiceKind::variant, {"restarts", "ignored"}, "restarts"}, sensor_choice()},
                .reach = Reach::triggers},
       .make_stage = make};
   return effect;

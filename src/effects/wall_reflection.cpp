@@ -35,8 +35,9 @@ std::string largest(const SceneSpec& scene) {
 void alter(StudyInForce& study, const EffectSpec& effect) {
   SceneSpec& scene = study.scene;
   const auto wall = effect.choices.find("wall");
-  study.sensing.reflections.push_back(
-      {wall == effect.choices.end() ? largest(scene) : wall->second, effect.parameters.at("coefficient")});
+  study.sensing.reflections.push_back({wall == effect.choices.end() ? largest(scene) : wall->second,
+                                       effect.parameters.at("coefficient"),
+                                       word(effect, "finish") == "rough" ? effect.parameters.at("scatter_deg") : 0.0});
 }
 
 void draw(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec&, Stream& stream) {
@@ -51,7 +52,9 @@ const Effect& wall_reflection() {
       .info = {.name = "wall_reflection",
                .family = Family::environment,
                .stage = "optics",
-               .summary = "Rays go on mirrored at a glossy wall, with the range that the weakened signal allows.",
+               .summary =
+                   "Rays go on mirrored at a glossy wall, with the range that the weakened signal allows; a rough one "
+                   "scatters them.",
                .fingerprint = "ghost zones: sensors see seats that they don't face",
                .confused_with = {"second_person", "false_triggers", "range_scale"},
                .parameters = {{.name = "coefficient",
@@ -62,8 +65,21 @@ const Effect& wall_reflection() {
                                .high = 0.95,
                                .least = 0.0,
                                .most = 1.0,
-                               .source = "assumed: of power at 10 um; glass mirrors a tenth, bare metal nearly all"}},
-               .choices = {{"wall", ChoiceKind::mesh, {}, "the mesh with the largest upright faces"}},
+                               .source = "assumed: of power at 10 um; glass mirrors a tenth, bare metal nearly all"},
+                              {.name = "scatter_deg",
+                               .unit = "deg",
+                               .role = Role::detail,
+                               .off = 8.0,
+                               .typical = 8.0,
+                               .low = 3.0,
+                               .high = 15.0,
+                               .least = 0.0,
+                               .most = 45.0,
+                               .source = "assumed: standard deviation of a mirrored ray's direction; brushed metal, "
+                                         "lacquer",
+                               .only_if = {"finish", "rough"}}},
+               .choices = {{"finish", ChoiceKind::variant, {"smooth", "rough"}, "smooth"},
+                           {"wall", ChoiceKind::mesh, {}, "the mesh with the largest upright faces"}},
                .reach = Reach::geometry,
                .acts_on = ActsOn::zone_sensors},
       .alter = alter,

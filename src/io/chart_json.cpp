@@ -23,6 +23,18 @@ Json number(double value) {
   return static_cast<double>(whole) == value ? Json(whole) : Json(value);
 }
 
+Json markers(const std::vector<RoomPlan::Marker>& all) {
+  Json result = Json::array();
+  for (const RoomPlan::Marker& marker : all) {
+    // Vega turns clockwise, and z runs down the page.
+    result.push_back({{"label", marker.label},
+                      {"x", marker.point.x},
+                      {"z", marker.point.y},
+                      {"angle_deg", -degrees(marker.heading)}});
+  }
+  return result;
+}
+
 Json to_json(const MapChart& chart) {
   Json json{{"kind", "map"},
             {"label", chart.label},
@@ -33,18 +45,19 @@ Json to_json(const MapChart& chart) {
             {"columns", chart.columns},
             {"rows", chart.rows},
             {"max", chart.max},
-            {"outline", polygons(chart.outline)},
+            {"pass_or_fail", chart.colours == MapChart::Colours::pass_or_fail},
+            {"outline", polygons(chart.plan.outline)},
+            {"furniture", polygons(chart.plan.furniture)},
             {"dashed", polygons(chart.dashed)}};
   Json values = Json::array();
   for (const auto& value : chart.values) values.push_back(value ? number(*value) : Json(nullptr));
   json["values"] = std::move(values);
-  json["markers"] = Json::array();
-  for (const MapChart::Marker& marker : chart.markers) {
-    // Vega turns clockwise, and z runs down the page.
-    json["markers"].push_back({{"label", marker.label},
-                               {"x", marker.point.x},
-                               {"z", marker.point.y},
-                               {"angle_deg", -degrees(marker.heading)}});
+  json["markers"] = markers(chart.markers);
+  json["seats"] = markers(chart.plan.seats);
+  json["doors"] = Json::array();
+  for (const RoomPlan::Door& door : chart.plan.doors) {
+    json["doors"].push_back(
+        {{"label", door.label}, {"x", door.from.x}, {"z", door.from.y}, {"x2", door.to.x}, {"z2", door.to.y}});
   }
   return json;
 }
@@ -60,6 +73,8 @@ Json to_json(const SeriesChart& chart) {
   Json json{{"kind", "series"}, {"window_s", chart.window_s}, {"end_s", chart.end_s}};
   json["rows"] = Json::array();
   for (const auto& row : chart.rows) json["rows"].push_back({{"name", row.name}, {"times_s", row.times_s}});
+  json["people"] = Json::array();
+  for (const auto& count : chart.people) json["people"].push_back({{"from_s", count.from_s}, {"n", count.people}});
   json["phases"] = Json::array();
   for (const auto& phase : chart.phases) {
     json["phases"].push_back({{"name", phase.name}, {"from_s", phase.from_s}, {"to_s", phase.to_s}});

@@ -11,13 +11,27 @@
 
 namespace pirsim::io {
 
-/// Squares of a floor seen from above, coloured by a value.
-struct MapChart {
+/// What stands in a room, seen from above; (x, z), metres.
+struct RoomPlan {
   struct Marker {
     std::string label;
-    Vec2 point{0.0};       ///< (x, z), metres
+    Vec2 point{0.0};
     double heading = 0.0;  ///< radians, 0 facing -Z (up the page), positive turning left
   };
+  struct Door {
+    std::string label;
+    Vec2 from{0.0}, to{0.0};  ///< its jambs
+  };
+  std::vector<std::vector<Vec2>> outline;    ///< closed polygons: edges of the floor
+  std::vector<std::vector<Vec2>> furniture;  ///< closed polygons
+  std::vector<Marker> seats;
+  std::vector<Door> doors;
+};
+
+/// Squares of a floor seen from above, coloured by a value.
+struct MapChart {
+  using Marker = RoomPlan::Marker;
+  enum class Colours { scale, pass_or_fail };  ///< pass_or_fail: values are 1 or 0
   std::string title, note;
   std::string label;  ///< of the colour bar: "seconds with motion"
   std::string unit;   ///< after a value: "s of 60"
@@ -26,9 +40,10 @@ struct MapChart {
   int columns = 0, rows = 0;
   std::vector<std::optional<double>> values;  ///< (rows x columns), none off the floor
   double max = 1.0;                           ///< of the colour bar
-  std::vector<std::vector<Vec2>> outline;     ///< closed polygons, drawn solid: walls
-  std::vector<std::vector<Vec2>> dashed;      ///< closed polygons, drawn dashed: what was taken out
-  std::vector<Marker> markers;                ///< sensors
+  Colours colours = Colours::scale;
+  RoomPlan plan;                          ///< drawn over the squares
+  std::vector<std::vector<Vec2>> dashed;  ///< closed polygons, drawn dashed: what was taken out
+  std::vector<Marker> markers;            ///< sensors
 };
 
 /// How often a count came out, over the runs, and the measured one as a line.
@@ -53,8 +68,13 @@ struct SeriesChart {
   std::string title, note;
   double window_s = 1.0;
   double end_s = 0.0;
+  struct Count {
+    double from_s = 0.0;
+    int people = 0;  ///< until the next one
+  };
   std::vector<Row> rows;
-  std::vector<Phase> phases;  ///< shaded
+  std::vector<Count> people{};  ///< drawn above the rows; empty: nothing is
+  std::vector<Phase> phases;    ///< shaded
 };
 
 /// Rows by columns of numbers: coloured squares with the numbers in them.

@@ -43,7 +43,8 @@ namespace {
 
 constexpr int wanted_px = 900;  ///< width of the squares
 constexpr int margin_px = 16;   ///< white, on all sides
-constexpr Vec3 black(0.0), white(255.0), marker_red(255.0, 77.0, 109.0);
+constexpr Vec3 black(0.0), white(255.0), marker_red(255.0, 77.0, 109.0), door_green(45.0, 164.0, 78.0),
+    pass_blue(127.0, 184.0, 230.0), fail_orange(224.0, 164.0, 88.0);
 
 /// Viridis by nine of its colours (Smith and van der Walt, CC0); `share` is from 0 to 1.
 Vec3 viridis(double share) {
@@ -70,7 +71,16 @@ class MapPicture {
     for (int row = 0; row < chart_.rows; ++row) {
       for (int column = 0; column < chart_.columns; ++column) square(column, row);
     }
-    for (const auto& loop : chart_.outline) polygon(loop, black, no_dashes);
+    for (const auto& loop : chart_.plan.furniture) {
+      polygon(loop, black, no_dashes);
+      polygon(loop, white, 5.0);
+    }
+    for (const auto& loop : chart_.plan.outline) polygon(loop, black, no_dashes);
+    for (const RoomPlan::Door& door : chart_.plan.doors) {
+      for (const double aside : {-1.5, 1.5})
+        line(pixel_of(door.from) + aside, pixel_of(door.to) + aside, door_green, no_dashes);
+    }
+    for (const MapChart::Marker& seat : chart_.plan.seats) this->seat(seat);
     for (const auto& loop : chart_.dashed) polygon(loop, white, 10.0);
     for (const MapChart::Marker& marker : chart_.markers) arrow(marker);
     return std::move(pixels_);
@@ -86,7 +96,8 @@ class MapPicture {
   void square(int column, int row) {
     const auto& value = chart_.values[static_cast<std::size_t>(row * chart_.columns + column)];
     if (!value) return;
-    const Vec3 colour = viridis(*value / chart_.max);
+    const bool verdict = chart_.colours == MapChart::Colours::pass_or_fail;
+    const Vec3 colour = !verdict ? viridis(*value / chart_.max) : *value > 0.0 ? pass_blue : fail_orange;
     for (int y = 0; y < square_px_; ++y) {
       for (int x = 0; x < square_px_; ++x) {
         blend(margin_px + column * square_px_ + x, margin_px + row * square_px_ + y, colour, 1.0);
@@ -104,9 +115,17 @@ class MapPicture {
   void arrow(const MapChart::Marker& marker) {
     constexpr double shaft_px = 30.0, head_px = 14.0;
     const Vec2 ahead = direction_of(marker.heading), from = pixel_of(marker.point), tip = from + shaft_px * ahead;
-    disc(from, 6.0);
+    disc(from, 6.0, marker_red);
     line(from, tip - head_px * ahead, marker_red, no_dashes);
-    for (double back = 0.0; back <= head_px; back += 0.5) disc(tip - back * ahead, 0.45 * back);
+    for (double back = 0.0; back <= head_px; back += 0.5) disc(tip - back * ahead, 0.45 * back, marker_red);
+  }
+
+  /// A disc with a rim, and a nose the way who sits there faces.
+  void seat(const MapChart::Marker& marker) {
+    const Vec2 at = pixel_of(marker.point), nose = at + 14.0 * direction_of(marker.heading);
+    line(at, nose, black, no_dashes);
+    disc(at, 7.0, black);
+    disc(at, 5.0, white);
   }
 
   /// 3 pixels wide, with smooth edges; every second stretch of `dash_px` is left out, if that isn't 0.
@@ -120,9 +139,9 @@ class MapPicture {
     });
   }
 
-  void disc(const Vec2& centre, double radius_px) {
+  void disc(const Vec2& centre, double radius_px, const Vec3& colour) {
     each_near(centre, centre, radius_px + 1.0, [&](int x, int y, const Vec2& pixel) {
-      blend(x, y, marker_red, radius_px + 0.5 - glm::distance(pixel, centre));
+      blend(x, y, colour, radius_px + 0.5 - glm::distance(pixel, centre));
     });
   }
 

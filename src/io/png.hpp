@@ -16,7 +16,8 @@ struct Pixels {
 };
 
 /// The map without any text: squares in the colours that pages use (viridis, from 0 to `max`), white off the floor,
-/// outlines black, `dashed` polygons white, and a red arrow from each marker the way it faces.
+/// outlines black, furniture black and white, `dashed` polygons white, doors green, a white disc with a nose for each
+/// seat, and a red arrow from each marker, both the way they face.
 [[nodiscard]] Pixels drawn(const MapChart& chart);
 
 /// rgb as in Pixels. Atomically; Error(io) if it can't be written, Error(usage) if the sizes don't match.

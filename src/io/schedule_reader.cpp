@@ -161,6 +161,8 @@ std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, D
     static_cast<void>(map.text("cleaning"));
   }
   spec.entrances = map.texts("entrances");
+  spec.style = map.choice<MotionStyle>(
+      "style", spec.style, {{"choreographed", MotionStyle::choreographed}, {"natural", MotionStyle::natural}});
   if (spec.staff.empty() && !spec.meetings && !spec.cleaning_h) {
     faults.error(node->where(), "schedule: nobody comes: give `staff`, `meetings` or `cleaning`");
   }

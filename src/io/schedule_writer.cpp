@@ -89,6 +89,7 @@ YAML::Node to_node(const ScheduleSpec& schedule) {
   node["lunch_sd_min"] = number(schedule.lunch_sd_min);
   if (schedule.cleaning_h) node["cleaning"] = time_of_day(*schedule.cleaning_h);
   if (!schedule.entrances.empty()) node["entrances"] = schedule.entrances;
+  if (schedule.style == MotionStyle::choreographed) node["style"] = "choreographed";
   return node;
 }
 

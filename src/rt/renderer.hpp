@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <optional>
 #include <span>
 #include <vector>
@@ -70,6 +71,14 @@ struct View {
     const float across = (x - 0.5F * static_cast<float>(width)) / pixels_per_tangent;
     const float above = (0.5F * static_cast<float>(height) - y) / pixels_per_tangent;
     return {position, glm::normalize(forward + right * across + up * above)};
+  }
+  /// Where a point appears, in pixels; nothing behind the camera.
+  [[nodiscard]] std::optional<glm::vec2> pixel_of(const Vec3f& point) const noexcept {
+    const float depth = depth_of(point);
+    if (depth <= 0.0F) return std::nullopt;
+    const float scale = pixels_per_tangent / depth;
+    return glm::vec2(0.5F * static_cast<float>(width) + glm::dot(point - position, right) * scale,
+                     0.5F * static_cast<float>(height) - glm::dot(point - position, up) * scale);
   }
   /// Distance before the camera, metres; not along the ray.
   [[nodiscard]] float depth_of(const Vec3f& point) const noexcept { return glm::dot(point - position, forward); }

@@ -19,11 +19,11 @@ constexpr double mean_stature_m = 1.72, stature_sd_m = 0.09, least_stature_m = 1
 constexpr double mean_bmi = 24.5, bmi_sd = 3.0;  // kg/m2, assumed (22-27)
 constexpr double pace_m_s = 1.2;                 // indoors; Ref: [Weidmann1993] has 1.34 in the open
 
-PersonSpec body_of(const std::string& id, std::uint64_t seed, std::uint32_t entity) {
+PersonSpec body_of(const std::string& id, MotionStyle style, std::uint64_t seed, std::uint32_t entity) {
   Stream stream({seed, 0, entity, Purpose::schedule_body});
   PersonSpec person;
   person.id = id;
-  person.style = MotionStyle::natural;
+  person.style = style;
   person.stature_m = std::clamp(mean_stature_m + stature_sd_m * stream.normal(), least_stature_m, most_stature_m);
   person.mass_kg = std::clamp(mean_bmi + bmi_sd * stream.normal(), 18.0, 32.0) * person.stature_m * person.stature_m;
   person.walking_speed_m_s = pace_m_s;
@@ -121,7 +121,8 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
   check_entrances(schedule, scene, diagnostics);
   std::vector<ScheduledPerson> people;
   const auto add = [&](SchedulePart part, Role role, const std::string& name, const std::string& seat) {
-    people.push_back({part, role, seat, body_of(name, seed, static_cast<std::uint32_t>(people.size()))});
+    people.push_back(
+        {part, role, seat, body_of(name, schedule.style, seed, static_cast<std::uint32_t>(people.size()))});
   };
   int number = 0;
   for (const StaffSpec& staff : schedule.staff) {

@@ -9,7 +9,7 @@
 namespace pirsim {
 
 StudyInForce as_given(SceneSpec scene, const ScriptSpec& script) {
-  StudyInForce study{std::move(scene), {script.sensing, 0.0, {}, {}}, script.seed, {}};
+  StudyInForce study{std::move(scene), {script.sensing}, script.seed, {}};
   for (const TrialSpec& trial : script.trials) {
     TrialInForce& own = study.trials.emplace_back(TrialInForce{trial.id, {}, trial.duration_s, trial.schedule});
     for (const PersonSpec& person : trial.people) own.people.push_back({person, {}, {}});

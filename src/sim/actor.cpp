@@ -38,7 +38,7 @@ Actor::Actor(const CompiledStudy& study, std::uint32_t run, std::uint32_t person
       index_(person),
       tilt_stream_({study.seed(), run, person, Purpose::spine_tilt}),
       scatter_stream_({study.seed(), run, person, Purpose::seat_scatter}),
-      fidget_stream_({study.seed(), run, person, Purpose::fidgeting}) {
+      restlessness_(this->person().spec.changes, study.seed(), run, person, study.tick_s()) {
   if (this->person().spec.style == MotionStyle::natural) {
     natural_.emplace(study.seed(), run, person, study.sensing().tick_rate_hz);
   }
@@ -68,7 +68,7 @@ void Actor::advance(const CompiledStudy& study, std::int64_t tick, std::span<con
   carry_on({study, others, tick - 1});
   if (body_) {
     if (natural_) move_naturally();
-    if (body_->motion().stage() == Stage::seated) fidget(study);
+    if (body_->motion().stage() == Stage::seated) restlessness_.tick(body_motion(), choreographed_work());
     body_->advance(others, n_before, tick - 1);
     if (const auto incident = body_->take_incident()) incidents_.push_back(*incident);
   }
@@ -240,6 +240,11 @@ void Actor::work(const action::Work& work, std::int64_t now) {
   body_motion().tilt_spine(radians(work.tilt_choices_deg[choice]));
 }
 
+const action::Work* Actor::choreographed_work() const {
+  if (natural_ || done() || !begun_ || !errands_.empty()) return nullptr;
+  return std::get_if<action::Work>(&action().what);
+}
+
 void Actor::move_naturally() {
   const std::optional<Activity> busy_with = activity();
   if (busy_with != Activity::meeting) attention_ = {};
@@ -265,18 +270,6 @@ void Actor::attend(Talk talk, const std::optional<Vec2>& speaker) {
   if (!speaker || talk != Talk::listens) return;
   const Vec2 way = *speaker - body_->motion().position();
   attention_.towards = std::remainder(heading_of(way) - body_->motion().heading(), 2.0 * pi);
-}
-
-void Actor::fidget(const CompiledStudy& study) {
-  const FidgetSpec& fidgeting = person().spec.changes.fidgeting;
-  if (fidgeting.rate_per_s <= 0.0) return;
-  if (fidget_stream_.uniform() >= -std::expm1(-fidgeting.rate_per_s * study.tick_s())) return;
-  const double way = 2.0 * fidget_stream_.uniform() - 1.0;
-  if (fidget_stream_.index(2) == 0) {
-    body_motion().adjust(body::Channel::trunk_tilt, radians(fidgeting.tilt_deg) * way, body::fidget_s);
-  } else {
-    body_motion().adjust(body::Channel::head_turn, radians(fidgeting.turn_deg) * way, body::fidget_s);
-  }
 }
 
 Progress Actor::carry_out_first(const Scene& scene) {

@@ -15,6 +15,7 @@
 #include "sim/natural_motion.hpp"
 #include "sim/pedestrian.hpp"
 #include "sim/presence.hpp"
+#include "sim/restlessness.hpp"
 #include "sim/schedule.hpp"
 
 namespace pirsim::sim {
@@ -104,7 +105,8 @@ class Actor {
   void plan_leaving(const EntranceSpec& door);
   void plan_sitting(std::string_view seat);
   void work(const action::Work& work, std::int64_t now);
-  void fidget(const CompiledStudy& study);
+  /// What a person of the paper's style is at, at a seat; null: nothing.
+  [[nodiscard]] const action::Work* choreographed_work() const;
   void move_naturally();
   /// What somebody of natural style is busy with by the current action.
   [[nodiscard]] std::optional<Activity> activity() const;
@@ -158,7 +160,7 @@ class Actor {
   std::vector<Incident> incidents_;
   Stream tilt_stream_;
   Stream scatter_stream_;
-  Stream fidget_stream_;
+  Restlessness restlessness_;
 };
 
 }  // namespace pirsim::sim

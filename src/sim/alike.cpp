@@ -53,6 +53,19 @@ auto fields(const action::Turn& turn) {
   return std::tie(heading_deg);
 }
 
+auto fields(const FidgetSpec& fidgeting) {
+  const auto& [rate_per_s, tilt_deg, turn_deg, timing] = fidgeting;
+  return std::tie(rate_per_s, tilt_deg, turn_deg, timing);
+}
+auto fields(const SwingSpec& swing) {
+  const auto& [amplitude_deg, period_s, share] = swing;
+  return std::tie(amplitude_deg, period_s, share);
+}
+auto fields(const UnevenArmsSpec& arms) {
+  const auto& [spread, pause_share] = arms;
+  return std::tie(spread, pause_share);
+}
+
 template <typename Spec>
 bool same(const Spec& a, const Spec& b) {
   return fields(a) == fields(b);
@@ -72,11 +85,11 @@ bool same_person(const PersonInForce& a, const PersonInForce& b) {
     const auto& [id, stature_m, mass_kg, speed, scatter, file, meshes, warmth, style, actions] =
         static_cast<const PersonSpec&>(person);
     const auto& [position_sd_m, heading_sd_deg] = scatter;
-    const auto& [seat_shift_m, fidgeting, role] = person.changes;
-    const auto& [rate_per_s, tilt_deg, turn_deg] = fidgeting;
+    const auto& [seat_shift_m, fidgeting, trunk_sway, chair_swing, uneven_arms, role] = person.changes;
     const auto& [skin_c, clothing_clo, bare, parts_c] = warmth;
-    return std::tie(id, stature_m, mass_kg, speed, position_sd_m, heading_sd_deg, seat_shift_m, rate_per_s, tilt_deg,
-                    turn_deg, role, style, file, meshes, skin_c, clothing_clo, bare, parts_c);
+    return std::tuple_cat(std::tie(id, stature_m, mass_kg, speed, position_sd_m, heading_sd_deg, seat_shift_m, role,
+                                   style, file, meshes, skin_c, clothing_clo, bare, parts_c),
+                          fields(fidgeting), fields(trunk_sway), fields(chair_swing), fields(uneven_arms));
   };
   return parts(a) == parts(b) && std::ranges::equal(a.actions, b.actions, same_action);
 }

@@ -78,15 +78,17 @@ std::int64_t Crowd::away_until(const CompiledStudy& study, std::int64_t tick) co
 }
 
 int Crowd::n_on_floor(const FloorArea& floor) const {
-  return static_cast<int>(std::ranges::count_if(
-      actors_, [&](const Actor& actor) { return actor.present() && floor.contains(actor.motion().position()); }));
+  return static_cast<int>(std::ranges::count_if(actors_, [&](const Actor& actor) {
+    return actor.present() && actor.person().spec.changes.role != PersonRole::object &&
+           floor.contains(actor.motion().position());
+  }));
 }
 
 std::string_view Crowd::phase() const noexcept { return actors_.empty() ? "outside" : actors_.front().phase(); }
 
 bool Crowd::done() const noexcept {
   return std::ranges::all_of(actors_, [](const Actor& actor) {
-    return actor.done() || actor.person().spec.changes.role == PersonRole::bystander;
+    return actor.done() || actor.person().spec.changes.role != PersonRole::subject;
   });
 }
 

@@ -11,12 +11,12 @@ double watts(PowerSteps power) { return static_cast<double>(power) * watts_per_s
 
 Detector::Detector(const SensorArray& array)
     : array_(&array),
-      edge_draw_(array.channels(), array.n_levels(), array.ticks_per_window()),
+      edges_(array.channels(), array.n_levels(), array.soft_edges(), array.ticks_per_window(), array.tick_s()),
       polarity_(array.polarity()),
       analog_(array.analog() != nullptr ? array.n_sensors() : 0) {}
 
 void Detector::begin_run(std::uint64_t seed, std::uint32_t run, const Exposure& rest) {
-  edge_draw_.begin_run(seed, run);
+  edges_.begin_run(seed, run, rest.channels);
   if (polarity_) polarity_->begin_run(rest.sums);
   for (std::uint32_t i = 0; i < analog_.size(); ++i) {
     const auto& sensor = array_->analog()->sensors()[i];
@@ -30,8 +30,7 @@ void Detector::tick(const Exposure& before, const Exposure& after, std::span<std
   if (polarity_) {
     polarity_->tick(after.sums, triggers);
   } else {
-    edge_draw_.tick();
-    array_->channels().mark(before.channels.words(), after.channels.words(), edge_draw_.watched(), triggers);
+    edges_.tick(before.channels, after.channels, triggers);
   }
   advance_analog(after, triggers);
 }
@@ -41,7 +40,7 @@ void Detector::tick_unchanged(const Exposure& exposure, std::span<std::uint8_t> 
   if (polarity_) {
     polarity_->tick(exposure.sums, triggers);
   } else {
-    edge_draw_.tick();
+    edges_.tick_unchanged(exposure.channels, triggers);
   }
   advance_analog(exposure, triggers);
 }
@@ -56,7 +55,7 @@ void Detector::advance_analog(const Exposure& exposure, std::span<std::uint8_t> 
 
 bool Detector::is_at_rest(const Exposure& exposure) const {
   if (is_memoryless()) return true;
-  if (!polarity_ && array_->n_levels() > 1) return false;  // draws the edges of every window
+  if (!polarity_ && !edges_.is_at_rest()) return false;
   Detector next(*this);
   std::vector<std::uint8_t> triggers(array_->n_sensors());
   next.tick_unchanged(exposure, triggers);

@@ -8,6 +8,7 @@
 
 #include "pir/analog_detector.hpp"
 #include "pir/motion_detector.hpp"
+#include "pir/soft_edges.hpp"
 #include "sim/sensor_array.hpp"
 
 namespace pirsim::sim {
@@ -39,7 +40,7 @@ class Detector {
   void advance_analog(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept;
 
   const SensorArray* array_;
-  pir::EdgeDraw edge_draw_;
+  pir::SoftEdges edges_;
   std::optional<pir::PolarityDetector> polarity_;
   std::vector<std::optional<pir::AnalogDetector::State>> analog_;
 };

@@ -15,15 +15,30 @@ struct Continuation {
   float range = 0.0F;
 };
 
+/// A direction turned by normal angles about two axes across it; the same for that ray in every run.
+Vec3f scattered(const Vec3f& direction, double spread_rad, std::uint32_t ray) {
+  if (spread_rad <= 0.0) return direction;
+  Stream stream({0, 0, ray, Purpose::rough_surface});
+  const Vec3f across =
+      glm::normalize(glm::cross(direction, std::abs(direction.y) < 0.9F ? Vec3f(0, 1, 0) : Vec3f(1, 0, 0)));
+  const auto right = static_cast<float>(spread_rad * stream.normal());
+  const auto up = static_cast<float>(spread_rad * stream.normal());
+  return glm::normalize(direction + right * across + up * glm::cross(direction, across));
+}
+
 std::optional<Continuation> mirrored(const Ray& ray, float range, const rt::Room& room,
-                                     std::span<const double> coefficients) {
+                                     std::span<const ReflectionSpec* const> finishes, std::uint32_t index) {
   const auto hit = room.first_hit(ray, range);
-  if (!hit || coefficients[hit->mesh] <= 0.0) return std::nullopt;
-  const float left = range * static_cast<float>(std::sqrt(coefficients[hit->mesh])) - hit->distance;
+  const ReflectionSpec* finish = hit ? finishes[hit->mesh] : nullptr;
+  if (finish == nullptr || finish->coefficient <= 0.0) return std::nullopt;
+  const float left = range * static_cast<float>(std::sqrt(finish->coefficient)) - hit->distance;
   constexpr float shortest_m = 0.01F, off_the_wall_m = 1e-3F;  // so that the ray doesn't meet the wall it comes from
   if (left <= shortest_m) return std::nullopt;
   const Vec3f at = ray.origin + hit->distance * ray.direction + off_the_wall_m * hit->normal;
-  return Continuation{{at, glm::normalize(glm::reflect(ray.direction, hit->normal))}, left};
+  Vec3f onwards =
+      scattered(glm::normalize(glm::reflect(ray.direction, hit->normal)), radians(finish->scatter_deg), index);
+  if (glm::dot(onwards, hit->normal) <= 0.0F) onwards = glm::reflect(onwards, hit->normal);
+  return Continuation{{at, onwards}, left};
 }
 
 /// Adds to every zone the mirrored continuation of those of its rays (at rated range) that first meet a glossy mesh.
@@ -32,10 +47,10 @@ std::optional<Continuation> mirrored(const Ray& ray, float range, const rt::Room
 void add_reflections(RayBundle& bundle, const rt::Room& room, std::span<const TriMesh> meshes,
                      std::span<const ReflectionSpec> reflections) {
   if (reflections.empty()) return;
-  std::vector<double> coefficients;  // (n_meshes)
+  std::vector<const ReflectionSpec*> finishes;  // (n_meshes) null: mirrors nothing
   for (const TriMesh& mesh : meshes) {
     const auto glossy = std::ranges::find(reflections, mesh.name, &ReflectionSpec::mesh);
-    coefficients.push_back(glossy == reflections.end() ? 0.0 : glossy->coefficient);
+    finishes.push_back(glossy == reflections.end() ? nullptr : &*glossy);
   }
   RayBundle result;
   result.cluster_zones_begin = bundle.cluster_zones_begin;
@@ -47,7 +62,7 @@ void add_reflections(RayBundle& bundle, const rt::Room& room, std::span<const Tr
       result.range.push_back(bundle.range[i]);
     }
     for (std::size_t i = begin; i < end; ++i) {
-      const auto ghost = mirrored(bundle.rays[i], bundle.range[i], room, coefficients);
+      const auto ghost = mirrored(bundle.rays[i], bundle.range[i], room, finishes, static_cast<std::uint32_t>(i));
       if (!ghost) continue;
       result.rays.push_back(ghost->ray);
       result.range.push_back(ghost->range);
@@ -57,12 +72,33 @@ void add_reflections(RayBundle& bundle, const rt::Room& room, std::span<const Tr
   bundle = std::move(result);
 }
 
+constexpr float blind_m = 0.01F;  ///< range of a ray that sees nothing
+
+/// Cuts off the rays through a side of each lens, as many as the share says.
+void blind(RayBundle& bundle, const SceneSpec& scene, const BlindFieldSpec& field) {
+  const double side = radians(field.side_deg);
+  for (const std::uint32_t sensor : field.sensors) {
+    const auto zone_begin = bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor]];
+    const auto zone_end = bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor + 1]];
+    const Quat sensor_from_world = glm::conjugate(scene.sensors[sensor].world_from_sensor.rotation);
+    std::vector<std::pair<double, std::size_t>> towards_side;  // (n_rays) how far, and which
+    for (std::size_t i = bundle.zone_rays_begin[zone_begin]; i < bundle.zone_rays_begin[zone_end]; ++i) {
+      const Vec3 d = sensor_from_world * Vec3(bundle.rays[i].direction);
+      towards_side.emplace_back(std::cos(side) * d.x + std::sin(side) * d.y, i);
+    }
+    const auto n = static_cast<std::size_t>(std::llround(field.share * static_cast<double>(towards_side.size())));
+    std::ranges::sort(towards_side, std::greater{});
+    for (std::size_t i = 0; i < n; ++i) bundle.range[towards_side[i].second] = blind_m;
+  }
+}
+
 RayBundle rated_rays(const SceneSpec& scene, const SensingInForce& sensing, const rt::Room& room) {
   RayBundle rays;
-  const std::vector<double> levels = pir::edge_levels(sensing.edge_sigma_deg);
+  const std::vector<double> levels = pir::edge_levels(sensing.soft_edges.sigma_deg);
   for (const SensorSpec& sensor : scene.sensors) {
     pir::append(rays, sensor, scene.sensor_models.at(sensor.model), sensing.rays_per_zone, levels);
   }
+  for (const BlindFieldSpec& field : sensing.blind_fields) blind(rays, scene, field);
   add_reflections(rays, room, scene.meshes, sensing.reflections);
   return rays;
 }
@@ -71,7 +107,9 @@ RayBundle rated_rays(const SceneSpec& scene, const SensingInForce& sensing, cons
 
 SensorArray::SensorArray(const SceneSpec& scene, const SensingInForce& sensing, std::shared_ptr<const rt::Room> room)
     : room_(std::move(room)),
-      n_levels_(pir::edge_levels(sensing.edge_sigma_deg).size()),
+      soft_edges_(sensing.soft_edges),
+      tick_s_(1.0 / sensing.tick_rate_hz),
+      n_levels_(pir::edge_levels(sensing.soft_edges.sigma_deg).size()),
       ticks_per_window_(sensing.ticks_per_window),
       rated_(rated_rays(scene, sensing, *room_)),
       clipped_(rated_),

@@ -39,7 +39,9 @@ class SensorArray {
   [[nodiscard]] const pir::MotionDetector& channels() const noexcept { return channels_; }
   /// Nested copies of every zone that stand for soft edges; 1: hard edges.
   [[nodiscard]] std::size_t n_levels() const noexcept { return n_levels_; }
+  [[nodiscard]] const SoftEdgesSpec& soft_edges() const noexcept { return soft_edges_; }
   [[nodiscard]] int ticks_per_window() const noexcept { return ticks_per_window_; }
+  [[nodiscard]] double tick_s() const noexcept { return tick_s_; }
   /// Replaces the detection of changes if an effect asks for it.
   [[nodiscard]] const std::optional<pir::PolarityDetector>& polarity() const noexcept { return polarity_; }
   /// The sensors that answer physically, or null if none does.
@@ -56,6 +58,8 @@ class SensorArray {
 
  private:
   std::shared_ptr<const rt::Room> room_;
+  SoftEdgesSpec soft_edges_;
+  double tick_s_;
   std::size_t n_levels_;
   int ticks_per_window_;
   RayBundle rated_, clipped_;

@@ -28,6 +28,7 @@ void note_incidents(const sim::CompiledStudy& study, const sim::RunState& state,
 
 void add_occupants(const sim::CompiledStudy& study, const sim::RunState& state, std::vector<OccupantRow>& rows) {
   for (const sim::Actor& actor : state.crowd.actors()) {
+    if (actor.person().spec.changes.role == PersonRole::object) continue;
     if (!actor.present()) continue;
     const Vec2 place = actor.motion().position();
     rows.push_back({state.sample.time_s, state.sample.clock, actor.person().spec.id, std::string(actor.phase()),

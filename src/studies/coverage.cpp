@@ -258,9 +258,9 @@ CoverageStudy::CoverageStudy(SceneSpec scene, CoverageSpec spec)
 
 std::vector<Issue> CoverageStudy::warnings() const {
   // Nobody is there.
-  static constexpr std::array<std::string_view, 9> idle{"seats_shifted", "second_person", "seat_shift",
-                                                        "seat_scatter",  "body_size",     "arm_motion",
-                                                        "trunk_tilt",    "fidgeting",     "warm_chair"};
+  static constexpr std::array<std::string_view, 14> idle{
+      "seats_shifted", "second_person",  "warm_object", "seat_shift", "seat_scatter", "body_size", "arm_motion",
+      "trunk_tilt",    "natural_motion", "uneven_arms", "trunk_sway", "chair_swing",  "fidgeting", "warm_chair"};
   return idle_effects(spec_.effects, survey_, idle, "coverage study");
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/fixed.hpp"
 #include "pirsim/geometry.hpp"
+#include "studies/room_plan.hpp"
 
 namespace pirsim::studies {
 namespace {
@@ -170,7 +171,7 @@ io::MapChart DayReport::floor_chart() const {
     chart.values.push_back(shown ? std::optional(std::round(100.0 * std::min(minutes, chart.max)) / 100.0)
                                  : std::nullopt);
   }
-  chart.outline = model_->scene().floor.loops();
+  chart.plan = plan_of(model_->scene());
   for (const OccupantRow& row : busiest_.people) {
     chart.markers.push_back({row.person, row.place_m, 0.0});
   }

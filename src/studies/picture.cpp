@@ -1,48 +1,55 @@
 #include "studies/picture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
+#include <string>
+#include <utility>
 
+#include "io/lettering.hpp"
 #include "pirsim/error.hpp"
+#include "rt/renderer.hpp"
 #include "sim/compiled_study.hpp"
 #include "sim/run_state.hpp"
 #include "sim/solids.hpp"
+#include "studies/room_plan.hpp"
 
 namespace pirsim::studies {
 namespace {
-
-struct Extent {
-  Vec3 lower{1e9}, upper{-1e9};
-};
-
-Extent extent(const TriMesh& mesh) {
-  Extent result;
-  for (const Vec3& p : mesh.positions) {
-    result.lower = glm::min(result.lower, p);
-    result.upper = glm::max(result.upper, p);
-  }
-  return result;
-}
 
 struct MeshLook {
   rt::Surface surface;
   rt::Colour colour;
 };
 
-/// Tall or high things are walls and ceilings, cut away towards the camera; the rest is furniture.
+/// Walls are cut away towards the camera.
 MeshLook look_of(const TriMesh& mesh, double floor_y) {
-  constexpr double wall_height_m = 2.0, floor_thickness_m = 0.05;
-  const Extent e = extent(mesh);
-  const Vec3 size = e.upper - e.lower;
-  const bool is_high = e.lower.y >= floor_y + wall_height_m;
-  if (is_high && size.y < std::min(size.x, size.z)) return {rt::Surface::hidden, {0.9F, 0.9F, 0.9F}};
-  if (is_high || size.y > wall_height_m) return {rt::Surface::see_through, {0.82F, 0.84F, 0.86F}};
-  if (e.upper.y < floor_y + floor_thickness_m) return {rt::Surface::opaque, {0.60F, 0.57F, 0.53F}};
+  switch (role_of(mesh, floor_y)) {
+    case MeshRole::ceiling:
+      return {rt::Surface::hidden, {0.9F, 0.9F, 0.9F}};
+    case MeshRole::wall:
+      return {rt::Surface::see_through, {0.82F, 0.84F, 0.86F}};
+    case MeshRole::floor:
+      return {rt::Surface::opaque, {0.60F, 0.57F, 0.53F}};
+    case MeshRole::furniture:
+      break;
+  }
   return {rt::Surface::opaque, {0.55F, 0.36F, 0.20F}};
 }
 
-rt::Colour colour_of(body::Part part) {
+/// What people wear, in their order.
+constexpr std::array<rt::Colour, 8> shirts{{{0.10F, 0.28F, 0.52F},
+                                            {0.72F, 0.20F, 0.10F},
+                                            {0.10F, 0.42F, 0.20F},
+                                            {0.62F, 0.40F, 0.03F},
+                                            {0.36F, 0.16F, 0.50F},
+                                            {0.05F, 0.42F, 0.45F},
+                                            {0.58F, 0.12F, 0.32F},
+                                            {0.35F, 0.35F, 0.36F}}};
+
+rt::Colour colour_of(body::Part part, std::size_t person) {
   switch (part) {
     case body::Part::head:
     case body::Part::left_forearm:
@@ -51,7 +58,7 @@ rt::Colour colour_of(body::Part part) {
     case body::Part::torso:
     case body::Part::left_upper_arm:
     case body::Part::right_upper_arm:
-      return {0.10F, 0.28F, 0.52F};
+      return shirts[person % shirts.size()];
     case body::Part::left_foot:
     case body::Part::right_foot:
       return {0.05F, 0.05F, 0.06F};
@@ -84,9 +91,108 @@ void require_usable(const rt::Camera& camera) {
   }
 }
 
+constexpr rt::Colour seat_colour{0.55F, 0.10F, 0.55F}, door_colour{0.05F, 0.45F, 0.12F},
+    scale_colour{0.05F, 0.05F, 0.06F};
+
+/// A text beside a point of the room.
+struct Label {
+  Vec3 at{0.0};
+  std::string text;
+  rt::Colour colour{};
+};
+/// Lines and texts on top of the room.
+struct Marks {
+  std::vector<rt::Beam> lines;
+  std::vector<Label> labels;
+};
+
+/// From the seat's point the way who sits there faces.
+void mark_seats(const SceneSpec& scene, Marks& marks) {
+  constexpr double nose_m = 0.25, above_m = 0.25;
+  for (const SeatSpec& seat : scene.seats) {
+    const Vec3 at = seat.world_from_seat.origin;
+    marks.lines.push_back({seat.world_from_seat * Vec3(0.0, 0.0, -nose_m), at, seat_colour});
+    marks.labels.push_back({at + Vec3(0.0, above_m, 0.0), seat.id, seat_colour});
+  }
+}
+
+/// The threshold, and the way in.
+void mark_doors(const SceneSpec& scene, Marks& marks) {
+  constexpr double way_m = 0.5, above_m = 0.02;
+  for (const EntranceSpec& door : scene.entrances) {
+    const auto at = [&](double x, double z) { return door.world_from_entrance * Vec3(x, above_m, z); };
+    marks.lines.push_back({at(-0.5 * door.width_m, 0.0), at(0.5 * door.width_m, 0.0), door_colour});
+    marks.lines.push_back({at(0.0, 0.0), at(0.0, -way_m), door_colour});
+    marks.labels.push_back({at(0.0, 0.0), door.id, door_colour});
+  }
+}
+
+void mark_sensors(const SceneSpec& scene, Marks& marks) {
+  constexpr double above_m = 0.1, stub_m = 0.03;
+  for (const SensorSpec& sensor : scene.sensors) {
+    const Vec3 at = sensor.world_from_sensor.origin;
+    marks.lines.push_back({at + Vec3(0.0, stub_m, 0.0), at, scale_colour});
+    marks.labels.push_back({at + Vec3(0.0, above_m, 0.0), sensor.id, scale_colour});
+  }
+}
+
+void mark_people(const State& state, Marks& marks) {
+  constexpr double above_m = 0.05;
+  const auto& actors = state.run_state().crowd.actors();
+  for (std::size_t i = 0; i < actors.size(); ++i) {
+    std::vector<PosedShape> shapes;
+    sim::append_solids(actors[i], shapes);
+    if (shapes.empty()) continue;
+    const Bounds head = bounds(shapes.at(static_cast<std::size_t>(body::Part::head)));
+    const Vec3f top(0.5F * (head.lower.x + head.upper.x), head.upper.y, 0.5F * (head.lower.z + head.upper.z));
+    marks.labels.push_back(
+        {Vec3(top) + Vec3(0.0, above_m, 0.0), actors[i].person().spec.id, shirts[i % shirts.size()]});
+  }
+}
+
+/// A metre along x, on the floor before the room.
+void mark_scale(const SceneSpec& scene, Marks& marks) {
+  constexpr double before_m = 0.3, above_m = 0.01;
+  const Vec2 corner = scene.floor.lower();
+  const auto at = [&](double x) { return Vec3(corner.x + x, scene.floor.height_m() + above_m, corner.y - before_m); };
+  marks.lines.push_back({at(0.0), at(1.0), scale_colour});
+  marks.lines.push_back({at(1.0), at(0.0), scale_colour});
+  marks.labels.push_back({at(0.5) - Vec3(0.0, 0.0, before_m), "1 m", scale_colour});
+}
+
+Marks marks_of(const Model& model, const State& state, const std::vector<Mark>& wanted) {
+  const SceneSpec& scene = model.compiled().scene();
+  Marks marks;
+  for (const Mark mark : wanted) {
+    if (mark == Mark::seats) mark_seats(scene, marks);
+    if (mark == Mark::doors) mark_doors(scene, marks);
+    if (mark == Mark::sensors) mark_sensors(scene, marks);
+    if (mark == Mark::people) mark_people(state, marks);
+    if (mark == Mark::scale) mark_scale(scene, marks);
+  }
+  return marks;
+}
+
+void write_labels(const std::vector<Label>& labels, const rt::View& view, io::Pixels& image) {
+  constexpr double size_px = 12.5, reference_height = 720.0;  // so that a larger picture shows the same
+  const double size = std::max(8.0, size_px * image.height / reference_height);
+  for (const Label& label : labels) {
+    const auto at = view.pixel_of(Vec3f(label.at));
+    if (!at) continue;
+    // Darker than the lines, so that it can be read.
+    const Vec3 ink = 255.0 * glm::pow(Vec3(label.colour[0], label.colour[1], label.colour[2]), Vec3(1.0 / 2.2)) * 0.8;
+    io::write_text(image, Vec2(*at), label.text, size, ink);
+  }
+}
+
 }  // namespace
 
-rt::Image picture(const Model& model, const State& state, const PictureSpec& spec) {
+std::string_view name(Mark mark) noexcept {
+  static constexpr std::array<std::string_view, all_marks.size()> names{"seats", "doors", "sensors", "people", "scale"};
+  return names[static_cast<std::size_t>(mark)];
+}
+
+io::Pixels picture(const Model& model, const State& state, const PictureSpec& spec) {
   const SceneSpec& scene = model.compiled().scene();
   std::vector<rt::Surface> surfaces;
   std::vector<rt::Colour> colours;
@@ -96,11 +202,12 @@ rt::Image picture(const Model& model, const State& state, const PictureSpec& spe
     colours.push_back(look.colour);
   }
   std::vector<rt::RenderedSolid> solids;
-  for (const sim::Actor& actor : state.run_state().crowd.actors()) {
+  const auto& actors = state.run_state().crowd.actors();
+  for (std::size_t person = 0; person < actors.size(); ++person) {
     std::vector<PosedShape> shapes;
-    sim::append_solids(actor, shapes);
+    sim::append_solids(actors[person], shapes);
     for (std::size_t i = 0; i < shapes.size(); ++i)
-      solids.push_back({shapes[i], colour_of(static_cast<body::Part>(i))});
+      solids.push_back({shapes[i], colour_of(static_cast<body::Part>(i), person)});
   }
   std::vector<rt::Beam> beams;
   constexpr rt::Colour idle{0.10F, 0.45F, 0.75F}, seeing{1.0F, 0.25F, 0.02F};
@@ -111,12 +218,18 @@ rt::Image picture(const Model& model, const State& state, const PictureSpec& spe
   }
   // What sees the person is drawn last, over the rest.
   std::stable_partition(beams.begin(), beams.end(), [&](const rt::Beam& beam) { return beam.colour == idle; });
+  const Marks marks = marks_of(model, state, spec.marks);
+  beams.insert(beams.end(), marks.lines.begin(), marks.lines.end());
   const double fov = radians(spec.field_of_view_deg);
   rt::Camera camera = dolls_house_camera(scene, fov, static_cast<double>(spec.width) / spec.height);
   if (spec.camera) camera.position = *spec.camera;
   if (spec.look_at) camera.target = *spec.look_at;
   require_usable(camera);
-  return rt::render(model.compiled().array().room(), surfaces, colours, solids, beams, camera, spec.width, spec.height);
+  rt::Image image =
+      rt::render(model.compiled().array().room(), surfaces, colours, solids, beams, camera, spec.width, spec.height);
+  io::Pixels pixels{image.width, image.height, std::move(image.rgb)};
+  write_labels(marks.labels, rt::make_view(camera, spec.width, spec.height), pixels);
+  return pixels;
 }
 
 }  // namespace pirsim::studies

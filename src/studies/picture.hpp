@@ -1,22 +1,30 @@
 // A picture of a room with its people and beams.
 #pragma once
 
+#include <array>
 #include <optional>
+#include <string_view>
 #include <vector>
 
+#include "io/png.hpp"
 #include "pirsim/state.hpp"
-#include "rt/renderer.hpp"
 
 namespace pirsim::studies {
 
+/// What a picture explains beside the room itself: where they are, and their ids.
+enum class Mark { seats, doors, sensors, people, scale };
+inline constexpr std::array all_marks{Mark::seats, Mark::doors, Mark::sensors, Mark::people, Mark::scale};
+[[nodiscard]] std::string_view name(Mark mark) noexcept;
+
 struct PictureSpec {
-  std::vector<std::size_t> beams_of;    ///< indices of sensors whose beams are drawn
+  std::vector<std::size_t> beams_of;  ///< indices of sensors whose beams are drawn
+  std::vector<Mark> marks{all_marks.begin(), all_marks.end()};
   std::optional<Vec3> camera, look_at;  ///< default: from above and beside, the whole floor in view
   double field_of_view_deg = 45.0;      ///< vertical
   int width = 1280, height = 720;       ///< pixels
 };
 
 /// The room as a doll's house, cut open towards the camera. Throws Error(usage) for a camera that can't be used.
-[[nodiscard]] rt::Image picture(const Model& model, const State& state, const PictureSpec& spec);
+[[nodiscard]] io::Pixels picture(const Model& model, const State& state, const PictureSpec& spec);
 
 }  // namespace pirsim::studies

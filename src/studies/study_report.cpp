@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "core/fixed.hpp"
+#include "studies/room_plan.hpp"
+
 namespace pirsim::studies {
 namespace {
 
@@ -75,7 +77,7 @@ io::MapChart map_chart(const CoverageStudy& study, const CoverageMap& map, std::
     }
   }
   chart.max = map.n_windows;
-  chart.outline = study.scene().floor.loops();
+  chart.plan = plan_of(study.scene());
   chart.dashed = places_of(study);
   chart.markers = {{spec.id, floor_point(spec.world_from_sensor.origin), heading_of(spec.world_from_sensor)}};
   return chart;
@@ -84,15 +86,16 @@ io::MapChart map_chart(const CoverageStudy& study, const CoverageMap& map, std::
 io::Report coverage_report(const CoverageStudy& study, const CoverageMap& map, const CoverageFigures& figures) {
   io::Report report;
   report.title = study.spec().name + ": where each sensor sees motion";
-  report.paragraphs = {"A moving target stood for " + fixed(study.spec().duration_s, 0) + " s in every square of " +
-                           fixed(100.0 * map.grid.spacing_m(), 0) + " cm of the floor of " + study.scene().name + " (" +
-                           std::to_string(map.grid.n_squares()) +
-                           " squares). The maps, seen from above, tell for each sensor in how many "
-                           "of these windows it reported motion: 0 means blind there. Point at a square for its value.",
-                       "The target is " + std::to_string(study.target().crosses().size()) +
-                           " crosses of two bars, turning on the spot. "
-                           "The triangle is the sensor, the solid line the floor's edge, the dashed line what was "
-                           "taken out of the room."};
+  report.paragraphs = {
+      "A moving target stood for " + fixed(study.spec().duration_s, 0) + " s in every square of " +
+          fixed(100.0 * map.grid.spacing_m(), 0) + " cm of the floor of " + study.scene().name + " (" +
+          std::to_string(map.grid.n_squares()) +
+          " squares). The maps, seen from above, tell for each sensor in how many "
+          "of these windows it reported motion: 0 means blind there. Point at a square for its value.",
+      "The target is " + std::to_string(study.target().crosses().size()) +
+          " crosses of two bars, turning on the spot. "
+          "The red triangle is the sensor, a white one a seat, green a door; solid lines are the floor's edge "
+          "and furniture, the dashed line is what was taken out of the room."};
 
   io::Table table{{"sensor", "mean step", "greatest step", "blind", "area seen, m²"}, {}};
   for (std::size_t i = 0; i < map.sensors.size(); ++i) table.rows.push_back(row_of(map.sensors[i], figures.sensors[i]));
@@ -157,8 +160,10 @@ std::string note_of(const CellSummary& cell) {
 /// What was run, and what a count is.
 std::string introduction(const Model& model, const std::vector<std::string>& sensors) {
   const ScriptSpec& script = model.script();
-  return std::to_string(script.trials.size()) + " trials in " + model.scene().name + ", each run " +
-         std::to_string(script.replicates) + " times, watched by " + boost::algorithm::join(sensors, ", ") +
+  return std::to_string(script.trials.size()) + (script.trials.size() == 1 ? " trial in " : " trials in ") +
+         model.scene().name + ", " +
+         (script.replicates == 1 ? "run once" : "each run " + std::to_string(script.replicates) + " times") +
+         ", watched by " + boost::algorithm::join(sensors, ", ") +
          ". A count is the number of windows in which a sensor reported motion" +
          (script.summary.phases.empty()
               ? "."
@@ -192,6 +197,11 @@ io::SeriesChart StudyReport::series_of(const Trial& trial) const {
   chart.window_s = static_cast<double>(sensing.ticks_per_window) / sensing.tick_rate_hz;
   if (!trial.samples.empty()) chart.end_s = trial.samples.back().time_s;
   chart.phases = counted_phases(trial.samples, model_->script().summary, chart.window_s);
+  for (const Sample& sample : trial.samples) {
+    const int people = sample.people;
+    if (chart.people.empty() || chart.people.back().people != people)
+      chart.people.push_back({sample.time_s - chart.window_s, people});
+  }
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
     auto& row = chart.rows.emplace_back();
     row.name = sensors_[i];
@@ -212,13 +222,8 @@ io::Report StudyReport::finish(const Summary& summary) const {
                          model_->scene().name + ", watched by " + boost::algorithm::join(sensors_, ", ") + "."};
   } else {
     report.paragraphs = {introduction(*model_, sensors_)};
-    io::ReportSection numbers{"In numbers", {}, {}, {}};
-    if (summary.overall().cells > 0) {
-      numbers.tables.push_back(overall_table(summary.overall()));
-    } else {
-      numbers.paragraphs.push_back("Nothing measured was given to compare with.");
-    }
-    report.sections.push_back(std::move(numbers));
+    if (summary.overall().cells > 0)
+      report.sections.push_back({"In numbers", {}, {overall_table(summary.overall())}, {}});
   }
 
   for (std::size_t t = 0; t < trials_.size(); ++t) {
@@ -229,8 +234,9 @@ io::Report StudyReport::finish(const Summary& summary) const {
     io::ReportSection section{trials_[t].id, {}, {}, {}};
     if (t == 0) {
       section.paragraphs = {
-          "How often each count came out over the runs. The coloured line is the measured count, where " +
-          std::string("there is one. Below: the first run, window by window") +
+          "How often each count came out over the runs." +
+          std::string(summary.overall().cells > 0 ? " The coloured line is the measured count." : "") +
+          " Below: the first run, window by window, with the number of people above the sensors" +
           (counted_phases(trials_[t].samples, script.summary, 1.0).empty() ? "." : "; counted windows are shaded.")};
     }
     for (std::size_t s = 0; s < sensors_.size(); ++s) {

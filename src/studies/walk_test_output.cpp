@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "core/fixed.hpp"
+#include "studies/room_plan.hpp"
 #include "studies/walk_test.hpp"
 
 namespace pirsim::studies {
@@ -55,7 +56,7 @@ io::MapChart map_of(const WalkTest& test, const std::string& title, const std::s
   chart.spacing_m = grid.spacing_m();
   chart.columns = static_cast<int>(grid.n_columns());
   chart.rows = static_cast<int>(grid.n_rows());
-  chart.outline = test.scene().floor.loops();
+  chart.plan = plan_of(test.scene());
   for (const SensorSpec& sensor : test.scene().sensors) {
     chart.markers.push_back(
         {sensor.id, floor_point(sensor.world_from_sensor.origin), heading_of(sensor.world_from_sensor)});
@@ -66,11 +67,11 @@ io::MapChart map_of(const WalkTest& test, const std::string& title, const std::s
 void add_maps(io::ReportSection& section, const WalkTest& test, const WalkTestResult& result,
               Tries PointResult::*motion, const WalkRequirement& requirement) {
   io::MapChart probability = map_of(test, "Probability of being noticed", "probability");
-  io::MapChart pass = map_of(test, "Pass (1) or fail (0)", "pass");
+  io::MapChart pass = map_of(test, "Pass or fail", "verdict");
+  pass.colours = io::MapChart::Colours::pass_or_fail;
   probability.note = "within " + seconds(requirement.within_s) + "; no colour: nothing could be tried there";
   pass.note = "required: " + percent(requirement.probability);
   probability.unit = "of the tries noticed";
-  pass.unit = "(1: pass, 0: fail)";
   for (const PointResult& point : result.points) {
     const Tries& tries = point.*motion;
     probability.values.push_back(tries.probability());

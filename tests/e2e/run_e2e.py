@@ -58,7 +58,7 @@ ROOM_VALUES = {"--set": "cut_share=0.3", "--kind": "meeting", "--desks": "rows",
 VALUES = {"--set": "name=other", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--format": ".csv",
           "--summary": "sums.csv", "--zones": "zones.csv", "--trace": "trace.csv",
           "--occupants": "occupants.csv", "--shard": "1/2", "--max-time": "5m",
-          "--trial": "S1", "--beams": "all", "--camera": "0,5,0", "--look-at": "1,0,1", "--width": "64",
+          "--trial": "S1", "--beams": "all", "--marks": "seats", "--camera": "0,5,0", "--look-at": "1,0,1", "--width": "64",
           "--height": "64", "--measured": "m.csv", "--holdout": "0.3", "--table": "table", "--nuisance": "none",
           "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "each", "--hide": "one",
           "--script": "other.yaml"}
@@ -428,6 +428,17 @@ class Looking(unittest.TestCase):
             blind = write(folder, "blind.gltf", json.dumps(scene))
             result = pirsim("check", "--scene", blind, *files[2:], "--sensors", DATA / "sensors")
         self.assertIn("sensor 'PIR3' can see NOBODY", result.stderr)
+
+    def test_preview_marks_what_it_is_asked_to(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pictures = {}
+            for marks in ("none", "seats", "doors", "sensors", "people", "scale", "all"):
+                out = pathlib.Path(folder) / f"{marks}.png"
+                pirsim("preview", *study_files(), "-o", out, "--marks", marks, "--width", 320, "--height", 180)
+                pictures[marks] = out.read_bytes()
+            self.assertEqual(len(set(pictures.values())), len(pictures))
+            refused = pirsim("preview", *study_files(), "-o", out, "--marks", "chairs", code=2).stderr
+            self.assertIn("seats", refused)
 
     def test_preview_writes_a_png_of_the_asked_size(self):
         with tempfile.TemporaryDirectory() as folder:

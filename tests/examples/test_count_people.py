@@ -10,7 +10,7 @@ sys.path.insert(0, sys.argv.pop(1))
 sys.dont_write_bytecode = True
 from features import features, shares  # noqa: E402
 from hidden_markov import forward_filter  # noqa: E402
-from readings import Stretch, among, check_apart, whole  # noqa: E402
+from readings import Stretch, among, check_apart, first_mornings, whole  # noqa: E402
 from scores import score, scores_of, tally  # noqa: E402
 
 
@@ -32,6 +32,13 @@ class Leakage(unittest.TestCase):
     def test_units_divide_the_readings(self):
         stretch = Stretch("a", np.zeros((6, 1), bool), np.arange(6), np.array(["x", "x", "y", "y", "z", "z"]))
         self.assertEqual(list(among([stretch], {"x", "z"})[0].keep), [True, True, False, False, True, True])
+
+    def test_first_mornings_take_every_room_before_a_second_day(self):
+        pieces = whole([day(room, f"{room} {d}") for room in "ab" for d in (1, 2, 3)])
+        self.assertEqual([sorted(p.units())[0] for p in first_mornings(pieces, 3)], ["a 1", "a 2", "b 1"])
+        self.assertEqual(len(first_mornings(pieces, 6)), 6)
+        with self.assertRaises(ValueError):
+            first_mornings(pieces, 7)
 
 
 class Filter(unittest.TestCase):

@@ -23,12 +23,18 @@
   }
 
   // Twice, the first as a dark rim: readable on every colour.
-  function label(fill, stroke) {
-    return { type: "text", from: { data: "markers" }, interactive: false, encode: { enter: {
-      x: { scale: "x", field: "x" }, y: { scale: "z", field: "z", offset: -16 }, text: { field: "label" },
-      align: { value: "center" }, fill: { value: fill }, stroke: { value: stroke }, strokeWidth: { value: 3 },
+  function label(data, fill, stroke, size, below) {
+    return { type: "text", from: { data }, interactive: false, encode: { enter: {
+      x: { scale: "x", field: "x" }, y: { scale: "z", field: "z", offset: below }, text: { field: "label" },
+      align: { value: "center" }, fontSize: { value: size }, fill: { value: fill }, stroke: { value: stroke }, strokeWidth: { value: 3 },
       strokeJoin: { value: "round" }, fontWeight: { value: "bold" } } } };
   }
+
+  // Where the id of a seat has room: behind the back of whoever sits there.
+  const behind = (seat) => {
+    const turn = seat.angle_deg * Math.PI / 180, way_m = 0.3;
+    return { label: seat.label, x: seat.x - way_m * Math.sin(turn), z: seat.z + way_m * Math.cos(turn) };
+  };
 
   // Seen from above, x to the right and z down the page.
   function map(chart, width) {
@@ -37,34 +43,50 @@
     const squares = [];
     chart.values.forEach((v, i) => {
       if (v === null) return;
-      squares.push({ x: chart.x0 + s * (i % chart.columns), z: chart.z0 + s * Math.floor(i / chart.columns), v });
+      squares.push({ x: chart.x0 + s * (i % chart.columns), z: chart.z0 + s * Math.floor(i / chart.columns),
+        v: chart.pass_or_fail ? (v === 1 ? "pass" : "fail") : v });
     });
     const text = "format(datum.x + " + s / 2 + ", '.2f') + ' m, ' + format(datum.z + " + s / 2 +
       ", '.2f') + ' m\\n' + datum.v + ' " + chart.unit + "'";
+    const at = { x: { scale: "x", field: "x" }, y: { scale: "z", field: "z" } };
     return {
       width: inner, height, padding: 4,
       data: [{ name: "squares", values: squares }, { name: "outline", values: points(chart.outline) },
-        { name: "dashed", values: points(chart.dashed) }, { name: "markers", values: chart.markers }],
+        { name: "furniture", values: points(chart.furniture) }, { name: "dashed", values: points(chart.dashed) },
+        { name: "markers", values: chart.markers }, { name: "seats", values: chart.seats },
+        { name: "behind", values: chart.seats.map(behind) },
+        { name: "doors", values: chart.doors }],
       scales: [
         { name: "x", type: "linear", domain: [chart.x0, x1], range: "width", nice: false, zero: false },
         { name: "z", type: "linear", domain: [chart.z0, z1], range: [0, height], nice: false, zero: false },
-        { name: "colour", type: "linear", domain: [0, chart.max], range: { scheme: "viridis" } },
+        chart.pass_or_fail
+          ? { name: "colour", type: "ordinal", domain: ["pass", "fail"], range: ["#7fb8e6", "#e0a458"] }
+          : { name: "colour", type: "linear", domain: [0, chart.max], range: { scheme: "viridis" } },
       ],
       axes: [axis("x", "bottom", "x, m"), axis("z", "left", "z, m")],
-      legends: [{ fill: "colour", title: chart.label, type: "gradient", gradientLength: Math.min(height, 220),
-        labelColor: css("--text"), titleColor: css("--text"), titleFontWeight: "normal", titleLimit: 110 }],
+      legends: [Object.assign({ fill: "colour", title: chart.label, labelColor: css("--text"),
+        titleColor: css("--text"), titleFontWeight: "normal", titleLimit: 110 },
+        chart.pass_or_fail ? {} : { type: "gradient", gradientLength: Math.min(height, 220) })],
       marks: [
         { type: "rect", from: { data: "squares" }, encode: { enter: {
           x: { scale: "x", field: "x" }, x2: { scale: "x", signal: "datum.x + " + s },
           y: { scale: "z", field: "z" }, y2: { scale: "z", signal: "datum.z + " + s },
           fill: { scale: "colour", field: "v" }, stroke: { scale: "colour", field: "v" }, strokeWidth: { value: 0.9 },
           tooltip: { signal: text } } } },
+        outline("furniture", "#000000", [1, 0]), outline("furniture", "#ffffff", [3, 3]),
         outline("outline", css("--text"), [1, 0]), outline("dashed", "#ffffff", [6, 4]),
+        { type: "rule", from: { data: "doors" }, encode: { enter: Object.assign({ x2: { scale: "x", field: "x2" },
+          y2: { scale: "z", field: "z2" }, stroke: { value: "#2da44e" }, strokeWidth: { value: 5 },
+          tooltip: { signal: "'door ' + datum.label" } }, at) } },
+        { type: "symbol", from: { data: "seats" }, encode: { enter: Object.assign({ shape: { value: "triangle-up" },
+          size: { value: 45 }, angle: { field: "angle_deg" }, fill: { value: "#ffffff" }, stroke: { value: "#000000" },
+          strokeWidth: { value: 1 }, tooltip: { signal: "'seat ' + datum.label" } }, at) } },
+        label("behind", "#000000", "#000000", 9, 3), label("behind", "#ffffff", null, 9, 3),
         { type: "symbol", from: { data: "markers" }, interactive: false, encode: { enter: {
           x: { scale: "x", field: "x" }, y: { scale: "z", field: "z" }, shape: { value: "triangle-up" },
           size: { value: 110 }, angle: { field: "angle_deg" }, fill: { value: "#ff4d6d" },
           stroke: { value: "#ffffff" }, strokeWidth: { value: 1.2 } } } },
-        label("#000000", "#000000"), label("#ffffff", null),
+        label("markers", "#000000", "#000000", 11, -16), label("markers", "#ffffff", null, 11, -16),
       ],
     };
   }
@@ -104,16 +126,29 @@
   function series(chart, width) {
     const inner = width - 90, seen = [];
     chart.rows.forEach((row) => row.times_s.forEach((t) => seen.push({ row: row.name, t })));
+    // The number of people has a strip of its own above the sensors.
+    const strip = chart.people.length > 0 ? 56 : 0, gap = strip > 0 ? 10 : 0;
+    const people = chart.people.map((p, i) => ({ x: p.from_s, n: p.n,
+      x2: i + 1 < chart.people.length ? chart.people[i + 1].from_s : chart.end_s }));
+    const most = Math.max(1, ...people.map((p) => p.n));
+    const rows = 26 * chart.rows.length + 8, height = strip + gap + rows;
     const text = "datum.row + ', ' + format(datum.t - " + chart.window_s + ", ',') + ' to ' + format(datum.t, ',') + ' s: motion'";
     return {
-      width: inner, height: 26 * chart.rows.length + 8, padding: 4,
-      data: [{ name: "seen", values: seen }, { name: "phases", values: chart.phases }],
+      width: inner, height, padding: 4,
+      data: [{ name: "seen", values: seen }, { name: "phases", values: chart.phases },
+        { name: "people", values: people }],
       scales: [
         { name: "x", type: "linear", domain: [0, chart.end_s], range: "width", nice: false },
-        { name: "y", type: "band", domain: chart.rows.map((row) => row.name), range: "height", padding: 0.25 },
+        { name: "y", type: "band", domain: chart.rows.map((row) => row.name), range: [strip + gap, height], padding: 0.25 },
+        { name: "n", type: "linear", domain: [0, most], range: [strip, 0], zero: true },
       ],
-      axes: [axis("x", "bottom", "time, s"), axis("y", "left", null)],
+      axes: [axis("x", "bottom", "time, s"), axis("y", "left", null)].concat(
+        strip > 0 ? [axis("n", "left", "people", { tickCount: Math.min(most, 4), format: "d" })] : []),
       marks: [
+        { type: "rect", from: { data: "people" }, encode: { enter: { x: { scale: "x", field: "x" },
+          x2: { scale: "x", field: "x2" }, y: { scale: "n", field: "n" }, y2: { scale: "n", value: 0 },
+          fill: { value: css("--mark") }, fillOpacity: { value: 0.45 },
+          tooltip: { signal: "datum.n + ' people, ' + format(datum.x, ',') + ' to ' + format(datum.x2, ',') + ' s'" } } } },
         { type: "rect", from: { data: "phases" }, encode: { enter: { x: { scale: "x", field: "from_s" },
           x2: { scale: "x", field: "to_s" }, y: { value: 0 }, y2: { signal: "height" }, fill: { value: css("--mark") },
           fillOpacity: { value: 0.1 }, tooltip: { signal: "datum.name + ', ' + datum.from_s + ' to ' + datum.to_s + ' s'" } } } },

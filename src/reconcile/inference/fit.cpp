@@ -119,6 +119,7 @@ FittedEffect EffectFitter::fit(std::size_t hypothesis, std::span<const float> me
   fitted.effect.name = table_->hypothesis_name(hypothesis);
   const EffectSpec& alike = estimator.kind_of(features);
   fitted.effect.choices = alike.choices;
+  fitted.choices = estimator.choices_of(features);
   for (const ParameterInfo& info : effects::find(fitted.effect.name).info.parameters) {
     if (applies(info, alike)) fitted.effect.parameters[info.name] = alike.parameters.at(info.name);
   }

@@ -1,6 +1,7 @@
 #include "reconcile/inference/kinds.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 #include <utility>
@@ -60,8 +61,10 @@ KindFinder::KindFinder(const ReferenceTable& table, std::span<const std::size_t>
                        const stats::Matrix<float>& features) {
   const std::vector<int> numbers = number_alike(table, rows, 1);
   const int n_kinds = numbers.empty() ? 0 : std::ranges::max(numbers) + 1;
-  for (int kind = 0; kind < n_kinds; ++kind)
+  for (int kind = 0; kind < n_kinds; ++kind) {
     examples_.push_back(static_cast<std::size_t>(std::ranges::find(numbers, kind) - numbers.begin()));
+    n_.push_back(static_cast<double>(std::ranges::count(numbers, kind)));
+  }
   if (n_kinds > 1) discriminant_ = stats::Discriminant::fit(features, numbers, n_kinds);
 }
 
@@ -69,6 +72,21 @@ std::size_t KindFinder::one_like(std::span<const float> features) const {
   if (examples_.size() < 2) return examples_.at(0);
   const std::vector<double> densities = discriminant_.log_densities(features);
   return examples_[static_cast<std::size_t>(std::ranges::max_element(densities) - densities.begin())];
+}
+
+std::vector<KindFinder::Share> KindFinder::shares(std::span<const float> features) const {
+  if (examples_.size() < 2) return {{examples_.at(0), 1.0}};
+  std::vector<double> logs = discriminant_.log_densities(features);
+  for (std::size_t i = 0; i < logs.size(); ++i) logs[i] += std::log(n_[i]);
+  const double highest = std::ranges::max(logs);
+  double sum = 0.0;
+  std::vector<Share> shares;
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    shares.push_back({examples_[i], std::exp(logs[i] - highest)});
+    sum += shares.back().probability;
+  }
+  for (Share& share : shares) share.probability /= sum;
+  return shares;
 }
 
 }  // namespace pirsim::reconcile

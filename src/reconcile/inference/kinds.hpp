@@ -23,9 +23,16 @@ class KindFinder {
   KindFinder(const ReferenceTable& table, std::span<const std::size_t> rows, const stats::Matrix<float>& features);
   /// Place in `rows` of a dataset with the likeliest choices and sides.
   [[nodiscard]] std::size_t one_like(std::span<const float> features) const;
+  /// One of each kind, as a place in `rows`, with the probability that the dataset is of that kind.
+  struct Share {
+    std::size_t example = 0;
+    double probability = 0.0;
+  };
+  [[nodiscard]] std::vector<Share> shares(std::span<const float> features) const;
 
  private:
   std::vector<std::size_t> examples_;  ///< (n_kinds) places in rows
+  std::vector<double> n_;              ///< (n_kinds) datasets of the kind
   stats::Discriminant discriminant_;   ///< between kinds, if there are several
 };
 

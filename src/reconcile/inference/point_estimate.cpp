@@ -95,6 +95,28 @@ const EffectSpec& PointEstimator::kind_of(std::span<const float> features) const
   return *drawn_[finder_.one_like(features)];
 }
 
+std::vector<FittedChoice> PointEstimator::choices_of(std::span<const float> features) const {
+  std::map<std::string, std::map<std::string, double>> probabilities;  // of each choice's words
+  const std::vector<KindFinder::Share> shares = finder_.shares(features);
+  for (const KindFinder::Share& share : shares) {
+    for (const auto& [name, word] : drawn_[share.example]->choices) probabilities[name];
+  }
+  for (const KindFinder::Share& share : shares) {
+    const Choices& choices = drawn_[share.example]->choices;
+    for (auto& [name, words] : probabilities) {
+      const auto made = choices.find(name);
+      words[made == choices.end() ? "" : made->second] += share.probability;
+    }
+  }
+  std::vector<FittedChoice> fitted;
+  for (const auto& [name, words] : probabilities) {
+    FittedChoice& choice = fitted.emplace_back(FittedChoice{name, {}});
+    for (const auto& [word, probability] : words) choice.words.push_back({word, probability});
+    std::ranges::stable_sort(choice.words, std::ranges::greater{}, &FittedChoice::Word::probability);
+  }
+  return fitted;
+}
+
 std::vector<double> PointEstimator::of(std::span<const float> features) const {
   const std::vector<double> wide(features.begin(), features.end());
   const Alike& alike = alike_.at(kind_of(features).choices);

@@ -35,6 +35,8 @@ class PointEstimator {
   [[nodiscard]] std::vector<stats::Interval> bounds() const;
   /// As a training dataset of the likeliest kind was drawn.
   [[nodiscard]] const EffectSpec& kind_of(std::span<const float> features) const;
+  /// How probable the words of each choice are, by the kinds that the training datasets were drawn as.
+  [[nodiscard]] std::vector<FittedChoice> choices_of(std::span<const float> features) const;
   /// Held-back datasets in which the same parameters apply, ascending; all, if these are too few.
   [[nodiscard]] std::vector<std::size_t> rows_like(const EffectSpec& kind) const;
   /// (n_estimates) of a dataset's features.

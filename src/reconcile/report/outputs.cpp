@@ -67,9 +67,15 @@ Json to_json(const FittedEffect& fitted) {
   }
   Json choices = Json::object();
   for (const auto& [name, value] : fitted.effect.choices) choices[name] = value;
+  Json probabilities = Json::object();
+  for (const FittedChoice& choice : fitted.choices) {
+    for (const auto& [word, probability] : choice.words)
+      probabilities[choice.name][word.empty() ? "all" : word] = probability;
+  }
   return {{"effect", fitted.effect.name},
           {"parameters", parameters},
           {"choices", choices},
+          {"choice_probabilities", probabilities},
           {"interval_includes_off", fitted.includes_off}};
 }
 

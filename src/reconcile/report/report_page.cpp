@@ -79,7 +79,7 @@ io::ReportSection strength(const std::vector<FittedEffect>& fits) {
                             short_number(p.interval.high), p.unit, p.is_strength ? short_number(p.off) : ""});
     }
     for (const auto& [choice, value] : fit.effect.choices) {
-      table.rows.push_back({fit.effect.name, choice, value, "", "", "", ""});
+      table.rows.push_back({fit.effect.name, choice, value + rivals_in_words(fit, choice, value), "", "", "", ""});
     }
     for (io::DotsChart& chart : posterior_charts(fit)) section.charts.emplace_back(std::move(chart));
   }

@@ -142,6 +142,19 @@ std::string fixed(double value, int digits) {
 
 std::string percent(double share) { return fixed(100.0 * share, 0) + " %"; }
 
+std::string rivals_in_words(const FittedEffect& fitted, const std::string& choice, const std::string& value) {
+  constexpr double as_likely = 0.2;  // assumed: what is less probable isn't worth telling
+  std::string rivals;
+  for (const FittedChoice& fit : fitted.choices) {
+    if (fit.name != choice) continue;
+    for (const auto& [word, probability] : fit.words) {
+      if (word == value || probability < as_likely) continue;
+      rivals += (rivals.empty() ? "" : " or ") + (word.empty() ? "all" : word) + " " + fixed(probability, 2);
+    }
+  }
+  return rivals.empty() ? "" : " (hardly told from " + rivals + ")";
+}
+
 std::string in_words(const FittedEffect& fitted) {
   std::string text = fitted.effect.name;
   std::string details;
@@ -150,7 +163,7 @@ std::string in_words(const FittedEffect& fitted) {
                short_number(p.interval.low) + " to " + short_number(p.interval.high) + ")";
   }
   for (const auto& [choice, value] : fitted.effect.choices) {
-    details += (details.empty() ? "" : ", ") + choice + " " + value;
+    details += (details.empty() ? "" : ", ") + choice + " " + value + rivals_in_words(fitted, choice, value);
   }
   if (!details.empty()) text += " with " + details;
   if (fitted.includes_off) text += ", a strength that these data hardly tell from none";

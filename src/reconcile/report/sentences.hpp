@@ -23,6 +23,9 @@ namespace pirsim::reconcile {
 /// Without the word that says whether it was kept.
 [[nodiscard]] std::string why(const Reason& reason);
 [[nodiscard]] std::string in_words(const FittedEffect& fitted);
+/// What else a choice may be, in brackets; empty if the data tell.
+[[nodiscard]] std::string rivals_in_words(const FittedEffect& fitted, const std::string& choice,
+                                          const std::string& value);
 /// Of the model with effects applied.
 [[nodiscard]] std::string in_words(const Look& look);
 [[nodiscard]] std::string in_words(const LeftOut& left_out);

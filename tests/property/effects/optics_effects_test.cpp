@@ -4,6 +4,7 @@
 
 #include "pir/motion_detector.hpp"
 #include "pir/optics.hpp"
+#include "pir/soft_edges.hpp"
 #include "pirsim/geometry.hpp"
 #include "pirsim/state.hpp"
 #include "sim/compiled_study.hpp"
@@ -82,16 +83,15 @@ TEST_CASE("somebody who crosses a soft edge is noticed with the probability of t
   const double edge = -std::atan(half), sigma = radians(sigma_deg);
   const auto below = [&](double angle) { return 0.5 * std::erfc(-(angle - edge) / (sigma * std::sqrt(2.0))); };
   const int n_windows = 20000;
-  pir::EdgeDraw draw(detector, levels.size(), 1);
-  draw.begin_run(1, 0);
+  pir::SoftEdges edges(detector, levels.size(), {sigma_deg, EdgeRule::drawn_edge}, 1, 0.02);
+  edges.begin_run(1, 0, ZoneSet(detector.n_channels()));
   double largest_error = 0, largest_error_of_hard_edges = 0;
   for (const auto& [from, to] : {std::pair{-2.0, 0.0}, {-0.5, 0.5}, {0.0, 1.0}, {0.5, 2.0}, {-3.0, 3.0}, {1.8, 3.0}}) {
     const ZoneSet before = channels_at(edge + from * sigma), after = channels_at(edge + to * sigma);
     int noticed = 0;
     for (int i = 0; i < n_windows; ++i) {
       std::array<std::uint8_t, 1> bits{};
-      draw.tick();
-      detector.mark(before.words(), after.words(), draw.watched(), bits);
+      edges.tick(before, after, bits);
       noticed += bits[0];
     }
     const double share = static_cast<double>(noticed) / n_windows;

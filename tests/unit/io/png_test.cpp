@@ -1,4 +1,5 @@
 #include "io/png.hpp"
+#include "io/lettering.hpp"
 
 #include <array>
 #include <fstream>
@@ -80,7 +81,7 @@ TEST_CASE("a map is drawn in viridis, white off the floor, with the edge in blac
   CHECK(colour(plain, 500, 100) == yellow);
   CHECK(colour(plain, 800, 100) == white);
 
-  chart.outline = {{{0, 0}, {1, 0}, {1, 0.5}, {0, 0.5}}};
+  chart.plan.outline = {{{0, 0}, {1, 0}, {1, 0.5}, {0, 0.5}}};
   chart.markers = {{"PIR1", {0.25, 0.25}, -pi / 2}};  // looks along +X: to the right
   const Pixels marked = drawn(chart);
   CHECK(colour(marked, 16, 166) == black);
@@ -89,8 +90,60 @@ TEST_CASE("a map is drawn in viridis, white off the floor, with the edge in blac
   CHECK(colour(marked, 186, 166) == std::array<int, 3>{255, 77, 109});
   CHECK(colour(marked, 146, 166) == violet);
   chart.markers.front().point = {-40.0, 90.0};  // outside of the picture
-  chart.outline.front().front() = {-1e6, 0.1};
+  chart.plan.outline.front().front() = {-1e6, 0.1};
   CHECK(drawn(chart).rgb.size() == plain.rgb.size());
+}
+
+TEST_CASE("a map shows furniture, seats and doors where they are, and pass and fail as two colours", "[png]") {
+  MapChart chart;
+  chart.columns = 3;
+  chart.rows = 1;
+  chart.spacing_m = 0.5;
+  chart.values = {1.0, 0.0, 0.0};
+  chart.colours = MapChart::Colours::pass_or_fail;
+  const auto colour = [](const Pixels& picture, double x_m, double z_m) {
+    const int x = 16 + static_cast<int>(600 * x_m), y = 16 + static_cast<int>(600 * z_m);
+    const auto at = static_cast<std::size_t>(3 * (y * picture.width + x));
+    return std::array<int, 3>{picture.rgb[at], picture.rgb[at + 1], picture.rgb[at + 2]};
+  };
+  const Pixels plain = drawn(chart);
+  CHECK(colour(plain, 0.1, 0.1) == std::array<int, 3>{0x7f, 0xb8, 0xe6});
+  CHECK(colour(plain, 0.7, 0.1) == std::array<int, 3>{0xe0, 0xa4, 0x58});
+  chart.plan.furniture = {{{0.2, 0.1}, {0.4, 0.1}, {0.4, 0.3}, {0.2, 0.3}}};
+  chart.plan.seats = {{"S1", {0.75, 0.25}, 0.0}};
+  chart.plan.doors = {{"door", {1.1, 0.45}, {1.4, 0.45}}};
+  const Pixels marked = drawn(chart);
+  CHECK(colour(marked, 0.75, 0.25) == std::array<int, 3>{255, 255, 255});
+  CHECK(colour(marked, 1.25, 0.45) == std::array<int, 3>{45, 164, 78});
+  CHECK(colour(marked, 0.2, 0.2) != colour(plain, 0.2, 0.2));
+  CHECK(colour(marked, 0.3, 0.2) == colour(plain, 0.3, 0.2));  // only its edge
+}
+
+TEST_CASE("a text stands where it is asked for, and is cut off at the picture's edge", "[png]") {
+  const Pixels paper{200, 60, std::vector<std::uint8_t>(std::size_t{200} * 60 * 3, 128)};
+  Pixels written = paper;
+  write_text(written, {100.0, 40.0}, "S10", 16.0, Vec3(0.0));
+  int left = 200, right = 0, top = 60, bottom = 0, dark = 0;
+  for (int y = 0; y < 60; ++y) {
+    for (int x = 0; x < 200; ++x) {
+      const std::uint8_t value = written.rgb[static_cast<std::size_t>(3 * (y * 200 + x))];
+      if (value >= 128) continue;
+      ++dark;
+      left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
+    }
+  }
+  CHECK(dark > 50);
+  CHECK(std::abs(0.5 * (left + right) - 100.0) < 4.0);
+  CHECK(top >= 40 - 16 - 2);
+  CHECK(bottom <= 40);
+  for (const Vec2 at : {Vec2(0.0, 0.0), Vec2(-500.0, 20.0), Vec2(1e7, 1e7)}) {
+    Pixels cut = paper;
+    write_text(cut, at, "a long text, with ä and \n in it", 16.0, Vec3(0.0));
+    CHECK(cut.rgb.size() == paper.rgb.size());
+  }
+  Pixels none = paper;
+  write_text(none, {100.0, 40.0}, "", 16.0, Vec3(0.0));
+  CHECK(none.rgb == paper.rgb);
 }
 
 TEST_CASE("a picture of the wrong size is refused and nothing is written", "[png]") {

@@ -21,7 +21,7 @@ MapChart small_map() {
   chart.spacing_m = 0.5;
   chart.values = {3.0, std::nullopt};
   chart.max = 60;
-  chart.outline = {{{0, 0}, {1, 0}, {1, 0.5}}};
+  chart.plan.outline = {{{0, 0}, {1, 0}, {1, 0.5}}};
   return chart;
 }
 

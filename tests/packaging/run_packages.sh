@@ -1,32 +1,25 @@
 #!/usr/bin/env bash
-# Packs a build as .deb and source archive, and is their user in bare Debian systems made by debootstrap: installs the
-# command, runs the main job, removes it; installs the libraries, builds the README's program. With --source also builds
-# the command from the archive there, which takes some minutes.
-# Usage: try_packages BUILD_DIR [--source] [FOLDER for the packages]
-# Exit code 77 where it can't be tried: that needs root, debootstrap and a Debian mirror.
+# Packs a build and is the packages' user in a bare Debian system made by debootstrap: installs the command, runs the
+# main job, removes it without a trace; installs the library and builds the README's program. With `everything` the
+# source archive is built there too, which takes some minutes.
+# Without root, debootstrap or a Debian mirror that can't be done: exit code 77.
+# Usage: run_packages.sh SOURCE_DIR BUILD_DIR [everything]
 set -euo pipefail
-build=$(realpath "$1")
-shift
-from_source=
-[ "${1:-}" != --source ] || { from_source=1; shift; }
-source=$(cd "$(dirname "$0")/../.." && pwd)
+source=$1 build=$2 extent=${3:-usual}
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-packages=${1:-$scratch/packages}
-mkdir -p "$packages"
-packages=$(realpath "$packages")
-
-quietly() { "$@" >"$scratch/log" 2>&1 || { tail -20 "$scratch/log" >&2; return 1; }; }
-
-quietly cpack --config "$build/CPackConfig.cmake" -B "$packages"
-quietly cpack --config "$build/CPackSourceConfig.cmake" -B "$packages"
-rm -rf "$packages/_CPack_Packages"
+if ! command -v dpkg-shlibdeps >/dev/null; then
+  echo "packages: NOT made: that needs dpkg-dev" >&2
+  exit 77
+fi
+packages=$scratch/packages
+"$source/tools/package" "$build" "$packages" >"$scratch/log" 2>&1 || { tail -20 "$scratch/log" >&2; exit 1; }
 archive=$(ls "$packages"/pirsim-[0-9]*.tar.gz)
-command=$(ls "$packages"/pirsim_*.deb) libraries=$(ls "$packages"/pirsim-dev_*.deb)
+command=$(ls "$packages"/pirsim_*.deb) libraries=$(ls "$packages"/libpirsim-dev_*.deb)
 if git -C "$source" rev-parse HEAD >/dev/null 2>&1; then
   # What git knows or would take, and the revision: no more and no less.
   diff <(tar -tzf "$archive" | sed 's,^[^/]*/,,' | grep -v '/$' | LC_ALL=C sort) \
-    <({ git -C "$source" ls-files -co --exclude-standard; echo REVISION; } | LC_ALL=C sort) ||
+    <({ git -C "$source" ls-files -co --exclude-standard | grep -v __pycache__; echo REVISION; } | LC_ALL=C sort) ||
     { echo "packages: the archive isn't what the clone holds" >&2; exit 1; }
 fi
 ! dpkg-deb -c "$command" | grep -E '\.(a|hpp|cmake|pc)$' || { echo "packages: libraries in the command's" >&2; exit 1; }
@@ -49,7 +42,7 @@ cp /etc/resolv.conf "$scratch/root/etc/" 2>/dev/null || true
 cp /etc/apt/apt.conf.d/*prox* "$scratch/root/etc/apt/apt.conf.d/" 2>/dev/null || true
 mkdir "$scratch/root/try"
 cp "$command" "$scratch/root/try/pirsim.deb"
-cp "$libraries" "$scratch/root/try/pirsim-dev.deb"
+cp "$libraries" "$scratch/root/try/libpirsim-dev.deb"
 cp "$archive" "$scratch/root/try/pirsim.tar.gz"
 cp "$source/tests/consumer/main.cpp" "$scratch/root/try/"
 
@@ -86,7 +79,7 @@ diff "$scratch/before" "$scratch/after" || { echo "packages: the command left tr
 echo "packages: removed without a trace"
 
 inside '
-  add /try/pirsim.deb /try/pirsim-dev.deb g++ cmake make
+  add /try/pirsim.deb /try/libpirsim-dev.deb g++ cmake make
   cd /try
   g++ -std=c++20 main.cpp -o by_pkg_config $(pkg-config --static --cflags --libs pirsim)
   printf "%s\n" "cmake_minimum_required(VERSION 3.25)" "project(user CXX)" "find_package(pirsim 0.1 REQUIRED)" \
@@ -100,10 +93,10 @@ inside '
   done'
 echo "packages: the README's program, built by CMake and by pkg-config, gives the command's rows"
 
-[ -n "$from_source" ] || exit 0
+[ "$extent" = everything ] || exit 0
 # shellcheck disable=SC2016
 inside '
-  apt-get purge -y -qq pirsim pirsim-dev >/try/log 2>&1
+  apt-get purge -y -qq pirsim libpirsim-dev >/try/log 2>&1
   cd /try && tar -xzf pirsim.tar.gz && cd pirsim-*/
   tools/install_deps 2>/try/log
   cmake -S . -B build -G Ninja -DCMAKE_BUILD_TYPE=Release -DPIRSIM_BUILD_TESTS=OFF >/try/log

@@ -1,0 +1,31 @@
+# `tools/package` makes of these a source archive and two Debian packages: the command with its data, and the library.
+set(CPACK_PACKAGE_VENDOR "pirsim")
+set(CPACK_PACKAGE_CONTACT "the pirsim authors")
+set(CPACK_PACKAGE_HOMEPAGE_URL "${PROJECT_HOMEPAGE_URL}")
+set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+
+# What a clone holds, whatever the folders above it are called, and the revision, for a build without git.
+set(CPACK_SOURCE_GENERATOR TGZ)
+set(CPACK_SOURCE_PACKAGE_FILE_NAME "pirsim-${PROJECT_VERSION}")
+set(CPACK_VERBATIM_VARIABLES TRUE)
+string(REGEX REPLACE [[([][+.*()^$?|])]] [[\\\1]] source_dir "${PROJECT_SOURCE_DIR}")
+set(CPACK_SOURCE_IGNORE_FILES "^${source_dir}/(build|out|[.]git)(/|$)" /__pycache__/ [[[.]pyc$]])
+set(CPACK_INSTALL_SCRIPTS "${PROJECT_SOURCE_DIR}/cmake/PirsimRevision.cmake")
+set(CPACK_PIRSIM_REVISION "${PIRSIM_GIT_REVISION}")
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_COMPONENTS_ALL command library)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME pirsim)
+set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
+set(CPACK_COMPONENT_COMMAND_DESCRIPTION "${PROJECT_DESCRIPTION}\n The command and its rooms, studies and sensors.")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libpirsim-dev)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libembree-dev, libglm-dev, libtinygltf-dev, libopenmesh-dev, libyaml-cpp-dev, \
+nlohmann-json3-dev, libnlopt-cxx-dev, zlib1g-dev, libzstd-dev, libssl-dev, pkg-config")
+set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "${PROJECT_DESCRIPTION}\n Static libraries and headers for C++20 programs.")
+include(CPack)

@@ -1,0 +1,114 @@
+#include "effects/bystander.hpp"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+#include "pirsim/geometry.hpp"
+
+namespace pirsim::effects {
+namespace {
+
+/// An upper bound of how long a trial may last, seconds.
+double longest_s(const TrialInForce& trial, const SceneSpec& scene) {
+  double longest = 0.0;
+  for (const PersonInForce& person : trial.people) {
+    // Once across the room, and as much again to get round what stands there.
+    const double way_s = 2.0 * glm::distance(scene.floor.lower(), scene.floor.upper()) / person.walking_speed_m_s;
+    double sum = 0.0;
+    for (const ScriptedAction& action : person.actions) {
+      constexpr double any_s = 60.0;  // turning, sitting down: more than enough
+      sum += any_s + way_s + action.at_s.value_or(0.0);
+      if (const auto* wait = std::get_if<action::Wait>(&action.what)) sum += wait->duration_s;
+      if (const auto* work = std::get_if<action::Work>(&action.what)) sum += work->duration_s;
+      if (const auto* walk = std::get_if<action::Walk>(&action.what))
+        sum += way_s * static_cast<double>(walk->points.size());
+    }
+    longest = std::max(longest, sum);
+  }
+  return longest;
+}
+
+std::string new_id(const TrialInForce& trial, std::string_view id) {
+  const auto others = std::ranges::count_if(trial.people, [&](const auto& p) { return p.id.starts_with(id); });
+  return others == 0 ? std::string(id) : std::string(id) + " " + std::to_string(others + 1);
+}
+
+}  // namespace
+
+void add_bystander(StudyInForce& study, const BystanderPlan& plan, const Where& where) {
+  for (TrialInForce& trial : study.trials) {
+    PersonInForce person;
+    person.id = new_id(trial, plan.id);
+    person.changes.role = plan.role;
+    person.stature_m = plan.stature_m;
+    person.mass_kg = plan.mass_kg;
+    person.walking_speed_m_s = plan.speed_m_s;
+    person.actions.push_back({action::Appear{plan.place, plan.heading_deg}, {}, {}, where});
+    const double until_s = longest_s(trial, study.scene);
+    for (double s = 0.0; s < until_s; s += plan.least_s) {
+      for (const Action& what : plan.again) person.actions.push_back({what, {}, {}, where});
+    }
+    trial.people.push_back(std::move(person));
+  }
+}
+
+std::vector<Vec2> round_trip(const SceneSpec& scene, double clear_m, const Vec2& from) {
+  constexpr std::size_t most = 5;  // assumed
+  constexpr double apart_m = 1.0;  // assumed: else one walks hardly at all
+  std::vector<Vec2> stops{from};
+  const auto nearest_m = [&](const Vec2& p) {
+    double nearest = glm::distance(p, from);
+    for (const Vec2& stop : stops) nearest = std::min(nearest, glm::distance(p, stop));
+    return nearest;
+  };
+  const std::vector<Vec2> places = free_places(scene, clear_m);
+  while (stops.size() < most && !places.empty()) {
+    const Vec2 next = *std::ranges::max_element(places, {}, nearest_m);
+    if (nearest_m(next) < apart_m) break;
+    stops.push_back(next);
+  }
+  return stops;
+}
+
+ChoiceInfo place_choice() {
+  return {"place", ChoiceKind::word, {"free", "given"}, "the free place farthest from all seats"};
+}
+
+ParameterInfo place_coordinate(std::string name) {
+  return {.name = std::move(name),
+          .unit = "m",
+          .role = Role::detail,
+          .off = 0.0,
+          .typical = 0.0,
+          .low = -50.0,
+          .high = 50.0,
+          .least = -1e4,
+          .most = 1e4,
+          .source = "assumed: a free place",
+          .only_if = {"place", "given"}};
+}
+
+Vec2 place_of(const EffectSpec& effect, const SceneSpec& scene, double clear_m) {
+  if (word(effect, "place") == "given") return {effect.parameters.at("x_m"), effect.parameters.at("z_m")};
+  const std::vector<Vec2> places = free_places(scene, clear_m);
+  if (!places.empty()) return places.front();
+  throw Error(ErrorCode::infeasible, effect.where, effect.name + ": no free place in " + scene.name);
+}
+
+void draw_place(EffectSpec& effect, const SceneSpec& scene, double clear_m, Stream& stream) {
+  const std::vector<Vec2> places = free_places(scene, clear_m);
+  effect.choices["place"] = places.empty() ? "free" : "given";
+  if (places.empty()) return;
+  const Vec2 place = places[stream.index(static_cast<std::uint32_t>(places.size()))];
+  effect.parameters["x_m"] = place.x;
+  effect.parameters["z_m"] = place.y;
+}
+
+void settle_place(EffectSpec& effect, const SceneSpec& scene, double clear_m) {
+  if (word(effect, "place") != "given") return;
+  const Vec2 place = nearest_free(scene, clear_m, place_of(effect, scene, clear_m));
+  effect.parameters["x_m"] = place.x;
+  effect.parameters["z_m"] = place.y;
+}
+
+}  // namespace pirsim::effects

@@ -1,0 +1,86 @@
+#include "sim/restlessness.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pirsim/geometry.hpp"
+#include "sim/natural_acts.hpp"
+
+namespace pirsim::sim {
+namespace {
+
+constexpr double bout_s = 20.0;  // assumed (10-60): swinging and stillness take turns in stretches of this length
+// As of people of natural style. Ref: [Nakamura2007]
+constexpr StillPeriods between_fidgets{0.9, 1.0, 600.0};
+
+}  // namespace
+
+Restlessness::Restlessness(const PersonChanges& changes, std::uint64_t seed, std::uint32_t run, std::uint32_t person,
+                           double tick_s)
+    : fidgeting_(changes.fidgeting),
+      arms_(changes.uneven_arms),
+      tick_s_(tick_s),
+      fidget_stream_({seed, run, person, Purpose::fidgeting}),
+      arms_stream_({seed, run, person, Purpose::uneven_arms}),
+      trunk_{changes.trunk_sway, body::Channel::trunk_lean, Stream({seed, run, person, Purpose::trunk_sway})},
+      chair_{changes.chair_swing, body::Channel::chair_turn, Stream({seed, run, person, Purpose::chair_swing})} {}
+
+std::int64_t Restlessness::ticks(double seconds) const noexcept {
+  return std::max<std::int64_t>(1, std::llround(seconds / tick_s_));
+}
+
+void Restlessness::tick(body::Motion& motion, const action::Work* work) {
+  fidget(motion);
+  swing(trunk_, motion);
+  swing(chair_, motion);
+  if (work != nullptr) swing_arms(motion, *work);
+}
+
+void Restlessness::fidget(body::Motion& motion) {
+  if (fidgeting_.rate_per_s <= 0.0) return;
+  if (fidgeting_.timing == FidgetTiming::independent) {
+    if (fidget_stream_.uniform() >= -std::expm1(-fidgeting_.rate_per_s * tick_s_)) return;
+  } else {
+    if (--ticks_to_fidget_ > 0) return;
+    const bool first = ticks_to_fidget_ < 0;
+    ticks_to_fidget_ =
+        ticks(between_fidgets.length_s(fidget_stream_.uniform()) / (between_fidgets.mean_s() * fidgeting_.rate_per_s));
+    if (first) return;
+  }
+  const double way = 2.0 * fidget_stream_.uniform() - 1.0;
+  if (fidget_stream_.index(2) == 0) {
+    motion.adjust(body::Channel::trunk_tilt, radians(fidgeting_.tilt_deg) * way, body::fidget_s);
+  } else {
+    motion.adjust(body::Channel::head_turn, radians(fidgeting_.turn_deg) * way, body::fidget_s);
+  }
+}
+
+void Restlessness::swing(Swing& swing, body::Motion& motion) const {
+  if (swing.spec.amplitude_deg <= 0.0) return;
+  if (!swing.middle) swing.middle = motion.target(swing.channel);
+  if (--swing.ticks_to_turn > 0) return;
+  const double half_s = 0.5 * swing.spec.period_s;
+  swing.ticks_to_turn = ticks(half_s);
+  if (swing.turns_left-- == 0) {
+    swing.turns_left = std::llround(bout_s / half_s);
+    swing.swings = swing.stream.uniform() < swing.spec.share;
+  }
+  const double amplitude = swing.swings ? radians(swing.spec.amplitude_deg) : 0.0;
+  motion.adjust(swing.channel, *swing.middle + swing.side * amplitude, half_s);
+  swing.side = -swing.side;
+}
+
+void Restlessness::swing_arms(body::Motion& motion, const action::Work& work) {
+  if (arms_.spread <= 0.0 && arms_.pause_share <= 0.0) return;
+  if (--ticks_to_swing_ > 0) return;
+  // Of mean 1 both, so that neither the amplitude nor the period is another on average.
+  const auto factor = [&] {
+    return std::exp(arms_.spread * arms_stream_.normal() - 0.5 * arms_.spread * arms_.spread);
+  };
+  const double amplitude_m = work.arm_amplitude_m * factor(), period_s = work.arm_period_s * factor();
+  const bool pauses = arms_stream_.uniform() < arms_.pause_share;
+  motion.work({pauses ? 0.0 : amplitude_m, period_s});
+  ticks_to_swing_ = ticks(period_s);
+}
+
+}  // namespace pirsim::sim

@@ -1,0 +1,16 @@
+// What a room looks like: what its meshes are, and its plan seen from above.
+#pragma once
+
+#include "io/charts.hpp"
+#include "pirsim/scene.hpp"
+
+namespace pirsim::studies {
+
+enum class MeshRole { ceiling, wall, floor, furniture };
+/// By its size and height alone: tall or high things are walls and ceilings, flat ones on the floor are the floor.
+[[nodiscard]] MeshRole role_of(const TriMesh& mesh, double floor_height_m);
+
+/// Furniture is outlined by the convex hulls of its connected pieces.
+[[nodiscard]] io::RoomPlan plan_of(const SceneSpec& scene);
+
+}  // namespace pirsim::studies
