@@ -70,6 +70,23 @@ void take_from_parent(CLI::App& command) {
   }
 }
 
+/// What is wrong with a word of the command line that nothing takes.
+std::string explain_word(const CLI::App& app, const std::string& word) {
+  const CLI::App* command = &app;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  const bool is_option = word.size() > 1 && word.front() == '-';
+  std::vector<std::string> known;
+  if (is_option) {
+    for (const CLI::Option* option : command->get_options(nullptr)) known.push_back(option->get_name());
+  } else {
+    for (const CLI::App* other : command->get_subcommands(nullptr)) known.push_back(other->get_name());
+  }
+  const std::string spoken = spoken_name(*command);
+  const std::string what = is_option ? "an option" : known.empty() ? "an argument" : "a command";
+  return "error: '" + word + "' isn't " + what + " of 'pirsim" + (spoken.empty() ? "" : " " + spoken) + "'" +
+         did_you_mean(word, known) + "\n";
+}
+
 /// The option that the user gave more often than it can be taken, or null.
 const CLI::Option* repeated_option(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options(nullptr)) {
@@ -199,6 +216,10 @@ void pass_options_on(CLI::App& app) {
 std::string explain(const CLI::App* app, const CLI::Error& error) {
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
     if (const CLI::Option* option = repeated_option(*app)) return option->get_name() + " is given twice\n";
+  }
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    if (const std::vector<std::string> rest = app->remaining(true); !rest.empty())
+      return explain_word(*app, rest.front());
   }
   return CLI::FailureMessage::simple(app, error);
 }

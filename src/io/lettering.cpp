@@ -42,13 +42,25 @@ void blend_rectangle(Pixels& picture, const Vec2& lower, const Vec2& upper, cons
   }
 }
 
-}  // namespace
-
-void write_text(Pixels& picture, const Vec2& bottom, std::string_view text, double size_px, const Vec3& colour) {
+/// The font's characters.
+std::string in_ascii(std::string_view text) {
   std::string plain(text);
   for (char& c : plain) {
     if (c < ' ' || c > '~') c = '?';
   }
+  return plain;
+}
+
+/// Whether two texts of these extents cover each other, with a pixel between them.
+bool overlap(const Vec2& a, const Vec2& extent_a, const Vec2& b, const Vec2& extent_b) {
+  return std::abs(a.x - b.x) < 0.5 * (extent_a.x + extent_b.x) + 1.0 && a.y - extent_a.y < b.y + 1.0 &&
+         b.y - extent_b.y < a.y + 1.0;
+}
+
+}  // namespace
+
+void write_text(Pixels& picture, const Vec2& bottom, std::string_view text, double size_px, const Vec3& colour) {
+  std::string plain = in_ascii(text);
   constexpr std::size_t most_quads_of_character = 16;
   std::vector<Quad> quads(plain.size() * most_quads_of_character);
   const int n = stb_easy_font_print(0.0F, 0.0F, plain.data(), nullptr, quads.data(),
@@ -65,6 +77,34 @@ void write_text(Pixels& picture, const Vec2& bottom, std::string_view text, doub
   constexpr double rim = 0.75;  // of the font's units
   draw(Vec3(255.0), rim * scale, 0.8);
   draw(colour, 0.0, 1.0);
+}
+
+Vec2 text_extent(std::string_view text, double size_px) {
+  std::string plain = in_ascii(text);
+  return size_px * Vec2(stb_easy_font_width(plain.data()) / font_height, 1.0);
+}
+
+std::vector<Lettering> set_apart(std::vector<Lettering> texts, double size_px) {
+  constexpr int most_lines = 10, steps_per_line = 4;
+  std::vector<Vec2> extents;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    extents.push_back(text_extent(texts[i].text, size_px));
+    const auto is_free = [&](const Vec2& at) {
+      for (std::size_t k = 0; k < i; ++k) {
+        if (overlap(texts[k].bottom, extents[k], at, extents[i])) return false;
+      }
+      return true;
+    };
+    const double step = size_px / steps_per_line;
+    const Vec2 wanted = texts[i].bottom;
+    for (int n = 0; n <= 2 * most_lines * steps_per_line; ++n) {
+      const Vec2 at = wanted + Vec2(0.0, step * ((n + 1) / 2) * (n % 2 == 0 ? 1.0 : -1.0));
+      if (!is_free(at)) continue;
+      texts[i].bottom = at;
+      break;
+    }
+  }
+  return texts;
 }
 
 }  // namespace pirsim::io

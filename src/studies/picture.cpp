@@ -176,13 +176,16 @@ Marks marks_of(const Model& model, const State& state, const std::vector<Mark>& 
 void write_labels(const std::vector<Label>& labels, const rt::View& view, io::Pixels& image) {
   constexpr double size_px = 12.5, reference_height = 720.0;  // so that a larger picture shows the same
   const double size = std::max(8.0, size_px * image.height / reference_height);
+  std::vector<io::Lettering> texts;
   for (const Label& label : labels) {
     const auto at = view.pixel_of(Vec3f(label.at));
     if (!at) continue;
     // Darker than the lines, so that it can be read.
     const Vec3 ink = 255.0 * glm::pow(Vec3(label.colour[0], label.colour[1], label.colour[2]), Vec3(1.0 / 2.2)) * 0.8;
-    io::write_text(image, Vec2(*at), label.text, size, ink);
+    texts.push_back({Vec2(*at), label.text, ink});
   }
+  for (const io::Lettering& text : io::set_apart(std::move(texts), size))
+    io::write_text(image, text.bottom, text.text, size, text.colour);
 }
 
 }  // namespace

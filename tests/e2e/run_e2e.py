@@ -261,6 +261,14 @@ class Help(unittest.TestCase):
         self.assertEqual(pirsim("help", "reconcile", "pln", code=2).stderr,
                          "error: help: 'pln' isn't a command of 'reconcile' (did you mean 'plan'?)\n")
 
+    def test_words_that_nothing_takes_are_named_with_the_nearest(self):
+        for args, told in ((("covrage",), "'covrage' isn't a command of 'pirsim' (did you mean 'coverage'?)"),
+                           (("reconcile", "pln"), "'pln' isn't a command of 'pirsim reconcile' (did you mean 'plan'?)"),
+                           (("check", "room.gltf"), "'room.gltf' isn't an argument of 'pirsim check'"),
+                           (("--sceen", "a"), "'--sceen' isn't an option of 'pirsim' (did you mean '--scene'?)"),
+                           (("coverage", "--replicates", 3), "'--replicates' isn't an option of 'pirsim coverage'")):
+            self.assertEqual(pirsim(*args, code=2).stderr, f"error: {told}\n")
+
     def test_version_has_a_short_name(self):
         self.assertEqual(pirsim("-V").stdout, pirsim("--version").stdout)
 

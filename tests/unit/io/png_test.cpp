@@ -146,6 +146,30 @@ TEST_CASE("a text stands where it is asked for, and is cut off at the picture's 
   CHECK(none.rgb == paper.rgb);
 }
 
+TEST_CASE("texts that would cover each other are set apart, and others stay where they are", "[png]") {
+  constexpr double size = 12.0;
+  std::vector<Lettering> texts{{{400.0, 300.0}, "front_door", Vec3(0.0)}, {{10.0, 20.0}, "S9", Vec3(0.0)}};
+  for (int i = 0; i < 6; ++i) texts.push_back({{400.0 + 5.0 * i, 302.0 - i}, "S" + std::to_string(i), Vec3(0.0)});
+  const std::vector<Lettering> placed = set_apart(texts, size);
+  REQUIRE(placed.size() == texts.size());
+  CHECK(placed[0].bottom == texts[0].bottom);
+  CHECK(placed[1].bottom == texts[1].bottom);
+  // Written one by one on paper of its own, no two darken the same pixel.
+  std::vector<int> dark(std::size_t{800} * 600);
+  int moved = 0;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    CHECK(placed[i].text == texts[i].text);
+    CHECK(placed[i].bottom.x == texts[i].bottom.x);
+    CHECK(std::abs(placed[i].bottom.y - texts[i].bottom.y) <= 10.0 * size);
+    if (placed[i].bottom != texts[i].bottom) ++moved;
+    Pixels paper{800, 600, std::vector<std::uint8_t>(dark.size() * 3, 255)};
+    write_text(paper, placed[i].bottom, placed[i].text, size, Vec3(0.0));
+    for (std::size_t pixel = 0; pixel < dark.size(); ++pixel) dark[pixel] += paper.rgb[3 * pixel] < 128 ? 1 : 0;
+  }
+  CHECK(moved >= 5);
+  CHECK(*std::max_element(dark.begin(), dark.end()) == 1);
+}
+
 TEST_CASE("a picture of the wrong size is refused and nothing is written", "[png]") {
   const TemporaryFolder folder;
   const std::vector<std::uint8_t> rgb(12);
