@@ -160,6 +160,23 @@ void mark_scale(const SceneSpec& scene, Marks& marks) {
   marks.labels.push_back({at(0.5) - Vec3(0.0, 0.0, before_m), "1 m", scale_colour});
 }
 
+/// A floor that no mesh shows: a polygon in the scene's markup.
+std::vector<rt::Beam> unseen_floor(const SceneSpec& scene) {
+  const double y = scene.floor.height_m();
+  const bool is_seen =
+      std::ranges::any_of(scene.meshes, [&](const TriMesh& mesh) { return role_of(mesh, y) == MeshRole::floor; });
+  if (is_seen) return {};
+  constexpr rt::Colour colour{0.30F, 0.28F, 0.25F};
+  std::vector<rt::Beam> edges;
+  for (const std::vector<Vec2>& loop : scene.floor.loops()) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Vec2 from = loop[i], to = loop[(i + 1) % loop.size()];
+      edges.push_back({Vec3(from.x, y, from.y), Vec3(to.x, y, to.y), colour});
+    }
+  }
+  return edges;
+}
+
 Marks marks_of(const Model& model, const State& state, const std::vector<Mark>& wanted) {
   const SceneSpec& scene = model.compiled().scene();
   Marks marks;
@@ -212,7 +229,8 @@ io::Pixels picture(const Model& model, const State& state, const PictureSpec& sp
     for (std::size_t i = 0; i < shapes.size(); ++i)
       solids.push_back({shapes[i], colour_of(static_cast<body::Part>(i), person)});
   }
-  std::vector<rt::Beam> beams;
+  std::vector<rt::Beam> beams = unseen_floor(scene);
+  const auto edges = static_cast<std::ptrdiff_t>(beams.size());
   constexpr rt::Colour idle{0.10F, 0.45F, 0.75F}, seeing{1.0F, 0.25F, 0.02F};
   for (const std::size_t sensor : spec.beams_of) {
     for (const sim::BeamSegment& beam : sim::beams_of(model, state, sensor)) {
@@ -220,7 +238,7 @@ io::Pixels picture(const Model& model, const State& state, const PictureSpec& sp
     }
   }
   // What sees the person is drawn last, over the rest.
-  std::stable_partition(beams.begin(), beams.end(), [&](const rt::Beam& beam) { return beam.colour == idle; });
+  std::stable_partition(beams.begin() + edges, beams.end(), [&](const rt::Beam& beam) { return beam.colour == idle; });
   const Marks marks = marks_of(model, state, spec.marks);
   beams.insert(beams.end(), marks.lines.begin(), marks.lines.end());
   const double fov = radians(spec.field_of_view_deg);

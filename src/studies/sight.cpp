@@ -120,6 +120,11 @@ std::vector<Issue> warnings(const SightReport& report, const std::string& scene)
                                        "' can see NOBODY: no zone reaches a standing or seated person anywhere on the "
                                        "floor area (does it look at a wall, along -Z of its node?)");
   }
+  const auto cut = [](const SensorSight& sight) { return sight.rays_cut > 0; };
+  if (!report.sensors.empty() && std::ranges::none_of(report.sensors, cut)) {
+    remarks.warning({scene, 0, 0},
+                    "no ray of any sensor ends at the room: without walls sensors see people outside, too");
+  }
   return remarks.issues();
 }
 

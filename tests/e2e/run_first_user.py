@@ -135,6 +135,45 @@ class Doubts(unittest.TestCase):
         self.assertIn("pelvis point is 0.00 m above the floor", told)
 
 
+class BareRoom(unittest.TestCase):
+    """A floor that is a polygon of the markup, without any mesh."""
+
+    SCRIPT = "pirsim_script: 1\npeople: [{id: one, actions: [{enter: door}, {wait_s: 5}, {leave: door}]}]\n"
+
+    def write(self, width):
+        def node(mark, **place):
+            return {**place, "extras": {"pirsim": mark}}
+        nodes = [node({"type": "floor", "polygon_xz_m": [[0, 0], [width, 0], [width, -3], [0, -3]]}),
+                 node({"type": "entrance", "id": "door"}, translation=[1, 0, 0]),
+                 node({"type": "sensor", "id": "PIR1", "model": "EKMC1604111"}, translation=[2, 2.5, 0],
+                      rotation=[-0.173648, 0, 0, 0.984808])]
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        path = pathlib.Path(folder.name)
+        (path / "study.yaml").write_text(self.SCRIPT)
+        (path / "room.gltf").write_text(json.dumps({"asset": {"version": "2.0"}, "scene": 0, "nodes": nodes,
+                                                    "scenes": [{"nodes": list(range(len(nodes)))}]}))
+        return path
+
+    def files(self, path):
+        return "--scene", path / "room.gltf", "--script", path / "study.yaml"
+
+    def test_a_room_without_walls_is_told(self):
+        told = "no ray of any sensor ends at the room"
+        self.assertIn(told, pirsim("check", *self.files(self.write(4))).stderr)
+        self.assertNotIn(told, pirsim("check", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
+                                      DATA / "studies" / "studyA.yaml").stderr)
+
+    def test_its_floor_is_drawn(self):
+        pictures = []
+        for width in (4, 5):
+            path = self.write(width)
+            pirsim("preview", *self.files(path), "--marks", "none", "--beams", "none", "--time", 0, "--camera", "2,9,-1.5",
+                   "--look-at", "2,0,-1.6", "-q", "-o", path / "room.png")
+            pictures.append((path / "room.png").read_bytes())
+        self.assertNotEqual(*pictures)
+
+
 class Marks(unittest.TestCase):
     def told(self, change, code=3):
         room = Room()
