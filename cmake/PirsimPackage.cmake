@@ -3,7 +3,6 @@ set(CPACK_PACKAGE_VENDOR "pirsim")
 set(CPACK_PACKAGE_CONTACT "the pirsim authors")
 set(CPACK_PACKAGE_HOMEPAGE_URL "${PROJECT_HOMEPAGE_URL}")
 set(CPACK_RESOURCE_FILE_LICENSE "${PROJECT_SOURCE_DIR}/LICENSE")
-set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 
 # What a clone holds, whatever the folders above it are called, and the revision, for a build without git.
@@ -11,7 +10,7 @@ set(CPACK_SOURCE_GENERATOR TGZ)
 set(CPACK_SOURCE_PACKAGE_FILE_NAME "pirsim-${PROJECT_VERSION}")
 set(CPACK_VERBATIM_VARIABLES TRUE)
 string(REGEX REPLACE [[([][+.*()^$?|])]] [[\\\1]] source_dir "${PROJECT_SOURCE_DIR}")
-set(CPACK_SOURCE_IGNORE_FILES "^${source_dir}/(build|out|[.]git)(/|$)" /__pycache__/ [[[.]pyc$]])
+set(CPACK_SOURCE_IGNORE_FILES "^${source_dir}/(build|out|[.]git)(/|$)" /__pycache__/ "/[.][a-z]+_cache/" [[[.]pyc$]])
 set(CPACK_INSTALL_SCRIPTS "${PROJECT_SOURCE_DIR}/cmake/PirsimRevision.cmake")
 set(CPACK_PIRSIM_REVISION "${PIRSIM_GIT_REVISION}")
 

@@ -104,9 +104,7 @@ const CLI::Option* repeated_option(const CLI::App& app) {
 namespace {
 
 void offer_scene_file(CLI::App& command, Inputs& inputs) {
-  command.add_option("--scene", inputs.scene, "room: a glTF 2.0 file (.gltf or .glb), - for standard input")
-      ->option_text("FILE")
-      ->transform(CLI::Validator(take_standard_input, ""));
+  offer_input_file(command, "--scene", inputs.scene, "room: a glTF 2.0 file (.gltf or .glb)");
 }
 
 void offer_changes(CLI::App& command, Inputs& inputs) {
@@ -127,6 +125,13 @@ void offer_changes(CLI::App& command, Inputs& inputs) {
 
 }  // namespace
 
+void offer_input_file(CLI::App& command, const std::string& name, std::filesystem::path& file,
+                      const std::string& what) {
+  command.add_option(name, file, what + ", - for standard input")
+      ->option_text("FILE")
+      ->transform(CLI::Validator(take_standard_input, ""));
+}
+
 void offer_scene(CLI::App& command, Inputs& inputs) {
   offer_scene_file(command, inputs);
   offer_changes(command, inputs);
@@ -134,9 +139,7 @@ void offer_scene(CLI::App& command, Inputs& inputs) {
 
 void offer_study(CLI::App& command, Inputs& inputs) {
   offer_scene_file(command, inputs);
-  command.add_option("--script", inputs.script, "study: a YAML file, - for standard input")
-      ->option_text("FILE")
-      ->transform(CLI::Validator(take_standard_input, ""));
+  offer_input_file(command, "--script", inputs.script, "study: a YAML file");
   offer_changes(command, inputs);
 }
 

@@ -31,6 +31,8 @@ struct RunChoice {
   int replicate = 1;
 };
 
+/// A file that may be standard input; one of a command's files at most.
+void offer_input_file(CLI::App& command, const std::string& name, std::filesystem::path& file, const std::string& what);
 /// --scene, --set, --sensors and --quiet: for commands that make the script themselves.
 void offer_scene(CLI::App& command, Inputs& inputs);
 /// The same and --script: every other command that reads a room uses them.

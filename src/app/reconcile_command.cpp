@@ -163,6 +163,8 @@ void reconcile_plan(const Inputs& inputs, const AnalysisOptions& analysis, const
 void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const ReconcileOptions& options) {
   if (options.measured.empty())
     throw Error(ErrorCode::usage, "--measured FILE is missing; see pirsim reconcile --help");
+  if (options.measured == inputs.scene || options.measured == inputs.script)
+    throw Error(ErrorCode::usage, "--measured can't be the same file or stream as --scene or --script");
   const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
@@ -286,7 +288,7 @@ void add_reconcile_command(CLI::App& app) {
   const auto analysis = std::make_shared<AnalysisOptions>();
   const auto options = std::make_shared<ReconcileOptions>();
   offer_study(command, *inputs);
-  command.add_option("--measured", options->measured, "rows or sums from the real room, CSV")->option_text("FILE");
+  offer_input_file(command, "--measured", options->measured, "rows or sums from the real room, CSV");
   command.add_option("-o,--out", options->output, "folder for report and patched script (default: reconcile)")
       ->option_text("DIR");
   command

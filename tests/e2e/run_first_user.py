@@ -274,7 +274,15 @@ class Streams(unittest.TestCase):
             self.assertEqual(piped.returncode, 0, piped.stderr)
             self.assertEqual(piped.stdout.decode(), pirsim("day", "--scene", room, *day).stdout)
 
+    def test_measured_rows_from_standard_input(self):
+        """A faulty line tells that they were read; an analysis would take minutes."""
+        rows = "trial,time_s,PIR1,PIR2,PIR3,PIR4,PIR5\nS1,1,0,0,0,0,7\n"
+        study_files = "--scene", DATA / "rooms" / "meeting_room.gltf", "--script", DATA / "studies" / "studyA.yaml"
+        self.assertIn("stdin:2:", pirsim("reconcile", *study_files, "--measured", "-", code=3, input=rows).stderr)
+
     def test_two_inputs_can_not_be_one_stream(self):
+        self.assertIn("can't be the same file or stream", pirsim("reconcile", "--scene", "room.gltf", "--script", "-",
+                                                                 "--measured", "-", code=2, input="").stderr)
         self.assertIn("can't both be standard input", pirsim("--scene", "-", "--script", "-", code=2, input="").stderr)
 
 
