@@ -82,6 +82,12 @@ bool applies(const ParameterInfo& parameter, const EffectSpec& effect) {
   return effects::word(effect, choice) == word;
 }
 
+bool is_drawn(const ParameterInfo& parameter, const EffectInfo& info) {
+  const auto choice = std::ranges::find(info.choices, parameter.only_if.choice, &ChoiceInfo::name);
+  return choice == info.choices.end() || choice->kind != ChoiceKind::variant ||
+         choice->words.front() == parameter.only_if.word;
+}
+
 const ParameterInfo& strength_parameter(const EffectSpec& effect) {
   return *std::ranges::find_if(find(effect.name).info.parameters, [&](const ParameterInfo& parameter) {
     return parameter.role == Role::strength && applies(parameter, effect);
@@ -145,7 +151,7 @@ double draw(const ParameterInfo& parameter, Stream& stream) {
 EffectSpec draw_from_prior(const Effect& effect, const SceneSpec& scene, const ScriptSpec& script, Stream& stream) {
   EffectSpec spec{effect.info.name, {}, {}, {}};
   for (const ParameterInfo& parameter : effect.info.parameters) {
-    spec.parameters[parameter.name] = draw(parameter, stream);
+    if (is_drawn(parameter, effect.info)) spec.parameters[parameter.name] = draw(parameter, stream);
   }
   for (const ChoiceInfo& choice : effect.info.choices) {
     const auto pick = [&](const auto& list) { return list[stream.index(static_cast<std::uint32_t>(list.size()))]; };

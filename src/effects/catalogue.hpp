@@ -47,6 +47,8 @@ struct Effect {
 
 /// Whether a parameter of that effect means anything with its choices.
 [[nodiscard]] bool applies(const ParameterInfo& parameter, const EffectSpec& effect);
+/// Whether it is drawn from its prior: with the first of each choice's variants, which are all that are drawn.
+[[nodiscard]] bool is_drawn(const ParameterInfo& parameter, const EffectInfo& info);
 /// The first of an effect's strengths that applies.
 [[nodiscard]] const ParameterInfo& strength_parameter(const EffectSpec& effect);
 [[nodiscard]] bool is_off(const EffectSpec& effect);

@@ -1,6 +1,7 @@
 #include "reconcile/report/pages.hpp"
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 
 #include "reconcile/report/charts.hpp"
 #include "reconcile/report/sentences.hpp"
@@ -9,6 +10,18 @@ namespace pirsim::reconcile {
 namespace {
 
 std::string count_of(std::size_t n, std::size_t of) { return std::to_string(n) + " of " + std::to_string(of); }
+
+/// Of the framed cells, the first ones.
+std::string commands_to_watch(const Location& location, double alpha) {
+  constexpr std::size_t most = 3;
+  std::vector<std::string> commands;
+  for (const LocatedCell& cell : location.cells) {
+    if (cell.adjusted_p > alpha || commands.size() == most) continue;
+    commands.push_back("pirsim view --trial " + cell.trial + " -o " + cell.trial + ".html, opened as " + cell.trial +
+                       ".html#sensor=" + cell.sensor);
+  }
+  return boost::algorithm::join(commands, "; ");
+}
 
 io::ReportSection where(const Outcome& outcome, double alpha) {
   const Location& location = outcome.location;
@@ -23,6 +36,8 @@ io::ReportSection where(const Outcome& outcome, double alpha) {
           fixed(location.band_s, 0) +
           " s in one cell can't be told from chance here. Of so many cells some lie outside their usual range "
           "by chance alone; a frame marks those that do with that allowed for."};
+  if (const std::string watched = commands_to_watch(location, alpha); !watched.empty())
+    section.paragraphs.push_back("What the model does there can be watched: " + watched + ".");
   section.charts.emplace_back(difference_chart(location, alpha));
   return section;
 }

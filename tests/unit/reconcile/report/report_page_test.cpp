@@ -130,6 +130,21 @@ TEST_CASE("the page says the verdict first and shows what each verdict has", "[r
   CHECK(says(nothing, "Nothing was looked for"));
 }
 
+TEST_CASE("the page names the commands that show the model where a cell is framed", "[report]") {
+  Outcome outcome;
+  outcome.location = two_cells();
+  const auto paragraphs_of = [&](double alpha) {
+    std::string text;
+    for (const io::ReportSection& section : report_page(outcome, alpha).sections) {
+      for (const std::string& paragraph : section.paragraphs) text += paragraph + "\n";
+    }
+    return text;
+  };
+  const std::string& trial = outcome.location.cells[0].trial;
+  CHECK_THAT(paragraphs_of(0.05), contains("pirsim view --trial " + trial + " -o " + trial + ".html"));
+  CHECK_THAT(paragraphs_of(0.0), !contains("pirsim view"));
+}
+
 TEST_CASE("the page says what held-out trials show and no more", "[report]") {
   Outcome outcome = named();
   const auto page = [&] { return to_html(report_page(outcome, 0.05)); };
