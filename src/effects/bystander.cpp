@@ -2,18 +2,23 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include "pirsim/geometry.hpp"
 
 namespace pirsim::effects {
 namespace {
 
-/// An upper bound of how long a trial may last, seconds.
+/// Once across the room, and as much again to get round what stands there.
+double longest_way_m(const SceneSpec& scene) { return 2.0 * glm::distance(scene.floor.lower(), scene.floor.upper()); }
+
+/// An upper bound of how long a trial may last, seconds. It waits for nobody but its subjects.
 double longest_s(const TrialInForce& trial, const SceneSpec& scene) {
-  double longest = 0.0;
+  double longest = trial.duration_s.value_or(0.0);
+  if (trial.schedule) longest = 3600.0 * (trial.schedule->to_h - trial.schedule->from_h);
   for (const PersonInForce& person : trial.people) {
-    // Once across the room, and as much again to get round what stands there.
-    const double way_s = 2.0 * glm::distance(scene.floor.lower(), scene.floor.upper()) / person.walking_speed_m_s;
+    if (person.changes.role != PersonRole::subject) continue;
+    const double way_s = longest_way_m(scene) / person.walking_speed_m_s;
     double sum = 0.0;
     for (const ScriptedAction& action : person.actions) {
       constexpr double any_s = 60.0;  // turning, sitting down: more than enough
@@ -26,6 +31,21 @@ double longest_s(const TrialInForce& trial, const SceneSpec& scene) {
     longest = std::max(longest, sum);
   }
   return longest;
+}
+
+/// What the actions take at least, seconds: waits, and ways as the crow flies.
+double shortest_s(const BystanderPlan& plan) {
+  constexpr double least_s = 1.0;  // so that their number is bounded, whatever they are
+  double sum = 0.0;
+  Vec2 at = plan.place;
+  for (const Action& what : plan.again) {
+    if (const auto* wait = std::get_if<action::Wait>(&what)) sum += wait->duration_s;
+    if (const auto* walk = std::get_if<action::Walk>(&what)) {
+      sum += glm::distance(at, walk->points.back()) / plan.speed_m_s;
+      at = walk->points.back();
+    }
+  }
+  return std::max(least_s, sum);
 }
 
 std::string new_id(const TrialInForce& trial, std::string_view id) {
@@ -44,8 +64,8 @@ void add_bystander(StudyInForce& study, const BystanderPlan& plan, const Where& 
     person.mass_kg = plan.mass_kg;
     person.walking_speed_m_s = plan.speed_m_s;
     person.actions.push_back({action::Appear{plan.place, plan.heading_deg}, {}, {}, where});
-    const double until_s = longest_s(trial, study.scene);
-    for (double s = 0.0; s < until_s; s += plan.least_s) {
+    const double until_s = longest_s(trial, study.scene), once_s = shortest_s(plan);
+    for (double s = 0.0; s < until_s; s += once_s) {
       for (const Action& what : plan.again) person.actions.push_back({what, {}, {}, where});
     }
     trial.people.push_back(std::move(person));
@@ -74,19 +94,7 @@ ChoiceInfo place_choice() {
   return {"place", ChoiceKind::word, {"free", "given"}, "the free place farthest from all seats"};
 }
 
-ParameterInfo place_coordinate(std::string name) {
-  return {.name = std::move(name),
-          .unit = "m",
-          .role = Role::detail,
-          .off = 0.0,
-          .typical = 0.0,
-          .low = -50.0,
-          .high = 50.0,
-          .least = -1e4,
-          .most = 1e4,
-          .source = "assumed: a free place",
-          .only_if = {"place", "given"}};
-}
+ParameterInfo place_coordinate(std::string name) { return floor_coordinate(std::move(name), {"place", "given"}); }
 
 Vec2 place_of(const EffectSpec& effect, const SceneSpec& scene, double clear_m) {
   if (word(effect, "place") == "given") return {effect.parameters.at("x_m"), effect.parameters.at("z_m")};
@@ -96,19 +104,11 @@ Vec2 place_of(const EffectSpec& effect, const SceneSpec& scene, double clear_m) 
 }
 
 void draw_place(EffectSpec& effect, const SceneSpec& scene, double clear_m, Stream& stream) {
-  const std::vector<Vec2> places = free_places(scene, clear_m);
-  effect.choices["place"] = places.empty() ? "free" : "given";
-  if (places.empty()) return;
-  const Vec2 place = places[stream.index(static_cast<std::uint32_t>(places.size()))];
-  effect.parameters["x_m"] = place.x;
-  effect.parameters["z_m"] = place.y;
+  effect.choices["place"] = draw_free_place(effect, scene, clear_m, stream) ? "given" : "free";
 }
 
 void settle_place(EffectSpec& effect, const SceneSpec& scene, double clear_m) {
-  if (word(effect, "place") != "given") return;
-  const Vec2 place = nearest_free(scene, clear_m, place_of(effect, scene, clear_m));
-  effect.parameters["x_m"] = place.x;
-  effect.parameters["z_m"] = place.y;
+  if (word(effect, "place") == "given") settle_free_place(effect, scene, clear_m);
 }
 
 }  // namespace pirsim::effects

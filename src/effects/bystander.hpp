@@ -19,7 +19,6 @@ struct BystanderPlan {
   Vec2 place;  ///< where they are at the beginning
   double heading_deg = 0.0;
   std::vector<Action> again{};
-  double least_s = 1.0;  ///< that doing it once takes, at least
 };
 /// Adds one to every trial.
 void add_bystander(StudyInForce& study, const BystanderPlan& plan, const Where& where);

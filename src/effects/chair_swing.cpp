@@ -5,11 +5,9 @@ namespace pirsim::effects {
 namespace {
 
 void alter(StudyInForce& study, const EffectSpec& effect) {
-  for (TrialInForce& trial : study.trials) {
-    for (PersonInForce& person : trial.people)
-      person.changes.chair_swing = {effect.parameters.at("amplitude_deg"), effect.parameters.at("period_s"),
-                                    effect.parameters.at("share")};
-  }
+  const SwingSpec swing{effect.parameters.at("amplitude_deg"), effect.parameters.at("period_s"),
+                        effect.parameters.at("share")};
+  for_each_person(study, [&](PersonInForce& person) { person.changes.chair_swing = swing; });
 }
 
 }  // namespace

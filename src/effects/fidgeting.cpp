@@ -5,13 +5,10 @@ namespace pirsim::effects {
 namespace {
 
 void alter(StudyInForce& study, const EffectSpec& effect) {
-  for (TrialInForce& trial : study.trials) {
-    for (PersonInForce& person : trial.people) {
-      person.changes.fidgeting = {
-          effect.parameters.at("rate_per_s"), effect.parameters.at("tilt_deg"), effect.parameters.at("turn_deg"),
-          word(effect, "timing") == "still_periods" ? FidgetTiming::still_periods : FidgetTiming::independent};
-    }
-  }
+  const FidgetSpec fidgeting{
+      effect.parameters.at("rate_per_s"), effect.parameters.at("tilt_deg"), effect.parameters.at("turn_deg"),
+      word(effect, "timing") == "still_periods" ? FidgetTiming::still_periods : FidgetTiming::independent};
+  for_each_person(study, [&](PersonInForce& person) { person.changes.fidgeting = fidgeting; });
 }
 
 }  // namespace

@@ -105,4 +105,19 @@ Vec2 nearest_free(const SceneSpec& scene, double clear_m, const Vec2& place) {
   return glm::distance(nearest, place) <= spacing_m / std::sqrt(2.0) ? place : nearest;
 }
 
+bool draw_free_place(EffectSpec& effect, const SceneSpec& scene, double clear_m, Stream& stream) {
+  const std::vector<Vec2> places = free_places(scene, clear_m);
+  if (places.empty()) return false;
+  const Vec2 place = places[stream.index(static_cast<std::uint32_t>(places.size()))];
+  effect.parameters["x_m"] = place.x;
+  effect.parameters["z_m"] = place.y;
+  return true;
+}
+
+void settle_free_place(EffectSpec& effect, const SceneSpec& scene, double clear_m) {
+  const Vec2 free = nearest_free(scene, clear_m, {effect.parameters.at("x_m"), effect.parameters.at("z_m")});
+  effect.parameters.at("x_m") = free.x;
+  effect.parameters.at("z_m") = free.y;
+}
+
 }  // namespace pirsim::effects

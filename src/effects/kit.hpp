@@ -93,6 +93,11 @@ const Effect& labels_swapped();
           .only_if = std::move(only_if)};
 }
 
+/// Of a place that is given, x_m or z_m.
+[[nodiscard]] inline ParameterInfo floor_coordinate(std::string name, Condition only_if) {
+  return detail(std::move(name), "m", 0.0, -50.0, 50.0, -1e4, 1e4, "assumed: a free place", std::move(only_if));
+}
+
 /// Happens (1) or not (0).
 [[nodiscard]] inline ParameterInfo whether(std::string name, std::string source) {
   return {.name = std::move(name),
@@ -123,16 +128,24 @@ const Effect& labels_swapped();
 /// Ticks to the next event of a Poisson process, at least 1: its chance in each tick is 1 - exp(-mean), mean > 0.
 [[nodiscard]] std::int64_t ticks_to_event(Stream& stream, double mean_per_tick) noexcept;
 
+/// change(PersonInForce&) for everybody of the script and whoever effects added, but for objects.
+template <typename Change>
+void for_each_person(StudyInForce& study, const Change& change) {
+  for (TrialInForce& trial : study.trials) {
+    for (PersonInForce& person : trial.people) {
+      if (person.changes.role != PersonRole::object) change(person);
+    }
+  }
+}
+
 /// change(action::Work&) for whatever anybody does at a seat.
 template <typename Change>
 void for_each_work(StudyInForce& study, const Change& change) {
-  for (TrialInForce& trial : study.trials) {
-    for (PersonInForce& person : trial.people) {
-      for (ScriptedAction& scripted : person.actions) {
-        if (auto* work = std::get_if<action::Work>(&scripted.what)) change(*work);
-      }
+  for_each_person(study, [&](PersonInForce& person) {
+    for (ScriptedAction& scripted : person.actions) {
+      if (auto* work = std::get_if<action::Work>(&scripted.what)) change(*work);
     }
-  }
+  });
 }
 
 /// clone() by copying.
@@ -156,6 +169,10 @@ class CloneableRowStage : public RowStage {
 /// Points of a grid on the floor with `clear_m` to everything solid below a person's height, to seats and to
 /// entrances; the one farthest from all seats first. Empty in a room without such a place.
 [[nodiscard]] std::vector<Vec2> free_places(const SceneSpec& scene, double clear_m);
+/// Draws one of them into x_m and z_m; false if there is none.
+[[nodiscard]] bool draw_free_place(EffectSpec& effect, const SceneSpec& scene, double clear_m, Stream& stream);
+/// Moves x_m and z_m to nearest_free().
+void settle_free_place(EffectSpec& effect, const SceneSpec& scene, double clear_m);
 /// The place itself if it is within a cell of the grid of a free one, else the nearest of these; the place if none is.
 [[nodiscard]] Vec2 nearest_free(const SceneSpec& scene, double clear_m, const Vec2& place);
 

@@ -40,37 +40,12 @@ void alter(StudyInForce& study, const EffectSpec& effect) {
 }
 
 void draw(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec&, Stream& stream) {
-  const std::vector<Vec2> places = free_places(scene, 0.5 * effect.parameters.at("width_m"));
-  if (!is_box(effect) || places.empty()) {
-    effect.choices["what"] = "chair_backs";
-    return;
-  }
-  const Vec2 place = places[stream.index(static_cast<std::uint32_t>(places.size()))];
-  effect.parameters["x_m"] = place.x;
-  effect.parameters["z_m"] = place.y;
+  const double clear_m = 0.5 * effect.parameters.at("width_m");
+  if (!is_box(effect) || !draw_free_place(effect, scene, clear_m, stream)) effect.choices["what"] = "chair_backs";
 }
 
 void settle(EffectSpec& effect, const SceneSpec& scene) {
-  if (!is_box(effect)) return;
-  const Vec2 place(effect.parameters.at("x_m"), effect.parameters.at("z_m"));
-  const Vec2 free = nearest_free(scene, 0.5 * effect.parameters.at("width_m"), place);
-  effect.parameters.at("x_m") = free.x;
-  effect.parameters.at("z_m") = free.y;
-}
-
-/// Of a box.
-ParameterInfo coordinate(std::string name) {
-  return {.name = std::move(name),
-          .unit = "m",
-          .role = Role::detail,
-          .off = 0.0,
-          .typical = 0.0,
-          .low = -50.0,
-          .high = 50.0,
-          .least = -1e4,
-          .most = 1e4,
-          .source = "assumed: a free place",
-          .only_if = {"what", "box"}};
+  if (is_box(effect)) settle_free_place(effect, scene, 0.5 * effect.parameters.at("width_m"));
 }
 
 }  // namespace
@@ -114,8 +89,8 @@ const Effect& missing_occluder() {
                                .least = 0.01,
                                .most = 20.0,
                                .source = "assumed: a box is as deep as wide"},
-                              coordinate("x_m"),
-                              coordinate("z_m")},
+                              floor_coordinate("x_m", {"what", "box"}),
+                              floor_coordinate("z_m", {"what", "box"})},
                .choices = {{"what", ChoiceKind::word, {"chair_backs", "box"}, "chair backs"}},
                .reach = Reach::geometry},
       .alter = alter,

@@ -1,31 +1,20 @@
 // People don't keep to the choreography: they move as people do.
 #include <algorithm>
-#include <array>
-#include <utility>
+#include <string>
+#include <vector>
 
 #include "effects/kit.hpp"
 
 namespace pirsim::effects {
 namespace {
 
-constexpr std::array<std::pair<const char*, Activity>, 4> activities{{{"typing", Activity::typing},
-                                                                      {"reading", Activity::reading},
-                                                                      {"meeting", Activity::meeting},
-                                                                      {"phone", Activity::phone}}};
-
-std::vector<std::string> activity_names() {
-  std::vector<std::string> names;
-  for (const auto& [name, activity] : activities) names.emplace_back(name);
-  return names;
-}
+/// What one does at a desk.
+std::vector<std::string> activities() { return {activity_names.begin(), activity_names.begin() + 4}; }
 
 void alter(StudyInForce& study, const EffectSpec& effect) {
-  const std::string name = word(effect, "activity");
-  const Activity activity = std::ranges::find(activities, name, [](const auto& a) { return a.first; })->second;
-  for (TrialInForce& trial : study.trials) {
-    for (PersonInForce& person : trial.people) person.style = MotionStyle::natural;
-  }
-  for_each_work(study, [&](action::Work& work) { work.activity = activity; });
+  const auto which = std::ranges::find(activity_names, word(effect, "activity")) - activity_names.begin();
+  for_each_person(study, [](PersonInForce& person) { person.style = MotionStyle::natural; });
+  for_each_work(study, [&](action::Work& work) { work.activity = static_cast<Activity>(which); });
 }
 
 }  // namespace
@@ -42,7 +31,7 @@ const Effect& natural_motion() {
            .fingerprint = "the arms' line in the spectrum is gone; activity comes in bouts of all lengths",
            .confused_with = {"fidgeting", "uneven_arms", "soft_zone_edges"},
            .parameters = {whether("present", "assumed")},
-           .choices = {{"activity", ChoiceKind::variant, activity_names(), "typing"}},
+           .choices = {{"activity", ChoiceKind::variant, activities(), "typing"}},
            .reach = Reach::geometry,
            .sought = Sought::not_yet},
       .alter = alter};

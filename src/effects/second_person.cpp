@@ -41,7 +41,6 @@ void alter(StudyInForce& study, const EffectSpec& effect) {
   const Vec2 place = place_of(effect, study.scene, clear_m);
   BystanderPlan plan{.id = "second person", .place = place, .heading_deg = effect.parameters.at("heading_deg")};
   plan.again = word(effect, "moves") == "wanders" ? wanders(effect, study.scene, place) : stands(effect, place);
-  plan.least_s = effect.parameters.at("every_s");
   add_bystander(study, plan, effect.where);
 }
 

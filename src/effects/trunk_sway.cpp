@@ -5,10 +5,8 @@ namespace pirsim::effects {
 namespace {
 
 void alter(StudyInForce& study, const EffectSpec& effect) {
-  for (TrialInForce& trial : study.trials) {
-    for (PersonInForce& person : trial.people)
-      person.changes.trunk_sway = {effect.parameters.at("amplitude_deg"), effect.parameters.at("period_s"), 1.0};
-  }
+  const SwingSpec sway{effect.parameters.at("amplitude_deg"), effect.parameters.at("period_s"), 1.0};
+  for_each_person(study, [&](PersonInForce& person) { person.changes.trunk_sway = sway; });
 }
 
 }  // namespace

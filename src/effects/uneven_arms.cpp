@@ -5,10 +5,8 @@ namespace pirsim::effects {
 namespace {
 
 void alter(StudyInForce& study, const EffectSpec& effect) {
-  for (TrialInForce& trial : study.trials) {
-    for (PersonInForce& person : trial.people)
-      person.changes.uneven_arms = {effect.parameters.at("spread"), effect.parameters.at("pause_share")};
-  }
+  const UnevenArmsSpec arms{effect.parameters.at("spread"), effect.parameters.at("pause_share")};
+  for_each_person(study, [&](PersonInForce& person) { person.changes.uneven_arms = arms; });
 }
 
 }  // namespace

@@ -20,8 +20,7 @@ BystanderPlan object(const EffectSpec& effect, const Vec2& place) {
           .mass_kg = stouter * density * height_m * height_m * height_m,
           .speed_m_s = effect.parameters.at("speed_m_s"),
           .place = place,
-          .again = {},
-          .least_s = 1.0};
+          .again = {}};
 }
 
 void alter(StudyInForce& study, const EffectSpec& effect) {
@@ -31,14 +30,12 @@ void alter(StudyInForce& study, const EffectSpec& effect) {
     const double heading = radians(effect.parameters.at("heading_deg")), sweep_m = effect.parameters.at("sweep_m");
     plan.again.emplace_back(action::Walk{{place + sweep_m * direction_of(heading)}});
     plan.again.emplace_back(action::Walk{{place}});
-    plan.least_s = 2.0 * sweep_m / plan.speed_m_s;
   } else {
     const double every_s = effect.parameters.at("every_s");
     for (const Vec2& stop : round_trip(study.scene, clear_m, place)) {
       plan.again.emplace_back(action::Walk{{stop}});
       plan.again.emplace_back(action::Wait{every_s});
     }
-    plan.least_s = every_s;
   }
   add_bystander(study, plan, effect.where);
 }

@@ -5,6 +5,7 @@
 #include "pirsim/random.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
+#include "support/trigger_bench.hpp"
 
 using namespace pirsim;
 using namespace pirsim::test;
@@ -12,30 +13,6 @@ using namespace pirsim::test;
 namespace {
 
 constexpr int rate_hz = 50;
-
-/// Two sensors that see nothing.
-struct Bench {
-  SceneSpec scene;
-  SensingSpec sensing;
-  RayBundle rays;
-
-  Bench() {
-    scene.name = "bench";
-    scene.sensors = {{"A", "none", {}}, {"B", "none", {}}};
-  }
-  [[nodiscard]] effects::Pipeline pipeline(const std::vector<EffectSpec>& effects, std::uint32_t run = 0) const {
-    effects::Pipeline pipeline(effects, {scene, sensing, rays});
-    pipeline.begin_run(1, run);
-    return pipeline;
-  }
-};
-
-EffectSpec effect(const std::string& name, std::map<std::string, double, std::less<>> parameters,
-                  std::map<std::string, std::string, std::less<>> choices = {}) {
-  return {name, std::move(parameters), std::move(choices), {}};
-}
-
-using Series = std::vector<std::uint8_t>;  // (n_ticks) of one sensor, from tick 1 on
 
 /// Both sensors' triggers after the pipeline; sensor A is given `before`, sensor B nothing.
 std::array<Series, 2> through(effects::Pipeline pipeline, const Series& before) {
@@ -59,12 +36,6 @@ std::vector<std::size_t> ones(const Series& series) {
     if (series[i] != 0) ticks.push_back(i + 1);
   }
   return ticks;
-}
-Series random_triggers(std::size_t n, double probability) {
-  Stream stream({3, 0, 0, Purpose::test});
-  Series series(n);
-  for (std::uint8_t& trigger : series) trigger = stream.uniform() < probability ? 1 : 0;
-  return series;
 }
 double count(const Series& series) { return static_cast<double>(std::ranges::count(series, std::uint8_t{1})); }
 

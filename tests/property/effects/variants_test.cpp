@@ -11,55 +11,27 @@
 #include "sim/run_state.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
+#include "support/trigger_bench.hpp"
 
 using namespace pirsim;
 using namespace pirsim::test;
 
 namespace {
 
-EffectSpec effect(const std::string& name, std::map<std::string, double, std::less<>> parameters,
-                  std::map<std::string, std::string, std::less<>> choices = {}) {
-  return effects::resolved(effects::find(name), {name, std::move(parameters), std::move(choices), {}});
-}
 Model meeting_room(std::vector<EffectSpec> effects) {
   return compile(shipped_scene("meeting_room.gltf"), with(short_study_a(), std::move(effects)));
 }
-
-/// Three sensors that see nothing.
-struct Bench {
-  SceneSpec scene;
-  SensingSpec sensing;
-  RayBundle rays;
-
-  Bench() {
-    scene.name = "bench";
-    scene.sensors = {{"A", "none", {}}, {"B", "none", {}}, {"C", "none", {}}};
-  }
-  [[nodiscard]] effects::Pipeline pipeline(const EffectSpec& effect) const {
-    effects::Pipeline pipeline(std::vector{effect}, {scene, sensing, rays});
-    pipeline.begin_run(1, 0);
-    return pipeline;
-  }
-};
-using Series = std::vector<std::uint8_t>;
 
 /// Sensor A's triggers after the pipeline.
 Series through(effects::Pipeline pipeline, const Series& before) {
   Series after;
   for (std::size_t i = 0; i < before.size(); ++i) {
-    std::array<std::uint8_t, 3> triggers{before[i], 0, 0};
+    std::array<std::uint8_t, 2> triggers{before[i], 0};
     pipeline.tick(static_cast<std::int64_t>(i) + 1, triggers);
     after.push_back(triggers[0]);
   }
   return after;
 }
-Series random_triggers(std::size_t n, double probability) {
-  Stream stream({3, 0, 0, Purpose::test});
-  Series series(n);
-  for (std::uint8_t& trigger : series) trigger = stream.uniform() < probability ? 1 : 0;
-  return series;
-}
-
 /// One sensor with one zone of seven nested copies, as a bundle without rays.
 RayBundle nested_zone() {
   RayBundle bundle;
@@ -146,7 +118,7 @@ TEST_CASE("triggers that are lost one by one leave hardly any busy window withou
       for (std::size_t i = 0; i < per_window; ++i) before[w * ticks + 7 * i] = 1;
     }
     const Series after = through(
-        Bench().pipeline(effect("missed_triggers", {{"trigger_probability", p}}, {{"unit", "trigger"}})), before);
+        Bench().pipeline({effect("missed_triggers", {{"trigger_probability", p}}, {{"unit", "trigger"}})}), before);
     double silent = 0.0;
     for (std::size_t w = 0; w < n_windows; ++w) {
       const auto first = after.begin() + static_cast<std::ptrdiff_t>(w * ticks);
@@ -163,10 +135,10 @@ TEST_CASE("triggers that are lost one by one leave hardly any busy window withou
 TEST_CASE("simultaneous false triggers come to all sensors at one rate and at the same ticks") {
   constexpr std::size_t n = 1'000'000;
   effects::Pipeline pipeline =
-      Bench().pipeline(effect("false_triggers", {{"rate_per_s", 0.1}}, {{"timing", "simultaneous"}}));
+      Bench().pipeline({effect("false_triggers", {{"rate_per_s", 0.1}}, {{"timing", "simultaneous"}})});
   double count = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
-    std::array<std::uint8_t, 3> triggers{};
+    std::array<std::uint8_t, 2> triggers{};
     pipeline.tick(static_cast<std::int64_t>(i) + 1, triggers);
     REQUIRE(std::set<std::uint8_t>(triggers.begin(), triggers.end()).size() == 1);
     count += triggers[0];
@@ -178,11 +150,11 @@ TEST_CASE("simultaneous false triggers come to all sensors at one rate and at th
 TEST_CASE("a hold that ignores triggers and a paralysable dead time do what their twins in a dozen lines do") {
   const Series before = random_triggers(50'000, 0.02);
   constexpr std::int64_t hold = 40, dead = 60;  // ticks
-  const Series held = through(Bench().pipeline(effect("pulse_stretching", {{"hold_s", hold / 50.0}, {"spread", 0.0}},
-                                                      {{"retrigger", "ignored"}})),
+  const Series held = through(Bench().pipeline({effect("pulse_stretching", {{"hold_s", hold / 50.0}, {"spread", 0.0}},
+                                                       {{"retrigger", "ignored"}})}),
                               before);
   const Series woken =
-      through(Bench().pipeline(effect("dead_time", {{"dead_s", dead / 50.0}}, {{"kind", "paralysable"}})), before);
+      through(Bench().pipeline({effect("dead_time", {{"dead_s", dead / 50.0}}, {{"kind", "paralysable"}})}), before);
   Series held_twin(before.size(), 0), woken_twin(before.size(), 0);
   for (std::size_t i = 0; i < before.size();) {
     if (before[i] == 0) {
@@ -338,4 +310,38 @@ TEST_CASE("a rough wall scatters mirrored rays by the stated angle, the same in 
                error = 1.0 / std::sqrt(static_cast<double>(smooth.size()));
   CHECK(mean == Approx(50.0).epsilon(4.0 * error + 0.02));
   CHECK(ghosts(meeting_room({spec})) == rough);
+}
+
+TEST_CASE("several bystanders, at rest or not, keep a study small: each has as many actions as a trial has time for") {
+  const auto at = [](double z_m) {
+    return effect("warm_object", {{"x_m", 1.0}, {"z_m", z_m}, {"every_s", 0.0}}, {{"place", "given"}});
+  };
+  const Model model = meeting_room({at(-1.0), at(-2.0), at(-3.0), effect("second_person", {})});
+  const sim::TrialModel& trial = model.compiled().trials().front();
+  REQUIRE(trial.people.size() == 5);
+  for (const sim::PersonModel& person : trial.people) CHECK(person.spec.actions.size() < 20'000);
+  CHECK(results_of(model).front().samples.size() == results_of(meeting_room({})).front().samples.size());
+}
+
+TEST_CASE("a bystander of a day moves as long as the day lasts") {
+  ScriptSpec script = short_study_a();
+  script.trials.resize(1);
+  script.trials.front().people.clear();
+  script.trials.front().schedule.emplace();
+  script.trials.front().schedule->to_h = 1.0;
+  script.trials.front().schedule->cleaning_h = 0.5;
+  script.effects = {effect("warm_object", {{"every_s", 20.0}})};
+  const Model model = compile(shipped_scene("meeting_room.gltf"), script);
+  State state(model, 0);
+  double last_moved_s = 0.0;
+  Vec2 before(0.0);
+  while (step(model, state)) {
+    const auto& actors = state.run_state().crowd.actors();
+    const auto object = std::ranges::find_if(
+        actors, [](const auto& actor) { return actor.person().spec.changes.role == PersonRole::object; });
+    REQUIRE(object != actors.end());
+    if (object->motion().position() != before) last_moved_s = state.sample().time_s;
+    before = object->motion().position();
+  }
+  CHECK(last_moved_s > 3500.0);
 }
