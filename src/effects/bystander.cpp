@@ -14,8 +14,7 @@ double longest_way_m(const SceneSpec& scene) { return 2.0 * glm::distance(scene.
 
 /// An upper bound of how long a trial may last, seconds. It waits for nobody but its subjects.
 double longest_s(const TrialInForce& trial, const SceneSpec& scene) {
-  double longest = trial.duration_s.value_or(0.0);
-  if (trial.schedule) longest = 3600.0 * (trial.schedule->to_h - trial.schedule->from_h);
+  double longest = trial.duration_s.value_or(0.0);  // a day's too
   for (const PersonInForce& person : trial.people) {
     if (person.changes.role != PersonRole::subject) continue;
     const double way_s = longest_way_m(scene) / person.walking_speed_m_s;

@@ -62,6 +62,18 @@ TEST_CASE("a plan outlines each connected piece of furniture by its convex hull"
   for (const auto& polygon : plan.furniture) CHECK(polygon.size() == 4);
 }
 
+TEST_CASE("a plan takes the corners of a single triangle for one piece") {
+  SceneSpec scene;
+  scene.floor = FloorArea({{{0, 0}, {5, 0}, {5, -4}, {0, -4}}}, 0.0);
+  TriMesh shelf;
+  shelf.positions = {{1, 1, -1}, {2, 1, -1}, {1, 1, -2}};
+  shelf.triangles = {{0, 1, 2}};
+  scene.meshes = {shelf};
+  const io::RoomPlan plan = plan_of(scene);
+  REQUIRE(plan.furniture.size() == 1);
+  CHECK(area_of(plan.furniture[0]) == Approx(0.5));
+}
+
 TEST_CASE("a plan has every seat and door of the scene, doors as wide as they are") {
   const SceneSpec scene = shipped_scene("open_office.gltf");
   const io::RoomPlan plan = plan_of(scene);
