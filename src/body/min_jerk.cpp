@@ -27,14 +27,7 @@ void MinJerk::move_to(double target, int ticks) noexcept {
                    6.0 * way - 3.0 * v - 0.5 * a};
 }
 
-void MinJerk::advance() noexcept {
-  if (settled()) return;
-  ++tick_;
-  if (tick_ == ticks_) *this = MinJerk(target_);
-}
-
-double MinJerk::value() const noexcept {
-  if (settled()) return target_;
+double MinJerk::moving_value() const noexcept {
   const double tau = static_cast<double>(tick_) / ticks_;
   double sum = 0.0;
   for (std::size_t k = 6; k-- > 0;) sum = sum * tau + coefficients_[k];

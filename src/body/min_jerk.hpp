@@ -15,14 +15,17 @@ class MinJerk {
 
   /// Arrives after `ticks` ticks, or earlier where going on at the present speed would lead beyond the target.
   void move_to(double target, int ticks) noexcept;
-  void advance() noexcept;
-
-  [[nodiscard]] double value() const noexcept;
+  // Most are at rest at most ticks, and each person has sixteen.
+  void advance() noexcept {
+    if (!settled() && ++tick_ == ticks_) *this = MinJerk(target_);
+  }
+  [[nodiscard]] double value() const noexcept { return settled() ? target_ : moving_value(); }
   [[nodiscard]] double target() const noexcept { return target_; }
   [[nodiscard]] bool settled() const noexcept { return tick_ == ticks_; }
   bool operator==(const MinJerk&) const = default;
 
  private:
+  [[nodiscard]] double moving_value() const noexcept;
   [[nodiscard]] double derivative(int order) const noexcept;  ///< per tick^order
 
   std::array<double, 6> coefficients_{};  ///< of tau^k, tau = tick/ticks

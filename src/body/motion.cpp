@@ -271,8 +271,6 @@ void Motion::turn_to_table() noexcept {
   }
 }
 
-Stage Motion::stage() const noexcept { return stage_; }
-
 bool Motion::settled() const noexcept {
   if (stage_ == Stage::standing) return true;
   return stage_ == Stage::seated && tilt_.settled() && reach_.settled() && hand_offset_left_over_m_.settled();

@@ -95,10 +95,10 @@ class Motion {
 
   void advance();  ///< one tick
 
-  [[nodiscard]] Stage stage() const noexcept;
+  [[nodiscard]] Stage stage() const noexcept { return stage_; }
   /// Nothing of the last command is left to do (desk work and sitting go on while settled).
   [[nodiscard]] bool settled() const noexcept;
-  [[nodiscard]] Vec2 position() const noexcept;  ///< of the pelvis over the floor
+  [[nodiscard]] Vec2 position() const noexcept { return stance_.pelvis.position; }  ///< of the pelvis over the floor
   /// Where the pelvis is, or is to be, when standing: on a seat, where sitting down began.
   [[nodiscard]] Vec2 place_to_stand() const noexcept { return on_seat() ? stand_.position : position(); }
   /// How far back the pelvis gets on the way onto the seat or off it; elsewhere the position.

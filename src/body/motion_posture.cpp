@@ -172,8 +172,6 @@ Posture posture_of(const Humanoid& humanoid, const Outline& outline) noexcept {
   return posture_of(humanoid, pose);
 }
 
-Vec2 Motion::position() const noexcept { return stance_.pelvis.position; }
-
 double Motion::heading() const noexcept { return wrapped(stance_.pelvis.heading); }
 
 double Motion::speed_m_s() const noexcept { return stage_ == Stage::walking ? track_speed_ : 0.0; }

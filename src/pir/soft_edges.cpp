@@ -48,8 +48,7 @@ void SoftEdges::begin_run(std::uint64_t seed, std::uint32_t run, const ZoneSet& 
   settled_ = true;
 }
 
-void SoftEdges::tick(const ZoneSet& before, const ZoneSet& after, std::span<std::uint8_t> bits) noexcept {
-  if (n_levels_ == 1) return detector_->mark(before.words(), after.words(), bits);
+void SoftEdges::tick_levels(const ZoneSet& before, const ZoneSet& after, std::span<std::uint8_t> bits) noexcept {
   switch (spec_.rule) {
     case EdgeRule::drawn_edge:
       draw_edges();

@@ -27,13 +27,17 @@ class SoftEdges {
   /// rest: channels that have been active for long.
   void begin_run(std::uint64_t seed, std::uint32_t run, const ZoneSet& rest);
   /// Once a tick, from the first on. bits[s] |= 1 where sensor s sees motion. before, after: channels.
-  void tick(const ZoneSet& before, const ZoneSet& after, std::span<std::uint8_t> bits) noexcept;
+  void tick(const ZoneSet& before, const ZoneSet& after, std::span<std::uint8_t> bits) noexcept {
+    if (n_levels_ == 1) return detector_->mark(before.words(), after.words(), bits);
+    tick_levels(before, after, bits);
+  }
   /// tick() with the same channels before and after, without comparing them.
   void tick_unchanged(const ZoneSet& channels, std::span<std::uint8_t> bits) noexcept;
   /// True if tick_unchanged() would change nothing and trigger nothing.
   [[nodiscard]] bool is_at_rest() const noexcept;
 
  private:
+  void tick_levels(const ZoneSet& before, const ZoneSet& after, std::span<std::uint8_t> bits) noexcept;
   void draw_edges() noexcept;
   void filter(const ZoneSet& channels, std::span<std::uint8_t> bits) noexcept;
   void notice_swept(const ZoneSet& before, const ZoneSet& after, std::span<std::uint8_t> bits) noexcept;

@@ -68,7 +68,9 @@ void Actor::advance(const CompiledStudy& study, std::int64_t tick, std::span<con
   carry_on({study, others, tick - 1});
   if (body_) {
     if (natural_) move_naturally();
-    if (body_->motion().stage() == Stage::seated) restlessness_.tick(body_motion(), choreographed_work());
+    if (restlessness_.acts() && body_->motion().stage() == Stage::seated) {
+      restlessness_.tick(body_motion(), choreographed_work());
+    }
     body_->advance(others, n_before, tick - 1);
     if (const auto incident = body_->take_incident()) incidents_.push_back(*incident);
   }
@@ -83,7 +85,7 @@ void Actor::carry_on(const Scene& scene) {
       if (action().at_s && scene.now < ticks(*action().at_s, scene.study)) return;
       begun_ = true;
       began_ = scene.now;
-      note_durations(scene.study);
+      note_times(scene.study);
       plan(scene);
     }
     while (!busy && !errands_.empty() && carry_out_first(scene) == Progress::done) {
@@ -92,7 +94,7 @@ void Actor::carry_on(const Scene& scene) {
       if (body_) body_->set_out();
     }
     if (const auto* work_action = std::get_if<action::Work>(&action().what)) work(*work_action, scene.now);
-    const auto next = interrupting_action(scene);
+    const auto next = scene.now < called_at_ ? std::nullopt : interrupting_action(scene);
     if (!next && !(errands_.empty() && time_is_up(scene.now))) return;
     finish_action();
     if (next) action_ = *next;
@@ -135,7 +137,10 @@ std::optional<std::size_t> Actor::interrupting_action(const Scene& scene) const 
 }
 
 /// In ticks, once an action: they are asked for every tick.
-void Actor::note_durations(const CompiledStudy& study) {
+void Actor::note_times(const CompiledStudy& study) {
+  const auto later = std::span(actions()).subspan(action_ + 1);
+  const auto call = std::ranges::find_if(later, [](const ScriptedAction& other) { return other.at_s.has_value(); });
+  called_at_ = call == later.end() ? std::numeric_limits<std::int64_t>::max() : ticks(*call->at_s, study);
   lasts_ticks_ = 0;
   if (const auto* wait = std::get_if<action::Wait>(&action().what)) lasts_ticks_ = ticks(wait->duration_s, study);
   if (const auto* work = std::get_if<action::Work>(&action().what)) {
@@ -259,8 +264,8 @@ std::optional<Activity> Actor::activity() const {
   return std::nullopt;
 }
 
-bool Actor::takes_part_in_meeting() const {
-  if (!natural_ || !body_ || activity() != Activity::meeting) return false;
+bool Actor::is_at_meeting() const {
+  if (activity() != Activity::meeting) return false;
   const Stage stage = body_->motion().stage();
   return stage == Stage::seated || stage == Stage::standing;
 }

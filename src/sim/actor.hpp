@@ -45,7 +45,7 @@ class Actor {
   /// Taken, from setting out for it to walking away from it; or empty.
   [[nodiscard]] std::string_view seat() const noexcept { return seat_; }
   /// Sits or stands in a meeting, in natural style.
-  [[nodiscard]] bool takes_part_in_meeting() const;
+  [[nodiscard]] bool takes_part_in_meeting() const { return natural_ && body_ && is_at_meeting(); }
   /// From now on; speaker: where who speaks is.
   void attend(Talk talk, const std::optional<Vec2>& speaker);
   /// What happened in the step to this tick.
@@ -100,6 +100,7 @@ class Actor {
     std::int64_t now;
   };
 
+  [[nodiscard]] bool is_at_meeting() const;
   void plan(const Scene& scene);
   void plan_entering(const EntranceSpec& door);
   void plan_leaving(const EntranceSpec& door);
@@ -116,7 +117,7 @@ class Actor {
   [[nodiscard]] std::string_view current_phase() const noexcept;
   /// Index of the latest action whose moment has come, if it is later than the current one.
   [[nodiscard]] std::optional<std::size_t> interrupting_action(const Scene& scene) const;
-  void note_durations(const CompiledStudy& study);
+  void note_times(const CompiledStudy& study);
   [[nodiscard]] bool time_is_up(std::int64_t now) const noexcept;
   [[nodiscard]] bool door_is_taken(const WaitForDoor& door, std::span<const Presence> others) const;
   [[nodiscard]] bool somebody_near(const Vec2& point, std::span<const Presence> others) const;
@@ -151,6 +152,7 @@ class Actor {
   bool begun_ = false;                    ///< the current action has begun
   std::int64_t began_ = 0;                ///< tick at which it did
   std::int64_t lasts_ticks_ = 0;          ///< of a wait or work; others end when their errands are done
+  std::int64_t called_at_ = 0;            ///< tick at which a later action interrupts the current one
   std::int64_t tilt_every_ticks_ = 1;     ///< of work
   std::deque<Errand> errands_;            ///< still to do for the current action
   std::string_view seat_;                 ///< taken, or empty

@@ -17,6 +17,7 @@ Crowd::Crowd(const CompiledStudy& study, std::uint32_t run) : conversation_(stud
 
 std::size_t Crowd::gather_others(std::size_t i) {
   others_.clear();
+  if (actors_.size() == 1) return 0;
   std::size_t n_before = 0;
   for (std::size_t other = 0; other < actors_.size(); ++other) {
     if (other == i) n_before = others_.size();

@@ -32,7 +32,7 @@ void Detector::tick(const Exposure& before, const Exposure& after, std::span<std
   } else {
     edges_.tick(before.channels, after.channels, triggers);
   }
-  advance_analog(after, triggers);
+  if (!analog_.empty()) advance_analog(after, triggers);
 }
 
 void Detector::tick_unchanged(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept {

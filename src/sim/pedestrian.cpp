@@ -128,6 +128,7 @@ void Pedestrian::forget_way() noexcept {
 }
 
 std::optional<Incident> Pedestrian::take_incident() noexcept {
+  if (!incident_) return std::nullopt;
   const auto taken = incident_;
   incident_.reset();
   return taken;
@@ -162,7 +163,6 @@ void Pedestrian::pass_through(std::int64_t now) {
 
 /// Solid again once clear of everybody, on the way or at its end.
 void Pedestrian::end_passing(std::span<const Presence> others) noexcept {
-  if (solidity_ == Solidity::solid) return;
   const bool clear = std::ranges::none_of(others, [&](const Presence& other) {
     return distance(motion_.position(), other.trunk) < person_->humanoid.trunk_radius_m();
   });
@@ -323,7 +323,6 @@ bool Pedestrian::must_give_way(std::span<const Presence> others) const {
 }
 
 void Pedestrian::keep_distance(std::span<const Presence> others, std::size_t n_before, std::int64_t now) {
-  if (motion_.stage() != Stage::walking) return;
   if (solidity_ != Solidity::solid) {
     motion_.limit_speed(motion_.pace_m_s());
     return;
@@ -367,7 +366,7 @@ std::optional<Vec2> Pedestrian::passing_place(const Presence& whom, std::span<co
   return std::nullopt;
 }
 
-bool Pedestrian::makes_way(std::span<const Presence> others, std::int64_t now) {
+bool Pedestrian::makes_way_among(std::span<const Presence> others, std::int64_t now) {
   if (aside_) {
     const auto whom = std::ranges::find(others, aside_->whom, &Presence::person);
     const bool gone = whom == others.end() || !whom->wished_way ||
@@ -385,7 +384,7 @@ bool Pedestrian::makes_way(std::span<const Presence> others, std::int64_t now) {
     if (go_to(place, others, now) == Progress::done) blocked_ticks_ = 0;
     return aside_.has_value();
   }
-  if (others.empty() || !on_feet() || solidity_ != Solidity::solid) return false;
+  if (!on_feet() || solidity_ != Solidity::solid) return false;
   if (motion_.stage() == Stage::turning || now % ticks(search_every_s) != 0) return false;
   const bool walks_freely = motion_.speed_m_s() > 0.0 && !held_up_since_;
   if (walks_freely) return false;
@@ -427,11 +426,11 @@ void Pedestrian::sit_up(std::span<const Presence> others, std::int64_t now) {
 
 void Pedestrian::advance(std::span<const Presence> others, std::size_t n_before, std::int64_t now) {
   if (!others.empty()) sit_up(others, now);
-  keep_distance(others, n_before, now);
+  if (motion_.stage() == Stage::walking) keep_distance(others, n_before, now);
   const Vec2 before = motion_.position();
   motion_.advance();
-  walked_m_ += glm::distance(before, motion_.position());
-  end_passing(others);
+  if (route_) walked_m_ += glm::distance(before, motion_.position());
+  if (solidity_ != Solidity::solid) end_passing(others);
   if (held_up_since_ && glm::distance(motion_.position(), held_up_at_) > walked_on_m) {
     held_up_since_.reset();
     wished_way_.reset();

@@ -34,7 +34,9 @@ class Pedestrian {
   [[nodiscard]] std::optional<Vec2> target() const { return route_ ? target_ : std::nullopt; }
 
   /// Makes way for others if need be; true while that is what the body does, so that commands have to wait.
-  bool makes_way(std::span<const Presence> others, std::int64_t now);
+  bool makes_way(std::span<const Presence> others, std::int64_t now) {
+    return (aside_ || !others.empty()) && makes_way_among(others, now);
+  }
   /// Rises if need be, then walks. Throws Error(infeasible) if there is no way even without others.
   Progress go_to(const Vec2& target, std::span<const Presence> others, std::int64_t now);
   /// From a seat as soon as the way back is free; stops a walk that isn't one of go_to().
@@ -60,6 +62,7 @@ class Pedestrian {
   [[nodiscard]] std::optional<Incident> take_incident() noexcept;
 
  private:
+  bool makes_way_among(std::span<const Presence> others, std::int64_t now);
   struct Aside {
     Vec2 place{0.0};
     Precedence precedence;   ///< inherited

@@ -20,6 +20,9 @@ Restlessness::Restlessness(const PersonChanges& changes, std::uint64_t seed, std
     : fidgeting_(changes.fidgeting),
       arms_(changes.uneven_arms),
       tick_s_(tick_s),
+      acts_(changes.fidgeting.rate_per_s > 0.0 || changes.uneven_arms.spread > 0.0 ||
+            changes.uneven_arms.pause_share > 0.0 || changes.trunk_sway.amplitude_deg > 0.0 ||
+            changes.chair_swing.amplitude_deg > 0.0),
       fidget_stream_({seed, run, person, Purpose::fidgeting}),
       arms_stream_({seed, run, person, Purpose::uneven_arms}),
       trunk_{changes.trunk_sway, body::Channel::trunk_lean, Stream({seed, run, person, Purpose::trunk_sway})},

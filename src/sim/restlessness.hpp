@@ -16,6 +16,8 @@ class Restlessness {
  public:
   Restlessness(const PersonChanges& changes, std::uint64_t seed, std::uint32_t run, std::uint32_t person,
                double tick_s);
+  /// Whether any effect asks for movements.
+  [[nodiscard]] bool acts() const noexcept { return acts_; }
   /// Before the body moves, at a tick at which it is seated. work: what the person is at in the paper's style, or null.
   void tick(body::Motion& motion, const action::Work* work);
 
@@ -39,6 +41,7 @@ class Restlessness {
   FidgetSpec fidgeting_;
   UnevenArmsSpec arms_;
   double tick_s_;
+  bool acts_;
   Stream fidget_stream_, arms_stream_;
   Swing trunk_, chair_;
   std::int64_t ticks_to_fidget_ = 0;
