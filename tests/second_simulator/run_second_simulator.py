@@ -18,6 +18,8 @@ if importlib.util.find_spec("numpy") is None:
 
 import numpy as np
 
+import challenge
+import faults
 import second_simulator as second
 
 PIRSIM = DATA = None
@@ -48,20 +50,20 @@ class SecondSimulator(unittest.TestCase):
             folder = pathlib.Path(name)
             (folder / "study.yaml").write_text(SCRIPT)
             scene = DATA / "rooms/meeting_room.gltf"
-            study = ["--scene", scene, "--script", folder / "study.yaml", "-q"]
-            subprocess.run([PIRSIM, *study, "-o", folder / "rows.csv", "--zones", folder / "zones.csv"], check=True)
-            subprocess.run([PIRSIM, "export", *study, "--keys-per-s", "50", "--beams", "none", "-o",
-                            folder / "run.gltf"], check=True)
+            study = second.study_of(scene, folder / "study.yaml", [])
+            subprocess.run([PIRSIM, *study, "-q", "-o", folder / "rows.csv", "--zones", folder / "zones.csv"], check=True)
             rows, cls.zones = (list(csv.DictReader((folder / name).read_text().splitlines()))
                                for name in ("rows.csv", "zones.csv"))
-            cls.motion = second.Motion(second.Gltf(folder / "run.gltf"))
-            cls.room = second.Gltf(scene)
-        cls.rays = second.Rays(cls.room, DATA / "sensors")
-        cls.active = second.active_clusters(cls.rays, cls.motion)
+            [cls.recorded] = second.runs_of(PIRSIM, study)
+        cls.motion = cls.recorded.motion
+        cls.room = second.Gltf(scene)
+        cls.plain = second.Measurement(cls.room, DATA / "sensors", faults.FAULTS["nothing"](None), 1)
+        cls.plain.bits([cls.recorded], 0)
+        cls.rays, cls.active = cls.plain.rays, cls.plain.shares[0] > 0
         cls.bits = np.array([[int(row[sensor]) for sensor in cls.rays.sensors] for row in rows], bool)
 
     def windows(self, rays, active):
-        return second.windows_of(second.triggers_of(rays, active), 50)
+        return second.windows_of(second.sharp(rays, active), 50)
 
     def test_every_row_is_the_same(self):
         self.assertGreater(self.bits.sum(), 20)
@@ -80,23 +82,67 @@ class SecondSimulator(unittest.TestCase):
         self.assertLessEqual((expected != self.active).sum(), 1e-5 * expected.size)
 
     def test_a_sensor_that_is_turned_by_three_degrees_is_noticed(self):
-        turned = second.Rays(self.room, DATA / "sensors", yaw_deg=3.0)
-        different = (self.windows(turned, second.active_clusters(turned, self.motion)) != self.bits).sum()
+        turned = second.Rays(self.room, DATA / "sensors", mount=lambda _, world: world @ faults.rotation([0, 1, 0], 3.0))
+        different = (self.windows(turned, second.covered_shares(turned, self.motion)) != self.bits).sum()
         self.assertGreater(different, 10)
 
-    def test_injected_faults_do_what_they_are_called(self):
-        class Options:
-            missed = dead_s = false_per_s = 0.0
+    def bits_with(self, name, seed=1):
+        """Rows of the recorded run. What the rays meet is traced once for all faults that come later."""
+        fault = faults.FAULTS[name](np.random.default_rng([seed, 0]))
+        return second.Measurement(self.room, DATA / "sensors", fault, seed, self.plain).bits([self.recorded], 0)
 
-        triggers = second.triggers_of(self.rays, self.active)
-        random = lambda: np.random.default_rng(1)
-        np.testing.assert_array_equal(second.inject(triggers, 50, 50, Options, random()), self.bits)
-        missed, dead, false = type("M", (Options,), {"missed": 0.5}), type("D", (Options,), {"dead_s": 3.0}), type(
-            "F", (Options,), {"false_per_s": 0.5})
-        self.assertLess(second.inject(triggers, 50, 50, missed, random()).sum(), 0.8 * self.bits.sum())
-        self.assertGreater(second.inject(triggers, 50, 50, false, random()).sum(), 1.2 * self.bits.sum())
-        for column in second.inject(triggers, 50, 50, dead, random()).T:
-            self.assertGreaterEqual(np.diff(np.flatnonzero(column)).min(initial=3), 2)
+    def test_nothing_hidden_changes_no_bit(self):
+        np.testing.assert_array_equal(self.bits_with("nothing"), self.bits)
+
+    def test_every_fault_behind_the_optics_changes_some_bits_and_the_same_ones_again(self):
+        """But for one that comes from run to run."""
+        names = [name for name, make in faults.FAULTS.items() if make(np.random.default_rng(1)).is_behind_the_optics()]
+        self.assertGreaterEqual(len(names), 15)
+        for name in sorted(set(names) - {"nothing", "fading_battery"}):
+            with self.subTest(name):
+                changed = max((self.bits_with(name, seed) != self.bits).sum() for seed in (1, 2))
+                self.assertGreater(changed, 0)
+                np.testing.assert_array_equal(self.bits_with(name), self.bits_with(name))
+
+    def test_faults_before_and_in_the_optics_change_some_bits(self):
+        for name in ("tipped", "half_blind", "blurred_by_area", "fan_heater"):
+            with self.subTest(name):
+                self.assertGreater((self.bits_with(name) != self.bits).sum(), 0)
+
+    def test_faults_of_the_electronics_do_what_they_are_called(self):
+        held = self.bits_with("monostable")
+        self.assertTrue((held | ~self.bits).all(), "a pulse that is held is never lost")
+        self.assertGreater(held.sum(), self.bits.sum())
+        for column in self.bits_with("lock_out").T:
+            self.assertGreaterEqual(np.diff(np.flatnonzero(column)).min(initial=2), 2)
+        self.assertEqual(self.bits_with("broken_sensor").any(0).sum(), self.bits.any(0).sum() - 1)
+        self.assertTrue((self.bits | ~self.bits_with("dazzled")).all(), "who is dazzled sees nothing more")
+
+    def test_what_is_moved_keeps_its_shape(self):
+        swings = faults.FAULTS["swings_on_the_chair"](np.random.default_rng(1)).people
+        most = 0.0
+        for seed in range(5):  # it swings half of the time
+            swung = swings([self.recorded], 0, self.room, np.random.default_rng(seed))
+            self.check_shape(swung)
+            most = max(most, np.abs(swung.solids[1][1] - self.recorded.motion.solids[1][1]).max())
+        self.assertGreater(most, 0.001)
+
+    def check_shape(self, swung):
+        for (_, before, _, _), (_, after, _, _) in zip(self.recorded.motion.solids, swung.solids):
+            pelvis = self.recorded.motion.solids[0][1]
+            np.testing.assert_allclose(np.linalg.norm(after - pelvis, axis=1), np.linalg.norm(before - pelvis, axis=1),
+                                       atol=1e-9)
+
+    def test_scores_say_how_a_verdict_compares_with_what_was_hidden(self):
+        told = lambda verdict, *effects: {"verdict": verdict, "effects": list(effects)}
+        self.assertEqual(challenge.score(("a",), told("named", "a")), "right")
+        self.assertEqual(challenge.score(("a",), told("named", "b")), "misnamed")
+        self.assertEqual(challenge.score(("a",), told("several", "b", "a")), "right")
+        self.assertEqual(challenge.score(("a",), told("one-of", "a", "b")), "in the set")
+        self.assertEqual(challenge.score(("a",), told("one-of", "c", "b")), "not in the set")
+        self.assertEqual(challenge.score((), told("named", "b")), "misnamed")
+        self.assertEqual(challenge.score((), told("none-in-catalogue")), "unknown")
+        self.assertEqual(challenge.score(("a",), told("no-disagreement")), "nothing seen")
 
 
 if __name__ == "__main__":

@@ -1,16 +1,17 @@
 #!/usr/bin/python3
 """A second simulator of motion sensors, written apart from pirsim, in numpy.
 
-    second_simulator.py PIRSIM --scene SCENE --script SCRIPT [--trials S1,S2] [--replicates N] [-o measured.csv]
-                        [--missed P] [--dead-s S] [--false-per-s R] [--yaw-deg D] [--seed N]
+    second_simulator.py PIRSIM --scene SCENE --script SCRIPT [--trials S1,S2] [--replicates N] [--fault NAME]
+                        [--seed N] [-o measured.csv]
 
 It shares no code with pirsim. Its own are: the reading of glTF and of the sensor's file, the lens law, the ray tests
-(in double precision, other formulas), occlusion, zones, motion, windows, the injected effects and their random
-numbers. Not its own: where the thirteen solids of the body are at each tick (`pirsim export`), and the column `phase`
-(pirsim's rows). README.md says what that proves and what not.
+(in double precision, other formulas), occlusion, zones, motion, windows, and what may be wrong with all this
+(faults.py), with its random numbers. Not its own: where the thirteen solids of the body are at each tick
+(`pirsim export`), and the column `phase` (pirsim's rows). README.md says what that proves and what not.
 """
 import argparse
 import base64
+import copy
 import csv
 import json
 import pathlib
@@ -20,6 +21,8 @@ import sys
 import tempfile
 
 import numpy as np
+
+from faults import FAULTS, sharp  # noqa: F401: the detector without faults, for tests
 
 CHUNK = 50  # ticks traced at once
 
@@ -95,23 +98,45 @@ def local_matrix(node):
 class Rays:
     """All sensors' rays: origins and directions (n, 3), limits (n), clusters (n) numbered over all sensors."""
 
-    def __init__(self, scene, sensor_folder, yaw_deg=0.0):
+    def __init__(self, scene, sensor_folder, mount=None, range_scale=1.0, triangles=None):
+        """mount: function of a sensor's number and its 4 x 4 world matrix to the matrix that it really hangs with."""
         self.sensors, self.sensor_of_cluster = [], []
         origins, directions, ranges, clusters = [], [], [], []
-        for node, world in sorted_sensors(scene):
+        for number, (node, world) in enumerate(sorted_sensors(scene)):
             about = mark(node)
-            turn = rotation_matrix(np.array([0, np.sin(np.radians(yaw_deg) / 2), 0, np.cos(np.radians(yaw_deg) / 2)]))
+            if mount is not None:
+                world = mount(number, world)
             for facet, range_m in facets_of(pathlib.Path(sensor_folder) / (about["model"] + ".yaml")):
-                looking = facet @ (turn @ world[:3, :3]).T
+                looking = facet @ world[:3, :3].T
                 directions.append(looking / np.linalg.norm(looking, axis=1, keepdims=True))
                 origins.append(np.tile(world[:3, 3], (len(facet), 1)))
-                ranges.append(np.full(len(facet), range_m))
+                ranges.append(np.full(len(facet), range_scale * range_m))
                 clusters.append(np.full(len(facet), len(self.sensor_of_cluster)))
                 self.sensor_of_cluster.append(len(self.sensors))
             self.sensors.append(about["id"])
         self.origins, self.directions = np.concatenate(origins), np.concatenate(directions)
-        self.clusters = np.concatenate(clusters)
-        self.limits = np.minimum(np.concatenate(ranges), nearest_triangle(self, scene.triangles()))
+        self.clusters, self.ranges = np.concatenate(clusters), np.concatenate(ranges)
+        self.walls = nearest_triangle(self, scene.triangles() if triangles is None else triangles)
+
+    @property
+    def limits(self):
+        return np.minimum(self.ranges, self.walls)
+
+    def sensor_of_ray(self):
+        return np.array(self.sensor_of_cluster)[self.clusters]
+
+    def chosen(self, which):
+        """The rays of these numbers; a number may come more than once."""
+        other = copy.copy(self)
+        for name in ("origins", "directions", "clusters", "ranges", "walls"):
+            setattr(other, name, getattr(self, name)[which])
+        return other
+
+    def joined(self, more):
+        other = copy.copy(self)
+        for name in ("origins", "directions", "clusters", "ranges", "walls"):
+            setattr(other, name, np.concatenate([getattr(self, name), getattr(more, name)]))
+        return other
 
 
 def sorted_sensors(scene):
@@ -225,12 +250,10 @@ def reach_of(about):
         about["radius_m"] + about.get("half_length_m", 0.0))
 
 
-def active_clusters(rays, motion):
-    """(ticks, clusters): a ray of the cluster meets a body before the room and within its range. The first is empty."""
-    n_ticks = len(motion.times)
-    active = np.zeros((n_ticks, len(rays.sensor_of_cluster)), bool)
-    for first in range(1, n_ticks, CHUNK):
-        ticks = slice(first, min(first + CHUNK, n_ticks))
+def covered_rays(rays, motion):
+    """Yields (ticks, (n_ticks, n_rays) True where a body is met before the room and within range), from tick 1 on."""
+    for first in range(1, len(motion.times), CHUNK):
+        ticks = slice(first, min(first + CHUNK, len(motion.times)))
         seen = np.zeros((ticks.stop - first, len(rays.limits)), bool)
         for about, origins, rotations, present in motion.solids:
             to = origins[ticks, None] - rays.origins  # a ball round the solid leaves out most rays
@@ -239,16 +262,18 @@ def active_clusters(rays, motion):
             t, r = np.nonzero((gap <= (reach_of(about) + 1e-6) ** 2) & present[ticks, None] & ~seen)
             hit = entry(about, rays.origins[r], rays.directions[r], origins[ticks][t], rotations[ticks][t])
             seen[t, r] |= hit < rays.limits[r]
-        for cluster in range(active.shape[1]):
-            active[ticks, cluster] = seen[:, rays.clusters == cluster].any(1)
-    return active
+        yield ticks, seen
 
 
-def triggers_of(rays, active):
-    """(ticks, sensors) from tick 1: a cluster wakes or falls silent."""
-    changed = active[1:] != active[:-1]
-    sensor = np.array(rays.sensor_of_cluster)
-    return np.column_stack([changed[:, sensor == i].any(1) for i in range(len(rays.sensors))])
+def covered_shares(rays, motion):
+    """(ticks, clusters) share of a cluster's rays that meet a body. The first is empty."""
+    shares = np.zeros((len(motion.times), len(rays.sensor_of_cluster)))
+    for ticks, seen in covered_rays(rays, motion):
+        for cluster in range(shares.shape[1]):
+            its = rays.clusters == cluster
+            if its.any():
+                shares[ticks, cluster] = seen[:, its].mean(1)
+    return shares
 
 
 def windows_of(triggers, ticks_per_window):
@@ -256,26 +281,70 @@ def windows_of(triggers, ticks_per_window):
     return triggers[: n * ticks_per_window].reshape(n, ticks_per_window, -1).any(1)
 
 
-# --------------------------------------------------------------------------------------------------------- injecting
-def inject(triggers, rate_hz, ticks_per_window, options, random):
-    """Electronics and surroundings gone wrong, in the order of the signal."""
-    triggers = triggers.copy()
-    if options.false_per_s > 0:
-        triggers |= random.random(triggers.shape) < 1 - np.exp(-options.false_per_s / rate_hz)
-    if options.dead_s > 0:
-        for column in triggers.T:
-            awake = 0
-            for tick in np.flatnonzero(column):
-                column[tick] = tick >= awake
-                awake = tick + round(options.dead_s * rate_hz) if tick >= awake else awake
-    windows = windows_of(triggers, ticks_per_window)
-    return windows & (random.random(windows.shape) >= options.missed)
-
-
 # ---------------------------------------------------------------------------------------------------------- commands
-def run_pirsim(options, *words):
-    study = ["--scene", options.scene, "--script", options.script, *(w for s in options.set for w in ("--set", s))]
-    return subprocess.run([options.pirsim, *map(str, words), *study], check=True, stdout=subprocess.PIPE, text=True).stdout
+def run_pirsim(pirsim, study, *words):
+    return subprocess.run([pirsim, *map(str, words), *map(str, study)], check=True, stdout=subprocess.PIPE,
+                          text=True).stdout
+
+
+class Run:
+    """What pirsim tells of one run: its rows' times and phases, and where everybody is."""
+
+    def __init__(self, pirsim, study, rows, folder):
+        self.replicate, self.trial, self.rows = rows[0]["replicate"], rows[0]["trial"], rows
+        exported = pathlib.Path(folder) / "run.gltf"
+        run_pirsim(pirsim, study, "export", "-q", "--trial", self.trial, "--replicate", self.replicate, "--keys-per-s",
+                   1000, "--beams", "none", "-o", exported)
+        self.motion = Motion(Gltf(exported))
+        self.rate_hz = round(1 / np.diff(self.motion.times).min())
+        self.per_window = round(self.rate_hz * float(rows[0]["time_s"]))
+        self.motion.working = np.repeat([False] + [row["phase"] == "working" for row in rows],
+                                        [1] + [self.per_window] * len(rows))
+
+
+def runs_of(pirsim, study, trials=None):
+    plain = list(csv.DictReader(run_pirsim(pirsim, study, "-q").splitlines()))
+    names = dict.fromkeys((row["replicate"], row["trial"]) for row in plain)
+    with tempfile.TemporaryDirectory() as folder:
+        return [Run(pirsim, study, [row for row in plain if (row["replicate"], row["trial"]) == name], folder)
+                for name in names if not trials or name[1] in trials]
+
+
+def rows_of(fault, rays, shares, run, random, done=0.0):
+    """(rows, sensors) from what the rays met; done: share of the measurement's runs that came before."""
+    triggers = fault.electronics(fault.detect(rays, shares, run.rate_hz, random), run.rate_hz, random)
+    return fault.books(windows_of(triggers, run.per_window), random, done)
+
+
+class Measurement:
+    """Rows of every run as sensors with a fault would have measured them."""
+
+    def __init__(self, scene, sensor_folder, fault, seed, plain=None):
+        """plain: the measurement with nothing wrong of the same runs, whose rays are not traced again if that is what
+        the fault's rays would meet."""
+        self.scene, self.fault, self.seed, self.shares = scene, fault, seed, {}
+        if plain is not None and fault.is_behind_the_optics():
+            self.rays, self.shares = plain.rays, plain.shares
+        else:
+            rays = Rays(scene, sensor_folder, fault.mount, fault.range_scale, fault.furnish(scene.triangles()))
+            self.rays = fault.optics(rays, np.random.default_rng([seed, 1]))
+
+    def bits(self, runs, number):
+        """(rows, sensors) of runs[number]."""
+        random = np.random.default_rng([self.seed, 2, number])
+        if number not in self.shares:
+            self.shares[number] = covered_shares(self.rays, self.fault.people(runs, number, self.scene, random))
+        return rows_of(self.fault, self.rays, self.shares[number], runs[number], random, number / max(1, len(runs) - 1))
+
+    def write(self, path, runs):
+        with open(path, "w", newline="") as file:
+            out = csv.writer(file, lineterminator="\n")
+            out.writerow(["replicate", "trial", "time_s", "phase", *self.rays.sensors])
+            for number, run in enumerate(runs):
+                bits = self.bits(runs, number)
+                assert len(bits) == len(run.rows), (len(bits), len(run.rows))
+                for row, sensed in zip(run.rows, bits):
+                    out.writerow([run.replicate, run.trial, row["time_s"], row["phase"], *sensed.astype(int)])
 
 
 def main():
@@ -288,35 +357,19 @@ def main():
     parser.add_argument("--trials", help="default: all")
     parser.add_argument("--replicates", type=int, default=1)
     parser.add_argument("-o", "--output", default="/dev/stdout")
-    parser.add_argument("--missed", type=float, default=0.0, help="chance that a window is lost")
-    parser.add_argument("--dead-s", type=float, default=0.0, help="blind after a trigger")
-    parser.add_argument("--false-per-s", type=float, default=0.0, help="triggers without anybody")
-    parser.add_argument("--yaw-deg", type=float, default=0.0, help="all sensors are turned to the left")
-    parser.add_argument("--seed", type=int, default=0, help="of the injected effects")
+    parser.add_argument("--fault", default="nothing", choices=FAULTS, metavar="NAME", help=", ".join(FAULTS))
+    parser.add_argument("--seed", type=int, default=0, help="of the fault's strength and of all that is random in it")
     options = parser.parse_args()
-    options.set.append(f"replicates={options.replicates}")
 
-    rays = Rays(Gltf(options.scene), options.sensors, options.yaw_deg)
-    plain = list(csv.DictReader(run_pirsim(options, "-q").splitlines()))
-    runs = list(dict.fromkeys((row["replicate"], row["trial"]) for row in plain))
-    random = np.random.default_rng(options.seed)
-    with open(options.output, "w", newline="") as file, tempfile.TemporaryDirectory() as folder:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(["replicate", "trial", "time_s", "phase", *rays.sensors])
-        for replicate, trial in runs:
-            if options.trials and trial not in options.trials.split(","):
-                continue
-            rows = [row for row in plain if (row["replicate"], row["trial"]) == (replicate, trial)]
-            exported = pathlib.Path(folder) / "run.gltf"
-            run_pirsim(options, "export", "-q", "--trial", trial, "--replicate", replicate, "--keys-per-s", 1000,
-                       "--beams", "none", "-o", exported)
-            motion = Motion(Gltf(exported))
-            rate_hz = round(1 / np.diff(motion.times).min())
-            per_window = round(rate_hz * float(rows[0]["time_s"]))
-            bits = inject(triggers_of(rays, active_clusters(rays, motion)), rate_hz, per_window, options, random)
-            assert len(bits) == len(rows), (len(bits), len(rows))
-            for row, sensed in zip(rows, bits):
-                out.writerow([replicate, trial, row["time_s"], row["phase"], *sensed.astype(int)])
+    scene = Gltf(options.scene)
+    fault = FAULTS[options.fault](np.random.default_rng([options.seed, 0]))
+    study = study_of(options.scene, options.script, [*options.set, f"replicates={options.replicates}", *fault.settings])
+    runs = runs_of(options.pirsim, study, options.trials and options.trials.split(","))
+    Measurement(scene, options.sensors, fault, options.seed).write(options.output, runs)
+
+
+def study_of(scene, script, settings):
+    return ["--scene", scene, "--script", script, *(word for setting in settings for word in ("--set", setting))]
 
 
 if __name__ == "__main__":
