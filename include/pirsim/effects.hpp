@@ -64,9 +64,6 @@ enum class ActsOn {
   zone_sensors  ///< does nothing to sensors whose response is analog
 };
 
-/// Whether `reconcile` looks for an effect.
-enum class Sought { yes, not_yet };
-
 struct EffectInfo {
   std::string name;
   Family family = Family::data;
@@ -80,7 +77,6 @@ struct EffectInfo {
   Reach reach = Reach::geometry;
   /// Sensors of which response it acts on: of zones, or of both.
   ActsOn acts_on = ActsOn::all_sensors;
-  Sought sought = Sought::yes;
 };
 
 /// All entries of the catalogue, in the order in which they act.

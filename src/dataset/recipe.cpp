@@ -88,6 +88,10 @@ EffectSpec draw_effect(const VariedEffectSpec& varied, const SceneSpec& scene, c
   effect.where = varied.where;
   const auto has_sensor = varied.choices.find("sensor") != varied.choices.end();
   if (!has_sensor) effect.choices.erase("sensor");  // of all, or the effect's own way
+  // Numbers are meant of the usual variant, where the recipe doesn't name another.
+  for (const effects::ChoiceInfo& choice : entry.info.choices) {
+    if (choice.kind == effects::ChoiceKind::variant && !varied.parameters.empty()) effect.choices.erase(choice.name);
+  }
   for (const auto& [name, choice] : varied.choices) effect.choices[name] = choice;
   for (const auto& [name, range] : varied.parameters) {
     const auto& known = entry.info.parameters;

@@ -33,8 +33,7 @@ const Effect& blind_field() {
                                  "any: where the blind part begins, from the lens's right (0) to its upper side (90)")},
            .choices = {sensor_choice()},
            .reach = Reach::geometry,
-           .acts_on = ActsOn::zone_sensors,
-           .sought = Sought::not_yet},
+           .acts_on = ActsOn::zone_sensors},
       .alter = alter};
   return effect;
 }

@@ -23,15 +23,6 @@ const std::vector<const Effect*>& catalogue() {
   return effects;
 }
 
-const std::vector<const Effect*>& sought() {
-  static const std::vector<const Effect*> effects = [] {
-    std::vector<const Effect*> all = catalogue();
-    std::erase_if(all, [](const Effect* effect) { return effect->info.sought == Sought::not_yet; });
-    return all;
-  }();
-  return effects;
-}
-
 std::string_view name(Family family) noexcept {
   static constexpr std::array<std::string_view, 8> names{"optics",      "person",      "mounting", "occlusion",
                                                          "electronics", "environment", "motion",   "data"};
@@ -80,12 +71,6 @@ bool applies(const ParameterInfo& parameter, const EffectSpec& effect) {
   const auto& [choice, word] = parameter.only_if;
   if (choice.empty()) return true;
   return effects::word(effect, choice) == word;
-}
-
-bool is_drawn(const ParameterInfo& parameter, const EffectInfo& info) {
-  const auto choice = std::ranges::find(info.choices, parameter.only_if.choice, &ChoiceInfo::name);
-  return choice == info.choices.end() || choice->kind != ChoiceKind::variant ||
-         choice->words.front() == parameter.only_if.word;
 }
 
 const ParameterInfo& strength_parameter(const EffectSpec& effect) {
@@ -151,11 +136,11 @@ double draw(const ParameterInfo& parameter, Stream& stream) {
 EffectSpec draw_from_prior(const Effect& effect, const SceneSpec& scene, const ScriptSpec& script, Stream& stream) {
   EffectSpec spec{effect.info.name, {}, {}, {}};
   for (const ParameterInfo& parameter : effect.info.parameters) {
-    if (is_drawn(parameter, effect.info)) spec.parameters[parameter.name] = draw(parameter, stream);
+    spec.parameters[parameter.name] = draw(parameter, stream);
   }
   for (const ChoiceInfo& choice : effect.info.choices) {
     const auto pick = [&](const auto& list) { return list[stream.index(static_cast<std::uint32_t>(list.size()))]; };
-    if (choice.kind == ChoiceKind::word) spec.choices[choice.name] = pick(choice.words);
+    if (is_word(choice.kind)) spec.choices[choice.name] = pick(choice.words);
     if (choice.kind == ChoiceKind::sensor && stream.index(2) == 1) spec.choices[choice.name] = pick(scene.sensors).id;
   }
   if (effect.draw != nullptr) effect.draw(spec, scene, script, stream);

@@ -30,8 +30,6 @@ struct Effect {
 
 /// In the order in which they act; alter() first, then stages tick by tick, then rows.
 [[nodiscard]] const std::vector<const Effect*>& catalogue();
-/// Those that `reconcile` looks for.
-[[nodiscard]] const std::vector<const Effect*>& sought();
 /// Throws Error(usage) with the nearest name.
 [[nodiscard]] const Effect& find(std::string_view name);
 
@@ -47,16 +45,14 @@ struct Effect {
 
 /// Whether a parameter of that effect means anything with its choices.
 [[nodiscard]] bool applies(const ParameterInfo& parameter, const EffectSpec& effect);
-/// Whether it is drawn from its prior: with the first of each choice's variants, which are all that are drawn.
-[[nodiscard]] bool is_drawn(const ParameterInfo& parameter, const EffectInfo& info);
 /// The first of an effect's strengths that applies.
 [[nodiscard]] const ParameterInfo& strength_parameter(const EffectSpec& effect);
 [[nodiscard]] bool is_off(const EffectSpec& effect);
 /// With every parameter that applies: those not given take the typical value.
 [[nodiscard]] EffectSpec resolved(const Effect& effect, EffectSpec spec);
 [[nodiscard]] EffectSpec off(const Effect& effect);
-/// Parameters that apply, from their priors; a sensor from all and each (even odds between `all` and one of them); of
-/// variants the first.
+/// Parameters that apply, from their priors; words and variants with even odds; a sensor from all and each (even odds
+/// between `all` and one of them).
 [[nodiscard]] EffectSpec draw_from_prior(const Effect& effect, const SceneSpec& scene, const ScriptSpec& script,
                                          Stream& stream);
 

@@ -32,8 +32,7 @@ const Effect& chair_swing() {
                                .source = "assumed: to either side"},
                               detail("period_s", "s", 3.0, 1.5, 6.0, 0.4, 60.0, "assumed"),
                               detail("share", "", 0.5, 0.1, 1.0, 0.0, 1.0, "assumed: of the time, in bouts of 20 s")},
-               .reach = Reach::geometry,
-               .sought = Sought::not_yet},
+               .reach = Reach::geometry},
       .alter = alter};
   return effect;
 }

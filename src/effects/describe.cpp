@@ -56,8 +56,6 @@ std::string same_as_sentence(const EffectInfo& info) {
   return "The same change of the model as " + info.same_as + ": reconcile judges both as one, by that name.";
 }
 
-constexpr const char* not_sought = "reconcile doesn't look for it yet.";
-
 void add_markdown(std::ostream& out, const Effect& effect) {
   const EffectInfo& info = effect.info;
   out << "### " << info.name << '\n' << info.summary << "\n\n";
@@ -65,7 +63,6 @@ void add_markdown(std::ostream& out, const Effect& effect) {
   if (!info.confused_with.empty())
     out << "Easily taken for: " << boost::algorithm::join(info.confused_with, ", ") << ".\n";
   if (!info.same_as.empty()) out << same_as_sentence(info) << "\n";
-  if (info.sought == Sought::not_yet) out << "In data: " << not_sought << "\n";
   out << "Stage: " << info.stage << "; reach: " << name(info.reach) << ".\n\n";
   out << "| parameter | off | typical | prior | source |\n|---|---|---|---|---|\n";
   for (const ParameterInfo& parameter : info.parameters) {
@@ -101,7 +98,6 @@ std::string to_text(const Effect& effect) {
   out << "fingerprint:      " << info.fingerprint << '\n';
   out << "easily taken for: " << boost::algorithm::join(info.confused_with, ", ") << '\n';
   if (!info.same_as.empty()) out << "in data:          " << same_as_sentence(info) << '\n';
-  if (info.sought == Sought::not_yet) out << "in data:          " << not_sought << '\n';
   out << "acts in:          " << info.stage << " (" << name(info.reach) << ")\n\nparameters:\n";
   for (const ParameterInfo& parameter : info.parameters) {
     out << "  " << std::left << std::setw(16) << parameter.name << "off " << std::setw(8) << off_of(parameter)

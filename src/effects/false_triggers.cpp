@@ -47,6 +47,11 @@ std::unique_ptr<TriggerStage> make(const EffectSpec& effect, const StageContext&
                                          effect.parameters.at("rate_per_s") / context.sensing.tick_rate_hz);
 }
 
+/// One sensor alone triggers by itself whichever word says so.
+void draw(EffectSpec& effect, const SceneSpec&, const ScriptSpec&, Stream&) {
+  if (effect.choices.contains("sensor")) effect.choices["timing"] = "independent";
+}
+
 }  // namespace
 
 const Effect& false_triggers() {
@@ -72,7 +77,8 @@ const Effect& false_triggers() {
                .choices = {{"timing", ChoiceKind::variant, {"independent", "simultaneous"}, "independent"},
                            sensor_choice()},
                .reach = Reach::triggers},
-      .make_stage = make};
+      .make_stage = make,
+      .draw = draw};
   return effect;
 }
 

@@ -32,8 +32,7 @@ const Effect& natural_motion() {
            .confused_with = {"fidgeting", "uneven_arms", "soft_zone_edges"},
            .parameters = {whether("present", "assumed")},
            .choices = {{"activity", ChoiceKind::variant, activities(), "typing"}},
-           .reach = Reach::geometry,
-           .sought = Sought::not_yet},
+           .reach = Reach::geometry},
       .alter = alter};
   return effect;
 }

@@ -39,8 +39,7 @@ const Effect& uneven_arms() {
                            .least = 0.0,
                            .most = 1.0,
                            .source = "assumed: of the swings"}},
-           .reach = Reach::geometry,
-           .sought = Sought::not_yet},
+           .reach = Reach::geometry},
       .alter = alter};
   return effect;
 }

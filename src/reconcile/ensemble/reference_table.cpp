@@ -23,7 +23,7 @@ std::uint32_t n_for_calibration(std::uint32_t n) {
 }
 
 std::uint32_t place_in_catalogue(const effects::Effect& effect) {
-  return static_cast<std::uint32_t>(std::ranges::find(effects::sought(), &effect) - effects::sought().begin());
+  return static_cast<std::uint32_t>(std::ranges::find(effects::catalogue(), &effect) - effects::catalogue().begin());
 }
 
 /// Simulates the datasets of single realizations.
@@ -55,7 +55,7 @@ class RealizationJob {
     if (!is_for_calibration(realization)) return realization < wanted;
     const std::uint32_t n = n_for_calibration(settings_.n_realizations);
     const auto first =
-        static_cast<std::uint32_t>(std::size_t{place_in_catalogue(effect)} * n / effects::sought().size());
+        static_cast<std::uint32_t>(std::size_t{place_in_catalogue(effect)} * n / effects::catalogue().size());
     return (n_for_calibration(realization) + n - first) % n < n_for_calibration(wanted);
   }
   void add_effect(TableChunk& chunk, const SimulatedRealization& realization, std::uint32_t index,
@@ -101,7 +101,7 @@ ReferenceTable make_reference_table(const RealizationSource& source, const Study
                                     const std::filesystem::path& folder, const Context& context) {
   TableSettings settings = asked;
   if (settings.effects.empty()) {
-    for (const effects::Effect* effect : effects::sought()) {
+    for (const effects::Effect* effect : effects::catalogue()) {
       if (effect->info.same_as.empty()) settings.effects.push_back(effect->info.name);
     }
   }

@@ -45,9 +45,8 @@ stats::Matrix<double> parameters_of(const std::vector<const EffectSpec*>& drawn,
 PointEstimator::PointEstimator(const ReferenceTable& table, std::size_t hypothesis, const HypothesisDatasets& training,
                                const HypothesisDatasets& held_back)
     : drawn_(drawn_in(table, training.rows)), finder_(table, training.rows, training.features) {
-  const effects::EffectInfo& hypothesised = effects::find(table.hypothesis_name(hypothesis)).info;
-  for (const ParameterInfo& info : hypothesised.parameters) {
-    if (info.low < info.high && effects::is_drawn(info, hypothesised)) infos_.push_back(&info);
+  for (const ParameterInfo& info : effects::find(table.hypothesis_name(hypothesis)).info.parameters) {
+    if (info.low < info.high) infos_.push_back(&info);
   }
   if (infos_.empty()) return;
   const stats::Matrix<double> features = in_double(training.features), parameters = parameters_of(drawn_, infos_);
