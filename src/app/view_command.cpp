@@ -10,6 +10,7 @@
 #include "pirsim/study.hpp"
 #include "pirsim/version.hpp"
 #include "sim/compiled_study.hpp"
+#include "studies/coverage.hpp"
 #include "studies/run_film.hpp"
 
 namespace pirsim::app {
@@ -21,7 +22,8 @@ constexpr double longest_unasked_s = 1200.0;
 struct ViewOptions {
   std::filesystem::path output = "run.html";
   RunChoice run;
-  std::string from, to;  ///< empty: not given
+  std::string from, to;            ///< empty: not given
+  std::filesystem::path coverage;  ///< a coverage study; empty: no map
   double keys_per_s = 10.0;
 };
 
@@ -115,6 +117,32 @@ void drop_absent_people(io::ExportedRun& run) {
   });
 }
 
+/// Where each of the room's sensors sees the study's target.
+io::PageMap page_map(const Model& model, const std::filesystem::path& file, Verbosity verbosity) {
+  CoverageSpec spec = io::read_coverage(file);
+  const studies::CoverageStudy study(model.compiled().scene(), std::move(spec));
+  tell(study.warnings(), verbosity);
+  const CoverageMap map = studies::run_coverage(study);
+  const FloorGrid& grid = map.grid;
+  io::PageMap page{study.spec().name,
+                   grid.centre(0, 0) - 0.5 * Vec2(grid.spacing_m()),
+                   study.scene().floor.height_m(),
+                   grid.spacing_m(),
+                   grid.n_columns(),
+                   grid.n_rows(),
+                   {}};
+  for (std::size_t sensor = 0; sensor < map.sensors.size(); ++sensor) {
+    std::vector<double>& shares = page.shares.emplace_back();
+    for (std::size_t row = 0; row < grid.n_rows(); ++row) {
+      for (std::size_t column = 0; column < grid.n_columns(); ++column) {
+        const double share = static_cast<double>(map.count(column, row, sensor)) / map.n_windows;
+        shares.push_back(grid.on_floor(column, row) ? share : -1.0);
+      }
+    }
+  }
+  return page;
+}
+
 io::RunPage run_page(const Model& model, std::uint32_t run, const Stretch& stretch, const ViewOptions& options) {
   std::vector<std::size_t> all_sensors(model.scene().sensors.size());
   std::iota(all_sensors.begin(), all_sensors.end(), 0);
@@ -167,6 +195,7 @@ void view(const Inputs& inputs, const ViewOptions& options) {
   std::erase_if(
       rows, [&](const Sample& row) { return row.time_s <= stretch.from_s + 1e-6 || row.time_s > stretch.to_s + 1e-6; });
   page.rows = std::move(rows);
+  if (!options.coverage.empty()) page.map = page_map(model, options.coverage, inputs.verbosity);
   std::ostringstream text;
   io::write_run_page(text, page);
   io::write_text_file(options.output, text.view());
@@ -180,6 +209,7 @@ void add_view_command(CLI::App& app) {
   pirsim view --scene room.gltf --script study.yaml -o run.html                     the first trial
   pirsim view --scene room.gltf --script study.yaml --trial S8 --replicate 3 -o S8.html
   pirsim view --scene office.gltf --script week.yaml --from 09:00 --to 09:20        part of a day
+  pirsim view --scene room.gltf --script study.yaml --coverage studyB.yaml          a coverage map on the floor
 )");
   const auto inputs = std::make_shared<Inputs>();
   const auto options = std::make_shared<ViewOptions>();
@@ -195,6 +225,9 @@ void add_view_command(CLI::App& app) {
       ->option_text("TIME");
   command.add_option("--to", options->to, "where it ends (default: the end, 1200 s later at most)")
       ->option_text("TIME");
+  command
+      .add_option("--coverage", options->coverage, "a coverage study, YAML, whose map is laid on the floor")
+      ->option_text("FILE");
   command
       .add_option("--keys-per-s", options->keys_per_s, "pictures a second, between which it interpolates (default: 10)")
       ->option_text("N")

@@ -91,6 +91,19 @@ Json json(const std::vector<Sample>& rows) {
           {"first_clock", rows.empty() ? "" : rows.front().clock}};
 }
 
+/// Shares in whole percent, which is finer than a colour tells.
+Json json(const PageMap& map) {
+  Json sensors = Json::array();
+  for (const std::vector<double>& shares : map.shares) {
+    Json percents = Json::array();
+    for (const double share : shares) percents.push_back(share < 0.0 ? -1L : std::lround(100.0 * share));
+    sensors.push_back(std::move(percents));
+  }
+  return {{"name", map.name},           {"x", map.lower.x},          {"z", map.lower.y},
+          {"height_m", map.height_m},   {"spacing_m", map.spacing_m}, {"n_columns", map.n_columns},
+          {"n_rows", map.n_rows},       {"percent", std::move(sensors)}};
+}
+
 std::string json_text(const RunPage& page) {
   Json all{{"title", page.title},
            {"run_s", page.run_s},
@@ -104,6 +117,7 @@ std::string json_text(const RunPage& page) {
            {"rows", json(page.rows)}};
   for (const PageSensor& sensor : page.sensors) all["sensors"].push_back(json(sensor));
   for (const ExportedPerson& person : page.run.people) all["people"].push_back(person.id);
+  if (page.map) all["map"] = json(*page.map);
   return all.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -28,6 +29,16 @@ struct PageSensor {
   double negative_v = 0.0;
 };
 
+/// Squares of the floor and how often each sensor sees a moving target there.
+struct PageMap {
+  std::string name;
+  Vec2 lower{0.0};  ///< corner with the least x and z
+  double height_m = 0.0;
+  double spacing_m = 1.0;
+  std::size_t n_columns = 0, n_rows = 0;    ///< along x and z
+  std::vector<std::vector<double>> shares;  ///< (n_sensors x n_rows * n_columns) in [0, 1]; negative off the floor
+};
+
 struct RunPage {
   std::string title;
   std::string about;  ///< trial, replicate, scene, script
@@ -40,6 +51,7 @@ struct RunPage {
   std::vector<PagePlace> doors;
   std::vector<std::vector<std::uint32_t>> active_zones;  ///< (n_keys)
   std::vector<Sample> rows;                              ///< from the first key to the last
+  std::optional<PageMap> map;                            ///< of the same sensors
 };
 
 /// Throws as to_glb() does.

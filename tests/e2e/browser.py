@@ -27,10 +27,11 @@ def check_fetches_nothing(page):
     assert not fetched, f"{page.name} fetches {fetched}"
 
 
-def opened(chromium, page, folder, size, *flags):
-    """The page's markup once its scripts have run, which must leave nothing on the console. folder: for a profile."""
+def opened(chromium, page, folder, size, *flags, address=""):
+    """The page's markup once its scripts have run, which must leave nothing on the console. folder: for a profile;
+    address: what follows the page's, "#t=12"."""
     command = [chromium, *COMMON, *flags, f"--user-data-dir={folder / 'profile'}", f"--window-size={size}", "--dump-dom",
-               page.as_uri()]
+               page.as_uri() + address]
     result = subprocess.run(command, capture_output=True, text=True, timeout=240)
     console = [line for line in result.stderr.splitlines() if "CONSOLE" in line]
     assert not console, f"{page.name} on the console: {console}"

@@ -88,21 +88,21 @@
 
   function drawPeople(pen, x) {
     const most = Math.max(1, ...rows.people), base = heights.people - 4, unit = (base - 12) / most;
+    const steps = new Path2D(), area = new Path2D();
+    rows.people.forEach((n, i) => {
+      steps.lineTo(x(rows.time_s[i] - data.window_s), base - n * unit);
+      steps.lineTo(x(rows.time_s[i]), base - n * unit);
+    });
+    area.addPath(steps);
+    area.lineTo(x(toS), base);
+    area.lineTo(x(fromS), base);
     pen.fillStyle = colour("people");
     pen.globalAlpha = 0.25;
-    rows.people.forEach((n, i) => {
-      const left = x(rows.time_s[i] - data.window_s);
-      pen.fillRect(left, base - n * unit, x(rows.time_s[i]) - left + 0.3, n * unit);
-    });
+    pen.fill(area);
     pen.globalAlpha = 1;
     pen.strokeStyle = colour("people");
     pen.lineWidth = 1.5;
-    pen.beginPath();
-    rows.people.forEach((n, i) => {
-      pen.lineTo(x(rows.time_s[i] - data.window_s), base - n * unit);
-      pen.lineTo(x(rows.time_s[i]), base - n * unit);
-    });
-    pen.stroke();
+    pen.stroke(steps);
     pen.fillStyle = colour("people");
     rows.people.forEach((n, i) => {  // the number where it changes, if there is room
       const wide = rows.people.slice(i).findIndex((other) => other !== n);
@@ -213,6 +213,7 @@
       this.furnish(gltf.scene);
       this.hangSensors();
       this.makeLitBeams();
+      if (data.map) this.layMap();
       this.makeLabels();
       this.animate(gltf);
       this.resize();
@@ -248,18 +249,22 @@
       for (const mesh of solids) this.paint(mesh, centre);
     }
 
-    /// Walls and ceilings are seen from the inside alone, so that one looks into the room from any side.
+    /// Walls and ceilings are seen from the inside alone, so that one looks into the room from any side. A wall is tall
+    /// and thin or long; what is tall but neither, a cupboard or a column, is seen from all sides, as furniture is.
     paint(mesh, centre) {
-      const box = new three.Box3().setFromObject(mesh);
-      const tall = box.max.y > this.box.min.y + 1.8, flat = box.max.y - box.min.y < 0.02;
-      if (tall) faceTowards(mesh.geometry, centre);
+      const box = new three.Box3().setFromObject(mesh), size = box.getSize(new three.Vector3());
+      const room = this.box.getSize(new three.Vector3()), [thin, long] = [size.x, size.z].sort((a, b) => a - b);
+      const tall = box.max.y > this.box.min.y + 1.8, flat = size.y < 0.02;
+      const wall = tall && (thin < 0.22 || long > 0.35 * Math.max(room.x, room.z));
+      const white = wall || box.max.y > this.box.max.y - 0.3;
+      if (wall) faceTowards(mesh.geometry, centre);
       mesh.material = new three.MeshLambertMaterial({
-        color: tall ? "#f7f7f4" : flat ? "#d9d4cb" : "#b98f63", flatShading: true,
+        color: white ? "#f7f7f4" : flat ? "#d9d4cb" : "#b98f63", flatShading: true,
         polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
       });
-      if (!tall) mesh.material.side = three.DoubleSide;
+      if (!wall) mesh.material.side = three.DoubleSide;
       const edges = new three.EdgesGeometry(mesh.geometry, 20);
-      const material = new three.LineBasicMaterial({ color: "#57606a", transparent: true, opacity: tall ? 0.25 : 0.5 });
+      const material = new three.LineBasicMaterial({ color: "#57606a", transparent: true, opacity: wall ? 0.25 : 0.5 });
       mesh.add(new three.LineSegments(edges, material));
     }
 
@@ -273,6 +278,12 @@
         this.scene.add(marker);
         return marker;
       });
+      // A plumb line from each sensor: on a wall that isn't drawn it would hang in the air, no one knows where.
+      const plumb = new three.BufferGeometry();
+      plumb.setAttribute("position", new three.BufferAttribute(new Float32Array(sensors.flatMap(
+        ({ position: [x, y, z] }) => [x, y, z, x, this.box.min.y, z])), 3));
+      this.scene.add(new three.LineSegments(plumb, new three.LineBasicMaterial(
+        { color: colour("idle"), transparent: true, opacity: 0.6 })));
     }
 
     makeLitBeams() {
@@ -287,10 +298,47 @@
           total += count;
         });
       });
-      this.lit = new three.LineSegments(new three.BufferGeometry(), new three.LineBasicMaterial({ color: colour("lit") }));
+      this.lit = new three.LineSegments(new three.BufferGeometry(), new three.LineBasicMaterial(
+        { color: colour("lit"), transparent: true, opacity: 0.55 }));
       this.lit.geometry.setAttribute("position", new three.BufferAttribute(new Float32Array(6 * total), 3));
       this.lit.frustumCulled = false;
       this.scene.add(this.lit);
+    }
+
+    /// A coverage map as squares on the floor; showSensors() gives them their colours.
+    layMap() {
+      const { x, z, height_m: y, spacing_m: side, n_columns: columns, percent } = data.map;
+      this.squares = [];
+      percent[0].forEach((share, i) => share >= 0 && this.squares.push(i));
+      const corners = new Float32Array(12 * this.squares.length), triangles = new Uint32Array(6 * this.squares.length);
+      this.squares.forEach((square, i) => {
+        const left = x + side * (square % columns), back = z + side * Math.floor(square / columns);
+        for (const [k, [right, front]] of [[0, 0], [0, side], [side, side], [side, 0]].entries())
+          corners.set([left + right, y + 0.004, back + front], 12 * i + 3 * k);
+        triangles.set([0, 1, 2, 0, 2, 3].map((corner) => 4 * i + corner), 6 * i);
+      });
+      const geometry = new three.BufferGeometry();
+      geometry.setAttribute("position", new three.BufferAttribute(corners, 3));
+      geometry.setAttribute("color", new three.BufferAttribute(new Float32Array(corners.length), 3));
+      geometry.setIndex(new three.BufferAttribute(triangles, 1));
+      this.map = new three.Mesh(geometry, new three.MeshBasicMaterial(
+        { vertexColors: true, transparent: true, opacity: 0.8 }));
+      this.scene.add(this.map);
+      byId("scale").hidden = byId("mapped").hidden = false;
+    }
+
+    colourMap() {
+      const { percent } = data.map, colours = this.map.geometry.getAttribute("color");
+      const shareAt = shown.sensor >= 0 ? (i) => percent[shown.sensor][i]
+                                        : (i) => Math.max(...percent.map((of) => of[i]));
+      this.squares.forEach((square, i) => {
+        const { r, g, b } = shareColour(shareAt(square) / 100);
+        for (let corner = 0; corner < 4; ++corner) colours.setXYZ(4 * i + corner, r, g, b);
+      });
+      colours.needsUpdate = true;
+      byId("whose").textContent = shown.sensor >= 0 ? `Here: what ${sensors[shown.sensor].id} sees.`
+                                                    : "Here: of the sensor that sees most.";
+      this.map.visible = byId("map").checked;
     }
 
     makeLabels() {
@@ -323,15 +371,35 @@
       this.mixer.clipAction(gltf.animations[0]).play();
     }
 
+    /// From so far that the whole room is seen.
     lookFromAbove() {
-      const centre = this.box.getCenter(new three.Vector3()), size = this.box.getSize(new three.Vector3());
-      centre.y = this.box.min.y + 0.3 * size.y;
-      const half = Math.tan((this.camera.fov * Math.PI) / 360);
-      const across = Math.max(size.z * 0.8 + size.y * 0.6, Math.hypot(size.x, 0.5 * size.z) / this.camera.aspect);
-      const away = across / 2 / half + 0.35 * size.z;
-      this.camera.position.set(0.28, 0.95, 1).normalize().multiplyScalar(away).add(centre);
+      const centre = this.box.getCenter(new three.Vector3()), { min, max } = this.box;
+      const back = new three.Vector3(0.28, 0.95, 1).normalize();
+      const right = new three.Vector3(0, 1, 0).cross(back).normalize(), up = back.clone().cross(right);
+      const half = Math.tan((this.camera.fov * Math.PI) / 360), { clientWidth: width } = byId("stage");
+      const axes = [[right, half * this.camera.aspect * (1 - this.covered() / width)], [up, half]];
+      const corners = [min.x, max.x].flatMap((x) => [min.y, max.y].flatMap((y) =>
+        [min.z, max.z].map((z) => new three.Vector3(x, y, z))));
+      let away = 0;
+      for (let round = 0; round < 4; ++round) {  // what is nearer looks larger, so its middle isn't the picture's
+        const seen = corners.map((corner) => corner.clone().sub(centre));
+        away = Math.max(...seen.map((corner) => corner.dot(back) + 1.06 * Math.max(
+          ...axes.map(([axis, reach]) => Math.abs(corner.dot(axis)) / reach))));
+        for (const [axis] of axes) {
+          const slopes = seen.map((corner) => corner.dot(axis) / (away - corner.dot(back)));
+          centre.addScaledVector(axis, away * (Math.max(...slopes) + Math.min(...slopes)) / 2);
+        }
+      }
+      this.camera.position.copy(back).multiplyScalar(away).add(centre);
       this.controls.target.copy(centre);
       this.controls.update();
+    }
+
+    /// Pixels on the left that the legend takes, if the rest is wide enough for the room.
+    covered() {
+      const legend = byId("legend"), { clientWidth: width } = byId("stage");
+      const right = legend.open ? legend.offsetLeft + legend.offsetWidth : 0;
+      return right < 0.4 * width ? right : 0;
     }
 
     resize() {
@@ -339,7 +407,7 @@
       this.renderer.setPixelRatio(window.devicePixelRatio || 1);
       this.renderer.setSize(width, height, false);
       this.camera.aspect = width / height;
-      this.camera.updateProjectionMatrix();
+      this.camera.setViewOffset(width, height, -this.covered() / 2, 0, width, height);
       this.stale = true;
     }
 
@@ -369,12 +437,18 @@
       this.stale = true;
     }
 
+    showMap() {
+      if (!this.map) return;
+      this.colourMap();
+      this.stale = true;
+    }
+
     placeLabels() {
       const { clientWidth: width, clientHeight: height } = byId("stage"), point = new three.Vector3();
       for (const head of this.heads) {
         head.node.getWorldPosition(head.label.position);
         head.label.position.y += 0.3;
-        head.label.away = head.node.getWorldScale(point).x < 0.5;
+        head.label.away = point.setFromMatrixColumn(head.node.matrixWorld, 0).length() < 0.5;  // its scale
       }
       for (const { element, position, away } of this.labels) {
         point.copy(position).project(this.camera);
@@ -382,7 +456,8 @@
         element.style.display = visible ? "" : "none";
         if (!visible) continue;
         const x = ((point.x + 1) / 2) * width, y = ((1 - point.y) / 2) * height;
-        element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
+        const above = element.className.startsWith("sensor") ? -150 : -50;  // per cent of its height
+        element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, ${above}%)`;
       }
     }
 
@@ -394,6 +469,13 @@
       document.body.dataset.drawn = shown.time;  // the moment that the picture shows
     }
   }
+
+  /// Of a share from 0 to 1: the scale of the key.
+  function shareColour(share) {
+    const at = Math.min(Math.max(share, 0), 1) * (scale.length - 1), lower = Math.min(Math.floor(at), scale.length - 2);
+    return scale[lower].clone().lerp(scale[lower + 1], at - lower);
+  }
+  const scale = ["#440154", "#3b528b", "#21918c", "#5ec962", "#fde725"].map((code) => new three.Color(code));
 
   function faceTowards(geometry, centre) {
     const { array } = geometry.index, points = geometry.getAttribute("position");
@@ -423,7 +505,8 @@
     if (row === shown.row) return;
     shown.row = row;
     const n = rows.people[row];
-    byId("now").textContent = `row ${rows.time_s[row]} s: ${rows.phase[row]}, ${n} ${n === 1 ? "person" : "people"}`;
+    const end = rows.first_clock ? clockText(rows.time_s[row]).slice(11) : rows.time_s[row] + " s";
+    byId("now").textContent = `row ${end}: ${rows.phase[row]}, ${n} ${n === 1 ? "person" : "people"}`;
     buttons.forEach((all, i) => all.forEach((button) => button.classList.toggle("on", bit(row, i))));
     document.body.dataset.row = [rows.time_s[row], rows.phase[row], n, ...rows.bits[row]].join(",");
     if (room) room.showSensors();
@@ -452,6 +535,7 @@
     if (!room) return;
     room.showZones();
     room.showSensors();
+    room.showMap();
   }
 
   function play(playing) {
@@ -461,11 +545,13 @@
     tell("");
   }
 
-  /// "#t=123&sensor=PIR4"
+  /// "#t=123&sensor=PIR4", "#phase=working"
   function followAddress() {
     const asked = new URLSearchParams(location.hash.slice(1));
     const sensor = sensors.findIndex(({ id }) => id === asked.get("sensor"));
     if (sensor >= 0 && sensor !== shown.sensor) choose(sensor);
+    const first = rows.phase.indexOf(asked.get("phase"));
+    if (first >= 0) goTo(rows.time_s[first]);
     if (!asked.has("t")) return;
     const time = Number(asked.get("t"));
     goTo(time);
@@ -494,6 +580,7 @@
     byId("play").addEventListener("click", () => play(!shown.playing));
     byId("all").addEventListener("click", () => shown.sensor >= 0 && choose(shown.sensor));
     byId("names").addEventListener("change", (event) => (byId("labels").hidden = !event.target.checked));
+    byId("map").addEventListener("change", () => room && room.showMap());
     byId("time").addEventListener("input", (event) => jumpTo(Number(event.target.value)));
     byId("rows").addEventListener("click", (event) => {
       const box = byId("rows").getBoundingClientRect();
@@ -503,6 +590,7 @@
     // A focused button would take the space bar for itself.
     document.addEventListener("keyup", (event) => event.key === " " && event.preventDefault());
     window.addEventListener("hashchange", followAddress);
+    byId("legend").addEventListener("toggle", () => room && room.resize());
     window.addEventListener("resize", () => {
       drawRows();
       if (room) room.resize();
@@ -527,6 +615,7 @@
   listen();
   showTime();
   followAddress();
+  if (room) room.showMap();
   if (room) room.draw();
   requestAnimationFrame(frame);
   document.body.dataset.ready = room ? "room" : "rows";

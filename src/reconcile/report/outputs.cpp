@@ -233,7 +233,9 @@ void write_report(const std::filesystem::path& folder, const Outcome& outcome, c
   for (const TrailEvent& event : outcome.trail) trail += in_words(event) + '\n';
   trail += "these data were analysed " + std::to_string(before) + " times before in this folder\n";
   io::write_text_file(folder / "trail.log", trail);
-  io::Report page = report_page(outcome, settings.alpha);
+  const std::vector<std::string>& phases = script.summary.phases;
+  io::Report page = report_page(outcome, settings.alpha,
+                                {provenance.scene, provenance.script, phases.empty() ? "" : phases.front()});
   page.footer = provenance.program + ", " + provenance.scene + ", " + provenance.script + ", " + provenance.measured;
   io::write_text_file(folder / "report.html", io::to_html(page));
   io::write_text_file(folder / "report.json", to_json(outcome, measured, settings, context, provenance));

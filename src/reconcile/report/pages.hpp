@@ -11,9 +11,15 @@
 
 namespace pirsim::reconcile {
 
+/// How a reader gets at the runs in which a cell was counted.
+struct Watched {
+  std::string scene, script;  ///< files' names
+  std::string phase;          ///< in which seconds with motion are counted; empty: all the time
+};
+
 /// The verdict first; then where model and measurement differ, which effects were looked at and why each was kept or
 /// dropped, how strong the named ones are, and whether held-out trials are predicted better with them.
-[[nodiscard]] io::Report report_page(const Outcome& outcome, double alpha);
+[[nodiscard]] io::Report report_page(const Outcome& outcome, double alpha, const Watched& watched = {});
 
 [[nodiscard]] io::Report plan_page(const PlanResult& result);
 [[nodiscard]] std::string to_json(const PlanResult& result);

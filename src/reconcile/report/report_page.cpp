@@ -1,7 +1,9 @@
 #include "reconcile/report/pages.hpp"
 
 #include <algorithm>
-#include <boost/algorithm/string/join.hpp>
+#include <boost/algorithm/string/replace.hpp>
+#include <cctype>
+#include <string_view>
 
 #include "reconcile/report/charts.hpp"
 #include "reconcile/report/sentences.hpp"
@@ -11,19 +13,39 @@ namespace {
 
 std::string count_of(std::size_t n, std::size_t of) { return std::to_string(n) + " of " + std::to_string(of); }
 
-/// Of the framed cells, the first ones.
-std::string commands_to_watch(const Location& location, double alpha) {
-  constexpr std::size_t most = 3;
-  std::vector<std::string> commands;
-  for (const LocatedCell& cell : location.cells) {
-    if (cell.adjusted_p > alpha || commands.size() == most) continue;
-    commands.push_back("pirsim view --trial " + cell.trial + " -o " + cell.trial + ".html, opened as " + cell.trial +
-                       ".html#sensor=" + cell.sensor);
-  }
-  return boost::algorithm::join(commands, "; ");
+/// A word that a shell takes as it stands.
+std::string shell_word(const std::string& text) {
+  constexpr std::string_view plain_marks = "_-./=,:";
+  const auto plain = [&](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || plain_marks.find(c) != std::string_view::npos;
+  };
+  if (!text.empty() && std::ranges::all_of(text, plain)) return text;
+  return "'" + boost::algorithm::replace_all_copy(text, "'", "'\\''") + "'";
 }
 
-io::ReportSection where(const Outcome& outcome, double alpha) {
+/// As part of a file's name.
+std::string file_word(std::string text) {
+  std::ranges::replace_if(text, [](unsigned char c) { return std::isalnum(c) == 0 && c != '-' && c < 128; }, '_');
+  return text;
+}
+
+/// Of the framed cells, the first ones: the command, and where the page that it writes is opened.
+io::Table pages_to_watch(const Location& location, double alpha, const Watched& watched) {
+  constexpr std::size_t most = 3;
+  io::Table table{{"trial", "sensor", "command", "then open"}, {}};
+  const std::string study = " --scene " + shell_word(watched.scene) + " --script " + shell_word(watched.script);
+  for (const LocatedCell& cell : location.cells) {
+    if (cell.adjusted_p > alpha || table.rows.size() == most) continue;
+    const std::string page = file_word(cell.trial) + ".html";
+    table.rows.push_back({cell.trial, cell.sensor,
+                          "pirsim view" + study + " --trial " + shell_word(cell.trial) + " -o " + page,
+                          page + "#" + (watched.phase.empty() ? "" : "phase=" + watched.phase + "&") +
+                              "sensor=" + cell.sensor});
+  }
+  return table;
+}
+
+io::ReportSection where(const Outcome& outcome, double alpha, const Watched& watched) {
   const Location& location = outcome.location;
   const auto differing = std::ranges::count_if(location.cells, [&](const auto& c) { return c.adjusted_p <= alpha; });
   io::ReportSection section{"Where they differ", {}, {}, {}};
@@ -36,8 +58,10 @@ io::ReportSection where(const Outcome& outcome, double alpha) {
           fixed(location.band_s, 0) +
           " s in one cell can't be told from chance here. Of so many cells some lie outside their usual range "
           "by chance alone; a frame marks those that do with that allowed for."};
-  if (const std::string watched = commands_to_watch(location, alpha); !watched.empty())
-    section.paragraphs.push_back("What the model does there can be watched: " + watched + ".");
+  if (io::Table pages = pages_to_watch(location, alpha, watched); !pages.rows.empty()) {
+    section.paragraphs.emplace_back("What the model does there can be watched, in a page that plays the run:");
+    section.tables.push_back(std::move(pages));
+  }
   section.charts.emplace_back(difference_chart(location, alpha));
   return section;
 }
@@ -144,12 +168,12 @@ io::ReportSection held_out(const Verification& v, const std::string& named) {
 
 }  // namespace
 
-io::Report report_page(const Outcome& outcome, double alpha) {
+io::Report report_page(const Outcome& outcome, double alpha, const Watched& watched) {
   io::Report report;
   report.title = "Model and measurement";
   report.finding = sentence(outcome, alpha);
   report.paragraphs = {next_step(outcome)};
-  report.sections = {where(outcome, alpha), envelope(outcome.location, alpha), candidates(outcome)};
+  report.sections = {where(outcome, alpha, watched), envelope(outcome.location, alpha), candidates(outcome)};
   if (!outcome.fits.empty()) report.sections.push_back(strength(outcome.fits));
   if (outcome.verification) {
     const bool undecided = outcome.verdict == Verdict::one_of;

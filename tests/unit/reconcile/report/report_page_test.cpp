@@ -133,16 +133,17 @@ TEST_CASE("the page says the verdict first and shows what each verdict has", "[r
 TEST_CASE("the page names the commands that show the model where a cell is framed", "[report]") {
   Outcome outcome;
   outcome.location = two_cells();
-  const auto paragraphs_of = [&](double alpha) {
-    std::string text;
-    for (const io::ReportSection& section : report_page(outcome, alpha).sections) {
-      for (const std::string& paragraph : section.paragraphs) text += paragraph + "\n";
-    }
-    return text;
+  outcome.location.cells[0].trial = "it's S 8";
+  const std::string& sensor = outcome.location.cells[0].sensor;
+  const auto page = [&](double alpha, const Watched& watched) {
+    return io::to_html(report_page(outcome, alpha, watched));
   };
-  const std::string& trial = outcome.location.cells[0].trial;
-  CHECK_THAT(paragraphs_of(0.05), contains("pirsim view --trial " + trial + " -o " + trial + ".html"));
-  CHECK_THAT(paragraphs_of(0.0), !contains("pirsim view"));
+  const std::string told = page(0.05, {"my room.gltf", "study.yaml", "working"});
+  CHECK_THAT(told, contains("pirsim view --scene 'my room.gltf' --script study.yaml --trial 'it'\\''s S 8' "
+                            "-o it_s_S_8.html"));
+  CHECK_THAT(told, contains("it_s_S_8.html#phase=working&amp;sensor=" + sensor));
+  CHECK_THAT(page(0.05, {"a.gltf", "b.yaml", ""}), contains("it_s_S_8.html#sensor=" + sensor));
+  CHECK_THAT(page(0.0, {"a.gltf", "b.yaml", ""}), !contains("pirsim view"));
 }
 
 TEST_CASE("the page says what held-out trials show and no more", "[report]") {
