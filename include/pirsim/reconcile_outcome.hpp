@@ -25,13 +25,19 @@ enum class Verdict {
   named,             ///< one effect explains the data, or one of several is far likelier than the others
   one_of,            ///< several can have made the data, which can't tell them apart
   several,           ///< effects applied one after the other made the data together
-  none_in_catalogue  ///< nothing known makes such data, or only what is improbable
+  none_in_catalogue,  ///< nothing known makes such data, or only what is improbable
+  unknown_of_family   ///< likewise, but what it resembles is surely of one family
 };
 /// In the order of the enumeration.
-inline constexpr std::array<std::string_view, 5> verdict_names{"no-disagreement", "named", "one-of", "several",
-                                                               "none-in-catalogue"};
+inline constexpr std::array<std::string_view, 6> verdict_names{"no-disagreement", "named",           "one-of",
+                                                               "several",         "none-in-catalogue",
+                                                               "unknown-of-family"};
 [[nodiscard]] constexpr std::string_view name(Verdict verdict) noexcept {
   return verdict_names[static_cast<std::size_t>(verdict)];
+}
+/// A disagreement that no effect of the catalogue explains.
+[[nodiscard]] constexpr bool is_unknown(Verdict verdict) noexcept {
+  return verdict == Verdict::none_in_catalogue || verdict == Verdict::unknown_of_family;
 }
 
 /// How one hypothesis fits the data: `nothing` (the model as it is), or an effect of the catalogue by its name.
@@ -55,7 +61,6 @@ struct FamilyScore {
 
 /// Why an effect was kept or dropped.
 namespace reason {
-struct NotLookedFor {};  ///< there is no disagreement
 struct NotRuledOut {     ///< kept
   double p = 0.0;
 };
@@ -82,7 +87,7 @@ struct SameAs {  ///< judged as that effect, which changes the model in the same
   std::string effect;
 };
 }  // namespace reason
-using Reason = std::variant<reason::NotLookedFor, reason::NotRuledOut, reason::Sure, reason::MayBeNone,
+using Reason = std::variant<reason::NotRuledOut, reason::Sure, reason::MayBeNone,
                             reason::LessLikely, reason::Improbable, reason::HardlySimulated, reason::RuledOut,
                             reason::RefusedWhenApplied, reason::SameAs>;
 
@@ -267,6 +272,7 @@ struct JudgedOnHeldOut {
 enum class Remark {
   may_be_none,             ///< the name is taken back
   refused_when_applied,    ///< the name is taken back: the model with it can't have made the data
+  no_partner,              ///< no effect may explain the rest beside the one applied: nothing more is simulated
   nothing_more_simulated,  ///< people can hardly get about in that model: nothing more is looked for in it
   sums_without_residuals,  ///< sums don't tell when motion was seen
   one_trial_only,          ///< nothing can be held out
@@ -281,7 +287,8 @@ using TrailEvent = std::variant<trail::Begun, DataNote, trail::HeldOut, trail::T
 struct Outcome {
   Verdict verdict = Verdict::no_disagreement;
   Location location;
-  std::vector<Candidate> candidates;  ///< most probable first; without `nothing` and effects that are the same change
+  /// Most probable first; without `nothing` and effects that are the same change. None without a disagreement.
+  std::vector<Candidate> candidates;
   HypothesisScore nothing;            ///< how well the plain model fits
   FamilyScore family;                 ///< whose effects are likeliest together
   std::vector<std::string> named;     ///< effects applied to the model, or those that can't be told apart; of `one_of`

@@ -23,6 +23,10 @@ struct Judgement {
   std::vector<std::size_t> kept;  ///< hypotheses that survive, the named one first, then by p
 };
 
+/// What is said of data that the plain model may have made. Nothing is looked for, and so nothing has to be learnt.
+[[nodiscard]] Outcome agreement(const TableView& view, std::span<const float> measured, double alpha,
+                                const Context& context);
+
 /// Learns from the table's datasets, as the view shows them. Immutable.
 class Analyst {
  public:

@@ -146,7 +146,9 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
                  {"sensor_yaw_deg", settings.nuisance.sensor_yaw_deg},
                  {"sensor_tilt_deg", settings.nuisance.sensor_tilt_deg},
                  {"body_size", settings.nuisance.body_size},
-                 {"arm_amplitude", settings.nuisance.arm_amplitude}}}};
+                 {"arm_amplitude", settings.nuisance.arm_amplitude},
+                 {"uneven_arms", settings.nuisance.uneven_arms},
+                 {"trunk_sway_deg", settings.nuisance.trunk_sway_deg}}}};
   json["where"] = to_json(outcome.location);
   Json candidates = Json::array(), fits = Json::array();
   for (const Candidate& candidate : with_twins(outcome.candidates)) candidates.push_back(to_json(candidate));

@@ -26,7 +26,7 @@ SelftestSettings small() {
   settings.n_nulls = 200;
   settings.n_injected = 10;
   settings.n_out_of_catalogue = 20;
-  settings.leave_out = LeaveOut::each;
+  settings.leave_out = LeaveOut::effects;
   return settings;
 }
 

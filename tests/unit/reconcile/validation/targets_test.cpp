@@ -136,6 +136,46 @@ TEST_CASE("names that were applied are counted by whose they are", "[selftest]")
   CHECK(rate("applied, the name of an out-of-catalogue fault: the model passes") == rates.end());
 }
 
+TEST_CASE("what the catalogue is made to lack is counted by what it is called", "[selftest]") {
+  SelftestResult result = result_of(1, 0);
+  const auto add = [&](CaseKind kind, Verdict verdict, const std::string& named, effects::Family family) {
+    result.cases.push_back(injected("fidgeting", named, verdict));
+    result.cases.back().kind = kind;
+    result.cases.back().family = family;
+  };
+  using effects::Family;
+  add(CaseKind::left_out, Verdict::none_in_catalogue, "", Family::data);
+  result.cases.back().family.reset();
+  add(CaseKind::left_out, Verdict::unknown_of_family, "", Family::motion);
+  add(CaseKind::left_out, Verdict::unknown_of_family, "", Family::person);  // astray
+  add(CaseKind::left_out, Verdict::named, "trunk_sway", Family::motion);
+  add(CaseKind::left_out, Verdict::named, "soft_zone_edges", Family::optics);
+  add(CaseKind::left_out, Verdict::no_disagreement, "", Family::data);
+  const std::size_t first = result.cases.size();
+  add(CaseKind::one, Verdict::named, "fidgeting", Family::motion);
+  add(CaseKind::one, Verdict::named, "sensor_yaw", Family::mounting);
+  add(CaseKind::left_out_variant, Verdict::named, "fidgeting", Family::motion);
+  result.cases.back().injected = first;
+  add(CaseKind::left_out_variant, Verdict::one_of, "", Family::motion);
+  result.cases.back().injected = first;
+  add(CaseKind::left_out_variant, Verdict::named, "fidgeting", Family::motion);  // whom the whole catalogue misnames
+  result.cases.back().injected = first + 1;
+  const std::vector<Rate> rates = rates_of(result);
+  const auto rate = [&](Counted what) {
+    const auto found = std::ranges::find(rates, what, &Rate::what);
+    REQUIRE(found != rates.end());
+    return std::pair(found->hits, found->of);
+  };
+  using Share = std::pair<std::size_t, std::size_t>;
+  CHECK(rate(Counted::left_out_seen) == Share(5, 6));
+  CHECK(rate(Counted::left_out_unknown) == Share(2, 5));
+  CHECK(rate(Counted::left_out_wrong_family) == Share(1, 5));
+  CHECK(rate(Counted::left_out_named) == Share(2, 6));
+  CHECK(rate(Counted::left_out_named_outside) == Share(1, 6));
+  CHECK(rate(Counted::variant_named) == Share(1, 2));
+  CHECK(rate(Counted::motion_as_sensor) == Share(1, 8));
+}
+
 TEST_CASE("a family counts as said if the named effect is of it or its effects are sure together", "[selftest]") {
   SelftestResult result = result_of(1, 0);
   for (const auto family : {effects::Family::mounting, effects::Family::optics}) {
