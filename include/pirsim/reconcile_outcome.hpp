@@ -25,19 +25,13 @@ enum class Verdict {
   named,             ///< one effect explains the data, or one of several is far likelier than the others
   one_of,            ///< several can have made the data, which can't tell them apart
   several,           ///< effects applied one after the other made the data together
-  none_in_catalogue,  ///< nothing known makes such data, or only what is improbable
-  unknown_of_family   ///< likewise, but what it resembles is surely of one family
+  none_in_catalogue  ///< nothing known makes such data, or only what is improbable or merely resembles it
 };
 /// In the order of the enumeration.
-inline constexpr std::array<std::string_view, 6> verdict_names{"no-disagreement", "named",           "one-of",
-                                                               "several",         "none-in-catalogue",
-                                                               "unknown-of-family"};
+inline constexpr std::array<std::string_view, 5> verdict_names{"no-disagreement", "named", "one-of", "several",
+                                                               "none-in-catalogue"};
 [[nodiscard]] constexpr std::string_view name(Verdict verdict) noexcept {
   return verdict_names[static_cast<std::size_t>(verdict)];
-}
-/// A disagreement that no effect of the catalogue explains.
-[[nodiscard]] constexpr bool is_unknown(Verdict verdict) noexcept {
-  return verdict == Verdict::none_in_catalogue || verdict == Verdict::unknown_of_family;
 }
 
 /// How one hypothesis fits the data: `nothing` (the model as it is), or an effect of the catalogue by its name.
@@ -48,6 +42,9 @@ struct HypothesisScore {
   double p_absolute = 0.0;   ///< share of the hypothesis's own datasets that lie as far from the rest of them
   double p = 0.0;            ///< of both: min(1, 2 min)
   double least_p = 0.0;      ///< no data give a smaller one: the hypothesis has too few datasets
+  /// Share of the hypothesis's own datasets that look as much like impostors: data of another effect that are taken for
+  /// this one where the other is unknown.
+  double p_own = 1.0;
 };
 
 /// Effects of one family taken together.
@@ -76,6 +73,9 @@ struct LessLikely {   ///< not ruled out, but another is named
 struct Improbable {  ///< dropped: all that isn't ruled out is improbable together
   double p = 0.0;
 };
+struct LikeImpostors {  ///< dropped: what only resembles it makes such data more often than it does itself
+  double p_own = 0.0;
+};
 struct HardlySimulated {};  ///< dropped: people can hardly get about with it in this room
 struct RuledOut {           ///< dropped by one test or both
   std::optional<double> p_relative, p_absolute;
@@ -88,7 +88,7 @@ struct SameAs {  ///< judged as that effect, which changes the model in the same
 };
 }  // namespace reason
 using Reason = std::variant<reason::NotRuledOut, reason::Sure, reason::MayBeNone,
-                            reason::LessLikely, reason::Improbable, reason::HardlySimulated, reason::RuledOut,
+                            reason::LessLikely, reason::Improbable, reason::LikeImpostors, reason::HardlySimulated, reason::RuledOut,
                             reason::RefusedWhenApplied, reason::SameAs>;
 
 /// What became of one effect of the catalogue.

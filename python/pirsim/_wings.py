@@ -71,7 +71,7 @@ class Reconciliation:
     """Where model and measurement differ, and what the model lacks."""
 
     verdict: str
-    """no-disagreement, named, one-of, several, none-in-catalogue or unknown-of-family."""
+    """no-disagreement, named, one-of, several or none-in-catalogue."""
     sentence: str
     """The verdict for a reader."""
     p: float

@@ -27,7 +27,7 @@ def score(truth, report):
     verdict, effects = report["verdict"], report["effects"]
     if verdict == "no-disagreement":
         return "nothing seen"
-    if verdict in ("none-in-catalogue", "unknown-of-family"):
+    if verdict == "none-in-catalogue":
         return "unknown"
     if not truth:
         return "set" if verdict == "one-of" else "misnamed"

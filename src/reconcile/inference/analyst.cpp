@@ -50,11 +50,11 @@ Judgement Analyst::judge(std::span<const float> measured) const {
   judgement.family = likeliest_family(judgement.scores);
   std::vector<stats::Candidate> candidates;
   for (const HypothesisScore& score : judgement.scores)
-    candidates.push_back({score.p, score.probability, score.least_p});
+    candidates.push_back({score.p, score.probability, score.least_p, score.p_own});
   const stats::Decision decision = stats::decide(judgement.p, candidates, {settings_.alpha});
-  judgement.verdict = decision.verdict == stats::Verdict::none_in_catalogue ? unknown_verdict(judgement.family)
-                                                                            : verdict_of(decision.verdict);
+  judgement.verdict = verdict_of(decision.verdict);
   judgement.kept = decision.kept;
+  judgement.likeness = decision.likeness;
   return judgement;
 }
 
@@ -77,7 +77,8 @@ Outcome Analyst::analyse(std::span<const float> measured) const {
     const HypothesisScore& score = judgement.scores[hypothesis];
     Candidate candidate{score, effects::find(score.hypothesis).info.family, false, {}};
     candidate.kept = std::ranges::find(judgement.kept, hypothesis) != judgement.kept.end();
-    candidate.reason = reason_of(score, candidate.kept, settings_.alpha);
+    candidate.reason = judgement.likeness == hypothesis ? reason::LikeImpostors{score.p_own}
+                                                        : reason_of(score, candidate.kept, settings_.alpha);
     outcome.candidates.push_back(std::move(candidate));
   }
   // The named one is the likeliest of those that are kept.

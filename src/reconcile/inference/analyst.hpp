@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@ struct Judgement {
   FamilyScore family;                   ///< the likeliest
   Verdict verdict = Verdict::no_disagreement;
   std::vector<std::size_t> kept;  ///< hypotheses that survive, the named one first, then by p
+  std::optional<std::size_t> likeness;  ///< hypothesis that would have been named, but is taken for something unknown
 };
 
 /// What is said of data that the plain model may have made. Nothing is looked for, and so nothing has to be learnt.

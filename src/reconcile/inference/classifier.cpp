@@ -132,9 +132,11 @@ HypothesisClassifier::HypothesisClassifier(const TableView& view, const Classifi
   conformal.shapes.seed = context.seed;
   conformal.shapes.threads = context.threads;
   conformal.blocks = view.map().blocks();
-  classifier_ =
-      stats::ConformalClassifier::fit(view.features().select_rows(data_.rows), data_.labels,
-                                      static_cast<int>(data_.hypotheses.size()), data_.split, conformal, data_.kinds);
+  const stats::Matrix<float> features = view.features().select_rows(data_.rows);
+  classifier_ = stats::ConformalClassifier::fit(features, data_.labels, static_cast<int>(data_.hypotheses.size()),
+                                                data_.split, conformal, data_.kinds);
+  impostors_ = stats::ImpostorTests::fit(classifier_.pooled().log_densities(features, context.threads), data_.labels,
+                                         data_.split, context.threads);
   std::vector<int> labels;
   for (const std::size_t place : data_.split.calibration) labels.push_back(data_.labels[place]);
   reliability_ = stats::reliability(classifier_.calibration_probabilities(), labels);
@@ -145,7 +147,9 @@ std::vector<double> HypothesisClassifier::probabilities(std::span<const float> s
 }
 
 std::vector<HypothesisScore> HypothesisClassifier::judge(std::span<const float> statistics) const {
-  const stats::Classification found = classifier_.classify(map_->features(statistics));
+  const std::vector<float> features = map_->features(statistics);
+  const stats::Classification found = classifier_.classify(features);
+  const std::vector<double> log_densities = classifier_.pooled().log_densities(features);
   std::vector<HypothesisScore> scores;
   for (const std::string& name : names_) scores.push_back({name});
   for (std::size_t c = 0; c < data_.hypotheses.size(); ++c) {
@@ -155,6 +159,7 @@ std::vector<HypothesisScore> HypothesisClassifier::judge(std::span<const float> 
     score.p_absolute = found.p_absolute[c];
     score.p = found.p[c];
     score.least_p = classifier_.least_p(c);
+    if (c > 0) score.p_own = impostors_.p(c, log_densities);
   }
   return scores;
 }

@@ -13,15 +13,12 @@
 #include "stats/calibration.hpp"
 #include "stats/conformal.hpp"
 #include "stats/decision.hpp"
+#include "stats/impostors.hpp"
 
 namespace pirsim::reconcile {
 
 /// The likeliest family. scores: (n_hypotheses) nothing first.
 [[nodiscard]] FamilyScore likeliest_family(std::span<const HypothesisScore> scores);
-/// What a disagreement is called that no effect explains.
-[[nodiscard]] inline Verdict unknown_verdict(const FamilyScore& family) noexcept {
-  return family.is_sure() ? Verdict::unknown_of_family : Verdict::none_in_catalogue;
-}
 
 /// (n_hypotheses) Datasets (rows of the table) that nothing is learnt from and in which the global test sees something,
 /// as in data that a name is given to; or, of few, the likeliest to be seen.
@@ -108,6 +105,7 @@ class HypothesisClassifier {
   SeenRows seen_rows_;
   LabelledRows data_;
   stats::ConformalClassifier classifier_;
+  stats::ImpostorTests impostors_;
   stats::Reliability reliability_;
 };
 

@@ -24,13 +24,13 @@ Outcome Loop::run() {
   outcome_ = first.outcome;
   tell_first(first);
   const bool named = outcome_.verdict == Verdict::named;
-  const bool worth_a_try = is_unknown(outcome_.verdict) && settings_.max_effects > 1;
+  const bool worth_a_try = outcome_.verdict == Verdict::none_in_catalogue && settings_.max_effects > 1;
   if (named || worth_a_try) {
     applied_.push_back(named ? outcome_.fits.front() : first.best);
     apply_more();
     conclude();
   }
-  if (is_unknown(outcome_.verdict)) explain();
+  if (outcome_.verdict == Verdict::none_in_catalogue) explain();
   outcome_.looked_for = settings_.table.effects;
   verify_effects();
   return std::move(outcome_);
@@ -163,7 +163,7 @@ const Loop::Step* Loop::look_for_more(double level) {
 void Loop::conclude() {
   const bool only_one = std::ranges::count(outcome_.candidates, true, &Candidate::kept) == 1;
   if (outcome_.verdict == Verdict::named && applied_.size() == 1 && only_one && !passes_ &&
-      rest_ && is_unknown(*rest_)) {
+      rest_ == Verdict::none_in_catalogue) {
     take_back();
     return;
   }
@@ -176,7 +176,7 @@ void Loop::conclude() {
       candidate.kept = true;
       candidate.named_together = true;
     }
-  } else if (is_unknown(outcome_.verdict)) {
+  } else if (outcome_.verdict == Verdict::none_in_catalogue) {
     applied_.clear();
   }
 }
@@ -185,7 +185,7 @@ void Loop::take_back() {
   const auto refused = std::ranges::find(outcome_.candidates, true, &Candidate::kept);
   refused->kept = false;
   refused->reason = reason::RefusedWhenApplied{outcome_.looks.back().p};
-  outcome_.verdict = unknown_verdict(outcome_.family);
+  outcome_.verdict = Verdict::none_in_catalogue;
   outcome_.named.clear();
   outcome_.fits.clear();
   applied_.clear();

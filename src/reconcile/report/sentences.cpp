@@ -40,6 +40,12 @@ std::string doubt(const Outcome& outcome, double alpha) {
 
 /// Why nothing of the catalogue is taken for what is missing.
 std::string no_effect(const Outcome& outcome, double alpha) {
+  for (const Candidate& candidate : outcome.candidates) {
+    if (const auto* likeness = std::get_if<reason::LikeImpostors>(&candidate.reason))
+      return "what resembles it most, " + candidate.score.hypothesis +
+             ", is hardly it: other things that are taken for it make such data more often (p = " +
+             short_number(likeness->p_own) + ")";
+  }
   std::vector<std::string> possible;
   double together = 0.0;
   for (const Candidate& candidate : outcome.candidates) {
@@ -69,12 +75,6 @@ std::string rivals(const Outcome& outcome) {
          joined(names, "and") + " can't be ruled out.";
 }
 
-std::string something_unknown(const Outcome& outcome) {
-  if (outcome.verdict == Verdict::none_in_catalogue) return "The model lacks something that is not in the catalogue";
-  return "The model lacks something of the family " + std::string(name(outcome.family.family)) +
-         " that is not in the catalogue";
-}
-
 /// The one effect that would have been named was dropped since the model with it can't have made the data.
 bool was_refused(const Outcome& outcome) {
   return std::ranges::any_of(outcome.candidates, [](const Candidate& candidate) {
@@ -85,7 +85,7 @@ bool was_refused(const Outcome& outcome) {
 /// The verdict then.
 std::string sentence_of_refused(const Outcome& outcome, double alpha) {
   const Look& look = outcome.looks.back();
-  return something_unknown(outcome) + ": " + where(outcome, alpha) + ". What resembles it most, " + joined(look.applied, "and") +
+  return "The model lacks something that is not in the catalogue: " + where(outcome, alpha) + ". What resembles it most, " + joined(look.applied, "and") +
          ", doesn't explain it: with that applied, the model still differs from the data (p = " + short_number(look.p) +
          "), and no other effect of the catalogue explains what is left.";
 }
@@ -127,7 +127,6 @@ std::string next_step(const Outcome& outcome) {
              " finds the measurement that separates them best. What each does to the data: " +
              fingerprints_of(outcome.named) + ".";
     case Verdict::none_in_catalogue:
-    case Verdict::unknown_of_family:
       break;
   }
   return "What to do next: look at the cells and numbers marked below; a new effect is one file of the catalogue "
@@ -195,10 +194,9 @@ std::string verdict_sentence(const Outcome& outcome, double alpha) {
     case Verdict::several:
       return "The model lacks " + joined(outcome.named, "and") + " together: " + where(outcome, alpha) + ".";
     case Verdict::none_in_catalogue:
-    case Verdict::unknown_of_family:
       break;
   }
-  return something_unknown(outcome) + ": " + where(outcome, alpha) + ", and " +
+  return "The model lacks something that is not in the catalogue: " + where(outcome, alpha) + ", and " +
          no_effect(outcome, alpha) + ".";
 }
 
@@ -215,7 +213,7 @@ std::string in_words(const Look& look) {
 std::string sentence(const Outcome& outcome, double alpha) {
   std::string text;
   if (!outcome.looked_for.empty()) text = "The catalogue was cut down to " + joined(outcome.looked_for, "and") + ". ";
-  const bool none = is_unknown(outcome.verdict);
+  const bool none = outcome.verdict == Verdict::none_in_catalogue;
   const bool taken_back = none && !outcome.looks.empty() && !outcome.looks.back().passes() && was_refused(outcome);
   text += taken_back ? sentence_of_refused(outcome, alpha) : verdict_sentence(outcome, alpha);
   if (!outcome.looks.empty()) {

@@ -51,6 +51,11 @@ Worded worded(const Reason& of) {
                    return Worded{"Dropped", "by itself it might have made these data " + p(r.p) +
                                                 ", but all that isn't ruled out is improbable together."};
                  },
+                 [&](const reason::LikeImpostors& r) {
+                   return Worded{"Dropped", "other things that are taken for it make such data more often than it does "
+                                            "itself " +
+                                                p(r.p_own) + "."};
+                 },
                  [](const reason::HardlySimulated&) {
                    return Worded{"Dropped", "it could hardly be simulated in this room."};
                  },

@@ -84,7 +84,7 @@ struct Finding {
         effects(report.get<std::vector<std::string>>("/effects")),
         measured(report.get<std::string>("/measured/sha256")) {
     report.require_effects(effects);
-    const bool names_none = verdict == Verdict::no_disagreement || is_unknown(verdict);
+    const bool names_none = verdict == Verdict::no_disagreement || verdict == Verdict::none_in_catalogue;
     if (names_none && !effects.empty())
       report.refuse("'/effects' isn't empty, though the verdict is " + std::string(name(verdict)));
   }
@@ -123,7 +123,7 @@ Mark mark_of(const Truth& hidden, const Finding& finding) {
   const bool sees_nothing = finding.verdict == Verdict::no_disagreement;
   if (hidden.kind == Hidden::nothing) return sees_nothing ? Mark::exact : Mark::wrong;
   if (hidden.kind != Hidden::out_of_catalogue) return mark_of_effects(hidden, finding);
-  if (is_unknown(finding.verdict)) return Mark::exact;
+  if (finding.verdict == Verdict::none_in_catalogue) return Mark::exact;
   return sees_nothing ? Mark::none : Mark::wrong;
 }
 

@@ -48,8 +48,7 @@ InjectedCase judged(const ReferenceStudy& reference, const Analyst& analyst, con
   for (const HypothesisScore& score : judgement.scores) result.probabilities.push_back(score.probability);
   const auto best = std::ranges::max_element(judgement.scores, {}, &HypothesisScore::probability);
   result.likeliest = best->hypothesis;
-  const bool tells_family = !result.named.empty() || result.verdict == Verdict::unknown_of_family;
-  if (tells_family && judgement.family.is_sure()) result.family = judgement.family.family;
+  if (!result.named.empty() && judgement.family.is_sure()) result.family = judgement.family.family;
   if (result.verdict != Verdict::named) return result;
   const FittedEffect fitted = analyst.fit(hypothesis_of(reference.table, result.named.front()), injected.statistics);
   if (analyst.takes_back(fitted, result.p)) {
@@ -223,7 +222,7 @@ void count_injected(const SelftestResult& result, std::vector<Rate>& rates) {
     if (c.verdict == Verdict::named) right.count(is_named(c, c.truth));
     family.count(c.family == effects::find(c.truth).info.family);
     in_set.count(contains(c.named, c.truth));
-    none.count(is_unknown(c.verdict));
+    none.count(c.verdict == Verdict::none_in_catalogue);
   }
   rates.insert(rates.end(), {power.rate(), exact.rate(), family.rate(), named.rate(), right.rate(), wrong.rate(),
                              wrong_family.rate(), in_set.rate(), none.rate(), coverage.rate()});
@@ -267,13 +266,13 @@ void count_out_of_catalogue(const SelftestResult& result, std::vector<Rate>& rat
     if (c.kind != CaseKind::out_of_catalogue) continue;
     seen.count(c.seen());
     misnamed.count(c.verdict == Verdict::named);
-    if (c.seen()) none.count(is_unknown(c.verdict));
+    if (c.seen()) none.count(c.verdict == Verdict::none_in_catalogue);
   }
   if (seen.rate().of > 0) rates.insert(rates.end(), {seen.rate(), none.rate(), misnamed.rate()});
 }
 
 void count_left_out(const SelftestResult& result, std::vector<Rate>& rates) {
-  Counter seen(Counted::left_out_seen), unknown(Counted::left_out_unknown), astray(Counted::left_out_wrong_family),
+  Counter seen(Counted::left_out_seen), none(Counted::left_out_none), told_none(Counted::told_left_out_none),
       misnamed(Counted::left_out_named), outside(Counted::left_out_named_outside);
   for (const InjectedCase& c : result.cases) {
     if (c.kind != CaseKind::left_out) continue;
@@ -282,12 +281,11 @@ void count_left_out(const SelftestResult& result, std::vector<Rate>& rates) {
     misnamed.count(c.verdict == Verdict::named);
     outside.count(c.verdict == Verdict::named && !is_family);
     if (!c.seen()) continue;
-    const bool wrong = c.verdict == Verdict::unknown_of_family && !is_family;
-    unknown.count(is_unknown(c.verdict) && !wrong);
-    astray.count(wrong);
+    none.count(c.verdict == Verdict::none_in_catalogue);
+    if (is_named(result.cases[c.injected], c.truth)) told_none.count(c.verdict == Verdict::none_in_catalogue);
   }
   if (seen.rate().of > 0)
-    rates.insert(rates.end(), {seen.rate(), unknown.rate(), astray.rate(), misnamed.rate(), outside.rate()});
+    rates.insert(rates.end(), {seen.rate(), none.rate(), told_none.rate(), misnamed.rate(), outside.rate()});
 }
 
 void count_variants(const SelftestResult& result, std::vector<Rate>& rates) {
@@ -331,7 +329,7 @@ void count_pairs(const SelftestResult& result, std::vector<Rate>& rates) {
     wrong.count(c.verdict == Verdict::named && !any);
     if (!c.seen()) continue;
     one.count(any);
-    none.count(is_unknown(c.verdict));
+    none.count(c.verdict == Verdict::none_in_catalogue);
   }
   if (wrong.rate().of > 0) rates.insert(rates.end(), {one.rate(), none.rate(), wrong.rate()});
 }

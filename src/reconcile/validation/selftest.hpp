@@ -115,8 +115,8 @@ enum class Counted {
   left_out_passes,
   out_of_catalogue_passes,
   left_out_seen,
-  left_out_unknown,       ///< called none in the catalogue or unknown of its family, given a disagreement
-  left_out_wrong_family,  ///< called unknown of another family, given a disagreement
+  left_out_none,        ///< called none in the catalogue, given a disagreement
+  told_left_out_none,   ///< the same of those that the whole catalogue gives the right name: others are as good as nested
   left_out_named,
   left_out_named_outside,  ///< by a name of another family
   variant_named,           ///< by the others, given that the whole catalogue gives the right name
