@@ -25,7 +25,7 @@ enum class Verdict {
   named,             ///< one effect explains the data, or one of several is far likelier than the others
   one_of,            ///< several can have made the data, which can't tell them apart
   several,           ///< effects applied one after the other made the data together
-  none_in_catalogue  ///< nothing known makes such data, or only what is improbable
+  none_in_catalogue  ///< nothing known makes such data, or only what is improbable or merely resembles it
 };
 /// In the order of the enumeration.
 inline constexpr std::array<std::string_view, 5> verdict_names{"no-disagreement", "named", "one-of", "several",
@@ -42,6 +42,9 @@ struct HypothesisScore {
   double p_absolute = 0.0;   ///< share of the hypothesis's own datasets that lie as far from the rest of them
   double p = 0.0;            ///< of both: min(1, 2 min)
   double least_p = 0.0;      ///< no data give a smaller one: the hypothesis has too few datasets
+  /// Share of the hypothesis's own datasets that look as much like impostors: data of another effect that are taken for
+  /// this one where the other is unknown.
+  double p_own = 1.0;
 };
 
 /// Effects of one family taken together.
@@ -55,7 +58,6 @@ struct FamilyScore {
 
 /// Why an effect was kept or dropped.
 namespace reason {
-struct NotLookedFor {};  ///< there is no disagreement
 struct NotRuledOut {     ///< kept
   double p = 0.0;
 };
@@ -71,6 +73,9 @@ struct LessLikely {   ///< not ruled out, but another is named
 struct Improbable {  ///< dropped: all that isn't ruled out is improbable together
   double p = 0.0;
 };
+struct LikeImpostors {  ///< dropped: what only resembles it makes such data more often than it does itself
+  double p_own = 0.0;
+};
 struct HardlySimulated {};  ///< dropped: people can hardly get about with it in this room
 struct RuledOut {           ///< dropped by one test or both
   std::optional<double> p_relative, p_absolute;
@@ -82,8 +87,8 @@ struct SameAs {  ///< judged as that effect, which changes the model in the same
   std::string effect;
 };
 }  // namespace reason
-using Reason = std::variant<reason::NotLookedFor, reason::NotRuledOut, reason::Sure, reason::MayBeNone,
-                            reason::LessLikely, reason::Improbable, reason::HardlySimulated, reason::RuledOut,
+using Reason = std::variant<reason::NotRuledOut, reason::Sure, reason::MayBeNone,
+                            reason::LessLikely, reason::Improbable, reason::LikeImpostors, reason::HardlySimulated, reason::RuledOut,
                             reason::RefusedWhenApplied, reason::SameAs>;
 
 /// What became of one effect of the catalogue.
@@ -267,6 +272,7 @@ struct JudgedOnHeldOut {
 enum class Remark {
   may_be_none,             ///< the name is taken back
   refused_when_applied,    ///< the name is taken back: the model with it can't have made the data
+  no_partner,              ///< no effect may explain the rest beside the one applied: nothing more is simulated
   nothing_more_simulated,  ///< people can hardly get about in that model: nothing more is looked for in it
   sums_without_residuals,  ///< sums don't tell when motion was seen
   one_trial_only,          ///< nothing can be held out
@@ -281,7 +287,8 @@ using TrailEvent = std::variant<trail::Begun, DataNote, trail::HeldOut, trail::T
 struct Outcome {
   Verdict verdict = Verdict::no_disagreement;
   Location location;
-  std::vector<Candidate> candidates;  ///< most probable first; without `nothing` and effects that are the same change
+  /// Most probable first; without `nothing` and effects that are the same change. None without a disagreement.
+  std::vector<Candidate> candidates;
   HypothesisScore nothing;            ///< how well the plain model fits
   FamilyScore family;                 ///< whose effects are likeliest together
   std::vector<std::string> named;     ///< effects applied to the model, or those that can't be told apart; of `one_of`

@@ -180,6 +180,10 @@ struct NuisanceSpec {
   double sensor_tilt_deg = 1.0;   ///< assumed (tried 0-2)
   double body_size = 0.03;        ///< of stature, relative; mass follows with its cube; assumed (tried 0-0.06)
   double arm_amplitude = 0.10;    ///< of desk work, relative; assumed (tried 0-0.2)
+  /// Upper ends of uniform distributions from 0 on, of effects that everybody at work then has. Off unless asked for:
+  /// somebody who works by the metronome, as in Study A, has none of it.
+  double uneven_arms = 0.0;     ///< spread of `uneven_arms`; people at their own work: assumed 0.2
+  double trunk_sway_deg = 0.0;  ///< amplitude of `trunk_sway`; people at their own work: assumed 1
   bool operator==(const NuisanceSpec&) const = default;
 };
 

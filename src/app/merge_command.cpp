@@ -60,7 +60,7 @@ void merge(const MergeOptions& options) {
 }  // namespace
 
 void add_merge_command(CLI::App& app) {
-  CLI::App& command = add_command(app, "merge", "shards to one file, the same as of one process", R"(
+  CLI::App& command = add_command(app, "merge", "join shards into one file, identical to a single process's", R"(
   pirsim merge out -o rows.csv.zst
   pirsim merge out -o rows.csv --script study.yaml --summary table.md
 )");
@@ -72,7 +72,7 @@ void add_merge_command(CLI::App& app) {
       .add_option("--summary", options->summary,
                   "table of sums per trial and sensor, " + in_words(summary_endings()) + "; needs --script")
       ->option_text("FILE");
-  command.add_option("--script", options->script, "that of the shards, for the summary")->option_text("FILE");
+  command.add_option("--script", options->script, "the shards' script, for the summary")->option_text("FILE");
   command.add_option("--set", options->overrides, "as for the shards")
       ->option_text("KEY=VALUE")
       ->allow_extra_args(false);

@@ -66,7 +66,7 @@ reconcile::Settings settings_of(const AnalysisOptions& options, const std::files
     if (std::ranges::find(settings.table.effects, name) != settings.table.effects.end())
       throw Error(ErrorCode::usage, "--effects: " + name + " twice");
     if (std::ranges::find(script.effects, name, &EffectSpec::name) != script.effects.end())
-      throw Error(ErrorCode::usage, "--effects: the script has " + name + " already, it isn't looked for again");
+      throw Error(ErrorCode::usage, "--effects: the script already has " + name + "; it isn't looked for again");
     settings.table.effects.push_back(name);
   }
   settings.table.n_realizations = scaled(settings.table.n_realizations);
@@ -239,17 +239,20 @@ void add_selftest_command(CLI::App& reconcile_command) {
       ->option_text("N");
   command.add_option("--pairs", options->pairs, "datasets with two effects (default: 0)")->option_text("N");
   command
-      .add_option("--out-of-catalogue", options->out_of_catalogue, "of every fault that no catalogue has (default: 0)")
+      .add_option("--out-of-catalogue", options->out_of_catalogue, "datasets of each out-of-catalogue fault (default: 0)")
       ->option_text("N");
   command
       .add_option(
           "--verify", options->verified,
-          "with the right name, judged on held-out trials; and all with nothing hidden and something suspected; "
-          "and named effects applied, to see whether the model passes (default: 0)")
+          "datasets of each group whose name is applied and judged on held-out trials (default: 0)")
       ->option_text("N");
-  command.add_option("--leave-out", options->leave_out, "none, or each: judge by catalogues that lack the effect, too")
+  command
+      .add_option("--leave-out", options->leave_out,
+                  "judge by catalogues that lack the effect, too: none, effects, or variants (also those that lack "
+                  "one variant)")
       ->option_text("HOW")
-      ->transform(one_of<LeaveOut>({{"none", LeaveOut::none}, {"each", LeaveOut::each}}));
+      ->transform(one_of<LeaveOut>(
+          {{"none", LeaveOut::none}, {"effects", LeaveOut::effects}, {"variants", LeaveOut::variants}}));
   offer_analysis(command, *analysis);
   on_call(command, inputs,
           [analysis, options](const Inputs& given) { reconcile_selftest(given, *analysis, *options); });

@@ -17,7 +17,7 @@ const Effect& chair_swing() {
       .info = {.name = "chair_swing",
                .family = Family::motion,
                .stage = "body",
-               .summary = "Who sits turns to and fro on the swivel chair, in bouts.",
+               .summary = "A seated person turns to and fro on the swivel chair, in bouts.",
                .fingerprint = "bouts in which every sensor that sees the sitter is active",
                .confused_with = {"fidgeting", "natural_motion", "soft_zone_edges"},
                .parameters = {{.name = "amplitude_deg",

@@ -49,7 +49,7 @@ const Effect& clock_lag() {
       .info = {.name = "clock_lag",
                .family = Family::electronics,
                .stage = "electronics",
-               .summary = "Rows are stamped late by a fixed time that may grow: the logger's clock is another one.",
+               .summary = "Rows are stamped late by a fixed time that may grow: the logger's clock is off.",
                .fingerprint = "the peak after a change of posture moves in its cycle; sums hardly change",
                .confused_with = {"trunk_tilt", "arm_motion"},
                .parameters = {{.name = "lag_s",

@@ -19,7 +19,7 @@ const Effect& fidgeting() {
                .family = Family::motion,
                .stage = "body",
                .summary =
-                   "Who sits leans a little or turns the head at random moments: independent ones, or with still "
+                   "A seated person leans a little or turns the head at random moments: independent ones, or with still "
                    "periods of all lengths in between.",
                .fingerprint = "activity without the arms' phase, where a sensor sees head or trunk",
                .confused_with = {"false_triggers", "soft_zone_edges", "pulse_stretching"},

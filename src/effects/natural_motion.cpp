@@ -26,7 +26,7 @@ const Effect& natural_motion() {
            .family = Family::motion,
            .stage = "body",
            .summary =
-               "Who sits, stands or walks moves naturally instead of by the paper's choreography: still, then moving, "
+               "Everybody moves naturally instead of by the paper's choreography: still, then moving, "
                "at all scales of time.",
            .fingerprint = "the arms' line in the spectrum is gone; activity comes in bouts of all lengths",
            .confused_with = {"fidgeting", "uneven_arms", "soft_zone_edges"},

@@ -27,7 +27,7 @@ const Effect& seats_shifted() {
       .info = {.name = "seats_shifted",
                .family = Family::data,
                .stage = "books",
-               .summary = "Seats are numbered from another one: each name means the place so many further.",
+               .summary = "Seat names are shifted: each names the seat so many places further.",
                .fingerprint = "rows of the table of sums are permuted",
                .confused_with = {"mirrored_room"},
                .parameters = {{.name = "places",

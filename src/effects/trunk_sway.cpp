@@ -1,4 +1,4 @@
-// Who sits sways a little from side to side.
+// A seated person sways a little from side to side.
 #include "effects/kit.hpp"
 
 namespace pirsim::effects {

@@ -139,7 +139,7 @@ ScriptedAction read_action_map(const YamlNode& node, Diagnostics& faults) {
     return action;
   }
   map.finish();
-  if (found > 1) faults.error(node.where(), "one action an entry: start each with its own '-'");
+  if (found > 1) faults.error(node.where(), "one action per entry: start each with its own '-'");
   const bool nothing_else =
       std::ranges::all_of(node.keys(), [](const YamlKey& key) { return key.name == "at_s" || key.name == "phase"; });
   if (found == 0 && nothing_else && node.is_map()) faults.error(node.where(), "an action is missing, e.g. `sit: S1`");

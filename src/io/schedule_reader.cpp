@@ -151,7 +151,7 @@ std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, D
   spec.lunch = read_clock(map, "lunch", spec.lunch, faults);
   if (spec.departure.mean_h <= spec.arrival.mean_h) {
     faults.error(map.has("departure") ? map.where("departure") : node->where(),
-                 "schedule: people leave before they come: departure isn't after arrival");
+                 "schedule: departure must be after arrival");
   }
   spec.lunch_min = map.number("lunch_min", spec.lunch_min, {.min = 0.0, .max = 240.0});
   spec.lunch_sd_min = map.number("lunch_sd_min", spec.lunch_sd_min, {.min = 0.0, .max = 120.0});

@@ -80,7 +80,7 @@ std::vector<EffectSpec> read_effects(const std::vector<YamlNode>& items, Diagnos
     }
     const std::vector<YamlKey> names = item.keys();
     if (names.size() != 1) {
-      faults.error(item.where(), "an effect an entry, as `- dead_time: {dead_s: 2}`");
+      faults.error(item.where(), "one effect per entry, as `- dead_time: {dead_s: 2}`");
       continue;
     }
     effect.name = names[0].name;

@@ -219,6 +219,8 @@ NuisanceSpec read_nuisance(const std::filesystem::path& file) {
     spec.sensor_tilt_deg = map.number("sensor_tilt_deg", spec.sensor_tilt_deg, {.min = 0.0, .max = 10.0});
     spec.body_size = map.number("body_size", spec.body_size, {.min = 0.0, .max = 0.2});
     spec.arm_amplitude = map.number("arm_amplitude", spec.arm_amplitude, {.min = 0.0, .max = 0.5});
+    spec.uneven_arms = map.number("uneven_arms", spec.uneven_arms, {.min = 0.0, .max = 1.0});
+    spec.trunk_sway_deg = map.number("trunk_sway_deg", spec.trunk_sway_deg, {.min = 0.0, .max = 12.0});
     return spec;
   });
 }

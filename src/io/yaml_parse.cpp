@@ -29,7 +29,7 @@ class TreeBuilder final : public YAML::EventHandler {
   }
 
   void OnDocumentStart(const YAML::Mark& mark) override {
-    if (std::exchange(started_, true)) refuse(mark, "a second document; one a file is expected");
+    if (std::exchange(started_, true)) refuse(mark, "a second document; expected one per file");
   }
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
@@ -39,7 +39,7 @@ class TreeBuilder final : public YAML::EventHandler {
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     refuse_as_key(mark);
     const auto found = anchors_.find(anchor);
-    if (found == anchors_.end()) refuse(mark, "an alias inside of what it stands for");
+    if (found == anchors_.end()) refuse(mark, "an alias that refers to itself");
     attach(found->second);
   }
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,

@@ -265,7 +265,7 @@ Progress Pedestrian::go_to(const Vec2& target, std::span<const Presence> others,
       if (!alone && person_->narrow_floor) alone = person_->narrow_floor->find_way(motion_.position(), target);
       if (!alone) {
         throw Error(ErrorCode::infeasible,
-                    "'" + person_->spec.id + "' finds no way to where they are to go, even if nobody stands in it");
+                    "'" + person_->spec.id + "' can't reach their goal, even in an empty room");
       }
       be_held_up(now);
       wished_way_.reset();

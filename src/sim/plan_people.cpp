@@ -77,9 +77,9 @@ class Rehearsal {
   void go_to(const Vec2& target, const std::string& what, const Where& where) {
     if (!person_.floor->find_way(at_, target)) {
       diagnostics_.error(where, what + " can't be reached by '" + person_.spec.id + "' from " + text(at_) +
-                                    ": no way that keeps " +
+                                    ": no path keeps " +
                                     std::to_string(person_.humanoid.clearance_radius_m()).substr(0, 4) +
-                                    " m clear of everything solid");
+                                    " m clear of solid objects");
     }
     at_ = target;
   }
@@ -93,8 +93,7 @@ class Rehearsal {
     }
     person_.seats.emplace(id, SeatPlan{});
     diagnostics_.error(where, "seat '" + id + "' of " + scene_.name + " can't be reached by '" + person_.spec.id +
-                                  "': no place to stand and sit down from, within a metre of it, has a way from " +
-                                  text(at_));
+                                  "' from " + text(at_) + ": no free place to stand within a metre of it has a path");
   }
 
   /// Any that can be reached may do if the seat asked for is taken.

@@ -38,8 +38,10 @@ Decision decide(double null_p, std::span<const Candidate> candidates, const Deci
   double together = 0.0;
   for (const std::size_t i : kept) together += candidates[i].probability;
   if (kept.empty() || together < levels.plausible) return {Verdict::none_in_catalogue, {}};
-  const Verdict verdict = find_name(candidates, kept, levels.sure) ? Verdict::named : Verdict::one_of;
-  return {verdict, std::move(kept)};
+  if (!find_name(candidates, kept, levels.sure)) return {Verdict::one_of, std::move(kept)};
+  if (candidates[kept.front()].p_own <= levels.entitled * levels.alpha)
+    return {Verdict::none_in_catalogue, {}, kept.front()};
+  return {Verdict::named, std::move(kept)};
 }
 
 }  // namespace pirsim::stats

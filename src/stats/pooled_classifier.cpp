@@ -76,4 +76,12 @@ std::vector<double> PooledClassifier::log_densities(std::span<const float> featu
   return layers_.log_densities(std::span(place).first(n_coordinates_));
 }
 
+Matrix<double> PooledClassifier::log_densities(const Matrix<float>& features, unsigned threads) const {
+  Matrix<double> all;
+  ordered_parallel<std::vector<double>>(
+      features.rows(), threads, [&](std::size_t row) { return log_densities(features.row(row)); },
+      [&](std::vector<double>& one) { all.append_row(std::span<const double>(one)); });
+  return all;
+}
+
 }  // namespace pirsim::stats

@@ -37,6 +37,8 @@ class PooledClassifier {
   [[nodiscard]] std::vector<double> probabilities(std::span<const float> features) const;
   /// (n_classes) of the layers: log density at the row's place, up to a number that all classes share.
   [[nodiscard]] std::vector<double> log_densities(std::span<const float> features) const;
+  /// (n_rows x n_classes) of many rows.
+  [[nodiscard]] Matrix<double> log_densities(const Matrix<float>& features, unsigned threads = 0) const;
 
   /// (n_calibration_rows x n_classes) calibrated, of the rows that were kept for calibration.
   [[nodiscard]] const Matrix<double>& calibration_probabilities() const noexcept { return probabilities_; }

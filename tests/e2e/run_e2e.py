@@ -60,7 +60,7 @@ VALUES = {"--set": "name=other", "--sensors": ".", "--tracer": "direct", "--repo
           "--occupants": "occupants.csv", "--shard": "1/2", "--max-time": "5m",
           "--trial": "S1", "--beams": "all", "--marks": "seats", "--camera": "0,5,0", "--look-at": "1,0,1", "--width": "64",
           "--height": "64", "--measured": "m.csv", "--holdout": "0.3", "--table": "table", "--nuisance": "none",
-          "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "each", "--hide": "one",
+          "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "effects", "--hide": "one",
           "--script": "other.yaml"}
 OUTPUTS = {"preview": "room.png", "export": "run.glb", "view": "run.html", "coverage": "maps", "walktest": "points.csv"}
 

@@ -118,7 +118,7 @@ class Hostile(unittest.TestCase):
                 ("long", "pirsim_script: " + "1" * 10_000_000, "expected"),
                 ("unknown", "pirsim_script: 1\n" + "".join(f"k{i}: 1\n" for i in range(300_000)), "unknown key"),
                 ("anchors", "".join(f"a{i}: &x{i} {{b: c}}\n" for i in range(100_000)), "unknown key"),
-                ("endless", "a: &a [*a]", "an alias inside of what it stands for")):
+                ("endless", "a: &a [*a]", "an alias that refers to itself")):
             with self.subTest(name):
                 self.assertIn(message, self.pirsim(script=self.write("s.yaml", text), code=3))
 

@@ -82,7 +82,7 @@ def main():
         assert twice.returncode == 2 and "dead_time twice" in twice.stderr, twice
         known = subprocess.run([pirsim, "reconcile", "plan", *study, "--effects", "dead_time", "--set",
                                 "effects=[{dead_time: {}}]"], capture_output=True, text=True)
-        assert known.returncode == 2 and "the script has dead_time already" in known.stderr, known
+        assert known.returncode == 2 and "the script already has dead_time" in known.stderr, known
         # False triggers are counted best where nobody is; without anybody there is nothing to miss.
         for row in plan["confusion"]:
             assert abs(sum(row) - 1.0) < 1e-9, row

@@ -142,6 +142,7 @@ class SecondSimulator(unittest.TestCase):
         self.assertEqual(challenge.score(("a",), told("one-of", "c", "b")), "not in the set")
         self.assertEqual(challenge.score((), told("named", "b")), "misnamed")
         self.assertEqual(challenge.score((), told("none-in-catalogue")), "unknown")
+        self.assertEqual(challenge.score(("a",), told("none-in-catalogue")), "unknown")
         self.assertEqual(challenge.score(("a",), told("no-disagreement")), "nothing seen")
 
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "effects/catalogue.hpp"
 #include "pirsim/geometry.hpp"
 #include "pirsim/random.hpp"
 
@@ -15,7 +16,7 @@ constexpr double most_arm_amplitude_m = 0.15;  // what a script may ask for
 double between(Stream& stream, double half_width) { return half_width * (2.0 * stream.uniform() - 1.0); }
 
 /// Entities of the nuisance streams: sensors, seats and people don't share numbers, nor do attempts.
-enum Entity : std::uint32_t { sensors = 0, seats = 1U << 16U, people = 1U << 17U, attempts = 1U << 20U };
+enum Entity : std::uint32_t { sensors = 0, seats = 1U << 16U, people = 1U << 17U, motion = 1U << 18U, attempts = 1U << 20U };
 
 struct Draw {
   const NuisanceSpec& nuisance;
@@ -83,6 +84,20 @@ void change_people(ScriptSpec& script, const Draw& draw) {
   }
 }
 
+/// With amplitude and period within what the effects' priors hold.
+void move_otherwise(ScriptSpec& script, const Draw& draw) {
+  Stream stream = draw.stream(Entity::motion, Purpose::nuisance);
+  const auto add = [&](const char* effect, const char* strength, double most) {
+    const double value = most * stream.uniform();
+    if (most <= 0.0 || std::ranges::find(script.effects, effect, &EffectSpec::name) != script.effects.end()) return;
+    EffectSpec drawn = effects::off(effects::find(effect));
+    drawn.parameters[strength] = value;
+    script.effects.push_back(std::move(drawn));
+  };
+  add("uneven_arms", "spread", draw.nuisance.uneven_arms);
+  add("trunk_sway", "amplitude_deg", draw.nuisance.trunk_sway_deg);
+}
+
 }  // namespace
 
 Realization draw_realization(const SceneSpec& scene, const ScriptSpec& script, const NuisanceSpec& nuisance,
@@ -92,6 +107,7 @@ Realization draw_realization(const SceneSpec& scene, const ScriptSpec& script, c
   move_sensors(realization.scene, draw);
   move_seats(realization.scene, draw);
   change_people(realization.script, draw);
+  move_otherwise(realization.script, draw);
   realization.script.seed = seed_of(draw);
   return realization;
 }

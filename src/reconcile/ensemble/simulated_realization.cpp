@@ -24,6 +24,15 @@ void add_series(const StudyFrame& frame, const RunResult& result, int first, std
   if (series) data.push_back(std::move(*series));
 }
 
+/// Both. What the script has is never looked for again, so one of the same name is the nuisance's, and gives way.
+std::vector<EffectSpec> together(std::vector<EffectSpec> own, std::span<const EffectSpec> more) {
+  std::erase_if(own, [&](const EffectSpec& effect) {
+    return std::ranges::find(more, effect.name, &EffectSpec::name) != more.end();
+  });
+  own.insert(own.end(), more.begin(), more.end());
+  return own;
+}
+
 /// Zones as a Model's detector takes them.
 struct Emitter {
   Emitter(const Model& of, const Recording& from) : model(of), tracks(from), logic(sim::make_logic(of)) {
@@ -78,15 +87,14 @@ SimulatedRealization::SimulatedRealization(SimulatedRealization&&) noexcept = de
 SimulatedRealization& SimulatedRealization::operator=(SimulatedRealization&&) noexcept = default;
 
 std::vector<Series> SimulatedRealization::with(std::span<const EffectSpec> more, int first, int n) const {
-  std::vector<EffectSpec> all = realization_.script.effects;
-  all.insert(all.end(), more.begin(), more.end());
+  const std::vector<EffectSpec> all = together(realization_.script.effects, more);
   return traced_->emitter.emit(*frame_, sim::make_stages(traced_->model, all), first, n);
 }
 
 std::vector<Series> SimulatedRealization::anew(std::span<const EffectSpec> more, int n,
                                                std::span<const std::size_t> trials) const {
   Realization altered = realization_;
-  altered.script.effects.insert(altered.script.effects.end(), more.begin(), more.end());
+  altered.script.effects = together(std::move(altered.script.effects), more);
   altered.script.replicates = n;
   const Model model = compile(altered.scene, altered.script, {.like = &traced_->model});
   const Recording tracks = traced_->family.record(model, runs_of(model, trials));

@@ -101,7 +101,8 @@ void add_body_meshes(Fingerprint& print, const ScriptSpec& script) {
 
 void add(Fingerprint& print, const NuisanceSpec& nuisance) {
   for (const double value : {nuisance.seat_position_m, nuisance.sensor_yaw_deg, nuisance.sensor_tilt_deg,
-                             nuisance.body_size, nuisance.arm_amplitude}) {
+                             nuisance.body_size, nuisance.arm_amplitude, nuisance.uneven_arms,
+                             nuisance.trunk_sway_deg}) {
     print.add_number(value);
   }
 }

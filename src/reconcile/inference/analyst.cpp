@@ -50,28 +50,35 @@ Judgement Analyst::judge(std::span<const float> measured) const {
   judgement.family = likeliest_family(judgement.scores);
   std::vector<stats::Candidate> candidates;
   for (const HypothesisScore& score : judgement.scores)
-    candidates.push_back({score.p, score.probability, score.least_p});
+    candidates.push_back({score.p, score.probability, score.least_p, score.p_own});
   const stats::Decision decision = stats::decide(judgement.p, candidates, {settings_.alpha});
   judgement.verdict = verdict_of(decision.verdict);
   judgement.kept = decision.kept;
+  judgement.likeness = decision.likeness;
   return judgement;
 }
 
-Outcome Analyst::analyse(std::span<const float> measured) const {
-  const Judgement judgement = judge(measured);
+Outcome agreement(const TableView& view, std::span<const float> measured, double alpha, const Context& context) {
   Outcome outcome;
-  outcome.verdict = judgement.verdict;
-  outcome.location = locate(view_->frame(), view_->map(), view_->plain(), measured, settings_.alpha, context_);
+  outcome.location = locate(view.frame(), view.map(), view.plain(), measured, alpha, context);
   outcome.trail.emplace_back(trail::Tested{outcome.location.p});
+  return outcome;
+}
+
+Outcome Analyst::analyse(std::span<const float> measured) const {
+  Outcome outcome = agreement(*view_, measured, settings_.alpha, context_);
+  const Judgement judgement = judge(measured);
+  outcome.verdict = judgement.verdict;
+  if (outcome.verdict == Verdict::no_disagreement) return outcome;
   outcome.nothing = judgement.scores.front();
   outcome.family = judgement.family;
   outcome.calibration_error = classifier_.reliability().expected_calibration_error;
-  const bool differs = outcome.verdict != Verdict::no_disagreement;
   for (std::size_t hypothesis = 1; hypothesis < judgement.scores.size(); ++hypothesis) {
     const HypothesisScore& score = judgement.scores[hypothesis];
     Candidate candidate{score, effects::find(score.hypothesis).info.family, false, {}};
-    candidate.kept = differs && std::ranges::find(judgement.kept, hypothesis) != judgement.kept.end();
-    if (differs) candidate.reason = reason_of(score, candidate.kept, settings_.alpha);
+    candidate.kept = std::ranges::find(judgement.kept, hypothesis) != judgement.kept.end();
+    candidate.reason = judgement.likeness == hypothesis ? reason::LikeImpostors{score.p_own}
+                                                        : reason_of(score, candidate.kept, settings_.alpha);
     outcome.candidates.push_back(std::move(candidate));
   }
   // The named one is the likeliest of those that are kept.
@@ -79,16 +86,14 @@ Outcome Analyst::analyse(std::span<const float> measured) const {
     if (a.kept != b.kept) return a.kept;
     return a.score.probability > b.score.probability;
   });
-  if (differs) {
-    outcome.telling_features = classifier_.telling_features(8);
-    trail::NotRuledOut left;
-    if (outcome.nothing.p > settings_.alpha) left.hypotheses.push_back(outcome.nothing.hypothesis);
-    for (const Candidate& candidate : outcome.candidates) {
-      if (candidate.kept) left.hypotheses.push_back(candidate.score.hypothesis);
-    }
-    outcome.trail.emplace_back(std::move(left));
-    fit_named(outcome, measured);
+  outcome.telling_features = classifier_.telling_features(8);
+  trail::NotRuledOut left;
+  if (outcome.nothing.p > settings_.alpha) left.hypotheses.push_back(outcome.nothing.hypothesis);
+  for (const Candidate& candidate : outcome.candidates) {
+    if (candidate.kept) left.hypotheses.push_back(candidate.score.hypothesis);
   }
+  outcome.trail.emplace_back(std::move(left));
+  fit_named(outcome, measured);
   return outcome;
 }
 

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,7 +22,12 @@ struct Judgement {
   FamilyScore family;                   ///< the likeliest
   Verdict verdict = Verdict::no_disagreement;
   std::vector<std::size_t> kept;  ///< hypotheses that survive, the named one first, then by p
+  std::optional<std::size_t> likeness;  ///< hypothesis that would have been named, but is taken for something unknown
 };
+
+/// What is said of data that the plain model may have made. Nothing is looked for, and so nothing has to be learnt.
+[[nodiscard]] Outcome agreement(const TableView& view, std::span<const float> measured, double alpha,
+                                const Context& context);
 
 /// Learns from the table's datasets, as the view shows them. Immutable.
 class Analyst {

@@ -31,6 +31,13 @@ std::vector<std::size_t> rows_seen(const TableView& view, std::vector<std::size_
   return rows;
 }
 
+std::vector<std::size_t> kept(const ReferenceTable& table, std::vector<std::size_t> rows, const Omission& left_out) {
+  std::erase_if(rows, [&](std::size_t row) {
+    return std::ranges::any_of(table.rows[row].effects, [&](const EffectSpec& drawn) { return left_out.covers(drawn); });
+  });
+  return rows;
+}
+
 }  // namespace
 
 FamilyScore likeliest_family(std::span<const HypothesisScore> scores) {
@@ -41,15 +48,15 @@ FamilyScore likeliest_family(std::span<const HypothesisScore> scores) {
   return likeliest == sums.end() ? FamilyScore{} : FamilyScore{likeliest->first, likeliest->second};
 }
 
-SeenRows seen_rows(const TableView& view, double alpha) {
+SeenRows seen_rows(const TableView& view, double alpha, const Omission& left_out) {
   const ReferenceTable& table = view.table();
   SeenRows seen{rows_of(table, 0, Part::calibration)};
   for (std::size_t hypothesis = 1; hypothesis < table.n_hypotheses(); ++hypothesis)
-    seen.push_back(rows_seen(view, rows_of(table, hypothesis, Part::calibration), alpha));
+    seen.push_back(rows_seen(view, kept(table, rows_of(table, hypothesis, Part::calibration), left_out), alpha));
   return seen;
 }
 
-LabelledRows::LabelledRows(const ReferenceTable& table, const SeenRows& seen, std::string_view left_out)
+LabelledRows::LabelledRows(const ReferenceTable& table, const SeenRows& seen, const Omission& left_out)
     : n_hypotheses(table.n_hypotheses()) {
   const auto add = [&](const std::vector<std::size_t>& more, const std::vector<int>& kinds_of_more,
                        std::vector<std::size_t>& part) {
@@ -62,8 +69,8 @@ LabelledRows::LabelledRows(const ReferenceTable& table, const SeenRows& seen, st
   };
   int n_kinds = 0;
   for (std::size_t hypothesis = 0; hypothesis < n_hypotheses; ++hypothesis) {
-    if (table.hypothesis_name(hypothesis) == left_out) continue;
-    const std::vector<std::size_t> training = rows_of(table, hypothesis, Part::training);
+    if (left_out.is_whole() && table.hypothesis_name(hypothesis) == left_out.effect) continue;
+    const std::vector<std::size_t> training = kept(table, rows_of(table, hypothesis, Part::training), left_out);
     const std::size_t n_calibration = rows_of(table, hypothesis, Part::calibration).size();
     if (training.size() < fewest_training || n_calibration < fewest_calibration) {
       if (hypothesis > 0) continue;
@@ -103,7 +110,7 @@ std::size_t likeliest_hypothesis(std::span<const double> probabilities,
 HypothesisProbabilities::HypothesisProbabilities(const ReferenceTable& table, const FeatureMap& map,
                                                  const SeenRows& seen, const stats::PooledClassifierSettings& settings)
     : map_(&map),
-      data_(table, seen, ""),
+      data_(table, seen, {}),
       classifier_(stats::PooledClassifier::fit(map.features(table.statistics.select_rows(data_.rows), settings.threads),
                                                data_.labels, static_cast<int>(data_.hypotheses.size()), data_.split,
                                                settings, data_.kinds)) {}
@@ -115,7 +122,7 @@ std::vector<double> HypothesisProbabilities::of(std::span<const float> statistic
 HypothesisClassifier::HypothesisClassifier(const TableView& view, const ClassifierSettings& settings,
                                            const Context& context)
     : map_(&view.map()),
-      seen_rows_(reconcile::seen_rows(view, settings.alpha)),
+      seen_rows_(reconcile::seen_rows(view, settings.alpha, settings.left_out)),
       data_(view.table(), seen_rows_, settings.left_out) {
   for (std::size_t hypothesis = 0; hypothesis < view.table().n_hypotheses(); ++hypothesis)
     names_.push_back(view.table().hypothesis_name(hypothesis));
@@ -125,9 +132,11 @@ HypothesisClassifier::HypothesisClassifier(const TableView& view, const Classifi
   conformal.shapes.seed = context.seed;
   conformal.shapes.threads = context.threads;
   conformal.blocks = view.map().blocks();
-  classifier_ =
-      stats::ConformalClassifier::fit(view.features().select_rows(data_.rows), data_.labels,
-                                      static_cast<int>(data_.hypotheses.size()), data_.split, conformal, data_.kinds);
+  const stats::Matrix<float> features = view.features().select_rows(data_.rows);
+  classifier_ = stats::ConformalClassifier::fit(features, data_.labels, static_cast<int>(data_.hypotheses.size()),
+                                                data_.split, conformal, data_.kinds);
+  impostors_ = stats::ImpostorTests::fit(classifier_.pooled().log_densities(features, context.threads), data_.labels,
+                                         data_.split, context.threads);
   std::vector<int> labels;
   for (const std::size_t place : data_.split.calibration) labels.push_back(data_.labels[place]);
   reliability_ = stats::reliability(classifier_.calibration_probabilities(), labels);
@@ -138,7 +147,9 @@ std::vector<double> HypothesisClassifier::probabilities(std::span<const float> s
 }
 
 std::vector<HypothesisScore> HypothesisClassifier::judge(std::span<const float> statistics) const {
-  const stats::Classification found = classifier_.classify(map_->features(statistics));
+  const std::vector<float> features = map_->features(statistics);
+  const stats::Classification found = classifier_.classify(features);
+  const std::vector<double> log_densities = classifier_.pooled().log_densities(features);
   std::vector<HypothesisScore> scores;
   for (const std::string& name : names_) scores.push_back({name});
   for (std::size_t c = 0; c < data_.hypotheses.size(); ++c) {
@@ -148,6 +159,7 @@ std::vector<HypothesisScore> HypothesisClassifier::judge(std::span<const float> 
     score.p_absolute = found.p_absolute[c];
     score.p = found.p[c];
     score.least_p = classifier_.least_p(c);
+    if (c > 0) score.p_own = impostors_.p(c, log_densities);
   }
   return scores;
 }

@@ -13,6 +13,7 @@
 #include "stats/calibration.hpp"
 #include "stats/conformal.hpp"
 #include "stats/decision.hpp"
+#include "stats/impostors.hpp"
 
 namespace pirsim::reconcile {
 
@@ -22,20 +23,33 @@ namespace pirsim::reconcile {
 /// (n_hypotheses) Datasets (rows of the table) that nothing is learnt from and in which the global test sees something,
 /// as in data that a name is given to; or, of few, the likeliest to be seen.
 using SeenRows = std::vector<std::vector<std::size_t>>;
+
+/// What the catalogue is made to lack.
+struct Omission {
+  std::string effect = {};           ///< none of it is a candidate; empty: every one is
+  effects::Condition variant = {};   ///< of that effect, which stays a candidate without it; empty: the whole effect
+  [[nodiscard]] bool is_whole() const noexcept { return !effect.empty() && variant.choice.empty(); }
+  [[nodiscard]] bool covers(const EffectSpec& drawn) const {
+    if (drawn.name != effect) return false;
+    const auto word = drawn.choices.find(variant.choice);
+    return is_whole() || (word != drawn.choices.end() && word->second == variant.word);
+  }
+};
+
 /// alpha: level of the global test.
-[[nodiscard]] SeenRows seen_rows(const TableView& view, double alpha);
+[[nodiscard]] SeenRows seen_rows(const TableView& view, double alpha, const Omission& left_out = {});
 
 struct ClassifierSettings {
   double alpha = 0.05;  ///< level of the global test
   std::size_t trees = 300;
-  std::string left_out = {};  ///< effect that is not to be a candidate; empty: none
+  Omission left_out = {};
 };
 
 /// Rows of the table that its hypotheses are told apart by, with their classes. Hypotheses without enough datasets are
 /// none.
 struct LabelledRows {
-  /// left_out: effect that is not to be a candidate; empty: none. Throws Error(infeasible) without rows of nothing.
-  LabelledRows(const ReferenceTable& table, const SeenRows& seen, std::string_view left_out);
+  /// Throws Error(infeasible) without rows of nothing.
+  LabelledRows(const ReferenceTable& table, const SeenRows& seen, const Omission& left_out);
   /// (n_classes) -> (n_hypotheses); what is no candidate has 0.
   [[nodiscard]] std::vector<double> by_hypothesis(std::span<const double> of_classes) const;
 
@@ -91,6 +105,7 @@ class HypothesisClassifier {
   SeenRows seen_rows_;
   LabelledRows data_;
   stats::ConformalClassifier classifier_;
+  stats::ImpostorTests impostors_;
   stats::Reliability reliability_;
 };
 

@@ -5,11 +5,19 @@
 
 #include "core/digest.hpp"
 #include "pirsim/io.hpp"
+#include "reconcile/inference/locate.hpp"
 #include "reconcile/inference/model_check.hpp"
 #include "reconcile/inference/residuals.hpp"
+#include "reconcile/inference/superposition.hpp"
 #include "reconcile/inference/verify.hpp"
 
 namespace pirsim::reconcile {
+namespace {
+
+/// Beside one effect: more of them would take more than a minute to simulate (assumed).
+constexpr std::size_t most_partners = 8;
+
+}  // namespace
 
 Outcome Loop::run() {
   const Step& first = look(settings_, settings_.alpha);
@@ -52,7 +60,12 @@ const Loop::Step& Loop::look(const Settings& settings, double level) {
       context_);
   step.observed = statistics_of(step.reference.frame, step.reference.shape, step.reference.table.profile, measured_);
   context_.begin({Stage::What::comparing});
-  const Analyst analyst(step.reference.view(training_trials(), context_.threads), {level, settings_.trees}, context_);
+  step.view = step.reference.view(training_trials(), context_.threads);
+  if (step.view->p(step.observed) > level) {
+    step.outcome = agreement(*step.view, step.observed, level, context_);
+    return step;
+  }
+  const Analyst analyst(step.view, {level, settings_.trees}, context_);
   step.outcome = analyst.analyse(step.observed);
   step.seen = analyst.classifier().seen_rows();
   step.likeliest = analyst.likeliest(step.observed, [](std::size_t) { return true; });
@@ -76,8 +89,9 @@ void Loop::tell_first(const Step& first) {
 
 /// Fewer datasets: what is left to be found is found in a third of them, if these can rule anything out at the lower
 /// level. Kept beside the first table.
-Settings Loop::with_all(double level) const {
+Settings Loop::with_all(double level, std::vector<std::string> effects) const {
   Settings settings = settings_;
+  settings.table.effects = std::move(effects);
   const auto third = [level](std::uint32_t n) { return std::max(fewest_datasets_to_refuse(level), n / 3); };
   settings.alpha = level;
   settings.table.n_realizations = third(settings.table.n_realizations);
@@ -88,8 +102,21 @@ Settings Loop::with_all(double level) const {
   only.effects = patch();
   settings.table_folder += "_with";
   for (const FittedEffect& effect : applied_) settings.table_folder += "_" + effect.effect.name;
-  settings.table_folder += "_" + sha256(io::to_yaml(only)).substr(0, 8);
+  std::string text = io::to_yaml(only);
+  for (const std::string& effect : settings.table.effects) text += ' ' + effect;
+  settings.table_folder += "_" + sha256(text).substr(0, 8);
   return settings;
+}
+
+std::optional<std::vector<std::string>> Loop::worth_a_table(double level) const {
+  if (applied_.size() > 1) return settings_.table.effects;
+  const Step& first = steps_.front();
+  const std::size_t hypothesis = hypothesis_of(first.reference.table, applied_.front().effect.name);
+  const std::vector<Partner> partners = partners_of(*first.view, hypothesis, first.observed, level, context_);
+  if (partners.empty()) return std::nullopt;
+  std::vector<std::string> likeliest;
+  for (std::size_t i = 0; i < std::min(partners.size(), most_partners); ++i) likeliest.push_back(partners[i].effect);
+  return likeliest;
 }
 
 void Loop::apply_more() {
@@ -114,8 +141,14 @@ void Loop::apply_more() {
 }
 
 const Loop::Step* Loop::look_for_more(double level) {
+  auto effects = worth_a_table(level);
+  if (!effects) {
+    rest_ = Verdict::none_in_catalogue;
+    tell(trail::Remark::no_partner);
+    return nullptr;
+  }
   try {
-    return &look(with_all(level), level);
+    return &look(with_all(level, std::move(*effects)), level);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::infeasible) throw;
     steps_.pop_back();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,6 +25,7 @@ class Loop {
   /// A look at the data with the table of one model.
   struct Step {
     ReferenceStudy reference;
+    std::shared_ptr<const TableView> view;  ///< of the reference's table, in the trials that are looked at
     std::vector<DataNote> notes;  ///< what was done with which measured rows
     std::vector<float> observed;  ///< statistics of the measured data
     Outcome outcome;
@@ -33,8 +35,11 @@ class Loop {
   };
   const Step& look(const Settings& settings, double level);
   void apply_more();
-  /// With all that was applied; none if people can hardly get about in that model.
+  /// With all that was applied; none if no effect may explain the rest, or people can hardly get about in that model.
   const Step* look_for_more(double level);
+  /// Effects that are worth a table beside those that were applied: beside one, those that the first table doesn't rule
+  /// out as its partner; beside more, all that were asked for.
+  [[nodiscard]] std::optional<std::vector<std::string>> worth_a_table(double level) const;
   void tell_first(const Step& first);
   void tell(TrailEvent event) { outcome_.trail.push_back(std::move(event)); }
   void conclude();
@@ -43,7 +48,7 @@ class Loop {
   void verify_effects();
   /// p of the global test of the model with all that has been applied, its data simulated anew.
   [[nodiscard]] double p_with_all(double level);
-  [[nodiscard]] Settings with_all(double level) const;
+  [[nodiscard]] Settings with_all(double level, std::vector<std::string> effects) const;
   [[nodiscard]] std::vector<std::string> names() const;
   [[nodiscard]] std::vector<EffectSpec> patch() const;
   [[nodiscard]] std::vector<std::size_t> training_trials() const;

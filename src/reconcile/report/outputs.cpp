@@ -45,7 +45,8 @@ Json to_json(const HypothesisScore& score) {
   return {{"probability", score.probability},
           {"p", score.p},
           {"p_relative", score.p_relative},
-          {"p_absolute", score.p_absolute}};
+          {"p_absolute", score.p_absolute},
+          {"p_own", score.p_own}};
 }
 
 Json to_json(const Candidate& candidate) {
@@ -146,7 +147,9 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
                  {"sensor_yaw_deg", settings.nuisance.sensor_yaw_deg},
                  {"sensor_tilt_deg", settings.nuisance.sensor_tilt_deg},
                  {"body_size", settings.nuisance.body_size},
-                 {"arm_amplitude", settings.nuisance.arm_amplitude}}}};
+                 {"arm_amplitude", settings.nuisance.arm_amplitude},
+                 {"uneven_arms", settings.nuisance.uneven_arms},
+                 {"trunk_sway_deg", settings.nuisance.trunk_sway_deg}}}};
   json["where"] = to_json(outcome.location);
   Json candidates = Json::array(), fits = Json::array();
   for (const Candidate& candidate : with_twins(outcome.candidates)) candidates.push_back(to_json(candidate));
@@ -180,11 +183,11 @@ std::string where_csv(const Outcome& outcome) {
 
 std::string candidates_csv(const Outcome& outcome) {
   std::ostringstream out;
-  out << "effect,family,kept,probability,p,p_relative,p_absolute,reason\n";
+  out << "effect,family,kept,probability,p,p_relative,p_absolute,p_own,reason\n";
   for (const Candidate& c : with_twins(outcome.candidates)) {
     out << c.score.hypothesis << ',' << name(c.family) << ',' << (c.kept ? 1 : 0) << ','
         << io::csv_number(c.score.probability) << ',' << io::csv_number(c.score.p) << ','
-        << io::csv_number(c.score.p_relative) << ',' << io::csv_number(c.score.p_absolute) << ','
+        << io::csv_number(c.score.p_relative) << ',' << io::csv_number(c.score.p_absolute) << ',' << io::csv_number(c.score.p_own) << ','
         << io::csv_field(in_words(c)) << '\n';
   }
   return out.str();

@@ -36,7 +36,7 @@ io::GridChart power_grid(const PlanResult& result) {
   chart.title = "How often a disagreement would be seen, % of simulated cases";
   chart.note =
       "Dark: surely seen. Pale: an effect of this strength would stay hidden in what is planned. Strengths are "
-      "thirds of what was thought possible; an effect that is there or not stands under medium.";
+      "thirds of what was thought possible; effects without a strength are listed under medium.";
   chart.label = "share seen";
   chart.columns = {"weak", "medium", "strong"};
   for (const PlannedPower& one : result.power) {

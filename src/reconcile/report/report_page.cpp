@@ -70,13 +70,12 @@ io::ReportSection envelope(const Location& location, double alpha) {
   io::ReportSection section{"Seen as a whole", {}, {}, {}};
   const auto outside = std::ranges::count_if(location.envelope, [&](const auto& e) { return e.adjusted_p <= alpha; });
   section.paragraphs = {
-      "One test for everything together, and its picture: if the model were right, even one red dot would be there in "
-      "only " +
+      "The global test, and its picture: if the model were right, any red dot would appear in only " +
       short_number(100.0 * alpha) + " % of cases. Here, " +
       count_of(static_cast<std::size_t>(outside), location.envelope.size()) +
       " lie outside (p = " + short_number(location.p) +
-      "). Each number is counted in units of its own scatter in the model, with very great ones drawn in, not in "
-      "seconds."};
+      "). Each number is counted in units of its own scatter in the model, not in seconds; large deviations are "
+      "compressed."};
   section.charts.emplace_back(envelope_chart(location, alpha));
   return section;
 }
@@ -96,8 +95,8 @@ io::ReportSection candidates(const Outcome& outcome) {
 io::ReportSection reasons(const Outcome& outcome, double alpha) {
   io::ReportSection section{"Every candidate, and why it was kept or dropped", {}, {}, {}};
   section.paragraphs = {
-      "p: of two tests, whether the effect's own data look like these and whether another effect explains these "
-      "better, the smaller p, doubled since there are two. At most " +
+      "p: twice the smaller p of two tests. One asks whether the effect's own data look like these, the other whether "
+      "another effect explains these better. At most " +
       short_number(alpha) + " speaks against the effect."};
   io::Table table{{"effect", "family", "probability", "p", "why"}, {}};
   for (const Candidate& candidate : with_twins(outcome.candidates)) {

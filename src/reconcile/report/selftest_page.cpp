@@ -49,8 +49,8 @@ io::ReportSection pairs(const SelftestResult& result) {
   const std::vector<ConfusedPair> confused = confused_pairs(result);
   section.paragraphs.push_back(confused.empty()
                                    ? "No two effects are taken for each other in a tenth of their cases."
-                                   : "These are taken for each other in a tenth of their cases or more. They do like "
-                                     "things to the data:");
+                                   : "These are taken for each other in a tenth of their cases or more. They "
+                                     "change the data in similar ways:");
   if (!confused.empty()) section.tables.push_back(pair_table(confused));
   return section;
 }

@@ -40,6 +40,12 @@ std::string doubt(const Outcome& outcome, double alpha) {
 
 /// Why nothing of the catalogue is taken for what is missing.
 std::string no_effect(const Outcome& outcome, double alpha) {
+  for (const Candidate& candidate : outcome.candidates) {
+    if (const auto* likeness = std::get_if<reason::LikeImpostors>(&candidate.reason))
+      return "what resembles it most, " + candidate.score.hypothesis +
+             ", is hardly it: other things that are taken for it make such data more often (p = " +
+             short_number(likeness->p_own) + ")";
+  }
   std::vector<std::string> possible;
   double together = 0.0;
   for (const Candidate& candidate : outcome.candidates) {
@@ -79,8 +85,7 @@ bool was_refused(const Outcome& outcome) {
 /// The verdict then.
 std::string sentence_of_refused(const Outcome& outcome, double alpha) {
   const Look& look = outcome.looks.back();
-  return "The model lacks something that is not in the catalogue: " + where(outcome, alpha) +
-         ". What resembles it most, " + joined(look.applied, "and") +
+  return "The model lacks something that is not in the catalogue: " + where(outcome, alpha) + ". What resembles it most, " + joined(look.applied, "and") +
          ", doesn't explain it: with that applied, the model still differs from the data (p = " + short_number(look.p) +
          "), and no other effect of the catalogue explains what is left.";
 }
@@ -166,7 +171,7 @@ std::string in_words(const FittedEffect& fitted) {
     details += (details.empty() ? "" : ", ") + choice + " " + value + rivals_in_words(fitted, choice, value);
   }
   if (!details.empty()) text += " with " + details;
-  if (fitted.includes_off) text += ", a strength that these data hardly tell from none";
+  if (fitted.includes_off) text += ", a strength that these data can hardly distinguish from zero";
   for (const std::string& twin : effects::twins_of(fitted.effect.name))
     text += " (or " + twin + ", the same in the model)";
   return text;

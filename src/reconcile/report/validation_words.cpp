@@ -41,7 +41,7 @@ std::string sentence(const PlanResult& result) {
 }
 
 std::string_view in_words(Counted counted) noexcept {
-  constexpr std::array<std::string_view, 32> texts{
+  constexpr std::array<std::string_view, 36> texts{
       "a disagreement although nothing is hidden",
       "a name although nothing is hidden",
       "a disagreement seen",
@@ -63,7 +63,11 @@ std::string_view in_words(Counted counted) noexcept {
       "applied, the name of an out-of-catalogue fault: the model passes",
       "an effect that the catalogue lacks: a disagreement seen",
       "an effect that the catalogue lacks: called none in the catalogue, given a disagreement",
+      "an effect that the catalogue lacks and the whole one names: called none in the catalogue, given a disagreement",
       "an effect that the catalogue lacks: called by one name",
+      "an effect that the catalogue lacks: called by one name of another family",
+      "a variant that the catalogue lacks: the right name, where the whole catalogue gives it",
+      "people's motion, in the catalogue or not: called by a name of optics or electronics",
       "an out-of-catalogue fault: a disagreement seen",
       "an out-of-catalogue fault: called none in the catalogue, given a disagreement",
       "an out-of-catalogue fault: called by one name",

@@ -29,10 +29,7 @@ struct Worded {
 Worded worded(const Reason& of) {
   const auto p = [](double value) { return "(p " + short_number(value) + ")"; };
   return std::visit(
-      Overloaded{[](const reason::NotLookedFor&) {
-                   return Worded{"Not looked for", "there is no disagreement."};
-                 },
-                 [&](const reason::NotRuledOut& r) {
+      Overloaded{[&](const reason::NotRuledOut& r) {
                    return Worded{"Kept",
                                  "it can have made these data " + p(r.p) +
                                      ", and no other effect explains them so much better that it can be ruled out."};
@@ -53,6 +50,11 @@ Worded worded(const Reason& of) {
                  [&](const reason::Improbable& r) {
                    return Worded{"Dropped", "by itself it might have made these data " + p(r.p) +
                                                 ", but all that isn't ruled out is improbable together."};
+                 },
+                 [&](const reason::LikeImpostors& r) {
+                   return Worded{"Dropped", "other things that are taken for it make such data more often than it does "
+                                            "itself " +
+                                                p(r.p_own) + "."};
                  },
                  [](const reason::HardlySimulated&) {
                    return Worded{"Dropped", "it could hardly be simulated in this room."};
@@ -84,9 +86,10 @@ std::string in_words(const trail::JudgedOnHeldOut& event) {
 }
 
 std::string_view in_words(trail::Remark remark) noexcept {
-  constexpr std::array<std::string_view, 7> texts{
+  constexpr std::array<std::string_view, 8> texts{
       "the name is taken back",
       "the name is taken back: the model with it can't have made the data",
+      "added to it, no other effect comes near these data: nothing more is looked for",
       "people can hardly get about in that model: nothing more is looked for in it",
       "sums don't tell when motion was seen: the residuals are not looked into",
       "one trial only: nothing can be held out",

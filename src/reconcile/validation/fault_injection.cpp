@@ -91,7 +91,8 @@ class InjectionJob {
         wide_source_(reference.source) {
     NuisanceSpec& wide = wide_source_.nuisance;
     for (double* width :
-         {&wide.seat_position_m, &wide.sensor_yaw_deg, &wide.sensor_tilt_deg, &wide.body_size, &wide.arm_amplitude}) {
+         {&wide.seat_position_m, &wide.sensor_yaw_deg, &wide.sensor_tilt_deg, &wide.body_size, &wide.arm_amplitude,
+          &wide.uneven_arms, &wide.trunk_sway_deg}) {
       *width *= beyond;
     }
   }

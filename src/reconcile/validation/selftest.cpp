@@ -143,6 +143,22 @@ void apply_some(const ReferenceStudy& reference, const FeatureMap& map, const st
   for (std::size_t k = 0; k < chosen.size(); ++k) cases[chosen[k]].applied = Look{cases[chosen[k]].named, level, p[k]};
 }
 
+/// What the catalogue is made to lack, one after the other.
+std::vector<std::pair<CaseKind, Omission>> omissions_of(const ReferenceTable& table, LeaveOut leave_out) {
+  std::vector<std::pair<CaseKind, Omission>> omissions;
+  if (leave_out == LeaveOut::none) return omissions;
+  for (const std::string& effect : table.effects) omissions.push_back({CaseKind::left_out, {effect, {}}});
+  if (leave_out == LeaveOut::effects) return omissions;
+  for (const std::string& effect : table.effects) {
+    for (const effects::ChoiceInfo& choice : effects::find(effect).info.choices) {
+      if (choice.kind != effects::ChoiceKind::variant) continue;
+      for (const std::string& word : choice.words)
+        omissions.push_back({CaseKind::left_out_variant, {effect, {choice.name, word}}});
+    }
+  }
+  return omissions;
+}
+
 /// Of datasets with a disagreement: elsewhere no probability is told.
 stats::Reliability reliability_of(const SelftestResult& result) {
   stats::Matrix<double> probabilities;
@@ -243,16 +259,53 @@ void count_applied(const SelftestResult& result, std::vector<Rate>& rates) {
   }
 }
 
-void count_uncatalogued(const SelftestResult& result, CaseKind kind, const std::array<Counted, 3>& what,
-                        std::vector<Rate>& rates) {
-  Counter seen(what[0]), none(what[1]), misnamed(what[2]);
+void count_out_of_catalogue(const SelftestResult& result, std::vector<Rate>& rates) {
+  Counter seen(Counted::out_of_catalogue_seen), none(Counted::out_of_catalogue_none),
+      misnamed(Counted::out_of_catalogue_named);
   for (const InjectedCase& c : result.cases) {
-    if (c.kind != kind) continue;
+    if (c.kind != CaseKind::out_of_catalogue) continue;
     seen.count(c.seen());
     misnamed.count(c.verdict == Verdict::named);
     if (c.seen()) none.count(c.verdict == Verdict::none_in_catalogue);
   }
   if (seen.rate().of > 0) rates.insert(rates.end(), {seen.rate(), none.rate(), misnamed.rate()});
+}
+
+void count_left_out(const SelftestResult& result, std::vector<Rate>& rates) {
+  Counter seen(Counted::left_out_seen), none(Counted::left_out_none), told_none(Counted::told_left_out_none),
+      misnamed(Counted::left_out_named), outside(Counted::left_out_named_outside);
+  for (const InjectedCase& c : result.cases) {
+    if (c.kind != CaseKind::left_out) continue;
+    const bool is_family = c.family == effects::find(c.truth).info.family;
+    seen.count(c.seen());
+    misnamed.count(c.verdict == Verdict::named);
+    outside.count(c.verdict == Verdict::named && !is_family);
+    if (!c.seen()) continue;
+    none.count(c.verdict == Verdict::none_in_catalogue);
+    if (is_named(result.cases[c.injected], c.truth)) told_none.count(c.verdict == Verdict::none_in_catalogue);
+  }
+  if (seen.rate().of > 0)
+    rates.insert(rates.end(), {seen.rate(), none.rate(), told_none.rate(), misnamed.rate(), outside.rate()});
+}
+
+void count_variants(const SelftestResult& result, std::vector<Rate>& rates) {
+  Counter named(Counted::variant_named);
+  for (const InjectedCase& c : result.cases) {
+    if (c.kind == CaseKind::left_out_variant && is_named(result.cases[c.injected], c.truth))
+      named.count(is_named(c, c.truth));
+  }
+  if (named.rate().of > 0) rates.push_back(named.rate());
+}
+
+void count_motion(const SelftestResult& result, std::vector<Rate>& rates) {
+  Counter as_sensor(Counted::motion_as_sensor);
+  for (const InjectedCase& c : result.cases) {
+    const bool is_catalogued = c.kind == CaseKind::one || c.kind == CaseKind::left_out;
+    if (!is_catalogued || effects::find(c.truth).info.family != effects::Family::motion) continue;
+    const bool is_sensor = c.family == effects::Family::optics || c.family == effects::Family::electronics;
+    as_sensor.count(c.verdict == Verdict::named && is_sensor);
+  }
+  if (as_sensor.rate().of > 0) rates.push_back(as_sensor.rate());
 }
 
 void count_beyond(const SelftestResult& result, std::vector<Rate>& rates) {
@@ -284,8 +337,8 @@ void count_pairs(const SelftestResult& result, std::vector<Rate>& rates) {
 }  // namespace
 
 std::string_view name(CaseKind kind) noexcept {
-  constexpr std::array<std::string_view, 6> names{"nothing",  "one", "beyond_prior",
-                                                  "left_out", "two", "out_of_catalogue"};
+  constexpr std::array<std::string_view, 7> names{
+      "nothing", "one", "beyond_prior", "left_out", "left_out_variant", "two", "out_of_catalogue"};
   return names[static_cast<std::size_t>(kind)];
 }
 
@@ -298,8 +351,8 @@ SelftestResult judge(const ReferenceStudy& reference, const std::vector<Injected
                      const SelftestSettings& settings, const Context& context) {
   const Settings& analysis = settings.analysis;
   const auto view = reference.view(all_trials(reference.frame), context.threads);
-  const auto analyst_without = [&](const std::string& effect) {
-    return Analyst(view, {analysis.alpha, analysis.trees, effect}, context);
+  const auto analyst_without = [&](const Omission& left_out) {
+    return Analyst(view, {analysis.alpha, analysis.trees, left_out}, context);
   };
   SelftestResult result;
   for (std::size_t hypothesis = 0; hypothesis < reference.table.n_hypotheses(); ++hypothesis)
@@ -307,19 +360,17 @@ SelftestResult judge(const ReferenceStudy& reference, const std::vector<Injected
   context.begin({Stage::What::judging});
   std::vector<std::size_t> all(injected.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  judge_all(reference, analyst_without(""), injected, all, {}, context.threads, result.cases);
+  judge_all(reference, analyst_without({}), injected, all, {}, context.threads, result.cases);
   result.reliability = reliability_of(result);
   if (settings.n_verified > 0)
     verify_some(reference, seen_rows(*view, analysis.alpha), injected, settings, context, result.cases);
-  if (settings.leave_out == LeaveOut::each) {
-    for (const std::string& effect : reference.table.effects) {
-      context.begin({Stage::What::judging_without, {effect}});
-      std::vector<std::size_t> own;
-      for (const std::size_t i : all) {
-        if (injected[i].kind == CaseKind::one && injected[i].effects.front().name == effect) own.push_back(i);
-      }
-      judge_all(reference, analyst_without(effect), injected, own, CaseKind::left_out, context.threads, result.cases);
+  for (const auto& [kind, omission] : omissions_of(reference.table, settings.leave_out)) {
+    context.begin({Stage::What::judging_without, {omission.effect + omission.variant.word}});
+    std::vector<std::size_t> own;
+    for (const std::size_t i : all) {
+      if (injected[i].kind == CaseKind::one && omission.covers(injected[i].effects.front())) own.push_back(i);
     }
+    judge_all(reference, analyst_without(omission), injected, own, kind, context.threads, result.cases);
   }
   apply_some(reference, view->map(), injected, settings, context, result.cases);
   return result;
@@ -342,11 +393,10 @@ std::vector<Rate> rates_of(const SelftestResult& result) {
   count_injected(result, rates);
   count_verified(result, rates);
   count_applied(result, rates);
-  count_uncatalogued(result, CaseKind::left_out,
-                     {Counted::left_out_seen, Counted::left_out_none, Counted::left_out_named}, rates);
-  count_uncatalogued(result, CaseKind::out_of_catalogue,
-                     {Counted::out_of_catalogue_seen, Counted::out_of_catalogue_none, Counted::out_of_catalogue_named},
-                     rates);
+  count_left_out(result, rates);
+  count_variants(result, rates);
+  count_motion(result, rates);
+  count_out_of_catalogue(result, rates);
   count_beyond(result, rates);
   count_pairs(result, rates);
   return rates;

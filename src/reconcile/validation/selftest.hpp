@@ -19,7 +19,8 @@ namespace pirsim::reconcile {
 
 enum class LeaveOut {
   none,
-  each  ///< judge the datasets with one effect a second time, by a catalogue that lacks it
+  effects,  ///< judge the datasets with one effect a second time, by a catalogue that lacks it
+  variants  ///< the same, and those with one variant of an effect by a catalogue that lacks the variant
 };
 
 struct SelftestSettings {
@@ -47,6 +48,7 @@ enum class CaseKind {
   one,              ///< effect of the catalogue, strength from its prior
   beyond_prior,     ///< stronger than any in the table, in a room drawn from a wider nuisance
   left_out,         ///< effect that the catalogue lacks when this dataset is judged
+  left_out_variant, ///< the catalogue has the effect in other variants only
   two,              ///< effects together
   out_of_catalogue  ///< something that no catalogue has
 };
@@ -113,8 +115,12 @@ enum class Counted {
   left_out_passes,
   out_of_catalogue_passes,
   left_out_seen,
-  left_out_none,  ///< called none in the catalogue, given a disagreement
+  left_out_none,        ///< called none in the catalogue, given a disagreement
+  told_left_out_none,   ///< the same of those that the whole catalogue gives the right name: others are as good as nested
   left_out_named,
+  left_out_named_outside,  ///< by a name of another family
+  variant_named,           ///< by the others, given that the whole catalogue gives the right name
+  motion_as_sensor,        ///< people's motion, in or left out of the catalogue: a name of optics or electronics
   out_of_catalogue_seen,
   out_of_catalogue_none,
   out_of_catalogue_named,

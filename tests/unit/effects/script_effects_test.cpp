@@ -56,7 +56,7 @@ TEST_CASE("what is wrong with an effect is said with its place and the nearest n
   CHECK_THAT(faults_of("effects: [{dead_time: {sensor: PIR9}}]"), contains("'PIR9' is not in meeting_room.gltf"));
   CHECK_THAT(faults_of("effects: [dead_time, dead_time: {sensor: PIR1}]"), contains("a second time"));
   CHECK_THAT(faults_of("effects: [dead_time: 3]"), contains("expected parameters by name"));
-  CHECK_THAT(faults_of("effects: [{dead_time: {}, clock_lag: {}}]"), contains("an effect an entry"));
+  CHECK_THAT(faults_of("effects: [{dead_time: {}, clock_lag: {}}]"), contains("one effect per entry"));
   CHECK(faults_of("effects: [dead_time: {sensor: PIR1}, dead_time: {sensor: PIR2}]").empty());
 }
 

@@ -54,7 +54,7 @@ TEST_CASE("What can't be in a schedule is refused with its place") {
   refused("  staff: [{count: 2}]\n  from: 18:00\n  to: 9:00\n",
           "s.yaml:5:7: error: schedule: `to` is not after `from`");
   refused("  staff: [{count: 2}]\n  arrival: {mean: 18:00}\n  departure: {mean: 09:00}\n",
-          "s.yaml:5:14: error: schedule: people leave before they come");
+          "s.yaml:5:14: error: schedule: departure must be after arrival");
   refused("  staff: [{count: 2}]\n  arrival: {mean: half past eight}\n", "s.yaml:4:19: error: mean: expected a time");
   refused("  first_day: 2026-02-30\n  staff: [{count: 2}]\n", "s.yaml:3:14: error: '2026-02-30' is no date");
   refused("  from: 08:00\n", "s.yaml:3:3: error: schedule: nobody comes");

@@ -93,7 +93,7 @@ TEST_CASE("a trial's name may not become empty by what is filled in") {
 
 TEST_CASE("two actions in one entry, an entry without one, and two people of one name are refused") {
   const std::string people = "pirsim_script: 1\npeople:\n  - id: a\n    actions:\n";
-  CHECK(fault(people + "      - {sit: S1, rise: }\n").find("one action an entry") != std::string::npos);
+  CHECK(fault(people + "      - {sit: S1, rise: }\n").find("one action per entry") != std::string::npos);
   CHECK(fault(people + "      - at_s: 4\n").find("an action is missing") != std::string::npos);
   CHECK(fault("pirsim_script: 1\npeople: [{id: a}, {id: a}]\n").find("a second person 'a'") != std::string::npos);
 }

@@ -87,7 +87,7 @@ TEST_CASE("text that is not a YAML tree of names is refused with line and column
   CHECK(refusal_of("a: 1\nb: 2\na: 3\n") == "3 f.yaml:3:1: error: key 'a' appears twice (first in line 1)");
   CHECK(refusal_of("x: {a: 1, a: 2}\n").find("3 f.yaml:1:11: error: key 'a' appears twice") == 0);
   CHECK(refusal_of("[1, 2]: 3\n") == "3 f.yaml:1:1: error: expected a name as key (is a bracket left open?)");
-  CHECK(refusal_of("a: &x [*x]\n") == "3 f.yaml:1:8: error: an alias inside of what it stands for");
+  CHECK(refusal_of("a: &x [*x]\n") == "3 f.yaml:1:8: error: an alias that refers to itself");
   CHECK(refusal_of("a: [1, !3, 2]\n") ==
         "3 f.yaml:1:8: error: the tag '!3' isn't known (a text that begins with ! stands in quotes)");
   CHECK(refusal_of("!mine {a: 1}\n").find("3 f.yaml:1:1: error: the tag '!mine'") == 0);

@@ -56,6 +56,16 @@ TEST_CASE("an effect that is as good as certain is ruled out at two fifths of th
   CHECK(decide(0.001, certain, {0.05}).verdict == Verdict::none_in_catalogue);
 }
 
+TEST_CASE("who would be named but only resembles what made the data is told apart", "[stats]") {
+  std::vector<Candidate> one = candidates(0.0, 0.0, 0.4, 0.0);
+  one[2].p_own = 0.026;
+  CHECK(decide(0.001, one, {0.05}) == Decision{Verdict::named, {2}});
+  one[2].p_own = 0.025;
+  CHECK(decide(0.001, one, {0.05}) == Decision{Verdict::none_in_catalogue, {}, 2});
+  one[3].p = 0.3;  // where two can't be told apart nothing is named anyway
+  CHECK(decide(0.001, one, {0.05}) == Decision{Verdict::one_of, {2, 3}});
+}
+
 TEST_CASE("where nothing survives the catalogue lacks it", "[stats]") {
   CHECK(decide(0.001, candidates(0.0, 0.0, 0.0, 0.0), {0.05}) == Decision{Verdict::none_in_catalogue, {}});
   CHECK(decide(0.001, candidates(0.0, 0.1, 0.4, 0.2), {0.5}).verdict == Verdict::none_in_catalogue);

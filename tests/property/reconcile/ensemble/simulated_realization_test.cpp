@@ -87,3 +87,29 @@ TEST_CASE("who tried the same few steps round somebody for ever gets past them i
       effects::draw_from_prior(**second_person, realization.drawn().scene, realization.drawn().script, stream);
   CHECK(realization.with_effects(std::span(&effect, 1), 0, n_replicates).has_value());
 }
+
+TEST_CASE("people of the nuisance swing their arms unevenly and sway, unless an effect says how they do") {
+  NuisanceSpec nuisance;
+  nuisance.uneven_arms = 0.4;
+  nuisance.trunk_sway_deg = 2.0;
+  const RealizationSource source{shipped_scene("meeting_room.gltf"), short_study_a(), nuisance, 14};
+  const StudyFrame frame = frame_of(source.scene, source.script);
+  const SimulatedRealization realization(source, frame, 0, n_replicates);
+  const std::vector<EffectSpec>& drawn = realization.drawn().script.effects;
+  REQUIRE(drawn.size() == 2);
+  CHECK(0.0 < drawn[0].parameters.at("spread"));
+  CHECK(drawn[0].parameters.at("spread") <= 0.4);
+  CHECK(0.0 < drawn[1].parameters.at("amplitude_deg"));
+  CHECK(drawn[1].parameters.at("amplitude_deg") <= 2.0);
+  CHECK(realization.plain(0, n_replicates) == *study_with(frame, realization.drawn(), {}, n_replicates));
+
+  const SimulatedRealization by_the_metronome({source.scene, source.script, {}, 14}, frame, 0, n_replicates);
+  CHECK(realization.drawn().script.seed == by_the_metronome.drawn().script.seed);
+  CHECK(realization.plain(0, n_replicates) != by_the_metronome.plain(0, n_replicates));
+
+  const EffectSpec sways{"trunk_sway", {{"amplitude_deg", 6.0}}, {}, {}};
+  Realization with_it = realization.drawn();
+  with_it.script.effects = {drawn[0]};
+  CHECK((realization.with_effects(std::span(&sways, 1), 0, n_replicates) ==
+         study_with(frame, with_it, {sways}, n_replicates)));
+}

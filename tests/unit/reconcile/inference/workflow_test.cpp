@@ -30,7 +30,7 @@ ScriptSpec short_study() { return test::short_study({"S1", "S4", "S8"}, 60.0); }
 
 Settings quick() {
   Settings settings;
-  settings.table = {250, 250, 250, {"false_triggers", "missed_triggers", "pulse_stretching"}};
+  settings.table = {400, 400, 400, {"false_triggers", "missed_triggers", "pulse_stretching"}};
   settings.trees = 60;
   settings.verify_realizations = 20;
   return settings;
@@ -359,11 +359,12 @@ TEST_CASE("two effects at once are found one after the other", "[reconcile][thre
   const EffectSpec swapped{"labels_swapped", {}, {{"sensor", "PIR2"}, {"other", "PIR5"}}, {}};
   ScriptSpec hidden = short_study();
   hidden.seed = 99;
+  hidden.replicates = 3;
   hidden.effects = {many_false_triggers, swapped};
   Measured measured;
   measured.digest = sha256("two hidden");
   run_study(compile(scene, hidden), {}, [&](const RunResult& result) {
-    measured.runs.push_back(*series_of(reference_study().frame, 1, result.trial, result.samples));
+    measured.runs.push_back(*series_of(reference_study().frame, result.replicate, result.trial, result.samples));
   });
   Settings settings = quick();
   settings.table.effects = {"false_triggers", "labels_swapped"};
@@ -404,10 +405,11 @@ TEST_CASE("what no effect of the catalogue makes gets no name, and the residuals
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
   ScriptSpec hidden = short_study();
   hidden.seed = 7;
+  hidden.replicates = 3;
   Measured measured;
   measured.digest = sha256("inverted for a while");
   run_study(compile(scene, hidden), {}, [&](const RunResult& result) {
-    measured.runs.push_back(*series_of(reference_study().frame, 1, result.trial, result.samples));
+    measured.runs.push_back(*series_of(reference_study().frame, result.replicate, result.trial, result.samples));
     Series& run = measured.runs.back();  // one sensor says the opposite for a third of the time
     const std::size_t n = reference_study().frame.sensors.size(), n_main = run.main_end - run.main_begin;
     for (std::size_t row = run.main_begin + n_main / 3; row < run.main_begin + 2 * n_main / 3; ++row)

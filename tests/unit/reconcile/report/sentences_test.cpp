@@ -66,6 +66,15 @@ TEST_CASE("a name that doesn't do when it is applied is taken back with that rea
   CHECK_THAT(in_words(outcome.candidates.front()), contains("Dropped: with it applied") && contains("(p 0.005)"));
 }
 
+TEST_CASE("a likeness that got no name is told with its p", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"seat_scatter", 0.9}});
+  outcome.candidates.front().kept = false;
+  outcome.candidates.front().reason = reason::LikeImpostors{0.02};
+  CHECK_THAT(sentence(outcome, 0.05), contains("what resembles it most, seat_scatter, is hardly it") &&
+                                          contains("make such data more often (p = 0.02)"));
+  CHECK_THAT(in_words(outcome.candidates.front()), contains("Dropped: other things that are taken for it"));
+}
+
 TEST_CASE("of an effect that does when it is applied and was dropped all the same both is said", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"labels_swapped", 0.99}});
   outcome.candidates.front().reason = reason::RuledOut{{}, 0.01};

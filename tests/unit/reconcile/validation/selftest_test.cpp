@@ -18,15 +18,15 @@ ScriptSpec short_study() { return test::short_study({"S1", "S4", "S8"}, 60.0); }
 SelftestSettings small() {
   SelftestSettings settings;
   settings.analysis.table = {
-      250,
-      250,
-      250,
+      400,
+      400,
+      400,
       {"false_triggers", "missed_triggers", "pulse_stretching", "dead_time", "clock_lag", "dead_sensor"}};
   settings.analysis.trees = 100;
   settings.n_nulls = 200;
   settings.n_injected = 10;
   settings.n_out_of_catalogue = 20;
-  settings.leave_out = LeaveOut::each;
+  settings.leave_out = LeaveOut::effects;
   return settings;
 }
 

@@ -66,7 +66,14 @@ TEST_CASE("every target but those of known geometry has a rate that a full self-
     c.kind = kind;
     c.n_parameters = c.n_covered = 1;
     c.verification.emplace().before.energy_score = 1.0;  // there is something to close
+    c.injected = 1;                                      // the first of them
     result.cases.push_back(c);
+  }
+  const std::size_t first = result.cases.size();
+  for (const CaseKind kind : {CaseKind::one, CaseKind::left_out_variant}) {
+    result.cases.push_back(injected("fidgeting", "fidgeting", Verdict::named));
+    result.cases.back().kind = kind;
+    result.cases.back().injected = first;
   }
   for (const TargetResult& one : compare_with_targets(result, Geometry::uncertain)) {
     INFO(in_words(one.target.rate));
@@ -134,6 +141,47 @@ TEST_CASE("names that were applied are counted by whose they are", "[selftest]")
   CHECK((right->hits == 2 && right->of == 3));
   CHECK((neighbour->hits == 1 && neighbour->of == 4));
   CHECK(rate("applied, the name of an out-of-catalogue fault: the model passes") == rates.end());
+}
+
+TEST_CASE("what the catalogue is made to lack is counted by what it is called", "[selftest]") {
+  SelftestResult result = result_of(1, 0);
+  const auto add = [&](CaseKind kind, Verdict verdict, const std::string& named, effects::Family family) {
+    result.cases.push_back(injected("fidgeting", named, verdict));
+    result.cases.back().kind = kind;
+    result.cases.back().family = family;
+  };
+  using effects::Family;
+  add(CaseKind::left_out, Verdict::none_in_catalogue, "", Family::data);
+  result.cases.back().family.reset();
+  add(CaseKind::left_out, Verdict::named, "trunk_sway", Family::motion);
+  add(CaseKind::left_out, Verdict::named, "soft_zone_edges", Family::optics);
+  add(CaseKind::left_out, Verdict::no_disagreement, "", Family::data);
+  const std::size_t first = result.cases.size();
+  add(CaseKind::one, Verdict::named, "fidgeting", Family::motion);
+  add(CaseKind::one, Verdict::named, "sensor_yaw", Family::mounting);
+  add(CaseKind::left_out_variant, Verdict::named, "fidgeting", Family::motion);
+  result.cases.back().injected = first;
+  add(CaseKind::left_out_variant, Verdict::one_of, "", Family::motion);
+  result.cases.back().injected = first;
+  add(CaseKind::left_out_variant, Verdict::named, "fidgeting", Family::motion);  // whom the whole catalogue misnames
+  result.cases.back().injected = first + 1;
+  result.cases[1].injected = first;  // of those left out two are told by the whole catalogue, one of them called none
+  result.cases[2].injected = first;
+  result.cases[3].injected = first + 1;
+  const std::vector<Rate> rates = rates_of(result);
+  const auto rate = [&](Counted what) {
+    const auto found = std::ranges::find(rates, what, &Rate::what);
+    REQUIRE(found != rates.end());
+    return std::pair(found->hits, found->of);
+  };
+  using Share = std::pair<std::size_t, std::size_t>;
+  CHECK(rate(Counted::left_out_seen) == Share(3, 4));
+  CHECK(rate(Counted::left_out_none) == Share(1, 3));
+  CHECK(rate(Counted::told_left_out_none) == Share(1, 2));
+  CHECK(rate(Counted::left_out_named) == Share(2, 4));
+  CHECK(rate(Counted::left_out_named_outside) == Share(1, 4));
+  CHECK(rate(Counted::variant_named) == Share(1, 2));
+  CHECK(rate(Counted::motion_as_sensor) == Share(1, 6));
 }
 
 TEST_CASE("a family counts as said if the named effect is of it or its effects are sure together", "[selftest]") {
