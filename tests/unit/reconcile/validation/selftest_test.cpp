@@ -75,7 +75,7 @@ ReferenceStudy changed(const std::function<void(ReferenceTable&)>& change) {
 TEST_CASE("of a study of one trial nothing is held out and named effects are applied all the same",
           "[reconcile][selftest]") {
   SelftestSettings settings = small();
-  settings.analysis.table = {120, 60, 60, {"false_triggers", "dead_sensor"}};
+  settings.analysis.table = {250, 250, 250, {"false_triggers", "dead_sensor"}};
   settings.n_nulls = 5;
   settings.n_injected = 4;
   settings.n_out_of_catalogue = 0;
