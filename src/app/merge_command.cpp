@@ -51,9 +51,15 @@ void merge(const MergeOptions& options) {
   }
   const studies::Sink sink = [&](std::string_view bytes) { tally->add(bytes); };
   const io::Manifest merged = studies::merge_campaign(options.folder, options.output, tally ? sink : studies::Sink());
-  if (tally) write_summary(tally->finish(), *file, options.summary, script.name, options.verbosity);
+  if (tally) {
+    write_summary(tally->finish(), *file, options.summary, script.name, merged.notes.remarks(), options.verbosity);
+  }
   if (options.verbosity != Verbosity::quiet) {
     std::cerr << "merged " << merged.runs.count() << " runs, " << merged.rows << " rows\n";
+    if (!merged.notes.failed.empty()) {
+      std::cerr << "warning: " << merged.notes.failed.size()
+                << " runs failed and have no rows; the manifest lists them\n";
+    }
   }
 }
 

@@ -177,10 +177,11 @@ std::vector<MeasuredCell> measured_cells(const ScriptSpec& script) {
 }
 
 void write_summary(const studies::Summary& summary, io::AtomicFile& file, const std::filesystem::path& path,
-                   const std::string& title, Verbosity verbosity) {
+                   const std::string& title, const std::string& remarks, Verbosity verbosity) {
   const bool is_document = path.extension() == ".md";
   if (is_document) file.stream() << "# " << title << ": seconds with motion\n\n";
   file.stream() << (is_document ? studies::to_markdown(summary) : studies::to_csv(summary));
+  if (is_document && !remarks.empty()) file.stream() << '\n' << remarks << '\n';
   file.commit();
   if (verbosity != Verbosity::quiet) std::cerr << studies::to_text(summary);
 }

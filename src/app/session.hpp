@@ -53,9 +53,10 @@ void make_folder(const std::filesystem::path& folder);
 
 /// Those that the script's summary refers to; none if it doesn't.
 [[nodiscard]] std::vector<MeasuredCell> measured_cells(const ScriptSpec& script);
-/// A document if `path` ends in .md, else CSV; and a copy on standard error unless all is quiet.
+/// A document, which ends with the remarks, if `path` ends in .md, else CSV; and a copy on standard error unless all is
+/// quiet.
 void write_summary(const studies::Summary& summary, io::AtomicFile& file, const std::filesystem::path& path,
-                   const std::string& title, Verbosity verbosity);
+                   const std::string& title, const std::string& remarks, Verbosity verbosity);
 /// Writes a report with what made it in the footer, and commits the file.
 void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs);
 

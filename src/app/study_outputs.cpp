@@ -310,14 +310,14 @@ void WholeStudyOutputs::add(const RunResult& result) {
   files.summary.add_run(result.trial, counts.counts());
 }
 
-void WholeStudyOutputs::commit() {
+void WholeStudyOutputs::commit(const io::RunNotes& notes) {
   Files& files = *files_;
   if (files.zones) files.zones->commit();
   if (files.trace) files.trace->commit();
   if (files.occupants) files.occupants->commit();
   if (files.summary_file) {
     write_summary(files.summary, *files.summary_file, files.options.summary, files.model.script().name,
-                  files.inputs.verbosity);
+                  notes.remarks(), files.inputs.verbosity);
   }
   if (files.report_file) write_page(*files.report_file, files.report.finish(files.summary), files.inputs);
 }

@@ -40,7 +40,7 @@ class WholeStudyOutputs {
   WholeStudyOutputs(const Model& model, const Inputs& inputs, const RunOptions& options);
   ~WholeStudyOutputs();
   void add(const RunResult& result);
-  void commit();
+  void commit(const io::RunNotes& notes);
   /// What they need of every run.
   [[nodiscard]] Occupants occupants() const noexcept;
 

@@ -58,7 +58,8 @@ void tell(const io::RunNotes& notes, Verbosity verbosity) {
   const auto warn = [&](std::uint64_t n, const std::string& what) {
     if (n > 0 && verbosity != Verbosity::quiet) std::cerr << "warning: " << n << what << '\n';
   };
-  warn(notes.passes_through, " times a person blocked for 20 s walked through others; first in " + notes.first_pass);
+  warn(notes.passes_through,
+       " times a person who had been held up walked through others; first in " + notes.first_pass);
   warn(notes.seats_changed, " times a person took another seat because theirs stayed taken");
   warn(notes.seats_missed, " times a person stayed without a seat because theirs stayed taken");
   if (notes.failed.empty()) return;
@@ -153,7 +154,7 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
     throw Error(ErrorCode::stopped, stop_message(options, cause, model, *rows));
   }
   rows->commit();
-  others.commit();
+  others.commit(rows->notes());
   tell(rows->notes(), inputs.verbosity);
   if (inputs.verbosity == Verbosity::verbose) {
     std::cerr << done << " runs, " << rows->rows() << " rows in " << progress.seconds() << " s\n";

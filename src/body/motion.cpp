@@ -202,6 +202,12 @@ bool Motion::channels_rest() const noexcept {
 
 void Motion::limit_speed(double metres_per_second) { speed_limit_m_s_ = std::max(0.0, metres_per_second); }
 
+void Motion::halt() noexcept {
+  if (stage_ != Stage::walking) return;
+  track_speed_ = 0.0;
+  speed_limit_m_s_ = 0.0;
+}
+
 void Motion::advance() {
   const Stage before = stage_;
   const bool was_moving =

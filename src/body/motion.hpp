@@ -92,6 +92,7 @@ class Motion {
   void set_pace(double metres_per_second) noexcept { pace_m_s_ = metres_per_second; }
   /// Upper bound of the walking speed from now on (m/s); 0 lets a walker wait on the spot.
   void limit_speed(double metres_per_second);
+  void halt() noexcept;  ///< a walker stands still at once, in mid-stride
 
   void advance();  ///< one tick
 

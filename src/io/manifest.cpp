@@ -125,6 +125,18 @@ bool RunNotes::empty() const noexcept {
   return passes_through == 0 && seats_changed == 0 && seats_missed == 0 && failed.empty();
 }
 
+std::string RunNotes::remarks() const {
+  std::string text;
+  const auto tell = [&](std::uint64_t n, const char* what) {
+    if (n > 0) text += (text.empty() ? "" : " ") + std::string(what) + std::to_string(n) + '.';
+  };
+  tell(failed.size(), "Runs that failed and are left out: ");
+  tell(passes_through, "Times that a person who was held up walked through others: ");
+  tell(seats_changed, "Times that a person took another seat: ");
+  tell(seats_missed, "Times that a person stayed without a seat: ");
+  return text;
+}
+
 std::string to_json(const RunNotes& notes) {
   return tree_of(notes).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }

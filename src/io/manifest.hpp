@@ -35,7 +35,7 @@ struct FailedRun {
   std::string trial;
   int replicate = 0;
   double time_s = 0.0;
-  std::string message;  ///< says which person, doing what
+  std::string message;  ///< says which person, where, doing what
 };
 
 /// What happened in runs that their rows don't tell.
@@ -47,6 +47,8 @@ struct RunNotes {
   std::vector<FailedRun> failed;  ///< without rows
   RunNotes& operator+=(const RunNotes& other);
   [[nodiscard]] bool empty() const noexcept;
+  /// What a reader of sums needs to know of them, in sentences; empty if nothing happened.
+  [[nodiscard]] std::string remarks() const;
 };
 
 struct Manifest {

@@ -47,7 +47,8 @@ Actor::Actor(const CompiledStudy& study, std::uint32_t run, std::uint32_t person
 std::string_view Actor::current_phase() const noexcept {
   if (!done() && begun_ && !action().phase.empty()) return action().phase;
   if (!present()) return "outside";
-  if (!done() && begun_ && std::holds_alternative<action::Work>(action().what)) return "working";
+  const bool is_up = body_->got_up();
+  if (!done() && begun_ && !is_up && std::holds_alternative<action::Work>(action().what)) return "working";
   return body::name(body_->motion().stage());
 }
 
@@ -79,7 +80,8 @@ void Actor::advance(const CompiledStudy& study, std::int64_t tick, std::span<con
 }
 
 void Actor::carry_on(const Scene& scene) {
-  const bool busy = body_ && body_->makes_way(scene.others, scene.now);
+  const auto sitter = sits_on_ && !done() ? Pedestrian::Sitter::may_get_up : Pedestrian::Sitter::stays;
+  const bool busy = body_ && body_->makes_way(scene.others, scene.now, sitter);
   while (!done()) {
     if (!begun_) {
       if (action().at_s && scene.now < ticks(*action().at_s, scene.study)) return;
@@ -87,6 +89,10 @@ void Actor::carry_on(const Scene& scene) {
       began_ = scene.now;
       note_times(scene.study);
       plan(scene);
+    }
+    if (!busy && sits_on_ && errands_.empty() && body_->got_up()) {
+      body_->set_out();
+      errands_.push_back(SitOn(*sits_on_));
     }
     while (!busy && !errands_.empty() && carry_out_first(scene) == Progress::done) {
       errands_.pop_front();
@@ -156,6 +162,8 @@ void Actor::plan(const Scene& scene) {
     return *std::ranges::find(scene.study.scene().entrances, id, &EntranceSpec::id);
   };
   const Action& what = action().what;
+  const bool stays = std::holds_alternative<action::Work>(what) || std::holds_alternative<action::Wait>(what);
+  if (!stays) sits_on_.reset();
   const bool arrives = std::holds_alternative<action::Appear>(what) || std::holds_alternative<action::Enter>(what) ||
                        std::holds_alternative<action::Wait>(what);
   if (!present() && !arrives) return;  // called away before they came: nothing to do
@@ -177,11 +185,15 @@ void Actor::plan(const Scene& scene) {
     plan_leaving(entrance(leave->entrance));
   } else if (const auto* work_action = std::get_if<action::Work>(&what)) {
     if (body_->motion().stage() == Stage::seated) {
-      body_motion().work({natural_ ? 0.0 : work_action->arm_amplitude_m, work_action->arm_period_s});
-    } else {
+      begin_work(*work_action);
+    } else if (!sits_on_) {
       lasts_ticks_ = 0;  // did without a seat
     }
   }
+}
+
+void Actor::begin_work(const action::Work& work) {
+  body_motion().work({natural_ ? 0.0 : work.arm_amplitude_m, work.arm_period_s});
 }
 
 void Actor::plan_entering(const EntranceSpec& door) {
@@ -344,8 +356,9 @@ Progress Actor::carry_out(const WalkTo& walk, const Scene& scene) {
     return Progress::done;
   }
   const Progress progress = body_->go_to(walk.target, scene.others, scene.now);
-  // A seat is left where the walk away from it begins.
-  if (!std::holds_alternative<action::Sit>(action().what) && body_->motion().stage() == Stage::walking) seat_ = {};
+  // A seat is left where the walk away from it begins, unless they are about to come back to it.
+  const bool keeps_seat = std::holds_alternative<action::Sit>(action().what) || sits_on_;
+  if (!keeps_seat && body_->motion().stage() == Stage::walking) seat_ = {};
   return progress;
 }
 
@@ -363,7 +376,12 @@ Progress Actor::carry_out(const FaceTo& face, const Scene& scene) {
 }
 
 Progress Actor::carry_out(const SitOn& seat, const Scene& scene) {
-  if (body_->motion().stage() == Stage::seated && body_->motion().settled()) return Progress::done;
+  if (body_->motion().stage() == Stage::seated && body_->motion().settled()) {
+    sits_on_ = seat;
+    // Who got up for somebody goes on with what they were at.
+    if (const auto* work = std::get_if<action::Work>(&action().what)) begin_work(*work);
+    return Progress::done;
+  }
   if (body_->motion().stage() != Stage::standing || !body_->motion().settled()) return Progress::going_on;
   constexpr double there_m = 0.05, facing_rad = 0.02;
   const bool there = glm::distance(body_->motion().position(), seat.stand) < there_m &&
@@ -383,6 +401,7 @@ Progress Actor::carry_out(const StandUp&, const Scene& scene) { return body_->st
 Progress Actor::carry_out(const Vanish&, const Scene&) {
   body_.reset();
   seat_ = {};
+  sits_on_.reset();
   return Progress::done;
 }
 

@@ -132,6 +132,7 @@ class Actor {
   Progress carry_out(const StandUp& errand, const Scene& scene);
   Progress carry_out(const WalkOut& errand, const Scene& scene);
   Progress carry_out(const Vanish& errand, const Scene& scene);
+  void begin_work(const action::Work& work);
   /// The seat stayed taken: another one, or none.
   void do_without_seat(const Scene& scene);
   [[nodiscard]] const SeatSpec* nearest_free_seat(const Scene& scene) const;
@@ -156,6 +157,7 @@ class Actor {
   std::int64_t tilt_every_ticks_ = 1;     ///< of work
   std::deque<Errand> errands_;            ///< still to do for the current action
   std::string_view seat_;                 ///< taken, or empty
+  std::optional<SitOn> sits_on_;          ///< where they go back to if they get up for somebody
   std::string_view phase_ = "outside";
   std::int64_t waited_ticks_ = 0;  ///< for the door, or for room to come in
   std::int64_t seat_wait_ticks_ = 0;

@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <iomanip>
+#include <sstream>
+#include <string>
 
 #include "body/footprint.hpp"
 #include "pirsim/error.hpp"
@@ -30,6 +33,9 @@ constexpr double wish_after_s = 1.0;       ///< assumed: held up for so long one
 constexpr double walked_on_m = 0.5;        ///< who has come so far isn't held up any more
 constexpr double wish_reaches_m = 3.0;     ///< assumed: who stands farther along a wished way isn't concerned yet
 constexpr double aside_most_s = 10.0;      ///< assumed: nobody waits aside for longer (tried 5-20)
+constexpr double get_up_after_s = 3.0;     ///< assumed: who is held up for so long asks sitters to get up
+constexpr double ask_every_s = 1.0;        ///< how often it is found out who bars the way
+constexpr double up_most_s = 40.0;         ///< assumed: nobody who got up waits for longer
 constexpr double passed_m = 0.8;           ///< who passes through others goes at least so far
 constexpr double stuck_s = 20.0;           ///< then people pass through each other (people.md)
 constexpr double stuck_in_all_s = 60.0;    ///< assumed: held up so long in one errand is stuck too (tried 40-120)
@@ -56,6 +62,40 @@ double distance_to_way(const Vec2& point, const std::vector<Vec2>& way, double r
     walked += glm::distance(way[i], way[i + 1]);
   }
   return nearest;
+}
+
+std::string text(const Vec2& place) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(2) << '(' << place.x << ", " << place.y << ") m";
+  return out.str();
+}
+
+bool comes_near(const std::vector<Vec2>& way, const Stadium& trunk, double near_m) {
+  constexpr double step_m = 0.05;
+  for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+    const int n_steps = static_cast<int>(std::ceil(glm::distance(way[i], way[i + 1]) / step_m));
+    for (int k = 0; k <= n_steps; ++k) {
+      const double share = n_steps == 0 ? 0.0 : static_cast<double>(k) / n_steps;
+      if (distance(way[i] + share * (way[i + 1] - way[i]), trunk) < near_m) return true;
+    }
+  }
+  return false;
+}
+
+/// How far along the way its point next to this one is.
+double along(const std::vector<Vec2>& way, const Vec2& point) {
+  double nearest = glm::distance(point, way.front()), walked = 0.0, there = 0.0;
+  for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+    const Vec2 leg = way[i + 1] - way[i];
+    const double length = glm::length(leg);
+    const double away = body::distance(point, way[i], way[i + 1]);
+    if (away < nearest && length > 0.0) {
+      nearest = away;
+      there = walked + std::clamp(glm::dot(point - way[i], leg) / length, 0.0, length);
+    }
+    walked += length;
+  }
+  return there;
 }
 
 bool is_solid(const Presence& other) { return other.solidity == Solidity::solid; }
@@ -108,8 +148,11 @@ Presence Pedestrian::presence() const {
     mine.trunk = {mine.position, motion_.drawn_back(), body.trunk_radius_m()};
   }
   mine.wished_way = wished_way_;
+  if (wished_way_) mine.asks_up = asks_up_;
+  mine.got_up_from = got_up_from_;
   if (aside_) {
     mine.precedence = aside_->precedence;
+    if (aside_->way) mine.got_up_for = aside_->whom;
   } else if (held_up_since_) {
     mine.precedence = {*held_up_since_, index_};
   }
@@ -144,9 +187,12 @@ void Pedestrian::be_held_up(std::int64_t now) {
   if (!held_up_since_) {
     held_up_since_ = now;
     held_up_at_ = motion_.position();
+    asks_up_.reset();
+    is_let_by_ = false;
   }
   if (solidity_ != Solidity::solid) return;
-  if (now - *held_up_since_ >= ticks(stuck_s) || held_up_ticks_ >= ticks(stuck_in_all_s)) pass_through(now);
+  const bool stuck = !is_let_by_ && now - *held_up_since_ >= ticks(stuck_s);
+  if (stuck || held_up_ticks_ >= ticks(stuck_in_all_s)) pass_through(now);
 }
 
 void Pedestrian::pass_through(std::int64_t now) {
@@ -199,8 +245,8 @@ void Pedestrian::sit_down(const body::SeatPlace& seat, std::span<const Presence>
   }
 }
 
-void Pedestrian::wish_way(std::vector<Vec2> way, std::int64_t now) {
-  if (!wished_way_ && is_held_up(now)) wished_way_ = std::make_shared<const std::vector<Vec2>>(std::move(way));
+void Pedestrian::wish_way(Way way, std::int64_t now) {
+  if (!wished_way_ && is_held_up(now)) wished_way_ = std::make_shared<const Way>(std::move(way));
 }
 
 bool Pedestrian::free_to_draw_back(const Vec2& to, std::span<const Presence> others) const {
@@ -264,12 +310,13 @@ Progress Pedestrian::go_to(const Vec2& target, std::span<const Presence> others,
       auto alone = person_->floor->find_way(motion_.position(), target);
       if (!alone && person_->narrow_floor) alone = person_->narrow_floor->find_way(motion_.position(), target);
       if (!alone) {
-        throw Error(ErrorCode::infeasible,
-                    "'" + person_->spec.id + "' can't reach their goal, even in an empty room");
+        throw Error(ErrorCode::infeasible, "'" + person_->spec.id + "' at " + text(motion_.position()) +
+                                               " can't reach " + text(target) + ", even in an empty room");
       }
       be_held_up(now);
       wished_way_.reset();
       wish_way(*alone, now);
+      ask_up(target, others, now);
       return Progress::going_on;
     }
     route_ = width_ == Width::narrow ? body::Route(*way, squeeze_corner_m) : body::Route(*way);
@@ -344,7 +391,45 @@ void Pedestrian::keep_distance(std::span<const Presence> others, std::size_t n_b
   }
 }
 
-std::optional<Vec2> Pedestrian::passing_place(const Presence& whom, std::span<const Presence> others) const {
+bool Pedestrian::bars(const Presence& other, const Vec2& from, const Vec2& to) const {
+  std::vector<body::Disc> discs;
+  append_discs(other.trunk, squeeze_gap_m, discs);
+  return !person_->narrow_floor->find_way(from, to, discs);
+}
+
+/// As few sitters as will do: those on the wished way, but for whoever can be squeezed past once the others are up.
+void Pedestrian::ask_up(const Vec2& target, std::span<const Presence> others, std::int64_t now) {
+  if (!wished_way_ || !person_->narrow_floor || now - *held_up_since_ < ticks(get_up_after_s)) return;
+  is_let_by_ = std::ranges::any_of(others, [&](const Presence& other) { return other.got_up_for == index_; });
+  if (asks_up_ && now - asked_up_at_ < ticks(ask_every_s)) return;
+  asked_up_at_ = now;
+  std::vector<const Presence*> sitters;
+  std::vector<std::uint32_t> asked;
+  const double keep_m = person_->floor->clearance_m() + squeeze_gap_m;
+  for (const Presence& other : others) {
+    if (!is_solid(other) || other.posture != Presence::Posture::on_chair) continue;
+    sitters.push_back(&other);
+    if (comes_near(*wished_way_, other.trunk, keep_m)) asked.push_back(other.person);
+  }
+  for (std::size_t i = 0; i < asked.size();) {
+    const std::uint32_t one = asked[i];
+    std::vector<body::Disc> discs;
+    for (const Presence* sitter : sitters) {
+      const bool stays = sitter->person == one || std::ranges::find(asked, sitter->person) == asked.end();
+      if (stays) append_discs(sitter->trunk, squeeze_gap_m, discs);
+    }
+    const bool can_stay = person_->narrow_floor->find_way(motion_.position(), target, discs).has_value();
+    if (can_stay) {
+      asked.erase(asked.begin() + static_cast<std::ptrdiff_t>(i));
+    } else {
+      ++i;
+    }
+  }
+  asks_up_ = std::make_shared<const std::vector<std::uint32_t>>(std::move(asked));
+}
+
+std::optional<Vec2> Pedestrian::passing_place(const Presence& whom, std::span<const Presence> others,
+                                              double reach_m) const {
   constexpr int n_directions = 16;
   constexpr double step_m = 0.15, farthest_m = 3.0;
   const double keep_m = radius_m() + whom.room.radius_m + 0.5 * gap_m;
@@ -356,7 +441,7 @@ std::optional<Vec2> Pedestrian::passing_place(const Presence& whom, std::span<co
     for (int k = 0; k < n_directions; ++k) {
       const Vec2 place = motion_.position() + away * direction_of(2.0 * pi * k / n_directions);
       if (!person_->floor->walkable(place, place, discs)) continue;
-      if (distance_to_way(place, *whom.wished_way, wish_reaches_m + farthest_m) < keep_m) continue;
+      if (distance_to_way(place, *whom.wished_way, reach_m + farthest_m) < keep_m) continue;
       if (person_->floor->walkable(motion_.position(), place, discs) ||
           person_->floor->find_way(motion_.position(), place, discs)) {
         return place;
@@ -366,7 +451,56 @@ std::optional<Vec2> Pedestrian::passing_place(const Presence& whom, std::span<co
   return std::nullopt;
 }
 
-bool Pedestrian::makes_way_among(std::span<const Presence> others, std::int64_t now) {
+/// Once whom they got up for is past their seat, has sat down or has gone, and so has everybody else who got up and whom
+/// they would bar.
+bool Pedestrian::can_go_back(const Aside& aside, std::span<const Presence> others, std::int64_t now) const {
+  if (now % ticks(search_every_s) != 0) return false;
+  const auto whom = std::ranges::find(others, aside.whom, &Presence::person);
+  if (whom != others.end() && whom->posture == Presence::Posture::on_feet &&
+      along(*aside.way, whom->position) < along(*aside.way, *got_up_from_) + passed_m) {
+    return false;
+  }
+  Presence seated;
+  seated.trunk = {*got_up_from_, *got_up_from_, person_->humanoid.trunk_radius_m()};
+  return std::ranges::none_of(others, [&](const Presence& other) {
+    return other.got_up_from && other.posture == Presence::Posture::on_feet &&
+           bars(seated, other.position, *other.got_up_from);
+  });
+}
+
+/// For who can't squeeze past: if there is a place to wait.
+bool Pedestrian::gets_up(std::span<const Presence> others, std::int64_t now) {
+  if (now % ticks(search_every_s) != 0) return false;
+  const Presence* first = nullptr;
+  for (const Presence& other : others) {
+    if (!other.asks_up || std::ranges::find(*other.asks_up, index_) == other.asks_up->end()) continue;
+    if (held_up_since_ && Precedence{*held_up_since_, index_} < other.precedence) continue;
+    if (first == nullptr || other.precedence < first->precedence) first = &other;
+  }
+  if (first == nullptr) return false;
+  constexpr double whole_way_m = 1e3;
+  const auto place = passing_place(*first, others, whole_way_m);
+  if (!place) return false;
+  aside_ = Aside{*place, first->precedence, first->person, now + ticks(up_most_s), first->wished_way};
+  got_up_from_ = motion_.position();
+  return true;
+}
+
+bool Pedestrian::makes_way_among(std::span<const Presence> others, std::int64_t now, Sitter sitter) {
+  if (motion_.stage() == Stage::seated && !aside_) {
+    return sitter == Sitter::may_get_up && solidity_ == Solidity::solid && gets_up(others, now);
+  }
+  if (aside_ && aside_->way) {
+    if (now >= aside_->until || can_go_back(*aside_, others, now)) {
+      aside_.reset();
+      forget_way();
+      if (motion_.stage() == Stage::walking) motion_.stop();
+      return false;
+    }
+    const Vec2 place = aside_->place;
+    if (go_to(place, others, now) == Progress::done) blocked_ticks_ = 0;
+    return aside_.has_value();
+  }
   if (aside_) {
     const auto whom = std::ranges::find(others, aside_->whom, &Presence::person);
     const bool gone = whom == others.end() || !whom->wished_way ||
@@ -398,7 +532,7 @@ bool Pedestrian::makes_way_among(std::span<const Presence> others, std::int64_t 
     if (first == nullptr || other.precedence < first->precedence) first = &other;
   }
   if (first == nullptr) return false;
-  const auto place = passing_place(*first, others);
+  const auto place = passing_place(*first, others, wish_reaches_m);
   if (!place) return false;
   aside_ = Aside{*place, first->precedence, first->person, now + ticks(aside_most_s)};
   if (motion_.stage() == Stage::walking) motion_.stop();
@@ -424,12 +558,39 @@ void Pedestrian::sit_up(std::span<const Presence> others, std::int64_t now) {
   leans_forward_ = asked;
 }
 
+/// Would this tick's step bring my trunk into somebody's, or deeper into it?
+bool Pedestrian::bumps_into(std::span<const Presence> others) const {
+  constexpr double near_m = 0.05;  // more than any step
+  const bool moves = motion_.stage() != Stage::seated && motion_.stage() != Stage::standing;
+  if (!moves || solidity_ != Solidity::solid) return false;
+  const double radius_m = person_->humanoid.trunk_radius_m();
+  const Vec2 here = motion_.position();
+  const auto is_near = [&](const Presence& other) {
+    return is_solid(other) && distance(here, other.trunk) < radius_m + near_m;
+  };
+  if (std::ranges::none_of(others, is_near)) return false;
+  body::Motion next = motion_;
+  next.advance();
+  return std::ranges::any_of(others, [&](const Presence& other) {
+    if (!is_near(other)) return false;
+    const double then_m = distance(next.position(), other.trunk);
+    return then_m < radius_m && then_m < distance(here, other.trunk);
+  });
+}
+
 void Pedestrian::advance(std::span<const Presence> others, std::size_t n_before, std::int64_t now) {
   if (!others.empty()) sit_up(others, now);
+  const std::int64_t counted = held_up_ticks_;
   if (motion_.stage() == Stage::walking) keep_distance(others, n_before, now);
   const Vec2 before = motion_.position();
-  motion_.advance();
+  const bool waits = !others.empty() && bumps_into(others);
+  if (waits && held_up_ticks_ == counted) be_held_up(now);
+  if (waits && solidity_ == Solidity::solid) motion_.halt();
+  // Who is on the way onto a chair or off it waits where they are.
+  const bool frozen = waits && solidity_ == Solidity::solid && !on_feet();
+  if (!frozen) motion_.advance();
   if (route_) walked_m_ += glm::distance(before, motion_.position());
+  if (motion_.stage() == Stage::seated && !aside_) got_up_from_.reset();
   if (solidity_ != Solidity::solid) end_passing(others);
   if (held_up_since_ && glm::distance(motion_.position(), held_up_at_) > walked_on_m) {
     held_up_since_.reset();

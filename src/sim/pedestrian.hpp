@@ -20,7 +20,8 @@ enum class Progress { going_on, done };
 ///
 /// Who is held up for a second tells others the way that they wish to go; whoever stands on it and has not been held
 /// up for longer steps aside, to the nearest place off that way, with the precedence of whom they make way for. Sitters
-/// lean forward for who squeezes past. After 20 s the person walks through the others, which is an incident.
+/// lean forward for who squeezes past, and get up for who can't. After 20 s (longer while somebody gets up for them)
+/// the person walks through the others, which is an incident.
 class Pedestrian {
  public:
   Pedestrian(const CompiledStudy& study, const PersonModel& person, std::uint32_t index, const Vec2& point,
@@ -33,10 +34,14 @@ class Pedestrian {
   /// Of the walk that is under way, if there is one.
   [[nodiscard]] std::optional<Vec2> target() const { return route_ ? target_ : std::nullopt; }
 
+  /// Of whoever sits: has their script something left to do, so that they would come back to their seat?
+  enum class Sitter { stays, may_get_up };
   /// Makes way for others if need be; true while that is what the body does, so that commands have to wait.
-  bool makes_way(std::span<const Presence> others, std::int64_t now) {
-    return (aside_ || !others.empty()) && makes_way_among(others, now);
+  bool makes_way(std::span<const Presence> others, std::int64_t now, Sitter sitter) {
+    return (aside_ || !others.empty()) && makes_way_among(others, now, sitter);
   }
+  /// For somebody, and hasn't sat down again.
+  [[nodiscard]] bool got_up() const noexcept { return got_up_from_ && motion_.stage() != body::Stage::seated; }
   /// Rises if need be, then walks. Throws Error(infeasible) if there is no way even without others.
   Progress go_to(const Vec2& target, std::span<const Presence> others, std::int64_t now);
   /// From a seat as soon as the way back is free; stops a walk that isn't one of go_to().
@@ -62,12 +67,14 @@ class Pedestrian {
   [[nodiscard]] std::optional<Incident> take_incident() noexcept;
 
  private:
-  bool makes_way_among(std::span<const Presence> others, std::int64_t now);
+  using Way = std::vector<Vec2>;
+  bool makes_way_among(std::span<const Presence> others, std::int64_t now, Sitter sitter);
   struct Aside {
     Vec2 place{0.0};
-    Precedence precedence;   ///< inherited
-    std::uint32_t whom = 0;  ///< way is made for
-    std::int64_t until = 0;  ///< tick
+    Precedence precedence;               ///< inherited
+    std::uint32_t whom = 0;              ///< way is made for
+    std::int64_t until = 0;              ///< tick
+    std::shared_ptr<const Way> way = {};  ///< theirs, if a sitter got up for them
   };
 
   [[nodiscard]] std::int64_t ticks(double seconds) const noexcept;
@@ -86,10 +93,16 @@ class Pedestrian {
   [[nodiscard]] std::optional<std::vector<Vec2>> way_among(const Vec2& target, std::span<const Presence> others) const;
   [[nodiscard]] double free_way_ahead(std::span<const Presence> others) const;
   [[nodiscard]] bool must_give_way(std::span<const Presence> others) const;
-  [[nodiscard]] std::optional<Vec2> passing_place(const Presence& whom, std::span<const Presence> others) const;
+  [[nodiscard]] std::optional<Vec2> passing_place(const Presence& whom, std::span<const Presence> others,
+                                                  double reach_m) const;
+  [[nodiscard]] bool can_go_back(const Aside& aside, std::span<const Presence> others, std::int64_t now) const;
+  bool gets_up(std::span<const Presence> others, std::int64_t now);
+  [[nodiscard]] bool bars(const Presence& other, const Vec2& from, const Vec2& to) const;
+  void ask_up(const Vec2& target, std::span<const Presence> others, std::int64_t now);
+  [[nodiscard]] bool bumps_into(std::span<const Presence> others) const;
   void keep_distance(std::span<const Presence> others, std::size_t n_before, std::int64_t now);
   void be_held_up(std::int64_t now);
-  void wish_way(std::vector<Vec2> way, std::int64_t now);
+  void wish_way(Way way, std::int64_t now);
   void sit_up(std::span<const Presence> others, std::int64_t now);
   void end_passing(std::span<const Presence> others) noexcept;
 
@@ -101,7 +114,11 @@ class Pedestrian {
   double walked_m_ = 0.0;             ///< on it
   std::optional<Vec2> target_;        ///< of the last go_to()
   std::optional<Aside> aside_;
-  std::shared_ptr<const std::vector<Vec2>> wished_way_;
+  std::shared_ptr<const Way> wished_way_;
+  std::shared_ptr<const std::vector<std::uint32_t>> asks_up_;  ///< together with wished_way_
+  std::int64_t asked_up_at_ = 0;                               ///< tick
+  bool is_let_by_ = false;                                     ///< somebody got up for this person
+  std::optional<Vec2> got_up_from_;
   std::optional<std::int64_t> held_up_since_;  ///< until half a metre is walked
   Vec2 held_up_at_{0.0};
   std::int64_t blocked_ticks_ = 0;  ///< since somebody came into the way

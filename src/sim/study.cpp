@@ -68,7 +68,7 @@ RunResult run_with(sim::ZoneCachePool& caches, const sim::CompiledStudy& study, 
     result.zones.clear();
     result.trace.clear();
     result.occupants.clear();
-    result.fault = {static_cast<double>(state.tick) * study.tick_s(), error.what()};
+    result.fault = {static_cast<double>(state.tick) * study.tick_s(), error.issues().front().message};
   }
   return result;
 }

@@ -247,6 +247,49 @@ class Days(unittest.TestCase):
         self.assertIn("is no date", pirsim("day", *room, "--staff", 2, "--first-day", "2026-13-01", code=3).stderr)
 
 
+class FailedRuns(unittest.TestCase):
+    """Seats before a wall, scattered so far that some can't be reached: replicates 6 and 10 of S5."""
+    FAILING = ("-q", "--threads", 1, "--replicates", 12, "--seed", 2, "--set", "trials.for_each.seat=[S5,S6]", "--set",
+               "people.0.seat_scatter.position_sd_m=0.2", "--set", "people.0.actions.3.work.duration_s=2")
+
+    def failing(self, *args, **kwargs):
+        return study(*self.FAILING, *args, scene="meeting_room_alt1.gltf", **kwargs)
+
+    def test_all_other_runs_have_rows_and_each_that_failed_is_told_with_person_and_place(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            told = self.failing("-o", folder / "rows.csv", "--summary", folder / "table.md", code=6).stderr
+            self.assertIn("2 runs failed and have no rows", told)
+            self.assertRegex(told, r"trial S5, replicate 6, second 0\.02: 'occupant' at \([\d., -]+\) m finds no way to ")
+            table = rows((folder / "rows.csv").read_text())
+            self.assertEqual(len({(row["replicate"], row["trial"]) for row in table}), 22)
+            failed = json.loads((folder / "rows.csv.json").read_text())["people"]["failed_runs"]
+            self.assertEqual([(run["trial"], run["replicate"]) for run in failed], [("S5", 6), ("S5", 10)])
+            self.assertIn("'occupant' at (", failed[0]["message"])
+            self.assertIn("Runs that failed and are left out: 2.", (folder / "table.md").read_text())
+
+    def test_strict_stops_at_the_first_keeps_what_is_finished_and_can_be_resumed(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            self.failing("-o", folder / "whole.csv", code=6)
+            told = self.failing("-o", folder / "rows.csv", "--strict", code=5).stderr
+            self.assertIn("trial S5, replicate 6", told)
+            self.assertFalse((folder / "rows.csv").exists())
+            self.failing("-o", folder / "rows.csv", "--resume", code=6)
+            for ending in (".csv", ".csv.json"):
+                self.assertEqual((folder / ("rows" + ending)).read_bytes(), (folder / ("whole" + ending)).read_bytes())
+
+    def test_shards_note_their_own_and_merge_tells_of_all(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            self.failing("-o", folder / "whole.csv", code=6)
+            for i in (1, 2):
+                self.failing("-o", folder / "shards", "--shard", f"{i}/2", code=6)
+            told = pirsim("merge", folder / "shards", "-o", folder / "merged.csv").stderr
+            self.assertIn("2 runs failed and have no rows", told)
+            self.assertEqual((folder / "merged.csv").read_bytes(), (folder / "whole.csv").read_bytes())
+
+
 class Help(unittest.TestCase):
     def test_help_of_a_command_is_what_the_command_says_itself(self):
         for command in (*COMMANDS, *OTHERS):

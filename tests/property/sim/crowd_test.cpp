@@ -12,9 +12,9 @@ using namespace pirsim::test;
 
 namespace {
 
-/// None should be. In 13 of 1,000 such runs trunks overlap all the same, by up to 18 cm (docs/physics/people.md); in
-/// the ten of this test by 2.7 mm, and no more may come.
-constexpr double uncounted_overlap_m = 0.005;
+/// None should be. Rules keep trunks apart as discs and strips; where the bodies themselves are broader, or lean over,
+/// some overlap all the same, rarely (docs/physics/people.md).
+constexpr double uncounted_overlap_m = 0.001;
 
 CrowdRecord watch(const Model& model, std::uint32_t run) {
   return watch_crowd(model, run, 1, [](const sim::RunState&) {});
@@ -238,6 +238,41 @@ TEST_CASE("who stands in a doorway lets others in, and nobody passes through any
   });
   CHECK(arrived_s > 3.0);
   CHECK(arrived_s < 20.0);
+}
+
+TEST_CASE("who sits at the open end of a row before a wall gets up for others and comes back to their work") {
+  const SceneSpec scene = shipped_scene("meeting_room_alt6.gltf");
+  const std::string& door = scene.entrances.front().id;
+  const auto sitter = [&](const char* id, double due_s, const char* seat, double work_s) {
+    return person(id, {act(action::Wait{due_s}), act(action::Enter{door}), act(action::Sit{seat}),
+                       act(action::Work{work_s}), act(action::Leave{door})});
+  };
+  // S3 is between S2 and S4; a trunk gets past neither of them.
+  const Model model = compile(scene, script_of({sitter("left", 0.0, "S2", 300.0), sitter("right", 20.0, "S4", 300.0),
+                                                sitter("newcomer", 90.0, "S3", 60.0)}));
+  int n_risen = 0;
+  bool sat = false;
+  std::vector<std::string> phases;
+  const CrowdRecord record = watch_crowd(model, 0, 1, [&](const sim::RunState& state) {
+    const sim::Actor& right = state.crowd.actors()[1];
+    if (!right.present()) return;
+    const bool sits = right.motion().stage() == body::Stage::seated;
+    if (sat && !sits) ++n_risen;
+    sat = sits;
+    if (state.tick > 110 * 50 && state.tick < 250 * 50) {
+      CHECK(right.seat() == "S4");
+      if (phases.empty() || phases.back() != right.phase()) phases.emplace_back(right.phase());
+    }
+  });
+  CHECK(record.incidents.empty());
+  CHECK(record.least_gap_m > 0.0);
+  CHECK(n_risen == 3);  // for the newcomer to come in and to go out, and to leave
+  CHECK(phases.back() == "working");
+  CHECK(std::ranges::count(phases, "working") == 2);
+  for (const Stay& stay : record.stays) {
+    CHECK(stay.sat_s > 0.0);
+    CHECK(stay.left_s > 0.0);
+  }
 }
 
 TEST_CASE("a taken seat is waited for, then another is taken or the next action begins, and each is counted") {
