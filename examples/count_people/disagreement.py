@@ -61,13 +61,13 @@ def reconciled(pirsim, scene, stretches, folder, options=()):
 
 
 def table_of(reports):
-    """Lines of a table: room, verdict, p of the model as it is, the likeliest effects, and where it differs."""
-    lines = ["| room | verdict | p of the model as it is | not ruled out, with probability | readings with motion, measured (expected) |",
-             "|---|---|---|---|---|"]
+    """Lines of a table. Where the model agrees with the data no effect is looked for."""
+    lines = ["| room | verdict | p of the model as it is | not ruled out, with probability "
+             "| readings with motion, measured (expected) |", "|---|---|---|---|---|"]
     for room, report in reports.items():
         kept = sorted((c for c in report["candidates"] if c["kept"]), key=lambda c: -c["probability"])
-        names = ", ".join(f"`{c['effect']}` {c['probability']:.2f}" for c in kept[:4]) or "none"
-        cells = ", ".join(f"{c['trial']} {c['sensor']}: {c['measured_s'] / SECONDS:.0f} ({c['expected_s'] / SECONDS:.0f})"
-                          for c in report["where"]["cells"])
+        names = ", ".join(f"`{c['effect']}` {c['probability']:.2f}" for c in kept) or "-"
+        cells = ", ".join(f"{c['trial']} {c['sensor']}: {c['measured_s'] / (RUN * SECONDS):.2f} "
+                          f"({c['expected_s'] / (RUN * SECONDS):.2f})" for c in report["where"]["cells"])
         lines.append(f"| {room} | `{report['verdict']}` | {report['where']['p']:.3f} | {names} | {cells} |")
     return "\n".join(lines)
