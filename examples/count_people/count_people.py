@@ -12,9 +12,11 @@ import sys
 import time
 
 import numpy as np
+from disagreement import reconciled, table_of
+from estimators import LEARNED
 from readings import first_mornings, read_dataset, read_uci864, whole
 from scores import NAMES
-from table import Results, estimates_of, learning_curve, motion_by_people, real_alone, simulated, trained
+from table import Results, equivalent, estimates_of, learning_curve, motion_by_people, real_alone, simulated, trained
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -32,6 +34,9 @@ def options():
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("out/count_people"))
     parser.add_argument("--pirsim", help="the program; default: of this build, or on the path")
     parser.add_argument("--draws", type=int, default=10, help="of real units, for the learning curve; default 10")
+    parser.add_argument("--reconcile", type=int, default=0, metavar="ROOMS", help="with --real: ask pirsim reconcile "
+                        "where so many simulated rooms and the real one disagree; minutes of two cores for each")
+    parser.add_argument("--reconcile-options", default="--budget 0.05", help="default: %(default)s")
     return parser.parse_args()
 
 
@@ -79,7 +84,15 @@ def motion_table(sets):
     return "\n".join(lines)
 
 
-def real_column(results, real, varied, arguments, sections):
+def equivalent_table(results, lines, trainings):
+    table = [f"| trained on | {' | '.join(LEARNED)} |", "|---|" + "---|" * len(LEARNED)]
+    for row in trainings:
+        cells = [equivalent(lines, name, results.value(row, name, REAL, "mean absolute error")) for name in LEARNED]
+        table.append(f"| {row} | {' | '.join(cells)} |")
+    return "\n".join(table)
+
+
+def real_column(results, real, varied, trainings, arguments, sections):
     real_alone(results, real, REAL)
     units = len(set(np.concatenate([s.units for s in real])))
     shares = [max(1, round(units * share)) for share in (0.1, 0.25, 0.5)]
@@ -93,7 +106,18 @@ def real_column(results, real, varied, arguments, sections):
     for line in lines:
         name = f"{'varied rooms + ' if line['with simulated'] else ''}{line['real units']} of {units} real units"
         table.append(f"| {name} | {line['estimator']} | {line['error']:.2f} | {line['low']:.2f}-{line['high']:.2f} |")
-    sections += ["## Real units added", "\n".join(table)]
+    sections += ["## Real units added", "\n".join(table),
+                 f"## Equivalent real units: how many of {units} train as good a counter",
+                 equivalent_table(results, lines, trainings)]
+
+
+def disagreement_table(pirsim, folder, real, arguments):
+    """folder: of the dataset with varied rooms."""
+    reports = {}
+    for scene in sorted((folder / "rooms").glob("*.gltf"))[:arguments.reconcile]:
+        reports[scene.stem] = reconciled(pirsim, scene, real, arguments.output / "reconcile" / scene.stem,
+                                         arguments.reconcile_options.split())
+    return table_of(reports)
 
 
 def main():
@@ -124,10 +148,14 @@ def main():
     results.write(arguments.output / "results.csv")
     sets = {name: sum(parts.values(), []) for name, parts in data.items()}
     if real:
-        real_column(results, real, train["varied"], arguments, sections)
+        real_column(results, real, train["varied"], trainings, arguments, sections)
         sets[REAL] = real
         sections += ["## Trained on one room each, tested on the real data",
                      spread(train["varied"], whole(real))]
+        if arguments.reconcile:
+            folder = arguments.output / "datasets" / ("small" if arguments.small else "varied")
+            sections += ["## What `pirsim reconcile` says of simulated rooms and the real day",
+                         disagreement_table(pirsim, folder, real, arguments)]
     sections += ["## Trained on one room each, tested on new rooms",
                  spread(train["varied"], tests["new rooms"][0]),
                  "## P(motion in 30 s | people): median of rooms (least-most)", motion_table(sets)]

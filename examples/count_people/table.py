@@ -31,6 +31,11 @@ class Results:
                                "value": value, "low": low, "high": high, "units": len(set(units)),
                                "readings": len(people)})
 
+    def value(self, trained_on, estimator, tested_on, name):
+        keys = ("trained_on", "estimator", "tested_on", "score")
+        return next(line["value"] for line in self.lines
+                    if tuple(line[k] for k in keys) == (trained_on, estimator, tested_on, name))
+
     def write(self, path):
         with open(path, "w", newline="") as file:
             out = csv.DictWriter(file, list(self.lines[0]))
@@ -96,6 +101,18 @@ def learning_curve(stretches, simulated_pieces, sizes, draws, seed=1):
             lines.append({"real units": size, "with simulated": bool(simulated_pieces), "estimator": name,
                           "error": np.mean(errors[name]), "low": np.min(errors[name]), "high": np.max(errors[name])})
     return lines
+
+
+def equivalent(lines, estimator, error):
+    """How many real units alone train as good a counter, between the points of its learning curve, as text."""
+    curve = sorted((line["real units"], line["error"]) for line in lines
+                   if line["estimator"] == estimator and not line["with simulated"])
+    if error > curve[0][1]:
+        return f"< {curve[0][0]}"
+    for (fewer, worse), (more, better) in zip(curve, curve[1:]):
+        if better <= error <= worse:
+            return f"{fewer + (more - fewer) * (worse - error) / max(worse - better, 1e-9):.1f}"
+    return f"> {curve[-1][0]}"
 
 
 def motion_by_people(stretches):

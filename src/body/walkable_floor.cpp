@@ -355,8 +355,14 @@ std::optional<std::vector<Vec2>> WalkableFloor::find_way(const Vec2& from, const
   if (others.empty()) {
     return known_ways_->way(from, to, [&] { return impl_->way_over(impl_->grid, impl_->parts, from, to, {}); });
   }
-  const StepGrid steps_left = impl_->grid_around(others);
-  return impl_->way_over(steps_left, connected_parts(steps_left), from, to, others);
+  WayMemory::Others key;
+  for (const Disc& disc : others) key.push_back({disc.centre.x, disc.centre.y, disc.radius_m});
+  const auto left = known_ways_->left_by(std::move(key), [&] {
+    StepGrid grid = impl_->grid_around(others);
+    std::vector<int> parts = connected_parts(grid);
+    return StepsLeft{std::move(grid), std::move(parts)};
+  });
+  return impl_->way_over(left->grid, left->parts, from, to, others);
 }
 
 }  // namespace pirsim::body

@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "pirsim/geometry.hpp"
@@ -43,10 +45,31 @@ using StraightWay = std::function<bool(const Vec2&, const Vec2&)>;
 /// A shorter way with the same ends, each leg of which `straight` allows; `way` itself must be allowed.
 [[nodiscard]] std::vector<Vec2> pulled_tight(std::vector<Vec2> way, const StraightWay& straight);
 
+/// What people in the way leave of a grid.
+struct StepsLeft {
+  StepGrid grid;
+  std::vector<int> parts;  ///< connected_parts() of it
+};
+
 /// Safe to use from any thread, of bounded size, and without influence on what is found.
 class WayMemory {
  public:
   using Way = std::optional<std::vector<Vec2>>;
+  using Others = std::vector<std::array<double, 3>>;  ///< centre and radius of each
+
+  /// What work() finds that these leave; worked out once for the same ones in a row: whoever looks for a place to make
+  /// way asks about hundreds of places at once.
+  [[nodiscard]] std::shared_ptr<const StepsLeft> left_by(Others others, const std::function<StepsLeft()>& work) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (left_ && others == others_) return left_;
+    }
+    auto left = std::make_shared<const StepsLeft>(work());
+    const std::lock_guard lock(mutex_);
+    others_ = std::move(others);
+    left_ = left;
+    return left;
+  }
 
   /// What search() finds between the points; searched once for points that are the same bit for bit.
   [[nodiscard]] Way way(const Vec2& from, const Vec2& to, const std::function<Way()>& search) {
@@ -66,6 +89,8 @@ class WayMemory {
   static constexpr std::size_t most_ways = 1024;  ///< a study with fixed seats has two a seat
   std::mutex mutex_;
   std::map<std::array<double, 4>, Way> ways_;
+  Others others_;                          ///< the last ones that were asked about
+  std::shared_ptr<const StepsLeft> left_;  ///< what they leave
 };
 
 }  // namespace pirsim::body

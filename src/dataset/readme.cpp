@@ -106,6 +106,20 @@ std::string about_rooms(const Description& described) {
          " seats and " + extent([](const DescribedRoom& r) { return r.scene.sensors.size(); }) + " sensors";
 }
 
+/// How to run a day again; scenes of the recipe's author stay where they are.
+std::string rooms_and_scripts(const Description& described) {
+  const auto is_drawn = [](const DescribedRoom& room) { return room.kind.has_value(); };
+  const auto drawn = std::ranges::find_if(described.rooms, is_drawn);
+  std::string text = "- ";
+  if (drawn != described.rooms.end()) text += "`rooms/`: the rooms as glTF; ";
+  text += "`scripts/`: who does what on each day.";
+  if (!std::ranges::all_of(described.rooms, is_drawn))
+    text += " The recipe's own scenes aren't part of the dataset; the lines below name them with their hashes.";
+  const DescribedRoom& shown = drawn == described.rooms.end() ? described.rooms.front() : *drawn;
+  return text + " A day again, to look at: `pirsim --scene " + shown.scene_file + " --script scripts/" +
+         room_name(shown.number) + "/day_01.yaml`, whose replicate 1 is day 1.\n";
+}
+
 }  // namespace
 
 std::string readme(const Description& described) {
@@ -132,7 +146,8 @@ std::string readme(const Description& described) {
       "its day.\n\n";
   text += "How often something moves, by the number of people at the end of the row or of the 30 s:\n\n" +
           table_of_counts(described) + '\n';
-  for (const std::string& picture : described.pictures) text += "![A room, seen from above](" + picture + ")\n";
+  for (std::size_t i = 0; i < described.pictures.size(); ++i)
+    text += "![Room " + std::to_string(i + 1) + ", seen from above](" + described.pictures[i] + ")\n";
   if (!described.pictures.empty()) text += '\n';
   text += "## What is where\n";
   text +=
@@ -145,9 +160,7 @@ std::string readme(const Description& described) {
       "- `rooms.csv`, `sensors.csv`, `days.csv`, `effects.csv`: what each room, sensor and day is, which part it "
       "belongs "
       "to, and which effects were drawn for it.\n";
-  text +=
-      "- `rooms/`: the rooms as glTF; `scripts/`: who does what on each day. A day again, to look at: "
-      "`pirsim --scene rooms/room_0001.gltf --script scripts/room_0001/day_01.yaml`, whose replicate 1 is day 1.\n";
+  text += rooms_and_scripts(described);
   if (recipe.occupants == Occupants::told)
     text += "- `occupants/`: who is where and does what, a line a window and person.\n";
   if (!recipe.exports.empty()) text += "- `exports/`: the same data in other tools' shapes.\n";

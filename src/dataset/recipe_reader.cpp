@@ -123,8 +123,12 @@ RoomGroupSpec read_group(const YamlNode& node, const RecipeSpec& recipe, const s
   RoomGroupSpec group;
   group.where = node.where();
   if (map.has("scenes")) {
-    for (const YamlNode& scene : map.required_list("scenes"))
+    for (const YamlNode& scene : map.required_list("scenes")) {
       group.scenes.push_back(recipe.file.parent_path() / scene.text(faults, "scenes"));
+      std::error_code unreadable;
+      if (!std::filesystem::is_regular_file(group.scenes.back(), unreadable))
+        faults.error(scene.where(), "scenes: there is no file '" + group.scenes.back().string() + "'");
+    }
     group.count = static_cast<int>(group.scenes.size());
   } else {
     static_cast<void>(map.list("scenes"));
@@ -160,7 +164,12 @@ void read_outputs(YamlMap& map, RecipeSpec& recipe) {
   for (const YamlNode& item : map.list("exports")) {
     constexpr std::array all{Export::uci864, Export::casas, Export::energyplus};
     const auto index = item.choice(map.faults(), "exports", {"uci864", "casas", "energyplus"});
-    if (index) recipe.exports.push_back(all[*index]);
+    if (!index) continue;
+    if (std::ranges::find(recipe.exports, all[*index]) != recipe.exports.end()) {
+      map.faults().error(item.where(), "exports: " + item.text(map.faults(), "exports") + " stands here twice");
+    } else {
+      recipe.exports.push_back(all[*index]);
+    }
   }
   std::vector<std::pair<std::string, std::string>> endings;
   for (const std::string& ending : io::table_endings()) endings.emplace_back(ending, ending);

@@ -195,8 +195,10 @@ void write_labels(const std::vector<Label>& labels, const rt::View& view, io::Pi
   const double size = std::max(8.0, size_px * image.height / reference_height);
   std::vector<io::Lettering> texts;
   for (const Label& label : labels) {
-    const auto at = view.pixel_of(Vec3f(label.at));
+    auto at = view.pixel_of(Vec3f(label.at));
     if (!at) continue;
+    // One that the lower edge would cut stands on it.
+    if (at->y > image.height && at->y < image.height + size) at->y = static_cast<float>(image.height);
     // Darker than the lines, so that it can be read.
     const Vec3 ink = 255.0 * glm::pow(Vec3(label.colour[0], label.colour[1], label.colour[2]), Vec3(1.0 / 2.2)) * 0.8;
     texts.push_back({Vec2(*at), label.text, ink});

@@ -7,6 +7,7 @@ import filecmp
 import gzip
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -63,6 +64,15 @@ class Dataset(unittest.TestCase):
             self.assertEqual(differing(one, other), [])
             pirsim("dataset", recipe, "-o", other, "--resume", "-q")
             self.assertEqual(differing(one, other), [])
+            # Two machines without a common folder: what each of them made is copied into one.
+            merged = pathlib.Path(folder) / "merged"
+            for shard in ("1/2", "2/2"):
+                machine = pathlib.Path(folder) / f"machine {shard[0]}"
+                pirsim("dataset", recipe, "-o", machine, "--shard", shard, "-q")
+                shutil.copytree(machine, merged, dirs_exist_ok=True)
+            pirsim("dataset", recipe, "-o", merged, "--finish")
+            self.assertEqual(differing(one, merged), [])
+
             check = subprocess.run([sys.executable, TOOLS / "validate_dataset", one], capture_output=True, text=True)
             self.assertEqual(check.returncode, 0, check.stdout + check.stderr)
 
@@ -77,6 +87,11 @@ class Dataset(unittest.TestCase):
             pirsim("room", recipe, "--number", 2, "-o", pathlib.Path(folder) / "second.gltf")
             self.assertEqual((pathlib.Path(folder) / "second.gltf").read_bytes(),
                              (one / "rooms/room_0002.gltf").read_bytes())
+
+            # Nor does preview need anything else.
+            pirsim("preview", "--scene", one / "rooms/room_0001.gltf", "--script", one / "scripts/room_0001/day_01.yaml",
+                   "--time", 600, "--width", 160, "--height", 90, "--sensors", DATA / "sensors", "-o",
+                   pathlib.Path(folder) / "morning.png")
 
             # What is damaged is told.
             (one / "rooms.csv").write_text("room\n")

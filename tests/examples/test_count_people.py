@@ -8,10 +8,12 @@ import numpy as np
 
 sys.path.insert(0, sys.argv.pop(1))
 sys.dont_write_bytecode = True
+from disagreement import RUN, SETTLING, steady_runs  # noqa: E402
 from features import features, shares  # noqa: E402
 from hidden_markov import forward_filter  # noqa: E402
 from readings import Stretch, among, check_apart, first_mornings, whole  # noqa: E402
 from scores import score, scores_of, tally  # noqa: E402
+from table import equivalent  # noqa: E402
 
 
 def day(room, name, n=4):
@@ -76,6 +78,24 @@ class Scores(unittest.TestCase):
         np.testing.assert_allclose(scores_of(tally(units, people, estimates, 4).sum(axis=0)), [0.75, 0.75, 0.5])
         value, low, high = score(units, people, estimates)[0]
         np.testing.assert_allclose([value, low, high], [0.75, 0.5, 1.0])  # of the days alone: 0.5 and 1
+
+
+class Disagreement(unittest.TestCase):
+    def test_steady_runs_keep_clear_of_changes(self):
+        people = np.repeat([1, 2, 1], [2 * SETTLING + 2 * RUN + 3, 2 * SETTLING + RUN - 1, 2 * SETTLING + RUN])
+        motion = np.arange(len(people))[:, None].repeat(2, axis=1)
+        runs = steady_runs([Stretch("a", motion, people, np.full(len(people), "a 1"))])
+        self.assertEqual([r[0, 0] for r in runs[1]], [SETTLING, SETTLING + RUN])
+        self.assertEqual((len(runs[2]), len(runs[3])), (0, 0))
+        self.assertTrue(all(len(r) == RUN for r in runs[1]))
+
+
+class Equivalent(unittest.TestCase):
+    def test_between_the_points_of_the_curve(self):
+        lines = [{"real units": n, "with simulated": False, "estimator": "e", "error": e} for n, e in ((1, 0.9), (2, 0.5), (4, 0.3))]
+        lines.append({"real units": 1, "with simulated": True, "estimator": "e", "error": 0.1})
+        self.assertEqual([equivalent(lines, "e", error) for error in (1.0, 0.9, 0.7, 0.4, 0.3, 0.2)],
+                         ["< 1", "1.0", "1.5", "3.0", "4.0", "> 4"])
 
 
 if __name__ == "__main__":

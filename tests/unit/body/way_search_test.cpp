@@ -123,3 +123,19 @@ TEST_CASE("of equally short ways through an open grid always the same one is tak
   // All ways of two straight and five diagonal steps tie; cells of low index go first, which are those of row 0.
   CHECK(way == std::vector<int>{0, 1, 2, 11, 20, 29, 38, 47});
 }
+
+TEST_CASE("what people leave of a floor is worked out anew when one of them has moved", "[way_search]") {
+  WayMemory memory;
+  int worked = 0;
+  const auto left_by = [&](double x) {
+    return memory.left_by({{x, 2.0, 0.3}, {1.0, 1.0, 0.3}}, [&] {
+      ++worked;
+      return StepsLeft{{1, 1, {0}}, {worked}};
+    });
+  };
+  CHECK(left_by(1.0)->parts == std::vector<int>{1});
+  CHECK(left_by(1.0)->parts == std::vector<int>{1});
+  CHECK(left_by(1.5)->parts == std::vector<int>{2});
+  CHECK(left_by(1.0)->parts == std::vector<int>{3});  // only the last ones are kept
+  CHECK(worked == 3);
+}

@@ -389,6 +389,7 @@ TEST_CASE("the user's own scenes are rooms like others", "[dataset]") {
   CHECK(rows[0].back() == "PIR5");
   CHECK(raw(made.out() / "rooms.csv").find("meeting_room.gltf") != std::string::npos);
   CHECK_FALSE(fs::exists(made.out() / "rooms/room_0001.gltf"));
+  CHECK_THAT(raw(made.out() / "README.md"), contains("own scenes aren't part") && contains("rooms/room_0002.gltf"));
 }
 
 TEST_CASE("faults of a recipe are told with their place and the nearest name", "[dataset]") {
@@ -405,6 +406,10 @@ TEST_CASE("faults of a recipe are told with their place and the nearest name", "
              contains("r.yaml:4:36") && contains("less than the first"));
   CHECK_THAT(faults_of("pirsim_recipe: 1\nrooms: [{}]\nexports: [casa]\n"),
              contains("r.yaml:3:11") && contains("casas"));
+  CHECK_THAT(faults_of("pirsim_recipe: 1\nrooms: [{}]\nexports: [casas, uci864, casas]\n"),
+             contains("r.yaml:3:26") && contains("twice"));
+  CHECK_THAT(faults_of("pirsim_recipe: 1\nrooms:\n  - scenes: [nowhere.gltf]\n"),
+             contains("r.yaml:3:14") && contains("nowhere.gltf"));
   CHECK_THAT(faults_of("pirsim_recipe: 1\nrooms: [{count: 3}]\nsplit: {validation_rooms: 0.5, test_rooms: 0.5}\n"),
              contains("r.yaml:3:8") && contains("no room is left"));
   CHECK_THAT(faults_of("pirsim_recipe: 1\nrooms: [{}]\nexports: [uci864]\nsensing: {window_s: 7}\n"),
