@@ -448,7 +448,7 @@ class Looking(unittest.TestCase):
     def test_preview_marks_what_it_is_asked_to(self):
         with tempfile.TemporaryDirectory() as folder:
             pictures = {}
-            for marks in ("none", "seats", "doors", "sensors", "people", "scale", "all"):
+            for marks in ("none", "seats", "doors", "sensors", "people", "scale", "key", "all"):
                 out = pathlib.Path(folder) / f"{marks}.png"
                 pirsim("preview", *study_files(), "-o", out, "--marks", marks, "--width", 320, "--height", 180)
                 pictures[marks] = out.read_bytes()
