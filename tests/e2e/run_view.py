@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Opens the page of `pirsim view` in headless Chromium: it fetches nothing and says nothing on the console, its rows are
-those of the CSV at ten moments, the picture changes with them, and slider and keyboard work.
+"""Opens the page of `pirsim view` in headless Chromium: it fetches nothing and says nothing on the console, the whole
+room is in view, its rows are those of the CSV at ten moments, the picture changes with them, and slider and keyboard work.
 
 Usage: run_view.py PIRSIM DATA_DIRECTORY; exits with 77 (skipped) where there is no Chromium.
 """
@@ -19,6 +19,17 @@ from browser import check_fetches_nothing, chromium_or_skip, opened
 MOMENTS = [3, 5, 8, 12, 15, 30, 61, 101, 200, 206]
 
 DRIVER = """<script>
+// Whether the picture's edges show nothing but its background: the whole room is in view.
+const framed = async (url) => {
+  const picture = new Image(), paper = document.createElement("canvas");
+  picture.src = url;
+  await picture.decode();
+  const [width, height] = [paper.width, paper.height] = [picture.width, picture.height];
+  const context = paper.getContext("2d", { willReadFrequently: true });
+  context.drawImage(picture, 0, 0);
+  const edges = [[0, 0, width, 1], [0, height - 1, width, 1], [0, 0, 1, height], [width - 1, 0, 1, height]];
+  return edges.every((edge) => context.getImageData(...edge).data.every((v, i, all) => v === all[i % 4]));
+};
 (async () => {
   const wait = (ms) => new Promise((done) => setTimeout(done, ms));
   while (!document.body.dataset.ready) await wait(50);
@@ -37,6 +48,7 @@ DRIVER = """<script>
   press(" "); await wait(1000); press(" ");
   seen.keys.push(Number(slider.value));
   seen.same = seen.frames.pop() === seen.frames[0] && seen.rows.pop() === seen.rows[0];
+  seen.framed = await framed(seen.frames[0]);
   seen.frames = new Set(seen.frames).size;
   document.body.dataset.seen = JSON.stringify(seen);
 })();
@@ -68,6 +80,7 @@ def main():
     assert seen["rows"] == [rows[t] for t in MOMENTS], (seen["rows"], [rows[t] for t in MOMENTS])
     assert seen["same"], "a moment that is shown a second time looks otherwise"
     assert seen["frames"] == len(MOMENTS), f"{seen['frames']} different pictures of ten moments"
+    assert seen["framed"], "part of the room is out of view at the beginning"
     left, right, home, played = seen["keys"]
     assert (left, right, home) == (MOMENTS[0] - 1, MOMENTS[0], 0), seen["keys"]
     assert 0 < played < 5, f"a second of playing ended at {played} s"

@@ -323,13 +323,24 @@
       this.mixer.clipAction(gltf.animations[0]).play();
     }
 
+    // As near as all eight corners of the room stay in the picture.
     lookFromAbove() {
-      const centre = this.box.getCenter(new three.Vector3()), size = this.box.getSize(new three.Vector3());
-      centre.y = this.box.min.y + 0.3 * size.y;
-      const half = Math.tan((this.camera.fov * Math.PI) / 360);
-      const across = Math.max(size.z * 0.8 + size.y * 0.6, Math.hypot(size.x, 0.5 * size.z) / this.camera.aspect);
-      const away = across / 2 / half + 0.35 * size.z;
-      this.camera.position.set(0.28, 0.95, 1).normalize().multiplyScalar(away).add(centre);
+      const { min, max } = this.box, centre = this.box.getCenter(new three.Vector3()), margin = 1.04;
+      const back = new three.Vector3(0.28, 0.95, 1).normalize();
+      const right = new three.Vector3(0, 1, 0).cross(back).normalize(), up = back.clone().cross(right);
+      const corners = [];
+      for (const x of [min.x, max.x]) for (const y of [min.y, max.y]) for (const z of [min.z, max.z])
+        corners.push(new three.Vector3(x, y, z).sub(centre));
+      // How far away a corner needs the camera to be, on either side of the picture; between the two lies its middle.
+      const half = Math.tan((this.camera.fov * Math.PI) / 360) / margin;
+      const fit = (axis, tangent) => {
+        const least = (side) => Math.max(...corners.map((c) => (side * c.dot(axis)) / tangent + c.dot(back)));
+        const above = least(1), below = least(-1);
+        return { away: (above + below) / 2, shift: axis.clone().multiplyScalar(((above - below) * tangent) / 2) };
+      };
+      const high = fit(up, half), wide = fit(right, half * this.camera.aspect);
+      centre.add(high.shift).add(wide.shift);
+      this.camera.position.copy(back).multiplyScalar(Math.max(high.away, wide.away)).add(centre);
       this.controls.target.copy(centre);
       this.controls.update();
     }
