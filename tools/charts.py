@@ -1,6 +1,7 @@
 """Pictures of the documentation: panels with axes, drawn by Vega as report pages draw their charts.
 
-A picture is a list of panels; draw() writes all of them as PNG files. Needs Chromium and libjs-vega
+A picture is a title, a note that says what its lines and colours mean, and a list of panels; draw() writes all of them
+as PNG files. Needs Chromium and libjs-vega
 (tools/install_deps --all).
 """
 import base64
@@ -69,10 +70,15 @@ def picture(file, x, y, size):
     return {"type": "image", "encode": {"enter": {key: {"value": value} for key, value in encoding.items()}}}
 
 
+def heading(title, note):
+    return {"text": title, "subtitle": note.split("\n"), "anchor": "start", "fontSize": 14, "subtitleFontSize": 12,
+            "subtitlePadding": 4, "offset": 12, "frame": "group"}
+
+
 def draw(pictures, folder, columns=3):
-    """Writes folder/NAME.png for each picture, a list of panels by its name; `columns` panels stand side by side."""
-    specs = [{"padding": 8, "layout": {"columns": columns, "padding": 14, "bounds": "full", "align": "each"}, "marks": panels}
-             for panels in pictures.values()]
+    """Writes folder/NAME.png for each picture, (title, note, panels) by its name; `columns` panels stand side by side."""
+    specs = [{"padding": 8, "layout": {"columns": columns, "padding": 14, "bounds": "full", "align": "each"},
+              "title": heading(title, note), "marks": panels} for title, note, panels in pictures.values()]
     figures = "".join(f"<figure><figcaption>{name}</figcaption><div></div></figure>" for name in pictures)
     vega = bundle(VEGA).replace("</script", "<\\/script")
     page = (f"<!DOCTYPE html><html><body>{figures}<script>{vega}</script><script>const specs = {json.dumps(specs)};"

@@ -218,13 +218,13 @@ void pass_options_on(CLI::App& app) {
 
 std::string explain(const CLI::App* app, const CLI::Error& error) {
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
-    if (const CLI::Option* option = repeated_option(*app)) return option->get_name() + " is given twice\n";
+    if (const CLI::Option* option = repeated_option(*app)) return "error: " + option->get_name() + " is given twice\n";
   }
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     if (const std::vector<std::string> rest = app->remaining(true); !rest.empty())
       return explain_word(*app, rest.front());
   }
-  return CLI::FailureMessage::simple(app, error);
+  return "error: " + CLI::FailureMessage::simple(app, error);
 }
 
 std::string spoken_name(const CLI::App& command) {

@@ -124,7 +124,7 @@ void add_preview_command(CLI::App& app) {
   command
       .add_option_function<std::vector<std::string>>(
           "--marks", [options](const std::vector<std::string>& given) { options->picture.marks = marks_of(given); },
-          "what is marked and named: seats, doors, sensors, people, scale, or all or none (default: all)")
+          "what is marked and named: seats, doors, sensors, people, scale, key, or all or none (default: all)")
       ->option_text("WORD,...")
       ->delimiter(',')
       ->check(CLI::IsMember(words));

@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <ostream>
+#include <string>
 #include <utility>
 
+#include "core/fixed.hpp"
 #include "io/atomic_file.hpp"
+#include "io/lettering.hpp"
 #include "pirsim/error.hpp"
 
 // Static, because tinygltf brings another copy.
@@ -41,8 +45,11 @@ void write_png(const std::filesystem::path& path, int width, int height, std::sp
 
 namespace {
 
-constexpr int wanted_px = 900;  ///< width of the squares
-constexpr int margin_px = 16;   ///< white, on all sides
+constexpr int wanted_px = 900;     ///< width of the squares
+constexpr int margin_px = 16;      ///< white, on all sides
+constexpr int line_px = 30;        ///< of the key below the map
+constexpr double text_px = 16.0;   ///< in the key
+constexpr double sign_px = 34.0;   ///< width of a sign in the key, beside its name
 constexpr Vec3 black(0.0), white(255.0), marker_red(255.0, 77.0, 109.0), door_green(45.0, 164.0, 78.0),
     pass_blue(127.0, 184.0, 230.0), fail_orange(224.0, 164.0, 88.0);
 
@@ -73,21 +80,110 @@ class MapPicture {
     }
     for (const auto& loop : chart_.plan.furniture) {
       polygon(loop, black, no_dashes);
-      polygon(loop, white, 5.0);
+      polygon(loop, white, short_dashes);
     }
     for (const auto& loop : chart_.plan.outline) polygon(loop, black, no_dashes);
     for (const RoomPlan::Door& door : chart_.plan.doors) {
       for (const double aside : {-1.5, 1.5})
         line(pixel_of(door.from) + aside, pixel_of(door.to) + aside, door_green, no_dashes);
     }
-    for (const MapChart::Marker& seat : chart_.plan.seats) this->seat(seat);
-    for (const auto& loop : chart_.dashed) polygon(loop, white, 10.0);
-    for (const MapChart::Marker& marker : chart_.markers) arrow(marker);
+    for (const MapChart::Marker& at : chart_.plan.seats) seat(pixel_of(at.point), at.heading);
+    for (const auto& loop : chart_.dashed) polygon(loop, white, long_dashes);
+    for (const MapChart::Marker& at : chart_.markers) arrow(pixel_of(at.point), at.heading);
+    write_key();
     return std::move(pixels_);
   }
 
  private:
-  static constexpr double no_dashes = 0.0;
+  static constexpr double no_dashes = 0.0, short_dashes = 5.0, long_dashes = 10.0;
+
+  /// A sign and what it means.
+  struct KeyEntry {
+    double sign_px;
+    std::function<void(const Vec2&)> draw_sign;  ///< given the middle of its left edge
+    std::string text;
+  };
+
+  [[nodiscard]] std::vector<KeyEntry> key() {
+    std::vector<KeyEntry> entries;
+    const auto add = [&](bool is_there, const std::string& text, std::function<void(const Vec2&)> sign) {
+      if (is_there) entries.push_back({sign_px, std::move(sign), text});
+    };
+    const Vec2 along(sign_px, 0.0);
+    if (!chart_.title.empty()) entries.push_back({0.0, [](const Vec2&) {}, chart_.title});
+    if (chart_.colours == MapChart::Colours::scale) {
+      entries.push_back({0.0, [](const Vec2&) {}, "0"});
+      constexpr double bar_px = 160.0;
+      const auto bar = [this](const Vec2& at) {
+        rectangle(at - Vec2(0.0, 9.0), Vec2(bar_px, 18.0), [](double share) { return viridis(share); });
+      };
+      entries.push_back({bar_px, bar, fixed(chart_.max, 0) + " " + chart_.unit});
+    } else {
+      const auto patch = [this](const Vec3& colour) {
+        return [this, colour](const Vec2& at) {
+          rectangle(at - Vec2(0.0, 9.0), Vec2(sign_px, 18.0), [&](double) { return colour; });
+        };
+      };
+      add(true, "pass", patch(pass_blue));
+      add(true, "fail", patch(fail_orange));
+    }
+    add(!chart_.markers.empty(), "sensor", [this](const Vec2& at) { arrow(at + Vec2(4.0, 0.0), -0.5 * pi); });
+    add(!chart_.plan.seats.empty(), "seat", [this](const Vec2& at) { seat(at + Vec2(12.0, 0.0), -0.5 * pi); });
+    add(!chart_.plan.doors.empty(), "door", [=, this](const Vec2& at) {
+      for (const double aside : {-1.5, 1.5}) line(at + aside, at + along + aside, door_green, no_dashes);
+    });
+    add(!chart_.plan.furniture.empty(), "furniture", [=, this](const Vec2& at) {
+      line(at, at + along, black, no_dashes);
+      line(at, at + along, white, short_dashes);
+    });
+    add(!chart_.dashed.empty(), "taken out", [=, this](const Vec2& at) {
+      rectangle(at - Vec2(0.0, 9.0), Vec2(sign_px, 18.0), [](double) { return viridis(0.0); });
+      line(at, at + along, white, long_dashes);
+    });
+    constexpr std::array lengths_m{0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0};
+    const double px_per_m = square_px_ / chart_.spacing_m, most_px = 0.2 * wanted_px;
+    const auto longer = std::ranges::find_if(lengths_m, [&](double length) { return length * px_per_m > most_px; });
+    const double length_m = longer == lengths_m.begin() ? lengths_m.front() : *(longer - 1);
+    const double length_px = std::min(length_m * px_per_m, 1.0 * wanted_px);
+    const auto scale = [=, this](const Vec2& at) {
+      const Vec2 end = at + Vec2(length_px, 0.0), up(0.0, 6.0);
+      line(at, end, black, no_dashes);
+      for (const Vec2& tick : {at, end}) line(tick - up, tick + up, black, no_dashes);
+    };
+    entries.push_back({length_px, scale, fixed(length_m, length_m < 1.0 ? 1 : 0) + " m"});
+    return entries;
+  }
+
+  /// Below the map, in as many lines as it takes.
+  void write_key() {
+    constexpr double gap_px = 10.0, space_px = 24.0;
+    const std::vector<KeyEntry> entries = key();
+    const double right_px = pixels_.width - margin_px;
+    std::vector<Vec2> places;  // left ends
+    Vec2 at(margin_px, pixels_.height + 0.5 * line_px - margin_px + 8.0);
+    for (const KeyEntry& entry : entries) {
+      const double width = entry.sign_px + (entry.sign_px > 0.0 ? gap_px : 0.0) + text_extent(entry.text, text_px).x;
+      if (at.x > margin_px && at.x + width > right_px) at = Vec2(margin_px, at.y + line_px);
+      places.push_back(at);
+      at.x += width + (entry.text == "0" ? gap_px : space_px);
+    }
+    pixels_.height = static_cast<int>(at.y + 0.5 * line_px) + margin_px / 2;
+    pixels_.rgb.resize(static_cast<std::size_t>(pixels_.width) * static_cast<std::size_t>(pixels_.height) * 3, 255);
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      entries[i].draw_sign(places[i]);
+      const Vec2 extent = text_extent(entries[i].text, text_px);
+      const double left = places[i].x + entries[i].sign_px + (entries[i].sign_px > 0.0 ? gap_px : 0.0);
+      write_text(pixels_, {left + 0.5 * extent.x, places[i].y + 0.5 * extent.y}, entries[i].text, text_px, black);
+    }
+  }
+
+  /// Coloured by the share of its width, from its left edge on.
+  template <typename Colour>
+  void rectangle(const Vec2& lower, const Vec2& size, Colour colour) {
+    each_near(lower, lower + size, 0.0, [&](int x, int y, const Vec2& centre) {
+      blend(x, y, colour((centre.x - lower.x) / size.x), 1.0);
+    });
+  }
 
   [[nodiscard]] Vec2 pixel_of(const Vec2& point) const {
     return Vec2(margin_px) + (point - chart_.lower) * (square_px_ / chart_.spacing_m);
@@ -112,18 +208,17 @@ class MapPicture {
   }
 
   /// A shaft, and a head that narrows towards its tip.
-  void arrow(const MapChart::Marker& marker) {
+  void arrow(const Vec2& from, double heading) {
     constexpr double shaft_px = 30.0, head_px = 14.0;
-    const Vec2 ahead = direction_of(marker.heading), from = pixel_of(marker.point), tip = from + shaft_px * ahead;
+    const Vec2 ahead = direction_of(heading), tip = from + shaft_px * ahead;
     disc(from, 6.0, marker_red);
     line(from, tip - head_px * ahead, marker_red, no_dashes);
     for (double back = 0.0; back <= head_px; back += 0.5) disc(tip - back * ahead, 0.45 * back, marker_red);
   }
 
   /// A disc with a rim, and a nose the way who sits there faces.
-  void seat(const MapChart::Marker& marker) {
-    const Vec2 at = pixel_of(marker.point), nose = at + 14.0 * direction_of(marker.heading);
-    line(at, nose, black, no_dashes);
+  void seat(const Vec2& at, double heading) {
+    line(at, at + 14.0 * direction_of(heading), black, no_dashes);
     disc(at, 7.0, black);
     disc(at, 5.0, white);
   }

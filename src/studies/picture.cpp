@@ -91,6 +91,7 @@ void require_usable(const rt::Camera& camera) {
   }
 }
 
+constexpr rt::Colour idle_beam{0.10F, 0.45F, 0.75F}, seeing_beam{1.0F, 0.25F, 0.02F};
 constexpr rt::Colour seat_colour{0.55F, 0.10F, 0.55F}, door_colour{0.05F, 0.45F, 0.12F},
     scale_colour{0.05F, 0.05F, 0.06F};
 
@@ -190,27 +191,55 @@ Marks marks_of(const Model& model, const State& state, const std::vector<Mark>& 
   return marks;
 }
 
+/// Of texts, in pixels, so that a larger picture shows the same.
+double text_size(const io::Pixels& image) {
+  constexpr double size_px = 12.5, reference_height = 720.0;
+  return std::max(8.0, size_px * image.height / reference_height);
+}
+
+/// Darker than the lines, so that it can be read.
+Vec3 ink(const rt::Colour& colour) {
+  return 255.0 * glm::pow(Vec3(colour[0], colour[1], colour[2]), Vec3(1.0 / 2.2)) * 0.8;
+}
+
 void write_labels(const std::vector<Label>& labels, const rt::View& view, io::Pixels& image) {
-  constexpr double size_px = 12.5, reference_height = 720.0;  // so that a larger picture shows the same
-  const double size = std::max(8.0, size_px * image.height / reference_height);
+  const double size = text_size(image);
   std::vector<io::Lettering> texts;
   for (const Label& label : labels) {
     auto at = view.pixel_of(Vec3f(label.at));
     if (!at) continue;
     // One that the lower edge would cut stands on it.
     if (at->y > image.height && at->y < image.height + size) at->y = static_cast<float>(image.height);
-    // Darker than the lines, so that it can be read.
-    const Vec3 ink = 255.0 * glm::pow(Vec3(label.colour[0], label.colour[1], label.colour[2]), Vec3(1.0 / 2.2)) * 0.8;
-    texts.push_back({Vec2(*at), label.text, ink});
+    texts.push_back({Vec2(*at), label.text, ink(label.colour)});
   }
   for (const io::Lettering& text : io::set_apart(std::move(texts), size))
     io::write_text(image, text.bottom, text.text, size, text.colour);
 }
 
+/// What the colours of this picture mean, in its lower left corner.
+void write_key(const PictureSpec& spec, io::Pixels& image) {
+  const auto wanted = [&](Mark mark) { return std::ranges::find(spec.marks, mark) != spec.marks.end(); };
+  if (!wanted(Mark::key)) return;
+  std::vector<std::pair<std::string, rt::Colour>> entries;
+  if (!spec.beams_of.empty()) {
+    entries.emplace_back("a sensor's beam", idle_beam);
+    entries.emplace_back("a beam that hits a person", seeing_beam);
+  }
+  if (wanted(Mark::seats)) entries.emplace_back("seat", seat_colour);
+  if (wanted(Mark::doors)) entries.emplace_back("door", door_colour);
+  const double size = text_size(image), line = 1.5 * size;
+  Vec2 at(line, image.height - line - line * (static_cast<double>(entries.size()) - 1.0));
+  for (const auto& [text, colour] : entries) {
+    io::write_text(image, at + Vec2(0.5 * io::text_extent(text, size).x, 0.0), text, size, ink(colour));
+    at.y += line;
+  }
+}
+
 }  // namespace
 
 std::string_view name(Mark mark) noexcept {
-  static constexpr std::array<std::string_view, all_marks.size()> names{"seats", "doors", "sensors", "people", "scale"};
+  static constexpr std::array<std::string_view, all_marks.size()> names{"seats", "doors", "sensors", "people", "scale",
+                                                                        "key"};
   return names[static_cast<std::size_t>(mark)];
 }
 
@@ -233,14 +262,14 @@ io::Pixels picture(const Model& model, const State& state, const PictureSpec& sp
   }
   std::vector<rt::Beam> beams = unseen_floor(scene);
   const auto edges = static_cast<std::ptrdiff_t>(beams.size());
-  constexpr rt::Colour idle{0.10F, 0.45F, 0.75F}, seeing{1.0F, 0.25F, 0.02F};
   for (const std::size_t sensor : spec.beams_of) {
     for (const sim::BeamSegment& beam : sim::beams_of(model, state, sensor)) {
-      beams.push_back({beam.from, beam.to, beam.sees_person ? seeing : idle});
+      beams.push_back({beam.from, beam.to, beam.sees_person ? seeing_beam : idle_beam});
     }
   }
   // What sees the person is drawn last, over the rest.
-  std::stable_partition(beams.begin() + edges, beams.end(), [&](const rt::Beam& beam) { return beam.colour == idle; });
+  std::stable_partition(beams.begin() + edges, beams.end(),
+                        [](const rt::Beam& beam) { return beam.colour == idle_beam; });
   const Marks marks = marks_of(model, state, spec.marks);
   beams.insert(beams.end(), marks.lines.begin(), marks.lines.end());
   const double fov = radians(spec.field_of_view_deg);
@@ -252,6 +281,7 @@ io::Pixels picture(const Model& model, const State& state, const PictureSpec& sp
       rt::render(model.compiled().array().room(), surfaces, colours, solids, beams, camera, spec.width, spec.height);
   io::Pixels pixels{image.width, image.height, std::move(image.rgb)};
   write_labels(marks.labels, rt::make_view(camera, spec.width, spec.height), pixels);
+  write_key(spec, pixels);
   return pixels;
 }
 

@@ -13,4 +13,9 @@ enum class MeshRole { ceiling, wall, floor, furniture };
 /// Furniture is outlined by the convex hulls of its connected pieces.
 [[nodiscard]] io::RoomPlan plan_of(const SceneSpec& scene);
 
+/// What the signs of a report's maps mean, where their markers are sensors.
+inline constexpr const char* signs_of_maps =
+    "Red triangles are sensors and white ones seats, both pointing the way they face. A green line is a door, dotted "
+    "lines are furniture, the solid line is the floor's edge.";
+
 }  // namespace pirsim::studies

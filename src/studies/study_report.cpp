@@ -93,9 +93,9 @@ io::Report coverage_report(const CoverageStudy& study, const CoverageMap& map, c
           " squares). The maps, seen from above, tell for each sensor in how many "
           "of these windows it reported motion: 0 means blind there. Point at a square for its value.",
       "The target is " + std::to_string(study.target().crosses().size()) +
-          " crosses of two bars, turning on the spot. "
-          "The red triangle is the sensor, a white one a seat, green a door; solid lines are the floor's edge "
-          "and furniture, the dashed line is what was taken out of the room."};
+          " crosses of two bars, turning on the spot.",
+      std::string(signs_of_maps) +
+          (study.taken_out().empty() ? "" : " Dashed lines are what was taken out of the room.")};
 
   io::Table table{{"sensor", "mean step", "greatest step", "blind", "area seen, m²"}, {}};
   for (std::size_t i = 0; i < map.sensors.size(); ++i) table.rows.push_back(row_of(map.sensors[i], figures.sensors[i]));

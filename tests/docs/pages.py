@@ -33,3 +33,13 @@ def blocks(page):
     assert opened is None, f"{page}:{opened[0]}: this block has no end"
     return found
 
+
+
+def indented_lines(page):
+    """Numbers and texts of lines outside of fenced blocks that Markdown shows as code, or as part of a list."""
+    fenced = False
+    for number, line in enumerate(pathlib.Path(page).read_text(encoding="utf-8").splitlines(), start=1):
+        if line.startswith("```"):
+            fenced = not fenced
+        elif not fenced and line.startswith("    "):
+            yield number, line

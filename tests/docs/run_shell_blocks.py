@@ -5,11 +5,12 @@ the path; its marked blocks are worked off in order:
   ```yaml file=study.yaml    is written to that file
   ```sh run                  runs, and must succeed
   ```sh run makes=a.md       the same; it must make the file of that name that lies beside the page
+  ```sh run with A=B C=D     the same, with each A in it replaced by B: a smaller input, say
   ```text output             each line must be in what the last `run` printed, in this order
-  ```sh tested by FILE       that test does what the block says
+  ```sh tested by FILE       that test does what the block says, and names its programs and commands
   ```sh not run: REASON      can't be tried here
 
-A shell block without a word on how it is tested is a fault.
+A shell block without a word on how it is tested is a fault, and so is a command in any other block.
 
 room.gltf and study.yaml of docs/howto/my_room.md are there from the beginning: readers of other pages have theirs.
 
@@ -17,12 +18,14 @@ Usage: run_shell_blocks.py PIRSIM SOURCE_DIRECTORY [PAGE...]
 """
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
 
-from pages import blocks, pages
+from pages import blocks, indented_lines, pages
 
+COMMAND = re.compile(r"\s*((?:pirsim|cmake|pip|sbatch|python3?)(?= )|(?:tools|tests|examples)/[\w./]+)(?: (\w+)\b)?")
 
 def check_output(expected, printed, place):
     lines = iter(printed.splitlines())
@@ -41,15 +44,41 @@ def check_made(names, page, folder, here):
         assert (folder / name).read_bytes() == (page.parent / name).read_bytes(), f"{here}: {name} is another by now"
 
 
+def commands(text):
+    """Program and first word of each line that calls one: ("pirsim", "coverage"), ("pirsim", "")."""
+    return [(match[1], match[2] or "") for match in map(COMMAND.match, text.splitlines()) if match]
+
+
+def check_tested(block, source, here):
+    test = source / block.info.removeprefix("tested by ")
+    assert test.is_file(), f"{here}: no such test"
+    text = test.read_text(encoding="utf-8")
+    for program, word in commands(block.text):
+        for part in [*program.split("/"), word]:
+            assert part in text, f"{here}: {test.name} has no {part}"
+
+
+def smaller(text, exchanges, here):
+    """The block with each A=B exchanged."""
+    for pair in exchanges.split():
+        shown, tried = pair.split("=", 1)
+        assert shown in text, f"{here}: there is no {shown} in the block"
+        text = text.replace(shown, tried)
+    return text
+
+
 def run_page(page, place, folder, environment, source):
     """How many blocks were run."""
     ran, printed = 0, ""
+    for number, text in indented_lines(page):
+        assert not commands(text), f"{place}:{number}: a command that isn't in a block ```sh"
     for block in blocks(page):
         here = f"{place}:{block.line}"
         if block.info.startswith("file="):
             write_file(block, folder)
-        elif block.info.split(" makes=")[0] == "run":
-            result = subprocess.run(["bash", "-euo", "pipefail", "-c", block.text], cwd=folder, env=environment,
+        elif re.fullmatch("run( makes=.*| with .*)?", block.info):
+            text = smaller(block.text, block.info.partition(" with ")[2], here)
+            result = subprocess.run(["bash", "-euo", "pipefail", "-c", text], cwd=folder, env=environment,
                                     stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
             printed = result.stdout
             assert result.returncode == 0, f"{here}: exit code {result.returncode}\n{printed}"
@@ -59,10 +88,11 @@ def run_page(page, place, folder, environment, source):
             assert ran, f"{here}: nothing was run before"
             check_output(block.text, printed, here)
         elif block.info.startswith("tested by "):
-            assert (source / block.info.removeprefix("tested by ")).is_file(), f"{here}: no such test"
+            check_tested(block, source, here)
         else:
             assert block.language == "sh" or not block.info, f"{here}: not known: {block.info}"
             assert block.language != "sh" or block.info.startswith("not run: "), f"{here}: how is this tested?"
+            assert block.language in ("sh", "cpp") or not commands(block.text), f"{here}: a command, but no block ```sh"
     return ran
 
 

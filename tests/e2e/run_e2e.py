@@ -149,10 +149,16 @@ class Options(unittest.TestCase):
 
     def test_an_option_given_twice_is_said_to_be(self):
         for args in (("--seed", 1, "--seed", 2), ("--seed", 1, "run", "--seed", 2), ("run", "--seed", 1, "--seed", 2)):
-            self.assertEqual(pirsim(*args, *study_files(), code=2).stderr, "--seed is given twice\n")
+            self.assertEqual(pirsim(*args, *study_files(), code=2).stderr, "error: --seed is given twice\n")
         twice = pirsim("reconcile", "plan", "--runs", 1, "--runs", 2, code=2).stderr
-        self.assertEqual(twice, "--runs is given twice\n")
+        self.assertEqual(twice, "error: --runs is given twice\n")
         study("--set", "seed=1", "--set", "replicates=2", "--print-config")
+
+    def test_every_refusal_begins_as_one(self):
+        for args in (("--seed", "x"), ("preview", "--marks", "chairs"), ("preview", "--width", 5), ("check", "--scene"),
+                     ("merge",), ("reconcile", "plan", "--runs", "many")):
+            refused = pirsim(*args, code=2).stderr
+            self.assertTrue(refused.startswith("error: "), refused)
 
     def test_quiet_and_verbose_exclude_each_other(self):
         for args in (("-q", "-v"), ("-v", "-q"), ("-q", "run", "-v"), ("run", "--verbose", "--quiet")):
@@ -357,6 +363,8 @@ class Hostile(unittest.TestCase):
         table = rows(pirsim("effects", "--format", "csv").stdout)
         self.assertEqual(listed, list(dict.fromkeys(row["effect"] for row in table)))
         self.assertGreater(len(listed), 20)
+        for page, what in (("README.md", "imperfections"), ("CHANGELOG.md", "things")):
+            self.assertIn(f"{len(listed)} {what}", (HERE.parents[1] / page).read_text())
         for effect in listed:
             self.assertIn("fingerprint:", pirsim("effects", effect).stdout)
         self.assertIn("did you mean 'dead_time'?", pirsim("effects", "dead_tyme", code=2).stderr)
@@ -483,7 +491,7 @@ class Looking(unittest.TestCase):
     def test_preview_marks_what_it_is_asked_to(self):
         with tempfile.TemporaryDirectory() as folder:
             pictures = {}
-            for marks in ("none", "seats", "doors", "sensors", "people", "scale", "all"):
+            for marks in ("none", "seats", "doors", "sensors", "people", "scale", "key", "all"):
                 out = pathlib.Path(folder) / f"{marks}.png"
                 pirsim("preview", *study_files(), "-o", out, "--marks", marks, "--width", 320, "--height", 180)
                 pictures[marks] = out.read_bytes()

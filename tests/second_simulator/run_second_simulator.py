@@ -118,6 +118,18 @@ class SecondSimulator(unittest.TestCase):
         self.assertEqual(self.bits_with("broken_sensor").any(0).sum(), self.bits.any(0).sum() - 1)
         self.assertTrue((self.bits | ~self.bits_with("dazzled")).all(), "who is dazzled sees nothing more")
 
+    def test_the_program_writes_the_rows_of_a_fault(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "study.yaml").write_text(SCRIPT)
+            subprocess.run([sys.executable, second.__file__, PIRSIM, "--scene", DATA / "rooms/meeting_room.gltf", "--script",
+                            folder / "study.yaml", "--fault", "half_blind", "--seed", "3", "-o", folder / "measured.csv"],
+                           check=True)
+            rows = list(csv.DictReader((folder / "measured.csv").read_text().splitlines()))
+        written = np.array([[int(row[sensor]) for sensor in self.rays.sensors] for row in rows], bool)
+        np.testing.assert_array_equal(written, self.bits_with("half_blind", 3))
+        self.assertGreater((written != self.bits).sum(), 0)
+
     def test_what_is_moved_keeps_its_shape(self):
         swings = faults.FAULTS["swings_on_the_chair"](np.random.default_rng(1)).people
         most = 0.0

@@ -74,7 +74,7 @@ TEST_CASE("a map is drawn in viridis, white off the floor, with the edge in blac
   const std::array<int, 3> violet{0x44, 0x01, 0x54}, yellow{0xfd, 0xe7, 0x25}, white{255, 255, 255}, black{0, 0, 0};
   const Pixels plain = drawn(chart);
   REQUIRE(plain.width == 3 * 300 + 2 * 16);
-  REQUIRE(plain.height == 300 + 2 * 16);
+  REQUIRE(plain.height > 300 + 2 * 16);  // the key is below
   CHECK(plain.rgb.size() == static_cast<std::size_t>(plain.width * plain.height * 3));
   CHECK(colour(plain, 5, 100) == white);
   CHECK(colour(plain, 100, 100) == violet);
@@ -91,7 +91,7 @@ TEST_CASE("a map is drawn in viridis, white off the floor, with the edge in blac
   CHECK(colour(marked, 146, 166) == violet);
   chart.markers.front().point = {-40.0, 90.0};  // outside of the picture
   chart.plan.outline.front().front() = {-1e6, 0.1};
-  CHECK(drawn(chart).rgb.size() == plain.rgb.size());
+  CHECK(drawn(chart).rgb.size() == marked.rgb.size());
 }
 
 TEST_CASE("a map shows furniture, seats and doors where they are, and pass and fail as two colours", "[png]") {
@@ -117,6 +117,46 @@ TEST_CASE("a map shows furniture, seats and doors where they are, and pass and f
   CHECK(colour(marked, 1.25, 0.45) == std::array<int, 3>{45, 164, 78});
   CHECK(colour(marked, 0.2, 0.2) != colour(plain, 0.2, 0.2));
   CHECK(colour(marked, 0.3, 0.2) == colour(plain, 0.3, 0.2));  // only its edge
+}
+
+TEST_CASE("below a map a key shows its colours and signs, and those alone, however narrow the map is", "[png]") {
+  const std::array<int, 3> red{255, 77, 109}, green{45, 164, 78}, yellow{0xfd, 0xe7, 0x25}, orange{0xe0, 0xa4, 0x58};
+  const int columns = GENERATE(1, 3, 500);
+  MapChart chart;
+  chart.title = "PIR1";
+  chart.unit = "s of 60 with motion";
+  chart.columns = columns;
+  chart.rows = 1;
+  chart.spacing_m = 0.5;
+  chart.values.assign(static_cast<std::size_t>(columns), 0.0);
+  const int key_from = 2 * 16 + 900 / columns;
+  const auto has = [&](const Pixels& picture, const std::array<int, 3>& colour) {
+    for (auto at = static_cast<std::size_t>(key_from * picture.width) * 3; at < picture.rgb.size(); at += 3) {
+      if (std::abs(picture.rgb[at] - colour[0]) < 3 && std::abs(picture.rgb[at + 1] - colour[1]) < 3 &&
+          std::abs(picture.rgb[at + 2] - colour[2]) < 3)
+        return true;
+    }
+    return false;
+  };
+  const Pixels plain = drawn(chart);
+  CHECK(has(plain, yellow));
+  CHECK(has(plain, {0, 0, 0}));
+  CHECK_FALSE((has(plain, red) || has(plain, green) || has(plain, orange)));
+  chart.markers = {{"PIR1", {0.2, 0.2}, 0.0}};
+  chart.plan.doors = {{"door", {0.1, 0.1}, {0.3, 0.1}}};
+  chart.plan.seats = {{"S1", {0.2, 0.3}, 0.0}};
+  chart.plan.furniture = {{{0.2, 0.1}, {0.4, 0.1}, {0.4, 0.3}}};
+  chart.dashed = chart.plan.furniture;
+  const Pixels marked = drawn(chart);
+  CHECK((has(marked, red) && has(marked, green)));
+  chart.colours = MapChart::Colours::pass_or_fail;
+  CHECK(has(drawn(chart), orange));
+  // Nothing is cut off: the outermost pixels are paper.
+  for (int y = key_from; y < marked.height; ++y) {
+    for (const int x : {0, marked.width - 1}) {
+      REQUIRE(marked.rgb[static_cast<std::size_t>(3 * (y * marked.width + x))] == 255);
+    }
+  }
 }
 
 TEST_CASE("a text stands where it is asked for, and is cut off at the picture's edge", "[png]") {
