@@ -266,7 +266,7 @@ class FailedRuns(unittest.TestCase):
             folder = pathlib.Path(name)
             told = self.failing("-o", folder / "rows.csv", "--summary", folder / "table.md", code=6).stderr
             self.assertIn("2 runs failed and have no rows", told)
-            self.assertRegex(told, r"trial S5, replicate 6, second 0\.02: 'occupant' at \([\d., -]+\) m finds no way to ")
+            self.assertRegex(told, r"trial S5, replicate 6, second 0\.02: 'occupant' at \([\d., -]+\) m can.t reach ")
             table = rows((folder / "rows.csv").read_text())
             self.assertEqual(len({(row["replicate"], row["trial"]) for row in table}), 22)
             failed = json.loads((folder / "rows.csv.json").read_text())["people"]["failed_runs"]
