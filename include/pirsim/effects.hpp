@@ -63,6 +63,9 @@ enum class ActsOn {
   all_sensors,
   zone_sensors  ///< does nothing to sensors whose response is analog
 };
+/// Studies that move a target of their own instead of a script's people.
+enum class Survey { coverage, walk_test };
+[[nodiscard]] std::string_view name(Survey survey) noexcept;  ///< "coverage study", "walk test"
 
 struct EffectInfo {
   std::string name;
@@ -77,6 +80,7 @@ struct EffectInfo {
   Reach reach = Reach::geometry;
   /// Sensors of which response it acts on: of zones, or of both.
   ActsOn acts_on = ActsOn::all_sensors;
+  std::vector<Survey> idle_in{};  ///< those that it changes nothing in: they lack the people or the rows it acts on
 };
 
 /// All entries of the catalogue, in the order in which they act.

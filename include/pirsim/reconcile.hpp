@@ -141,6 +141,7 @@ struct Context {
 [[nodiscard]] std::string sentence(const Outcome& outcome, double alpha = 0.05);
 /// Why an effect was kept or dropped.
 [[nodiscard]] std::string in_words(const Candidate& candidate);
+[[nodiscard]] std::string in_words(const FeatureName& feature);
 [[nodiscard]] std::string in_words(const DataNote& note);
 [[nodiscard]] std::string in_words(const TrailEvent& event);
 [[nodiscard]] std::string in_words(const Stage& stage);

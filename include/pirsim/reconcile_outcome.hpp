@@ -108,9 +108,47 @@ struct LocatedCell {
   double low_s = 0.0, high_s = 0.0;  ///< 95 % of the simulated datasets lie between
   double adjusted_p = 1.0;           ///< of the global test: below alpha, the cell differs whatever the others do
 };
+/// What a number that data are turned into is of.
+struct FeatureName {
+  enum class Kind {
+    cell,                    ///< `statistic` of a trial and a sensor, as all that follow against the plain model
+    sensor,                  ///< mean over the trials
+    trial,                   ///< mean over the sensors
+    mean,                    ///< over all cells, or all trials
+    size,                    ///< the same of its size, whatever its sign
+    greatest,                ///< of all cells
+    least,
+    slope,                   ///< over all cells, on `other`: what is expected or known of a cell
+    first_less_second,       ///< of the sensors in order of their means
+    last_but_one_less_last,
+    first_less_last,
+    share_of_time,           ///< of a sensor's motion (empty: all sensors'), in `part` of `n_parts` parts of the time
+    together,                ///< odds that `sensor` moves while `other`, a sensor, does
+    most_together,           ///< of all pairs
+    least_together,
+    likeness,                ///< of all cells' seconds to those of the model
+    likeness_gained          ///< by permuting trials or sensors
+  };
+  enum class Permutation {
+    trials_shifted,  ///< by one
+    trials_shifted_back,
+    trials_reversed,
+    two_trials_swapped,
+    sensors_shifted,
+    sensors_shifted_back,
+    sensors_reversed,
+    two_sensors_swapped
+  };
+  Kind kind = Kind::cell;
+  std::string trial = {}, sensor = {}, statistic = {};
+  std::string other = {};
+  std::size_t part = 0, n_parts = 0;  ///< part: from 1 on
+  Permutation permutation = Permutation::trials_shifted;
+  bool operator==(const FeatureName&) const = default;
+};
 /// A number that the global test looks at, with its band, in the number's own scale.
 struct EnvelopeFeature {
-  std::string name;
+  FeatureName name;
   double observed = 0.0, median = 0.0, lower = 0.0, upper = 0.0;
   double adjusted_p = 1.0;
 };
@@ -297,7 +335,7 @@ struct Outcome {
   std::vector<Look> looks;            ///< with the effects applied, one after the other
   std::optional<Verification> verification;
   std::optional<Residuals> residuals;  ///< if nothing fits and the data are series
-  std::vector<std::string> telling_features;
+  std::vector<FeatureName> telling_features;
   double calibration_error = 0.0;
   std::string table_key;
   std::vector<std::string> looked_for;  ///< effects, if not the whole catalogue

@@ -12,6 +12,7 @@
 #include "pirsim/io.hpp"
 #include "pirsim/version.hpp"
 #include "rt/tracer.hpp"
+#include "sim/compiled_study.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -60,7 +61,8 @@ Model load(const Inputs& inputs, ScriptSpec script) {
   tell(scene.warnings, inputs.verbosity);
   tell(script.warnings, inputs.verbosity);
   Model model = compile(std::move(scene), std::move(script), {tracer});
-  tell(effects::idle(model.script().effects, model.scene(), model.script().sensing), inputs.verbosity);
+  const sim::CompiledStudy& study = model.compiled();
+  tell(effects::idle(study.script_given().effects, study.scene(), study.sensing()), inputs.verbosity);
   return model;
 }
 

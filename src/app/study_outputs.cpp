@@ -226,7 +226,7 @@ class ZoneOutput {
 class TraceOutput {
  public:
   TraceOutput(const std::filesystem::path& file, const Model& model)
-      : output_(file), csv_(output_.lines(), sensor_ids(model), model.script().sensing.tick_rate_hz) {
+      : output_(file), csv_(output_.lines(), sensor_ids(model), model.compiled().sensing().tick_rate_hz) {
     if (model.compiled().array().analog() == nullptr)
       throw Error(ErrorCode::usage, "--trace: no sensor has an analog response");
   }

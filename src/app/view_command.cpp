@@ -186,7 +186,7 @@ void view(const Inputs& inputs, const ViewOptions& options) {
   const Model model = load(inputs);
   const std::uint32_t run = find_run(model, options.run);
   std::vector<Sample> rows = rows_of(model, run);
-  const double window_s = model.tick_s() * model.script().sensing.ticks_per_window;
+  const double window_s = model.tick_s() * model.compiled().sensing().ticks_per_window;
   const Stretch stretch = chosen_stretch(options, model.compiled().trial_of(run), rows, window_s);
   io::RunPage page = run_page(model, run, stretch, options);
   page.about += ", " + inputs.scene.filename().string() + ", " + inputs.script.filename().string();

@@ -24,7 +24,8 @@ const Effect& arm_motion() {
                .parameters = {factor("amplitude_scale", 0.3, 1.8, 0.6, "assumed"),
                               factor("period_scale", 0.83, 1.17, 1.0,
                                      "assumed: 2.5-3.5 s for the 3 s of Study A, kept by a person with a clock")},
-               .reach = Reach::geometry},
+               .reach = Reach::geometry,
+               .idle_in = {Survey::coverage}},
       .alter = alter};
   return effect;
 }

@@ -25,7 +25,8 @@ const Effect& body_size() {
                .fingerprint = "weak, everywhere",
                .confused_with = {"thermal_contrast", "range_scale", "arm_motion", "seat_shift"},
                .parameters = {factor("scale", 0.8, 1.2, 0.93, "assumed: 1.5-2.2 m for the 1.86 m of Study A")},
-               .reach = Reach::geometry},
+               .reach = Reach::geometry,
+               .idle_in = {Survey::coverage}},
       .alter = alter};
   return effect;
 }

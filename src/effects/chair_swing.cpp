@@ -32,7 +32,8 @@ const Effect& chair_swing() {
                                .source = "assumed: to either side"},
                               detail("period_s", "s", 3.0, 1.5, 6.0, 0.4, 60.0, "assumed"),
                               detail("share", "", 0.5, 0.1, 1.0, 0.0, 1.0, "assumed: of the time, in bouts of 20 s")},
-               .reach = Reach::geometry},
+               .reach = Reach::geometry,
+               .idle_in = {Survey::coverage, Survey::walk_test}},
       .alter = alter};
   return effect;
 }

@@ -68,7 +68,8 @@ const Effect& dead_sensor() {
                                .most = 1e7,
                                .source = "assumed"}},
                .choices = {sensor_choice()},
-               .reach = Reach::rows},
+               .reach = Reach::rows,
+               .idle_in = {Survey::walk_test}},
       .make_row_stage = make,
       .draw = draw};
   return effect;

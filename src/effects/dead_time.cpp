@@ -60,7 +60,8 @@ const Effect& dead_time() {
                                .source = "assumed: lock-out times of common PIR modules are 0.2-5 s"}},
                .choices = {{"kind", ChoiceKind::variant, {"non_paralysable", "paralysable"}, "non_paralysable"},
                            sensor_choice()},
-               .reach = Reach::triggers},
+               .reach = Reach::triggers,
+               .idle_in = {Survey::walk_test}},
       .make_stage = make};
   return effect;
 }

@@ -54,7 +54,8 @@ const Effect& fidgeting() {
                                .most = 80.0,
                                .source = "assumed: the head turns to within so much of straight ahead"}},
                .choices = {{"timing", ChoiceKind::variant, {"independent", "still_periods"}, "independent"}},
-               .reach = Reach::geometry},
+               .reach = Reach::geometry,
+               .idle_in = {Survey::coverage, Survey::walk_test}},
       .alter = alter};
   return effect;
 }

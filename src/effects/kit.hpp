@@ -121,6 +121,12 @@ const Effect& labels_swapped();
 /// Indices of the sensors that an effect is for: the one named, or all.
 [[nodiscard]] std::vector<std::uint32_t> sensors_of(const EffectSpec& effect, const SceneSpec& scene);
 
+/// change(SensorSpec&) for those of the sensors that an effect is for.
+template <typename Change>
+void for_each_sensor(StudyInForce& study, const EffectSpec& effect, const Change& change) {
+  for (const std::uint32_t i : sensors_of(effect, study.scene)) change(study.scene.sensors[i]);
+}
+
 /// One stream a sensor of `sensors`, at its beginning for this run.
 [[nodiscard]] std::vector<Stream> streams_of(const std::vector<std::uint32_t>& sensors, std::uint64_t seed,
                                              std::uint32_t run, Purpose purpose);

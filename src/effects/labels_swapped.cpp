@@ -57,7 +57,8 @@ const Effect& labels_swapped() {
                .parameters = {whether("swapped", "assumed: any two sensors")},
                .choices = {{"sensor", ChoiceKind::sensor, {}, "the first sensor"},
                            {"other", ChoiceKind::sensor, {}, "the second sensor"}},
-               .reach = Reach::rows},
+               .reach = Reach::rows,
+               .idle_in = {Survey::walk_test}},
       .make_row_stage = make,
       .draw = draw,
       .fault = fault};

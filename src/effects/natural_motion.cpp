@@ -32,7 +32,8 @@ const Effect& natural_motion() {
            .confused_with = {"fidgeting", "uneven_arms", "soft_zone_edges"},
            .parameters = {whether("present", "assumed")},
            .choices = {{"activity", ChoiceKind::variant, activities(), "typing"}},
-           .reach = Reach::geometry},
+           .reach = Reach::geometry,
+           .idle_in = {Survey::coverage, Survey::walk_test}},
       .alter = alter};
   return effect;
 }

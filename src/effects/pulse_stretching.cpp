@@ -80,7 +80,8 @@ const Effect& pulse_stretching() {
                                .most = 1.0,
                                .source = "assumed: each pulse between (1 - spread) and (1 + spread) times hold_s"}},
                .choices = {{"retrigger", ChoiceKind::variant, {"restarts", "ignored"}, "restarts"}, sensor_choice()},
-               .reach = Reach::triggers},
+               .reach = Reach::triggers,
+               .idle_in = {Survey::walk_test}},
       .make_stage = make};
   return effect;
 }

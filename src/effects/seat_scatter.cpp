@@ -43,7 +43,8 @@ const Effect& seat_scatter() {
                                .least = 0.0,
                                .most = 45.0,
                                .source = "assumed"}},
-               .reach = Reach::geometry},
+               .reach = Reach::geometry,
+               .idle_in = {Survey::coverage, Survey::walk_test}},
       .alter = alter};
   return effect;
 }

@@ -21,7 +21,8 @@ const Effect& seat_shift() {
                .fingerprint = "rows of seats on opposite sides of the sensors move oppositely",
                .confused_with = {"sensor_tilt", "sensor_height", "body_size"},
                .parameters = {offset("forward_m", "m", 0.25, 0.1, 1.0, "assumed: how far a chair is drawn to a table")},
-               .reach = Reach::geometry},
+               .reach = Reach::geometry,
+               .idle_in = {Survey::coverage, Survey::walk_test}},
       .alter = alter};
   return effect;
 }

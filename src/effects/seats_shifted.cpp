@@ -40,7 +40,8 @@ const Effect& seats_shifted() {
                                .most = 1000.0,
                                .scale = Scale::whole,
                                .source = "assumed: one, either way"}},
-               .reach = Reach::geometry},
+               .reach = Reach::geometry,
+               .idle_in = {Survey::coverage}},
       .alter = alter,
       .draw = draw};
   return effect;

@@ -69,7 +69,8 @@ const Effect& second_person() {
                                      {"moves", "stands"}),
                               detail("every_s", "s", 10.0, 5.0, 30.0, 0.5, 3600.0, "assumed: between two moves")},
                .choices = {{"moves", ChoiceKind::variant, {"stands", "wanders"}, "stands"}, place_choice()},
-               .reach = Reach::geometry},
+               .reach = Reach::geometry,
+               .idle_in = {Survey::coverage, Survey::walk_test}},
       .alter = alter,
       .draw = draw,
       .settle = settle};

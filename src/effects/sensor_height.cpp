@@ -27,16 +27,14 @@ const TriMesh* in_the_way(const SceneSpec& scene, const SensorSpec& sensor, doub
 }
 
 void alter(StudyInForce& study, const EffectSpec& effect) {
-  SceneSpec& scene = study.scene;
   const double height_m = effect.parameters.at("height_m");
-  for (const std::uint32_t i : sensors_of(effect, scene)) {
-    SensorSpec& sensor = scene.sensors[i];
-    if (const TriMesh* mesh = in_the_way(scene, sensor, height_m)) {
+  for_each_sensor(study, effect, [&](SensorSpec& sensor) {
+    if (const TriMesh* mesh = in_the_way(study.scene, sensor, height_m)) {
       throw Error(ErrorCode::infeasible, effect.where,
                   "sensor_height: " + sensor.id + " would hang in or behind '" + mesh->name + "'");
     }
     sensor.world_from_sensor.origin.y += height_m;
-  }
+  });
 }
 
 bool has_room(const EffectSpec& effect, const SceneSpec& scene) {

@@ -7,12 +7,11 @@ namespace pirsim::effects {
 namespace {
 
 void alter(StudyInForce& study, const EffectSpec& effect) {
-  SceneSpec& scene = study.scene;
-  for (const std::uint32_t i : sensors_of(effect, scene)) {
-    Frame& frame = scene.sensors[i].world_from_sensor;
-    frame.rotation =
-        glm::normalize(frame.rotation * glm::angleAxis(-radians(effect.parameters.at("tilt_deg")), Vec3(1, 0, 0)));
-  }
+  const Quat tilt = glm::angleAxis(-radians(effect.parameters.at("tilt_deg")), Vec3(1, 0, 0));
+  for_each_sensor(study, effect, [&](SensorSpec& sensor) {
+    Quat& rotation = sensor.world_from_sensor.rotation;
+    rotation = glm::normalize(rotation * tilt);
+  });
 }
 
 }  // namespace

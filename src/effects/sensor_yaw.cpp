@@ -7,11 +7,11 @@ namespace pirsim::effects {
 namespace {
 
 void alter(StudyInForce& study, const EffectSpec& effect) {
-  SceneSpec& scene = study.scene;
-  for (const std::uint32_t i : sensors_of(effect, scene)) {
-    Frame& frame = scene.sensors[i].world_from_sensor;
-    frame.rotation = glm::normalize(rotation_from_heading(radians(effect.parameters.at("yaw_deg"))) * frame.rotation);
-  }
+  const Quat yaw = rotation_from_heading(radians(effect.parameters.at("yaw_deg")));
+  for_each_sensor(study, effect, [&](SensorSpec& sensor) {
+    Quat& rotation = sensor.world_from_sensor.rotation;
+    rotation = glm::normalize(yaw * rotation);
+  });
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ const Effect& trunk_sway() {
                                .scale = Scale::logarithmic,
                                .source = "assumed: to either side; quiet sitting to rocking"},
                               detail("period_s", "s", 4.0, 2.0, 6.0, 0.2, 60.0, "assumed: of breathing, or slower")},
-               .reach = Reach::geometry},
+               .reach = Reach::geometry,
+               .idle_in = {Survey::coverage, Survey::walk_test}},
       .alter = alter};
   return effect;
 }

@@ -23,7 +23,8 @@ const Effect& trunk_tilt() {
                .confused_with = {"arm_motion", "clock_lag", "fidgeting"},
                .parameters = {factor("amplitude_scale", 0.3, 1.8, 0.6, "assumed"),
                               factor("period_scale", 0.7, 1.4, 1.0, "assumed")},
-               .reach = Reach::geometry},
+               .reach = Reach::geometry,
+               .idle_in = {Survey::coverage, Survey::walk_test}},
       .alter = alter};
   return effect;
 }

@@ -39,7 +39,8 @@ const Effect& uneven_arms() {
                            .least = 0.0,
                            .most = 1.0,
                            .source = "assumed: of the swings"}},
-           .reach = Reach::geometry},
+           .reach = Reach::geometry,
+           .idle_in = {Survey::coverage, Survey::walk_test}},
       .alter = alter};
   return effect;
 }

@@ -105,7 +105,8 @@ const Effect& warm_chair() {
                                .scale = Scale::logarithmic,
                                .source = "assumed: to 1/e"}},
                .choices = {sensor_choice()},
-               .reach = Reach::triggers},
+               .reach = Reach::triggers,
+               .idle_in = {Survey::coverage, Survey::walk_test}},
       .make_stage = make};
   return effect;
 }

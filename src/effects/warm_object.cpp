@@ -67,7 +67,8 @@ const Effect& warm_object() {
                     detail("sweep_m", "m", 0.3, 0.15, 0.6, 0.05, 5.0, "assumed: so far and back", {"moves", "sweeps"}),
                     detail("heading_deg", "deg", 0.0, -180.0, 180.0, -360.0, 360.0, "any", {"moves", "sweeps"})},
                .choices = {{"moves", ChoiceKind::variant, {"roams", "sweeps"}, "roams"}, place_choice()},
-               .reach = Reach::geometry},
+               .reach = Reach::geometry,
+               .idle_in = {Survey::coverage, Survey::walk_test}},
       .alter = alter,
       .draw = draw,
       .settle = settle};

@@ -101,7 +101,7 @@ class Doubts {
     return -1;
   }
 
-  /// The first mesh that an upright line through the place meets between two heights, or -1.
+  /// The first mesh that an upright line through the place intersects between two heights, or -1.
   [[nodiscard]] int crossed(const Vec3& place, double from_y, double to_y) const {
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
       if (!boxes_[i].is_over(place) || boxes_[i].most.y < from_y || boxes_[i].least.y > to_y) continue;

@@ -105,23 +105,15 @@ class EmbreeTracer final : public Tracer {
 
   void trace(std::span<const PosedShape> solids, std::span<std::uint8_t> zones) override {
     std::fill(zones.begin(), zones.end(), std::uint8_t{0});
-    find_candidates(solids);
-    if (candidates_.empty()) return;
-    move_instances(solids);
     SolidQuery query;
-    initialise(query);
-    query.solids = solids;
+    prepare(query, solids);
     for (const std::size_t zone : candidates_) zones[zone] = sees_solid(query, zone);
   }
 
   void find_first(std::span<const PosedShape> solids, std::vector<FirstHit>& hits) override {
     hits.clear();
-    find_candidates(solids);
-    if (candidates_.empty()) return;
-    move_instances(solids);
     SolidQuery query;
-    initialise(query);
-    query.solids = solids;
+    prepare(query, solids);
     for (const std::size_t zone : candidates_) {
       for (std::uint32_t i = bundle_.zone_rays_begin[zone]; i < bundle_.zone_rays_begin[zone + 1]; ++i) {
         if (const auto solid = first_solid(query, i)) hits.push_back({i, *solid});
@@ -130,6 +122,15 @@ class EmbreeTracer final : public Tracer {
   }
 
  private:
+  /// Finds the candidates, of which the query can then be asked.
+  void prepare(SolidQuery& query, std::span<const PosedShape> solids) {
+    find_candidates(solids);
+    if (candidates_.empty()) return;
+    move_instances(solids);
+    initialise(query);
+    query.solids = solids;
+  }
+
   /// Zones that may see a solid; coarse to fine: clusters against all solids at once, against each, zones against each.
   void find_candidates(std::span<const PosedShape> solids) {
     spheres_.clear();

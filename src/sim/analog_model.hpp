@@ -37,7 +37,7 @@ class PowerModel {
   [[nodiscard]] const RayBundle& clipped() const noexcept { return *clipped_; }
   [[nodiscard]] std::size_t n_sensors() const noexcept { return clipped_->n_sensors(); }
   [[nodiscard]] std::uint32_t sensor_of(std::uint32_t ray) const noexcept { return sensors_[ray]; }
-  /// Of the room where the ray meets it, or of the surroundings; W m^-2 sr^-1.
+  /// Of the room where the ray hits it, or of the surroundings; W m^-2 sr^-1.
   [[nodiscard]] double background(std::uint32_t ray) const noexcept { return backgrounds_[ray]; }
   /// What the sensor receives more because a ray ends on a surface of this radiance and not in the background.
   [[nodiscard]] PowerSteps power(std::uint32_t ray, double radiance) const noexcept {

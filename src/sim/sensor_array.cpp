@@ -32,7 +32,7 @@ std::optional<Continuation> mirrored(const Ray& ray, float range, const rt::Room
   const ReflectionSpec* finish = hit ? finishes[hit->mesh] : nullptr;
   if (finish == nullptr || finish->coefficient <= 0.0) return std::nullopt;
   const float left = range * static_cast<float>(std::sqrt(finish->coefficient)) - hit->distance;
-  constexpr float shortest_m = 0.01F, off_the_wall_m = 1e-3F;  // so that the ray doesn't meet the wall it comes from
+  constexpr float shortest_m = 0.01F, off_the_wall_m = 1e-3F;  // so that the ray doesn't hit the wall it comes from
   if (left <= shortest_m) return std::nullopt;
   const Vec3f at = ray.origin + hit->distance * ray.direction + off_the_wall_m * hit->normal;
   Vec3f onwards =
@@ -41,7 +41,7 @@ std::optional<Continuation> mirrored(const Ray& ray, float range, const rt::Room
   return Continuation{{at, onwards}, left};
 }
 
-/// Adds to every zone the mirrored continuation of those of its rays (at rated range) that first meet a glossy mesh.
+/// Adds to every zone the mirrored continuation of those of its rays (at rated range) that first hit a glossy mesh.
 /// Its range is what is left of the way at which a signal weakened by the coefficient still counts: power falls with
 /// the square of the way, so sqrt(coefficient) of the rated range, less the way to the mesh. One reflection a ray.
 void add_reflections(RayBundle& bundle, const rt::Room& room, std::span<const TriMesh> meshes,

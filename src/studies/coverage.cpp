@@ -1,7 +1,6 @@
 #include "studies/coverage.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <span>
@@ -257,11 +256,7 @@ CoverageStudy::CoverageStudy(SceneSpec scene, CoverageSpec spec)
       target_(spec_.target, spec_.sensing.tick_rate_hz, std::int64_t{n_windows_} * spec_.sensing.ticks_per_window) {}
 
 std::vector<Issue> CoverageStudy::warnings() const {
-  // Nobody is there.
-  static constexpr std::array<std::string_view, 14> idle{
-      "seats_shifted", "second_person",  "warm_object", "seat_shift", "seat_scatter", "body_size", "arm_motion",
-      "trunk_tilt",    "natural_motion", "uneven_arms", "trunk_sway", "chair_swing",  "fidgeting", "warm_chair"};
-  return idle_effects(spec_.effects, survey_, idle, "coverage study");
+  return idle_effects(spec_.effects, survey_, effects::Survey::coverage);
 }
 
 std::vector<MotionCount> CoverageStudy::counts_at(const Vec2& point) const {

@@ -7,6 +7,7 @@
 
 #include "core/fixed.hpp"
 #include "pirsim/geometry.hpp"
+#include "sim/compiled_study.hpp"
 #include "studies/room_plan.hpp"
 
 namespace pirsim::studies {
@@ -23,7 +24,7 @@ DayReport::DayReport(const Model& model, const ScheduleSpec& schedule)
   const std::size_t n_sensors = model.scene().sensors.size();
   const auto n = static_cast<std::size_t>(std::ceil((to_h_ - from_h_) * 3600.0 / bin_s - 1e-9));
   bins_.assign(n, {0.0, 0.0, 0, 0, std::vector<double>(n_sensors, 0.0)});
-  const Vec2 size = model.scene().floor.upper() - model.scene().floor.lower();
+  const Vec2 size = model.compiled().scene().floor.upper() - model.compiled().scene().floor.lower();
   columns_ = static_cast<std::size_t>(std::ceil(size.x / square_m));
   squares_.assign(columns_ * static_cast<std::size_t>(std::ceil(size.y / square_m)), 0.0);
 }
@@ -53,7 +54,7 @@ void DayReport::add_run(const RunResult& result) {
     bin.windows += 1.0;
     bin.people += sample.people;
   }
-  const Vec2 lower = model_->scene().floor.lower();
+  const Vec2 lower = model_->compiled().scene().floor.lower();
   for (const OccupantRow& row : result.occupants) {
     const Vec2 at = (row.place_m - lower) / square_m;
     if (row.where == OccupantRow::Where::outside || at.x < 0.0 || at.y < 0.0) continue;
@@ -158,7 +159,7 @@ io::MapChart DayReport::floor_chart() const {
       "minutes a day in each square of 25 cm, seats many more than five; triangles: who was there at " + busiest_.clock;
   chart.label = "min a day";
   chart.unit = "min a day (5: or more)";
-  chart.lower = model_->scene().floor.lower();
+  chart.lower = model_->compiled().scene().floor.lower();
   chart.spacing_m = square_m;
   chart.columns = static_cast<int>(columns_);
   chart.rows = static_cast<int>(squares_.size() / columns_);
@@ -167,11 +168,11 @@ io::MapChart DayReport::floor_chart() const {
     const Vec2 centre =
         chart.lower + square_m * Vec2(static_cast<double>(i % columns_) + 0.5, static_cast<double>(i / columns_) + 0.5);
     const double minutes = squares_[i] / 60.0 / std::max(1, days_);
-    const bool shown = squares_[i] > 0.0 || model_->scene().floor.contains(centre);
+    const bool shown = squares_[i] > 0.0 || model_->compiled().scene().floor.contains(centre);
     chart.values.push_back(shown ? std::optional(std::round(100.0 * std::min(minutes, chart.max)) / 100.0)
                                  : std::nullopt);
   }
-  chart.plan = plan_of(model_->scene());
+  chart.plan = plan_of(model_->compiled().scene());
   for (const OccupantRow& row : busiest_.people) {
     chart.markers.push_back({row.person, row.place_m, 0.0});
   }

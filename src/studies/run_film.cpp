@@ -70,9 +70,10 @@ class Peaks {
 }  // namespace
 
 Film film(const Model& model, std::uint32_t run, const FilmSpec& spec) {
-  const int rate = model.script().sensing.tick_rate_hz;
+  const SensingInForce& sensing = model.compiled().sensing();
+  const int rate = sensing.tick_rate_hz;
   const auto ticks_per_key = std::max<std::int64_t>(1, std::llround(rate / spec.keys_per_s));
-  const double window_s = model.tick_s() * model.script().sensing.ticks_per_window;
+  const double window_s = model.tick_s() * sensing.ticks_per_window;
   const auto time_s = [&](const State& state) { return static_cast<double>(state.tick()) / rate; };
 
   State state(model, run);

@@ -22,15 +22,15 @@ SurveyBase::SurveyBase(SceneSpec scene, const ScriptSpec& script)
                                                       std::make_shared<const rt::Room>(study_.scene.meshes))),
       stages_(script.effects, {study_.scene, study_.sensing, array_->clipped()}) {}
 
-std::vector<Issue> idle_effects(std::span<const EffectSpec> effects, const SurveyBase& survey,
-                                std::span<const std::string_view> idle, std::string_view kind) {
+std::vector<Issue> idle_effects(std::span<const EffectSpec> effects, const SurveyBase& survey, effects::Survey kind) {
   Diagnostics remarks;
   for (const Issue& issue : effects::idle(effects, survey.scene(), survey.sensing())) {
     remarks.warning(issue.where, issue.message);
   }
   for (const EffectSpec& effect : effects) {
-    if (std::ranges::find(idle, effect.name) == idle.end()) continue;
-    remarks.warning(effect.where, effect.name + " does nothing in a " + std::string(kind));
+    const std::vector<effects::Survey>& idle_in = effects::info(effect.name).idle_in;
+    if (std::ranges::find(idle_in, kind) == idle_in.end()) continue;
+    remarks.warning(effect.where, effect.name + " does nothing in a " + std::string(name(kind)));
   }
   return remarks.issues();
 }

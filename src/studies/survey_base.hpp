@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "effects/pipeline.hpp"
+#include "pirsim/effects.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/scene.hpp"
 #include "pirsim/script.hpp"
@@ -40,9 +40,9 @@ class SurveyBase {
   effects::Pipeline stages_;
 };
 
-/// A warning for each of these effects that changes nothing: because of the sensors' response, or because a survey of
-/// this kind can't show it, so that its name is in `idle`.
+/// A warning for each of these effects that changes nothing: because of the sensors' response, or in any survey of this
+/// kind.
 [[nodiscard]] std::vector<Issue> idle_effects(std::span<const EffectSpec> effects, const SurveyBase& survey,
-                                              std::span<const std::string_view> idle, std::string_view kind);
+                                              effects::Survey kind);
 
 }  // namespace pirsim::studies

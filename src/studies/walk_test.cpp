@@ -1,7 +1,6 @@
 #include "studies/walk_test.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "body/motion.hpp"
@@ -54,12 +53,7 @@ WalkTest::WalkTest(SceneSpec scene, WalkTestSpec spec)
 }
 
 std::vector<Issue> WalkTest::warnings() const {
-  // One person, who walks and works as the test says and is noticed at the first trigger; and no rows.
-  static constexpr std::array<std::string_view, 15> idle{
-      "second_person",  "warm_object", "seat_shift",       "seat_scatter", "trunk_tilt",
-      "natural_motion", "uneven_arms", "trunk_sway",       "chair_swing",  "fidgeting",
-      "warm_chair",     "dead_time",   "pulse_stretching", "dead_sensor",  "labels_swapped"};
-  return idle_effects(spec_.effects, survey_, idle, "walk test");
+  return idle_effects(spec_.effects, survey_, effects::Survey::walk_test);
 }
 
 WalkTest::Movement WalkTest::make_crossing() const {

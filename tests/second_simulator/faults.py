@@ -130,7 +130,7 @@ def cabinet(draw):
 
 @fault
 def whiteboard(draw):
-    """A metal board on one wall: what a beam meets there, it meets by way of the mirror."""
+    """A metal board on one wall: what a beam hits there, it hits by way of the mirror."""
     axis, side = draw.choice([0, 2]), draw.integers(2)
 
     def optics(rays, random):
@@ -328,7 +328,7 @@ def colleague(draw):
     return Fault("a colleague works on another seat", ("second_person",), people=people)
 
 
-def warm_ball(radius_m, path):
+def warm_sphere(radius_m, path):
     """path: ticks, floor's low and high corner, random -> (ticks, 3)."""
 
     def people(runs, number, scene, random):
@@ -364,7 +364,7 @@ def cat(draw):
         point[:, 2 - axis] = low[2 - axis] + places * (high - low)[2 - axis]
         return point
 
-    return Fault("a cat walks along a wall", ("warm_object",), people=warm_ball(0.12, path))
+    return Fault("a cat walks along a wall", ("warm_object",), people=warm_sphere(0.12, path))
 
 
 @fault
@@ -379,7 +379,7 @@ def fan_heater(draw):
         point[:, 0] += 0.25 * np.sin(2 * np.pi * times / period_s)
         return point
 
-    return Fault("a fan heater sweeps to and fro", ("warm_object",), people=warm_ball(0.15, path))
+    return Fault("a fan heater sweeps to and fro", ("warm_object",), people=warm_sphere(0.15, path))
 
 
 # --------------------------------------------------------------------------------------------------------- electronics

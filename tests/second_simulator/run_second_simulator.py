@@ -87,7 +87,7 @@ class SecondSimulator(unittest.TestCase):
         self.assertGreater(different, 10)
 
     def bits_with(self, name, seed=1):
-        """Rows of the recorded run. What the rays meet is traced once for all faults that come later."""
+        """Rows of the recorded run. What the rays hit is traced once for all faults that come later."""
         fault = faults.FAULTS[name](np.random.default_rng([seed, 0]))
         return second.Measurement(self.room, DATA / "sensors", fault, seed, self.plain).bits([self.recorded], 0)
 

@@ -189,7 +189,7 @@ def sphere_entry(o, d, centre, radius):
 
 
 def capsule_entry(o, d, a, b, radius):
-    """Against the two balls, and the round side between them."""
+    """Against the two spheres, and the round side between them."""
     along = b - a
     length = np.linalg.norm(along, axis=-1, keepdims=True)
     axis = along / length
@@ -251,12 +251,12 @@ def reach_of(about):
 
 
 def covered_rays(rays, motion):
-    """Yields (ticks, (n_ticks, n_rays) True where a body is met before the room and within range), from tick 1 on."""
+    """Yields (ticks, (n_ticks, n_rays) True where a body is hit before the room and within range), from tick 1 on."""
     for first in range(1, len(motion.times), CHUNK):
         ticks = slice(first, min(first + CHUNK, len(motion.times)))
         seen = np.zeros((ticks.stop - first, len(rays.limits)), bool)
         for about, origins, rotations, present in motion.solids:
-            to = origins[ticks, None] - rays.origins  # a ball round the solid leaves out most rays
+            to = origins[ticks, None] - rays.origins  # a bounding sphere leaves out most rays
             near = np.maximum((to * rays.directions).sum(-1), 0)
             gap = ((to - near[..., None] * rays.directions) ** 2).sum(-1)
             t, r = np.nonzero((gap <= (reach_of(about) + 1e-6) ** 2) & present[ticks, None] & ~seen)
@@ -266,7 +266,7 @@ def covered_rays(rays, motion):
 
 
 def covered_shares(rays, motion):
-    """(ticks, clusters) share of a cluster's rays that meet a body. The first is empty."""
+    """(ticks, clusters) share of a cluster's rays that hit a body. The first is empty."""
     shares = np.zeros((len(motion.times), len(rays.sensor_of_cluster)))
     for ticks, seen in covered_rays(rays, motion):
         for cluster in range(shares.shape[1]):
@@ -311,7 +311,7 @@ def runs_of(pirsim, study, trials=None):
 
 
 def rows_of(fault, rays, shares, run, random, done=0.0):
-    """(rows, sensors) from what the rays met; done: share of the measurement's runs that came before."""
+    """(rows, sensors) from what the rays hit; done: share of the measurement's runs that came before."""
     triggers = fault.electronics(fault.detect(rays, shares, run.rate_hz, random), run.rate_hz, random)
     return fault.books(windows_of(triggers, run.per_window), random, done)
 
@@ -321,7 +321,7 @@ class Measurement:
 
     def __init__(self, scene, sensor_folder, fault, seed, plain=None):
         """plain: the measurement with nothing wrong of the same runs, whose rays are not traced again if that is what
-        the fault's rays would meet."""
+        the fault's rays would hit."""
         self.scene, self.fault, self.seed, self.shares = scene, fault, seed, {}
         if plain is not None and fault.is_behind_the_optics():
             self.rays, self.shares = plain.rays, plain.shares

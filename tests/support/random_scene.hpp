@@ -90,7 +90,7 @@ inline RandomScene random_scene(Draw& draw) {
   return scene;
 }
 
-/// What one ray meets in double precision: all triangles and all solids, one after the other.
+/// What one ray hits in double precision: all triangles and all solids, one after the other.
 struct BruteForceHit {
   double room = 1e30;         ///< metres to the nearest triangle
   double solid = 1e30;        ///< metres to the nearest solid
@@ -102,7 +102,7 @@ struct TriangleHit {
   double distance = 0.0;
   double inside = 0.0;
 };
-inline std::optional<TriangleHit> meet(const Ray& ray, const std::array<Vec3, 3>& corners) {
+inline std::optional<TriangleHit> intersect(const Ray& ray, const std::array<Vec3, 3>& corners) {
   const Vec3 origin(ray.origin), direction(ray.direction);
   const Vec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
   const double slope = glm::dot(normal, direction);
@@ -124,7 +124,7 @@ inline std::array<Vec3, 3> corners_of(const TriMesh& mesh, std::size_t triangle)
   return {corner(0), corner(1), corner(2)};
 }
 
-/// Whether the ray meets a solid strictly before the room and its range; `uncertainty` is the least distance by which
+/// Whether the ray hits a solid strictly before the room and its range; `uncertainty` is the least distance by which
 /// that could have been otherwise: a triangle's edge, a solid's silhouette, the range or a tie.
 inline bool sees_solid(const RandomScene& scene, std::size_t ray_index, double& uncertainty) {
   const Ray& ray = scene.bundle.rays[ray_index];
@@ -133,7 +133,7 @@ inline bool sees_solid(const RandomScene& scene, std::size_t ray_index, double& 
   uncertainty = 1e30;
   for (const TriMesh& mesh : scene.room) {
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-      const auto hit = meet(ray, corners_of(mesh, i));
+      const auto hit = intersect(ray, corners_of(mesh, i));
       if (!hit || hit->distance < -1e-5) continue;
       uncertainty = std::min(uncertainty, std::abs(hit->inside));
       if (hit->inside >= 0 && hit->distance >= 0) room = std::min(room, hit->distance);

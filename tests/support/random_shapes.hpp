@@ -73,7 +73,7 @@ inline double signed_distance(const PosedShape& shape, const Vec3& p) {
   return std::visit([&](const auto& solid) { return signed_distance(solid, p); }, shape);
 }
 
-/// What a ray meets, by search on the signed distance in double precision.
+/// What a ray hits, by search on the signed distance in double precision.
 struct SearchedHit {
   double depth = 0.0;  ///< least signed distance on the ray within [0, t_end]; a hit if <= 0
   double entry = 0.0;  ///< metres; meaningful for a hit

@@ -164,12 +164,12 @@ std::vector<HypothesisScore> HypothesisClassifier::judge(std::span<const float> 
   return scores;
 }
 
-std::vector<std::string> HypothesisClassifier::telling_features(std::size_t n) const {
+std::vector<FeatureName> HypothesisClassifier::telling_features(std::size_t n) const {
   std::vector<std::size_t> order(map_->names().size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const std::vector<double>& importance = classifier_.pooled().trees().importance();
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return importance[a] > importance[b]; });
-  std::vector<std::string> names;
+  std::vector<FeatureName> names;
   for (std::size_t i = 0; i < std::min(n, order.size()); ++i) names.push_back(map_->names()[order[i]]);
   return names;
 }

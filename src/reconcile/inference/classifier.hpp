@@ -97,7 +97,7 @@ class HypothesisClassifier {
   /// How well the probabilities of the calibration datasets mean what they say.
   [[nodiscard]] const stats::Reliability& reliability() const noexcept { return reliability_; }
   /// Names of the features with the greatest share in the trees' decisions.
-  [[nodiscard]] std::vector<std::string> telling_features(std::size_t n) const;
+  [[nodiscard]] std::vector<FeatureName> telling_features(std::size_t n) const;
 
  private:
   const FeatureMap* map_;

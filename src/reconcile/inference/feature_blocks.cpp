@@ -10,6 +10,13 @@
 namespace pirsim::reconcile {
 namespace {
 
+using Kind = FeatureName::Kind;
+
+FeatureName of_statistic(Kind kind, const std::string& statistic) { return {.kind = kind, .statistic = statistic}; }
+FeatureName gained_by(FeatureName::Permutation permutation) {
+  return {.kind = Kind::likeness_gained, .permutation = permutation};
+}
+
 constexpr std::size_t n_sixths = n_cell_statistics - n_told_of_cells;
 constexpr std::size_t n_slices = n_trial_statistics - n_told_of_trials;
 /// Statistics whose means over the sensors of a trial are looked at one by one.
@@ -30,7 +37,10 @@ void FeatureMap::write_cells(const Scaled& data, Writer& out) const {
       if (!known(trial, sensor, 0)) continue;
       out.test_next();
       out.add(data.values[cell_index(frame_, trial, sensor, CellStatistic::seconds)],
-              [&] { return frame_.trials[trial] + " " + frame_.sensors[sensor] + " seconds"; });
+              [&] {
+                return FeatureName{Kind::cell, frame_.trials[trial], frame_.sensors[sensor],
+                                   name(CellStatistic::seconds)};
+              });
     }
   }
 }
@@ -48,15 +58,20 @@ void FeatureMap::write_sensors(const Scaled& data, Writer& out) const {
       if (count == 0.0) continue;
       means.push_back(sum / count);
       out.test_next();
-      out.add(means.back(), [&] { return frame_.sensors[sensor] + " " + name(static_cast<CellStatistic>(k)); });
+      out.add(means.back(), [&] {
+        return FeatureName{.kind = Kind::sensor,
+                           .sensor = frame_.sensors[sensor],
+                           .statistic = name(static_cast<CellStatistic>(k))};
+      });
     }
     if (std::ranges::find(told_in_order, static_cast<CellStatistic>(k)) == told_in_order.end()) continue;
     if (means.size() < 3) continue;
     std::ranges::sort(means);
-    const auto label = [&](const char* which) { return which + name(static_cast<CellStatistic>(k)); };
-    out.add(means[means.size() - 1] - means[means.size() - 2], [&] { return label("first less second sensor: "); });
-    out.add(means[1] - means[0], [&] { return label("last but one less last sensor: "); });
-    out.add(means.back() - means.front(), [&] { return label("first less last sensor: "); });
+    const std::string statistic = name(static_cast<CellStatistic>(k));
+    out.add(means[means.size() - 1] - means[means.size() - 2],
+            [&] { return of_statistic(Kind::first_less_second, statistic); });
+    out.add(means[1] - means[0], [&] { return of_statistic(Kind::last_but_one_less_last, statistic); });
+    out.add(means.back() - means.front(), [&] { return of_statistic(Kind::first_less_last, statistic); });
   }
 }
 
@@ -69,7 +84,10 @@ void FeatureMap::write_trials(const Scaled& data, Writer& out) const {
         sum += data.values[cell_index(frame_, trial, sensor, statistic)];
         count += 1.0;
       }
-      if (count > 0.0) out.add(sum / count, [&] { return frame_.trials[trial] + " " + name(statistic); });
+      if (count == 0.0) continue;
+      out.add(sum / count, [&] {
+        return FeatureName{.kind = Kind::trial, .trial = frame_.trials[trial], .statistic = name(statistic)};
+      });
     }
   }
   for (std::size_t k = 0; k < n_told_of_trials; ++k) {
@@ -82,9 +100,9 @@ void FeatureMap::write_trials(const Scaled& data, Writer& out) const {
       count += 1.0;
     }
     if (count == 0.0) continue;
-    const auto label = [&](const char* which) { return which + name(static_cast<TrialStatistic>(k)); };
-    out.add(sum / count, [&] { return label("mean "); });
-    out.add(std::sqrt(squares / count), [&] { return label("size of "); });
+    const std::string statistic = name(static_cast<TrialStatistic>(k));
+    out.add(sum / count, [&] { return of_statistic(Kind::mean, statistic); });
+    out.add(std::sqrt(squares / count), [&] { return of_statistic(Kind::size, statistic); });
   }
 }
 
@@ -103,7 +121,7 @@ std::optional<double> FeatureMap::total(std::span<const float> statistics,
 
 /// How motion spreads over the time, whatever there is of it: logarithms of shares, of all sensors and of each.
 void FeatureMap::write_time(std::span<const float> statistics, Writer& out) const {
-  const auto write_shares = [&](std::size_t n, const auto& part, const std::string& whose) {
+  const auto write_shares = [&](std::size_t n, const auto& part, const std::string& sensor) {
     std::vector<double> totals;
     for (std::size_t k = 0; k < n; ++k) {
       const std::optional<double> seconds = part(k);
@@ -113,8 +131,9 @@ void FeatureMap::write_time(std::span<const float> statistics, Writer& out) cons
     const double all = std::accumulate(totals.begin(), totals.end(), 0.0) + static_cast<double>(n);
     for (std::size_t k = 0; k < n; ++k) {
       out.test_next();
-      out.add(std::log((totals[k] + 1.0) / all),
-              [&] { return whose + ", part " + std::to_string(k + 1) + " of " + std::to_string(n) + " of the time"; });
+      out.add(std::log((totals[k] + 1.0) / all), [&] {
+        return FeatureName{.kind = Kind::share_of_time, .sensor = sensor, .part = k + 1, .n_parts = n};
+      });
     }
   };
   write_shares(
@@ -123,7 +142,7 @@ void FeatureMap::write_time(std::span<const float> statistics, Writer& out) cons
         return total(statistics,
                      [&](std::size_t trial) { return trial_index(frame_, trial, TrialStatistic::slice_1) + k; });
       },
-      "all sensors");
+      "");
   for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
     write_shares(
         n_sixths,
@@ -149,12 +168,14 @@ void FeatureMap::write_pairs(std::span<const float> statistics, Writer& out) con
       const double together = std::max(0.0, *seconds / frame_.window_s - *alone);
       odds.push_back(std::log((together + 0.5) / (*alone + 0.5)));
       out.test_next();
-      out.add(odds.back(), [&] { return frame_.sensors[first] + " while " + frame_.sensors[second] + " moves"; });
+      out.add(odds.back(), [&] {
+        return FeatureName{.kind = Kind::together, .sensor = frame_.sensors[first], .other = frame_.sensors[second]};
+      });
     }
   }
   if (odds.empty()) return;
-  out.add(*std::ranges::max_element(odds), [] { return std::string("most together"); });
-  out.add(*std::ranges::min_element(odds), [] { return std::string("least together"); });
+  out.add(*std::ranges::max_element(odds), [] { return FeatureName{Kind::most_together}; });
+  out.add(*std::ranges::min_element(odds), [] { return FeatureName{Kind::least_together}; });
 }
 
 void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
@@ -176,15 +197,16 @@ void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
     }
     if (count == 0.0) continue;
     const std::string statistic = name(static_cast<CellStatistic>(k));
-    const auto label = [&](std::string_view which) { return std::string(which) + " " + statistic; };
     out.test_next();
-    out.add(sum / count, [&] { return label("mean"); });
+    out.add(sum / count, [&] { return of_statistic(Kind::mean, statistic); });
     out.test_next();
-    out.add(size / count, [&] { return label("size of"); });
-    out.add(greatest, [&] { return label("greatest"); });
-    out.add(least, [&] { return label("least"); });
+    out.add(size / count, [&] { return of_statistic(Kind::size, statistic); });
+    out.add(greatest, [&] { return of_statistic(Kind::greatest, statistic); });
+    out.add(least, [&] { return of_statistic(Kind::least, statistic); });
     for (std::size_t c = 0; c < slopes.size(); ++c) {
-      out.add(slopes[c] / count, [&] { return label("slope on " + covariate_names_[c] + " of"); });
+      out.add(slopes[c] / count, [&] {
+        return FeatureName{.kind = Kind::slope, .statistic = statistic, .other = covariate_names_[c]};
+      });
     }
   }
 }
@@ -215,10 +237,9 @@ void FeatureMap::write_permutations(std::span<const float> statistics, Writer& o
   std::iota(trials.begin(), trials.end(), std::size_t{0});
   std::iota(sensors.begin(), sensors.end(), std::size_t{0});
   const double as_it_is = likeness(values, trials, sensors);
-  out.add(as_it_is, [] { return std::string("likeness"); });
-  const auto add = [&](const auto& trial_order, const auto& sensor_order, const char* what) {
-    out.add(likeness(values, trial_order, sensor_order) - as_it_is,
-            [&] { return std::string("likeness gained by ") + what; });
+  out.add(as_it_is, [] { return FeatureName{Kind::likeness}; });
+  const auto add = [&](const auto& trial_order, const auto& sensor_order, FeatureName::Permutation permutation) {
+    out.add(likeness(values, trial_order, sensor_order) - as_it_is, [&] { return gained_by(permutation); });
   };
   const auto rotated = [](std::vector<std::size_t> order, std::ptrdiff_t by) {
     std::rotate(order.begin(), order.begin() + (by > 0 ? by : static_cast<std::ptrdiff_t>(order.size()) + by),
@@ -237,18 +258,18 @@ void FeatureMap::write_permutations(std::span<const float> statistics, Writer& o
     return best - as_it_is;
   };
   if (n_trials > 1) {
-    add(rotated(trials, 1), sensors, "trials shifted by one");
-    add(rotated(trials, -1), sensors, "trials shifted back by one");
-    add(std::vector<std::size_t>(trials.rbegin(), trials.rend()), sensors, "trials in reverse");
+    add(rotated(trials, 1), sensors, FeatureName::Permutation::trials_shifted);
+    add(rotated(trials, -1), sensors, FeatureName::Permutation::trials_shifted_back);
+    add(std::vector<std::size_t>(trials.rbegin(), trials.rend()), sensors, FeatureName::Permutation::trials_reversed);
     out.add(best_swap(trials, [&](const auto& order) { return likeness(values, order, sensors); }),
-            [] { return std::string("likeness gained by two trials swapped"); });
+            [] { return gained_by(FeatureName::Permutation::two_trials_swapped); });
   }
   if (n_sensors > 1) {
-    add(trials, rotated(sensors, 1), "sensors shifted by one");
-    add(trials, rotated(sensors, -1), "sensors shifted back by one");
-    add(trials, std::vector<std::size_t>(sensors.rbegin(), sensors.rend()), "sensors in reverse");
+    add(trials, rotated(sensors, 1), FeatureName::Permutation::sensors_shifted);
+    add(trials, rotated(sensors, -1), FeatureName::Permutation::sensors_shifted_back);
+    add(trials, std::vector<std::size_t>(sensors.rbegin(), sensors.rend()), FeatureName::Permutation::sensors_reversed);
     out.add(best_swap(sensors, [&](const auto& order) { return likeness(values, trials, order); }),
-            [] { return std::string("likeness gained by two sensors swapped"); });
+            [] { return gained_by(FeatureName::Permutation::two_sensors_swapped); });
   }
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "pirsim/reconcile_outcome.hpp"
 #include "reconcile/data/statistics.hpp"
 #include "stats/matrix.hpp"
 
@@ -30,7 +31,7 @@ class FeatureMap {
   FeatureMap(const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge, const stats::Matrix<float>& plain,
              std::vector<std::size_t> trials);
 
-  [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }
+  [[nodiscard]] const std::vector<FeatureName>& names() const noexcept { return names_; }
   [[nodiscard]] const std::vector<std::size_t>& trials() const noexcept { return trials_; }
   [[nodiscard]] bool knows_cell(std::size_t trial, std::size_t sensor) const { return known(trial, sensor, 0); }
   /// What the global test looks at: first the cells' seconds, by trial, then sensor; then the sensors' means and the
@@ -69,7 +70,7 @@ class FeatureMap {
   std::vector<double> expected_log_;  ///< (n_cells) mean of log(1 + seconds)
   std::vector<std::string> covariate_names_;
   std::vector<std::vector<double>> covariates_;  ///< (n_covariates x n_cells) mean 0, variance 1 over known cells
-  std::vector<std::string> names_;
+  std::vector<FeatureName> names_;
   std::vector<std::size_t> envelope_columns_;
   std::vector<std::vector<std::size_t>> blocks_;
 };

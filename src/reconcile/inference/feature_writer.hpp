@@ -2,7 +2,6 @@
 #pragma once
 
 #include <numeric>
-#include <string>
 #include <vector>
 
 #include "reconcile/inference/feature_map.hpp"
@@ -21,7 +20,7 @@ struct FeatureMap::Scaled {
 /// Numbers in the order in which they come; their names too when those are wanted.
 struct FeatureMap::Writer {
   std::vector<float> values;
-  std::vector<std::string>* names = nullptr;
+  std::vector<FeatureName>* names = nullptr;
   std::vector<std::size_t>* envelope = nullptr;
   std::vector<std::vector<std::size_t>>* blocks = nullptr;
 

@@ -28,7 +28,7 @@ Json to_json(const Location& location) {
                      {"adjusted_p", cell.adjusted_p}});
   }
   for (const EnvelopeFeature& feature : location.envelope) {
-    envelope.push_back({{"feature", feature.name},
+    envelope.push_back({{"feature", in_words(feature.name)},
                         {"observed", feature.observed},
                         {"median", feature.median},
                         {"envelope", {feature.lower, feature.upper}},
@@ -164,7 +164,8 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
   json["looks"] = looks;
   json["verification"] = outcome.verification ? to_json(*outcome.verification) : Json();
   json["residuals"] = outcome.residuals ? to_json(*outcome.residuals, outcome.family) : Json();
-  json["telling_features"] = outcome.telling_features;
+  json["telling_features"] = Json::array();
+  for (const FeatureName& feature : outcome.telling_features) json["telling_features"].push_back(in_words(feature));
   json["calibration_error"] = outcome.calibration_error;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }

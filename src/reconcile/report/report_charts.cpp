@@ -43,16 +43,26 @@ double beside_band(const EnvelopeFeature& feature) {
   return d == 0.0 ? 0.0 : std::copysign(beyond_any_limit, d);
 }
 
-/// "S1 PIR1 seconds", "PIR1 seconds", "mean seconds": what is measured is the last word.
-std::string statistic_of(const EnvelopeFeature& feature) { return feature.name.substr(feature.name.rfind(' ') + 1); }
+/// What is measured, whoever's it is: a row of the picture.
+std::string subject_of(const FeatureName& feature) {
+  if (feature.kind == FeatureName::Kind::share_of_time) return "how motion spreads over the time";
+  if (feature.kind == FeatureName::Kind::together) return "motion while another sensor moves";
+  return in_plain_words(feature.statistic);
+}
 
-std::string place_of(const EnvelopeFeature& feature) {
-  const std::size_t end = feature.name.rfind(' ');
-  if (end == std::string::npos) return {};
-  const std::string place = feature.name.substr(0, end);
-  if (place == "mean") return "all cells, mean";
-  if (place == "size of") return "all cells, mean size of the differences";
-  return place;
+std::string place_of(const FeatureName& feature) {
+  switch (feature.kind) {
+    case FeatureName::Kind::cell:
+      return feature.trial + " " + feature.sensor;
+    case FeatureName::Kind::sensor:
+      return feature.sensor;
+    case FeatureName::Kind::mean:
+      return "all cells, mean";
+    case FeatureName::Kind::size:
+      return "all cells, mean size of the differences";
+    default:
+      return in_words(feature);
+  }
 }
 
 }  // namespace
@@ -121,13 +131,13 @@ io::BandChart envelope_chart(const Location& location, double alpha) {
   chart.label = "deviation, in half-widths of the band";
   std::map<std::string, std::size_t> row_of;
   for (const EnvelopeFeature& feature : location.envelope) {
-    const std::string statistic = statistic_of(feature);
-    const auto [row, is_new] = row_of.try_emplace(statistic, chart.rows.size());
-    if (is_new) chart.rows.push_back({in_plain_words(statistic), {}});
+    const std::string subject = subject_of(feature.name);
+    const auto [row, is_new] = row_of.try_emplace(subject, chart.rows.size());
+    if (is_new) chart.rows.push_back({subject, {}});
     const bool outside = feature.adjusted_p <= alpha;
     chart.rows[row->second].points.push_back(
         {beside_band(feature),
-         place_of(feature) + "\n" + in_plain_words(statistic) + "\n" + (outside ? "outside" : "inside") +
+         place_of(feature.name) + "\n" + subject + "\n" + (outside ? "outside" : "inside") +
              " the band, adjusted p " + short_number(feature.adjusted_p),
          outside ? io::BandChart::Point::Mark::outside : io::BandChart::Point::Mark::inside});
   }

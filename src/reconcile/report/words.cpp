@@ -77,6 +77,52 @@ Worded worded(const Reason& of) {
       of);
 }
 
+std::string in_words(const FeatureName& feature) {
+  using Kind = FeatureName::Kind;
+  static constexpr std::array<std::string_view, 8> permutations{
+      "trials shifted by one",  "trials shifted back by one",  "trials in reverse",  "two trials swapped",
+      "sensors shifted by one", "sensors shifted back by one", "sensors in reverse", "two sensors swapped"};
+  const std::string& statistic = feature.statistic;
+  switch (feature.kind) {
+    case Kind::cell:
+      return feature.trial + " " + feature.sensor + " " + statistic;
+    case Kind::sensor:
+      return feature.sensor + " " + statistic;
+    case Kind::trial:
+      return feature.trial + " " + statistic;
+    case Kind::mean:
+      return "mean " + statistic;
+    case Kind::size:
+      return "size of " + statistic;
+    case Kind::greatest:
+      return "greatest " + statistic;
+    case Kind::least:
+      return "least " + statistic;
+    case Kind::slope:
+      return "slope on " + feature.other + " of " + statistic;
+    case Kind::first_less_second:
+      return "first less second sensor: " + statistic;
+    case Kind::last_but_one_less_last:
+      return "last but one less last sensor: " + statistic;
+    case Kind::first_less_last:
+      return "first less last sensor: " + statistic;
+    case Kind::share_of_time:
+      return (feature.sensor.empty() ? "all sensors" : feature.sensor) + ", part " + std::to_string(feature.part) +
+             " of " + std::to_string(feature.n_parts) + " of the time";
+    case Kind::together:
+      return feature.sensor + " while " + feature.other + " moves";
+    case Kind::most_together:
+      return "most together";
+    case Kind::least_together:
+      return "least together";
+    case Kind::likeness:
+      return "likeness";
+    case Kind::likeness_gained:
+      break;
+  }
+  return "likeness gained by " + std::string(permutations[static_cast<std::size_t>(feature.permutation)]);
+}
+
 std::string in_words(const trail::JudgedOnHeldOut& event) {
   const Verification& v = event.verification;
   return "held-out trials: energy score " + short_number(v.before.energy_score) + " before, " +

@@ -161,27 +161,27 @@ TEST_CASE("a glossy wall shows what a mirrored person behind it would show witho
     const Vec3f centre(0.5F + 6.0F * static_cast<float>(stream.uniform()),
                        0.4F + 1.4F * static_cast<float>(stream.uniform()),
                        -0.5F - 3.4F * static_cast<float>(stream.uniform()));
-    const PosedSphere ball{centre, 0.25F};
+    const PosedSphere sphere{centre, 0.25F};
     const Vec3f mirrored(centre.x, centre.y, 2.0F * static_cast<float>(front) - centre.z);
     for (std::size_t zone = 0; zone < plain.compiled().array().rated().n_zones(); ++zone) {
       const RayBundle& seen = glossy.rays();
       const bool with_wall = active(
-          seen, zone, [&](std::size_t i) { return entry_distance(seen.rays[i], ball, seen.range[i]).has_value(); });
+          seen, zone, [&](std::size_t i) { return entry_distance(seen.rays[i], sphere, seen.range[i]).has_value(); });
       const RayBundle& rated = plain.compiled().array().rated();
       const bool direct = active(rated, zone, [&](std::size_t i) {
-        return entry_distance(rated.rays[i], ball, plain.rays().range[i]).has_value();
+        return entry_distance(rated.rays[i], sphere, plain.rays().range[i]).has_value();
       });
       const auto shows_ghost = [&](float radius) {
         return active(rated, zone, [&](std::size_t i) {
           const auto hit = plain.compiled().array().room().first_hit(rated.rays[i], rated.range[i]);
           if (!hit || scene.meshes[hit->mesh].name != "wall far") return false;
           const float reach = rated.range[i] * static_cast<float>(std::sqrt(coefficient));
-          const auto met = entry_distance(rated.rays[i], PosedSphere{mirrored, radius}, reach);
-          if (!met || *met <= hit->distance) return false;
+          const auto behind = entry_distance(rated.rays[i], PosedSphere{mirrored, radius}, reach);
+          if (!behind || *behind <= hit->distance) return false;
           // On its way back the ray must not be stopped by the table before it is there.
           const Vec3f at = rated.rays[i].origin + hit->distance * rated.rays[i].direction + 1e-3F * hit->normal;
           const Vec3f back = glm::reflect(rated.rays[i].direction, hit->normal);
-          return !plain.compiled().array().room().first_hit({at, back}, *met - hit->distance);
+          return !plain.compiled().array().room().first_hit({at, back}, *behind - hit->distance);
         });
       };
       // The mirrored ray sets out a millimetre before the wall: what a ray only grazes may go either way.

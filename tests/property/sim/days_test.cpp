@@ -4,7 +4,9 @@
 
 #include "pirsim/state.hpp"
 #include "sim/compiled_study.hpp"
+#include "studies/room_plan.hpp"
 #include "studies/schedule_outlook.hpp"
+#include "studies/study_report.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 
@@ -136,4 +138,18 @@ TEST_CASE("Who is there when the part of a day begins comes in first") {
     });
     CHECK(there == row.people);
   }
+}
+
+TEST_CASE("A day's page shows the room that people were in: the mirrored one if the study is mirrored") {
+  const Model model = model_of(short_meeting, "effects: [{mirrored_room: {across: z}}]\n");
+  studies::DayReport report(model, *model.script().trials.front().schedule);
+  report.add_run(run_once(model, 0, Record::samples, Trace::none, Occupants::told));
+  const io::ReportSection section = report.section("");
+  const auto is_map = [](const io::Chart& chart) { return std::holds_alternative<io::MapChart>(chart); };
+  const auto chart = std::ranges::find_if(section.charts, is_map);
+  REQUIRE(chart != section.charts.end());
+  const std::vector<io::RoomPlan::Door> doors = std::get<io::MapChart>(*chart).plan.doors;
+  REQUIRE(doors.size() == 1);
+  CHECK(doors[0].from == studies::plan_of(model.compiled().scene()).doors[0].from);
+  CHECK(doors[0].from != studies::plan_of(model.scene()).doors[0].from);
 }

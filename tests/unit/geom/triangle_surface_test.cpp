@@ -29,7 +29,7 @@ TriMesh moved(TriMesh mesh, const Frame& frame) {
 
 }  // namespace
 
-TEST_CASE("a posed mesh is met where a loop over its triangles in the world meets it", "[triangle_surface]") {
+TEST_CASE("a posed mesh is hit where a loop over its triangles in the world hits it", "[triangle_surface]") {
   Draw draw(41);
   int hits = 0, grazed = 0;
   constexpr int n_meshes = 200, n_rays = 200;
@@ -44,7 +44,7 @@ TEST_CASE("a posed mesh is met where a loop over its triangles in the world meet
       double expected = std::numeric_limits<double>::infinity();
       bool is_grazing = false;
       for (const auto& [a, b, c] : world.triangles) {
-        const auto hit = testing::meet(ray, {world.positions[a], world.positions[b], world.positions[c]});
+        const auto hit = testing::intersect(ray, {world.positions[a], world.positions[b], world.positions[c]});
         if (!hit || hit->distance < 0.0) continue;
         is_grazing |= std::abs(hit->inside) < 1e-5;
         if (hit->inside >= 0.0) expected = std::min(expected, hit->distance);
@@ -70,7 +70,7 @@ TEST_CASE("a posed mesh is met where a loop over its triangles in the world meet
   WARN(hits << " hits; " << grazed << " of " << n_meshes * n_rays << " rays within 1e-5 m of an edge left out");
 }
 
-TEST_CASE("a fine mesh of a sphere, capsule or box is met as the exact solid is, but for a grazing ray",
+TEST_CASE("a fine mesh of a sphere, capsule or box is hit as the exact solid is, but for a grazing ray",
           "[triangle_surface]") {
   Draw draw(42);
   int hits = 0, different = 0;
@@ -147,7 +147,7 @@ TEST_CASE("the normal of a meshed sphere is the sphere's to within a face's tilt
   }
 }
 
-TEST_CASE("in the mirror x -> -x a mesh is met at a distance of the same bits", "[triangle_surface]") {
+TEST_CASE("in the mirror x -> -x a mesh is hit at a distance of the same bits", "[triangle_surface]") {
   Draw draw(45);
   int hits = 0;
   for (int i = 0; i < 200; ++i) {

@@ -51,7 +51,7 @@ double signal_of(const DetectorSpec& spec, const pir::PassedFacet& facet, const 
   return pir::excursion(spec, 1.0, facet.power(pass, 1.0, tick_s), tick_s) / contrast;
 }
 
-constexpr int rays_for_small_plates = 60000;  // a plate at 80 m meets some 400 of them
+constexpr int rays_for_small_plates = 60000;  // a plate at 80 m is hit by some 400 of them
 
 }  // namespace
 

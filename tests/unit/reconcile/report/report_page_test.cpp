@@ -12,12 +12,15 @@ using namespace pirsim::reconcile;
 
 namespace {
 
+FeatureName mean_of(const char* statistic) { return {FeatureName::Kind::mean, {}, {}, statistic}; }
+
 Location two_cells() {
   Location location;
   location.p = 0.01;
   location.n_simulated = 999;
   location.cells = {{"S1", "PIR1", 30.0, 12.4, 8.0, 17.0, 0.01}, {"S1", "PIR2", 3.0, 3.2, 0.0, 6.0, 0.8}};
-  location.envelope = {{"S1 PIR1 seconds", 2.0, 0.0, -1.0, 0.5, 0.01}, {"mean longest_gap", -0.5, 0.0, -1.0, 1.0, 0.9}};
+  location.envelope = {{{FeatureName::Kind::cell, "S1", "PIR1", "seconds"}, 2.0, 0.0, -1.0, 0.5, 0.01},
+                       {mean_of("longest_gap"), -0.5, 0.0, -1.0, 1.0, 0.9}};
   return location;
 }
 
@@ -90,11 +93,29 @@ TEST_CASE("a point is beyond one exactly where its number leaves its envelope", 
 
 TEST_CASE("an envelope without width lets nothing through but its one value", "[report]") {
   Location location = two_cells();
-  location.envelope = {{"mean seconds", 0.0, 0.0, 0.0, 0.0, 1.0}, {"mean onsets", 0.1, 0.0, 0.0, 0.0, 0.01}};
+  location.envelope = {{mean_of("seconds"), 0.0, 0.0, 0.0, 0.0, 1.0}, {mean_of("onsets"), 0.1, 0.0, 0.0, 0.0, 0.01}};
   const io::BandChart chart = envelope_chart(location, 0.05);
   CHECK(chart.rows[0].points[0].position == 0.0);
   CHECK(chart.rows[1].points[0].position > 100.0);
   CHECK(std::isfinite(chart.rows[1].points[0].position));
+}
+
+TEST_CASE("parts of the time and pairs of sensors have rows of their own, and each point says whose it is", "[report]") {
+  FeatureName part{FeatureName::Kind::share_of_time}, pair{FeatureName::Kind::together, {}, "PIR1", {}, "PIR2"};
+  part.part = 3;
+  part.n_parts = 18;
+  Location location;
+  location.envelope = {{part, 0.0, 0.0, -1.0, 1.0, 1.0}, {pair, 0.0, 0.0, -1.0, 1.0, 1.0}};
+  part.sensor = "PIR1";
+  location.envelope.push_back({part, 0.0, 0.0, -1.0, 1.0, 1.0});
+  const io::BandChart chart = envelope_chart(location, 0.05);
+  REQUIRE(chart.rows.size() == 2);
+  CHECK(chart.rows[0].name == "how motion spreads over the time");
+  REQUIRE(chart.rows[0].points.size() == 2);
+  CHECK(says(chart.rows[0].points[0].hint, "all sensors, part 3 of 18 of the time\n"));
+  CHECK(says(chart.rows[0].points[1].hint, "PIR1, part 3 of 18 of the time\n"));
+  CHECK(chart.rows[1].name == "motion while another sensor moves");
+  CHECK(says(chart.rows[1].points[0].hint, "PIR1 while PIR2 moves\n"));
 }
 
 TEST_CASE("candidates that were kept stand out from the merely probable", "[report]") {
