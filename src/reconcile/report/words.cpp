@@ -77,6 +77,40 @@ Worded worded(const Reason& of) {
       of);
 }
 
+std::string in_words(const trail::JudgedOnHeldOut& event) {
+  const Verification& v = event.verification;
+  return "held-out trials: energy score " + short_number(v.before.energy_score) + " before, " +
+         short_number(v.after.energy_score) + " after, " + std::to_string(v.n_better) + " of " +
+         std::to_string(v.n_trials) + " trials better; global test p " + short_number(v.before.p) + " before, " +
+         short_number(v.after.p) + " after";
+}
+
+std::string_view in_words(trail::Remark remark) noexcept {
+  constexpr std::array<std::string_view, 8> texts{
+      "the name is taken back",
+      "the name is taken back: the model with it can't have made the data",
+      "added to it, no other effect comes near these data: nothing more is looked for",
+      "people can hardly get about in that model: nothing more is looked for in it",
+      "sums don't tell when motion was seen: the residuals are not looked into",
+      "one trial only: nothing can be held out",
+      "people can hardly get about in the patched model: it can't be judged on held-out trials",
+      "the held-out trials alone don't refuse the plain model: too weak to call the gap closed"};
+  return texts[static_cast<std::size_t>(remark)];
+}
+
+std::string left_out_of(std::size_t n, const std::string& which, const std::string& because) {
+  return "What comes " + which + " the counted phases is left out of the comparison in " + runs(n) +
+         ", of all sensors or some: " + because + ", or some readings are unknown.";
+}
+
+std::string in_words(const ResidualDriver& driver) {
+  const std::string when = when_of(driver);
+  return who_of(driver) + (when.empty() ? "" : ", " + when) + ": " + what_of(driver) + " (p " + short_number(driver.p) +
+         ")";
+}
+
+}  // namespace
+
 std::string in_words(const FeatureName& feature) {
   using Kind = FeatureName::Kind;
   static constexpr std::array<std::string_view, 8> permutations{
@@ -122,40 +156,6 @@ std::string in_words(const FeatureName& feature) {
   }
   return "likeness gained by " + std::string(permutations[static_cast<std::size_t>(feature.permutation)]);
 }
-
-std::string in_words(const trail::JudgedOnHeldOut& event) {
-  const Verification& v = event.verification;
-  return "held-out trials: energy score " + short_number(v.before.energy_score) + " before, " +
-         short_number(v.after.energy_score) + " after, " + std::to_string(v.n_better) + " of " +
-         std::to_string(v.n_trials) + " trials better; global test p " + short_number(v.before.p) + " before, " +
-         short_number(v.after.p) + " after";
-}
-
-std::string_view in_words(trail::Remark remark) noexcept {
-  constexpr std::array<std::string_view, 8> texts{
-      "the name is taken back",
-      "the name is taken back: the model with it can't have made the data",
-      "added to it, no other effect comes near these data: nothing more is looked for",
-      "people can hardly get about in that model: nothing more is looked for in it",
-      "sums don't tell when motion was seen: the residuals are not looked into",
-      "one trial only: nothing can be held out",
-      "people can hardly get about in the patched model: it can't be judged on held-out trials",
-      "the held-out trials alone don't refuse the plain model: too weak to call the gap closed"};
-  return texts[static_cast<std::size_t>(remark)];
-}
-
-std::string left_out_of(std::size_t n, const std::string& which, const std::string& because) {
-  return "What comes " + which + " the counted phases is left out of the comparison in " + runs(n) +
-         ", of all sensors or some: " + because + ", or some readings are unknown.";
-}
-
-std::string in_words(const ResidualDriver& driver) {
-  const std::string when = when_of(driver);
-  return who_of(driver) + (when.empty() ? "" : ", " + when) + ": " + what_of(driver) + " (p " + short_number(driver.p) +
-         ")";
-}
-
-}  // namespace
 
 std::string why(const Reason& reason) { return worded(reason).body; }
 
