@@ -365,7 +365,8 @@ SelftestResult judge(const ReferenceStudy& reference, const std::vector<Injected
   if (settings.n_verified > 0)
     verify_some(reference, seen_rows(*view, analysis.alpha), injected, settings, context, result.cases);
   for (const auto& [kind, omission] : omissions_of(reference.table, settings.leave_out)) {
-    context.begin({Stage::What::judging_without, {omission.effect + omission.variant.word}});
+    const std::string& variant = omission.variant.word;
+    context.begin({Stage::What::judging_without, {omission.effect + (variant.empty() ? "" : " " + variant)}});
     std::vector<std::size_t> own;
     for (const std::size_t i : all) {
       if (injected[i].kind == CaseKind::one && omission.covers(injected[i].effects.front())) own.push_back(i);
