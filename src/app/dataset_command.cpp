@@ -72,7 +72,7 @@ void add_dataset_command(CLI::App& app) {
       ->option_text("I/N");
   command.add_flag_callback(
       "--resume", [raw = options.get()] { raw->start = dataset::DatasetOptions::Start::resume; },
-      "keep the room-days that are there");
+      "keep the room-days that are there (without it, all are made anew)");
   command.add_flag_callback(
       "--finish", [raw = options.get()] { raw->work = DatasetCommand::Work::finish; },
       "only describe what is there: tables, datapackage.json, README.md");

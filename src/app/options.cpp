@@ -87,6 +87,23 @@ std::string explain_word(const CLI::App& app, const std::string& word) {
          did_you_mean(word, known) + "\n";
 }
 
+/// CLI11's complaint, "Could not convert: --time = 10s", in pirsim's words; empty if it is another one.
+std::string explain_conversion(const CLI::App& app, const std::string& complaint) {
+  constexpr std::string_view before = "Could not convert: ", between = " = ";
+  const std::size_t end = complaint.find(between);
+  if (!complaint.starts_with(before) || end == std::string::npos) return {};
+  const std::string name = complaint.substr(before.size(), end - before.size());
+  const CLI::App* command = &app;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  const CLI::Option* option = command->get_option_no_throw(name);
+  if (option == nullptr) return {};
+  const std::string type = option->get_type_name();
+  std::string wanted = type.starts_with("UINT") ? "a whole number from 0" : "a whole number";
+  if (type.starts_with("FLOAT")) wanted = option->get_option_text() == "S" ? "a number of seconds" : "a number";
+  if (option->get_items_expected_max() > 1) wanted = "a list of numbers";
+  return "error: " + name + ": '" + complaint.substr(end + between.size()) + "' is not " + wanted + "\n";
+}
+
 /// The option that the user gave more often than it can be taken, or null.
 const CLI::Option* repeated_option(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options(nullptr)) {
@@ -219,6 +236,9 @@ void pass_options_on(CLI::App& app) {
 std::string explain(const CLI::App* app, const CLI::Error& error) {
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
     if (const CLI::Option* option = repeated_option(*app)) return "error: " + option->get_name() + " is given twice\n";
+  }
+  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
+    if (std::string text = explain_conversion(*app, error.what()); !text.empty()) return text;
   }
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     if (const std::vector<std::string> rest = app->remaining(true); !rest.empty())

@@ -152,7 +152,9 @@ ScriptedAction read_action(const YamlNode& node, Diagnostics& faults) {
   if (!node.is_scalar()) return read_action_map(node, faults);
   const std::string word = node.text(faults, "action");
   if (word != "rise") {
-    faults.error(node.where(), "'" + word + "' isn't a whole action" + hint(word));
+    const bool is_known = std::ranges::any_of(kinds, [&](const ActionKind& kind) { return kind.key == word; });
+    faults.error(node.where(), "'" + word + "' " +
+                                   (is_known ? "needs a value: `" + word + ": ...`" : "isn't an action" + hint(word)));
   }
   return {action::Rise{}, std::nullopt, {}, node.where()};
 }

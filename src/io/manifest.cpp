@@ -1,5 +1,6 @@
 #include "io/manifest.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/digest.hpp"
@@ -21,8 +22,19 @@ void compare(const char* what, const std::string& one, const std::string& other,
 void compare_inputs(const std::vector<HashedFile>& one, const std::vector<HashedFile>& other,
                     std::vector<std::string>& found) {
   if (one.size() != other.size()) {
-    found.push_back("number of input files (" + std::to_string(one.size()) + ", not " + std::to_string(other.size()) +
-                    ")");
+    const auto only_in = [](const std::vector<HashedFile>& these, const std::vector<HashedFile>& those) {
+      std::string names;
+      for (const HashedFile& file : these) {
+        if (std::ranges::count(these, file.name, &HashedFile::name) >
+            std::ranges::count(those, file.name, &HashedFile::name))
+          names += (names.empty() ? "" : ", ") + file.name;
+      }
+      return names;
+    };
+    const std::string more = only_in(one, other), fewer = only_in(other, one);
+    found.push_back("input files (" + (more.empty() ? "" : "with " + more) +
+                    (more.empty() || fewer.empty() ? "" : ", ") + (fewer.empty() ? "" : "without " + fewer) +
+                    "; a shipped sensor model is among them only where pirsim finds its file)");
     return;
   }
   for (std::size_t i = 0; i < one.size(); ++i) {

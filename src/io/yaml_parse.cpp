@@ -131,6 +131,15 @@ class TreeBuilder final : public YAML::EventHandler {
   Diagnostics faults_;
 };
 
+/// What usually lies behind a fault whose name says little.
+std::string advice(const std::string& fault) {
+  for (const char* often : {YAML::ErrorMsg::END_OF_MAP, YAML::ErrorMsg::END_OF_SEQ, YAML::ErrorMsg::MAP_VALUE,
+                            YAML::ErrorMsg::BLOCK_ENTRY}) {
+    if (fault == often) return "; check the indentation, here and above";
+  }
+  return {};
+}
+
 }  // namespace
 
 YamlTreePtr parse_yaml_tree(std::string_view text, const std::string& file) {
@@ -141,7 +150,7 @@ YamlTreePtr parse_yaml_tree(std::string_view text, const std::string& file) {
     while (parser.HandleNextDocument(builder)) {
     }
   } catch (const YAML::Exception& fault) {
-    throw Error(ErrorCode::input, builder.place(fault.mark).where(), "not YAML: " + fault.msg);
+    throw Error(ErrorCode::input, builder.place(fault.mark).where(), "not YAML: " + fault.msg + advice(fault.msg));
   }
   builder.faults().throw_if_errors();
   if (builder.root() != nullptr) return builder.root();

@@ -318,6 +318,12 @@ class Help(unittest.TestCase):
                            (("coverage", "--replicates", 3), "'--replicates' isn't an option of 'pirsim coverage'")):
             self.assertEqual(pirsim(*args, code=2).stderr, f"error: {told}\n")
 
+    def test_values_that_are_no_numbers_are_named_with_their_option(self):
+        for args, told in ((("preview", "--time", "10s"), "--time: '10s' is not a number of seconds"),
+                           (("--threads", "-1"), "--threads: '-1' is not a whole number from 0"),
+                           (("--seed", "abc"), "--seed: 'abc' is not a whole number")):
+            self.assertEqual(pirsim(*args, code=2).stderr, f"error: {told}\n")
+
     def test_version_has_a_short_name(self):
         self.assertEqual(pirsim("-V").stdout, pirsim("--version").stdout)
 

@@ -226,7 +226,8 @@ class Scripts(unittest.TestCase):
         self.assertIn("'wurk' isn't an action (did you mean 'work'?)", told("--set", "people.0.actions.2={wurk: 3}"))
         self.assertIn("'dance' isn't an action; known are wait_s, wait, appear, enter, walk",
                       told("--set", "people.0.actions.2={dance: 3}"))
-        self.assertIn("'jubilate' isn't a whole action; known are", told("--set", "people.0.actions.2=jubilate"))
+        self.assertIn("'stand' isn't an action; known are", told("--set", "people.0.actions.2=stand"))
+        self.assertIn("'sit' needs a value: `sit: ...`", told("--set", "people.0.actions.2=sit"))
         self.assertIn("'zzzzz' is not an effect; known are ", told("--set", "effects=[zzzzz]"))
 
     def test_names_with_marks_of_markdown_or_html_stay_text_in_the_summary(self):

@@ -86,7 +86,9 @@ io::ReportSection candidates(const Outcome& outcome) {
     section.paragraphs.push_back("Nothing was looked for, since nothing differs.");
     return section;
   }
-  section.paragraphs.push_back("Every effect of the catalogue was simulated many times in rooms like this one.");
+  section.paragraphs.push_back(std::string("Every effect ") +
+                               (outcome.looked_for.empty() ? "of the catalogue" : "looked for") +
+                               " was simulated many times in rooms like this one.");
   section.charts.emplace_back(ranking_chart(outcome));
   for (const Look& look : outcome.looks) section.paragraphs.push_back(in_words(look));
   return section;

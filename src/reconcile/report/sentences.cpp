@@ -32,6 +32,14 @@ std::string where(const Outcome& outcome, double alpha) {
          " cells (trial x sensor) differ by themselves, p = " + short_number(outcome.location.p);
 }
 
+/// Of which effects a sentence speaks.
+std::string all_of(const Outcome& outcome) { return outcome.looked_for.empty() ? "the catalogue" : "those looked for"; }
+
+std::string lacks_something_else(const Outcome& outcome) {
+  return std::string("The model lacks something that is not ") +
+         (outcome.looked_for.empty() ? "in the catalogue" : "among the effects looked for");
+}
+
 /// Why no name was given to the effects that are left.
 std::string doubt(const Outcome& outcome, double alpha) {
   if (outcome.nothing.p > alpha) return ", or nothing: the disagreement is weak";
@@ -53,13 +61,13 @@ std::string no_effect(const Outcome& outcome, double alpha) {
     possible.push_back(candidate.score.hypothesis);
     together += candidate.score.probability;
   }
-  if (possible.empty()) return "no effect of the catalogue is likely to have made the data";
+  if (possible.empty()) return "no effect of " + all_of(outcome) + " is likely to have made the data";
   const std::string& likeliest = std::ranges::max_element(outcome.candidates, {}, [](const Candidate& c) {
                                    return c.score.probability;
                                  })->score.hypothesis;
   const bool likeliest_is_possible = std::ranges::find(possible, likeliest) != possible.end();
   return (likeliest_is_possible ? "most effects" : "the likelier effects") +
-         std::string(" of the catalogue can hardly have made the data; ") + joined(possible, "and") +
+         std::string(" of ") + all_of(outcome) + " can hardly have made the data; " + joined(possible, "and") +
          " might, but with a probability of only " + short_number(together);
 }
 
@@ -70,7 +78,7 @@ std::string rivals(const Outcome& outcome) {
     if (candidate.kept && candidate.score.hypothesis != outcome.named.front())
       names.push_back(candidate.score.hypothesis);
   }
-  if (names.empty()) return ", and no other effect of the catalogue explains the data.";
+  if (names.empty()) return ", and no other effect of " + all_of(outcome) + " explains the data.";
   return "; with probability " + short_number(outcome.candidates.front().score.probability) + " it is this one, " +
          joined(names, "and") + " can't be ruled out.";
 }
@@ -85,9 +93,10 @@ bool was_refused(const Outcome& outcome) {
 /// The verdict then.
 std::string sentence_of_refused(const Outcome& outcome, double alpha) {
   const Look& look = outcome.looks.back();
-  return "The model lacks something that is not in the catalogue: " + where(outcome, alpha) + ". What resembles it most, " + joined(look.applied, "and") +
+  return lacks_something_else(outcome) + ": " + where(outcome, alpha) + ". What resembles it most, " +
+         joined(look.applied, "and") +
          ", doesn't explain it: with that applied, the model still differs from the data (p = " + short_number(look.p) +
-         "), and no other effect of the catalogue explains what is left.";
+         "), and no other effect of " + all_of(outcome) + " explains what is left.";
 }
 
 /// Of the likeliest effect if it was dropped, though the model with it passes.
@@ -196,8 +205,7 @@ std::string verdict_sentence(const Outcome& outcome, double alpha) {
     case Verdict::none_in_catalogue:
       break;
   }
-  return "The model lacks something that is not in the catalogue: " + where(outcome, alpha) + ", and " +
-         no_effect(outcome, alpha) + ".";
+  return lacks_something_else(outcome) + ": " + where(outcome, alpha) + ", and " + no_effect(outcome, alpha) + ".";
 }
 
 std::string in_words(const Look& look) {

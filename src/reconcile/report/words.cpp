@@ -37,7 +37,8 @@ Worded worded(const Reason& of) {
                  [&](const reason::Sure& r) {
                    return Worded{
                        "Kept, though data of its own seldom look like these " + p(r.p),
-                       "with probability " + short_number(r.probability) + " it is this one of the catalogue, if any."};
+                       "with probability " + short_number(r.probability) +
+                           " it is this one of those looked for, if any."};
                  },
                  [](const reason::MayBeNone&) {
                    return Worded{"Kept, but not named", "its strength may as well be none."};
@@ -69,7 +70,7 @@ Worded worded(const Reason& of) {
                  },
                  [&](const reason::RefusedWhenApplied& r) {
                    return Worded{"Dropped", "with it applied, the model still differs from the data " + p(r.p) +
-                                                ", and no other effect of the catalogue explains what is left."};
+                                                ", and no other effect looked for explains what is left."};
                  },
                  [](const reason::SameAs& r) {
                    return Worded{"", "Judged as " + r.effect + ", which changes the model in the same way."};

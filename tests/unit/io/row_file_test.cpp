@@ -154,6 +154,16 @@ TEST_CASE("what something else made is refused and stays as it is", "[io][row_fi
   CHECK(content(file) == whole());  // until the new one is whole
 }
 
+TEST_CASE("of inputs that are more or fewer those are named that only one side has", "[io][row_file]") {
+  io::Provenance one, other;
+  one.inputs = {{"study.yaml", "a"}, {"room.gltf", "b"}};
+  other.inputs = {{"study.yaml", "a"}, {"room.gltf", "b"}, {"EYE.yaml", "c"}, {"eye.csv", "d"}};
+  const std::vector<std::string> fewer = io::differences(one, other), more = io::differences(other, one);
+  REQUIRE((fewer.size() == 1 && more.size() == 1));
+  CHECK_THAT(fewer.front(), contains("input files (without EYE.yaml, eye.csv;"));
+  CHECK_THAT(more.front(), contains("input files (with EYE.yaml, eye.csv;"));
+}
+
 TEST_CASE("a finished file that was damaged is made anew by resuming", "[io][row_file]") {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "rows.csv";

@@ -93,6 +93,8 @@ TEST_CASE("text that is not a YAML tree of names is refused with line and column
   CHECK(refusal_of("!mine {a: 1}\n").find("3 f.yaml:1:1: error: the tag '!mine'") == 0);
   CHECK(refusal_of("a: [!!str 3, \"!3\", ! 4]\nb: !!map {c: !!seq [1]}\n") == "accepted");
   CHECK(refusal_of("a: *nowhere\n").find("3 f.yaml:1:4:") == 0);
+  CHECK(refusal_of("a:\n    b: 1\n  c: 2\n") ==
+        "3 f.yaml:3:3: error: not YAML: end of map not found; check the indentation, here and above");
   CHECK(refusal_of("a: 1\n---\nb: 2\n").find("a second document") != std::string::npos);
   CHECK(refusal_of(std::string(5000, '[')).find("3 f.yaml:1:") == 0);
   CHECK(refusal_of("a: " + std::string(70, '[') + std::string(70, ']')) ==

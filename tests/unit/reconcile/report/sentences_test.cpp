@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "reconcile/report/pages.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;
@@ -131,6 +132,25 @@ TEST_CASE("of a rest that the model still differs by, and of a catalogue cut dow
   CHECK_THAT(sentence(outcome, 0.05), contains("That is not all. With seat_shift applied, the model still differs"));
   outcome.looks.back().p = 0.5;
   CHECK_THAT(sentence(outcome, 0.05), !contains("That is not all"));
+}
+
+TEST_CASE("of a catalogue cut down nothing is said about the effects that weren't looked for", "[reconcile]") {
+  const auto cut_down = [](Outcome outcome) {
+    outcome.looked_for = {"seat_shift", "body_size"};
+    return outcome;
+  };
+  CHECK_THAT(sentence(cut_down(outcome_of(Verdict::named, {{"seat_shift", 0.6}})), 0.05),
+             contains("no other effect of those looked for explains the data"));
+  Outcome none = cut_down(outcome_of(Verdict::none_in_catalogue, {{"seat_shift", 0.1}}));
+  CHECK_THAT(sentence(none, 0.05), contains("something that is not among the effects looked for: ") &&
+                                       contains("most effects of those looked for can hardly have made the data"));
+  none.candidates.front().score.p = 0.01;
+  CHECK_THAT(sentence(none, 0.05), contains("no effect of those looked for is likely"));
+  none.candidates.front().reason = reason::RefusedWhenApplied{0.005};
+  none.looks.push_back({{"seat_shift"}, 0.025, 0.005, {}});
+  CHECK_THAT(sentence(none, 0.05), contains("no other effect of those looked for explains what is left"));
+  const std::string page = to_html(report_page(none, 0.05));
+  CHECK_THAT(page, contains("Every effect looked for was simulated") && !contains("ffect of the catalogue"));
 }
 
 TEST_CASE("a fitted effect names its twin and others name none", "[reconcile]") {
