@@ -239,7 +239,8 @@ class Scene:
 
 # ----------------------------------------------------------------------------------------------------------- scripts
 Activity = Literal["typing", "reading", "meeting", "phone", "whiteboard"]
-"""What people of natural style are busy with."""
+"""What people of natural style are busy with: typing and reading at `Work` only, whiteboard at `Wait` only; a `Walk`
+knows phone."""
 
 
 @dataclass(slots=True, kw_only=True)

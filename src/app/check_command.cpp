@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <iomanip>
 #include <iostream>
 
 #include "app/commands.hpp"
 #include "app/session.hpp"
 #include "sim/compiled_study.hpp"
+#include "studies/room_plan.hpp"
 #include "studies/schedule_outlook.hpp"
 #include "studies/sight.hpp"
 
@@ -35,6 +37,12 @@ void print(std::ostream& out, const Model& model, const studies::SightReport& re
     out << '\n';
   }
   out << "  any sensor: floor " << std::setprecision(1) << percent(report.places_seen_by_any) << " %\n";
+  const auto is_floor = [&](const TriMesh& mesh) {
+    return studies::role_of(mesh, scene.floor.height_m()) == studies::MeshRole::floor;
+  };
+  if (std::ranges::none_of(scene.meshes, is_floor)) {
+    out << "  no ray ends at the floor: it has no mesh that occludes, only an outline\n";
+  }
 }
 
 void check(const Inputs& inputs) {

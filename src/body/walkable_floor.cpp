@@ -106,8 +106,8 @@ void WalkableFloor::Impl::lay_grid(const FloorArea& floor, std::span<const Entra
   if (cells.x * cells.y > max_cells) {
     const auto whole = [](double metres) { return std::to_string(std::llround(metres)); };
     throw Error(ErrorCode::infeasible, "the floor and its entrances span " + whole(most.x - least.x) + " m x " +
-                                           whole(most.y - least.y) + " m: too large to find ways on (are they " +
-                                           "millimetres? glTF's unit is the metre)");
+                                           whole(most.y - least.y) +
+                                           " m: too large to find ways on (glTF's unit is the metre)");
   }
   lower = 0.5 * (least + most) - 0.5 * cell_m * cells;
   grid.columns = static_cast<int>(cells.x);

@@ -7,6 +7,7 @@
 #include "dataset/room_reader.hpp"
 #include "io/atomic_file.hpp"
 #include "io/compression.hpp"
+#include "io/file_kinds.hpp"
 #include "io/reader_parts.hpp"
 #include "pirsim/dataset.hpp"
 #include "pirsim/effects.hpp"
@@ -196,6 +197,7 @@ RecipeSpec read_recipe(const std::filesystem::path& file) {
   const YamlNode root = YamlNode::load(file);
   Diagnostics faults;
   YamlMap map(root, faults, "recipe");
+  io::refuse_other_kinds(map, "pirsim_recipe");
   const int version = map.required_integer("pirsim_recipe");
   if (map.has("pirsim_recipe") && version != format_version) {
     faults.error(map.where("pirsim_recipe"), "format version " + std::to_string(version) +

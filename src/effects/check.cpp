@@ -26,6 +26,14 @@ std::vector<std::string> setting_names(const EffectInfo& info) {
   return names;
 }
 
+/// The nearest of its settings, or else all.
+std::string nearest_or_all(const std::string& name, const EffectInfo& info) {
+  const std::vector<std::string> names = setting_names(info);
+  const std::string nearest = did_you_mean(name, names);
+  if (!nearest.empty()) return nearest;
+  return names.empty() ? "; it has none" : "; known are " + boost::algorithm::join(names, ", ");
+}
+
 void check_parameters(const EffectSpec& spec, const EffectInfo& info, Diagnostics& diagnostics) {
   for (const auto& [name, value] : spec.parameters) {
     const auto known = std::ranges::find(info.parameters, name, &ParameterInfo::name);
@@ -33,7 +41,7 @@ void check_parameters(const EffectSpec& spec, const EffectInfo& info, Diagnostic
       const bool is_choice = std::ranges::find(info.choices, name, &ChoiceInfo::name) != info.choices.end();
       diagnostics.error(spec.where, is_choice ? info.name + "." + name + ": expected a name, not a number"
                                               : info.name + " has no parameter '" + name + "'" +
-                                                    did_you_mean(name, setting_names(info)));
+                                                    nearest_or_all(name, info));
     } else if (!(value >= known->least && value <= known->most)) {
       diagnostics.error(spec.where, info.name + "." + name + ": expected a number from " + text(known->least) + " to " +
                                         text(known->most) + ", not " + text(value));
@@ -51,7 +59,7 @@ void check_choices(const EffectSpec& spec, const EffectInfo& info, const SceneSp
       const bool is_number = std::ranges::find(info.parameters, name, &ParameterInfo::name) != info.parameters.end();
       diagnostics.error(spec.where, is_number ? info.name + "." + name + ": expected a number, not '" + value + "'"
                                               : info.name + " has no setting '" + name + "'" +
-                                                    did_you_mean(name, setting_names(info)));
+                                                    nearest_or_all(name, info));
       continue;
     }
     std::vector<std::string> allowed = known->words;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <utility>
 
 #include "io/yaml_map.hpp"
@@ -19,10 +20,10 @@ Vec2 read_point(const YamlNode& node, Diagnostics& faults, std::string_view what
   return Vec2(0.0);
 }
 
-/// Of somebody of natural style: read_person() refuses it for others.
-std::optional<Activity> read_activity(YamlMap& map) {
+/// One of those that the action knows, of somebody of natural style: read_person() refuses it for others.
+std::optional<Activity> read_activity(YamlMap& map, std::initializer_list<Activity> known) {
   std::vector<std::pair<std::string, std::optional<Activity>>> names;
-  for (std::size_t i = 0; i < activity_names.size(); ++i) names.emplace_back(activity_names[i], Activity(i));
+  for (const Activity one : known) names.emplace_back(activity_names[static_cast<std::size_t>(one)], one);
   return map.choice<std::optional<Activity>>("activity", std::nullopt, names);
 }
 
@@ -31,7 +32,8 @@ Action read_wait_s(const YamlNode& node, Diagnostics& faults) {
 }
 Action read_wait(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "wait");
-  const action::Wait wait{map.required_number("duration_s", {.min = 0.0, .max = 1e6}), read_activity(map)};
+  const double duration_s = map.required_number("duration_s", {.min = 0.0, .max = 1e6});
+  const action::Wait wait{duration_s, read_activity(map, {Activity::meeting, Activity::phone, Activity::whiteboard})};
   map.finish();
   return wait;
 }
@@ -47,7 +49,7 @@ Action read_walk(const YamlNode& node, Diagnostics& faults) {
   action::Walk walk;
   for (const YamlNode& point : map.required_list("to_xz_m"))
     walk.points.push_back(read_point(point, faults, "to_xz_m"));
-  walk.activity = read_activity(map);
+  walk.activity = read_activity(map, {Activity::phone});
   map.finish();
   return walk;
 }
@@ -71,7 +73,7 @@ Action read_work(const YamlNode& node, Diagnostics& faults) {
   work.arm_period_s = map.number("arm_period_s", work.arm_period_s, {.min = 0.2, .max = 1e6});
   work.tilt_choices_deg = map.numbers("tilt_choices_deg", work.tilt_choices_deg, {.min = -30.0, .max = 45.0});
   work.tilt_every_s = map.number("tilt_every_s", work.tilt_every_s, positive);
-  work.activity = read_activity(map);
+  work.activity = read_activity(map, {Activity::typing, Activity::reading, Activity::meeting, Activity::phone});
   map.finish();
   return work;
 }

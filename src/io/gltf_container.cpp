@@ -7,6 +7,8 @@
 #include <iterator>
 #include <utility>
 
+#include "io/file_kinds.hpp"
+
 namespace pirsim::io::detail {
 namespace {
 
@@ -128,7 +130,9 @@ GltfContainer read_container(const fs::path& file) {
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);  // byte order mark
   const std::size_t first = bytes.find_first_not_of(" \t\r\n");
   if (first == std::string::npos || bytes[first] != '{') {
-    throw Error(ErrorCode::input, {file.string(), 1, 1}, "is neither glTF (.gltf, JSON) nor binary glTF (.glb)");
+    const std::string kind = kind_of_text(bytes);
+    throw Error(ErrorCode::input, {file.string(), 1, 1},
+                "is neither glTF (.gltf, JSON) nor binary glTF (.glb)" + (kind.empty() ? kind : ", but " + kind));
   }
   return {GltfContainer::Kind::json, std::move(bytes), {}, {file.string()}};
 }

@@ -1,7 +1,13 @@
 // What a scene may say, but hardly means: each a warning.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <iomanip>
 #include <limits>
+#include <numeric>
+#include <optional>
 #include <sstream>
 
 #include "io/scene_parts.hpp"
@@ -28,6 +34,13 @@ std::string extent(double width, double depth) {
   return text.str();
 }
 
+/// "0.25 m"
+std::string in_metres(double length_m) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(2) << length_m << " m";
+  return text.str();
+}
+
 /// Nobody means metres by thousands of them.
 std::string unit_of(double metres) { return metres >= 1000.0 ? "millimetres?" : "centimetres?"; }
 
@@ -42,6 +55,7 @@ class Doubts {
     sizes();
     for (std::size_t i = 0; i < scene_.entrances.size(); ++i) entrance(scene_.entrances[i], nodes_.entrances[i]);
     for (std::size_t i = 0; i < scene_.seats.size(); ++i) seat(scene_.seats[i], nodes_.seats[i]);
+    neighbours();
   }
 
  private:
@@ -74,9 +88,111 @@ class Doubts {
       tell_(node, "entrance '" + entrance.id +
                       "' is turned round: the floor lies behind it, and its -Z must point into the room");
     }
+    threshold(entrance, node);
+    doorway(entrance, node);
+  }
+
+  /// Its node is the middle of the threshold, where the floor ends.
+  void threshold(const EntranceSpec& entrance, int node) {
+    // assumed: what walkers step over, and half of a thick wall (0.1-0.2)
+    constexpr double most_above_m = 0.1, most_aside_m = 0.2;
+    const Vec3 at = entrance.world_from_entrance.origin;
+    if (const double above_m = at.y - scene_.floor.height_m(); std::abs(above_m) > most_above_m) {
+      tell_(node, "entrance '" + entrance.id + "' isn't on the floor, but " + in_metres(std::abs(above_m)) +
+                      (above_m > 0.0 ? " above it" : " below it"));
+    }
+    const Vec2 place = floor_point(at);
+    if (const double aside_m = to_edge_m(place); aside_m > most_aside_m) {
+      tell_(node, "entrance '" + entrance.id + "' isn't at the floor's edge, but " + in_metres(aside_m) +
+                      (scene_.floor.contains(place) ? " inside" : " outside") +
+                      " of it: its node is the middle of the threshold");
+    }
+  }
+  [[nodiscard]] double to_edge_m(const Vec2& place) const {
+    double nearest_m = std::numeric_limits<double>::max();
+    for (const std::vector<Vec2>& loop : scene_.floor.loops()) {
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Vec2 along = loop[(i + 1) % loop.size()] - loop[i];
+        const double length2 = glm::dot(along, along);
+        const double share = length2 > 0.0 ? glm::clamp(glm::dot(place - loop[i], along) / length2, 0.0, 1.0) : 0.0;
+        nearest_m = std::min(nearest_m, glm::distance(place, loop[i] + share * along));
+      }
+    }
+    return nearest_m;
+  }
+
+  /// How much of its width is a wall, or furniture right before or behind it.
+  void doorway(const EntranceSpec& entrance, int node) {
+    constexpr int n_across = 20;
+    constexpr double share_in_doubt = 0.25;  // assumed: more than a frame and an open leaf take (0.05-0.2)
+    std::array<int, n_across> by{};          // the mesh that is met there
+    by.fill(-1);
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      if (reaches(boxes_[i], entrance)) close(entrance, static_cast<int>(i), by);
+    }
+    const auto closed = std::ranges::count_if(by, [](int mesh) { return mesh >= 0; });
+    if (static_cast<double>(closed) <= share_in_doubt * n_across) return;
+    tell_(node, "entrance '" + entrance.id + "': '" + name(*std::ranges::max_element(by)) + "' stands in " +
+                    in_metres(entrance.width_m * static_cast<double>(closed) / n_across) + " of its width of " +
+                    in_metres(entrance.width_m));
+  }
+  static constexpr double half_depth_m = 0.25;  ///< of a doorway; assumed: most of a wall, less than a person needs
+  [[nodiscard]] static bool reaches(const Box& box, const EntranceSpec& entrance) {
+    const double reach_m = 0.5 * entrance.width_m + half_depth_m;
+    const Vec3 at = entrance.world_from_entrance.origin;
+    return box.least.x <= at.x + reach_m && box.most.x >= at.x - reach_m && box.least.z <= at.z + reach_m &&
+           box.most.z >= at.z - reach_m;
+  }
+  /// Notes the mesh wherever it crosses a line through the doorway at the height of shins, hips or heads.
+  template <std::size_t n_across>
+  void close(const EntranceSpec& entrance, int mesh, std::array<int, n_across>& by) const {
+    const Frame entrance_from_world = inverse(entrance.world_from_entrance);
+    const TriMesh& given = scene_.meshes[static_cast<std::size_t>(mesh)];
+    const double floor_y = scene_.floor.height_m() - entrance.world_from_entrance.origin.y;
+    const auto local = [&](std::uint32_t corner) {  // so that a line through the doorway is upright
+      const Vec3 p = entrance_from_world * given.positions[corner];
+      return Vec3(p.x, p.z, p.y - floor_y);
+    };
+    for (const auto& [a, b, c] : given.triangles) {
+      const Vec3 at_a = local(a), at_b = local(b), at_c = local(c);
+      const Vec3 least = glm::min(at_a, glm::min(at_b, at_c)), most = glm::max(at_a, glm::max(at_b, at_c));
+      if (least.y > half_depth_m || most.y < -half_depth_m) continue;
+      if (2.0 * least.x > entrance.width_m || 2.0 * most.x < -entrance.width_m) continue;
+      for (std::size_t i = 0; i < n_across; ++i) {
+        const double x = entrance.width_m * ((static_cast<double>(i) + 0.5) / n_across - 0.5);
+        for (const double height_m : {0.3, 1.0, 1.7}) {
+          const auto depth_m = height_at(at_a, at_b, at_c, {x, 0.0, height_m});
+          if (depth_m && std::abs(*depth_m) <= half_depth_m) by[i] = mesh;
+        }
+      }
+    }
+  }
+
+  /// Seats as near as this are one that was copied, or two for one sitter; assumed: less than any chair is wide.
+  void neighbours() {
+    constexpr double least_apart_m = 0.4;
+    constexpr int most_told = 20;  // of a file where all seats are at one place
+    const auto place = [&](std::size_t i) -> const Vec3& { return scene_.seats[i].world_from_seat.origin; };
+    std::vector<std::size_t> along_x(scene_.seats.size());
+    std::iota(along_x.begin(), along_x.end(), std::size_t{0});
+    std::ranges::stable_sort(along_x, {}, [&](std::size_t i) { return place(i).x; });
+    int told = 0;
+    for (auto i = along_x.begin(); i != along_x.end(); ++i) {
+      for (auto k = i + 1; k != along_x.end() && place(*k).x - place(*i).x < least_apart_m; ++k) {
+        const double apart_m = glm::distance(place(*i), place(*k));
+        if (apart_m >= least_apart_m) continue;
+        if (++told > most_told) return;
+        const auto [first, second] = std::minmax(*i, *k);
+        tell_(nodes_.seats[second], "seat '" + scene_.seats[second].id + "' is " + in_metres(apart_m) + " from seat '" +
+                                        scene_.seats[first].id + "': two sitters would sit in each other");
+      }
+    }
   }
 
   void seat(const SeatSpec& seat, int node) {
+    if (!scene_.floor.contains(floor_point(seat.world_from_seat.origin))) {
+      tell_(node, "seat '" + seat.id + "' lies off the floor: who sits there isn't counted in the column `people`");
+    }
     // The trunk stands above the pelvis; a cushion or an arm's rest is lower (assumed).
     const Vec3 hip = seat.world_from_seat.origin;
     if (const int within = crossed(hip, hip.y + 0.15, hip.y + 0.6); within >= 0) {

@@ -109,6 +109,11 @@ class MarkupReader {
     if (value_.contains("polygon_xz_m")) result.polygon = polygon();
     const bool has_mesh = document_.model.nodes[static_cast<std::size_t>(node_)].mesh >= 0;
     if (!result.polygon && !has_mesh) error("", "a floor needs a mesh at its node, or 'polygon_xz_m'");
+    if (value_.contains("occludes") && !has_mesh) {
+      remarks_.warning(document_.text.where(markup_pointer(node_) + "/occludes"),
+                       node_label(document_.model, node_) +
+                           ": 'occludes' has no effect without a mesh at the node: no ray ends at a polygon");
+    }
     return result;
   }
   mark::Surface surface() {

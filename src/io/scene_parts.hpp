@@ -69,7 +69,8 @@ struct MarkedNodes {
 };
 using DoubtSink = std::function<void(int node, const std::string& message)>;
 
-/// An entrance turned round, a seat inside a desk or with its back to one, sizes of another unit than metres.
+/// An entrance turned round, off the floor's edge or blocked; a seat off the floor, at another's place, inside a desk or
+/// with its back to one; sizes of another unit than metres.
 void doubt(const SceneSpec& scene, const MarkedNodes& nodes, const DoubtSink& tell);
 
 // The floor area of a scene, joined from all nodes that are marked as floor.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "io/atomic_file.hpp"
+#include "io/file_kinds.hpp"
 #include "io/yaml_map.hpp"
 #include "pirsim/effects.hpp"
 
@@ -11,6 +12,7 @@ namespace pirsim::io {
 
 void check_version(YamlMap& map, const std::string& key) {
   constexpr int format_version = 1;
+  refuse_other_kinds(map, key);
   const int version = map.required_integer(key);
   if (!map.has(key) || version == format_version) return;
   map.faults().error(map.where(key), "format version " + std::to_string(version) +

@@ -69,7 +69,11 @@ void report_once(Diagnostics& faults, const Where& where, const std::string& mes
 }  // namespace
 
 YamlNode YamlNode::load(const std::filesystem::path& path, std::span<const std::string> overrides) {
-  return parse(read_text_file(path), path.string(), overrides);
+  const std::string text = read_text_file(path);
+  if (text.starts_with("glTF")) {
+    throw Error(ErrorCode::input, {path.string()}, "this is a glTF scene: `--scene` takes it");
+  }
+  return parse(text, path.string(), overrides);
 }
 YamlNode YamlNode::parse(std::string_view text, const std::string& name, std::span<const std::string> overrides) {
   YamlTreePtr root = parse_yaml_tree(text, name);
@@ -131,7 +135,7 @@ std::optional<std::size_t> YamlNode::choice(Diagnostics& faults, std::string_vie
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   const std::string hint = is_scalar() ? did_you_mean(tree_->scalar, names) : std::string{};
-  faults.error(where(), fault_text(what, "one of " + list, *tree_) + hint);
+  faults.error(where(), fault_text(what, (names.size() > 1 ? "one of " : "") + list, *tree_) + hint);
   return std::nullopt;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
+#include <utility>
 
 #include "sim/alike.hpp"
 #include "sim/check_actions.hpp"
@@ -26,26 +28,35 @@ std::optional<double> table_height(const SeatSpec& seat, double floor_y, const r
   return floor_y + height;
 }
 
+/// Which entrances lead to the floor, of those that were asked for, by who asks: people need more or less room.
+using OpenDoors = std::map<std::pair<double, std::string>, bool>;
+
 /// Walks through one person's actions in thought: where are they, where must they get to?
 class Rehearsal {
  public:
-  Rehearsal(const SceneSpec& scene, const rt::Room& room, PersonModel& person, Diagnostics& diagnostics)
-      : scene_(scene), room_(room), person_(person), diagnostics_(diagnostics) {}
+  Rehearsal(const SceneSpec& scene, const rt::Room& room, PersonModel& person, OpenDoors& doors,
+            Diagnostics& diagnostics)
+      : scene_(scene), room_(room), person_(person), doors_(doors), diagnostics_(diagnostics) {}
 
   void run() {
     if (person_.spec.part) rehearse_schedule();
     for (const ScriptedAction& action : person_.spec.actions) {
-      if (const auto* appear = std::get_if<action::Appear>(&action.what)) at_ = appear->point;
-      if (const auto* enter = std::get_if<action::Enter>(&action.what)) at_ = outside(enter->entrance);
+      if (const auto* appear = std::get_if<action::Appear>(&action.what)) start_at(appear->point, {});
+      if (const auto* enter = std::get_if<action::Enter>(&action.what)) {
+        start_at(outside(enter->entrance), enter->entrance);
+      }
       if (const auto* sit = std::get_if<action::Sit>(&action.what)) {
         sit_down(sit->seat, action.where);
         if (sit->if_taken == action::IfTaken::other_seat) note_other_seats();
       }
       if (const auto* leave = std::get_if<action::Leave>(&action.what)) {
+        if (!can_go_to(outside(leave->entrance)) && is_shut(leave->entrance)) continue;
         go_to(outside(leave->entrance), "entrance '" + leave->entrance + "'", action.where);
       }
       if (const auto* walk = std::get_if<action::Walk>(&action.what)) {
-        for (const Vec2& point : walk->points) go_to(point, "point " + text(point), action.where);
+        for (const Vec2& point : walk->points) {
+          go_to(point, "point " + text(point), action.where, !scene_.floor.contains(point));
+        }
       }
     }
   }
@@ -54,11 +65,11 @@ class Rehearsal {
   /// Who follows a schedule may get to any seat that can be reached, and has to reach their own.
   void rehearse_schedule() {
     const ScheduledPerson& part = *person_.spec.part;
-    at_ = outside(scene_.entrances.front().id);
+    start_at(outside(scene_.entrances.front().id), scene_.entrances.front().id);
     note_other_seats();
     const bool lacks_seat =
         part.part == SchedulePart::guest ? person_.seats.empty() : !part.seat.empty() && !person_.can_use(part.seat);
-    if (lacks_seat) {
+    if (lacks_seat && !is_shut(behind_)) {
       diagnostics_.error({scene_.name}, "no way leads '" + person_.spec.id + "' of the schedule to " +
                                             (part.seat.empty() ? "any seat" : "seat '" + part.seat + "'"));
     }
@@ -74,26 +85,64 @@ class Rehearsal {
     return floor_point(entrance.world_from_entrance * Vec3(0, 0, entrance.outside_m));
   }
 
-  void go_to(const Vec2& target, const std::string& what, const Where& where) {
-    if (!person_.floor->find_way(at_, target)) {
-      diagnostics_.error(where, what + " can't be reached by '" + person_.spec.id + "' from " + text(at_) +
-                                    ": no path keeps " +
-                                    std::to_string(person_.humanoid.clearance_radius_m()).substr(0, 4) +
-                                    " m clear of solid objects");
+  /// entrance: behind which they are, or "".
+  void start_at(const Vec2& place, const std::string& entrance) {
+    at_ = place;
+    behind_ = entrance;
+  }
+
+  bool can_go_to(const Vec2& target) const { return person_.floor->find_way(at_, target).has_value(); }
+
+  void go_to(const Vec2& target, const std::string& what, const Where& where, bool is_off_floor = false) {
+    if (!can_go_to(target) && !is_shut(behind_)) {
+      diagnostics_.error(where, what + " can't be reached by '" + person_.spec.id + "' from " + text(at_) + ": " +
+                                    (is_off_floor ? "it lies off the floor" : no_clear_path()));
     }
-    at_ = target;
+    start_at(target, {});
+  }
+  std::string no_clear_path() const {
+    return "no path keeps " + std::to_string(person_.humanoid.clearance_radius_m()).substr(0, 4) +
+           " m clear of solid objects";
+  }
+
+  /// Whether nobody gets from the entrance to the floor, which is then told, once for all.
+  bool is_shut(const std::string& id) {
+    if (id.empty()) return false;
+    const auto [known, is_new] = doors_.try_emplace({person_.floor->clearance_m(), id});
+    if (is_new) known->second = leads_in(id);
+    if (known->second) return false;
+    diagnostics_.error({scene_.name}, "nobody gets from entrance '" + id +
+                                          "' to the floor: no path leads in (is it in a wall, behind furniture, or off "
+                                          "the floor?)");
+    return true;
+  }
+  bool leads_in(const std::string& id) const {
+    constexpr double least_spacing_m = 0.25, most_places = 1000.0;
+    const double spacing_m = std::max(least_spacing_m, std::sqrt(scene_.floor.area_m2() / most_places));
+    const Vec2 lower = scene_.floor.lower(), upper = scene_.floor.upper(), from = outside(id);
+    for (double z = lower.y + 0.5 * spacing_m; z < upper.y; z += spacing_m) {
+      for (double x = lower.x + 0.5 * spacing_m; x < upper.x; x += spacing_m) {
+        const Vec2 place(x, z);
+        if (!scene_.floor.contains(place) || !person_.floor->walkable(place)) continue;
+        if (person_.floor->find_way(from, place)) return true;
+      }
+    }
+    return false;
   }
 
   void sit_down(const std::string& id, const Where& where) {
     const SeatSpec& seat = *std::ranges::find(scene_.seats, id, &SeatSpec::id);
     if (const auto plan = plan_of(seat)) {
       person_.seats.emplace(id, *plan);
-      at_ = place_to_stand(seat, *plan);
+      start_at(place_to_stand(seat, *plan), {});
       return;
     }
     person_.seats.emplace(id, SeatPlan{});
+    if (is_shut(behind_)) return;
+    const bool is_off = !scene_.floor.contains(floor_point(seat.world_from_seat.origin));
     diagnostics_.error(where, "seat '" + id + "' of " + scene_.name + " can't be reached by '" + person_.spec.id +
-                                  "' from " + text(at_) + ": no free place to stand within a metre of it has a path");
+                                  "' from " + text(at_) + ": " + (is_off ? "it lies off the floor, and " : "") +
+                                  "no free place to stand within a metre of it has a path");
   }
 
   /// Any that can be reached may do if the seat asked for is taken.
@@ -153,8 +202,10 @@ class Rehearsal {
   const SceneSpec& scene_;
   const rt::Room& room_;
   PersonModel& person_;
+  OpenDoors& doors_;
   Diagnostics& diagnostics_;
   Vec2 at_{0.0};
+  std::string behind_;  ///< the entrance that they haven't come in by yet, or ""
 };
 
 using Floors = std::map<double, std::shared_ptr<const body::WalkableFloor>>;  // by clearance
@@ -171,6 +222,7 @@ Floors floors_of(const CompiledStudy* like, const SceneSpec& scene) {
 std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std::vector<TrialInForce>& trials,
                                           const SceneSpec& scene, const rt::Room& room, Floors floors) {
   std::vector<TrialModel> planned_trials;
+  OpenDoors doors;
   Diagnostics diagnostics;
   for (const TrialInForce& trial : trials) {
     const std::vector<PersonSpec>& written = study.script_given().trials[planned_trials.size()].people;
@@ -193,7 +245,7 @@ std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std:
                            .humanoid = humanoid,
                            .floor = floor,
                            .radiance = radiance_of(spec.warmth, study.sensing().ambient_c)};
-        Rehearsal(scene, room, person, found).run();
+        Rehearsal(scene, room, person, doors, found).run();
         return person;
       };
       Diagnostics found;

@@ -120,12 +120,59 @@ class Doubts(unittest.TestCase):
         floor["extras"]["pirsim"] = {"type": "floor", "polygon_xz_m": [[0, 0], [8002, 0], [8002, 6002], [0, 6002]]}
         told = self.room.check(self.folder.name, code=5)
         self.assertIn("the floor spans 8002 m x 6002 m: millimetres?", told)
+        self.assertIn("too large to find ways on (glTF's unit is the metre)", told)
+        self.assertNotIn("are they", told)
         floor["extras"]["pirsim"]["polygon_xz_m"] = [[0, 0], [8, 0], [8, 6], [0, 6]]
         floor["rotation"] = [0.70710678, 0, 0, 0.70710678]
         self.assertIn("stands upright, as in files that are Z-up", self.room.check(self.folder.name, code=3))
         self.room = Room()
         self.room.marked("seat")["rotation"] = [0.70710678, 0, 0, 0.70710678]
         self.assertIn("it lies: is the file Z-up?", self.room.check(self.folder.name, code=3))
+
+    def test_a_seat_outside_works_but_is_told(self):
+        """Nobody notices that in the rows: the sitter works there, and `people` is 0."""
+        door, seat = self.room.marked("entrance"), self.room.marked("seat", "S1")
+        x, y, z, w = door.get("rotation", [0, 0, 0, 1])
+        behind = (2 * (x * z + w * y), 1 - 2 * (x * x + y * y))  # +Z of the door, on the floor
+        place = door["translation"]
+        seat["translation"] = [place[0] + 1.2 * behind[0], seat["translation"][1], place[2] + 1.2 * behind[1]]
+        told = self.room.check(self.folder.name)
+        self.assertRegex(told, r"room.gltf:\d+:\d+: warning: node '[^']*': seat 'S1' lies off the floor")
+        seat["translation"][0] += 50.0
+        told = self.room.check(self.folder.name, code=5)
+        self.assertRegex(told, r"error: seat 'S1' of room.gltf can't be reached by '[^']*' from .*: it lies off the floor")
+
+    def test_two_seats_at_one_place(self):
+        first, second = self.room.marked("seat", "S1"), self.room.marked("seat", "S2")
+        second["translation"] = [c + d for c, d in zip(first["translation"], (0.05, 0, 0))]
+        second["rotation"] = first.get("rotation", [0, 0, 0, 1])
+        self.assertIn("seat 'S2' is 0.05 m from seat 'S1'", self.room.check(self.folder.name))
+
+    def test_an_entrance_that_is_not_at_the_edge_of_the_floor(self):
+        door = self.room.marked("entrance")
+        name, (x, y, z) = door["name"], door["translation"]
+        qx, qy, qz, qw = door.get("rotation", [0, 0, 0, 1])
+        ahead = (-2 * (qx * qz + qw * qy), -(1 - 2 * (qx * qx + qy * qy)))
+        right = (1 - 2 * (qy * qy + qz * qz), 2 * (qx * qz - qw * qy))
+        for place, words in (((x, y + 1, z), "isn't on the floor, but 1.00 m above it"),
+                             ((x + 1.5 * ahead[0], y, z + 1.5 * ahead[1]), r"isn't at the floor's edge, but \d\.\d\d m inside"),
+                             ((x - 0.5 * ahead[0], y, z - 0.5 * ahead[1]), " outside of it"),
+                             ((x - 0.5 * right[0], y, z - 0.5 * right[1]), "' stands in 0.")):
+            door["translation"] = list(place)
+            file = pathlib.Path(self.folder.name) / "room.gltf"
+            file.write_text(json.dumps(self.room.gltf, indent=1))
+            told = subprocess.run([PIRSIM, "check", "--scene", file, "--script", DATA / "studies" / "studyA.yaml"],
+                                  capture_output=True, text=True).stderr
+            self.assertRegex(told, rf"room.gltf:\d+:\d+: warning: node '{name}': entrance '[^']*'.*{words}")
+
+    def test_an_entrance_that_nobody_gets_in_by_is_told_once(self):
+        door = self.room.marked("entrance")
+        x, y, z, w = door.get("rotation", [0, 0, 0, 1])
+        right = (1 - 2 * (y * y + z * z), 0, 2 * (x * z - w * y))
+        door["translation"] = [c - 1.5 * d for c, d in zip(door["translation"], right)]  # into the wall beside it
+        told = self.room.check(self.folder.name, code=5)
+        self.assertEqual(told.count("error:"), 1, told)
+        self.assertRegex(told, r"room.gltf: error: nobody gets from entrance '[^']*' to the floor")
 
     def test_a_seat_that_nobody_can_sit_on_is_named(self):
         seat = self.room.marked("seat", "S2")
@@ -163,6 +210,12 @@ class BareRoom(unittest.TestCase):
         self.assertIn(told, pirsim("check", *self.files(self.write(4))).stderr)
         self.assertNotIn(told, pirsim("check", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
                                       DATA / "studies" / "studyA.yaml").stderr)
+
+    def test_that_no_ray_ends_at_its_floor_is_told(self):
+        told = "no ray ends at the floor: it has no mesh that occludes"
+        self.assertIn(told, pirsim("check", *self.files(self.write(4))).stdout)
+        self.assertNotIn(told, pirsim("check", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
+                                      DATA / "studies" / "studyA.yaml").stdout)
 
     def test_its_floor_is_drawn(self):
         pictures = []
@@ -229,6 +282,20 @@ class Scripts(unittest.TestCase):
         self.assertIn("'stand' isn't an action; known are", told("--set", "people.0.actions.2=stand"))
         self.assertIn("'sit' needs a value: `sit: ...`", told("--set", "people.0.actions.2=sit"))
         self.assertIn("'zzzzz' is not an effect; known are ", told("--set", "effects=[zzzzz]"))
+        self.assertIn("false_triggers has no parameter 'prob'; known are ",
+                      told("--set", "effects=[{false_triggers: {prob: 1}}]"))
+
+    def test_files_at_the_wrong_option_or_command(self):
+        scene, script = DATA / "rooms" / "meeting_room.gltf", DATA / "studies" / "studyA.yaml"
+        walk = DATA / "studies" / "walk_test.yaml"
+        for args, file, words in ((("check", "--scene", script, "--script", scene), scene, "a glTF scene: `--scene`"),
+                                  (("check", "--scene", script, "--script", script), script, ", but a script: `"),
+                                  (("run", "--scene", scene, "--script", walk), walk, "a walk test: `pirsim walktest"),
+                                  (("walktest", "--scene", scene, "--script", script), script, "a script: `--script`")):
+            told = pirsim(*args, code=3).stderr
+            self.assertEqual(told.count("error:"), 1, told)
+            self.assertTrue(told.startswith(f"{file}:"), told)
+            self.assertIn(words, told)
 
     def test_names_with_marks_of_markdown_or_html_stay_text_in_the_summary(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -70,3 +70,17 @@ TEST_CASE("an activity that nobody would see is refused with its line, and so is
   text.replace(text.find("whiteboard"), 10, "blackboard");
   CHECK_THAT(fault(text), contains("blackboard"));
 }
+
+TEST_CASE("an action refuses the activities of others, and lists its own") {
+  const auto told = [](const std::string& was, const std::string& is) {
+    std::string text = script("    style: natural\n");
+    text.replace(text.find(was), was.size(), is);
+    return fault(text);
+  };
+  CHECK_THAT(told("activity: reading", "activity: whiteboard"),
+             contains("s.yaml:11:") && contains("activity: expected one of typing, reading, meeting, phone, got"));
+  CHECK_THAT(told("activity: reading", "activity: readin"), contains("(did you mean 'reading'?)"));
+  CHECK_THAT(told("activity: whiteboard", "activity: typing"),
+             contains("activity: expected one of meeting, phone, whiteboard, got"));
+  CHECK_THAT(told("activity: phone", "activity: meeting"), contains("activity: expected phone, got"));
+}

@@ -214,6 +214,8 @@ TEST_CASE("files that can't be read are told apart from files that are no scenes
   CHECK(code_of(folder.write("empty.gltf", "")) == pirsim::ErrorCode::input);
   CHECK(code_of(folder.write("picture.gltf", "\x89PNG\r\n")) == pirsim::ErrorCode::input);
   CHECK(code_of(folder.write("list.gltf", "[]")) == pirsim::ErrorCode::input);
+  CHECK_THAT(fault_of([&] { return pirsim::io::read_scene(folder.write("s.yaml", "# A study\npirsim_script: 1\n")); }),
+             contains("is neither glTF") && contains(", but a script: `--script` of run"));
 }
 
 TEST_CASE("buffers outside the scene's folder are not opened, not even through a link", "[scene]") {

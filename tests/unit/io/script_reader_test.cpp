@@ -85,6 +85,15 @@ TEST_CASE("every fault of a script is told at once, each with its place") {
   CHECK(text.find(":7:17: error: wait_s") != std::string::npos);
 }
 
+TEST_CASE("a file of another kind is told by one line, with the command that takes it") {
+  CHECK(fault("# walks\npirsim_walk_test: 1\nspacing_m: 1\n")
+            .ends_with(":2:19: error: this is a walk test: `pirsim walktest --script` takes it"));
+  CHECK(fault("{\"asset\": {\"version\": \"2.0\"}, \"nodes\": []}").find("this is a glTF scene: `--scene` takes it") !=
+        std::string::npos);
+  CHECK(fault("glTF\x02").find("this is a glTF scene: `--scene` takes it") != std::string::npos);
+  CHECK(fault("name: nothing known\n").find("'pirsim_script' is missing") != std::string::npos);
+}
+
 TEST_CASE("a trial's name may not become empty by what is filled in") {
   const std::string text =
       "pirsim_script: 1\ntrials:\n  for_each: {seat: [S1, \"\"]}\n  id: ${seat}\npeople: [{id: a}]\n";
