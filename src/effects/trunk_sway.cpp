@@ -16,7 +16,7 @@ const Effect& trunk_sway() {
       .info = {.name = "trunk_sway",
                .family = Family::motion,
                .stage = "body",
-               .summary = "Who sits sways from side to side all the time: breathing, balancing, music.",
+               .summary = "A seated person sways from side to side all the time: breathing, balancing, music.",
                .fingerprint = "activity at a steady rhythm, where a zone's edge lies on trunk or head",
                .confused_with = {"fidgeting", "soft_zone_edges", "arm_motion"},
                .parameters = {{.name = "amplitude_deg",
