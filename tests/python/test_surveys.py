@@ -53,5 +53,5 @@ def test_faults_of_a_survey_are_told(room, data):
         pirsim.coverage(room, script, set={"without": ["piano"], "spacing_m": 0.4})
     with pytest.raises(pirsim.InputError, match="spacing_m"):
         pirsim.coverage(room, script, set={"spacing_m": -1})
-    with pytest.raises(pirsim.InputError, match="pirsim_walk_test"):
+    with pytest.raises(pirsim.InputError, match="this is a coverage study"):
         pirsim.walk_test(room, script)

@@ -24,7 +24,7 @@ ReferenceStudy make(const std::vector<EffectSpec>& already, Measured::Kind kind)
   ScriptSpec script = test::short_study({"S1", "S2", "S4", "S6", "S8", "S10"}, 60.0);
   script.effects = already;
   Settings settings;
-  settings.table = {250, 250, 250, {"false_triggers", "missed_triggers", "pulse_stretching"}};
+  settings.table = {500, 500, 500, {"false_triggers", "missed_triggers", "pulse_stretching"}};
   return make_reference_study(
       test::shipped_scene("meeting_room.gltf"), script, settings,
       [&](const StudyFrame& frame, std::span<const Series> pilot) { return full_shape(frame, kind, 1, pilot); });
