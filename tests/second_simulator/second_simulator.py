@@ -252,17 +252,29 @@ def reach_of(about):
 
 def covered_rays(rays, motion):
     """Yields (ticks, (n_ticks, n_rays) True where a body is hit before the room and within range), from tick 1 on."""
+    last = [np.zeros(len(rays.limits), bool) for _ in motion.solids]  # what each solid covered at the tick before
     for first in range(1, len(motion.times), CHUNK):
-        ticks = slice(first, min(first + CHUNK, len(motion.times)))
-        seen = np.zeros((ticks.stop - first, len(rays.limits)), bool)
-        for about, origins, rotations, present in motion.solids:
-            to = origins[ticks, None] - rays.origins  # a bounding sphere leaves out most rays
-            near = np.maximum((to * rays.directions).sum(-1), 0)
-            gap = ((to - near[..., None] * rays.directions) ** 2).sum(-1)
-            t, r = np.nonzero((gap <= (reach_of(about) + 1e-6) ** 2) & present[ticks, None] & ~seen)
-            hit = entry(about, rays.origins[r], rays.directions[r], origins[ticks][t], rotations[ticks][t])
-            seen[t, r] |= hit < rays.limits[r]
-        yield ticks, seen
+        ticks = np.arange(first, min(first + CHUNK, len(motion.times)))
+        seen = np.zeros((len(ticks), len(rays.limits)), bool)
+        for number, (about, origins, rotations, present) in enumerate(motion.solids):
+            moved = (ticks == 1) | (origins[ticks] != origins[ticks - 1]).any(-1) | (present[ticks] != present[ticks - 1])
+            moved |= (rotations[ticks] != rotations[ticks - 1]).any((-2, -1))
+            poses = ticks[moved]
+            t, r = np.nonzero((distance_of_line(rays, origins[poses]) <= reach_of(about) + 1e-6) & present[poses, None])
+            hit = entry(about, rays.origins[r], rays.directions[r], origins[poses][t], rotations[poses][t])
+            covered = np.concatenate([last[number][None], np.zeros((len(poses), len(rays.limits)), bool)])
+            covered[t + 1, r] = hit < rays.limits[r]
+            seen |= covered[np.cumsum(moved)]
+            last[number] = covered[-1]
+        yield slice(ticks[0], ticks[-1] + 1), seen
+
+
+def distance_of_line(rays, points):
+    """(n_points, n_rays) How close each ray comes to each point."""
+    to_point = points @ rays.directions.T - (rays.origins * rays.directions).sum(-1)
+    along = np.maximum(to_point, 0)
+    square = (points**2).sum(-1)[:, None] - 2 * points @ rays.origins.T + (rays.origins**2).sum(-1)
+    return np.sqrt(np.maximum(square + along * (along - 2 * to_point), 0))
 
 
 def covered_shares(rays, motion):
