@@ -101,11 +101,14 @@ class SquareCounter {
     const RayBundle& rays = array_.clipped();
     for (std::uint32_t zone = 0; zone < rays.n_zones(); ++zone) {
       bool near = false;
-      for (auto i = rays.zone_rays_begin[zone]; i < rays.zone_rays_begin[zone + 1]; ++i) {
-        mark_poses(rays.rays[i], rays.range[i], near);
+      for (std::size_t k = 0; k < posed_.size(); ++k) {
+        const TurningCross& cross = study_.target().crosses()[k];
+        if (!may_hit(study_.zone_cones()[zone], foot_ + cross.middle, cross.reach_m)) continue;
+        for (auto i = rays.zone_rays_begin[zone]; i < rays.zone_rays_begin[zone + 1]; ++i) {
+          mark_poses(rays.rays[i], rays.range[i], k, near);
+        }
       }
-      if (!near) continue;
-      for_active([&](std::size_t pose) { exposures_[pose].zones.insert(zone); });
+      if (near) for_active([&](std::size_t pose) { exposures_[pose].zones.insert(zone); });
     }
     if (!exposed_) return;
     for (sim::Exposure& exposure : exposures_) array_.expose(exposure);
@@ -117,7 +120,7 @@ class SquareCounter {
     const RayBundle& rays = power.clipped();
     for (std::uint32_t i = 0; i < rays.rays.size(); ++i) {
       bool near = false;
-      mark_poses(rays.rays[i], rays.range[i], near);
+      for (std::size_t k = 0; k < posed_.size(); ++k) mark_poses(rays.rays[i], rays.range[i], k, near);
       if (!near) continue;
       const sim::PowerSteps step = power.power(i, radiance_);
       const std::uint32_t sensor = power.sensor_of(i);
@@ -140,15 +143,13 @@ class SquareCounter {
     }
   }
 
-  /// Adds the poses in which the ray hits a cross to those marked; the first ray that comes near (`near`, which is
+  /// Adds the poses in which the ray hits cross k to those marked; the first ray that comes near (`near`, which is
   /// then set) begins anew.
-  void mark_poses(const Ray& ray, float range, bool& near) {
-    for (std::size_t k = 0; k < posed_.size(); ++k) {
-      const TurningCross& cross = study_.target().crosses()[k];
-      if (!may_hit(ray, range, foot_ + cross.middle, cross.reach_m)) continue;
-      if (!std::exchange(near, true)) std::ranges::fill(active_, 0);
-      for (const BarPoses& bar : posed(k)) mark_active(ray, range, bar, active_);
-    }
+  void mark_poses(const Ray& ray, float range, std::size_t k, bool& near) {
+    const TurningCross& cross = study_.target().crosses()[k];
+    if (!may_hit(ray, range, foot_ + cross.middle, cross.reach_m)) return;
+    if (!std::exchange(near, true)) std::ranges::fill(active_, 0);
+    for (const BarPoses& bar : posed(k)) mark_active(ray, range, bar, active_);
   }
 
   const std::vector<BarPoses>& posed(std::size_t k) {
@@ -253,7 +254,12 @@ CoverageStudy::CoverageStudy(SceneSpec scene, CoverageSpec spec)
       survey_(std::move(scene), as_script(spec_)),
       grid_(survey_.scene().floor, spec_.spacing_m),
       n_windows_(count_windows(spec_)),
-      target_(spec_.target, spec_.sensing.tick_rate_hz, std::int64_t{n_windows_} * spec_.sensing.ticks_per_window) {}
+      target_(spec_.target, spec_.sensing.tick_rate_hz, std::int64_t{n_windows_} * spec_.sensing.ticks_per_window) {
+  const RayBundle& rays = survey_.array().clipped();
+  for (std::size_t zone = 0; zone < rays.n_zones(); ++zone) {
+    zone_cones_.push_back(cone_of(rays, rays.zone_rays_begin[zone], rays.zone_rays_begin[zone + 1]));
+  }
+}
 
 std::vector<Issue> CoverageStudy::warnings() const {
   return idle_effects(spec_.effects, survey_, effects::Survey::coverage);

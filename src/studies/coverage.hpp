@@ -13,6 +13,7 @@
 #include "pirsim/coverage.hpp"
 #include "pirsim/shapes.hpp"
 #include "pirsim/survey.hpp"
+#include "studies/cross_tracer.hpp"
 #include "studies/survey_base.hpp"
 
 namespace pirsim::studies {
@@ -56,6 +57,8 @@ class CoverageStudy {
   [[nodiscard]] const CoverageSpec& spec() const noexcept { return spec_; }
   [[nodiscard]] const FloorGrid& grid() const noexcept { return grid_; }
   [[nodiscard]] const TurningTarget& target() const noexcept { return target_; }
+  /// (n_zones) Round the clipped rays of each zone.
+  [[nodiscard]] const std::vector<RayCone>& zone_cones() const noexcept { return zone_cones_; }
   [[nodiscard]] int n_windows() const noexcept { return n_windows_; }
   [[nodiscard]] const std::vector<TriMesh>& taken_out() const noexcept { return taken_out_; }
   /// Effects that a coverage study can't show.
@@ -73,6 +76,7 @@ class CoverageStudy {
   FloorGrid grid_;
   int n_windows_ = 0;
   TurningTarget target_;
+  std::vector<RayCone> zone_cones_;
 };
 
 /// A map without counts yet.

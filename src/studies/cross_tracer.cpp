@@ -51,13 +51,40 @@ void mark_active(const Ray& ray, float range, const BarPoses& poses, std::vector
   }
 }
 
+namespace {
+
+constexpr double safety_m = 1e-3;  // as the tracers' bounding boxes have it
+
+/// From a point to the nearest one of a ray. `to_point`: from the ray's origin.
+double distance(const Vec3& to_point, const Vec3& direction, double range_m) noexcept {
+  const double along = std::clamp(glm::dot(to_point, direction), 0.0, range_m);
+  return glm::length(to_point - along * direction);
+}
+
+}  // namespace
+
 bool may_hit(const Ray& ray, float range, const Vec3& middle, double reach_m) noexcept {
-  constexpr double safety_m = 1e-3;  // as the tracers' bounding boxes have it
-  const Vec3 to_middle = middle - Vec3(ray.origin), direction(ray.direction);
-  const double along = std::clamp(glm::dot(to_middle, direction), 0.0, static_cast<double>(range));
-  const Vec3 offset = to_middle - along * direction;
-  const double reach = reach_m + safety_m;
-  return glm::dot(offset, offset) <= reach * reach;
+  return distance(middle - Vec3(ray.origin), Vec3(ray.direction), range) <= reach_m + safety_m;
+}
+
+RayCone cone_of(const RayBundle& bundle, std::uint32_t first, std::uint32_t last) noexcept {
+  if (first == last) return {};
+  const Ray& middle = bundle.rays[first + (last - first) / 2];
+  RayCone cone{.origin = middle.origin, .direction = middle.direction};
+  for (auto i = first; i < last; ++i) {
+    cone.range_m = std::max(cone.range_m, static_cast<double>(bundle.range[i]));
+    cone.spread_m = std::max(cone.spread_m, glm::distance(Vec3(bundle.rays[i].origin), cone.origin));
+    cone.spread_per_m = std::max(cone.spread_per_m, glm::distance(Vec3(bundle.rays[i].direction), cone.direction));
+  }
+  return cone;
+}
+
+bool may_hit(const RayCone& cone, const Vec3& middle, double reach_m) noexcept {
+  const Vec3 to_middle = middle - cone.origin;
+  const double near_m = reach_m + safety_m + cone.spread_m;
+  // A ray that comes so near does it no farther along than this.
+  const double farthest_m = glm::length(to_middle) + near_m;
+  return distance(to_middle, cone.direction, cone.range_m) <= near_m + cone.spread_per_m * farthest_m;
 }
 
 }  // namespace pirsim::studies

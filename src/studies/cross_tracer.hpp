@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "pirsim/rays.hpp"
 #include "pirsim/shapes.hpp"
 
 namespace pirsim::studies {
@@ -28,5 +29,18 @@ void mark_active(const Ray& ray, float range, const BarPoses& poses, std::vector
 
 /// Whether the ray passes through a sphere within its range; a millimetre is added to be on the safe side of rounding.
 [[nodiscard]] bool may_hit(const Ray& ray, float range, const Vec3& middle, double reach_m) noexcept;
+
+/// A ray and how far others that start near it and look much the same way stray from it.
+struct RayCone {
+  Vec3 origin{0.0}, direction{0.0, 0.0, 1.0};
+  double range_m = 0.0;       ///< the longest ray's
+  double spread_m = 0.0;      ///< between the origins
+  double spread_per_m = 0.0;  ///< between the rays, for each metre along them
+};
+
+/// Round the rays [first, last) of a bundle.
+[[nodiscard]] RayCone cone_of(const RayBundle& bundle, std::uint32_t first, std::uint32_t last) noexcept;
+/// False if may_hit() is false for every ray of the cone.
+[[nodiscard]] bool may_hit(const RayCone& cone, const Vec3& middle, double reach_m) noexcept;
 
 }  // namespace pirsim::studies

@@ -101,6 +101,33 @@ TEST_CASE("so it does for beams, and for turns that never repeat", "[coverage]")
   CHECK(check_against_plain(study, 2, 12) > 12);
 }
 
+TEST_CASE("a cone that misses a sphere has no ray that may hit it, and a cone of a zone misses most spheres", "[coverage]") {
+  Draw draw(17);
+  std::size_t passed_over = 0, rays_near = 0;
+  for (int round = 0; round < 4000; ++round) {
+    // From a beam's five rays to a spray from origins half a metre apart, shorter and longer than the way to the sphere.
+    const double turn = draw.between(0.0, 0.2), apart_m = round % 2 == 0 ? 0.0 : draw.between(0.0, 0.5);
+    const Vec3 axis = draw.direction();
+    RayBundle bundle;
+    for (int i = 0; i < 5; ++i) {
+      bundle.rays.push_back({Vec3f(apart_m * draw.direction()), Vec3f(glm::normalize(axis + turn * draw.direction()))});
+      bundle.range.push_back(static_cast<float>(draw.between(0.5, 8.0)));
+    }
+    const Vec3 middle = draw.between(0.1, 8.0) * glm::normalize(axis + draw.between(0.0, 0.6) * draw.direction());
+    const double reach_m = draw.between(0.05, 0.5);
+    bool near = false;
+    for (std::size_t i = 0; i < bundle.rays.size(); ++i) {
+      near = near || may_hit(bundle.rays[i], bundle.range[i], middle, reach_m);
+    }
+    rays_near += near ? 1 : 0;
+    if (may_hit(cone_of(bundle, 0, 5), middle, reach_m)) continue;
+    ++passed_over;
+    REQUIRE_FALSE(near);
+  }
+  CHECK(rays_near > 500);
+  CHECK(passed_over > 1000);
+}
+
 TEST_CASE("poses that repeat have the same bits as poses of the whole minute", "[coverage]") {
   const XShapesSpec spec;
   const TurningTarget turning(spec, 50, 3000);
