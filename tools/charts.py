@@ -7,15 +7,17 @@ as PNG files. Needs Chromium and libjs-vega
 import base64
 import json
 import pathlib
+import re
 
 from make_vega_bundle import bundle
 from page_charts import charts_of
 
 VEGA = pathlib.Path("/usr/share/javascript/vega")
-# The colours of all pictures: lines told apart by colour, a light one for lines in the background, one for what was
-# measured or what a formula says.
-COLOURS = ("#1b6ca8", "#d95f02", "#2ca25f", "#756bb1", "#e7298a", "#a6761d", "#17a2b8", "#bcbd22", "#666666", "#c51b1b")
-LIGHT, REFERENCE, GUIDE = "#9ecae1", "#d95f02", "#999999"
+PALETTE = pathlib.Path(__file__).parents[1] / "src/io/page/palette.css"
+# Lines told apart by colour: the pages' own, on white.
+COLOURS = tuple(re.findall(r"--series-\d+: (#\w+)", PALETTE.read_text().split("@media")[0]))
+# Lines in the background, what was measured or what a formula says, lines to guide the eye.
+LIGHT, REFERENCE, GUIDE = "#9ecae1", COLOURS[1], "#999999"
 
 
 def scale(name, bounds, pixels, kind="linear"):

@@ -22,6 +22,7 @@ using ChartJson = nlohmann::ordered_json;
 
 [[nodiscard]] std::string_view vega_script() noexcept;    ///< defines `vega`; made by tools/make_vega_bundle.py
 [[nodiscard]] std::string_view report_script() noexcept;  ///< src/io/page/report.js
+[[nodiscard]] std::string_view palette() noexcept;        ///< src/io/page/palette.css, the colours of all pages
 [[nodiscard]] std::string_view report_style() noexcept;   ///< src/io/page/report.css
 [[nodiscard]] std::string_view three_script() noexcept;   ///< defines `three`; made by tools/vendor_three
 [[nodiscard]] std::string_view view_page() noexcept;      ///< src/io/page/view.html, a template

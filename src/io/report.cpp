@@ -100,7 +100,7 @@ std::string to_html(const Report& report) {
       << "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" "
          "href=\"data:,\">\n"
       << "<title>" << escaped(report.title) << "</title>\n<style>\n"
-      << detail::report_style() << "</style>\n</head>\n<body>\n"
+      << detail::palette() << detail::report_style() << "</style>\n</head>\n<body>\n"
       << "<h1>" << escaped(report.title) << "</h1>\n";
   if (!report.finding.empty()) out << "<p class=\"lead\">" << escaped(report.finding) << "</p>\n";
   write_paragraphs(out, report.paragraphs);

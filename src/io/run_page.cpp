@@ -143,7 +143,7 @@ void write_run_page(std::ostream& out, const RunPage& page) {
           {{"title", detail::escaped(page.title)},
            {"about", detail::escaped(page.about)},
            {"made_by", detail::escaped(page.made_by)},
-           {"style", std::string(detail::view_style())},
+           {"style", std::string(detail::palette()) + std::string(detail::view_style())},
            {"glb", packed(to_glb(on_grid(page.run)))},
            {"data", packed(json_text(page))},
            {"three", std::string(detail::three_script())},

@@ -338,7 +338,7 @@
       scales: [
         { name: "x", type: "linear", domain: chart.x, range: "width", nice: false, zero: false },
         { name: "y", type: "linear", domain: chart.y, range: "height", nice: false, zero: false },
-        { name: "colour", type: "ordinal", domain: chart.names, range: [css("--mark"), css("--real"), css("--bar"), "#9a6700"] },
+        { name: "colour", type: "ordinal", domain: chart.names, range: chart.names.map((name, i) => css("--series-" + (i % 10 + 1))) },
       ],
       axes: [axis("x", "bottom", chart.x_label || null, names ? { values: ticks, encode: { labels: { update: {
         text: { signal: JSON.stringify(chart.x_names) + "[datum.value - 1]" } } } } } : { tickCount: 5 }),
