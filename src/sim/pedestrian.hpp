@@ -69,6 +69,12 @@ class Pedestrian {
  private:
   using Way = std::vector<Vec2>;
   bool makes_way_among(std::span<const Presence> others, std::int64_t now, Sitter sitter);
+
+  static constexpr double gap_m = 0.1;  ///< assumed: kept between two people on foot beside their radii
+  static constexpr double squeeze_gap_m = 0.03;     ///< assumed: between trunks that squeeze past (tried 0.02, 0.03)
+  static constexpr double leaning_back_rad = 0.26;  ///< how far back a sitter leans: 15 degrees, as in the paper
+  static constexpr double search_every_s = 0.2;     ///< how often one who found no way looks again
+
   struct Aside {
     Vec2 place{0.0};
     Precedence precedence;               ///< inherited
@@ -96,6 +102,9 @@ class Pedestrian {
   [[nodiscard]] std::optional<Vec2> passing_place(const Presence& whom, std::span<const Presence> others,
                                                   double reach_m) const;
   [[nodiscard]] bool can_go_back(const Aside& aside, std::span<const Presence> others, std::int64_t now) const;
+  [[nodiscard]] bool is_past(const Aside& aside, std::span<const Presence> others) const;
+  bool waits_aside(std::span<const Presence> others, std::int64_t now);
+  bool steps_aside(std::span<const Presence> others, std::int64_t now);
   bool gets_up(std::span<const Presence> others, std::int64_t now);
   [[nodiscard]] bool bars(const Presence& other, const Vec2& from, const Vec2& to) const;
   void ask_up(const Vec2& target, std::span<const Presence> others, std::int64_t now);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "body/walkable_floor.hpp"
 #include "pirsim/geometry.hpp"
 #include "pirsim/sample.hpp"
 
@@ -25,6 +26,11 @@ struct Stadium {
   Vec2 a{0.0}, b{0.0};
   double radius_m = 0.0;
 };
+
+/// Negative inside.
+[[nodiscard]] double distance(const Vec2& point, const Stadium& stadium);
+/// Discs that cover it, `more_m` larger, but for a centimetre between them.
+void append_discs(const Stadium& stadium, double more_m, std::vector<body::Disc>& discs);
 
 /// What others need to know to keep out of a person's way.
 struct Presence {
@@ -49,6 +55,10 @@ struct Presence {
   std::optional<Vec2> got_up_from;
   std::optional<std::uint32_t> got_up_for;
 };
+
+[[nodiscard]] inline bool is_solid(const Presence& other) noexcept {
+  return other.solidity == Presence::Solidity::solid;
+}
 
 /// See RunIncident.
 struct Incident {

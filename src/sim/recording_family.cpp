@@ -69,7 +69,8 @@ RayBundle without(const RayBundle& bundle, const ZoneSet& zones) {
   return rest;
 }
 
-/// Solids of the first postures, as many as the memory for them should hold: 30 MB. Study A has some 30,000.
+/// Solids of postures. From keep() on it remembers those of the first postures, as many as the memory for them should
+/// hold: 30 MB. Study A has some 30,000.
 class Solids {
  public:
   [[nodiscard]] std::span<const PosedShape> of(const Postures& postures, Number number) {
@@ -77,12 +78,13 @@ class Solids {
     const std::uint32_t person = postures.person(number);
     if (mannequins_.size() <= person) mannequins_.resize(person + 1);
     const auto solids = mannequins_[person].pose(postures.humanoid(number), postures.outline(number));
-    if (number == n_kept_ + 1 && number <= most_kept) {
+    if (number == n_kept_ + 1 && number <= n_to_keep_) {
       kept_.insert(kept_.end(), solids.begin(), solids.end());
       ++n_kept_;
     }
     return solids;
   }
+  void keep() noexcept { n_to_keep_ = most_kept; }
   void shrink(std::size_t n) {
     n_kept_ = std::min(n_kept_, n);
     kept_.resize(n_kept_ * body::n_parts);
@@ -91,7 +93,7 @@ class Solids {
  private:
   static constexpr std::size_t most_kept = 32768;
 
-  std::size_t n_kept_ = 0;
+  std::size_t n_to_keep_ = 0, n_kept_ = 0;
   std::vector<PosedShape> kept_;       ///< (n_kept x n_parts)
   std::vector<Mannequin> mannequins_;  ///< (n_people)
 };
@@ -214,6 +216,7 @@ struct RecordingFamily::Impl {
   [[nodiscard]] Recording record(const CompiledStudy& other, std::span<const std::uint32_t> runs) {
     postures.shrink(n_postures);
     solids.shrink(n_postures);
+    solids.keep();  // only now: many a family has but its first study
     sight.shrink(n_postures);
     Recording result = empty_recording(other);
     std::vector<PeopleTrack> who;

@@ -204,12 +204,13 @@ Vec3 ink(const rt::Colour& colour) {
 
 void write_labels(const std::vector<Label>& labels, const rt::View& view, io::Pixels& image) {
   const double size = text_size(image);
+  const auto height = static_cast<float>(image.height);
   std::vector<io::Lettering> texts;
   for (const Label& label : labels) {
     auto at = view.pixel_of(Vec3f(label.at));
     if (!at) continue;
     // One that the lower edge would cut stands on it.
-    if (at->y > image.height && at->y < image.height + size) at->y = static_cast<float>(image.height);
+    if (at->y > height && at->y < height + size) at->y = height;
     texts.push_back({Vec2(*at), label.text, ink(label.colour)});
   }
   for (const io::Lettering& text : io::set_apart(std::move(texts), size))
