@@ -3,8 +3,10 @@
 
     challenge.py PIRSIM -o DIR [--faults turned,cat] [--seeds 1,2] [--scene SCENE --script SCRIPT] [--budget 0.3 ...]
 
-Options that aren't its own are reconcile's. pirsim gets the rows and nothing else. Each answer is kept in DIR, so that an interrupted challenge goes on. At the end
-DIR/scores.csv has a line an analysis, and standard output a table by fault.
+Every dataset is of a room and a person of its own, a little off the model as what somebody has put up by hand is
+(AsBuilt). Options that aren't the challenge's own are reconcile's. pirsim gets the rows and nothing else. Each answer is
+kept in DIR, so that an interrupted challenge goes on. At the end DIR/scores.csv has a line an analysis, and standard
+output a table by fault.
 """
 import argparse
 import csv
@@ -16,7 +18,7 @@ import sys
 import numpy as np
 
 import second_simulator as second
-from faults import FAULTS
+from faults import FAULTS, rotation
 
 DATA = pathlib.Path(__file__).parents[2] / "data"
 COLUMNS = ("fault", "seed", "what", "truth", "score", "verdict", "effects", "p", "closed")
@@ -37,20 +39,60 @@ def score(truth, report):
     return "right" if right else "misnamed"
 
 
+# What Study A says of its person.
+PERSON = {"people.0.stature_m": 1.86, "people.0.mass_kg": 80.0, "people.0.actions.3.work.arm_amplitude_m": 0.1}
+
+
+class AsBuilt:
+    """The room and the person of one dataset, off the model by as much as reconcile's usual nuisance allows: seats by 4 cm,
+    sensors by 1.5 degrees sideways and 1 up or down, the body by 3 % and the arms' swing by 10 %."""
+
+    def __init__(self, scene, draw, path):
+        off = lambda most: draw.uniform(-most, most)
+        room = json.loads(pathlib.Path(scene).read_text())
+        for node in room["nodes"]:
+            if second.mark(node).get("type") == "seat":
+                x, y, z = node["translation"]
+                node["translation"] = [x + off(0.04), y, z + off(0.04)]
+        path.write_text(json.dumps(room))
+        self.path, self.scene = path, second.Gltf(path)
+        size = 1 + off(0.03)
+        factors = {"stature_m": size, "mass_kg": size**3, "arm_amplitude_m": 1 + off(0.1)}
+        self.person = {key: value * factors[key.split(".")[-1]] for key, value in PERSON.items()}
+        self.yaws, self.tilts = [off(1.5) for _ in self.sensors()], [off(1.0) for _ in self.sensors()]
+
+    def sensors(self):
+        return second.sorted_sensors(self.scene)
+
+    def hang(self, number, world):
+        """About the vertical through the sensor, and about its own level axis."""
+        turn = rotation([0, 1, 0], self.yaws[number])
+        turned = np.eye(4)
+        turned[:3, :3] = turn[:3, :3] @ world[:3, :3]
+        turned[:3, 3] = world[:3, 3]
+        return turned @ rotation([1, 0, 0], self.tilts[number])
+
+
 class Challenger:
     def __init__(self, options, of_reconcile):
-        self.options, self.scene, self.runs = options, second.Gltf(options.scene), {}
+        self.options, self.runs = options, {}
         self.of_reconcile = [*of_reconcile, *([] if "--table" in of_reconcile else ["--table", options.output / "table"])]
         options.output.mkdir(parents=True, exist_ok=True)
 
-    def runs_with(self, settings):
-        """Runs, and their measurement with nothing wrong: the same for every fault that leaves the people as they are."""
-        if settings not in self.runs:
-            study = second.study_of(self.options.scene, self.options.script, ["replicates=1", *settings])
+    def runs_with(self, seed, settings):
+        """Room, runs, and their measurement with nothing wrong: the same for every fault that leaves the people as they
+        are."""
+        if (seed, settings) not in self.runs:
+            self.runs = {key: made for key, made in self.runs.items() if key[0] == seed}
+            room = AsBuilt(self.options.scene, np.random.default_rng([seed, 3]), self.options.output / f"room-{seed}.gltf")
+            theirs = {setting.split("=")[0] for setting in settings}
+            person = [f"{key}={value!r}" for key, value in room.person.items() if key not in theirs]
+            study = second.study_of(room.path, self.options.script,
+                                    ["replicates=1", f"seed={1000 + seed}", *person, *settings])
             runs = second.runs_of(self.options.pirsim, study)
-            plain = second.Measurement(self.scene, DATA / "sensors", FAULTS["nothing"](None), 0)
-            self.runs[settings] = runs, plain
-        return self.runs[settings]
+            plain = second.Measurement(room.scene, DATA / "sensors", FAULTS["nothing"](None), 0, hang=room.hang)
+            self.runs[seed, settings] = room, runs, plain
+        return self.runs[seed, settings]
 
     def ask(self, name, seed):
         """A row of the scores."""
@@ -58,9 +100,8 @@ class Challenger:
         fault = FAULTS[name](np.random.default_rng([seed, 0]))
         if not (folder / "report.json").exists():
             folder.mkdir(exist_ok=True)
-            # Somebody else's people: the script's seed is that of the dataset.
-            runs, plain = self.runs_with((f"seed={1000 + seed}", *fault.settings))
-            measurement = second.Measurement(self.scene, DATA / "sensors", fault, seed, plain)
+            room, runs, plain = self.runs_with(seed, fault.settings)
+            measurement = second.Measurement(room.scene, DATA / "sensors", fault, seed, plain, room.hang)
             measurement.write(folder / "measured.csv", runs)
             subprocess.run(
                 [self.options.pirsim, "reconcile", "--scene", self.options.scene, "--script", self.options.script, "-q",

@@ -331,14 +331,16 @@ def rows_of(fault, rays, shares, run, random, done=0.0):
 class Measurement:
     """Rows of every run as sensors with a fault would have measured them."""
 
-    def __init__(self, scene, sensor_folder, fault, seed, plain=None):
+    def __init__(self, scene, sensor_folder, fault, seed, plain=None, hang=lambda number, world: world):
         """plain: the measurement with nothing wrong of the same runs, whose rays are not traced again if that is what
-        the fault's rays would hit."""
+        the fault's rays would hit. hang: as `mount` of Rays, how every sensor of the room hangs, fault or not."""
         self.scene, self.fault, self.seed, self.shares = scene, fault, seed, {}
         if plain is not None and fault.is_behind_the_optics():
             self.rays, self.shares = plain.rays, plain.shares
         else:
-            rays = Rays(scene, sensor_folder, fault.mount, fault.range_scale, fault.furnish(scene.triangles()))
+            mount = fault.mount or (lambda number, world: world)
+            rays = Rays(scene, sensor_folder, lambda number, world: mount(number, hang(number, world)), fault.range_scale,
+                        fault.furnish(scene.triangles()))
             self.rays = fault.optics(rays, np.random.default_rng([seed, 1]))
 
     def bits(self, runs, number):
