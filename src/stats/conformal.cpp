@@ -21,13 +21,6 @@ double margin(std::span<const double> probabilities, std::size_t k) {
   return std::log(best_other) - std::log(std::max(probabilities[k], floor));
 }
 
-Matrix<float> pick(const Matrix<float>& features, std::span<const std::size_t> columns) {
-  Matrix<float> picked(features.rows(), columns.size());
-  for (std::size_t row = 0; row < features.rows(); ++row)
-    for (std::size_t i = 0; i < columns.size(); ++i) picked(row, i) = features(row, columns[i]);
-  return picked;
-}
-
 std::vector<std::vector<std::size_t>> checked_blocks(std::vector<std::vector<std::size_t>> blocks,
                                                      std::size_t columns) {
   if (blocks.empty()) {
@@ -54,7 +47,8 @@ ConformalClassifier ConformalClassifier::fit(const Matrix<float>& features, std:
     const Matrix<float> fitting = features.select_rows(split.fitting);
     const std::vector<int> fitting_labels = detail::select(labels, split.fitting);
     for (const auto& block : fitted.blocks_)
-      fitted.shapes_.push_back(ClassShapes::fit(pick(fitting, block), fitting_labels, n_classes, settings.shapes));
+      fitted.shapes_.push_back(
+          ClassShapes::fit(fitting.select_columns(block), fitting_labels, n_classes, settings.shapes));
   }
   fitted.calibrate(features.select_rows(split.calibration), detail::select(labels, split.calibration),
                    settings.pooled.threads);

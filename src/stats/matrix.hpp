@@ -44,6 +44,13 @@ class Matrix {
     }
     return selected;
   }
+  /// The columns of the given indices, in their order.
+  [[nodiscard]] Matrix select_columns(std::span<const std::size_t> indices) const {
+    Matrix selected(rows_, indices.size());
+    for (std::size_t r = 0; r < rows_; ++r)
+      for (std::size_t i = 0; i < indices.size(); ++i) selected(r, i) = (*this)(r, indices[i]);
+    return selected;
+  }
   bool operator==(const Matrix&) const = default;
 
  private:

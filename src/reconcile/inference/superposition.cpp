@@ -36,13 +36,6 @@ stats::Matrix<float> superposed(const stats::Matrix<float>& features, const RowI
   return sums;
 }
 
-stats::Matrix<float> columns_of(const stats::Matrix<float>& features, const std::vector<std::size_t>& columns) {
-  stats::Matrix<float> picked(features.rows(), columns.size());
-  for (std::size_t row = 0; row < features.rows(); ++row)
-    for (std::size_t i = 0; i < columns.size(); ++i) picked(row, i) = features(row, columns[i]);
-  return picked;
-}
-
 /// How strange the data are among the rows, by the strangest block: p of two thirds of them against the others.
 double p_among(const stats::Matrix<float>& rows, std::span<const float> data,
                const std::vector<std::vector<std::size_t>>& blocks, std::uint64_t seed) {
@@ -54,11 +47,11 @@ double p_among(const stats::Matrix<float>& rows, std::span<const float> data,
   stats::Matrix<float> wanted;
   wanted.append_row(data);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
-    const stats::Matrix<float> block = columns_of(rows, blocks[b]);
+    const stats::Matrix<float> block = rows.select_columns(blocks[b]);
     const auto shape = stats::ClassShapes::fit(block.select_rows(fitting), one_class, 1, {.seed = seed, .threads = 1});
     for (std::size_t i = 0; i < calibration.size(); ++i)
       known(i, b) = std::cbrt(shape.strangeness(block.row(calibration[i]), 0));
-    own.push_back(std::cbrt(shape.strangeness(columns_of(wanted, blocks[b]).row(0), 0)));
+    own.push_back(std::cbrt(shape.strangeness(wanted.select_columns(blocks[b]).row(0), 0)));
   }
   return stats::StrangestMeasure(known).p(own);
 }
