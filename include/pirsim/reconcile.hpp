@@ -152,6 +152,9 @@ struct Context {
 /// What made the results, for the report: file names as given.
 struct Provenance {
   std::string program, scene, script, measured;
+  /// What the user typed so that the model is this one, for commands to repeat: "--scene", "rooms/a.gltf", "--set", ...
+  /// Empty: --scene and --script with the names above.
+  std::vector<std::string> model_options;
 };
 /// report.json, report.html, where.csv, candidates.csv, script_patched.yaml (if an effect was named) and trail.log
 /// (docs/formats/reconcile.md), each complete or not at all; the folder is made. Throws Error(io).

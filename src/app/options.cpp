@@ -160,6 +160,15 @@ void offer_study(CLI::App& command, Inputs& inputs) {
   offer_changes(command, inputs);
 }
 
+std::vector<std::string> model_options(const Inputs& inputs) {
+  const auto typed = [](const std::filesystem::path& file) { return file == standard_input ? "-" : file.string(); };
+  std::vector<std::string> words{"--scene", typed(inputs.scene), "--script", typed(inputs.script)};
+  for (const std::string& change : inputs.overrides) words.insert(words.end(), {"--set", change});
+  for (const std::filesystem::path& folder : inputs.sensor_directories)
+    words.insert(words.end(), {"--sensors", folder.string()});
+  return words;
+}
+
 void offer_tracer(CLI::App& command, Inputs& inputs) {
   command.add_option("--tracer", inputs.tracer, "auto, direct, embree or reference")->option_text("NAME");
 }

@@ -37,6 +37,8 @@ void offer_input_file(CLI::App& command, const std::string& name, std::filesyste
 void offer_scene(CLI::App& command, Inputs& inputs);
 /// The same and --script: every other command that reads a room uses them.
 void offer_study(CLI::App& command, Inputs& inputs);
+/// What of it makes the model what it is, as the user typed it: a command with these words reads the same.
+[[nodiscard]] std::vector<std::string> model_options(const Inputs& inputs);
 /// For commands that trace rays by load().
 void offer_tracer(CLI::App& command, Inputs& inputs);
 void offer_seed(CLI::App& command, Inputs& inputs);

@@ -184,9 +184,10 @@ void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const
   tell_notes(outcome.notes, inputs.verbosity);
   std::cout << reconcile::sentence(outcome, settings.alpha) << '\n';
   require_written();
-  reconcile::write_report(options.output, outcome, measured, script, settings, context,
-                          {"pirsim " + version() + " " + git_revision(), inputs.scene.filename().string(),
-                           inputs.script.filename().string(), options.measured.filename().string()});
+  reconcile::write_report(
+      options.output, outcome, measured, script, settings, context,
+      {"pirsim " + version() + " " + git_revision(), inputs.scene.filename().string(),
+       inputs.script.filename().string(), options.measured.filename().string(), model_options(inputs)});
 }
 
 void offer_analysis(CLI::App& command, AnalysisOptions& options) {

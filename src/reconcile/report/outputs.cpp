@@ -238,8 +238,10 @@ void write_report(const std::filesystem::path& folder, const Outcome& outcome, c
   trail += "these data were analysed " + std::to_string(before) + " times before in this folder\n";
   io::write_text_file(folder / "trail.log", trail);
   const std::vector<std::string>& phases = script.summary.phases;
-  io::Report page = report_page(outcome, settings.alpha,
-                                {provenance.scene, provenance.script, phases.empty() ? "" : phases.front()});
+  const std::vector<std::string> names{"--scene", provenance.scene, "--script", provenance.script};
+  const Watched watched{provenance.model_options.empty() ? names : provenance.model_options,
+                        phases.empty() ? "" : phases.front()};
+  io::Report page = report_page(outcome, settings.alpha, watched);
   page.footer = provenance.program + ", " + provenance.scene + ", " + provenance.script + ", " + provenance.measured;
   io::write_text_file(folder / "report.html", io::to_html(page));
   io::write_text_file(folder / "report.json", to_json(outcome, measured, settings, context, provenance));

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "io/report.hpp"
 #include "pirsim/reconcile.hpp"
@@ -13,8 +14,8 @@ namespace pirsim::reconcile {
 
 /// How a reader gets at the runs in which a cell was counted.
 struct Watched {
-  std::string scene, script;  ///< files' names
-  std::string phase;          ///< in which seconds with motion are counted; empty: all the time
+  std::vector<std::string> model_options;  ///< words of a command: "--scene", "rooms/a.gltf", ...
+  std::string phase;                       ///< in which seconds with motion are counted; empty: all the time
 };
 
 /// The verdict first; then where model and measurement differ, which effects were looked at and why each was kept or

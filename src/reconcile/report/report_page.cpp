@@ -33,7 +33,8 @@ std::string file_word(std::string text) {
 io::Table pages_to_watch(const Location& location, double alpha, const Watched& watched) {
   constexpr std::size_t most = 3;
   io::Table table{{"trial", "sensor", "command", "then open"}, {}};
-  const std::string study = " --scene " + shell_word(watched.scene) + " --script " + shell_word(watched.script);
+  std::string study;
+  for (const std::string& word : watched.model_options) study += ' ' + shell_word(word);
   for (const LocatedCell& cell : location.cells) {
     if (cell.adjusted_p > alpha || table.rows.size() == most) continue;
     const std::string page = file_word(cell.trial) + ".html";
@@ -59,7 +60,9 @@ io::ReportSection where(const Outcome& outcome, double alpha, const Watched& wat
           " s in one cell can't be told from chance here. Of so many cells some lie outside their usual range "
           "by chance alone; a frame marks those that do with that allowed for."};
   if (io::Table pages = pages_to_watch(location, alpha, watched); !pages.rows.empty()) {
-    section.paragraphs.emplace_back("What the model does there can be watched, in a page that plays the run:");
+    section.paragraphs.emplace_back(
+        "What the model does there can be watched, in a page that plays the run. These commands work in the folder in "
+        "which the analysis was started:");
     section.tables.push_back(std::move(pages));
   }
   section.charts.emplace_back(difference_chart(location, alpha));

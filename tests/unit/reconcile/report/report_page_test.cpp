@@ -159,12 +159,13 @@ TEST_CASE("the page names the commands that show the model where a cell is frame
   const auto page = [&](double alpha, const Watched& watched) {
     return io::to_html(report_page(outcome, alpha, watched));
   };
-  const std::string told = page(0.05, {"my room.gltf", "study.yaml", "working"});
-  CHECK_THAT(told, contains("pirsim view --scene 'my room.gltf' --script study.yaml --trial 'it'\\''s S 8' "
-                            "-o it_s_S_8.html"));
+  const std::string told =
+      page(0.05, {{"--scene", "my room.gltf", "--script", "in/study.yaml", "--set", "people.0.id=a b"}, "working"});
+  CHECK_THAT(told, contains("pirsim view --scene 'my room.gltf' --script in/study.yaml --set 'people.0.id=a b' "
+                            "--trial 'it'\\''s S 8' -o it_s_S_8.html"));
   CHECK_THAT(told, contains("it_s_S_8.html#phase=working&amp;sensor=" + sensor));
-  CHECK_THAT(page(0.05, {"a.gltf", "b.yaml", ""}), contains("it_s_S_8.html#sensor=" + sensor));
-  CHECK_THAT(page(0.0, {"a.gltf", "b.yaml", ""}), !contains("pirsim view"));
+  CHECK_THAT(page(0.05, {{"--scene", "a.gltf"}, ""}), contains("it_s_S_8.html#sensor=" + sensor));
+  CHECK_THAT(page(0.0, {{"--scene", "a.gltf"}, ""}), !contains("pirsim view"));
 }
 
 TEST_CASE("the page says what held-out trials show and no more", "[report]") {
