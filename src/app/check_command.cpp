@@ -46,9 +46,12 @@ void print(std::ostream& out, const Model& model, const studies::SightReport& re
 }
 
 void check(const Inputs& inputs) {
-  const Model model = load(inputs);
+  // Warnings are what a check is made for: --quiet leaves out only the report.
+  Inputs with_warnings = inputs;
+  with_warnings.verbosity = Verbosity::normal;
+  const Model model = load(with_warnings);
   const studies::SightReport report = studies::look_around(model);
-  tell(studies::warnings(report, model.scene().name), inputs.verbosity);
+  tell(studies::warnings(report, model.scene().name), Verbosity::normal);
   if (inputs.verbosity != Verbosity::quiet) print(std::cout, model, report);
   require_written();
 }
@@ -58,7 +61,7 @@ void check(const Inputs& inputs) {
 void add_check_command(CLI::App& app) {
   CLI::App& command = add_command(app, "check", "validate scene and script without running them", R"(
   pirsim check --scene room.gltf --script study.yaml               validate, and report what each sensor can see
-  pirsim check --scene room.gltf --script study.yaml -q            only whether there are faults
+  pirsim check --scene room.gltf --script study.yaml -q            only faults and warnings
 )");
   const auto inputs = std::make_shared<Inputs>();
   offer_study(command, *inputs);

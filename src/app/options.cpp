@@ -191,7 +191,7 @@ void offer_replicates(CLI::App& command, Inputs& inputs) {
 
 void offer_quiet(CLI::App& command, Verbosity& verbosity) {
   command.add_flag_callback(
-      "-q,--quiet", [&verbosity] { verbosity = Verbosity::quiet; }, "errors only");
+      "-q,--quiet", [&verbosity] { verbosity = Verbosity::quiet; }, "errors only; of check, warnings as well");
 }
 
 void offer_verbose(CLI::App& command, Verbosity& verbosity) {
