@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import difflib
+import warnings
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Iterable, NamedTuple
@@ -89,7 +91,14 @@ class Result:
         """[run, sensor] seconds with motion, of all phases or of these."""
         if phases is None:
             return self.bits.sum(axis=1, dtype=np.int64)
-        wanted = np.isin(np.array(self.phases), list(phases))[self.phase_code]
+        phases = list(phases)
+        for phase in phases:
+            if phase in self.phases:
+                continue
+            near = difflib.get_close_matches(phase, self.phases, n=1)
+            hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(filter(None, self.phases))}"
+            warnings.warn(f"no row of these runs has a phase {phase!r}, so it counts as 0 ({hint})", stacklevel=2)
+        wanted = np.isin(np.array(self.phases), phases)[self.phase_code]
         return (self.bits * wanted[:, :, np.newaxis]).sum(axis=1, dtype=np.int64)
 
     def _columns(self) -> dict[str, npt.NDArray[Any]]:

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "pirsim/error.hpp"
+#include "schema/phase_names.hpp"
 
 namespace pirsim::body {
 
@@ -47,11 +48,7 @@ bool rests_at(const MinJerk& motion, double target) { return motion.settled() &&
 
 }  // namespace
 
-std::string_view name(Stage stage) noexcept {
-  static constexpr std::array<std::string_view, 6> names{"standing",     "walking", "turning",
-                                                         "sitting_down", "seated",  "rising"};
-  return names[static_cast<std::size_t>(stage)];
-}
+std::string_view name(Stage stage) noexcept { return phases_of_body[static_cast<std::size_t>(stage)]; }
 
 Motion::Motion(const Humanoid& humanoid, const Vec2& position, double heading, double floor_height_m, double tick_s)
     : humanoid_(humanoid), floor_height_m_(floor_height_m), tick_s_(tick_s), pace_m_s_(humanoid.walking_speed_m_s()) {

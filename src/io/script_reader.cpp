@@ -1,6 +1,7 @@
 #include "pirsim/io.hpp"
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <cstdint>
 #include <limits>
 #include <set>
@@ -8,6 +9,7 @@
 #include "io/reader_parts.hpp"
 #include "io/yaml_map.hpp"
 #include "schema/body_part_names.hpp"
+#include "schema/phase_names.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -48,6 +50,41 @@ WarmthSpec read_warmth(const std::optional<YamlNode>& node, Diagnostics& faults)
   }
   map.finish();
   return warmth;
+}
+
+/// What a row's phase can be: with a schedule the use of the room, else what the first person does.
+std::vector<std::string> phases_of(const ScriptSpec& script) {
+  std::set<std::string> phases;
+  for (const TrialSpec& trial : script.trials) {
+    if (trial.schedule) {
+      for (const std::string_view use : {phase_empty, phase_occupied, phase_meeting, phase_cleaning})
+        phases.emplace(use);
+      continue;
+    }
+    phases.emplace(phase_outside);
+    phases.insert(phases_of_body.begin(), phases_of_body.end());
+    // Whoever an effect adds to nobody is the first.
+    if (trial.people.empty()) phases.emplace(phase_working);
+    for (std::size_t i = 0; !trial.people.empty() && i < trial.people.front().actions.size(); ++i) {
+      const ScriptedAction& action = trial.people.front().actions[i];
+      if (!action.phase.empty()) phases.insert(action.phase);
+      if (action.phase.empty() && std::holds_alternative<action::Work>(action.what)) phases.emplace(phase_working);
+    }
+  }
+  return {phases.begin(), phases.end()};
+}
+
+/// Of a phase that no run has, every sum would be 0.
+void check_phases(const std::optional<YamlNode>& summary, const ScriptSpec& script, Diagnostics& faults) {
+  if (script.summary.phases.empty()) return;
+  const std::vector<std::string> known = phases_of(script);
+  for (const YamlNode& item : YamlMap(*summary, faults, "summary").list("phases")) {
+    const std::string phase = item.text(faults, "summary.phases");
+    if (std::ranges::find(known, phase) != known.end()) continue;
+    const std::string near = did_you_mean(phase, known);
+    faults.error(item.where(), "summary.phases: no run has a phase '" + phase + "'" +
+                                   (near.empty() ? "; there are " + boost::algorithm::join(known, ", ") : near));
+  }
 }
 
 constexpr double natural_speed_m_s = 1.2;  // indoors; Ref: [Weidmann1993] has 1.34 in the open
@@ -198,6 +235,7 @@ ScriptSpec script_of(const YamlNode& root, const std::filesystem::path& file) {
       trial.schedule = schedule;
     }
   }
+  if (!faults.has_errors()) check_phases(map.child("summary"), script, faults);
   script.effects = read_effects(map.list("effects"), faults);
   if (script.trials.size() * static_cast<std::size_t>(script.replicates) > std::numeric_limits<std::uint32_t>::max()) {
     faults.error(map.where("replicates"), "trials times replicates are more than " +

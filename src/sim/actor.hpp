@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "pirsim/random.hpp"
+#include "schema/phase_names.hpp"
 #include "sim/compiled_study.hpp"
 #include "sim/natural_motion.hpp"
 #include "sim/pedestrian.hpp"
@@ -158,7 +159,7 @@ class Actor {
   std::deque<Errand> errands_;            ///< still to do for the current action
   std::string_view seat_;                 ///< taken, or empty
   std::optional<SitOn> sits_on_;          ///< where they go back to if they get up for somebody
-  std::string_view phase_ = "outside";
+  std::string_view phase_ = phase_outside;
   std::int64_t waited_ticks_ = 0;  ///< for the door, or for room to come in
   std::int64_t seat_wait_ticks_ = 0;
   std::vector<Incident> incidents_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "schema/phase_names.hpp"
+
 namespace pirsim::sim {
 
 Crowd::Crowd(const CompiledStudy& study, std::uint32_t run) : conversation_(study.seed(), run) {
@@ -85,7 +87,7 @@ int Crowd::n_on_floor(const FloorArea& floor) const {
   }));
 }
 
-std::string_view Crowd::phase() const noexcept { return actors_.empty() ? "outside" : actors_.front().phase(); }
+std::string_view Crowd::phase() const noexcept { return actors_.empty() ? phase_outside : actors_.front().phase(); }
 
 bool Crowd::done() const noexcept {
   return std::ranges::all_of(actors_, [](const Actor& actor) {

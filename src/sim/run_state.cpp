@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "schema/phase_names.hpp"
 #include "schema/schedule_people.hpp"
 #include "sim/schedule.hpp"
 
@@ -18,8 +19,8 @@ std::string_view use_of(const CompiledStudy& study, const Crowd& crowd) {
     cleaners += part && part->part == SchedulePart::cleaner ? 1 : 0;
     in_meeting += actor.takes_part_in_meeting() ? 1 : 0;
   }
-  if (n == 0) return "empty";
-  return in_meeting > 1 ? "meeting" : cleaners == n ? "cleaning" : "occupied";
+  if (n == 0) return phase_empty;
+  return in_meeting > 1 ? phase_meeting : cleaners == n ? phase_cleaning : phase_occupied;
 }
 
 void end_window(const CompiledStudy& study, RunState& state) {

@@ -285,6 +285,27 @@ class Scripts(unittest.TestCase):
         self.assertIn("false_triggers has no parameter 'prob'; known are ",
                       told("--set", "effects=[{false_triggers: {prob: 1}}]"))
 
+    def test_phases_that_no_run_has_are_told_with_their_line(self):
+        def told(phases, *more):
+            return study("--print-config", "--set", f"summary.phases={phases}", *more, code=3).stderr
+        self.assertIn("summary.phases: no run has a phase 'workin' (did you mean 'working'?)", told("[workin]"))
+        self.assertIn("no run has a phase 'meeting'; there are outside, rising, ", told("[working, meeting]"))
+        self.assertIn("no run has a phase 'working'; there are desk, ", told("[working]", "--set",
+                                                                            "people.0.actions.3.phase=desk"))
+        study("--print-config", "--set", "summary.phases=[desk]", "--set", "people.0.actions.3.phase=desk")
+        with tempfile.TemporaryDirectory() as folder:
+            script = pathlib.Path(folder) / "trials.yaml"
+            person = "people: [{id: a, actions: [{enter: door}, {wait_s: 1%s}, {leave: door}]}]"
+            script.write_text("pirsim_script: 1\nsummary:\n  phases: [%s]\ntrials:\n  - {id: A, " + person % "" + "}\n"
+                              "  - {id: B, " + person % ", phase: reading" + "}\n")
+            lines = script.read_text()
+            for phase, code in (("reading", 0), ("readin", 3)):  # of one trial of two
+                script.write_text(lines % phase)
+                told_of = pirsim("--print-config", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script", script,
+                                 code=code).stderr
+                self.assertEqual("trials.yaml:3:12: error: summary.phases: no run has a phase 'readin'" in told_of,
+                                 code == 3, told_of)
+
     def test_files_at_the_wrong_option_or_command(self):
         scene, script = DATA / "rooms" / "meeting_room.gltf", DATA / "studies" / "studyA.yaml"
         walk = DATA / "studies" / "walk_test.yaml"

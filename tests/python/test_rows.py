@@ -174,6 +174,8 @@ def test_shapes_types_and_counts(room, study_a):
     for run in range(runs):
         assert working[run].tolist() == result.bits[run][result.phase[run] == "working"].sum(axis=0).tolist()
     assert (result.motion_windows() >= working).all()
+    with pytest.warns(UserWarning, match="no row of these runs has a phase 'workin'.*did you mean 'working'"):
+        assert not result.motion_windows(["workin"]).any()
     assert model.sensors.position_m.shape == (5, 3) and model.sensors.names == result.sensors
     assert np.allclose(np.linalg.norm(model.seats.forward, axis=1), 1)
     assert model.rays.origin.shape == model.rays.direction.shape == (len(model.rays.range_m), 3)
