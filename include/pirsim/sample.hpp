@@ -60,7 +60,8 @@ struct OccupantRow {
 enum class IncidentKind {
   passed_through,  ///< two people who had found no way round each other went through each other
   seat_changed,    ///< the seat was taken; another one was free
-  seat_missed      ///< the seat stayed taken; the person went on with what comes next
+  seat_missed,     ///< the seat stayed taken; the person went on with what comes next
+  waited_outside   ///< the seat was taken when the person came for it; they have waited outside for 10 s already
 };
 
 struct RunIncident {

@@ -26,8 +26,8 @@ class Fault(NamedTuple):
 
 
 class Incident(NamedTuple):
-    """Something between people, or a person and a seat, that ended no run: `passed_through`, `seat_changed` or
-    `seat_missed`."""
+    """Something between people, or a person and a seat, that ended no run: `passed_through`, `seat_changed`,
+    `seat_missed` or `waited_outside`."""
 
     run: int
     kind: str

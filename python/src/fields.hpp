@@ -98,9 +98,9 @@ struct Words<Severity> {
 };
 template <>
 struct Words<IncidentKind> {
-  static constexpr std::array all{std::pair{"passed_through", IncidentKind::passed_through},
-                                  std::pair{"seat_changed", IncidentKind::seat_changed},
-                                  std::pair{"seat_missed", IncidentKind::seat_missed}};
+  static constexpr std::array all{
+      std::pair{"passed_through", IncidentKind::passed_through}, std::pair{"seat_changed", IncidentKind::seat_changed},
+      std::pair{"seat_missed", IncidentKind::seat_missed}, std::pair{"waited_outside", IncidentKind::waited_outside}};
 };
 template <>
 struct Words<effects::Reach> {

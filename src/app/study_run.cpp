@@ -27,6 +27,11 @@ std::string place_of(const RunIncident& incident, const RunResult& result) {
   return text.str();
 }
 
+std::string moment_of(const RunIncident& incident, const RunResult& result) {
+  return "trial " + result.trial + ", replicate " + std::to_string(result.replicate) + ", '" + incident.person +
+         "', second " + std::to_string(std::lround(incident.time_s));
+}
+
 io::RunNotes notes_of(const RunResult& result) {
   io::RunNotes notes;
   for (const RunIncident& incident : result.incidents) {
@@ -40,6 +45,10 @@ io::RunNotes notes_of(const RunResult& result) {
         break;
       case IncidentKind::seat_missed:
         ++notes.seats_missed;
+        break;
+      case IncidentKind::waited_outside:
+        ++notes.waits_outside;
+        if (notes.first_wait.empty()) notes.first_wait = moment_of(incident, result);
         break;
     }
   }
@@ -62,6 +71,8 @@ void tell(const io::RunNotes& notes, Verbosity verbosity) {
        " times a person who had been held up walked through others; first in " + notes.first_pass);
   warn(notes.seats_changed, " times a person took another seat because theirs stayed taken");
   warn(notes.seats_missed, " times a person stayed without a seat because theirs stayed taken");
+  warn(notes.waits_outside,
+       " times a person waited outside, unseen, because the seat they came for was taken; first in " + notes.first_wait);
   if (notes.failed.empty()) return;
   constexpr std::size_t most_told = 10;
   std::string message = std::to_string(notes.failed.size()) + " runs failed and have no rows";

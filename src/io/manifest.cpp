@@ -51,6 +51,10 @@ ordered_json tree_of(const RunNotes& notes) {
   if (!notes.first_pass.empty()) tree["first_pass"] = notes.first_pass;
   tree["seats_changed"] = notes.seats_changed;
   tree["seats_missed"] = notes.seats_missed;
+  if (notes.waits_outside > 0) {
+    tree["waits_outside"] = notes.waits_outside;
+    tree["first_wait"] = notes.first_wait;
+  }
   tree["failed_runs"] = ordered_json::array();
   for (const FailedRun& run : notes.failed) {
     tree["failed_runs"].push_back({{"run", run.run},
@@ -92,6 +96,8 @@ RunNotes notes_from(const ordered_json& tree) {
   notes.first_pass = tree.value("first_pass", "");
   tree.at("seats_changed").get_to(notes.seats_changed);
   tree.at("seats_missed").get_to(notes.seats_missed);
+  notes.waits_outside = tree.value("waits_outside", std::uint64_t{0});
+  notes.first_wait = tree.value("first_wait", "");
   for (const ordered_json& run : tree.at("failed_runs")) {
     notes.failed.push_back({run.at("run"), run.at("trial"), run.at("replicate"), run.at("time_s"), run.at("message")});
   }
@@ -129,12 +135,14 @@ RunNotes& RunNotes::operator+=(const RunNotes& other) {
   if (first_pass.empty()) first_pass = other.first_pass;
   seats_changed += other.seats_changed;
   seats_missed += other.seats_missed;
+  waits_outside += other.waits_outside;
+  if (first_wait.empty()) first_wait = other.first_wait;
   failed.insert(failed.end(), other.failed.begin(), other.failed.end());
   return *this;
 }
 
 bool RunNotes::empty() const noexcept {
-  return passes_through == 0 && seats_changed == 0 && seats_missed == 0 && failed.empty();
+  return passes_through == 0 && seats_changed == 0 && seats_missed == 0 && waits_outside == 0 && failed.empty();
 }
 
 std::string RunNotes::remarks() const {
@@ -146,6 +154,7 @@ std::string RunNotes::remarks() const {
   tell(passes_through, "Times that a person who was held up walked through others: ");
   tell(seats_changed, "Times that a person took another seat: ");
   tell(seats_missed, "Times that a person stayed without a seat: ");
+  tell(waits_outside, "Times that a person waited outside for a seat that was taken: ");
   return text;
 }
 

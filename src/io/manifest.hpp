@@ -44,6 +44,8 @@ struct RunNotes {
   std::string first_pass;            ///< trial, replicate, second, person and place; empty if there is none
   std::uint64_t seats_changed = 0;
   std::uint64_t seats_missed = 0;
+  std::uint64_t waits_outside = 0;  ///< for a seat that was taken
+  std::string first_wait;           ///< trial, replicate, person and second; empty if there is none
   std::vector<FailedRun> failed;  ///< without rows
   RunNotes& operator+=(const RunNotes& other);
   [[nodiscard]] bool empty() const noexcept;

@@ -17,6 +17,7 @@ using body::Stage;
 constexpr double gap_m = 0.1;         ///< assumed: kept between two people beside their radii
 constexpr double doorway_m = 2.5;     ///< assumed: who comes in is through the door at that distance (tried 2-3)
 constexpr double door_wait_s = 60.0;  ///< assumed: then one goes through the door whoever comes (tried 20-120)
+constexpr double told_after_s = 10.0;  ///< assumed, of messages only: who waits for less is a little late
 constexpr double room_wait_s = 20.0;  ///< then one comes in where somebody stands, and passes through them
 
 std::int64_t ticks(double seconds, const CompiledStudy& study) {
@@ -46,9 +47,9 @@ Actor::Actor(const CompiledStudy& study, std::uint32_t run, std::uint32_t person
 
 std::string_view Actor::current_phase() const noexcept {
   if (!done() && begun_ && !action().phase.empty()) return action().phase;
-  if (!present()) return "outside";
+  if (!present()) return phase_outside;
   const bool is_up = body_->got_up();
-  if (!done() && begun_ && !is_up && std::holds_alternative<action::Work>(action().what)) return "working";
+  if (!done() && begun_ && !is_up && std::holds_alternative<action::Work>(action().what)) return phase_working;
   return body::name(body_->motion().stage());
 }
 
@@ -314,7 +315,14 @@ Progress Actor::carry_out(const WaitForSeat& wait, const Scene& scene) {
   if (before_coming_in) sit = &std::get<action::Sit>(actions()[action_ + 1].what);
   const bool for_good = std::ranges::none_of(
       scene.others, [](const Presence& other) { return other.script == Presence::Script::going_on; });
-  if (!for_good && ++seat_wait_ticks_ < ticks(sit->wait_s, scene.study)) return Progress::going_on;
+  if (!for_good && ++seat_wait_ticks_ < ticks(sit->wait_s, scene.study)) {
+    // Nobody sees them there: rows and occupants tell of it only by who is missing.
+    if (before_coming_in && seat_wait_ticks_ == ticks(told_after_s, scene.study)) {
+      const auto& next = std::get<WaitForDoor>(errands_[1]);
+      incidents_.push_back({IncidentKind::waited_outside, scene.now + 1, index_, next.outside});
+    }
+    return Progress::going_on;
+  }
   if (!before_coming_in) do_without_seat(scene);
   return Progress::done;
 }

@@ -330,6 +330,26 @@ class Scripts(unittest.TestCase):
             self.assertIn(r"| \<b\>x\|y\</b\> |", text)
 
 
+class People(unittest.TestCase):
+    SCRIPT = """pirsim_script: 1
+people:
+  - {id: first, actions: [{enter: door}, {sit: S1}, {work: {duration_s: 60}}, {leave: door}]}
+  - {id: second, actions: [{enter: door, at_s: 20}, {sit: S1}, {wait_s: 1}, {leave: door}]}
+"""
+
+    def test_who_waits_outside_for_a_seat_is_counted(self):
+        with tempfile.TemporaryDirectory() as folder:
+            script, rows = pathlib.Path(folder) / "two.yaml", pathlib.Path(folder) / "rows.csv"
+            counted = {}
+            for seat in ("S1", "S2"):
+                script.write_text(self.SCRIPT.replace("{enter: door, at_s: 20}, {sit: S1}",
+                                                      f"{{enter: door, at_s: 20}}, {{sit: {seat}}}"))
+                told = pirsim("--scene", DATA / "rooms" / "meeting_room.gltf", "--script", script, "-o", rows).stderr
+                people = json.loads(pathlib.Path(f"{rows}.json").read_text()).get("people", {})
+                counted[seat] = people.get("waits_outside", 0), "waited outside" in told
+            self.assertEqual(counted, {"S1": (1, True), "S2": (0, False)})
+
+
 class Streams(unittest.TestCase):
     def test_scene_and_script_from_standard_input_and_rows_to_standard_output(self):
         scene, script = DATA / "rooms" / "meeting_room.gltf", DATA / "studies" / "studyA.yaml"
