@@ -6,6 +6,7 @@
 
 #include <array>
 #include <boost/algorithm/string/join.hpp>
+#include <limits>
 #include <utility>
 
 #include "pirsim/error.hpp"
@@ -178,7 +179,8 @@ void offer_seed(CLI::App& command, Inputs& inputs) {
       .add_option_function<std::int64_t>(
           "--seed", [&inputs](std::int64_t n) { inputs.overrides.push_back("seed=" + std::to_string(n)); },
           "seed of all random streams")
-      ->option_text("N");
+      ->option_text("N")
+      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
 }
 
 void offer_replicates(CLI::App& command, Inputs& inputs) {
@@ -186,7 +188,8 @@ void offer_replicates(CLI::App& command, Inputs& inputs) {
       .add_option_function<int>(
           "--replicates", [&inputs](int n) { inputs.overrides.push_back("replicates=" + std::to_string(n)); },
           "how often every trial is run")
-      ->option_text("N");
+      ->option_text("N")
+      ->check(CLI::Range(1, 10'000'000));
 }
 
 void offer_quiet(CLI::App& command, Verbosity& verbosity) {

@@ -1,7 +1,9 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "app/commands.hpp"
 #include "app/session.hpp"
@@ -15,19 +17,29 @@ namespace {
 struct RoomOptions {
   std::filesystem::path recipe;  ///< or settings
   std::filesystem::path output;
-  std::vector<std::string> settings;  ///< "width_m=6"
+  std::vector<std::string> settings;            ///< "width_m=6"
+  std::map<std::string, std::string> as_typed;  ///< "--set width_m=6": "--width 6"
   std::optional<std::uint64_t> seed;  ///< default: the recipe's, or 1
   int number = 1;
   Inputs inputs;
 };
 
 dataset::RoomSpec room_by_settings(const RoomOptions& options) {
-  Diagnostics faults;
-  io::YamlMap map(io::YamlNode::parse("", "command line", options.settings), faults, "room");
-  dataset::RoomSpec spec = dataset::read_room_keys(map);
-  map.finish();
-  faults.throw_if_errors(ErrorCode::usage);
-  return spec;
+  try {
+    Diagnostics faults;
+    io::YamlMap map(io::YamlNode::parse("", "command line", options.settings), faults, "room");
+    dataset::RoomSpec spec = dataset::read_room_keys(map);
+    map.finish();
+    faults.throw_if_errors(ErrorCode::usage);
+    return spec;
+  } catch (const Error& fault) {
+    std::vector<Issue> issues = fault.issues();
+    for (Issue& issue : issues) {
+      const auto typed = options.as_typed.find(issue.where.file);
+      if (typed != options.as_typed.end()) issue.where.file = typed->second;
+    }
+    throw Error(fault.code(), std::move(issues));
+  }
 }
 
 dataset::DrawnRoom draw(const RoomOptions& options) {
@@ -74,7 +86,12 @@ void offer_setting(CLI::App& command, RoomOptions& options, const std::string& n
                    const std::string& value, const std::string& what) {
   command
       .add_option_function<std::string>(
-          name, [&options, key](const std::string& text) { options.settings.push_back(key + "=" + text); }, what)
+          name,
+          [&options, name, key](const std::string& text) {
+            options.settings.push_back(key + "=" + text);
+            options.as_typed["--set " + key + "=" + text] = name + " " + text;
+          },
+          what)
       ->option_text(value);
 }
 

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <map>
 
+#include "core/near_names.hpp"
 #include "io/csv_reader.hpp"
 #include "pirsim/effects.hpp"
 #include "pirsim/error.hpp"
@@ -24,7 +25,7 @@ TracerKind tracer_kind(const std::string& name) {
     if (rt::name(kind) == name) return kind;
     names.emplace_back(rt::name(kind));
   }
-  throw Error(ErrorCode::usage, "--tracer: '" + name + "' isn't a tracer" + did_you_mean(name, names));
+  throw Error(ErrorCode::usage, "--tracer: '" + name + "' isn't a tracer" + near_or_all(name, names));
 }
 
 }  // namespace
@@ -79,7 +80,7 @@ std::uint32_t find_run(const Model& model, const RunChoice& choice) {
     }
   }
   throw Error(ErrorCode::usage,
-              "--trial: '" + choice.trial + "' is not in the script" + did_you_mean(choice.trial, names));
+              "--trial: '" + choice.trial + "' is not in the script" + near_or_all(choice.trial, names));
 }
 
 std::vector<std::size_t> find_sensors(const Model& model, const std::vector<std::string>& names) {
@@ -95,7 +96,7 @@ std::vector<std::size_t> find_sensors(const Model& model, const std::vector<std:
       found = true;
     }
     if (!found)
-      throw Error(ErrorCode::usage, "--beams: sensor '" + name + "' is not in the scene" + did_you_mean(name, known));
+      throw Error(ErrorCode::usage, "--beams: sensor '" + name + "' is not in the scene" + near_or_all(name, known));
   }
   return indices;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/near_names.hpp"
 #include "effects/kit.hpp"
 
 namespace pirsim::effects {
@@ -46,7 +47,17 @@ const Effect& find(std::string_view name) {
   if (found != all.end()) return **found;
   std::vector<std::string> names;
   for (const Effect* effect : all) names.push_back(effect->info.name);
-  throw Error(ErrorCode::usage, "'" + std::string(name) + "' is not an effect" + did_you_mean(name, names));
+  // "softzone" is too far from "soft_zone_edges" to be a slip of the keys, but hardly means anything else.
+  const auto bare = [](std::string_view text) {
+    std::string letters(text);
+    std::erase_if(letters, [](char c) { return c == '_' || c == '-' || c == ' '; });
+    return letters;
+  };
+  const auto holds = [&](const std::string& known) { return bare(known).find(bare(name)) != std::string::npos; };
+  const auto longer = std::ranges::find_if(names, holds);
+  const bool slip = !did_you_mean(name, names).empty() || name.empty() || longer == names.end();
+  throw Error(ErrorCode::usage, "'" + std::string(name) + "' is not an effect" +
+                                    (slip ? near_or_all(name, names) : " (did you mean '" + *longer + "'?)"));
 }
 
 std::vector<EffectInfo> list() {

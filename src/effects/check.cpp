@@ -3,6 +3,7 @@
 #include <boost/algorithm/string/join.hpp>
 #include <sstream>
 
+#include "core/near_names.hpp"
 #include "effects/catalogue.hpp"
 
 namespace pirsim::effects {
@@ -72,7 +73,7 @@ void check_choices(const EffectSpec& spec, const EffectInfo& info, const SceneSp
     if (std::ranges::find(allowed, value) != allowed.end()) continue;
     const std::string place = is_word(known->kind) ? "known here" : "in " + scene->name;
     diagnostics.error(spec.where,
-                      info.name + "." + name + ": '" + value + "' is not " + place + did_you_mean(value, allowed));
+                      info.name + "." + name + ": '" + value + "' is not " + place + near_or_all(value, allowed));
   }
 }
 

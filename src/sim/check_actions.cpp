@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 
+#include "core/near_names.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::sim {
@@ -15,7 +16,7 @@ void check_name(const std::vector<Spec>& known, const std::string& id, const std
   std::vector<std::string> names;
   for (const Spec& spec : known) names.push_back(spec.id);
   if (std::ranges::find(names, id) != names.end()) return;
-  diagnostics.error(where, kind + " '" + id + "' is not in " + scene.name + did_you_mean(id, names));
+  diagnostics.error(where, kind + " '" + id + "' is not in " + scene.name + near_or_all(id, names));
 }
 
 /// Follows one person from action to action.

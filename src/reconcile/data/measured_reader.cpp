@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/digest.hpp"
+#include "core/near_names.hpp"
 #include "pirsim/csv.hpp"
 
 namespace pirsim::reconcile {
@@ -57,7 +58,7 @@ std::optional<std::size_t> MeasuredReader::find(const std::vector<std::string>& 
   const auto known = std::ranges::find(names, name);
   if (known != names.end()) return static_cast<std::size_t>(known - names.begin());
   if (unknown_names_.insert(name).second)  // each is told once
-    faults_.error(table_.where(row, column), what + " '" + name + "' is not in the study" + did_you_mean(name, names));
+    faults_.error(table_.where(row, column), what + " '" + name + "' is not in the study" + near_or_all(name, names));
   return std::nullopt;
 }
 
@@ -76,6 +77,8 @@ void MeasuredReader::read_sums() {
   const std::size_t sensor = *table_.column("sensor");
   const auto seconds = table_.column("real") ? table_.column("real") : table_.required_column("seconds", faults_);
   refuse_both("real", "seconds");
+  // A missing column that is misspelt would be told a second time, as unknown.
+  faults_.throw_if_errors();
   refuse_unknown_columns({"trial", "seat", "sensor", "replicate", "seconds", "real", "min_sim", "max_sim", "mean_sim",
                           "in_range"});  // the last four: simulated by others, in the table that is shipped
   faults_.throw_if_errors();
@@ -138,7 +141,7 @@ void MeasuredReader::refuse_unknown_columns(const std::vector<std::string>& know
   const std::vector<std::string> names = table_.names();
   for (const std::string& name : names) {
     if (std::ranges::find(known, name) != known.end()) continue;
-    faults_.error({file_, 1, 1}, "unknown column '" + name + "'" + did_you_mean(name, known));
+    faults_.error({file_, 1, 1}, "unknown column '" + name + "'" + near_or_all(name, known));
   }
 }
 

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "core/near_names.hpp"
 #include "core/parallel.hpp"
 #include "effects/catalogue.hpp"
 #include "reconcile/inference/fit.hpp"
@@ -319,7 +320,10 @@ std::vector<std::size_t> holdout_of(const std::string& asked, const StudyFrame& 
   std::vector<std::size_t> trials;
   double share = 0.0;
   const auto [end, fault] = std::from_chars(asked.data(), asked.data() + asked.size(), share);
-  if (fault == std::errc() && end == asked.data() + asked.size() && share > 0.0 && share < 1.0) {
+  const bool is_number = fault == std::errc() && end == asked.data() + asked.size();
+  if (is_number && !(share > 0.0 && share < 1.0) && std::ranges::find(frame.trials, asked) == frame.trials.end())
+    throw Error(ErrorCode::usage, "--holdout: '" + asked + "' is not a share between 0 and 1");
+  if (is_number && share > 0.0 && share < 1.0) {
     const auto n = static_cast<std::size_t>(std::lround(share * static_cast<double>(all.size())));
     for (const auto& fold : folds_of(measured.digest, all, all.size())) {
       if (trials.size() < std::max(n, fewest)) trials.push_back(fold.front());
@@ -330,8 +334,8 @@ std::vector<std::size_t> holdout_of(const std::string& asked, const StudyFrame& 
       const auto known = std::ranges::find(frame.trials, name);
       if (known == frame.trials.end()) {
         throw Error(ErrorCode::usage, "--holdout: '" + name +
-                                          "' is neither a trial of the study nor a share between 0 " + "and 1" +
-                                          did_you_mean(name, frame.trials));
+                                          "' is neither a trial of the study nor a share between 0 and 1" +
+                                          near_or_all(name, frame.trials));
       }
       trials.push_back(static_cast<std::size_t>(known - frame.trials.begin()));
       if (!std::ranges::binary_search(all, trials.back()))

@@ -253,6 +253,7 @@ TEST_CASE("a holdout is a share drawn by the data or names of trials", "[reconci
   CHECK(three != holdout_of("0.3", frame, other));
   CHECK(holdout_of("0.5", frame, few).back() < 4);
   CHECK_THROWS_WITH(holdout_of("S3,S11", frame, some), contains("'S11'") && contains("S1"));
+  CHECK_THROWS_WITH(holdout_of("1.5", frame, some), contains("'1.5' is not a share") && !contains("did you mean"));
   CHECK_THROWS_WITH(holdout_of("S3", frame, some), contains("1 would be held out"));
   CHECK_THROWS_WITH(holdout_of("0.95", frame, some), contains("two or more left"));
   CHECK_THROWS_WITH(holdout_of("S3,S8", frame, few), contains("nothing of trial 'S8' was measured"));
