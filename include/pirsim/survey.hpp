@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,6 +53,7 @@ struct CoverageSpec {
 struct SensorSetSpec {
   std::string id;
   std::vector<SensorSpec> sensors;  ///< none: those of the scene
+  std::vector<Where> where{};       ///< (n_sensors) of their positions, for messages; or none
 };
 
 /// A straight line on a wall or the ceiling on which sensors may hang, all facing alike.
@@ -72,6 +74,7 @@ struct PlacementSpec {
   CoverageSpec coverage;  ///< by which sets are judged
   std::vector<SensorSetSpec> sets;
   std::optional<PlacementSearchSpec> search;
+  std::map<std::string, Where> models;  ///< of sensors: where each is named first, for messages
 };
 
 /// World frame of a sensor that looks along a heading, tilted down.

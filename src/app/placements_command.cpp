@@ -1,9 +1,9 @@
 #include <iostream>
-#include <set>
 
 #include "app/commands.hpp"
 #include "app/long_work.hpp"
 #include "app/session.hpp"
+#include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
 #include "studies/placement.hpp"
 
@@ -12,14 +12,15 @@ namespace {
 
 /// Models that the study names and the scene doesn't.
 void add_models(SceneSpec& scene, const PlacementSpec& spec, const Inputs& inputs) {
-  std::set<std::string> names;
-  for (const SensorSetSpec& set : spec.sets) {
-    for (const SensorSpec& sensor : set.sensors) names.insert(sensor.model);
-  }
-  if (spec.search) names.insert(spec.search->model);
-  for (const std::string& name : names) {
+  for (const auto& [name, where] : spec.models) {
     if (scene.sensor_models.contains(name)) continue;
-    scene.sensor_models[name] = io::find_sensor_model(name, inputs.scene, scene_options(inputs));
+    try {
+      scene.sensor_models[name] = io::find_sensor_model(name, inputs.scene, scene_options(inputs));
+    } catch (const Error& fault) {
+      const Issue& first = fault.issues().front();
+      if (!first.where.file.empty()) throw;  // of the model's own file
+      throw Error(fault.code(), where, first.message);
+    }
   }
 }
 
@@ -30,6 +31,7 @@ void placements(const Inputs& inputs, unsigned threads) {
   add_models(scene, spec, inputs);
   std::vector<studies::PlacementScore> scores;
   for (const SensorSetSpec& set : spec.sets) scores.push_back(studies::score(scene, spec.coverage, set, threads));
+  for (const studies::PlacementScore& score : scores) tell(studies::warnings(score, scene.floor), inputs.verbosity);
   std::optional<studies::PlacementSearch> search;
   if (spec.search) {
     Progress progress(static_cast<std::uint32_t>(spec.search->evaluations), inputs.verbosity, "sets");

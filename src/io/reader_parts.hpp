@@ -88,7 +88,8 @@ struct NamedText {
 
 struct FoundSensor {
   SensorModelSpec model;
-  std::string file;  ///< empty for a shipped one
+  std::string file;            ///< empty for a shipped one
+  std::vector<Issue> remarks;  ///< warnings
 };
 
 /// Where sensors of a scene are looked for.

@@ -10,6 +10,7 @@
 #include <optional>
 #include <sstream>
 
+#include "geom/floor_distance.hpp"
 #include "io/scene_parts.hpp"
 
 namespace pirsim::io::detail {
@@ -102,23 +103,11 @@ class Doubts {
                       (above_m > 0.0 ? " above it" : " below it"));
     }
     const Vec2 place = floor_point(at);
-    if (const double aside_m = to_edge_m(place); aside_m > most_aside_m) {
+    if (const double aside_m = distance_to_edge_m(scene_.floor, place); aside_m > most_aside_m) {
       tell_(node, "entrance '" + entrance.id + "' isn't at the floor's edge, but " + in_metres(aside_m) +
                       (scene_.floor.contains(place) ? " inside" : " outside") +
                       " of it: its node is the middle of the threshold");
     }
-  }
-  [[nodiscard]] double to_edge_m(const Vec2& place) const {
-    double nearest_m = std::numeric_limits<double>::max();
-    for (const std::vector<Vec2>& loop : scene_.floor.loops()) {
-      for (std::size_t i = 0; i < loop.size(); ++i) {
-        const Vec2 along = loop[(i + 1) % loop.size()] - loop[i];
-        const double length2 = glm::dot(along, along);
-        const double share = length2 > 0.0 ? glm::clamp(glm::dot(place - loop[i], along) / length2, 0.0, 1.0) : 0.0;
-        nearest_m = std::min(nearest_m, glm::distance(place, loop[i] + share * along));
-      }
-    }
-    return nearest_m;
   }
 
   /// How much of its width is a wall, or furniture right before or behind it.

@@ -194,6 +194,7 @@ class SceneBuilder {
           unknown_sensor(model, where, search.names());
           continue;
         }
+        for (const Issue& remark : found->remarks) remarks_.warning(remark.where, remark.message);
         spec_.sensor_models.emplace(model, std::move(found->model));
         if (!found->file.empty()) spec_.files.push_back(found->file);
       } catch (const Error& fault) {

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <set>
 
+#include "core/near_names.hpp"
 #include "io/reader_parts.hpp"
 #include "io/yaml_map.hpp"
 
@@ -239,6 +240,28 @@ FacetLaw read_law(YamlMap& map, double plane_m, const std::optional<double>& ran
   return law;
 }
 
+/// Is a key of the file meant for range_m? Then each facet would tell that it is missing.
+bool misspells_range(const YamlNode& root) {
+  const std::vector<std::string> known{"id",
+                                       "description",
+                                       "plane_m",
+                                       "range_m",
+                                       "response",
+                                       "optics",
+                                       "facets",
+                                       "clusters",
+                                       "layout",
+                                       "polarity",
+                                       "sources",
+                                       "half_spacing_ratio",
+                                       "half_diagonal_ratio"};
+  const std::vector<YamlKey> keys = root.keys();
+  return std::ranges::any_of(keys, [&](const YamlKey& key) {
+    return std::ranges::find(known, key.name) == known.end() &&
+           did_you_mean(key.name, known) == did_you_mean("range_m", {"range_m"});
+  });
+}
+
 SensorModelSpec read_model(const YamlNode& root) {
   Diagnostics faults;
   YamlMap map(root, faults, "sensor");
@@ -246,7 +269,8 @@ SensorModelSpec read_model(const YamlNode& root) {
   model.id = map.required_text("id");
   model.description = map.text("description");
   model.plane_m = map.required_number("plane_m", positive);
-  const std::optional<double> range_m = map.optional_number("range_m", positive);
+  std::optional<double> range_m = map.optional_number("range_m", positive);
+  if (!range_m && misspells_range(root)) range_m = 1.0;  // the file is refused for that key
   model.response =
       map.choice<Response>("response", model.response, {{"zones", Response::zones}, {"analog", Response::analog}});
   model.optics = read_optics(map.child("optics"), faults);
@@ -291,10 +315,19 @@ std::optional<FoundSensor> SensorSearch::find(const std::string& model) const {
   for (const fs::path& folder : folders_) {
     std::error_code fault;
     const fs::path file = folder / (model + ".yaml");
-    if (fs::is_regular_file(file, fault)) return FoundSensor{read_sensor_model(file), file.string()};
+    if (!fs::is_regular_file(file, fault)) continue;
+    const YamlNode root = YamlNode::load(file);
+    FoundSensor found{read_model(root), file.string(), {}};
+    if (found.model.id != model) {
+      Diagnostics remarks;
+      remarks.warning(YamlMap(root, remarks, "sensor").where("id"),
+                      "id '" + found.model.id + "' isn't the file's name: scenes name this model '" + model + "'");
+      found.remarks = remarks.warnings();
+    }
+    return found;
   }
   for (const NamedText& shipped : shipped_sensors()) {
-    if (shipped.name == model) return FoundSensor{read_model(YamlNode::parse(shipped.text, model + ".yaml")), {}};
+    if (shipped.name == model) return FoundSensor{read_model(YamlNode::parse(shipped.text, model + ".yaml")), {}, {}};
   }
   return std::nullopt;
 }
@@ -319,7 +352,7 @@ SensorModelSpec find_sensor_model(const std::string& model, const std::filesyste
                                   const SceneOptions& options) {
   const detail::SensorSearch search(options, scene_file.parent_path());
   if (auto found = search.find(model)) return std::move(found->model);
-  throw Error(ErrorCode::input, "no sensor model '" + model + "'" + did_you_mean(model, search.names()));
+  throw Error(ErrorCode::input, "no sensor model '" + model + "'" + near_or_all(model, search.names()));
 }
 
 }  // namespace pirsim::io

@@ -1,6 +1,7 @@
 // Readers of coverage studies, walk tests, placements and the nuisance, which share their keys.
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <map>
 #include <set>
 #include <string>
 
@@ -101,11 +102,14 @@ Vec3 read_point(YamlMap& map, const std::string& key) {
   return {p[0], p[1], p[2]};
 }
 
-SensorSpec read_sensor(const YamlNode& node, std::size_t index, Diagnostics& faults) {
+using ModelPlaces = std::map<std::string, Where>;
+
+SensorSpec read_sensor(const YamlNode& node, std::size_t index, ModelPlaces& models, Diagnostics& faults) {
   YamlMap map(node, faults, "sensor");
   SensorSpec sensor;
   sensor.id = map.text("id", "PIR" + std::to_string(index + 1));
   sensor.model = map.required_text("model");
+  models.try_emplace(sensor.model, map.where("model"));
   const Vec3 position = read_point(map, "position_m");
   const double yaw_deg = map.number("yaw_deg", 0.0, {.min = -360.0, .max = 360.0});
   sensor.world_from_sensor = mounted(position, yaw_deg, map.number("tilt_deg", 20.0, {.min = -90.0, .max = 90.0}));
@@ -113,21 +117,24 @@ SensorSpec read_sensor(const YamlNode& node, std::size_t index, Diagnostics& fau
   return sensor;
 }
 
-SensorSetSpec read_set(const YamlNode& node, Diagnostics& faults) {
+SensorSetSpec read_set(const YamlNode& node, ModelPlaces& models, Diagnostics& faults) {
   YamlMap map(node, faults, "set");
   SensorSetSpec set;
   set.id = map.required_text("id");
-  for (const YamlNode& sensor : map.list("sensors"))
-    set.sensors.push_back(read_sensor(sensor, set.sensors.size(), faults));
+  for (const YamlNode& sensor : map.list("sensors")) {
+    set.sensors.push_back(read_sensor(sensor, set.sensors.size(), models, faults));
+    set.where.push_back(sensor.where());
+  }
   map.finish();
   return set;
 }
 
-PlacementSearchSpec read_search(const YamlNode& node, Diagnostics& faults) {
+PlacementSearchSpec read_search(const YamlNode& node, ModelPlaces& models, Diagnostics& faults) {
   YamlMap map(node, faults, "search");
   PlacementSearchSpec search;
   search.n_sensors = map.required_integer("n_sensors", {.min = 1, .max = 20});
   search.model = map.required_text("model");
+  models.try_emplace(search.model, map.where("model"));
   search.evaluations = map.integer("evaluations", search.evaluations, {.min = 1, .max = 100000});
   for (const YamlNode& item : map.required_list("lines")) {
     YamlMap line(item, faults, "line");
@@ -151,11 +158,11 @@ PlacementSpec read_placements(const std::filesystem::path& file, std::span<const
     read_coverage_keys(map, spec.coverage);
     std::set<std::string> ids;
     for (const YamlNode& set : map.list("sets")) {
-      spec.sets.push_back(read_set(set, map.faults()));
+      spec.sets.push_back(read_set(set, spec.models, map.faults()));
       if (!ids.insert(spec.sets.back().id).second)
         map.faults().error(set.where(), "a second set '" + spec.sets.back().id + "'");
     }
-    if (const auto search = map.child("search")) spec.search = read_search(*search, map.faults());
+    if (const auto search = map.child("search")) spec.search = read_search(*search, spec.models, map.faults());
     return spec;
   });
 }

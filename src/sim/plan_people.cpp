@@ -222,6 +222,16 @@ Floors floors_of(const CompiledStudy* like, const SceneSpec& scene) {
 std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std::vector<TrialInForce>& trials,
                                           const SceneSpec& scene, const rt::Room& room, Floors floors) {
   std::vector<TrialModel> planned_trials;
+  const auto floor_with = [&](double keep_m) -> const std::shared_ptr<const body::WalkableFloor>& {
+    auto& floor = floors[keep_m];
+    if (floor) return floor;
+    try {
+      floor = std::make_shared<const body::WalkableFloor>(scene.floor, scene.entrances, scene.meshes, keep_m);
+    } catch (const Error& fault) {  // the floor knows no names
+      throw Error(fault.code(), Where{scene.name}, fault.issues().front().message);
+    }
+    return floor;
+  };
   OpenDoors doors;
   Diagnostics diagnostics;
   for (const TrialInForce& trial : trials) {
@@ -237,13 +247,9 @@ std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std:
         clearance_m = std::min(clearance_m, body::Humanoid(written[planned.people.size()]).clearance_radius_m());
       }
       const auto rehearse = [&](double keep_m, Diagnostics& found) {
-        auto& floor = floors[keep_m];
-        if (!floor) {
-          floor = std::make_shared<const body::WalkableFloor>(scene.floor, scene.entrances, scene.meshes, keep_m);
-        }
         PersonModel person{.spec = spec,
                            .humanoid = humanoid,
-                           .floor = floor,
+                           .floor = floor_with(keep_m),
                            .radiance = radiance_of(spec.warmth, study.sensing().ambient_c)};
         Rehearsal(scene, room, person, doors, found).run();
         return person;
@@ -257,12 +263,7 @@ std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std:
         for (const Issue& issue : found.issues()) diagnostics.error(issue.where, issue.message);
       }
       if (trial.people.size() > 1) {
-        const double narrow_m = std::min(person.floor->clearance_m(), humanoid.half_width_m());
-        auto& narrow = floors[narrow_m];
-        if (!narrow) {
-          narrow = std::make_shared<const body::WalkableFloor>(scene.floor, scene.entrances, scene.meshes, narrow_m);
-        }
-        person.narrow_floor = narrow;
+        person.narrow_floor = floor_with(std::min(person.floor->clearance_m(), humanoid.half_width_m()));
       }
       planned.people.push_back(std::move(person));
     }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "studies/coverage.hpp"
+#include "studies/sight.hpp"
 
 namespace pirsim::studies {
 namespace {
@@ -70,6 +71,18 @@ void maximise(nlopt::algorithm algorithm, Objective& objective, int evaluations)
   }
 }
 
+/// Sensors of a map and of the counts at seats that see nothing.
+std::vector<std::size_t> idle_of(const CoverageMap& map, const std::vector<std::vector<MotionCount>>& at_seats) {
+  const std::size_t n_sensors = map.sensors.size();
+  std::vector<std::size_t> idle;
+  for (std::size_t sensor = 0; sensor < n_sensors; ++sensor) {
+    bool sees = std::ranges::any_of(at_seats, [&](const auto& counts) { return counts[sensor] > 0; });
+    for (std::size_t at = sensor; at < map.counts.size() && !sees; at += n_sensors) sees = map.counts[at] > 0;
+    if (!sees) idle.push_back(sensor);
+  }
+  return idle;
+}
+
 std::string listed(const std::vector<std::string>& names) {
   return names.empty() ? "none" : boost::algorithm::join(names, " ");
 }
@@ -83,11 +96,26 @@ PlacementScore score(const SceneSpec& scene, const CoverageSpec& coverage, Senso
   const CoverageMap map = run_coverage(study, threads);
   const MapFigures figures = figures_of(map).all;
   PlacementScore result{std::move(set), figures.seen_area_m2, figures.blind_fraction, overlap_of(map), {}};
+  std::vector<std::vector<MotionCount>> at_seats;
   for (const SeatSpec& seat : scene.seats) {
-    const std::vector<MotionCount> counts = study.counts_at(floor_point(seat.world_from_seat.origin));
+    const auto& counts = at_seats.emplace_back(study.counts_at(floor_point(seat.world_from_seat.origin)));
     if (std::ranges::all_of(counts, [](MotionCount n) { return n == 0; })) result.blind_seats.push_back(seat.id);
   }
+  result.idle = idle_of(map, at_seats);
   return result;
+}
+
+std::vector<Issue> warnings(const PlacementScore& score, const FloorArea& floor) {
+  Diagnostics remarks;
+  for (const std::size_t i : score.idle) {
+    if (i >= score.set.sensors.size()) continue;  // of the scene, which `check` judges
+    const SensorSpec& sensor = score.set.sensors[i];
+    const std::string outside = hangs_outside(floor, sensor.world_from_sensor.origin);
+    remarks.warning(i < score.set.where.size() ? score.set.where[i] : Where{},
+                    "set '" + score.set.id + "': sensor '" + sensor.id + "' sees the target nowhere" +
+                        (outside.empty() ? " (does it look at a wall?)" : ": " + outside));
+  }
+  return remarks.issues();
 }
 
 std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores) {

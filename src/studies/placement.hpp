@@ -17,7 +17,11 @@ struct PlacementScore {
   double blind_fraction = 0.0;
   double overlap = 0.0;                  ///< share of the seen area that two sensors or more see
   std::vector<std::string> blind_seats;  ///< where no sensor sees the target
+  std::vector<std::size_t> idle{};       ///< sensors of the set that see the target nowhere
 };
+
+/// One for every idle sensor; where it hangs off the floor, how far.
+[[nodiscard]] std::vector<Issue> warnings(const PlacementScore& score, const FloorArea& floor);
 
 /// Throws Error(input) as CoverageStudy does. The scene has every model that the set names.
 [[nodiscard]] PlacementScore score(const SceneSpec& scene, const CoverageSpec& coverage, SensorSetSpec set,

@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <sstream>
 
 #include "body/motion.hpp"
+#include "geom/floor_distance.hpp"
 #include "sim/compiled_study.hpp"
 
 namespace pirsim::studies {
 namespace {
 
+constexpr double beside_m = 0.5;  // assumed: a sensor on the far side of a wall isn't nearer (tried 0.3-1)
 constexpr double buried_m = 0.5;  // assumed: 0.3 to 1 m would do; walls are thinner, and nobody comes so near
 
 /// Traces single postures and tells which sensors have an active zone.
@@ -84,6 +88,7 @@ SightReport look_around(const Model& model) {
   for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
     SensorSight& sight = report.sensors.emplace_back();
     sight.sensor = scene.sensors[i].id;
+    sight.outside = hangs_outside(scene.floor, scene.sensors[i].world_from_sensor.origin);
     count_rays(model, i, sight);
   }
   const Vec2 lower = scene.floor.lower(), upper = scene.floor.upper();
@@ -106,10 +111,23 @@ SightReport look_around(const Model& model) {
   return report;
 }
 
+std::string hangs_outside(const FloorArea& floor, const Vec3& place) {
+  const Vec2 below = floor_point(place);
+  const double away_m = distance_to_edge_m(floor, below);
+  if (floor.contains(below) || away_m <= beside_m) return {};
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(1) << away_m;
+  return "it hangs outside of the room, " + text.str() + " m from the floor's edge";
+}
+
 std::vector<Issue> warnings(const SightReport& report, const std::string& scene) {
   Diagnostics remarks;
   for (const SensorSight& sight : report.sensors) {
     if (!sight.sees_nothing()) continue;
+    if (!sight.outside.empty()) {
+      remarks.warning({scene, 0, 0}, "sensor '" + sight.sensor + "' can see NOBODY: " + sight.outside);
+      continue;
+    }
     if (sight.rays > 0 && sight.longest_m < buried_m) {
       remarks.warning({scene, 0, 0}, "sensor '" + sight.sensor + "' can see NOBODY: all of its rays end within " +
                                          std::to_string(std::lround(std::ceil(100.0 * sight.longest_m))) +

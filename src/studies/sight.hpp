@@ -14,6 +14,7 @@ struct SensorSight {
   std::size_t rays = 0;
   std::size_t rays_cut = 0;        ///< rays that end at the room before their rated range
   double longest_m = 0.0;          ///< of the rays as cut
+  std::string outside;             ///< see hangs_outside()
   std::size_t places = 0;          ///< places of the floor where a zone sees a standing person
   std::vector<std::string> seats;  ///< seats where a zone sees a sitter at rest
   [[nodiscard]] bool sees_nothing() const noexcept { return places == 0 && seats.empty(); }
@@ -28,6 +29,9 @@ struct SightReport {
 
 /// Stands a person (the script's first, or the default one) on every place of a grid and on every seat.
 [[nodiscard]] SightReport look_around(const Model& model);
+
+/// "it hangs outside of the room, 70.0 m from the floor's edge", or empty: on a wall is as good as inside.
+[[nodiscard]] std::string hangs_outside(const FloorArea& floor, const Vec3& place);
 
 /// One warning for every sensor that sees nothing.
 [[nodiscard]] std::vector<Issue> warnings(const SightReport& report, const std::string& scene);
