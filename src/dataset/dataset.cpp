@@ -86,19 +86,31 @@ bool make_room_days(const RecipeSpec& recipe, const fs::path& folder, const Data
     if (!is_there) wanted.push_back(i);
   }
   Rooms rooms(recipe, folder, options);
+  struct Made {
+    RoomDayRecord record;
+    std::string lack;
+  };
   std::size_t done = 0;
-  ordered_parallel<RoomDayRecord>(
+  bool lack_told = false;  // rooms are alike: one speaks for all
+  ordered_parallel<Made>(
       wanted.size(), options.threads,
       [&](std::size_t i) {
         const auto [room, day] = room_and_day(recipe, wanted[i]);
-        const RoomDay made = simulate(recipe, *rooms.room(room), columns, room, day);
+        const auto scene = rooms.room(room);
+        const RoomDay made = simulate(recipe, *scene, columns, room, day);
         write(made, folder, made_by);
-        return made.record;
+        return Made{made.record, lack_of_people(recipe, *scene, room)};
       },
-      [&](RoomDayRecord& record) {
+      [&](Made& made) {
+        const RoomDayRecord& record = made.record;
         ++done;
         if (options.made_one) options.made_one();
-        if (record.fault.empty() || !options.tell) return;
+        if (!options.tell) return;
+        if (!made.lack.empty() && !lack_told) {
+          options.tell({Severity::warning, Where{recipe.file.string()}, made.lack});
+          lack_told = true;
+        }
+        if (record.fault.empty()) return;
         options.tell({Severity::warning, Where{recipe.file.string()},
                       "room " + std::to_string(record.room) + ", day " + std::to_string(record.day) +
                           " has no rows: " + record.fault});

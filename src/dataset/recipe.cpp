@@ -198,6 +198,18 @@ std::vector<Part> parts_of(const RecipeSpec& recipe) {
   return parts;
 }
 
+std::string lack_of_people(const RecipeSpec& recipe, const SceneSpec& scene, int room) {
+  const RoomGroupSpec& group = group_of(recipe, room);
+  if (!group.people) return {};
+  int staff = 0;
+  for (const StaffSpec& some : group.schedule.staff) staff += some.count;
+  const int seats = static_cast<int>(scene.seats.size()), least = group.people->least;
+  if (least <= std::min(staff, seats)) return {};
+  return "people: room " + std::to_string(room) + " should have " + std::to_string(least) + " at least, but has only " +
+         (seats < staff ? std::to_string(seats) + " seats" : std::to_string(staff) + " in its schedule's staff") +
+         ": so many come";
+}
+
 ScriptSpec script_of(const RecipeSpec& recipe, const SceneSpec& scene, int room, int day) {
   ScriptSpec script;
   script.name = recipe.name + ", room " + std::to_string(room);

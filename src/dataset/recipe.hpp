@@ -15,6 +15,9 @@ namespace pirsim::dataset {
 /// doesn't fit the scene.
 [[nodiscard]] ScriptSpec script_of(const RecipeSpec& recipe, const SceneSpec& scene, int room, int day);
 
+/// Why the room has fewer people than the recipe asks for at least; empty if it hasn't.
+[[nodiscard]] std::string lack_of_people(const RecipeSpec& recipe, const SceneSpec& scene, int room);
+
 [[nodiscard]] std::string name_of(Part part);   ///< "test_days"
 [[nodiscard]] std::string room_name(int room);  ///< "room_0003"
 [[nodiscard]] std::string day_name(int day);    ///< "day_01"

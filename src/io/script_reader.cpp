@@ -1,15 +1,16 @@
 #include "pirsim/io.hpp"
 
 #include <algorithm>
-#include <boost/algorithm/string/join.hpp>
 #include <cstdint>
 #include <limits>
 #include <set>
 
+#include "core/near_names.hpp"
 #include "io/reader_parts.hpp"
 #include "io/yaml_map.hpp"
 #include "schema/body_part_names.hpp"
 #include "schema/phase_names.hpp"
+#include "schema/schedule_people.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -81,9 +82,7 @@ void check_phases(const std::optional<YamlNode>& summary, const ScriptSpec& scri
   for (const YamlNode& item : YamlMap(*summary, faults, "summary").list("phases")) {
     const std::string phase = item.text(faults, "summary.phases");
     if (std::ranges::find(known, phase) != known.end()) continue;
-    const std::string near = did_you_mean(phase, known);
-    faults.error(item.where(), "summary.phases: no run has a phase '" + phase + "'" +
-                                   (near.empty() ? "; there are " + boost::algorithm::join(known, ", ") : near));
+    faults.error(item.where(), "summary.phases: no run has a phase '" + phase + "'" + near_or_all(phase, known));
   }
 }
 
@@ -210,6 +209,17 @@ std::vector<TrialSpec> read_trials(const std::optional<YamlNode>& node, const st
   return trials;
 }
 
+void warn_of_days_off(const YamlNode& node, const ScheduleSpec& schedule, int n_days, Diagnostics& faults) {
+  if (faults.has_errors()) return;
+  const std::int64_t first = day_number(schedule.first_day, schedule.where);
+  for (std::int64_t day = first; day < first + std::min(n_days, 7); ++day) {
+    if (is_working_day(day)) return;
+  }
+  faults.warning(
+      YamlMap(node, faults, "schedule").where("first_day"),
+      "schedule: nobody comes on Saturdays and Sundays, and there is no other day from " + schedule.first_day + " on");
+}
+
 ScriptSpec script_of(const YamlNode& root, const std::filesystem::path& file) {
   Diagnostics faults;
   YamlMap map(root, faults, "script");
@@ -228,6 +238,7 @@ ScriptSpec script_of(const YamlNode& root, const std::filesystem::path& file) {
     for (TrialSpec& trial : script.trials) trial.duration_s = trial.duration_s.value_or(*duration_s);
   }
   if (const auto schedule = read_schedule(map.child("schedule"), faults)) {
+    warn_of_days_off(*map.child("schedule"), *schedule, script.replicates, faults);
     for (TrialSpec& trial : script.trials) {
       if (trial.duration_s) {
         faults.error(schedule->where, "schedule: a run lasts from its `from` to its `to`: leave out duration_s");

@@ -52,6 +52,16 @@ class Room(unittest.TestCase):
 
 
 class Dataset(unittest.TestCase):
+    def test_more_people_than_seats_are_told_once(self):
+        recipe = (DATA / "recipes" / "tiny.yaml").read_text()
+        self.assertIn("people: [1, 2]", recipe)
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "many.yaml"
+            for people, told in (("people: [1, 2]", 0), ("people: 7", 1)):
+                file.write_text(recipe.replace("people: [1, 2]", people))
+                said = pirsim("dataset", file, "-o", pathlib.Path(folder) / people[-2:], "--shard", "1/2").stderr
+                self.assertEqual(said.count("should have 7 at least, but has only "), told, said)
+
     def test_shards_make_what_one_process_makes(self):
         recipe = DATA / "recipes" / "tiny.yaml"
         with tempfile.TemporaryDirectory() as folder:
@@ -92,6 +102,16 @@ class Dataset(unittest.TestCase):
             pirsim("preview", "--scene", one / "rooms/room_0001.gltf", "--script", one / "scripts/room_0001/day_01.yaml",
                    "--time", 600, "--width", 160, "--height", 90, "--sensors", DATA / "sensors", "-o",
                    pathlib.Path(folder) / "morning.png")
+
+            # What is missing is told, and made again as it was.
+            lost = one / "rows/room_0002/day_01.csv.gz"
+            bytes_before = lost.read_bytes()
+            lost.unlink()
+            check = subprocess.run([sys.executable, TOOLS / "validate_dataset", one], capture_output=True, text=True)
+            self.assertEqual((check.returncode, check.stderr), (1, ""))
+            self.assertIn(f"{lost} is missing: pirsim dataset RECIPE -o {one} --resume", check.stdout)
+            pirsim("dataset", recipe, "-o", one, "--resume", "-q")
+            self.assertEqual(lost.read_bytes(), bytes_before)
 
             # What is damaged is told.
             (one / "rooms.csv").write_text("room\n")
