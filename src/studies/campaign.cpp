@@ -198,6 +198,12 @@ class Merger {
   std::uint64_t bytes_ = 0;
 };
 
+/// What makes a shard, or goes on with it; "N/5" for any of five.
+std::string option_of(const Shard& shard) {
+  return "--shard " + (shard.index == 0 ? "N" : std::to_string(shard.index)) + '/' + std::to_string(shard.count) +
+         " --resume";
+}
+
 const char* name(State state) {
   switch (state) {
     case State::done:
@@ -248,7 +254,10 @@ std::string to_text(const std::vector<ShardReport>& shards) {
     }
     text += shard_name(each.shard) + ": " + name(each.state) + (each.why.empty() ? "" : ": ") + each.why + '\n';
   }
-  return text + std::to_string(done) + " of " + std::to_string(shards.size()) + " shards are done\n";
+  text += std::to_string(done) + " of " + std::to_string(shards.size()) + " shards are done";
+  if (done < shards.size())
+    text += "; run the others by their command with " + option_of({0, shards.front().shard.count});
+  return text + '\n';
 }
 
 io::Provenance campaign_provenance(const fs::path& folder) {
@@ -264,7 +273,8 @@ io::Manifest merge_campaign(const fs::path& folder, const fs::path& output, cons
   for (const Entry& entry : entries) {
     if (entry.report.state == State::done) continue;
     const std::string why = entry.report.why.empty() ? "" : ": " + entry.report.why;
-    faults.error(Where{(folder / shard_name(entry.report.shard)).string()}, name(entry.report.state) + why);
+    faults.error(Where{(folder / shard_name(entry.report.shard)).string()},
+                 name(entry.report.state) + why + "; run it by its command with " + option_of(entry.report.shard));
   }
   faults.throw_if_errors();
 

@@ -132,10 +132,10 @@ class Shards(unittest.TestCase):
             result = call([PIRSIM, "status", folder])
             self.assertEqual(result.stdout, "2-3,5\n")
             for line in ("shard-0002-of-0005: unfinished", "shard-0003-of-0005: broken: longer than",
-                         "shard-0005-of-0005: missing", "2 of 5 shards are done"):
+                         "shard-0005-of-0005: missing", "2 of 5 shards are done; run the others by their command with --shard N/5 --resume"):
                 self.assertIn(line, result.stderr)
             fault = self.merged(folder, code=3).stderr
-            for word in ("shard-0002", "unfinished", "shard-0005", "missing"):
+            for word in ("shard-0002", "unfinished", "shard-0005", "missing; run it by its command with --shard 5/5 --resume"):
                 self.assertIn(word, fault)
             self.assertEqual(names(folder.parent), ["shards"])
             for task in (2, 3, 5):  # what a job array of these numbers would do
