@@ -1,5 +1,6 @@
 #include "app/study_run.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <iostream>
@@ -72,7 +73,7 @@ void tell(const io::RunNotes& notes, Verbosity verbosity) {
   warn(notes.seats_changed, " times a person took another seat because theirs stayed taken");
   warn(notes.seats_missed, " times a person stayed without a seat because theirs stayed taken");
   warn(notes.waits_outside,
-       " times a person waited outside, unseen, because the seat they came for was taken; first in " + notes.first_wait);
+       " times a person waited outside, unseen, since the seat they came for was taken; first in " + notes.first_wait);
   if (notes.failed.empty()) return;
   constexpr std::size_t most_told = 10;
   std::string message = std::to_string(notes.failed.size()) + " runs failed and have no rows";
@@ -111,6 +112,11 @@ void check_options(const Inputs& inputs, const RunOptions& options) {
   if (partial == nullptr) return;
   if (options.rows.output.empty()) {
     throw Error(ErrorCode::usage, std::string(partial) + " needs -o " + (sharded ? "DIR" : "FILE"));
+  }
+  const std::string name = options.rows.output.filename().string();
+  if (sharded && std::ranges::any_of(io::table_endings(), [&](const auto& ending) { return name.ends_with(ending); })) {
+    throw Error(ErrorCode::usage, "--shard: -o '" + options.rows.output.string() +
+                                      "' is named as a file, but is to be a folder: a file a shard");
   }
   if (!sharded && io::is_written_directly(options.rows.output)) {
     throw Error(ErrorCode::usage, std::string(partial) + ": '" + options.rows.output.string() +

@@ -25,6 +25,11 @@ def study(*args, script="studyA.yaml", **kwargs):
     return pirsim("--scene", DATA / "rooms" / "meeting_room.gltf", "--script", DATA / "studies" / script, *args, **kwargs)
 
 
+def study_of(command, *args, code):
+    return pirsim(command, "--scene", DATA / "rooms" / "meeting_room.gltf", "--script", DATA / "studies" / "studyA.yaml",
+                  *args, code=code).stderr
+
+
 ONE_RUN = "--replicates", 1, "--set", "trials.for_each.seat=[S1]", "-q"
 
 
@@ -120,6 +125,7 @@ class Doubts(unittest.TestCase):
         floor["extras"]["pirsim"] = {"type": "floor", "polygon_xz_m": [[0, 0], [8002, 0], [8002, 6002], [0, 6002]]}
         told = self.room.check(self.folder.name, code=5)
         self.assertIn("the floor spans 8002 m x 6002 m: millimetres?", told)
+        self.assertRegex(told, r"room\.gltf: error: the floor and its entrances span 80")
         self.assertIn("too large to find ways on (glTF's unit is the metre)", told)
         self.assertNotIn("are they", told)
         floor["extras"]["pirsim"]["polygon_xz_m"] = [[0, 0], [8, 0], [8, 6], [0, 6]]
@@ -227,6 +233,107 @@ class BareRoom(unittest.TestCase):
         self.assertNotEqual(*pictures)
 
 
+class Sensors(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.room = Room()
+
+    def test_one_that_hangs_outside(self):
+        sensor = self.room.marked("sensor", "PIR1")
+        sensor["translation"][0] += 70.0
+        told = self.room.check(self.folder)
+        self.assertRegex(told, r"sensor 'PIR1' can see NOBODY: it hangs outside of the room, [67]\d\.\d m from the floor")
+        self.assertNotIn("look at a wall", told)
+
+    def test_placements_tell_of_unknown_models_and_of_sensors_that_see_nothing(self):
+        placements = self.folder / "placements.yaml"
+        placements.write_text("""pirsim_placements: 1
+spacing_m: 1
+duration_s: 2
+target: {x_shapes: {}}
+sets:
+  - id: far
+    sensors:
+      - {model: EKMC1604111, position_m: [79.5, 2.5, -3]}
+      - {model: EKMC1604111, position_m: [4, 2.6, -3], tilt_deg: 90}
+""")
+        scene = "--scene", DATA / "rooms" / "meeting_room.gltf"
+        told = pirsim("placements", *scene, "--script", placements).stderr
+        self.assertRegex(told, r"placements.yaml:8:9: warning: set 'far': sensor 'PIR1' sees the target nowhere: it hangs "
+                               r"outside of the room, 7\d\.\d m from the floor's edge")
+        self.assertNotIn("PIR2", told)
+        placements.write_text(placements.read_text().replace("EKMC1604111", "EKMC160411", 1))
+        self.assertIn("placements.yaml:8:17: error: no sensor model 'EKMC160411' (did you mean 'EKMC1604111'?)",
+                      pirsim("placements", *scene, "--script", placements, code=3).stderr)
+
+    def own_model(self, change):
+        text = change((DATA / "sensors" / "EKMC1604111.yaml").read_text())
+        (self.folder / "sensors").mkdir(exist_ok=True)
+        (self.folder / "sensors" / "MINE.yaml").write_text(text)
+        self.room.marked("sensor", "PIR1")["extras"]["pirsim"]["model"] = "MINE"
+
+    def test_a_model_whose_id_is_not_its_files_name(self):
+        self.own_model(lambda text: text.replace("id: EKMC1604111", "id: MINE2"))
+        self.assertRegex(self.room.check(self.folder),
+                         r"MINE\.yaml:\d+:5: warning: id 'MINE2' isn't the file's name: scenes name this model 'MINE'")
+
+    def test_a_misspelt_range_is_one_fault(self):
+        self.own_model(lambda text: text.replace("id: EKMC1604111", "id: MINE\nrangem: 12").replace(", range_m: 12", ""))
+        told = self.room.check(self.folder, code=3)
+        self.assertIn("unknown key 'rangem' (did you mean 'range_m'?)", told)
+        self.assertEqual(told.count("error:"), 1, told)
+
+
+class Words(unittest.TestCase):
+    """What is asked for and can't be had is told with what there is, in the words that the user typed."""
+
+    def test_unknown_names_come_with_the_nearest_or_the_list(self):
+        self.assertIn("sensor 'motion' is not in the scene; there are PIR1, PIR2",
+                      study_of("preview", "--beams", "motion", "-o", "x.png", code=2))
+        self.assertIn("rule: 'swept' is not known here; there are ",
+                      study("--set", "effects=[{soft_zone_edges: {rule: swept}}]", code=3).stderr)
+        self.assertIn("(did you mean 'soft_zone_edges'?)", pirsim("effects", "softzone", code=2).stderr)
+        self.assertIn("entrance 'window' is not in meeting_room.gltf; there are door",
+                      study("--set", "people.0.actions.0.enter=window", code=3).stderr)
+
+    def test_options_are_blamed_by_their_own_names(self):
+        for args in (("--replicates", 0), ("--seed", -1)):
+            told = study(*args, code=2).stderr
+            self.assertIn(str(args[0]), told)
+            self.assertNotIn("--set", told)
+        told = pirsim("room", "--seats", "many", "-o", "x.gltf", code=2).stderr
+        self.assertIn("--seats many: error: ", told)
+        self.assertNotIn("--set", told)
+        self.assertIn("--set seats=many: error: ", pirsim("room", "--set", "seats=many", "-o", "x.gltf", code=2).stderr)
+
+    def test_a_folder_of_shards_is_not_named_as_a_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for name in ("x.csv", "x.csv.gz", "x.csv.zst"):
+                told = study("--shard", "1/2", "-o", name, code=2, cwd=folder).stderr
+                self.assertIn(f"-o '{name}' is named as a file", told)
+            self.assertEqual(list(pathlib.Path(folder).iterdir()), [])
+
+    def test_days_off_alone_are_told(self):
+        day = "day", "--scene", DATA / "rooms" / "meeting_room.gltf", "--meetings", "--from", "09:00", "--to", "09:01"
+        for first, days, told in (("2026-03-07", 1, True), ("2026-03-07", 2, True), ("2026-03-07", 3, False),
+                                  ("2026-03-06", 1, False)):
+            said = pirsim(*day, "--first-day", first, "--days", days).stderr
+            self.assertEqual("nobody comes on Saturdays and Sundays" in said, told, (first, days, said))
+
+    def test_measured_columns(self):
+        files = "--scene", DATA / "rooms" / "meeting_room.gltf", "--script", DATA / "studies" / "studyA.yaml"
+
+        def told(text):
+            return pirsim("reconcile", *files, "--measured", "-", code=3, input=text).stderr
+        one = told("seat,sensor,secs\nS1,PIR1,10\n")
+        self.assertIn("'seconds' is missing (did you mean 'secs'?)", one)
+        self.assertEqual(one.count("error:"), 1, one)
+        self.assertIn("unknown column 'temperature'; there are ", told("seat,time_s,PIR1,temperature\nS1,1,0,20\n"))
+        self.assertIn(" PIR1, PIR2, PIR3, PIR4, PIR5", told("seat,time_s,PIR1,temperature\nS1,1,0,20\n"))
+
+
 class Marks(unittest.TestCase):
     def told(self, change, code=3):
         room = Room()
@@ -290,8 +397,7 @@ class Scripts(unittest.TestCase):
             return study("--print-config", "--set", f"summary.phases={phases}", *more, code=3).stderr
         self.assertIn("summary.phases: no run has a phase 'workin' (did you mean 'working'?)", told("[workin]"))
         self.assertIn("no run has a phase 'meeting'; there are outside, rising, ", told("[working, meeting]"))
-        self.assertIn("no run has a phase 'working'; there are desk, ", told("[working]", "--set",
-                                                                            "people.0.actions.3.phase=desk"))
+        self.assertIn("no run has a phase 'working'", told("[working]", "--set", "people.0.actions.3.phase=desk"))
         study("--print-config", "--set", "summary.phases=[desk]", "--set", "people.0.actions.3.phase=desk")
         with tempfile.TemporaryDirectory() as folder:
             script = pathlib.Path(folder) / "trials.yaml"
