@@ -505,6 +505,19 @@ class Looking(unittest.TestCase):
             refused = pirsim("preview", *study_files(), "-o", out, "--marks", "chairs", code=2).stderr
             self.assertIn("seats", refused)
 
+    def test_the_scale_has_its_label_only_where_all_of_its_bar_is_seen(self):
+        """Behind a wall, and beyond the picture's edge, the label would stand beside nothing."""
+        def drawn(marks, camera, look_at):
+            with tempfile.TemporaryDirectory() as folder:
+                out = pathlib.Path(folder) / "p.png"
+                pirsim("preview", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
+                       DATA / "studies" / "studyA.yaml", "-o", out, "--marks", marks, "--camera=" + camera,
+                       "--look-at=" + look_at, "--width", 320, "--height", 180)
+                return out.read_bytes()
+        for camera, look_at in (("9,4,2", "3,1,-4"), ("4,3,-1", "6,0,-1")):
+            self.assertEqual(drawn("scale", camera, look_at), drawn("none", camera, look_at))
+        self.assertNotEqual(drawn("scale", "4,12,-4", "4,0,-4"), drawn("none", "4,12,-4", "4,0,-4"))
+
     def test_preview_writes_a_png_of_the_asked_size(self):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "p.png"
