@@ -240,6 +240,12 @@ void write_report(const std::filesystem::path& folder, const Outcome& outcome, c
   const std::vector<std::string>& phases = script.summary.phases;
   io::Report page = report_page(outcome, settings.alpha,
                                 {provenance.scene, provenance.script, phases.empty() ? "" : phases.front()});
+  if (const TableSettings usual; settings.table.n_realizations != usual.n_realizations) {
+    page.paragraphs.push_back("For this analysis the plain model was simulated " +
+                              std::to_string(settings.table.n_realizations) + " times, not the usual " +
+                              std::to_string(usual.n_realizations) + ": --budget scales this number and those of the " +
+                              "effects. Fewer datasets rule out fewer effects.");
+  }
   page.footer = provenance.program + ", " + provenance.scene + ", " + provenance.script + ", " + provenance.measured;
   io::write_text_file(folder / "report.html", io::to_html(page));
   io::write_text_file(folder / "report.json", to_json(outcome, measured, settings, context, provenance));
