@@ -494,6 +494,17 @@ class Looking(unittest.TestCase):
             result = pirsim("check", "--scene", blind, *files[2:], "--sensors", DATA / "sensors")
         self.assertIn("sensor 'PIR3' can see NOBODY", result.stderr)
 
+    def test_a_run_says_what_it_wrote_and_quiet_says_nothing(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "rows.csv"
+            report = pathlib.Path(folder) / "report.html"
+            told = study("-o", out, "--report", report).stderr
+            n_rows = len(out.read_text().splitlines()) - 1
+            self.assertIn(f"wrote {out}: {n_rows} rows, {report}\n", told)
+            self.assertNotIn("wrote", study("-o", out, "-q").stderr)
+            self.assertNotIn("wrote", study().stderr)
+            self.assertIn("all runs are there", study("-o", out, "--resume").stderr)
+
     def test_preview_marks_what_it_is_asked_to(self):
         with tempfile.TemporaryDirectory() as folder:
             pictures = {}
