@@ -487,7 +487,7 @@
     const free = (at) => near.every((box) => at + high <= box.top || at >= box.top + box.high);
     const places = near.flatMap((box) => [box.top - high, box.top + box.high]).concat(top).filter(free);
     const nearest = Math.min(...places.map((at) => Math.abs(at - top)));
-    return nearest > 3 * high ? top : places.find((at) => Math.abs(at - top) === nearest);
+    return nearest > 6 * high ? top : places.find((at) => Math.abs(at - top) === nearest);
   }
 
   /// Of a share from 0 to 1: the scale of the key.
