@@ -190,6 +190,13 @@ def compile(scene: PathOr | Scene, script: PathOr | Script, *, set: Overrides | 
     return Model._of(core)
 
 
+def _handle_of(model: Model) -> _core.Model:
+    if not isinstance(model, Model):
+        raise TypeError(f"expected a pirsim.Model, which pirsim.compile(scene, script) makes, not a "
+                        f"{type(model).__name__}")
+    return model._handle
+
+
 def _run_numbers(model: Model, runs: int | Iterable[int] | None) -> list[int]:
     if runs is None:
         return list(range(model.n_runs))
@@ -211,7 +218,7 @@ def run(model: Model, runs: int | Iterable[int] | None = None, *, threads: int =
     Other Python threads run meanwhile; Ctrl-C ends it after the runs that have begun. A run that can't go on has no
     rows; `Result.faults` says why, and an IncompleteWarning that there are some.
     """
-    arrays = _core.run(model._handle, _run_numbers(model, runs), threads, zones, signals, occupants, progress)
+    arrays = _core.run(_handle_of(model), _run_numbers(model, runs), threads, zones, signals, occupants, progress)
     result = make_result(arrays, model.sensors.names)
     if result.faults:
         first = result.faults[0]
@@ -266,4 +273,4 @@ def trace(model: Model, runs: int | Iterable[int] | None = None, *, threads: int
 
     Arguments as of run(). Raises UsageError for sensors with an analog response, which zones alone don't explain.
     """
-    return Trace._of(_core.record(model._handle, _run_numbers(model, runs), threads, progress), model)
+    return Trace._of(_core.record(_handle_of(model), _run_numbers(model, runs), threads, progress), model)

@@ -25,6 +25,7 @@ studies::CoverageStudy load_coverage(const Inputs& inputs) {
   tell(scene.warnings, inputs.verbosity);
   studies::CoverageStudy study(std::move(scene), std::move(spec));
   tell(study.warnings(), inputs.verbosity);
+  tell_what_is_left_out(study, inputs.verbosity);
   return study;
 }
 

@@ -14,6 +14,7 @@
 #include "pirsim/version.hpp"
 #include "rt/tracer.hpp"
 #include "sim/compiled_study.hpp"
+#include "studies/coverage.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -38,6 +39,17 @@ NuisanceSpec nuisance_of(const std::string& asked) {
 void tell(const std::vector<Issue>& issues, Verbosity verbosity) {
   if (verbosity == Verbosity::quiet) return;
   for (const Issue& issue : issues) std::cerr << to_string(issue) << '\n';
+}
+
+void tell_what_is_left_out(const studies::CoverageStudy& study, Verbosity verbosity) {
+  constexpr std::size_t most_named = 6;
+  const std::vector<TriMesh>& meshes = study.taken_out();
+  if (meshes.empty() || verbosity == Verbosity::quiet) return;
+  std::cerr << "left out of the room, as the study's 'without' says:";
+  for (std::size_t i = 0; i < std::min(meshes.size(), most_named); ++i)
+    std::cerr << (i == 0 ? " " : ", ") << meshes[i].name;
+  if (meshes.size() > most_named) std::cerr << " and " << meshes.size() - most_named << " more";
+  std::cerr << '\n';
 }
 
 io::SceneOptions scene_options(const Inputs& inputs) {
@@ -190,8 +202,8 @@ void write_summary(const studies::Summary& summary, io::AtomicFile& file, const 
 }
 
 void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs) {
-  report.footer = "pirsim " + version() + " (" + git_revision() + "), " + inputs.scene.filename().string() + ", " +
-                  inputs.script.filename().string();
+  report.footer = "pirsim " + version() + " (" + git_revision() + "), " + inputs.scene.filename().string();
+  if (!inputs.script.empty()) report.footer += ", " + inputs.script.filename().string();
   file.stream() << io::to_html(report);
   file.commit();
 }

@@ -14,6 +14,10 @@
 #include "pirsim/script.hpp"
 #include "studies/summary.hpp"
 
+namespace pirsim::studies {
+class CoverageStudy;
+}
+
 namespace pirsim::app {
 
 /// Reads and compiles; warnings of the readers go to standard error unless quiet.
@@ -30,6 +34,8 @@ namespace pirsim::app {
 /// Of --nuisance: a file, "none", or "" for the usual one.
 [[nodiscard]] NuisanceSpec nuisance_of(const std::string& asked);
 void tell(const std::vector<Issue>& issues, Verbosity verbosity);
+/// Of the room, by the study's `without`: who takes a shipped study for a room of their own may not expect it.
+void tell_what_is_left_out(const studies::CoverageStudy& study, Verbosity verbosity);
 
 struct NamedOutput {
   std::string option;          ///< "--summary"

@@ -83,6 +83,25 @@ void tell(const io::RunNotes& notes, Verbosity verbosity) {
   throw Error(ErrorCode::incomplete, message);
 }
 
+void tell_what_is_written(const RunOptions& options, const RowOutput& rows, std::uint32_t n_new,
+                          Verbosity verbosity) {
+  if (verbosity == Verbosity::quiet) return;
+  std::string text;
+  const auto add = [&](const std::filesystem::path& file) {
+    if (!file.empty() && !io::is_written_directly(file)) text += (text.empty() ? "wrote " : ", ") + file.string();
+  };
+  if (n_new == 0 && options.rows.start == RowOptions::Start::resume) {
+    std::cerr << options.rows.output.string() << ": nothing to resume, all runs are there\n";
+    return;
+  }
+  if (!options.rows.output.empty() && !io::is_written_directly(options.rows.output)) {
+    add(options.rows.output);
+    text += ": " + std::to_string(rows.rows()) + " rows";
+  }
+  for (const auto& file : {options.summary, options.report, options.zones, options.trace, options.occupants}) add(file);
+  if (!text.empty()) std::cerr << text << '\n';
+}
+
 std::string stop_message(const RunOptions& options, const std::string& cause, const Model& model,
                          const RowOutput& rows) {
   const RunRange left = rows.missing_runs();
@@ -172,6 +191,7 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
   }
   rows->commit();
   others.commit(rows->notes());
+  tell_what_is_written(options, *rows, done, inputs.verbosity);
   tell(rows->notes(), inputs.verbosity);
   if (inputs.verbosity == Verbosity::verbose) {
     std::cerr << done << " runs, " << rows->rows() << " rows in " << progress.seconds() << " s\n";

@@ -122,6 +122,7 @@ io::PageMap page_map(const Model& model, const std::filesystem::path& file, Verb
   CoverageSpec spec = io::read_coverage(file);
   const studies::CoverageStudy study(model.compiled().scene(), std::move(spec));
   tell(study.warnings(), verbosity);
+  tell_what_is_left_out(study, verbosity);
   const CoverageMap map = studies::run_coverage(study);
   const FloorGrid& grid = map.grid;
   io::PageMap page{study.spec().name,
@@ -151,6 +152,8 @@ io::RunPage run_page(const Model& model, std::uint32_t run, const Stretch& stret
   io::RunPage page;
   page.title = model.script().name + ", " + model.trial_of(run);
   page.about = "trial " + model.trial_of(run) + ", replicate " + std::to_string(model.replicate_of(run));
+  const TrialSpec& trial = model.script().trials[run % model.script().trials.size()];
+  if (!trial.schedule && !trial.people.empty()) page.first_person = trial.people.front().id;
   page.made_by = "pirsim " + version() + " (" + git_revision() + ")";
   page.sensors = page_sensors(model, film);
   page.run = std::move(film.run);

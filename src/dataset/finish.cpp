@@ -52,7 +52,7 @@ std::vector<RoomDayRecord> read_records(const RecipeSpec& recipe, const fs::path
   return records;
 }
 
-/// As it is before anybody comes, with the beams of all sensors.
+/// As it is before anybody comes. Beams would cover it: a sensor has hundreds.
 void draw_room_picture(const RecipeSpec& recipe, const SceneSpec& scene, int room, const fs::path& file) {
   ScriptSpec script = script_of(recipe, scene, room, 1);
   script.effects.clear();
@@ -60,7 +60,6 @@ void draw_room_picture(const RecipeSpec& recipe, const SceneSpec& scene, int roo
   studies::PictureSpec spec;
   spec.width = 960;
   spec.height = 540;
-  for (std::size_t i = 0; i < scene.sensors.size(); ++i) spec.beams_of.push_back(i);
   const io::Pixels image = studies::picture(model, State(model, 0), spec);
   make_folders(file.parent_path());
   io::write_png(file, image.width, image.height, image.rgb);

@@ -6,6 +6,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "io/gltf_builder.hpp"
+#include "io/person_colours.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::io {
@@ -17,7 +18,7 @@ constexpr double wall_opacity = 0.25;
 const Vec3 wall_colour(0.85);
 const Vec3 furniture_colour(0.6, 0.55, 0.5);
 
-// Okabe and Ito's colours, which colour-blind readers can tell apart; people and sensors take them in turn.
+// Okabe and Ito's colours, which colour-blind readers can tell apart; sensors take them in turn.
 const std::array<Vec3, 6> palette{Vec3(0.00, 0.45, 0.70), Vec3(0.90, 0.60, 0.00), Vec3(0.00, 0.62, 0.45),
                                   Vec3(0.80, 0.47, 0.65), Vec3(0.34, 0.71, 0.91), Vec3(0.84, 0.37, 0.00)};
 
@@ -172,7 +173,7 @@ void add_people(GltfBuilder& document, const ExportedRun& run) {
     const int index = document.add_node(std::move(node));
     document.animate(index, "scale", key_times, document.add_track(scales), "STEP");
     if (person.parts.empty()) continue;
-    const int material = document.add_material(person.id, palette[i % palette.size()], 1.0);
+    const int material = document.add_material(person.id, person_colour(person.number), 1.0);
     for (const ExportedPart& part : person.parts) add_part(document, part, person.id, index, material, key_times);
   }
 }

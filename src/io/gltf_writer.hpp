@@ -24,6 +24,7 @@ struct ExportedPerson {
   std::string id;
   std::vector<ExportedPart> parts;
   std::vector<std::uint8_t> present;  ///< (n_keys) 0 from this key to the next: not in the scene, drawn at scale 0
+  std::size_t number = 0;             ///< among all people of the run: gives the colour, as in pictures
 };
 
 /// What a sensor looks along, as lines.

@@ -106,6 +106,7 @@ Json json(const PageMap& map) {
 
 std::string json_text(const RunPage& page) {
   Json all{{"title", page.title},
+           {"first_person", page.first_person},
            {"run_s", page.run_s},
            {"window_s", page.window_s},
            {"keys_s", page.run.key_times_s},

@@ -243,9 +243,11 @@ Image render(const Room& room, std::span<const Surface> mesh_surfaces, std::span
       [&](std::vector<Pixel>& row) { pixels.insert(pixels.end(), row.begin(), row.end()); });
   draw_beams(view, beams, pixels);
 
-  Image image{width, height, {}};
+  Image image{width, height, {}, {}};
   image.rgb.reserve(3 * pixels.size());
+  image.depth_m.reserve(pixels.size());
   for (const Pixel& pixel : pixels) {
+    image.depth_m.push_back(pixel.depth);
     for (int channel = 0; channel < 3; ++channel) image.rgb.push_back(encoded(pixel.light[channel]));
   }
   return image;

@@ -42,11 +42,12 @@ enum class Surface {
   hidden,       ///< not drawn and throws no shadow
 };
 
-/// 8-bit sRGB, (height x width x 3), top row first.
+/// Top row first.
 struct Image {
   int width = 0;
   int height = 0;
-  std::vector<std::uint8_t> rgb;
+  std::vector<std::uint8_t> rgb;  ///< 8-bit sRGB, (height x width x 3)
+  std::vector<float> depth_m;     ///< (height x width), of the nearest surface before the camera; infinity for none
 };
 
 /// sRGB of a pixel in which there is nothing.

@@ -188,9 +188,6 @@ io::ReportSection DayReport::section(const std::string& heading) const {
   section.paragraphs.push_back((days_ == 1 ? "One day" : std::to_string(days_) + " days") +
                                " on which somebody came. First how many people were in the room, by the time of day, "
                                "then how much motion each sensor reported at that time.");
-  io::Table table{{"at " + busiest_.clock, "does", "seat"}, {}};
-  for (const OccupantRow& row : busiest_.people) table.rows.push_back({row.person, row.activity, row.seat});
-  section.tables.push_back(std::move(table));
   section.charts.emplace_back(people_chart());
   std::vector<io::LineChart> sensors;
   double most = 0.05;
@@ -204,6 +201,17 @@ io::ReportSection DayReport::section(const std::string& heading) const {
   }
   section.charts.emplace_back(count_chart());
   section.charts.emplace_back(floor_chart());
+  return section;
+}
+
+io::ReportSection DayReport::moment_section(const std::string& heading) const {
+  io::ReportSection section{heading, {}, {}, {}};
+  section.paragraphs.push_back("Most people were in the room at " + busiest_.clock +
+                               "; of all such moments it is the first at which the most of them were on their feet. "
+                               "This is what each of them did. Triangles in the map above show where.");
+  io::Table table{{"who", "does", "seat"}, {}};
+  for (const OccupantRow& row : busiest_.people) table.rows.push_back({row.person, row.activity, row.seat});
+  section.tables.push_back(std::move(table));
   return section;
 }
 

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "io/lettering.hpp"
+#include "io/person_colours.hpp"
 #include "pirsim/error.hpp"
 #include "rt/renderer.hpp"
 #include "sim/compiled_study.hpp"
@@ -39,15 +42,10 @@ MeshLook look_of(const TriMesh& mesh, double floor_y) {
   return {rt::Surface::opaque, {0.55F, 0.36F, 0.20F}};
 }
 
-/// What people wear, in their order.
-constexpr std::array<rt::Colour, 8> shirts{{{0.10F, 0.28F, 0.52F},
-                                            {0.72F, 0.20F, 0.10F},
-                                            {0.10F, 0.42F, 0.20F},
-                                            {0.62F, 0.40F, 0.03F},
-                                            {0.36F, 0.16F, 0.50F},
-                                            {0.05F, 0.42F, 0.45F},
-                                            {0.58F, 0.12F, 0.32F},
-                                            {0.35F, 0.35F, 0.36F}}};
+rt::Colour shirt_of(std::size_t person) {
+  const Vec3f colour(io::person_colour(person));
+  return {colour.r, colour.g, colour.b};
+}
 
 rt::Colour colour_of(body::Part part, std::size_t person) {
   switch (part) {
@@ -58,7 +56,7 @@ rt::Colour colour_of(body::Part part, std::size_t person) {
     case body::Part::torso:
     case body::Part::left_upper_arm:
     case body::Part::right_upper_arm:
-      return shirts[person % shirts.size()];
+      return shirt_of(person);
     case body::Part::left_foot:
     case body::Part::right_foot:
       return {0.05F, 0.05F, 0.06F};
@@ -91,7 +89,7 @@ void require_usable(const rt::Camera& camera) {
   }
 }
 
-constexpr rt::Colour idle_beam{0.10F, 0.45F, 0.75F}, seeing_beam{1.0F, 0.25F, 0.02F};
+constexpr rt::Colour idle_beam{0.10F, 0.45F, 0.75F}, seeing_beam{0.90F, 0.02F, 0.02F};
 constexpr rt::Colour seat_colour{0.55F, 0.10F, 0.55F}, door_colour{0.05F, 0.45F, 0.12F},
     scale_colour{0.05F, 0.05F, 0.06F};
 
@@ -104,7 +102,8 @@ struct Label {
 /// Lines and texts on top of the room.
 struct Marks {
   std::vector<rt::Beam> lines;
-  std::vector<Label> labels;
+  std::vector<Label> labels, people;
+  std::optional<rt::Beam> scale;
 };
 
 /// From the seat's point the way who sits there faces.
@@ -146,8 +145,7 @@ void mark_people(const State& state, Marks& marks) {
     if (shapes.empty()) continue;
     const Bounds head = bounds(shapes.at(static_cast<std::size_t>(body::Part::head)));
     const Vec3f top(0.5F * (head.lower.x + head.upper.x), head.upper.y, 0.5F * (head.lower.z + head.upper.z));
-    marks.labels.push_back(
-        {Vec3(top) + Vec3(0.0, above_m, 0.0), actors[i].person().spec.id, shirts[i % shirts.size()]});
+    marks.people.push_back({Vec3(top) + Vec3(0.0, above_m, 0.0), actors[i].person().spec.id, shirt_of(i)});
   }
 }
 
@@ -156,9 +154,24 @@ void mark_scale(const SceneSpec& scene, Marks& marks) {
   constexpr double before_m = 0.3, above_m = 0.01;
   const Vec2 corner = scene.floor.lower();
   const auto at = [&](double x) { return Vec3(corner.x + x, scene.floor.height_m() + above_m, corner.y - before_m); };
+  marks.scale = {at(0.0), at(1.0), scale_colour};
   marks.lines.push_back({at(0.0), at(1.0), scale_colour});
   marks.lines.push_back({at(1.0), at(0.0), scale_colour});
-  marks.labels.push_back({at(0.5) - Vec3(0.0, 0.0, before_m), "1 m", scale_colour});
+}
+
+/// Is all of a line in the picture, and nothing before it?
+bool is_seen(const rt::Beam& line, const rt::View& view, const rt::Image& image) {
+  constexpr int n_points = 11;
+  constexpr float slack_m = 0.03F;
+  for (int i = 0; i < n_points; ++i) {
+    const Vec3f point(glm::mix(line.from, line.to, static_cast<double>(i) / (n_points - 1)));
+    const auto pixel = view.pixel_of(point);
+    if (!pixel || !(pixel->x >= 0.0F && pixel->y >= 0.0F)) return false;
+    if (!(pixel->x < static_cast<float>(image.width) && pixel->y < static_cast<float>(image.height))) return false;
+    const auto x = static_cast<std::size_t>(pixel->x), y = static_cast<std::size_t>(pixel->y);
+    if (image.depth_m[y * static_cast<std::size_t>(image.width) + x] < view.depth_of(point) - slack_m) return false;
+  }
+  return true;
 }
 
 /// A floor that no mesh shows: a polygon in the scene's markup.
@@ -197,14 +210,22 @@ double text_size(const io::Pixels& image) {
   return std::max(8.0, size_px * image.height / reference_height);
 }
 
-/// Darker than the lines, so that it can be read.
+/// Darker than the lines, so that it can be read; light colours still more so.
 Vec3 ink(const rt::Colour& colour) {
-  return 255.0 * glm::pow(Vec3(colour[0], colour[1], colour[2]), Vec3(1.0 / 2.2)) * 0.8;
+  const Vec3 light(colour[0], colour[1], colour[2]);
+  const double luminance = glm::dot(light, Vec3(0.2126, 0.7152, 0.0722));
+  return 255.0 * glm::pow(light, Vec3(1.0 / 2.2)) * (luminance > 0.4 ? 0.6 : 0.8);
 }
 
-void write_labels(const std::vector<Label>& labels, const rt::View& view, io::Pixels& image) {
+void write_labels(const Marks& marks, const rt::View& view, bool scale_is_seen, io::Pixels& image) {
   const double size = text_size(image);
   const auto height = static_cast<float>(image.height);
+  std::vector<Label> labels = marks.labels;
+  labels.insert(labels.end(), marks.people.begin(), marks.people.end());
+  if (scale_is_seen) {
+    constexpr double before_m = 0.3;
+    labels.push_back({0.5 * (marks.scale->from + marks.scale->to) - Vec3(0.0, 0.0, before_m), "1 m", scale_colour});
+  }
   std::vector<io::Lettering> texts;
   for (const Label& label : labels) {
     auto at = view.pixel_of(Vec3f(label.at));
@@ -218,7 +239,8 @@ void write_labels(const std::vector<Label>& labels, const rt::View& view, io::Pi
 }
 
 /// What the colours of this picture mean, in its lower left corner.
-void write_key(const PictureSpec& spec, io::Pixels& image) {
+void write_key(const PictureSpec& spec, const Marks& marks, io::Pixels& image) {
+  constexpr std::size_t most_people = 8;  // whose colours differ
   const auto wanted = [&](Mark mark) { return std::ranges::find(spec.marks, mark) != spec.marks.end(); };
   if (!wanted(Mark::key)) return;
   std::vector<std::pair<std::string, rt::Colour>> entries;
@@ -226,8 +248,14 @@ void write_key(const PictureSpec& spec, io::Pixels& image) {
     entries.emplace_back("a sensor's beam", idle_beam);
     entries.emplace_back("a beam that hits a person", seeing_beam);
   }
+  if (wanted(Mark::sensors)) entries.emplace_back("sensor", scale_colour);
   if (wanted(Mark::seats)) entries.emplace_back("seat", seat_colour);
   if (wanted(Mark::doors)) entries.emplace_back("door", door_colour);
+  if (marks.people.size() <= most_people) {
+    for (const Label& person : marks.people) entries.emplace_back("person " + person.text, person.colour);
+  } else {
+    entries.emplace_back("people: name and shirt have one colour", scale_colour);
+  }
   const double size = text_size(image), line = 1.5 * size;
   Vec2 at(line, image.height - line - line * (static_cast<double>(entries.size()) - 1.0));
   for (const auto& [text, colour] : entries) {
@@ -280,9 +308,11 @@ io::Pixels picture(const Model& model, const State& state, const PictureSpec& sp
   require_usable(camera);
   rt::Image image =
       rt::render(model.compiled().array().room(), surfaces, colours, solids, beams, camera, spec.width, spec.height);
+  const rt::View view = rt::make_view(camera, spec.width, spec.height);
+  const bool scale_is_seen = marks.scale && is_seen(*marks.scale, view, image);
   io::Pixels pixels{image.width, image.height, std::move(image.rgb)};
-  write_labels(marks.labels, rt::make_view(camera, spec.width, spec.height), pixels);
-  write_key(spec, pixels);
+  write_labels(marks, view, scale_is_seen, pixels);
+  write_key(spec, marks, pixels);
   return pixels;
 }
 

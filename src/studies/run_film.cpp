@@ -84,7 +84,10 @@ Film film(const Model& model, std::uint32_t run, const FilmSpec& spec) {
   while (!state.finished() && time_s(state) + window_s <= spec.from_s) step(model, state);
 
   const std::vector<sim::Actor>& actors = state.run_state().crowd.actors();
-  for (const sim::Actor& actor : actors) result.run.people.push_back(without_keys(actor));
+  for (const sim::Actor& actor : actors) {
+    result.run.people.push_back(without_keys(actor));
+    result.run.people.back().number = result.run.people.size() - 1;
+  }
   result.signals_v.resize(model.scene().sensors.size());
   Peaks peaks(result.signals_v.size());
   const std::int64_t first_tick = state.tick();

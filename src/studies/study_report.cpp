@@ -193,7 +193,7 @@ void StudyReport::add_run(const RunResult& result) {
 io::SeriesChart StudyReport::series_of(const Trial& trial) const {
   const SensingSpec& sensing = model_->script().sensing;
   io::SeriesChart chart;
-  chart.title = trial.id;
+  chart.title = "trial " + trial.id;
   chart.window_s = static_cast<double>(sensing.ticks_per_window) / sensing.tick_rate_hz;
   if (!trial.samples.empty()) chart.end_s = trial.samples.back().time_s;
   chart.phases = counted_phases(trial.samples, model_->script().summary, chart.window_s);
@@ -228,10 +228,13 @@ io::Report StudyReport::finish(const Summary& summary) const {
 
   for (std::size_t t = 0; t < trials_.size(); ++t) {
     if (trials_[t].days) {
-      report.sections.push_back(trials_[t].days->section(trials_.size() == 1 ? "Days" : "Days of " + trials_[t].id));
+      const std::string whose = trials_.size() == 1 ? "" : " of trial " + trials_[t].id;
+      report.sections.push_back(trials_[t].days->section("Days" + whose));
+      if (trials_[t].days->has_moment())
+        report.sections.push_back(trials_[t].days->moment_section("The fullest moment" + whose));
       continue;
     }
-    io::ReportSection section{trials_[t].id, {}, {}, {}};
+    io::ReportSection section{"Trial " + trials_[t].id, {}, {}, {}};
     if (t == 0) {
       section.paragraphs = {
           "How often each count came out over the runs." +
@@ -244,7 +247,7 @@ io::Report StudyReport::finish(const Summary& summary) const {
       if (cell.runs == 0) continue;
       std::optional<int> real;
       if (cell.measured) real = cell.measured->real;
-      section.charts.emplace_back(io::HistogramChart{trials_[t].id + ", " + sensors_[s], note_of(cell),
+      section.charts.emplace_back(io::HistogramChart{"trial " + trials_[t].id + ", " + sensors_[s], note_of(cell),
                                                      "windows with motion", "windows", cell.counts, real});
     }
     io::SeriesChart series = series_of(trials_[t]);

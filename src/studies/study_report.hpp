@@ -28,6 +28,10 @@ class DayReport {
   /// With occupants. Days on which nobody comes are left out.
   void add_run(const RunResult& result);
   [[nodiscard]] io::ReportSection section(const std::string& heading) const;
+  /// Did anybody come?
+  [[nodiscard]] bool has_moment() const noexcept { return !busiest_.people.empty(); }
+  /// Who did what when most people were there.
+  [[nodiscard]] io::ReportSection moment_section(const std::string& heading) const;
 
  private:
   struct Bin {

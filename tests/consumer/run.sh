@@ -14,6 +14,12 @@ cmake --install "$build" --prefix "$scratch/prefix" >/dev/null
 cmake -S "$source/tests/consumer" -B "$scratch/build" -DCMAKE_PREFIX_PATH="$scratch/prefix" \
   -DPIRSIM_INCLUDE_DIR="$scratch/prefix/include" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_CXX_FLAGS="$flags" >/dev/null
 cmake --build "$scratch/build" --parallel 2 >/dev/null
+# The README's CMakeLists.txt, as it stands there.
+mkdir "$scratch/own" && cp "$source/tests/consumer/main.cpp" "$scratch/own"
+sed -n '/^```cmake$/,/^```$/p' "$source/README.md" | sed '1d;$d' >"$scratch/own/CMakeLists.txt"
+cmake -S "$scratch/own" -B "$scratch/own/build" -DCMAKE_PREFIX_PATH="$scratch/prefix" \
+  -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_CXX_FLAGS="$flags" >/dev/null
+cmake --build "$scratch/own/build" >/dev/null
 export PKG_CONFIG_PATH=$(dirname "$(find "$scratch/prefix" -name pirsim.pc)")
 # shellcheck disable=SC2046
 "$cxx" -std=c++20 $flags "$source/tests/consumer/main.cpp" -o "$scratch/by_pkg_config" \
@@ -26,6 +32,7 @@ scene="$data/rooms/meeting_room.gltf" script="$data/studies/studyA.yaml"
 "$scratch/by_pkg_config" "$scene" "$script" >"$scratch/b.csv"
 "$scratch/prefix/bin/pirsim" --scene "$scene" --script "$script" --replicates 1 -q |
   awk -F, 'NR == 1 || $2 == "S8"' >"$scratch/c.csv"
+"$scratch/own/build/own" "$scene" "$script" | cmp - "$scratch/a.csv"
 cmp "$scratch/a.csv" "$scratch/b.csv"
 cmp "$scratch/a.csv" "$scratch/c.csv"
 # An installation that is moved, and a room far from any folder of sensors: the library carries the shipped ones.

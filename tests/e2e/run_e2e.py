@@ -494,6 +494,17 @@ class Looking(unittest.TestCase):
             result = pirsim("check", "--scene", blind, *files[2:], "--sensors", DATA / "sensors")
         self.assertIn("sensor 'PIR3' can see NOBODY", result.stderr)
 
+    def test_a_run_says_what_it_wrote_and_quiet_says_nothing(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "rows.csv"
+            report = pathlib.Path(folder) / "report.html"
+            told = study("-o", out, "--report", report).stderr
+            n_rows = len(out.read_text().splitlines()) - 1
+            self.assertIn(f"wrote {out}: {n_rows} rows, {report}\n", told)
+            self.assertNotIn("wrote", study("-o", out, "-q").stderr)
+            self.assertNotIn("wrote", study().stderr)
+            self.assertIn("all runs are there", study("-o", out, "--resume").stderr)
+
     def test_preview_marks_what_it_is_asked_to(self):
         with tempfile.TemporaryDirectory() as folder:
             pictures = {}
@@ -504,6 +515,19 @@ class Looking(unittest.TestCase):
             self.assertEqual(len(set(pictures.values())), len(pictures))
             refused = pirsim("preview", *study_files(), "-o", out, "--marks", "chairs", code=2).stderr
             self.assertIn("seats", refused)
+
+    def test_the_scale_has_its_label_only_where_all_of_its_bar_is_seen(self):
+        """Behind a wall, and beyond the picture's edge, the label would stand beside nothing."""
+        def drawn(marks, camera, look_at):
+            with tempfile.TemporaryDirectory() as folder:
+                out = pathlib.Path(folder) / "p.png"
+                pirsim("preview", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
+                       DATA / "studies" / "studyA.yaml", "-o", out, "--marks", marks, "--camera=" + camera,
+                       "--look-at=" + look_at, "--width", 320, "--height", 180)
+                return out.read_bytes()
+        for camera, look_at in (("9,4,2", "3,1,-4"), ("4,3,-1", "6,0,-1")):
+            self.assertEqual(drawn("scale", camera, look_at), drawn("none", camera, look_at))
+        self.assertNotEqual(drawn("scale", "4,12,-4", "4,0,-4"), drawn("none", "4,12,-4", "4,0,-4"))
 
     def test_preview_writes_a_png_of_the_asked_size(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -4,7 +4,7 @@
 - A run of Study A: its rows are those of the CSV at ten moments, the picture changes with them, slider and keyboard work,
   and who isn't there has no name in the picture.
 - Ten minutes with three people, with a coverage map: at most 5 MB; the map is drawn, of all sensors and of one; an address
-  as reports of reconcile name it opens the moment and the sensor.
+  as reports of reconcile name it opens the moment and the sensor; no name lies on another.
 - A day of a dataset: its rows are those of the dataset.
 
 Usage: run_view.py PIRSIM DATA_DIRECTORY; exits with 77 (skipped) where there is no Chromium.
@@ -91,6 +91,11 @@ MAP_STEPS = """
   press("Home");
   await showing(300);
   seen.here = names();
+  seen.now = document.getElementById("now").textContent;
+  const boxes = [...document.querySelectorAll("#labels > *")].map((label) => label.getBoundingClientRect())
+    .filter((box) => box.width > 0);
+  seen.covered = boxes.filter((a, i) => boxes.slice(0, i).some((b) => a.left < b.right - 1 && b.left < a.right - 1 &&
+    a.top < b.bottom - 1 && b.top < a.bottom - 1)).length;
 """
 
 DAY_STEPS = """
@@ -168,6 +173,8 @@ def check_map(pages, data):
     assert seen["row"].split(",")[1] == "working" and seen["chosen"] == "PIR4", seen
     assert seen["maps"] == 3, "the map of a sensor, of all and none look alike"
     assert seen["here"] == ["anna", "ben", "carla"], seen["here"]
+    assert seen["now"] == "row 300 s: anna: working, 3 people", seen["now"]
+    assert seen["covered"] == 0, f"{seen['covered']} names lie on others"
     print(f"view: ten minutes, three people and a map in {size / 1e6:.1f} MB; an address opens phase and sensor")
 
 

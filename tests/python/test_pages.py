@@ -62,6 +62,15 @@ def test_those_of_the_page_on_python(source, data, room, folder):
     assert names["found"].sentence and (folder / "report/report.html").exists()
 
 
+def test_the_room_with_walls_of_the_page_on_rooms(source, folder):
+    """It can be read, a study of it runs, and every ray ends: a lack of walls would be a warning."""
+    names = {}
+    for block in blocks_of(source / "docs/howto/my_room.md"):
+        exec(block, names)
+    result = pirsim.run(pirsim.compile("walled.gltf", "study.yaml", set={"replicates": 2}))
+    assert result.bits.any() and not result.faults
+
+
 def test_those_of_the_page_on_datasets(source, data, folder):
     pytest.importorskip("pandas")
     pirsim.dataset(data / "recipes" / "tiny.yaml", "small_offices")

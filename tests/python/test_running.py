@@ -163,6 +163,8 @@ def test_pickling_is_refused_with_a_reason_where_it_can_not_work(model, room, st
     result = pirsim.run(pirsim.compile(scene, script))
     again = pickle.loads(pickle.dumps(result))
     assert np.array_equal(again.bits, pirsim.run(model).bits) and again.sensors == result.sensors
+    with pytest.raises(TypeError, match=r"expected a pirsim\.Model, which pirsim\.compile.* not a str"):
+        pirsim.run("room.gltf")
     with pytest.raises(TypeError, match="compile"):
         pirsim.Model()
 

@@ -25,7 +25,7 @@
   // Twice, the first as a dark rim: readable on every colour.
   function label(data, fill, stroke, size, below) {
     return { type: "text", from: { data }, interactive: false, encode: { enter: {
-      x: { scale: "x", field: "x" }, y: { scale: "z", field: "z", offset: below }, text: { field: "label" },
+      x: { scale: "x", field: "x" }, y: { scale: "z", field: "z", offset: typeof below === "number" ? { value: below } : below }, text: { field: "label" },
       align: { value: "center" }, fontSize: { value: size }, fill: { value: fill }, stroke: { value: stroke }, strokeWidth: { value: 3 },
       strokeJoin: { value: "round" }, fontWeight: { value: "bold" } } } };
   }
@@ -35,6 +35,19 @@
     const turn = seat.angle_deg * Math.PI / 180, way_m = 0.3;
     return { label: seat.label, x: seat.x - way_m * Math.sin(turn), z: seat.z + way_m * Math.cos(turn) };
   };
+
+  // A name above its marker, or where it covers no earlier one: below it, then farther away.
+  function setApart(markers, pixels_per_m) {
+    const size = 11, placed = [];
+    return markers.map((marker) => {
+      const x = marker.x * pixels_per_m, wide = 0.62 * size * marker.label.length;
+      const isFree = (below) => placed.every((other) => Math.abs(other.x - x) > (other.wide + wide) / 2 ||
+        Math.abs(other.y - marker.z * pixels_per_m - below) > size);
+      const below = [-16, 22, -28, 34, -40, 46].find(isFree) || -16;
+      placed.push({ x, y: marker.z * pixels_per_m + below, wide });
+      return Object.assign({ below }, marker);
+    });
+  }
 
   // Seen from above, x to the right and z down the page.
   function map(chart, width) {
@@ -53,7 +66,7 @@
       width: inner, height, padding: 4,
       data: [{ name: "squares", values: squares }, { name: "outline", values: points(chart.outline) },
         { name: "furniture", values: points(chart.furniture) }, { name: "dashed", values: points(chart.dashed) },
-        { name: "markers", values: chart.markers }, { name: "seats", values: chart.seats },
+        { name: "markers", values: setApart(chart.markers, inner / (x1 - chart.x0)) }, { name: "seats", values: chart.seats },
         { name: "behind", values: chart.seats.map(behind) },
         { name: "doors", values: chart.doors }],
       scales: [
@@ -86,13 +99,13 @@
           x: { scale: "x", field: "x" }, y: { scale: "z", field: "z" }, shape: { value: "triangle-up" },
           size: { value: 110 }, angle: { field: "angle_deg" }, fill: { value: "#ff4d6d" },
           stroke: { value: "#ffffff" }, strokeWidth: { value: 1.2 } } } },
-        label("markers", "#000000", "#000000", 11, -16), label("markers", "#ffffff", null, 11, -16),
+        label("markers", "#000000", "#000000", 11, { field: "below" }), label("markers", "#ffffff", null, 11, { field: "below" }),
       ],
     };
   }
 
   function histogram(chart, width) {
-    const inner = width - 60, runs = chart.counts.reduce((sum, [, times]) => sum + times, 0);
+    const inner = width - 74, runs = chart.counts.reduce((sum, [, times]) => sum + times, 0);
     const all = chart.counts.map(([count]) => count).concat(chart.real === null ? [] : [chart.real]);
     const low = Math.min(...all), high = Math.max(...all) + 1;
     const step = Math.max(1, Math.ceil((high - low) / 18));
@@ -101,6 +114,10 @@
       const n = chart.counts.reduce((sum, [count, times]) => sum + (count >= from && count < from + step ? times : 0), 0);
       bins.push({ from, to: from + step, last: from + step - 1, n, share: n / runs });
     }
+    // Whole numbers: of one count a bar, under its middle.
+    const ticks = step > 1 ? { tickCount: 5, tickMinStep: 1, format: "d" } : {
+      values: bins.filter((bin, i) => i % Math.ceil(bins.length / 6) === 0).map((bin) => bin.from + 0.5),
+      encode: { labels: { update: { text: { signal: "format(datum.value - 0.5, 'd')" } } } } };
     const text = "(datum.from == datum.last ? datum.from : datum.from + ' to ' + datum.last) + ' " + chart.unit +
       "\\n' + datum.n + ' of " + runs + " runs'";
     const marks = [{ type: "rect", from: { data: "bins" }, encode: { enter: {
@@ -118,13 +135,13 @@
         { name: "x", type: "linear", domain: [first, bins[bins.length - 1].to], range: "width", zero: false },
         { name: "y", type: "linear", domain: { data: "bins", field: "share" }, range: "height", nice: true, zero: true },
       ],
-      axes: [axis("x", "bottom", chart.label, { tickCount: 5 }), axis("y", "left", "share of runs", { tickCount: 4, format: "%" })],
+      axes: [axis("x", "bottom", chart.label, ticks), axis("y", "left", "share of runs", { tickCount: 4, format: "%" })],
       marks,
     };
   }
 
   function series(chart, width) {
-    const inner = width - 90, seen = [];
+    const named = chart.rows.map((row) => row.name), inner = width - longest(named, 40, 170) - 44, seen = [];
     chart.rows.forEach((row) => row.times_s.forEach((t) => seen.push({ row: row.name, t })));
     // The number of people has a strip of its own above the sensors.
     const strip = chart.people.length > 0 ? 56 : 0, gap = strip > 0 ? 10 : 0;
@@ -142,7 +159,7 @@
         { name: "y", type: "band", domain: chart.rows.map((row) => row.name), range: [strip + gap, height], padding: 0.25 },
         { name: "n", type: "linear", domain: [0, most], range: [strip, 0], zero: true },
       ],
-      axes: [axis("x", "bottom", "time, s"), axis("y", "left", null)].concat(
+      axes: [axis("x", "bottom", "time, s"), axis("y", "left", null, { labelLimit: 170 })].concat(
         strip > 0 ? [axis("n", "left", "people", { tickCount: Math.min(most, 4), format: "d" })] : []),
       marks: [
         { type: "rect", from: { data: "people" }, encode: { enter: { x: { scale: "x", field: "x" },

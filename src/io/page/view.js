@@ -237,8 +237,8 @@
           node.material = new three.MeshLambertMaterial({ color: node.material.color.clone() });
           node.frustumCulled = false;
           if (about.part === "head") {
+            this.heads.push({ node, id: about.person, colour: node.material.color.clone() });
             node.material.color.lerp(new three.Color("#f1d0b5"), 0.75);
-            this.heads.push({ node, id: about.person });
           }
         } else if (node.isMesh) {
           solids.push(node);
@@ -352,15 +352,19 @@
         return label;
       };
       this.labels = [];
-      for (const seat of data.seats) add("seat", seat.name, seat.position);
-      for (const door of data.doors) add("door", /door/.test(door.name) ? door.name : "door " + door.name, door.position);
-      for (const head of this.heads) head.label = add("person", head.id, [0, 0, 0]);
+      // The earlier ones keep their places where there isn't room for all.
       sensors.forEach((sensor, i) => {
         const { element } = add("sensor", sensor.id, sensor.position, "button");
         element.type = "button";
         element.addEventListener("click", () => choose(i));
         buttons[i].push(element);
       });
+      for (const seat of data.seats) add("seat", seat.name, seat.position);
+      for (const door of data.doors) add("door", /door/.test(door.name) ? door.name : "door " + door.name, door.position);
+      for (const head of this.heads) {
+        head.label = add("person", head.id, [0, 0, 0]);
+        head.label.element.style.borderColor = head.colour.getStyle();
+      }
     }
 
     animate(gltf) {
@@ -450,14 +454,20 @@
         head.label.position.y += 0.3;
         head.label.away = point.setFromMatrixColumn(head.node.matrixWorld, 0).length() < 0.5;  // its scale
       }
-      for (const { element, position, away } of this.labels) {
+      const placed = [];
+      for (const label of this.labels) {
+        const { element, position, away } = label;
         point.copy(position).project(this.camera);
         const visible = !away && point.z < 1 && Math.abs(point.x) < 1.05 && Math.abs(point.y) < 1.05;
         element.style.display = visible ? "" : "none";
         if (!visible) continue;
+        label.wide ||= element.offsetWidth;
+        label.high ||= element.offsetHeight;
         const x = ((point.x + 1) / 2) * width, y = ((1 - point.y) / 2) * height;
-        const above = element.className.startsWith("sensor") ? -150 : -50;  // per cent of its height
-        element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, ${above}%)`;
+        const above = element.className.startsWith("sensor") ? 1.5 : 0.5;  // times its height
+        const box = { x, wide: label.wide, high: label.high, top: freeTop(placed, x, y - above * label.high, label) };
+        placed.push(box);
+        element.style.transform = `translate(${x.toFixed(1)}px, ${box.top.toFixed(1)}px) translate(-50%, 0)`;
       }
     }
 
@@ -468,6 +478,16 @@
       this.placeLabels();
       document.body.dataset.drawn = shown.time;  // the moment that the picture shows
     }
+  }
+
+  /// Where a label covers no earlier one: where it should be, or just above or below those in its way. Where there is
+  /// no room nearby it stays.
+  function freeTop(placed, x, top, { wide, high }) {
+    const near = placed.filter((box) => Math.abs(box.x - x) < (box.wide + wide) / 2);
+    const free = (at) => near.every((box) => at + high <= box.top || at >= box.top + box.high);
+    const places = near.flatMap((box) => [box.top - high, box.top + box.high]).concat(top).filter(free);
+    const nearest = Math.min(...places.map((at) => Math.abs(at - top)));
+    return nearest > 6 * high ? top : places.find((at) => Math.abs(at - top) === nearest);
   }
 
   /// Of a share from 0 to 1: the scale of the key.
@@ -505,8 +525,9 @@
     if (row === shown.row) return;
     shown.row = row;
     const n = rows.people[row];
+    const who = data.first_person ? data.first_person + ": " : "";
     const end = rows.first_clock ? clockText(rows.time_s[row]).slice(11) : rows.time_s[row] + " s";
-    byId("now").textContent = `row ${end}: ${rows.phase[row]}, ${n} ${n === 1 ? "person" : "people"}`;
+    byId("now").textContent = `row ${end}: ${who}${rows.phase[row]}, ${n} ${n === 1 ? "person" : "people"}`;
     buttons.forEach((all, i) => all.forEach((button) => button.classList.toggle("on", bit(row, i))));
     document.body.dataset.row = [rows.time_s[row], rows.phase[row], n, ...rows.bits[row]].join(",");
     if (room) room.showSensors();

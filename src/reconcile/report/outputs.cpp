@@ -242,6 +242,12 @@ void write_report(const std::filesystem::path& folder, const Outcome& outcome, c
   const Watched watched{provenance.model_options.empty() ? names : provenance.model_options,
                         phases.empty() ? "" : phases.front()};
   io::Report page = report_page(outcome, settings.alpha, watched);
+  if (const TableSettings usual; settings.table.n_realizations != usual.n_realizations) {
+    page.paragraphs.push_back("For this analysis the plain model was simulated " +
+                              std::to_string(settings.table.n_realizations) + " times, not the usual " +
+                              std::to_string(usual.n_realizations) + ": --budget scales this number and those of the " +
+                              "effects. Fewer datasets rule out fewer effects.");
+  }
   page.footer = provenance.program + ", " + provenance.scene + ", " + provenance.script + ", " + provenance.measured;
   io::write_text_file(folder / "report.html", io::to_html(page));
   io::write_text_file(folder / "report.json", to_json(outcome, measured, settings, context, provenance));

@@ -28,8 +28,12 @@ std::string kind_of(const Outcome& outcome) {
 std::string where(const Outcome& outcome, double alpha) {
   const auto differing =
       std::ranges::count_if(outcome.location.cells, [&](const auto& c) { return c.adjusted_p <= alpha; });
+  const std::string p = short_number(outcome.location.p);
+  if (differing == 0)
+    return "none of the " + std::to_string(outcome.location.cells.size()) +
+           " cells (trial x sensor) differs by itself, but everything together does, p = " + p;
   return std::to_string(differing) + " of " + std::to_string(outcome.location.cells.size()) +
-         " cells (trial x sensor) differ by themselves, p = " + short_number(outcome.location.p);
+         " cells (trial x sensor) differ by themselves, everything together with p = " + p;
 }
 
 /// Of which effects a sentence speaks.

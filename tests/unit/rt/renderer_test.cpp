@@ -41,6 +41,15 @@ TEST_CASE("a view of nothing is background only", "[rt][render]") {
   CHECK(n_drawn(image) == 0);
 }
 
+TEST_CASE("the depth of a pixel is the distance of what it shows, along the way the camera looks", "[rt][render]") {
+  const float radius = 0.4F;
+  const std::vector<rt::RenderedSolid> solids{{PosedSphere{{0, 0, 0}, radius}, Colour{1, 0, 0}}};
+  const Image image = rt::render(nothing, {}, {}, solids, {}, down_z, width, height);
+  REQUIRE(image.depth_m.size() == std::size_t{width} * height);
+  CHECK(image.depth_m[(height / 2) * width + width / 2] == Approx(4.0F - radius).margin(1e-3));
+  CHECK(std::isinf(image.depth_m.front()));
+}
+
 TEST_CASE("a sphere is drawn as a disc of the radius that its tangent cone has", "[rt][render]") {
   const double radius = 0.4, distance = 4.0;
   const std::vector<rt::RenderedSolid> solids{{PosedSphere{{0, 0, 0}, float(radius)}, Colour{1, 0, 0}}};

@@ -40,6 +40,18 @@ TEST_CASE("a name says whether it has rivals and how probable it is", "[reconcil
   CHECK_THAT(rivals, !contains("no other effect"));
 }
 
+TEST_CASE("where no cell stands out but all together do, both are said at once", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::named, {{"seat_shift", 0.9}});
+  outcome.location.p = 0.0132;
+  outcome.location.cells.resize(3);
+  for (auto& cell : outcome.location.cells) cell.adjusted_p = 0.2;
+  CHECK_THAT(verdict_sentence(outcome, 0.05),
+             contains("none of the 3 cells (trial x sensor) differs by itself, but everything together does, p = 0.0132"));
+  outcome.location.cells.front().adjusted_p = 0.01;
+  CHECK_THAT(verdict_sentence(outcome, 0.05),
+             contains("1 of 3 cells (trial x sensor) differ by themselves, everything together with p = 0.0132"));
+}
+
 TEST_CASE("the reason of a rival compares it with the one that is named", "[reconcile]") {
   const std::string reason = in_words(reason::LessLikely{0.6, 0.06, "seat_shift", 0.9});
   CHECK_THAT(reason, contains("much less likely than seat_shift (0.06 against 0.9)"));
