@@ -240,12 +240,12 @@ void add_selftest_command(CLI::App& reconcile_command) {
       ->option_text("N");
   command.add_option("--pairs", options->pairs, "datasets with two effects (default: 0)")->option_text("N");
   command
-      .add_option("--out-of-catalogue", options->out_of_catalogue, "datasets of each out-of-catalogue fault (default: 0)")
+      .add_option("--out-of-catalogue", options->out_of_catalogue,
+                  "datasets of each out-of-catalogue fault (default: 0)")
       ->option_text("N");
   command
-      .add_option(
-          "--verify", options->verified,
-          "datasets of each group whose name is applied and judged on held-out trials (default: 0)")
+      .add_option("--verify", options->verified,
+                  "datasets of each group whose name is applied and judged on held-out trials (default: 0)")
       ->option_text("N");
   command
       .add_option("--leave-out", options->leave_out,

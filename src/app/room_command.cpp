@@ -19,7 +19,7 @@ struct RoomOptions {
   std::filesystem::path output;
   std::vector<std::string> settings;            ///< "width_m=6"
   std::map<std::string, std::string> as_typed;  ///< "--set width_m=6": "--width 6"
-  std::optional<std::uint64_t> seed;  ///< default: the recipe's, or 1
+  std::optional<std::uint64_t> seed;            ///< default: the recipe's, or 1
   int number = 1;
   Inputs inputs;
 };

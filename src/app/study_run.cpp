@@ -83,8 +83,7 @@ void tell(const io::RunNotes& notes, Verbosity verbosity) {
   throw Error(ErrorCode::incomplete, message);
 }
 
-void tell_what_is_written(const RunOptions& options, const RowOutput& rows, std::uint32_t n_new,
-                          Verbosity verbosity) {
+void tell_what_is_written(const RunOptions& options, const RowOutput& rows, std::uint32_t n_new, Verbosity verbosity) {
   if (verbosity == Verbosity::quiet) return;
   std::string text;
   const auto add = [&](const std::filesystem::path& file) {
@@ -200,7 +199,8 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
 
 void offer_run_options(CLI::App& command, const std::shared_ptr<RunOptions>& options) {
   const std::string tables = in_words(io::table_endings());
-  offer_output(command, options->rows.output, "FILE", "rows, " + tables + " (default, or -: as CSV on standard output)");
+  offer_output(command, options->rows.output, "FILE",
+               "rows, " + tables + " (default, or -: as CSV on standard output)");
   command.get_option("--output")
       ->transform(CLI::Validator(
           [](std::string& file) {

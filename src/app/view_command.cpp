@@ -228,8 +228,7 @@ void add_view_command(CLI::App& app) {
       ->option_text("TIME");
   command.add_option("--to", options->to, "where it ends (default: the end, 1200 s later at most)")
       ->option_text("TIME");
-  command
-      .add_option("--coverage", options->coverage, "a coverage study, YAML, whose map is laid on the floor")
+  command.add_option("--coverage", options->coverage, "a coverage study, YAML, whose map is laid on the floor")
       ->option_text("FILE");
   command
       .add_option("--keys-per-s", options->keys_per_s, "pictures a second, between which it interpolates (default: 10)")

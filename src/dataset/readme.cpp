@@ -147,7 +147,8 @@ std::string readme(const Description& described) {
   text += "How often something moves, by the number of people at the end of the row or of the 30 s:\n\n" +
           table_of_counts(described) + '\n';
   for (std::size_t i = 0; i < described.pictures.size(); ++i)
-    text += "![Room " + std::to_string(i + 1) + " without its front walls: seats, doors and sensors](" + described.pictures[i] + ")\n";
+    text += "![Room " + std::to_string(i + 1) + " without its front walls: seats, doors and sensors](" +
+            described.pictures[i] + ")\n";
   if (!described.pictures.empty()) text += '\n';
   text += "## What is where\n";
   text +=

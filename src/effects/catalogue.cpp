@@ -37,9 +37,7 @@ std::string_view name(Scale scale) noexcept {
   static constexpr std::array<std::string_view, 3> names{"linear", "logarithmic", "whole"};
   return names[static_cast<std::size_t>(scale)];
 }
-std::string_view name(Survey survey) noexcept {
-  return survey == Survey::coverage ? "coverage study" : "walk test";
-}
+std::string_view name(Survey survey) noexcept { return survey == Survey::coverage ? "coverage study" : "walk test"; }
 
 const Effect& find(std::string_view name) {
   const auto& all = catalogue();

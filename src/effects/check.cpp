@@ -40,9 +40,9 @@ void check_parameters(const EffectSpec& spec, const EffectInfo& info, Diagnostic
     const auto known = std::ranges::find(info.parameters, name, &ParameterInfo::name);
     if (known == info.parameters.end()) {
       const bool is_choice = std::ranges::find(info.choices, name, &ChoiceInfo::name) != info.choices.end();
-      diagnostics.error(spec.where, is_choice ? info.name + "." + name + ": expected a name, not a number"
-                                              : info.name + " has no parameter '" + name + "'" +
-                                                    nearest_or_all(name, info));
+      diagnostics.error(spec.where, is_choice
+                                        ? info.name + "." + name + ": expected a name, not a number"
+                                        : info.name + " has no parameter '" + name + "'" + nearest_or_all(name, info));
     } else if (!(value >= known->least && value <= known->most)) {
       diagnostics.error(spec.where, info.name + "." + name + ": expected a number from " + text(known->least) + " to " +
                                         text(known->most) + ", not " + text(value));
@@ -58,9 +58,9 @@ void check_choices(const EffectSpec& spec, const EffectInfo& info, const SceneSp
     const auto known = std::ranges::find(info.choices, name, &ChoiceInfo::name);
     if (known == info.choices.end()) {
       const bool is_number = std::ranges::find(info.parameters, name, &ParameterInfo::name) != info.parameters.end();
-      diagnostics.error(spec.where, is_number ? info.name + "." + name + ": expected a number, not '" + value + "'"
-                                              : info.name + " has no setting '" + name + "'" +
-                                                    nearest_or_all(name, info));
+      diagnostics.error(spec.where, is_number
+                                        ? info.name + "." + name + ": expected a number, not '" + value + "'"
+                                        : info.name + " has no setting '" + name + "'" + nearest_or_all(name, info));
       continue;
     }
     std::vector<std::string> allowed = known->words;

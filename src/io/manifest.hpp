@@ -46,7 +46,7 @@ struct RunNotes {
   std::uint64_t seats_missed = 0;
   std::uint64_t waits_outside = 0;  ///< for a seat that was taken
   std::string first_wait;           ///< trial, replicate, person and second; empty if there is none
-  std::vector<FailedRun> failed;  ///< without rows
+  std::vector<FailedRun> failed;    ///< without rows
   RunNotes& operator+=(const RunNotes& other);
   [[nodiscard]] bool empty() const noexcept;
   /// What a reader of sums needs to know of them, in sentences; empty if nothing happened.

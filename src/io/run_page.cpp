@@ -99,8 +99,9 @@ Json json(const PageMap& map) {
     for (const double share : shares) percents.push_back(share < 0.0 ? -1L : std::lround(100.0 * share));
     sensors.push_back(std::move(percents));
   }
-  return {{"name", map.name},           {"x", map.lower.x},          {"z", map.lower.y},
-          {"height_m", map.height_m},   {"spacing_m", map.spacing_m}, {"n_columns", map.n_columns},
+  return {{"name", map.name},           {"x", map.lower.x},
+          {"z", map.lower.y},           {"height_m", map.height_m},
+          {"spacing_m", map.spacing_m}, {"n_columns", map.n_columns},
           {"n_rows", map.n_rows},       {"percent", std::move(sensors)}};
 }
 

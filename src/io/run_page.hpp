@@ -44,7 +44,7 @@ struct RunPage {
   std::string about;  ///< trial, replicate, scene, script
   std::string made_by;
   std::string first_person;  ///< whose phase the rows tell; empty: of a schedule, nobody's
-  double run_s = 0.0;  ///< of the whole run, of which the page shows a part
+  double run_s = 0.0;        ///< of the whole run, of which the page shows a part
   double window_s = 1.0;
   ExportedRun run;  ///< beams of every sensor, in the order of `sensors`
   std::vector<PageSensor> sensors;

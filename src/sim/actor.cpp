@@ -14,11 +14,11 @@ namespace {
 
 using body::Stage;
 
-constexpr double gap_m = 0.1;         ///< assumed: kept between two people beside their radii
-constexpr double doorway_m = 2.5;     ///< assumed: who comes in is through the door at that distance (tried 2-3)
-constexpr double door_wait_s = 60.0;  ///< assumed: then one goes through the door whoever comes (tried 20-120)
+constexpr double gap_m = 0.1;          ///< assumed: kept between two people beside their radii
+constexpr double doorway_m = 2.5;      ///< assumed: who comes in is through the door at that distance (tried 2-3)
+constexpr double door_wait_s = 60.0;   ///< assumed: then one goes through the door whoever comes (tried 20-120)
 constexpr double told_after_s = 10.0;  ///< assumed, of messages only: who waits for less is a little late
-constexpr double room_wait_s = 20.0;  ///< then one comes in where somebody stands, and passes through them
+constexpr double room_wait_s = 20.0;   ///< then one comes in where somebody stands, and passes through them
 
 std::int64_t ticks(double seconds, const CompiledStudy& study) {
   return std::llround(seconds * study.sensing().tick_rate_hz);

@@ -12,12 +12,12 @@ namespace {
 using body::Stage;
 using Solidity = Presence::Solidity;
 
-constexpr double wish_reaches_m = 3.0;     ///< assumed: who stands farther along a wished way isn't concerned yet
-constexpr double aside_most_s = 10.0;      ///< assumed: nobody waits aside for longer (tried 5-20)
-constexpr double get_up_after_s = 3.0;     ///< assumed: who is held up for so long asks sitters to get up
-constexpr double ask_every_s = 1.0;        ///< how often it is found out who bars the way
-constexpr double up_most_s = 40.0;         ///< assumed: nobody who got up waits for longer
-constexpr double past_m = 0.8;            ///< assumed: beyond the seat of who got up one is past it
+constexpr double wish_reaches_m = 3.0;  ///< assumed: who stands farther along a wished way isn't concerned yet
+constexpr double aside_most_s = 10.0;   ///< assumed: nobody waits aside for longer (tried 5-20)
+constexpr double get_up_after_s = 3.0;  ///< assumed: who is held up for so long asks sitters to get up
+constexpr double ask_every_s = 1.0;     ///< how often it is found out who bars the way
+constexpr double up_most_s = 40.0;      ///< assumed: nobody who got up waits for longer
+constexpr double past_m = 0.8;          ///< assumed: beyond the seat of who got up one is past it
 
 double distance_to_way(const Vec2& point, const std::vector<Vec2>& way, double reach_m) {
   double nearest = glm::distance(point, way.front()), walked = 0.0;

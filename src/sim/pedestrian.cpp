@@ -17,19 +17,19 @@ namespace {
 using body::Stage;
 using Solidity = Presence::Solidity;
 
-constexpr double look_ahead_m = 1.2;       ///< assumed: how far ahead a walker minds others (tried 0.8-2)
-constexpr double foresight_s = 1.5;        ///< assumed: how long before ways cross one gives way (tried 1-2)
-constexpr double sitter_gap_m = 0.06;      ///< kept beside that in planning: what a rounded corner cuts, and 1 cm
-constexpr double squeeze_corner_m = 0.1;   ///< radius of their corners: little is cut off them
-constexpr double squeeze_speed = 0.5;      ///< assumed: of the usual pace
-constexpr double braking_m_s2 = 1.5;       ///< assumed, as Motion's acceleration
-constexpr double patience_s = 0.5;         ///< assumed: wait before looking for another way (tried 0.3-1)
-constexpr double patience_step_s = 0.35;   ///< more for some, so that two don't dodge alike
-constexpr double wish_after_s = 1.0;       ///< assumed: held up for so long one asks others to make way (tried 0.5-2)
-constexpr double walked_on_m = 0.5;        ///< who has come so far isn't held up any more
-constexpr double passed_m = 0.8;           ///< who passes through others goes at least so far
-constexpr double stuck_s = 20.0;           ///< then people pass through each other (people.md)
-constexpr double stuck_in_all_s = 60.0;    ///< assumed: held up so long in one errand is stuck too (tried 40-120)
+constexpr double look_ahead_m = 1.2;      ///< assumed: how far ahead a walker minds others (tried 0.8-2)
+constexpr double foresight_s = 1.5;       ///< assumed: how long before ways cross one gives way (tried 1-2)
+constexpr double sitter_gap_m = 0.06;     ///< kept beside that in planning: what a rounded corner cuts, and 1 cm
+constexpr double squeeze_corner_m = 0.1;  ///< radius of their corners: little is cut off them
+constexpr double squeeze_speed = 0.5;     ///< assumed: of the usual pace
+constexpr double braking_m_s2 = 1.5;      ///< assumed, as Motion's acceleration
+constexpr double patience_s = 0.5;        ///< assumed: wait before looking for another way (tried 0.3-1)
+constexpr double patience_step_s = 0.35;  ///< more for some, so that two don't dodge alike
+constexpr double wish_after_s = 1.0;      ///< assumed: held up for so long one asks others to make way (tried 0.5-2)
+constexpr double walked_on_m = 0.5;       ///< who has come so far isn't held up any more
+constexpr double passed_m = 0.8;          ///< who passes through others goes at least so far
+constexpr double stuck_s = 20.0;          ///< then people pass through each other (people.md)
+constexpr double stuck_in_all_s = 60.0;   ///< assumed: held up so long in one errand is stuck too (tried 40-120)
 
 std::string text(const Vec2& place) {
   std::ostringstream out;

@@ -70,16 +70,16 @@ class Pedestrian {
   using Way = std::vector<Vec2>;
   bool makes_way_among(std::span<const Presence> others, std::int64_t now, Sitter sitter);
 
-  static constexpr double gap_m = 0.1;  ///< assumed: kept between two people on foot beside their radii
+  static constexpr double gap_m = 0.1;              ///< assumed: kept between two people on foot beside their radii
   static constexpr double squeeze_gap_m = 0.03;     ///< assumed: between trunks that squeeze past (tried 0.02, 0.03)
   static constexpr double leaning_back_rad = 0.26;  ///< how far back a sitter leans: 15 degrees, as in the paper
   static constexpr double search_every_s = 0.2;     ///< how often one who found no way looks again
 
   struct Aside {
     Vec2 place{0.0};
-    Precedence precedence;               ///< inherited
-    std::uint32_t whom = 0;              ///< way is made for
-    std::int64_t until = 0;              ///< tick
+    Precedence precedence;                ///< inherited
+    std::uint32_t whom = 0;               ///< way is made for
+    std::int64_t until = 0;               ///< tick
     std::shared_ptr<const Way> way = {};  ///< theirs, if a sitter got up for them
   };
 

@@ -267,8 +267,8 @@ void write_key(const PictureSpec& spec, const Marks& marks, io::Pixels& image) {
 }  // namespace
 
 std::string_view name(Mark mark) noexcept {
-  static constexpr std::array<std::string_view, all_marks.size()> names{"seats", "doors", "sensors", "people", "scale",
-                                                                        "key"};
+  static constexpr std::array<std::string_view, all_marks.size()> names{"seats",  "doors", "sensors",
+                                                                        "people", "scale", "key"};
   return names[static_cast<std::size_t>(mark)];
 }
 

@@ -92,8 +92,7 @@ io::Report coverage_report(const CoverageStudy& study, const CoverageMap& map, c
           std::to_string(map.grid.n_squares()) +
           " squares). The maps, seen from above, tell for each sensor in how many "
           "of these windows it reported motion: 0 means blind there. Point at a square for its value.",
-      "The target is " + std::to_string(study.target().crosses().size()) +
-          " crosses of two bars, turning on the spot.",
+      "The target is " + std::to_string(study.target().crosses().size()) + " crosses of two bars, turning on the spot.",
       std::string(signs_of_maps) +
           (study.taken_out().empty() ? "" : " Dashed lines are what was taken out of the room.")};
 

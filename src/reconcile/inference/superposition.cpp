@@ -58,8 +58,8 @@ double p_among(const stats::Matrix<float>& rows, std::span<const float> data,
 
 }  // namespace
 
-std::vector<Partner> partners_of(const TableView& view, std::size_t first, std::span<const float> measured, double level,
-                                 const Context& context) {
+std::vector<Partner> partners_of(const TableView& view, std::size_t first, std::span<const float> measured,
+                                 double level, const Context& context) {
   const ReferenceTable& table = view.table();
   const std::vector<RowIn> rows = rows_by_realization(table);
   const std::vector<float> data = view.map().features(measured);

@@ -188,8 +188,8 @@ std::string candidates_csv(const Outcome& outcome) {
   for (const Candidate& c : with_twins(outcome.candidates)) {
     out << c.score.hypothesis << ',' << name(c.family) << ',' << (c.kept ? 1 : 0) << ','
         << io::csv_number(c.score.probability) << ',' << io::csv_number(c.score.p) << ','
-        << io::csv_number(c.score.p_relative) << ',' << io::csv_number(c.score.p_absolute) << ',' << io::csv_number(c.score.p_own) << ','
-        << io::csv_field(in_words(c)) << '\n';
+        << io::csv_number(c.score.p_relative) << ',' << io::csv_number(c.score.p_absolute) << ','
+        << io::csv_number(c.score.p_own) << ',' << io::csv_field(in_words(c)) << '\n';
   }
   return out.str();
 }

@@ -25,7 +25,8 @@ std::string shell_word(const std::string& text) {
 
 /// As part of a file's name.
 std::string file_word(std::string text) {
-  std::ranges::replace_if(text, [](unsigned char c) { return std::isalnum(c) == 0 && c != '-' && c < 128; }, '_');
+  std::ranges::replace_if(
+      text, [](unsigned char c) { return std::isalnum(c) == 0 && c != '-' && c < 128; }, '_');
   return text;
 }
 
@@ -38,10 +39,9 @@ io::Table pages_to_watch(const Location& location, double alpha, const Watched& 
   for (const LocatedCell& cell : location.cells) {
     if (cell.adjusted_p > alpha || table.rows.size() == most) continue;
     const std::string page = file_word(cell.trial) + ".html";
-    table.rows.push_back({cell.trial, cell.sensor,
-                          "pirsim view" + study + " --trial " + shell_word(cell.trial) + " -o " + page,
-                          page + "#" + (watched.phase.empty() ? "" : "phase=" + watched.phase + "&") +
-                              "sensor=" + cell.sensor});
+    table.rows.push_back(
+        {cell.trial, cell.sensor, "pirsim view" + study + " --trial " + shell_word(cell.trial) + " -o " + page,
+         page + "#" + (watched.phase.empty() ? "" : "phase=" + watched.phase + "&") + "sensor=" + cell.sensor});
   }
   return table;
 }

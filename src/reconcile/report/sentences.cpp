@@ -70,9 +70,9 @@ std::string no_effect(const Outcome& outcome, double alpha) {
                                    return c.score.probability;
                                  })->score.hypothesis;
   const bool likeliest_is_possible = std::ranges::find(possible, likeliest) != possible.end();
-  return (likeliest_is_possible ? "most effects" : "the likelier effects") +
-         std::string(" of ") + all_of(outcome) + " can hardly have made the data; " + joined(possible, "and") +
-         " might, but with a probability of only " + short_number(together);
+  return (likeliest_is_possible ? "most effects" : "the likelier effects") + std::string(" of ") + all_of(outcome) +
+         " can hardly have made the data; " + joined(possible, "and") + " might, but with a probability of only " +
+         short_number(together);
 }
 
 /// What else may have made the data beside the effect that is named.

@@ -101,11 +101,13 @@ TEST_CASE("so it does for beams, and for turns that never repeat", "[coverage]")
   CHECK(check_against_plain(study, 2, 12) > 12);
 }
 
-TEST_CASE("a cone that misses a sphere has no ray that may hit it, and a cone of a zone misses most spheres", "[coverage]") {
+TEST_CASE("a cone that misses a sphere has no ray that may hit it, and a cone of a zone misses most spheres",
+          "[coverage]") {
   Draw draw(17);
   std::size_t passed_over = 0, rays_near = 0;
   for (int round = 0; round < 4000; ++round) {
-    // From a beam's five rays to a spray from origins half a metre apart, shorter and longer than the way to the sphere.
+    // From a beam's five rays to a spray from origins half a metre apart, shorter and longer than the way to the
+    // sphere.
     const double turn = draw.between(0.0, 0.2), apart_m = round % 2 == 0 ? 0.0 : draw.between(0.0, 0.5);
     const Vec3 axis = draw.direction();
     RayBundle bundle;

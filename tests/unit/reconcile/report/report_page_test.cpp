@@ -100,7 +100,8 @@ TEST_CASE("an envelope without width lets nothing through but its one value", "[
   CHECK(std::isfinite(chart.rows[1].points[0].position));
 }
 
-TEST_CASE("parts of the time and pairs of sensors have rows of their own, and each point says whose it is", "[report]") {
+TEST_CASE("parts of the time and pairs of sensors have rows of their own, and each point says whose it is",
+          "[report]") {
   FeatureName part{FeatureName::Kind::share_of_time}, pair{FeatureName::Kind::together, {}, "PIR1", {}, "PIR2"};
   part.part = 3;
   part.n_parts = 18;

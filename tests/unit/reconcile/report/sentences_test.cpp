@@ -45,8 +45,9 @@ TEST_CASE("where no cell stands out but all together do, both are said at once",
   outcome.location.p = 0.0132;
   outcome.location.cells.resize(3);
   for (auto& cell : outcome.location.cells) cell.adjusted_p = 0.2;
-  CHECK_THAT(verdict_sentence(outcome, 0.05),
-             contains("none of the 3 cells (trial x sensor) differs by itself, but everything together does, p = 0.0132"));
+  CHECK_THAT(
+      verdict_sentence(outcome, 0.05),
+      contains("none of the 3 cells (trial x sensor) differs by itself, but everything together does, p = 0.0132"));
   outcome.location.cells.front().adjusted_p = 0.01;
   CHECK_THAT(verdict_sentence(outcome, 0.05),
              contains("1 of 3 cells (trial x sensor) differ by themselves, everything together with p = 0.0132"));
