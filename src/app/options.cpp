@@ -6,7 +6,6 @@
 
 #include <array>
 #include <boost/algorithm/string/join.hpp>
-#include <limits>
 #include <utility>
 
 #include "pirsim/error.hpp"
@@ -117,6 +116,14 @@ const CLI::Option* repeated_option(const CLI::App& app) {
   return nullptr;
 }
 
+/// Checked here, so that the message names the option and not a value of the script that nobody typed.
+std::int64_t from(std::int64_t least, std::int64_t n, const std::string& option) {
+  if (n < least) {
+    throw CLI::ValidationError(option, "'" + std::to_string(n) + "' is less than " + std::to_string(least));
+  }
+  return n;
+}
+
 }  // namespace
 
 namespace {
@@ -177,19 +184,19 @@ void offer_tracer(CLI::App& command, Inputs& inputs) {
 void offer_seed(CLI::App& command, Inputs& inputs) {
   command
       .add_option_function<std::int64_t>(
-          "--seed", [&inputs](std::int64_t n) { inputs.overrides.push_back("seed=" + std::to_string(n)); },
+          "--seed",
+          [&inputs](std::int64_t n) { inputs.overrides.push_back("seed=" + std::to_string(from(0, n, "--seed"))); },
           "seed of all random streams")
-      ->option_text("N")
-      ->check(CLI::Range(std::int64_t{0}, std::numeric_limits<std::int64_t>::max()));
+      ->option_text("N");
 }
 
 void offer_replicates(CLI::App& command, Inputs& inputs) {
   command
       .add_option_function<int>(
-          "--replicates", [&inputs](int n) { inputs.overrides.push_back("replicates=" + std::to_string(n)); },
+          "--replicates",
+          [&inputs](int n) { inputs.overrides.push_back("replicates=" + std::to_string(from(1, n, "--replicates"))); },
           "how often every trial is run")
-      ->option_text("N")
-      ->check(CLI::Range(1, 10'000'000));
+      ->option_text("N");
 }
 
 void offer_quiet(CLI::App& command, Verbosity& verbosity) {
