@@ -82,6 +82,11 @@ def value_of(command, option):
     return VALUES.get(option, "1" if option not in ("--out", "--answer") else "folder")
 
 
+def with_folder(option, words):
+    """A shard's output is a folder, and not named as a file."""
+    return [word.removesuffix(".csv") if option == "--shard" else word for word in words]
+
+
 class Options(unittest.TestCase):
     def test_the_tables_above_name_every_command(self):
         def below(command):
@@ -104,7 +109,7 @@ class Options(unittest.TestCase):
                     if option in ("--output", "--print-config") and "-o" in rest:
                         continue
                     value = () if takes is None else (value_of(command, option),)
-                    needed = [word.removesuffix(".csv") if option == "--shard" else word for word in rest]
+                    needed = with_folder(option, rest)
                     result = pirsim(*command, "--scene", "nowhere.gltf", "--script", DATA / "studies" / script, *needed,
                                     option, *value, code=4, cwd=folder)
                     self.assertIn("nowhere.gltf", result.stderr, (command, option))
@@ -113,8 +118,8 @@ class Options(unittest.TestCase):
                     if option == "--help" or option in rest or option == "--output":
                         continue
                     value = () if takes is None else (value_of(command, option),)
-                    result = subprocess.run([PIRSIM, *command, *rest, option, *value], capture_output=True, text=True,
-                                            cwd=folder)
+                    result = subprocess.run([PIRSIM, *command, *with_folder(option, rest), option, *value],
+                                            capture_output=True, text=True, cwd=folder)
                     self.assertNotEqual(result.returncode, 2, (command, option, result.stderr))
 
     def test_no_command_offers_an_option_that_would_do_nothing(self):
