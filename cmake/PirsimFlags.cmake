@@ -5,8 +5,8 @@ target_compile_features(pirsim_flags INTERFACE cxx_std_20)
 target_compile_options(pirsim_flags INTERFACE
   -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  # GCC 12 takes `"text" + std::string` for an overlapping copy (its bug 105651), or for one beyond the end.
-  target_compile_options(pirsim_flags INTERFACE -Wno-restrict -Wno-array-bounds)
+  # GCC 12 takes `"text" + std::string` for an overlapping copy (its bug 105651).
+  target_compile_options(pirsim_flags INTERFACE -Wno-restrict)
 endif()
 if(PIRSIM_SANITIZE)
   target_compile_options(pirsim_flags INTERFACE -fsanitize=${PIRSIM_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
