@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes text files into a C++ source: functions that give them, or one that gives a table of all by name.
 
-Usage: embed_text.py OUTPUT.cpp HEADER NAMESPACE NAME=FILE...
+Usage: embed_text.py OUTPUT.cpp HEADER NAMESPACE NAME=FILE[+FILE...]...   several files are one text
        embed_text.py OUTPUT.cpp HEADER NAMESPACE --table NAME FILE...   a span of {stem of FILE, text}
 """
 import pathlib
@@ -16,8 +16,8 @@ def literals(text: str) -> str:
     return "\n".join(f'R"text({chunk})text"' for chunk in chunks)
 
 
-def function(name: str, file: str) -> str:
-    text = pathlib.Path(file).read_text(encoding="utf-8")
+def function(name: str, *files: str) -> str:
+    text = "".join(pathlib.Path(file).read_text(encoding="utf-8") for file in files)
     return (f"std::string_view {name}() noexcept {{\n  static constexpr char text[] =\n{literals(text)};\n"
             f"  return {{text, sizeof text - 1}};\n}}\n")
 
@@ -35,7 +35,8 @@ def main():
     if rest[0] == "--table":
         parts.append(table(rest[1], rest[2:]))
     else:
-        parts += [function(*pair.split("=", 1)) for pair in rest]
+        for name, files in (pair.split("=", 1) for pair in rest):
+            parts.append(function(name, *files.split("+")))
     parts.append(f"}}  // namespace {namespace}\n")
     pathlib.Path(output).write_text("\n".join(parts), encoding="utf-8")
 

@@ -26,7 +26,7 @@ using ChartJson = nlohmann::ordered_json;
 [[nodiscard]] std::string_view report_style() noexcept;   ///< src/io/page/report.css
 [[nodiscard]] std::string_view three_script() noexcept;   ///< defines `three`; made by tools/vendor_three
 [[nodiscard]] std::string_view view_page() noexcept;      ///< src/io/page/view.html, a template
-[[nodiscard]] std::string_view view_script() noexcept;    ///< src/io/page/view.js
+[[nodiscard]] std::string_view view_script() noexcept;    ///< src/io/page/{run,time_line,room,view}.js
 [[nodiscard]] std::string_view view_style() noexcept;     ///< src/io/page/view.css
 
 }  // namespace pirsim::io::detail

@@ -1,0 +1,137 @@
+// People and sensors' bits, and signals where there are any, second by second under the room.
+"use strict";
+
+class TimeLine {
+  static heights = { people: 46, bits: 20, signal: 34, axis: 18 };
+
+  /// choose: is told the index of the sensor whose button is clicked.
+  constructor(run, choose) {
+    this.run = run;
+    this.buttons = [];
+    this.makeGutter(choose);
+  }
+
+  makeGutter(choose) {
+    const people = document.createElement("div");
+    people.className = "people";
+    people.textContent = "people";
+    people.style.height = TimeLine.heights.people + "px";
+    byId("gutter").append(people);
+    this.run.sensors.forEach((sensor, i) => {
+      const button = document.createElement("button");
+      button.type = "button";
+      button.textContent = sensor.id;
+      button.title = sensor.model + ": show only its beams";
+      button.style.height = this.heightOf(sensor) + "px";
+      button.addEventListener("click", () => choose(i));
+      byId("gutter").append(button);
+      this.buttons.push(button);
+    });
+  }
+
+  heightOf(sensor) {
+    return TimeLine.heights.bits + (sensor.signal_v.length ? TimeLine.heights.signal : 0);
+  }
+
+  draw() {
+    const canvas = byId("rows"), width = canvas.parentElement.clientWidth, scale = window.devicePixelRatio || 1;
+    const { sensors, from_s: from, to_s: to } = this.run, { heights } = TimeLine;
+    const height = sensors.reduce((sum, sensor) => sum + this.heightOf(sensor), heights.people + heights.axis);
+    canvas.width = width * scale;
+    canvas.height = height * scale;
+    canvas.style.height = height + "px";
+    const pen = canvas.getContext("2d");
+    pen.scale(scale, scale);
+    pen.font = "11px system-ui, sans-serif";
+    const x = (time) => ((time - from) / (to - from)) * width;
+    this.drawPeople(pen, x);
+    let top = heights.people;
+    sensors.forEach((sensor, i) => {
+      this.drawBits(pen, x, i, top, width);
+      top += heights.bits;
+      if (!sensor.signal_v.length) return;
+      this.drawSignal(pen, x, sensor, top, width);
+      top += heights.signal;
+    });
+    this.drawAxis(pen, x, top, width);
+  }
+
+  drawPeople(pen, x) {
+    const { rows, window_s: span, from_s: from, to_s: to } = this.run;
+    const most = Math.max(1, ...rows.people), base = TimeLine.heights.people - 4, unit = (base - 12) / most;
+    const steps = new Path2D(), area = new Path2D();
+    rows.people.forEach((n, i) => {
+      steps.lineTo(x(rows.time_s[i] - span), base - n * unit);
+      steps.lineTo(x(rows.time_s[i]), base - n * unit);
+    });
+    area.addPath(steps);
+    area.lineTo(x(to), base);
+    area.lineTo(x(from), base);
+    pen.fillStyle = colour("people");
+    pen.globalAlpha = 0.25;
+    pen.fill(area);
+    pen.globalAlpha = 1;
+    pen.strokeStyle = colour("people");
+    pen.lineWidth = 1.5;
+    pen.stroke(steps);
+    pen.fillStyle = colour("people");
+    rows.people.forEach((n, i) => {  // the number where it changes, if there is room
+      const wide = rows.people.slice(i).findIndex((other) => other !== n);
+      const end = wide < 0 ? rows.people.length : i + wide;
+      const width = x(rows.time_s[end - 1]) - x(rows.time_s[i]);
+      if (i > 0 && rows.people[i - 1] === n || width <= 14) return;
+      pen.fillText(n, x(rows.time_s[i]) + 2, base - n * unit - 3);
+    });
+  }
+
+  drawBits(pen, x, sensor, top, width) {
+    const { rows, window_s: span, from_s: from } = this.run, high = TimeLine.heights.bits - 4;
+    pen.fillStyle = "#e4e8ec";
+    pen.fillRect(0, top + 2, width, high);
+    pen.fillStyle = colour("fired");
+    rows.time_s.forEach((time, i) => {
+      if (!this.run.bit(i, sensor)) return;
+      const left = x(time - span);
+      pen.fillRect(left, top + 2, Math.max(1, x(time) - left - (x(span + from) > 4 ? 1 : 0)), high);
+    });
+  }
+
+  drawSignal(pen, x, sensor, top, width) {
+    const { signal_v: signal, positive_v: up, negative_v: down } = sensor;
+    const most = Math.max(2 * up, 2 * down, ...signal.map(Math.abs));
+    const middle = top + TimeLine.heights.signal / 2;
+    const y = (volts) => middle - (volts / most) * (TimeLine.heights.signal / 2 - 2);
+    pen.lineWidth = 1;
+    pen.strokeStyle = "#b0b8c1";
+    pen.setLineDash([3, 3]);
+    for (const volts of [up, -down]) {
+      pen.beginPath();
+      pen.moveTo(0, y(volts));
+      pen.lineTo(width, y(volts));
+      pen.stroke();
+    }
+    pen.setLineDash([]);
+    pen.strokeStyle = "#24292f";
+    pen.beginPath();
+    signal.forEach((volts, i) => pen.lineTo(x(this.run.keys_s[i]), y(volts)));
+    pen.stroke();
+  }
+
+  drawAxis(pen, x, top, width) {
+    const { rows, from_s: from, to_s: to } = this.run;
+    const step = stepBetween(to - from, width);
+    pen.fillStyle = colour("faint");
+    for (let time = Math.ceil(from / step) * step; time <= to; time += step) {
+      pen.fillRect(x(time), top, 1, 4);
+      const text = rows.first_clock ? this.run.clockText(time).slice(11) : time + " s";
+      const room = pen.measureText(text).width;
+      pen.fillText(text, Math.min(Math.max(0, x(time) - room / 2), width - room), top + 15);
+    }
+  }
+}
+
+/// Between two marks of the axis, so that their texts have room.
+function stepBetween(span, width) {
+  const steps = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200];
+  return steps.find((step) => (step / span) * width >= 70) || 14400;
+}
