@@ -3,6 +3,7 @@
 
 #include "app/commands.hpp"
 #include "app/session.hpp"
+#include "app/study_run.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
 #include "studies/campaign.hpp"
@@ -56,11 +57,8 @@ void merge(const MergeOptions& options) {
   }
   if (options.verbosity != Verbosity::quiet) {
     std::cerr << "merged " << merged.runs.count() << " runs, " << merged.rows << " rows\n";
-    if (!merged.notes.failed.empty()) {
-      std::cerr << "warning: " << merged.notes.failed.size()
-                << " runs failed and have no rows; the manifest lists them\n";
-    }
   }
+  tell(merged.notes, options.verbosity);
 }
 
 }  // namespace

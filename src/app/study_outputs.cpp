@@ -316,8 +316,8 @@ void WholeStudyOutputs::commit(const io::RunNotes& notes) {
   if (files.trace) files.trace->commit();
   if (files.occupants) files.occupants->commit();
   if (files.summary_file) {
-    write_summary(files.summary, *files.summary_file, files.options.summary, files.model.script().name,
-                  notes.remarks(), files.inputs.verbosity);
+    write_summary(files.summary, *files.summary_file, files.options.summary, files.model.script().name, notes.remarks(),
+                  files.inputs.verbosity);
   }
   if (files.report_file) write_page(*files.report_file, files.report.finish(files.summary), files.inputs);
 }

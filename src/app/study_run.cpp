@@ -9,7 +9,6 @@
 #include "app/long_work.hpp"
 #include "app/session.hpp"
 #include "app/study_outputs.hpp"
-#include "io/manifest.hpp"
 #include "pirsim/study.hpp"
 #include "studies/sight.hpp"
 
@@ -63,7 +62,8 @@ std::string describe(const io::FailedRun& run) {
   return text.str();
 }
 
-/// What rows don't say. Throws Error(incomplete) if runs failed.
+}  // namespace
+
 void tell(const io::RunNotes& notes, Verbosity verbosity) {
   const auto warn = [&](std::uint64_t n, const std::string& what) {
     if (n > 0 && verbosity != Verbosity::quiet) std::cerr << "warning: " << n << what << '\n';
@@ -82,6 +82,8 @@ void tell(const io::RunNotes& notes, Verbosity verbosity) {
   }
   throw Error(ErrorCode::incomplete, message);
 }
+
+namespace {
 
 void tell_what_is_written(const RunOptions& options, const RowOutput& rows, std::uint32_t n_new, Verbosity verbosity) {
   if (verbosity == Verbosity::quiet) return;

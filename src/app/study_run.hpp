@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/options.hpp"
+#include "io/manifest.hpp"
 #include "pirsim/model.hpp"
 
 namespace pirsim::app {
@@ -35,6 +36,8 @@ struct RunOptions {
 void offer_run_options(CLI::App& command, const std::shared_ptr<RunOptions>& options);
 /// Throws Error(usage) for options that don't go together or can't be written; before any work.
 void check_options(const Inputs& inputs, const RunOptions& options);
+/// What rows don't say, as warnings. Throws Error(incomplete) if runs failed: the last thing to do.
+void tell(const io::RunNotes& notes, Verbosity verbosity);
 /// Runs what is asked for and writes it.
 void run(const Model& model, const Inputs& inputs, const RunOptions& options);
 

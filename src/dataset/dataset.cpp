@@ -77,8 +77,8 @@ void claim_folder(const RecipeSpec& recipe, const fs::path& folder, const std::s
 
 bool make_room_days(const RecipeSpec& recipe, const fs::path& folder, const DatasetOptions& options) {
   const std::string made_by = provenance(recipe);
-  claim_folder(recipe, folder, made_by, options);
   const std::vector<std::string> columns = sensor_columns(recipe, options.scenes);
+  claim_folder(recipe, folder, made_by, options);  // not by a recipe that can't be followed
   const RunRange range = runs_of(options.shard.value_or(Shard{}), recipe.n_room_days());
   std::vector<std::uint32_t> wanted;
   for (std::uint32_t i = range.first; i < range.end; ++i) {

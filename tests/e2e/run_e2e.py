@@ -297,8 +297,8 @@ class FailedRuns(unittest.TestCase):
             self.failing("-o", folder / "whole.csv", code=6)
             for i in (1, 2):
                 self.failing("-o", folder / "shards", "--shard", f"{i}/2", code=6)
-            told = pirsim("merge", folder / "shards", "-o", folder / "merged.csv").stderr
-            self.assertIn("2 runs failed and have no rows", told)
+            told = pirsim("merge", folder / "shards", "-o", folder / "merged.csv", code=6).stderr
+            self.assertIn("2 runs failed and have no rows\n  trial S5, replicate 6, second 0.02: 'occupant' at ", told)
             self.assertEqual((folder / "merged.csv").read_bytes(), (folder / "whole.csv").read_bytes())
 
 
