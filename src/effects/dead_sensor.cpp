@@ -33,12 +33,8 @@ std::unique_ptr<RowStage> make(const EffectSpec& effect, const StageContext& con
                                       effect.parameters.at("from_s"));
 }
 
-/// Half of them never say anything: the commonest form, which a share drawn from a range would never be.
 void draw(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec&, Stream& stream) {
   effect.choices["sensor"] = scene.sensors[stream.index(static_cast<std::uint32_t>(scene.sensors.size()))].id;
-  if (stream.index(2) == 1) return;
-  effect.parameters["loss"] = 1.0;
-  effect.parameters["from_s"] = 0.0;
 }
 
 }  // namespace
@@ -60,7 +56,7 @@ const Effect& dead_sensor() {
                                .high = 1.0,
                                .least = 0.0,
                                .most = 1.0,
-                               .source = "assumed, as that half of all are dead from the start"},
+                               .source = "assumed"},
                               {.name = "from_s",
                                .unit = "s",
                                .role = Role::detail,
