@@ -135,6 +135,16 @@ class Dataset(unittest.TestCase):
             self.assertIn("recipe.yaml:3:12: error:", fault)
             self.assertIn("office", fault)
 
+    def test_a_recipe_that_can_not_be_followed_claims_no_folder(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            room = (DATA / "rooms/meeting_room.gltf").read_text()
+            (folder / "room.gltf").write_text(room.replace("EKMC1604111", "EKMC1604119"))
+            (folder / "recipe.yaml").write_text("pirsim_recipe: 1\nrooms:\n  - {scenes: [room.gltf]}\npeople: 2\n")
+            fault = pirsim("dataset", folder / "recipe.yaml", "-o", folder / "out", code=3).stderr
+            self.assertIn("did you mean 'EKMC1604111'?", fault)
+            self.assertFalse((folder / "out").exists())
+
 
 if __name__ == "__main__":
     PIRSIM, DATA, TOOLS = (pathlib.Path(argument).resolve() for argument in sys.argv[1:4])
