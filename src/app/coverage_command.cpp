@@ -30,9 +30,8 @@ studies::CoverageStudy load_coverage(const Inputs& inputs) {
 }
 
 /// Goes on where an interrupted run of the same study stopped.
-CoverageMap compute(const studies::CoverageStudy& study, const Inputs& inputs, const CoverageOptions& options) {
-  make_folder(options.output);
-  studies::RowStore rows(options.output / "coverage.rows", study);
+CoverageMap compute(const studies::CoverageStudy& study, studies::RowStore& rows, const Inputs& inputs,
+                    unsigned threads) {
   CoverageMap map = studies::empty_map(study);
   map.counts = rows.found();
   if (rows.n_found_rows() > 0 && inputs.verbosity != Verbosity::quiet) {
@@ -47,8 +46,7 @@ CoverageMap compute(const studies::CoverageStudy& study, const Inputs& inputs, c
     progress.run_finished();
     stop.throw_if_made();
   };
-  studies::run_rows(study, rows.n_found_rows(), options.threads, keep);
-  rows.remove();
+  studies::run_rows(study, rows.n_found_rows(), threads, keep);
   return map;
 }
 
@@ -64,11 +62,14 @@ void coverage(const Inputs& inputs, const CoverageOptions& options) {
   const studies::CoverageStudy study = load_coverage(inputs);
   std::optional<io::AtomicFile> report_file;
   if (!options.report.empty()) report_file.emplace(options.report);
-  const CoverageMap map = compute(study, inputs, options);
+  make_folder(options.output);
+  studies::RowStore rows(options.output / "coverage.rows", study);
+  const CoverageMap map = compute(study, rows, inputs, options.threads);
   const studies::CoverageFigures figures = studies::figures_of(map);
   io::write_text_file(options.output / "coverage.csv", studies::to_csv(map));
   draw_maps(study, map, options.output);
   if (report_file) write_page(*report_file, studies::coverage_report(study, map, figures), inputs);
+  rows.remove();
   if (inputs.verbosity == Verbosity::quiet) return;
   std::cout << studies::to_text(map, figures);
   require_written();

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <iostream>
 
 #include "app/commands.hpp"
@@ -25,6 +26,13 @@ void finish(const DatasetCommand& command, const dataset::RecipeSpec& recipe) {
               << recipe.n_room_days() << " room-days\n";
 }
 
+std::uint32_t n_to_make(const dataset::RecipeSpec& recipe, const DatasetCommand& command, const RunRange& range) {
+  if (command.start == dataset::DatasetOptions::Start::anew) return range.count();
+  return static_cast<std::uint32_t>(
+      std::ranges::count_if(dataset::missing_room_days(recipe, command.folder),
+                            [&](std::uint32_t i) { return i >= range.first && i < range.end; }));
+}
+
 void make(const DatasetCommand& command, const dataset::RecipeSpec& recipe) {
   dataset::DatasetOptions options;
   options.scenes = scene_options(command.inputs);
@@ -33,7 +41,7 @@ void make(const DatasetCommand& command, const dataset::RecipeSpec& recipe) {
   if (!command.shard.empty()) options.shard = studies::parse_shard(command.shard);
   const RunRange range = runs_of(options.shard.value_or(Shard{}), recipe.n_room_days());
   const StopRequest stop;
-  Progress progress(range.count(), command.inputs.verbosity, "room-days");
+  Progress progress(n_to_make(recipe, command, range), command.inputs.verbosity, "room-days");
   options.goes_on = [&] { return !stop.was_made(); };
   options.made_one = [&] { progress.run_finished(); };
   options.tell = [&](const Issue& issue) { tell({issue}, command.inputs.verbosity); };

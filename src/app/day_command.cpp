@@ -65,11 +65,36 @@ std::string script_text(const DayOptions& options) {
   return text.str();
 }
 
+/// What is pasted into a script must be no more than a date or a time, or a word that stands for none.
+void require_plain(const std::string& option, const std::string& text) {
+  if (text.find_first_not_of("0123456789:-") != std::string::npos)
+    throw Error(ErrorCode::usage, option + ": '" + text + "' is not made of digits, ':' and '-' alone");
+}
+
+/// The faults of a script that nobody wrote, told of the options that it was made from.
+void check_made_script(const std::string& text, const std::string& first_day) {
+  try {
+    static_cast<void>(io::parse_script(text, "the script of pirsim day"));
+  } catch (const Error& fault) {
+    const std::string& message = fault.issues().front().message;
+    for (const auto& [key, option] : {std::pair("first_day: ", "--first-day: "), std::pair("from: ", "--from: "),
+                                      std::pair("to: ", "--to: "), std::pair("cleaning: ", "--cleaning: ")}) {
+      if (message.starts_with(key)) throw Error(ErrorCode::usage, option + message.substr(std::string(key).size()));
+    }
+    throw Error(ErrorCode::usage, (message.starts_with("'" + first_day + "'") ? "--first-day: " : "") + message);
+  }
+}
+
 void day(const Inputs& inputs, const DayOptions& options) {
   if (options.staff == 0 && options.meetings == DayOptions::Meetings::none) {
     throw Error(ErrorCode::usage, "say who comes: --staff N, --meetings or both");
   }
+  require_plain("--first-day", options.first_day);
+  require_plain("--from", options.from);
+  require_plain("--to", options.to);
+  if (options.cleaning != "none") require_plain("--cleaning", options.cleaning);
   const std::string text = script_text(options);
+  check_made_script(text, options.first_day);
   ScriptSpec script = io::parse_script(text, "the script of pirsim day", inputs.overrides);
   if (options.action == DayOptions::Action::print_script) {
     std::cout << (inputs.overrides.empty() ? text : io::to_yaml(script));

@@ -18,6 +18,7 @@ struct ExportOptions {
 void export_gltf(const Inputs& inputs, const ExportOptions& options) {
   check_outputs({{"-o", options.output, {".gltf", ".glb"}}}, inputs);
   const Model model = load(inputs);
+  keep_inputs({{"-o", options.output}}, files_read(model.script(), model.scene()));
   const io::ExportedRun run =
       studies::film(model, find_run(model, options.run),
                     {.keys_per_s = options.keys_per_s, .beams_of = find_sensors(model, options.beams)})

@@ -39,14 +39,22 @@ std::vector<std::string> trial_ids(const ScriptSpec& script) {
   return ids;
 }
 
+/// Nor may a shard be taken for the whole.
+void keep_shards(const std::string& option, const std::filesystem::path& output, const std::filesystem::path& folder) {
+  if (!output.empty() && is_below(output, folder) && studies::shard_of(output.filename().string()))
+    throw Error(ErrorCode::usage, option + ": '" + output.string() + "' is named as one of the shards");
+}
+
 void merge(const MergeOptions& options) {
   if (options.output.empty()) throw Error(ErrorCode::usage, "-o FILE is missing");
   check_outputs({{"-o", options.output, io::table_endings()}, {"--summary", options.summary, summary_endings()}}, {});
+  keep_shards("-o", options.output, options.folder);
   ScriptSpec script;
   std::optional<io::AtomicFile> file;
   std::optional<studies::RowTally> tally;
   if (!options.summary.empty()) {
     script = script_of(options);
+    keep_inputs({{"-o", options.output}, {"--summary", options.summary}}, files_read(script, {}));
     file.emplace(options.summary);
     tally.emplace(trial_ids(script), script.summary, measured_cells(script));
   }

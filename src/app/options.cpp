@@ -8,6 +8,7 @@
 #include <boost/algorithm/string/join.hpp>
 #include <utility>
 
+#include "io/atomic_file.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::app {
@@ -188,6 +189,14 @@ void offer_seed(CLI::App& command, Inputs& inputs) {
           [&inputs](std::int64_t n) { inputs.overrides.push_back("seed=" + std::to_string(from(0, n, "--seed"))); },
           "seed of all random streams")
       ->option_text("N");
+}
+
+CLI::Validator is_seed() {
+  return {[](std::string& text) {
+            return io::parse_number<std::uint64_t>(text) ? std::string()
+                                                         : "'" + text + "' is not a whole number from 0 to 2^64 - 1";
+          },
+          "", "seed"};
 }
 
 void offer_replicates(CLI::App& command, Inputs& inputs) {

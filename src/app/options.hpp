@@ -42,6 +42,8 @@ void offer_study(CLI::App& command, Inputs& inputs);
 /// For commands that trace rays by load().
 void offer_tracer(CLI::App& command, Inputs& inputs);
 void offer_seed(CLI::App& command, Inputs& inputs);
+/// Of an option whose value is 64 bits wide: CLI11 takes -1 for a large number there, and cuts what is too large.
+[[nodiscard]] CLI::Validator is_seed();
 void offer_replicates(CLI::App& command, Inputs& inputs);
 void offer_quiet(CLI::App& command, Verbosity& verbosity);
 /// After offer_quiet(): who asks for both gets Error(usage).

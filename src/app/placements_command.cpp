@@ -41,6 +41,7 @@ void placements(const Inputs& inputs, unsigned threads) {
   }
   std::cout << to_text(studies::ranked(std::move(scores)));
   if (search) std::cout << to_text(*search);
+  require_written();
 }
 
 }  // namespace

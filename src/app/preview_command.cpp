@@ -58,6 +58,7 @@ State go_to_moment(const Model& model, const PreviewOptions& options) {
 void preview(const Inputs& inputs, const PreviewOptions& options) {
   check_outputs({{"-o", options.output, {".png"}}}, inputs);
   const Model model = load(inputs);
+  keep_inputs({{"-o", options.output}}, files_read(model.script(), model.scene()));
   const State state = go_to_moment(model, options);
 
   std::vector<std::string> names = options.beams;

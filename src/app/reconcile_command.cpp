@@ -12,6 +12,7 @@
 #include "reconcile/data/measured.hpp"
 #include "reconcile/inference/verify.hpp"
 #include "reconcile/report/charts.hpp"
+#include "reconcile/report/outputs.hpp"
 #include "reconcile/report/pages.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "reconcile/validation/plan.hpp"
@@ -54,24 +55,8 @@ struct SelftestOptions {
 
 reconcile::Settings settings_of(const AnalysisOptions& options, const std::filesystem::path& output,
                                 const ScriptSpec& script) {
-  reconcile::Settings settings;
+  reconcile::Settings settings = reconcile::settings_of(script, options.alpha, options.budget, options.effects);
   settings.nuisance = nuisance_of(options.nuisance);
-  settings.alpha = options.alpha;
-  const auto scaled = [&](std::uint32_t n) {
-    return std::max(reconcile::fewest_datasets_to_refuse(options.alpha),
-                    static_cast<std::uint32_t>(static_cast<double>(n) * options.budget));
-  };
-  for (const std::string& effect : options.effects) {
-    const std::string& name = effects::find(effect).info.name;
-    if (std::ranges::find(settings.table.effects, name) != settings.table.effects.end())
-      throw Error(ErrorCode::usage, "--effects: " + name + " twice");
-    if (std::ranges::find(script.effects, name, &EffectSpec::name) != script.effects.end())
-      throw Error(ErrorCode::usage, "--effects: the script already has " + name + "; it isn't looked for again");
-    settings.table.effects.push_back(name);
-  }
-  settings.table.n_realizations = scaled(settings.table.n_realizations);
-  settings.table.n_remembered = scaled(settings.table.n_remembered);
-  settings.table.n_traced = scaled(settings.table.n_traced);
   settings.table_folder = options.table.empty() ? output / "table" : options.table;
   return settings;
 }
@@ -169,6 +154,11 @@ void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
   tell(script.warnings, inputs.verbosity);
+  std::vector<std::string> read = files_read(script, scene);
+  read.insert(read.end(), {options.measured.string(), analysis.nuisance});
+  std::vector<NamedOutput> written;
+  for (const char* name : reconcile::report_files) written.push_back({"-o", options.output / name});
+  keep_inputs(written, read);
   const reconcile::StudyFrame frame = reconcile::frame_of(scene, script);
   const reconcile::Measured measured = reconcile::read_measured(options.measured, frame);
   tell_notes(measured.notes, inputs.verbosity);
@@ -205,7 +195,8 @@ void offer_analysis(CLI::App& command, AnalysisOptions& options) {
       ->option_text("X")
       ->check(CLI::Range(0.05, 20.0));
   command.add_option("--analysis-seed", options.seed, "of everything random in the analysis (default: 1)")
-      ->option_text("N");
+      ->option_text("N")
+      ->check(is_seed());
   offer_threads(command, options.threads);
 }
 

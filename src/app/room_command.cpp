@@ -42,6 +42,14 @@ dataset::RoomSpec room_by_settings(const RoomOptions& options) {
   }
 }
 
+std::vector<std::string> scenes_of(const dataset::RecipeSpec& recipe) {
+  std::vector<std::string> files;
+  for (const dataset::RoomGroupSpec& group : recipe.rooms) {
+    for (const std::filesystem::path& scene : group.scenes) files.push_back(scene.string());
+  }
+  return files;
+}
+
 dataset::DrawnRoom draw(const RoomOptions& options) {
   const io::SceneOptions scenes = scene_options(options.inputs);
   if (options.recipe.empty())
@@ -76,6 +84,7 @@ void print(const dataset::DrawnRoom& room, const std::filesystem::path& file) {
 void make_room(const RoomOptions& options) {
   if (options.output.empty()) throw Error(ErrorCode::usage, "-o FILE is missing: room.gltf or room.glb");
   check_outputs({{"-o", options.output, {".gltf", ".glb"}}}, {});
+  if (!options.recipe.empty()) keep_inputs({{"-o", options.output}}, scenes_of(dataset::read_recipe(options.recipe)));
   const dataset::DrawnRoom room = draw(options);
   io::write_scene(options.output, room.scene);
   if (options.inputs.verbosity != Verbosity::quiet) print(room, options.output);
@@ -129,7 +138,9 @@ void add_room_command(CLI::App& app) {
   command.add_option("--sensors", options->inputs.sensor_directories, "folder with sensor models, searched first")
       ->option_text("DIR")
       ->allow_extra_args(false);
-  command.add_option("--seed", options->seed, "of all random streams (default: 1, or the recipe's)")->option_text("N");
+  command.add_option("--seed", options->seed, "of all random streams (default: 1, or the recipe's)")
+      ->option_text("N")
+      ->check(is_seed());
   command.add_option("--number", options->number, "which room of this seed or recipe (default: 1)")
       ->option_text("N")
       ->check(CLI::Range(1, 1'000'000));

@@ -136,7 +136,8 @@ void add_seal_command(CLI::App& reconcile_command) {
       ->option_text("N")
       ->check(CLI::Range(1, 100));
   command.add_option("--secret-seed", options->secret_seed, "of everything drawn (default: from the system)")
-      ->option_text("N");
+      ->option_text("N")
+      ->check(is_seed());
   on_call(command, inputs, [options](const Inputs& given) { seal_challenge(given, *options); });
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iostream>
 #include <map>
+#include <set>
 
 #include "core/near_names.hpp"
 #include "io/csv_reader.hpp"
@@ -157,6 +158,7 @@ const std::vector<std::string>& summary_endings() {
   static const std::vector<std::string> endings{".csv", ".md"};
   return endings;
 }
+
 void check_outputs(const std::vector<NamedOutput>& outputs, const Inputs& inputs) {
   std::map<std::string, std::string> taken;
   for (const auto& [option, file] : {std::pair("--scene", inputs.scene), std::pair("--script", inputs.script)}) {
@@ -172,6 +174,25 @@ void check_outputs(const std::vector<NamedOutput>& outputs, const Inputs& inputs
     throw Error(ErrorCode::usage,
                 first->second + " and " + output.option + " are one file: '" + output.file.string() + "'");
   }
+}
+
+void keep_inputs(const std::vector<NamedOutput>& outputs, const std::vector<std::string>& read) {
+  std::set<std::string> inputs;
+  for (const std::string& file : read) inputs.insert(identity(file));
+  for (const NamedOutput& output : outputs) {
+    if (output.file.empty() || !inputs.contains(identity(output.file)) || io::is_written_directly(output.file))
+      continue;
+    throw Error(ErrorCode::usage,
+                output.option + ": '" + output.file.string() + "' is read as an input; it would be overwritten");
+  }
+}
+
+std::vector<std::string> files_read(const ScriptSpec& script, const SceneSpec& scene) {
+  std::vector<std::string> files = script.files;
+  files.insert(files.end(), scene.files.begin(), scene.files.end());
+  const std::string& reference = script.summary.reference_file;
+  if (!reference.empty()) files.push_back((fs::path(script.directory) / reference).string());
+  return files;
 }
 
 bool is_below(const fs::path& file, const fs::path& folder) {

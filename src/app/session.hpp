@@ -40,7 +40,7 @@ void tell_what_is_left_out(const studies::CoverageStudy& study, Verbosity verbos
 struct NamedOutput {
   std::string option;          ///< "--summary"
   std::filesystem::path file;  ///< empty: not asked for
-  std::vector<std::string> endings;
+  std::vector<std::string> endings = {};
 };
 
 /// ".csv, .csv.gz or .csv.zst"
@@ -52,6 +52,10 @@ struct NamedOutput {
 /// isn't known (unless the file is there and no regular one, as /dev/stdout is), for one file with two outputs, and for
 /// an output that is an input; Error(io) for a folder that is missing.
 void check_outputs(const std::vector<NamedOutput>& outputs, const Inputs& inputs);
+/// Throws Error(usage) for an output that is one of these files, which were read.
+void keep_inputs(const std::vector<NamedOutput>& outputs, const std::vector<std::string>& read);
+/// What a model was made from, and what its summary refers to.
+[[nodiscard]] std::vector<std::string> files_read(const ScriptSpec& script, const SceneSpec& scene);
 /// Would the file lie in that folder, however deep, or be the folder itself?
 [[nodiscard]] bool is_below(const std::filesystem::path& file, const std::filesystem::path& folder);
 /// With all that it lies in. Throws Error(io).

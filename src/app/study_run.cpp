@@ -114,9 +114,10 @@ std::string stop_message(const RunOptions& options, const std::string& cause, co
 
 }  // namespace
 
-void check_options(const Inputs& inputs, const RunOptions& options) {
-  const bool sharded = !options.rows.shard.empty();
-  const std::filesystem::path rows = sharded ? std::filesystem::path{} : options.rows.output;
+namespace {
+
+std::vector<NamedOutput> outputs_of(const RunOptions& options) {
+  const std::filesystem::path rows = options.rows.shard.empty() ? options.rows.output : std::filesystem::path{};
   std::vector<NamedOutput> outputs{{"-o", rows, io::table_endings()},
                                    {"--summary", options.summary, summary_endings()},
                                    {"--zones", options.zones, io::table_endings()},
@@ -124,7 +125,14 @@ void check_options(const Inputs& inputs, const RunOptions& options) {
                                    {"--occupants", options.occupants, io::table_endings()},
                                    {"--report", options.report, {".html"}}};
   if (!rows.empty()) outputs.push_back({"the manifest of -o", io::manifest_path(rows), {".json"}});
-  check_outputs(outputs, inputs);
+  return outputs;
+}
+
+}  // namespace
+
+void check_options(const Inputs& inputs, const RunOptions& options) {
+  check_outputs(outputs_of(options), inputs);
+  const bool sharded = !options.rows.shard.empty();
   const char* partial = sharded                                           ? "--shard"
                         : options.rows.start == RowOptions::Start::resume ? "--resume"
                         : options.max_time_s                              ? "--max-time"
@@ -151,6 +159,7 @@ void check_options(const Inputs& inputs, const RunOptions& options) {
 }
 
 void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
+  keep_inputs(outputs_of(options), files_read(model.script(), model.scene()));
   if (inputs.verbosity != Verbosity::quiet) {
     tell(studies::warnings(studies::look_around(model), model.scene().name), inputs.verbosity);
   }
@@ -225,12 +234,14 @@ void offer_run_options(CLI::App& command, const std::shared_ptr<RunOptions>& opt
                   "where everybody is and what they do, a row a window and person, " + tables)
       ->option_text("FILE");
   offer_threads(command, options->threads);
-  command
-      .add_option("--shard", options->rows.shard,
-                  "only this block of the runs: I/N, auto/N or auto (in a job array); -o names a folder")
-      ->option_text("I/N");
+  CLI::Option* shard =
+      command
+          .add_option("--shard", options->rows.shard,
+                      "only this block of the runs: I/N, auto/N or auto (in a job array); -o names a folder")
+          ->option_text("I/N");
   command.add_option("--format", options->rows.format, "of a shard: " + tables + " (default: .csv)")
       ->option_text("ENDING")
+      ->needs(shard)
       ->check(CLI::IsMember(io::table_endings()));
   command.add_flag_callback(
       "--resume", [options] { options->rows.start = RowOptions::Start::resume; },
@@ -241,7 +252,8 @@ void offer_run_options(CLI::App& command, const std::shared_ptr<RunOptions>& opt
   command.add_option("--max-time", options->max_time_s, "stop at the end of a run after so long: 3000, 50m, 2h")
       ->option_text("TIME")
       ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1.0}, {"m", 60.0}, {"h", 3600.0}},
-                                        CLI::AsNumberWithUnit::CASE_SENSITIVE, "TIME"));
+                                        CLI::AsNumberWithUnit::CASE_SENSITIVE, "TIME"))
+      ->check(CLI::NonNegativeNumber);
 }
 
 }  // namespace pirsim::app

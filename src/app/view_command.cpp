@@ -9,6 +9,7 @@
 #include "io/run_page.hpp"
 #include "pirsim/study.hpp"
 #include "pirsim/version.hpp"
+#include "schema/schedule_people.hpp"
 #include "sim/compiled_study.hpp"
 #include "studies/coverage.hpp"
 #include "studies/run_film.hpp"
@@ -34,12 +35,8 @@ struct Stretch {
 
 /// Of run seconds or, in a run of a schedule, of a time of day.
 double run_seconds(const std::string& option, const std::string& text, const sim::TrialModel& trial) {
-  unsigned hour = 0, minute = 0, second = 0;
-  char more = 0;
-  const int parts = std::sscanf(text.c_str(), "%2u:%2u:%2u%c", &hour, &minute, &second, &more);
-  const bool is_clock =
-      (parts == 2 || parts == 3) && minute < 60 && second < 60 && std::ranges::count(text, ':') == parts - 1;
-  if (is_clock && trial.schedule) return 3600.0 * (hour - trial.schedule->from_h) + 60.0 * minute + second;
+  if (const auto hour = trial.schedule ? clock_hours(text) : std::nullopt)
+    return 3600.0 * (*hour - trial.schedule->from_h);
   const auto seconds = io::parse_number<double>(text);
   if (!seconds || !(*seconds >= 0.0)) {
     throw Error(ErrorCode::usage, option + ": expected seconds since the run began" +
@@ -53,7 +50,7 @@ int bits_set(const Sample& row) { return std::accumulate(row.bits.begin(), row.b
 
 /// That in which sensors see motion most often, the earliest of equals.
 Stretch busiest(const std::vector<Sample>& rows, double window_s) {
-  const auto length = std::min(rows.size(), static_cast<std::size_t>(longest_unasked_s / window_s));
+  const auto length = std::clamp<std::size_t>(static_cast<std::size_t>(longest_unasked_s / window_s), 1, rows.size());
   int motion = 0, most = -1;
   std::size_t best_end = length;
   for (std::size_t end = 1; end <= rows.size(); ++end) {
@@ -187,6 +184,7 @@ void tell_what_is_shown(const io::RunPage& page, const ViewOptions& options, std
 void view(const Inputs& inputs, const ViewOptions& options) {
   check_outputs({{"-o", options.output, {".html"}}}, inputs);
   const Model model = load(inputs);
+  keep_inputs({{"-o", options.output}}, files_read(model.script(), model.scene()));
   const std::uint32_t run = find_run(model, options.run);
   std::vector<Sample> rows = rows_of(model, run);
   const double window_s = model.tick_s() * model.compiled().sensing().ticks_per_window;

@@ -42,7 +42,7 @@ AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), par
   if (!is_written_directly(path_)) {
     path_ = resolved(path_);
     partial_ = path_;
-    partial_ += ".partial";
+    partial_ += ".writing";  // rows that can be resumed stand in .partial
   }
   errno = 0;
   if (buffer_.open(partial_, std::ios::out | std::ios::binary | std::ios::trunc) == nullptr) fail("can't write", errno);
@@ -82,7 +82,7 @@ void write_text_file(const std::filesystem::path& path, std::string_view text) {
   file.commit();
 }
 
-std::string read_text_file(const std::filesystem::path& path) {
+std::string read_text_file(const std::filesystem::path& path, std::size_t max_bytes) {
   const Where where{path.string(), 0, 0};
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) throw Error(ErrorCode::io, where, "is a directory");
@@ -94,12 +94,13 @@ std::string read_text_file(const std::filesystem::path& path) {
   // In blocks, since most files are small; one byte more than allowed, so that endless devices end too.
   std::string text;
   std::array<char, 1U << 13U> block;
-  while (text.size() <= max_text_file_bytes && file) {
+  while (text.size() <= max_bytes && file) {
     file.read(block.data(), static_cast<std::streamsize>(block.size()));
     text.append(block.data(), static_cast<std::size_t>(file.gcount()));
   }
   if (file.bad()) throw Error(ErrorCode::io, where, "can't be read");
-  if (text.size() > max_text_file_bytes) throw Error(ErrorCode::input, where, "larger than 16 MB");
+  if (text.size() > max_bytes)
+    throw Error(ErrorCode::input, where, "larger than " + std::to_string(max_bytes / 1'000'000) + " MB");
   return text;
 }
 

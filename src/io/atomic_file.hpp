@@ -14,7 +14,7 @@ namespace pirsim::io {
 /// A path that exists and isn't a regular file: /dev/stdout, a pipe.
 [[nodiscard]] bool is_written_directly(const std::filesystem::path& path);
 
-/// Writes `<path>.partial` in the same folder and renames it onto the path at commit, so that no reader, crash or
+/// Writes `<path>.writing` in the same folder and renames it onto the path at commit, so that no reader, crash or
 /// full disk ever leaves half a file, and an older file survives a failure. What is_written_directly() is not
 /// renamed. Every fault is Error(io) that names the path and the cause.
 class AtomicFile {
@@ -63,8 +63,9 @@ void write_text_file(const std::filesystem::path& path, std::string_view text);
 
 constexpr std::size_t max_text_file_bytes = 16'000'000;
 
-/// The whole file. Throws Error: io if it can't be read, input if it is larger than 16 MB.
-[[nodiscard]] std::string read_text_file(const std::filesystem::path& path);
+/// The whole file. Throws Error: io if it can't be read, input if it is larger than that.
+[[nodiscard]] std::string read_text_file(const std::filesystem::path& path,
+                                         std::size_t max_bytes = max_text_file_bytes);
 
 /// The whole of `text` as a number, independent of the locale; a leading plus is allowed.
 template <typename Number>

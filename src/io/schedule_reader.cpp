@@ -1,7 +1,6 @@
 #include "io/reader_parts.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 #include "io/yaml_map.hpp"
@@ -17,12 +16,10 @@ double read_time(YamlMap& map, const std::string& key, double otherwise, Diagnos
     return otherwise;
   }
   const std::string text = map.text(key);
-  unsigned hour = 0, minute = 0;
-  char more = 0;
-  const bool good = std::sscanf(text.c_str(), "%2u:%2u%c", &hour, &minute, &more) == 2 && minute < 60 &&
-                    60 * hour + minute <= 24 * 60;
-  if (!good) faults.error(map.where(key), key + ": expected a time of day from 00:00 to 24:00, e.g. 08:30");
-  return good ? hour + minute / 60.0 : otherwise;
+  constexpr std::size_t to_minutes = 5;
+  const auto hours = text.size() <= to_minutes ? clock_hours(text) : std::nullopt;
+  if (!hours) faults.error(map.where(key), key + ": expected a time of day from 00:00 to 24:00, e.g. 08:30");
+  return hours.value_or(otherwise);
 }
 
 ClockSpec read_clock(YamlMap& map, const std::string& key, const ClockSpec& otherwise, Diagnostics& faults) {

@@ -162,6 +162,17 @@ bool is_working_day(std::int64_t day) noexcept {
   return weekday != std::chrono::Saturday && weekday != std::chrono::Sunday;
 }
 
+std::optional<double> clock_hours(const std::string& text) {
+  unsigned hour = 0, minute = 0, second = 0;
+  int read = 0;
+  const bool is_whole = (std::sscanf(text.c_str(), "%2u:%2u%n", &hour, &minute, &read) == 2 &&
+                         static_cast<std::size_t>(read) == text.size()) ||
+                        (std::sscanf(text.c_str(), "%2u:%2u:%2u%n", &hour, &minute, &second, &read) == 3 &&
+                         static_cast<std::size_t>(read) == text.size());
+  if (!is_whole || minute >= 60 || second >= 60 || 3600 * hour + 60 * minute + second > 24 * 3600) return std::nullopt;
+  return hour + minute / 60.0 + second / 3600.0;
+}
+
 std::string clock_text(std::int64_t day, double seconds) {
   const auto whole = static_cast<std::int64_t>(std::floor(seconds + 1e-9));
   const std::int64_t in_day = whole % 86400;

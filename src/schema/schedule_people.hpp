@@ -34,6 +34,8 @@ struct ScheduledPerson {
 [[nodiscard]] std::int64_t day_number(const std::string& iso_date, const Where& where);
 [[nodiscard]] bool is_working_day(std::int64_t day) noexcept;  ///< Monday to Friday
 /// "2026-03-02T08:30:00" of a day and seconds into it.
+/// Hours of "08:30" or "08:30:15", up to "24:00"; none for any other text.
+[[nodiscard]] std::optional<double> clock_hours(const std::string& text);
 [[nodiscard]] std::string clock_text(std::int64_t day, double seconds);
 
 }  // namespace pirsim

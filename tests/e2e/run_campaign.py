@@ -258,7 +258,7 @@ class Stopping(unittest.TestCase):
                 arguments("--zones", folder / "z.csv", "--summary", folder / "s.md", replicates=self.REPLICATES),
                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
             until = time.monotonic() + 60
-            while not (folder / "z.csv.partial").exists() and time.monotonic() < until:
+            while not (folder / "z.csv.writing").exists() and time.monotonic() < until:
                 time.sleep(0.002)
             time.sleep(0.05)
             process.terminate()

@@ -51,6 +51,14 @@ def main():
         assert (folder / "cut/coverage.csv").read_bytes() == csv, "an interruption changes the map"
         assert not rows.exists()
 
+        # What was computed stays until all of it is written.
+        (folder / "full/coverage.csv").mkdir(parents=True)
+        call("coverage", study_b, *coarse, "-o", folder / "full", code=4)
+        (folder / "full/coverage.csv").rmdir()
+        again = call("coverage", study_b, *coarse, "-o", folder / "full")
+        assert "continuing after" in again.stderr, again.stderr
+        assert (folder / "full/coverage.csv").read_bytes() == csv
+
         fault = call("coverage", study_b, "--set", "without=[tabel]", "-o", folder / "no", code=3)
         assert "tabel" in fault.stderr and "did you mean" in fault.stderr, fault.stderr
         call("coverage", study_b, "--set", "duration_s=0.3", "-o", folder / "no", code=3)

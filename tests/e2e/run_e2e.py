@@ -61,7 +61,8 @@ VALUES = {"--set": "name=other", "--sensors": ".", "--tracer": "direct", "--repo
           "--trial": "S1", "--beams": "all", "--marks": "seats", "--camera": "0,5,0", "--look-at": "1,0,1", "--width": "64",
           "--height": "64", "--measured": "m.csv", "--holdout": "0.3", "--table": "table", "--nuisance": "none",
           "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "effects", "--hide": "one",
-          "--script": "other.yaml"}
+          "--script": "other.yaml", "--first-day": "2026-03-03", "--from": "09:00", "--to": "10:00",
+          "--cleaning": "none"}
 OUTPUTS = {"preview": "room.png", "export": "run.glb", "view": "run.html", "coverage": "maps", "walktest": "points.csv"}
 
 
@@ -84,7 +85,7 @@ def value_of(command, option):
 
 def with_folder(option, words):
     """A shard's output is a folder, and not named as a file."""
-    return [word.removesuffix(".csv") if option == "--shard" else word for word in words]
+    return [word.removesuffix(".csv") if option in ("--shard", "--format") else word for word in words]
 
 
 class Options(unittest.TestCase):
@@ -109,6 +110,8 @@ class Options(unittest.TestCase):
                     if option in ("--output", "--print-config") and "-o" in rest:
                         continue
                     value = () if takes is None else (value_of(command, option),)
+                    if option == "--format":
+                        value += "--shard", "1/2"
                     needed = with_folder(option, rest)
                     result = pirsim(*command, "--scene", "nowhere.gltf", "--script", DATA / "studies" / script, *needed,
                                     option, *value, code=4, cwd=folder)
@@ -118,6 +121,8 @@ class Options(unittest.TestCase):
                     if option == "--help" or option in rest or option == "--output":
                         continue
                     value = () if takes is None else (value_of(command, option),)
+                    if command == ("day",) and option == "--format":
+                        value += "--shard", "1/2"
                     result = subprocess.run([PIRSIM, *command, *with_folder(option, rest), option, *value],
                                             capture_output=True, text=True, cwd=folder)
                     self.assertNotEqual(result.returncode, 2, (command, option, result.stderr))
@@ -216,6 +221,16 @@ class Days(unittest.TestCase):
                 self.day("--shard", f"{i}/2", "-o", f"{folder}/shards", "--threads", 2)
             pirsim("merge", f"{folder}/shards", "-o", f"{folder}/merged.csv", "-q")
             self.assertEqual((pathlib.Path(folder) / "merged.csv").read_text(), whole)
+            script = write(folder, "week.yaml", self.day("--print-script").stdout)
+            for args in (("merge", f"{folder}/shards", "--script", script, "--summary", f"{folder}/merged.md"),
+                         ("--scene", DATA / "rooms/open_office.gltf", "--script", script, "--summary",
+                          f"{folder}/whole.md")):
+                pirsim(*args, "-o", f"{folder}/again.csv", "-q")
+            self.assertEqual(*((pathlib.Path(folder) / f"{name}.md").read_text() for name in ("merged", "whole")))
+            shard = pathlib.Path(folder) / "shards/shard-0001-of-0002.csv"
+            bytes_before = shard.read_bytes()
+            self.assertIn("is named as one of the shards", pirsim("merge", f"{folder}/shards", "-o", shard, code=2).stderr)
+            self.assertEqual(shard.read_bytes(), bytes_before)
             self.day("-o", f"{folder}/days.csv", "--max-time", "0.001s", "--threads", 1, code=75)
             self.day("-o", f"{folder}/days.csv", "--resume")
             self.assertEqual((pathlib.Path(folder) / "days.csv").read_text(), whole)
@@ -254,9 +269,11 @@ class Days(unittest.TestCase):
         room = "--scene", DATA / "rooms" / "open_office.gltf"
         self.assertIn("say who comes", pirsim("day", *room, code=2).stderr)
         self.assertIn("more staff than the 9 seats", pirsim("day", *room, "--staff", 10, code=3).stderr)
-        self.assertIn(":9:7: error: to: expected a time of day",
-                      pirsim("day", *room, "--staff", 2, "--to", "25:00", code=3).stderr)
-        self.assertIn("is no date", pirsim("day", *room, "--staff", 2, "--first-day", "2026-13-01", code=3).stderr)
+        for option, value, told in (("--to", "25:00", "error: --to: expected a time of day"),
+                                    ("--from", "09:00 #", "error: --from: '09:00 #' is not made of digits"),
+                                    ("--cleaning", "nne", "error: --cleaning: 'nne' is not made of digits"),
+                                    ("--first-day", "2026-13-01", "error: --first-day: '2026-13-01' is no date")):
+            self.assertIn(told, pirsim("day", *room, "--staff", 2, option, value, code=2).stderr)
 
 
 class FailedRuns(unittest.TestCase):
@@ -327,8 +344,12 @@ class Help(unittest.TestCase):
     def test_values_that_are_no_numbers_are_named_with_their_option(self):
         for args, told in ((("preview", "--time", "10s"), "--time: '10s' is not a number of seconds"),
                            (("--threads", "-1"), "--threads: '-1' is not a whole number from 0"),
-                           (("--seed", "abc"), "--seed: 'abc' is not a whole number")):
-            self.assertEqual(pirsim(*args, code=2).stderr, f"error: {told}\n")
+                           (("--seed", "abc"), "--seed: 'abc' is not a whole number"),
+                           (("room", "--seed", "-1"), "--seed: '-1' is not a whole number from 0 to 2^64 - 1"),
+                           (("room", "--seed", 2 ** 64), f"--seed: '{2 ** 64}' is not a whole number from 0 to 2^64 - 1"),
+                           (("reconcile", "seal", "--secret-seed", "-1"),
+                            "--secret-seed: '-1' is not a whole number from 0 to 2^64 - 1")):
+            self.assertEqual(pirsim(*args, code=2).stderr.splitlines()[0], f"error: {told}")
 
     def test_version_has_a_short_name(self):
         self.assertEqual(pirsim("-V").stdout, pirsim("--version").stdout)
@@ -352,6 +373,50 @@ class CommandLine(unittest.TestCase):
                 self.assertIn(option, pirsim("reconcile", command, option, "1", code=2).stderr)
                 self.assertIn(option, pirsim("reconcile", option, "1", command, code=2).stderr)
             self.assertIn("--out", pirsim("reconcile", "--out", "folder", command, code=2).stderr)
+
+    def test_no_output_replaces_an_input(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            reference = write(folder, "ref.csv", "trial,sensor,seconds\nS1,PIR1,20\n")
+            script = write(folder, "s.yaml", (DATA / "studies/studyA.yaml").read_text().replace(
+                "../measured/stefansson2021_table1.csv", "ref.csv"))
+            patched = write(folder, "script_patched.yaml", script.read_text())
+            measured = write(folder, "where.csv", "trial,sensor,seconds\nS1,PIR1,20\n")
+            self.assertIn("ref.csv", script.read_text())
+            room = "--scene", DATA / "rooms/meeting_room.gltf"
+            tries = [((*room, "--script", script, "-o", reference), reference),
+                     ((*room, "--script", script, "--summary", reference), reference),
+                     (("reconcile", *room, "--script", patched, "--measured", reference, "-o", folder), patched),
+                     (("reconcile", *room, "--script", script, "--measured", measured, "-o", folder), measured)]
+            for args, kept in tries:
+                before = kept.read_bytes()
+                told = pirsim(*args, code=2).stderr
+                self.assertEqual(told.count("error:"), 1, told)
+                self.assertIn(kept.name, told)
+                self.assertEqual(kept.read_bytes(), before)
+
+    def test_outputs_of_like_names_do_not_meet(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            study("--replicates", 1, "-o", folder / "a.csv.gz", "--summary", folder / "a.csv", "-q")
+            self.assertEqual(sorted(file.name for file in folder.iterdir()), ["a.csv", "a.csv.gz", "a.csv.gz.json"])
+
+    def test_a_sensor_is_not_named_as_a_column(self):
+        room = (DATA / "rooms/meeting_room.gltf").read_text()
+        self.assertIn('"PIR1"', room)
+        with tempfile.TemporaryDirectory() as folder:
+            scene = write(folder, "room.gltf", room.replace('"PIR1"', '"time_s"'))
+            told = pirsim("--scene", scene, "--script", DATA / "studies/studyA.yaml", "--sensors", DATA / "sensors",
+                          code=3).stderr
+            self.assertRegex(told, r"room.gltf:\d+:\d+: error: .*sensor id 'time_s' is the name of a column of rows")
+
+    def test_a_ranking_that_can_not_be_written_is_an_error(self):
+        if not pathlib.Path("/dev/full").exists():
+            self.skipTest("no /dev/full")
+        with open("/dev/full", "w") as full:
+            result = subprocess.run([PIRSIM, "placements", *study_files("placements.yaml"), "--set", "spacing_m=1", "-q"],
+                                    stdout=full, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(result.returncode, 4, result.stderr)
 
     def test_a_file_that_is_not_there_is_an_io_error_that_names_it(self):
         result = pirsim("--scene", "nowhere.gltf", "--script", DATA / "studies" / "studyA.yaml", code=4)

@@ -117,7 +117,7 @@ TEST_CASE("a partial file on a full disk leaves the old file intact", "[atomic_f
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "a.csv";
   std::ofstream(path) << "old";
-  fs::create_symlink("/dev/full", folder.path() / "a.csv.partial");
+  fs::create_symlink("/dev/full", folder.path() / "a.csv.writing");
   const std::string message = io_fault([&] {
     AtomicFile file(path);
     file.stream() << std::string(100000, 'x');
