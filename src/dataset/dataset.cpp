@@ -32,10 +32,8 @@ class Rooms {
   SceneSpec read(int number) const {
     if (const fs::path own = own_scene(recipe_, number); !own.empty()) return io::read_scene(own, options_.scenes);
     const fs::path file = room_file(folder_, number);
-    if (!fs::exists(file)) {
-      const SceneSpec drawn = room_of(recipe_, number, options_.scenes);
-      write_once(file, shard_name(options_), [&](const fs::path& here) { io::write_scene(here, drawn); });
-    }
+    const SceneSpec drawn = room_of(recipe_, number, options_.scenes);
+    write_once(file, shard_name(options_), [&](const fs::path& here) { io::write_scene(here, drawn); });
     return io::read_scene(file, options_.scenes);
   }
 
@@ -57,9 +55,20 @@ void write(const RoomDay& made, const fs::path& folder, const std::string& made_
   io::write_text_file(record, to_json(made.record, made_by));
 }
 
+/// What lies where a dataset's files would be written; empty: nothing. The recipe itself may.
+fs::path first_in_the_way(const RecipeSpec& recipe, const fs::path& folder) {
+  for (const char* name : {"README.md", "datapackage.json", "rooms.csv", "sensors.csv", "days.csv", "effects.csv",
+                           "pictures", "rooms", "scripts", "rows", "occupants", "exports"}) {
+    if (fs::exists(folder / name)) return folder / name;
+  }
+  const fs::path there = folder / "recipe.yaml";
+  return fs::exists(there) && io::read_text_file(there) != recipe.text ? there : fs::path();
+}
+
 void claim_folder(const RecipeSpec& recipe, const fs::path& folder, const std::string& made_by,
                   const DatasetOptions& options) {
   make_folders(folder);
+  const fs::path in_the_way = first_in_the_way(recipe, folder);  // before the next look: another shard may claim now
   const fs::path file = folder / "provenance.txt";
   if (fs::exists(file)) {
     const std::string there = io::read_text_file(file);
@@ -68,9 +77,34 @@ void claim_folder(const RecipeSpec& recipe, const fs::path& folder, const std::s
                 "holds another dataset, made from " + there.substr(0, there.find('\n')) + ", not from " + made_by +
                     ": name another folder, or remove this one");
   }
+  if (!in_the_way.empty()) {
+    throw Error(ErrorCode::input, Where{in_the_way.string()},
+                "is there already, and of no dataset: it would be replaced; name another folder");
+  }
   write_once(folder / "recipe.yaml", shard_name(options),
              [&](const fs::path& here) { io::write_text_file(here, recipe.text); });
   write_once(file, shard_name(options), [&](const fs::path& here) { io::write_text_file(here, made_by + '\n'); });
+}
+
+/// Throws for a room that can't be drawn and for what a room lacks, before hours of work on others.
+void check_rooms(const RecipeSpec& recipe, const std::vector<std::uint32_t>& wanted, const DatasetOptions& options) {
+  std::vector<int> rooms;
+  for (const std::uint32_t i : wanted) {
+    const int room = room_and_day(recipe, i).first;
+    if (rooms.empty() || rooms.back() != room) rooms.push_back(room);
+  }
+  ordered_parallel<bool>(
+      rooms.size(), options.threads,
+      [&](std::size_t i) {
+        const SceneSpec scene = room_of(recipe, rooms[i], options.scenes);
+        try {
+          static_cast<void>(compile(scene, script_of(recipe, scene, rooms[i], 1)));
+        } catch (const Error& error) {
+          if (error.code() != ErrorCode::infeasible) throw;  // which is a day without rows
+        }
+        return true;
+      },
+      [](bool&) {}, options.goes_on);
 }
 
 }  // namespace
@@ -78,13 +112,14 @@ void claim_folder(const RecipeSpec& recipe, const fs::path& folder, const std::s
 bool make_room_days(const RecipeSpec& recipe, const fs::path& folder, const DatasetOptions& options) {
   const std::string made_by = provenance(recipe);
   const std::vector<std::string> columns = sensor_columns(recipe, options.scenes);
-  claim_folder(recipe, folder, made_by, options);  // not by a recipe that can't be followed
   const RunRange range = runs_of(options.shard.value_or(Shard{}), recipe.n_room_days());
   std::vector<std::uint32_t> wanted;
   for (std::uint32_t i = range.first; i < range.end; ++i) {
     const bool is_there = options.start == DatasetOptions::Start::resume && whole_record(recipe, folder, i, made_by);
     if (!is_there) wanted.push_back(i);
   }
+  check_rooms(recipe, wanted, options);
+  claim_folder(recipe, folder, made_by, options);  // not by a recipe that can't be followed
   Rooms rooms(recipe, folder, options);
   struct Made {
     RoomDayRecord record;

@@ -33,6 +33,13 @@ bool Reading::any() const {
   return std::ranges::find_if(bits, [](std::uint8_t bit) { return bit != 0; }) != bits.end();
 }
 
+std::optional<int> rows_per_reading(const SensingSpec& sensing) {
+  constexpr int reading_s = 30;
+  const int ticks = reading_s * sensing.tick_rate_hz;
+  if (ticks % sensing.ticks_per_window != 0) return std::nullopt;
+  return ticks / sensing.ticks_per_window;
+}
+
 std::vector<Reading> readings(std::span<const Sample> rows, int rows_per_reading) {
   std::vector<Reading> result;
   const auto step = static_cast<std::size_t>(rows_per_reading);

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "pirsim/sample.hpp"
+#include "pirsim/script.hpp"
 
 namespace pirsim::dataset {
 
@@ -17,6 +19,8 @@ struct Reading {
   std::vector<std::uint8_t> bits;
   [[nodiscard]] bool any() const;
 };
+/// None if 30 s aren't a whole number of rows.
+[[nodiscard]] std::optional<int> rows_per_reading(const SensingSpec& sensing);
 [[nodiscard]] std::vector<Reading> readings(std::span<const Sample> rows, int rows_per_reading);
 
 /// Shaped like UCI's Room Occupancy Estimation (864): Date,Time,<sensor>_PIR,...,Room_Occupancy_Count.

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "dataset/description.hpp"
+#include "dataset/exports.hpp"
 #include "pirsim/version.hpp"
 
 namespace pirsim::dataset {
@@ -79,12 +80,13 @@ std::string table_of_counts(const Description& described) {
       readings[people].with_motion += count.with_motion;
     }
   }
-  std::string text =
-      "| people | share of rows | rows with motion at any sensor | 30 s with motion at any sensor "
-      "|\n|---:|---:|---:|---:|\n";
+  const bool has_readings = rows_per_reading(described.recipe.sensing).has_value();
+  std::string text = "| people | share of rows | rows with motion at any sensor |";
+  text += has_readings ? " 30 s with motion at any sensor |\n|---:|---:|---:|---:|\n" : "\n|---:|---:|---:|\n";
   for (const auto& [people, count] : rows) {
     text += "| " + std::to_string(people) + " | " + percent(static_cast<double>(count.all) / static_cast<double>(all)) +
-            " | " + percent(share(count)) + " | " + percent(share(readings[people])) + " |\n";
+            " | " + percent(share(count)) + " |" + (has_readings ? ' ' + percent(share(readings[people])) + " |" : "") +
+            '\n';
   }
   return text;
 }
@@ -144,7 +146,7 @@ std::string readme(const Description& described) {
       "No room of `train` is in `validation` or `test_rooms`, no day of `train` is in `test_days`, and no row is split "
       "from "
       "its day.\n\n";
-  text += "How often something moves, by the number of people at the end of the row or of the 30 s:\n\n" +
+  text += "How often a sensor sees motion, by the number of people at the end of that time:\n\n" +
           table_of_counts(described) + '\n';
   for (std::size_t i = 0; i < described.pictures.size(); ++i)
     text += "![Room " + std::to_string(i + 1) + " without its front walls: seats, doors and sensors](" +

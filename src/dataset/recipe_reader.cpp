@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 
+#include "dataset/exports.hpp"
 #include "dataset/room_reader.hpp"
 #include "io/atomic_file.hpp"
 #include "io/compression.hpp"
@@ -175,10 +175,7 @@ void read_outputs(YamlMap& map, RecipeSpec& recipe) {
   std::vector<std::pair<std::string, std::string>> endings;
   for (const std::string& ending : io::table_endings()) endings.emplace_back(ending, ending);
   recipe.ending = map.choice<std::string>("rows", recipe.ending, endings);
-  const double reading_s = 30.0,
-               window_s = static_cast<double>(recipe.sensing.ticks_per_window) / recipe.sensing.tick_rate_hz;
-  const bool fits = std::abs(std::remainder(reading_s, window_s)) < 1e-9;
-  if (std::ranges::find(recipe.exports, Export::uci864) != recipe.exports.end() && !fits) {
+  if (std::ranges::find(recipe.exports, Export::uci864) != recipe.exports.end() && !rows_per_reading(recipe.sensing)) {
     map.faults().error(map.where("exports"),
                        "exports: uci864 has a reading every 30 s, which isn't a whole number of "
                        "the rows of sensing.window_s");

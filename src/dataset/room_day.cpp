@@ -16,8 +16,6 @@
 namespace pirsim::dataset {
 namespace {
 
-constexpr int reading_s = 30;
-
 /// Compressed as the ending of its name says.
 std::string packed(const std::string& path, const std::string& text) {
   std::ostringstream out;
@@ -72,8 +70,8 @@ class DayWriter {
     const std::string where = '/' + room_name(room_) + '/' + day_name(day_);
     for (const Export shape : recipe_.exports) {
       if (shape == Export::uci864) {
-        const int a_reading = static_cast<int>(std::lround(reading_s / window_s()));
-        add("exports/uci864" + where + ".csv", to_uci864(readings(result.samples, a_reading), sensors_));
+        const int n_rows = rows_per_reading(recipe_.sensing).value();
+        add("exports/uci864" + where + ".csv", to_uci864(readings(result.samples, n_rows), sensors_));
       }
       if (shape == Export::casas) add("exports/casas" + where + ".txt", to_casas(result.samples, sensors_));
     }
@@ -142,11 +140,12 @@ class DayWriter {
       record.presence[hour] /= rows_in_hour[hour];
       record.people[hour] /= rows_in_hour[hour];
     }
-    const int a_reading = std::max(1, static_cast<int>(std::lround(reading_s / window_s())));
-    for (const Reading& reading : readings(result.samples, a_reading)) {
-      MotionCount& count = record.readings_by_people[reading.people];
-      ++count.all;
-      if (reading.any()) ++count.with_motion;
+    if (const auto n_rows = rows_per_reading(recipe_.sensing)) {
+      for (const Reading& reading : readings(result.samples, *n_rows)) {
+        MotionCount& count = record.readings_by_people[reading.people];
+        ++count.all;
+        if (reading.any()) ++count.with_motion;
+      }
     }
     for (const RunIncident& incident : result.incidents)
       record.passes_through += incident.kind == IncidentKind::passed_through ? 1 : 0;

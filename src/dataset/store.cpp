@@ -54,6 +54,11 @@ void write_once(const fs::path& file, const std::string& shard, const std::funct
   const fs::path own = file.parent_path() / (file.stem().string() + '.' + shard + file.extension().string());
   write(own);
   std::error_code fault;
+  if (fs::exists(file, fault) && io::read_text_file(file) != io::read_text_file(own)) {
+    fs::remove(own, fault);
+    throw Error(ErrorCode::input, Where{file.string()},
+                "isn't what this recipe makes: move it away, or name another folder");
+  }
   fs::rename(own, file, fault);
   if (fault) throw Error(ErrorCode::io, Where{file.string()}, "can't be put in its place: " + fault.message());
 }

@@ -25,6 +25,7 @@ namespace pirsim::dataset {
 /// Throws Error(io).
 void make_folders(const std::filesystem::path& folder);
 /// A file that several shards may write at once, all the same: each under a name of its own, then moved into its place.
+/// Throws Error(input) if another is in that place.
 void write_once(const std::filesystem::path& file, const std::string& shard,
                 const std::function<void(const std::filesystem::path&)>& write);
 [[nodiscard]] std::string shard_name(const DatasetOptions& options);

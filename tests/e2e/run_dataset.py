@@ -144,6 +144,34 @@ class Dataset(unittest.TestCase):
             fault = pirsim("dataset", folder / "recipe.yaml", "-o", folder / "out", code=3).stderr
             self.assertIn("did you mean 'EKMC1604111'?", fault)
             self.assertFalse((folder / "out").exists())
+            tiny = (DATA / "recipes/tiny.yaml").read_text()
+            for change, code, told in (
+                    (("count: 3,", "count: 3, sensors: [{mount: corner, model: EKMC1601119}],"), 3, "did you mean"),
+                    (("seats: [1, 2]", "seats: 30"), 5, "none of"),
+                    (("effects:", "effects:\n  - {dead_sensor: {sensor: PIR9}, per: room}"), 3, "PIR9")):
+                self.assertIn(change[0], tiny)
+                (folder / "recipe.yaml").write_text(tiny.replace(*change, 1))
+                self.assertIn(told, pirsim("dataset", folder / "recipe.yaml", "-o", folder / "out", code=code).stderr)
+                self.assertFalse((folder / "out").exists(), change)
+
+    def test_what_lies_in_a_folder_is_not_replaced(self):
+        tiny = (DATA / "recipes/tiny.yaml").read_text()
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "recipe.yaml").write_text(tiny)
+            for mine in ("README.md", "rooms.csv"):
+                (folder / mine).write_text("mine")
+                told = pirsim("dataset", folder / "recipe.yaml", "-o", folder, "--shard", "1/8", code=3).stderr
+                self.assertIn(f"{mine}: error: is there already, and of no dataset", told)
+                self.assertEqual((folder / mine).read_text(), "mine")
+                (folder / mine).unlink()
+            pirsim("dataset", folder / "recipe.yaml", "-o", folder, "--shard", "1/8", "-q")  # beside its recipe
+            room = folder / "rooms/room_0001.gltf"
+            room.write_bytes(room.read_bytes() + b"\n")
+            for more in ((), ("--resume",)):
+                (folder / "rows/room_0001/day_01.json").unlink(missing_ok=True)
+                told = pirsim("dataset", folder / "recipe.yaml", "-o", folder, "--shard", "1/8", *more, code=3).stderr
+                self.assertIn("room_0001.gltf: error: isn't what this recipe makes", told)
 
 
 if __name__ == "__main__":
