@@ -19,6 +19,7 @@ enum class MotionStyle {
 struct ClockSpec {
   double mean_h = 0.0;
   double sd_min = 30.0;
+  bool operator==(const ClockSpec&) const = default;
 };
 
 /// Shares of time and mean stays by role. Ref: [ChenHongLuo2018].
@@ -29,6 +30,7 @@ struct StaffSpec {
   int count = 1;
   std::vector<std::string> seats;  ///< their own desks; none: the scene's seats that nobody has, in order
   Where where;
+  bool operator==(const StaffSpec&) const = default;
 };
 
 /// A meeting whose time is known.
@@ -37,6 +39,7 @@ struct HeldMeetingSpec {
   double duration_min = 60.0;
   int people = 4;
   Where where;
+  bool operator==(const HeldMeetingSpec&) const = default;
 };
 
 /// Meetings that are held in the simulated room. Ref: [ChenHongLuo2018].
@@ -51,6 +54,7 @@ struct MeetingsSpec {
   std::vector<HeldMeetingSpec> held;  ///< these, every working day, instead of drawn ones
   std::vector<std::string> seats;     ///< none: those that are nobody's own desk
   Where where;
+  bool operator==(const MeetingsSpec&) const = default;
 };
 
 /// Presence as a Markov chain that follows a profile. Ref: [Page2008].
@@ -58,6 +62,7 @@ struct ProfileSpec {
   std::vector<double> presence;  ///< (24) share of people present in each hour of a working day
   double mobility = 0.5;         ///< of the chain
   double step_min = 15.0;
+  bool operator==(const ProfileSpec&) const = default;
 };
 
 /// What the replicates of a trial are: days that follow each other.
@@ -73,6 +78,7 @@ struct ScheduleSpec {
   std::vector<std::string> entrances;  ///< that people use, each their own; none: all of the scene
   MotionStyle style = MotionStyle::natural;
   Where where;
+  bool operator==(const ScheduleSpec&) const = default;
 };
 
 }  // namespace pirsim

@@ -112,6 +112,7 @@ double distance(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) noex
 std::vector<Footprint> footprints(std::span<const TriMesh> meshes, double lower_m, double upper_m) {
   std::vector<Footprint> result;
   for (std::uint32_t mesh = 0; mesh < meshes.size(); ++mesh) {
+    if (meshes[mesh].solidity == Solidity::screen) continue;
     const std::vector<Vec3>& positions = meshes[mesh].positions;
     for (const auto& [a, b, c] : meshes[mesh].triangles) {
       const std::vector<Vec3> triangle{positions[a], positions[b], positions[c]};

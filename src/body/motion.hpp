@@ -100,8 +100,6 @@ class Motion {
   /// Nothing of the last command is left to do (desk work and sitting go on while settled).
   [[nodiscard]] bool settled() const noexcept;
   [[nodiscard]] Vec2 position() const noexcept { return stance_.pelvis.position; }  ///< of the pelvis over the floor
-  /// Where the pelvis is, or is to be, when standing: on a seat, where sitting down began.
-  [[nodiscard]] Vec2 place_to_stand() const noexcept { return on_seat() ? stand_.position : position(); }
   /// How far back the pelvis gets on the way onto the seat or off it; elsewhere the position.
   [[nodiscard]] Vec2 drawn_back() const noexcept { return on_seat() ? seating_.pelvis(1.0, 0.0).position : position(); }
   [[nodiscard]] double heading() const noexcept;

@@ -29,7 +29,7 @@ class Route {
 
   [[nodiscard]] double length_m() const noexcept { return length_m_; }
   [[nodiscard]] Vec2 position(double s) const noexcept;  ///< s in metres, clamped to [0, length]
-  /// Of the tangent, radians; see frame.hpp. Not wrapped to a turn, so that it is continuous; at a sharp turn the
+  /// Of the tangent, radians; see heading_of(). Not wrapped to a turn, so that it is continuous; at a sharp turn the
   /// direction in which the route goes on. 0 for a route of no length.
   [[nodiscard]] double heading(double s) const noexcept;
   [[nodiscard]] double curvature(double s) const noexcept;  ///< 1/m, positive turning left

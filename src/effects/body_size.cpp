@@ -6,12 +6,10 @@ namespace {
 
 void alter(StudyInForce& study, const EffectSpec& effect) {
   const double scale = effect.parameters.at("scale");
-  for (TrialInForce& trial : study.trials) {
-    for (PersonInForce& person : trial.people) {
-      person.stature_m *= scale;
-      person.mass_kg *= scale * scale * scale;
-    }
-  }
+  for_each_person(study, [&](PersonInForce& person) {
+    person.stature_m *= scale;
+    person.mass_kg *= scale * scale * scale;
+  });
 }
 
 }  // namespace

@@ -60,6 +60,10 @@ Presence Actor::presence() const {
   return mine;
 }
 
+bool Actor::counts_on(const FloorArea& floor) const {
+  return present() && person().spec.changes.role != PersonRole::object && floor.contains(motion().position());
+}
+
 void Actor::note(IncidentKind kind, std::int64_t tick) {
   incidents_.push_back({kind, tick, index_, body_ ? body_->motion().position() : Vec2(0.0)});
 }
@@ -70,7 +74,9 @@ void Actor::advance(const CompiledStudy& study, std::int64_t tick, std::span<con
   carry_on({study, others, tick - 1});
   if (body_) {
     if (natural_) move_naturally();
-    if (restlessness_.acts() && body_->motion().stage() == Stage::seated) {
+    if (body_->motion().stage() != Stage::seated) {
+      restlessness_.leave_seat();
+    } else if (restlessness_.acts()) {
       restlessness_.tick(body_motion(), choreographed_work());
     }
     body_->advance(others, n_before, tick - 1);
@@ -110,7 +116,7 @@ void Actor::carry_on(const Scene& scene) {
 
 std::int64_t Actor::away_until(const CompiledStudy& study, std::int64_t tick) const {
   constexpr auto for_good = std::numeric_limits<std::int64_t>::max();
-  if (present()) return tick;
+  if (present() || phase_ != current_phase()) return tick;  // an action has ended: the next tick tells
   if (done()) return for_good;
   std::int64_t until = for_good;
   for (std::size_t i = action_ + (begun_ ? 1 : 0); i < actions().size() && until == for_good; ++i) {

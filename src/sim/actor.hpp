@@ -33,6 +33,8 @@ class Actor {
   void advance(const CompiledStudy& study, std::int64_t tick, std::span<const Presence> others, std::size_t n_before);
 
   [[nodiscard]] bool present() const noexcept { return body_.has_value(); }
+  /// Is it a person over this floor area?
+  [[nodiscard]] bool counts_on(const FloorArea& floor) const;
   [[nodiscard]] bool done() const noexcept { return action_ == actions().size(); }
   /// Up to this tick nothing of them changes; not beyond the present one (`tick`) of who is in the scene or about to
   /// be.

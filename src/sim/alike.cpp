@@ -80,6 +80,15 @@ bool same_action(const ScriptedAction& a, const ScriptedAction& b) {
   return a.at_s == b.at_s && a.phase == b.phase && std::visit(is_same, a.what);
 }
 
+/// But for the body, which is compared as the person's own.
+bool same_part(const std::optional<ScheduledPerson>& a, const std::optional<ScheduledPerson>& b) {
+  const auto fields_of = [](const ScheduledPerson& scheduled) {
+    const auto& [part, role, seat, person] = scheduled;
+    return std::tie(part, role, seat);
+  };
+  return a && b ? fields_of(*a) == fields_of(*b) : a.has_value() == b.has_value();
+}
+
 bool same_person(const PersonInForce& a, const PersonInForce& b) {
   const auto parts = [](const PersonInForce& person) {
     const auto& [id, stature_m, mass_kg, speed, scatter, file, meshes, warmth, style, actions] =
@@ -91,7 +100,7 @@ bool same_person(const PersonInForce& a, const PersonInForce& b) {
                                    style, file, meshes, skin_c, clothing_clo, bare, parts_c),
                           fields(fidgeting), fields(trunk_sway), fields(chair_swing), fields(uneven_arms));
   };
-  return parts(a) == parts(b) && std::ranges::equal(a.actions, b.actions, same_action);
+  return parts(a) == parts(b) && same_part(a.part, b.part) && std::ranges::equal(a.actions, b.actions, same_action);
 }
 
 std::vector<const TriMesh*> solids(const SceneSpec& scene) {
@@ -112,7 +121,7 @@ bool same_size(const PersonSpec& a, const PersonSpec& b) {
 }
 
 bool same_trial(const TrialModel& planned, const TrialInForce& trial, double ambient_c) {
-  return planned.id == trial.id && planned.duration_s == trial.duration_s &&
+  return planned.id == trial.id && planned.duration_s == trial.duration_s && planned.schedule == trial.schedule &&
          std::ranges::equal(planned.people, trial.people, [&](const PersonModel& a, const PersonInForce& b) {
            return same_person(a.spec, b) && a.radiance == radiance_of(b.warmth, ambient_c);
          });

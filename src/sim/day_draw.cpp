@@ -13,7 +13,6 @@ double cut_normal(Stream& stream) { return std::clamp(stream.normal(), -3.0, 3.0
 double around(Stream& stream, const ClockSpec& clock) {
   return clock.mean_h * hour_s + clock.sd_min * minute_s * cut_normal(stream);
 }
-double exponential(Stream& stream, double mean) { return -mean * std::log(1.0 - stream.uniform()); }
 
 /// Index drawn with these weights.
 std::size_t pick(Stream& stream, std::span<const double> weights) {
@@ -223,6 +222,8 @@ Habits habits_of(Role role) {
   }
   return {};
 }
+
+double exponential(Stream& stream, double mean) { return -mean * std::log(1.0 - stream.uniform()); }
 
 DayDraw draw_times(const DaySource& source) {
   DayDraw draw;

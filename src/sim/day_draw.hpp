@@ -54,6 +54,8 @@ struct DaySource {
 
 [[nodiscard]] DayDraw draw_times(const DaySource& source);
 
+[[nodiscard]] double exponential(Stream& stream, double mean);
+
 /// Share of time in each Place and mean stay. Ref: [ChenHongLuo2018].
 struct Habits {
   std::array<double, n_places> shares;

@@ -39,6 +39,11 @@ void Restlessness::tick(body::Motion& motion, const action::Work* work) {
   if (work != nullptr) swing_arms(motion, *work);
 }
 
+void Restlessness::leave_seat() noexcept {
+  trunk_.middle.reset();
+  chair_.middle.reset();
+}
+
 void Restlessness::fidget(body::Motion& motion) {
   if (fidgeting_.rate_per_s <= 0.0) return;
   if (fidgeting_.timing == FidgetTiming::independent) {
@@ -46,8 +51,10 @@ void Restlessness::fidget(body::Motion& motion) {
   } else {
     if (--ticks_to_fidget_ > 0) return;
     const bool first = ticks_to_fidget_ < 0;
-    ticks_to_fidget_ =
-        ticks(between_fidgets.length_s(fidget_stream_.uniform()) / (between_fidgets.mean_s() * fidgeting_.rate_per_s));
+    // Nobody sits down just after a fidget: else the first of the long pauses would come too late.
+    const double u = fidget_stream_.uniform();
+    const double pause_s = first ? between_fidgets.rest_s(u, fidget_stream_.uniform()) : between_fidgets.length_s(u);
+    ticks_to_fidget_ = ticks(pause_s / (between_fidgets.mean_s() * fidgeting_.rate_per_s));
     if (first) return;
   }
   const double way = 2.0 * fidget_stream_.uniform() - 1.0;

@@ -20,6 +20,8 @@ class Restlessness {
   [[nodiscard]] bool acts() const noexcept { return acts_; }
   /// Before the body moves, at a tick at which it is seated. work: what the person is at in the paper's style, or null.
   void tick(body::Motion& motion, const action::Work* work);
+  /// Another seat is turned to its own table.
+  void leave_seat() noexcept;
 
  private:
   /// One channel that swings.
@@ -27,7 +29,8 @@ class Restlessness {
     SwingSpec spec;
     body::Channel channel;
     Stream stream;
-    std::optional<double> middle{};  ///< where the channel is when it doesn't swing; none before the first tick
+    std::optional<double>
+        middle{};  ///< where the channel is when it doesn't swing; none before the first tick on a seat
     std::int64_t ticks_to_turn = 0;
     std::int64_t turns_left = 0;  ///< of the bout
     bool swings = false;          ///< in this bout

@@ -13,7 +13,7 @@ namespace {
 std::string_view use_of(const CompiledStudy& study, const Crowd& crowd) {
   int n = 0, cleaners = 0, in_meeting = 0;
   for (const Actor& actor : crowd.actors()) {
-    if (!actor.present() || !study.scene().floor.contains(actor.motion().position())) continue;
+    if (!actor.counts_on(study.scene().floor)) continue;
     const auto& part = actor.person().spec.part;
     ++n;
     cleaners += part && part->part == SchedulePart::cleaner ? 1 : 0;

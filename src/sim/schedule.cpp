@@ -14,8 +14,6 @@ namespace {
 constexpr double hour_s = 3600.0, minute_s = 60.0;
 constexpr double until_next_s = 24.0 * hour_s;  ///< of an action that only the next one ends
 
-double exponential(Stream& stream, double mean) { return -mean * std::log(1.0 - stream.uniform()); }
-
 /// Actions of one person, timed in seconds of the run, and never two that begin at once.
 class Timeline {
  public:
@@ -51,6 +49,8 @@ class Day {
  public:
   Day(const CompiledStudy& study, std::uint32_t run)
       : study_(study), trial_(study.trial_of(run)), schedule_(*trial_.schedule), run_(run) {
+    n_scheduled_ = static_cast<std::size_t>(
+        std::ranges::count_if(trial_.people, [](const PersonModel& person) { return person.spec.part.has_value(); }));
     for (const EntranceSpec& door : study.scene().entrances) {
       const auto& wanted = schedule_.entrances;
       if (wanted.empty() || std::ranges::find(wanted, door.id) != wanted.end()) doors_.push_back(door.id);
@@ -72,9 +72,8 @@ class Day {
 
  private:
   [[nodiscard]] Stream stream_of(std::size_t person) const {
-    // Apart from the draw of times by its entity.
-    return Stream(
-        {study_.seed(), run_, static_cast<std::uint32_t>(person + trial_.people.size()), Purpose::schedule_conduct});
+    // Apart from the draw of times by its entity, whoever an effect adds.
+    return Stream({study_.seed(), run_, static_cast<std::uint32_t>(person + n_scheduled_), Purpose::schedule_conduct});
   }
   [[nodiscard]] const std::string& door_of(std::size_t person) const { return doors_[person % doors_.size()]; }
   [[nodiscard]] StandingPlaces places_of(std::size_t person) const {
@@ -189,7 +188,7 @@ class Day {
     if (meetings.empty()) return;
     const std::vector<std::string> seats = meeting_seats(*schedule_.meetings, study_.scene(), *trial_.schedule);
     std::vector<Timeline> lines(plan.size(), Timeline(schedule_));
-    Stream stream = stream_of(plan.size());
+    Stream stream = stream_of(n_scheduled_);
     const double begin_s = first_s(stream);
     for (const Meeting& meeting : meetings) {
       std::vector<std::string> free = seats;
@@ -241,6 +240,7 @@ class Day {
   const TrialModel& trial_;
   const ScheduleSpec& schedule_;
   std::uint32_t run_;
+  std::size_t n_scheduled_ = 0;  ///< people; those that effects add come after them
   std::vector<std::string> doors_;
 };
 

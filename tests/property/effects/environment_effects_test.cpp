@@ -5,12 +5,16 @@
 #include "pirsim/geometry.hpp"
 #include "pirsim/state.hpp"
 #include "sim/replay.hpp"
+#include "sim/restlessness.hpp"
 #include "sim/run_state.hpp"
+#include "support/body_checks.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
+#include "support/natural_sitter.hpp"
 
 using namespace pirsim;
 using namespace pirsim::test;
+using body::test::desk_seat, body::test::man;
 
 namespace {
 
@@ -93,6 +97,55 @@ TEST_CASE("who fidgets moves at the given rate within the given angles and who d
   CHECK(degrees(furthest_tilt) > 4.5);
   CHECK(degrees(furthest_turn) <= 30.0 + 1e-6);
   CHECK(degrees(furthest_turn) > 27.0);
+}
+
+TEST_CASE("fidgets that leave long still periods come at the given rate too, from the moment of sitting down on") {
+  constexpr int n_people = 600, n_ticks = 180 * body::test::tick_rate_hz;
+  constexpr double rate = 0.03, expected = rate * 180.0;
+  PersonChanges changes;
+  changes.fidgeting = {rate, 5.0, 30.0, FidgetTiming::still_periods};
+  double sum = 0.0, squares = 0.0;
+  for (std::uint32_t person = 0; person < n_people; ++person) {
+    body::Motion motion = body::test::Sitter(person, man(), desk_seat()).motion;
+    sim::Restlessness restless(changes, 1, 0, person, 1.0 / body::test::tick_rate_hz);
+    double moves = 0.0;
+    for (int tick = 0; tick < n_ticks; ++tick) {
+      const auto targets = [&] {
+        return std::pair(motion.target(body::Channel::trunk_tilt), motion.target(body::Channel::head_turn));
+      };
+      const auto before = targets();
+      restless.tick(motion, nullptr);
+      moves += before != targets() ? 1.0 : 0.0;
+      motion.advance();
+    }
+    sum += moves;
+    squares += moves * moves;
+  }
+  const double mean = sum / n_people, error = std::sqrt((squares / n_people - mean * mean) / n_people);
+  CHECK(std::abs(mean - expected) < 4.0 * error);
+  CHECK_FALSE(std::abs(1.5 * mean - expected) < 4.0 * error);  // must fail: what ordinary renewals would give
+}
+
+TEST_CASE("a chair swings about its own table's side on every seat") {
+  PersonChanges changes;
+  changes.chair_swing = {5.0, 2.0, 1.0};
+  sim::Restlessness restless(changes, 1, 0, 0, 1.0 / body::test::tick_rate_hz);
+  const auto furthest = [&](double approach_turn) {
+    body::SeatPlace seat = desk_seat();
+    seat.approach_turn = approach_turn;
+    body::Motion motion = body::test::Sitter(0, man(), seat).motion;
+    double most = 0.0;
+    for (int tick = 0; tick < 20 * body::test::tick_rate_hz; ++tick) {
+      restless.tick(motion, nullptr);
+      motion.advance();
+      most = std::max(most, std::abs(motion.heading()));  // the seat faces 0
+    }
+    return degrees(most);
+  };
+  CHECK(furthest(0.0) == Approx(5.0).margin(0.1));
+  CHECK(furthest(1.2) > 30.0);  // must fail: it was never told that the seat was left
+  restless.leave_seat();
+  CHECK(furthest(1.2) == Approx(5.0).margin(0.1));
 }
 
 TEST_CASE("a burst is under way when a run begins as often as at any other time") {

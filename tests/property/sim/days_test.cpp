@@ -4,6 +4,7 @@
 
 #include "pirsim/state.hpp"
 #include "sim/compiled_study.hpp"
+#include "sim/schedule.hpp"
 #include "studies/room_plan.hpp"
 #include "studies/schedule_outlook.hpp"
 #include "studies/study_report.hpp"
@@ -152,4 +153,51 @@ TEST_CASE("A day's page shows the room that people were in: the mirrored one if 
   REQUIRE(doors.size() == 1);
   CHECK(doors[0].from == studies::plan_of(model.compiled().scene()).doors[0].from);
   CHECK(doors[0].from != studies::plan_of(model.scene()).doors[0].from);
+}
+
+TEST_CASE("A wait's label ends with the wait, also where empty seconds are passed over") {
+  ScriptSpec script = script_of({person("anna", {act(action::Wait{5.0}), act_at(15.0, action::Enter{"door"})})});
+  script.trials.front().people.front().actions.front().phase = "early";
+  script.trials.front().duration_s = 20.0;
+  const Model model = compile(shipped_scene("meeting_room.gltf"), script);
+  const std::vector<Sample> rows = run_once(model, 0).samples;
+  CHECK(rows == ticked(model, 0));
+  CHECK(std::ranges::count(rows, "early", &Sample::phase) == 5);
+}
+
+TEST_CASE("A thing that an effect adds is nobody, and nobody's day is another for it") {
+  const std::string schedule =
+      "  from: 08:30\n  to: 13:00\n  staff: [{count: 3}]\n  arrival: {mean: 09:00}\n  cleaning: 08:35\n"
+      "  meetings: {held: [{at: 10:00, duration_min: 20, people: 2}]}\n";
+  const Model alone = model_of(schedule, "", "open_office.gltf"),
+              beside = model_of(schedule, "effects: [{warm_object: {present: 1}}]\n", "open_office.gltf");
+  const sim::DayPlan expected = sim::draw_day(alone.compiled(), 0), planned = sim::draw_day(beside.compiled(), 0);
+  REQUIRE(planned.size() == expected.size() + 1);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    CHECK(std::ranges::equal(expected[i], planned[i], [](const ScriptedAction& a, const ScriptedAction& b) {
+      return a.at_s == b.at_s && a.phase == b.phase && a.what.index() == b.what.index();
+    }));
+  }
+  std::set<std::string> phases;
+  bool empty_means_nobody = true;
+  for (const Sample& row : run_once(beside, 0).samples) {
+    phases.insert(row.phase);
+    empty_means_nobody = empty_means_nobody && (row.people == 0) == (row.phase == "empty");
+  }
+  CHECK(empty_means_nobody);
+  CHECK(phases == std::set<std::string>{"cleaning", "empty", "meeting", "occupied"});
+}
+
+TEST_CASE("People of another schedule aren't shared between studies") {
+  const auto arriving = [&](const std::string& at) {
+    return "  from: 08:00\n  to: 10:00\n  staff: [{count: 1}]\n  arrival: {mean: " + at + ", sd_min: 0}\n";
+  };
+  const Model early = model_of(arriving("08:30"));
+  const ScriptSpec later = io::parse_script("pirsim_script: 1\nschedule:\n" + arriving("09:30"), "s.yaml");
+  CompileOptions like;
+  like.like = &early;
+  const Model alone = compile(shipped_scene("meeting_room.gltf"), later),
+              shared = compile(shipped_scene("meeting_room.gltf"), later, like);
+  CHECK(run_once(shared, 0).samples == run_once(alone, 0).samples);
+  CHECK_FALSE(run_once(early, 0).samples == run_once(alone, 0).samples);
 }

@@ -377,3 +377,11 @@ TEST_CASE("without floor there is no way", "[walkable_floor]") {
   CHECK_FALSE(floor.walkable({0, 0}));
   CHECK_FALSE(floor.find_way({0, 0}, {1, 1}).has_value());
 }
+
+TEST_CASE("nobody minds what only hides", "[floor]") {
+  const FloorArea floor(std::vector<std::vector<Vec2>>{{{-2, -2}, {2, -2}, {2, 2}, {-2, 2}}}, 0.0);
+  std::vector<TriMesh> block{mesh_of({{-0.5, -0.5}, {0.5, 0.5}})};
+  CHECK_FALSE(WalkableFloor(floor, {}, block, clearance).walkable(Vec2(0.0)));
+  block.front().solidity = Solidity::screen;
+  CHECK(WalkableFloor(floor, {}, block, clearance).walkable(Vec2(0.0)));
+}
