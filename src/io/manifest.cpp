@@ -233,7 +233,8 @@ void write_manifest(const std::filesystem::path& file, const Manifest& manifest)
 }
 
 Manifest read_manifest(const std::filesystem::path& file) {
-  return manifest_from_json(read_text_file(file), file.string());
+  constexpr std::size_t max_bytes = 1'000'000'000;  // a script with all of its trials written out, and every failed run
+  return manifest_from_json(read_text_file(file, max_bytes), file.string());
 }
 
 }  // namespace pirsim::io

@@ -77,6 +77,19 @@ YAML::Node write(const ScriptedAction& action) {
   return writer.entry;
 }
 
+/// Texts of people are read with their `${variables}` put in.
+void escape_variables(YAML::Node node) {
+  if (node.IsScalar()) {
+    std::string text = node.Scalar();
+    for (std::size_t at = 0; (at = text.find("${", at)) != std::string::npos; at += 3) text.insert(at, "$");
+    if (text != node.Scalar()) node = text;
+  } else if (node.IsSequence()) {
+    for (YAML::Node item : node) escape_variables(item);
+  } else if (node.IsMap()) {
+    for (const auto& entry : node) escape_variables(entry.second);
+  }
+}
+
 YAML::Node write(const PersonSpec& person) {
   YAML::Node node;
   node["id"] = person.id;
@@ -93,6 +106,7 @@ YAML::Node write(const PersonSpec& person) {
   for (const auto& [part, temperature] : person.warmth.parts_c) node["warmth"]["parts_c"][part] = number(temperature);
   node["actions"] = YAML::Node(YAML::NodeType::Sequence);
   for (const ScriptedAction& action : person.actions) node["actions"].push_back(write(action));
+  escape_variables(node);
   return node;
 }
 

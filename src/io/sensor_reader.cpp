@@ -17,6 +17,7 @@ enum class Polarity { checkerboard, same };
 enum class Missing { none, outer };
 
 constexpr NumberRange positive{.above = 0.0, .max = 1000.0};
+constexpr NumberRange length_m{.min = 1e-3, .max = 1000.0};  ///< what is shorter leaves no digits to directions
 constexpr NumberRange on_plane{.min = -1000.0, .max = 1000.0};
 
 /// What the facets of one lens share.
@@ -92,8 +93,8 @@ ClusterSpec read_facet(const YamlNode& node, const FacetLaw& law, Diagnostics& f
     const double distance = std::sqrt(glm::dot(cluster.centre, cluster.centre) + law.plane_m * law.plane_m);
     quad = diamond(cluster.centre, law.half_spacing_ratio * distance, law.half_diagonal_ratio * distance);
   } else {
-    const double side = map.required_number("zone_side_m", positive);
-    quad = square(cluster.centre, map.required_number("pitch_m", positive), side);
+    const double side = map.required_number("zone_side_m", length_m);
+    quad = square(cluster.centre, map.required_number("pitch_m", length_m), side);
   }
   cluster.zones = zones_of(quad, law.polarity, missing);
   map.finish();
@@ -268,7 +269,7 @@ SensorModelSpec read_model(const YamlNode& root) {
   SensorModelSpec model;
   model.id = map.required_text("id");
   model.description = map.text("description");
-  model.plane_m = map.required_number("plane_m", positive);
+  model.plane_m = map.required_number("plane_m", length_m);
   std::optional<double> range_m = map.optional_number("range_m", positive);
   if (!range_m && misspells_range(root)) range_m = 1.0;  // the file is refused for that key
   model.response =

@@ -93,7 +93,9 @@ ZoneSpec grown(const SensorModelSpec& model, const ZoneSpec& zone, double angle)
   ZoneSpec result = zone;
   for (std::size_t i = 0; i < 4; ++i) {
     const Vec3 d = plane.direction(meeting_point(edges[(i + 3) % 4], edges[i]));
-    result.corners[i] = Vec2(d.x, d.y) * (model.plane_m / -d.z);
+    // What has grown beyond the lens's plane ends close before it.
+    constexpr double least_ahead = 1e-3;
+    result.corners[i] = Vec2(d.x, d.y) * (model.plane_m / std::max(least_ahead, -d.z));
   }
   return result;
 }

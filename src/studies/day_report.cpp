@@ -20,7 +20,10 @@ std::string percent(double share) { return fixed(100.0 * share, share < 0.0995 ?
 }  // namespace
 
 DayReport::DayReport(const Model& model, const ScheduleSpec& schedule)
-    : model_(&model), from_h_(schedule.from_h), to_h_(schedule.to_h) {
+    : model_(&model),
+      window_s_(model.tick_s() * model.compiled().sensing().ticks_per_window),
+      from_h_(schedule.from_h),
+      to_h_(schedule.to_h) {
   const std::size_t n_sensors = model.scene().sensors.size();
   const auto n = static_cast<std::size_t>(std::ceil((to_h_ - from_h_) * 3600.0 / bin_s - 1e-9));
   bins_.assign(n, {0.0, 0.0, 0, 0, std::vector<double>(n_sensors, 0.0)});
@@ -60,7 +63,7 @@ void DayReport::add_run(const RunResult& result) {
     if (row.where == OccupantRow::Where::outside || at.x < 0.0 || at.y < 0.0) continue;
     const std::size_t i =
         static_cast<std::size_t>(at.y) * columns_ + std::min(columns_ - 1, static_cast<std::size_t>(at.x));
-    if (i < squares_.size()) squares_[i] += 1.0;
+    if (i < squares_.size()) squares_[i] += window_s_;
   }
   note_moment(result);
 }
@@ -114,7 +117,7 @@ io::LineChart DayReport::people_chart() const {
 io::LineChart DayReport::sensor_chart(std::size_t sensor) const {
   io::LineChart chart;
   chart.title = model_->scene().sensors[sensor].id;
-  chart.note = "share of seconds with motion in every ten minutes, over the days";
+  chart.note = "share of rows with motion in every ten minutes, over the days";
   chart.x_label = "time of day, h";
   chart.y_label = "share";
   chart.x_low = from_h_;
@@ -131,8 +134,8 @@ io::LineChart DayReport::sensor_chart(std::size_t sensor) const {
 
 io::GridChart DayReport::count_chart() const {
   io::GridChart chart;
-  chart.title = "Seconds with motion by number of people";
-  chart.note = "percent; empty where there were never so many";
+  chart.title = "Motion by number of people";
+  chart.note = "percent of rows with motion; empty where there were never so many";
   chart.label = "share, %";
   chart.row_label = "sensor";
   chart.column_label = "people";
@@ -146,7 +149,7 @@ io::GridChart DayReport::count_chart() const {
         continue;
       }
       const double share = count.motion[i] / count.windows;
-      chart.cells.push_back({100.0 * share, percent(share), "of " + fixed(count.windows, 0) + " s"});
+      chart.cells.push_back({100.0 * share, percent(share), "of " + fixed(count.windows, 0) + " rows"});
     }
   }
   return chart;

@@ -1,6 +1,6 @@
 #include "studies/campaign.hpp"
 
-#include <array>
+#include <algorithm>
 #include <utility>
 
 #include "pirsim/error.hpp"
@@ -8,8 +8,7 @@
 namespace pirsim::studies {
 namespace {
 
-constexpr std::array<std::string_view, 5> first_columns{"replicate", "trial", "time_s", "phase", "people"};
-enum Column : std::size_t { replicate, trial, time_s, phase };
+enum Column : std::size_t { replicate, trial };
 
 }  // namespace
 
@@ -39,7 +38,7 @@ void RowTally::end_line() {
   if (!summary_) {
     take_header();
   } else {
-    if (fields_.size() != first_columns.size() + row_.bits.size()) {
+    if (fields_.size() != first_sensor_ + row_.bits.size()) {
       throw Error(ErrorCode::input, "line " + std::to_string(n_lines_) + " of the rows has too few or too many fields");
     }
     if (fields_[replicate] != replicate_ || fields_[trial] != trial_) {
@@ -47,19 +46,24 @@ void RowTally::end_line() {
       replicate_ = fields_[replicate];
       trial_ = fields_[trial];
     }
-    row_.phase = fields_[phase];
-    for (std::size_t i = 0; i < row_.bits.size(); ++i) row_.bits[i] = fields_[first_columns.size() + i] == "1" ? 1 : 0;
+    row_.phase = fields_[phase_];
+    for (std::size_t i = 0; i < row_.bits.size(); ++i) row_.bits[i] = fields_[first_sensor_ + i] == "1" ? 1 : 0;
     counts_->add(row_);
   }
   fields_.assign(1, {});
 }
 
 void RowTally::take_header() {
-  if (fields_.size() < first_columns.size() ||
-      !std::equal(first_columns.begin(), first_columns.end(), fields_.begin())) {
+  const std::vector<std::string> plain{"replicate", "trial", "time_s", "phase", "people"},
+      of_days{"replicate", "trial", "time_s", "time", "phase", "people"};
+  const auto begins_with = [&](const std::vector<std::string>& columns) {
+    return fields_.size() >= columns.size() && std::equal(columns.begin(), columns.end(), fields_.begin());
+  };
+  if (!begins_with(plain) && !begins_with(of_days))
     throw Error(ErrorCode::input, "the rows don't begin with the header of a study's rows");
-  }
-  const std::vector<std::string> sensors(fields_.begin() + first_columns.size(), fields_.end());
+  first_sensor_ = begins_with(plain) ? plain.size() : of_days.size();
+  phase_ = first_sensor_ - 2;
+  const std::vector<std::string> sensors(fields_.begin() + static_cast<std::ptrdiff_t>(first_sensor_), fields_.end());
   summary_.emplace(trials_, sensors, std::move(measured_));
   counts_.emplace(sensors.size(), spec_);
   row_.bits.resize(sensors.size());

@@ -55,6 +55,7 @@ class DayReport {
   [[nodiscard]] double hour_of(std::size_t bin) const;
 
   const Model* model_;
+  double window_s_;
   double from_h_, to_h_;
   std::vector<Bin> bins_;
   std::vector<Count> by_people_;  ///< (most people + 1)

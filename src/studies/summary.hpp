@@ -32,7 +32,7 @@ struct CellSummary {
   double mean = 0.0;
   std::optional<MeasuredCell> measured;
   std::optional<bool> inside;  ///< min <= real <= max
-  std::optional<double> crps;  ///< in counts; see stats::crps()
+  std::optional<double> crps;  ///< in counts; see crps()
 };
 
 /// What the count of cells inside their range hides.

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "core/fixed.hpp"
+#include "pirsim/csv.hpp"
 #include "studies/summary.hpp"
 
 namespace pirsim::studies {
@@ -18,14 +19,6 @@ std::string shortest(double value) {
 template <typename Number>
 std::string optional_text(const std::optional<Number>& value, int digits) {
   return value ? fixed(static_cast<double>(*value), digits) : std::string{};
-}
-
-/// RFC 4180: quoted only where it has to be.
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
 }
 
 using Row = std::vector<std::string>;
@@ -164,8 +157,8 @@ std::string to_csv(const Summary& summary) {
   for (const CellSummary& c : summary.cells()) {
     const MeasuredCell measured = c.measured.value_or(MeasuredCell{});
     const bool ran = c.runs > 0;
-    const Row row{csv_field(c.trial),
-                  csv_field(c.sensor),
+    const Row row{io::csv_field(c.trial),
+                  io::csv_field(c.sensor),
                   std::to_string(c.runs),
                   ran ? std::to_string(c.min) : "",
                   ran ? std::to_string(c.max) : "",

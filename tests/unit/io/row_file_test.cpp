@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "core/digest.hpp"
+#include "io/atomic_file.hpp"
 #include "pirsim/error.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"
@@ -231,4 +232,13 @@ TEST_CASE("a run that failed has no rows, costs no other run any, and is told af
     CHECK(told.first_pass == "run 1");
     CHECK(io::RowFile(file, made(), header, Start::resume).notes().failed.size() == 1);
   }
+}
+
+TEST_CASE("a manifest of a study with very many trials is read back", "[io][row_file]") {
+  const TemporaryFolder folder;
+  io::Manifest manifest = made();
+  manifest.provenance.resolved_script.assign(io::max_text_file_bytes + 1, 'x');
+  const fs::path file = io::manifest_path(folder.path() / "rows.csv");
+  io::write_manifest(file, manifest);
+  CHECK(io::differences(io::read_manifest(file).provenance, manifest.provenance).empty());
 }

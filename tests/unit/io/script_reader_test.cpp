@@ -126,3 +126,10 @@ TEST_CASE("a script for another folder finds the same files from there", "[io]")
   CHECK(io::moved(absolute, there.parent_path()).summary.reference_file == "/sums.csv");
   CHECK(io::moved(ScriptSpec{}, there.parent_path()).summary.reference_file.empty());
 }
+
+TEST_CASE("a dollar sign that stands for itself is written so that it is read so", "[script]") {
+  const ScriptSpec script = read(
+      "pirsim_script: 1\npeople: [{id: a, actions: [{enter: door}, {wait_s: 1, phase: \"cost $${x} or $${y\"}]}]\n");
+  CHECK(script.trials.front().people.front().actions.back().phase == "cost ${x} or ${y");
+  CHECK(read(io::to_yaml(script)).trials.front().people.front().actions.back().phase == "cost ${x} or ${y");
+}

@@ -13,6 +13,7 @@
 #include "pirsim/error.hpp"
 #include "support/catch.hpp"
 #include "support/paths.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace pirsim;
 
@@ -234,4 +235,23 @@ TEST_CASE("detectors that could never work are refused with their place", "[sens
   CHECK(refusal_of(zones + "comparator: {positive_v: 0.8}\n") ==
         "f:8:13: error: comparator: the output saturates before it reaches a threshold");
   CHECK(refusal_of(zones + "comparator: {hold: 2}\n").find("hold_s") != std::string::npos);
+}
+
+TEST_CASE("a lens too small for directions is refused", "[sensor]") {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const std::string& text) {
+    const auto file = folder.write("tiny.yaml", text);
+    try {
+      static_cast<void>(io::read_sensor_model(file));
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  std::ifstream shipped(sensors / "EKMC1604111.yaml");
+  std::string text(std::istreambuf_iterator<char>(shipped), {});
+  const std::size_t at = text.find("plane_m: ");
+  REQUIRE(at != std::string::npos);
+  text.replace(at, text.find_first_of(" \n#", at + 9) - at, "plane_m: 1e-200");
+  CHECK_THAT(refusal(text), contains("plane_m"));
 }

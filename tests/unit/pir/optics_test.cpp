@@ -208,3 +208,18 @@ TEST_CASE("a bit once set stays set", "[optics]") {
   mark(ChangePer::beam, still, still, bits);
   CHECK(bits == std::array<std::uint8_t, 3>{1, 0, 1});
 }
+
+TEST_CASE("a zone that grows beyond the lens's plane stays on its side", "[optics]") {
+  SensorModelSpec model = wall_lens();
+  ZoneSpec zone;
+  const double near_plane = std::tan(84.0 * M_PI / 180.0) * model.plane_m;
+  zone.corners = {Vec2(near_plane, -0.1), Vec2(near_plane + 0.2, -0.1), Vec2(near_plane + 0.2, 0.1),
+                  Vec2(near_plane, 0.1)};
+  for (const double degrees_grown : {1.0, 5.0, 10.0}) {
+    const ZoneSpec grown = pir::grown(model, zone, degrees_grown * M_PI / 180.0);
+    for (const Vec3& direction : pir::zone_directions(model, grown, RaysPerZone::five)) {
+      CHECK(direction.x > 0.0);
+      CHECK(direction.z < 0.0);
+    }
+  }
+}
