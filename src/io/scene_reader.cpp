@@ -8,6 +8,7 @@
 #include "io/gltf_geometry.hpp"
 #include "io/reader_parts.hpp"
 #include "io/scene_parts.hpp"
+#include "schema/column_names.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -142,6 +143,8 @@ class SceneBuilder {
 
   void add_sensor(const PlacedNode& placed, const mark::Sensor& sensor) {
     check_unique("sensor", sensor.id, placed.node);
+    if (is_column_name(sensor.id))
+      node_error(placed.node, "/extras/pirsim/id", "sensor id '" + sensor.id + "' is the name of a column of rows");
     model_places_.try_emplace(sensor.model, document_.text.where(markup_pointer(placed.node) + "/model"));
     spec_.sensors.push_back({sensor.id, sensor.model, rigid_frame(placed.world_from_node)});
   }

@@ -2,6 +2,7 @@
 #include <set>
 
 #include "pirsim/scene.hpp"
+#include "schema/column_names.hpp"
 
 namespace pirsim {
 namespace {
@@ -17,6 +18,7 @@ class SceneCheck {
     std::set<std::string> sensors, seats, entrances;
     for (const SensorSpec& sensor : scene_.sensors) {
       check("sensor", sensor.id, sensor.world_from_sensor, sensors);
+      if (is_column_name(sensor.id)) error("sensor id '" + sensor.id + "' is the name of a column of rows");
       if (!scene_.sensor_models.contains(sensor.model)) {
         error("sensor '" + sensor.id + "': there is no sensor model '" + sensor.model + "'");
       }
