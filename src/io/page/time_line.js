@@ -58,7 +58,7 @@ class TimeLine {
 
   drawPeople(pen, x) {
     const { rows, window_s: span, from_s: from, to_s: to } = this.run;
-    const most = Math.max(1, ...rows.people), base = TimeLine.heights.people - 4, unit = (base - 12) / most;
+    const most = rows.people.reduce((some, n) => Math.max(some, n), 1), base = TimeLine.heights.people - 4, unit = (base - 12) / most;
     const steps = new Path2D(), area = new Path2D();
     rows.people.forEach((n, i) => {
       steps.lineTo(x(rows.time_s[i] - span), base - n * unit);
@@ -75,13 +75,11 @@ class TimeLine {
     pen.lineWidth = 1.5;
     pen.stroke(steps);
     pen.fillStyle = colour("people");
-    rows.people.forEach((n, i) => {  // the number where it changes, if there is room
-      const wide = rows.people.slice(i).findIndex((other) => other !== n);
-      const end = wide < 0 ? rows.people.length : i + wide;
-      const width = x(rows.time_s[end - 1]) - x(rows.time_s[i]);
-      if (i > 0 && rows.people[i - 1] === n || width <= 14) return;
-      pen.fillText(n, x(rows.time_s[i]) + 2, base - n * unit - 3);
-    });
+    for (let i = 0, end; i < rows.people.length; i = end) {  // the number where it changes, if there is room
+      const n = rows.people[i], left = x(rows.time_s[i]);
+      for (end = i + 1; rows.people[end] === n;) ++end;
+      if (x(rows.time_s[end - 1]) - left > 14) pen.fillText(n, left + 2, base - n * unit - 3);
+    }
   }
 
   drawBits(pen, x, sensor, top, width) {
@@ -98,7 +96,8 @@ class TimeLine {
 
   drawSignal(pen, x, sensor, top, width) {
     const { signal_v: signal, positive_v: up, negative_v: down } = sensor;
-    const most = Math.max(2 * up, 2 * down, ...signal.map(Math.abs));
+    // Not Math.max(...signal): hours of a signal are more arguments than a call takes.
+    const most = signal.reduce((some, volts) => Math.max(some, Math.abs(volts)), 2 * Math.max(up, down));
     const middle = top + TimeLine.heights.signal / 2;
     const y = (volts) => middle - (volts / most) * (TimeLine.heights.signal / 2 - 2);
     pen.lineWidth = 1;
