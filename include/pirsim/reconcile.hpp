@@ -85,6 +85,11 @@ struct Settings {
   std::uint32_t verify_realizations = 60;  ///< simulated with each patched model
   std::vector<std::size_t> holdout;        ///< trials (ascending) kept from naming and fitting; none: folds
 };
+/// The usual ones at another level (0.001 to 0.5), with so many times the usual number of simulated datasets (0.05 to
+/// 20) and these effects to look for (none: the whole catalogue). Throws Error(usage) for other numbers, and for an
+/// effect that isn't known, stands there twice or is in the script already.
+[[nodiscard]] Settings settings_of(const ScriptSpec& script, double alpha, double budget,
+                                   const std::vector<std::string>& effects);
 
 /// What an analysis does now.
 struct Stage {

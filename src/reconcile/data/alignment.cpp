@@ -90,25 +90,28 @@ std::vector<DataShape::Run> summed(const Measured& measured, std::size_t n_senso
 
 /// All faults at once.
 void refuse_longer_than_study(const StudyFrame& frame, const Measured& measured, std::span<const Series> pilot) {
-  if (frame.counted_phases.empty()) return;  // then there is no part that could be taken for another
-  const std::string phases = boost::algorithm::join(frame.counted_phases, ", ");
+  // Without counted phases there is no part that rows could be taken for, but a sum can still be too large.
+  const bool counts_all = frame.counted_phases.empty();
+  const std::string part = counts_all ? "a run" : "'" + boost::algorithm::join(frame.counted_phases, ", ") + "'";
   Diagnostics faults;
   for (std::size_t trial = 0; trial < frame.trials.size(); ++trial) {
     const auto longest = static_cast<double>(lengths_of(trial, pilot, frame.sensors.size()).longest_main);
     if (longest == 0.0) continue;
     const auto refuse = [&](const std::string& what, const std::string& hint) {
-      faults.error({measured.file, 0, 0}, "trial '" + frame.trials[trial] + "': " + what + ", but '" + phases +
-                                              "' lasts at most " + io::csv_number(longest * frame.window_s) +
+      faults.error({measured.file, 0, 0}, "trial '" + frame.trials[trial] + "': " + what + ", but " + part +
+                                              " lasts at most " + io::csv_number(longest * frame.window_s) +
                                               " s in the simulation; " + hint);
     };
     for (const Measured::Sum& sum : measured.sums) {
       if (sum.trial != trial || sum.seconds <= longer_by * longest * frame.window_s) continue;
       refuse("'" + frame.sensors[sum.sensor] + "' has " + io::csv_number(sum.seconds) + " s with motion",
-             "give the sum of one run, of that part only");
+             counts_all ? "give the sum of one run" : "give the sum of one run, of that part only");
     }
     for (const Series& run : measured.runs) {
       const std::size_t n_main = run.main_end - run.main_begin;
-      if (measured.tells_phases || run.trial != trial || static_cast<double>(n_main) <= longer_by * longest) continue;
+      if (counts_all || measured.tells_phases || run.trial != trial ||
+          static_cast<double>(n_main) <= longer_by * longest)
+        continue;
       refuse(std::to_string(n_main) + " rows without a column 'phase'", "leave out the others, or give the phases");
     }
   }

@@ -63,11 +63,17 @@ TrialSpec empty_room(const ScriptSpec& script) {
   return trial;
 }
 
+std::string unused_id(const ScriptSpec& script, std::string id, const std::string& more) {
+  while (std::ranges::find(script.trials, id, &TrialSpec::id) != script.trials.end()) id += more;
+  return id;
+}
+
 /// Adds a trial if a person can carry it out in the room as it is drawn.
 template <typename Make>
 void add(LongerStudy& study, const SceneSpec& scene, std::vector<std::size_t>& index, LeftOut::Trial which, Make make) {
   try {
     TrialSpec trial = make();
+    trial.id = unused_id(study.script, std::move(trial.id), " again");
     ScriptSpec only = study.script;
     only.trials = {trial};
     only.replicates = 1;
@@ -84,8 +90,9 @@ void add(LongerStudy& study, const SceneSpec& scene, std::vector<std::size_t>& i
 LongerStudy longer_study(const SceneSpec& scene, const ScriptSpec& script) {
   LongerStudy study{script, script.trials.size(), {}, {}, {}};
   for (const TrialSpec& trial : script.trials) {
-    study.script.trials.push_back(trial);
-    study.script.trials.back().id += " again";
+    TrialSpec again = trial;
+    again.id = unused_id(study.script, trial.id + " again", " again");
+    study.script.trials.push_back(std::move(again));
   }
   add(study, scene, study.walk, LeftOut::Trial::slow_walk, [&] { return slow_walk(scene, script); });
   add(study, scene, study.empty, LeftOut::Trial::empty_room, [&] { return empty_room(script); });

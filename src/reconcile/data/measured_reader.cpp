@@ -193,7 +193,8 @@ bool MeasuredReader::check_times(const std::vector<Row>& rows) {
     }
     ++steps[std::round(step * 1e6) / 1e6];
   }
-  if (frame_.counted_phases.empty() && rows.front().time_s > most_missing_rows * frame_.window_s) {
+  const double first_s = rows.front().time_s;
+  if (frame_.counted_phases.empty() && !(first_s >= 0.0 && first_s <= most_missing_rows * frame_.window_s)) {
     faults_.error(table_.where(rows.front().line, *time_), "time_s counts from the beginning of the trial; this one " +
                                                                std::string("begins with ") +
                                                                io::csv_number(rows.front().time_s));

@@ -40,14 +40,21 @@ class Fingerprint {
   std::string bytes_;
 };
 
+// Structured bindings name every field, so that a new one doesn't compile until it stands here.
+
+/// Without its electronics: only hard zones are reconciled.
 void add(Fingerprint& print, const SensorModelSpec& model) {
-  print.add(model.id);
-  print.add_number(model.plane_m);
-  for (const ClusterSpec& cluster : model.clusters) {
-    print.add(cluster.centre);
-    print.add_number(cluster.range_m);
-    print.add_number(cluster.lens_step);
-    for (const ZoneSpec& zone : cluster.zones) {
+  const auto& [id, description, plane_m, clusters, response, optics, detector] = model;
+  print.add(id);
+  print.add_number(plane_m);
+  print.add_number(clusters.size());
+  for (const ClusterSpec& cluster : clusters) {
+    const auto& [centre, range_m, lens_step, zones] = cluster;
+    print.add(centre);
+    print.add_number(range_m);
+    print.add_number(lens_step);
+    print.add_number(zones.size());
+    for (const ZoneSpec& zone : zones) {
       for (const Vec2& corner : zone.corners) print.add(corner);
       print.add_number(zone.polarity);
     }
@@ -55,34 +62,49 @@ void add(Fingerprint& print, const SensorModelSpec& model) {
 }
 
 void add(Fingerprint& print, const TriMesh& mesh) {
-  print.add(mesh.name);
-  for (const Vec3& p : mesh.positions) print.add(p);
-  for (const auto& triangle : mesh.triangles) {
+  const auto& [name, positions, triangles, solidity, temperature_c] = mesh;
+  print.add(name);
+  print.add_number(positions.size());
+  for (const Vec3& p : positions) print.add(p);
+  print.add_number(triangles.size());
+  for (const auto& triangle : triangles) {
     for (const auto corner : triangle) print.add_number(corner);
   }
+  print.add_number(solidity);
+  print.add_number(temperature_c.has_value());
+  print.add_number(temperature_c.value_or(0.0));
 }
 
 void add(Fingerprint& print, const SceneSpec& scene) {
+  print.add_number(scene.meshes.size());
   for (const TriMesh& mesh : scene.meshes) add(print, mesh);
+  print.add_number(scene.sensors.size());
   for (const SensorSpec& sensor : scene.sensors) {
     print.add(sensor.id);
     print.add(sensor.model);
     print.add(sensor.world_from_sensor);
   }
+  print.add_number(scene.seats.size());
   for (const SeatSpec& seat : scene.seats) {
-    print.add(seat.id);
-    print.add(seat.world_from_seat);
+    const auto& [id, world_from_seat] = seat;
+    print.add(id);
+    print.add(world_from_seat);
   }
+  print.add_number(scene.entrances.size());
   for (const EntranceSpec& entrance : scene.entrances) {
-    print.add(entrance.id);
-    print.add(entrance.world_from_entrance);
-    print.add_number(entrance.width_m);
-    print.add_number(entrance.outside_m);
+    const auto& [id, world_from_entrance, width_m, outside_m] = entrance;
+    print.add(id);
+    print.add(world_from_entrance);
+    print.add_number(width_m);
+    print.add_number(outside_m);
   }
+  print.add_number(scene.floor.height_m());
+  print.add_number(scene.floor.loops().size());
   for (const auto& loop : scene.floor.loops()) {
     print.add_number(loop.size());
     for (const Vec2& p : loop) print.add(p);
   }
+  print.add_number(scene.sensor_models.size());
   for (const auto& [id, model] : scene.sensor_models) add(print, model);
 }
 
@@ -100,9 +122,9 @@ void add_body_meshes(Fingerprint& print, const ScriptSpec& script) {
 }
 
 void add(Fingerprint& print, const NuisanceSpec& nuisance) {
-  for (const double value : {nuisance.seat_position_m, nuisance.sensor_yaw_deg, nuisance.sensor_tilt_deg,
-                             nuisance.body_size, nuisance.arm_amplitude, nuisance.uneven_arms,
-                             nuisance.trunk_sway_deg}) {
+  for (const double value :
+       {nuisance.seat_position_m, nuisance.sensor_yaw_deg, nuisance.sensor_tilt_deg, nuisance.body_size,
+        nuisance.arm_amplitude, nuisance.uneven_arms, nuisance.trunk_sway_deg}) {
     print.add_number(value);
   }
 }

@@ -77,8 +77,13 @@ Outcome Analyst::analyse(std::span<const float> measured) const {
     const HypothesisScore& score = judgement.scores[hypothesis];
     Candidate candidate{score, effects::find(score.hypothesis).info.family, false, {}};
     candidate.kept = std::ranges::find(judgement.kept, hypothesis) != judgement.kept.end();
-    candidate.reason = judgement.likeness == hypothesis ? reason::LikeImpostors{score.p_own}
-                                                        : reason_of(score, candidate.kept, settings_.alpha);
+    candidate.reason = reason_of(score, candidate.kept, settings_.alpha);
+    if (judgement.likeness == hypothesis) {
+      candidate.reason = reason::LikeImpostors{score.p_own};
+    } else if (judgement.likeness && score.p > settings_.alpha) {
+      const HypothesisScore& likeness = judgement.scores[*judgement.likeness];
+      candidate.reason = reason::LessLikely{score.p, score.probability, likeness.hypothesis, likeness.probability};
+    }
     outcome.candidates.push_back(std::move(candidate));
   }
   // The named one is the likeliest of those that are kept.

@@ -14,7 +14,10 @@ LocatedCell cell_of(const StudyFrame& frame, const stats::Matrix<float>& plain, 
   const std::size_t column = cell_index(frame, trial, sensor, CellStatistic::seconds);
   LocatedCell cell{frame.trials[trial], frame.sensors[sensor], static_cast<double>(measured[column]), 0, 0, 0, 1.0};
   std::vector<double> simulated;
-  for (std::size_t row = 0; row < plain.rows(); ++row) simulated.push_back(static_cast<double>(plain(row, column)));
+  for (std::size_t row = 0; row < plain.rows(); ++row) {  // a counted phase may not come in some
+    if (!std::isnan(plain(row, column))) simulated.push_back(static_cast<double>(plain(row, column)));
+  }
+  if (simulated.empty()) return cell;
   for (const double seconds : simulated) cell.expected_s += seconds / static_cast<double>(simulated.size());
   cell.low_s = stats::quantile(simulated, 0.025);
   cell.high_s = stats::quantile(simulated, 0.975);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/digest.hpp"
+#include "effects/catalogue.hpp"
 #include "pirsim/io.hpp"
 #include "reconcile/inference/locate.hpp"
 #include "reconcile/inference/model_check.hpp"
@@ -244,6 +245,24 @@ std::vector<std::size_t> Loop::training_trials() const {
   std::ranges::set_difference(all_trials(steps_.front().reference.frame), settings_.holdout,
                               std::back_inserter(trials));
   return trials;
+}
+
+Settings settings_of(const ScriptSpec& script, double alpha, double budget, const std::vector<std::string>& effects) {
+  if (!(alpha >= 0.001 && alpha <= 0.5)) throw Error(ErrorCode::usage, "alpha: expected 0.001 to 0.5");
+  if (!(budget >= 0.05 && budget <= 20.0)) throw Error(ErrorCode::usage, "budget: expected 0.05 to 20");
+  Settings settings;
+  settings.alpha = alpha;
+  for (const std::string& effect : effects) {
+    const std::string& name = effects::find(effect).info.name;
+    if (std::ranges::find(settings.table.effects, name) != settings.table.effects.end())
+      throw Error(ErrorCode::usage, "effects: " + name + " twice");
+    if (std::ranges::find(script.effects, name, &EffectSpec::name) != script.effects.end())
+      throw Error(ErrorCode::usage, "effects: the script already has " + name + "; it isn't looked for again");
+    settings.table.effects.push_back(name);
+  }
+  for (std::uint32_t* n : {&settings.table.n_realizations, &settings.table.n_remembered, &settings.table.n_traced})
+    *n = std::max(fewest_datasets_to_refuse(alpha), static_cast<std::uint32_t>(*n * budget));
+  return settings;
 }
 
 Outcome reconcile(const SceneSpec& scene, const ScriptSpec& script, const Measured& measured, const Settings& settings,

@@ -9,11 +9,23 @@ namespace {
 
 constexpr std::uint32_t n_pilot_realizations = 40;
 
+/// Effects are applied to recorded zones, which an analog response needs more than.
+void require_hard_zones(const SceneSpec& scene, const ScriptSpec& script) {
+  for (const SensorSpec& sensor : scene.sensors) {
+    const Response own = scene.sensor_models.at(sensor.model).response;
+    if (script.sensing.response.value_or(own) != Response::analog) continue;
+    throw Error(ErrorCode::input, Where{script.name},
+                "reconcile compares hard zones only, and sensor '" + sensor.id +
+                    "' has an analog response: analyse with --set sensing.response=zones");
+  }
+}
+
 }  // namespace
 
 ReferenceStudy make_reference_study(
     const SceneSpec& scene, const ScriptSpec& script, const Settings& settings,
     const std::function<DataShape(const StudyFrame&, std::span<const Series>)>& shape_of_data, const Context& context) {
+  require_hard_zones(scene, script);
   ReferenceStudy reference{{scene, script, settings.nuisance, context.seed},
                            frame_of(scene, script),
                            cell_knowledge(scene, script),

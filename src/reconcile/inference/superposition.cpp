@@ -70,7 +70,9 @@ std::vector<Partner> partners_of(const TableView& view, std::size_t first, std::
       [&](std::size_t i) {
         if (i + 1 == first) return 0.0;
         const stats::Matrix<float> pairs = superposed(view.features(), rows[0], rows[first], rows[i + 1]);
-        return pairs.rows() < fewest_pairs ? 0.0 : p_among(pairs, data, view.map().blocks(), context.seed);
+        // Too few to tell: not ruled out, but after all that are compared.
+        if (pairs.rows() < fewest_pairs) return std::nextafter(level, 1.0);
+        return p_among(pairs, data, view.map().blocks(), context.seed);
       },
       [&](double& p) {
         ++second;

@@ -193,8 +193,10 @@ void add_cells(const StudyFrame& frame, const stats::Matrix<float>& ensemble, st
     const std::size_t column = cell_index(frame, trial, sensor, CellStatistic::seconds);
     if (std::isnan(measured[column])) continue;
     std::vector<double> seconds;
-    for (std::size_t row = 0; row < ensemble.rows(); ++row)
-      seconds.push_back(static_cast<double>(ensemble(row, column)));
+    for (std::size_t row = 0; row < ensemble.rows(); ++row) {  // a counted phase may not come in some
+      if (!std::isnan(ensemble(row, column))) seconds.push_back(static_cast<double>(ensemble(row, column)));
+    }
+    if (seconds.empty()) continue;
     const auto real = static_cast<double>(measured[column]);
     gap.area_s += stats::area_between(seconds, std::span(&real, 1));
     gap.cells_outside += real < stats::quantile(seconds, 0.025) || real > stats::quantile(seconds, 0.975) ? 1 : 0;

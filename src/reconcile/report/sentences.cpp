@@ -82,7 +82,15 @@ std::string rivals(const Outcome& outcome) {
     if (candidate.kept && candidate.score.hypothesis != outcome.named.front())
       names.push_back(candidate.score.hypothesis);
   }
-  if (names.empty()) return ", and no other effect of " + all_of(outcome) + " explains the data.";
+  if (names.empty()) {
+    std::vector<std::string> unknown;
+    for (const Candidate& candidate : outcome.candidates) {
+      if (std::holds_alternative<reason::HardlySimulated>(candidate.reason))
+        unknown.push_back(candidate.score.hypothesis);
+    }
+    return ", and no other effect of " + all_of(outcome) + " explains the data" +
+           (unknown.empty() ? "." : "; " + joined(unknown, "and") + " could hardly be simulated in this room.");
+  }
   return "; with probability " + short_number(outcome.candidates.front().score.probability) + " it is this one, " +
          joined(names, "and") + " can't be ruled out.";
 }
@@ -100,7 +108,7 @@ std::string sentence_of_refused(const Outcome& outcome, double alpha) {
   return lacks_something_else(outcome) + ": " + where(outcome, alpha) + ". What resembles it most, " +
          joined(look.applied, "and") +
          ", doesn't explain it: with that applied, the model still differs from the data (p = " + short_number(look.p) +
-         "), and no other effect of " + all_of(outcome) + " explains what is left.";
+         "), and none of the others that were tried beside it explains what is left.";
 }
 
 /// Of the likeliest effect if it was dropped, though the model with it passes.

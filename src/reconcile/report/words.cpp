@@ -35,10 +35,9 @@ Worded worded(const Reason& of) {
                                      ", and no other effect explains them so much better that it can be ruled out."};
                  },
                  [&](const reason::Sure& r) {
-                   return Worded{
-                       "Kept, though data of its own seldom look like these " + p(r.p),
-                       "with probability " + short_number(r.probability) +
-                           " it is this one of those looked for, if any."};
+                   return Worded{"Kept, though data of its own seldom look like these " + p(r.p),
+                                 "with probability " + short_number(r.probability) +
+                                     " it is this one of those looked for, if any."};
                  },
                  [](const reason::MayBeNone&) {
                    return Worded{"Kept, but not named", "its strength may as well be none."};
@@ -53,9 +52,10 @@ Worded worded(const Reason& of) {
                                                 ", but all that isn't ruled out is improbable together."};
                  },
                  [&](const reason::LikeImpostors& r) {
-                   return Worded{"Dropped", "other things that are taken for it make such data more often than it does "
-                                            "itself " +
-                                                p(r.p_own) + "."};
+                   return Worded{"Dropped",
+                                 "other things that are taken for it make such data more often than it does "
+                                 "itself " +
+                                     p(r.p_own) + "."};
                  },
                  [](const reason::HardlySimulated&) {
                    return Worded{"Dropped", "it could hardly be simulated in this room."};
@@ -70,7 +70,7 @@ Worded worded(const Reason& of) {
                  },
                  [&](const reason::RefusedWhenApplied& r) {
                    return Worded{"Dropped", "with it applied, the model still differs from the data " + p(r.p) +
-                                                ", and no other effect looked for explains what is left."};
+                                                ", and none of the others that were tried explains what is left."};
                  },
                  [](const reason::SameAs& r) {
                    return Worded{"", "Judged as " + r.effect + ", which changes the model in the same way."};

@@ -102,6 +102,8 @@ TEST_CASE("a run that was recorded late keeps its place where no phase tells it"
   CHECK(parse_measured(text, "m.csv", phased).runs.at(0).n_rows(1) == 40);
   CHECK_THROWS_WITH(parse_measured("time_s,PIR1\n1700000000,1\n1700000001,1\n", "m.csv", frame),
                     contains("counts from the beginning of the trial"));
+  CHECK_THROWS_WITH(parse_measured("time_s,PIR1\n-1e19,1\n", "m.csv", frame),
+                    contains("m.csv:2:1: error: time_s counts from the beginning of the trial"));
 }
 
 TEST_CASE("bad measured rows are refused with a sentence and a place", "[measured]") {

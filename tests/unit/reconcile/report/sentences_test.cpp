@@ -161,7 +161,7 @@ TEST_CASE("of a catalogue cut down nothing is said about the effects that weren'
   CHECK_THAT(sentence(none, 0.05), contains("no effect of those looked for is likely"));
   none.candidates.front().reason = reason::RefusedWhenApplied{0.005};
   none.looks.push_back({{"seat_shift"}, 0.025, 0.005, {}});
-  CHECK_THAT(sentence(none, 0.05), contains("no other effect of those looked for explains what is left"));
+  CHECK_THAT(sentence(none, 0.05), contains("none of the others that were tried beside it explains what is left"));
   const std::string page = to_html(report_page(none, 0.05));
   CHECK_THAT(page, contains("Every effect looked for was simulated") && !contains("ffect of the catalogue"));
 }

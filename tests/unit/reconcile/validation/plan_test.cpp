@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "pirsim/io.hpp"
 #include "reconcile/data/longer_study.hpp"
@@ -86,4 +87,18 @@ TEST_CASE("a plan is the same for any number of threads and its numbers hold tog
   const std::string page = to_html(plan_page(result));
   for (const char* kind : {"bars", "grid"})
     CHECK_THAT(page, contains("<div class=\"charts " + std::string(kind) + "\">"));
+}
+
+TEST_CASE("trials of a longer study have names of their own", "[plan]") {
+  const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
+  ScriptSpec script = one_seat();
+  for (const char* id : {"S4 again", "slow walk", "empty room"}) {
+    script.trials.push_back(script.trials.front());
+    script.trials.back().id = id;
+  }
+  std::set<std::string> names;
+  const LongerStudy study = longer_study(scene, script);
+  for (const TrialSpec& trial : study.script.trials) names.insert(trial.id);
+  CHECK(study.script.trials.size() == 10);
+  CHECK(names.size() == study.script.trials.size());
 }
