@@ -57,7 +57,7 @@ def as_overrides(set: Overrides | None) -> list[str]:
     if isinstance(set, str):
         raise TypeError("set: expected a dict, as {'people.0.stature_m': 1.7}, or a list of texts")
     if isinstance(set, Mapping):
-        return [f"{key}={json.dumps(value, default=_plain)}" for key, value in set.items()]
+        return [f"{key}={json.dumps(value, default=_plain, ensure_ascii=False)}" for key, value in set.items()]
     return list(set)
 
 

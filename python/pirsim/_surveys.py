@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import Any, Iterable
 
@@ -10,6 +11,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._study import Overrides, PathOr, Progress, as_input, as_overrides, folders
+from .errors import InputWarning
 from .specs import Scene
 
 
@@ -71,6 +73,8 @@ def coverage(scene: PathOr | Scene, script: PathOr, *, set: Overrides | None = N
     """
     arrays: dict[str, Any] = _core.coverage(as_input(scene, Scene), as_input(script, str), as_overrides(set),
                                             *folders(sensors), threads, progress)
+    for diagnostic in arrays.pop("warnings"):
+        warnings.warn(str(diagnostic), InputWarning, stacklevel=2)
     return CoverageMap(**arrays)
 
 
@@ -83,4 +87,6 @@ def walk_test(scene: PathOr | Scene, script: PathOr, *, set: Overrides | None = 
     """
     arrays: dict[str, Any] = _core.walk_test(as_input(scene, Scene), as_input(script, str), as_overrides(set),
                                              *folders(sensors), threads, progress)
+    for diagnostic in arrays.pop("warnings"):
+        warnings.warn(str(diagnostic), InputWarning, stacklevel=2)
     return WalkTest(**arrays)

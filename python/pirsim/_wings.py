@@ -120,6 +120,8 @@ def reconcile(scene: PathOr | Scene, script: PathOr | Script, measured: PathOr |
     name, text = ("result", _rows_of(measured)) if isinstance(measured, Result) else (os.fspath(measured), "")
     parts = _core.reconcile(as_input(scene, Scene), as_input(script, Script, set), name, text, as_overrides(set),
                             *folders(sensors), question, seed, threads, progress)
+    for text in parts.pop("warnings"):
+        warnings.warn(text, InputWarning, stacklevel=2)
     parts["fits"] = [FittedEffect(*fit) for fit in parts["fits"]]
     parts["candidates"] = [Candidate(*candidate) for candidate in parts["candidates"]]
     parts["cells"] = [Cell(*cell) for cell in parts["cells"]]

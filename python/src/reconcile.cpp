@@ -2,7 +2,6 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <pirsim/reconcile.hpp>
 #include <pirsim/version.hpp>
@@ -25,21 +24,28 @@ struct Question {
   std::string table;     ///< folder of simulated datasets
 };
 
-reconcile::Settings settings_of(const Question& question) {
-  reconcile::Settings settings;
-  settings.alpha = question.alpha;
+reconcile::Settings settings_of(const Question& question, const ScriptSpec& script) {
+  reconcile::Settings settings = reconcile::settings_of(script, question.alpha, question.budget, question.effects);
   settings.max_effects = question.max_effects;
   if (question.nuisance == "none") settings.nuisance = {0.0, 0.0, 0.0, 0.0, 0.0};
   if (question.nuisance != "none" && !question.nuisance.empty()) {
     settings.nuisance = io::read_nuisance(question.nuisance);
   }
-  for (const std::string& effect : question.effects) settings.table.effects.push_back(effects::info(effect).name);
-  const std::uint32_t fewest = reconcile::fewest_datasets_to_refuse(question.alpha);
-  for (std::uint32_t* n : {&settings.table.n_realizations, &settings.table.n_remembered, &settings.table.n_traced}) {
-    *n = std::max(fewest, static_cast<std::uint32_t>(*n * question.budget));
-  }
   settings.table_folder = question.table;
   return settings;
+}
+
+/// What was repaired or ignored, as an InputWarning each.
+nb::list warnings(const SceneSpec& scene, const ScriptSpec& script, const std::vector<reconcile::DataNote>& of_data,
+                  const std::vector<reconcile::DataNote>& of_analysis) {
+  nb::list told;
+  for (const auto* issues : {&scene.warnings, &script.warnings}) {
+    for (const Issue& issue : *issues) told.append(to_python(to_string(issue)));
+  }
+  for (const auto* notes : {&of_data, &of_analysis}) {
+    for (const reconcile::DataNote& note : *notes) told.append(to_python(reconcile::in_words(note)));
+  }
+  return told;
 }
 
 nb::dict to_dict(const reconcile::Outcome& outcome, const ScriptSpec& script, double alpha) {
@@ -79,7 +85,7 @@ nb::dict reconcile_study(nb::handle scene, nb::handle script, const std::string&
                          nb::handle progress) {
   const ScriptSpec script_spec = script_of(script, overrides);
   const SceneSpec scene_spec = scene_of(scene, {std::move(sensors), std::move(data)});
-  const reconcile::Settings settings = settings_of(question);
+  const reconcile::Settings settings = settings_of(question, script_spec);
   const reconcile::Measured rows = text.empty() ? reconcile::read_measured(measured, scene_spec, script_spec)
                                                 : reconcile::parse_measured(text, measured, scene_spec, script_spec);
   reconcile::Outcome outcome;
@@ -100,7 +106,9 @@ nb::dict reconcile_study(nb::handle scene, nb::handle script, const std::string&
         question.folder, outcome, rows, script_spec, settings, context,
         {"pirsim " + version() + " " + git_revision(), scene_spec.name, script_spec.name, measured});
   });
-  return to_dict(outcome, script_spec, question.alpha);
+  nb::dict result = to_dict(outcome, script_spec, question.alpha);
+  result["warnings"] = warnings(scene_spec, script_spec, rows.notes, outcome.notes);
+  return result;
 }
 
 }  // namespace

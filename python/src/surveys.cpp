@@ -47,6 +47,7 @@ nb::dict coverage(nb::handle scene, const std::string& script, const std::vector
   CoverageMap map =
       surveyed(progress, [&](const RowDone& row_done) { return run_coverage(room, spec, threads, row_done); });
   nb::dict result;
+  result["warnings"] = to_python(room.warnings);
   add_grid(map.grid, result);
   result["sensors"] = nb::tuple(to_python(map.sensors));
   result["n_windows"] = nb::int_(map.n_windows);
@@ -68,6 +69,7 @@ nb::dict walk_test(nb::handle scene, const std::string& script, const std::vecto
   const WalkTestResult test =
       surveyed(progress, [&](const RowDone& row_done) { return run_walk_test(room, spec, threads, row_done); });
   nb::dict result, seats;
+  result["warnings"] = to_python(room.warnings);
   add_grid(test.grid, result);
   result["major_made"] = column_of(test, &PointResult::major, &Tries::made);
   result["major_noticed"] = column_of(test, &PointResult::major, &Tries::noticed);
