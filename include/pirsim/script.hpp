@@ -17,7 +17,7 @@
 
 namespace pirsim {
 
-/// An entry of `effects:`; names are those of the catalogue (pirsim/effects/catalogue.hpp), which checks them when a
+/// An entry of `effects:`; names are those of the catalogue (pirsim/effects.hpp), which checks them when a
 /// Model is compiled.
 struct EffectSpec {
   std::string name;

@@ -34,7 +34,7 @@ struct YamlKey {
   std::string name;
   Where where;
 };
-struct YamlTree;  // the storage, see yaml_tree.hpp
+struct YamlTree;
 
 /// A node of a YAML document; cheap to copy, keeps what it needs alive.
 class YamlNode {

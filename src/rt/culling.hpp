@@ -56,7 +56,7 @@ struct alignas(64) RayPacket {
   std::uint32_t ray[packet_size];   ///< its index in the bundle
 };
 
-/// Cones as in view_cones.hpp, sixteen at a time; nothing touches those that are missing to a full block.
+/// Cones, sixteen at a time; nothing touches those that are missing to a full block.
 struct alignas(64) ConeBlock {
   Column apex_x, apex_y, apex_z;
   Column axis_x, axis_y, axis_z;

@@ -21,7 +21,7 @@ struct RayKernel {
   /// are.
   std::size_t (*cull)(const ConeBlock* cones, std::size_t n_blocks, const BoundingSphere& sphere,
                       std::uint32_t* indices) noexcept;
-  /// picked: (n) indices into rays; hits: (n). The same bits as entry_distance() of geom/shapes.hpp, ray by ray;
+  /// picked: (n) indices into rays; hits: (n). The same bits as entry_distance() of pirsim/shapes.hpp, ray by ray;
   /// `around` is a sphere around the solid.
   void (*intersect_sphere)(const RayPacket* rays, const std::uint32_t* picked, std::size_t n, const PosedSphere& solid,
                            const BoundingSphere& around, PacketHits* hits) noexcept;
