@@ -33,7 +33,7 @@ Analyst::Analyst(std::shared_ptr<const TableView> view, const ClassifierSettings
       settings_(settings),
       context_(context),
       classifier_(*view_, settings, context),
-      fitter_(view_->scene(), view_->table(), view_->map(), classifier_.seen_rows(), context) {}
+      fitter_(view_->scene(), view_->table(), view_->map(), classifier_.seen_rows(), context, settings.left_out) {}
 
 FittedEffect Analyst::fit(std::size_t hypothesis, std::span<const float> measured) const {
   return fitter_.fit(hypothesis, measured);

@@ -15,6 +15,12 @@ constexpr std::size_t fewest_training = 20;  ///< datasets of a hypothesis: fewe
 constexpr std::size_t fewest_calibration = 10;
 constexpr std::size_t fewest_of_kind = 10;  ///< training datasets: the mean of fewer is noise
 
+/// Its parameters are fitted from these, each once more without one of them (stats::abc_posterior).
+std::size_t fewest_to_fit(const ReferenceTable& table, std::size_t hypothesis) {
+  if (hypothesis == 0) return 0;
+  return 2 * effects::find(table.hypothesis_name(hypothesis)).info.parameters.size() + 3;
+}
+
 /// The rows that the global test sees something in; if they are few the next ones too, so that p can fall below alpha:
 /// two tests in one need 2 / alpha rows, half as many again tell more than whether it does (40 to 80 rows were tried).
 std::vector<std::size_t> rows_seen(const TableView& view, std::vector<std::size_t> rows, double alpha) {
@@ -31,14 +37,16 @@ std::vector<std::size_t> rows_seen(const TableView& view, std::vector<std::size_
   return rows;
 }
 
-std::vector<std::size_t> kept(const ReferenceTable& table, std::vector<std::size_t> rows, const Omission& left_out) {
+}  // namespace
+
+std::vector<std::size_t> still_made(const ReferenceTable& table, std::vector<std::size_t> rows,
+                                    const Omission& left_out) {
   std::erase_if(rows, [&](std::size_t row) {
-    return std::ranges::any_of(table.rows[row].effects, [&](const EffectSpec& drawn) { return left_out.covers(drawn); });
+    return std::ranges::any_of(table.rows[row].effects,
+                               [&](const EffectSpec& drawn) { return left_out.covers(drawn); });
   });
   return rows;
 }
-
-}  // namespace
 
 FamilyScore likeliest_family(std::span<const HypothesisScore> scores) {
   std::map<effects::Family, double> sums;
@@ -52,7 +60,7 @@ SeenRows seen_rows(const TableView& view, double alpha, const Omission& left_out
   const ReferenceTable& table = view.table();
   SeenRows seen{rows_of(table, 0, Part::calibration)};
   for (std::size_t hypothesis = 1; hypothesis < table.n_hypotheses(); ++hypothesis)
-    seen.push_back(rows_seen(view, kept(table, rows_of(table, hypothesis, Part::calibration), left_out), alpha));
+    seen.push_back(rows_seen(view, still_made(table, rows_of(table, hypothesis, Part::calibration), left_out), alpha));
   return seen;
 }
 
@@ -70,9 +78,10 @@ LabelledRows::LabelledRows(const ReferenceTable& table, const SeenRows& seen, co
   int n_kinds = 0;
   for (std::size_t hypothesis = 0; hypothesis < n_hypotheses; ++hypothesis) {
     if (left_out.is_whole() && table.hypothesis_name(hypothesis) == left_out.effect) continue;
-    const std::vector<std::size_t> training = kept(table, rows_of(table, hypothesis, Part::training), left_out);
+    const std::vector<std::size_t> training = still_made(table, rows_of(table, hypothesis, Part::training), left_out);
     const std::size_t n_calibration = rows_of(table, hypothesis, Part::calibration).size();
-    if (training.size() < fewest_training || n_calibration < fewest_calibration) {
+    if (training.size() < fewest_training ||
+        n_calibration < std::max(fewest_calibration, fewest_to_fit(table, hypothesis))) {
       if (hypothesis > 0) continue;
       throw Error(ErrorCode::infeasible,
                   "reconcile: people could get about in too few realizations of the plain model (" +

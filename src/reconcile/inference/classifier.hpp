@@ -26,8 +26,8 @@ using SeenRows = std::vector<std::vector<std::size_t>>;
 
 /// What the catalogue is made to lack.
 struct Omission {
-  std::string effect = {};           ///< none of it is a candidate; empty: every one is
-  effects::Condition variant = {};   ///< of that effect, which stays a candidate without it; empty: the whole effect
+  std::string effect = {};          ///< none of it is a candidate; empty: every one is
+  effects::Condition variant = {};  ///< of that effect, which stays a candidate without it; empty: the whole effect
   [[nodiscard]] bool is_whole() const noexcept { return !effect.empty() && variant.choice.empty(); }
   [[nodiscard]] bool covers(const EffectSpec& drawn) const {
     if (drawn.name != effect) return false;
@@ -35,6 +35,10 @@ struct Omission {
     return is_whole() || (word != drawn.choices.end() && word->second == variant.word);
   }
 };
+
+/// Of these rows of a table, those that the catalogue still makes.
+[[nodiscard]] std::vector<std::size_t> still_made(const ReferenceTable& table, std::vector<std::size_t> rows,
+                                                  const Omission& left_out);
 
 /// alpha: level of the global test.
 [[nodiscard]] SeenRows seen_rows(const TableView& view, double alpha, const Omission& left_out = {});

@@ -89,12 +89,13 @@ struct EffectFitter::Learnt {
 };
 
 EffectFitter::EffectFitter(const SceneSpec& scene, const ReferenceTable& table, const FeatureMap& map,
-                           std::vector<std::vector<std::size_t>> held_back, const Context& context)
+                           std::vector<std::vector<std::size_t>> held_back, const Context& context, Omission left_out)
     : scene_(&scene),
       table_(&table),
       map_(&map),
       held_back_(std::move(held_back)),
       threads_(context.threads),
+      left_out_(std::move(left_out)),
       learnt_(std::make_unique<Learnt[]>(table.n_hypotheses())) {}
 EffectFitter::~EffectFitter() = default;
 EffectFitter::EffectFitter(EffectFitter&&) noexcept = default;
@@ -106,7 +107,8 @@ const EffectFitter::Learnt& EffectFitter::learnt(std::size_t hypothesis) const {
     const auto datasets = [&](std::span<const std::size_t> rows) {
       return HypothesisDatasets{rows, map_->features(table_->statistics.select_rows(rows), threads_)};
     };
-    const std::vector<std::size_t> training = rows_of(*table_, hypothesis, Part::training);
+    const std::vector<std::size_t> training =
+        still_made(*table_, rows_of(*table_, hypothesis, Part::training), left_out_);
     learnt.estimator.emplace(*table_, hypothesis, datasets(training), datasets(held_back_[hypothesis]));
   });
   return learnt;

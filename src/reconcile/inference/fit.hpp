@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "reconcile/ensemble/reference_table.hpp"
+#include "reconcile/inference/classifier.hpp"
 #include "reconcile/inference/feature_map.hpp"
 #include "stats/intervals.hpp"
 
@@ -20,9 +21,9 @@ namespace pirsim::reconcile {
 class EffectFitter {
  public:
   /// scene, table and map must outlive it. held_back: (n_hypotheses) rows of each hypothesis outside the training part:
-  /// give those in which a disagreement is seen, since nothing else is fitted.
+  /// give those in which a disagreement is seen, since nothing else is fitted. left_out: nothing is learnt from it.
   EffectFitter(const SceneSpec& scene, const ReferenceTable& table, const FeatureMap& map,
-               std::vector<std::vector<std::size_t>> held_back, const Context& context);
+               std::vector<std::vector<std::size_t>> held_back, const Context& context, Omission left_out = {});
   ~EffectFitter();
   EffectFitter(EffectFitter&&) noexcept;
   EffectFitter& operator=(EffectFitter&&) noexcept;
@@ -40,6 +41,7 @@ class EffectFitter {
   const FeatureMap* map_;
   std::vector<std::vector<std::size_t>> held_back_;
   unsigned threads_;
+  Omission left_out_;
   std::unique_ptr<Learnt[]> learnt_;  ///< (n_hypotheses)
 };
 
