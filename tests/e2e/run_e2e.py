@@ -395,6 +395,17 @@ class CommandLine(unittest.TestCase):
                 self.assertIn(kept.name, told)
                 self.assertEqual(kept.read_bytes(), before)
 
+    def test_what_can_not_be_compared_is_refused_before_any_work(self):
+        with tempfile.TemporaryDirectory() as folder:
+            script = write(folder, "s.yaml", "pirsim_script: 1\ntrials:\n  - {id: S1, people: [{id: a, actions: "
+                           "[{enter: door}, {sit: S3}, {work: {duration_s: 30}}, {leave: door}]}]}\n")
+            measured = write(folder, "m.csv", "trial,sensor,seconds\n" +
+                             "".join(f"S1,PIR{i},{5000 if i == 1 else 3}\n" for i in range(1, 6)))
+            call = ("reconcile", "--scene", DATA / "rooms/meeting_room.gltf", "--script", script, "--measured", measured,
+                    "-o", f"{folder}/found", "-q")
+            self.assertIn("has 5000 s with motion, but a run lasts at most", pirsim(*call, code=3).stderr)
+            self.assertIn("hard zones only", pirsim(*call, "--set", "sensing.response=analog", code=3).stderr)
+
     def test_outputs_of_like_names_do_not_meet(self):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
