@@ -189,7 +189,7 @@ TEST_CASE("faults of a sensor file are told with line and column", "[sensor]") {
       "f:6:5: error: facet: 'range_m' is missing\nf:6:50: error: facet: unknown key 'range' (did you mean 'range_m'?)");
   CHECK(refusal_of(head + "layout: squere\nfacets:\n  - {x_m: 0, y_m: 0, zone_side_m: -1, pitch_m: 2, range_m: 3}\n") ==
         "f:4:9: error: sensor: layout: expected one of diamond, square, got 'squere' (did you mean 'square'?)\n"
-        "f:6:35: error: facet: zone_side_m: expected a finite number > 0 and <= 1000, got '-1'");
+        "f:6:35: error: facet: zone_side_m: expected a finite number >= 0.001 and <= 1000, got '-1'");
   CHECK(refusal_of(head + "clusters:\n  - range_m: 1\n    zones: [corners_m: [[0, 0], [1, 1], [1, 0], [0, 1]]]\n") ==
         "f:6:24: error: zone: corners_m: expected the corners of a convex area in order round it");
   CHECK(refusal_of("id: X\nplane_m: 2\nsources: {}\nclusters:\n  - range_m: 1\n"

@@ -153,12 +153,12 @@ TEST_CASE("a sensor that repeats another shows in the pair and not the other way
 TEST_CASE("sums give seconds and nothing else", "[statistics]") {
   Measured measured;
   measured.kind = Measured::Kind::sums;
-  measured.sums = {{0, 0, 1, 12.0}, {0, 0, 2, 16.0}};
+  measured.sums = {{0, 0, 1, 0.5}, {0, 0, 2, 3.5}};
   const std::vector<Series> pilot{series_from("0101")};
   const DataShape shape = shape_of(frame, measured, pilot);
   const auto s = statistics_of(frame, shape, profile_of(frame, one_trial(), pilot), measured);
-  CHECK(of(s, CellStatistic::seconds) == 14.0F);
-  CHECK(of(s, CellStatistic::run_variance) == 8.0F);
+  CHECK(of(s, CellStatistic::seconds) == 2.0F);
+  CHECK(of(s, CellStatistic::run_variance) == 4.5F);
   CHECK(std::isnan(of(s, CellStatistic::onsets)));
   CHECK(std::isnan(s[trial_index(frame, 0, TrialStatistic::lag_0)]));
   // Simulated data are made to tell as little.
