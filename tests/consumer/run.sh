@@ -20,7 +20,8 @@ sed -n '/^```cmake$/,/^```$/p' "$source/README.md" | sed '1d;$d' >"$scratch/own/
 cmake -S "$scratch/own" -B "$scratch/own/build" -DCMAKE_PREFIX_PATH="$scratch/prefix" \
   -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_CXX_FLAGS="$flags" >/dev/null
 cmake --build "$scratch/own/build" >/dev/null
-export PKG_CONFIG_PATH=$(dirname "$(find "$scratch/prefix" -name pirsim.pc)")
+PKG_CONFIG_PATH=$(dirname "$(find "$scratch/prefix" -name pirsim.pc)")
+export PKG_CONFIG_PATH
 # shellcheck disable=SC2046
 "$cxx" -std=c++20 $flags "$source/tests/consumer/main.cpp" -o "$scratch/by_pkg_config" \
   $(pkg-config --static --cflags --libs pirsim)
