@@ -14,7 +14,7 @@ import time
 import numpy as np
 from disagreement import reconciled, table_of
 from estimators import LEARNED
-from readings import first_mornings, read_dataset, read_uci864, whole
+from readings import BadInput, first_mornings, read_dataset, read_uci864, whole
 from scores import NAMES
 from table import Results, equivalent, estimates_of, learning_curve, motion_by_people, real_alone, simulated, trained
 
@@ -122,6 +122,11 @@ def disagreement_table(pirsim, folder, real, arguments):
 
 def main():
     arguments = options()
+    # What is given is read before the work, so that a fault in it costs no time.
+    try:
+        real = read_uci864(arguments.real) if arguments.real else []
+    except BadInput as error:
+        sys.exit(f"count_people: {error}")
     arguments.output.mkdir(parents=True, exist_ok=True)
     pirsim = pirsim_of(arguments.pirsim)
     recipes = {"varied": HERE / "recipes" / "small.yaml"} if arguments.small else RECIPES
@@ -140,7 +145,6 @@ def main():
         trainings = {row: first_mornings(train[name], EQUAL) for row, name in rows.items()}
         trainings["rooms and effects varied, twice the mornings"] = first_mornings(train["varied"], 2 * EQUAL)
         tests["new rooms, analog"] = (whole(data["analog"]["test_rooms"]), True)
-    real = read_uci864(arguments.real) if arguments.real else []
     if real:
         tests[REAL] = (whole(real), True)
     results, sections = Results(), []

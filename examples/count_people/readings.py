@@ -33,6 +33,12 @@ class Piece:
         return set(self.stretch.units[self.keep])
 
 
+def _bit(text):
+    if text not in ("0", "1"):
+        raise ValueError(f"'{text}' is neither 0 nor 1")
+    return text == "1"
+
+
 def whole(stretches, weight=1.0):
     return [Piece(s, np.ones(len(s.people), bool), weight) for s in stretches]
 
@@ -96,19 +102,51 @@ def _read_day(folder, path):
                    np.full(n, day))
 
 
+class BadInput(Exception):
+    """What is wrong with a file that the user gave, as `file:line: what`."""
+
+
+def _moment(date, clock):
+    """UCI 864's `2017/12/22` and `10:49:41`, also as a spreadsheet rewrites them (`2017-12-22`, `0:00:34`)."""
+    year, month, day = (int(part) for part in date.replace("/", "-").split("-"))
+    hour, minute, second = (int(part) for part in clock.split(":"))
+    return datetime.datetime(year, month, day, hour, minute, second)
+
+
 def read_uci864(path):
-    """Occupancy_Estimation.csv as UCI publishes it: the PIR columns and the count, in stretches without gaps."""
-    with open(path, newline="") as file:
-        rows = list(csv.DictReader(file))
-    times = [datetime.datetime.fromisoformat(f"{r['Date'].replace('/', '-')} {r['Time']}") for r in rows]
-    motion = np.array([[r["S6_PIR"] == "1", r["S7_PIR"] == "1"] for r in rows])
-    people = np.array([int(r["Room_Occupancy_Count"]) for r in rows])
+    """Occupancy_Estimation.csv as UCI publishes it: the PIR columns and the count, in stretches without gaps.
+
+    Raises BadInput with file and line for what can't be read.
+    """
+    wanted = {"Date", "Time", "S6_PIR", "S7_PIR", "Room_Occupancy_Count"}
+    times, motion, people = [], [], []
+    try:
+        with open(path, newline="") as file:
+            rows = csv.DictReader(file)
+            missing = sorted(wanted - set(rows.fieldnames or []))
+            if missing:
+                raise BadInput(f"{path}:1: no column {', '.join(missing)}; is this UCI 864's Occupancy_Estimation.csv?")
+            for row in rows:
+                try:
+                    times.append(_moment(row["Date"], row["Time"]))
+                    motion.append([_bit(row["S6_PIR"]), _bit(row["S7_PIR"])])
+                    people.append(int(row["Room_Occupancy_Count"]))
+                except (TypeError, ValueError, AttributeError) as error:
+                    raise BadInput(f"{path}:{rows.line_num}: {error}; expected a date as 2017/12/22, a time as 10:49:41, "
+                                   "bits of 0 or 1 and a count") from None
+                if len(times) > 1 and times[-1] < times[-2]:
+                    raise BadInput(f"{path}:{rows.line_num}: {times[-1]} comes before {times[-2]} of the line above")
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise BadInput(f"{path}: {error}") from None
+    if not times:
+        raise BadInput(f"{path}: no readings")
+    motion, people = np.array(motion), np.array(people)
     seconds = np.array([(t - times[0]).total_seconds() for t in times])
     days = np.array([t.date().isoformat() for t in times])
     cuts = np.flatnonzero((np.diff(seconds) > LONGEST_GAP) | (days[1:] != days[:-1])) + 1
-    stretches = [Stretch("uci864", motion[i], people[i], days[i]) for i in np.split(np.arange(len(rows)), cuts)]
+    stretches = [Stretch("uci864", motion[i], people[i], days[i]) for i in np.split(np.arange(len(times)), cuts)]
     if len(set(days)) > 3:
         return stretches
     # Too few days to hold one back: hours are, which are less apart from each other than days.
     hours = np.array([f"{t.date().isoformat()} {t.hour:02d}h" for t in times])
-    return [replace(s, units=hours[i]) for s, i in zip(stretches, np.split(np.arange(len(rows)), cuts))]
+    return [replace(s, units=hours[i]) for s, i in zip(stretches, np.split(np.arange(len(times)), cuts))]

@@ -26,6 +26,14 @@ def main():
                             "-o", folder, *options], check=True)
             return (folder / "tables.md").read_text()
 
+        # A faulty file is refused by line before any dataset is made.
+        faulty = folder / "faulty.csv"
+        faulty.write_text("Date,Time,S6_PIR,S7_PIR,Room_Occupancy_Count\n2017/12/22,noon,0,0,1\n")
+        refused = subprocess.run([sys.executable, "-B", pathlib.Path(example) / "count_people.py", "--small", "--pirsim",
+                                  pirsim, "-o", folder, "--real", faulty], capture_output=True, text=True)
+        assert refused.returncode == 1 and "faulty.csv:2: " in refused.stderr, refused.stderr
+        assert "Traceback" not in refused.stderr and not (folder / "datasets").exists(), refused.stderr
+
         tables = count()
         assert "| rooms and effects varied | hidden Markov |" in tables, tables
         # What pirsim exports in the shape of UCI 864 stands for the publisher's file.

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """The counter's parts against what they must be. Usage: test_count_people.py EXAMPLE_DIR. Needs numpy."""
 import itertools
+import pathlib
 import sys
+import tempfile
 import unittest
 
 import numpy as np
@@ -11,7 +13,7 @@ sys.dont_write_bytecode = True
 from disagreement import RUN, SETTLING, steady_runs  # noqa: E402
 from features import features, shares  # noqa: E402
 from hidden_markov import forward_filter  # noqa: E402
-from readings import Stretch, among, check_apart, first_mornings, whole  # noqa: E402
+from readings import BadInput, Stretch, among, check_apart, first_mornings, read_uci864, whole  # noqa: E402
 from scores import score, scores_of, tally  # noqa: E402
 from table import equivalent  # noqa: E402
 
@@ -41,6 +43,37 @@ class Leakage(unittest.TestCase):
         self.assertEqual(len(first_mornings(pieces, 6)), 6)
         with self.assertRaises(ValueError):
             first_mornings(pieces, 7)
+
+
+class Uci864(unittest.TestCase):
+    HEADER = "Date,Time,S6_PIR,S7_PIR,Room_Occupancy_Count"
+
+    def read(self, *lines):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "real.csv"
+            path.write_text("\n".join([self.HEADER, *lines]) + "\n")
+            return read_uci864(path)
+
+    def test_as_published_and_as_a_spreadsheet_rewrites_it(self):
+        published = self.read("2017/12/22,09:59:41,0,1,1", "2017/12/22,10:00:12,1,0,2")
+        rewritten = self.read("2017-12-22,9:59:41,0,1,1", "2017-12-22,10:00:12,1,0,2")
+        for (a, b) in zip(published, rewritten):
+            np.testing.assert_array_equal(a.motion, [[False, True], [True, False]])
+            np.testing.assert_array_equal(a.motion, b.motion)
+            np.testing.assert_array_equal(a.people, b.people)
+            self.assertEqual(list(a.units), list(b.units))
+        self.assertEqual(len(published), len(rewritten))
+
+    def test_faults_name_their_line(self):
+        good = "2017/12/22,10:00:12,1,0,2"
+        for bad, line in (("22 Dec,10:00:13,1,0,2", 3), ("2017/12/22,10:00,1,0,2", 3), ("2017/12/22,10:00:13,yes,0,2", 3),
+                          ("2017/12/22,10:00:13,1,0,", 3), ("2017/12/22,10:00:11,1,0,2", 3), ("2017/12/22", 3)):
+            with self.assertRaisesRegex(BadInput, rf"real\.csv:{line}: "):
+                self.read(good, bad)
+        with self.assertRaisesRegex(BadInput, "no readings"):
+            self.read()
+        with self.assertRaisesRegex(BadInput, "No such file"):
+            read_uci864("nowhere.csv")
 
 
 class Filter(unittest.TestCase):
