@@ -71,6 +71,14 @@ void take_from_parent(CLI::App& command) {
   }
 }
 
+/// What a file that stands alone was probably meant for; empty for any other word.
+std::string meant_as(const std::string& word) {
+  const std::string ending = std::filesystem::path(word).extension().string();
+  if (ending == ".gltf" || ending == ".glb") return "; a room is given as --scene " + word;
+  if (ending == ".yaml" || ending == ".yml") return "; a study is given as --script " + word;
+  return {};
+}
+
 /// What is wrong with a word of the command line that nothing takes.
 std::string explain_word(const CLI::App& app, const std::string& word) {
   const CLI::App* command = &app;
@@ -83,9 +91,10 @@ std::string explain_word(const CLI::App& app, const std::string& word) {
     for (const CLI::App* other : command->get_subcommands(nullptr)) known.push_back(other->get_name());
   }
   const std::string spoken = spoken_name(*command);
+  const std::string hint = command->get_option_no_throw("--scene") == nullptr ? std::string() : meant_as(word);
   const std::string what = is_option ? "an option" : known.empty() ? "an argument" : "a command";
   return "error: '" + word + "' isn't " + what + " of 'pirsim" + (spoken.empty() ? "" : " " + spoken) + "'" +
-         did_you_mean(word, known) + "\n";
+         (hint.empty() ? did_you_mean(word, known) : hint) + "\n";
 }
 
 /// CLI11's complaint, "Could not convert: --time = 10s", in pirsim's words; empty if it is another one.

@@ -336,7 +336,13 @@ class Help(unittest.TestCase):
     def test_words_that_nothing_takes_are_named_with_the_nearest(self):
         for args, told in ((("covrage",), "'covrage' isn't a command of 'pirsim' (did you mean 'coverage'?)"),
                            (("reconcile", "pln"), "'pln' isn't a command of 'pirsim reconcile' (did you mean 'plan'?)"),
-                           (("check", "room.gltf"), "'room.gltf' isn't an argument of 'pirsim check'"),
+                           (("check", "room"), "'room' isn't an argument of 'pirsim check'"),
+                           (("room.gltf", "study.yaml"), "'room.gltf' isn't a command of 'pirsim'; a room is given as "
+                            "--scene room.gltf"),
+                           (("study.yaml",), "'study.yaml' isn't a command of 'pirsim'; a study is given as "
+                            "--script study.yaml"),
+                           (("check", "study.yaml"), "'study.yaml' isn't an argument of 'pirsim check'; a study is given as "
+                            "--script study.yaml"),
                            (("--sceen", "a"), "'--sceen' isn't an option of 'pirsim' (did you mean '--scene'?)"),
                            (("coverage", "--replicates", 3), "'--replicates' isn't an option of 'pirsim coverage'")):
             self.assertEqual(pirsim(*args, code=2).stderr, f"error: {told}\n")

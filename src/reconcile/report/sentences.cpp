@@ -70,9 +70,12 @@ std::string no_effect(const Outcome& outcome, double alpha) {
                                    return c.score.probability;
                                  })->score.hypothesis;
   const bool likeliest_is_possible = std::ranges::find(possible, likeliest) != possible.end();
-  return (likeliest_is_possible ? "most effects" : "the likelier effects") + std::string(" of ") + all_of(outcome) +
-         " can hardly have made the data; " + joined(possible, "and") + " might, but with a probability of only " +
-         short_number(together);
+  const bool one = possible.size() == 1;
+  return (likeliest_is_possible ? std::string("of ") : "the likelier ones of ") +
+         (outcome.looked_for.empty() ? "the catalogue's effects" : "the effects looked for") +
+         (likeliest_is_possible ? (one ? " only " : " ") : " are ruled out; ") + joined(possible, "and") +
+         (one && likeliest_is_possible ? " isn't ruled out" : one ? " isn't" : " aren't ruled out") + ", but " +
+         (one ? "its probability" : "their probability together") + " is only " + short_number(together);
 }
 
 /// What else may have made the data beside the effect that is named.
@@ -121,6 +124,25 @@ std::string sentence_of_nearest(const Outcome& outcome) {
          short_number(look.p) + "). It was dropped all the same: " + why(nearest->reason);
 }
 
+/// Which strengths were looked for of the likeliest effects, and how to try others: a fault outside a prior has no name.
+std::string ranges_looked_for(const Outcome& outcome) {
+  constexpr std::size_t most_told = 3;
+  std::vector<Candidate> likeliest = outcome.candidates;
+  std::ranges::stable_sort(likeliest, std::ranges::greater{}, [](const Candidate& c) { return c.score.probability; });
+  std::vector<std::string> ranges;
+  for (const Candidate& candidate : likeliest) {
+    const auto& parameters = effects::find(candidate.score.hypothesis).info.parameters;
+    if (parameters.empty() || ranges.size() == most_told) continue;
+    const effects::ParameterInfo& strength = parameters.front();
+    ranges.push_back(candidate.score.hypothesis + " with " + strength.name + " from " + short_number(strength.low) +
+                     " to " + short_number(strength.high));
+  }
+  if (ranges.empty()) return {};
+  return "Each effect was looked for in a range only: " + joined(ranges, "and") +
+         " (pirsim effects lists all). Yours may lie outside: write it with its value under effects: of the script, and "
+         "reconcile again. ";
+}
+
 }  // namespace
 
 std::string joined(const std::vector<std::string>& names, const std::string& last) {
@@ -150,8 +172,8 @@ std::string next_step(const Outcome& outcome) {
     case Verdict::none_in_catalogue:
       break;
   }
-  return "What to do next: look at the cells and numbers marked below; a new effect is one file of the catalogue "
-         "(docs/howto/add_an_effect.md).";
+  return "What to do next: look at the cells and numbers marked below. " + ranges_looked_for(outcome) +
+         "A cause that is none of the effects can be added to the catalogue (docs/howto/add_an_effect.md).";
 }
 
 std::string short_number(double value) {

@@ -362,7 +362,7 @@ std::string what_of(const ResidualDriver& driver) {
     case more_where_much:
       return up ? "still more motion where much is expected" : "less motion where much is expected";
     case opposite:
-      return up ? "the opposite of what is expected" : "what is expected, but too surely";
+      return up ? "the opposite of what is expected" : "what is expected, with less chance in it: likely motion comes nearly always, unlikely motion nearly never";
     case beside:
       break;
   }

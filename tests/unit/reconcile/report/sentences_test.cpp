@@ -136,6 +136,15 @@ TEST_CASE("what to do next names a plan only for effects that are to be told apa
   CHECK_THAT(next_step(outcome_of(Verdict::one_of, {{"seat_shift", 0.13}})), !contains("--effects"));
 }
 
+TEST_CASE("where no effect is named, the ranges looked for and the way beyond them are told", "[reconcile]") {
+  const std::string step =
+      next_step(outcome_of(Verdict::none_in_catalogue, {{"dead_time", 0.02}, {"pulse_stretching", 0.1}}));
+  const auto& hold = effects::info("pulse_stretching").parameters.front();
+  std::ostringstream range;
+  range << "pulse_stretching with hold_s from " << hold.low << " to " << hold.high << " and dead_time with ";
+  CHECK_THAT(step, contains(range.str()) && contains("under effects: of the script"));
+}
+
 TEST_CASE("of a rest that the model still differs by, and of a catalogue cut down, is told", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::named, {{"seat_shift", 0.9}});
   outcome.looks.push_back({{"seat_shift"}, 0.025, 0.01, {}});
@@ -156,7 +165,7 @@ TEST_CASE("of a catalogue cut down nothing is said about the effects that weren'
              contains("no other effect of those looked for explains the data"));
   Outcome none = cut_down(outcome_of(Verdict::none_in_catalogue, {{"seat_shift", 0.1}}));
   CHECK_THAT(sentence(none, 0.05), contains("something that is not among the effects looked for: ") &&
-                                       contains("most effects of those looked for can hardly have made the data"));
+                                       contains("of the effects looked for only seat_shift isn't ruled out, but its probability is only 0.1"));
   none.candidates.front().score.p = 0.01;
   CHECK_THAT(sentence(none, 0.05), contains("no effect of those looked for is likely"));
   none.candidates.front().reason = reason::RefusedWhenApplied{0.005};
