@@ -33,9 +33,12 @@ class BodyBuilder {
 
   [[nodiscard]] const std::vector<std::string>& files() const noexcept { return document_.files; }
   BodyMeshes build() {
-    for (const PlacedNode& placed : place_nodes(document_, faults_)) {
+    const PlacedNodes nodes = place_nodes(document_, faults_);
+    for (const PlacedNode& placed : nodes.shown) {
       if (document_.model.nodes[static_cast<std::size_t>(placed.node)].mesh >= 0) add_part(placed);
     }
+    for (const HiddenNode& hidden : nodes.hidden) error(hidden.node, "", "it is hidden, and a body's parts can't be");
+    warnings_.tell(faults_);
     if (meshes_.empty() && !faults_.has_errors()) faults_.error(document_.text.where(""), "no node has a mesh");
     return std::move(meshes_);
   }
@@ -48,7 +51,7 @@ class BodyBuilder {
                    "no part of the body is called so" + did_you_mean(node.name, part_names));
     }
     if (meshes_.contains(node.name)) return error(placed.node, "/name", "a second mesh for this part");
-    const TriMesh local = read_mesh(document_, node.mesh, budget_, faults_);
+    const TriMesh local = read_mesh(document_, node.mesh, budget_, faults_, warnings_);
     TriMesh part = clean(transformed(local, scale_of(placed.world_from_node), node.name)).mesh;
     if (part.triangles.empty()) return error(placed.node, "/mesh", "its mesh has no triangle with an area");
     const auto is_near = [](const Vec3& p) { return glm::length(p) <= farthest_m; };
@@ -67,6 +70,7 @@ class BodyBuilder {
   Diagnostics& faults_;
   GltfDocument document_;
   GeometryBudget budget_;
+  GroupedWarnings warnings_;
   BodyMeshes meshes_;
 };
 

@@ -32,7 +32,9 @@ constexpr std::array node_rules{
     Rule{"translation", Kind::numbers, Need::optional, "", 3},
     Rule{"rotation", Kind::numbers, Need::optional, "", 4},
     Rule{"scale", Kind::numbers, Need::optional, "", 3},
+    Rule{"extensions", Kind::object},
 };
+constexpr std::array visibility_rules{Rule{"visible", Kind::flag}};
 constexpr std::array mesh_rules{Rule{"name", Kind::text}};
 constexpr std::array primitive_rules{
     Rule{"attributes", Kind::object, Need::required},
@@ -112,6 +114,15 @@ class StructureCheck {
       object(part, pointer + "/sparse", sparse_rules);
       if (part.contains("indices")) object(part["indices"], pointer + "/sparse/indices", sparse_indices_rules);
       if (part.contains("values")) object(part["values"], pointer + "/sparse/values", sparse_values_rules);
+    }
+  }
+
+  void visibility() {
+    for (const auto& [node, pointer] : objects("nodes")) {
+      const auto extensions = node->find("extensions");
+      if (extensions == node->end() || !extensions->is_object() || !extensions->contains(visibility_extension))
+        continue;
+      object((*extensions)[visibility_extension], pointer + "/extensions/" + visibility_extension, visibility_rules);
     }
   }
 
@@ -225,6 +236,7 @@ void check_structure(const JsonText& text, Diagnostics& faults) {
   check.each("buffers", buffer_rules);
   check.primitives();
   check.sparse();
+  check.visibility();
   check.default_scene();
 }
 

@@ -10,12 +10,12 @@ namespace {
 
 using nlohmann::json;
 
-/// Extensions that may be required because they change neither the geometry that occludes nor the hierarchy.
+/// Extensions that may be required: they are read, or they change neither the geometry that occludes nor the hierarchy.
 bool is_harmless(const std::string& extension) {
   for (const char* prefix : {"KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "EXT_lights_"}) {
     if (extension.starts_with(prefix)) return true;
   }
-  return extension == "KHR_mesh_quantization";  // integer positions are read
+  return extension == "KHR_mesh_quantization" || extension == visibility_extension;
 }
 
 void check_asset(const JsonText& text, Diagnostics& faults) {

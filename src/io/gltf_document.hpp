@@ -22,6 +22,9 @@ struct GltfDocument {
 /// accessors are not yet checked against their buffers. Warnings go to `remarks`.
 [[nodiscard]] GltfDocument load_gltf(const std::filesystem::path& file, Diagnostics& remarks);
 
+/// Of nodes that aren't shown, nor anything below them.
+inline constexpr const char* visibility_extension = "KHR_node_visibility";
+
 /// "node 'PIR1'" or "node 4".
 [[nodiscard]] std::string node_label(const tinygltf::Model& model, int node);
 [[nodiscard]] std::string mesh_label(const tinygltf::Model& model, int mesh);

@@ -18,13 +18,14 @@ std::array<std::size_t, 3> corners(int mode, std::size_t t) {
 class MeshReader {
  public:
   MeshReader(const GltfDocument& document, int mesh, std::span<const std::optional<double>> temperatures_c,
-             GeometryBudget& budget, Diagnostics& remarks)
+             GeometryBudget& budget, Diagnostics& faults, GroupedWarnings& warnings)
       : document_(document),
         mesh_(mesh),
         temperatures_c_(temperatures_c),
         budget_(budget),
-        remarks_(remarks),
-        accessors_(document, remarks),
+        faults_(faults),
+        warnings_(warnings),
+        accessors_(document, faults),
         name_(mesh_label(document.model, mesh)) {}
 
   std::vector<TriMesh> read() {
@@ -104,17 +105,18 @@ class MeshReader {
   }
 
   void error(const std::string& pointer, const std::string& message) {
-    remarks_.error(document_.text.where(pointer), name_ + ": " + message);
+    faults_.error(document_.text.where(pointer), name_ + ": " + message);
   }
   void warn(const std::string& pointer, const std::string& message) {
-    remarks_.warning(document_.text.where(pointer), name_ + ": " + message);
+    warnings_.add(message, document_.text.where(pointer), name_, name_ + ": " + message);
   }
 
   const GltfDocument& document_;
   int mesh_;
   std::span<const std::optional<double>> temperatures_c_;
   GeometryBudget& budget_;
-  Diagnostics& remarks_;
+  Diagnostics& faults_;
+  GroupedWarnings& warnings_;
   AccessorReader accessors_;
   std::string name_;
   std::vector<TriMesh> parts_;
@@ -128,14 +130,15 @@ bool GeometryBudget::take(std::size_t elements) noexcept {
   return true;
 }
 
-TriMesh read_mesh(const GltfDocument& document, int mesh, GeometryBudget& budget, Diagnostics& remarks) {
-  return joined(MeshReader(document, mesh, {}, budget, remarks).read());
+TriMesh read_mesh(const GltfDocument& document, int mesh, GeometryBudget& budget, Diagnostics& faults,
+                  GroupedWarnings& warnings) {
+  return joined(MeshReader(document, mesh, {}, budget, faults, warnings).read());
 }
 
 std::vector<TriMesh> read_mesh_parts(const GltfDocument& document, int mesh,
                                      std::span<const std::optional<double>> temperatures_c, GeometryBudget& budget,
-                                     Diagnostics& remarks) {
-  return MeshReader(document, mesh, temperatures_c, budget, remarks).read();
+                                     Diagnostics& faults, GroupedWarnings& warnings) {
+  return MeshReader(document, mesh, temperatures_c, budget, faults, warnings).read();
 }
 
 TriMesh joined(const std::vector<TriMesh>& parts) {

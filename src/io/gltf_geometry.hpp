@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/grouped_warnings.hpp"
 #include "io/gltf_document.hpp"
 #include "pirsim/geometry.hpp"
 
@@ -59,12 +60,14 @@ class GeometryBudget {
 
 /// All triangles of a mesh in its own frame. Faults name the mesh and stand at the accessor or primitive; what isn't
 /// triangles is left out with a warning.
-[[nodiscard]] TriMesh read_mesh(const GltfDocument& document, int mesh, GeometryBudget& budget, Diagnostics& remarks);
+[[nodiscard]] TriMesh read_mesh(const GltfDocument& document, int mesh, GeometryBudget& budget, Diagnostics& faults,
+                                GroupedWarnings& warnings);
 
 /// The same in parts that are equally warm, in the order in which they come; temperatures_c: (n_materials).
 [[nodiscard]] std::vector<TriMesh> read_mesh_parts(const GltfDocument& document, int mesh,
                                                    std::span<const std::optional<double>> temperatures_c,
-                                                   GeometryBudget& budget, Diagnostics& remarks);
+                                                   GeometryBudget& budget, Diagnostics& faults,
+                                                   GroupedWarnings& warnings);
 /// All triangles of the parts; without a temperature if there are several.
 [[nodiscard]] TriMesh joined(const std::vector<TriMesh>& parts);
 
@@ -78,9 +81,20 @@ struct PlacedNode {
   glm::dmat4 world_from_node{1.0};
 };
 
-/// Nodes of the default scene, children after parents, in file order. Faults: no scene, a node below itself or below
-/// two parents, transforms that are singular, not finite or out of the world.
-[[nodiscard]] std::vector<PlacedNode> place_nodes(const GltfDocument& document, Diagnostics& remarks);
+/// A node that isn't shown, by KHR_node_visibility or by a scale of zero along all axes, with all that is below it.
+struct HiddenNode {
+  int node = 0;                 ///< index into `nodes`
+  std::vector<int> below = {};  ///< all nodes below it, in file order
+};
+
+struct PlacedNodes {
+  std::vector<PlacedNode> shown;   ///< children after parents, in file order
+  std::vector<HiddenNode> hidden;  ///< the topmost of each hidden part
+};
+
+/// Nodes of the default scene. Faults: no scene, a node below itself or below two parents, transforms that are
+/// singular, not finite or out of the world.
+[[nodiscard]] PlacedNodes place_nodes(const GltfDocument& document, Diagnostics& remarks);
 
 /// The rigid part of a transform: looks along its -Z exactly, +Y as near as it can be; scale and mirroring drop out.
 [[nodiscard]] Frame rigid_frame(const glm::dmat4& world_from_node);

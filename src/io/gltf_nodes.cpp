@@ -22,7 +22,7 @@ class Placement {
   Placement(const GltfDocument& document, Diagnostics& remarks)
       : document_(document), remarks_(remarks), seen_(document.model.nodes.size(), false) {}
 
-  std::vector<PlacedNode> run() {
+  PlacedNodes run() {
     const tinygltf::Model& model = document_.model;
     if (model.scenes.empty()) {
       remarks_.error(document_.text.where(""), "the file has no 'scenes'");
@@ -54,20 +54,54 @@ class Placement {
     }
   }
 
+  /// False, and a fault, for a node that was met before.
+  bool see(const Pending& pending) {
+    const auto index = static_cast<std::size_t>(pending.node);
+    if (!seen_[index]) return seen_[index] = true;
+    ++n_faults_;
+    remarks_.error(document_.text.where(pending.pointer),
+                   node_label(document_.model, pending.node) + " is its own ancestor or has two parents");
+    return false;
+  }
+
+  /// What is below a hidden node is hidden with it, wherever it is.
+  void hide(int node) {
+    HiddenNode& hidden = placed_.hidden.emplace_back(HiddenNode{node});
+    const std::size_t others = pending_.size();
+    const auto push_children = [&](int parent) {
+      push(document_.model.nodes[static_cast<std::size_t>(parent)].children, {}, pointer_of(parent) + "/children");
+    };
+    push_children(node);
+    while (pending_.size() > others) {
+      const Pending next = std::move(pending_.back());
+      pending_.pop_back();
+      if (!see(next)) continue;
+      hidden.below.push_back(next.node);
+      push_children(next.node);
+    }
+  }
+
   void visit(const Pending& pending) {
     const auto index = static_cast<std::size_t>(pending.node);
     const tinygltf::Node& node = document_.model.nodes[index];
-    if (seen_[index]) {
-      ++n_faults_;
-      remarks_.error(document_.text.where(pending.pointer),
-                     node_label(document_.model, pending.node) + " is its own ancestor or has two parents");
-      return;
-    }
-    seen_[index] = true;
+    if (!see(pending)) return;
     const glm::dmat4 world_from_node = pending.world_from_parent * local(node, pending.node);
+    if (is_hidden(pending.node) || is_nothing(world_from_node)) return hide(pending.node);
     if (!sane(world_from_node, pending.node)) return;
-    placed_.push_back({pending.node, world_from_node});
+    placed_.shown.push_back({pending.node, world_from_node});
     push(node.children, world_from_node, pointer_of(pending.node) + "/children");
+  }
+
+  [[nodiscard]] bool is_hidden(int node) const {
+    const nlohmann::json& given = document_.text.root()["nodes"][static_cast<std::size_t>(node)];
+    const auto extensions = given.find("extensions");
+    if (extensions == given.end()) return false;
+    const auto visibility = extensions->find(visibility_extension);
+    return visibility != extensions->end() && visibility->value("visible", true) == false;
+  }
+  /// "When the scale is zero on all three axes", glTF 2.0 lets programs leave out the node and all below it.
+  [[nodiscard]] static bool is_nothing(const glm::dmat4& m) {
+    return glm::length(Vec3(m[0])) + glm::length(Vec3(m[1])) + glm::length(Vec3(m[2])) < smallest_scale;
   }
 
   glm::dmat4 local(const tinygltf::Node& node, int index) {
@@ -115,7 +149,8 @@ class Placement {
     const double shortest = std::min({glm::length(x), glm::length(y), glm::length(z)});
     if (shortest < smallest_scale || std::abs(glm::dot(glm::cross(x, y), z)) < 1e-9 * lengths) {
       const auto& given = document_.model.nodes[static_cast<std::size_t>(node)];
-      return fault(node, given.matrix.empty() ? "/scale" : "/matrix", "its transform is singular (a scale of zero?)");
+      return fault(node, given.matrix.empty() ? "/scale" : "/matrix",
+                   "its transform is singular: a scale of zero along one axis makes it flat");
     }
     return true;
   }
@@ -130,13 +165,13 @@ class Placement {
   Diagnostics& remarks_;
   std::vector<bool> seen_;
   std::vector<Pending> pending_;
-  std::vector<PlacedNode> placed_;
+  PlacedNodes placed_;
   std::size_t n_faults_ = 0;
 };
 
 }  // namespace
 
-std::vector<PlacedNode> place_nodes(const GltfDocument& document, Diagnostics& remarks) {
+PlacedNodes place_nodes(const GltfDocument& document, Diagnostics& remarks) {
   return Placement(document, remarks).run();
 }
 

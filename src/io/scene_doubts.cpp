@@ -9,9 +9,11 @@
 #include <numeric>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "geom/floor_distance.hpp"
 #include "io/scene_parts.hpp"
+#include "schema/scene_unit.hpp"
 
 namespace pirsim::io::detail {
 namespace {
@@ -45,14 +47,16 @@ std::string in_metres(double length_m) {
 /// Nobody means metres by thousands of them.
 std::string unit_of(double metres) { return metres >= 1000.0 ? "millimetres?" : "centimetres?"; }
 
-class Doubts {
+class SceneDoubts {
  public:
-  Doubts(const SceneSpec& scene, const MarkedNodes& nodes, const DoubtSink& tell)
+  SceneDoubts(const SceneSpec& scene, const MarkedNodes& nodes, const DoubtSink& tell)
       : scene_(scene), nodes_(nodes), tell_(tell) {
     for (const TriMesh& mesh : scene.meshes) boxes_.push_back(box_of(mesh));
   }
 
   void run() {
+    const auto unit = nodes_.as_meant.contains(nodes_.floor) ? std::nullopt : doubt_of_unit(scene_);
+    if (unit) return tell("unit", nodes_.floor, "the floor", *unit);
     sizes();
     for (std::size_t i = 0; i < scene_.entrances.size(); ++i) entrance(scene_.entrances[i], nodes_.entrances[i]);
     for (std::size_t i = 0; i < scene_.seats.size(); ++i) seat(scene_.seats[i], nodes_.seats[i]);
@@ -60,23 +64,22 @@ class Doubts {
   }
 
  private:
+  void tell(const char* kind, int node, std::string name, std::string message) const {
+    if (!nodes_.as_meant.contains(node)) tell_({kind, node, std::move(name), std::move(message)});
+  }
+
   void sizes() {
-    // assumed: the largest halls span some hundred metres, and what stands in a room isn't ten times its size
-    constexpr double longest_floor_m = 300.0, longest_m = 100.0, to_floor = 10.0;
+    constexpr double longest_m = 100.0, to_floor = 10.0;  // assumed: what stands in a room isn't ten times its size
     const Vec2 floor = scene_.floor.upper() - scene_.floor.lower();
     const double across = glm::length(floor);
-    if (std::max(floor.x, floor.y) > longest_floor_m) {
-      tell_(nodes_.floor,
-            "the floor spans " + extent(floor.x, floor.y) + ": " + unit_of(across) + " glTF's unit is the metre");
-    }
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
       if (scene_.meshes[i].positions.empty()) continue;
       const Vec3 size = boxes_[i].most - boxes_[i].least;
       const double longest = std::max({size.x, size.y, size.z});
       if (longest <= std::max(longest_m, to_floor * across)) continue;
-      tell_(nodes_.meshes[i], "its mesh spans " + extent(size.x, size.z) + " and is " +
-                                  std::to_string(std::llround(size.y)) + " m high, beside a floor of " +
-                                  extent(floor.x, floor.y) + ": " + unit_of(longest));
+      tell("size", nodes_.meshes[i], "'" + scene_.meshes[i].name + "'",
+           "its mesh spans " + extent(size.x, size.z) + " and is " + std::to_string(std::llround(size.y)) +
+               " m high, beside a floor of " + extent(floor.x, floor.y) + ": " + unit_of(longest));
     }
   }
 
@@ -86,8 +89,9 @@ class Doubts {
     };
     constexpr double step_m = 0.5;  // assumed: more than a threshold is deep, less than a corridor is wide
     if (!is_floor(-step_m) && is_floor(step_m)) {
-      tell_(node, "entrance '" + entrance.id +
-                      "' is turned round: the floor lies behind it, and its -Z must point into the room");
+      tell("turned round", node, "entrance '" + entrance.id + "'",
+           "entrance '" + entrance.id +
+               "' is turned round: the floor lies behind it, and its -Z must point into the room");
     }
     threshold(entrance, node);
     doorway(entrance, node);
@@ -99,14 +103,16 @@ class Doubts {
     constexpr double most_above_m = 0.1, most_aside_m = 0.2;
     const Vec3 at = entrance.world_from_entrance.origin;
     if (const double above_m = at.y - scene_.floor.height_m(); std::abs(above_m) > most_above_m) {
-      tell_(node, "entrance '" + entrance.id + "' isn't on the floor, but " + in_metres(std::abs(above_m)) +
-                      (above_m > 0.0 ? " above it" : " below it"));
+      tell("height", node, "entrance '" + entrance.id + "'",
+           "entrance '" + entrance.id + "' isn't on the floor, but " + in_metres(std::abs(above_m)) +
+               (above_m > 0.0 ? " above it" : " below it"));
     }
     const Vec2 place = floor_point(at);
     if (const double aside_m = distance_to_edge_m(scene_.floor, place); aside_m > most_aside_m) {
-      tell_(node, "entrance '" + entrance.id + "' isn't at the floor's edge, but " + in_metres(aside_m) +
-                      (scene_.floor.contains(place) ? " inside" : " outside") +
-                      " of it: its node is the middle of the threshold");
+      tell("edge", node, "entrance '" + entrance.id + "'",
+           "entrance '" + entrance.id + "' isn't at the floor's edge, but " + in_metres(aside_m) +
+               (scene_.floor.contains(place) ? " inside" : " outside") +
+               " of it: its node is the middle of the threshold");
     }
   }
 
@@ -121,9 +127,10 @@ class Doubts {
     }
     const auto closed = std::ranges::count_if(by, [](int mesh) { return mesh >= 0; });
     if (static_cast<double>(closed) <= share_in_doubt * n_across) return;
-    tell_(node, "entrance '" + entrance.id + "': '" + name(*std::ranges::max_element(by)) + "' stands in " +
-                    in_metres(entrance.width_m * static_cast<double>(closed) / n_across) + " of its width of " +
-                    in_metres(entrance.width_m));
+    tell("doorway", node, "entrance '" + entrance.id + "'",
+         "entrance '" + entrance.id + "': '" + name(*std::ranges::max_element(by)) + "' stands in " +
+             in_metres(entrance.width_m * static_cast<double>(closed) / n_across) + " of its width of " +
+             in_metres(entrance.width_m));
   }
   static constexpr double half_depth_m = 0.25;  ///< of a doorway; assumed: most of a wall, less than a person needs
   [[nodiscard]] static bool reaches(const Box& box, const EntranceSpec& entrance) {
@@ -160,50 +167,76 @@ class Doubts {
   /// Seats as near as this are one that was copied, or two for one sitter; assumed: less than any chair is wide.
   void neighbours() {
     constexpr double least_apart_m = 0.4;
-    constexpr int most_told = 20;  // of a file where all seats are at one place
     const auto place = [&](std::size_t i) -> const Vec3& { return scene_.seats[i].world_from_seat.origin; };
     std::vector<std::size_t> along_x(scene_.seats.size());
     std::iota(along_x.begin(), along_x.end(), std::size_t{0});
     std::ranges::stable_sort(along_x, {}, [&](std::size_t i) { return place(i).x; });
-    int told = 0;
     for (auto i = along_x.begin(); i != along_x.end(); ++i) {
-      for (auto k = i + 1; k != along_x.end() && place(*k).x - place(*i).x < least_apart_m; ++k) {
-        const double apart_m = glm::distance(place(*i), place(*k));
+      for (auto k = i; k != along_x.begin() && place(*i).x - place(*(k - 1)).x < least_apart_m; --k) {
+        const double apart_m = glm::distance(place(*i), place(*(k - 1)));
         if (apart_m >= least_apart_m) continue;
-        if (++told > most_told) return;
-        const auto [first, second] = std::minmax(*i, *k);
-        tell_(nodes_.seats[second], "seat '" + scene_.seats[second].id + "' is " + in_metres(apart_m) + " from seat '" +
-                                        scene_.seats[first].id + "': two sitters would sit in each other");
+        const auto [first, second] = std::minmax(*i, *(k - 1));
+        const std::string name = "seat '" + scene_.seats[second].id + "'";
+        tell("neighbours", nodes_.seats[second], name,
+             name + " is " + in_metres(apart_m) + " from seat '" + scene_.seats[first].id +
+                 "': two sitters would sit in each other");
+        break;
       }
     }
   }
 
   void seat(const SeatSpec& seat, int node) {
     if (!scene_.floor.contains(floor_point(seat.world_from_seat.origin))) {
-      tell_(node, "seat '" + seat.id + "' lies off the floor: who sits there isn't counted in the column `people`");
+      tell("off the floor", node, "seat '" + seat.id + "'",
+           "seat '" + seat.id + "' lies off the floor: who sits there isn't counted in the column `people`");
     }
     // The trunk stands above the pelvis; a cushion or an arm's rest is lower (assumed).
     const Vec3 hip = seat.world_from_seat.origin;
     if (const int within = crossed(hip, hip.y + 0.15, hip.y + 0.6); within >= 0) {
-      tell_(node,
-            "seat '" + seat.id + "' is inside of '" + name(within) + "': the sitter's trunk would pass through it");
+      tell("inside", node, "seat '" + seat.id + "'",
+           "seat '" + seat.id + "' is inside of '" + name(within) + "': the sitter's trunk would pass through it");
       return;
     }
-    if (table(seat, -1.0) >= 0) return;
-    if (const int behind = table(seat, 1.0); behind >= 0) {
-      tell_(node, "seat '" + seat.id + "' faces away from '" + name(behind) + "': sitters look along the node's -Z");
+    if (table(seat, -1.0)) return;
+    if (const auto behind = table(seat, 1.0); behind && is_deep(seat, *behind) && !is_its_back(seat, *behind)) {
+      tell("faces away", node, "seat '" + seat.id + "'",
+           "seat '" + seat.id + "' faces away from '" + name(behind->mesh) + "': sitters look along the node's -Z");
     }
   }
 
-  /// The mesh of a table before the seat (towards -Z) or behind it, or -1.
-  [[nodiscard]] int table(const SeatSpec& seat, double towards_z) const {
+  struct Table {
+    int mesh;
+    double away_m;  ///< from the seat's point
+  };
+  /// Of what stands before the seat (towards -Z) or behind it.
+  [[nodiscard]] std::optional<Table> table(const SeatSpec& seat, double towards_z) const {
+    for (const double away_m : {0.35, 0.45, 0.55}) {  // beyond a chair's back, within the arms' reach
+      if (const int mesh = table_at(seat, towards_z * away_m); mesh >= 0) return Table{mesh, away_m};
+    }
+    return std::nullopt;
+  }
+  /// The mesh at a table's height at z in the seat's frame, or -1.
+  [[nodiscard]] int table_at(const SeatSpec& seat, double z) const {
     constexpr double lowest_m = 0.6, highest_m = 0.9;  // above the floor; assumed: of desks and tables to sit at
     const double floor_m = scene_.floor.height_m();
-    for (const double away_m : {0.35, 0.45, 0.55}) {  // beyond a chair's back, within the arms' reach
-      const Vec3 place = seat.world_from_seat * Vec3(0, 0, towards_z * away_m);
-      if (const int mesh = crossed(place, floor_m + lowest_m, floor_m + highest_m); mesh >= 0) return mesh;
+    return crossed(seat.world_from_seat * Vec3(0, 0, z), floor_m + lowest_m, floor_m + highest_m);
+  }
+  /// Is there room for forearms on it? A sofa's back or a cistern has none.
+  [[nodiscard]] bool is_deep(const SeatSpec& seat, const Table& behind) const {
+    for (const double more_m : {0.1, 0.2, 0.3}) {  // assumed: of tables to sit at (tried 0.2-0.4)
+      if (table_at(seat, behind.away_m + more_m) < 0) return false;
     }
-    return -1;
+    return true;
+  }
+  /// Does what the sitter sits on reach back there without a gap? Then that is its back: a sofa's, say.
+  [[nodiscard]] bool is_its_back(const SeatSpec& seat, const Table& behind) const {
+    constexpr double step_m = 0.05;  // assumed: no gap between a chair and a table is narrower (tried 0.03-0.1)
+    constexpr double from_m = 0.1, head_m = 0.6;  // assumed: above feet and carpets, up to the sitter's neck
+    const double floor_m = scene_.floor.height_m(), pelvis_m = seat.world_from_seat.origin.y;
+    for (double away_m = 0.0; away_m < behind.away_m; away_m += step_m) {
+      if (crossed(seat.world_from_seat * Vec3(0, 0, away_m), floor_m + from_m, pelvis_m + head_m) < 0) return false;
+    }
+    return true;
   }
 
   /// The first mesh that an upright line through the place intersects between two heights, or -1.
@@ -239,7 +272,7 @@ class Doubts {
 }  // namespace
 
 void doubt(const SceneSpec& scene, const MarkedNodes& nodes, const DoubtSink& tell) {
-  Doubts(scene, nodes, tell).run();
+  SceneDoubts(scene, nodes, tell).run();
 }
 
 }  // namespace pirsim::io::detail

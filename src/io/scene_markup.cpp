@@ -59,10 +59,11 @@ using nlohmann::json;
 
 class MarkupReader {
  public:
-  MarkupReader(const GltfDocument& document, int node, const json& value, Diagnostics& remarks)
-      : document_(document), node_(node), value_(value), remarks_(remarks) {}
+  MarkupReader(const GltfDocument& document, int node, const json& value, Diagnostics& faults,
+               GroupedWarnings& warnings)
+      : document_(document), node_(node), value_(value), faults_(faults), warnings_(warnings) {}
 
-  std::optional<Markup> read() {
+  std::optional<NodeMark> read() {
     if (!value_.is_object()) return error("", "'pirsim' must be an object with a 'type'"), std::nullopt;
     if (!value_.contains("type")) return error("", "'type' is missing; " + types_told()), std::nullopt;
     if (!value_["type"].is_string()) return error("/type", "'type' must be a text; " + types_told()), std::nullopt;
@@ -74,8 +75,11 @@ class MarkupReader {
     if (type == "floor") result = floor();
     if (type == "surface") result = surface();
     if (type == "ignore") result = ignore();
+    if (value_.contains("as_meant") && !value_["as_meant"].is_boolean())
+      error("/as_meant", "'as_meant' must be true or false");
     if (!result) error("/type", "unknown type '" + type + "'" + did_you_mean(type, types()) + "; " + types_told());
-    return faulty_ ? std::nullopt : result;
+    if (faulty_) return std::nullopt;
+    return NodeMark{*std::move(result), value_.value("as_meant", false) ? Doubts::not_told : Doubts::told};
   }
 
   static std::vector<std::string> types() { return {"sensor", "seat", "entrance", "floor", "surface", "ignore"}; }
@@ -110,17 +114,19 @@ class MarkupReader {
     const bool has_mesh = document_.model.nodes[static_cast<std::size_t>(node_)].mesh >= 0;
     if (!result.polygon && !has_mesh) error("", "a floor needs a mesh at its node, or 'polygon_xz_m'");
     if (value_.contains("occludes") && !has_mesh) {
-      remarks_.warning(document_.text.where(markup_pointer(node_) + "/occludes"),
-                       node_label(document_.model, node_) +
-                           ": 'occludes' has no effect without a mesh at the node: no ray ends at a polygon");
+      const std::string name = node_label(document_.model, node_);
+      warnings_.add("occludes", document_.text.where(markup_pointer(node_) + "/occludes"), name,
+                    name + ": 'occludes' has no effect without a mesh at the node: no ray ends at a polygon");
     }
     return result;
   }
   mark::Surface surface() {
     only({"type", "temperature_c"});
-    if (!value_.contains("temperature_c")) error("", "surface without 'temperature_c'");
+    if (!value_.contains("temperature_c") && !value_.contains("as_meant"))
+      error("", "surface without 'temperature_c' or 'as_meant'");
     if (document_.model.nodes[static_cast<std::size_t>(node_)].mesh < 0)
       error("", "a surface needs a mesh at its node");
+    if (!value_.contains("temperature_c")) return {};
     return {number("temperature_c", 0.0, coldest_surface_c, hottest_surface_c, "degrees Celsius")};
   }
   mark::Ignore ignore() {
@@ -128,7 +134,8 @@ class MarkupReader {
     return {};
   }
 
-  void only(const std::vector<std::string>& keys) {
+  void only(std::vector<std::string> keys) {
+    keys.emplace_back("as_meant");
     for (const auto& [key, unused] : value_.items()) {
       if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
       error_at(document_.text.where_key(markup_pointer(node_) + '/' + key),
@@ -183,13 +190,14 @@ class MarkupReader {
   }
   void error_at(Where where, const std::string& message) {
     faulty_ = true;
-    remarks_.error(std::move(where), node_label(document_.model, node_) + ": " + message);
+    faults_.error(std::move(where), node_label(document_.model, node_) + ": " + message);
   }
 
   const GltfDocument& document_;
   int node_;
   const json& value_;
-  Diagnostics& remarks_;
+  Diagnostics& faults_;
+  GroupedWarnings& warnings_;
   bool faulty_ = false;
 };
 
@@ -197,29 +205,31 @@ class MarkupReader {
 
 std::string markup_pointer(int node) { return "/nodes/" + std::to_string(node) + "/extras/pirsim"; }
 
-std::optional<Markup> read_markup(const GltfDocument& document, int node, Diagnostics& remarks) {
+std::optional<NodeMark> read_markup(const GltfDocument& document, int node, Diagnostics& faults,
+                                    GroupedWarnings& warnings) {
   const json& given = document.text.root()["nodes"][static_cast<std::size_t>(node)];
   const auto extras = given.find("extras");
   if (extras == given.end() || !extras->is_object() || !extras->contains("pirsim")) return std::nullopt;
   const json& value = (*extras)["pirsim"];
-  if (!value.is_string()) return MarkupReader(document, node, value, remarks).read();
+  if (!value.is_string()) return MarkupReader(document, node, value, faults, warnings).read();
   // Editors such as Blender offer texts as custom properties, so the object may come as one.
   const auto parsed = parse_json(value.get<std::string>());
   if (const auto* fault = std::get_if<JsonFault>(&parsed)) {
     const bool single = value.get<std::string>().find('\'') != std::string::npos;
-    remarks.error(document.text.where(markup_pointer(node)),
-                  node_label(document.model, node) + ": the text at 'pirsim' is " + fault->message +
-                      (single ? "; JSON's quotes are double: {\"type\": \"seat\", \"id\": \"S1\"}" : ""));
+    faults.error(document.text.where(markup_pointer(node)),
+                 node_label(document.model, node) + ": the text at 'pirsim' is " + fault->message +
+                     (single ? "; JSON's quotes are double: {\"type\": \"seat\", \"id\": \"S1\"}" : ""));
     return std::nullopt;
   }
-  return MarkupReader(document, node, std::get<json>(parsed), remarks).read();
+  return MarkupReader(document, node, std::get<json>(parsed), faults, warnings).read();
 }
 
-void warn_of_near_marks(const GltfDocument& document, int node, Diagnostics& remarks) {
+void warn_of_near_marks(const GltfDocument& document, int node, GroupedWarnings& warnings) {
   const json& given = document.text.root()["nodes"][static_cast<std::size_t>(node)];
   const std::string pointer = "/nodes/" + std::to_string(node);
   const auto warn = [&](const std::string& key, const std::string& message) {
-    remarks.warning(document.text.where_key(pointer + key), node_label(document.model, node) + ": " + message);
+    const std::string name = node_label(document.model, node);
+    warnings.add("near mark", document.text.where_key(pointer + key), name, name + ": " + message);
   };
   if (given.contains("pirsim")) warn("/pirsim", "'pirsim' is not read here: it must be in the node's 'extras'");
   const auto extras = given.find("extras");

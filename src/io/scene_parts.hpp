@@ -3,10 +3,12 @@
 
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "core/grouped_warnings.hpp"
 #include "io/gltf_document.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/geometry.hpp"
@@ -44,21 +46,28 @@ struct Floor {
 };
 /// Says something of the node's mesh.
 struct Surface {
-  double temperature_c = 0.0;
+  std::optional<double> temperature_c;
 };
 struct Ignore {};
 }  // namespace mark
 
 using Markup = std::variant<mark::Sensor, mark::Seat, mark::Entrance, mark::Floor, mark::Surface, mark::Ignore>;
 
+enum class Doubts { told, not_told };
+struct NodeMark {
+  Markup what;
+  Doubts doubts = Doubts::told;  ///< not_told: `as_meant`, the node is as it should be
+};
+
 /// JSON pointer of a node's markup.
 [[nodiscard]] std::string markup_pointer(int node);
 
 /// Nothing for a node without markup, or with a faulty one (the faults are added).
-[[nodiscard]] std::optional<Markup> read_markup(const GltfDocument& document, int node, Diagnostics& remarks);
+[[nodiscard]] std::optional<NodeMark> read_markup(const GltfDocument& document, int node, Diagnostics& faults,
+                                                  GroupedWarnings& warnings);
 
 /// Warns of what was meant for a mark but isn't read as one: `PIRSIM`, or its keys without it.
-void warn_of_near_marks(const GltfDocument& document, int node, Diagnostics& remarks);
+void warn_of_near_marks(const GltfDocument& document, int node, GroupedWarnings& warnings);
 
 // What a scene may say, but hardly means.
 
@@ -66,11 +75,18 @@ void warn_of_near_marks(const GltfDocument& document, int node, Diagnostics& rem
 struct MarkedNodes {
   std::vector<int> seats, entrances, meshes;
   int floor = 0;
+  std::set<int> as_meant = {};  ///< nothing about them is in doubt
 };
-using DoubtSink = std::function<void(int node, const std::string& message)>;
+struct Doubt {
+  std::string kind;  ///< what such doubts have in common
+  int node = 0;
+  std::string name;  ///< of what is in doubt: "seat 'S1'"
+  std::string message;
+};
+using DoubtSink = std::function<void(const Doubt&)>;
 
-/// An entrance turned round, off the floor's edge or blocked; a seat off the floor, at another's place, inside a desk or
-/// with its back to one; sizes of another unit than metres.
+/// An entrance turned round, off the floor's edge or blocked; a seat off the floor, at another's place, inside a desk
+/// or with its back to one; sizes of another unit than metres, beside which nothing else is in doubt.
 void doubt(const SceneSpec& scene, const MarkedNodes& nodes, const DoubtSink& tell);
 
 // The floor area of a scene, joined from all nodes that are marked as floor.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "io/gltf_geometry.hpp"
@@ -28,7 +29,13 @@ class SceneBuilder {
   SceneSpec build() {
     warn_of_what_is_left_out();
     temperatures_c_ = material_temperatures_c(document_, remarks_);
-    for (const PlacedNode& placed : place_nodes(document_, remarks_)) {
+    const PlacedNodes nodes = place_nodes(document_, remarks_);
+    for (const HiddenNode& hidden : nodes.hidden) tell_of_hidden(hidden);
+    for (const PlacedNode& placed : nodes.shown) {
+      read_mark(placed.node);
+      if (too_many_faults()) break;
+    }
+    for (const PlacedNode& placed : nodes.shown) {
       add_node(placed);
       if (too_many_faults()) break;
     }
@@ -40,6 +47,7 @@ class SceneBuilder {
       remarks_.warning(document_.text.where(""), "the scene has no sensors");
     }
     read_sensor_models();
+    warnings_.tell(remarks_);
     remarks_.throw_if_errors();
     spec_.warnings = remarks_.warnings();
     return std::move(spec_);
@@ -59,9 +67,11 @@ class SceneBuilder {
       for (std::size_t i = 0; array != root.end() && i < array->size(); ++i) {
         const auto extras = (*array)[i].find("extras");
         if (extras == (*array)[i].end() || !extras->is_object() || !extras->contains("pirsim")) continue;
-        remarks_.warning(
-            document_.text.where("/" + std::string(collection) + '/' + std::to_string(i) + "/extras/pirsim"),
-            "'pirsim' counts on nodes only; here, on " + label_of(collection, i) +
+        const std::string name = label_of(collection, i);
+        warnings_.add(
+            "off nodes",
+            document_.text.where("/" + std::string(collection) + '/' + std::to_string(i) + "/extras/pirsim"), name,
+            "'pirsim' counts on nodes only; here, on " + name +
                 ", it is not read: put it on the object's node (in Blender: the object's properties, not its data's)");
       }
     }
@@ -70,19 +80,59 @@ class SceneBuilder {
     return collection == "meshes" ? mesh_label(document_.model, static_cast<int>(i)) : "a scene";
   }
   void warn_of_doubts() {
-    doubt(spec_, nodes_, [&](int node, const std::string& message) {
-      remarks_.warning(document_.text.where("/nodes/" + std::to_string(node)),
-                       node_label(document_.model, node) + ": " + message);
+    doubt(spec_, nodes_, [&](const Doubt& doubt) {
+      warnings_.add(doubt.kind, place_of(doubt.node), doubt.name,
+                    node_label(document_.model, doubt.node) + ": " + doubt.message);
     });
   }
 
+  /// One warning for all; another for those whose marks go with them.
+  void tell_of_hidden(const HiddenNode& hidden) {
+    Diagnostics unread;
+    GroupedWarnings untold;
+    const auto own = read_markup(document_, hidden.node, unread, untold);
+    if (own && (own->doubts == Doubts::not_told || std::holds_alternative<mark::Ignore>(own->what))) return;
+    std::string marks;
+    const auto note_mark = [&](int node) {
+      const auto mark = read_markup(document_, node, unread, untold);
+      if (!mark) return;
+      if (std::holds_alternative<mark::Floor>(mark->what)) hidden_floor_ = node_label(document_.model, node);
+      const std::string name = name_of_mark(mark->what);
+      if (!name.empty()) marks += (marks.empty() ? "" : ", ") + name;
+    };
+    note_mark(hidden.node);
+    std::ranges::for_each(hidden.below, note_mark);
+    const std::string label = node_label(document_.model, hidden.node);
+    const std::string what = label + " is hidden and left out";
+    const std::string with = hidden.below.empty() ? "" : ", with all that is below it";
+    if (marks.empty()) return warnings_.add("hidden", place_of(hidden.node), label, what + with);
+    warnings_.add("hidden mark", place_of(hidden.node), marks, what + with + ": " + marks);
+  }
+  static std::string name_of_mark(const Markup& markup) {
+    const auto name = [](const char* type, const std::string& id) { return std::string(type) + " '" + id + "'"; };
+    if (const auto* sensor = std::get_if<mark::Sensor>(&markup)) return name("sensor", sensor->id);
+    if (const auto* seat = std::get_if<mark::Seat>(&markup)) return name("seat", seat->id);
+    if (const auto* entrance = std::get_if<mark::Entrance>(&markup)) return name("entrance", entrance->id);
+    return std::holds_alternative<mark::Floor>(markup) ? "a floor" : "";
+  }
+
+  void read_mark(int node) {
+    auto mark = read_markup(document_, node, remarks_, warnings_);
+    if (!mark) return warn_of_near_marks(document_, node, warnings_);
+    if (mark->doubts == Doubts::not_told) {
+      nodes_.as_meant.insert(node);
+      meshes_as_meant_.insert(document_.model.nodes[static_cast<std::size_t>(node)].mesh);
+    }
+    marks_.emplace(node, std::move(mark->what));
+  }
+
   void add_node(const PlacedNode& placed) {
-    const auto markup = read_markup(document_, placed.node, remarks_);
-    if (!markup) warn_of_near_marks(document_, placed.node, remarks_);
+    const auto known = marks_.find(placed.node);
+    const Markup* markup = known == marks_.end() ? nullptr : &known->second;
     if (markup && std::holds_alternative<mark::Floor>(*markup)) nodes_.floor = placed.node;
     if (markup && std::holds_alternative<mark::Ignore>(*markup)) return;
     if (const int mesh = document_.model.nodes[static_cast<std::size_t>(placed.node)].mesh; mesh >= 0) {
-      add_mesh(placed, mesh, markup ? &*markup : nullptr);
+      add_mesh(placed, mesh, markup);
     }
     if (!markup) return;
     if (const auto* sensor = std::get_if<mark::Sensor>(&*markup)) add_sensor(placed, *sensor);
@@ -94,8 +144,11 @@ class SceneBuilder {
   void add_mesh(const PlacedNode& placed, int mesh, const Markup* markup) {
     const auto* floor = std::get_if<mark::Floor>(markup);
     const auto* surface = std::get_if<mark::Surface>(markup);
+    const auto temperature_c = surface ? surface->temperature_c : std::nullopt;
     const auto [known, is_first] = meshes_.try_emplace(mesh);
-    if (is_first) known->second = read_mesh_parts(document_, mesh, temperatures_c_, budget_, remarks_);
+    GroupedWarnings untold;
+    GroupedWarnings& warnings = meshes_as_meant_.contains(mesh) ? untold : warnings_;
+    if (is_first) known->second = read_mesh_parts(document_, mesh, temperatures_c_, budget_, remarks_, warnings);
     const TriMesh whole = joined(known->second);
     if (whole.triangles.empty()) return;
     if (!budget_.take(whole.positions.size() + whole.triangles.size())) {
@@ -107,13 +160,13 @@ class SceneBuilder {
       return node_error(placed.node, "/mesh", "its mesh reaches more than 100 km from the origin");
     }
     CleanMesh cleaned = clean(world);
-    if (is_first) warn_of_audit(cleaned.audit, placed.node, mesh);
+    if (is_first) warn_of_audit(cleaned.audit, placed.node, mesh, warnings);
     if (floor && !floor->polygon)
       floor_.add_mesh(cleaned.mesh, markup_place(placed.node), node_label(document_.model, placed.node));
     if (floor && floor->occludes == mark::Occludes::no) return;
-    if (surface) cleaned.mesh.temperature_c = surface->temperature_c;
-    nodes_.meshes.resize(spec_.meshes.size() + (surface ? 1 : known->second.size()), placed.node);
-    if (surface || known->second.size() == 1) {
+    if (temperature_c) cleaned.mesh.temperature_c = temperature_c;
+    nodes_.meshes.resize(spec_.meshes.size() + (temperature_c ? 1 : known->second.size()), placed.node);
+    if (temperature_c || known->second.size() == 1) {
       spec_.meshes.push_back(std::move(cleaned.mesh));
     } else {
       for (const TriMesh& part : known->second) {
@@ -129,12 +182,13 @@ class SceneBuilder {
     return !given.name.empty() ? given.name : "mesh " + std::to_string(mesh);
   }
 
-  void warn_of_audit(const MeshAudit& audit, int node, int mesh) {
+  void warn_of_audit(const MeshAudit& audit, int node, int mesh, GroupedWarnings& warnings) {
     const auto warn = [&](std::size_t n, const char* what) {
       if (n == 0) return;
-      remarks_.warning(document_.text.where("/meshes/" + std::to_string(mesh)),
-                       mesh_label(document_.model, mesh) + " (" + node_label(document_.model, node) +
-                           "): " + std::to_string(n) + (n == 1 ? " triangle " : " triangles ") + what);
+      const std::string label = mesh_label(document_.model, mesh);
+      warnings.add(what, document_.text.where("/meshes/" + std::to_string(mesh)), label,
+                   label + " (" + node_label(document_.model, node) + "): " + std::to_string(n) +
+                       (n == 1 ? " triangle " : " triangles ") + what);
     };
     warn(audit.degenerate_triangles, "without area, dropped");
     warn(audit.duplicate_triangles, "given twice, dropped");
@@ -184,6 +238,10 @@ class SceneBuilder {
 
   void require_floor() {
     if (!spec_.floor.empty() || remarks_.has_errors()) return;
+    if (!hidden_floor_.empty()) {
+      return remarks_.error(document_.text.where("/nodes"),
+                            "the scene has no floor area: " + hidden_floor_ + ", a floor, is hidden and left out");
+    }
     remarks_.error(document_.text.where("/nodes"),
                    "the scene has no floor area; give the floor's node extras {\"pirsim\": {\"type\": \"floor\"}}");
   }
@@ -197,7 +255,8 @@ class SceneBuilder {
           unknown_sensor(model, where, search.names());
           continue;
         }
-        for (const Issue& remark : found->remarks) remarks_.warning(remark.where, remark.message);
+        for (const Issue& remark : found->remarks)
+          warnings_.add("sensor id", remark.where, "model '" + model + "'", remark.message);
         spec_.sensor_models.emplace(model, std::move(found->model));
         if (!found->file.empty()) spec_.files.push_back(found->file);
       } catch (const Error& fault) {
@@ -217,6 +276,7 @@ class SceneBuilder {
     return remarks_.has_errors() && std::count_if(remarks_.issues().begin(), remarks_.issues().end(), is_error) >= 20;
   }
 
+  [[nodiscard]] Where place_of(int node) const { return document_.text.where("/nodes/" + std::to_string(node)); }
   [[nodiscard]] Where markup_place(int node) const { return document_.text.where(markup_pointer(node)); }
   void node_error(int node, const std::string& member, const std::string& message) {
     remarks_.error(document_.text.where("/nodes/" + std::to_string(node) + member),
@@ -226,11 +286,15 @@ class SceneBuilder {
   std::filesystem::path file_;
   const SceneOptions& options_;
   Diagnostics remarks_;
+  GroupedWarnings warnings_;
   GltfDocument document_;
   GeometryBudget budget_;
   FloorBuilder floor_;
   SceneSpec spec_;
   MarkedNodes nodes_;
+  std::map<int, Markup> marks_;                             ///< by node
+  std::set<int> meshes_as_meant_;                           ///< of a node that says so
+  std::string hidden_floor_;                                ///< its node, as messages name it
   std::vector<std::optional<double>> temperatures_c_;       ///< (n_materials)
   std::map<int, std::vector<TriMesh>> meshes_;              ///< in their own frames, by index, in equally warm parts
   std::map<std::string, Where> model_places_;               ///< where each sensor model is first named
