@@ -10,6 +10,9 @@
 
 namespace pirsim::body {
 
+inline constexpr double solid_from_m = 0.1;  ///< above the floor: a walker steps over what is lower
+inline constexpr double solid_to_m = 2.0;    ///< above the floor: a walker passes under what is higher
+
 /// The part of a triangle between two heights, seen from above: a convex polygon, or the two ends of a line
 /// under a vertical triangle.
 struct Footprint {

@@ -1,5 +1,7 @@
 #include "body/seating.hpp"
 
+#include "body/seat_height.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -63,17 +65,22 @@ double fall_back_m(const Humanoid& humanoid, const SeatPlace& seat) noexcept {
   return m.thigh_m * std::sqrt(1.0 - cosine * cosine) - standing_leg(m).knee_ahead_m;
 }
 
+std::optional<std::string> unfit_height(const Humanoid& humanoid, const SeatPlace& seat) {
+  const Measures& m = humanoid.measures();
+  const double cosine = cosine_when_seated(m, seat), knee_m = standing_leg(m).knee_height_m;
+  if (cosine >= std::cos(lowest_thigh) && cosine <= std::cos(highest_thigh)) return std::nullopt;
+  const Vec3& point = seat.world_from_seat.origin;
+  return "the seat at (" + decimals(point.x) + ", " + decimals(point.z) + "), whose pelvis point is " +
+         decimals(point.y - seat.floor_height_m) + " m above the floor, can't be sat on by a person of " +
+         decimals(m.stature_m) + " m, who can sit from " + decimals(knee_m + m.thigh_m * std::cos(lowest_thigh)) +
+         " m to " + decimals(knee_m + m.thigh_m * std::cos(highest_thigh)) + " m";
+}
+
 Seating::Seating(const Humanoid& humanoid, const SeatPlace& seat, const Placement& standing, const Feet& feet)
     : seat_(seat), from_(standing) {
   const Measures& m = humanoid.measures();
+  if (const auto unfit = unfit_height(humanoid, seat)) throw Error(ErrorCode::infeasible, *unfit);
   const double cosine = cosine_when_seated(m, seat);
-  if (cosine < std::cos(lowest_thigh) || cosine > std::cos(highest_thigh)) {
-    throw Error(ErrorCode::infeasible, "the seat at (" + decimals(seat.world_from_seat.origin.x) + ", " +
-                                           decimals(seat.world_from_seat.origin.z) + "), whose pelvis point is " +
-                                           decimals(seat.world_from_seat.origin.y - seat.floor_height_m) +
-                                           " m above the floor, can't be sat on by a person of " +
-                                           decimals(m.stature_m) + " m");
-  }
   const StandingLeg leg = standing_leg(m);
   thigh_m_ = m.thigh_m;
   knee_ahead_m_ = leg.knee_ahead_m;

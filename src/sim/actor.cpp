@@ -8,6 +8,7 @@
 
 #include "pirsim/error.hpp"
 #include "pirsim/geometry.hpp"
+#include "sim/doorway.hpp"
 
 namespace pirsim::sim {
 namespace {
@@ -22,13 +23,6 @@ constexpr double room_wait_s = 20.0;   ///< then one comes in where somebody sta
 
 std::int64_t ticks(double seconds, const CompiledStudy& study) {
   return std::llround(seconds * study.sensing().tick_rate_hz);
-}
-
-Vec2 outside(const EntranceSpec& door) { return floor_point(door.world_from_entrance * Vec3(0, 0, door.outside_m)); }
-
-bool leads_elsewhere(const ScriptedAction& action) {
-  return !action.at_s &&
-         (std::holds_alternative<action::Sit>(action.what) || std::holds_alternative<action::Walk>(action.what));
 }
 
 }  // namespace
@@ -207,17 +201,16 @@ void Actor::plan_entering(const EntranceSpec& door) {
   const ScriptedAction* next = action_ + 1 < actions().size() ? &actions()[action_ + 1] : nullptr;
   const auto* sit_next = next != nullptr ? std::get_if<action::Sit>(&next->what) : nullptr;
   if (sit_next != nullptr) errands_.push_back(WaitForSeat{sit_next->seat});  // better outside than in the doorway
-  errands_.push_back(WaitForDoor{outside(door), Through::in});
-  errands_.push_back(ComeIn{outside(door), heading_of(door.world_from_entrance)});
+  errands_.push_back(WaitForDoor{outside_of(door), Through::in});
+  errands_.push_back(ComeIn{outside_of(door), heading_of(door.world_from_entrance)});
   if (next != nullptr && leads_elsewhere(*next)) return;
-  const double inside_m = 2.0 * person().humanoid.clearance_radius_m();
-  errands_.push_back(WalkTo{floor_point(door.world_from_entrance * Vec3(0, 0, -inside_m))});
+  errands_.push_back(WalkTo{inside_of(door, person().humanoid)});
 }
 
 void Actor::plan_leaving(const EntranceSpec& door) {
   const double behind_m = std::min(door.outside_m, 2.0 * person().humanoid.clearance_radius_m());
-  errands_.push_back(WaitForDoor{outside(door), Through::out});
-  errands_.push_back(WalkOut{outside(door), floor_point(door.world_from_entrance * Vec3(0, 0, behind_m))});
+  errands_.push_back(WaitForDoor{outside_of(door), Through::out});
+  errands_.push_back(WalkOut{outside_of(door), floor_point(door.world_from_entrance * Vec3(0, 0, behind_m))});
   errands_.push_back(Vanish{});
 }
 

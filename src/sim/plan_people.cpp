@@ -3,13 +3,20 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "body/footprint.hpp"
+#include "body/seat_height.hpp"
+#include "core/fixed.hpp"
 #include "sim/alike.hpp"
 #include "sim/check_actions.hpp"
+#include "sim/doorway.hpp"
 
 namespace pirsim::sim {
 namespace {
@@ -28,51 +35,85 @@ std::optional<double> table_height(const SeatSpec& seat, double floor_y, const r
   return floor_y + height;
 }
 
-/// Which entrances lead to the floor, of those that were asked for, by who asks: people need more or less room.
-using OpenDoors = std::map<std::pair<double, std::string>, bool>;
+/// What is the same for all who rehearse among the same solids.
+class Grounds {
+ public:
+  explicit Grounds(const SceneSpec& scene) : scene_(scene) {}
 
-/// Walks through one person's actions in thought: where are they, where must they get to?
+  std::map<std::pair<double, std::string>, bool> open_doors;  ///< does one lead to the floor? By clearance and name
+  std::map<std::array<double, 3>, bool> open_places;          ///< can one get there? By clearance and place
+
+  struct Near {
+    double away_m = std::numeric_limits<double>::infinity();
+    std::uint32_t mesh = 0;
+  };
+  /// The solid thing that is nearest to the place, of those that walkers go round.
+  [[nodiscard]] Near nearest_solid(const Vec2& place) {
+    const double floor_y = scene_.floor.height_m();
+    if (!solids_) solids_ = body::footprints(scene_.meshes, floor_y + body::solid_from_m, floor_y + body::solid_to_m);
+    Near nearest;
+    for (const body::Footprint& solid : *solids_) {
+      if (body::distance_bound(place, place, solid) >= nearest.away_m) continue;
+      if (const double away_m = body::distance(place, solid); away_m < nearest.away_m) nearest = {away_m, solid.mesh};
+    }
+    return nearest;
+  }
+
+ private:
+  const SceneSpec& scene_;
+  std::optional<std::vector<body::Footprint>> solids_;
+};
+
+/// Walks through one person's actions in thought: where are they, where must they get to? Where that can't be done
+/// nobody knows where they go on, and what they do until they come in anew isn't judged.
 class Rehearsal {
  public:
-  Rehearsal(const SceneSpec& scene, const rt::Room& room, PersonModel& person, OpenDoors& doors,
+  Rehearsal(const SceneSpec& scene, const rt::Room& room, PersonModel& person, Grounds& grounds,
             Diagnostics& diagnostics)
-      : scene_(scene), room_(room), person_(person), doors_(doors), diagnostics_(diagnostics) {}
+      : scene_(scene), room_(room), person_(person), grounds_(grounds), diagnostics_(diagnostics) {}
 
-  void run() {
-    if (person_.spec.part) rehearse_schedule();
-    for (const ScriptedAction& action : person_.spec.actions) {
-      if (const auto* appear = std::get_if<action::Appear>(&action.what)) start_at(appear->point, {});
+  /// schedule: of the trial, if it has one.
+  void run(const std::optional<ScheduleSpec>& schedule) {
+    if (person_.spec.part) rehearse_schedule(*schedule);
+    const std::vector<ScriptedAction>& actions = person_.spec.actions;
+    for (std::size_t i = 0; i < actions.size(); ++i) {
+      const ScriptedAction& action = actions[i];
+      if (const auto* appear = std::get_if<action::Appear>(&action.what)) come_into_being(appear->point, action.where);
       if (const auto* enter = std::get_if<action::Enter>(&action.what)) {
-        start_at(outside(enter->entrance), enter->entrance);
+        const bool goes_on = i + 1 < actions.size() && leads_elsewhere(actions[i + 1]);
+        come_in_by(enter->entrance);
+        if (!goes_on)
+          go_to(inside_of(door_of(enter->entrance), person_.humanoid),
+                "the floor behind entrance '" + enter->entrance + "'", action.where);
       }
+      if (!at_) continue;
       if (const auto* sit = std::get_if<action::Sit>(&action.what)) {
         sit_down(sit->seat, action.where);
-        if (sit->if_taken == action::IfTaken::other_seat) note_other_seats();
+        if (at_ && sit->if_taken == action::IfTaken::other_seat) note_other_seats();
       }
-      if (const auto* leave = std::get_if<action::Leave>(&action.what)) {
-        if (!can_go_to(outside(leave->entrance)) && is_shut(leave->entrance)) continue;
-        go_to(outside(leave->entrance), "entrance '" + leave->entrance + "'", action.where);
-      }
+      if (const auto* leave = std::get_if<action::Leave>(&action.what)) go_out_by(leave->entrance, action.where);
       if (const auto* walk = std::get_if<action::Walk>(&action.what)) {
-        for (const Vec2& point : walk->points) {
-          go_to(point, "point " + text(point), action.where, !scene_.floor.contains(point));
-        }
+        for (const Vec2& point : walk->points) go_to(point, "point " + text(point), action.where);
       }
     }
   }
 
  private:
   /// Who follows a schedule may get to any seat that can be reached, and has to reach their own.
-  void rehearse_schedule() {
+  void rehearse_schedule(const ScheduleSpec& schedule) {
     const ScheduledPerson& part = *person_.spec.part;
-    start_at(outside(scene_.entrances.front().id), scene_.entrances.front().id);
+    for (const EntranceSpec& door : scene_.entrances) {
+      const std::vector<std::string>& used = schedule.entrances;
+      if (!used.empty() && std::ranges::find(used, door.id) == used.end()) continue;
+      if (is_shut(door.id)) return;
+      if (!at_) start_at(outside_of(door), door.id);
+    }
     note_other_seats();
     const bool lacks_seat =
         part.part == SchedulePart::guest ? person_.seats.empty() : !part.seat.empty() && !person_.can_use(part.seat);
-    if (lacks_seat && !is_shut(behind_)) {
-      diagnostics_.error({scene_.name}, "no way leads '" + person_.spec.id + "' of the schedule to " +
-                                            (part.seat.empty() ? "any seat" : "seat '" + part.seat + "'"));
-    }
+    if (!lacks_seat || is_shut(behind_)) return;
+    if (!part.seat.empty()) return tell_of_seat(seat_of(part.seat), {scene_.name});
+    diagnostics_.error({scene_.name}, "no way leads '" + person_.spec.id + "' of the schedule to any seat");
   }
 
   static std::string text(const Vec2& p) {
@@ -80,71 +121,155 @@ class Rehearsal {
     return "(" + round(p.x) + ", " + round(p.y) + ")";
   }
 
-  Vec2 outside(const std::string& id) const {
-    const EntranceSpec& entrance = *std::ranges::find(scene_.entrances, id, &EntranceSpec::id);
-    return floor_point(entrance.world_from_entrance * Vec3(0, 0, entrance.outside_m));
+  const EntranceSpec& door_of(const std::string& id) const {
+    return *std::ranges::find(scene_.entrances, id, &EntranceSpec::id);
   }
+  const SeatSpec& seat_of(const std::string& id) const { return *std::ranges::find(scene_.seats, id, &SeatSpec::id); }
 
   /// entrance: behind which they are, or "".
   void start_at(const Vec2& place, const std::string& entrance) {
     at_ = place;
     behind_ = entrance;
   }
+  void fail(const Where& where, const std::string& message) {
+    diagnostics_.error(where, message);
+    at_.reset();
+  }
 
-  bool can_go_to(const Vec2& target) const { return person_.floor->find_way(at_, target).has_value(); }
-
-  void go_to(const Vec2& target, const std::string& what, const Where& where, bool is_off_floor = false) {
-    if (!can_go_to(target) && !is_shut(behind_)) {
-      diagnostics_.error(where, what + " can't be reached by '" + person_.spec.id + "' from " + text(at_) + ": " +
-                                    (is_off_floor ? "it lies off the floor" : no_clear_path()));
+  /// Somebody stands there who didn't walk there, but has to be able to have done so. Things are where they are.
+  void come_into_being(const Vec2& place, const Where& where) {
+    start_at(place, {});
+    if (person_.spec.changes.role == PersonRole::object) return;
+    const double keep_m = person_.humanoid.half_depth_m(), away_m = grounds_.nearest_solid(place).away_m;
+    const std::string who = "'" + person_.spec.id + "' can't appear at " + text(place) + ": ";
+    if (away_m <= 0.0) return fail(where, who + inside_of_solid);
+    if (away_m < keep_m) {
+      return fail(where, who + "something solid is " + fixed(away_m, 2) + " m away, and nobody stands nearer than " +
+                             fixed(keep_m, 2) + " m");
     }
-    start_at(target, {});
+    const auto [known, is_new] = grounds_.open_places.try_emplace({person_.floor->clearance_m(), place.x, place.y});
+    if (is_new) known->second = is_open(place);
+    if (!known->second) fail(where, who + "nobody can get there, for " + no_clear_path());
+  }
+  /// Does a way lead there from an entrance? Where there are none: is there room to walk around?
+  bool is_open(const Vec2& place) const {
+    constexpr double least_room_m2 = 4.0;  // assumed: less is a cupboard or a pillar (tried 2-6)
+    bool has_door = false;
+    for (const EntranceSpec& door : scene_.entrances) {
+      if (person_.floor->find_way(outside_of(door), place)) return true;
+      has_door = has_door || leads_in(door.id);
+    }
+    if (has_door) return false;
+    const std::vector<Vec2> places = places_to_walk();
+    const double area_m2 = spacing_m() * spacing_m() * static_cast<double>(places.size());
+    const double wanted_m2 = std::min(least_room_m2, 0.5 * area_m2);
+    double reached_m2 = 0.0;
+    for (const Vec2& other : places) {
+      if (person_.floor->find_way(place, other)) reached_m2 += spacing_m() * spacing_m();
+      if (reached_m2 >= wanted_m2) return true;
+    }
+    return places.empty();
+  }
+
+  void come_in_by(const std::string& entrance) {
+    start_at(outside_of(door_of(entrance)), entrance);
+    if (is_shut(entrance)) at_.reset();
+  }
+  void go_out_by(const std::string& entrance, const Where& where) {
+    const Vec2 target = outside_of(door_of(entrance));
+    if (!can_go_to(target) && is_shut(entrance)) return at_.reset();
+    go_to(target, "entrance '" + entrance + "'", where);
+  }
+
+  bool can_go_to(const Vec2& target) const { return at_ && person_.floor->find_way(*at_, target).has_value(); }
+
+  void go_to(const Vec2& target, const std::string& what, const Where& where) {
+    if (!at_) return;
+    const bool is_solid = grounds_.nearest_solid(target).away_m <= 0.0;
+    if (!is_solid && can_go_to(target)) return start_at(target, {});
+    if (is_shut(behind_)) return at_.reset();
+    const bool is_point = what.starts_with("point");
+    fail(where, what + " can't be reached by '" + person_.spec.id + "' from " + text(*at_) + ": " +
+                    (is_point && !scene_.floor.contains(target) ? "it lies off the floor"
+                     : is_solid                                 ? inside_of_solid
+                                                                : no_clear_path()));
   }
   std::string no_clear_path() const {
-    return "no path keeps " + std::to_string(person_.humanoid.clearance_radius_m()).substr(0, 4) +
-           " m clear of solid objects";
+    return "no path keeps " + fixed(person_.floor->clearance_m(), 2) + " m clear of solid objects";
   }
 
   /// Whether nobody gets from the entrance to the floor, which is then told, once for all.
   bool is_shut(const std::string& id) {
-    if (id.empty()) return false;
-    const auto [known, is_new] = doors_.try_emplace({person_.floor->clearance_m(), id});
-    if (is_new) known->second = leads_in(id);
-    if (known->second) return false;
+    if (id.empty() || leads_in(id)) return false;
     diagnostics_.error({scene_.name}, "nobody gets from entrance '" + id +
                                           "' to the floor: no path leads in (is it in a wall, behind furniture, or off "
                                           "the floor?)");
     return true;
   }
   bool leads_in(const std::string& id) const {
-    constexpr double least_spacing_m = 0.25, most_places = 1000.0;
-    const double spacing_m = std::max(least_spacing_m, std::sqrt(scene_.floor.area_m2() / most_places));
-    const Vec2 lower = scene_.floor.lower(), upper = scene_.floor.upper(), from = outside(id);
-    for (double z = lower.y + 0.5 * spacing_m; z < upper.y; z += spacing_m) {
-      for (double x = lower.x + 0.5 * spacing_m; x < upper.x; x += spacing_m) {
-        const Vec2 place(x, z);
-        if (!scene_.floor.contains(place) || !person_.floor->walkable(place)) continue;
-        if (person_.floor->find_way(from, place)) return true;
+    const auto [known, is_new] = grounds_.open_doors.try_emplace({person_.floor->clearance_m(), id});
+    if (is_new) {
+      known->second = std::ranges::any_of(places_to_walk(), [&](const Vec2& place) {
+        return person_.floor->find_way(outside_of(door_of(id)), place).has_value();
+      });
+    }
+    return known->second;
+  }
+  double spacing_m() const {
+    constexpr double least_m = 0.25, most_places = 1000.0;
+    return std::max(least_m, std::sqrt(scene_.floor.area_m2() / most_places));
+  }
+  /// All over the floor.
+  std::vector<Vec2> places_to_walk() const {
+    std::vector<Vec2> places;
+    const Vec2 lower = scene_.floor.lower(), upper = scene_.floor.upper();
+    for (double z = lower.y + 0.5 * spacing_m(); z < upper.y; z += spacing_m()) {
+      for (double x = lower.x + 0.5 * spacing_m(); x < upper.x; x += spacing_m()) {
+        if (scene_.floor.contains({x, z}) && person_.floor->walkable({x, z})) places.emplace_back(x, z);
       }
     }
-    return false;
+    return places;
   }
 
   void sit_down(const std::string& id, const Where& where) {
-    const SeatSpec& seat = *std::ranges::find(scene_.seats, id, &SeatSpec::id);
+    const SeatSpec& seat = seat_of(id);
     if (const auto plan = plan_of(seat)) {
       person_.seats.emplace(id, *plan);
-      start_at(place_to_stand(seat, *plan), {});
-      return;
+      return start_at(place_to_stand(seat, *plan), {});
     }
-    person_.seats.emplace(id, SeatPlan{});
-    if (is_shut(behind_)) return;
-    const bool is_off = !scene_.floor.contains(floor_point(seat.world_from_seat.origin));
-    diagnostics_.error(where, "seat '" + id + "' of " + scene_.name + " can't be reached by '" + person_.spec.id +
-                                  "' from " + text(at_) + ": " + (is_off ? "it lies off the floor, and " : "") +
-                                  "no free place to stand within a metre of it has a path");
+    if (!is_shut(behind_)) tell_of_seat(seat, where);
+    at_.reset();
   }
 
+  /// Why nobody sits down there.
+  void tell_of_seat(const SeatSpec& seat, const Where& where) const {
+    const std::string name = "seat '" + seat.id + "' of " + scene_.name;
+    const std::string who = " by '" + person_.spec.id + "' from " + text(*at_) + ": ";
+    if (const auto unfit = body::unfit_height(person_.humanoid, {seat.world_from_seat, scene_.floor.height_m(), {}})) {
+      return diagnostics_.error(where, name + ": " + *unfit);
+    }
+    if (!scene_.floor.contains(floor_point(seat.world_from_seat.origin))) {
+      return diagnostics_.error(where, name + " can't be reached" + who + "it lies off the floor, and " + no_place);
+    }
+    diagnostics_.error(where, name + " can't be reached" + who + why_no_place(seat));
+  }
+  std::string why_no_place(const SeatSpec& seat) const {
+    constexpr double step_m = 0.01, farthest_m = 1.5;
+    const Vec2 pelvis = floor_point(seat.world_from_seat.origin);
+    const Vec2 facing = direction_of(heading_of(seat.world_from_seat));
+    const double before_m = body::fall_back_m(person_.humanoid, {seat.world_from_seat, scene_.floor.height_m(), {}});
+    const auto can_stand = [&](double ahead_m) {
+      return person_.can_stand(pelvis + ahead_m * facing, facing, person_.humanoid.half_depth_m());
+    };
+    for (double ahead_m = before_m; ahead_m < farthest_m; ahead_m += step_m) {
+      if (!can_stand(ahead_m) || !can_go_to(pelvis + ahead_m * facing)) continue;
+      return "who sits down stands " + fixed(before_m, 2) + " m before the seat's point, too near to '" +
+             scene_.meshes[grounds_.nearest_solid(pelvis + before_m * facing).mesh].name +
+             "', and there is no place behind or beside it either; move the " + "point " +
+             fixed(std::max(0.01, ahead_m - before_m), 2) + " m forward, where one sits nearer to the edge";
+    }
+    return no_place;
+  }
   /// Any that can be reached may do if the seat asked for is taken.
   void note_other_seats() {
     for (const SeatSpec& seat : scene_.seats) {
@@ -161,6 +286,7 @@ class Rehearsal {
   /// Stands as near to the free fall into the seat as the furniture allows, at most a metre farther back.
   std::optional<SeatPlan> plan_of(const SeatSpec& seat) const {
     const double floor_y = scene_.floor.height_m();
+    if (body::unfit_height(person_.humanoid, {seat.world_from_seat, floor_y, {}})) return std::nullopt;
     SeatPlan plan{{seat.world_from_seat, floor_y, table_height(seat, floor_y, room_), 0.0}, 0.0, 0.0};
     // Where a table is near a wall nobody has the room of a walker: they squeeze in.
     // Where a wall is right behind the chair they turn it and sit down from the side.
@@ -183,7 +309,7 @@ class Rehearsal {
       const Vec2 stand = pelvis - back * facing;
       if (!person_.can_stand(stand, facing, plan.half_depth_m)) continue;
       if (!room_behind(seat, facing, back + fall_back, plan.half_depth_m)) continue;
-      if (!person_.floor->find_way(at_, stand)) continue;
+      if (!can_go_to(stand)) continue;
       plan.stand_back_m = back;
       return true;
     }
@@ -199,13 +325,17 @@ class Rehearsal {
     return back_m <= 0.0 || !room_.first_hit(behind, static_cast<float>(back_m + keep_m));
   }
 
+  static constexpr const char* inside_of_solid = "it is inside of something solid";
+  static constexpr const char* no_place =
+      "no path leads to a free place to stand right before it, or up to a metre behind or beside it";
+
   const SceneSpec& scene_;
   const rt::Room& room_;
   PersonModel& person_;
-  OpenDoors& doors_;
+  Grounds& grounds_;
   Diagnostics& diagnostics_;
-  Vec2 at_{0.0};
-  std::string behind_;  ///< the entrance that they haven't come in by yet, or ""
+  std::optional<Vec2> at_;  ///< nothing where nobody knows
+  std::string behind_;      ///< the entrance that they haven't come in by yet, or ""
 };
 
 using Floors = std::map<double, std::shared_ptr<const body::WalkableFloor>>;  // by clearance
@@ -232,7 +362,7 @@ std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std:
     }
     return floor;
   };
-  OpenDoors doors;
+  Grounds grounds(scene);
   Diagnostics diagnostics;
   for (const TrialInForce& trial : trials) {
     const std::vector<PersonSpec>& written = study.script_given().trials[planned_trials.size()].people;
@@ -251,7 +381,7 @@ std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std:
                            .humanoid = humanoid,
                            .floor = floor_with(keep_m),
                            .radiance = radiance_of(spec.warmth, study.sensing().ambient_c)};
-        Rehearsal(scene, room, person, doors, found).run();
+        Rehearsal(scene, room, person, grounds, found).run(trial.schedule);
         return person;
       };
       Diagnostics found;
