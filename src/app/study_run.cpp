@@ -161,7 +161,7 @@ void check_options(const Inputs& inputs, const RunOptions& options) {
 void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
   keep_inputs(outputs_of(options), files_read(model.script(), model.scene()));
   if (inputs.verbosity != Verbosity::quiet) {
-    tell(studies::warnings(studies::look_around(model), model.scene().name), inputs.verbosity);
+    tell(studies::warnings(studies::look_around(model), model.scene()), inputs.verbosity);
   }
 
   // Rows that only go to a stream can end anywhere, as by Ctrl-C.

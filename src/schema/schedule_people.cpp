@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -79,6 +80,18 @@ void check_entrances(const ScheduleSpec& schedule, const SceneSpec& scene, Diagn
   if (doors.empty()) diagnostics.error(schedule.where, "schedule: " + scene.name + " has no entrance to come in by");
 }
 
+std::string name_of(Role role) {
+  switch (role) {
+    case Role::manager:
+      return "manager";
+    case Role::administrator:
+      return "administrator";
+    case Role::staff:
+      break;
+  }
+  return "staff";
+}
+
 /// As many as ever meet at once.
 int guests_of(const ScheduleSpec& schedule, const SceneSpec& scene, Diagnostics& diagnostics) {
   if (!schedule.meetings) return 0;
@@ -124,7 +137,7 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
     people.push_back(
         {part, role, seat, body_of(name, schedule.style, seed, static_cast<std::uint32_t>(people.size()))});
   };
-  int number = 0;
+  std::map<Role, int> numbers;
   for (const StaffSpec& staff : schedule.staff) {
     for (int i = 0; i < staff.count; ++i) {
       const auto seat = desks.own(staff, static_cast<std::size_t>(i));
@@ -133,7 +146,7 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
                                            " seats of " + scene.name);
         break;
       }
-      add(SchedulePart::staff, staff.role, "staff_" + std::to_string(++number), *seat);
+      add(SchedulePart::staff, staff.role, name_of(staff.role) + '_' + std::to_string(++numbers[staff.role]), *seat);
     }
   }
   if (schedule.meetings) {

@@ -5,6 +5,7 @@
 #include <ostream>
 #include <set>
 
+#include "core/counted.hpp"
 #include "sim/schedule.hpp"
 
 namespace pirsim::studies {
@@ -63,13 +64,13 @@ void note_person(ExpectedPerson& person, const std::vector<sim::Stay>& stays) {
 std::string clock(double seconds) { return seconds >= 86400.0 ? "24:00" : clock_text(0, seconds).substr(11, 5); }
 
 void print_person(std::ostream& out, const ExpectedPerson& person) {
-  out << "  " << std::left << std::setw(10) << person.id << " seat " << std::setw(5) << person.seat << std::right;
+  out << "  " << std::left << std::setw(16) << person.id << " seat " << std::setw(5) << person.seat << std::right;
   if (person.days == 0) {
     out << " never comes\n";
     return;
   }
   out << " first day " << clock(*person.first_arrival_s) << '-' << clock(*person.first_departure_s) << ", mean of "
-      << person.days << (person.days == 1 ? " day " : " days ") << clock(person.mean_arrival_s) << '-'
+      << counted(static_cast<std::size_t>(person.days), "day") << ' ' << clock(person.mean_arrival_s) << '-'
       << clock(person.mean_departure_s) << ", in the room for " << std::fixed << std::setprecision(1)
       << person.mean_present_s / 3600.0 << " h\n";
 }
@@ -127,9 +128,11 @@ ScheduleOutlook outlook(const sim::CompiledStudy& study, std::size_t trial, int 
 void print(std::ostream& out, const ScheduleOutlook& outlook, const sim::CompiledStudy& study) {
   constexpr std::size_t most_told = 12;
   const ScheduleSpec& schedule = *study.trials().front().schedule;
-  out << "schedule: " << outlook.days << " days from " << clock_text(outlook.first_day, 0.0).substr(0, 10) << " ("
-      << outlook.working_days << " working days), each from " << clock(3600.0 * schedule.from_h) << " to "
-      << clock(3600.0 * schedule.to_h) << "; times as drawn for whole days, before anybody has walked\n";
+  out << "schedule: " << counted(static_cast<std::size_t>(outlook.days), "day") << " from "
+      << clock_text(outlook.first_day, 0.0).substr(0, 10) << " ("
+      << counted(static_cast<std::size_t>(outlook.working_days), "working day") << "), each from "
+      << clock(3600.0 * schedule.from_h) << " to " << clock(3600.0 * schedule.to_h)
+      << "; times as drawn for whole days, before anybody has walked\n";
   for (const ExpectedPerson& person : outlook.staff) print_person(out, person);
   if (schedule.meetings) out << "  meetings: " << outlook.meetings.size() << '\n';
   for (std::size_t i = 0; i < std::min(most_told, outlook.meetings.size()); ++i) {

@@ -6,7 +6,9 @@
 #include <sstream>
 
 #include "body/motion.hpp"
+#include "core/grouped_warnings.hpp"
 #include "geom/floor_distance.hpp"
+#include "schema/scene_unit.hpp"
 #include "sim/compiled_study.hpp"
 
 namespace pirsim::studies {
@@ -120,27 +122,43 @@ std::string hangs_outside(const FloorArea& floor, const Vec3& place) {
   return "it hangs outside of the room, " + text.str() + " m from the floor's edge";
 }
 
-std::vector<Issue> warnings(const SightReport& report, const std::string& scene) {
-  Diagnostics remarks;
-  for (const SensorSight& sight : report.sensors) {
-    if (!sight.sees_nothing()) continue;
-    if (!sight.outside.empty()) {
-      remarks.warning({scene, 0, 0}, "sensor '" + sight.sensor + "' can see NOBODY: " + sight.outside);
-      continue;
-    }
-    if (sight.rays > 0 && sight.longest_m < buried_m) {
-      remarks.warning({scene, 0, 0}, "sensor '" + sight.sensor + "' can see NOBODY: all of its rays end within " +
-                                         std::to_string(std::lround(std::ceil(100.0 * sight.longest_m))) +
-                                         " cm (is it inside a wall, or right before one?)");
-      continue;
-    }
-    remarks.warning({scene, 0, 0}, "sensor '" + sight.sensor +
-                                       "' can see NOBODY: no zone reaches a standing or seated person anywhere on the "
-                                       "floor area (does it look at a wall, along -Z of its node?)");
+namespace {
+
+/// Was the scene told to be in another unit than metres? Then that is why.
+bool is_told_of_unit(const SceneSpec& scene) {
+  const auto doubt = doubt_of_unit(scene);
+  return doubt &&
+         std::ranges::any_of(scene.warnings, [&](const Issue& told) { return told.message.ends_with(*doubt); });
+}
+
+void note_blind(const SensorSight& sight, const std::string& scene, GroupedWarnings& warnings) {
+  const std::string name = "sensor '" + sight.sensor + "'", blind = name + " can see NOBODY: ";
+  if (!sight.outside.empty()) return warnings.add("outside", {scene, 0, 0}, name, blind + sight.outside);
+  if (sight.rays > 0 && sight.longest_m < buried_m) {
+    return warnings.add("buried", {scene, 0, 0}, name,
+                        blind + "all of its rays end within " +
+                            std::to_string(std::lround(std::ceil(100.0 * sight.longest_m))) +
+                            " cm (is it inside a wall, or right before one?)");
   }
+  warnings.add("astray", {scene, 0, 0}, name,
+               blind +
+                   "no zone reaches a standing or seated person anywhere on the floor area (does it look at a "
+                   "wall, along -Z of its node?)");
+}
+
+}  // namespace
+
+std::vector<Issue> warnings(const SightReport& report, const SceneSpec& scene) {
+  if (is_told_of_unit(scene)) return {};
+  GroupedWarnings blind;
+  for (const SensorSight& sight : report.sensors) {
+    if (sight.sees_nothing()) note_blind(sight, scene.name, blind);
+  }
+  Diagnostics remarks;
+  blind.tell(remarks);
   const auto cut = [](const SensorSight& sight) { return sight.rays_cut > 0; };
   if (!report.sensors.empty() && std::ranges::none_of(report.sensors, cut)) {
-    remarks.warning({scene, 0, 0},
+    remarks.warning({scene.name, 0, 0},
                     "no ray of any sensor ends at the room: without walls sensors see people outside, too");
   }
   return remarks.issues();

@@ -33,7 +33,7 @@ struct SightReport {
 /// "it hangs outside of the room, 70.0 m from the floor's edge", or empty: on a wall is as good as inside.
 [[nodiscard]] std::string hangs_outside(const FloorArea& floor, const Vec3& place);
 
-/// One warning for every sensor that sees nothing.
-[[nodiscard]] std::vector<Issue> warnings(const SightReport& report, const std::string& scene);
+/// Of sensors that see nothing, a warning for each reason; none where it follows from the scene's unit.
+[[nodiscard]] std::vector<Issue> warnings(const SightReport& report, const SceneSpec& scene);
 
 }  // namespace pirsim::studies

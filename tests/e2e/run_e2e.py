@@ -260,7 +260,7 @@ class Days(unittest.TestCase):
     def test_check_tells_what_a_schedule_holds(self):
         told = study("check", scene="open_office.gltf", script="office_week.yaml").stdout
         self.assertIn("schedule: 5 days from 2026-03-02 (5 working days)", told)
-        self.assertRegex(told, r"staff_1 +seat S1 +first day \d\d:\d\d-\d\d:\d\d, mean of 5 days")
+        self.assertRegex(told, r"manager_1 +seat S1 +first day \d\d:\d\d-\d\d:\d\d, mean of 5 days")
         self.assertRegex(told, r"at most [5-8] at once, first at 2026-03-0\dT")
         told = study("check", script="meeting_day.yaml").stdout
         self.assertRegex(told, r"2026-03-02T\d\d:\d\d-\d\d:\d\d, \d people")

@@ -3,10 +3,13 @@
 
 Usage: run_first_user.py PIRSIM DATA_DIR [unittest arguments]. Needs python3 only.
 """
+import base64
 import copy
 import json
 import pathlib
+import re
 import resource
+import struct
 import subprocess
 import sys
 import tempfile
@@ -184,8 +187,369 @@ class Doubts(unittest.TestCase):
         seat = self.room.marked("seat", "S2")
         seat["translation"][1] = 0.0
         told = self.room.check(self.folder.name, code=5)
-        self.assertIn("room.gltf: error: seat 'S2': ", told)
-        self.assertIn("pelvis point is 0.00 m above the floor", told)
+        self.assertEqual(told.count("error:"), 1, told)
+        self.assertIn("error: seat 'S2' of room.gltf: the seat at ", told)
+        self.assertRegex(told, r"pelvis point is 0\.00 m above the floor, can't be sat on by a person of 1\.86 m, who can sit "
+                               r"from 0\.\d\d m to 0\.\d\d m\n")
+
+
+class OwnRoom:
+    """A room of boxes, open at the front, with one sensor in a corner; everything is a node of its own."""
+
+    MODEL = "EKMC1604111"
+
+    def __init__(self, width=5, depth=4, walls=True):
+        self.gltf = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": []}], "nodes": [], "meshes": [],
+                     "accessors": [], "bufferViews": [], "buffers": []}
+        self.mark({"type": "floor", "polygon_xz_m": [[0, 0], [width, 0], [width, -depth], [0, -depth]]}, name="floor")
+        self.mark({"type": "sensor", "id": "PIR", "model": self.MODEL}, name="eye", translation=[width - 0.05, 2.2, -0.05],
+                  rotation=[-0.16043, 0.37687, 0.066452, 0.909844])
+        if walls:
+            self.box("slab", (0, -0.1, -depth), (width, 0, 0))
+            self.box("wall back", (0, 0, -depth - 0.1), (width, 2.5, -depth))
+            self.box("wall left", (-0.1, 0, -depth), (0, 2.5, 0))
+            self.box("wall right", (width, 0, -depth), (width + 0.1, 2.5, 0))
+
+    def node(self, name, **more):
+        self.gltf["nodes"].append({"name": name, **more})
+        self.gltf["scenes"][0]["nodes"].append(len(self.gltf["nodes"]) - 1)
+        return self.gltf["nodes"][-1]
+
+    def mark(self, mark, name=None, **more):
+        return self.node(name or mark["id"], extras={"pirsim": mark}, **more)
+
+    def seat(self, name, x, z, y=0.53, faces_back=False):
+        return self.mark({"type": "seat", "id": name}, translation=[x, y, z],
+                         rotation=[0, 1, 0, 0] if faces_back else [0, 0, 0, 1])
+
+    def box(self, name, low, high, mode=4, **more):
+        corners = [(high if k >> axis & 1 else low)[axis] for k in range(8) for axis in range(3)]
+        quads = (0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)
+        indices = [i for a, b, c, d in quads for i in (a, b, c, a, c, d)]
+        data = struct.pack("<24f36H", *corners, *indices)
+        buffers = self.gltf["buffers"]
+        buffers.append({"byteLength": len(data), "uri": "data:application/octet-stream;base64," +
+                        base64.b64encode(data).decode()})
+        views, accessors = self.gltf["bufferViews"], self.gltf["accessors"]
+        views += [{"buffer": len(buffers) - 1, "byteOffset": begin, "byteLength": size} for begin, size in ((0, 96), (96, 72))]
+        accessors += [{"bufferView": len(views) - 2, "componentType": 5126, "count": 8, "type": "VEC3"},
+                      {"bufferView": len(views) - 1, "componentType": 5123, "count": 36, "type": "SCALAR"}]
+        self.gltf["meshes"].append({"name": name, "primitives": [
+            {"attributes": {"POSITION": len(accessors) - 2}, "indices": len(accessors) - 1, "mode": mode}]})
+        return self.node(name, mesh=len(self.gltf["meshes"]) - 1, **more)
+
+    def scaled(self, factor):
+        """All below one node."""
+        below = self.gltf["scenes"][0]["nodes"]
+        self.gltf["nodes"].append({"name": "units", "scale": [factor] * 3, "children": below})
+        self.gltf["scenes"][0]["nodes"] = [len(self.gltf["nodes"]) - 1]
+        return self
+
+
+class OwnRooms(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def files(self, room, actions="", rest=""):
+        (self.folder / "room.gltf").write_text(json.dumps(room.gltf, indent=1))
+        people = f"people:\n  - {{id: p, actions: [{actions}]}}\n" if actions else ""
+        (self.folder / "study.yaml").write_text("pirsim_script: 1\n" + people + rest)
+        return "--scene", self.folder / "room.gltf", "--script", self.folder / "study.yaml"
+
+    def told(self, room, actions="", rest="", code=0, command=("check",)):
+        return pirsim(*command, *self.files(room, actions, rest), code=code).stderr
+
+    def rows(self, room, actions):
+        return pirsim(*self.files(room, actions), "-q").stdout
+
+    def the_error(self, room, actions="", rest=""):
+        """The run is refused before it begins, with one message."""
+        told = self.told(room, actions, rest, code=5, command=())
+        self.assertEqual(told.count("error:"), 1, told)
+        self.assertEqual(told, "".join(line + "\n" for line in self.told(room, actions, rest, code=5).splitlines()))
+        return told
+
+
+class HiddenNodes(OwnRooms):
+    CROSS = "{appear: {at_xz_m: [1, -0.8]}}, {walk: {to_xz_m: [[1.5, -1.2], [0.6, -2.2], [1.6, -1.6]]}}"
+    SCREEN = "screen", (2.2, 0, -2.6), (2.3, 2, -0.6)
+    INVISIBLE = {"extensions": {"KHR_node_visibility": {"visible": False}}}
+
+    def hidden(self, **how):
+        room = OwnRoom()
+        room.box(*self.SCREEN, **how)
+        return room
+
+    def test_what_is_hidden_is_not_there(self):
+        without = self.rows(OwnRoom(), self.CROSS)
+        self.assertNotEqual(self.rows(self.hidden(), self.CROSS), without)
+        for how in (self.INVISIBLE, {"scale": [0, 0, 0]}, {"matrix": [0] * 15 + [1]}):
+            self.assertEqual(self.rows(self.hidden(**how), self.CROSS), without, how)
+            self.assertIn("warning: node 'screen' is hidden and left out\n", self.told(self.hidden(**how), self.CROSS))
+        shown = {"extensions": {"KHR_node_visibility": {"visible": True}}}
+        self.assertEqual(self.rows(self.hidden(**shown), self.CROSS), self.rows(self.hidden(), self.CROSS))
+
+    def test_what_is_below_it_is_hidden_with_it(self):
+        for how in (self.INVISIBLE, {"scale": [0, 0, 0]}):
+            room = self.hidden()
+            screen = room.gltf["scenes"][0]["nodes"].pop()
+            room.gltf["nodes"].append({"name": "middle", "children": [screen]})
+            room.node("group", children=[len(room.gltf["nodes"]) - 1], **how)
+            self.assertEqual(self.rows(room, self.CROSS), self.rows(OwnRoom(), self.CROSS))
+            self.assertIn("warning: node 'group' is hidden and left out, with all that is below it\n",
+                          self.told(room, self.CROSS))
+
+    def test_a_hidden_mark_counts_no_more_than_a_hidden_mesh_and_is_named(self):
+        room = OwnRoom()
+        room.mark({"type": "sensor", "id": "PIR2", "model": OwnRoom.MODEL}, translation=[1, 2, 0], **self.INVISIBLE)
+        room.seat("S1", 2, -2)["scale"] = [0, 0, 0]
+        told = self.told(room, self.CROSS)
+        self.assertIn("node 'PIR2' is hidden and left out: sensor 'PIR2' (and 1 more: seat 'S1')", told)
+        self.assertTrue(self.rows(room, self.CROSS).startswith("replicate,trial,time_s,phase,people,PIR\n"))
+        floor = OwnRoom()
+        floor.gltf["nodes"][0].update(self.INVISIBLE)
+        self.assertIn("the scene has no floor area: node 'floor', a floor, is hidden and left out",
+                      self.told(floor, self.CROSS, code=3))
+
+    def test_many_are_told_in_one_line_and_not_at_all_where_that_is_meant(self):
+        room = OwnRoom()
+        for k in range(100):
+            room.box(f"old {k}", (1, 0, -3), (2, 1, -2), **self.INVISIBLE)
+        told = self.told(room, self.CROSS)
+        self.assertEqual(told.count("warning:"), 1, told)
+        self.assertIn("node 'old 0' is hidden and left out (and 99 more: node 'old 1', node 'old 2', node 'old 3', ...)", told)
+        for node in room.gltf["nodes"][-100:]:
+            node["extras"] = {"pirsim": {"type": "ignore"}}
+        self.assertEqual(self.told(room, self.CROSS), "")
+
+    def test_the_extension_may_be_required_and_has_to_be_a_flag(self):
+        room = self.hidden(**copy.deepcopy(self.INVISIBLE))
+        room.gltf["extensionsRequired"] = ["KHR_node_visibility"]
+        self.assertIn("is hidden and left out", self.told(room, self.CROSS))
+        room.gltf["nodes"][-1]["extensions"]["KHR_node_visibility"]["visible"] = "no"
+        self.assertIn("'visible' must be true or false", self.told(room, self.CROSS, code=3))
+
+    def test_a_flattened_node_is_refused_and_not_hidden(self):
+        self.assertIn("a scale of zero along one axis makes it flat",
+                      self.told(self.hidden(scale=[1, 0, 1]), self.CROSS, code=3))
+
+    def test_an_exported_run_is_a_scene_without_the_people_who_have_yet_to_come(self):
+        exported = self.folder / "run.gltf"
+        room = OwnRoom(walls=False)
+        room.mark({"type": "entrance", "id": "door"}, translation=[2, 0, 0])
+        pirsim("export", *self.files(room, "{enter: door, at_s: 2}, {wait_s: 1}, {leave: door}"), "--beams", "none", "-o", exported, "-q")
+        scene = json.loads(exported.read_text())
+        scene["nodes"].append(room.gltf["nodes"][0])
+        scene["scenes"][0]["nodes"].append(len(scene["nodes"]) - 1)
+        (self.folder / "again.gltf").write_text(json.dumps(scene))
+        told = pirsim("check", "--scene", self.folder / "again.gltf", *self.files(room, self.CROSS)[2:]).stderr
+        self.assertIn("node 'p' is hidden and left out, with all that is below it", told)
+
+
+class ComingIntoBeing(OwnRooms):
+    """People can be only where they could have walked to."""
+
+    def room(self, low=(1, 0, -3), high=(3, 2.2, -1)):
+        room = OwnRoom()
+        room.box("cupboard", low, high)
+        return room
+
+    def boards(self):
+        """A cupboard that is hollow: four boards, a person has room between them."""
+        room = OwnRoom()
+        for name, low, high in (("left", (1, 0, -3), (1.05, 2.2, -1)), ("right", (2.95, 0, -3), (3, 2.2, -1)),
+                                ("back", (1, 0, -3), (3, 2.2, -2.95)), ("door", (1, 0, -1.05), (3, 2.2, -1))):
+            room.box(name, low, high)
+        return room
+
+    APPEAR = "{appear: {at_xz_m: [2, -2]}}, {wait_s: 3}"
+
+    def test_nobody_appears_in_a_closed_cupboard(self):
+        for room in (self.room(), self.room(high=(3, 1.5, -1)), self.boards()):
+            self.assertRegex(self.the_error(room, self.APPEAR), r"study.yaml:3:\d+: error: 'p' can't appear at \(2.00, -2.00\): ")
+        self.rows(OwnRoom(), self.APPEAR)
+
+    def test_nor_where_others_walk_to_in_vain(self):
+        walk = "{appear: {at_xz_m: [0.5, -0.6]}}, {walk: {to_xz_m: [[2, -2]]}}"
+        self.assertIn("point (2.00, -2.00) can't be reached by 'p'", self.the_error(self.boards(), walk))
+
+    def test_not_even_at_the_rim_of_something_solid(self):
+        table = self.room((2, 0, -3), (3, 0.75, -2))
+        for x in (2.05, 1.95):
+            self.assertIn("can't appear", self.the_error(table, f"{{appear: {{at_xz_m: [{x}, -2.5]}}}}, {{wait_s: 1}}"))
+        walk = "{appear: {at_xz_m: [1, -1]}}, {walk: {to_xz_m: [[2.05, -2.5]]}}"
+        self.assertIn("it is inside of something solid", self.the_error(table, walk))
+        self.rows(table, "{appear: {at_xz_m: [1.8, -2.5]}}, {wait_s: 1}")
+
+    def test_nor_later_in_the_run(self):
+        room = self.room()
+        room.mark({"type": "entrance", "id": "door"}, translation=[4, 0, 0])
+        self.assertIn("can't appear", self.the_error(room, "{enter: door}, {leave: door}, " + self.APPEAR))
+
+    def test_nor_through_a_door_that_is_in_a_cupboard(self):
+        room = self.room((1, 0, -1), (3, 2.2, 0))
+        room.mark({"type": "entrance", "id": "door"}, translation=[2, 0, 0])
+        for actions in ("{enter: door}, {wait_s: 2}", "{enter: door}"):
+            self.assertIn("nobody gets from entrance 'door' to the floor", self.the_error(room, actions))
+        day = "schedule: {staff: [{role: staff, count: 1}], from: '09:00', to: '09:01'}\n"
+        room.seat("S1", 4, -3)
+        self.assertIn("nobody gets from entrance 'door' to the floor", self.the_error(room, rest=day))
+        room.mark({"type": "entrance", "id": "other"}, translation=[4.3, 0, 0])
+        self.assertIn("nobody gets from entrance 'door' to the floor", self.the_error(room, rest=day))
+        self.told(room, rest=day.replace("from:", "entrances: [other], from:"))
+
+    def test_nor_by_an_effect(self):
+        actions = "{appear: {at_xz_m: [0.5, -0.6]}}, {wait_s: 3}"
+        place = "{place: given, x_m: 2, z_m: -2}"
+        self.assertIn("error: 'second person' can't appear at (2.00, -2.00)",
+                      self.the_error(self.boards(), actions, f"effects: [second_person: {place}]\n"))
+
+    def test_a_room_without_a_door_is_no_cupboard(self):
+        """It may be the only one, or one of several that people can't leave."""
+        self.rows(OwnRoom(width=1.5, depth=1.5), "{appear: {at_xz_m: [0.7, -0.7]}}, {wait_s: 1}")
+        two = OwnRoom(width=9)
+        two.box("wall between", (4, 0, -4), (4.1, 2.5, 0))
+        for x in (2, 6):
+            self.rows(two, f"{{appear: {{at_xz_m: [{x}, -2]}}}}, {{wait_s: 1}}")
+
+
+class Unreachable(OwnRooms):
+    def test_only_the_first_place_that_can_not_be_reached_is_told(self):
+        room = OwnRoom()
+        room.box("wall between", (2.5, 0, -4), (2.6, 2.5, 0))
+        room.seat("S1", 1, -2)
+        room.seat("S2", 4, -2)
+        for actions, first in (("{walk: {to_xz_m: [[4, -2], [1, -3], [4, -3]]}}, {walk: {to_xz_m: [[1, -1]]}}, {sit: S1}, "
+                                "{work: {}}, rise", "point (4.00, -2.00)"),
+                               ("{sit: S2}, {work: {}}, rise, {walk: {to_xz_m: [[1, -1]]}}, {sit: S1}", "seat 'S2'")):
+            self.assertIn(f"error: {first}", self.the_error(room, "{appear: {at_xz_m: [1, -1]}}, " + actions))
+
+    def test_who_comes_in_anew_is_judged_anew(self):
+        room = OwnRoom()
+        room.box("wall between", (2.5, 0, -4), (2.6, 2.5, 0))
+        room.mark({"type": "entrance", "id": "door"}, translation=[1, 0, 0])
+        again = ", ".join(f"{{enter: door}}, {{walk: {{to_xz_m: [[4, {z}]]}}}}, {{leave: door}}" for z in (-2, -3))
+        self.assertEqual(self.told(room, again, code=5).count("can't be reached"), 2)
+
+
+class Sofas(OwnRooms):
+    SIT = "{appear: {at_xz_m: [0.6, -1]}}, {sit: SOFA}, {work: {duration_s: 3}}"
+
+    def sofa(self, behind_edge_m, back=False):
+        room = OwnRoom(width=4)
+        room.box("sofa base", (1, 0, -3.95), (3, 0.42, -3.05))
+        if back:
+            room.box("sofa back", (1, 0.42, -3.95), (3, 0.85, -3.7))
+        room.seat("SOFA", 2, -3.05 - behind_edge_m, faces_back=True)
+        return room
+
+    def test_the_true_reason_and_a_remedy_that_works(self):
+        for behind_m in (0.30, 0.33, 0.45):
+            told = self.the_error(self.sofa(behind_m), self.SIT)
+            self.assertIn("who sits down stands 0.4", told)
+            self.assertIn("too near to 'sofa base'", told)
+            self.assertNotIn("within a metre", told)
+            forward_m = float(re.search(r"move the point (\S+) m forward", told).group(1))
+            self.rows(self.sofa(behind_m - forward_m), self.SIT)
+
+    def test_the_back_of_a_seat_is_no_table(self):
+        self.assertEqual(self.told(self.sofa(0.28, back=True), self.SIT), "")
+        toilet = OwnRoom(width=4)  # nothing is below the sitter
+        toilet.box("cistern", (1.8, 0, -3.95), (2.2, 0.8, -3.7))
+        toilet.seat("SOFA", 2, -3.4, faces_back=True)
+        self.assertEqual(self.told(toilet, self.SIT), "")
+
+    def test_a_table_behind_is_in_doubt_with_a_chair_and_without(self):
+        for chair in (False, True):
+            room = OwnRoom(width=4)
+            room.box("desk", (1, 0.7, -3.9), (3, 0.74, -3.1))
+            if chair:
+                room.box("chair", (1.8, 0, -2.95), (2.2, 0.42, -2.65))
+            room.seat("SOFA", 2, -2.85, faces_back=True)
+            self.assertIn("seat 'SOFA' faces away from 'desk'", self.told(room, self.SIT))
+
+
+class ManyOfAKind(OwnRooms):
+    WALK = "{appear: {at_xz_m: [0.5, -0.5]}}, {walk: {to_xz_m: [[0.5, -1]]}}"
+
+    def seats(self, n):
+        room = OwnRoom(width=2 * n)
+        room.box("bench", (0, 0.7, -3.9), (2 * n, 0.74, -3.1))
+        for k in range(n):
+            room.seat(f"S{k}", 2 * k + 1, -2.85, faces_back=True)
+        return room
+
+    def test_a_hundred_warnings_of_one_kind_are_one(self):
+        room = OwnRoom()
+        for k in range(100):
+            room.box(f"cable {k}", (1, 0, -3), (2, 1, -2), mode=1)
+        told = self.told(room, self.WALK)
+        self.assertEqual(told.count("warning:"), 1, told)
+        self.assertIn("mesh 'cable 0': points and lines don't occlude; left out (and 99 more: mesh 'cable 1', mesh 'cable 2', "
+                      "mesh 'cable 3', ...)", told)
+        told = self.told(self.seats(4), self.WALK)
+        self.assertEqual(told.count("warning:"), 1, told)
+        self.assertIn("seat 'S0' faces away from 'bench': sitters look along the node's -Z (and 3 more: seat 'S1', seat 'S2', "
+                      "seat 'S3')", told)
+
+    def test_a_single_one_is_told_as_it_is(self):
+        self.assertTrue(self.told(self.seats(1), self.WALK).endswith("sitters look along the node's -Z\n"))
+
+    def test_what_is_marked_as_meant_is_not_told(self):
+        room = self.seats(3)
+        for node in room.gltf["nodes"]:
+            if node["name"] in ("S0", "S1"):
+                node["extras"]["pirsim"]["as_meant"] = True
+        told = self.told(room, self.WALK)
+        self.assertIn("seat 'S2' faces away", told)
+        self.assertNotIn("more", told)
+        lines = OwnRoom()
+        lines.box("cable", (1, 0, -3), (2, 1, -2), mode=1, extras={"pirsim": {"type": "surface", "as_meant": True}})
+        self.assertEqual(self.told(lines, self.WALK), "")
+        lines.gltf["nodes"][-1]["extras"]["pirsim"]["as_meant"] = "yes"
+        self.assertIn("'as_meant' must be true or false", self.told(lines, self.WALK, code=3))
+
+    def test_blind_sensors_are_told_together_after_the_report(self):
+        room = OwnRoom()
+        for k in range(9):
+            room.mark({"type": "sensor", "id": f"B{k}", "model": OwnRoom.MODEL}, translation=[-2, 2, -2])
+        result = subprocess.run([PIRSIM, "check", *map(str, self.files(room, self.WALK))], stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, text=True)
+        last = result.stdout.splitlines()[-1]
+        self.assertIn("warning: sensor 'B0' can see NOBODY: ", last)
+        self.assertIn("(and 8 more: sensor 'B1', sensor 'B2', sensor 'B3', ...)", last)
+        self.assertEqual(len(re.findall(r"^  B\d .* sees NOBODY$", result.stdout, re.M)), 9)
+
+
+class Units(OwnRooms):
+    WALK = "{appear: {at_xz_m: [2, -2]}}, {wait_s: 1}"
+
+    def test_the_unit_that_makes_a_plausible_room_is_named_in_one_warning(self):
+        for unit, metres in (("inches", 0.0254), ("centimetres", 0.01), ("millimetres", 0.001), ("feet", 0.3048)):
+            room = OwnRoom()
+            if unit == "feet":  # a hall may be as large: it is the seats that can't be so high
+                room.seat("S1", 2, -2)
+            files = self.files(room.scaled(1 / metres), f"{{appear: {{at_xz_m: [{2 / metres}, {-2 / metres}]}}}}, {{wait_s: 1}}")
+            told = subprocess.run([PIRSIM, "check", *map(str, files)], capture_output=True, text=True).stderr
+            self.assertIn(f": {unit}? In {unit} the floor spans 5.0 m x 4.0 m and the room is 2.5 m high; glTF's unit is the "
+                          "metre", told)
+            self.assertEqual(told.count("warning:"), 1, told)
+
+    def test_halls_and_single_giants_are_not_in_another_unit(self):
+        hall = OwnRoom(width=120, depth=60)
+        hall.box("roof", (0, 25, -60), (120, 25.2, 0))
+        self.assertNotIn("unit", self.told(hall, self.WALK))
+        giant = OwnRoom()
+        giant.box("tower", (2, 0, -3), (3, 800, -2))
+        told = self.told(giant, "{appear: {at_xz_m: [1, -2]}}, {wait_s: 1}")
+        self.assertIn("node 'tower': its mesh spans", told)
+        self.assertNotIn("the floor spans 5.0", told)
+        far = OwnRoom(width=400, depth=3)
+        self.assertIn("the floor spans 400 m x 3 m", self.told(far, self.WALK))
+        far.gltf["nodes"][0]["extras"]["pirsim"]["as_meant"] = True
+        self.assertNotIn("the floor spans", self.told(far, self.WALK))
 
 
 class BareRoom(unittest.TestCase):
