@@ -18,6 +18,7 @@ enum class Missing { none, outer };
 
 constexpr NumberRange positive{.above = 0.0, .max = 1000.0};
 constexpr NumberRange length_m{.min = 1e-3, .max = 1000.0};  ///< what is shorter leaves no digits to directions
+constexpr double pitch_to_side = 1.0 / 0.6;  ///< of the quad's elements, quoted: docs/physics/zones.md
 constexpr NumberRange on_plane{.min = -1000.0, .max = 1000.0};
 
 /// What the facets of one lens share.
@@ -94,7 +95,7 @@ ClusterSpec read_facet(const YamlNode& node, const FacetLaw& law, Diagnostics& f
     quad = diamond(cluster.centre, law.half_spacing_ratio * distance, law.half_diagonal_ratio * distance);
   } else {
     const double side = map.required_number("zone_side_m", length_m);
-    quad = square(cluster.centre, map.required_number("pitch_m", length_m), side);
+    quad = square(cluster.centre, map.optional_number("pitch_m", length_m).value_or(pitch_to_side * side), side);
   }
   cluster.zones = zones_of(quad, law.polarity, missing);
   map.finish();

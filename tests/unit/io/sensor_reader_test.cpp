@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <glm/geometric.hpp>
 #include <map>
 #include <memory>
 #include <sstream>
@@ -197,6 +198,26 @@ TEST_CASE("faults of a sensor file are told with line and column", "[sensor]") {
             .find("f:2:1: error: 'plane_m' has no entry under 'sources'") == 0);
   CHECK(refusal_of("id: X\nplane_m: 2\nsources: {plane_m: 'guess: 2'}\nclusters: []\n")
             .find("expected 'quoted:', 'measured:', 'inferred:' or 'assumed:' in front") != std::string::npos);
+}
+
+TEST_CASE("a square facet without a pitch has the quad's, 1.0 mm between squares of 0.6 mm", "[sensor]") {
+  const TemporaryFolder folder;
+  const auto zones = [&](const std::string& pitch) {
+    const std::string text =
+        "id: A\nplane_m: 2.5\nrange_m: 5\nlayout: square\nfacets:\n  - {x_m: 1, y_m: 2, zone_side_m: 0.3" + pitch +
+        "}\nsources: {plane_m: 'assumed: a', range_m: 'assumed: a', x_m: 'assumed: a', y_m: 'assumed: a', zone_side_m: "
+        "'assumed: a'" +
+        (pitch.empty() ? "" : ", pitch_m: 'assumed: a'") + "}\n";
+    return io::read_sensor_model(folder.write("A.yaml", text)).clusters.front().zones;
+  };
+  const auto by_rule = zones(""), as_written = zones(", pitch_m: 0.5");
+  REQUIRE(by_rule.size() == 4);
+  for (std::size_t zone = 0; zone < 4; ++zone) {
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      CHECK(glm::distance(by_rule[zone].corners[corner], as_written[zone].corners[corner]) < 1e-12);
+    }
+  }
+  CHECK(zones(", pitch_m: 0.6").front().corners[0].x > by_rule.front().corners[0].x + 0.04);
 }
 
 TEST_CASE("a file's element, amplifier and comparator are read and what it leaves out keeps its default", "[sensor]") {
