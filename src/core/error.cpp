@@ -34,14 +34,14 @@ std::vector<Issue> of_severity(const std::vector<Issue>& issues, Severity severi
 
 /// Nothing twice; a file made to annoy has millions of faults, which nobody reads.
 void add(std::vector<Issue>& issues, Issue issue) {
-  const auto is_told = [&](const Issue& other) {
-    return other.severity == issue.severity && other.where == issue.where && other.message == issue.message;
-  };
-  if (std::any_of(issues.begin(), issues.end(), is_told)) return;
   constexpr std::ptrdiff_t most = 100;
   const auto told =
       std::count_if(issues.begin(), issues.end(), [&](const Issue& other) { return other.severity == issue.severity; });
   if (told > most) return;
+  const auto is_told = [&](const Issue& other) {
+    return other.severity == issue.severity && other.where == issue.where && other.message == issue.message;
+  };
+  if (std::any_of(issues.begin(), issues.end(), is_told)) return;
   if (told == most) {
     issue.where.line = issue.where.column = 0;
     issue.message = "there are more like these";

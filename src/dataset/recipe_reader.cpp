@@ -16,8 +16,8 @@ namespace pirsim::dataset {
 namespace {
 
 constexpr int format_version = 1;
-constexpr int most_rooms = 100'000, most_days = 3'660;  // assumed: ten years
-constexpr std::int64_t most_room_days = 1'000'000;      // assumed: some months of a cluster of a hundred cores
+constexpr int most_rooms = static_cast<int>(limits::rooms), most_days = 3'660;  // assumed: ten years
+constexpr std::int64_t most_room_days = 1'000'000;  // assumed: some months of a cluster of a hundred cores
 
 using io::YamlMap;
 using io::YamlNode;
@@ -124,7 +124,7 @@ RoomGroupSpec read_group(const YamlNode& node, const RecipeSpec& recipe, const s
   RoomGroupSpec group;
   group.where = node.where();
   if (map.has("scenes")) {
-    for (const YamlNode& scene : map.required_list("scenes")) {
+    for (const YamlNode& scene : map.required_list("scenes", limits::rooms)) {
       group.scenes.push_back(recipe.file.parent_path() / scene.text(faults, "scenes"));
       std::error_code unreadable;
       if (!std::filesystem::is_regular_file(group.scenes.back(), unreadable))
@@ -132,7 +132,7 @@ RoomGroupSpec read_group(const YamlNode& node, const RecipeSpec& recipe, const s
     }
     group.count = static_cast<int>(group.scenes.size());
   } else {
-    static_cast<void>(map.list("scenes"));
+    static_cast<void>(map.list("scenes", limits::rooms));
     group.count = map.integer("count", group.count, {.min = 1, .max = most_rooms});
     group.rooms = read_room_keys(map);
   }

@@ -47,7 +47,7 @@ Action read_enter(const YamlNode& node, Diagnostics& faults) { return action::En
 Action read_walk(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "walk");
   action::Walk walk;
-  for (const YamlNode& point : map.required_list("to_xz_m"))
+  for (const YamlNode& point : map.required_list("to_xz_m", limits::walk_points))
     walk.points.push_back(read_point(point, faults, "to_xz_m"));
   walk.activity = read_activity(map, {Activity::phone});
   map.finish();

@@ -84,38 +84,18 @@ std::string take_token(std::string_view& pointer) {
   return token;
 }
 
-struct Member {
-  std::size_t key = 0;  ///< offset of the key, or of the value in an array
-  std::size_t value = 0;
-};
-
 /// The last member of that name counts, as it does for the parser.
-std::optional<Member> find_member(std::string_view text, std::size_t object, const std::string& name) {
-  std::optional<Member> found;
-  Scanner scanner(text, object);
-  scanner.step_over_punctuation();
-  while (scanner.peek() == '"') {
-    const std::size_t key_offset = scanner.offset();
-    const std::string key = key_of(scanner.take_string());
-    scanner.step_over_punctuation();  // :
-    if (key == name) found = Member{key_offset, scanner.offset()};
-    scanner.skip_value();
-    if (scanner.peek() == ',') scanner.step_over_punctuation();
-  }
-  return found;
+template <typename Members>
+auto named(const Members& members, const std::string& name) {
+  const auto found = std::find_if(members.rbegin(), members.rend(), [&](const auto& m) { return m.name == name; });
+  return found == members.rend() ? std::nullopt : std::optional(*found);
 }
 
-std::optional<Member> find_element(std::string_view text, std::size_t array, const std::string& name) {
-  std::size_t index = 0;
-  if (std::from_chars(name.data(), name.data() + name.size(), index).ec != std::errc{}) return std::nullopt;
-  Scanner scanner(text, array);
-  scanner.step_over_punctuation();
-  for (std::size_t i = 0; scanner.peek() != ']' && scanner.peek() != '\0'; ++i) {
-    if (i == index) return Member{scanner.offset(), scanner.offset()};
-    scanner.skip_value();
-    if (scanner.peek() == ',') scanner.step_over_punctuation();
-  }
-  return std::nullopt;
+template <typename Members>
+auto numbered(const Members& members, const std::string& number) {
+  std::size_t index = members.size();
+  std::from_chars(number.data(), number.data() + number.size(), index);
+  return index < members.size() ? std::optional(members[index]) : std::nullopt;
 }
 
 /// Where the token begins that the parser had read up to `last`: a text is complained about at its closing quote.
@@ -223,30 +203,75 @@ JsonText::JsonText(std::string file, std::string text, Places places)
 Where JsonText::where(std::string_view pointer) const { return find(pointer, Target::value); }
 Where JsonText::where_key(std::string_view pointer) const { return find(pointer, Target::key); }
 
+JsonText::Members JsonText::members_of(std::string_view text, std::size_t offset) {
+  Members members;
+  Scanner scanner(text, offset);
+  const bool is_object = scanner.peek() == '{';
+  scanner.step_over_punctuation();
+  while (scanner.peek() != ']' && scanner.peek() != '}' && scanner.peek() != '\0') {
+    Member& member = members.emplace_back();
+    member.key = scanner.offset();
+    if (is_object) {
+      member.name = key_of(scanner.take_string());
+      scanner.step_over_punctuation();  // :
+    }
+    member.value = scanner.offset();
+    scanner.skip_value();
+    if (scanner.peek() == ',') scanner.step_over_punctuation();
+  }
+  return members;
+}
+
+std::optional<JsonText::Member> JsonText::member_of(std::size_t offset, const std::string& name) const {
+  const char opens = text_[offset];
+  if (opens != '{' && opens != '[') return std::nullopt;
+  const auto look = [&](const Members& members) {
+    return opens == '{' ? named(members, name) : numbered(members, name);
+  };
+  if (const auto noted = noted_.find(offset); noted != noted_.end()) return look(noted->second);
+  constexpr std::size_t long_enough = 4096;  // bytes: less is scanned faster than looked up
+  Members members = members_of(text_, offset);
+  if (members.empty() || members.back().value - offset < long_enough) return look(members);
+  return look(noted_.emplace(offset, std::move(members)).first->second);
+}
+
 Where JsonText::find(std::string_view pointer, Target target) const {
   if (places_ == Places::unknown) return {file_, 0, 0};
   Member member;
   member.key = member.value = Scanner(text_, 0).offset();
   while (!pointer.empty()) {
-    const std::string token = take_token(pointer);
-    std::optional<Member> next;
-    if (text_[member.value] == '{') next = find_member(text_, member.value, token);
-    if (text_[member.value] == '[') next = find_element(text_, member.value, token);
+    std::optional<Member> next = member_of(member.value, take_token(pointer));
     if (!next) return at(member.value);
-    member = *next;
+    member = *std::move(next);
   }
   return at(target == Target::key ? member.key : member.value);
+}
+
+void JsonText::count(std::size_t from, std::size_t to, LineAndColumn& place) const {
+  for (std::size_t i = from; i < to; ++i) {
+    const auto c = static_cast<unsigned char>(text_[i]);
+    if (c == '\n') {
+      ++place.line;
+      place.column = 1;
+    } else if ((c & 0xC0U) != 0x80U) {  // a character of UTF-8 begins
+      ++place.column;
+    }
+  }
 }
 
 Where JsonText::at(std::size_t offset) const {
   if (places_ == Places::unknown) return {file_, 0, 0};
   offset = std::min(offset, text_.size());
-  const std::string_view before = std::string_view(text_).substr(0, offset);
-  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-  const std::string_view on_line = before.substr(before.rfind('\n') + 1);                             // npos + 1 is 0
-  const auto is_character = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };  // UTF-8
-  const auto column = 1 + std::count_if(on_line.begin(), on_line.end(), is_character);
-  return {file_, static_cast<int>(line), static_cast<int>(column)};
+  constexpr std::size_t every = 4096;
+  if (counted_.empty()) counted_.emplace_back();
+  for (std::size_t n = counted_.size(); n <= offset / every; ++n) {
+    LineAndColumn next = counted_.back();
+    count((n - 1) * every, n * every, next);
+    counted_.push_back(next);
+  }
+  LineAndColumn place = counted_[offset / every];
+  count(offset / every * every, offset, place);
+  return {file_, static_cast<int>(place.line), static_cast<int>(place.column)};
 }
 
 }  // namespace pirsim::io::detail

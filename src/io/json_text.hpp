@@ -1,10 +1,14 @@
 // A JSON text that knows where in the file each of its values stands. Private to io.
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "pirsim/error.hpp"
 
@@ -18,7 +22,8 @@ struct JsonFault {
 };
 [[nodiscard]] std::variant<nlohmann::json, JsonFault> parse_json(std::string_view text);
 
-/// Places are found by scanning the text again: they are wanted only for the few values that a message is about.
+/// Places are found by scanning the text again, since few values are asked about. Readers ask for every mark of a
+/// scene, so what is in a long list or object is noted at the first question. Not for several threads at a time.
 class JsonText {
  public:
   enum class Places { known, unknown };  ///< unknown: the text is not a file of its own (a chunk of a .glb)
@@ -34,6 +39,20 @@ class JsonText {
 
  private:
   enum class Target { value, key };
+  /// Of a list or an object: offsets of what it holds, in the order of the text.
+  struct Member {
+    std::string name;     ///< of an object's member
+    std::size_t key = 0;  ///< of its key; of a list's element: of its value
+    std::size_t value = 0;
+  };
+  using Members = std::vector<Member>;
+  struct LineAndColumn {
+    std::size_t line = 1, column = 1;
+  };
+  [[nodiscard]] static Members members_of(std::string_view text, std::size_t offset);
+  /// The member of that name or number of what begins at the offset, if it has one.
+  [[nodiscard]] std::optional<Member> member_of(std::size_t offset, const std::string& name) const;
+  void count(std::size_t from, std::size_t to, LineAndColumn& place) const;
   [[nodiscard]] Where find(std::string_view pointer, Target target) const;
   [[nodiscard]] Where at(std::size_t offset) const;
 
@@ -41,6 +60,8 @@ class JsonText {
   std::string text_;
   Places places_;
   nlohmann::json root_;
+  mutable std::map<std::size_t, Members> noted_;  ///< by offset
+  mutable std::vector<LineAndColumn> counted_;    ///< at every so many bytes
 };
 
 }  // namespace pirsim::io::detail

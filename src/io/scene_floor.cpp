@@ -4,13 +4,14 @@
 #include <cmath>
 #include <utility>
 
+#include "schema/limits.hpp"
+
 namespace pirsim::io::detail {
 namespace {
 
 constexpr double flatness_m = 0.01;  // assumed: less than any step one could trip over
 
-constexpr double world_limit_m = 1e5;        // as for nodes
-constexpr std::size_t max_corners = 10'000;  // assumed: a scanned floor has some hundred; every pair is compared
+constexpr double world_limit_m = 1e5;  // as for nodes
 
 using Loop = std::vector<Vec2>;
 
@@ -38,12 +39,9 @@ bool cross(const Loop& first, const Loop& second) {
   return false;
 }
 
-double area_of(const std::vector<Loop>& loops) { return FloorArea(loops, 0.0).area_m2(); }
-
 /// Whether the floor just beside an edge of the first, on its inner side, also belongs to the second.
-bool edge_runs_inside(const std::vector<Loop>& first, const std::vector<Loop>& second) {
-  const FloorArea own(first, 0.0), other(second, 0.0);
-  for (const Loop& loop : first) {
+bool edge_runs_inside(const FloorArea& own, const FloorArea& other) {
+  for (const Loop& loop : own.loops()) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
       const Vec2 a = loop[i], along = loop[(i + 1) % loop.size()] - a;
       const Vec2 aside = Vec2(-along.y, along.x) * 1e-6;
@@ -55,10 +53,16 @@ bool edge_runs_inside(const std::vector<Loop>& first, const std::vector<Loop>& s
   return false;
 }
 
+bool boxes_meet(const FloorArea& a, const FloorArea& b) {
+  return a.lower().x < b.upper().x && b.lower().x < a.upper().x && a.lower().y < b.upper().y &&
+         b.lower().y < a.upper().y;
+}
+
 /// Floors may touch, but an overlap would count as no floor by the even-odd rule.
-bool overlap(const std::vector<Loop>& first, const std::vector<Loop>& second) {
-  for (const Loop& a : first) {
-    for (const Loop& b : second) {
+bool overlap(const FloorArea& first, const FloorArea& second) {
+  if (!boxes_meet(first, second)) return false;
+  for (const Loop& a : first.loops()) {
+    for (const Loop& b : second.loops()) {
       if (cross(a, b)) return true;
     }
   }
@@ -88,7 +92,7 @@ void FloorBuilder::add_mesh(const TriMesh& mesh, const Where& where, const std::
     return faults_.error(where, label + ": its mesh has no triangles, so it has no floor area");
   if (!flat(mesh.positions, where, label)) return;
   try {
-    add({boundary_loops_xz(mesh), mesh.positions.front().y, where, label});
+    add({{boundary_loops_xz(mesh), mesh.positions.front().y}, where, label});
   } catch (const Error& fault) {
     faults_.error(where, label + ": " + fault.issues().front().message);
   }
@@ -98,25 +102,25 @@ void FloorBuilder::add_polygon(const std::vector<Vec3>& corners, const Where& wh
   if (!flat(corners, where, label)) return;
   Loop loop;
   for (const Vec3& corner : corners) loop.push_back(floor_point(corner));
-  add({{std::move(loop)}, corners.front().y, where, label});
+  add({{{std::move(loop)}, corners.front().y}, where, label});
 }
 
 void FloorBuilder::add(Part part) {
-  for (const Loop& loop : part.loops) {
+  for (const Loop& loop : part.area.loops()) {
     n_corners_ += loop.size();
-    if (n_corners_ > max_corners) {
-      return faults_.error(
-          part.where, part.label + ": the floor's outline has more than " + std::to_string(max_corners) + " corners");
+    if (n_corners_ > limits::floor_corners) {
+      return faults_.error(part.where, part.label + ": the floor's outline has more than " +
+                                           std::to_string(limits::floor_corners) + " corners");
     }
     for (const Vec2& p : loop) {
       if (std::abs(p.x) <= world_limit_m && std::abs(p.y) <= world_limit_m) continue;
       return faults_.error(part.where, part.label + ": the floor reaches more than 100 km from the origin");
     }
   }
-  for (const Loop& loop : part.loops) {
+  for (const Loop& loop : part.area.loops()) {
     if (cross(loop, loop)) return faults_.error(part.where, part.label + ": the outline of the floor crosses itself");
   }
-  if (area_of(part.loops) < 1e-6) return faults_.error(part.where, part.label + ": the floor has no area");
+  if (part.area.area_m2() < 1e-6) return faults_.error(part.where, part.label + ": the floor has no area");
   parts_.push_back(std::move(part));
 }
 
@@ -124,17 +128,17 @@ FloorArea FloorBuilder::build() {
   std::vector<Loop> loops;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     const Part& part = parts_[i];
-    if (std::abs(part.height_m - parts_.front().height_m) > flatness_m) {
+    if (std::abs(part.area.height_m() - parts_.front().area.height_m()) > flatness_m) {
       faults_.error(part.where, part.label + " and " + parts_.front().label + " are floors at different heights");
     }
     for (std::size_t k = 0; k < i; ++k) {
-      if (overlap(parts_[k].loops, part.loops)) {
+      if (overlap(parts_[k].area, part.area)) {
         faults_.error(part.where, part.label + " overlaps the floor of " + parts_[k].label);
       }
     }
-    loops.insert(loops.end(), part.loops.begin(), part.loops.end());
+    loops.insert(loops.end(), part.area.loops().begin(), part.area.loops().end());
   }
-  return {std::move(loops), parts_.empty() ? 0.0 : parts_.front().height_m};
+  return {std::move(loops), parts_.empty() ? 0.0 : parts_.front().area.height_m()};
 }
 
 }  // namespace pirsim::io::detail

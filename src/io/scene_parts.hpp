@@ -105,8 +105,7 @@ class FloorBuilder {
 
  private:
   struct Part {
-    std::vector<std::vector<Vec2>> loops;
-    double height_m = 0.0;
+    FloorArea area;
     Where where;
     std::string label;
   };

@@ -129,7 +129,10 @@ class SceneBuilder {
   void add_node(const PlacedNode& placed) {
     const auto known = marks_.find(placed.node);
     const Markup* markup = known == marks_.end() ? nullptr : &known->second;
-    if (markup && std::holds_alternative<mark::Floor>(*markup)) nodes_.floor = placed.node;
+    if (markup && std::holds_alternative<mark::Floor>(*markup)) {
+      if (!has_room(n_floors_++, limits::floors, "floors")) return;
+      nodes_.floor = placed.node;
+    }
     if (markup && std::holds_alternative<mark::Ignore>(*markup)) return;
     if (const int mesh = document_.model.nodes[static_cast<std::size_t>(placed.node)].mesh; mesh >= 0) {
       add_mesh(placed, mesh, markup);
@@ -196,6 +199,7 @@ class SceneBuilder {
   }
 
   void add_sensor(const PlacedNode& placed, const mark::Sensor& sensor) {
+    if (!has_room(spec_.sensors.size(), limits::sensors, "sensors")) return;
     check_unique("sensor", sensor.id, placed.node);
     if (is_column_name(sensor.id))
       node_error(placed.node, "/extras/pirsim/id", "sensor id '" + sensor.id + "' is the name of a column of rows");
@@ -203,11 +207,13 @@ class SceneBuilder {
     spec_.sensors.push_back({sensor.id, sensor.model, rigid_frame(placed.world_from_node)});
   }
   void add_seat(const PlacedNode& placed, const mark::Seat& seat) {
+    if (!has_room(spec_.seats.size(), limits::seats, "seats")) return;
     check_unique("seat", seat.id, placed.node);
     nodes_.seats.push_back(placed.node);
     spec_.seats.push_back({seat.id, upright_frame(placed)});
   }
   void add_entrance(const PlacedNode& placed, const mark::Entrance& entrance) {
+    if (!has_room(spec_.entrances.size(), limits::entrances, "entrances")) return;
     check_unique("entrance", entrance.id, placed.node);
     nodes_.entrances.push_back(placed.node);
     spec_.entrances.push_back({entrance.id, upright_frame(placed), entrance.width_m, entrance.outside_m});
@@ -217,6 +223,13 @@ class SceneBuilder {
     for (const Vec2& p : *floor.polygon) corners.emplace_back(placed.world_from_node * glm::dvec4(p.x, 0.0, p.y, 1.0));
     floor_.add_polygon(corners, document_.text.where(markup_pointer(placed.node) + "/polygon_xz_m"),
                        node_label(document_.model, placed.node));
+  }
+
+  /// So many are there already. A fault if the scene can't have one more.
+  bool has_room(std::size_t n, std::size_t most, const char* what) {
+    if (n < most) return true;
+    remarks_.error({file_.string()}, "the scene has " + too_many(most, what));
+    return false;
   }
 
   Frame upright_frame(const PlacedNode& placed) {
@@ -295,6 +308,7 @@ class SceneBuilder {
   std::map<int, Markup> marks_;                             ///< by node
   std::set<int> meshes_as_meant_;                           ///< of a node that says so
   std::string hidden_floor_;                                ///< its node, as messages name it
+  std::size_t n_floors_ = 0;
   std::vector<std::optional<double>> temperatures_c_;       ///< (n_materials)
   std::map<int, std::vector<TriMesh>> meshes_;              ///< in their own frames, by index, in equally warm parts
   std::map<std::string, Where> model_places_;               ///< where each sensor model is first named

@@ -100,7 +100,7 @@ MeetingsSpec read_meetings(const YamlNode& node, Diagnostics& faults) {
   spec.to_h = read_time(map, "to", spec.to_h, faults);
   if (spec.from_h >= spec.to_h) faults.error(map.where("to"), "meetings: `to` is not after `from`");
   spec.lateness_min = map.number("lateness_min", spec.lateness_min, {.min = 0.0, .max = 60.0});
-  for (const YamlNode& held : map.list("held")) spec.held.push_back(read_held(held, faults));
+  for (const YamlNode& held : map.list("held", limits::held_meetings)) spec.held.push_back(read_held(held, faults));
   check_held(spec.held, faults);
   spec.seats = map.texts("seats");
   map.finish();

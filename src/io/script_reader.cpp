@@ -17,8 +17,6 @@ namespace {
 
 using detail::BodyMeshReader;
 
-constexpr std::size_t max_trials = 20'000;  // assumed: each is written out in memory, some 10 kB; 200 is a large study
-
 SummarySpec read_summary(const std::optional<YamlNode>& node, Diagnostics& faults) {
   SummarySpec summary;
   if (!node) return summary;
@@ -121,7 +119,8 @@ PersonSpec read_person(const YamlNode& node, BodyMeshReader& body_meshes, Diagno
   const double speed_m_s = person.style == MotionStyle::natural ? natural_speed_m_s : person.walking_speed_m_s;
   person.walking_speed_m_s = map.number("walking_speed_m_s", speed_m_s, {.min = 0.1, .max = 3.0});
   person.warmth = read_warmth(map.child("warmth"), faults);
-  for (const YamlNode& action : map.list("actions")) person.actions.push_back(read_action(action, faults));
+  for (const YamlNode& action : map.list("actions", limits::actions))
+    person.actions.push_back(read_action(action, faults));
   refuse_activities(person, faults);
   map.finish();
   return person;
@@ -147,8 +146,8 @@ std::vector<Variables> combinations(const std::optional<YamlNode>& for_each, Dia
   const std::vector<YamlNode> values = for_each->items();
   for (std::size_t i = 0; i < keys.size(); ++i) {
     std::vector<Variables> extended;
-    if (result.size() * values[i].items().size() > max_trials) {
-      faults.error(keys[i].where, "for_each: more than " + std::to_string(max_trials) + " combinations");
+    if (result.size() * values[i].n_items() > limits::trials) {
+      faults.error(keys[i].where, "for_each: " + too_many(limits::trials, "combinations"));
       return result;
     }
     for (const Variables& variables : result) {
@@ -167,14 +166,26 @@ std::vector<Variables> combinations(const std::optional<YamlNode>& for_each, Dia
 std::vector<TrialSpec> read_listed_trials(const YamlNode& list, BodyMeshReader& body_meshes, Diagnostics& faults) {
   std::vector<TrialSpec> trials;
   std::set<std::string> ids;
-  for (const YamlNode& item : list.items()) {
+  for (const YamlNode& item : read_list(list, faults, "trials", limits::trials)) {
     YamlMap map(item, faults, "trial");
-    trials.push_back({map.required_text("id"), read_people(map.list("people"), {}, body_meshes, faults)});
+    trials.push_back(
+        {map.required_text("id"), read_people(map.list("people", limits::people), {}, body_meshes, faults)});
     trials.back().duration_s = map.optional_number("duration_s", {.min = 1.0, .max = 1e7});
     if (!ids.insert(trials.back().id).second) faults.error(item.where(), "a second trial '" + trials.back().id + "'");
     map.finish();
   }
   return trials;
+}
+
+/// Are all trials together, each with its people, small enough to be written out?
+bool fit_written_out(std::size_t n_trials, const std::vector<YamlNode>& people, Diagnostics& faults) {
+  std::size_t n_values = 0;
+  for (const YamlNode& person : people) n_values += person.n_values();
+  if (n_values * n_trials <= limits::yaml_values) return true;
+  faults.error(people.front().where(), "people: " + std::to_string(n_trials) + " trials of " +
+                                           std::to_string(n_values) + " values each are " +
+                                           too_many(limits::yaml_values, "values"));
+  return false;
 }
 
 /// One trial for every combination of variables, all with the same people.
@@ -192,6 +203,7 @@ std::vector<TrialSpec> read_trials(const std::optional<YamlNode>& node, const st
   const auto all = combinations(map.child("for_each"), faults);
   const std::string pattern = map.required_text("id");
   map.finish();
+  if (!fit_written_out(all.size(), people, faults)) return {};
   Diagnostics found;  // trials share their text: what is wrong in one is wrong in all, and said once
   for (const Variables& variables : all) {
     TrialSpec& trial = trials.emplace_back();
@@ -233,7 +245,7 @@ ScriptSpec script_of(const YamlNode& root, const std::filesystem::path& file) {
   script.sensing = read_sensing(map.child("sensing"), faults);
   script.summary = read_summary(map.child("summary"), faults);
   BodyMeshReader body_meshes(file.parent_path());
-  script.trials = read_trials(map.child("trials"), map.list("people"), body_meshes, faults);
+  script.trials = read_trials(map.child("trials"), map.list("people", limits::people), body_meshes, faults);
   if (const auto duration_s = map.optional_number("duration_s", {.min = 1.0, .max = 1e7})) {
     for (TrialSpec& trial : script.trials) trial.duration_s = trial.duration_s.value_or(*duration_s);
   }

@@ -19,12 +19,7 @@ bool YamlMap::has(const std::string& key) const { return find(key).has_value(); 
 
 std::string YamlMap::label(const std::string& key) const { return what_ + ": " + key; }
 
-std::optional<YamlNode> YamlMap::find(const std::string& key) const {
-  const std::vector<YamlKey> keys = node_.keys();
-  const auto found = std::find_if(keys.begin(), keys.end(), [&](const YamlKey& k) { return k.name == key; });
-  if (found == keys.end()) return std::nullopt;
-  return node_.items()[static_cast<std::size_t>(found - keys.begin())];
-}
+std::optional<YamlNode> YamlMap::find(const std::string& key) const { return node_.value_of(key); }
 
 std::optional<YamlNode> YamlMap::child(const std::string& key) {
   if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) asked_.push_back(key);
@@ -111,23 +106,21 @@ std::vector<std::string> YamlMap::texts(const std::string& key, std::vector<std:
   return values;
 }
 
-std::vector<YamlNode> YamlMap::list(const std::string& key) {
+std::vector<YamlNode> YamlMap::list(const std::string& key, std::size_t most) {
   const std::optional<YamlNode> node = child(key);
   if (!node || node->is_null()) return {};
-  if (node->is_list()) return node->items();
-  faults_->error(node->where(), label(key) + ": expected a list");
-  return {};
+  return read_list(*node, *faults_, label(key), most);
 }
-std::vector<YamlNode> YamlMap::required_list(const std::string& key) {
+std::vector<YamlNode> YamlMap::required_list(const std::string& key, std::size_t most) {
   const std::optional<YamlNode> node = child(key);
   if (!node) {
     report_missing(key);
     return {};
   }
-  if (node->is_null() || (node->is_list() && node->items().empty())) {
+  if (node->is_null() || (node->is_list() && node->n_items() == 0)) {
     faults_->error(node->where(), label(key) + ": expected a list that isn't empty");
   }
-  return list(key);
+  return list(key, most);
 }
 
 void YamlMap::finish() const {
@@ -137,13 +130,28 @@ void YamlMap::finish() const {
   }
 }
 
+std::string too_many(std::size_t most, const std::string& what) {
+  return "more than " + std::to_string(most) + ' ' + what;
+}
+
+std::vector<YamlNode> read_list(const YamlNode& node, Diagnostics& faults, const std::string& what, std::size_t most) {
+  if (!node.is_list()) {
+    faults.error(node.where(), what + ": expected a list");
+    return {};
+  }
+  if (node.n_items() <= most) return node.items();
+  faults.error(node.where(), what + ": " + too_many(most, "entries") + ", namely " + std::to_string(node.n_items()));
+  return {};
+}
+
 std::vector<double> read_numbers(const YamlNode& node, Diagnostics& faults, std::string_view what, NumberRange range) {
   if (!node.is_list()) {
     faults.error(node.where(), std::string(what) + ": expected a list of numbers");
     return {};
   }
   std::vector<double> values;
-  for (const YamlNode& item : node.items()) values.push_back(item.number(faults, what, range));
+  for (const YamlNode& item : read_list(node, faults, std::string(what)))
+    values.push_back(item.number(faults, what, range));
   return values;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "io/yaml_node.hpp"
+#include "schema/limits.hpp"
 
 namespace pirsim::io {
 
@@ -45,6 +46,8 @@ class YamlMap {
     return index ? names[*index].second : otherwise;
   }
 
+  // Lists. One of more than `most` items is a fault, and empty: it is counted before anything is made of it.
+
   [[nodiscard]] std::vector<double> numbers(const std::string& key, std::vector<double> otherwise,
                                             NumberRange range = {});
   /// A list of exactly `size` numbers, such as a point; zeros after a fault.
@@ -54,8 +57,9 @@ class YamlMap {
   [[nodiscard]] std::optional<YamlNode> child(const std::string& key);
   [[nodiscard]] YamlNode required_child(const std::string& key);  ///< an empty node if it isn't there
   /// Items of a list; none if the key isn't there or has no value.
-  [[nodiscard]] std::vector<YamlNode> list(const std::string& key);
-  [[nodiscard]] std::vector<YamlNode> required_list(const std::string& key);  ///< and not empty
+  [[nodiscard]] std::vector<YamlNode> list(const std::string& key, std::size_t most = limits::list_entries);
+  /// And not empty.
+  [[nodiscard]] std::vector<YamlNode> required_list(const std::string& key, std::size_t most = limits::list_entries);
 
   /// Call when every known key was asked for, present or not: reports the others.
   void finish() const;
@@ -71,6 +75,11 @@ class YamlMap {
   std::vector<std::string> asked_;  ///< in the order of asking, without repetition
 };
 
+/// What is said of a list that is too long: "more than 1000 actions".
+[[nodiscard]] std::string too_many(std::size_t most, const std::string& what);
+/// Items of a list of at most so many; none after a fault.
+[[nodiscard]] std::vector<YamlNode> read_list(const YamlNode& node, Diagnostics& faults, const std::string& what,
+                                              std::size_t most = limits::list_entries);
 /// A list's items as numbers; see YamlNode::number.
 [[nodiscard]] std::vector<double> read_numbers(const YamlNode& node, Diagnostics& faults, std::string_view what,
                                                NumberRange range = {});

@@ -50,13 +50,21 @@ double fallback(const NumberRange& range) {
   return std::isfinite(range.above) ? range.above + 1.0 : 0.0;
 }
 
+/// Shares with `tree` whatever has nothing to replace, which is most of it.
 YamlTreePtr substituted(const YamlTreePtr& tree, const Variables& variables, Diagnostics& faults) {
-  auto copy = std::make_shared<YamlTree>(*tree);
-  if (tree->kind == YamlTree::Kind::scalar) {
-    copy->scalar = substitute(tree->scalar, variables, tree->place.where(), faults);
+  std::shared_ptr<YamlTree> copy;
+  const auto changed = [&]() -> YamlTree& {
+    if (copy == nullptr) copy = std::make_shared<YamlTree>(*tree);
+    return *copy;
+  };
+  if (tree->scalar.find("${") != std::string::npos)
+    changed().scalar = substitute(tree->scalar, variables, tree->place.where(), faults);
+  for (std::size_t i = 0; i < tree->children.size(); ++i) {
+    YamlTreePtr child = substituted(tree->children[i], variables, faults);
+    if (child != tree->children[i]) changed().children[i] = std::move(child);
   }
-  for (YamlTreePtr& child : copy->children) child = substituted(child, variables, faults);
-  return copy;
+  if (copy != nullptr) return copy;
+  return tree;
 }
 
 void report_once(Diagnostics& faults, const Where& where, const std::string& message) {
@@ -92,6 +100,13 @@ std::vector<YamlNode> YamlNode::items() const {
   nodes.reserve(tree_->children.size());
   for (const YamlTreePtr& child : tree_->children) nodes.emplace_back(child);
   return nodes;
+}
+std::size_t YamlNode::n_items() const noexcept { return tree_->children.size(); }
+std::size_t YamlNode::n_values() const noexcept { return tree_->expanded_nodes; }
+std::optional<YamlNode> YamlNode::value_of(std::string_view key) const {
+  const auto found = std::ranges::find(tree_->keys, key, &YamlTreeKey::name);
+  if (found == tree_->keys.end()) return std::nullopt;
+  return YamlNode(tree_->children[static_cast<std::size_t>(found - tree_->keys.begin())]);
 }
 std::vector<YamlKey> YamlNode::keys() const {
   std::vector<YamlKey> keys;

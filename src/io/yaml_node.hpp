@@ -41,7 +41,7 @@ class YamlNode {
  public:
   explicit YamlNode(std::shared_ptr<const YamlTree> tree) : tree_(std::move(tree)) {}
 
-  /// Reads a file with one document, at most 16 MB, 1e6 nodes after aliases are expanded, 64 levels deep; a map that
+  /// Reads a file with one document, within the limits of schema/limits.hpp; a map that
   /// has a key twice is refused. Each override `a.b.0.c=value` (value: YAML) then replaces or adds one node; list
   /// items are addressed by number from 0. Throws Error: io (no file), input (content), usage (an override).
   [[nodiscard]] static YamlNode load(const std::filesystem::path& path, std::span<const std::string> overrides = {});
@@ -56,7 +56,12 @@ class YamlNode {
   [[nodiscard]] bool is_map() const noexcept;
 
   [[nodiscard]] std::vector<YamlNode> items() const;  ///< of a list; values of a map in file order; else empty
-  [[nodiscard]] std::vector<YamlKey> keys() const;    ///< of a map, matching items(); else empty
+  [[nodiscard]] std::size_t n_items() const noexcept;
+  /// Of a map: the value of a key, if it is there.
+  [[nodiscard]] std::optional<YamlNode> value_of(std::string_view key) const;
+  /// Of it and all below, as often as aliases repeat them.
+  [[nodiscard]] std::size_t n_values() const noexcept;
+  [[nodiscard]] std::vector<YamlKey> keys() const;  ///< of a map, matching items(); else empty
 
   // A scalar's value. A fault is reported as "<what>: expected ..." and gives a value within the range, or "".
   [[nodiscard]] double number(Diagnostics& faults, std::string_view what, NumberRange range = {}) const;

@@ -58,6 +58,11 @@ std::size_t list_index(const std::string& text, std::size_t size, const Where& w
   return *index;
 }
 
+void count_values(YamlTree& tree) {
+  tree.expanded_nodes = 1;
+  for (const YamlTreePtr& child : tree.children) tree.expanded_nodes += child->expanded_nodes;
+}
+
 YamlTreePtr replaced(const YamlTreePtr& tree, const Override& change, std::size_t depth) {
   if (depth == change.path.size()) return change.value;
   const std::string& name = change.path[depth];
@@ -68,6 +73,7 @@ YamlTreePtr replaced(const YamlTreePtr& tree, const Override& change, std::size_
   if (tree->kind == YamlTree::Kind::list) {
     YamlTreePtr& child = copy->children[list_index(name, tree->children.size(), change.where)];
     child = replaced(child, change, depth + 1);
+    count_values(*copy);
     return copy;
   }
   copy->kind = YamlTree::Kind::map;  // of an empty node
@@ -75,12 +81,14 @@ YamlTreePtr replaced(const YamlTreePtr& tree, const Override& change, std::size_
   if (key != copy->keys.end()) {
     YamlTreePtr& child = copy->children[static_cast<std::size_t>(key - copy->keys.begin())];
     child = replaced(child, change, depth + 1);
+    count_values(*copy);
     return copy;
   }
   auto empty = std::make_shared<YamlTree>();
   empty->place = change.value->place;
   copy->keys.push_back({name, change.value->place});
   copy->children.push_back(replaced(empty, change, depth + 1));
+  count_values(*copy);
   return copy;
 }
 

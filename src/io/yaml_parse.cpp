@@ -10,12 +10,10 @@
 #include <utility>
 
 #include "io/yaml_node.hpp"
+#include "schema/limits.hpp"
 
 namespace pirsim::io {
 namespace {
-
-constexpr std::size_t max_expanded_nodes = 1'000'000;
-constexpr std::size_t max_depth = 64;
 
 class TreeBuilder final : public YAML::EventHandler {
  public:
@@ -96,7 +94,8 @@ class TreeBuilder final : public YAML::EventHandler {
   }
   void open(YamlTree::Kind kind, const YAML::Mark& mark, YAML::anchor_t anchor) {
     refuse_as_key(mark);
-    if (open_.size() >= max_depth) refuse(mark, "nested more than " + std::to_string(max_depth) + " levels deep");
+    if (open_.size() >= limits::yaml_levels)
+      refuse(mark, "nested more than " + std::to_string(limits::yaml_levels) + " levels deep");
     open_.push_back({{kind, place(mark), {}, {}, {}}, anchor, {}});
   }
   void close() {
@@ -116,9 +115,9 @@ class TreeBuilder final : public YAML::EventHandler {
     }
     YamlTree& parent = open_.back().tree;
     parent.expanded_nodes += node->expanded_nodes;
-    if (parent.expanded_nodes > max_expanded_nodes) {
+    if (parent.expanded_nodes > limits::yaml_values) {
       throw Error(ErrorCode::input, parent.place.where(),
-                  "more than " + std::to_string(max_expanded_nodes) + " values once aliases are followed");
+                  "more than " + std::to_string(limits::yaml_values) + " values once aliases are followed");
     }
     parent.children.push_back(std::move(node));
   }

@@ -17,15 +17,22 @@ Crowd::Crowd(const CompiledStudy& study, std::uint32_t run) : conversation_(stud
   seated_.resize(n_people, 0);
 }
 
-std::size_t Crowd::gather_others(std::size_t i) {
+void Crowd::gather_others_of_first() {
   others_.clear();
-  if (actors_.size() == 1) return 0;
-  std::size_t n_before = 0;
-  for (std::size_t other = 0; other < actors_.size(); ++other) {
-    if (other == i) n_before = others_.size();
-    if (other != i && presences_[other]) others_.push_back(*presences_[other]);
+  for (std::size_t other = 1; other < actors_.size(); ++other) {
+    if (presences_[other]) others_.push_back(*presences_[other]);
   }
-  return n_before;
+}
+
+/// Person i stands now where person i + 1 stood among the others. Most often both are there, or neither is: then a
+/// crowd that waits outside costs no more than it has people.
+std::size_t Crowd::pass_on_others(std::size_t i, std::size_t n_before) {
+  const bool comes = presences_[i].has_value(), goes = presences_[i + 1].has_value();
+  const auto at = others_.begin() + static_cast<std::ptrdiff_t>(n_before);
+  if (comes && goes) *at = *presences_[i];
+  if (comes && !goes) others_.insert(at, *presences_[i]);
+  if (!comes && goes) others_.erase(at);
+  return n_before + (comes ? 1 : 0);
 }
 
 /// Who takes part in a meeting looks at whoever speaks.
@@ -45,19 +52,23 @@ void Crowd::let_speak(const CompiledStudy& study, std::int64_t tick) {
 
 void Crowd::advance(const CompiledStudy& study, std::int64_t tick) {
   let_speak(study, tick);
-  std::size_t n_before = 0;
-  bool gathered = false;
-  for (std::size_t i = 0; i < actors_.size(); ++i) {
-    if (!gathered) n_before = gather_others(i);
-    actors_[i].advance(study, tick, others_, n_before);
-    if (actors_.size() == 1) continue;  // nobody asks
-    presences_[i].reset();
-    if (actors_[i].present()) presences_[i] = actors_[i].presence();
-    // The next person's others are the same but for one: this person is where the next one was.
-    gathered = presences_[i] && i + 1 < actors_.size() && presences_[i + 1];
-    if (gathered) others_[n_before++] = *presences_[i];
+  if (actors_.size() == 1) {  // nobody asks
+    actors_.front().advance(study, tick, {}, 0);
+  } else if (!actors_.empty()) {
+    advance_among_others(study, tick);
   }
   note_seats_left(study);
+}
+
+void Crowd::advance_among_others(const CompiledStudy& study, std::int64_t tick) {
+  gather_others_of_first();
+  std::size_t n_before = 0;
+  for (std::size_t i = 0; i < actors_.size(); ++i) {
+    actors_[i].advance(study, tick, others_, n_before);
+    presences_[i].reset();
+    if (actors_[i].present()) presences_[i] = actors_[i].presence();
+    if (i + 1 < actors_.size()) n_before = pass_on_others(i, n_before);
+  }
 }
 
 void Crowd::note_seats_left(const CompiledStudy& study) {

@@ -33,8 +33,12 @@ class Crowd {
   [[nodiscard]] bool done() const noexcept;
 
  private:
-  /// Fills others_ with everyone in the scene but the i-th person; how many of them come before in the script.
-  std::size_t gather_others(std::size_t i);
+  void advance_among_others(const CompiledStudy& study, std::int64_t tick);
+  /// Fills others_ with everyone in the scene but the first person.
+  void gather_others_of_first();
+  /// Makes the others of person i, who has been advanced, those of person i + 1. n_before: how many of them come before
+  /// in the script; returns how many do then.
+  std::size_t pass_on_others(std::size_t i, std::size_t n_before);
   void note_seats_left(const CompiledStudy& study);
   void let_speak(const CompiledStudy& study, std::int64_t tick);
 

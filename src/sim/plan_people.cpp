@@ -8,12 +8,14 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
 #include "body/footprint.hpp"
 #include "body/seat_height.hpp"
 #include "core/fixed.hpp"
+#include "schema/limits.hpp"
 #include "sim/alike.hpp"
 #include "sim/check_actions.hpp"
 #include "sim/doorway.hpp"
@@ -349,6 +351,20 @@ Floors floors_of(const CompiledStudy* like, const SceneSpec& scene) {
   return floors;
 }
 
+/// People of one size share a map of where they can go.
+void require_limit(const SceneSpec& scene, const std::vector<TrialInForce>& trials) {
+  std::set<std::pair<double, double>> sizes;
+  for (const TrialInForce& trial : trials) {
+    for (const PersonInForce& spec : trial.people) sizes.emplace(spec.stature_m, spec.mass_kg);
+  }
+  const Vec2 squares = (scene.floor.upper() - scene.floor.lower()) / body::WalkableFloor::cell_m;
+  const auto n_sizes = static_cast<double>(sizes.size());
+  if (n_sizes <= 1.0 || n_sizes * squares.x * squares.y <= static_cast<double>(limits::way_squares)) return;
+  throw Error(ErrorCode::infeasible, Where{scene.name},
+              "people of " + std::to_string(sizes.size()) + " sizes (stature_m, mass_kg) need maps of this floor of " +
+                  "more than " + std::to_string(limits::way_squares) + " squares of 0.1 m: give fewer sizes");
+}
+
 std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std::vector<TrialInForce>& trials,
                                           const SceneSpec& scene, const rt::Room& room, Floors floors) {
   std::vector<TrialModel> planned_trials;
@@ -408,6 +424,7 @@ std::vector<TrialModel> plan_people(const CompiledStudy& study, const std::vecto
                                     const CompiledStudy* like) {
   const SceneSpec& scene = study.scene();
   check_actions(scene, trials);
+  require_limit(scene, trials);
   const auto is_screen = [](const TriMesh& mesh) { return mesh.solidity == Solidity::screen; };
   if (std::ranges::none_of(scene.meshes, is_screen)) {
     return plan_among_solids(study, trials, scene, study.array().room(), floors_of(like, scene));

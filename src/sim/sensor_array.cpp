@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "pir/optics.hpp"
+#include "pirsim/error.hpp"
+#include "schema/limits.hpp"
 
 namespace pirsim::sim {
 namespace {
@@ -92,7 +94,25 @@ void blind(RayBundle& bundle, const SceneSpec& scene, const BlindFieldSpec& fiel
   }
 }
 
+/// Sensors times zones times rays, before any is made.
+void require_limit(const SceneSpec& scene, const SensingInForce& sensing) {
+  std::size_t n_rays = 0;
+  for (const SensorSpec& sensor : scene.sensors) {
+    const SensorModelSpec& model = scene.sensor_models.at(sensor.model);
+    const bool is_analog = sensing.response.value_or(model.response) == Response::analog;
+    const auto rays_per_zone =
+        static_cast<std::size_t>(is_analog ? sensing.analog_rays_per_zone : static_cast<int>(sensing.rays_per_zone));
+    for (const ClusterSpec& cluster : model.clusters) n_rays += cluster.zones.size() * rays_per_zone;
+  }
+  if (n_rays <= limits::rays) return;
+  throw Error(ErrorCode::input, Where{scene.name},
+              "its " + std::to_string(scene.sensors.size()) + " sensors have " + std::to_string(n_rays) +
+                  " rays, more than " + std::to_string(limits::rays) +
+                  ": fewer rays_per_zone or analog_rays_per_zone?");
+}
+
 RayBundle rated_rays(const SceneSpec& scene, const SensingInForce& sensing, const rt::Room& room) {
+  require_limit(scene, sensing);
   RayBundle rays;
   const std::vector<double> levels = pir::edge_levels(sensing.soft_edges.sigma_deg);
   for (const SensorSpec& sensor : scene.sensors) {

@@ -39,7 +39,8 @@ class Hostile(unittest.TestCase):
         self.assertIn(old, text)
         return self.write("script.yaml", text.replace(old, new))
 
-    def pirsim(self, *args, code, scene=None, script=None, sensors=None, command="check"):
+    def pirsim(self, *args, code, scene=None, script=None, sensors=None, command="check",
+               most_s=60.0, most_bytes=MOST_BYTES):
         """Runs with an eye on time, memory and the amount of messages; returns what it said."""
         process = subprocess.Popen(
             [PIRSIM, command, "--scene", scene or self.scene, "--script", script or self.script, "--sensors",
@@ -51,8 +52,13 @@ class Hostile(unittest.TestCase):
         self.assertEqual(process.returncode, code, told[:2000])
         self.assertLess(len(told), 100_000, "more than anybody reads")
         if "PIRSIM_SANITIZED" not in os.environ:
-            self.assertLess(used.ru_maxrss * 1024, MOST_BYTES)
+            self.assertLess(used.ru_maxrss * 1024, most_bytes)
+            self.assertLess(used.ru_utime + used.ru_stime, most_s)
         return told
+
+    def refused_at_once(self, *args, code=3, **inputs):
+        """What is too long is counted before anything is made of it."""
+        return self.pirsim(*args, code=code, most_s=1.0, most_bytes=150_000_000, **inputs)
 
     # ---------------------------------------------------------------------------------------------------------- glTF
     def test_json_of_many_values_or_levels(self):
@@ -129,6 +135,86 @@ class Hostile(unittest.TestCase):
         script = self.edited_script("for_each:", f"for_each:\n    a: [{', '.join(map(str, range(100)))}]")
         self.assertIn("4294967295 runs", self.pirsim("--replicates", "10000000", "--set", "trials.id=${seat}-${a}",
                                                      script=script, code=3))
+
+    def test_limits_count_the_product(self):
+        """docs/formats/limits.md; each also as aliases, which make much of little."""
+        def script(**keys):
+            return self.write("s.yaml", json.dumps({"pirsim_script": 1, **keys}))
+        def aliases(n, item):
+            return f"[&x {item}" + ", *x" * (n - 1) + "]"
+        values = "[" + ", ".join(map(str, range(20_000))) + "]"
+        person = "{id: p, actions: " + aliases(2_000, "{wait_s: 1}") + "}"
+        product = self.write("p.yaml", "pirsim_script: 1\ntrials: {for_each: {a: " + values + "}, id: '${a}'}\n"
+                                       "people: [" + person + "]\n")
+        self.assertIn("20000 trials of 4003 values each are more than 1000000", self.refused_at_once(script=product))
+        held = "{at: 10:00, duration_min: 60, people: 4}"
+        for n, text in (("aliases", aliases(10_000, held)), ("lines", "".join(f"\n    - {held}" for _ in range(10_000)))):
+            with self.subTest("held", n=n):
+                path = self.write("h.yaml", "pirsim_script: 1\nschedule:\n  meetings:\n   held: " + text + "\n")
+                self.assertIn("held: more than 100 entries", self.refused_at_once(script=path))
+        walk = [{"walk": {"to_xz_m": [[0, 0]] * 100_001}}]
+        everybody = {"people": [{"id": "p", "actions": [{"wait_s": 1}]}]}
+        for name, keys in (("effects", {**everybody, "effects": ["missed_triggers"] * 20_000}),
+                           ("people", {"people": [{"id": f"p{i}"} for i in range(10_001)]}),
+                           ("trials", {"trials": [{"id": str(i)} for i in range(20_001)]}),
+                           ("actions", {"people": [{"id": "p", "actions": ["rise"] * 100_001}]}),
+                           ("to_xz_m", {"people": [{"id": "p", "actions": walk}]}),
+                           ("staff", {"schedule": {"staff": [{"count": 1}] * 5_000}}),
+                           ("seats", {"schedule": {"staff": [{"seats": ["S1"] * 5_000}]}}),
+                           ("durations_min", {"schedule": {"meetings": {"durations_min": [60] * 5_000}}}),
+                           ("phases", {**everybody, "summary": {"phases": ["working"] * 5_000}})):
+            with self.subTest(name):
+                self.assertRegex(self.refused_at_once(script=script(**keys)), rf"{name}: more than \d+ entries")
+
+    def marked_scene(self, n, mark, **node):
+        """n nodes of one mark on a floor, or n floors in rows."""
+        side = int(n ** 0.5) + 1
+        def floor(i):
+            x, z = 2 * (i % side), 2 * (i // side)
+            return {"type": "floor", "polygon_xz_m": [[x, z], [x + 1.9, z], [x + 1.9, z + 1.9], [x, z + 1.9]]}
+        marks = [floor(i) if mark == "floor" else {"type": mark, "id": f"m{i}"} for i in range(n)]
+        if mark == "sensor":
+            for one in marks:
+                one["model"] = "EKMC1604111"
+        nodes = [{"name": f"n{i}", "extras": {"pirsim": one}, **node} for i, one in enumerate(marks)]
+        if mark != "floor":
+            nodes.append({"name": "floor", "extras": {"pirsim": floor(0)}})
+        return self.write("m.gltf", {"asset": {"version": "2.0"}, "scenes": [{"nodes": list(range(len(nodes)))}],
+                                     "nodes": nodes})
+
+    def test_marks_of_a_scene_are_counted_first(self):
+        for mark, n, most in (("floor", 3_000, 1_000), ("sensor", 20_000, 2_000), ("entrance", 20_000, 1_000),
+                              ("seat", 20_000, 5_000)):
+            with self.subTest(mark):
+                told = self.refused_at_once(scene=self.marked_scene(n, mark))
+                self.assertIn(f"the scene has more than {most} {mark}s", told)
+
+    def test_places_of_many_marks_are_found_in_one_pass(self):
+        """Each was found by reading the text from its beginning: as many seconds as thousands of marks, squared."""
+        scene = self.marked_scene(2_000, "sensor", translation=[1, 2, 1])
+        told = self.pirsim(scene=scene, script=self.write("l.yaml", {"pirsim_script": 1, "duration_s": 5}), code=0,
+                           most_s=5.0)
+        self.assertNotIn("error", told)
+        last = self.write("m.gltf", scene.read_text().replace('"m1999", "model"', '"m1999", "mdel"'))
+        column = last.read_text().index('"mdel"') + 1
+        self.assertIn(f"m.gltf:1:{column}: error:", self.pirsim(scene=last, code=3, most_s=5.0))
+
+    def test_rays_and_ways_are_counted_as_products(self):
+        told = self.refused_at_once("--set", "sensing.response=analog", "--set", "sensing.analog_rays_per_zone=10000",
+                                    code=3)
+        self.assertRegex(told, r"its \d+ sensors have \d+ rays, more than 2000000")
+        hall = self.marked_scene(1, "floor")
+        hall.write_text(hall.read_text().replace("1.9", "300"))
+        people = [{"id": f"p{i}", "stature_m": 1.5 + i * 1e-4, "actions": [{"appear": {"at_xz_m": [1, 1]}}]}
+                  for i in range(200)]
+        told = self.refused_at_once(scene=hall, script=self.write("w.yaml", {"pirsim_script": 1, "people": people}),
+                                    code=5)
+        self.assertIn("people of 200 sizes", told)
+
+    def test_a_crowd_that_waits_outside_costs_little(self):
+        people = [{"id": f"p{i}", "actions": [{"enter": "door"}, {"wait_s": 100}]} for i in range(10_000)]
+        script = self.write("crowd.yaml", {"pirsim_script": 1, "duration_s": 5, "people": people})
+        self.pirsim("-o", self.folder / "rows.csv", command="run", script=script, code=0, most_s=8.0)
 
     # ---------------------------------------------------------------------------------------------- measured tables
     def test_measured_tables_without_end(self):

@@ -1,0 +1,35 @@
+// How long the lists of a spec may be, in one place: docs/formats/limits.md tells them. Whoever reads a list counts it
+// first, so that what is too long costs nothing.
+#pragma once
+
+#include <cstddef>
+
+namespace pirsim::limits {
+
+// Of YAML files.
+inline constexpr std::size_t yaml_values = 1'000'000;  ///< with aliases followed, and with trials written out
+inline constexpr std::size_t yaml_levels = 64;
+inline constexpr std::size_t list_entries = 1'000;  ///< of each list that has no limit of its own
+
+// Of scripts. All limits are assumed: some ten times what the largest studies known to us have.
+inline constexpr std::size_t trials = 20'000;
+inline constexpr std::size_t people = 10'000;        ///< of a trial
+inline constexpr std::size_t actions = 100'000;      ///< of a person
+inline constexpr std::size_t walk_points = 100'000;  ///< of an action
+inline constexpr std::size_t held_meetings = 100;    ///< of a day, as drawn ones
+
+// Of recipes.
+inline constexpr std::size_t rooms = 100'000;
+
+// Of scenes.
+inline constexpr std::size_t sensors = 2'000;
+inline constexpr std::size_t seats = 5'000;
+inline constexpr std::size_t entrances = 1'000;
+inline constexpr std::size_t floors = 1'000;
+inline constexpr std::size_t floor_corners = 10'000;  ///< of all floors; every pair is compared
+inline constexpr std::size_t rays = 2'000'000;        ///< of all sensors together
+/// Of squares of 0.1 m on which ways are found, over all sizes of people: each has a map of its own, some 12 bytes a
+/// square.
+inline constexpr std::size_t way_squares = 500'000'000;
+
+}  // namespace pirsim::limits
