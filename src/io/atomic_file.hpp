@@ -3,20 +3,21 @@
 
 #include <charconv>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <ostream>
+#include <streambuf>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace pirsim::io {
 
 /// A path that exists and isn't a regular file: /dev/stdout, a pipe.
 [[nodiscard]] bool is_written_directly(const std::filesystem::path& path);
 
-/// Writes `<path>.writing` in the same folder and renames it onto the path at commit, so that no reader, crash or
-/// full disk ever leaves half a file, and an older file survives a failure. What is_written_directly() is not
-/// renamed. Every fault is Error(io) that names the path and the cause.
+/// Writes a file of its own in the same folder (`<path>.writing-...`, which no other process has) and renames it onto
+/// the path at commit, so that no reader, crash or full disk ever leaves half a file, and an older file survives a
+/// failure. What is_written_directly() is not renamed. Every fault is Error(io) that names the path and the cause.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path);
@@ -27,18 +28,35 @@ class AtomicFile {
   [[nodiscard]] std::ostream& stream() noexcept { return stream_; }
   /// Flushes, checks that everything was written, and puts the file in its place. Once.
   void commit();
+  /// As commit(), but a file that is there already stays: false then.
+  [[nodiscard]] bool commit_if_new();
 
  private:
-  /// Keeps the errno of the first write that failed, which streams forget.
-  class Buffer : public std::filebuf {
+  /// Of a file that this object made, or of a device. Keeps the errno of the first write that failed, which streams
+  /// forget.
+  class Buffer : public std::streambuf {
    public:
+    explicit Buffer(int descriptor);
+    ~Buffer() override;
+    Buffer(const Buffer&) = delete;
+    Buffer& operator=(const Buffer&) = delete;
+    void close();
+    [[nodiscard]] bool is_open() const noexcept { return descriptor_ >= 0; }
     int fault = 0;
 
    protected:
     int_type overflow(int_type c) override;
     std::streamsize xsputn(const char* data, std::streamsize size) override;
     int sync() override;
+
+   private:
+    bool put(const char* data, std::size_t size);
+    int descriptor_;
+    std::vector<char> waiting_;
   };
+  /// The descriptor of `partial_`, which it names.
+  int open();
+  void close();  ///< with all that was written
   [[noreturn]] void fail(const char* what, int cause);
 
   std::filesystem::path path_;
@@ -49,6 +67,8 @@ class AtomicFile {
 
 /// An AtomicFile with this text.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
+/// The same if there is no such file; one that is there stays as it is. False if another text is there.
+[[nodiscard]] bool write_once(const std::filesystem::path& path, std::string_view text);
 
 // How outputs treat their paths.
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
 
 #include "core/digest.hpp"
 #include "io/atomic_file.hpp"
@@ -90,16 +92,29 @@ ordered_json to_tree(const Manifest& manifest) {
   return tree;
 }
 
+/// A JSON number that counts something, and fits. Throws ordered_json::exception or std::out_of_range.
+template <typename Number>
+void take_count(const ordered_json& tree, Number& count) {
+  const auto value = tree.get_ref<const ordered_json::number_unsigned_t&>();
+  if (!std::in_range<Number>(value)) throw std::out_of_range("too large a number");
+  count = static_cast<Number>(value);
+}
+
 RunNotes notes_from(const ordered_json& tree) {
   RunNotes notes;
-  tree.at("passes_through").get_to(notes.passes_through);
+  take_count(tree.at("passes_through"), notes.passes_through);
   notes.first_pass = tree.value("first_pass", "");
-  tree.at("seats_changed").get_to(notes.seats_changed);
-  tree.at("seats_missed").get_to(notes.seats_missed);
-  notes.waits_outside = tree.value("waits_outside", std::uint64_t{0});
+  take_count(tree.at("seats_changed"), notes.seats_changed);
+  take_count(tree.at("seats_missed"), notes.seats_missed);
+  if (tree.contains("waits_outside")) take_count(tree.at("waits_outside"), notes.waits_outside);
   notes.first_wait = tree.value("first_wait", "");
-  for (const ordered_json& run : tree.at("failed_runs")) {
-    notes.failed.push_back({run.at("run"), run.at("trial"), run.at("replicate"), run.at("time_s"), run.at("message")});
+  for (const ordered_json& each : tree.at("failed_runs")) {
+    FailedRun& run = notes.failed.emplace_back();
+    take_count(each.at("run"), run.run);
+    each.at("trial").get_to(run.trial);
+    take_count(each.at("replicate"), run.replicate);
+    each.at("time_s").get_to(run.time_s);
+    each.at("message").get_to(run.message);
   }
   return notes;
 }
@@ -112,15 +127,22 @@ Manifest from_tree(const ordered_json& tree) {
   tree.at("compiler").get_to(made.compiler);
   tree.at("embree").get_to(made.embree);
   tree.at("tracer").get_to(manifest.tracer);
-  tree.at("seed").get_to(made.seed);
-  tree.at("study_runs").get_to(made.study_runs);
+  take_count(tree.at("seed"), made.seed);
+  take_count(tree.at("study_runs"), made.study_runs);
   if (tree.contains("shard")) {
-    manifest.shard = Shard{tree.at("shard").at("index").get<std::uint32_t>(), tree.at("shard").at("count")};
+    Shard& shard = manifest.shard.emplace();
+    take_count(tree.at("shard").at("index"), shard.index);
+    take_count(tree.at("shard").at("count"), shard.count);
+    if (shard.index < 1 || shard.index > shard.count) throw std::out_of_range("a shard that no study has");
   }
-  tree.at("first_run").get_to(manifest.runs.first);
-  manifest.runs.end = manifest.runs.first + tree.at("runs").get<std::uint32_t>();
-  tree.at("rows").get_to(manifest.rows);
-  tree.at("bytes").get_to(manifest.bytes);
+  std::uint64_t n_runs = 0;
+  take_count(tree.at("first_run"), manifest.runs.first);
+  take_count(tree.at("runs"), n_runs);
+  if (n_runs > made.study_runs || manifest.runs.first > made.study_runs - n_runs)
+    throw std::out_of_range("runs that the study doesn't have");
+  manifest.runs.end = manifest.runs.first + static_cast<std::uint32_t>(n_runs);
+  take_count(tree.at("rows"), manifest.rows);
+  take_count(tree.at("bytes"), manifest.bytes);
   tree.at("sha256").get_to(manifest.sha256);
   if (tree.contains("people")) manifest.notes = notes_from(tree.at("people"));
   for (const ordered_json& file : tree.at("inputs")) made.inputs.push_back({file.at("file"), file.at("sha256")});
@@ -166,6 +188,8 @@ std::optional<RunNotes> notes_from_json(const std::string& text) {
   try {
     return notes_from(ordered_json::parse(text));
   } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  } catch (const std::out_of_range&) {
     return std::nullopt;
   }
 }
@@ -218,6 +242,8 @@ Manifest manifest_from_json(const std::string& text, const std::string& name) {
     return from_tree(tree);
   } catch (const nlohmann::json::exception&) {
     throw Error(ErrorCode::input, Where{name}, "is no manifest of pirsim, or is damaged");
+  } catch (const std::out_of_range& fault) {
+    throw Error(ErrorCode::input, Where{name}, std::string("is damaged: it names ") + fault.what());
   }
 }
 

@@ -21,15 +21,29 @@ auto without_interruption(const Call& call) {
   return result;
 }
 
+[[noreturn]] void refuse(const std::filesystem::path& path, const char* why) {
+  throw Error(ErrorCode::io, Where{path.string()}, std::string("can't be written: it ") + why + "; move it away");
+}
+
 }  // namespace
 
 PosixFile::PosixFile(std::filesystem::path path, Mode mode) : path_(std::move(path)) {
-  const int flags = mode == Mode::read ? O_RDONLY : O_RDWR | O_CREAT | O_APPEND;
+  const int flags = mode == Mode::read ? O_RDONLY : O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW;
   descriptor_ = without_interruption([&] { return ::open(path_.c_str(), flags | O_CLOEXEC, 0666); });
+  if (descriptor_ < 0 && errno == ELOOP && mode == Mode::append) refuse(path_, "is a link, which isn't followed");
   if (descriptor_ < 0) fail(mode == Mode::read ? "can't be read" : "can't write");
+  if (mode == Mode::append) require_own();
 }
 
 PosixFile::~PosixFile() { ::close(descriptor_); }
+
+void PosixFile::require_own() const {
+  struct stat status {};
+  if (::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode) && status.st_nlink == 1) return;
+  const bool is_named_twice = S_ISREG(status.st_mode) && status.st_nlink > 1;
+  ::close(descriptor_);  // whose constructor throws has no destructor
+  refuse(path_, is_named_twice ? "has another name too (a hard link), under which it would change" : "is no file");
+}
 
 std::size_t PosixFile::read(char* to, std::size_t size) {
   const ssize_t n = without_interruption([&] { return ::read(descriptor_, to, size); });

@@ -1,4 +1,4 @@
-// A file descriptor whose every fault is an Error that names the file and the cause. Private to io.
+// A file descriptor whose every fault is an Error that names the file and the cause. Private to the stores.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,11 @@ class PosixFile {
  public:
   enum class Mode {
     read,
-    append,  ///< reads, and writes at the end; made if it isn't there
+    /// Reads, and writes at the end; made if it isn't there. Only a regular file of one name, and no link: what is
+    /// written here in place is nobody else's.
+    append,
   };
+  /// Throws Error(io).
   PosixFile(std::filesystem::path path, Mode mode);
   ~PosixFile();
   PosixFile(const PosixFile&) = delete;
@@ -29,6 +32,7 @@ class PosixFile {
   void lock();
 
  private:
+  void require_own() const;
   [[noreturn]] void fail(const char* what) const;  ///< says what errno means
 
   std::filesystem::path path_;

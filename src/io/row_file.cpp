@@ -11,6 +11,7 @@
 #include "io/atomic_file.hpp"
 #include "io/compression.hpp"
 #include "io/posix_file.hpp"
+#include "io/sealed_lines.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::io {
@@ -19,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t block = 1U << 18U;
+const std::string remedy = "; remove it, or run without --resume to replace it";
 
 fs::path with_ending(fs::path path, const char* ending) { return path += ending; }
 
@@ -45,19 +47,26 @@ std::optional<Manifest> readable_manifest(const fs::path& file) {
   }
 }
 
+std::string in_words(const RunRange& runs) { return std::to_string(runs.first) + " to " + std::to_string(runs.end); }
+std::string in_words(const std::optional<Shard>& shard) {
+  return shard ? std::to_string(shard->index) + '/' + std::to_string(shard->count) : "none";
+}
+
 bool fits(const Manifest& found, const Manifest& wanted) {
-  return found.runs == wanted.runs && differences(found.provenance, wanted.provenance).empty();
+  return found.runs == wanted.runs && found.shard == wanted.shard &&
+         differences(found.provenance, wanted.provenance).empty();
 }
 
 void require_fit(const Manifest& found, const Manifest& wanted, const fs::path& file) {
   std::vector<std::string> unlike = differences(found.provenance, wanted.provenance);
-  if (found.runs != wanted.runs) unlike.emplace_back("runs of the study");
+  if (found.runs != wanted.runs)
+    unlike.push_back("runs (" + in_words(found.runs) + ", not " + in_words(wanted.runs) + ')');
+  if (found.shard != wanted.shard)
+    unlike.push_back("shard (" + in_words(found.shard) + ", not " + in_words(wanted.shard) + ')');
   if (unlike.empty()) return;
   std::string text;
   for (const std::string& each : unlike) text += (text.empty() ? "" : ", ") + each;
-  throw Error(
-      ErrorCode::input, Where{file.string()},
-      "can't be resumed because its inputs differ: " + text + "; remove it, or run without --resume to replace it");
+  throw Error(ErrorCode::input, Where{file.string()}, "can't be resumed because its inputs differ: " + text + remedy);
 }
 
 /// How far the rows reached after a run.
@@ -69,42 +78,71 @@ struct Mark {
   RunNotes notes{};  ///< of that run
 };
 
-std::string to_line(const Mark& mark) {
+std::string to_text(const Mark& mark) {
   return std::to_string(mark.next_run) + ' ' + std::to_string(mark.rows) + ' ' + std::to_string(mark.bytes) + ' ' +
-         mark.sha256 + (mark.notes.empty() ? "" : ' ' + to_json(mark.notes)) + '\n';
+         mark.sha256 + (mark.notes.empty() ? "" : ' ' + to_json(mark.notes));
 }
 
-std::optional<Mark> mark_from(const std::string& line) {
-  std::istringstream words(line);
+/// None if the text isn't that of a mark, or if a number doesn't fit its type.
+std::optional<Mark> mark_from(std::string_view text) {
   Mark mark;
-  std::string rest;
+  const auto take_word = [&] {
+    const std::string_view word = text.substr(0, text.find(' '));
+    text.remove_prefix(std::min(word.size() + 1, text.size()));
+    return word;
+  };
+  const auto take = [&](auto& number) {
+    const auto found = parse_number<std::decay_t<decltype(number)>>(take_word());
+    number = found.value_or(0);
+    return found.has_value();
+  };
   constexpr std::size_t hash_digits = 64;
-  if (!(words >> mark.next_run >> mark.rows >> mark.bytes >> mark.sha256)) return std::nullopt;
-  if (std::getline(words >> std::ws, rest)) {
-    const std::optional<RunNotes> notes = notes_from_json(rest);
-    if (!notes) return std::nullopt;
-    mark.notes = *notes;
-  }
-  return mark.sha256.size() == hash_digits ? std::optional(mark) : std::nullopt;
+  if (!take(mark.next_run) || !take(mark.rows) || !take(mark.bytes)) return std::nullopt;
+  mark.sha256 = take_word();
+  if (mark.sha256.size() != hash_digits) return std::nullopt;
+  if (text.empty()) return mark;
+  const std::optional<RunNotes> notes = notes_from_json(std::string(text));
+  if (!notes) return std::nullopt;
+  mark.notes = *notes;
+  return mark;
 }
 
 /// What a journal says, as far as it was written whole.
 struct Journal {
-  std::string made;  ///< manifest in one line
   std::optional<Mark> last;
   RunNotes notes;  ///< of all runs
   std::uint64_t whole_bytes = 0;
+  SealedLines lines;  ///< up to there
 };
 
-Journal read_journal(const fs::path& file) {
+/// What no journal of these runs says, though every digest is right.
+void require_next(const std::optional<Mark>& last, const Mark& mark, const RunRange& runs, const Where& where) {
+  const std::uint32_t expected = last ? last->next_run + 1 : runs.first;
+  const bool grows = !last || (mark.rows >= last->rows && mark.bytes >= last->bytes);
+  if (mark.next_run == expected && mark.next_run <= runs.end && grows) return;
+  throw Error(ErrorCode::input, where,
+              "names run " + std::to_string(mark.next_run) + " with " + std::to_string(mark.rows) +
+                  " rows, where run " + std::to_string(expected) + " of " + in_words(runs) + " would follow" + remedy);
+}
+
+Journal read_journal(const fs::path& file, const Manifest& wanted) {
   std::ifstream stream(file, std::ios::binary);
   Journal journal;
   std::string line;
-  if (!std::getline(stream, journal.made) || stream.eof()) return {};
-  journal.whole_bytes = journal.made.size() + 1;
-  while (std::getline(stream, line) && !stream.eof()) {
-    const std::optional<Mark> mark = mark_from(line);
-    if (!mark) break;
+  if (!std::getline(stream, line) || stream.eof()) return journal;
+  journal.whole_bytes = line.size() + 1;
+  const std::optional<std::string> made = journal.lines.opened(line);
+  if (!made) {
+    throw Error(ErrorCode::input, Where{file.string(), 1, 1}, "is damaged, or of another version of pirsim" + remedy);
+  }
+  require_fit(manifest_from_json(*made, file.string()), wanted, file);
+  for (int number = 2; std::getline(stream, line) && !stream.eof(); ++number) {
+    const std::optional<std::string> text = journal.lines.opened(line);
+    if (!text) break;  // torn: its run is simulated again
+    const Where where{file.string(), number, 1};
+    const std::optional<Mark> mark = mark_from(*text);
+    if (!mark) throw Error(ErrorCode::input, where, "isn't what a journal says of a run" + remedy);
+    require_next(journal.last, *mark, wanted.runs, where);
     journal.last = mark;
     journal.notes += mark->notes;
     journal.whole_bytes += line.size() + 1;
@@ -120,12 +158,22 @@ struct RowFile::Work {
   bool finished = false;
   std::optional<PosixFile> partial, journal;
   Sha256 hash;
+  SealedLines journal_lines;
   Mark mark;
   RunNotes notes;
 
   void take_journal() {
     journal.emplace(journal_path, PosixFile::Mode::append);
     journal->lock();
+  }
+
+  void take_partial() {
+    try {
+      partial.emplace(partial_path, PosixFile::Mode::append);
+    } catch (const Error&) {
+      if (journal->size() == 0) remove_or_throw(journal_path);  // of what never began
+      throw;
+    }
   }
 
   /// Leaves a damaged file or manifest to be made anew, but refuses one that something else made.
@@ -148,13 +196,14 @@ struct RowFile::Work {
   void open(const std::string& header, Start start) {
     if (!journal) take_journal();
     if (start == Start::resume && recover()) return;
-    partial.emplace(partial_path, PosixFile::Mode::append);
+    take_partial();
     partial->truncate(0);
     journal->truncate(0);
     hash = {};
+    journal_lines = {};
     mark = {made.runs.first, 0, 0, {}};
     notes = {};
-    journal->append(to_json(made, -1) + '\n');
+    journal->append(journal_lines.sealed(to_json(made, -1)));
     write(header, 0, {});
   }
 
@@ -166,24 +215,24 @@ struct RowFile::Work {
     mark.sha256 = hash.hex();
     mark.notes = of_run;
     notes += of_run;
-    journal->append(to_line(mark));
+    journal->append(journal_lines.sealed(to_text(mark)));
   }
 
   /// False if there is nothing to resume.
   bool recover() {
-    const Journal found = read_journal(journal_path);
+    const Journal found = read_journal(journal_path, made);
     if (!found.last) return false;
-    require_fit(manifest_from_json(found.made, journal_path.string()), made, journal_path);
     std::error_code fault;
     const bool was_put_in_place = !fs::exists(partial_path, fault) && fs::is_regular_file(file, fault) &&
                                   compression_of(file) == Compression::none;
     if (was_put_in_place) rename_or_throw(file, partial_path);  // killed before its manifest
     if (!fs::is_regular_file(partial_path, fault)) return false;
-    partial.emplace(partial_path, PosixFile::Mode::append);
+    take_partial();
     if (!hash_whole_runs(*found.last)) return false;
     partial->truncate(mark.bytes);
     journal->truncate(found.whole_bytes);
     notes = found.notes;
+    journal_lines = found.lines;
     return true;
   }
 
@@ -266,21 +315,34 @@ void RowFile::discard() noexcept {
   fs::remove(work_->journal_path, ignored);
 }
 
+void DataCheck::add(std::string_view bytes) {
+  hash_.add(bytes);
+  bytes_ += bytes.size();
+  for (const char c : bytes) {
+    is_quoted_ = is_quoted_ != (c == '"');
+    lines_ += c == '\n' && !is_quoted_ ? 1 : 0;
+  }
+}
+
+std::string DataCheck::fault() const {
+  if (is_too_long()) return "longer than its manifest says";
+  if (bytes_ < manifest_.bytes) return "shorter than its manifest says";
+  if (hash_.hex() != manifest_.sha256) return "its hash is not the one in the manifest";
+  return lines_ == manifest_.rows + 1 ? "" : "its manifest says another number of rows";  // beside the header
+}
+
 std::string fault_of_data(const fs::path& file, const Manifest& manifest) {
   std::error_code fault;
   if (!fs::is_regular_file(file, fault)) return "there is no data file";
   try {
     DataReader reader(file);
-    Sha256 hash;
-    std::uint64_t bytes = 0;
+    DataCheck check(manifest);
     std::string buffer(block, '\0');
     while (const std::size_t n = reader.read(buffer.data(), buffer.size())) {
-      hash.add({buffer.data(), n});
-      bytes += n;
-      if (bytes > manifest.bytes) return "longer than its manifest says";
+      check.add({buffer.data(), n});
+      if (check.is_too_long()) break;
     }
-    if (bytes < manifest.bytes) return "shorter than its manifest says";
-    return hash.hex() == manifest.sha256 ? "" : "its hash is not the one in the manifest";
+    return check.fault();
   } catch (const Error& error) {
     if (error.code() != ErrorCode::input) throw;
     return error.issues().front().message;

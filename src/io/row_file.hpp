@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/digest.hpp"
 #include "io/manifest.hpp"
 
 namespace pirsim::io {
@@ -42,6 +43,21 @@ class RowFile {
  private:
   struct Work;
   std::unique_ptr<Work> work_;
+};
+
+/// Compares rows, which come in pieces with their header, with what a manifest says of them.
+class DataCheck {
+ public:
+  explicit DataCheck(const Manifest& manifest) : manifest_(manifest) {}
+  void add(std::string_view bytes);
+  [[nodiscard]] bool is_too_long() const noexcept { return bytes_ > manifest_.bytes; }
+  [[nodiscard]] std::string fault() const;  ///< of all that came; empty: none
+
+ private:
+  const Manifest& manifest_;
+  Sha256 hash_;
+  std::uint64_t bytes_ = 0, lines_ = 0;
+  bool is_quoted_ = false;
 };
 
 /// Whether the data file is what its manifest says; if not, why. Reads it all, in bounded memory.

@@ -77,7 +77,11 @@ bool same_action(const ScriptedAction& a, const ScriptedAction& b) {
     const auto* other = std::get_if<std::decay_t<decltype(what)>>(&b.what);
     return other != nullptr && same(what, *other);
   };
-  return a.at_s == b.at_s && a.phase == b.phase && std::visit(is_same, a.what);
+  const auto others = [](const ScriptedAction& action) {
+    const auto& [what, at_s, phase, where] = action;
+    return std::tie(at_s, phase);
+  };
+  return others(a) == others(b) && std::visit(is_same, a.what);
 }
 
 /// But for the body, which is compared as the person's own.
@@ -120,9 +124,17 @@ bool same_size(const PersonSpec& a, const PersonSpec& b) {
   return a.stature_m == b.stature_m && a.mass_kg == b.mass_kg;
 }
 
+/// What people move by of it: of the rest only sensors know.
+auto clock(const SensingInForce& sensing) {
+  const auto& [tick_rate_hz, ticks_per_window, rays_per_zone, change_per, reader, response, ambient_c,
+               analog_rays_per_zone] = static_cast<const SensingSpec&>(sensing);
+  return std::tie(tick_rate_hz, ticks_per_window);
+}
+
 bool same_trial(const TrialModel& planned, const TrialInForce& trial, double ambient_c) {
-  return planned.id == trial.id && planned.duration_s == trial.duration_s && planned.schedule == trial.schedule &&
-         std::ranges::equal(planned.people, trial.people, [&](const PersonModel& a, const PersonInForce& b) {
+  const auto& [id, people, duration_s, schedule] = trial;
+  return planned.id == id && planned.duration_s == duration_s && planned.schedule == schedule &&
+         std::ranges::equal(planned.people, people, [&](const PersonModel& a, const PersonInForce& b) {
            return same_person(a.spec, b) && a.radiance == radiance_of(b.warmth, ambient_c);
          });
 }
@@ -143,8 +155,7 @@ bool same_people(const CompiledStudy& like, const CompiledStudy& study, const st
     return std::ranges::equal(a.people, b.people, same_size);
   };
   const SensingInForce &a = like.sensing(), &b = study.sensing();
-  return like.seed() == study.seed() && a.tick_rate_hz == b.tick_rate_hz && a.ticks_per_window == b.ticks_per_window &&
-         same_ground(like.scene(), study.scene()) &&
+  return like.seed() == study.seed() && clock(a) == clock(b) && same_ground(like.scene(), study.scene()) &&
          std::ranges::equal(like.scene().seats, study.scene().seats, same<SeatSpec>) &&
          std::ranges::equal(like.script_given().trials, study.script_given().trials, same_sizes) &&
          std::ranges::equal(like.trials(), trials, [&](const TrialModel& planned, const TrialInForce& trial) {

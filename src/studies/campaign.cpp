@@ -140,26 +140,25 @@ class Merger {
 
   void add(const Entry& entry) {
     io::DataReader reader(entry.file);
-    Sha256 hash;
-    std::uint64_t bytes = 0;
+    io::DataCheck check(entry.brief);
     std::string header;
     bool in_header = true;
     while (const std::size_t n = reader.read(buffer_.data(), buffer_.size())) {
       std::string_view part(buffer_.data(), n);
-      hash.add(part);
-      bytes += n;
+      check.add(part);
       if (in_header) {
         const std::size_t end = part.find('\n');
         in_header = end == std::string_view::npos;
         header += part.substr(0, in_header ? part.size() : end + 1);
         part.remove_prefix(in_header ? part.size() : end + 1);
-        if (header.size() > longest_header || bytes > entry.brief.bytes) break;
+        if (header.size() > longest_header || check.is_too_long()) break;
         if (!in_header) take_header(header, entry);
       }
       write(part);
     }
-    if (bytes != entry.brief.bytes || hash.hex() != entry.brief.sha256) {
-      throw Error(ErrorCode::input, Where{entry.file.string()}, "its content differs from what its manifest says");
+    if (const std::string fault = check.fault(); !fault.empty()) {
+      throw Error(ErrorCode::input, Where{entry.file.string()},
+                  "its content differs from what its manifest says: " + fault);
     }
   }
   /// Fills in bytes and hash.

@@ -4,12 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "io/posix_file.hpp"
+#include "io/sealed_lines.hpp"
 #include "pirsim/coverage.hpp"
 #include "pirsim/shapes.hpp"
 #include "pirsim/survey.hpp"
@@ -114,15 +115,16 @@ struct CoverageFigures {
 
 // Finished rows of a coverage map on disk, so that an interrupted study goes on where it stopped.
 
-/// A number for everything that the counts depend on: rays as cut, squares, poses, sensing, the build.
+/// A number for everything that the counts depend on: the spec, sensor models, rays as cut, squares, poses, the build.
 [[nodiscard]] std::string fingerprint(const CoverageStudy& study);
 
-/// A text file: a line with the fingerprint, then a line a row of squares with its counts and their digest.
-/// Rows of another study, and everything from the first damaged line on, are thrown away.
+/// A text file: a line with the fingerprint, then a line a row of squares with its counts; each ends in a digest of all
+/// up to there. Rows of another study, and everything from the first damaged line on, are thrown away. One process at a
+/// time works on a file.
 class RowStore {
  public:
-  /// Opens or begins the file. Throws Error(io).
-  RowStore(std::filesystem::path file, const CoverageStudy& study);
+  /// Opens or begins the file. Throws Error(io), also for a second process.
+  RowStore(std::filesystem::path path, const CoverageStudy& study);
 
   /// Counts of the first rows, as found: (n x n_columns x n_sensors).
   [[nodiscard]] const std::vector<MotionCount>& found() const noexcept { return found_; }
@@ -133,10 +135,11 @@ class RowStore {
   void remove();
 
  private:
-  std::filesystem::path file_;
+  std::filesystem::path path_;
+  io::PosixFile file_;
+  io::SealedLines lines_;
   std::vector<MotionCount> found_;
   std::size_t n_found_rows_ = 0;
-  std::ofstream stream_;
 };
 
 }  // namespace pirsim::studies

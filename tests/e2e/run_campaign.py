@@ -7,6 +7,7 @@ PIRSIM_KILLS=200 in the environment kills so often (default 6).
 import contextlib
 import errno
 import gzip
+import hashlib
 import json
 import os
 import pathlib
@@ -252,13 +253,89 @@ class Stopping(unittest.TestCase):
             study("-o", folder / "rows.csv", "--resume", replicates=self.REPLICATES)
             self.assertEqual((folder / "rows.csv").stat().st_mtime_ns, before)
 
+    def stopped(self, folder):
+        """Rows that --max-time stopped after a few runs, and their journal."""
+        study("-o", folder / "rows.csv", "--resume", "--max-time", "0.001s", "--threads", 1, code=75)
+        return folder / "rows.csv", folder / "rows.csv.journal"
+
+    @staticmethod
+    def sealed(texts):
+        """A journal of these lines whose every digest is right."""
+        last, lines = "", []
+        for text in texts:
+            last = hashlib.sha256((last + text).encode()).hexdigest()[:16]
+            lines.append(f"{text} #{last}\n")
+        return "".join(lines)
+
+    def test_no_altered_bit_of_a_journal_loses_or_doubles_a_run(self):
+        reference = study(text=False).stdout
+        with scratch() as folder:
+            rows, journal = self.stopped(folder)
+            whole, partial = journal.read_text(), rows.with_name("rows.csv.partial").read_bytes()
+            *before, last = whole.splitlines(keepends=True)
+            next_run = int(last.split()[0])
+            self.assertGreater(next_run, 0)
+            for changed in (last.replace(f"{next_run} ", f"{next_run + 1} ", 1),
+                            last.replace(f"{next_run} ", f"{next_run - 1} ", 1),
+                            last.replace(f"{next_run} ", "999999 ", 1),
+                            last.replace(f"{next_run} ", "-1 ", 1), last[:-2] + "x\n", ""):
+                with self.subTest(changed):
+                    journal.write_text("".join(before) + changed)
+                    rows.with_name("rows.csv.partial").write_bytes(partial)
+                    study("-o", rows, "--resume")
+                    self.assertEqual(rows.read_bytes(), reference)
+                    self.assertEqual(json.loads((folder / "rows.csv.json").read_text())["rows"],
+                                     reference.count(b"\n") - 1)
+                    for path in folder.iterdir():
+                        path.unlink()
+
+    def test_a_journal_that_names_what_the_study_does_not_have_is_refused(self):
+        with scratch() as folder:
+            rows, journal = self.stopped(folder)
+            texts = [line.rsplit(" #", 1)[0] for line in journal.read_text().splitlines()]
+            made, *marks = texts
+            last = marks[-1].split()
+            self.assertEqual(self.sealed(texts), journal.read_text())
+            other_runs = made.replace('"runs":40', '"runs":39')
+            self.assertNotEqual(other_runs, made)
+            cases = {
+                "names run 999999": [made, *marks, " ".join(["999999", *last[1:]])],
+                "isn't what a journal says of a run": [made, *marks, " ".join(["-1", *last[1:]])],
+                f"where run {int(last[0]) + 1} of 0 to 40 would follow": [*texts, marks[-1]],  # doubled
+                "runs (0 to 39, not 0 to 40)": [other_runs, *marks],
+                "runs that the study doesn't have": [made.replace('"runs":40', '"runs":41'), *marks],
+                "is no manifest of pirsim": [made.replace('"runs":40', '"runs":-1'), *marks],
+                "shard (2/5, not none)": [made.replace('"first_run"', '"shard":{"index":2,"count":5},"first_run"'), *marks],
+            }
+            for message, lines in cases.items():
+                with self.subTest(message):
+                    journal.write_text(self.sealed(lines))
+                    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+                    told = study("-o", rows, "--resume", code=3).stderr
+                    self.assertIn(message, told)
+                    self.assertIn("rows.csv.journal", told)
+                    self.assertEqual({path.name: path.read_bytes() for path in folder.iterdir()}, before)
+            study("-o", rows)  # as the message says
+            self.assertEqual(names(folder), ["rows.csv", "rows.csv.json"])
+
+    def test_a_finished_file_whose_manifest_counts_other_rows_is_made_anew(self):
+        with scratch() as folder:
+            study("-o", folder / "rows.csv")
+            manifest, bytes_before = folder / "rows.csv.json", (folder / "rows.csv").read_bytes()
+            text = manifest.read_text()
+            n_rows = json.loads(text)["rows"]
+            manifest.write_text(text.replace(f'"rows": {n_rows}', f'"rows": {n_rows + 1}'))
+            study("-o", folder / "rows.csv", "--resume")
+            self.assertEqual(manifest.read_text(), text)
+            self.assertEqual((folder / "rows.csv").read_bytes(), bytes_before)
+
     def test_a_signal_leaves_no_partial_file_of_what_cannot_be_resumed(self):
         with scratch() as folder:
             process = subprocess.Popen(
                 arguments("--zones", folder / "z.csv", "--summary", folder / "s.md", replicates=self.REPLICATES),
                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
             until = time.monotonic() + 60
-            while not (folder / "z.csv.writing").exists() and time.monotonic() < until:
+            while not list(folder.glob("z.csv.writing-*")) and time.monotonic() < until:
                 time.sleep(0.002)
             time.sleep(0.05)
             process.terminate()
@@ -286,6 +363,38 @@ class Stopping(unittest.TestCase):
                     for path in folder.iterdir():
                         path.unlink()
         print(f"killed {kills} times", file=sys.stderr)
+
+
+class Links(unittest.TestCase):
+    """Whoever may write into the folder must not make pirsim write elsewhere."""
+
+    def test_no_file_at_work_follows_a_link(self):
+        with scratch() as folder:
+            mine = folder / "mine.txt"
+            mine.write_text("mine")
+            out = folder / "out"
+            out.mkdir()
+            for name in ("rows.csv.writing", "rows.csv.json.writing", "s.md.writing", "r.html.writing"):
+                (out / name).symlink_to(mine)
+            study("-o", out / "rows.csv", "--summary", out / "s.md", "--report", out / "r.html", replicates=1)
+            self.assertEqual(mine.read_text(), "mine")
+            for name in ("b.csv.partial", "b.csv.journal"):
+                for link in (lambda: (out / name).symlink_to(mine), lambda: (out / name).hardlink_to(mine)):
+                    link()
+                    for more in ((), ("--resume",)):
+                        told = study("-o", out / "b.csv", *more, code=4, replicates=1).stderr
+                        self.assertIn(f"{name}: error: can't be written: it ", told)
+                        self.assertIn("link", told)
+                    self.assertEqual(mine.read_text(), "mine")
+                    (out / name).unlink()
+            self.assertEqual([name for name in names(out) if "b.csv" in name], [])
+
+    def test_two_processes_that_write_one_file_do_not_meet(self):
+        with scratch() as folder:
+            both = [subprocess.Popen(arguments("--summary", folder / "s.md", replicates=1), stdout=subprocess.DEVNULL)
+                    for _ in range(2)]
+            self.assertEqual([process.wait(timeout=120) for process in both], [0, 0])
+            self.assertEqual(names(folder), ["s.md"])
 
 
 class FailingCalls(unittest.TestCase):

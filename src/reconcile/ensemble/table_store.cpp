@@ -13,7 +13,7 @@ namespace pirsim::reconcile {
 namespace {
 
 constexpr std::string_view kind = "pirsim reference table";
-constexpr std::uint32_t format = 2;
+constexpr std::uint32_t format = 3;
 constexpr std::uint32_t items_per_chunk = 25;
 
 void write(stats::BinaryWriter& out, const EffectSpec& effect) {
@@ -71,8 +71,11 @@ Series read_series(stats::BinaryReader& in) {
   return run;
 }
 
-TableChunk read_chunk(std::istream& stream) {
+TableChunk read_chunk(std::istream& stream, const std::string& key, std::uint32_t number) {
   stats::BinaryReader in(stream, kind, format);
+  if (in.read_text() != key) throw Error(ErrorCode::input, std::string(kind) + " is of other inputs or settings");
+  if (in.read<std::uint32_t>() != number)
+    throw Error(ErrorCode::input, std::string(kind) + " is of other realizations");
   TableChunk chunk;
   chunk.n_left_out = in.read<std::uint32_t>();
   for (auto n = in.read<std::uint32_t>(); n > 0; --n) {
@@ -94,22 +97,15 @@ void append(TableChunk& chunk, TableChunk& more) {
 
 }  // namespace
 
-TableStore::TableStore(std::filesystem::path folder, const std::string& key) : folder_(std::move(folder)) {
+TableStore::TableStore(std::filesystem::path folder, const std::string& key) : folder_(std::move(folder)), key_(key) {
   if (folder_.empty()) return;
   std::error_code fault;
   std::filesystem::create_directories(folder_, fault);
   const std::filesystem::path key_file = folder_ / "key.txt";
-  if (std::filesystem::exists(key_file)) {
-    std::string known;
-    std::ifstream(key_file) >> known;
-    if (known == key) return;
-    throw Error(ErrorCode::input, {key_file.string(), 0, 0},
-                "this folder holds simulated datasets of other inputs, settings (seed, effects, numbers of datasets or "
-                "runs, nuisance) or of another build: remove it or name another folder with --table");
-  }
-  io::AtomicFile out(key_file);
-  out.stream() << key << '\n';
-  out.commit();
+  if (io::write_once(key_file, key + '\n')) return;
+  throw Error(ErrorCode::input, {key_file.string(), 0, 0},
+              "this folder holds simulated datasets of other inputs, settings (seed, effects, numbers of datasets or "
+              "runs, nuisance) or of another build: remove it or name another folder with --table");
 }
 
 std::filesystem::path TableStore::file(std::uint32_t number) const {
@@ -121,7 +117,7 @@ std::optional<TableChunk> TableStore::find(std::uint32_t number) const {
   if (folder_.empty() || !std::filesystem::exists(file(number))) return std::nullopt;
   std::ifstream stream(file(number), std::ios::binary);
   try {
-    return read_chunk(stream);
+    return read_chunk(stream, key_, number);
   } catch (const Error& error) {
     throw Error(ErrorCode::input, {file(number).string(), 0, 0},
                 error.issues().front().message + "; remove this file, and only its realizations are simulated again");
@@ -132,6 +128,8 @@ void TableStore::keep(std::uint32_t number, const TableChunk& chunk) const {
   if (folder_.empty()) return;
   io::AtomicFile file_out(file(number));
   stats::BinaryWriter out(file_out.stream(), kind, format);
+  out.write(std::string_view(key_));
+  out.write(number);
   out.write(chunk.n_left_out);
   out.write(static_cast<std::uint32_t>(chunk.datasets.size()));
   for (const SimulatedDataset& dataset : chunk.datasets) {

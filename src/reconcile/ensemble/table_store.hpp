@@ -1,5 +1,5 @@
-// Simulated datasets on disk: a folder with the key of what they depend on and chunks of finished realizations. Private
-// to reconcile.
+// Simulated datasets on disk: a folder with the key of what they depend on and chunks of finished realizations, each of
+// which names key and number too. Private to reconcile.
 #pragma once
 
 #include <cstdint>
@@ -29,13 +29,14 @@ class TableStore {
  public:
   /// An empty folder name keeps nothing. Throws Error(input) if the folder holds a table with another key.
   TableStore(std::filesystem::path folder, const std::string& key);
-  /// None if the chunk isn't there. Throws Error(input) if it is damaged.
+  /// None if the chunk isn't there. Throws Error(input) if it is damaged, of another table or of other realizations.
   [[nodiscard]] std::optional<TableChunk> find(std::uint32_t number) const;
   void keep(std::uint32_t number, const TableChunk& chunk) const;
 
  private:
   [[nodiscard]] std::filesystem::path file(std::uint32_t number) const;
   std::filesystem::path folder_;
+  std::string key_;
 };
 
 /// Simulates item `index` (a realization) with all of its datasets.

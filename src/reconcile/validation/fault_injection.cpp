@@ -90,9 +90,8 @@ class InjectionJob {
         plans_(plans_of(reference, settings)),
         wide_source_(reference.source) {
     NuisanceSpec& wide = wide_source_.nuisance;
-    for (double* width :
-         {&wide.seat_position_m, &wide.sensor_yaw_deg, &wide.sensor_tilt_deg, &wide.body_size, &wide.arm_amplitude,
-          &wide.uneven_arms, &wide.trunk_sway_deg}) {
+    for (double* width : {&wide.seat_position_m, &wide.sensor_yaw_deg, &wide.sensor_tilt_deg, &wide.body_size,
+                          &wide.arm_amplitude, &wide.uneven_arms, &wide.trunk_sway_deg}) {
       *width *= beyond;
     }
   }
@@ -147,9 +146,9 @@ class InjectionJob {
 
 std::string key_of(const ReferenceStudy& reference, const SelftestSettings& settings, std::uint64_t seed) {
   std::string text = "injected in " + reference.key;
-  for (const std::uint64_t n :
-       {std::uint64_t{settings.n_nulls}, std::uint64_t{settings.n_injected}, std::uint64_t{settings.n_beyond},
-        std::uint64_t{settings.n_pairs}, std::uint64_t{settings.n_out_of_catalogue}, seed}) {
+  for (const std::uint64_t n : {static_cast<std::uint64_t>(settings.n_replicates), std::uint64_t{settings.n_nulls},
+                                std::uint64_t{settings.n_injected}, std::uint64_t{settings.n_beyond},
+                                std::uint64_t{settings.n_pairs}, std::uint64_t{settings.n_out_of_catalogue}, seed}) {
     text += ' ' + std::to_string(n);
   }
   return sha256(text);

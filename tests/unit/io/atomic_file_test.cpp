@@ -1,7 +1,9 @@
 #include "io/atomic_file.hpp"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -112,19 +114,53 @@ TEST_CASE("a full disk is an io error that says so, whether little or much was w
   CHECK(fs::exists("/dev/full"));
 }
 
-TEST_CASE("a partial file on a full disk leaves the old file intact", "[atomic_file]") {
-  if (!fs::exists("/dev/full")) return;
+TEST_CASE("a partial file that can't grow leaves the old file intact", "[atomic_file]") {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "a.csv";
   std::ofstream(path) << "old";
-  fs::create_symlink("/dev/full", folder.path() / "a.csv.writing");
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit little{1000, before.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &little);
   const std::string message = io_fault([&] {
     AtomicFile file(path);
     file.stream() << std::string(100000, 'x');
     file.commit();
   });
-  CHECK(message.find("No space left on device") != std::string::npos);
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  CHECK(message.find("File too large") != std::string::npos);
   CHECK(content(path) == "old");
+  CHECK(n_files(folder.path()) == 1);
+}
+
+TEST_CASE("what is written never goes where a link of another leads", "[atomic_file]") {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "a.csv", mine = folder.write("mine.txt", "mine");
+  fs::create_symlink(mine, folder.path() / "a.csv.writing");
+  for (int i = 0; i < 3; ++i)
+    fs::create_symlink(mine, folder.path() / ("a.csv.writing-" + std::to_string(::getpid()) + '-' + std::to_string(i)));
+  AtomicFile one(path), other(path);
+  one.stream() << "one";
+  other.stream() << std::string(200000, 'o');
+  one.commit();
+  CHECK(content(path) == "one");
+  other.commit();
+  CHECK(content(path) == std::string(200000, 'o'));
+  CHECK(content(mine) == "mine");
+}
+
+TEST_CASE("a file that is to be written once stays as it is", "[atomic_file]") {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "a.txt";
+  AtomicFile late(path);
+  late.stream() << "late";
+  CHECK(io::write_once(path, "first"));
+  CHECK_FALSE(late.commit_if_new());
+  CHECK(io::write_once(path, "first"));
+  CHECK_FALSE(io::write_once(path, "second"));
+  CHECK(content(path) == "first");
   CHECK(n_files(folder.path()) == 1);
 }
 

@@ -180,6 +180,34 @@ TEST_CASE("a finished file that was damaged is made anew by resuming", "[io][row
   CHECK(io::fault_of_data(file, io::read_manifest(io::manifest_path(file))).empty());
 }
 
+TEST_CASE("no bit of a journal can be altered without being noticed", "[io][row_file]") {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "rows.csv", partial = folder.path() / "rows.csv.partial",
+                 journal = folder.path() / "rows.csv.journal";
+  work(file, Start::anew, 4);
+  const std::string rows = content(partial), marks = content(journal);
+  std::size_t n_refused = 0;
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    std::string altered = marks;
+    altered[i] = static_cast<char>(altered[i] ^ 1);
+    write(journal, altered);
+    write(partial, rows);
+    INFO("byte " << i);
+    try {
+      work(file, Start::resume);
+      REQUIRE(content(file) == whole());
+      REQUIRE(io::read_manifest(io::manifest_path(file)).rows == 12);
+      fs::remove(file);
+      fs::remove(io::manifest_path(file));
+    } catch (const Error& error) {
+      REQUIRE(error.code() == ErrorCode::input);
+      ++n_refused;
+    }
+  }
+  CHECK(n_refused > marks.find('\n') - 10);  // a first line that is whole, but altered
+  CHECK(n_refused < marks.size());
+}
+
 TEST_CASE("two at work on one file is one too many", "[io][row_file]") {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "rows.csv";

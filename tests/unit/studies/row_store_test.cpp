@@ -1,10 +1,12 @@
 #include "studies/coverage.hpp"
 
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "pirsim/io.hpp"
 #include "support/catch.hpp"
+#include "support/each_field.hpp"
 #include "support/shipped.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -13,7 +15,11 @@ using namespace pirsim::studies;
 
 namespace {
 
-CoverageStudy small_study(double duration_s = 2.0) {
+struct Given {
+  SceneSpec scene;
+  CoverageSpec spec;
+};
+Given small_given(double duration_s = 2.0) {
   SceneSpec scene;
   scene.floor = FloorArea({{{-2, -4}, {2, -4}, {2, 0}, {-2, 0}}}, 0.0);
   scene.sensors = {{"PIR", "EKMC1604111", Frame{{1, 0, 0, 0}, {0.0, 1.2, 0.0}}}};
@@ -21,6 +27,10 @@ CoverageStudy small_study(double duration_s = 2.0) {
   CoverageSpec spec;
   spec.spacing_m = 0.5;
   spec.duration_s = duration_s;
+  return {std::move(scene), std::move(spec)};
+}
+CoverageStudy small_study(double duration_s = 2.0) {
+  auto [scene, spec] = small_given(duration_s);
   return {std::move(scene), std::move(spec)};
 }
 
@@ -72,6 +82,56 @@ TEST_CASE("rows of another study or with a changed digit aren't taken", "[covera
   text[second_row] = text[second_row] == '0' ? '1' : '0';
   std::ofstream(file, std::ios::binary) << text;
   CHECK(RowStore(file, small_study(2.0)).n_found_rows() == 1);
+}
+
+TEST_CASE("whatever field of a coverage study or of its sensors is changed, its rows are another's", "[coverage]") {
+  auto [scene, spec] = small_given();
+  scene.sensor_models.begin()->second.response = Response::analog;
+  spec.effects = {{"soft_zone_edges", {{"sigma_deg", 1.0}}, {}, {}}};
+  const auto print = [&] { return fingerprint(CoverageStudy(scene, spec)); };
+  const std::string before = print();
+  std::set<std::string> unseen;
+  const auto check = [&](const std::string& path) {
+    if (path == "spec.effects[0].name" || path == "spec.without") return;  // can't be compiled
+    if (print() == before) unseen.insert(path);
+  };
+  test::each_change(spec, "spec", check);
+  test::each_change(scene.sensor_models, "models", check);
+  CHECK(print() == before);
+  // What only messages say; and detectors of a survey have no noise.
+  CHECK(unseen == std::set<std::string>{"models{EKMC1604111}.description",
+                                        "models{EKMC1604111}.detector.amplifier.noise_v_pp",
+                                        "spec.effects[0].where.column", "spec.effects[0].where.file",
+                                        "spec.effects[0].where.line", "spec.name", "spec.without_where"});
+}
+
+TEST_CASE("lines that are sound but not of this place aren't taken", "[coverage]") {
+  const ::TemporaryFolder folder;
+  const auto file = folder.path() / "rows";
+  store_rows(file, small_study(), 5);
+  const std::string text = content(file);
+  std::vector<std::string> lines;
+  for (std::istringstream all(text); std::getline(all, lines.emplace_back());) {
+  }
+  std::swap(lines[2], lines[3]);
+  std::string swapped;
+  for (std::size_t i = 0; i + 1 < lines.size(); ++i) swapped += lines[i] + '\n';
+  std::ofstream(file, std::ios::binary) << swapped;
+  CHECK(RowStore(file, small_study()).n_found_rows() == 1);
+}
+
+TEST_CASE("two at work on one coverage are one too many, and no link is followed", "[coverage]") {
+  const ::TemporaryFolder folder;
+  const auto file = folder.path() / "rows";
+  {
+    const RowStore first(file, small_study());
+    CHECK_THROWS_WITH(RowStore(file, small_study()), contains("another process is at work"));
+  }
+  const auto mine = folder.write("mine.txt", "mine");
+  std::filesystem::remove(file);
+  std::filesystem::create_symlink(mine, file);
+  CHECK_THROWS_WITH(RowStore(file, small_study()), contains("is a link"));
+  CHECK(content(mine) == "mine");
 }
 
 TEST_CASE("a complete study leaves no file of rows", "[coverage]") {

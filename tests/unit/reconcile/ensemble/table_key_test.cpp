@@ -1,37 +1,65 @@
 // What a table of simulated datasets was made from decides its name.
-#include <functional>
 #include <set>
 
 #include "reconcile/ensemble/reference_table.hpp"
 #include "support/catch.hpp"
+#include "support/each_field.hpp"
 #include "support/effects.hpp"
 
 using namespace pirsim;
 using namespace pirsim::reconcile;
 
-TEST_CASE("whatever a room is changed in, its table is another", "[reconcile]") {
-  const SceneSpec room = test::shipped_scene("meeting_room.gltf");
-  const ScriptSpec script = test::short_study_a();
-  const auto key_of = [&](const SceneSpec& scene) {
-    const RealizationSource source{scene, script, {}, 1};
-    return table_key(source, frame_of(room, script), 1, {});
+namespace pirsim::python {
+
+template <>
+struct Fields<RealizationSource> {
+  static constexpr std::tuple all{
+      Field{"scene", &RealizationSource::scene}, Field{"script", &RealizationSource::script},
+      Field{"nuisance", &RealizationSource::nuisance}, Field{"seed", &RealizationSource::seed}};
+};
+template <>
+struct Fields<StudyFrame> {
+  static constexpr std::tuple all{Field{"trials", &StudyFrame::trials}, Field{"sensors", &StudyFrame::sensors},
+                                  Field{"counted_phases", &StudyFrame::counted_phases},
+                                  Field{"window_s", &StudyFrame::window_s}};
+};
+template <>
+struct Fields<TableSettings> {
+  static constexpr std::tuple all{
+      Field{"n_realizations", &TableSettings::n_realizations}, Field{"n_remembered", &TableSettings::n_remembered},
+      Field{"n_traced", &TableSettings::n_traced}, Field{"effects", &TableSettings::effects}};
+};
+
+}  // namespace pirsim::python
+
+TEST_CASE("whatever field of a room, a script or the settings is changed, its table is another", "[reconcile]") {
+  SceneSpec scene = test::shipped_scene("meeting_room.gltf");
+  ScriptSpec script = test::short_study_a();
+  script.effects = {{"soft_zone_edges", {{"sigma_deg", 1.0}}, {}, {}}};
+  RealizationSource source{scene, script, {}, 1};
+  StudyFrame frame = frame_of(scene, script);
+  TableSettings settings;
+  settings.effects = {"dead_time"};
+  int n_replicates = 1;
+  const auto key = [&] { return table_key(source, frame, n_replicates, settings); };
+  const std::string before = key();
+  std::set<std::string> unseen;
+  const auto check = [&](const std::string& path) {
+    if (path == "settings.effects[0]") return;  // there is no such effect
+    if (key() == before) unseen.insert(path);
   };
-  const std::vector<std::function<void(SceneSpec&)>> changes{
-      [](SceneSpec& scene) { scene.meshes.front().positions.front().x += 1e-9; },
-      [](SceneSpec& scene) { scene.meshes.front().solidity = Solidity::screen; },
-      [](SceneSpec& scene) { scene.meshes.front().temperature_c = 30.0; },
-      [](SceneSpec& scene) { scene.meshes.pop_back(); },
-      [](SceneSpec& scene) { scene.sensors.front().world_from_sensor.origin.y += 0.1; },
-      [](SceneSpec& scene) { scene.seats.front().world_from_seat.origin.x += 0.1; },
-      [](SceneSpec& scene) { scene.entrances.front().width_m += 0.1; },
-      [](SceneSpec& scene) { scene.floor = FloorArea(scene.floor.loops(), scene.floor.height_m() - 0.25); },
-      [](SceneSpec& scene) { scene.sensor_models.begin()->second.clusters.front().range_m += 1.0; }};
-  std::set<std::string> keys{key_of(room)};
-  for (const auto& change : changes) {
-    SceneSpec changed = room;
-    change(changed);
-    keys.insert(key_of(changed));
+  test::each_change(source, "source", check);
+  test::each_change(frame, "frame", check);
+  test::each_change(settings, "settings", check);
+  test::each_change(n_replicates, "n_replicates", check);
+  CHECK(key() == before);
+  std::set<std::string> told_only;  // by messages
+  for (const std::string& path : unseen) {
+    const bool is_place = path.find(".where.") != std::string::npos || path.ends_with(".files[0]") ||
+                          path.ends_with(".files") || path.ends_with(".warnings") || path.ends_with(".description");
+    if (!is_place) told_only.insert(path);
   }
-  CHECK(keys.size() == changes.size() + 1);
-  CHECK(key_of(room) == *keys.find(key_of(room)));
+  // Realizations have seeds of their own, and as many runs as the data. Meshes count, wherever they were read from.
+  CHECK(told_only == std::set<std::string>{"source.scene.name", "source.script.directory", "source.script.replicates",
+                                           "source.script.seed"});
 }

@@ -21,6 +21,12 @@ TEST_CASE("a damaged chunk of a table is named, and what to do about it", "[reco
   std::filesystem::resize_file(file, std::filesystem::file_size(file) - 9);
   CHECK_THROWS_AS(store.find(3), Error);
   CHECK_THROWS_WITH(store.find(3), contains(file.string()) && contains("ends too early") && contains("remove"));
+  store.keep(2, chunk);
+  std::filesystem::rename(folder.path() / "realizations_0002.bin", file);
+  CHECK_THROWS_WITH(store.find(3), contains("of other realizations"));
+  std::filesystem::remove(folder.path() / "key.txt");
+  const TableStore other(folder.path(), "another key");
+  CHECK_THROWS_WITH(other.find(3), contains("of other inputs or settings"));
   std::filesystem::remove(file);
   CHECK_FALSE(store.find(3));
 }

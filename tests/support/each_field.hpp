@@ -1,0 +1,153 @@
+// Changes every field of a spec in turn, by the one list of fields, so that no test of "all fields" forgets one.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "../../python/src/fields.hpp"
+
+namespace pirsim::python {
+
+// Specs that Python has no class of.
+template <>
+struct Fields<TurnSpec> {
+  static constexpr std::tuple all{Field{"axis", &TurnSpec::axis}, Field{"deg_per_s", &TurnSpec::deg_per_s}};
+};
+template <>
+struct Fields<XShapesSpec> {
+  static constexpr std::tuple all{
+      Field{"heights_m", &XShapesSpec::heights_m}, Field{"bar_length_m", &XShapesSpec::bar_length_m},
+      Field{"bar_width_m", &XShapesSpec::bar_width_m}, Field{"temperature_c", &XShapesSpec::temperature_c},
+      Field{"turns", &XShapesSpec::turns}};
+};
+template <>
+struct Fields<CoverageSpec> {
+  static constexpr std::tuple all{
+      Field{"name", &CoverageSpec::name},           Field{"sensing", &CoverageSpec::sensing},
+      Field{"spacing_m", &CoverageSpec::spacing_m}, Field{"duration_s", &CoverageSpec::duration_s},
+      Field{"without", &CoverageSpec::without},     Field{"without_where", &CoverageSpec::without_where},
+      Field{"target", &CoverageSpec::target},       Field{"seed", &CoverageSpec::seed},
+      Field{"effects", &CoverageSpec::effects}};
+};
+template <>
+struct Fields<NuisanceSpec> {
+  static constexpr std::tuple all{
+      Field{"seat_position_m", &NuisanceSpec::seat_position_m}, Field{"sensor_yaw_deg", &NuisanceSpec::sensor_yaw_deg},
+      Field{"sensor_tilt_deg", &NuisanceSpec::sensor_tilt_deg}, Field{"body_size", &NuisanceSpec::body_size},
+      Field{"arm_amplitude", &NuisanceSpec::arm_amplitude},     Field{"uneven_arms", &NuisanceSpec::uneven_arms},
+      Field{"trunk_sway_deg", &NuisanceSpec::trunk_sway_deg}};
+};
+template <>
+struct Fields<TriMesh> {
+  static constexpr std::tuple all{Field{"name", &TriMesh::name}, Field{"positions", &TriMesh::positions},
+                                  Field{"triangles", &TriMesh::triangles}, Field{"solidity", &TriMesh::solidity},
+                                  Field{"temperature_c", &TriMesh::temperature_c}};
+};
+template <>
+struct Fields<ScriptedAction> {
+  static constexpr std::tuple all{Field{"what", &ScriptedAction::what}, Field{"at_s", &ScriptedAction::at_s},
+                                  Field{"phase", &ScriptedAction::phase}, Field{"where", &ScriptedAction::where}};
+};
+template <>
+struct Fields<Issue> {
+  static constexpr std::tuple all{Field{"severity", &Issue::severity}, Field{"where", &Issue::where},
+                                  Field{"message", &Issue::message}};
+};
+template <>
+struct Words<RaysPerZone> {
+  static constexpr std::array all{std::pair{"five", RaysPerZone::five}, std::pair{"nine", RaysPerZone::nine}};
+};
+
+}  // namespace pirsim::python
+
+namespace pirsim::test {
+
+template <typename Spec>
+concept HasFields = requires {
+  python::Fields<Spec>::all;
+};
+template <typename Value>
+concept HasItems = requires(Value& value) {
+  value.begin()->second;
+};
+
+/// Calls check(path) with each part of the value changed in turn, and restores it: the fields of specs; of lists the
+/// first item, and the list without it; of variants what is there. Nothing of an empty map, and of body meshes, which
+/// can't be changed once they are made.
+template <typename Value, typename Check>
+void each_change(Value& value, const std::string& path, const Check& check);
+
+template <typename Value, typename Check>
+void with(Value& value, const Value& changed, const std::string& path, const Check& check) {
+  const Value before = value;
+  value = changed;
+  check(path);
+  value = before;
+}
+
+template <typename Check>
+void each_change_of(MeshSolid&, const std::string&, const Check&) {}
+template <typename Check>
+void each_change_of(FloorArea& floor, const std::string& path, const Check& check) {
+  with(floor, FloorArea(floor.loops(), floor.height_m() + 1.0), path + ".height", check);
+  auto loops = floor.loops();
+  each_change(loops, path,
+              [&](const std::string& part) { with(floor, FloorArea(loops, floor.height_m()), part, check); });
+}
+template <typename Item, typename Check>
+void each_change_of(std::vector<Item>& items, const std::string& path, const Check& check) {
+  if (items.empty()) {
+    with(items, {Item{}}, path, check);
+    return;
+  }
+  std::vector<Item> fewer(items.begin() + 1, items.end());
+  with(items, fewer, path, check);
+  each_change(items.front(), path + "[0]", check);
+}
+template <typename Item, std::size_t n, typename Check>
+void each_change_of(std::array<Item, n>& items, const std::string& path, const Check& check) {
+  for (std::size_t i = 0; i < n; ++i) each_change(items[i], path + '[' + std::to_string(i) + ']', check);
+}
+template <typename Item, typename Check>
+void each_change_of(std::optional<Item>& item, const std::string& path, const Check& check) {
+  if (!item) return with(item, std::optional(Item{}), path, check);
+  with(item, std::optional<Item>(), path, check);
+  each_change(*item, path, check);
+}
+template <typename... Items, typename Check>
+void each_change_of(std::variant<Items...>& item, const std::string& path, const Check& check) {
+  std::visit([&](auto& one) { each_change(one, path, check); }, item);
+}
+
+template <typename Value, typename Check>
+void each_change(Value& value, const std::string& path, const Check& check) {
+  if constexpr (HasFields<Value>) {
+    constexpr auto& all = python::Fields<Value>::all;
+    static_assert(python::has_fields<std::tuple_size_v<std::remove_cvref_t<decltype(all)>>, Value>());
+    std::apply([&](const auto&... field) { (each_change(value.*field.member, path + '.' + field.name, check), ...); },
+               all);
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    with(value, !value, path, check);
+  } else if constexpr (std::is_enum_v<Value>) {
+    const auto& all = python::Words<Value>::all;
+    with(value, all[0].second == value ? all[1].second : all[0].second, path, check);
+  } else if constexpr (std::is_arithmetic_v<Value>) {
+    with(value, static_cast<Value>(value + 1), path, check);
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    with(value, value + "x", path, check);
+  } else if constexpr (std::is_same_v<Value, Frame>) {
+    each_change(value.origin, path + ".origin", check);
+    each_change(value.rotation, path + ".rotation", check);
+  } else if constexpr (std::is_same_v<Value, Vec2> || std::is_same_v<Value, Vec3> || std::is_same_v<Value, Quat>) {
+    for (int i = 0; i < Value::length(); ++i) each_change(value[i], path + '[' + std::to_string(i) + ']', check);
+  } else if constexpr (HasItems<Value>) {
+    if (!value.empty()) each_change(value.begin()->second, path + '{' + value.begin()->first + '}', check);
+  } else {
+    each_change_of(value, path, check);
+  }
+}
+
+}  // namespace pirsim::test
