@@ -7,7 +7,6 @@
 #include "dataset/room_reader.hpp"
 #include "io/atomic_file.hpp"
 #include "io/compression.hpp"
-#include "io/file_kinds.hpp"
 #include "io/reader_parts.hpp"
 #include "pirsim/dataset.hpp"
 #include "pirsim/effects.hpp"
@@ -15,7 +14,6 @@
 namespace pirsim::dataset {
 namespace {
 
-constexpr int format_version = 1;
 constexpr int most_rooms = static_cast<int>(limits::rooms), most_days = 3'660;  // assumed: ten years
 constexpr std::int64_t most_room_days = 1'000'000;  // assumed: some months of a cluster of a hundred cores
 
@@ -194,13 +192,7 @@ RecipeSpec read_recipe(const std::filesystem::path& file) {
   const YamlNode root = YamlNode::load(file);
   Diagnostics faults;
   YamlMap map(root, faults, "recipe");
-  io::refuse_other_kinds(map, "pirsim_recipe");
-  const int version = map.required_integer("pirsim_recipe");
-  if (map.has("pirsim_recipe") && version != format_version) {
-    faults.error(map.where("pirsim_recipe"), "format version " + std::to_string(version) +
-                                                 " isn't known: this pirsim reads version " +
-                                                 std::to_string(format_version));
-  }
+  io::check_version(map, "pirsim_recipe");
   RecipeSpec recipe;
   recipe.file = file;
   recipe.text = io::read_text_file(file);

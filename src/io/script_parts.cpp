@@ -13,8 +13,9 @@ namespace pirsim::io {
 void check_version(YamlMap& map, const std::string& key) {
   constexpr int format_version = 1;
   refuse_other_kinds(map, key);
+  const std::size_t n_told = map.faults().issues().size();
   const int version = map.required_integer(key);
-  if (!map.has(key) || version == format_version) return;
+  if (map.faults().issues().size() != n_told || version == format_version) return;
   map.faults().error(map.where(key), "format version " + std::to_string(version) +
                                          " isn't known: this pirsim reads version " + std::to_string(format_version));
 }

@@ -208,9 +208,11 @@ std::vector<TrialSpec> read_trials(const std::optional<YamlNode>& node, const st
   for (const Variables& variables : all) {
     TrialSpec& trial = trials.emplace_back();
     trial.id = substitute(pattern, variables, map.where("id"), found);
-    if (trial.id.empty()) found.error(map.where("id"), "trials: id: expected a text that isn't empty");
+    if (trial.id.empty() && !pattern.empty())
+      found.error(map.where("id"), "trials: id: expected a text that isn't empty");
     trial.people = read_people(people, variables, body_meshes, found);
-    if (!ids.insert(trial.id).second) found.error(map.where("id"), "a second trial '" + trial.id + "'");
+    if (!ids.insert(trial.id).second && !pattern.empty() && !found.has_errors())
+      found.error(map.where("id"), "a second trial '" + trial.id + "'");
   }
   std::set<std::string> told;
   for (const Issue& issue : found.issues()) {

@@ -18,7 +18,7 @@ enum class Missing { none, outer };
 
 constexpr NumberRange positive{.above = 0.0, .max = 1000.0};
 constexpr NumberRange length_m{.min = 1e-3, .max = 1000.0};  ///< what is shorter leaves no digits to directions
-constexpr double pitch_to_side = 1.0 / 0.6;  ///< of the quad's elements, quoted: docs/physics/zones.md
+constexpr double pitch_to_side = 1.0 / 0.6;                  ///< of the quad's elements, quoted: docs/physics/zones.md
 constexpr NumberRange on_plane{.min = -1000.0, .max = 1000.0};
 
 /// What the facets of one lens share.
@@ -122,6 +122,7 @@ ZoneSpec read_zone(const YamlNode& node, Diagnostics& faults) {
   const std::vector<YamlNode> corners = map.required_list("corners_m");
   zone.polarity = map.choice<int>("polarity", 1, {{"1", 1}, {"-1", -1}});
   map.finish();
+  if (!map.has("corners_m")) return zone;
   if (corners.size() != zone.corners.size()) {
     faults.error(map.where("corners_m"), "zone: corners_m: expected 4 corners, got " + std::to_string(corners.size()));
     return zone;
@@ -212,8 +213,14 @@ void check_sources(YamlMap& map, const YamlNode& root) {
   if (!map.has("sources")) return;
   std::vector<YamlKey> used;
   collect_sourced_keys(root, used);
+  const std::vector<YamlKey> given = map.required_child("sources").keys();
   for (const YamlKey& key : used) {
-    if (!sources.has(key.name)) faults.error(key.where, "'" + key.name + "' has no entry under 'sources'");
+    const bool is_misspelt = std::ranges::any_of(given, [&](const YamlKey& source) {  // which is told already
+      return std::ranges::find(sourced_keys(), source.name) == sourced_keys().end() &&
+             did_you_mean(source.name, sourced_keys()) == did_you_mean(source.name, {key.name});
+    });
+    if (!sources.has(key.name) && !is_misspelt)
+      faults.error(key.where, "'" + key.name + "' has no entry under 'sources'");
   }
 }
 
@@ -231,7 +238,10 @@ FacetLaw read_law(YamlMap& map, double plane_m, const std::optional<double>& ran
   FacetLaw law;
   law.plane_m = plane_m;
   law.range_m = range_m;
-  if (!map.has("layout")) map.faults().error(map.where(), "sensor: 'layout' is missing");
+  if (!map.has("layout")) {
+    map.faults().error(map.where(), "sensor: 'layout' is missing");
+    for (const char* key : {"half_spacing_ratio", "half_diagonal_ratio"}) static_cast<void>(map.child(key));
+  }
   law.layout = map.choice<Layout>("layout", Layout::square, {{"diamond", Layout::diamond}, {"square", Layout::square}});
   if (law.layout == Layout::diamond) {
     law.half_spacing_ratio = map.required_number("half_spacing_ratio", {.above = 0.0, .max = 1.0});
@@ -285,7 +295,9 @@ SensorModelSpec read_model(const YamlNode& root) {
       model.clusters.push_back(read_cluster(node, range_m, faults));
   } else if (map.has("facets")) {
     const FacetLaw law = read_law(map, model.plane_m, range_m);
-    for (const YamlNode& node : map.required_list("facets")) model.clusters.push_back(read_facet(node, law, faults));
+    const std::vector<YamlNode> facets = map.required_list("facets");
+    for (const YamlNode& node : map.has("layout") ? facets : std::vector<YamlNode>{})  // which says what facets need
+      model.clusters.push_back(read_facet(node, law, faults));
   }
   check_sources(map, root);
   map.finish();

@@ -123,10 +123,30 @@ std::vector<YamlNode> YamlMap::required_list(const std::string& key, std::size_t
   return list(key, most);
 }
 
+namespace {
+
+/// Leaves out what was told at that place in these words.
+void take_back(Diagnostics& faults, const Where& where, const std::string& message) {
+  Diagnostics kept;
+  for (const Issue& issue : faults.issues()) {
+    if (issue.where == where && issue.message == message) continue;
+    issue.severity == Severity::error ? kept.error(issue.where, issue.message)
+                                      : kept.warning(issue.where, issue.message);
+  }
+  faults = std::move(kept);
+}
+
+}  // namespace
+
 void YamlMap::finish() const {
   for (const YamlKey& key : node_.keys()) {
     if (std::find(asked_.begin(), asked_.end(), key.name) != asked_.end()) continue;
-    faults_->error(key.where, what_ + ": unknown key '" + key.name + "'" + did_you_mean(key.name, asked_));
+    const std::string meant = did_you_mean(key.name, asked_);
+    for (const std::string& asked : asked_) {  // the key that is meant is misspelt, and not missing as well
+      if (!meant.empty() && did_you_mean(key.name, {asked}) == meant)
+        take_back(*faults_, where(), what_ + ": '" + asked + "' is missing");
+    }
+    faults_->error(key.where, what_ + ": unknown key '" + key.name + "'" + meant);
   }
 }
 

@@ -193,6 +193,10 @@ class Doubts(unittest.TestCase):
                                r"from 0\.\d\d m to 0\.\d\d m\n")
 
 
+def marked(node):
+    return node.get("extras", {}).get("pirsim", {})
+
+
 class OwnRoom:
     """A room of boxes, open at the front, with one sensor in a corner; everything is a node of its own."""
 
@@ -595,6 +599,54 @@ class BareRoom(unittest.TestCase):
                    "--look-at", "2,0,-1.6", "-q", "-o", path / "room.png")
             pictures.append((path / "room.png").read_bytes())
         self.assertNotEqual(*pictures)
+
+
+class OneMistake(unittest.TestCase):
+    """Of a misspelt key or a word for a number only that is told, and not what follows from it."""
+
+    def mistakes(self, text):
+        """(what, text) with each key misspelt in turn, and with each whole number made a word."""
+        text = re.sub(r"(?m)\s+#.*$|^#.*$", "", text)
+        for match in re.finditer(r"(?m)(?<=[{,\s-])[a-z]\w*(?=: |:$)", text):
+            if not text[:match.start()].endswith('"'):
+                yield match[0], text[:match.end()] + "zq" + text[match.end():]
+        for match in re.finditer(r"(?m)(?<=: )\d+(?=[\s,}])", text):
+            yield match[0], text[:match.start()] + "word" + text[match.end():]
+
+    def count(self, text, files, name, but=()):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / name
+            file.parent.mkdir(exist_ok=True)
+            for what, wrong in self.mistakes(text):
+                if what in but:
+                    continue
+                file.write_text(wrong)
+                told = subprocess.run([PIRSIM, "check", "-q", *map(str, files(pathlib.Path(folder)))], capture_output=True,
+                                      text=True, timeout=60).stderr
+                self.assertEqual(told.count("error:"), 1, f"{what}: {told}")
+
+    def test_in_a_script(self):
+        room = DATA / "rooms" / "meeting_room.gltf"
+        for name in ("studyA", "meeting_day"):  # a variable is told wherever it isn't defined
+            self.count((DATA / "studies" / f"{name}.yaml").read_text(),
+                       lambda folder: ("--scene", room, "--script", folder / "s.yaml"), "s.yaml", ("trials", "for_each", "seat"))
+
+    def test_in_a_sensor_file(self):
+        room = Room()
+        for node in room.gltf["nodes"]:
+            if marked(node).get("type") == "sensor":
+                marked(node)["model"] = "MINE"
+
+        def files(folder):
+            (folder / "room.gltf").write_text(json.dumps(room.gltf))
+            return "--scene", folder / "room.gltf", "--script", DATA / "studies" / "look.yaml"
+        head = "id: MINE\nplane_m: 2\nrange_m: 4\n"
+        sources = "".join(f"  {key}: 'assumed: a'\n" for key in ("plane_m", "range_m", "x_m", "y_m", "zone_side_m", "lens_step"))
+        self.count(head + "layout: square\nfacets:\n  - {x_m: 1, y_m: 2, zone_side_m: 1, lens_step: 1}\n  - {x_m: 3, y_m: 2, "
+                   "zone_side_m: 1, lens_step: 1}\nsources:\n" + sources, files, "sensors/MINE.yaml", ("facets", "layout"))
+        sources = "".join(f"  {key}: 'assumed: a'\n" for key in ("plane_m", "range_m", "corners_m"))
+        self.count(head + "clusters:\n  - zones:\n    - corners_m: [[0, 0], [1, 0], [1, 1], [0, 1]]\nsources:\n" + sources,
+                   files, "sensors/MINE.yaml", ("clusters",))
 
 
 class Sensors(unittest.TestCase):
