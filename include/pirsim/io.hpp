@@ -47,9 +47,6 @@ void write_scene(const std::filesystem::path& file, const SceneSpec& scene);
 /// The script as YAML that read_script() reads back to the same spec: trials and people written out.
 [[nodiscard]] std::string to_yaml(const ScriptSpec& script);
 
-/// Throws what read_script() would throw for these values: Error(input), with all faults.
-void check(const ScriptSpec& script);
-
 /// The same script for a file in another folder: the files that it refers to are found from there.
 [[nodiscard]] ScriptSpec moved(ScriptSpec script, const std::filesystem::path& folder);
 

@@ -53,8 +53,8 @@ class Model {
 };
 
 /// The only door from Spec to Model; script.effects are applied here, so that whoever uses a Model has them. Throws
-/// Error(input) for names that the scene or the catalogue lacks or actions in an impossible order, Error(infeasible)
-/// for a seat or point that can't be reached.
+/// Error(input) for what a file's reader would refuse as well (see check()), names that the scene or the catalogue lacks or actions in
+/// an impossible order, Error(infeasible) for a seat or point that can't be reached.
 [[nodiscard]] Model compile(SceneSpec scene, ScriptSpec script, const CompileOptions& options = {});
 
 }  // namespace pirsim

@@ -45,8 +45,8 @@ struct SceneSpec {
   std::vector<Issue> warnings;                           ///< what the reader noticed and repaired or ignored
 };
 
-/// What the reader of files would have refused: numbers that aren't finite, corners that don't exist, a name twice, a
-/// sensor without its model, no floor.
+/// Refuses what the reader of files would refuse, each fault with its field: `scene.seats[2].id: a second seat 'S1'`.
+/// compile() and surveys do so.
 void check(const SceneSpec& scene, Diagnostics& diagnostics);
 
 }  // namespace pirsim

@@ -170,6 +170,10 @@ struct ScriptSpec {
   std::vector<std::string> files;  ///< all that was read: script, body meshes and their buffers
 };
 
+/// Refuses what the reader of files would refuse, each fault with its field: `script.trials[0].people[1].stature_m:
+/// expected ...`. compile() does so.
+void check(const ScriptSpec& script, Diagnostics& diagnostics);
+
 /// What nobody knows exactly about a real room and its people: drawn anew for every simulated dataset of a
 /// reconciliation, never fitted.
 /// Half-widths of uniform distributions round the value that scene or script gives. Shared by a whole dataset, since it

@@ -83,7 +83,7 @@ struct ZoneSpec {
 struct ClusterSpec {
   Vec2 centre{0.0};      ///< on the plane, metres
   double range_m = 0.0;  ///< rated detection distance of the facet's lens step
-  int lens_step = 0;     ///< 1 for the farthest-reaching row
+  int lens_step = 1;     ///< 1 for the farthest-reaching row
   std::vector<ZoneSpec> zones;
 };
 

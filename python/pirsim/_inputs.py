@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import os
 from typing import Iterable, Literal, NamedTuple
 
 from . import _core
-from ._study import Overrides, PathOr, as_overrides, folders
+from ._study import Overrides, PathOr, as_overrides, as_path, folders
 from .specs import Frame, Point3, Scene, Script, SensorModel
 
 
@@ -33,20 +32,24 @@ class EffectInfo(NamedTuple):
     parameters: tuple[EffectParameter, ...]
     choices: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        settings = ", ".join([parameter.name for parameter in self.parameters] + list(self.choices))
+        return f"<pirsim.EffectInfo {self.name!r} ({self.family}, reaches {self.reach}): {settings}>"
+
 
 def read_scene(file: PathOr, *, sensors: PathOr | Iterable[PathOr] | None = None) -> Scene:
     """Reads a glTF file. Raises FileError and InputError. sensors: as in compile()."""
-    return _core.read_scene(os.fspath(file), *folders(sensors))
+    return _core.read_scene(as_path(file), *folders(sensors))
 
 
 def read_script(file: PathOr, *, set: Overrides | None = None) -> Script:
     """Reads a script's YAML file, with trials and people written out. Raises FileError and InputError."""
-    return _core.read_script(os.fspath(file), as_overrides(set))
+    return _core.read_script(as_path(file), as_overrides(set))
 
 
 def write_scene(scene: Scene, file: PathOr) -> None:
     """Writes a scene as glTF (.glb, or .gltf with its buffer in it); positions in single precision."""
-    _core.write_scene(scene, os.fspath(file))
+    _core.write_scene(scene, as_path(file))
 
 
 def write_script(script: Script, file: PathOr) -> None:
@@ -57,7 +60,7 @@ def write_script(script: Script, file: PathOr) -> None:
 
 def sensor_model(name: PathOr, *, sensors: PathOr | Iterable[PathOr] | None = None) -> SensorModel:
     """A sensor model by its name ("EKMC1604111"), or from a file (.yaml)."""
-    name = os.fspath(name)
+    name = as_path(name)
     return _core.read_sensor_model(name) if name.endswith(".yaml") else _core.find_sensor_model(name, *folders(sensors))
 
 

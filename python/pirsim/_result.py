@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any, Iterable, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from .specs import _listed
+
 if TYPE_CHECKING:
     import pandas
     import polars
@@ -39,7 +41,8 @@ class Incident(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """The rows of some runs. All arrays are read-only and own their memory: they outlive the model.
+    """The rows of some runs. All arrays are read-only. Each owns its memory, which the library filled without a copy
+    being made: it outlives the model and the other arrays.
 
     Runs differ in length. Arrays over seconds (windows, 1 s each unless the script says otherwise) are as long as the
     longest run and hold zeros behind the end of a shorter one, where `valid` is False.
@@ -65,6 +68,8 @@ class Result:
     """[run] from 1."""
     trial: npt.NDArray[np.str_]
     """[run] as the script names it."""
+    seed: int
+    """Of the study, or of what `Trace.emit()` drew."""
     clock: npt.NDArray[np.datetime64] | None = None
     """[run, second] local wall-clock time at its end, NaT behind the end of a run; None without a schedule."""
     zones: list[npt.NDArray[np.uint8]] = field(default_factory=list, repr=False)
@@ -79,6 +84,24 @@ class Result:
     faults: list[Fault] = field(default_factory=list)
     """Runs that could not go on; they are in the arrays, without a valid second."""
     incidents: list[Incident] = field(default_factory=list, repr=False)
+
+    def __repr__(self) -> str:
+        trials = list(dict.fromkeys(self.trial.tolist()))
+        runs, seconds, _ = self.bits.shape
+        known = max(1, int(self.valid.sum()))
+        shares = ", ".join(f"{name} {100 * share:.1f} %" for name, share in
+                           zip(self.sensors[:8], self.bits.sum(axis=(0, 1)) / known))
+        more = ", ..." if len(self.sensors) > 8 else ""
+        extra = [f"zones of {sum(len(ticks) > 0 for ticks in self.zones)} runs"] if any(map(len, self.zones)) else []
+        for name, table in (("occupants", self.occupants), ("signals", self.signals)):
+            rows = len(table.get("run", ()))
+            extra += [f"{name}: {rows} rows"] if rows else []
+        lines = [f"<pirsim.Result: {runs} runs of {_listed(trials, 'trial', 'trials')}, up to {seconds} rows each, "
+                 f"seed {self.seed}",
+                 f"  bits {list(self.bits.shape)}, seconds with motion: {shares}{more}",
+                 f"  people 0 to {int(self.people.max(initial=0))}; phases: {', '.join(filter(None, self.phases))}",
+                 f"  {len(self.faults)} faults, {len(self.incidents)} incidents"]
+        return "\n".join(lines + [f"  {text}" for text in extra]) + ">"
 
     @cached_property
     def phase(self) -> npt.NDArray[np.str_]:
@@ -153,7 +176,7 @@ def _texts(column: npt.NDArray[np.uint16], texts: tuple[str, ...]) -> npt.NDArra
     return np.array(texts)[column]
 
 
-def make_result(arrays: dict[str, Any], sensors: tuple[str, ...]) -> Result:
+def make_result(arrays: dict[str, Any], sensors: tuple[str, ...], seed: int) -> Result:
     """Of what the module gives."""
     texts = arrays.pop("texts")
     for table, columns in (("occupants", ("person", "activity", "seat")), ("signals", ("person", "part"))):
@@ -165,4 +188,4 @@ def make_result(arrays: dict[str, Any], sensors: tuple[str, ...]) -> Result:
     arrays["trial"].flags.writeable = False
     if "clock" in arrays:
         arrays["clock"] = arrays["clock"].view("datetime64[s]")
-    return Result(sensors=sensors, **arrays)
+    return Result(sensors=sensors, seed=seed, **arrays)

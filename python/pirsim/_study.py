@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import operator
 import os
 import warnings
 from typing import Any, Callable, Iterable, Mapping, NamedTuple, NoReturn, Sequence, Union
@@ -13,7 +14,7 @@ import numpy.typing as npt
 from . import _core
 from ._result import Result, make_result
 from .errors import IncompleteWarning, InputWarning
-from .specs import Effect, Scene, Script
+from .specs import Effect, Scene, Script, _listed
 
 PathOr = Union[str, "os.PathLike[str]"]
 Progress = Callable[[int, int], Any]
@@ -35,6 +36,9 @@ class Poses(NamedTuple):
     forward: npt.NDArray[np.float64]
     """[item, 3] unit vectors."""
 
+    def __repr__(self) -> str:
+        return f"<pirsim.Poses of {_listed(self.names, 'thing', 'things')}>"
+
 
 class Rays(NamedTuple):
     """All rays of all sensors, world frame, cut at the room."""
@@ -49,6 +53,40 @@ class Rays(NamedTuple):
     """[ray] as in `Result.zones`."""
     sensor: npt.NDArray[np.uint32]
     """[ray] index into the sensors."""
+
+    def __repr__(self) -> str:
+        return (f"<pirsim.Rays: {len(self.range_m)} rays of {len(np.unique(self.zone))} zones and "
+                f"{len(np.unique(self.sensor))} sensors, up to {self.range_m.max(initial=0.0):.1f} m>")
+
+
+def as_path(path: PathOr) -> str:
+    """A file's name as the module takes it. Raises ValueError for a NUL, at which the system would cut it off."""
+    name = os.fspath(path)
+    if not isinstance(name, str):
+        raise TypeError(f"expected the name of a file as a text, got {type(name).__name__}")
+    if "\0" in name:
+        raise ValueError(f"{name!r} can't be the name of a file: it has a NUL character")
+    return name
+
+
+def as_threads(threads: int) -> int:
+    """No more of them than cores will begin, whatever the number."""
+    return as_count(threads, "threads", 0, 2**32 - 1)
+
+
+def as_count(value: int, name: str, least: int, most: int) -> int:
+    """A whole number of any type. Raises TypeError and ValueError, with the argument's name."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name}: expected a whole number, got a {type(value).__name__}") from None
+    if not least <= number <= most:
+        raise ValueError(f"{name}: expected a whole number from {least} up to {most}, got {number}")
+    return number
+
+
+def as_seed(seed: int) -> int:
+    return as_count(seed, "seed", 0, 2**63 - 1)
 
 
 def as_overrides(set: Overrides | None) -> list[str]:
@@ -76,7 +114,7 @@ def as_input(value: Any, kind: type, set: Overrides | None = None) -> Any:
         return value
     if not isinstance(value, (str, os.PathLike)):
         raise TypeError(f"expected the name of a file or a pirsim.{kind.__name__}, got a {type(value).__name__}")
-    return os.fspath(value)
+    return as_path(value)
 
 
 def folders(sensors: PathOr | Iterable[PathOr] | None) -> tuple[list[str], list[str]]:
@@ -85,7 +123,7 @@ def folders(sensors: PathOr | Iterable[PathOr] | None) -> tuple[list[str], list[
         return [], [data_directory]
     if isinstance(sensors, (str, os.PathLike)):
         sensors = [sensors]
-    return [os.fspath(folder) for folder in sensors], [data_directory]
+    return [as_path(folder) for folder in sensors], [data_directory]
 
 
 def as_effect(effect: EffectLike) -> Effect:
@@ -125,6 +163,11 @@ class Model:
     def n_runs(self) -> int:
         """Runs are numbered from 0, replicate by replicate, trials in order within each."""
         return self._handle.n_runs
+
+    @property
+    def seed(self) -> int:
+        """From which all random numbers come."""
+        return self._handle.seed
 
     @property
     def tick_s(self) -> float:
@@ -168,7 +211,8 @@ class Model:
         return range(self.trials.index(trial), self.n_runs, len(self.trials))
 
     def __repr__(self) -> str:
-        return f"<pirsim.Model: {self.n_runs} runs of {len(self.trials)} trials, {len(self.sensors.names)} sensors>"
+        return (f"<pirsim.Model: {self.n_runs} runs of {_listed(self.trials, 'trial', 'trials')}, "
+                f"{_listed(self.sensors.names, 'sensor', 'sensors')}, {self.tick_s:g} s a tick, seed {self.seed}>")
 
     __reduce__ = _refuse_pickling
 
@@ -197,13 +241,25 @@ def _handle_of(model: Model) -> _core.Model:
     return model._handle
 
 
-def _run_numbers(model: Model, runs: int | Iterable[int] | None) -> list[int]:
+def _run_numbers(model: Model, runs: int | Iterable[int] | None) -> list[int] | None:
+    """None: all. The first number that isn't one is refused before the next one is looked at, and no more are taken
+    than there are runs: a long or endless `runs` takes no memory."""
     if runs is None:
-        return list(range(model.n_runs))
-    numbers = [int(run) for run in ([runs] if isinstance(runs, (int, np.integer)) else runs)]
-    for run in numbers:
-        if not 0 <= run < model.n_runs:
-            raise IndexError(f"run {run}: the study has runs 0 to {model.n_runs - 1}")
+        return None
+    if isinstance(runs, (str, bytes)):
+        raise TypeError(f"runs: expected a number, a range or a list, got {runs!r}")
+    numbers: list[int] = []
+    n_runs = model.n_runs
+    for given in runs if isinstance(runs, Iterable) else [runs]:
+        try:
+            number = operator.index(given)
+        except TypeError:
+            raise TypeError(f"runs: expected whole numbers, got {given!r}") from None
+        if not 0 <= number < n_runs:
+            raise IndexError(f"run {number}: the study has runs 0 to {n_runs - 1}")
+        if len(numbers) == n_runs:
+            raise ValueError(f"runs: more than the {n_runs} that the study has")
+        numbers.append(number)
     return numbers
 
 
@@ -218,8 +274,9 @@ def run(model: Model, runs: int | Iterable[int] | None = None, *, threads: int =
     Other Python threads run meanwhile; Ctrl-C ends it after the runs that have begun. A run that can't go on has no
     rows; `Result.faults` says why, and an IncompleteWarning that there are some.
     """
-    arrays = _core.run(_handle_of(model), _run_numbers(model, runs), threads, zones, signals, occupants, progress)
-    result = make_result(arrays, model.sensors.names)
+    arrays = _core.run(_handle_of(model), _run_numbers(model, runs), as_threads(threads), zones, signals, occupants,
+                       progress)
+    result = make_result(arrays, model.sensors.names, model.seed)
     if result.faults:
         first = result.faults[0]
         warnings.warn(f"{len(result.faults)} runs could not go on and have no rows; run {first.run} at second "
@@ -258,8 +315,9 @@ class Trace:
         own. seed: instead of the script's, of what effects draw.
         """
         listed = None if effects is None else [as_effect(effect) for effect in effects]
-        return make_result(_core.emit(self._model._handle, self._handle, listed, seed, progress),
-                           self._model.sensors.names)
+        own = None if seed is None else as_seed(seed)
+        return make_result(_core.emit(self._model._handle, self._handle, listed, own, progress),
+                           self._model.sensors.names, self._model.seed if own is None else own)
 
     def __repr__(self) -> str:
         return f"<pirsim.Trace of {self.n_runs} runs>"
@@ -273,4 +331,5 @@ def trace(model: Model, runs: int | Iterable[int] | None = None, *, threads: int
 
     Arguments as of run(). Raises UsageError for sensors with an analog response, which zones alone don't explain.
     """
-    return Trace._of(_core.record(_handle_of(model), _run_numbers(model, runs), threads, progress), model)
+    core = _core.record(_handle_of(model), _run_numbers(model, runs), as_threads(threads), progress)
+    return Trace._of(core, model)

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._study import Overrides, PathOr, Progress, as_input, as_overrides, folders
+from ._study import Overrides, PathOr, Progress, as_input, as_overrides, as_threads, folders
 from .errors import InputWarning
 from .specs import Scene
 
@@ -26,6 +26,13 @@ class Grid:
     """[row] centres, metres."""
     on_floor: npt.NDArray[np.bool_]
     """[row, column] False where there is no floor."""
+
+    def _about(self) -> str:
+        return (f"{len(self.z)} rows x {len(self.x)} columns of {self.spacing_m:g} m, "
+                f"{int(self.on_floor.sum())} squares on the floor")
+
+    def __repr__(self) -> str:
+        return f"<pirsim.Grid: {self._about()}>"
 
     @property
     def extent(self) -> tuple[float, float, float, float]:
@@ -43,6 +50,14 @@ class CoverageMap(Grid):
     """Seconds that the target moves in each square."""
     counts: npt.NDArray[np.uint16]
     """[row, column, sensor] seconds with motion; 0 off the floor."""
+
+    def __repr__(self) -> str:
+        squares = max(1, int(self.on_floor.sum()))
+        seen = ", ".join(f"{name} {100 * share:.0f} %" for name, share in
+                         zip(self.sensors[:8], (self.counts > 0).sum(axis=(0, 1)) / squares))
+        more = ", ..." if len(self.sensors) > 8 else ""
+        return (f"<pirsim.CoverageMap: {self._about()}, {self.n_windows} seconds each\n"
+                f"  floor where a sensor sees the target: {seen}{more}>")
 
     @property
     def share(self) -> npt.NDArray[np.float64]:
@@ -62,6 +77,13 @@ class WalkTest(Grid):
     seats: dict[str, bool]
     """Is somebody noticed who sits there and moves their arms?"""
 
+    def __repr__(self) -> str:
+        missed = [seat for seat, noticed in self.seats.items() if not noticed]
+        tries = [f"{what} {int(noticed.sum())} of {int(made.sum())}" for what, noticed, made in
+                 (("walker", self.major_noticed, self.major_made), ("sitter's arms", self.minor_noticed, self.minor_made))]
+        return (f"<pirsim.WalkTest: {self._about()}\n  tries that were noticed in time: {', '.join(tries)}\n"
+                f"  {len(self.seats)} seats, not noticed: {', '.join(missed) or 'none'}>")
+
 
 def coverage(scene: PathOr | Scene, script: PathOr, *, set: Overrides | None = None,
              sensors: PathOr | Iterable[PathOr] | None = None, threads: int = 0,
@@ -72,7 +94,7 @@ def coverage(scene: PathOr | Scene, script: PathOr, *, set: Overrides | None = N
     and run(); progress is told in rows of squares.
     """
     arrays: dict[str, Any] = _core.coverage(as_input(scene, Scene), as_input(script, str), as_overrides(set),
-                                            *folders(sensors), threads, progress)
+                                            *folders(sensors), as_threads(threads), progress)
     for diagnostic in arrays.pop("warnings"):
         warnings.warn(str(diagnostic), InputWarning, stacklevel=2)
     return CoverageMap(**arrays)
@@ -86,7 +108,7 @@ def walk_test(scene: PathOr | Scene, script: PathOr, *, set: Overrides | None = 
     Arguments as of coverage(); script: a walk test's YAML file.
     """
     arrays: dict[str, Any] = _core.walk_test(as_input(scene, Scene), as_input(script, str), as_overrides(set),
-                                             *folders(sensors), threads, progress)
+                                             *folders(sensors), as_threads(threads), progress)
     for diagnostic in arrays.pop("warnings"):
         warnings.warn(str(diagnostic), InputWarning, stacklevel=2)
     return WalkTest(**arrays)

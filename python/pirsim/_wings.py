@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import csv
 import io
-import os
 import warnings
 from dataclasses import dataclass, field
 from typing import Any, Iterable, NamedTuple
 
 from . import _core
 from ._result import Result
-from ._study import Overrides, PathOr, Progress, as_input, as_overrides, folders
+from ._study import (Overrides, PathOr, Progress, as_count, as_input, as_overrides, as_path, as_seed, as_threads,
+                     folders)
 from .errors import InputWarning
 from .specs import Effect, Scene, Script
 
@@ -24,14 +24,14 @@ def dataset(recipe: PathOr, folder: PathOr, *, resume: bool = False,
     folder: gets a file of rows for each room and day, tables, datapackage.json and a README. resume: keeps the days
     that are there already, as after Ctrl-C. progress is told in days of rooms.
     """
-    told = _core.dataset(os.fspath(recipe), os.fspath(folder), *folders(sensors), resume, threads, progress)
+    told = _core.dataset(as_path(recipe), as_path(folder), *folders(sensors), resume, as_threads(threads), progress)
     for diagnostic in told:
         warnings.warn(str(diagnostic), InputWarning, stacklevel=2)
 
 
 def room(recipe: PathOr, number: int, *, sensors: PathOr | Iterable[PathOr] | None = None) -> Scene:
     """Room `number` (from 1) of a dataset's recipe: always the same for the same recipe."""
-    return _core.room(os.fspath(recipe), number, *folders(sensors))
+    return _core.room(as_path(recipe), as_count(number, "number", -2**31, 2**31 - 1), *folders(sensors))
 
 
 class FittedEffect(NamedTuple):
@@ -113,13 +113,14 @@ def reconcile(scene: PathOr | Scene, script: PathOr | Script, measured: PathOr |
     and sensors as in compile(); progress is told in simulated datasets of each stage.
     """
     question = _core.Question()
-    question.alpha, question.max_effects, question.budget = alpha, max_effects, budget
+    question.alpha, question.budget = alpha, budget
+    question.max_effects = as_count(max_effects, "max_effects", 1, 5)
     question.effects = list(effects or [])
-    question.nuisance = os.fspath(nuisance or "")
-    question.folder, question.table = os.fspath(folder or ""), os.fspath(table or "")
-    name, text = ("result", _rows_of(measured)) if isinstance(measured, Result) else (os.fspath(measured), "")
+    question.nuisance = as_path(nuisance or "")
+    question.folder, question.table = as_path(folder or ""), as_path(table or "")
+    name, text = ("result", _rows_of(measured)) if isinstance(measured, Result) else (as_path(measured), "")
     parts = _core.reconcile(as_input(scene, Scene), as_input(script, Script, set), name, text, as_overrides(set),
-                            *folders(sensors), question, seed, threads, progress)
+                            *folders(sensors), question, as_seed(seed), as_threads(threads), progress)
     for text in parts.pop("warnings"):
         warnings.warn(text, InputWarning, stacklevel=2)
     parts["fits"] = [FittedEffect(*fit) for fit in parts["fits"]]

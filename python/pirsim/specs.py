@@ -64,12 +64,22 @@ class Frame:
     """Unit quaternion (w, x, y, z)."""
 
 
+def _listed(names: Sequence[str], one: str, many: str, most: int = 5) -> str:
+    """For reprs: "12 seats (S1, S2, S3, S4, S5, ...)"."""
+    text = f"{len(names)} {one if len(names) == 1 else many}"
+    return f"{text} ({', '.join(names[:most])}{', ...' if len(names) > most else ''})" if names else text
+
+
 @dataclass(slots=True)
 class Floor:
     """The floor on which people walk and are counted: polygons, inside by the even-odd rule."""
 
     loops: list[list[Point2]] = field(default_factory=list)
     height_m: float = 0.0
+
+    def __repr__(self) -> str:
+        corners = sum(len(loop) for loop in self.loops)
+        return f"<pirsim.Floor: {corners} corners in {len(self.loops)} outlines, at {self.height_m:g} m>"
 
     @staticmethod
     def rectangle(x0: float, z0: float, x1: float, z1: float, height_m: float = 0.0) -> Floor:
@@ -97,6 +107,11 @@ class Mesh:
         quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
         triangles = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
         return Mesh(name, corners, np.array(triangles, dtype=np.uint32))
+
+    def __repr__(self) -> str:
+        sizes = len(np.asarray(self.positions)), len(np.asarray(self.triangles))
+        warm = "" if self.temperature_c is None else f", {self.temperature_c:g} degrees Celsius"
+        return f"<pirsim.Mesh {self.name!r}: {sizes[0]} vertices, {sizes[1]} triangles, {self.solidity}{warm}>"
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Mesh):
@@ -202,8 +217,8 @@ class Cluster:
 
     centre: Point2 = (0.0, 0.0)
     range_m: float = 0.0
-    lens_step: int = 0
-    zones: list[Zone] = field(default_factory=list)
+    lens_step: int = 1
+    zones: list[Zone] = field(default_factory=list, repr=False)
 
 
 @dataclass(slots=True)
@@ -217,6 +232,12 @@ class SensorModel:
     response: Literal["zones", "analog"] = "zones"
     optics: Optics = field(default_factory=Optics)
     detector: Detector = field(default_factory=Detector)
+
+    def __repr__(self) -> str:
+        zones = sum(len(cluster.zones) for cluster in self.clusters)
+        reach = max((cluster.range_m for cluster in self.clusters), default=0.0)
+        return (f"<pirsim.SensorModel {self.id!r}: {zones} zones in {len(self.clusters)} clusters, up to {reach:g} m, "
+                f"response {self.response}>")
 
 
 @dataclass(slots=True)
@@ -235,6 +256,14 @@ class Scene:
     files: list[str] = field(default_factory=list)
     """All that was read."""
     warnings: list[Diagnostic] = field(default_factory=list)
+
+    def __repr__(self) -> str:
+        parts = [_listed([sensor.id for sensor in self.sensors], "sensor", "sensors"),
+                 _listed([seat.id for seat in self.seats], "seat", "seats"),
+                 _listed([entrance.id for entrance in self.entrances], "entrance", "entrances"),
+                 _listed([mesh.name for mesh in self.meshes], "mesh", "meshes"),
+                 _listed(list(self.sensor_models), "sensor model", "sensor models")]
+        return f"<pirsim.Scene {self.name!r}\n  " + "\n  ".join(parts) + f"\n  {self.floor!r}>"
 
 
 # ----------------------------------------------------------------------------------------------------------- scripts
@@ -362,6 +391,11 @@ class Person:
     """glTF, relative to `Script.directory`; its meshes are read by `read_script()`."""
     body_meshes: dict[str, MeshSolid] = field(default_factory=dict, repr=False)
 
+    def __repr__(self) -> str:
+        doing = ", ".join(type(action).__name__ for action in self.actions[:8])
+        more = ", ..." if len(self.actions) > 8 else ""
+        return f"<pirsim.Person {self.id!r}: {self.stature_m:g} m, {self.style}, {len(self.actions)} actions: {doing}{more}>"
+
 
 @dataclass(slots=True)
 class Clock:
@@ -452,6 +486,13 @@ class Trial:
     """Of a run; None: until everybody has carried out all actions."""
     schedule: Schedule | None = None
 
+    def __repr__(self) -> str:
+        who = _listed([person.id for person in self.people], "person", "people")
+        if self.schedule is not None:
+            who += " and a schedule"
+        lasts = "" if self.duration_s is None else f", {self.duration_s:g} s"
+        return f"<pirsim.Trial {self.id!r}: {who}{lasts}>"
+
 
 @dataclass(slots=True)
 class Sensing:
@@ -503,3 +544,8 @@ class Script:
     """Of the script file, for relative references."""
     files: list[str] = field(default_factory=list)
     warnings: list[Diagnostic] = field(default_factory=list)
+
+    def __repr__(self) -> str:
+        effects = ", ".join(effect.name for effect in self.effects) or "none"
+        return (f"<pirsim.Script {self.name!r}: seed {self.seed}, {self.replicates} replicates of "
+                f"{_listed([trial.id for trial in self.trials], 'trial', 'trials')}\n  effects: {effects}\n  {self.sensing!r}>")

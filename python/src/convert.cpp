@@ -111,6 +111,26 @@ std::vector<Row> rows_of_three(nb::handle value, const char* type, const std::st
   return rows;
 }
 
+/// What numpy would cut off in silence: 1.5 becomes 1, and 2^40 becomes 0.
+void require_indices(nb::handle value, const std::string& path) {
+  const nb::module_ numpy = nb::module_::import_("numpy");
+  nb::object array;
+  try {
+    array = numpy.attr("asarray")(value);
+  } catch (nb::python_error&) {
+    refuse(value, path, "an array of shape (n, 3)");
+  }
+  if (nb::cast<std::size_t>(array.attr("size")) == 0) return;
+  const auto kind = nb::cast<std::string>(array.attr("dtype").attr("kind"));
+  if (kind != "i" && kind != "u") refuse(value, path, "whole numbers, indices of positions");
+  for (const char* end : {"min", "max"}) {
+    std::uint32_t index = 0;
+    const nb::object number = array.attr(end)().attr("item")();
+    if (nb::try_cast(number, index)) continue;
+    throw nb::value_error((path + ": " + nb::cast<std::string>(nb::str(number)) + " isn't the index of a position").c_str());
+  }
+}
+
 template <typename T, typename Row>
 nb::object writable_array(const std::vector<Row>& rows) {
   std::vector<T> flat(rows.size() * 3);
@@ -129,6 +149,7 @@ nb::object Special<TriMesh>::to(const TriMesh& mesh) {
 template <>
 TriMesh Special<TriMesh>::from(nb::handle value, const std::string& path) {
   if (!nb::isinstance(value, spec_class("Mesh"))) refuse(value, path, "a pirsim.Mesh");
+  require_indices(value.attr("triangles"), path + ".triangles");
   return {from_python<std::string>(value.attr("name"), path + ".name"),
           rows_of_three<double, Vec3>(value.attr("positions"), "float64", path + ".positions"),
           rows_of_three<std::uint32_t, std::array<std::uint32_t, 3>>(value.attr("triangles"), "uint32",
@@ -215,7 +236,9 @@ SceneSpec checked_scene(nb::handle scene) {
 
 ScriptSpec checked_script(nb::handle script) {
   ScriptSpec spec = from_python<ScriptSpec>(script, "script");
-  io::check(spec);
+  Diagnostics diagnostics;
+  check(spec, diagnostics);
+  diagnostics.throw_if_errors();
   return spec;
 }
 

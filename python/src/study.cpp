@@ -3,6 +3,8 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <numeric>
+
 #include "arrays.hpp"
 #include "attend.hpp"
 #include "bindings.hpp"
@@ -75,15 +77,26 @@ nb::tuple rays(const Model& model) {
                         to_numpy(std::move(sensors), {n}));
 }
 
-nb::dict run(const Model& model, std::vector<std::uint32_t> runs, unsigned threads, bool zones, bool signals,
-             bool occupants, nb::handle progress) {
+/// None: all of the study's.
+using Runs = std::optional<std::vector<std::uint32_t>>;
+
+std::vector<std::uint32_t> all_runs(const Model& model) {
+  std::vector<std::uint32_t> runs(model.n_runs());
+  std::iota(runs.begin(), runs.end(), 0U);
+  return runs;
+}
+
+std::size_t count_of(const Runs& runs, const Model& model) { return runs ? runs->size() : model.n_runs(); }
+
+nb::dict run(const Model& model, Runs runs, unsigned threads, bool zones, bool signals, bool occupants,
+             nb::handle progress) {
   RunArrays arrays(model.scene().sensors.size());
   StudyOptions options;
   options.threads = threads;
   options.record = zones ? Record::samples_and_zones : Record::samples;
   options.trace = signals ? Trace::signals : Trace::none;
   options.occupants = occupants ? Occupants::told : Occupants::counted;
-  const std::size_t n_runs = runs.size();
+  const std::size_t n_runs = count_of(runs, model);
   options.chosen = std::move(runs);
   attend(progress, [&](Job& job) {
     job.n_all = n_runs;
@@ -96,12 +109,11 @@ nb::dict run(const Model& model, std::vector<std::uint32_t> runs, unsigned threa
   return std::move(arrays).to_dict();
 }
 
-Recording record_runs(const Model& model, const std::vector<std::uint32_t>& runs, unsigned threads,
-                      nb::handle progress) {
+Recording record_runs(const Model& model, const Runs& runs, unsigned threads, nb::handle progress) {
   Recording recording;
   attend(progress, [&](Job& job) {
-    job.n_all = runs.size();
-    recording = record(model, runs, threads, [&] { job.step_or_stop(); });
+    job.n_all = count_of(runs, model);
+    recording = record(model, runs ? *runs : all_runs(model), threads, [&] { job.step_or_stop(); });
   });
   return recording;
 }
@@ -127,6 +139,7 @@ void add_study(nb::module_& module) {
   nb::class_<Model>(module, "Model", "What pirsim.Model holds.")
       .def_prop_ro("n_runs", &Model::n_runs)
       .def_prop_ro("tick_s", &Model::tick_s)
+      .def_prop_ro("seed", [](const Model& model) { return model.script().seed; })
       .def_prop_ro("columns", [](const Model& model) { return nb::tuple(to_python(model.columns())); })
       .def_prop_ro("trials", &trials)
       .def_prop_ro("warnings", &warnings)
@@ -141,9 +154,9 @@ void add_study(nb::module_& module) {
       .def_prop_ro("n_sets", [](const Recording& recording) { return recording.sets.size(); });
   module.def("compile", &compile_model, nb::arg("scene"), nb::arg("script"), nb::arg("overrides"), nb::arg("sensors"),
              nb::arg("data"), "From files (texts) or objects of pirsim.specs.");
-  module.def("run", &run, nb::arg("model"), nb::arg("runs"), nb::arg("threads"), nb::arg("zones"), nb::arg("signals"),
+  module.def("run", &run, nb::arg("model"), nb::arg("runs").none(), nb::arg("threads"), nb::arg("zones"), nb::arg("signals"),
              nb::arg("occupants"), nb::arg("progress").none(), "Arrays of pirsim.Result, by name.");
-  module.def("record", &record_runs, nb::arg("model"), nb::arg("runs"), nb::arg("threads"), nb::arg("progress").none(),
+  module.def("record", &record_runs, nb::arg("model"), nb::arg("runs").none(), nb::arg("threads"), nb::arg("progress").none(),
              "What the zones did in these runs.");
   module.def("emit", &emit_runs, nb::arg("model"), nb::arg("recording"), nb::arg("effects").none(),
              nb::arg("seed").none(), nb::arg("progress").none(), "Arrays of pirsim.Result, by name.");

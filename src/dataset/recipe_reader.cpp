@@ -149,7 +149,7 @@ SplitSpec read_split(YamlMap& map, const RecipeSpec& recipe) {
   if (recipe.n_rooms() < 3) split.validation_rooms = split.test_rooms = 0.0;
   if (recipe.days < 2) split.test_days = 0.0;
   if (!node) return split;
-  constexpr io::NumberRange share{.min = 0.0, .max = 1.0};
+  constexpr NumberRange share{.min = 0.0, .max = 1.0};
   YamlMap own(*node, map.faults(), "split");
   split.validation_rooms = own.number("validation_rooms", split.validation_rooms, share);
   split.test_rooms = own.number("test_rooms", split.test_rooms, share);

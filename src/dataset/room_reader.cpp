@@ -68,16 +68,16 @@ SensorGroupSpec read_sensors(const io::YamlNode& node, Diagnostics& faults) {
 
 }  // namespace
 
-Range read_range(io::YamlMap& map, const std::string& key, const Range& otherwise, io::NumberRange limits) {
-  const auto read = [&](const io::YamlNode& node, const io::NumberRange& range) {
+Range read_range(io::YamlMap& map, const std::string& key, const Range& otherwise, NumberRange limits) {
+  const auto read = [&](const io::YamlNode& node, const NumberRange& range) {
     return node.number(map.faults(), key, range);
   };
   const auto [least, most] = read_two(map, key, std::pair(otherwise.least, otherwise.most), limits, read);
   return {least, most};
 }
 
-CountRange read_count(io::YamlMap& map, const std::string& key, const CountRange& otherwise, io::IntegerRange limits) {
-  const auto read = [&](const io::YamlNode& node, const io::IntegerRange& range) {
+CountRange read_count(io::YamlMap& map, const std::string& key, const CountRange& otherwise, IntegerRange limits) {
+  const auto read = [&](const io::YamlNode& node, const IntegerRange& range) {
     return static_cast<int>(node.integer(map.faults(), key, range));
   };
   const auto [least, most] = read_two(map, key, std::pair(otherwise.least, otherwise.most), limits, read);
@@ -88,7 +88,7 @@ RoomSpec read_room_keys(io::YamlMap& map) {
   RoomSpec spec;
   spec.where = map.where();
   spec.kind = map.choice<RoomKind>("kind", spec.kind, {{"office", RoomKind::office}, {"meeting", RoomKind::meeting}});
-  constexpr io::NumberRange sides{.min = 1.5, .max = 100.0}, share{.min = 0.0, .max = 1.0};
+  constexpr NumberRange sides{.min = 1.5, .max = 100.0}, share{.min = 0.0, .max = 1.0};
   spec.width_m = read_range(map, "width_m", spec.width_m, sides);
   spec.depth_m = read_range(map, "depth_m", spec.depth_m, sides);
   spec.height_m = read_range(map, "height_m", spec.height_m, {.min = 2.2, .max = 20.0});

@@ -11,8 +11,8 @@ namespace pirsim::dataset {
 
 /// A number, or a list of the least and the most; `otherwise` if the key isn't there.
 [[nodiscard]] Range read_range(io::YamlMap& map, const std::string& key, const Range& otherwise,
-                               io::NumberRange limits);
+                               NumberRange limits);
 [[nodiscard]] CountRange read_count(io::YamlMap& map, const std::string& key, const CountRange& otherwise,
-                                    io::IntegerRange limits);
+                                    IntegerRange limits);
 
 }  // namespace pirsim::dataset

@@ -116,6 +116,9 @@ EffectSpec off(const Effect& effect) {
 
 StudyInForce in_force(SceneSpec scene, const ScriptSpec& script) {
   Diagnostics diagnostics;
+  pirsim::check(scene, diagnostics);
+  pirsim::check(script, diagnostics);
+  diagnostics.throw_if_errors();
   check(script.effects, scene, diagnostics);
   diagnostics.throw_if_errors();
   StudyInForce study = as_given(std::move(scene), script);

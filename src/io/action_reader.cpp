@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
 #include <utility>
 
 #include "io/yaml_map.hpp"
@@ -10,36 +9,41 @@
 namespace pirsim::io {
 namespace {
 
-constexpr NumberRange positive{.above = 0.0, .max = 1e6};
-constexpr NumberRange room_sized{.min = -1e4, .max = 1e4};
-
 Vec2 read_point(const YamlNode& node, Diagnostics& faults, std::string_view what) {
-  const std::vector<double> xz = read_numbers(node, faults, what, room_sized);
+  const std::vector<double> xz = read_numbers(node, faults, what, accepted::on_floor_m);
   if (xz.size() == 2) return {xz[0], xz[1]};
   if (node.is_list()) faults.error(node.where(), std::string(what) + ": expected two numbers, x and z");
   return Vec2(0.0);
 }
 
 /// One of those that the action knows, of somebody of natural style: read_person() refuses it for others.
-std::optional<Activity> read_activity(YamlMap& map, std::initializer_list<Activity> known) {
+template <typename What>
+void read_activity(YamlMap& map, What& what) {
   std::vector<std::pair<std::string, std::optional<Activity>>> names;
-  for (const Activity one : known) names.emplace_back(activity_names[static_cast<std::size_t>(one)], one);
-  return map.choice<std::optional<Activity>>("activity", std::nullopt, names);
+  for (const Activity one : activities_of(what)) names.emplace_back(activity_names[static_cast<std::size_t>(one)], one);
+  what.activity = map.choice<std::optional<Activity>>("activity", std::nullopt, names);
 }
 
 Action read_wait_s(const YamlNode& node, Diagnostics& faults) {
-  return action::Wait{node.number(faults, "wait_s", {.min = 0.0, .max = 1e6})};
+  action::Wait wait;
+  each_number(wait, [&](const char*, double& value, const NumberRange& range) {
+    value = node.number(faults, "wait_s", range);
+  });
+  return wait;
 }
 Action read_wait(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "wait");
-  const double duration_s = map.required_number("duration_s", {.min = 0.0, .max = 1e6});
-  const action::Wait wait{duration_s, read_activity(map, {Activity::meeting, Activity::phone, Activity::whiteboard})};
+  action::Wait wait;
+  map.require("duration_s");
+  read_numbers(map, wait);
+  read_activity(map, wait);
   map.finish();
   return wait;
 }
 Action read_appear(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "appear");
-  action::Appear appear{read_point(map.required_child("at_xz_m"), faults, "at_xz_m"), map.number("heading_deg", 0.0)};
+  action::Appear appear{read_point(map.required_child("at_xz_m"), faults, "at_xz_m")};
+  read_numbers(map, appear);
   map.finish();
   return appear;
 }
@@ -49,7 +53,7 @@ Action read_walk(const YamlNode& node, Diagnostics& faults) {
   action::Walk walk;
   for (const YamlNode& point : map.required_list("to_xz_m", limits::walk_points))
     walk.points.push_back(read_point(point, faults, "to_xz_m"));
-  walk.activity = read_activity(map, {Activity::phone});
+  read_activity(map, walk);
   map.finish();
   return walk;
 }
@@ -58,7 +62,7 @@ Action read_sit(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "sit");
   action::Sit sit;
   sit.seat = map.required_text("seat");
-  sit.wait_s = map.number("wait_s", sit.wait_s, {.min = 0.0, .max = 1e6});
+  read_numbers(map, sit);
   sit.if_taken = map.choice<action::IfTaken>(
       "if_taken", sit.if_taken,
       {{"next_action", action::IfTaken::next_action}, {"other_seat", action::IfTaken::other_seat}});
@@ -68,12 +72,8 @@ Action read_sit(const YamlNode& node, Diagnostics& faults) {
 Action read_work(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "work");
   action::Work work;
-  work.duration_s = map.number("duration_s", work.duration_s, positive);
-  work.arm_amplitude_m = map.number("arm_amplitude_m", work.arm_amplitude_m, {.min = 0.0, .max = 0.15});
-  work.arm_period_s = map.number("arm_period_s", work.arm_period_s, {.min = 0.2, .max = 1e6});
-  work.tilt_choices_deg = map.numbers("tilt_choices_deg", work.tilt_choices_deg, {.min = -30.0, .max = 45.0});
-  work.tilt_every_s = map.number("tilt_every_s", work.tilt_every_s, positive);
-  work.activity = read_activity(map, {Activity::typing, Activity::reading, Activity::meeting, Activity::phone});
+  read_numbers(map, work);
+  read_activity(map, work);
   map.finish();
   return work;
 }
@@ -83,7 +83,9 @@ Action read_rise(const YamlNode& node, Diagnostics& faults) {
 }
 Action read_turn(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "turn");
-  const action::Turn turn{map.required_number("heading_deg", {.min = -360.0, .max = 360.0})};
+  action::Turn turn;
+  map.require("heading_deg");
+  read_numbers(map, turn);
   map.finish();
   return turn;
 }
@@ -123,7 +125,7 @@ ScriptedAction read_action_map(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "action");
   ScriptedAction action;
   action.where = node.where();
-  action.at_s = map.optional_number("at_s", {.min = 0.0, .max = 1e7});
+  action.at_s = map.optional_number("at_s", accepted::at_s);
   action.phase = map.text("phase");
   int found = 0;
   for (const ActionKind& kind : kinds) {
@@ -144,7 +146,7 @@ ScriptedAction read_action_map(const YamlNode& node, Diagnostics& faults) {
   if (found > 1) faults.error(node.where(), "one action per entry: start each with its own '-'");
   const bool nothing_else =
       std::ranges::all_of(node.keys(), [](const YamlKey& key) { return key.name == "at_s" || key.name == "phase"; });
-  if (found == 0 && nothing_else && node.is_map()) faults.error(node.where(), "an action is missing, e.g. `sit: S1`");
+  if (found == 0 && nothing_else && (node.is_map() || node.is_null())) faults.error(node.where(), "an action is missing, e.g. `sit: S1`");
   return action;
 }
 

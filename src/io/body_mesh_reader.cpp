@@ -1,23 +1,14 @@
 #include "io/reader_parts.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <utility>
-#include <vector>
 
 #include "geom/triangle_surface.hpp"
 #include "io/gltf_geometry.hpp"
-#include "schema/body_part_names.hpp"
 
 namespace pirsim::io::detail {
 namespace {
-
-constexpr double farthest_m = 3.0;  // assumed; 2.5 to 10 would do: nobody's part is longer, one in millimetres is
-
-const std::vector<std::string> part_names(body_part_names.begin(), body_part_names.end());
 
 /// What is left of a node's transform within its own frame: scale and mirroring.
 glm::dmat4 scale_of(const glm::dmat4& world_from_node) {
@@ -46,19 +37,14 @@ class BodyBuilder {
  private:
   void add_part(const PlacedNode& placed) {
     const auto& node = document_.model.nodes[static_cast<std::size_t>(placed.node)];
-    if (std::find(part_names.begin(), part_names.end(), node.name) == part_names.end()) {
-      return error(placed.node, node.name.empty() ? "" : "/name",
-                   "no part of the body is called so" + did_you_mean(node.name, part_names));
-    }
+    const std::string name_fault = body_part_fault(node.name);
+    if (!name_fault.empty()) return error(placed.node, node.name.empty() ? "" : "/name", name_fault);
     if (meshes_.contains(node.name)) return error(placed.node, "/name", "a second mesh for this part");
     const TriMesh local = read_mesh(document_, node.mesh, budget_, faults_, warnings_);
     TriMesh part = clean(transformed(local, scale_of(placed.world_from_node), node.name)).mesh;
     if (part.triangles.empty()) return error(placed.node, "/mesh", "its mesh has no triangle with an area");
-    const auto is_near = [](const Vec3& p) { return glm::length(p) <= farthest_m; };
-    if (!std::all_of(part.positions.begin(), part.positions.end(), is_near)) {
-      return error(placed.node, "/mesh",
-                   "its mesh reaches more than 3 m from the part's origin; metres are expected, in the part's frame");
-    }
+    const std::string size_fault = body_mesh_fault(part);
+    if (!size_fault.empty()) return error(placed.node, "/mesh", size_fault);
     meshes_[node.name] = MeshSolid{std::make_shared<const TriangleSurface>(std::move(part))};
   }
 

@@ -12,6 +12,7 @@
 #include "core/grouped_warnings.hpp"
 #include "io/gltf_document.hpp"
 #include "pirsim/geometry.hpp"
+#include "schema/limits.hpp"
 
 namespace pirsim::io::detail {
 
@@ -54,8 +55,7 @@ class GeometryBudget {
   [[nodiscard]] bool take(std::size_t elements) noexcept;
 
  private:
-  static constexpr std::size_t limit = 20'000'000;  // assumed: a scanned office has a few million
-  std::size_t left_ = limit;
+  std::size_t left_ = limits::scene_elements;
 };
 
 /// All triangles of a mesh in its own frame. Faults name the mesh and stand at the accessor or primitive; what isn't

@@ -7,10 +7,12 @@
 #include <glm/matrix.hpp>
 #include <utility>
 
+#include "schema/check_specs.hpp"
+#include "schema/spec_numbers.hpp"
+
 namespace pirsim::io::detail {
 namespace {
 
-constexpr double world_limit_m = 1e5;    // assumed: far beyond any building, yet 1e-5 of it is still exact in float
 constexpr double smallest_scale = 1e-9;  // assumed: a scale below turns a kilometre into a micrometre
 
 constexpr std::size_t max_faults = 20;  // told at once
@@ -137,11 +139,9 @@ class Placement {
     if (!finite(m[0]) || !finite(m[1]) || !finite(m[2]) || !finite(m[3])) {
       return fault(node, "", "its transform is not finite");
     }
-    for (int axis = 0; axis < 3; ++axis) {
-      if (std::abs(m[3][axis]) > world_limit_m) {
-        return fault(node, "/translation",
-                     "it lies more than " + std::to_string(static_cast<int>(world_limit_m)) + " m from the origin");
-      }
+    if (!is_in_world(Vec3(m[3]))) {
+      const auto limit_m = static_cast<int>(accepted::in_world_m.max);
+      return fault(node, "/translation", "it lies more than " + std::to_string(limit_m) + " m from the origin");
     }
     // Volume of the unit axes, so that small models (in millimetres, say) are no worse than large ones.
     const Vec3 x(m[0]), y(m[1]), z(m[2]);

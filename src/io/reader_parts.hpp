@@ -1,12 +1,15 @@
 // Parts of scripts, studies and sensor files, each read by one function. Private to io.
 #pragma once
 
+#include <concepts>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "io/yaml_map.hpp"
@@ -15,8 +18,45 @@
 #include "pirsim/schedule.hpp"
 #include "pirsim/script.hpp"
 #include "pirsim/sensor.hpp"
+#include "schema/check_specs.hpp"
+#include "schema/spec_numbers.hpp"
 
 namespace pirsim::io {
+
+/// Reads what is there of the numbers of a spec that each_number() lists; the others keep their values.
+template <typename Spec>
+void read_numbers(YamlMap& map, Spec& spec) {
+  each_number(spec, [&](const std::string& key, auto& value, const auto& range) {
+    using Value = std::remove_reference_t<decltype(value)>;
+    if constexpr (std::same_as<Value, double>) {
+      value = map.number(key, value, range);
+    } else if constexpr (std::same_as<Value, std::vector<double>>) {
+      value = map.numbers(key, value, range);
+    } else if constexpr (std::same_as<Value, int>) {
+      value = map.integer(key, value, range);
+    } else if constexpr (std::same_as<Value, std::uint64_t>) {
+      value = map.unsigned_integer(key, value);
+    } else if constexpr (std::same_as<Value, std::optional<double>>) {
+      if (const auto given = map.optional_number(key, range)) value = given;
+    } else {
+      static_assert(std::same_as<Value, std::optional<int>>);
+      const int given = map.integer(key, value.value_or(0), range);
+      if (map.has(key)) value = given;
+    }
+  });
+}
+/// Takes the faults of check_together() to the keys of a map: "amplifier: expected high_hz above low_hz".
+[[nodiscard]] inline TellFault faults_of(const YamlMap& map, const std::string& what) {
+  return [&map, what](std::string_view field, const std::string& message) {
+    map.faults().error(map.where(std::string(field)), what + ": " + message);
+  };
+}
+/// The same where the field itself stands in front: "bare: no part ...".
+[[nodiscard]] inline TellFault faults_by_key(const YamlMap& map) {
+  return [&map](std::string_view field, const std::string& message) {
+    map.faults().error(map.where(std::string(field)), std::string(field) + ": " + message);
+  };
+}
 
 /// A format version at the top of a file, which has to be 1.
 void check_version(YamlMap& map, const std::string& key);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "schema/check_specs.hpp"
 #include "schema/limits.hpp"
 
 namespace pirsim::io::detail {
@@ -11,33 +12,7 @@ namespace {
 
 constexpr double flatness_m = 0.01;  // assumed: less than any step one could trip over
 
-constexpr double world_limit_m = 1e5;  // as for nodes
-
 using Loop = std::vector<Vec2>;
-
-/// Twice the signed area of a triangle.
-double side(const Vec2& a, const Vec2& b, const Vec2& p) {
-  return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
-}
-
-/// Two segments that cross in their inner points; touching is allowed.
-bool cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
-  // Rounding must not make touching edges cross: within this many square metres a point is on the line.
-  constexpr double on_line = 1e-9;
-  const auto opposite = [&](double s, double t) {
-    return (s > on_line && t < -on_line) || (s < -on_line && t > on_line);
-  };
-  return opposite(side(a, b, c), side(a, b, d)) && opposite(side(c, d, a), side(c, d, b));
-}
-
-bool cross(const Loop& first, const Loop& second) {
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    for (std::size_t j = 0; j < second.size(); ++j) {
-      if (cross(first[i], first[(i + 1) % first.size()], second[j], second[(j + 1) % second.size()])) return true;
-    }
-  }
-  return false;
-}
 
 /// Whether the floor just beside an edge of the first, on its inner side, also belongs to the second.
 bool edge_runs_inside(const FloorArea& own, const FloorArea& other) {
@@ -63,7 +38,7 @@ bool overlap(const FloorArea& first, const FloorArea& second) {
   if (!boxes_meet(first, second)) return false;
   for (const Loop& a : first.loops()) {
     for (const Loop& b : second.loops()) {
-      if (cross(a, b)) return true;
+      if (outlines_cross(a, b)) return true;
     }
   }
   return edge_runs_inside(first, second) || edge_runs_inside(second, first);
@@ -106,21 +81,10 @@ void FloorBuilder::add_polygon(const std::vector<Vec3>& corners, const Where& wh
 }
 
 void FloorBuilder::add(Part part) {
-  for (const Loop& loop : part.area.loops()) {
-    n_corners_ += loop.size();
-    if (n_corners_ > limits::floor_corners) {
-      return faults_.error(part.where, part.label + ": the floor's outline has more than " +
-                                           std::to_string(limits::floor_corners) + " corners");
-    }
-    for (const Vec2& p : loop) {
-      if (std::abs(p.x) <= world_limit_m && std::abs(p.y) <= world_limit_m) continue;
-      return faults_.error(part.where, part.label + ": the floor reaches more than 100 km from the origin");
-    }
-  }
-  for (const Loop& loop : part.area.loops()) {
-    if (cross(loop, loop)) return faults_.error(part.where, part.label + ": the outline of the floor crosses itself");
-  }
-  if (part.area.area_m2() < 1e-6) return faults_.error(part.where, part.label + ": the floor has no area");
+  for (const Loop& loop : part.area.loops()) n_corners_ += loop.size();
+  const std::string fault =
+      n_corners_ > limits::floor_corners ? too_many_floor_corners() : outline_fault(part.area);
+  if (!fault.empty()) return faults_.error(part.where, part.label + ": " + fault);
   parts_.push_back(std::move(part));
 }
 

@@ -1,9 +1,11 @@
 #include "io/scene_parts.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <string>
 #include <utility>
+
+#include "schema/check_specs.hpp"
+#include "schema/spec_numbers.hpp"
 
 namespace pirsim::io::detail {
 namespace {
@@ -23,7 +25,7 @@ std::optional<double> temperature_of(const json& mark, const GltfDocument& docum
     return std::nullopt;
   }
   const auto value = mark.find("temperature_c");
-  if (value != mark.end() && value->is_number() && *value >= coldest_surface_c && *value <= hottest_surface_c) {
+  if (value != mark.end() && value->is_number() && accepted::surface_c.holds(value->get<double>())) {
     return value->get<double>();
   }
   remarks.error(document.text.where(pointer), "a material needs 'temperature_c' from -50 to 200");
@@ -98,9 +100,12 @@ class MarkupReader {
   mark::Entrance entrance() {
     only({"type", "id", "width_m", "outside_m"});
     mark::Entrance result{name("id")};
-    // assumed: nobody passes a narrower gap or waits farther off
-    result.width_m = number("width_m", result.width_m, 0.3, 20.0);
-    result.outside_m = number("outside_m", result.outside_m, 0.3, 50.0);
+    EntranceSpec numbers;
+    each_number(numbers, [&](const char* key, double& value, const NumberRange& range) {
+      value = number(key, value, range);
+    });
+    result.width_m = numbers.width_m;
+    result.outside_m = numbers.outside_m;
     return result;
   }
   mark::Floor floor() {
@@ -127,7 +132,7 @@ class MarkupReader {
     if (document_.model.nodes[static_cast<std::size_t>(node_)].mesh < 0)
       error("", "a surface needs a mesh at its node");
     if (!value_.contains("temperature_c")) return {};
-    return {number("temperature_c", 0.0, coldest_surface_c, hottest_surface_c, "degrees Celsius")};
+    return {number("temperature_c", 0.0, accepted::surface_c, "degrees Celsius")};
   }
   mark::Ignore ignore() {
     only({"type"});
@@ -149,22 +154,17 @@ class MarkupReader {
     const std::string pointer = std::string("/") + key;
     if (!value_[key].is_string()) return error(pointer, std::string("'") + key + "' must be a text"), "";
     const auto text = value_[key].get<std::string>();
-    const auto fits = [](char c) {
-      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
-    };
-    if (text.empty() || text.front() == '.' || !std::all_of(text.begin(), text.end(), fits)) {
-      error(pointer,
-            std::string("'") + key + "' is " + value_[key].dump() + "; it needs letters, digits, '_', '-' or '.'");
-    }
+    const std::string fault = name_fault(text);
+    if (!fault.empty()) error(pointer, std::string("'") + key + "' is " + value_[key].dump() + "; " + fault);
     return text;
   }
 
-  double number(const char* key, double otherwise, double least, double most, const std::string& unit = "metres") {
+  double number(const char* key, double otherwise, const NumberRange& range, const std::string& unit = "metres") {
     if (!value_.contains(key)) return otherwise;
-    if (value_[key].is_number() && value_[key] >= least && value_[key] <= most) return value_[key].get<double>();
+    if (value_[key].is_number() && range.holds(value_[key].get<double>())) return value_[key].get<double>();
     const auto told = [](double v) { return json(v).dump(); };
     error(std::string("/") + key,
-          std::string("'") + key + "' must be a number of " + unit + " from " + told(least) + " to " + told(most));
+          std::string("'") + key + "' must be a number of " + unit + " from " + told(range.min) + " to " + told(range.max));
     return otherwise;
   }
 

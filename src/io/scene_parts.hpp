@@ -18,9 +18,6 @@ namespace pirsim::io::detail {
 
 // What materials say about heat: `extras.pirsim.temperature_c`.
 
-/// Degrees Celsius, within what surfaces in rooms may have.
-inline constexpr double coldest_surface_c = -50.0, hottest_surface_c = 200.0;
-
 /// (n_materials) nothing for those that say nothing, or something faulty (the faults are added).
 [[nodiscard]] std::vector<std::optional<double>> material_temperatures_c(const GltfDocument& document,
                                                                          Diagnostics& remarks);

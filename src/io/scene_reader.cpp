@@ -9,15 +9,12 @@
 #include "io/gltf_geometry.hpp"
 #include "io/reader_parts.hpp"
 #include "io/scene_parts.hpp"
-#include "schema/column_names.hpp"
+#include "schema/check_specs.hpp"
 
 namespace pirsim::io {
 namespace {
 
 using namespace detail;
-
-constexpr double least_upright = 0.9962;  // cos 5 deg; assumed: a seat or doorway tilted more is a mistake of axes
-constexpr double world_limit_m = 1e5;     // as for nodes
 
 class SceneBuilder {
  public:
@@ -158,8 +155,7 @@ class SceneBuilder {
       return node_error(placed.node, "/mesh", "the copies of its mesh make the scene too large");
     }
     const TriMesh world = transformed(whole, placed.world_from_node, name_of(placed.node, mesh));
-    for (const Vec3& p : world.positions) {
-      if (std::abs(p.x) <= world_limit_m && std::abs(p.y) <= world_limit_m && std::abs(p.z) <= world_limit_m) continue;
+    if (!std::ranges::all_of(world.positions, is_in_world)) {
       return node_error(placed.node, "/mesh", "its mesh reaches more than 100 km from the origin");
     }
     CleanMesh cleaned = clean(world);
@@ -201,8 +197,8 @@ class SceneBuilder {
   void add_sensor(const PlacedNode& placed, const mark::Sensor& sensor) {
     if (!has_room(spec_.sensors.size(), limits::sensors, "sensors")) return;
     check_unique("sensor", sensor.id, placed.node);
-    if (is_column_name(sensor.id))
-      node_error(placed.node, "/extras/pirsim/id", "sensor id '" + sensor.id + "' is the name of a column of rows");
+    const std::string fault = column_fault(sensor.id);
+    if (!fault.empty()) node_error(placed.node, "/extras/pirsim/id", fault);
     model_places_.try_emplace(sensor.model, document_.text.where(markup_pointer(placed.node) + "/model"));
     spec_.sensors.push_back({sensor.id, sensor.model, rigid_frame(placed.world_from_node)});
   }
@@ -234,10 +230,11 @@ class SceneBuilder {
 
   Frame upright_frame(const PlacedNode& placed) {
     const Frame frame = rigid_frame(placed.world_from_node);
-    if (frame.up().y < least_upright) {
+    if (!is_upright(frame)) {
+      constexpr double flat = 0.0038;  // of the upward axis: within a quarter of a degree of level
       remarks_.error(markup_place(placed.node),
                      node_label(document_.model, placed.node) + ": must stand upright (its +Y up)" +
-                         (std::abs(frame.up().y) < 1.0 - least_upright ? "; it lies: is the file Z-up?" : ""));
+                         (std::abs(frame.up().y) < flat ? "; it lies: is the file Z-up?" : ""));
     }
     return frame;
   }

@@ -1,7 +1,6 @@
 #include "io/reader_parts.hpp"
 
-#include <cmath>
-#include <numeric>
+#include <algorithm>
 
 #include "io/yaml_map.hpp"
 #include "schema/schedule_people.hpp"
@@ -28,7 +27,8 @@ ClockSpec read_clock(YamlMap& map, const std::string& key, const ClockSpec& othe
   YamlMap own(*child, faults, key);
   ClockSpec clock;
   clock.mean_h = read_time(own, "mean", otherwise.mean_h, faults);
-  clock.sd_min = own.number("sd_min", otherwise.sd_min, {.min = 0.0, .max = 240.0});
+  clock.sd_min = otherwise.sd_min;
+  read_numbers(own, clock);
   own.finish();
   return clock;
 }
@@ -40,8 +40,8 @@ StaffSpec read_staff(const YamlNode& node, Diagnostics& faults) {
   staff.role = map.choice<Role>(
       "role", staff.role, {{"staff", Role::staff}, {"manager", Role::manager}, {"administrator", Role::administrator}});
   staff.seats = map.texts("seats");
-  const int own = static_cast<int>(staff.seats.size());
-  staff.count = map.integer("count", std::max(1, own), {.min = std::max(1, own), .max = 200});
+  staff.count = std::max(1, static_cast<int>(staff.seats.size()));
+  read_numbers(map, staff);
   map.finish();
   return staff;
 }
@@ -52,56 +52,38 @@ HeldMeetingSpec read_held(const YamlNode& node, Diagnostics& faults) {
   held.where = node.where();
   if (!map.has("at")) faults.error(node.where(), "held: `at` is missing");
   held.at_h = read_time(map, "at", held.at_h, faults);
-  held.duration_min = map.number("duration_min", held.duration_min, {.min = 1.0, .max = 1440.0});
-  held.people = map.integer("people", held.people, {.min = 1, .max = 200});
-  if (held.at_h + held.duration_min / 60.0 > 24.0) {
-    faults.error(node.where(), "held: a meeting at " + map.text("at") + " that lasts beyond midnight");
-  }
+  read_numbers(map, held);
+  check_together(held, [&](std::string_view, const std::string& message) {
+    faults.error(node.where(), "held: at " + map.text("at") + ": " + message);
+  });
   map.finish();
   return held;
 }
 
-void check_held(const std::vector<HeldMeetingSpec>& meetings, Diagnostics& faults) {
-  for (std::size_t i = 0; i < meetings.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const HeldMeetingSpec& one = meetings[j];
-      const HeldMeetingSpec& other = meetings[i];
-      if (one.at_h + one.duration_min / 60.0 <= other.at_h || other.at_h + other.duration_min / 60.0 <= one.at_h)
-        continue;
-      faults.error(other.where,
-                   "held: overlaps the meeting of line " + std::to_string(one.where.line) + ", and there is one room");
-    }
-  }
-}
-
-void check_durations(const MeetingsSpec& spec, const Where& where, Diagnostics& faults) {
-  if (spec.durations_min.size() != spec.probabilities.size() || spec.durations_min.empty()) {
-    faults.error(where, "probabilities: expected one for each of durations_min");
-  } else if (std::accumulate(spec.probabilities.begin(), spec.probabilities.end(), 0.0) <= 0.0) {
-    faults.error(where, "probabilities: expected a sum above 0");
-  }
+/// The field of a time is called so, its key isn't: `from_h`.
+std::string key_of(std::string_view field) {
+  if (field.ends_with("_h")) field.remove_suffix(2);
+  return std::string(field);
 }
 
 MeetingsSpec read_meetings(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "meetings");
   MeetingsSpec spec;
   spec.where = node.where();
-  spec.fewest_a_day = map.integer("fewest_a_day", spec.fewest_a_day, {.min = 0, .max = 100});
-  spec.most_a_day =
-      map.integer("most_a_day", std::max(spec.fewest_a_day, spec.most_a_day), {.min = spec.fewest_a_day, .max = 100});
-  spec.fewest_people = map.integer("fewest_people", spec.fewest_people, {.min = 1, .max = 200});
-  if (map.has("most_people")) {
-    spec.most_people = map.integer("most_people", spec.fewest_people, {.min = spec.fewest_people, .max = 200});
-  }
-  spec.durations_min = map.numbers("durations_min", spec.durations_min, {.min = 1.0, .max = 1440.0});
-  spec.probabilities = map.numbers("probabilities", spec.probabilities, {.min = 0.0, .max = 1.0});
-  check_durations(spec, map.where(map.has("probabilities") ? "probabilities" : "durations_min"), faults);
+  read_numbers(map, spec);
+  if (!map.has("most_a_day")) spec.most_a_day = std::max(spec.most_a_day, spec.fewest_a_day);
   spec.from_h = read_time(map, "from", spec.from_h, faults);
   spec.to_h = read_time(map, "to", spec.to_h, faults);
-  if (spec.from_h >= spec.to_h) faults.error(map.where("to"), "meetings: `to` is not after `from`");
-  spec.lateness_min = map.number("lateness_min", spec.lateness_min, {.min = 0.0, .max = 60.0});
   for (const YamlNode& held : map.list("held", limits::held_meetings)) spec.held.push_back(read_held(held, faults));
-  check_held(spec.held, faults);
+  check_together(spec.held, [&](std::size_t i, std::size_t j) {
+    faults.error(spec.held[i].where, "held: overlaps the meeting of line " + std::to_string(spec.held[j].where.line) +
+                                         ", and there is one room");
+  });
+  check_together(spec, [&](std::string_view field, const std::string& message) {
+    const bool is_time = field == "to_h";
+    const std::string key = is_time ? "to" : map.has("probabilities") ? "probabilities" : "durations_min";
+    faults.error(map.where(key), (is_time ? "meetings: " : "probabilities: ") + message);
+  });
   spec.seats = map.texts("seats");
   map.finish();
   return spec;
@@ -110,15 +92,8 @@ MeetingsSpec read_meetings(const YamlNode& node, Diagnostics& faults) {
 ProfileSpec read_profile(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "profile");
   ProfileSpec spec;
-  constexpr std::size_t hours_a_day = 24;
-  spec.presence = map.numbers("presence", {}, {.min = 0.0, .max = 1.0});
-  if (spec.presence.size() != hours_a_day) {
-    faults.error(map.has("presence") ? map.where("presence") : node.where(),
-                 "presence: expected 24 shares, one for each hour of the day");
-    spec.presence.assign(hours_a_day, 0.0);
-  }
-  spec.mobility = map.number("mobility", spec.mobility, {.min = 0.0, .max = 10.0});
-  spec.step_min = map.number("step_min", spec.step_min, {.min = 1.0, .max = 120.0});
+  read_numbers(map, spec);
+  check_together(spec, faults_by_key(map));
   map.finish();
   return spec;
 }
@@ -131,27 +106,15 @@ std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, D
   ScheduleSpec spec;
   spec.where = node->where();
   spec.first_day = map.text("first_day", spec.first_day);
-  try {
-    static_cast<void>(day_number(spec.first_day, map.where("first_day")));
-  } catch (const Error& error) {
-    for (const Issue& issue : error.issues()) faults.error(issue.where, issue.message);
-  }
   spec.from_h = read_time(map, "from", spec.from_h, faults);
   spec.to_h = read_time(map, "to", spec.to_h, faults);
-  if (spec.from_h >= spec.to_h)
-    faults.error(map.has("to") ? map.where("to") : node->where(), "schedule: `to` is not after `from`");
   for (const YamlNode& staff : map.list("staff")) spec.staff.push_back(read_staff(staff, faults));
   if (const auto child = map.child("meetings")) spec.meetings = read_meetings(*child, faults);
   if (const auto child = map.child("profile")) spec.profile = read_profile(*child, faults);
   spec.arrival = read_clock(map, "arrival", spec.arrival, faults);
   spec.departure = read_clock(map, "departure", spec.departure, faults);
   spec.lunch = read_clock(map, "lunch", spec.lunch, faults);
-  if (spec.departure.mean_h <= spec.arrival.mean_h) {
-    faults.error(map.has("departure") ? map.where("departure") : node->where(),
-                 "schedule: departure must be after arrival");
-  }
-  spec.lunch_min = map.number("lunch_min", spec.lunch_min, {.min = 0.0, .max = 240.0});
-  spec.lunch_sd_min = map.number("lunch_sd_min", spec.lunch_sd_min, {.min = 0.0, .max = 120.0});
+  read_numbers(map, spec);
   if (map.has("cleaning")) {
     spec.cleaning_h = read_time(map, "cleaning", 19.0, faults);
   } else {
@@ -160,9 +123,10 @@ std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, D
   spec.entrances = map.texts("entrances");
   spec.style = map.choice<MotionStyle>(
       "style", spec.style, {{"choreographed", MotionStyle::choreographed}, {"natural", MotionStyle::natural}});
-  if (spec.staff.empty() && !spec.meetings && !spec.cleaning_h) {
-    faults.error(node->where(), "schedule: nobody comes: give `staff`, `meetings` or `cleaning`");
-  }
+  check_together(spec, [&](std::string_view field, const std::string& message) {
+    const bool is_date = field == "first_day";
+    faults.error(map.where(key_of(field)), is_date ? message : "schedule: " + message);
+  });
   map.finish();
   return spec;
 }

@@ -24,8 +24,8 @@ SensingSpec read_sensing(const std::optional<YamlNode>& node, Diagnostics& fault
   SensingSpec sensing;
   if (!node) return sensing;
   YamlMap map(*node, faults, "sensing");
-  sensing.tick_rate_hz = map.integer("tick_rate_hz", sensing.tick_rate_hz, {.min = 1, .max = 10000});
-  const double window_s = map.number("window_s", 1.0, {.above = 0.0, .max = 3600.0});
+  read_numbers(map, sensing);
+  const double window_s = map.number("window_s", 1.0, accepted::window_s);
   const double ticks = window_s * sensing.tick_rate_hz;
   if (std::abs(ticks - std::round(ticks)) > 1e-9 * ticks || ticks < 1.0) {
     faults.error(map.where("window_s"),
@@ -41,9 +41,6 @@ SensingSpec read_sensing(const std::optional<YamlNode>& node, Diagnostics& fault
                                       {{"in_step", Reader::in_step}, {"free_running", Reader::free_running}});
   sensing.response = map.choice<std::optional<Response>>("response", sensing.response,
                                                          {{"zones", Response::zones}, {"analog", Response::analog}});
-  sensing.ambient_c = map.number("ambient_c", sensing.ambient_c, {.min = -50.0, .max = 60.0});
-  sensing.analog_rays_per_zone =
-      map.integer("analog_rays_per_zone", sensing.analog_rays_per_zone, {.min = 1, .max = 10000});
   map.finish();
   return sensing;
 }

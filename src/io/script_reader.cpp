@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <set>
 
-#include "core/near_names.hpp"
 #include "io/reader_parts.hpp"
 #include "io/yaml_map.hpp"
 #include "schema/body_part_names.hpp"
-#include "schema/phase_names.hpp"
 #include "schema/schedule_people.hpp"
 
 namespace pirsim::io {
@@ -30,98 +27,46 @@ SummarySpec read_summary(const std::optional<YamlNode>& node, Diagnostics& fault
 WarmthSpec read_warmth(const std::optional<YamlNode>& node, Diagnostics& faults) {
   WarmthSpec warmth;
   if (!node) return warmth;
-  constexpr NumberRange surface{.min = -50.0, .max = 60.0};
-  const std::vector<std::string> parts(body_part_names.begin(), body_part_names.end());
   YamlMap map(*node, faults, "warmth");
-  warmth.skin_c = map.number("skin_c", warmth.skin_c, surface);
-  warmth.clothing_clo = map.number("clothing_clo", warmth.clothing_clo, {.min = 0.0, .max = 10.0});
+  read_numbers(map, warmth);
   warmth.bare = map.texts("bare", warmth.bare);
-  for (const std::string& part : warmth.bare) {
-    if (std::ranges::find(parts, part) != parts.end()) continue;
-    faults.error(map.where("bare"), "bare: no part of the body is called '" + part + "'" + did_you_mean(part, parts));
-  }
   if (const auto child = map.child("parts_c")) {
     YamlMap known(*child, faults, "parts_c");
-    for (const std::string& part : parts) {
-      if (const auto temperature = known.optional_number(part, surface)) warmth.parts_c[part] = *temperature;
+    for (const std::string_view part : body_part_names) {
+      const std::string name(part);
+      if (const auto temperature = known.optional_number(name, accepted::skin_c)) warmth.parts_c[name] = *temperature;
     }
     known.finish();
   }
+  check_together(warmth, faults_by_key(map));
   map.finish();
   return warmth;
 }
 
-/// What a row's phase can be: with a schedule the use of the room, else what the first person does.
-std::vector<std::string> phases_of(const ScriptSpec& script) {
-  std::set<std::string> phases;
-  for (const TrialSpec& trial : script.trials) {
-    if (trial.schedule) {
-      for (const std::string_view use : {phase_empty, phase_occupied, phase_meeting, phase_cleaning})
-        phases.emplace(use);
-      continue;
-    }
-    phases.emplace(phase_outside);
-    phases.insert(phases_of_body.begin(), phases_of_body.end());
-    // Whoever an effect adds to nobody is the first.
-    if (trial.people.empty()) phases.emplace(phase_working);
-    for (std::size_t i = 0; !trial.people.empty() && i < trial.people.front().actions.size(); ++i) {
-      const ScriptedAction& action = trial.people.front().actions[i];
-      if (!action.phase.empty()) phases.insert(action.phase);
-      if (action.phase.empty() && std::holds_alternative<action::Work>(action.what)) phases.emplace(phase_working);
-    }
-  }
-  return {phases.begin(), phases.end()};
-}
-
-/// Of a phase that no run has, every sum would be 0.
-void check_phases(const std::optional<YamlNode>& summary, const ScriptSpec& script, Diagnostics& faults) {
-  if (script.summary.phases.empty()) return;
-  const std::vector<std::string> known = phases_of(script);
-  for (const YamlNode& item : YamlMap(*summary, faults, "summary").list("phases")) {
-    const std::string phase = item.text(faults, "summary.phases");
-    if (std::ranges::find(known, phase) != known.end()) continue;
-    faults.error(item.where(), "summary.phases: no run has a phase '" + phase + "'" + near_or_all(phase, known));
-  }
-}
-
 constexpr double natural_speed_m_s = 1.2;  // indoors; Ref: [Weidmann1993] has 1.34 in the open
-
-/// The choreographed style would ignore them.
-void refuse_activities(const PersonSpec& person, Diagnostics& faults) {
-  if (person.style == MotionStyle::natural) return;
-  for (const ScriptedAction& action : person.actions) {
-    const bool has_activity = std::visit(
-        [](const auto& what) {
-          if constexpr (requires { what.activity; }) return what.activity.has_value();
-          return false;
-        },
-        action.what);
-    if (has_activity) faults.error(action.where, "an activity needs `style: natural` of the person");
-  }
-}
 
 PersonSpec read_person(const YamlNode& node, BodyMeshReader& body_meshes, Diagnostics& faults) {
   YamlMap map(node, faults, "person");
   PersonSpec person;
   person.id = map.required_text("id");
-  person.stature_m = map.number("stature_m", person.stature_m, {.min = 0.8, .max = 2.3});
-  person.mass_kg = map.number("mass_kg", person.mass_kg, {.min = 10.0, .max = 250.0});
   if (const auto child = map.child("seat_scatter")) {
     YamlMap scatter(*child, faults, "seat_scatter");
-    person.seat_scatter.position_sd_m = scatter.number("position_sd_m", 0.0, {.min = 0.0, .max = 0.2});
-    person.seat_scatter.heading_sd_deg = scatter.number("heading_sd_deg", 0.0, {.min = 0.0, .max = 30.0});
+    read_numbers(scatter, person.seat_scatter);
     scatter.finish();
   }
   person.body_mesh_file = map.text("body_mesh");
   person.body_meshes = body_meshes.read(person.body_mesh_file, map.where("body_mesh"), faults);
   person.style = map.choice<MotionStyle>(
       "style", person.style, {{"choreographed", MotionStyle::choreographed}, {"natural", MotionStyle::natural}});
-  const double speed_m_s = person.style == MotionStyle::natural ? natural_speed_m_s : person.walking_speed_m_s;
-  person.walking_speed_m_s = map.number("walking_speed_m_s", speed_m_s, {.min = 0.1, .max = 3.0});
+  if (person.style == MotionStyle::natural) person.walking_speed_m_s = natural_speed_m_s;
+  read_numbers(map, person);
   person.warmth = read_warmth(map.child("warmth"), faults);
   for (const YamlNode& action : map.list("actions", limits::actions))
     person.actions.push_back(read_action(action, faults));
-  refuse_activities(person, faults);
+  for (const ScriptedAction& action : person.actions) {
+    const std::string fault = activity_fault(person, action);
+    if (!fault.empty()) faults.error(action.where, fault);
+  }
   map.finish();
   return person;
 }
@@ -129,10 +74,11 @@ PersonSpec read_person(const YamlNode& node, BodyMeshReader& body_meshes, Diagno
 std::vector<PersonSpec> read_people(const std::vector<YamlNode>& nodes, const Variables& variables,
                                     BodyMeshReader& body_meshes, Diagnostics& faults) {
   std::vector<PersonSpec> people;
-  std::set<std::string> ids;
+  Names ids("person");
   for (const YamlNode& node : nodes) {
     people.push_back(read_person(node.with(variables, faults), body_meshes, faults));
-    if (!ids.insert(people.back().id).second) faults.error(node.where(), "a second person '" + people.back().id + "'");
+    const std::string fault = ids.fault_of_adding(people.back().id);
+    if (!fault.empty()) faults.error(node.where(), fault);
   }
   return people;
 }
@@ -165,13 +111,14 @@ std::vector<Variables> combinations(const std::optional<YamlNode>& for_each, Dia
 /// Trials written out one by one, each with people of its own.
 std::vector<TrialSpec> read_listed_trials(const YamlNode& list, BodyMeshReader& body_meshes, Diagnostics& faults) {
   std::vector<TrialSpec> trials;
-  std::set<std::string> ids;
+  Names ids("trial");
   for (const YamlNode& item : read_list(list, faults, "trials", limits::trials)) {
     YamlMap map(item, faults, "trial");
     trials.push_back(
         {map.required_text("id"), read_people(map.list("people", limits::people), {}, body_meshes, faults)});
-    trials.back().duration_s = map.optional_number("duration_s", {.min = 1.0, .max = 1e7});
-    if (!ids.insert(trials.back().id).second) faults.error(item.where(), "a second trial '" + trials.back().id + "'");
+    read_numbers(map, trials.back());
+    const std::string fault = ids.fault_of_adding(trials.back().id);
+    if (!fault.empty()) faults.error(item.where(), fault);
     map.finish();
   }
   return trials;
@@ -199,7 +146,7 @@ std::vector<TrialSpec> read_trials(const std::optional<YamlNode>& node, const st
   }
   YamlMap map(*node, faults, "trials");
   std::vector<TrialSpec> trials;
-  std::set<std::string> ids;
+  Names ids("trial");
   const auto all = combinations(map.child("for_each"), faults);
   const std::string pattern = map.required_text("id");
   map.finish();
@@ -211,8 +158,8 @@ std::vector<TrialSpec> read_trials(const std::optional<YamlNode>& node, const st
     if (trial.id.empty() && !pattern.empty())
       found.error(map.where("id"), "trials: id: expected a text that isn't empty");
     trial.people = read_people(people, variables, body_meshes, found);
-    if (!ids.insert(trial.id).second && !pattern.empty() && !found.has_errors())
-      found.error(map.where("id"), "a second trial '" + trial.id + "'");
+    const std::string fault = ids.fault_of_adding(trial.id);
+    if (!fault.empty() && !pattern.empty() && !found.has_errors()) found.error(map.where("id"), fault);
   }
   std::set<std::string> told;
   for (const Issue& issue : found.issues()) {
@@ -242,30 +189,35 @@ ScriptSpec script_of(const YamlNode& root, const std::filesystem::path& file) {
   script.name = map.text("name", file.stem().string());
   const bool is_stream = file == "/dev/stdin";  // its own folder has nothing that a script could mean
   script.directory = is_stream ? std::string() : file.parent_path().string();
-  script.seed = map.unsigned_integer("seed", script.seed);
-  script.replicates = map.integer("replicates", script.replicates, {.min = 1, .max = 10000000});
+  read_numbers(map, script);
   script.sensing = read_sensing(map.child("sensing"), faults);
   script.summary = read_summary(map.child("summary"), faults);
   BodyMeshReader body_meshes(file.parent_path());
   script.trials = read_trials(map.child("trials"), map.list("people", limits::people), body_meshes, faults);
-  if (const auto duration_s = map.optional_number("duration_s", {.min = 1.0, .max = 1e7})) {
-    for (TrialSpec& trial : script.trials) trial.duration_s = trial.duration_s.value_or(*duration_s);
+  TrialSpec every_trial;
+  read_numbers(map, every_trial);
+  for (TrialSpec& trial : script.trials) {
+    if (!trial.duration_s) trial.duration_s = every_trial.duration_s;
   }
   if (const auto schedule = read_schedule(map.child("schedule"), faults)) {
     warn_of_days_off(*map.child("schedule"), *schedule, script.replicates, faults);
     for (TrialSpec& trial : script.trials) {
-      if (trial.duration_s) {
-        faults.error(schedule->where, "schedule: a run lasts from its `from` to its `to`: leave out duration_s");
-      }
       trial.schedule = schedule;
+      check_together(trial, [&](std::string_view, const std::string& message) {
+        faults.error(schedule->where, "schedule: " + message);
+      });
     }
   }
-  if (!faults.has_errors()) check_phases(map.child("summary"), script, faults);
-  script.effects = read_effects(map.list("effects"), faults);
-  if (script.trials.size() * static_cast<std::size_t>(script.replicates) > std::numeric_limits<std::uint32_t>::max()) {
-    faults.error(map.where("replicates"), "trials times replicates are more than " +
-                                              std::to_string(std::numeric_limits<std::uint32_t>::max()) + " runs");
+  if (!faults.has_errors() && map.has("summary")) {
+    const std::vector<YamlNode> phases = YamlMap(*map.child("summary"), faults, "summary").list("phases");
+    check_phases(script, [&](std::size_t phase, const std::string& message) {
+      faults.error(phases[phase].where(), "summary.phases: " + message);
+    });
   }
+  script.effects = read_effects(map.list("effects"), faults);
+  check_together(script, [&](std::string_view field, const std::string& message) {
+    faults.error(map.where(std::string(field)), message);
+  });
   map.finish();
   faults.throw_if_errors();
   script.files = body_meshes.files();
@@ -283,20 +235,6 @@ ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::s
 
 ScriptSpec parse_script(std::string_view text, const std::string& name, std::span<const std::string> overrides) {
   return script_of(YamlNode::parse(text, name, overrides), name);
-}
-
-void check(const ScriptSpec& script) {
-  ScriptSpec values = script;
-  for (TrialSpec& trial : values.trials) {
-    for (PersonSpec& person : trial.people) person.body_mesh_file.clear();  // whose meshes have been read
-  }
-  try {
-    (void)parse_script(to_yaml(values), script.name);
-  } catch (const Error& error) {
-    std::vector<Issue> issues = error.issues();
-    for (Issue& issue : issues) issue.where = {script.name, 0, 0};  // nobody has the text
-    throw Error(error.code(), std::move(issues));
-  }
 }
 
 }  // namespace pirsim::io

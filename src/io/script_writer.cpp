@@ -39,6 +39,7 @@ struct ActionWriter {
   }
   void operator()(const action::Enter& enter) { entry["enter"] = enter.entrance; }
   void operator()(const action::Walk& walk) {
+    entry["walk"]["to_xz_m"] = YAML::Node(YAML::NodeType::Sequence);
     for (const Vec2& p : walk.points) entry["walk"]["to_xz_m"].push_back(point(p));
     if (walk.activity) entry["walk"]["activity"] = name(*walk.activity);
   }

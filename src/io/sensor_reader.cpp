@@ -16,10 +16,8 @@ enum class Layout { diamond, square };
 enum class Polarity { checkerboard, same };
 enum class Missing { none, outer };
 
-constexpr NumberRange positive{.above = 0.0, .max = 1000.0};
 constexpr NumberRange length_m{.min = 1e-3, .max = 1000.0};  ///< what is shorter leaves no digits to directions
 constexpr double pitch_to_side = 1.0 / 0.6;                  ///< of the quad's elements, quoted: docs/physics/zones.md
-constexpr NumberRange on_plane{.min = -1000.0, .max = 1000.0};
 
 /// What the facets of one lens share.
 struct FacetLaw {
@@ -77,16 +75,21 @@ std::vector<ZoneSpec> zones_of(const Quad& quad, Polarity polarity, Missing miss
   return zones;
 }
 
-double read_range(YamlMap& map, const std::optional<double>& common) {
-  return common && !map.has("range_m") ? map.number("range_m", *common) : map.required_number("range_m", positive);
+/// What facets and clusters share; the sensor may say a range for all.
+void read_cluster_numbers(YamlMap& map, const std::optional<double>& range_m, ClusterSpec& cluster) {
+  if (range_m) {
+    cluster.range_m = *range_m;
+  } else {
+    map.require("range_m");
+  }
+  read_numbers(map, cluster);
 }
 
 ClusterSpec read_facet(const YamlNode& node, const FacetLaw& law, Diagnostics& faults) {
   YamlMap map(node, faults, "facet");
   ClusterSpec cluster;
-  cluster.centre = {map.required_number("x_m", on_plane), map.required_number("y_m", on_plane)};
-  cluster.range_m = read_range(map, law.range_m);
-  cluster.lens_step = map.integer("lens_step", 1, {.min = 1, .max = 99});
+  cluster.centre = {map.required_number("x_m", accepted::on_lens_plane_m), map.required_number("y_m", accepted::on_lens_plane_m)};
+  read_cluster_numbers(map, law.range_m, cluster);
   const auto missing =
       map.choice<Missing>("missing", Missing::none, {{"none", Missing::none}, {"outer", Missing::outer}});
   Quad quad;
@@ -98,22 +101,14 @@ ClusterSpec read_facet(const YamlNode& node, const FacetLaw& law, Diagnostics& f
     quad = square(cluster.centre, map.optional_number("pitch_m", length_m).value_or(pitch_to_side * side), side);
   }
   cluster.zones = zones_of(quad, law.polarity, missing);
+  if (!faults.has_errors()) {
+    for (const ZoneSpec& zone : cluster.zones) {
+      const std::string fault = corners_fault(zone);
+      if (!fault.empty()) faults.error(node.where(), "facet: the corners of its zones: " + fault);
+    }
+  }
   map.finish();
   return cluster;
-}
-
-double cross(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
-
-/// All turns of the outline go the same way.
-bool is_convex(const std::array<Vec2, 4>& corners) {
-  int left = 0;
-  int right = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Vec2 in = corners[(i + 1) % 4] - corners[i];
-    const Vec2 out = corners[(i + 2) % 4] - corners[(i + 1) % 4];
-    (cross(in, out) > 0.0 ? left : right) += cross(in, out) != 0.0 ? 1 : 0;
-  }
-  return left == 4 || right == 4;
 }
 
 ZoneSpec read_zone(const YamlNode& node, Diagnostics& faults) {
@@ -129,15 +124,16 @@ ZoneSpec read_zone(const YamlNode& node, Diagnostics& faults) {
   }
   const std::size_t faults_before = faults.issues().size();
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const std::vector<double> xy = read_numbers(corners[i], faults, "zone: corner", on_plane);
+    const std::vector<double> xy = read_numbers(corners[i], faults, "zone: corner", accepted::on_lens_plane_m);
     if (xy.size() == 2) {
       zone.corners[i] = {xy[0], xy[1]};
     } else if (corners[i].is_list()) {
       faults.error(corners[i].where(), "zone: corner: expected [x, y]");
     }
   }
-  if (faults.issues().size() == faults_before && !is_convex(zone.corners)) {
-    faults.error(map.where("corners_m"), "zone: corners_m: expected the corners of a convex area in order round it");
+  const std::string fault = corners_fault(zone);
+  if (faults.issues().size() == faults_before && !fault.empty()) {
+    faults.error(map.where("corners_m"), "zone: corners_m: " + fault);
   }
   return zone;
 }
@@ -145,8 +141,7 @@ ZoneSpec read_zone(const YamlNode& node, Diagnostics& faults) {
 ClusterSpec read_cluster(const YamlNode& node, const std::optional<double>& range_m, Diagnostics& faults) {
   YamlMap map(node, faults, "cluster");
   ClusterSpec cluster;
-  cluster.range_m = read_range(map, range_m);
-  cluster.lens_step = map.integer("lens_step", 1, {.min = 1, .max = 99});
+  read_cluster_numbers(map, range_m, cluster);
   double corner_count = 0.0;
   for (const YamlNode& zone : map.required_list("zones")) {
     cluster.zones.push_back(read_zone(zone, faults));
@@ -228,8 +223,7 @@ OpticsSpec read_optics(const std::optional<YamlNode>& node, Diagnostics& faults)
   OpticsSpec optics;
   if (!node) return optics;
   YamlMap map(*node, faults, "optics");
-  optics.blur_deg = map.number("blur_deg", optics.blur_deg, {.min = 0.0, .max = 10.0});
-  optics.aperture_mm2 = map.number("aperture_mm2", optics.aperture_mm2, {.above = 0.0, .max = 1000.0});
+  read_numbers(map, optics);
   map.finish();
   return optics;
 }
@@ -250,6 +244,18 @@ FacetLaw read_law(YamlMap& map, double plane_m, const std::optional<double>& ran
   law.polarity = map.choice<Polarity>("polarity", Polarity::checkerboard,
                                       {{"checkerboard", Polarity::checkerboard}, {"same", Polarity::same}});
   return law;
+}
+
+/// Of all facets or clusters that don't say their own.
+std::optional<double> read_common_range(YamlMap& map) {
+  ClusterSpec every;
+  std::optional<double> range_m;
+  each_number(every, [&](std::string_view key, const auto&, const auto& range) {
+    if constexpr (std::same_as<std::remove_cvref_t<decltype(range)>, NumberRange>) {
+      if (key == "range_m") range_m = map.optional_number("range_m", range);
+    }
+  });
+  return range_m;
 }
 
 /// Is a key of the file meant for range_m? Then each facet would tell that it is missing.
@@ -280,8 +286,9 @@ SensorModelSpec read_model(const YamlNode& root) {
   SensorModelSpec model;
   model.id = map.required_text("id");
   model.description = map.text("description");
-  model.plane_m = map.required_number("plane_m", length_m);
-  std::optional<double> range_m = map.optional_number("range_m", positive);
+  map.require("plane_m");
+  read_numbers(map, model);
+  std::optional<double> range_m = read_common_range(map);
   if (!range_m && misspells_range(root)) range_m = 1.0;  // the file is refused for that key
   model.response =
       map.choice<Response>("response", model.response, {{"zones", Response::zones}, {"analog", Response::analog}});

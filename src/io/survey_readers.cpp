@@ -108,6 +108,8 @@ SensorSpec read_sensor(const YamlNode& node, std::size_t index, ModelPlaces& mod
   YamlMap map(node, faults, "sensor");
   SensorSpec sensor;
   sensor.id = map.text("id", "PIR" + std::to_string(index + 1));
+  const std::string fault = name_fault(sensor.id);
+  if (!fault.empty()) faults.error(map.where("id"), "sensor: id: '" + sensor.id + "': " + fault);
   sensor.model = map.required_text("model");
   models.try_emplace(sensor.model, map.where("model"));
   const Vec3 position = read_point(map, "position_m");
@@ -194,10 +196,7 @@ void read_minor(const YamlNode& node, WalkTestSpec& spec, Diagnostics& faults) {
 
 void read_person(const YamlNode& node, WalkTestSpec& spec, Diagnostics& faults) {
   YamlMap map(node, faults, "person");
-  spec.person.stature_m = map.number("stature_m", spec.person.stature_m, {.min = 0.8, .max = 2.3});
-  spec.person.mass_kg = map.number("mass_kg", spec.person.mass_kg, {.min = 10.0, .max = 250.0});
-  spec.person.walking_speed_m_s =
-      map.number("walking_speed_m_s", spec.person.walking_speed_m_s, {.min = 0.1, .max = 3.0});
+  read_numbers(map, spec.person);
   map.finish();
 }
 
@@ -209,7 +208,6 @@ WalkTestSpec read_walk_test(const std::filesystem::path& file, std::span<const s
     spec.name = map.text("name", file.stem().string());
     spec.sensing = read_sensing(map.child("sensing"), map.faults());
     spec.spacing_m = map.number("spacing_m", spec.spacing_m, {.min = 0.05, .max = 10.0});
-    spec.person.id = "walker";
     if (const auto node = map.child("person")) read_person(*node, spec, map.faults());
     if (const auto node = map.child("major_motion")) read_major(*node, spec, map.faults());
     if (const auto node = map.child("minor_motion")) read_minor(*node, spec, map.faults());

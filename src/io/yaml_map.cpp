@@ -25,6 +25,9 @@ std::optional<YamlNode> YamlMap::child(const std::string& key) {
   if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) asked_.push_back(key);
   return find(key);
 }
+void YamlMap::require(const std::string& key) {
+  if (!child(key)) report_missing(key);
+}
 void YamlMap::report_missing(const std::string& key) const {
   if (node_.is_map() || node_.is_null()) faults_->error(where(), what_ + ": '" + key + "' is missing");
 }

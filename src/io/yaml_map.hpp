@@ -23,6 +23,7 @@ class YamlMap {
   [[nodiscard]] Where where(const std::string& key) const;  ///< of the value, or of the map if it isn't there
   [[nodiscard]] bool has(const std::string& key) const;
   [[nodiscard]] Diagnostics& faults() const { return *faults_; }
+  [[nodiscard]] std::string label(const std::string& key) const;  ///< "person: stature_m"
 
   [[nodiscard]] double number(const std::string& key, double otherwise, NumberRange range = {});
   [[nodiscard]] double required_number(const std::string& key, NumberRange range = {});
@@ -61,11 +62,13 @@ class YamlMap {
   /// And not empty.
   [[nodiscard]] std::vector<YamlNode> required_list(const std::string& key, std::size_t most = limits::list_entries);
 
+  /// Reports the key if it isn't there.
+  void require(const std::string& key);
+
   /// Call when every known key was asked for, present or not: reports the others.
   void finish() const;
 
  private:
-  [[nodiscard]] std::string label(const std::string& key) const;
   [[nodiscard]] std::optional<YamlNode> find(const std::string& key) const;
   void report_missing(const std::string& key) const;
 

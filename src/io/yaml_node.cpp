@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 
 #include "io/atomic_file.hpp"
 
@@ -27,21 +26,6 @@ std::string describe(const YamlTree& tree) {
 
 std::string fault_text(std::string_view what, const std::string& expected, const YamlTree& tree) {
   return std::string(what) + ": expected " + expected + ", got " + describe(tree);
-}
-
-std::string expected_number(const NumberRange& range) {
-  std::ostringstream text;
-  text << "a finite number";
-  const char* joint = " ";
-  const auto bound = [&](const char* relation, double value) {
-    if (!std::isfinite(value)) return;
-    text << joint << relation << ' ' << value;
-    joint = " and ";
-  };
-  bound(">", range.above);
-  bound(">=", range.min);
-  bound("<=", range.max);
-  return text.str();
 }
 
 double fallback(const NumberRange& range) {
@@ -117,19 +101,14 @@ std::vector<YamlKey> YamlNode::keys() const {
 
 double YamlNode::number(Diagnostics& faults, std::string_view what, NumberRange range) const {
   const std::optional<double> value = is_scalar() ? parse_number<double>(tree_->scalar) : std::nullopt;
-  if (value && std::isfinite(*value) && *value > range.above && *value >= range.min && *value <= range.max) {
-    return *value;
-  }
-  faults.error(where(), fault_text(what, expected_number(range), *tree_));
+  if (value && range.holds(*value)) return *value;
+  faults.error(where(), fault_text(what, range.text(), *tree_));
   return fallback(range);
 }
 long long YamlNode::integer(Diagnostics& faults, std::string_view what, IntegerRange range) const {
   const std::optional<long long> value = is_scalar() ? parse_number<long long>(tree_->scalar) : std::nullopt;
-  if (value && *value >= range.min && *value <= range.max) return *value;
-  std::string limits;
-  if (range.min > IntegerRange{}.min) limits += " from " + std::to_string(range.min);
-  if (range.max < IntegerRange{}.max) limits += " up to " + std::to_string(range.max);
-  faults.error(where(), fault_text(what, "a whole number" + limits, *tree_));
+  if (value && range.holds(*value)) return *value;
+  faults.error(where(), fault_text(what, range.text(), *tree_));
   return range.min;
 }
 std::string YamlNode::text(Diagnostics& faults, std::string_view what) const {

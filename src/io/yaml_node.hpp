@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -12,20 +11,10 @@
 #include <string_view>
 #include <vector>
 
+#include "core/range.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::io {
-
-/// Which finite numbers are accepted: `{.above = 0.0, .max = 3.0}` is 0 < x <= 3.
-struct NumberRange {
-  double above = -std::numeric_limits<double>::infinity();
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-};
-struct IntegerRange {
-  long long min = std::numeric_limits<int>::min();
-  long long max = std::numeric_limits<int>::max();
-};
 
 /// Values of `${name}`.
 using Variables = std::map<std::string, std::string, std::less<>>;

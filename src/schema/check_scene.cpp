@@ -1,94 +1,200 @@
+#include <algorithm>
+#include <cctype>
 #include <cmath>
-#include <set>
 
+#include "core/near_names.hpp"
 #include "pirsim/scene.hpp"
 #include "schema/column_names.hpp"
+#include "schema/limits.hpp"
+#include "schema/spec_faults.hpp"
 
 namespace pirsim {
 namespace {
 
+constexpr double least_upright = 0.9962;  // cos 5 deg; assumed: a seat or doorway tilted more is a mistake of axes
+
 bool is_finite(const Vec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+/// A message or none.
+std::string place_fault(const Vec3& p) {
+  if (!is_finite(p)) return "isn't finite";
+  return is_in_world(p) ? "" : "lies more than 100 km from the origin";
+}
 
 class SceneCheck {
  public:
-  SceneCheck(const SceneSpec& scene, Diagnostics& diagnostics) : scene_(scene), diagnostics_(diagnostics) {}
+  SceneCheck(const SceneSpec& scene, Diagnostics& diagnostics) : scene_(scene), faults_(scene.name, diagnostics) {}
 
   void run() {
-    for (const TriMesh& mesh : scene_.meshes) check(mesh);
-    std::set<std::string> sensors, seats, entrances;
-    for (const SensorSpec& sensor : scene_.sensors) {
-      check("sensor", sensor.id, sensor.world_from_sensor, sensors);
-      if (is_column_name(sensor.id)) error("sensor id '" + sensor.id + "' is the name of a column of rows");
-      if (!scene_.sensor_models.contains(sensor.model)) {
-        error("sensor '" + sensor.id + "': there is no sensor model '" + sensor.model + "'");
-      }
+    const SpecPath path("scene");
+    if (!faults_.few(path.field("sensors"), scene_.sensors.size(), limits::sensors) ||
+        !faults_.few(path.field("seats"), scene_.seats.size(), limits::seats) ||
+        !faults_.few(path.field("entrances"), scene_.entrances.size(), limits::entrances)) {
+      return;
     }
-    for (const SeatSpec& seat : scene_.seats) check("seat", seat.id, seat.world_from_seat, seats);
-    for (const EntranceSpec& entrance : scene_.entrances) {
-      check("entrance", entrance.id, entrance.world_from_entrance, entrances);
-      if (!(entrance.width_m >= 0.3 && entrance.width_m <= 20.0)) outside("entrance", entrance.id, "width_m");
-      if (!(entrance.outside_m >= 0.3 && entrance.outside_m <= 50.0)) outside("entrance", entrance.id, "outside_m");
+    check_meshes(path);
+    Names sensors("sensor"), seats("seat"), entrances("entrance");
+    for (std::size_t i = 0; i < scene_.sensors.size(); ++i) check_sensor(path.item("sensors", i), i, sensors);
+    for (std::size_t i = 0; i < scene_.seats.size(); ++i) {
+      const SpecPath seat = path.item("seats", i);
+      check_id(scene_.seats[i].id, seat, seats);
+      check_upright(scene_.seats[i].world_from_seat, seat.field("world_from_seat"));
     }
-    for (const auto& [name, model] : scene_.sensor_models) check(name, model);
-    check_floor();
+    for (std::size_t i = 0; i < scene_.entrances.size(); ++i) {
+      const SpecPath entrance = path.item("entrances", i);
+      check_id(scene_.entrances[i].id, entrance, entrances);
+      check_upright(scene_.entrances[i].world_from_entrance, entrance.field("world_from_entrance"));
+      faults_.numbers(scene_.entrances[i], entrance);
+    }
+    for (const auto& [name, model] : scene_.sensor_models) {
+      const std::string key = "sensor_models['" + name + "']";
+      faults_.error_if(path.field(key), name_fault(name));
+      check(model, path.field(key), faults_);
+    }
+    check_floor(path.field("floor"));
   }
 
  private:
-  void error(std::string message) { diagnostics_.error({scene_.name}, std::move(message)); }
-  void outside(const std::string& what, const std::string& id, const std::string& quantity) {
-    error(what + " '" + id + "': " + quantity + " is outside of what is accepted");
+  void check_meshes(const SpecPath& path) {
+    std::size_t n_elements = 0;
+    for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
+      const TriMesh& mesh = scene_.meshes[i];
+      n_elements += mesh.positions.size() + mesh.triangles.size();
+      const SpecPath here = path.item("meshes", i);
+      check_corners(mesh, here);
+      if (mesh.temperature_c) faults_.number(here.field("temperature_c"), *mesh.temperature_c, accepted::surface_c);
+    }
+    if (n_elements <= limits::scene_elements) return;
+    faults_.error(path.field("meshes"), "more than " + std::to_string(limits::scene_elements) + " vertices and triangles");
   }
 
-  void check(const TriMesh& mesh) {
-    for (const Vec3& p : mesh.positions) {
-      if (is_finite(p)) continue;
-      error("mesh '" + mesh.name + "' has a corner that isn't finite");
-      break;
+  /// The first fault of each kind.
+  void check_corners(const TriMesh& mesh, const SpecPath& path) {
+    const auto bad_place = std::ranges::find_if_not(mesh.positions, is_in_world);
+    if (bad_place != mesh.positions.end()) {
+      faults_.error(path.item("positions", static_cast<std::size_t>(bad_place - mesh.positions.begin())),
+                    place_fault(*bad_place));
     }
-    for (const auto& triangle : mesh.triangles) {
-      if (triangle[0] < mesh.positions.size() && triangle[1] < mesh.positions.size() &&
-          triangle[2] < mesh.positions.size())
-        continue;
-      error("mesh '" + mesh.name + "' has a triangle with a corner that doesn't exist");
-      break;
-    }
+    const std::size_t n = mesh.positions.size();
+    const auto bad_triangle = std::ranges::find_if(
+        mesh.triangles, [&](const auto& corners) { return std::ranges::any_of(corners, [&](auto i) { return i >= n; }); });
+    if (bad_triangle == mesh.triangles.end()) return;
+    faults_.error(path.item("triangles", static_cast<std::size_t>(bad_triangle - mesh.triangles.begin())),
+                  "has a corner that doesn't exist: the mesh has " + std::to_string(n) + " vertices");
   }
 
-  void check(const std::string& what, const std::string& id, const Frame& frame, std::set<std::string>& ids) {
-    if (id.empty()) error(what + " without an id");
-    if (!ids.insert(id).second) error("a second " + what + " '" + id + "'");
-    const double length = glm::length(frame.rotation);
-    if (!is_finite(frame.origin) || !(std::abs(length - 1.0) < 1e-6)) {
-      error(what + " '" + id + "': its frame isn't a place and a rotation (a quaternion of length 1)");
-    }
+  void check_id(const std::string& id, const SpecPath& path, Names& ids) {
+    const std::string fault = name_fault(id);
+    if (!fault.empty()) faults_.error(path.field("id"), "'" + id + "': " + fault);
+    faults_.error_if(path.field("id"), ids.fault_of_adding(id));
   }
 
-  void check(const std::string& name, const SensorModelSpec& model) {
-    bool sound = std::isfinite(model.plane_m) && model.plane_m > 0.0;
-    for (const ClusterSpec& cluster : model.clusters) {
-      sound = sound && std::isfinite(cluster.range_m) && cluster.range_m > 0.0;
-      for (const ZoneSpec& zone : cluster.zones) {
-        for (const Vec2& corner : zone.corners) sound = sound && std::isfinite(corner.x) && std::isfinite(corner.y);
-      }
-    }
-    if (!sound) error("sensor model '" + name + "': planes and ranges are above 0, corners finite");
+  void check_sensor(const SpecPath& path, std::size_t index, Names& ids) {
+    const SensorSpec& sensor = scene_.sensors[index];
+    check_id(sensor.id, path, ids);
+    faults_.error_if(path.field("id"), column_fault(sensor.id));
+    static_cast<void>(check_frame(sensor.world_from_sensor, path.field("world_from_sensor")));
+    if (scene_.sensor_models.contains(sensor.model)) return;
+    std::vector<std::string> names;
+    for (const auto& [name, model] : scene_.sensor_models) names.push_back(name);
+    faults_.error(path.field("model"), "there is no sensor model '" + sensor.model + "' in scene.sensor_models" +
+                                           near_or_all(sensor.model, names));
   }
 
-  void check_floor() {
-    if (scene_.floor.empty()) error("no floor");
-    bool finite = std::isfinite(scene_.floor.height_m());
-    for (const auto& loop : scene_.floor.loops()) {
-      if (loop.size() < 3) error("the floor has an outline of fewer than three corners");
-      for (const Vec2& corner : loop) finite = finite && std::isfinite(corner.x) && std::isfinite(corner.y);
-    }
-    if (!finite) error("the floor has a corner that isn't finite");
+  [[nodiscard]] bool check_frame(const Frame& frame, const SpecPath& path) {
+    const std::string fault = place_fault(frame.origin);
+    faults_.error_if(path.field("origin"), fault);
+    const bool is_rotation = std::abs(glm::length(frame.rotation) - 1.0) < 1e-6;
+    if (!is_rotation) faults_.error(path.field("rotation"), "isn't a rotation (a quaternion of length 1)");
+    return fault.empty() && is_rotation;
+  }
+  void check_upright(const Frame& frame, const SpecPath& path) {
+    if (check_frame(frame, path) && !is_upright(frame)) faults_.error(path, "must stand upright (its +Y up)");
+  }
+
+  void check_floor(const SpecPath& path) {
+    if (scene_.floor.empty()) return faults_.error(path, "no floor");
+    faults_.number(path.field("height_m"), scene_.floor.height_m(), accepted::in_world_m);
+    faults_.error_if(path.field("loops"), outline_fault(scene_.floor));
   }
 
   const SceneSpec& scene_;
-  Diagnostics& diagnostics_;
+  SpecFaults faults_;
 };
 
+/// Twice the signed area of a triangle.
+double side(const Vec2& a, const Vec2& b, const Vec2& p) noexcept {
+  return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+}
+
+/// Two segments that cross in their inner points; touching is allowed.
+bool cross(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) noexcept {
+  // Rounding must not make touching edges cross: within this many square metres a point is on the line.
+  constexpr double on_line = 1e-9;
+  const auto opposite = [&](double s, double t) {
+    return (s > on_line && t < -on_line) || (s < -on_line && t > on_line);
+  };
+  return opposite(side(a, b, c), side(a, b, d)) && opposite(side(c, d, a), side(c, d, b));
+}
+
 }  // namespace
+
+std::string name_fault(std::string_view name) {
+  const auto fits = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
+  };
+  if (!name.empty() && name.front() != '.' && std::ranges::all_of(name, fits)) return {};
+  return "it needs letters, digits, '_', '-' or '.'";
+}
+
+std::string column_fault(std::string_view sensor_id) {
+  if (!is_column_name(sensor_id)) return {};
+  return "sensor id '" + std::string(sensor_id) + "' is the name of a column of rows";
+}
+
+std::string Names::fault_of_adding(const std::string& name) {
+  return names_.insert(name).second ? std::string() : "a second " + kind_ + " '" + name + "'";
+}
+
+bool is_in_world(const Vec3& place) noexcept {
+  constexpr NumberRange world = accepted::in_world_m;
+  return world.holds(place.x) && world.holds(place.y) && world.holds(place.z);
+}
+
+bool is_upright(const Frame& frame) noexcept { return frame.up().y >= least_upright; }
+
+bool outlines_cross(const std::vector<Vec2>& first, const std::vector<Vec2>& second) noexcept {
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    for (std::size_t j = 0; j < second.size(); ++j) {
+      if (cross(first[i], first[(i + 1) % first.size()], second[j], second[(j + 1) % second.size()])) return true;
+    }
+  }
+  return false;
+}
+
+std::string too_many_floor_corners() {
+  return "the floor's outline has more than " + std::to_string(limits::floor_corners) + " corners";
+}
+
+std::string outline_fault(const FloorArea& floor) {
+  const auto& loops = floor.loops();
+  std::size_t n_corners = 0;
+  for (const auto& loop : loops) {
+    if (loop.size() < 3) return "the floor has an outline of fewer than three corners";
+    n_corners += loop.size();
+    for (const Vec2& p : loop) {
+      if (!accepted::in_world_m.holds(p.x) || !accepted::in_world_m.holds(p.y))
+        return "the floor reaches more than 100 km from the origin";
+    }
+  }
+  if (n_corners > limits::floor_corners) return too_many_floor_corners();
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      if (outlines_cross(loops[i], loops[j])) return "the outline of the floor crosses itself";
+    }
+  }
+  return floor.area_m2() < 1e-6 ? "the floor has no area" : "";
+}
 
 void check(const SceneSpec& scene, Diagnostics& diagnostics) { SceneCheck(scene, diagnostics).run(); }
 

@@ -27,6 +27,7 @@ inline constexpr std::size_t seats = 5'000;
 inline constexpr std::size_t entrances = 1'000;
 inline constexpr std::size_t floors = 1'000;
 inline constexpr std::size_t floor_corners = 10'000;  ///< of all floors; every pair is compared
+inline constexpr std::size_t scene_elements = 20'000'000;  ///< vertices and triangles; a scanned office has a few million
 inline constexpr std::size_t rays = 2'000'000;        ///< of all sensors together
 /// Of squares of 0.1 m on which ways are found, over all sizes of people: each has a map of its own, some 12 bytes a
 /// square.

@@ -22,6 +22,7 @@ ScriptSpec as_script(const WalkTestSpec& spec) {
   work.arm_amplitude_m = spec.arm_amplitude_m;
   work.arm_period_s = spec.arm_period_s;
   PersonSpec person = spec.person;
+  person.id = "walker";
   person.actions = {{work, {}, {}, {}}};
   ScriptSpec script;
   script.sensing = spec.sensing;

@@ -7,6 +7,7 @@
 #include "effects/catalogue.hpp"
 #include "pirsim/geometry.hpp"
 #include "pirsim/random.hpp"
+#include "schema/spec_numbers.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -60,6 +61,9 @@ struct Body {
 void change(PersonSpec& person, const Body& body) {
   person.stature_m *= body.size;
   person.mass_kg *= body.size * body.size * body.size;
+  each_number(person, [](const char*, double& value, const NumberRange& accepted) {
+    value = std::clamp(value, accepted.min, accepted.max);
+  });
   for (ScriptedAction& action : person.actions) {
     if (auto* work = std::get_if<action::Work>(&action.what)) {
       work->arm_amplitude_m =

@@ -106,9 +106,9 @@ TEST_CASE("a body file that can't be worn is refused with its place", "[body_mes
     return fault(file);
   };
   CHECK_THAT(with_node("left_forarm"), contains("body.gltf:"));
-  CHECK_THAT(with_node("left_forarm"), contains("node 'left_forarm': no part of the body is called so (did you mean "
+  CHECK_THAT(with_node("left_forarm"), contains("node 'left_forarm': no part of the body is called 'left_forarm' (did you mean "
                                                 "'left_forearm'?)"));
-  CHECK_THAT(with_node(""), contains("no part of the body is called so"));
+  CHECK_THAT(with_node(""), contains("no part of the body is called ''"));
   CHECK_THAT(with_node("torso", {{"scale", {1000, 1000, 1000}}}), contains("more than 3 m from the part's origin"));
   CHECK_THAT(with_node("torso", {{"scale", {0, 0, 0}}}), contains("singular"));
 
@@ -139,7 +139,7 @@ people:
   - {id: b, body_mesh: body.gltf, actions: []}
 )";
   const std::string text = fault(two);
-  const std::string message = "no part of the body is called so";
+  const std::string message = "no part of the body is called 'hed'";
   REQUIRE_THAT(text, contains(message));
   CHECK(text.find(message) == text.rfind(message));
   CHECK_THAT(text, contains("script.yaml:4:"));  // the stature

@@ -1,0 +1,89 @@
+#include <numeric>
+
+#include "schema/schedule_people.hpp"
+#include "schema/spec_faults.hpp"
+
+namespace pirsim {
+namespace {
+
+void check(const MeetingsSpec& meetings, const SpecPath& path, SpecFaults& faults) {
+  faults.numbers(meetings, path);
+  faults.together(meetings, path);
+  if (!faults.few(path.field("held"), meetings.held.size(), limits::held_meetings)) return;
+  for (std::size_t i = 0; i < meetings.held.size(); ++i) {
+    const SpecPath held = path.item("held", i);
+    faults.number(held.field("at_h"), meetings.held[i].at_h, accepted::hour_of_day);
+    faults.numbers(meetings.held[i], held);
+    faults.together(meetings.held[i], held);
+  }
+  check_together(meetings.held, [&](std::size_t i, std::size_t j) {
+    faults.error(path.item("held", i), "overlaps held[" + std::to_string(j) + "], and there is one room");
+  });
+}
+
+void check(const ClockSpec& clock, const SpecPath& path, SpecFaults& faults) {
+  faults.number(path.field("mean_h"), clock.mean_h, accepted::hour_of_day);
+  faults.numbers(clock, path);
+}
+
+}  // namespace
+
+void check_together(const HeldMeetingSpec& held, const TellFault& tell) {
+  if (held.at_h + held.duration_min / 60.0 > 24.0) tell("duration_min", "the meeting lasts beyond midnight");
+}
+
+void check_together(std::span<const HeldMeetingSpec> held, const std::function<void(std::size_t, std::size_t)>& tell) {
+  const auto end_h = [&](std::size_t i) { return held[i].at_h + held[i].duration_min / 60.0; };
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (end_h(j) > held[i].at_h && end_h(i) > held[j].at_h) tell(i, j);
+    }
+  }
+}
+
+void check_together(const MeetingsSpec& meetings, const TellFault& tell) {
+  if (meetings.durations_min.size() != meetings.probabilities.size() || meetings.durations_min.empty()) {
+    tell("probabilities", "expected one for each of durations_min");
+  } else if (std::accumulate(meetings.probabilities.begin(), meetings.probabilities.end(), 0.0) <= 0.0) {
+    tell("probabilities", "expected a sum above 0");
+  }
+  if (meetings.from_h >= meetings.to_h) tell("to_h", "`to` is not after `from`");
+}
+
+void check_together(const ProfileSpec& profile, const TellFault& tell) {
+  constexpr std::size_t hours_a_day = 24;
+  if (profile.presence.size() != hours_a_day) tell("presence", "expected 24 shares, one for each hour of the day");
+}
+
+void check_together(const ScheduleSpec& schedule, const TellFault& tell) {
+  try {
+    static_cast<void>(day_number(schedule.first_day, {}));
+  } catch (const Error& error) {
+    tell("first_day", error.issues().front().message);
+  }
+  if (schedule.from_h >= schedule.to_h) tell("to_h", "`to` is not after `from`");
+  if (schedule.departure.mean_h <= schedule.arrival.mean_h) tell("departure", "departure must be after arrival");
+  if (schedule.staff.empty() && !schedule.meetings && !schedule.cleaning_h) {
+    tell("staff", "nobody comes: give `staff`, `meetings` or `cleaning`");
+  }
+}
+
+void check(const ScheduleSpec& schedule, const SpecPath& path, SpecFaults& faults) {
+  faults.numbers(schedule, path);
+  faults.number(path.field("from_h"), schedule.from_h, accepted::hour_of_day);
+  faults.number(path.field("to_h"), schedule.to_h, accepted::hour_of_day);
+  if (schedule.cleaning_h) faults.number(path.field("cleaning_h"), *schedule.cleaning_h, accepted::hour_of_day);
+  faults.together(schedule, path);
+  if (!faults.few(path.field("staff"), schedule.staff.size(), limits::list_entries)) return;
+  for (std::size_t i = 0; i < schedule.staff.size(); ++i) faults.numbers(schedule.staff[i], path.item("staff", i));
+  if (schedule.meetings) check(*schedule.meetings, path.field("meetings"), faults);
+  if (schedule.profile) {
+    faults.numbers(*schedule.profile, path.field("profile"));
+    faults.together(*schedule.profile, path.field("profile"));
+  }
+  check(schedule.arrival, path.field("arrival"), faults);
+  check(schedule.departure, path.field("departure"), faults);
+  check(schedule.lunch, path.field("lunch"), faults);
+}
+
+}  // namespace pirsim
