@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes text files into a C++ source: functions that give them, or one that gives a table of all by name.
+"""Writes files into a C++ source: functions that give them, or one that gives a table of all by name.
 
-Usage: embed_text.py OUTPUT.cpp HEADER NAMESPACE NAME=FILE[+FILE...]...   several files are one text
+Usage: embed_text.py OUTPUT.cpp HEADER NAMESPACE NAME=FILE[+FILE...]...   several files are one text; a font is bytes
        embed_text.py OUTPUT.cpp HEADER NAMESPACE --table NAME FILE...   a span of {stem of FILE, text}
 """
 import pathlib
@@ -16,9 +16,17 @@ def literals(text: str) -> str:
     return "\n".join(f'R"text({chunk})text"' for chunk in chunks)
 
 
+def bytes_as_literals(data: bytes) -> str:
+    chunks = [data[i:i + 32] for i in range(0, len(data), 32)]
+    return "\n".join('"' + "".join(f"\\{byte:03o}" for byte in chunk) + '"' for chunk in chunks)
+
+
 def function(name: str, *files: str) -> str:
-    text = "".join(pathlib.Path(file).read_text(encoding="utf-8") for file in files)
-    return (f"std::string_view {name}() noexcept {{\n  static constexpr char text[] =\n{literals(text)};\n"
+    if files[0].endswith(".ttf"):
+        text = bytes_as_literals(pathlib.Path(files[0]).read_bytes())
+    else:
+        text = literals("".join(pathlib.Path(file).read_text(encoding="utf-8") for file in files))
+    return (f"std::string_view {name}() noexcept {{\n  static constexpr char text[] =\n{text};\n"
             f"  return {{text, sizeof text - 1}};\n}}\n")
 
 

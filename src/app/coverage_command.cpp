@@ -51,10 +51,13 @@ CoverageMap compute(const studies::CoverageStudy& study, studies::RowStore& rows
 }
 
 void draw_maps(const studies::CoverageStudy& study, const CoverageMap& map, const std::filesystem::path& folder) {
-  for (std::size_t i = 0; i < map.sensors.size(); ++i) {
-    const io::Pixels picture = io::drawn(studies::map_chart(study, map, i));
-    io::write_png(folder / (map.sensors[i] + ".png"), picture.width, picture.height, picture.rgb);
-  }
+  const auto write = [&](const std::string& name, const io::MapChart& chart) {
+    const io::Pixels picture = io::drawn(chart);
+    io::write_png(folder / (name + ".png"), picture.width, picture.height, picture.rgb);
+  };
+  for (std::size_t i = 0; i < map.sensors.size(); ++i) write(map.sensors[i], studies::map_chart(study, map, i));
+  // No sensor has this name: rows have a column that is called so.
+  if (map.sensors.size() > 1) write("room", studies::map_of_all(study, map));
 }
 
 void coverage(const Inputs& inputs, const CoverageOptions& options) {
@@ -73,7 +76,8 @@ void coverage(const Inputs& inputs, const CoverageOptions& options) {
   if (inputs.verbosity == Verbosity::quiet) return;
   std::cout << studies::to_text(map, figures);
   require_written();
-  std::cerr << "wrote " << (options.output / "coverage.csv").string() << " and a map of every sensor beside it\n";
+  std::cerr << "wrote " << (options.output / "coverage.csv").string() << " and a map of every sensor beside it"
+            << (map.sensors.size() > 1 ? ", room.png is of all of them\n" : "\n");
 }
 
 }  // namespace

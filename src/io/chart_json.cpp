@@ -23,6 +23,12 @@ Json number(double value) {
   return static_cast<double>(whole) == value ? Json(whole) : Json(value);
 }
 
+Json polygon_groups(const std::vector<std::vector<std::vector<Vec2>>>& groups) {
+  Json result = Json::array();
+  for (const auto& loops : groups) result.push_back(polygons(loops));
+  return result;
+}
+
 Json markers(const std::vector<RoomPlan::Marker>& all) {
   Json result = Json::array();
   for (const RoomPlan::Marker& marker : all) {
@@ -48,10 +54,15 @@ Json to_json(const MapChart& chart) {
             {"pass_or_fail", chart.colours == MapChart::Colours::pass_or_fail},
             {"outline", polygons(chart.plan.outline)},
             {"furniture", polygons(chart.plan.furniture)},
+            {"walls", polygon_groups(chart.plan.walls)},
+            {"wall_lines", polygons(chart.plan.wall_lines)},
             {"dashed", polygons(chart.dashed)}};
   Json values = Json::array();
   for (const auto& value : chart.values) values.push_back(value ? number(*value) : Json(nullptr));
   json["values"] = std::move(values);
+  json["classes"] = Json::array();
+  for (const MapChart::Class& one : chart.classes) json["classes"].push_back({{"above", one.above}, {"name", one.name}});
+  json["people"] = chart.signs == MapChart::Signs::people;
   json["markers"] = markers(chart.markers);
   json["seats"] = markers(chart.plan.seats);
   json["doors"] = Json::array();
@@ -70,7 +81,10 @@ Json to_json(const HistogramChart& chart) {
 }
 
 Json to_json(const SeriesChart& chart) {
-  Json json{{"kind", "series"}, {"window_s", chart.window_s}, {"end_s", chart.end_s}};
+  Json json{{"kind", "series"},
+            {"window_s", chart.window_s},
+            {"end_s", chart.end_s},
+            {"first_clock", chart.first_clock}};
   json["rows"] = Json::array();
   for (const auto& row : chart.rows) json["rows"].push_back({{"name", row.name}, {"times_s", row.times_s}});
   json["people"] = Json::array();
@@ -152,6 +166,7 @@ Json to_json(const LineChart& chart) {
             {"x", {chart.x_low, chart.x_high}},
             {"y", {chart.y_low, chart.y_high}},
             {"x_names", chart.x_names},
+            {"clock", chart.x_ticks == LineChart::Ticks::clock},
             {"diagonal", chart.guide == LineChart::Guide::diagonal}};
   json["points"] = Json::array();
   json["names"] = Json::array();

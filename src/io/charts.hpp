@@ -24,6 +24,9 @@ struct RoomPlan {
   };
   std::vector<std::vector<Vec2>> outline;    ///< closed polygons: edges of the floor
   std::vector<std::vector<Vec2>> furniture;  ///< closed polygons
+  /// Cut through: of each its closed polygons, inside by the even-odd rule.
+  std::vector<std::vector<std::vector<Vec2>>> walls;
+  std::vector<std::vector<Vec2>> wall_lines;  ///< of walls without thickness
   std::vector<Marker> seats;
   std::vector<Door> doors;
 };
@@ -32,6 +35,11 @@ struct RoomPlan {
 struct MapChart {
   using Marker = RoomPlan::Marker;
   enum class Colours { scale, pass_or_fail };  ///< pass_or_fail: values are 1 or 0
+  enum class Signs { sensors, people };        ///< what markers are; people face nowhere
+  struct Class {
+    double above = 0.0;  ///< its values are greater, up to the next one's bound
+    std::string name;
+  };
   std::string title, note;
   std::string label;  ///< of the colour bar: "seconds with motion"
   std::string unit;   ///< after a value: "s of 60"
@@ -41,9 +49,11 @@ struct MapChart {
   std::vector<std::optional<double>> values;  ///< (rows x columns), none off the floor
   double max = 1.0;                           ///< of the colour bar
   Colours colours = Colours::scale;
+  std::vector<Class> classes{};           ///< on pages: a colour for each instead of the scale, the first one's is pale
   RoomPlan plan;                          ///< drawn over the squares
   std::vector<std::vector<Vec2>> dashed;  ///< closed polygons, drawn dashed: what was taken out
-  std::vector<Marker> markers;            ///< sensors
+  std::vector<Marker> markers;
+  Signs signs = Signs::sensors;
 };
 
 /// How often a count came out, over the runs, and the measured one as a line.
@@ -74,6 +84,7 @@ struct SeriesChart {
   };
   std::vector<Row> rows;
   std::vector<Count> people{};  ///< drawn above the rows; empty: nothing is
+  std::string first_clock{};    ///< ISO 8601, at the end of the first window; empty: the axis shows seconds
   std::vector<Phase> phases;    ///< shaded
 };
 
@@ -157,6 +168,8 @@ struct LineChart {
   std::vector<Line> lines;
   double x_low = 0.0, x_high = 1.0, y_low = 0.0, y_high = 1.0;
   std::vector<std::string> x_names;  ///< of x = 1, 2, ...; empty: numbers
+  enum class Ticks { numbers, clock };
+  Ticks x_ticks = Ticks::numbers;  ///< clock: x is in hours of a day
   Guide guide = Guide::none;
 };
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <glm/geometric.hpp>
+#include <glm/common.hpp>
 #include <limits>
 #include <ostream>
 #include <string>
@@ -12,6 +12,7 @@
 
 #include "core/fixed.hpp"
 #include "io/atomic_file.hpp"
+#include "io/canvas.hpp"
 #include "io/lettering.hpp"
 #include "pirsim/error.hpp"
 
@@ -45,11 +46,11 @@ void write_png(const std::filesystem::path& path, int width, int height, std::sp
 
 namespace {
 
-constexpr int wanted_px = 900;     ///< width of the squares
-constexpr int margin_px = 16;      ///< white, on all sides
-constexpr int line_px = 30;        ///< of the key below the map
-constexpr double text_px = 16.0;   ///< in the key
-constexpr double sign_px = 34.0;   ///< width of a sign in the key, beside its name
+constexpr int wanted_px = 900;    ///< width of the squares
+constexpr int margin_px = 16;     ///< white, on all sides
+constexpr int line_px = 30;       ///< of the key below the map
+constexpr double text_px = 17.0;  ///< in the key
+constexpr double sign_px = 34.0;  ///< width of a sign in the key, beside its name
 constexpr Vec3 black(0.0), white(255.0), marker_red(255.0, 77.0, 109.0), door_green(45.0, 164.0, 78.0),
     pass_blue(127.0, 184.0, 230.0), fail_orange(224.0, 164.0, 88.0);
 
@@ -68,7 +69,7 @@ Vec3 viridis(double share) {
 class MapPicture {
  public:
   explicit MapPicture(const MapChart& chart)
-      : chart_(chart), square_px_(std::max(1, wanted_px / std::max(1, chart.columns))) {
+      : chart_(chart), square_px_(std::max(1, wanted_px / std::max(1, chart.columns))), canvas_(pixels_) {
     pixels_.width = chart.columns * square_px_ + 2 * margin_px;
     pixels_.height = chart.rows * square_px_ + 2 * margin_px;
     pixels_.rgb.assign(static_cast<std::size_t>(pixels_.width) * static_cast<std::size_t>(pixels_.height) * 3, 255);
@@ -82,6 +83,7 @@ class MapPicture {
       polygon(loop, black, no_dashes);
       polygon(loop, white, short_dashes);
     }
+    draw_walls();
     for (const auto& loop : chart_.plan.outline) polygon(loop, black, no_dashes);
     for (const RoomPlan::Door& door : chart_.plan.doors) {
       for (const double aside : {-1.5, 1.5})
@@ -90,12 +92,13 @@ class MapPicture {
     for (const MapChart::Marker& at : chart_.plan.seats) seat(pixel_of(at.point), at.heading);
     for (const auto& loop : chart_.dashed) polygon(loop, white, long_dashes);
     for (const MapChart::Marker& at : chart_.markers) arrow(pixel_of(at.point), at.heading);
+    write_names();
     write_key();
     return std::move(pixels_);
   }
 
  private:
-  static constexpr double no_dashes = 0.0, short_dashes = 5.0, long_dashes = 10.0;
+  static constexpr double no_dashes = Canvas::no_dashes, short_dashes = 5.0, long_dashes = 10.0;
 
   /// A sign and what it means.
   struct KeyEntry {
@@ -135,6 +138,9 @@ class MapPicture {
     add(!chart_.plan.furniture.empty(), "furniture", [=, this](const Vec2& at) {
       line(at, at + along, black, no_dashes);
       line(at, at + along, white, short_dashes);
+    });
+    add(!chart_.plan.walls.empty() || !chart_.plan.wall_lines.empty(), "wall", [=, this](const Vec2& at) {
+      rectangle(at - Vec2(0.0, 4.0), Vec2(sign_px, 8.0), [](double) { return black; });
     });
     add(!chart_.dashed.empty(), "taken out", [=, this](const Vec2& at) {
       rectangle(at - Vec2(0.0, 9.0), Vec2(sign_px, 18.0), [](double) { return viridis(0.0); });
@@ -180,13 +186,18 @@ class MapPicture {
   /// Coloured by the share of its width, from its left edge on.
   template <typename Colour>
   void rectangle(const Vec2& lower, const Vec2& size, Colour colour) {
-    each_near(lower, lower + size, 0.0, [&](int x, int y, const Vec2& centre) {
-      blend(x, y, colour((centre.x - lower.x) / size.x), 1.0);
+    canvas_.each_near(lower, lower + size, 0.0, [&](int x, int y, const Vec2& centre) {
+      canvas_.blend(x, y, colour((centre.x - lower.x) / size.x), 1.0);
     });
   }
 
   [[nodiscard]] Vec2 pixel_of(const Vec2& point) const {
     return Vec2(margin_px) + (point - chart_.lower) * (square_px_ / chart_.spacing_m);
+  }
+  [[nodiscard]] std::vector<Vec2> pixels_of(const std::vector<Vec2>& points) const {
+    std::vector<Vec2> pixels;
+    for (const Vec2& point : points) pixels.push_back(pixel_of(point));
+    return pixels;
   }
 
   void square(int column, int row) {
@@ -196,10 +207,61 @@ class MapPicture {
     const Vec3 colour = !verdict ? viridis(*value / chart_.max) : *value > 0.0 ? pass_blue : fail_orange;
     for (int y = 0; y < square_px_; ++y) {
       for (int x = 0; x < square_px_; ++x) {
-        blend(margin_px + column * square_px_ + x, margin_px + row * square_px_ + y, colour, 1.0);
+        canvas_.blend(margin_px + column * square_px_ + x, margin_px + row * square_px_ + y, colour, 1.0);
       }
     }
   }
+
+  /// Those between the squares; the floor's edge stands for the others. With a light rim, which shows where the floor
+  /// is dark.
+  void draw_walls() {
+    const Vec2 lower(margin_px), upper(pixels_.width - margin_px, pixels_.height - margin_px);
+    Canvas inside(pixels_, {lower, upper});
+    std::vector<std::vector<std::vector<Vec2>>> walls;
+    std::vector<std::vector<Vec2>> edges;
+    for (const auto& loops : chart_.plan.walls) {
+      auto& wall = walls.emplace_back();
+      for (const auto& loop : loops) {
+        wall.push_back(pixels_of(loop));
+        edges.push_back(wall.back());
+        edges.back().push_back(edges.back().front());
+      }
+    }
+    for (const auto& points : chart_.plan.wall_lines) edges.push_back(pixels_of(points));
+    const auto draw_edges = [&](const Vec3& colour, double width_px) {
+      for (const auto& points : edges) {
+        for (std::size_t i = 1; i < points.size(); ++i) inside.line(points[i - 1], points[i], colour, width_px);
+      }
+    };
+    draw_edges(white, 5.0);
+    draw_edges(black, 2.0);
+    for (const auto& loops : walls) inside.area(loops, black);
+  }
+
+  /// Of sensors above their signs, and of seats behind the backs of who sits there. A name that would cover another or
+  /// a sensor's sign is left out.
+  void write_names() {
+    std::vector<PixelBox> taken;
+    for (const MapChart::Marker& marker : chart_.markers) taken.push_back(box_round(pixel_of(marker.point), 8.0));
+    const auto write = [&](const MapChart::Marker& marker, const Vec2& way, double away_px, double size_px) {
+      const Vec2 extent = text_extent(marker.label, size_px), reach = 0.5 * extent + away_px;
+      for (const Vec2& side : {way, Vec2(0.0, -1.0), Vec2(0.0, 1.0), Vec2(1.0, 0.0), Vec2(-1.0, 0.0)}) {
+        const Vec2 bottom = pixel_of(marker.point) + side * reach + Vec2(0.0, 0.5 * extent.y);
+        const Lettering text{bottom, marker.label, black};
+        const PixelBox box = box_of(text, size_px);
+        const bool fits =
+            box.lower.x >= 0.0 && box.lower.y >= 0.0 && box.upper.x <= pixels_.width && box.upper.y <= pixels_.height;
+        if (!fits || std::ranges::any_of(taken, [&](const PixelBox& other) { return overlap(box, other); })) continue;
+        write_text(pixels_, bottom, text.text, size_px, black);
+        taken.push_back(box);
+        return;
+      }
+    };
+    for (const MapChart::Marker& marker : chart_.markers) write(marker, Vec2(0.0, -1.0), 10.0, 15.0);
+    for (const MapChart::Marker& marker : chart_.plan.seats) write(marker, -direction_of(marker.heading), 8.0, 12.0);
+  }
+
+  static PixelBox box_round(const Vec2& middle, double reach_px) { return {middle - reach_px, middle + reach_px}; }
 
   void polygon(const std::vector<Vec2>& loop, const Vec3& colour, double dash_px) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -211,60 +273,27 @@ class MapPicture {
   void arrow(const Vec2& from, double heading) {
     constexpr double shaft_px = 30.0, head_px = 14.0;
     const Vec2 ahead = direction_of(heading), tip = from + shaft_px * ahead;
-    disc(from, 6.0, marker_red);
+    canvas_.disc(from, 6.0, marker_red);
     line(from, tip - head_px * ahead, marker_red, no_dashes);
-    for (double back = 0.0; back <= head_px; back += 0.5) disc(tip - back * ahead, 0.45 * back, marker_red);
+    for (double back = 0.0; back <= head_px; back += 0.5) canvas_.disc(tip - back * ahead, 0.45 * back, marker_red);
   }
 
   /// A disc with a rim, and a nose the way who sits there faces.
   void seat(const Vec2& at, double heading) {
     line(at, at + 14.0 * direction_of(heading), black, no_dashes);
-    disc(at, 7.0, black);
-    disc(at, 5.0, white);
+    canvas_.disc(at, 7.0, black);
+    canvas_.disc(at, 5.0, white);
   }
 
-  /// 3 pixels wide, with smooth edges; every second stretch of `dash_px` is left out, if that isn't 0.
   void line(const Vec2& a, const Vec2& b, const Vec3& colour, double dash_px) {
-    const double length = glm::distance(a, b);
-    const Vec2 along = length > 0.0 ? (b - a) / length : Vec2(1.0, 0.0);
-    each_near(glm::min(a, b), glm::max(a, b), 2.0, [&](int x, int y, const Vec2& centre) {
-      const double t = std::clamp(glm::dot(centre - a, along), 0.0, length);
-      if (dash_px > 0.0 && static_cast<int>(t / dash_px) % 2 == 1) return;
-      blend(x, y, colour, 2.0 - glm::distance(centre, a + t * along));
-    });
-  }
-
-  void disc(const Vec2& centre, double radius_px, const Vec3& colour) {
-    each_near(centre, centre, radius_px + 1.0, [&](int x, int y, const Vec2& pixel) {
-      blend(x, y, colour, radius_px + 0.5 - glm::distance(pixel, centre));
-    });
-  }
-
-  /// Calls paint(x, y, centre of the pixel) for all pixels in a box grown by `margin`.
-  template <typename Paint>
-  void each_near(const Vec2& lower, const Vec2& upper, double margin, Paint paint) {
-    const auto first = [&](double v) { return static_cast<int>(std::clamp(v - margin, 0.0, 1e9)); };
-    const auto last = [&](double v, int size) {
-      return static_cast<int>(std::clamp(v + margin, -1.0, static_cast<double>(size - 1)));
-    };
-    for (int y = first(lower.y); y <= last(upper.y, pixels_.height); ++y) {
-      for (int x = first(lower.x); x <= last(upper.x, pixels_.width); ++x) paint(x, y, Vec2(x + 0.5, y + 0.5));
-    }
-  }
-
-  void blend(int x, int y, const Vec3& colour, double opacity) {
-    const double share = std::clamp(opacity, 0.0, 1.0);
-    const auto at =
-        3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(pixels_.width) + static_cast<std::size_t>(x));
-    for (int channel = 0; channel < 3; ++channel) {
-      std::uint8_t& value = pixels_.rgb[at + static_cast<std::size_t>(channel)];
-      value = static_cast<std::uint8_t>(std::lround(glm::mix(static_cast<double>(value), colour[channel], share)));
-    }
+    constexpr double width_px = 3.0;
+    canvas_.line(a, b, colour, width_px, dash_px);
   }
 
   const MapChart& chart_;
   int square_px_;
   Pixels pixels_;
+  Canvas canvas_;
 };
 
 }  // namespace

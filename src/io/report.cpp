@@ -70,12 +70,18 @@ void write_table(std::ostream& out, const Table& table) {
   out << "</tbody></table></div>\n";
 }
 
+/// A long room's map needs a row of its own.
+bool is_wide(const Chart& chart) {
+  const auto* map = std::get_if<MapChart>(&chart);
+  return map != nullptr && (map->columns > 2 * map->rows || !map->classes.empty());
+}
+
 /// Charts of one kind stand in one grid.
 void write_charts(std::ostream& out, const ReportSection& section, Json& charts) {
   std::string open_kind;
   for (const auto& chart : section.charts) {
     Json json = detail::to_json(chart);
-    const auto kind = json["kind"].get<std::string>();
+    const std::string kind = json["kind"].get<std::string>() + (is_wide(chart) ? " wide" : "");
     if (kind != open_kind) {
       if (!open_kind.empty()) out << "</div>\n";
       out << "<div class=\"charts " << kind << "\">\n";

@@ -13,45 +13,63 @@
 namespace pirsim::studies {
 namespace {
 
-constexpr double bin_s = 600.0, square_m = 0.25;
+constexpr double bin_s = 600.0, hour_s = 3600.0, square_m = 0.25;
+
+/// "2026-03-02T08:30:15" in hours of its day.
+double hours_of(const std::string& clock) {
+  const auto two = [&](std::size_t at) { return std::stod(clock.substr(at, 2)); };
+  return two(11) + two(14) / 60.0 + two(17) / hour_s;
+}
+
+/// "8:30", or "8:30:15" with seconds; beyond midnight as the next day's clock shows it.
+std::string clock_of(double hours) {
+  const auto minutes = static_cast<int>(std::lround(60.0 * hours)) % (24 * 60);
+  return std::to_string(minutes / 60) + (minutes % 60 < 10 ? ":0" : ":") + std::to_string(minutes % 60);
+}
+
+std::string count_of(int n, const std::string& what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
 
 std::string percent(double share) { return fixed(100.0 * share, share < 0.0995 ? 1 : 0); }
 
 }  // namespace
 
-DayReport::DayReport(const Model& model, const ScheduleSpec& schedule)
-    : model_(&model),
-      window_s_(model.tick_s() * model.compiled().sensing().ticks_per_window),
-      from_h_(schedule.from_h),
-      to_h_(schedule.to_h) {
-  const std::size_t n_sensors = model.scene().sensors.size();
-  const auto n = static_cast<std::size_t>(std::ceil((to_h_ - from_h_) * 3600.0 / bin_s - 1e-9));
-  bins_.assign(n, {0.0, 0.0, 0, 0, std::vector<double>(n_sensors, 0.0)});
+DayReport::DayReport(const Model& model)
+    : model_(&model), window_s_(model.tick_s() * model.compiled().sensing().ticks_per_window) {
   const Vec2 size = model.compiled().scene().floor.upper() - model.compiled().scene().floor.lower();
   columns_ = static_cast<std::size_t>(std::ceil(size.x / square_m));
   squares_.assign(columns_ * static_cast<std::size_t>(std::ceil(size.y / square_m)), 0.0);
 }
 
-double DayReport::hour_of(std::size_t bin) const { return from_h_ + (static_cast<double>(bin) + 0.5) * bin_s / 3600.0; }
+double DayReport::hour_of(std::size_t bin) const { return from_h_ + (static_cast<double>(bin) + 0.5) * bin_s / hour_s; }
+
+double DayReport::to_h() const { return from_h_ + longest_s_ / hour_s; }
+
+std::string DayReport::time_of(double hours) const { return has_clock_ ? clock_of(hours) : fixed(hours, 2) + " h"; }
+
+DayReport::Bin& DayReport::bin_at(double time_s) {
+  const auto k = static_cast<std::size_t>(std::max(0.0, time_s - 1e-6) / bin_s);
+  if (bins_.size() <= k)
+    bins_.resize(k + 1, {0.0, 0.0, 0, 0, std::vector<double>(model_->scene().sensors.size(), 0.0)});
+  return bins_[k];
+}
 
 void DayReport::add_run(const RunResult& result) {
   const auto empty = [](const Sample& sample) { return sample.people == 0; };
   if (std::ranges::all_of(result.samples, empty)) return;
+  const Sample& first = result.samples.front();
+  has_clock_ = !first.clock.empty();
+  if (has_clock_) from_h_ = hours_of(first.clock) - first.time_s / hour_s;
+  longest_s_ = std::max(longest_s_, result.samples.back().time_s);
   ++days_;
-  std::vector<double> people(bins_.size(), 0.0), windows(bins_.size(), 0.0);
   for (const Sample& sample : result.samples) {
-    const std::size_t k =
-        std::min(bins_.size() - 1, static_cast<std::size_t>(std::max(0.0, sample.time_s - 1e-6) / bin_s));
     const auto n = static_cast<std::size_t>(sample.people);
     if (by_people_.size() <= n) by_people_.resize(n + 1, {0.0, std::vector<double>(sample.bits.size(), 0.0)});
-    people[k] += sample.people;
-    windows[k] += 1.0;
     by_people_[n].windows += 1.0;
+    Bin& bin = bin_at(sample.time_s);
     for (std::size_t i = 0; i < sample.bits.size(); ++i) {
-      bins_[k].motion[i] += sample.bits[i];
+      bin.motion[i] += sample.bits[i];
       by_people_[n].motion[i] += sample.bits[i];
     }
-    Bin& bin = bins_[k];
     bin.fewest = bin.windows == 0.0 ? sample.people : std::min(bin.fewest, sample.people);
     bin.most = std::max(bin.most, sample.people);
     bin.windows += 1.0;
@@ -83,7 +101,7 @@ void DayReport::note_moment(const RunResult& result) {
     const auto n = static_cast<std::size_t>(std::count_if(first, last, inside));
     const std::size_t known = rank(busiest_.people.size(), seated_of(busiest_.people.begin(), busiest_.people.end()));
     if (n > 0 && (busiest_.people.empty() || rank(n, seated_of(first, last)) > known)) {
-      busiest_.clock = first->clock;
+      busiest_.time = first->clock.empty() ? "second " + fixed(first->time_s, 0) : first->clock;
       busiest_.people.clear();
       std::copy_if(first, last, std::back_inserter(busiest_.people), inside);
     }
@@ -91,14 +109,21 @@ void DayReport::note_moment(const RunResult& result) {
   }
 }
 
+std::string DayReport::over_runs() const { return days_ == 1 ? "" : has_clock_ ? " over the days" : " over the runs"; }
+
+void DayReport::set_time_axis(io::LineChart& chart) const {
+  chart.x_label = has_clock_ ? "time of day" : "hours since the run began";
+  if (has_clock_) chart.x_ticks = io::LineChart::Ticks::clock;
+  chart.x_low = from_h_;
+  chart.x_high = to_h();
+}
+
 io::LineChart DayReport::people_chart() const {
   io::LineChart chart;
   chart.title = "People in the room";
-  chart.note = "mean of every ten minutes over the days, with the least and the most that there were at once";
-  chart.x_label = "time of day, h";
+  chart.note = "mean of every ten minutes" + over_runs() + ", with the least and the most that there were at once";
+  set_time_axis(chart);
   chart.y_label = "people";
-  chart.x_low = from_h_;
-  chart.x_high = to_h_;
   io::LineChart::Line line;
   double most = 1.0;
   for (std::size_t k = 0; k < bins_.size(); ++k) {
@@ -107,7 +132,7 @@ io::LineChart DayReport::people_chart() const {
     const double mean = bin.people / bin.windows;
     most = std::max<double>(most, bin.most);
     line.points.push_back(
-        {hour_of(k), mean, bin.fewest, bin.most, fixed(hour_of(k), 2) + " h: " + fixed(mean, 2) + " people"});
+        {hour_of(k), mean, bin.fewest, bin.most, time_of(hour_of(k)) + ": " + fixed(mean, 2) + " people"});
   }
   chart.y_high = most;
   chart.lines.push_back(std::move(line));
@@ -117,16 +142,14 @@ io::LineChart DayReport::people_chart() const {
 io::LineChart DayReport::sensor_chart(std::size_t sensor) const {
   io::LineChart chart;
   chart.title = model_->scene().sensors[sensor].id;
-  chart.note = "share of rows with motion in every ten minutes, over the days";
-  chart.x_label = "time of day, h";
+  chart.note = "share of rows with motion in every ten minutes" + over_runs();
+  set_time_axis(chart);
   chart.y_label = "share";
-  chart.x_low = from_h_;
-  chart.x_high = to_h_;
   io::LineChart::Line line;
   for (std::size_t k = 0; k < bins_.size(); ++k) {
     if (bins_[k].windows == 0.0) continue;
     const double share = bins_[k].motion[sensor] / bins_[k].windows;
-    line.points.push_back({hour_of(k), share, {}, {}, fixed(hour_of(k), 2) + " h: " + percent(share) + " %"});
+    line.points.push_back({hour_of(k), share, {}, {}, time_of(hour_of(k)) + ": " + percent(share) + " %"});
   }
   chart.lines.push_back(std::move(line));
   return chart;
@@ -159,26 +182,32 @@ io::MapChart DayReport::floor_chart() const {
   io::MapChart chart;
   chart.title = "Where people were";
   chart.note =
-      "minutes a day in each square of 25 cm, seats many more than five; triangles: who was there at " + busiest_.clock;
-  chart.label = "min a day";
-  chart.unit = "min a day (5: or more)";
+      "The floor in squares of 25 cm, seen from above: how long somebody was in each, the times of all people " +
+      std::string(days_ == 1   ? "added up. "
+                  : has_clock_ ? "added up, on an average day. "
+                               : "added up, in an average run. ") +
+      "Red dots: who was there at " + busiest_.time + ".";
+  chart.label = "somebody was here";
+  chart.unit = days_ == 1 ? "min" : has_clock_ ? "min a day" : "min a run";
+  // Seats are taken for hours and ways for seconds: an even scale would show either the one or the other.
+  chart.classes = {{-1.0, "never"},      {0.0, "up to 1 min"},    {1.0, "1 to 5 min"},
+                   {5.0, "5 to 30 min"}, {30.0, "30 min to 2 h"}, {120.0, "over 2 h"}};
   chart.lower = model_->compiled().scene().floor.lower();
   chart.spacing_m = square_m;
   chart.columns = static_cast<int>(columns_);
   chart.rows = static_cast<int>(squares_.size() / columns_);
-  chart.max = 5.0;
   for (std::size_t i = 0; i < squares_.size(); ++i) {
     const Vec2 centre =
         chart.lower + square_m * Vec2(static_cast<double>(i % columns_) + 0.5, static_cast<double>(i / columns_) + 0.5);
     const double minutes = squares_[i] / 60.0 / std::max(1, days_);
     const bool shown = squares_[i] > 0.0 || model_->compiled().scene().floor.contains(centre);
-    chart.values.push_back(shown ? std::optional(std::round(100.0 * std::min(minutes, chart.max)) / 100.0)
-                                 : std::nullopt);
+    chart.max = std::max(chart.max, minutes);
+    // Rounded up, so that what is more than nothing stays more.
+    chart.values.push_back(shown ? std::optional(std::ceil(100.0 * minutes) / 100.0) : std::nullopt);
   }
   chart.plan = plan_of(model_->compiled().scene());
-  for (const OccupantRow& row : busiest_.people) {
-    chart.markers.push_back({row.person, row.place_m, 0.0});
-  }
+  chart.signs = io::MapChart::Signs::people;
+  for (const OccupantRow& row : busiest_.people) chart.markers.push_back({row.person, row.place_m, 0.0});
   return chart;
 }
 
@@ -188,9 +217,13 @@ io::ReportSection DayReport::section(const std::string& heading) const {
     section.paragraphs.push_back("Nobody came.");
     return section;
   }
-  section.paragraphs.push_back((days_ == 1 ? "One day" : std::to_string(days_) + " days") +
-                               " on which somebody came. First how many people were in the room, by the time of day, "
-                               "then how much motion each sensor reported at that time.");
+  section.paragraphs.push_back(
+      (has_clock_
+           ? count_of(days_, "day") + " on which somebody came. The first chart tells how many people were in the "
+                                      "room at each time of day, "
+           : count_of(days_, "run") + " in which somebody came. The first chart tells how many people were in the "
+                                      "room as time went on, ") +
+      "the next ones how much motion each sensor reported then.");
   section.charts.emplace_back(people_chart());
   std::vector<io::LineChart> sensors;
   double most = 0.05;
@@ -204,14 +237,18 @@ io::ReportSection DayReport::section(const std::string& heading) const {
   }
   section.charts.emplace_back(count_chart());
   section.charts.emplace_back(floor_chart());
+  section.paragraphs.push_back(
+      "In the map of the floor white triangles are seats, pointing the way who sits there faces; a green line is a "
+      "door, "
+      "dotted lines are furniture, black areas are walls. Point at anything for its name or value.");
   return section;
 }
 
 io::ReportSection DayReport::moment_section(const std::string& heading) const {
   io::ReportSection section{heading, {}, {}, {}};
-  section.paragraphs.push_back("Most people were in the room at " + busiest_.clock +
+  section.paragraphs.push_back("Most people were in the room at " + busiest_.time +
                                "; of all such moments it is the first at which the most of them were on their feet. "
-                               "This is what each of them did. Triangles in the map above show where.");
+                               "This is what each of them did. Red dots in the map above show where.");
   io::Table table{{"who", "does", "seat"}, {}};
   for (const OccupantRow& row : busiest_.people) table.rows.push_back({row.person, row.activity, row.seat});
   section.tables.push_back(std::move(table));

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "io/canvas.hpp"
 #include "io/lettering.hpp"
 #include "io/person_colours.hpp"
 #include "pirsim/error.hpp"
@@ -65,15 +66,61 @@ rt::Colour colour_of(body::Part part, std::size_t person) {
   }
 }
 
-/// From above and beside, far enough to hold the whole floor area and a storey of height.
-rt::Camera dolls_house_camera(const SceneSpec& scene, double fov_rad, double aspect) {
-  const Vec2 lower = scene.floor.lower(), upper = scene.floor.upper();
-  const Vec2 middle = 0.5 * (lower + upper);
-  const Vec3 target(middle.x, scene.floor.height_m() + 0.6, middle.y);
-  const double radius = 0.5 * glm::length(Vec3(upper.x - lower.x, 2.0, upper.y - lower.y));
-  const double narrow = std::min(fov_rad, 2.0 * std::atan(std::tan(fov_rad / 2.0) * aspect));
-  const Vec3 direction = glm::normalize(Vec3(-0.55, 0.85, -1.0));
-  return {target + direction * (0.95 * radius / std::sin(narrow / 2.0)), target, fov_rad};
+/// A part of the picture, in pixels; y runs down.
+using io::PixelBox;
+
+/// The corners of what is to be seen: the floor with its walls, and the names above them.
+std::vector<Vec3> corners_of(const SceneSpec& scene) {
+  constexpr double least_m = 2.0, most_m = 4.0, thickest_m = 0.6, name_m = 0.2;
+  const double y = scene.floor.height_m();
+  const Vec2 least = scene.floor.lower(), most = scene.floor.upper();
+  Vec3 lower(least.x, y, least.y), upper(most.x, y + least_m, most.y);
+  for (const TriMesh& mesh : scene.meshes) {
+    if (role_of(mesh, y) != MeshRole::wall) continue;
+    for (const Vec3& p : mesh.positions) {
+      lower = glm::min(lower, glm::max(p, Vec3(least.x - thickest_m, y, least.y - thickest_m)));
+      upper = glm::max(upper, glm::min(p, Vec3(most.x + thickest_m, y + most_m, most.y + thickest_m)));
+    }
+  }
+  upper.y += name_m;
+  std::vector<Vec3> corners;
+  for (unsigned i = 0; i < 8; ++i) {
+    corners.emplace_back((i & 1U) != 0 ? upper.x : lower.x, (i & 2U) != 0 ? upper.y : lower.y,
+                         (i & 4U) != 0 ? upper.z : lower.z);
+  }
+  return corners;
+}
+
+/// From above and beside, as near as the points fit into a part of the picture.
+rt::Camera camera_that_holds(const std::vector<Vec3>& points, const PixelBox& part, const PictureSpec& spec) {
+  const Vec3 back = glm::normalize(Vec3(-0.55, 0.85, -1.0));
+  const double half_height = 0.5 * spec.height, fov = radians(spec.field_of_view_deg);
+  const double pixels_per_tangent = half_height / std::tan(0.5 * fov);
+  const Vec3 right = glm::normalize(glm::cross(-back, Vec3(0, 1, 0))), up = glm::cross(right, -back);
+  // A point at p is seen at the tangent (p - c) / (d - p_back), where c and d are the camera's place across and back.
+  // So c + high d >= p + high p_back and c + low d <= p + low p_back, for the tangents of the part's edges.
+  struct Axis {
+    Vec3 across;
+    double low, high;                 ///< tangents
+    double least = -1e9, most = 1e9;  ///< of c + high d, and of c + low d
+  };
+  Axis x{right, (part.lower.x - 0.5 * spec.width) / pixels_per_tangent,
+         (part.upper.x - 0.5 * spec.width) / pixels_per_tangent};
+  Axis y{up, (half_height - part.upper.y) / pixels_per_tangent, (half_height - part.lower.y) / pixels_per_tangent};
+  double away = 0.0;
+  for (Axis* axis : {&x, &y}) {
+    for (const Vec3& p : points) {
+      const double at = glm::dot(p, axis->across), nearer = glm::dot(p, back);
+      axis->least = std::max(axis->least, at + axis->high * nearer);
+      axis->most = std::min(axis->most, at + axis->low * nearer);
+    }
+    away = std::max(away, (axis->least - axis->most) / (axis->high - axis->low));
+  }
+  Vec3 position = away * back, middle(0.0);
+  for (const Axis* axis : {&x, &y})
+    position += axis->across * 0.5 * (axis->least - axis->high * away + axis->most - axis->low * away);
+  for (const Vec3& p : points) middle += p / static_cast<double>(points.size());
+  return {position, position - back * glm::dot(position - middle, back), fov};
 }
 
 /// A camera that the user has placed.
@@ -205,9 +252,9 @@ Marks marks_of(const Model& model, const State& state, const std::vector<Mark>& 
 }
 
 /// Of texts, in pixels, so that a larger picture shows the same.
-double text_size(const io::Pixels& image) {
-  constexpr double size_px = 12.5, reference_height = 720.0;
-  return std::max(8.0, size_px * image.height / reference_height);
+double text_size(const PictureSpec& spec) {
+  constexpr double size_px = 15.0, reference_height = 720.0;
+  return std::max(9.0, size_px * spec.height / reference_height);
 }
 
 /// Darker than the lines, so that it can be read; light colours still more so.
@@ -217,51 +264,110 @@ Vec3 ink(const rt::Colour& colour) {
   return 255.0 * glm::pow(light, Vec3(1.0 / 2.2)) * (luminance > 0.4 ? 0.6 : 0.8);
 }
 
-void write_labels(const Marks& marks, const rt::View& view, bool scale_is_seen, io::Pixels& image) {
-  const double size = text_size(image);
-  const auto height = static_cast<float>(image.height);
+/// What the colours of a picture mean, in its lower left corner.
+struct Key {
+  std::vector<std::pair<std::string, rt::Colour>> entries;
+  double line_px = 0.0, size_px = 0.0;
+  PixelBox box;  ///< of no width if there are no entries
+
+  [[nodiscard]] double sign_px() const { return 1.6 * size_px; }
+};
+
+Key key_of(const PictureSpec& spec, const Marks& marks, double size_px) {
+  constexpr std::size_t most_people = 8;  // whose colours differ
+  const auto wanted = [&](Mark mark) { return std::ranges::find(spec.marks, mark) != spec.marks.end(); };
+  const double height = spec.height;
+  Key key{{}, 1.45 * size_px, size_px, {Vec2(0.0, height), Vec2(0.0, height)}};
+  if (!wanted(Mark::key)) return key;
+  if (!spec.beams_of.empty()) {
+    key.entries.emplace_back("a sensor's beam", idle_beam);
+    key.entries.emplace_back("a beam that hits a person", seeing_beam);
+  }
+  if (wanted(Mark::sensors)) key.entries.emplace_back("sensor", scale_colour);
+  if (wanted(Mark::seats)) key.entries.emplace_back("seat", seat_colour);
+  if (wanted(Mark::doors)) key.entries.emplace_back("door", door_colour);
+  if (marks.people.size() <= most_people) {
+    for (const Label& person : marks.people) key.entries.emplace_back("person " + person.text, person.colour);
+  } else {
+    key.entries.emplace_back("people: name and shirt have one colour", scale_colour);
+  }
+  double width = 0.0;
+  for (const auto& [text, colour] : key.entries) width = std::max(width, io::text_extent(text, size_px).x);
+  if (key.entries.empty()) return key;
+  key.box.lower.y -= key.line_px * (static_cast<double>(key.entries.size()) + 1.0);
+  key.box.upper.x = width + key.sign_px() + 3.0 * key.line_px;
+  return key;
+}
+
+void write_key(const Key& key, io::Pixels& image) {
+  Vec2 at = Vec2(key.line_px, key.box.lower.y + key.line_px);
+  for (const auto& [text, colour] : key.entries) {
+    const Vec2 left = at + Vec2(0.0, 0.5 * key.size_px), extent = io::text_extent(text, key.size_px);
+    io::Canvas(image).line(left, left + Vec2(key.sign_px(), 0.0), ink(colour), 0.3 * key.size_px);
+    const double text_from = at.x + key.sign_px() + 0.6 * key.size_px;
+    io::write_text(image, {text_from + 0.5 * extent.x, at.y + key.size_px}, text, key.size_px, ink(scale_colour));
+    at.y += key.line_px;
+  }
+}
+
+/// A line from the name to what it names, where the name stands apart from it.
+void draw_leader(const io::Lettering& text, const Vec2& point, double size_px, io::Pixels& image) {
+  const PixelBox box = io::box_of(text, size_px);
+  const Vec2 from(std::clamp(point.x, box.lower.x, box.upper.x), std::clamp(point.y, box.lower.y, box.upper.y));
+  io::Canvas canvas(image);
+  canvas.line(from, point, Vec3(255.0), 0.22 * size_px);
+  canvas.line(from, point, text.colour, 0.1 * size_px);
+}
+
+void write_labels(const Marks& marks, const rt::View& view, bool scale_is_seen, const Key& key, io::Pixels& image) {
+  const double size = key.size_px, lift = 0.9 * size;  // of a person's name above the head
   std::vector<Label> labels = marks.labels;
-  labels.insert(labels.end(), marks.people.begin(), marks.people.end());
   if (scale_is_seen) {
     constexpr double before_m = 0.3;
     labels.push_back({0.5 * (marks.scale->from + marks.scale->to) - Vec3(0.0, 0.0, before_m), "1 m", scale_colour});
   }
+  const std::size_t n_things = labels.size();
+  labels.insert(labels.end(), marks.people.begin(), marks.people.end());
   std::vector<io::Lettering> texts;
-  for (const Label& label : labels) {
-    auto at = view.pixel_of(Vec3f(label.at));
-    if (!at) continue;
-    // One that the lower edge would cut stands on it.
-    if (at->y > height && at->y < height + size) at->y = height;
-    texts.push_back({Vec2(*at), label.text, ink(label.colour)});
+  std::vector<Vec2> points;
+  const auto is_in_picture = [&](const Vec2& at) {
+    return at.x >= 0.0 && at.y >= 0.0 && at.x < image.width && at.y < image.height + size;
+  };
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const auto at = view.pixel_of(Vec3f(labels[i].at));
+    if (!at || !is_in_picture(Vec2(*at))) continue;
+    const double half = 0.5 * io::text_extent(labels[i].text, size).x, width = image.width;
+    // One that an edge would cut stands on it.
+    Vec2 bottom(std::clamp<double>(at->x, std::min(half, 0.5 * width), std::max(width - half, 0.5 * width)),
+                at->y - (i < n_things ? 0.0 : lift));
+    bottom.y = std::clamp(bottom.y, std::min<double>(size, image.height), static_cast<double>(image.height));
+    points.emplace_back(*at);
+    texts.push_back({bottom, labels[i].text, ink(labels[i].colour)});
   }
-  for (const io::Lettering& text : io::set_apart(std::move(texts), size))
-    io::write_text(image, text.bottom, text.text, size, text.colour);
+  std::vector<PixelBox> taken;
+  if (!key.entries.empty()) taken.push_back(key.box);
+  texts = io::set_apart(std::move(texts), size, taken);
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    if (glm::distance(texts[i].bottom, points[i]) > 0.8 * size) draw_leader(texts[i], points[i], size, image);
+  }
+  for (const io::Lettering& text : texts) io::write_text(image, text.bottom, text.text, size, text.colour);
 }
 
-/// What the colours of this picture mean, in its lower left corner.
-void write_key(const PictureSpec& spec, const Marks& marks, io::Pixels& image) {
-  constexpr std::size_t most_people = 8;  // whose colours differ
-  const auto wanted = [&](Mark mark) { return std::ranges::find(spec.marks, mark) != spec.marks.end(); };
-  if (!wanted(Mark::key)) return;
-  std::vector<std::pair<std::string, rt::Colour>> entries;
-  if (!spec.beams_of.empty()) {
-    entries.emplace_back("a sensor's beam", idle_beam);
-    entries.emplace_back("a beam that hits a person", seeing_beam);
+/// The room and its scale beside the key or above it, where they are larger.
+rt::Camera dolls_house_camera(const SceneSpec& scene, const Marks& marks, const Key& key, const PictureSpec& spec) {
+  const double margin_px = 0.008 * std::min(spec.width, spec.height);
+  const PixelBox all{Vec2(margin_px), Vec2(spec.width, spec.height) - margin_px};
+  PixelBox beside = all, above = all;
+  beside.lower.x = std::min(std::max(all.lower.x, key.box.upper.x), 0.5 * spec.width);
+  above.upper.y = std::max(std::min(all.upper.y, key.box.lower.y), 0.5 * spec.height);
+  std::vector<Vec3> corners = corners_of(scene);
+  constexpr double below_scale_m = 0.15;  // its name
+  if (marks.scale) {
+    for (const Vec3& end : {marks.scale->from, marks.scale->to}) corners.push_back(end - Vec3(0.0, 0.0, below_scale_m));
   }
-  if (wanted(Mark::sensors)) entries.emplace_back("sensor", scale_colour);
-  if (wanted(Mark::seats)) entries.emplace_back("seat", seat_colour);
-  if (wanted(Mark::doors)) entries.emplace_back("door", door_colour);
-  if (marks.people.size() <= most_people) {
-    for (const Label& person : marks.people) entries.emplace_back("person " + person.text, person.colour);
-  } else {
-    entries.emplace_back("people: name and shirt have one colour", scale_colour);
-  }
-  const double size = text_size(image), line = 1.5 * size;
-  Vec2 at(line, image.height - line - line * (static_cast<double>(entries.size()) - 1.0));
-  for (const auto& [text, colour] : entries) {
-    io::write_text(image, at + Vec2(0.5 * io::text_extent(text, size).x, 0.0), text, size, ink(colour));
-    at.y += line;
-  }
+  const rt::Camera right = camera_that_holds(corners, beside, spec), top = camera_that_holds(corners, above, spec);
+  const auto away = [](const rt::Camera& camera) { return glm::distance(camera.position, camera.target); };
+  return away(right) <= away(top) ? right : top;
 }
 
 }  // namespace
@@ -301,8 +407,8 @@ io::Pixels picture(const Model& model, const State& state, const PictureSpec& sp
                         [](const rt::Beam& beam) { return beam.colour == idle_beam; });
   const Marks marks = marks_of(model, state, spec.marks);
   beams.insert(beams.end(), marks.lines.begin(), marks.lines.end());
-  const double fov = radians(spec.field_of_view_deg);
-  rt::Camera camera = dolls_house_camera(scene, fov, static_cast<double>(spec.width) / spec.height);
+  const Key key = key_of(spec, marks, text_size(spec));
+  rt::Camera camera = dolls_house_camera(scene, marks, key, spec);
   if (spec.camera) camera.position = *spec.camera;
   if (spec.look_at) camera.target = *spec.look_at;
   require_usable(camera);
@@ -311,8 +417,8 @@ io::Pixels picture(const Model& model, const State& state, const PictureSpec& sp
   const rt::View view = rt::make_view(camera, spec.width, spec.height);
   const bool scale_is_seen = marks.scale && is_seen(*marks.scale, view, image);
   io::Pixels pixels{image.width, image.height, std::move(image.rgb)};
-  write_labels(marks, view, scale_is_seen, pixels);
-  write_key(spec, marks, pixels);
+  write_labels(marks, view, scale_is_seen, key, pixels);
+  write_key(key, pixels);
   return pixels;
 }
 

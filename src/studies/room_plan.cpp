@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <glm/common.hpp>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <tuple>
 
+#include "geom/mesh_section.hpp"
 #include "pirsim/geometry.hpp"
 
 namespace pirsim::studies {
@@ -76,6 +78,20 @@ void add_pieces(const TriMesh& mesh, std::vector<std::vector<Vec2>>& polygons) {
   }
 }
 
+void add_wall(const TriMesh& mesh, double floor_height_m, io::RoomPlan& plan) {
+  constexpr double cut_m = 1.0, thickest_m = 0.6;
+  MeshSection section = section_of(mesh, floor_height_m + cut_m);
+  if (mean_thickness_m(section.loops) <= thickest_m) {
+    if (!section.loops.empty()) plan.walls.push_back(std::move(section.loops));
+  } else {  // a shell round the room
+    for (std::vector<Vec2>& loop : section.loops) {
+      loop.push_back(loop.front());
+      plan.wall_lines.push_back(std::move(loop));
+    }
+  }
+  std::ranges::move(section.lines, std::back_inserter(plan.wall_lines));
+}
+
 }  // namespace
 
 MeshRole role_of(const TriMesh& mesh, double floor_height_m) {
@@ -92,7 +108,9 @@ io::RoomPlan plan_of(const SceneSpec& scene) {
   io::RoomPlan plan;
   plan.outline = scene.floor.loops();
   for (const TriMesh& mesh : scene.meshes) {
-    if (role_of(mesh, scene.floor.height_m()) == MeshRole::furniture) add_pieces(mesh, plan.furniture);
+    const MeshRole role = role_of(mesh, scene.floor.height_m());
+    if (role == MeshRole::furniture) add_pieces(mesh, plan.furniture);
+    if (role == MeshRole::wall) add_wall(mesh, scene.floor.height_m(), plan);
   }
   for (const SeatSpec& seat : scene.seats)
     plan.seats.push_back({seat.id, floor_point(seat.world_from_seat.origin), heading_of(seat.world_from_seat)});

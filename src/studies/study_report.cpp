@@ -34,14 +34,16 @@ std::size_t squares_per_block_side(const FloorGrid& grid) {
       std::ceil(std::sqrt(static_cast<double>(grid.n_columns() * grid.n_rows()) / most_drawn)));
 }
 
-std::optional<double> block_mean(const CoverageMap& map, std::size_t sensor, std::size_t column, std::size_t row,
+/// count(column, row): of a square on the floor.
+template <typename Count>
+std::optional<double> block_mean(const FloorGrid& grid, Count count, std::size_t column, std::size_t row,
                                  std::size_t side) {
   double sum = 0.0;
   int squares = 0;
-  for (std::size_t r = row; r < std::min(row + side, map.grid.n_rows()); ++r) {
-    for (std::size_t c = column; c < std::min(column + side, map.grid.n_columns()); ++c) {
-      if (!map.grid.on_floor(c, r)) continue;
-      sum += map.count(c, r, sensor);
+  for (std::size_t r = row; r < std::min(row + side, grid.n_rows()); ++r) {
+    for (std::size_t c = column; c < std::min(column + side, grid.n_columns()); ++c) {
+      if (!grid.on_floor(c, r)) continue;
+      sum += count(c, r);
       ++squares;
     }
   }
@@ -49,19 +51,21 @@ std::optional<double> block_mean(const CoverageMap& map, std::size_t sensor, std
   return sum / squares;
 }
 
+io::MapChart::Marker marker_of(const SensorSpec& sensor) {
+  return {sensor.id, floor_point(sensor.world_from_sensor.origin), heading_of(sensor.world_from_sensor)};
+}
+
 std::vector<std::string> row_of(const std::string& name, const MapFigures& f) {
   return {name, fixed(f.mean_step, 1), std::to_string(f.greatest_step), fixed(100.0 * f.blind_fraction, 1) + " %",
           fixed(f.seen_area_m2, 2)};
 }
 
-}  // namespace
-
-io::MapChart map_chart(const CoverageStudy& study, const CoverageMap& map, std::size_t sensor) {
+/// A map without title and sensors.
+template <typename Count>
+io::MapChart map_with(const CoverageStudy& study, const CoverageMap& map, Count count) {
   const FloorGrid& grid = map.grid;
   const std::size_t side = squares_per_block_side(grid);
-  const SensorSpec& spec = study.scene().sensors[sensor];
   io::MapChart chart;
-  chart.title = spec.id;
   chart.label = "motion, s";
   const double window_s =
       static_cast<double>(study.spec().sensing.ticks_per_window) / study.spec().sensing.tick_rate_hz;
@@ -73,13 +77,33 @@ io::MapChart map_chart(const CoverageStudy& study, const CoverageMap& map, std::
   chart.rows = static_cast<int>((grid.n_rows() + side - 1) / side);
   for (std::size_t row = 0; row < grid.n_rows(); row += side) {
     for (std::size_t column = 0; column < grid.n_columns(); column += side) {
-      chart.values.push_back(block_mean(map, sensor, column, row, side));
+      chart.values.push_back(block_mean(grid, count, column, row, side));
     }
   }
   chart.max = map.n_windows;
   chart.plan = plan_of(study.scene());
   chart.dashed = places_of(study);
-  chart.markers = {{spec.id, floor_point(spec.world_from_sensor.origin), heading_of(spec.world_from_sensor)}};
+  return chart;
+}
+
+}  // namespace
+
+io::MapChart map_chart(const CoverageStudy& study, const CoverageMap& map, std::size_t sensor) {
+  io::MapChart chart =
+      map_with(study, map, [&](std::size_t column, std::size_t row) { return map.count(column, row, sensor); });
+  chart.title = map.sensors[sensor];
+  chart.markers = {marker_of(study.scene().sensors[sensor])};
+  return chart;
+}
+
+io::MapChart map_of_all(const CoverageStudy& study, const CoverageMap& map) {
+  io::MapChart chart = map_with(study, map, [&](std::size_t column, std::size_t row) {
+    MotionCount most = 0;
+    for (std::size_t i = 0; i < map.sensors.size(); ++i) most = std::max<MotionCount>(most, map.count(column, row, i));
+    return most;
+  });
+  chart.title = "all sensors";
+  for (const SensorSpec& sensor : study.scene().sensors) chart.markers.push_back(marker_of(sensor));
   return chart;
 }
 
@@ -107,6 +131,12 @@ io::Report coverage_report(const CoverageStudy& study, const CoverageMap& map, c
        {std::move(table)},
        {}});
   io::ReportSection maps{"Maps", {}, {}, {}};
+  if (map.sensors.size() > 1) {
+    io::MapChart chart = map_of_all(study, map);
+    chart.note = "in each square the sensor that reported motion most often there; " +
+                 fixed(100.0 * figures.all.blind_fraction, 0) + " % of the squares are blind to all";
+    maps.charts.emplace_back(std::move(chart));
+  }
   for (std::size_t i = 0; i < map.sensors.size(); ++i) {
     io::MapChart chart = map_chart(study, map, i);
     chart.note = "blind in " + fixed(100.0 * figures.sensors[i].blind_fraction, 0) + " % of the squares";
@@ -169,13 +199,19 @@ std::string introduction(const Model& model, const std::vector<std::string>& sen
               : " while the phase was " + boost::algorithm::join(script.summary.phases, ", ") + ".");
 }
 
+/// Second by second nobody can read it. How long runs without a set duration are isn't known before they end.
+bool lasts_hours(const TrialSpec& trial) {
+  constexpr double long_run_s = 7200.0;
+  return trial.schedule || (trial.duration_s && *trial.duration_s >= long_run_s);
+}
+
 }  // namespace
 
 StudyReport::StudyReport(const Model& model) : model_(&model) {
   for (const SensorSpec& sensor : model.scene().sensors) sensors_.push_back(sensor.id);
   for (const TrialSpec& trial : model.script().trials) {
     trials_.push_back({trial.id, {}, {}});
-    if (trial.schedule) trials_.back().days.emplace(model, *trial.schedule);
+    if (lasts_hours(trial)) trials_.back().days.emplace(model);
   }
 }
 
@@ -193,6 +229,7 @@ io::SeriesChart StudyReport::series_of(const Trial& trial) const {
   const SensingSpec& sensing = model_->script().sensing;
   io::SeriesChart chart;
   chart.title = "trial " + trial.id;
+  if (!trial.samples.empty()) chart.first_clock = trial.samples.front().clock;
   chart.window_s = static_cast<double>(sensing.ticks_per_window) / sensing.tick_rate_hz;
   if (!trial.samples.empty()) chart.end_s = trial.samples.back().time_s;
   chart.phases = counted_phases(trial.samples, model_->script().summary, chart.window_s);
@@ -214,32 +251,45 @@ io::SeriesChart StudyReport::series_of(const Trial& trial) const {
 io::Report StudyReport::finish(const Summary& summary) const {
   const ScriptSpec& script = model_->script();
   const std::vector<CellSummary> cells = summary.cells();  // trials in order, sensors within each
+  const auto is_measured = [&](std::size_t trial) {
+    const auto first = cells.begin() + static_cast<std::ptrdiff_t>(trial * sensors_.size());
+    return std::any_of(first, first + static_cast<std::ptrdiff_t>(sensors_.size()),
+                       [](const CellSummary& cell) { return cell.measured.has_value(); });
+  };
   io::Report report;
   report.title = script.name;
-  if (needs_occupants()) {
-    report.paragraphs = {std::to_string(script.replicates) + (script.replicates == 1 ? " day in " : " days in ") +
-                         model_->scene().name + ", watched by " + boost::algorithm::join(sensors_, ", ") + "."};
-  } else {
+  const bool has_counts = summary.overall().cells > 0 ||
+                          std::ranges::any_of(trials_, [](const Trial& trial) { return !trial.days.has_value(); });
+  if (has_counts) {
     report.paragraphs = {introduction(*model_, sensors_)};
     if (summary.overall().cells > 0)
       report.sections.push_back({"In numbers", {}, {overall_table(summary.overall())}, {}});
+  } else {
+    const std::string unit = script.trials.front().schedule ? "day" : "run";
+    report.paragraphs = {std::to_string(model_->n_runs()) + " " + unit + (model_->n_runs() == 1 ? " in " : "s in ") +
+                         model_->scene().name + ", watched by " + boost::algorithm::join(sensors_, ", ") + "."};
   }
 
   for (std::size_t t = 0; t < trials_.size(); ++t) {
     if (trials_[t].days) {
       const std::string whose = trials_.size() == 1 ? "" : " of trial " + trials_[t].id;
-      report.sections.push_back(trials_[t].days->section("Days" + whose));
+      const std::string what = script.trials[t].schedule ? "Days" : "The whole run";
+      report.sections.push_back(trials_[t].days->section(what + whose));
       if (trials_[t].days->has_moment())
         report.sections.push_back(trials_[t].days->moment_section("The fullest moment" + whose));
-      continue;
+      if (!is_measured(t)) continue;
     }
     io::ReportSection section{"Trial " + trials_[t].id, {}, {}, {}};
     if (t == 0) {
       section.paragraphs = {
           "How often each count came out over the runs." +
           std::string(summary.overall().cells > 0 ? " The coloured line is the measured count." : "") +
-          " Below: the first run, window by window, with the number of people above the sensors" +
-          (counted_phases(trials_[t].samples, script.summary, 1.0).empty() ? "." : "; counted windows are shaded.")};
+          (trials_[t].samples.empty()
+               ? ""
+               : " Below: the first run, window by window, with the number of people above the sensors" +
+                     std::string(counted_phases(trials_[t].samples, script.summary, 1.0).empty()
+                                     ? "."
+                                     : "; counted windows are shaded."))};
     }
     for (std::size_t s = 0; s < sensors_.size(); ++s) {
       const CellSummary& cell = cells[t * sensors_.size() + s];

@@ -15,17 +15,19 @@ namespace pirsim::studies {
 
 /// One sensor's map with the walls, the sensor and, dashed, what was taken out of the room.
 [[nodiscard]] io::MapChart map_chart(const CoverageStudy& study, const CoverageMap& map, std::size_t sensor);
+/// In each square the count of the sensor that reported motion most often there.
+[[nodiscard]] io::MapChart map_of_all(const CoverageStudy& study, const CoverageMap& map);
 
 [[nodiscard]] io::Report coverage_report(const CoverageStudy& study, const CoverageMap& map,
                                          const CoverageFigures& figures);
 
-/// Days of a schedule: people and sensors over the day, motion by number of people, where people were.
-/// Of one trial; keeps sums alone, so that a year takes no more memory than a day.
+/// Days of a schedule, or other long runs: people and sensors over the day, motion by number of people, where people
+/// were. Of one trial; keeps sums alone, so that a year takes no more memory than a day.
 class DayReport {
  public:
-  DayReport(const Model& model, const ScheduleSpec& schedule);
+  explicit DayReport(const Model& model);
 
-  /// With occupants. Days on which nobody comes are left out.
+  /// With occupants. Days on which nobody comes are left out. Runs of one trial all have a clock or none.
   void add_run(const RunResult& result);
   [[nodiscard]] io::ReportSection section(const std::string& heading) const;
   /// Did anybody come?
@@ -44,7 +46,7 @@ class DayReport {
     std::vector<double> motion;  ///< (n_sensors) windows
   };
   struct Moment {
-    std::string clock;
+    std::string time;
     std::vector<OccupantRow> people;
   };
   void note_moment(const RunResult& result);
@@ -52,11 +54,18 @@ class DayReport {
   [[nodiscard]] io::LineChart sensor_chart(std::size_t sensor) const;
   [[nodiscard]] io::GridChart count_chart() const;
   [[nodiscard]] io::MapChart floor_chart() const;
+  [[nodiscard]] Bin& bin_at(double time_s);
   [[nodiscard]] double hour_of(std::size_t bin) const;
+  [[nodiscard]] double to_h() const;
+  [[nodiscard]] std::string time_of(double hours) const;
+  [[nodiscard]] std::string over_runs() const;
+  void set_time_axis(io::LineChart& chart) const;
 
   const Model* model_;
   double window_s_;
-  double from_h_, to_h_;
+  bool has_clock_ = false;
+  double from_h_ = 0.0;  ///< of the day, or of the run if it has no clock
+  double longest_s_ = 0.0;
   std::vector<Bin> bins_;
   std::vector<Count> by_people_;  ///< (most people + 1)
   std::size_t columns_ = 0;       ///< of the floor's squares
@@ -71,18 +80,18 @@ class StudyReport {
   explicit StudyReport(const Model& model);
 
   void add_run(const RunResult& result);
-  /// Days are shown with where people were.
+  /// Long runs are shown with where people were.
   [[nodiscard]] bool needs_occupants() const noexcept;
-  /// Of days of a schedule: people and sensors over the day, and so on. Otherwise: histograms a trial and sensor as in
-  /// [Stefansson2021] Figure 8, with the summary's measured counts as lines, and the first replicate's time series as
-  /// in Figure 9.
+  /// Of days of a schedule and of other runs of hours: people and sensors over the day, and so on. Otherwise:
+  /// histograms a trial and sensor as in [Stefansson2021] Figure 8, with the summary's measured counts as lines, and
+  /// the first replicate's time series as in Figure 9.
   [[nodiscard]] io::Report finish(const Summary& summary) const;
 
  private:
   struct Trial {
     std::string id;
     std::vector<Sample> samples;    ///< of the first replicate
-    std::optional<DayReport> days;  ///< of a schedule
+    std::optional<DayReport> days;  ///< of a schedule, or of runs that last for hours
   };
   [[nodiscard]] io::SeriesChart series_of(const Trial& trial) const;
 

@@ -5,6 +5,7 @@ Usage: run_coverage.py PIRSIM DATA_DIRECTORY
 """
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -35,6 +36,7 @@ def main():
         assert (folder / "four/coverage.csv").read_bytes() == csv, "threads change the map"
         pictures = [folder / "one" / f"PIR{i}.png" for i in range(1, 6)]
         assert all(picture.read_bytes().startswith(b"\x89PNG") for picture in pictures)
+        assert (folder / "one/room.png").read_bytes().startswith(b"\x89PNG")  # of all sensors
         assert pictures[0].read_bytes() == (folder / "four/PIR1.png").read_bytes() != pictures[1].read_bytes()
 
         # Killed on its way, it goes on from its rows to the same bytes.
@@ -58,6 +60,20 @@ def main():
         again = call("coverage", study_b, *coarse, "-o", folder / "full")
         assert "continuing after" in again.stderr, again.stderr
         assert (folder / "full/coverage.csv").read_bytes() == csv
+
+        # The page of the format names every key of `sensing`, and each is read.
+        page = (data.parent / "docs/formats/coverage.md").read_text(encoding="utf-8")
+        named = re.findall(r"`(\w+)`", re.search(r"\| `sensing` \|.*?\|(.*)\|", page)[1])
+        changed = {"rays_per_zone": 1, "change_per": "beam", "response": "analog", "reader": "free_running",
+                   "tick_rate_hz": 25, "window_s": 2, "ambient_c": 30, "analog_rays_per_zone": 9}
+        assert set(named) == set(changed), named
+        for key, value in changed.items():
+            analog = ["--set", "sensing.response=analog"] if key in ("ambient_c", "analog_rays_per_zone") else []
+            maps = []
+            for more in (analog, [*analog, "--set", f"sensing.{key}={value}"]):
+                call("coverage", study_b, "--set", "spacing_m=0.5", "--set", "duration_s=6", *more, "-o", folder / "key")
+                maps.append((folder / "key/coverage.csv").read_bytes())
+            assert maps[0] != maps[1], f"sensing.{key} changes nothing"
 
         fault = call("coverage", study_b, "--set", "without=[tabel]", "-o", folder / "no", code=3)
         assert "tabel" in fault.stderr and "did you mean" in fault.stderr, fault.stderr

@@ -4,12 +4,14 @@ wrong on the console, and pointing at a chart shows a value.
 
 Usage: run_report_pages.py PIRSIM DATA_DIRECTORY; exits with 77 (skipped) where there is no Chromium.
 """
+import json
 import pathlib
 import re
 import subprocess
 import sys
 import tempfile
 
+from box_scene import write_long_office
 from browser import check_fetches_nothing, chromium_or_skip, opened, without_scripts
 
 # Points at the middle of every chart, and writes down what the page then shows.
@@ -28,12 +30,22 @@ setTimeout(() => {
     }
     shown.push(best);
   });
+  // On maps, pairs of names that cover each other.
+  let names = 0, covered = 0;
+  document.querySelectorAll(".map .plot").forEach((place) => {
+    const find = (item) => (item.items || []).flatMap((inner) => (inner.name === "names" ? [inner] : find(inner)));
+    const boxes = find(place.view.scenegraph().root).flatMap((mark) => mark.items.map((item) => item.bounds));
+    names += boxes.length;
+    covered += boxes.filter((a, i) => boxes.slice(0, i).some((b) => a.x1 < b.x2 && b.x1 < a.x2 && a.y1 < b.y2 && b.y1 < a.y2))
+      .length;
+  });
+  document.body.dataset.names = JSON.stringify([names, covered]);
   document.body.dataset.shown = JSON.stringify(shown);
 }, 3000);
 </script>"""
 
 
-def check_page(chromium, page, expected, folder, widths=(1400, 500)):
+def check_page(chromium, page, expected, folder, widths=(1400, 500), least_names=0):
     check_fetches_nothing(page)
     text = page.read_text(encoding="utf-8")
     pointed = folder / ("pointed_" + page.name)
@@ -46,6 +58,9 @@ def check_page(chromium, page, expected, folder, widths=(1400, 500)):
         assert shown, f"{page.name}: the pointer did not run"
         values = shown.group(1).replace("&quot;", '"')
         assert '""' not in values, f"{page.name}, {width} wide: a chart shows no value: {values}"
+        names, covered = json.loads(re.search(r'data-names="(.*?)"', dom)[1])
+        assert covered == 0, f"{page.name}, {width} wide: {covered} of {names} names lie on others"
+        assert names >= least_names, f"{page.name}, {width} wide: {names} names"
 
 
 def main():
@@ -56,12 +71,17 @@ def main():
         scene = ["-q", "--scene", str(data / "rooms/meeting_room.gltf")]
         subprocess.run([pirsim, "coverage", *scene, "--script", str(data / "studies/studyB.yaml"), "--set",
                         "spacing_m=0.1", "-o", str(folder / "maps"), "--report", str(folder / "maps.html")], check=True)
-        check_page(chromium, folder / "maps.html", 5, folder)
+        check_page(chromium, folder / "maps.html", 6, folder, least_names=6 * 8)
+        write_long_office(folder / "long.gltf")
+        subprocess.run([pirsim, "coverage", "-q", "--scene", str(folder / "long.gltf"), "--script",
+                        str(data / "studies/studyB.yaml"), "--set", "spacing_m=0.5", "--set", "duration_s=2", "--set",
+                        "without=[]", "-o", str(folder / "long"), "--report", str(folder / "long.html")], check=True)
+        check_page(chromium, folder / "long.html", 7, folder, least_names=7 * 4)
         subprocess.run([pirsim, "run", *scene, "--script", str(data / "studies/studyA.yaml"), "--replicates", "2", "--set",
                         "trials.for_each.seat=[S1, S7]", "--set", "people.0.actions.3.work.duration_s=30", "-o",
                         str(folder / "rows.csv"), "--report", str(folder / "study.html")], check=True)
         check_page(chromium, folder / "study.html", 12, folder)
-    print("reports: both pages are whole")
+    print("reports: all pages are whole, and no name lies on another")
 
 
 if __name__ == "__main__":

@@ -6,6 +6,9 @@
 - Ten minutes with three people, with a coverage map: at most 5 MB; the map is drawn, of all sensors and of one; an address
   as reports of reconcile name it opens the moment and the sensor; no name lies on another.
 - A day of a dataset: its rows are those of the dataset.
+- An office of 40 m: on a wide page and on a narrow one all of it is in view and the legend covers nothing of it; where
+  the user likes it dark the room and the rows of the sensors are dark, and names can be read.
+- Where rows have a clock the time line has its marks at the clock's whole minutes.
 
 Usage: run_view.py PIRSIM DATA_DIRECTORY; exits with 77 (skipped) where there is no Chromium.
 """
@@ -19,6 +22,7 @@ import subprocess
 import sys
 import tempfile
 
+from box_scene import write_long_office
 from browser import check_fetches_nothing, chromium_or_skip, opened
 
 # On the way in and out, and at work at three phases of the arms' swing of 3 s: no two with the same posture.
@@ -104,6 +108,50 @@ DAY_STEPS = """
   seen.clock = document.getElementById("clock").textContent;
 """
 
+OFFICE_STEPS = """
+  while (document.body.dataset.drawn !== String(Number(slider.value))) await wait(20);
+  const legend = document.getElementById("legend"), copy = document.createElement("canvas");
+  const over = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+  function measure() {
+    const stage = document.getElementById("stage").getBoundingClientRect(), key = legend.getBoundingClientRect();
+    const pen = Object.assign(copy, { width: stage.width, height: stage.height }).getContext("2d", { willReadFrequently: true });
+    pen.drawImage(view, 0, 0, copy.width, copy.height);
+    const { data, width, height } = pen.getImageData(0, 0, copy.width, copy.height), back = [...data.slice(0, 3)];
+    const drawn = (x, y) => back.some((value, i) => Math.abs(data[4 * (y * width + x) + i] - value) > 8);
+    let left = width, right = -1, top = height, bottom = -1, covered = 0;
+    for (let y = 0; y < height; ++y) for (let x = 0; x < width; ++x) {
+      if (!drawn(x, y)) continue;
+      left = Math.min(left, x); right = Math.max(right, x); top = Math.min(top, y); bottom = Math.max(bottom, y);
+      covered += x < key.right - stage.left && x > key.left - stage.left && y < key.bottom - stage.top ? 1 : 0;
+    }
+    const doors = [...document.querySelectorAll("#labels .door")].filter((door) => door.style.display !== "none");
+    return { back, covered, margins: [left, top, width - 1 - right, height - 1 - bottom], stage: [width, height],
+      fills: Math.max((right - left) / width, (bottom - top) / height), open: legend.open,
+      doors: doors.filter((door) => !over(door.getBoundingClientRect(), key)).length };
+  }
+  seen.first = measure();
+  const rows = document.getElementById("rows"), scale = rows.width / rows.clientWidth;
+  const at = rows.getContext("2d").getImageData((rows.clientWidth - 4) * scale, (46 + 3 * 20 + 8) * scale, 1, 1).data;
+  seen.row = [...at.slice(0, 3)];
+  const numbers = (colour) => colour.match(/[\\d.]+/g).map(Number);
+  seen.names = ["seat", "door"].map((kind) => {
+    const style = getComputedStyle(document.querySelector("#labels ." + kind));
+    const [r, g, b, share = 1] = numbers(style.backgroundColor);
+    return [numbers(style.color).slice(0, 3), [r, g, b].map((value, i) => share * value + (1 - share) * seen.first.back[i])];
+  });
+  document.getElementById("panel").style.display = "none";  // as a taller window
+  window.dispatchEvent(new Event("resize"));
+  let frames = 0;
+  const count = () => ++frames < 3 && requestAnimationFrame(count);
+  requestAnimationFrame(count);
+  while (frames < 3) await wait(20);
+  seen.taller = measure();
+"""
+
+CLOCK_STEPS = """
+  seen.marks = document.getElementById("rows").getAttribute("aria-label");
+"""
+
 VISIT = """
 pirsim_script: 1
 name: three people for ten minutes
@@ -115,6 +163,30 @@ people:
   - {id: carla, style: natural, actions: [{wait: {duration_s: 40}}, {enter: door}, {sit: S8}, {work: {duration_s: 300}},
                                           {leave: door}]}
 """
+
+
+LONG_VISIT = """
+pirsim_script: 1
+duration_s: 60
+people:
+  - {id: anna, actions: [{enter: door}, {sit: D4}, {work: {duration_s: 50}}]}
+"""
+
+MORNING = """
+pirsim_script: 1
+schedule: {first_day: 2026-03-02, from: "08:07", to: "08:27", staff: [{count: 2}], arrival: {mean: "08:10"}}
+"""
+
+
+def luminance(colour):
+    """Of sRGB from 0 to 255, as WCAG 2 has it."""
+    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in (value / 255 for value in colour)]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def contrast(a, b):
+    dark, light = sorted((luminance(a), luminance(b)))
+    return (light + 0.05) / (dark + 0.05)
 
 
 class Pages:
@@ -130,12 +202,13 @@ class Pages:
         check_fetches_nothing(page)
         return page
 
-    def seen(self, page, steps, address=""):
+    def seen(self, page, steps, address="", size="900,700", flags=()):
         """What the steps found, on the page as its address opens it."""
         text = page.read_text(encoding="utf-8")
+        page = page.with_stem(page.stem + "_seen")
         steps = TOOLS.replace("STEPS", steps).replace("MOMENTS", json.dumps(MOMENTS))
         page.write_text(text.replace("</body>", steps + "</body>"), encoding="utf-8")
-        dom = opened(self.chromium, page, self.folder, "900,700", "--use-gl=angle", "--use-angle=swiftshader",
+        dom = opened(self.chromium, page, self.folder, size, *flags, "--use-gl=angle", "--use-angle=swiftshader",
                      "--enable-unsafe-swiftshader",
                      # Waiting spends virtual time at once, drawing takes as long as it takes on a busy machine.
                      "--virtual-time-budget=300000000", address=address)
@@ -194,13 +267,46 @@ def check_day(pages, data):
     print("view: a day of a dataset agrees with its rows")
 
 
+def check_office(pages):
+    write_long_office(pages.folder / "long.gltf")
+    (pages.folder / "long.yaml").write_text(LONG_VISIT, encoding="utf-8")
+    page = pages.made("long.html", "--scene", pages.folder / "long.gltf", "--script", pages.folder / "long.yaml")
+    for size, is_open in (("1300,850", True), ("500,800", False), ("900,1200", True)):
+        seen = pages.seen(page, OFFICE_STEPS, size=size)
+        for state in ("first", "taller"):
+            it = seen[state]
+            assert min(it["margins"]) >= 3, f"{size}, {state}: the room is cut: {it}"
+            assert it["fills"] > 0.55, f"{size}, {state}: the room is small: {it}"
+            assert it["covered"] == 0 and it["doors"] == 1, f"{size}, {state}: the legend covers the room: {it}"
+            assert it["open"] == is_open, f"{size}: the legend is {'open' if it['open'] else 'folded'}"
+        assert luminance(seen["first"]["back"]) > 0.7 and luminance(seen["row"]) > 0.7, seen
+    dark = pages.seen(page, OFFICE_STEPS, size="1300,850", flags=["--blink-settings=preferredColorScheme=0"])
+    back = dark["first"]["back"]
+    assert luminance(back) < 0.05, f"in the dark the room stands before {back}"
+    assert luminance(dark["row"]) < 0.1, f"in the dark a sensor's row is {dark['row']}"
+    for names in (seen["names"], dark["names"]):
+        for text, back in names:
+            assert contrast(text, back) > 4.5, f"a name of {text} on {back}"
+    print("view: a long office is whole, wide and narrow; dark where the user likes it")
+
+
+def check_clock(pages, data):
+    (pages.folder / "morning.yaml").write_text(MORNING, encoding="utf-8")
+    page = pages.made("morning.html", "--scene", data / "rooms/open_office.gltf", "--script", pages.folder / "morning.yaml")
+    marks = re.findall(r"\d\d:\d\d(?::\d\d)?", pages.seen(page, CLOCK_STEPS)["marks"])
+    assert len(marks) >= 4 and all(re.fullmatch(r"08:\d[02468]", mark) for mark in marks), marks
+    print("view: the time line has its marks where the clock shows whole minutes")
+
+
 def main():
     data = pathlib.Path(sys.argv[2])
     with tempfile.TemporaryDirectory() as name:
         pages = Pages(sys.argv[1], pathlib.Path(name))
-        check_run(pages, data)
-        check_map(pages, data)
-        check_day(pages, data)
+        checks = {"run": lambda: check_run(pages, data), "map": lambda: check_map(pages, data),
+                  "day": lambda: check_day(pages, data), "office": lambda: check_office(pages),
+                  "clock": lambda: check_clock(pages, data)}
+        for check in sys.argv[3:] or checks:
+            checks[check]()
 
 
 if __name__ == "__main__":

@@ -22,71 +22,104 @@
     };
   }
 
-  // Twice, the first as a dark rim: readable on every colour.
-  function label(data, fill, stroke, size, below) {
-    return { type: "text", from: { data }, interactive: false, encode: { enter: {
-      x: { scale: "x", field: "x" }, y: { scale: "z", field: "z", offset: typeof below === "number" ? { value: below } : below }, text: { field: "label" },
-      align: { value: "center" }, fontSize: { value: size }, fill: { value: fill }, stroke: { value: stroke }, strokeWidth: { value: 3 },
-      strokeJoin: { value: "round" }, fontWeight: { value: "bold" } } } };
+  // Walls that were cut through, and lines of those without thickness, as SVG paths in the map's pixels. With a light
+  // rim, which shows where the floor is dark. The floor's edge stands for walls outside of the squares.
+  function walls(chart, toPixels) {
+    const path = (loop) => loop.map((p, i) => (i ? "L" : "M") + toPixels(p).map((v) => v.toFixed(2)).join(",")).join("");
+    const areas = chart.walls.map((loops) => ({ d: loops.map((loop) => path(loop) + "Z").join("") }));
+    const lines = chart.wall_lines.map((line) => ({ d: path(line) }));
+    const mark = (data, fill, stroke, width) => ({ type: "path", from: { data }, interactive: false, clip: true,
+      encode: { enter: { x: { value: 0 }, y: { value: 0 }, path: { field: "d" }, fill: { value: fill }, stroke: { value: stroke },
+        strokeWidth: { value: width } } } });
+    return {
+      data: [{ name: "walls", values: areas }, { name: "wall lines", values: lines }],
+      marks: [mark("walls", "transparent", "#ffffff", 3), mark("wall lines", "transparent", "#ffffff", 4),
+        mark("walls", "#000000", "#000000", 1), mark("wall lines", "transparent", "#000000", 2)],
+    };
   }
 
-  // Where the id of a seat has room: behind the back of whoever sits there.
-  const behind = (seat) => {
-    const turn = seat.angle_deg * Math.PI / 180, way_m = 0.3;
-    return { label: seat.label, x: seat.x - way_m * Math.sin(turn), z: seat.z + way_m * Math.cos(turn) };
-  };
-
-  // A name above its marker, or where it covers no earlier one: below it, then farther away.
-  function setApart(markers, pixels_per_m) {
-    const size = 11, placed = [];
-    return markers.map((marker) => {
-      const x = marker.x * pixels_per_m, wide = 0.62 * size * marker.label.length;
-      const isFree = (below) => placed.every((other) => Math.abs(other.x - x) > (other.wide + wide) / 2 ||
-        Math.abs(other.y - marker.z * pixels_per_m - below) > size);
-      const below = [-16, 22, -28, 34, -40, 46].find(isFree) || -16;
-      placed.push({ x, y: marker.z * pixels_per_m + below, wide });
-      return Object.assign({ below }, marker);
+  // Names beside their signs, those of markers first. One that would cover another name or a marker is left out: its
+  // sign tells it when pointed at.
+  function names(chart, toPixels, width, height) {
+    const pen = document.createElement("canvas").getContext("2d"), taken = [], placed = [];
+    const boxAt = (x, y, wide, high) => ({ left: x - wide / 2, right: x + wide / 2, top: y - high / 2, bottom: y + high / 2 });
+    const overlap = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    const isFree = (box) => box.left > -4 && box.right < width + 4 && box.top > -14 && box.bottom < height + 14 &&
+      !taken.some((other) => overlap(box, other));
+    function place(sign, size, ways) {
+      const [x, y] = toPixels([sign.x, sign.z]);
+      pen.font = `bold ${size}px system-ui, sans-serif`;
+      const wide = pen.measureText(sign.label).width + 4, high = size + 3;
+      const places = ways(wide).map(([right, down]) => [x + right, y + down]);
+      const at = places.find(([px, py]) => isFree(boxAt(px, py, wide, high)));
+      if (!at) return;
+      taken.push(boxAt(...at, wide, high));
+      placed.push({ x: at[0], y: at[1], label: sign.label, size });
+    }
+    chart.markers.forEach(({ x, z }) => taken.push(boxAt(...toPixels([x, z]), 12, 12)));
+    chart.markers.forEach((marker) => place(marker, 11, (wide) => [[0, -14], [0, 15], [wide / 2 + 9, 0], [-wide / 2 - 9, 0],
+      [0, -26], [0, 27], [wide / 2, -20], [-wide / 2, -20], [wide / 2, 20], [-wide / 2, 20]]));
+    // Where a seat's name has room: behind the back of whoever sits there.
+    chart.seats.forEach((seat) => {
+      const turn = seat.angle_deg * Math.PI / 180, away = 13;
+      place(seat, 9, (wide) => [[-away * Math.sin(turn), away * Math.cos(turn)], [0, 11], [0, -11], [wide / 2 + 6, 0], [-wide / 2 - 6, 0]]);
     });
+    return placed;
   }
+  // Twice, the first as a dark rim: readable on every colour.
+  const label = (fill, stroke) => ({ type: "text", name: stroke ? "rims of names" : "names", from: { data: "placed" },
+    interactive: false, encode: { enter: {
+      x: { field: "x" }, y: { field: "y" }, text: { field: "label" }, align: { value: "center" }, baseline: { value: "middle" },
+      fontSize: { field: "size" }, fill: { value: fill }, stroke: { value: stroke }, strokeWidth: { value: 3 },
+      strokeJoin: { value: "round" }, fontWeight: { value: "bold" } } } });
+
+  // Pale for the first class, then from light to dark.
+  const classColours = ["#eef1f4", "#fdd49e", "#fdbb84", "#ef6548", "#b30000", "#5a0000"];
 
   // Seen from above, x to the right and z down the page.
   function map(chart, width) {
-    const inner = width - 118, s = chart.spacing_m, x1 = chart.x0 + s * chart.columns, z1 = chart.z0 + s * chart.rows;
+    const inner = width - (chart.classes.length ? 150 : 118), s = chart.spacing_m;
+    const x1 = chart.x0 + s * chart.columns, z1 = chart.z0 + s * chart.rows;
     const height = Math.round(inner * (z1 - chart.z0) / (x1 - chart.x0));
+    const toPixels = ([x, z]) => [(x - chart.x0) / (x1 - chart.x0) * inner, (z - chart.z0) / (z1 - chart.z0) * height];
+    const classOf = (v) => chart.classes.filter(({ above }) => v > above).pop().name;
     const squares = [];
     chart.values.forEach((v, i) => {
       if (v === null) return;
-      squares.push({ x: chart.x0 + s * (i % chart.columns), z: chart.z0 + s * Math.floor(i / chart.columns),
-        v: chart.pass_or_fail ? (v === 1 ? "pass" : "fail") : v });
+      squares.push({ x: chart.x0 + s * (i % chart.columns), z: chart.z0 + s * Math.floor(i / chart.columns), v,
+        colour: chart.classes.length ? classOf(v) : chart.pass_or_fail ? (v === 1 ? "pass" : "fail") : v,
+        told: chart.pass_or_fail ? (v === 1 ? "pass" : "fail") : v });
     });
     const text = "format(datum.x + " + s / 2 + ", '.2f') + ' m, ' + format(datum.z + " + s / 2 +
-      ", '.2f') + ' m\\n' + datum.v + ' " + chart.unit + "'";
+      ", '.2f') + ' m\\n' + datum.told + ' " + chart.unit + "'";
     const at = { x: { scale: "x", field: "x" }, y: { scale: "z", field: "z" } };
+    const wall = walls(chart, toPixels), colours = chart.classes.length
+      ? { type: "ordinal", domain: chart.classes.map(({ name }) => name), range: classColours }
+      : chart.pass_or_fail ? { type: "ordinal", domain: ["pass", "fail"], range: ["#7fb8e6", "#e0a458"] }
+      : { type: "linear", domain: [0, chart.max], range: { scheme: "viridis" } };
+    const isScale = colours.type === "linear";
     return {
       width: inner, height, padding: 4,
       data: [{ name: "squares", values: squares }, { name: "outline", values: points(chart.outline) },
         { name: "furniture", values: points(chart.furniture) }, { name: "dashed", values: points(chart.dashed) },
-        { name: "markers", values: setApart(chart.markers, inner / (x1 - chart.x0)) }, { name: "seats", values: chart.seats },
-        { name: "behind", values: chart.seats.map(behind) },
-        { name: "doors", values: chart.doors }],
+        { name: "markers", values: chart.markers }, { name: "seats", values: chart.seats },
+        { name: "placed", values: names(chart, toPixels, inner, height) }, { name: "doors", values: chart.doors }, ...wall.data],
       scales: [
         { name: "x", type: "linear", domain: [chart.x0, x1], range: "width", nice: false, zero: false },
         { name: "z", type: "linear", domain: [chart.z0, z1], range: [0, height], nice: false, zero: false },
-        chart.pass_or_fail
-          ? { name: "colour", type: "ordinal", domain: ["pass", "fail"], range: ["#7fb8e6", "#e0a458"] }
-          : { name: "colour", type: "linear", domain: [0, chart.max], range: { scheme: "viridis" } },
+        Object.assign({ name: "colour" }, colours),
       ],
       axes: [axis("x", "bottom", "x, m"), axis("z", "left", "z, m")],
       legends: [Object.assign({ fill: "colour", title: chart.label, labelColor: css("--text"),
-        titleColor: css("--text"), titleFontWeight: "normal", titleLimit: 110 },
-        chart.pass_or_fail ? {} : { type: "gradient", gradientLength: Math.min(height, 220) })],
+        titleColor: css("--text"), titleFontWeight: "normal", titleLimit: 140 },
+        isScale ? { type: "gradient", gradientLength: Math.min(height, 220) } : { symbolType: "square", symbolSize: 150 })],
       marks: [
         { type: "rect", from: { data: "squares" }, encode: { enter: {
           x: { scale: "x", field: "x" }, x2: { scale: "x", signal: "datum.x + " + s },
           y: { scale: "z", field: "z" }, y2: { scale: "z", signal: "datum.z + " + s },
-          fill: { scale: "colour", field: "v" }, stroke: { scale: "colour", field: "v" }, strokeWidth: { value: 0.9 },
+          fill: { scale: "colour", field: "colour" }, stroke: { scale: "colour", field: "colour" }, strokeWidth: { value: 0.9 },
           tooltip: { signal: text } } } },
-        outline("furniture", "#000000", [1, 0]), outline("furniture", "#ffffff", [3, 3]),
+        outline("furniture", "#000000", [1, 0]), outline("furniture", "#ffffff", [3, 3]), ...wall.marks,
         outline("outline", css("--text"), [1, 0]), outline("dashed", "#ffffff", [6, 4]),
         { type: "rule", from: { data: "doors" }, encode: { enter: Object.assign({ x2: { scale: "x", field: "x2" },
           y2: { scale: "z", field: "z2" }, stroke: { value: "#2da44e" }, strokeWidth: { value: 5 },
@@ -94,12 +127,12 @@
         { type: "symbol", from: { data: "seats" }, encode: { enter: Object.assign({ shape: { value: "triangle-up" },
           size: { value: 45 }, angle: { field: "angle_deg" }, fill: { value: "#ffffff" }, stroke: { value: "#000000" },
           strokeWidth: { value: 1 }, tooltip: { signal: "'seat ' + datum.label" } }, at) } },
-        label("behind", "#000000", "#000000", 9, 3), label("behind", "#ffffff", null, 9, 3),
-        { type: "symbol", from: { data: "markers" }, interactive: false, encode: { enter: {
-          x: { scale: "x", field: "x" }, y: { scale: "z", field: "z" }, shape: { value: "triangle-up" },
-          size: { value: 110 }, angle: { field: "angle_deg" }, fill: { value: "#ff4d6d" },
-          stroke: { value: "#ffffff" }, strokeWidth: { value: 1.2 } } } },
-        label("markers", "#000000", "#000000", 11, { field: "below" }), label("markers", "#ffffff", null, 11, { field: "below" }),
+        { type: "symbol", from: { data: "markers" }, encode: { enter: {
+          x: { scale: "x", field: "x" }, y: { scale: "z", field: "z" },
+          shape: { value: chart.people ? "circle" : "triangle-up" }, size: { value: 110 }, angle: { field: "angle_deg" },
+          fill: { value: "#ff4d6d" }, stroke: { value: "#ffffff" }, strokeWidth: { value: 1.2 },
+          tooltip: { field: "label" } } } },
+        label("#000000", "#000000"), label("#ffffff", null),
       ],
     };
   }
@@ -140,6 +173,16 @@
     };
   }
 
+  // Where a clock stands at whole steps, for a chart in seconds of a run whose rows have a clock.
+  function clockTicks(chart, begin, width) {
+    if (!chart.first_clock) return {};
+    const steps = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 14400];
+    const step = steps.find((one) => one / chart.end_s * width >= 70) || 28800, values = [];
+    for (let t = Math.ceil(begin / step) * step - begin; t <= chart.end_s; t += step) values.push(t);
+    const text = `utcFormat(1000 * (datum.value + ${begin}), '${step % 60 === 0 ? "%H:%M" : "%H:%M:%S"}')`;
+    return { values, encode: { labels: { update: { text: { signal: text } } } } };
+  }
+
   function series(chart, width) {
     const named = chart.rows.map((row) => row.name), inner = width - longest(named, 40, 170) - 44, seen = [];
     chart.rows.forEach((row) => row.times_s.forEach((t) => seen.push({ row: row.name, t })));
@@ -149,7 +192,11 @@
       x2: i + 1 < chart.people.length ? chart.people[i + 1].from_s : chart.end_s }));
     const most = Math.max(1, ...people.map((p) => p.n));
     const rows = 26 * chart.rows.length + 8, height = strip + gap + rows;
-    const text = "datum.row + ', ' + format(datum.t - " + chart.window_s + ", ',') + ' to ' + format(datum.t, ',') + ' s: motion'";
+    const begin = chart.first_clock ? Date.parse(chart.first_clock + "Z") / 1000 - chart.window_s : 0;
+    // A moment, given as an expression, as the rows tell it.
+    const moment = (t) => chart.first_clock ? `utcFormat(1000 * (${t} + ${begin}), '%H:%M:%S')` : `format(${t}, ',')`;
+    const unit = chart.first_clock ? "" : " s";
+    const text = `datum.row + ', ' + ${moment("(datum.t - " + chart.window_s + ")")} + ' to ' + ${moment("datum.t")} + '${unit}: motion'`;
     return {
       width: inner, height, padding: 4,
       data: [{ name: "seen", values: seen }, { name: "phases", values: chart.phases },
@@ -159,16 +206,18 @@
         { name: "y", type: "band", domain: chart.rows.map((row) => row.name), range: [strip + gap, height], padding: 0.25 },
         { name: "n", type: "linear", domain: [0, most], range: [strip, 0], zero: true },
       ],
-      axes: [axis("x", "bottom", "time, s"), axis("y", "left", null, { labelLimit: 170 })].concat(
+      axes: [axis("x", "bottom", chart.first_clock ? "time of day" : "time, s", clockTicks(chart, begin, inner)),
+        axis("y", "left", null, { labelLimit: 170 })].concat(
         strip > 0 ? [axis("n", "left", "people", { tickCount: Math.min(most, 4), format: "d" })] : []),
       marks: [
         { type: "rect", from: { data: "people" }, encode: { enter: { x: { scale: "x", field: "x" },
           x2: { scale: "x", field: "x2" }, y: { scale: "n", field: "n" }, y2: { scale: "n", value: 0 },
           fill: { value: css("--mark") }, fillOpacity: { value: 0.45 },
-          tooltip: { signal: "datum.n + ' people, ' + format(datum.x, ',') + ' to ' + format(datum.x2, ',') + ' s'" } } } },
+          tooltip: { signal: `datum.n + ' people, ' + ${moment("datum.x")} + ' to ' + ${moment("datum.x2")} + '${unit}'` } } } },
         { type: "rect", from: { data: "phases" }, encode: { enter: { x: { scale: "x", field: "from_s" },
           x2: { scale: "x", field: "to_s" }, y: { value: 0 }, y2: { signal: "height" }, fill: { value: css("--mark") },
-          fillOpacity: { value: 0.1 }, tooltip: { signal: "datum.name + ', ' + datum.from_s + ' to ' + datum.to_s + ' s'" } } } },
+          fillOpacity: { value: 0.1 },
+          tooltip: { signal: `datum.name + ', ' + ${moment("datum.from_s")} + ' to ' + ${moment("datum.to_s")} + '${unit}'` } } } },
         { type: "rect", from: { data: "seen" }, encode: { enter: {
           x: { scale: "x", signal: "datum.t - " + chart.window_s }, x2: { scale: "x", field: "t" },
           y: { scale: "y", field: "row" }, height: { scale: "y", band: 1 }, fill: { value: css("--text") },
@@ -330,6 +379,14 @@
     };
   }
 
+  // An axis in hours of a day, also beyond midnight.
+  function hours([from, to], width) {
+    const step = [0.25, 0.5, 1, 2, 3, 4, 6].find((one) => one / (to - from) * width >= 40) || 12, values = [];
+    for (let hour = Math.ceil(from / step) * step; hour <= to + 1e-9; hour += step) values.push(hour);
+    return { values, encode: { labels: { update: {
+      text: { signal: "format(floor(datum.value) % 24, '02') + ':' + format(round(60 * (datum.value % 1)), '02')" } } } } };
+  }
+
   function lines(chart, width) {
     const small = width < 340, inner = width - 62, height = Math.min(300, Math.round((small ? 0.5 : 0.6) * inner));
     const points = chart.points.map((p) => Object.assign({ tip: (chart.names.length > 1 ? p.line + "\n" : "") + (p.hint || p.y) }, p));
@@ -358,7 +415,8 @@
         { name: "colour", type: "ordinal", domain: chart.names, range: chart.names.map((name, i) => css("--series-" + (i % 10 + 1))) },
       ],
       axes: [axis("x", "bottom", chart.x_label || null, names ? { values: ticks, encode: { labels: { update: {
-        text: { signal: JSON.stringify(chart.x_names) + "[datum.value - 1]" } } } } } : { tickCount: 5 }),
+        text: { signal: JSON.stringify(chart.x_names) + "[datum.value - 1]" } } } } } : chart.clock ? hours(chart.x, inner)
+        : { tickCount: 5 }),
         axis("y", "left", chart.y_label || null, { tickCount: small ? 3 : 5 })],
       legends: chart.names.length > 1 ? [{ fill: "colour", orient: "bottom", symbolType: "circle", labelColor: css("--text"),
         labelLimit: inner, columns: small ? 1 : 2 }] : [],
@@ -385,6 +443,7 @@
     const view = new vega.View(vega.parse(spec), { renderer: "canvas", container: place, hover: false });
     view.tooltip(showTip).initialize(place);
     views.set(place, view);
+    place.view = view;  // to look into it from a browser's console
     place.dataset.width = String(place.clientWidth);
     view.runAsync().catch((fault) => { console.error(fault); place.textContent = "This chart can't be drawn."; });
   }

@@ -9,21 +9,22 @@ class Room {
     this.choose = choose;
     this.renderer = renderer;
     this.scene = new three.Scene();
-    this.scene.add(gltf.scene, new three.HemisphereLight("#ffffff", "#c9c2b8", 2.2));
-    const sun = new three.DirectionalLight("#ffffff", 1.3);
-    sun.position.set(2, 5, 3);
-    this.scene.add(sun);
+    this.lights = [[new three.HemisphereLight("#ffffff", "#c9c2b8"), 2.2], [new three.DirectionalLight("#ffffff"), 1.3]];
+    this.lights[1][0].position.set(2, 5, 3);
+    this.scene.add(gltf.scene, ...this.lights.map(([light]) => light));
+    this.painted = [];  // materials and the names of their colours
     this.camera = new three.PerspectiveCamera(40, 1, 0.05, 500);
     this.controls = new three.OrbitControls(this.camera, renderer.domElement);
     this.controls.addEventListener("change", () => (this.stale = true));
+    this.controls.addEventListener("start", () => (this.turned = true));
     this.furnish(gltf.scene);
     this.hangSensors();
     this.makeLitBeams();
     if (this.run.map) this.layMap();
     this.makeLabels();
     this.animate(gltf);
+    this.recolour();
     this.resize();
-    this.lookFromAbove();
   }
 
   /// Room, people and beams get the materials of this page.
@@ -53,6 +54,7 @@ class Room {
     });
     const centre = this.box.getCenter(new three.Vector3());
     for (const mesh of solids) this.paint(mesh, centre);
+    for (const { position } of this.run.sensors) this.box.expandByPoint(new three.Vector3(...position));
   }
 
   /// Walls and ceilings are seen from the inside alone, so that one looks into the room from any side. A wall is tall
@@ -65,12 +67,12 @@ class Room {
     const white = wall || box.max.y > this.box.max.y - 0.3;
     if (wall) faceTowards(mesh.geometry, centre);
     mesh.material = new three.MeshLambertMaterial({
-      color: white ? "#f7f7f4" : flat ? "#d9d4cb" : "#b98f63", flatShading: true,
-      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+      flatShading: true, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     });
     if (!wall) mesh.material.side = three.DoubleSide;
     const edges = new three.EdgesGeometry(mesh.geometry, 20);
-    const material = new three.LineBasicMaterial({ color: "#57606a", transparent: true, opacity: wall ? 0.25 : 0.5 });
+    const material = new three.LineBasicMaterial({ transparent: true, opacity: wall ? 0.25 : 0.5 });
+    this.painted.push([mesh.material, white ? "wall" : flat ? "floor" : "furniture"], [material, "edge"]);
     mesh.add(new three.LineSegments(edges, material));
   }
 
@@ -183,43 +185,61 @@ class Room {
     this.mixer.clipAction(gltf.animations[0]).play();
   }
 
-  /// From so far that the whole room is seen.
-  lookFromAbove() {
-    const centre = this.box.getCenter(new three.Vector3()), { min, max } = this.box;
+  /// Parts of the stage that the legend leaves free, in pixels: beside it and below it. Names at the edge need a margin.
+  freeParts() {
+    const { clientWidth: width, clientHeight: height } = byId("stage"), legend = byId("legend");
+    const right = legend.offsetLeft + legend.offsetWidth, below = legend.offsetTop + legend.offsetHeight;
+    const part = (left, top) => ({ left: left + 26, top: top + 26, right: width - 26, bottom: height - 16 });
+    return [part(right - 10, 0), part(0, below - 10)].filter((it) => it.right > it.left && it.bottom > it.top);
+  }
+
+  /// Where the camera stands that sees the whole scene from above and beside, as large as it fits into a part of the
+  /// stage whose middle is the middle of the view. A point p is seen at the slope (p - c) / (d - p_back), where c and d
+  /// are the camera's place across and back; so c + slope d >= p + slope p_back, and c - slope d <= p - slope p_back.
+  cameraFor(part) {
+    const { min, max } = this.box, corners = [min.x, max.x].flatMap((x) => [min.y, max.y].flatMap((y) =>
+      [min.z, max.z].map((z) => new three.Vector3(x, y, z))));
     const back = new three.Vector3(0.28, 0.95, 1).normalize();
     const right = new three.Vector3(0, 1, 0).cross(back).normalize(), up = back.clone().cross(right);
-    const half = Math.tan((this.camera.fov * Math.PI) / 360), { clientWidth: width } = byId("stage");
-    const axes = [[right, half * this.camera.aspect * (1 - this.covered() / width)], [up, half]];
-    const corners = [min.x, max.x].flatMap((x) => [min.y, max.y].flatMap((y) =>
-      [min.z, max.z].map((z) => new three.Vector3(x, y, z))));
+    const tangent = Math.tan((this.camera.fov * Math.PI) / 360) / byId("stage").clientHeight;  // of half a pixel
+    const position = new three.Vector3();
     let away = 0;
-    for (let round = 0; round < 4; ++round) {  // what is nearer looks larger, so its middle isn't the picture's
-      const seen = corners.map((corner) => corner.clone().sub(centre));
-      away = Math.max(...seen.map((corner) => corner.dot(back) + 1.06 * Math.max(
-        ...axes.map(([axis, reach]) => Math.abs(corner.dot(axis)) / reach))));
-      for (const [axis] of axes) {
-        const slopes = seen.map((corner) => corner.dot(axis) / (away - corner.dot(back)));
-        centre.addScaledVector(axis, away * (Math.max(...slopes) + Math.min(...slopes)) / 2);
-      }
+    for (const [axis, pixels] of [[right, part.right - part.left], [up, part.bottom - part.top]]) {
+      const slope = pixels * tangent;
+      const least = Math.max(...corners.map((p) => p.dot(axis) + slope * p.dot(back)));
+      const most = Math.min(...corners.map((p) => p.dot(axis) - slope * p.dot(back)));
+      away = Math.max(away, (least - most) / (2 * slope));
+      position.addScaledVector(axis, (least + most) / 2);
     }
-    this.camera.position.copy(back).multiplyScalar(away).add(centre);
-    this.controls.target.copy(centre);
-    this.controls.update();
+    position.addScaledVector(back, away);
+    const depth = away - this.box.getCenter(new three.Vector3()).dot(back);
+    return { part, away, position, target: position.clone().addScaledVector(back, -depth) };
   }
 
-  /// Pixels on the left that the legend takes, if the rest is wide enough for the room.
-  covered() {
-    const legend = byId("legend"), { clientWidth: width } = byId("stage");
-    const right = legend.open ? legend.offsetLeft + legend.offsetWidth : 0;
-    return right < 0.4 * width ? right : 0;
-  }
-
+  /// The whole scene stays in view until the user turns it.
   resize() {
     const { clientWidth: width, clientHeight: height } = byId("stage");
     this.renderer.setPixelRatio(window.devicePixelRatio || 1);
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
-    this.camera.setViewOffset(width, height, -this.covered() / 2, 0, width, height);
+    const views = this.freeParts().map((part) => this.cameraFor(part)).sort((a, b) => a.away - b.away);
+    const { part, away, position, target } = views[0] || this.cameraFor({ left: 0, top: 0, right: width, bottom: height });
+    this.camera.far = Math.max(500, 4 * away);
+    this.camera.setViewOffset(width, height, (width - part.left - part.right) / 2, (height - part.top - part.bottom) / 2,
+                              width, height);
+    if (!this.turned) {
+      this.camera.position.copy(position);
+      this.controls.target.copy(target);
+      this.controls.update();
+    }
+    this.stale = true;
+  }
+
+  /// After the page's colours have changed.
+  recolour() {
+    this.renderer.setClearColor(colour("stage"));
+    for (const [light, strength] of this.lights) light.intensity = strength * Number(colour("light"));
+    for (const [material, name] of this.painted) material.color.set(colour(name));
     this.stale = true;
   }
 
@@ -274,7 +294,13 @@ class Room {
       label.high ||= element.offsetHeight;
       const x = ((point.x + 1) / 2) * width, y = ((1 - point.y) / 2) * height;
       const above = element.className.startsWith("sensor") ? 1.5 : 0.5;  // times its height
-      const box = { x, wide: label.wide, high: label.high, top: freeTop(placed, x, y - above * label.high, label) };
+      const wanted = y - above * label.high, top = freeTop(placed, x, wanted, label);
+      // Far from its seat a name would tell of another one; who comes nearer sees it again.
+      if (/seat|door/.test(element.className) && Math.abs(top - wanted) > 2.2 * label.high) {
+        element.style.display = "none";
+        continue;
+      }
+      const box = { x, wide: label.wide, high: label.high, top };
       placed.push(box);
       element.style.transform = `translate(${x.toFixed(1)}px, ${box.top.toFixed(1)}px) translate(-50%, 0)`;
     }

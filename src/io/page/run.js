@@ -43,11 +43,22 @@ class Run {
     return this.rows.bits[row][sensor] === "1";
   }
 
+  /// What the clock says at the run's second 0, in seconds since 1970; 0 if the rows have no clock.
+  clockBegin() {
+    const { rows } = this;
+    return rows.first_clock ? Date.parse(rows.first_clock + "Z") / 1000 - rows.time_s[0] : 0;
+  }
+
+  /// A moment as the rows tell it: by the clock if they have one, or in seconds.
+  momentText(time) {
+    return this.rows.first_clock ? this.clockText(time).slice(11) : time + " s";
+  }
+
   clockText(time) {
     const two = (n) => String(Math.floor(n)).padStart(2, "0"), { rows } = this;
     let seconds = time, day = "";
     if (rows.first_clock) {
-      const begin = Date.parse(rows.first_clock + "Z") / 1000 - rows.time_s[0];
+      const begin = this.clockBegin();
       const date = new Date((begin + time) * 1000);
       day = date.toISOString().slice(0, 10) + " ";
       seconds = (begin + time) % 86400;

@@ -84,7 +84,7 @@ class TimeLine {
 
   drawBits(pen, x, sensor, top, width) {
     const { rows, window_s: span, from_s: from } = this.run, high = TimeLine.heights.bits - 4;
-    pen.fillStyle = "#e4e8ec";
+    pen.fillStyle = colour("row");
     pen.fillRect(0, top + 2, width, high);
     pen.fillStyle = colour("fired");
     rows.time_s.forEach((time, i) => {
@@ -101,7 +101,7 @@ class TimeLine {
     const middle = top + TimeLine.heights.signal / 2;
     const y = (volts) => middle - (volts / most) * (TimeLine.heights.signal / 2 - 2);
     pen.lineWidth = 1;
-    pen.strokeStyle = "#b0b8c1";
+    pen.strokeStyle = colour("threshold");
     pen.setLineDash([3, 3]);
     for (const volts of [up, -down]) {
       pen.beginPath();
@@ -110,22 +110,26 @@ class TimeLine {
       pen.stroke();
     }
     pen.setLineDash([]);
-    pen.strokeStyle = "#24292f";
+    pen.strokeStyle = colour("text");
     pen.beginPath();
     signal.forEach((volts, i) => pen.lineTo(x(this.run.keys_s[i]), y(volts)));
     pen.stroke();
   }
 
   drawAxis(pen, x, top, width) {
-    const { rows, from_s: from, to_s: to } = this.run;
-    const step = stepBetween(to - from, width);
+    const { rows, from_s: from, to_s: to } = this.run, shift = this.run.clockBegin() % 86400;
+    const step = stepBetween(to - from, width), marks = [];
     pen.fillStyle = colour("faint");
-    for (let time = Math.ceil(from / step) * step; time <= to; time += step) {
+    // Where the clock stands at whole steps, not where the run's seconds do.
+    for (let at = Math.ceil((from + shift) / step) * step; at <= to + shift; at += step) {
+      const time = at - shift;
       pen.fillRect(x(time), top, 1, 4);
-      const text = rows.first_clock ? this.run.clockText(time).slice(11) : time + " s";
+      const text = rows.first_clock && step % 60 === 0 ? this.run.clockText(time).slice(11, 16) : this.run.momentText(time);
+      marks.push(text);
       const room = pen.measureText(text).width;
       pen.fillText(text, Math.min(Math.max(0, x(time) - room / 2), width - room), top + 15);
     }
+    byId("rows").setAttribute("aria-label", "People and sensors' bits, from mark to mark: " + marks.join(", "));
   }
 }
 

@@ -31,11 +31,14 @@
     } finally {
       console.error = complain;
     }
-    renderer.setClearColor("#e9edf2");
     const bytes = await unpacked("glb");
     const gltf = await new Promise((done, fail) => new three.GLTFLoader().parse(bytes, "", done, fail));
     return new Room(run, shown, choose, renderer, gltf);
   }
+
+  // On a narrow page an open legend would leave no place for the room.
+  const narrow = window.matchMedia("(max-width: 700px)");
+  const foldLegend = () => (byId("legend").open = !narrow.matches);
 
   let room = null;
   const timeLine = new TimeLine(run, choose);
@@ -57,7 +60,7 @@
     shown.row = row;
     const n = rows.people[row];
     const who = run.first_person ? run.first_person + ": " : "";
-    const end = rows.first_clock ? run.clockText(rows.time_s[row]).slice(11) : rows.time_s[row] + " s";
+    const end = run.momentText(rows.time_s[row]);
     byId("now").textContent = `row ${end}: ${who}${rows.phase[row]}, ${n} ${n === 1 ? "person" : "people"}`;
     buttons().forEach((all, i) => all.forEach((button) => button.classList.toggle("on", run.bit(row, i))));
     document.body.dataset.row = [rows.time_s[row], rows.phase[row], n, ...rows.bits[row]].join(",");
@@ -108,8 +111,9 @@
     const time = Number(asked.get("t"));
     goTo(time);
     const here = time >= fromS && time <= toS;
-    tell(here ? "" : `Second ${asked.get("t")} isn't on this page: it holds ${fromS} to ${toS} s of a run of ` +
-      `${run.run_s} s. pirsim view --from and --to choose another part.`);
+    tell(here ? "" : `${run.momentText(time)} isn't on this page: it holds ${run.momentText(fromS)} to ` +
+      `${run.momentText(toS)} of a run that ends at ${run.momentText(run.run_s)}. ` +
+      "pirsim view --from and --to choose another part.");
   }
 
   function onKey(event) {
@@ -143,9 +147,16 @@
     document.addEventListener("keyup", (event) => event.key === " " && event.preventDefault());
     window.addEventListener("hashchange", followAddress);
     byId("legend").addEventListener("toggle", () => room && room.resize());
+    narrow.addEventListener("change", foldLegend);
     window.addEventListener("resize", () => {
       timeLine.draw();
       if (room) room.resize();
+    });
+    window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+      timeLine.draw();
+      if (!room) return;
+      room.recolour();
+      room.showSensors();
     });
   }
 
@@ -161,6 +172,7 @@
   }
 
   Object.assign(byId("time"), { min: fromS, max: toS, step: "any" });
+  foldLegend();
   timeLine.draw();
   room = await makeRoom();
   listen();

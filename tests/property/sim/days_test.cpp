@@ -143,7 +143,7 @@ TEST_CASE("Who is there when the part of a day begins comes in first") {
 
 TEST_CASE("A day's page shows the room that people were in: the mirrored one if the study is mirrored") {
   const Model model = model_of(short_meeting, "effects: [{mirrored_room: {across: z}}]\n");
-  studies::DayReport report(model, *model.script().trials.front().schedule);
+  studies::DayReport report(model);
   report.add_run(run_once(model, 0, Record::samples, Trace::none, Occupants::told));
   const io::ReportSection section = report.section("");
   const auto is_map = [](const io::Chart& chart) { return std::holds_alternative<io::MapChart>(chart); };

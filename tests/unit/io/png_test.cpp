@@ -119,6 +119,62 @@ TEST_CASE("a map shows furniture, seats and doors where they are, and pass and f
   CHECK(colour(marked, 0.3, 0.2) == colour(plain, 0.3, 0.2));  // only its edge
 }
 
+TEST_CASE("a map shows walls in black with a light rim, hollow where they are, and as wide as they are", "[png]") {
+  MapChart chart;
+  chart.columns = 3;
+  chart.rows = 2;
+  chart.spacing_m = 0.5;
+  chart.values.assign(6, 0.0);
+  const auto colour = [](const Pixels& picture, double x_m, double z_m) {
+    const int x = 16 + static_cast<int>(600 * x_m), y = 16 + static_cast<int>(600 * z_m);
+    const auto at = static_cast<std::size_t>(3 * (y * picture.width + x));
+    return std::array<int, 3>{picture.rgb[at], picture.rgb[at + 1], picture.rgb[at + 2]};
+  };
+  const std::array<int, 3> black{0, 0, 0}, violet{0x44, 0x01, 0x54};
+  chart.plan.walls = {
+      {{{0.3, 0.0}, {0.4, 0.0}, {0.4, 0.8}, {0.3, 0.8}}},
+      {{{0.8, 0.2}, {1.4, 0.2}, {1.4, 0.8}, {0.8, 0.8}}, {{0.9, 0.3}, {1.3, 0.3}, {1.3, 0.7}, {0.9, 0.7}}}};
+  chart.plan.wall_lines = {{{0.6, 0.1}, {0.6, 0.9}}};
+  const Pixels picture = drawn(chart);
+  for (const double z : {0.05, 0.4, 0.75}) CHECK(colour(picture, 0.35, z) == black);
+  CHECK(colour(picture, 0.35, 0.9) == violet);
+  CHECK(colour(picture, 0.6, 0.5) == black);
+  CHECK(colour(picture, 0.6, 0.95) == violet);
+  CHECK(colour(picture, 0.85, 0.5) == black);
+  CHECK(colour(picture, 1.1, 0.5) == violet);  // in the hole
+  CHECK(colour(picture, 0.4 + 2.0 / 600, 0.4)[1] > 100);
+}
+
+TEST_CASE("names on a map cover neither each other nor a sensor, and those without room are left out", "[png]") {
+  MapChart chart;
+  chart.columns = 3;
+  chart.rows = 2;
+  chart.spacing_m = 0.5;
+  chart.values.assign(6, 60.0);  // yellow: only signs and names are dark
+  chart.max = 60.0;
+  const auto dark = [](const Pixels& picture) {
+    int n = 0;
+    for (int y = 17; y < 16 + 600 - 1; ++y) {
+      for (int x = 17; x < 16 + 900 - 1; ++x) {
+        const auto at = static_cast<std::size_t>(3 * (y * picture.width + x));
+        n += picture.rgb[at] < 60 && picture.rgb[at + 1] < 60 ? 1 : 0;
+      }
+    }
+    return n;
+  };
+  const auto picture_of = [&](int n, const std::string& label) {
+    chart.plan.seats.clear();
+    for (int i = 0; i < n; ++i) chart.plan.seats.push_back({label, {0.3 + i * 0.025, 0.4}, 0.0});
+    return dark(drawn(chart));
+  };
+  const int one = picture_of(1, "D10") - picture_of(1, "");
+  CHECK(one > 30);
+  // Every 15 pixels, which is less than a name is wide: whole names, some above and some below.
+  const int twelve = picture_of(12, "D10") - picture_of(12, "");
+  CHECK(twelve % one == 0);
+  CHECK((twelve / one >= 6 && twelve / one < 12));
+}
+
 TEST_CASE("below a map a key shows its colours and signs, and those alone, however narrow the map is", "[png]") {
   const std::array<int, 3> red{255, 77, 109}, green{45, 164, 78}, yellow{0xfd, 0xe7, 0x25}, orange{0xe0, 0xa4, 0x58};
   const int columns = GENERATE(1, 3, 500);
@@ -181,6 +237,13 @@ TEST_CASE("a text stands where it is asked for, and is cut off at the picture's 
     write_text(cut, at, "a long text, with ä and \n in it", 16.0, Vec3(0.0));
     CHECK(cut.rgb.size() == paper.rgb.size());
   }
+  // Letters have smooth edges, and those beyond ASCII are themselves.
+  std::vector<bool> shades(256);
+  for (const std::uint8_t value : written.rgb) shades[value] = true;
+  CHECK(std::count(shades.begin(), shades.end(), true) > 30);
+  CHECK(text_extent("ä", 16.0).x == text_extent("a", 16.0).x);
+  CHECK(text_extent("\u017e\xff", 16.0).x == Approx(text_extent("z?", 16.0).x));
+  CHECK(text_extent("\u5b57", 16.0).x == text_extent("?", 16.0).x);
   Pixels none = paper;
   write_text(none, {100.0, 40.0}, "", 16.0, Vec3(0.0));
   CHECK(none.rgb == paper.rgb);
@@ -207,6 +270,8 @@ TEST_CASE("texts that would cover each other are set apart, and others stay wher
     for (std::size_t pixel = 0; pixel < dark.size(); ++pixel) dark[pixel] += paper.rgb[3 * pixel] < 128 ? 1 : 0;
   }
   CHECK(moved >= 5);
+  const PixelBox key{{350.0, 250.0}, {450.0, 320.0}};
+  for (const Lettering& text : set_apart(texts, size, std::vector{key})) CHECK_FALSE(overlap(box_of(text, size), key));
   CHECK(*std::max_element(dark.begin(), dark.end()) == 1);
 }
 

@@ -62,6 +62,23 @@ TEST_CASE("a plan outlines each connected piece of furniture by its convex hull"
   for (const auto& polygon : plan.furniture) CHECK(polygon.size() == 4);
 }
 
+TEST_CASE("a plan shows walls where they are a metre above the floor, whole ones as areas and shells as lines") {
+  SceneSpec scene;
+  scene.floor = FloorArea({{{0, 0}, {8, 0}, {8, -6}, {0, -6}}}, 1.0);
+  TriMesh shell = box("shell", {0, 1, -6}, {8, 3.6, 0});
+  scene.meshes = {box("inner wall", {3, 1, -6}, {3.1, 3.6, -1}), box("lintel", {3, 3.1, -1}, {3.1, 3.6, 0}), shell,
+                  box("desk", {1, 1, -2}, {2, 1.74, -1})};
+  const io::RoomPlan plan = plan_of(scene);
+  REQUIRE(plan.walls.size() == 1);
+  REQUIRE(plan.walls[0].size() == 1);
+  CHECK(area_of(plan.walls[0][0]) == Approx(0.1 * 5.0));
+  for (const Vec2& corner : plan.walls[0][0]) CHECK((corner.x >= 3.0 && corner.x <= 3.1 && corner.y <= -1.0));
+  REQUIRE(plan.wall_lines.size() == 1);
+  CHECK(plan.wall_lines[0].front() == plan.wall_lines[0].back());
+  CHECK(area_of(plan.wall_lines[0]) == Approx(8.0 * 6.0));
+  CHECK(plan.furniture.size() == 1);
+}
+
 TEST_CASE("a plan takes the corners of a single triangle for one piece") {
   SceneSpec scene;
   scene.floor = FloorArea({{{0, 0}, {5, 0}, {5, -4}, {0, -4}}}, 0.0);
