@@ -239,14 +239,17 @@ class MapPicture {
   }
 
   /// Of sensors above their signs, and of seats behind the backs of who sits there. A name that would cover another or
-  /// a sensor's sign is left out.
+  /// a sign is left out.
   void write_names() {
     std::vector<PixelBox> taken;
-    for (const MapChart::Marker& marker : chart_.markers) taken.push_back(box_round(pixel_of(marker.point), 8.0));
+    for (const auto* signs : {&chart_.markers, &chart_.plan.seats}) {
+      for (const MapChart::Marker& sign : *signs)
+        taken.push_back({pixel_of(sign.point) - 7.5, pixel_of(sign.point) + 7.5});
+    }
     const auto write = [&](const MapChart::Marker& marker, const Vec2& way, double away_px, double size_px) {
       const Vec2 extent = text_extent(marker.label, size_px), reach = 0.5 * extent + away_px;
       for (const Vec2& side : {way, Vec2(0.0, -1.0), Vec2(0.0, 1.0), Vec2(1.0, 0.0), Vec2(-1.0, 0.0)}) {
-        const Vec2 bottom = pixel_of(marker.point) + side * reach + Vec2(0.0, 0.5 * extent.y);
+        const Vec2 bottom = glm::round(pixel_of(marker.point) + side * reach + Vec2(0.0, 0.5 * extent.y));
         const Lettering text{bottom, marker.label, black};
         const PixelBox box = box_of(text, size_px);
         const bool fits =
@@ -258,10 +261,8 @@ class MapPicture {
       }
     };
     for (const MapChart::Marker& marker : chart_.markers) write(marker, Vec2(0.0, -1.0), 10.0, 15.0);
-    for (const MapChart::Marker& marker : chart_.plan.seats) write(marker, -direction_of(marker.heading), 8.0, 12.0);
+    for (const MapChart::Marker& marker : chart_.plan.seats) write(marker, -direction_of(marker.heading), 9.0, 12.0);
   }
-
-  static PixelBox box_round(const Vec2& middle, double reach_px) { return {middle - reach_px, middle + reach_px}; }
 
   void polygon(const std::vector<Vec2>& loop, const Vec3& colour, double dash_px) {
     for (std::size_t i = 0; i < loop.size(); ++i) {

@@ -38,8 +38,8 @@
     };
   }
 
-  // Names beside their signs, those of markers first. One that would cover another name or a marker is left out: its
-  // sign tells it when pointed at.
+  // Names beside their signs, those of markers first. One that would cover another name or a sign is left out: its
+  // own sign tells it when pointed at.
   function names(chart, toPixels, width, height) {
     const pen = document.createElement("canvas").getContext("2d"), taken = [], placed = [];
     const boxAt = (x, y, wide, high) => ({ left: x - wide / 2, right: x + wide / 2, top: y - high / 2, bottom: y + high / 2 });
@@ -57,6 +57,7 @@
       placed.push({ x: at[0], y: at[1], label: sign.label, size });
     }
     chart.markers.forEach(({ x, z }) => taken.push(boxAt(...toPixels([x, z]), 12, 12)));
+    chart.seats.forEach(({ x, z }) => taken.push(boxAt(...toPixels([x, z]), 6, 6)));
     chart.markers.forEach((marker) => place(marker, 11, (wide) => [[0, -14], [0, 15], [wide / 2 + 9, 0], [-wide / 2 - 9, 0],
       [0, -26], [0, 27], [wide / 2, -20], [-wide / 2, -20], [wide / 2, 20], [-wide / 2, 20]]));
     // Where a seat's name has room: behind the back of whoever sits there.
