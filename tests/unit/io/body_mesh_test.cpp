@@ -110,7 +110,8 @@ TEST_CASE("a body file that can't be worn is refused with its place", "[body_mes
                                                 "'left_forearm'?)"));
   CHECK_THAT(with_node(""), contains("no part of the body is called ''"));
   CHECK_THAT(with_node("torso", {{"scale", {1000, 1000, 1000}}}), contains("more than 3 m from the part's origin"));
-  CHECK_THAT(with_node("torso", {{"scale", {0, 0, 0}}}), contains("singular"));
+  CHECK_THAT(with_node("torso", {{"scale", {1, 0, 1}}}), contains("singular"));
+  CHECK_THAT(with_node("torso", {{"scale", {0, 0, 0}}}), contains("it is hidden"));
 
   BodyFile twice;
   twice.part("head");
