@@ -31,7 +31,7 @@ void placements(const Inputs& inputs, unsigned threads) {
   add_models(scene, spec, inputs);
   std::vector<studies::PlacementScore> scores;
   for (const SensorSetSpec& set : spec.sets) scores.push_back(studies::score(scene, spec.coverage, set, threads));
-  for (const studies::PlacementScore& score : scores) tell(studies::warnings(score, scene.floor), inputs.verbosity);
+  tell(studies::warnings(scores, scene.floor), inputs.verbosity);
   std::optional<studies::PlacementSearch> search;
   if (spec.search) {
     Progress progress(static_cast<std::uint32_t>(spec.search->evaluations), inputs.verbosity, "sets");

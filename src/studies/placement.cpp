@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "core/grouped_warnings.hpp"
 #include "studies/coverage.hpp"
 #include "studies/sight.hpp"
 
@@ -105,16 +106,20 @@ PlacementScore score(const SceneSpec& scene, const CoverageSpec& coverage, Senso
   return result;
 }
 
-std::vector<Issue> warnings(const PlacementScore& score, const FloorArea& floor) {
-  Diagnostics remarks;
-  for (const std::size_t i : score.idle) {
-    if (i >= score.set.sensors.size()) continue;  // of the scene, which `check` judges
-    const SensorSpec& sensor = score.set.sensors[i];
-    const std::string outside = hangs_outside(floor, sensor.world_from_sensor.origin);
-    remarks.warning(i < score.set.where.size() ? score.set.where[i] : Where{},
-                    "set '" + score.set.id + "': sensor '" + sensor.id + "' sees the target nowhere" +
-                        (outside.empty() ? " (does it look at a wall?)" : ": " + outside));
+std::vector<Issue> warnings(std::span<const PlacementScore> scores, const FloorArea& floor) {
+  GroupedWarnings blind;
+  for (const PlacementScore& score : scores) {
+    for (const std::size_t i : score.idle) {
+      if (i >= score.set.sensors.size()) continue;  // of the scene, which `check` judges
+      const SensorSpec& sensor = score.set.sensors[i];
+      const std::string outside = hangs_outside(floor, sensor.world_from_sensor.origin);
+      const std::string name = "set '" + score.set.id + "': sensor '" + sensor.id + "'";
+      blind.add(outside.empty() ? "astray" : "outside", i < score.set.where.size() ? score.set.where[i] : Where{}, name,
+                name + " sees the target nowhere" + (outside.empty() ? " (does it look at a wall?)" : ": " + outside));
+    }
   }
+  Diagnostics remarks;
+  blind.tell(remarks);
   return remarks.issues();
 }
 

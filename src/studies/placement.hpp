@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,8 @@ struct PlacementScore {
   std::vector<std::size_t> idle{};       ///< sensors of the set that see the target nowhere
 };
 
-/// One for every idle sensor; where it hangs off the floor, how far.
-[[nodiscard]] std::vector<Issue> warnings(const PlacementScore& score, const FloorArea& floor);
+/// Of idle sensors, a warning for each reason; where the first hangs off the floor, how far.
+[[nodiscard]] std::vector<Issue> warnings(std::span<const PlacementScore> scores, const FloorArea& floor);
 
 /// Throws Error(input) as CoverageStudy does. The scene has every model that the set names.
 [[nodiscard]] PlacementScore score(const SceneSpec& scene, const CoverageSpec& coverage, SensorSetSpec set,

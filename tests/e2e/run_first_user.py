@@ -410,6 +410,20 @@ class ComingIntoBeing(OwnRooms):
         self.assertIn("error: 'second person' can't appear at (2.00, -2.00)",
                       self.the_error(self.boards(), actions, f"effects: [second_person: {place}]\n"))
 
+    def test_an_effect_finds_a_place_where_people_get_to(self):
+        """The place farthest from the seat is in the cupboard, and in the pillar."""
+        pillar = OwnRoom()
+        pillar.box("pillar", (0.05, 0, -3.95), (2, 2.5, -2))
+        for room, (x_low, x_high, z_low, z_high) in ((self.boards(), (1, 3, -3, -1)), (pillar, (0.05, 2, -3.95, -2))):
+            room.seat("S1", 4.2, -3)
+            room.mark({"type": "entrance", "id": "door"}, translation=[4, 0, 0])
+            for effect in ("second_person", "second_person: {moves: wanders}"):
+                told = self.folder / "occupants.csv"
+                pirsim(*self.files(room, "{enter: door}, {wait_s: 20}", f"effects: [{effect}]\n"), "-q", "--occupants", told)
+                for row in told.read_text().splitlines()[1:]:
+                    x, z = map(float, row.split(",")[-2:])
+                    self.assertFalse(x_low < x < x_high and z_low < z < z_high, (effect, row))
+
     def test_a_room_without_a_door_is_no_cupboard(self):
         """It may be the only one, or one of several that people can't leave."""
         self.rows(OwnRoom(width=1.5, depth=1.5), "{appear: {at_xz_m: [0.7, -0.7]}}, {wait_s: 1}")
@@ -497,6 +511,16 @@ class ManyOfAKind(OwnRooms):
         self.assertEqual(told.count("warning:"), 1, told)
         self.assertIn("seat 'S0' faces away from 'bench': sitters look along the node's -Z (and 3 more: seat 'S1', seat 'S2', "
                       "seat 'S3')", told)
+
+    def test_sets_of_placements_are_told_together(self):
+        sets = "".join(f"  - {{id: far {k}, sensors: [{{model: {OwnRoom.MODEL}, position_m: [99, 2.5, -3]}}]}}\n" for k in range(50))
+        placements = self.folder / "placements.yaml"
+        placements.write_text("pirsim_placements: 1\nspacing_m: 1\nduration_s: 2\ntarget: {x_shapes: {}}\nsets:\n" + sets)
+        told = pirsim("placements", "-q", *self.files(OwnRoom())[:2], "--script", placements).stderr
+        self.assertEqual(told, "")
+        told = pirsim("placements", *self.files(OwnRoom())[:2], "--script", placements).stderr
+        self.assertEqual(told.count("warning: set"), 1, told)
+        self.assertIn("(and 49 more: set 'far 1': sensor 'PIR1', ", told)
 
     def test_a_single_one_is_told_as_it_is(self):
         self.assertTrue(self.told(self.seats(1), self.WALK).endswith("sitters look along the node's -Z\n"))
