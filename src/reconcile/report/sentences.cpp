@@ -73,7 +73,7 @@ std::string no_effect(const Outcome& outcome, double alpha) {
   const bool one = possible.size() == 1;
   return (likeliest_is_possible ? std::string("of ") : "the likelier ones of ") +
          (outcome.looked_for.empty() ? "the catalogue's effects" : "the effects looked for") +
-         (likeliest_is_possible ? (one ? " only " : " ") : " are ruled out; ") + joined(possible, "and") +
+         (likeliest_is_possible ? " only " : " are ruled out; ") + joined(possible, "and") +
          (one && likeliest_is_possible ? " isn't ruled out" : one ? " isn't" : " aren't ruled out") + ", but " +
          (one ? "its probability" : "their probability together") + " is only " + short_number(together);
 }
