@@ -41,7 +41,7 @@ PUBLIC = {
     "sensor": "schema", "scene": "schema", "script": "schema", "schedule": "schema", "survey": "schema", "sample": "schema",
     "effects": "effects",
     "model": "sim", "state": "sim", "study": "sim", "recording": "sim",
-    "coverage": "studies", "walk_test": "studies",
+    "coverage": "studies", "look": "studies", "walk_test": "studies",
     "room": "dataset", "dataset": "dataset",
     "csv": "io", "io": "io",
     "reconcile": "reconcile", "reconcile_outcome": "reconcile",

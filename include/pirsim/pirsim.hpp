@@ -5,6 +5,7 @@
 #include "pirsim/csv.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
+#include "pirsim/look.hpp"
 #include "pirsim/model.hpp"
 #include "pirsim/recording.hpp"
 #include "pirsim/state.hpp"

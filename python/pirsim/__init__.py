@@ -13,6 +13,8 @@ from . import errors, specs
 from ._core import __version__, git_revision
 from ._inputs import (EffectInfo, EffectParameter, effects, facing, read_scene, read_script, sensor_model,
                       write_scene, write_script)
+from ._look import (Findings, Page, Picture, Placements, PlacementScore, SensorSight, check, export, placements, preview,
+                    view)
 from ._result import Fault, Incident, Result
 from ._study import Model, Poses, Rays, Trace, compile, data_directory, run, trace
 from ._surveys import CoverageMap, Grid, WalkTest, coverage, walk_test
@@ -25,13 +27,15 @@ from .specs import (Action, Amplifier, Appear, Clock, Cluster, Comparator, Detec
                     Turn, Wait, Walk, Warmth, Where, Work, Zone)
 
 __all__ = [
-    "Action", "Amplifier", "Appear", "Candidate", "Cell", "Clock", "Cluster", "Comparator", "CoverageMap", "Detector",
-    "Diagnostic", "Effect", "EffectInfo", "EffectParameter", "Element", "Enter", "Entrance", "Error", "ErrorCode",
-    "Fault", "FileError", "FittedEffect", "Floor", "Frame", "Grid", "HeldMeeting", "Incident", "IncompleteWarning",
-    "InfeasibleError", "InputError", "InputWarning", "InternalError", "Leave", "Meetings", "Mesh", "Model", "Optics",
-    "Person", "Poses", "Profile", "Rays", "Reconciliation", "Result", "Rise", "Scene", "Schedule", "Script", "Seat",
-    "SeatScatter", "Sensing", "Sensor", "SensorModel", "Sit", "Staff", "Summary", "Trace", "Trial", "Turn",
-    "UsageError", "Wait", "Walk", "WalkTest", "Warmth", "Where", "Work", "Zone", "__version__", "compile", "coverage",
-    "data_directory", "dataset", "effects", "errors", "facing", "git_revision", "read_scene", "read_script",
-    "reconcile", "room", "run", "sensor_model", "specs", "trace", "walk_test", "write_scene", "write_script",
+    "Action", "Amplifier", "Appear", "Candidate", "Cell", "Clock", "Cluster", "Comparator", "CoverageMap",
+    "Detector", "Diagnostic", "Effect", "EffectInfo", "EffectParameter", "Element", "Enter", "Entrance", "Error",
+    "ErrorCode", "Fault", "FileError", "Findings", "FittedEffect", "Floor", "Frame", "Grid", "HeldMeeting",
+    "Incident", "IncompleteWarning", "InfeasibleError", "InputError", "InputWarning", "InternalError", "Leave",
+    "Meetings", "Mesh", "Model", "Optics", "Page", "Person", "Picture", "PlacementScore", "Placements", "Poses",
+    "Profile", "Rays", "Reconciliation", "Result", "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter",
+    "Sensing", "Sensor", "SensorModel", "SensorSight", "Sit", "Staff", "Summary", "Trace", "Trial", "Turn",
+    "UsageError", "Wait", "Walk", "WalkTest", "Warmth", "Where", "Work", "Zone", "__version__", "check", "compile",
+    "coverage", "data_directory", "dataset", "effects", "errors", "export", "facing", "git_revision", "placements",
+    "preview", "read_scene", "read_script", "reconcile", "room", "run", "sensor_model", "specs", "trace", "view",
+    "walk_test", "write_scene", "write_script",
 ]

@@ -10,6 +10,7 @@ NB_MODULE(_core, module) {
   add_inputs(module);
   add_study(module);
   add_surveys(module);
+  add_look(module);
   add_dataset(module);
   add_reconcile(module);
 }

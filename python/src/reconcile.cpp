@@ -104,7 +104,7 @@ nb::dict reconcile_study(nb::handle scene, nb::handle script, const std::string&
     if (question.folder.empty()) return;
     reconcile::write_report(
         question.folder, outcome, rows, script_spec, settings, context,
-        {"pirsim " + version() + " " + git_revision(), scene_spec.name, script_spec.name, measured});
+        {"pirsim " + version() + " " + git_revision(), scene_spec.name, script_spec.name, measured, {}});
   });
   nb::dict result = to_dict(outcome, script_spec, question.alpha);
   result["warnings"] = warnings(scene_spec, script_spec, rows.notes, outcome.notes);

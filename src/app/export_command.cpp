@@ -2,8 +2,7 @@
 
 #include "app/commands.hpp"
 #include "app/session.hpp"
-#include "io/gltf_writer.hpp"
-#include "studies/run_film.hpp"
+#include "pirsim/look.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -19,13 +18,10 @@ void export_gltf(const Inputs& inputs, const ExportOptions& options) {
   check_outputs({{"-o", options.output, {".gltf", ".glb"}}}, inputs);
   const Model model = load(inputs);
   keep_inputs({{"-o", options.output}}, files_read(model.script(), model.scene()));
-  const io::ExportedRun run =
-      studies::film(model, find_run(model, options.run),
-                    {.keys_per_s = options.keys_per_s, .beams_of = find_sensors(model, options.beams)})
-          .run;
-  io::write_gltf(options.output, run);
+  const std::uint32_t run = find_run(model, options.run);
+  const double length_s = export_run(options.output, model, run, options.beams, options.keys_per_s);
   if (inputs.verbosity != Verbosity::quiet) {
-    std::cerr << "wrote " << options.output.string() << ": " << run.title << ", " << run.key_times_s.back() << " s\n";
+    std::cerr << "wrote " << options.output.string() << ": " << model.script().name << ", trial " << model.trial_of(run) << ", " << length_s << " s\n";
   }
 }
 

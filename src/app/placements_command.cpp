@@ -1,46 +1,30 @@
 #include <iostream>
+#include <optional>
+#include <utility>
 
 #include "app/commands.hpp"
 #include "app/long_work.hpp"
 #include "app/session.hpp"
-#include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
-#include "studies/placement.hpp"
+#include "pirsim/look.hpp"
 
 namespace pirsim::app {
 namespace {
-
-/// Models that the study names and the scene doesn't.
-void add_models(SceneSpec& scene, const PlacementSpec& spec, const Inputs& inputs) {
-  for (const auto& [name, where] : spec.models) {
-    if (scene.sensor_models.contains(name)) continue;
-    try {
-      scene.sensor_models[name] = io::find_sensor_model(name, inputs.scene, scene_options(inputs));
-    } catch (const Error& fault) {
-      const Issue& first = fault.issues().front();
-      if (!first.where.file.empty()) throw;  // of the model's own file
-      throw Error(fault.code(), where, first.message);
-    }
-  }
-}
 
 void placements(const Inputs& inputs, unsigned threads) {
   const PlacementSpec spec = io::read_placements(inputs.script, inputs.overrides);
   SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
-  add_models(scene, spec, inputs);
-  std::vector<studies::PlacementScore> scores;
-  for (const SensorSetSpec& set : spec.sets) scores.push_back(studies::score(scene, spec.coverage, set, threads));
-  tell(studies::warnings(scores, scene.floor), inputs.verbosity);
-  std::optional<studies::PlacementSearch> search;
+  PlacementOptions options{threads, inputs.scene, scene_options(inputs)};
+  std::optional<Progress> progress;
   if (spec.search) {
-    Progress progress(static_cast<std::uint32_t>(spec.search->evaluations), inputs.verbosity, "sets");
-    search = studies::search_placement(scene, spec.coverage, *spec.search, threads, [&] { progress.run_finished(); });
-    scores.push_back(search->even);
-    scores.push_back(search->found);
+    progress.emplace(static_cast<std::uint32_t>(spec.search->evaluations), inputs.verbosity, "sets");
+    options.set_done = [&] { progress->run_finished(); };
   }
-  std::cout << to_text(studies::ranked(std::move(scores)));
-  if (search) std::cout << to_text(*search);
+  const PlacementReport report = run_placements(std::move(scene), spec, options);
+  progress.reset();
+  tell(report.warnings, inputs.verbosity);
+  std::cout << report.text;
   require_written();
 }
 

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 #include <iostream>
 #include <optional>
@@ -6,10 +5,7 @@
 
 #include "app/commands.hpp"
 #include "app/session.hpp"
-#include "io/png.hpp"
-#include "pirsim/geometry.hpp"
-#include "pirsim/state.hpp"
-#include "sim/run_state.hpp"
+#include "pirsim/look.hpp"
 #include "studies/picture.hpp"
 
 namespace pirsim::app {
@@ -18,68 +14,21 @@ namespace {
 struct PreviewOptions {
   std::filesystem::path output = "preview.png";
   RunChoice run;
-  std::optional<double> time_s;    ///< empty: when the first person has been at work for a while
-  std::vector<std::string> beams;  ///< sensors whose beams are drawn; "all", "none"
-  studies::PictureSpec picture;
+  PictureRequest picture;
 };
-
-bool reached_default_time(const State& state, std::int64_t& work_began, const Model& model) {
-  constexpr double into_work_s = 10.0;
-  const sim::Crowd& crowd = state.run_state().crowd;
-  if (work_began < 0 && !crowd.actors().empty() && crowd.actors().front().phase() == "working")
-    work_began = state.tick();
-  return work_began >= 0 && static_cast<double>(state.tick() - work_began) * model.tick_s() >= into_work_s;
-}
-
-double time_s(const Model& model, const State& state) { return static_cast<double>(state.tick()) * model.tick_s(); }
-
-/// Where somebody asks for a moment that never comes, a picture of another one would mislead.
-void require_reached(double asked_s, const Model& model, const State& state) {
-  const double reached_s = time_s(model, state);
-  if (reached_s >= asked_s) return;
-  std::ostringstream message;
-  message << "--time: the run is shorter than " << asked_s << " s, trial " << model.trial_of(state.run()) << " lasts "
-          << reached_s << " s";
-  throw Error(ErrorCode::usage, message.str());
-}
-
-State go_to_moment(const Model& model, const PreviewOptions& options) {
-  State state(model, find_run(model, options.run));
-  std::int64_t work_began = -1;
-  while (!state.finished()) {
-    if (options.time_s ? time_s(model, state) >= *options.time_s : reached_default_time(state, work_began, model))
-      break;
-    step_tick(model, state);
-  }
-  if (options.time_s) require_reached(*options.time_s, model, state);
-  return state;
-}
 
 void preview(const Inputs& inputs, const PreviewOptions& options) {
   check_outputs({{"-o", options.output, {".png"}}}, inputs);
   const Model model = load(inputs);
   keep_inputs({{"-o", options.output}}, files_read(model.script(), model.scene()));
-  const State state = go_to_moment(model, options);
-
-  std::vector<std::string> names = options.beams;
-  if (names.empty() && !model.scene().sensors.empty()) names.push_back(model.scene().sensors.front().id);
-  studies::PictureSpec picture = options.picture;
-  picture.beams_of = find_sensors(model, names);
-  const io::Pixels image = studies::picture(model, state, picture);
-  io::write_png(options.output, image.width, image.height, image.rgb);
+  PictureRequest request = options.picture;
+  request.run = find_run(model, options.run);
+  const Picture picture = picture_of(model, request);
+  io::write_text_file(options.output, picture.png);
   if (inputs.verbosity != Verbosity::quiet) {
-    std::cerr << "wrote " << options.output.string() << ": trial " << model.trial_of(state.run()) << " at "
-              << time_s(model, state) << " s\n";
+    std::cerr << "wrote " << options.output.string() << ": trial " << model.trial_of(request.run) << " at "
+              << picture.time_s << " s\n";
   }
-}
-
-std::vector<studies::Mark> marks_of(const std::vector<std::string>& words) {
-  std::vector<studies::Mark> marks;
-  for (const studies::Mark mark : studies::all_marks) {
-    const bool named = std::ranges::find(words, name(mark)) != words.end();
-    if (named || std::ranges::find(words, "all") != words.end()) marks.push_back(mark);
-  }
-  return marks;
 }
 
 /// One word "X,Y,Z": an option of three values would take the next option for the third.
@@ -115,16 +64,16 @@ void add_preview_command(CLI::App& app) {
   offer_seed(command, *inputs);
   offer_output(command, options->output, "FILE", "PNG file (default: preview.png)");
   offer_run_choice(command, options->run);
-  command.add_option("--time", options->time_s, "moment of the run in seconds (default: 10 s into desk work)")
+  command.add_option("--time", options->picture.time_s, "moment of the run in seconds (default: 10 s into desk work)")
       ->option_text("S");
-  command.add_option("--beams", options->beams, "sensors whose beams are drawn, or all or none (default: the first)")
+  command.add_option("--beams", options->picture.beams, "sensors whose beams are drawn, or all or none (default: the first)")
       ->option_text("ID,...")
       ->delimiter(',');
   std::vector<std::string> words{"all", "none"};
   for (const studies::Mark mark : studies::all_marks) words.emplace_back(name(mark));
   command
-      .add_option_function<std::vector<std::string>>(
-          "--marks", [options](const std::vector<std::string>& given) { options->picture.marks = marks_of(given); },
+      .add_option(
+          "--marks", options->picture.marks,
           "what is marked and named: seats, doors, sensors, people, scale, key, or all or none (default: all)")
       ->option_text("WORD,...")
       ->delimiter(',')

@@ -96,24 +96,6 @@ std::uint32_t find_run(const Model& model, const RunChoice& choice) {
               "--trial: '" + choice.trial + "' is not in the script" + near_or_all(choice.trial, names));
 }
 
-std::vector<std::size_t> find_sensors(const Model& model, const std::vector<std::string>& names) {
-  std::vector<std::string> known;
-  for (const SensorSpec& sensor : model.scene().sensors) known.push_back(sensor.id);
-  std::vector<std::size_t> indices;
-  for (const std::string& name : names) {
-    if (name == "none") continue;
-    bool found = name == "all";
-    for (std::size_t i = 0; i < known.size(); ++i) {
-      if (name != "all" && name != known[i]) continue;
-      indices.push_back(i);
-      found = true;
-    }
-    if (!found)
-      throw Error(ErrorCode::usage, "--beams: sensor '" + name + "' is not in the scene" + near_or_all(name, known));
-  }
-  return indices;
-}
-
 namespace {
 
 namespace fs = std::filesystem;

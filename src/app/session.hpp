@@ -26,8 +26,6 @@ namespace pirsim::app {
 [[nodiscard]] Model load(const Inputs& inputs, ScriptSpec script);
 /// Index of a run. Throws Error(usage).
 [[nodiscard]] std::uint32_t find_run(const Model& model, const RunChoice& choice);
-/// Resolves "all", "none" and sensor names to indices. Throws Error(usage).
-[[nodiscard]] std::vector<std::size_t> find_sensors(const Model& model, const std::vector<std::string>& names);
 /// Where a scene's sensors are looked for: what the user names, and last the data that came with this program. Throws
 /// Error(io) if the user names what isn't a folder.
 [[nodiscard]] io::SceneOptions scene_options(const Inputs& inputs);

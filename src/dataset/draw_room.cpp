@@ -38,8 +38,8 @@ ScriptSpec tour_of(const SceneSpec& scene) {
 std::string fault_of(const SceneSpec& scene) {
   try {
     const Model model = compile(scene, tour_of(scene));
-    const studies::SightReport report = studies::look_around(model);
-    if (std::ranges::any_of(report.sensors, &studies::SensorSight::sees_nothing)) return "a sensor saw nobody";
+    const SightReport report = studies::look_around(model);
+    if (std::ranges::any_of(report.sensors, &SensorSight::sees_nothing)) return "a sensor saw nobody";
   } catch (const Error& error) {
     if (error.code() != ErrorCode::infeasible) throw;
     return "a seat or door couldn't be reached";

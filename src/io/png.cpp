@@ -6,7 +6,6 @@
 #include <functional>
 #include <glm/common.hpp>
 #include <limits>
-#include <ostream>
 #include <string>
 #include <utility>
 
@@ -26,22 +25,26 @@ namespace {
 
 constexpr int channels = 3;
 
-void write_chunk(void* stream, void* data, int size) {
-  static_cast<std::ostream*>(stream)->write(static_cast<const char*>(data), size);
+void append_chunk(void* text, void* data, int size) {
+  static_cast<std::string*>(text)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
 }
 
 }  // namespace
 
-void write_png(const std::filesystem::path& path, int width, int height, std::span<const std::uint8_t> rgb) {
+std::string to_png(int width, int height, std::span<const std::uint8_t> rgb) {
   const std::int64_t bytes = std::int64_t{width} * height * channels;
   if (width < 1 || height < 1 || bytes > std::numeric_limits<int>::max() || std::cmp_not_equal(bytes, rgb.size())) {
-    throw Error(ErrorCode::usage, Where{path.string()}, "the picture's width, height and pixels don't match");
+    throw Error(ErrorCode::usage, "the picture's width, height and pixels don't match");
   }
-  AtomicFile file(path);
-  if (stbi_write_png_to_func(write_chunk, &file.stream(), width, height, channels, rgb.data(), width * channels) == 0) {
-    throw Error(ErrorCode::io, Where{path.string()}, "the picture can't be encoded");
+  std::string png;
+  if (stbi_write_png_to_func(append_chunk, &png, width, height, channels, rgb.data(), width * channels) == 0) {
+    throw Error(ErrorCode::internal, "the picture can't be encoded");
   }
-  file.commit();
+  return png;
+}
+
+void write_png(const std::filesystem::path& path, int width, int height, std::span<const std::uint8_t> rgb) {
+  write_text_file(path, to_png(width, height, rgb));
 }
 
 namespace {

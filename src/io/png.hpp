@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "io/charts.hpp"
@@ -20,7 +21,9 @@ struct Pixels {
 /// marker, both the way they face. Below the map: its title, what the colours and signs mean, and a scale.
 [[nodiscard]] Pixels drawn(const MapChart& chart);
 
-/// rgb as in Pixels. Atomically; Error(io) if it can't be written, Error(usage) if the sizes don't match.
+/// The bytes of a PNG file; rgb as in Pixels. Throws Error(usage) if the sizes don't match.
+[[nodiscard]] std::string to_png(int width, int height, std::span<const std::uint8_t> rgb);
+/// The same as a file. Atomically; Error(io) if it can't be written, Error(usage) if the sizes don't match.
 void write_png(const std::filesystem::path& path, int width, int height, std::span<const std::uint8_t> rgb);
 
 }  // namespace pirsim::io

@@ -6,20 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "pirsim/look.hpp"
 #include "pirsim/scene.hpp"
 #include "pirsim/survey.hpp"
 
 namespace pirsim::studies {
-
-/// How one set of sensors does. The target stands still at a square or seat as in a coverage study.
-struct PlacementScore {
-  SensorSetSpec set;
-  double seen_area_m2 = 0.0;  ///< by at least one sensor
-  double blind_fraction = 0.0;
-  double overlap = 0.0;                  ///< share of the seen area that two sensors or more see
-  std::vector<std::string> blind_seats;  ///< where no sensor sees the target
-  std::vector<std::size_t> idle{};       ///< sensors of the set that see the target nowhere
-};
 
 /// Of idle sensors, a warning for each reason; where the first hangs off the floor, how far.
 [[nodiscard]] std::vector<Issue> warnings(std::span<const PlacementScore> scores, const FloorArea& floor);
@@ -30,12 +21,6 @@ struct PlacementScore {
 
 /// Greatest seen area first; ties: fewer blind seats, then the order given.
 [[nodiscard]] std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores);
-
-struct PlacementSearch {
-  PlacementScore even;   ///< spaced evenly along the lines
-  PlacementScore found;  ///< never covers less than `even`
-  int evaluations = 0;
-};
 
 /// Looks for the sensors' places along the lines that cover most: NLopt's DIRECT-L over all of them, then SBPLX from
 /// the best. Both are deterministic. `set_done` is called after each set that was tried. Ref: [Gablonsky2001],

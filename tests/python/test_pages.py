@@ -16,8 +16,9 @@ QUICKER = {
     "runs=range(100)": "runs=range(4)",
     'folder="report", table="table")': 'folder="report", table="table", budget=0.05, effects=["missed_triggers"])',
     '"spacing_m": 0.1': '"spacing_m": 0.5',
+    '"placements.yaml")': '"placements.yaml", set={"search.evaluations": 2, "spacing_m": 1.0})',
     '"walk_test.yaml")': '"walk_test.yaml", set={"spacing_m": 1.0})',
-    '/studies/studyA.yaml")\n': '/studies/studyA.yaml", set={"replicates": 3})\n',
+    "set=scatter)": 'set={**scatter, "replicates": 3})',
     '/studies/studyB.yaml")\n': '/studies/studyB.yaml", set={"spacing_m": 0.5})\n',
 }
 
@@ -53,7 +54,8 @@ def test_those_of_the_page_on_python(source, data, room, study_a, folder):
     pytest.importorskip("matplotlib").use("Agg")
     for library in ("pandas", "polars", "xarray"):
         pytest.importorskip(library)
-    for file in (room, data / "studies/studyB.yaml", data / "studies/walk_test.yaml", data / "recipes/tiny.yaml"):
+    for file in (room, data / "studies/studyB.yaml", data / "studies/walk_test.yaml", data / "studies/placements.yaml",
+                 data / "recipes/tiny.yaml"):
         shutil.copy(file, {room.name: "room.gltf", "tiny.yaml": "recipe.yaml"}.get(file.name, file.name))
     script = pirsim.read_script(study_a, set={"replicates": 1, "trials.for_each.seat": ["S3", "S8"]})
     pirsim.write_script(script, "study.yaml")

@@ -169,6 +169,70 @@ def test_pickling_is_refused_with_a_reason_where_it_can_not_work(model, room, st
         pirsim.Model()
 
 
+def test_runs_that_are_not_there_take_no_memory(model):
+    """A range of 10^12 was made a list, of 7.6 GB when it was killed; 1.9 became 1."""
+    import itertools
+    import resource
+
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    for runs, error in ((range(10**12), IndexError), (range(-10**12, 0), IndexError), (itertools.count(), IndexError),
+                        (itertools.repeat(0), ValueError), (10**12, IndexError), ([0, 1.9], TypeError),
+                        (1.9, TypeError), ("1", TypeError), (np.array([0.5]), TypeError)):
+        for work in (pirsim.run, pirsim.trace):
+            with pytest.raises(error, match="run"):
+                work(model, runs)
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 50_000  # kB
+    assert pirsim.run(model, np.array([3, 1])).run.tolist() == [3, 1]
+
+
+def test_numbers_that_size_things_are_refused_by_name(model, room, study_a, data):
+    script = data / "studies" / "studyB.yaml"
+    for call, error, message in (
+            (lambda: pirsim.run(model, 0, threads=-1), ValueError, "threads"),
+            (lambda: pirsim.run(model, 0, threads=10**12), ValueError, "threads"),
+            (lambda: pirsim.run(model, 0, threads=1.5), TypeError, "threads"),
+            (lambda: pirsim.coverage(room, script, threads=-1), ValueError, "threads"),
+            (lambda: pirsim.trace(model, 0).emit(seed=-1), ValueError, "seed"),
+            (lambda: pirsim.trace(model, 0).emit(seed=2**63), ValueError, "seed"),
+            (lambda: pirsim.room(data / "recipes" / "tiny.yaml", 1.5), TypeError, "number"),
+            (lambda: pirsim.reconcile(room, study_a, "rows.csv", max_effects=10**12), ValueError, "max_effects"),
+            (lambda: pirsim.reconcile(room, study_a, "rows.csv", seed=-1), ValueError, "seed")):
+        with pytest.raises(error, match=message):
+            call()
+
+
+def test_a_path_is_not_cut_off_at_a_nul(model, room, study_a, data, tmp_path):
+    for call in (lambda: pirsim.compile(f"{room}\0.gltf", study_a), lambda: pirsim.compile(room, f"{study_a}\0"),
+                 lambda: pirsim.read_scene(f"{room}\0"), lambda: pirsim.sensor_model("EKMC1604111\0"),
+                 lambda: pirsim.read_scene(room, sensors=["a\0b"]),
+                 lambda: pirsim.write_scene(pirsim.read_scene(room), f"{tmp_path}/a.gltf\0b"),
+                 lambda: pirsim.dataset(data / "recipes" / "tiny.yaml", f"{tmp_path}/a\0b")):
+        with pytest.raises(ValueError, match="NUL"):
+            call()
+    assert not list(tmp_path.iterdir())
+
+
+def test_results_print_in_a_few_lines(model):
+    result = pirsim.run(model, range(3), zones=True, occupants=True)
+    text = repr(result)
+    assert text.count("\n") < 8 and len(text) < 800
+    for told in ("3 runs", "3 trials (S1, S2, S3)", f"seed {model.seed}", "PIR5", "0 faults", "zones of 3 runs"):
+        assert told in text
+    assert result.seed == model.seed == model.script.seed
+    assert pirsim.trace(model, 0).emit(seed=7).seed == 7
+    for thing in (model, model.sensors, model.seats, model.rays, pirsim.trace(model, 0)):
+        assert repr(thing).startswith("<pirsim.") and len(repr(thing)) < 200
+
+
+def test_every_array_owns_its_memory(model):
+    """Which the page and the class said in two ways that can't both be true."""
+    result = pirsim.run(model, 0)
+    arrays = [result.bits, result.people, result.valid, result.time, result.phase_code, result.run]
+    for i, array in enumerate(arrays):
+        assert not array.flags.writeable
+        assert not any(np.shares_memory(array, other) for other in arrays[:i])
+
+
 def test_arguments_are_refused_by_name(model, room, study_a):
     with pytest.raises(IndexError, match="run 20: the study has runs 0 to 19"):
         pirsim.run(model, range(15, 21))

@@ -118,6 +118,72 @@ def test_what_a_reader_would_refuse_is_refused():
             call()
 
 
+def test_objects_are_checked_as_files_are():
+    """Each was accepted, or cut off in silence, by compile(); the same in a file is refused."""
+    def scene(change):
+        room = own_room()
+        change(room)
+        return room, own_script()
+
+    def script(change):
+        study = own_script()
+        change(study)
+        return own_room(), study
+
+    seat = pirsim.Seat("S1", pirsim.facing((1.0, 0.5, 1.0)))
+    box = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+    model = "scene.sensor_models['EKMC1604111']"
+    for objects, error, message in (
+            (scene(lambda s: setattr(s.sensors[0], "id", "../x,=cmd()")), pirsim.InputError, "scene.sensors[0].id"),
+            (scene(lambda s: setattr(s.sensors[0], "id", "a\nb")), pirsim.InputError, "scene.sensors[0].id"),
+            (scene(lambda s: setattr(s.sensors[0], "id", "a\0b")), pirsim.InputError, "scene.sensors[0].id"),
+            (scene(lambda s: setattr(s.sensors[0], "id", "people")), pirsim.InputError, "scene.sensors[0].id"),
+            (scene(lambda s: s.seats.extend([seat, seat])), pirsim.InputError, "scene.seats[1].id"),
+            (scene(lambda s: setattr(s.sensors[0].world_from_sensor, "origin", (1e9, 0, 0))), pirsim.InputError,
+             "scene.sensors[0].world_from_sensor.origin"),
+            (scene(lambda s: s.meshes.append(pirsim.Mesh("m", [(1e9, 0, 0)] * 3, [(0, 1, 2)]))), pirsim.InputError,
+             "scene.meshes[1].positions[0]"),
+            (scene(lambda s: s.meshes.append(pirsim.Mesh("m", box, [(0, 1, 2**40)]))), ValueError,
+             "scene.meshes[1].triangles"),
+            (scene(lambda s: s.meshes.append(pirsim.Mesh("m", box, [(0, 1, -1)]))), ValueError,
+             "scene.meshes[1].triangles"),
+            (scene(lambda s: s.meshes.append(pirsim.Mesh("m", box, [(0, 1.5, 2)]))), TypeError,
+             "scene.meshes[1].triangles"),
+            (scene(lambda s: setattr(s, "floor", pirsim.Floor([[(0, 0), (5, 0), (0, 4), (5, 4)]]))), pirsim.InputError,
+             "scene.floor"),
+            (scene(lambda s: setattr(s, "floor", pirsim.Floor.rectangle(0, 0, 1e9, 4))), pirsim.InputError,
+             "scene.floor"),
+            (scene(lambda s: s.sensor_models["EKMC1604111"].clusters.clear()), pirsim.InputError, model + ".clusters"),
+            (scene(lambda s: setattr(s.sensor_models["EKMC1604111"].clusters[0], "lens_step", 0)), pirsim.InputError,
+             model + ".clusters[0].lens_step"),
+            (scene(lambda s: setattr(s.sensor_models["EKMC1604111"].optics, "blur_deg", 90.0)), pirsim.InputError,
+             model + ".optics.blur_deg"),
+            (script(lambda s: setattr(s.trials[0].people[0].actions[0], "point", (1e9, 0))), pirsim.InputError,
+             "script.trials[0].people[0].actions[0].point"),
+            (script(lambda s: setattr(s.trials[0].people[0].actions[1], "points", [])), pirsim.InputError,
+             "script.trials[0].people[0].actions[1].points"),
+            (script(lambda s: setattr(s.trials[0].people[0], "body_mesh_file", "nobody.gltf")), pirsim.InputError,
+             "script.trials[0].people[0].body_mesh_file"),
+            (script(lambda s: setattr(s.sensing, "ticks_per_window", 0)), pirsim.InputError,
+             "script.sensing.ticks_per_window"),
+            (script(lambda s: setattr(s, "seed", 2**63)), pirsim.InputError, "script.seed")):
+        with pytest.raises(error) as caught:
+            pirsim.compile(*objects)
+        assert message in str(caught.value), str(caught.value)
+
+
+def test_specs_print_in_a_few_lines(room, study_a, data):
+    scene, script = pirsim.read_scene(room), pirsim.read_script(study_a)
+    office = pirsim.read_scene(data / "rooms" / "open_office.gltf")
+    for thing in (scene, office, script, script.trials[0], script.trials[0].people[0], scene.meshes[0], scene.floor,
+                  scene.sensor_models["EKMC1604111"], scene.sensor_models["EKMC1604111"].clusters[0], scene.seats[0],
+                  pirsim.effects()[0]):
+        text = repr(thing)
+        assert len(text) < 700 and text.count("\n") < 8, text
+    assert "PIR1" in repr(scene) and "10 seats" in repr(scene) and "10 trials (S1, S2" in repr(script)
+    assert f"seed {script.seed}" in repr(script)
+
+
 def test_values_of_a_wrong_type_are_named_by_their_place():
     def compiled(change):
         study = own_script()

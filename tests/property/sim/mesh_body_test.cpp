@@ -79,13 +79,13 @@ TEST_CASE("looking around sees a mesh body where it sees the exact one", "[mesh_
   const auto report = [](const PersonSpec& person) {
     return studies::look_around(compile(shipped_scene("meeting_room.gltf"), script_of({person})));
   };
-  const studies::SightReport exact = report(person("a", {}));
-  const studies::SightReport meshed = report(in_meshes(person("a", {})));
+  const SightReport exact = report(person("a", {}));
+  const SightReport meshed = report(in_meshes(person("a", {})));
   PersonSpec tiny = person("a", {});
   for (const std::string_view part : {"torso", "head", "pelvis"}) {
     tiny.body_meshes[std::string(part)] = testing::mesh_solid(testing::box_mesh(Vec3(-0.001), Vec3(0.001)));
   }
-  const studies::SightReport slight = report(tiny);
+  const SightReport slight = report(tiny);
   REQUIRE(exact.places > 20);
   std::size_t seen = 0, seen_slight = 0;
   for (std::size_t i = 0; i < exact.sensors.size(); ++i) {

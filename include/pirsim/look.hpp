@@ -1,0 +1,128 @@
+// Looking at a study: a picture of a moment, a page that plays a run, an animated glTF, what sensors can see, and which
+// places for sensors are better.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pirsim/io.hpp"
+#include "pirsim/model.hpp"
+#include "pirsim/survey.hpp"
+
+namespace pirsim {
+
+/// "1280 x 720 pixels of run 0 at 20 s, with the first sensor's beams."
+struct PictureRequest {
+  std::uint32_t run = 0;
+  std::optional<double> time_s;     ///< none: 10 s into desk work, or the end of a run without any
+  std::vector<std::string> beams;   ///< sensors whose beams are drawn, or "all" or "none"; empty: the first one's
+  std::vector<std::string> marks{"all"};  ///< seats, doors, sensors, people, scale, key; or "all" or "none"
+  std::optional<Vec3> camera, look_at;    ///< none: from above and beside, the whole floor in view
+  double field_of_view_deg = 45.0;        ///< vertical, 1 to 170
+  int width = 1280, height = 720;         ///< pixels: 16 to 7680, 16 to 4320
+};
+
+struct Picture {
+  std::string png;      ///< the bytes of a file
+  double time_s = 0.0;  ///< of the run
+};
+
+/// Throws Error(usage) for names and numbers that aren't accepted and a moment that never comes, Error(infeasible) for a
+/// run that can't go on.
+[[nodiscard]] Picture picture_of(const Model& model, const PictureRequest& request);
+
+struct PageRequest {
+  std::uint32_t run = 0;
+  /// Seconds of the run. Neither: all of it, or of a longer run than 1200 s those 1200 s with most motion; one of them:
+  /// at most 1200 s.
+  std::optional<double> from_s, to_s;
+  double keys_per_s = 10.0;              ///< pictures a second, between which the page interpolates: 0.1 to 100
+  std::optional<CoverageSpec> coverage;  ///< whose map is laid on the floor
+  std::string scene, script;             ///< names that the page gives; empty: those of the specs
+};
+
+struct Page {
+  std::string html;  ///< one file that works without a network
+  std::string about;
+  double from_s = 0.0, to_s = 0.0, run_s = 0.0;
+  bool is_busiest_part = false;  ///< of a run that is too long to be shown as a whole
+};
+
+/// Throws as picture_of() and run_coverage() do.
+[[nodiscard]] Page page_of(const Model& model, const PageRequest& request);
+
+/// Writes the run as an animated glTF (docs/formats/gltf_export.md): .glb, or by any other extension .gltf. beams: as of
+/// a picture, all unless said; keys_per_s: 0.001 to 10000. Returns how long the run is, seconds. Throws as picture_of()
+/// does, and Error(io).
+double export_run(const std::filesystem::path& file, const Model& model, std::uint32_t run = 0,
+                  const std::vector<std::string>& beams = {"all"}, double keys_per_s = 10.0);
+
+/// What a sensor sees of a person who stands or sits still.
+struct SensorSight {
+  std::string sensor;
+  std::size_t rays = 0;
+  std::size_t rays_cut = 0;        ///< rays that end at the room before their rated range
+  double longest_m = 0.0;          ///< of the rays as cut
+  std::string outside;             ///< how far outside of the room it hangs, in words; empty: it doesn't
+  std::size_t places = 0;          ///< places of the floor where a zone sees a standing person
+  std::vector<std::string> seats;  ///< seats where a zone sees a sitter at rest
+  [[nodiscard]] bool sees_nothing() const noexcept { return places == 0 && seats.empty(); }
+};
+
+struct SightReport {
+  double spacing_m = 0.25;  ///< of the places tried
+  std::size_t places = 0;   ///< walkable places of the floor area
+  std::size_t places_seen_by_any = 0;
+  std::vector<SensorSight> sensors;  ///< in the scene's order
+};
+
+struct CheckReport {
+  SightReport sight;
+  std::string text;             ///< for a reader, as `pirsim check` prints it
+  std::vector<Issue> warnings;  ///< of sensors that see nothing
+};
+
+/// What `pirsim check` tells of a study, without running it.
+[[nodiscard]] CheckReport check_study(const Model& model);
+
+/// How one set of sensors does. The target stands still at a square or seat as in a coverage study.
+struct PlacementScore {
+  SensorSetSpec set;
+  double seen_area_m2 = 0.0;  ///< by at least one sensor
+  double blind_fraction = 0.0;
+  double overlap = 0.0;                  ///< share of the seen area that two sensors or more see
+  std::vector<std::string> blind_seats;  ///< where no sensor sees the target
+  std::vector<std::size_t> idle{};       ///< sensors of the set that see the target nowhere
+};
+
+struct PlacementSearch {
+  PlacementScore even;   ///< spaced evenly along the lines
+  PlacementScore found;  ///< never covers less than `even`
+  int evaluations = 0;
+};
+
+struct PlacementReport {
+  std::vector<PlacementScore> ranked;  ///< best first, with those of the search
+  std::optional<PlacementSearch> search;
+  std::string text;             ///< for a reader, as `pirsim placements` prints it
+  std::vector<Issue> warnings;  ///< of sensors that see nothing
+};
+
+struct PlacementOptions {
+  unsigned threads = 0;                ///< 0: all cores; changes no number
+  std::filesystem::path scene_file{};  ///< beside which models of sensors are looked for
+  io::SceneOptions scenes{};
+  std::function<void()> set_done{};  ///< after each set that the search has tried
+};
+
+/// Compares a placement study's sets of sensors, and looks for a better one if it asks for that. Throws Error(input) for
+/// a spec that the scene can't serve and a model that isn't known.
+[[nodiscard]] PlacementReport run_placements(SceneSpec scene, const PlacementSpec& spec,
+                                             const PlacementOptions& options = {});
+
+}  // namespace pirsim

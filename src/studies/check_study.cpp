@@ -1,0 +1,83 @@
+// What `pirsim check` tells, for a reader.
+#include <algorithm>
+#include <boost/algorithm/string/join.hpp>
+#include <iomanip>
+#include <sstream>
+
+#include "core/counted.hpp"
+#include "core/fixed.hpp"
+#include "pirsim/look.hpp"
+#include "sim/compiled_study.hpp"
+#include "studies/room_plan.hpp"
+#include "studies/schedule_outlook.hpp"
+#include "studies/sight.hpp"
+
+namespace pirsim {
+namespace studies {
+namespace {
+
+/// "S1 S2", "all 10", or the first of very many.
+std::string named(const std::vector<std::string>& seats, std::size_t n_all) {
+  constexpr std::size_t most_named = 12;
+  if (seats.empty()) return "none";
+  if (seats.size() == n_all && n_all > 1) return "all " + std::to_string(n_all);
+  const auto last = seats.begin() + static_cast<std::ptrdiff_t>(std::min(seats.size(), most_named));
+  const std::string first = boost::algorithm::join(std::vector(seats.begin(), last), " ");
+  return seats.size() <= most_named ? first : std::to_string(seats.size()) + ": " + first + " ...";
+}
+
+void print(std::ostream& out, const SightReport& report, const SceneSpec& scene) {
+  const auto percent = [&](std::size_t places) {
+    return report.places == 0 ? 0.0 : 100.0 * static_cast<double>(places) / static_cast<double>(report.places);
+  };
+  const auto line = [&](const auto& sensor, const auto& rays, const auto& cut, const auto& longest, const auto& floor) {
+    out << "  " << std::left << std::setw(11) << sensor << std::right << std::setw(5) << rays << std::setw(14) << cut
+        << std::setw(13) << longest << std::setw(10) << floor;
+  };
+  out << "what each sensor sees of a person who stands on one of " << counted(report.places, "place") << " (every "
+      << fixed(report.spacing_m, 2) << " m), or sits still (to be motion, the person has to move):\n";
+  line("sensor", "rays", "end at room", "longest, m", "floor, %");
+  out << "  seats\n";
+  for (const SensorSight& sight : report.sensors) {
+    line(sight.sensor, sight.rays, sight.rays_cut, fixed(sight.longest_m, 2), fixed(percent(sight.places), 1));
+    out << "  " << (sight.sees_nothing() ? "sees NOBODY" : named(sight.seats, scene.seats.size())) << '\n';
+  }
+  line("any sensor", "", "", "", fixed(percent(report.places_seen_by_any), 1));
+  out << '\n';
+  const auto is_floor = [&](const TriMesh& mesh) {
+    return studies::role_of(mesh, scene.floor.height_m()) == studies::MeshRole::floor;
+  };
+  if (std::ranges::none_of(scene.meshes, is_floor)) {
+    out << "  no ray ends at the floor: it has no mesh that occludes, only an outline\n";
+  }
+}
+
+void print_study(std::ostream& out, const Model& model, const SightReport& report) {
+  const SceneSpec& scene = model.compiled().scene();
+  const ScriptSpec& script = model.script();
+  out << scene.name << ": " << counted(scene.meshes.size(), "mesh", "meshes") << ", "
+      << counted(scene.sensors.size(), "sensor") << ", " << counted(scene.seats.size(), "seat") << ", "
+      << counted(scene.entrances.size(), "entrance") << ", floor " << fixed(scene.floor.area_m2(), 2) << " m2\n";
+  out << script.name << ": " << counted(script.trials.size(), "trial") << " x "
+      << counted(static_cast<std::size_t>(script.replicates), "replicate") << " = " << counted(model.n_runs(), "run")
+      << "\n\n";
+  if (!script.trials.empty() && script.trials.front().schedule) {
+    studies::print(out, studies::outlook(model.compiled(), 0), model.compiled());
+  }
+  print(out, report, scene);
+}
+
+}  // namespace
+}  // namespace studies
+
+CheckReport check_study(const Model& model) {
+  CheckReport report;
+  report.sight = studies::look_around(model);
+  std::ostringstream text;
+  studies::print_study(text, model, report.sight);
+  report.text = std::move(text).str();
+  report.warnings = studies::warnings(report.sight, model.scene());
+  return report;
+}
+
+}  // namespace pirsim

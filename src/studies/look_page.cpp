@@ -1,0 +1,170 @@
+// The page that plays a run.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+#include "io/run_page.hpp"
+#include "pirsim/coverage.hpp"
+#include "pirsim/look.hpp"
+#include "pirsim/study.hpp"
+#include "pirsim/version.hpp"
+#include "sim/compiled_study.hpp"
+#include "studies/look.hpp"
+#include "studies/run_film.hpp"
+
+namespace pirsim {
+namespace studies {
+namespace {
+
+/// Of a longer run a page shows a part, unless its user asks for more: it would be large and take long to load.
+constexpr double longest_unasked_s = 1200.0;
+
+struct Stretch {
+  double from_s = 0.0, to_s = 0.0;
+};
+
+int bits_set(const Sample& row) { return std::accumulate(row.bits.begin(), row.bits.end(), 0); }
+
+/// That in which sensors see motion most often, the earliest of equals.
+Stretch busiest(const std::vector<Sample>& rows, double window_s) {
+  const auto length = std::clamp<std::size_t>(static_cast<std::size_t>(longest_unasked_s / window_s), 1, rows.size());
+  int motion = 0, most = -1;
+  std::size_t best_end = length;
+  for (std::size_t end = 1; end <= rows.size(); ++end) {
+    motion += bits_set(rows[end - 1]);
+    if (end > length) motion -= bits_set(rows[end - 1 - length]);
+    if (end >= length && motion > most) {
+      most = motion;
+      best_end = end;
+    }
+  }
+  return {rows[best_end - length].time_s - window_s, rows[best_end - 1].time_s};
+}
+
+Stretch chosen_stretch(const PageRequest& request, const std::vector<Sample>& rows, double window_s) {
+  const double end_s = rows.back().time_s;
+  if (!request.from_s && !request.to_s && end_s > longest_unasked_s) return busiest(rows, window_s);
+  Stretch stretch{request.from_s.value_or(0.0), end_s};
+  if (request.to_s) {
+    stretch.to_s = std::min(end_s, *request.to_s);
+    if (!request.from_s) stretch.from_s = std::max(0.0, stretch.to_s - longest_unasked_s);
+  } else {
+    stretch.to_s = std::min(end_s, stretch.from_s + longest_unasked_s);
+  }
+  if (!(stretch.from_s >= 0.0 && stretch.from_s < end_s)) {
+    std::ostringstream lasts;
+    lasts << "from: the run lasts from 0 to " << end_s << " s";
+    throw Error(ErrorCode::usage, lasts.str());
+  }
+  if (!(stretch.to_s > stretch.from_s)) throw Error(ErrorCode::usage, "to: must be later than from");
+  // Whole windows, so that rows and pictures begin together.
+  stretch.from_s = std::floor(stretch.from_s / window_s + 1e-9) * window_s;
+  stretch.to_s = std::min(end_s, std::ceil(stretch.to_s / window_s - 1e-9) * window_s);
+  return stretch;
+}
+
+std::vector<io::PageSensor> page_sensors(const Model& model, Film& film) {
+  const sim::CompiledStudy& study = model.compiled();
+  const RayBundle& rays = model.rays();
+  std::vector<io::PageSensor> result;
+  for (std::size_t i = 0; i < rays.n_sensors(); ++i) {
+    const SensorSpec& spec = study.scene().sensors[i];
+    io::PageSensor& sensor = result.emplace_back();
+    sensor.id = spec.id;
+    sensor.model = spec.model;
+    sensor.world_from_sensor = spec.world_from_sensor;
+    sensor.first_zone = rays.cluster_zones_begin[rays.sensor_clusters_begin[i]];
+    for (auto zone = sensor.first_zone; zone < rays.cluster_zones_begin[rays.sensor_clusters_begin[i + 1]]; ++zone)
+      sensor.zone_rays.push_back(rays.zone_rays_begin[zone + 1] - rays.zone_rays_begin[zone]);
+    sensor.signal_v = std::move(film.signals_v[i]);
+    if (sensor.signal_v.empty()) continue;
+    const ComparatorSpec& comparator = study.scene().sensor_models.at(spec.model).detector.comparator;
+    sensor.positive_v = comparator.positive_v;
+    sensor.negative_v = comparator.negative_v;
+  }
+  return result;
+}
+
+void drop_absent_people(io::ExportedRun& run) {
+  std::erase_if(run.people, [](const io::ExportedPerson& person) {
+    return std::ranges::none_of(person.present, [](std::uint8_t present) { return present != 0; });
+  });
+}
+
+/// Where each of the room's sensors sees the study's target.
+io::PageMap page_map(const SceneSpec& scene, const CoverageSpec& spec) {
+  const CoverageMap map = run_coverage(scene, spec);
+  const FloorGrid& grid = map.grid;
+  io::PageMap page{spec.name,        grid.centre(0, 0) - 0.5 * Vec2(grid.spacing_m()),
+                   scene.floor.height_m(), grid.spacing_m(),
+                   grid.n_columns(), grid.n_rows(),
+                   {}};
+  for (std::size_t sensor = 0; sensor < map.sensors.size(); ++sensor) {
+    std::vector<double>& shares = page.shares.emplace_back();
+    for (std::size_t row = 0; row < grid.n_rows(); ++row) {
+      for (std::size_t column = 0; column < grid.n_columns(); ++column) {
+        const double share = static_cast<double>(map.count(column, row, sensor)) / map.n_windows;
+        shares.push_back(grid.on_floor(column, row) ? share : -1.0);
+      }
+    }
+  }
+  return page;
+}
+
+io::RunPage run_page(const Model& model, const PageRequest& request, const Stretch& stretch) {
+  std::vector<std::size_t> all_sensors(model.scene().sensors.size());
+  std::iota(all_sensors.begin(), all_sensors.end(), 0);
+  Film film =
+      studies::film(model, request.run, {stretch.from_s, stretch.to_s, request.keys_per_s, std::move(all_sensors)});
+  const auto or_else = [](const std::string& given, const std::string& own) { return given.empty() ? own : given; };
+  io::RunPage page;
+  page.title = model.script().name + ", " + model.trial_of(request.run);
+  page.about = "trial " + model.trial_of(request.run) + ", replicate " +
+               std::to_string(model.replicate_of(request.run)) + ", " + or_else(request.scene, model.scene().name) +
+               ", " + or_else(request.script, model.script().name);
+  const TrialSpec& trial = model.script().trials[request.run % model.script().trials.size()];
+  if (!trial.schedule && !trial.people.empty()) page.first_person = trial.people.front().id;
+  page.made_by = "pirsim " + version() + " (" + git_revision() + ")";
+  page.sensors = page_sensors(model, film);
+  page.run = std::move(film.run);
+  drop_absent_people(page.run);
+  page.active_zones = std::move(film.active_zones);
+  for (const SeatSpec& seat : model.compiled().scene().seats)
+    page.seats.push_back({seat.id, seat.world_from_seat.origin});
+  for (const EntranceSpec& door : model.compiled().scene().entrances)
+    page.doors.push_back({door.id, door.world_from_entrance.origin});
+  return page;
+}
+
+std::vector<Sample> rows_of(const Model& model, std::uint32_t run) {
+  RunResult result = run_once(model, run);
+  if (result.fault) throw Error(ErrorCode::infeasible, result.fault->message);
+  return std::move(result.samples);
+}
+
+}  // namespace
+}  // namespace studies
+
+Page page_of(const Model& model, const PageRequest& request) {
+  using namespace studies;
+  require_run(model, request.run);
+  require("keys_per_s", request.keys_per_s, {.min = 0.1, .max = 100.0});
+  std::vector<Sample> rows = rows_of(model, request.run);
+  const double window_s = model.tick_s() * model.compiled().sensing().ticks_per_window;
+  const Stretch stretch = chosen_stretch(request, rows, window_s);
+  io::RunPage page = run_page(model, request, stretch);
+  page.run_s = rows.back().time_s;
+  page.window_s = window_s;
+  std::erase_if(
+      rows, [&](const Sample& row) { return row.time_s <= stretch.from_s + 1e-6 || row.time_s > stretch.to_s + 1e-6; });
+  page.rows = std::move(rows);
+  if (request.coverage) page.map = page_map(model.compiled().scene(), *request.coverage);
+  std::ostringstream text;
+  io::write_run_page(text, page);
+  const auto& keys = page.run.key_times_s;
+  const bool is_busiest_part = page.run_s > longest_unasked_s && !request.from_s && !request.to_s;
+  return {std::move(text).str(), page.about, keys.front(), keys.back(), page.run_s, is_busiest_part};
+}
+
+}  // namespace pirsim

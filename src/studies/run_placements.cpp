@@ -1,0 +1,44 @@
+// A whole comparison of placements.
+#include <utility>
+
+#include "pirsim/look.hpp"
+#include "studies/placement.hpp"
+
+namespace pirsim {
+namespace {
+
+/// Models that the study names and the scene doesn't.
+void add_models(SceneSpec& scene, const PlacementSpec& spec, const PlacementOptions& options) {
+  for (const auto& [name, where] : spec.models) {
+    if (scene.sensor_models.contains(name)) continue;
+    try {
+      scene.sensor_models[name] = io::find_sensor_model(name, options.scene_file, options.scenes);
+    } catch (const Error& fault) {
+      const Issue& first = fault.issues().front();
+      if (!first.where.file.empty()) throw;  // of the model's own file
+      throw Error(fault.code(), where, first.message);
+    }
+  }
+}
+
+}  // namespace
+
+PlacementReport run_placements(SceneSpec scene, const PlacementSpec& spec, const PlacementOptions& options) {
+  add_models(scene, spec, options);
+  PlacementReport report;
+  for (const SensorSetSpec& set : spec.sets) {
+    report.ranked.push_back(studies::score(scene, spec.coverage, set, options.threads));
+  }
+  report.warnings = studies::warnings(report.ranked, scene.floor);
+  if (spec.search) {
+    const auto set_done = options.set_done ? options.set_done : [] {};
+    report.search = studies::search_placement(scene, spec.coverage, *spec.search, options.threads, set_done);
+    report.ranked.push_back(report.search->even);
+    report.ranked.push_back(report.search->found);
+  }
+  report.ranked = studies::ranked(std::move(report.ranked));
+  report.text = studies::to_text(report.ranked) + (report.search ? studies::to_text(*report.search) : "");
+  return report;
+}
+
+}  // namespace pirsim
