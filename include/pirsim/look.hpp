@@ -19,8 +19,8 @@ namespace pirsim {
 /// "1280 x 720 pixels of run 0 at 20 s, with the first sensor's beams."
 struct PictureRequest {
   std::uint32_t run = 0;
-  std::optional<double> time_s;     ///< none: 10 s into desk work, or the end of a run without any
-  std::vector<std::string> beams;   ///< sensors whose beams are drawn, or "all" or "none"; empty: the first one's
+  std::optional<double> time_s;           ///< none: 10 s into desk work, or the end of a run without any
+  std::vector<std::string> beams;         ///< sensors whose beams are drawn, or "all" or "none"; empty: the first one's
   std::vector<std::string> marks{"all"};  ///< seats, doors, sensors, people, scale, key; or "all" or "none"
   std::optional<Vec3> camera, look_at;    ///< none: from above and beside, the whole floor in view
   double field_of_view_deg = 45.0;        ///< vertical, 1 to 170
@@ -32,8 +32,8 @@ struct Picture {
   double time_s = 0.0;  ///< of the run
 };
 
-/// Throws Error(usage) for names and numbers that aren't accepted and a moment that never comes, Error(infeasible) for a
-/// run that can't go on.
+/// Throws Error(usage) for names and numbers that aren't accepted and a moment that never comes, Error(infeasible) for
+/// a run that can't go on.
 [[nodiscard]] Picture picture_of(const Model& model, const PictureRequest& request);
 
 struct PageRequest {
@@ -56,9 +56,9 @@ struct Page {
 /// Throws as picture_of() and run_coverage() do.
 [[nodiscard]] Page page_of(const Model& model, const PageRequest& request);
 
-/// Writes the run as an animated glTF (docs/formats/gltf_export.md): .glb, or by any other extension .gltf. beams: as of
-/// a picture, all unless said; keys_per_s: 0.001 to 10000. Returns how long the run is, seconds. Throws as picture_of()
-/// does, and Error(io).
+/// Writes the run as an animated glTF (docs/formats/gltf_export.md): .glb, or by any other extension .gltf. beams: as
+/// of a picture, all unless said; keys_per_s: 0.001 to 10000. Returns how long the run is, seconds. Throws as
+/// picture_of() does, and Error(io).
 double export_run(const std::filesystem::path& file, const Model& model, std::uint32_t run = 0,
                   const std::vector<std::string>& beams = {"all"}, double keys_per_s = 10.0);
 
@@ -120,8 +120,8 @@ struct PlacementOptions {
   std::function<void()> set_done{};  ///< after each set that the search has tried
 };
 
-/// Compares a placement study's sets of sensors, and looks for a better one if it asks for that. Throws Error(input) for
-/// a spec that the scene can't serve and a model that isn't known.
+/// Compares a placement study's sets of sensors, and looks for a better one if it asks for that. Throws Error(input)
+/// for a spec that the scene can't serve and a model that isn't known.
 [[nodiscard]] PlacementReport run_placements(SceneSpec scene, const PlacementSpec& spec,
                                              const PlacementOptions& options = {});
 

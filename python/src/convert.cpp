@@ -127,7 +127,8 @@ void require_indices(nb::handle value, const std::string& path) {
     std::uint32_t index = 0;
     const nb::object number = array.attr(end)().attr("item")();
     if (nb::try_cast(number, index)) continue;
-    throw nb::value_error((path + ": " + nb::cast<std::string>(nb::str(number)) + " isn't the index of a position").c_str());
+    throw nb::value_error(
+        (path + ": " + nb::cast<std::string>(nb::str(number)) + " isn't the index of a position").c_str());
   }
 }
 

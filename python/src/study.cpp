@@ -154,10 +154,10 @@ void add_study(nb::module_& module) {
       .def_prop_ro("n_sets", [](const Recording& recording) { return recording.sets.size(); });
   module.def("compile", &compile_model, nb::arg("scene"), nb::arg("script"), nb::arg("overrides"), nb::arg("sensors"),
              nb::arg("data"), "From files (texts) or objects of pirsim.specs.");
-  module.def("run", &run, nb::arg("model"), nb::arg("runs").none(), nb::arg("threads"), nb::arg("zones"), nb::arg("signals"),
-             nb::arg("occupants"), nb::arg("progress").none(), "Arrays of pirsim.Result, by name.");
-  module.def("record", &record_runs, nb::arg("model"), nb::arg("runs").none(), nb::arg("threads"), nb::arg("progress").none(),
-             "What the zones did in these runs.");
+  module.def("run", &run, nb::arg("model"), nb::arg("runs").none(), nb::arg("threads"), nb::arg("zones"),
+             nb::arg("signals"), nb::arg("occupants"), nb::arg("progress").none(), "Arrays of pirsim.Result, by name.");
+  module.def("record", &record_runs, nb::arg("model"), nb::arg("runs").none(), nb::arg("threads"),
+             nb::arg("progress").none(), "What the zones did in these runs.");
   module.def("emit", &emit_runs, nb::arg("model"), nb::arg("recording"), nb::arg("effects").none(),
              nb::arg("seed").none(), nb::arg("progress").none(), "Arrays of pirsim.Result, by name.");
 }

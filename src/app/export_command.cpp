@@ -21,7 +21,8 @@ void export_gltf(const Inputs& inputs, const ExportOptions& options) {
   const std::uint32_t run = find_run(model, options.run);
   const double length_s = export_run(options.output, model, run, options.beams, options.keys_per_s);
   if (inputs.verbosity != Verbosity::quiet) {
-    std::cerr << "wrote " << options.output.string() << ": " << model.script().name << ", trial " << model.trial_of(run) << ", " << length_s << " s\n";
+    std::cerr << "wrote " << options.output.string() << ": " << model.script().name << ", trial " << model.trial_of(run)
+              << ", " << length_s << " s\n";
   }
 }
 

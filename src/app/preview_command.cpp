@@ -66,15 +66,16 @@ void add_preview_command(CLI::App& app) {
   offer_run_choice(command, options->run);
   command.add_option("--time", options->picture.time_s, "moment of the run in seconds (default: 10 s into desk work)")
       ->option_text("S");
-  command.add_option("--beams", options->picture.beams, "sensors whose beams are drawn, or all or none (default: the first)")
+  command
+      .add_option("--beams", options->picture.beams,
+                  "sensors whose beams are drawn, or all or none (default: the first)")
       ->option_text("ID,...")
       ->delimiter(',');
   std::vector<std::string> words{"all", "none"};
   for (const studies::Mark mark : studies::all_marks) words.emplace_back(name(mark));
   command
-      .add_option(
-          "--marks", options->picture.marks,
-          "what is marked and named: seats, doors, sensors, people, scale, key, or all or none (default: all)")
+      .add_option("--marks", options->picture.marks,
+                  "what is marked and named: seats, doors, sensors, people, scale, key, or all or none (default: all)")
       ->option_text("WORD,...")
       ->delimiter(',')
       ->check(CLI::IsMember(words));

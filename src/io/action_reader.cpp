@@ -146,7 +146,8 @@ ScriptedAction read_action_map(const YamlNode& node, Diagnostics& faults) {
   if (found > 1) faults.error(node.where(), "one action per entry: start each with its own '-'");
   const bool nothing_else =
       std::ranges::all_of(node.keys(), [](const YamlKey& key) { return key.name == "at_s" || key.name == "phase"; });
-  if (found == 0 && nothing_else && (node.is_map() || node.is_null())) faults.error(node.where(), "an action is missing, e.g. `sit: S1`");
+  if (found == 0 && nothing_else && (node.is_map() || node.is_null()))
+    faults.error(node.where(), "an action is missing, e.g. `sit: S1`");
   return action;
 }
 

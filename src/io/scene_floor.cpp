@@ -82,8 +82,7 @@ void FloorBuilder::add_polygon(const std::vector<Vec3>& corners, const Where& wh
 
 void FloorBuilder::add(Part part) {
   for (const Loop& loop : part.area.loops()) n_corners_ += loop.size();
-  const std::string fault =
-      n_corners_ > limits::floor_corners ? too_many_floor_corners() : outline_fault(part.area);
+  const std::string fault = n_corners_ > limits::floor_corners ? too_many_floor_corners() : outline_fault(part.area);
   if (!fault.empty()) return faults_.error(part.where, part.label + ": " + fault);
   parts_.push_back(std::move(part));
 }

@@ -101,9 +101,8 @@ class MarkupReader {
     only({"type", "id", "width_m", "outside_m"});
     mark::Entrance result{name("id")};
     EntranceSpec numbers;
-    each_number(numbers, [&](const char* key, double& value, const NumberRange& range) {
-      value = number(key, value, range);
-    });
+    each_number(numbers,
+                [&](const char* key, double& value, const NumberRange& range) { value = number(key, value, range); });
     result.width_m = numbers.width_m;
     result.outside_m = numbers.outside_m;
     return result;
@@ -163,8 +162,8 @@ class MarkupReader {
     if (!value_.contains(key)) return otherwise;
     if (value_[key].is_number() && range.holds(value_[key].get<double>())) return value_[key].get<double>();
     const auto told = [](double v) { return json(v).dump(); };
-    error(std::string("/") + key,
-          std::string("'") + key + "' must be a number of " + unit + " from " + told(range.min) + " to " + told(range.max));
+    error(std::string("/") + key, std::string("'") + key + "' must be a number of " + unit + " from " +
+                                      told(range.min) + " to " + told(range.max));
     return otherwise;
   }
 

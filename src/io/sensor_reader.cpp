@@ -88,7 +88,8 @@ void read_cluster_numbers(YamlMap& map, const std::optional<double>& range_m, Cl
 ClusterSpec read_facet(const YamlNode& node, const FacetLaw& law, Diagnostics& faults) {
   YamlMap map(node, faults, "facet");
   ClusterSpec cluster;
-  cluster.centre = {map.required_number("x_m", accepted::on_lens_plane_m), map.required_number("y_m", accepted::on_lens_plane_m)};
+  cluster.centre = {map.required_number("x_m", accepted::on_lens_plane_m),
+                    map.required_number("y_m", accepted::on_lens_plane_m)};
   read_cluster_numbers(map, law.range_m, cluster);
   const auto missing =
       map.choice<Missing>("missing", Missing::none, {{"none", Missing::none}, {"outer", Missing::outer}});

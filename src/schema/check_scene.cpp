@@ -65,7 +65,8 @@ class SceneCheck {
       if (mesh.temperature_c) faults_.number(here.field("temperature_c"), *mesh.temperature_c, accepted::surface_c);
     }
     if (n_elements <= limits::scene_elements) return;
-    faults_.error(path.field("meshes"), "more than " + std::to_string(limits::scene_elements) + " vertices and triangles");
+    faults_.error(path.field("meshes"),
+                  "more than " + std::to_string(limits::scene_elements) + " vertices and triangles");
   }
 
   /// The first fault of each kind.
@@ -76,8 +77,9 @@ class SceneCheck {
                     place_fault(*bad_place));
     }
     const std::size_t n = mesh.positions.size();
-    const auto bad_triangle = std::ranges::find_if(
-        mesh.triangles, [&](const auto& corners) { return std::ranges::any_of(corners, [&](auto i) { return i >= n; }); });
+    const auto bad_triangle = std::ranges::find_if(mesh.triangles, [&](const auto& corners) {
+      return std::ranges::any_of(corners, [&](auto i) { return i >= n; });
+    });
     if (bad_triangle == mesh.triangles.end()) return;
     faults_.error(path.item("triangles", static_cast<std::size_t>(bad_triangle - mesh.triangles.begin())),
                   "has a corner that doesn't exist: the mesh has " + std::to_string(n) + " vertices");

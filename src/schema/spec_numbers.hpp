@@ -17,13 +17,13 @@ namespace accepted {
 
 inline constexpr NumberRange hour_of_day{.min = 0.0, .max = 24.0};
 inline constexpr NumberRange at_s{.min = 0.0, .max = 1e7};
-inline constexpr NumberRange on_floor_m{.min = -1e4, .max = 1e4};     ///< where people go
+inline constexpr NumberRange on_floor_m{.min = -1e4, .max = 1e4};  ///< where people go
 /// assumed: far beyond any building, yet 1e-5 of it is still exact in float
 inline constexpr NumberRange in_world_m{.min = -1e5, .max = 1e5};
 inline constexpr NumberRange on_lens_plane_m{.min = -1e3, .max = 1e3};
 inline constexpr NumberRange window_s{.above = 0.0, .max = 3600.0};
 inline constexpr NumberRange probability{.min = 0.0, .max = 1.0};
-inline constexpr NumberRange surface_c{.min = -50.0, .max = 200.0};   ///< degrees Celsius, of what stands in rooms
+inline constexpr NumberRange surface_c{.min = -50.0, .max = 200.0};  ///< degrees Celsius, of what stands in rooms
 inline constexpr NumberRange skin_c{.min = -50.0, .max = 60.0};
 
 }  // namespace accepted

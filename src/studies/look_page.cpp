@@ -96,9 +96,12 @@ void drop_absent_people(io::ExportedRun& run) {
 io::PageMap page_map(const SceneSpec& scene, const CoverageSpec& spec) {
   const CoverageMap map = run_coverage(scene, spec);
   const FloorGrid& grid = map.grid;
-  io::PageMap page{spec.name,        grid.centre(0, 0) - 0.5 * Vec2(grid.spacing_m()),
-                   scene.floor.height_m(), grid.spacing_m(),
-                   grid.n_columns(), grid.n_rows(),
+  io::PageMap page{spec.name,
+                   grid.centre(0, 0) - 0.5 * Vec2(grid.spacing_m()),
+                   scene.floor.height_m(),
+                   grid.spacing_m(),
+                   grid.n_columns(),
+                   grid.n_rows(),
                    {}};
   for (std::size_t sensor = 0; sensor < map.sensors.size(); ++sensor) {
     std::vector<double>& shares = page.shares.emplace_back();

@@ -213,7 +213,8 @@ TEST_CASE("specs that both ways are to accept are accepted", "[both-ways]") {
   for (const char* room : {"meeting_room.gltf", "open_office.gltf", "open_hall.gltf"}) {
     CHECK(refusal(shipped_scene(room)).empty());
   }
-  for (const char* study : {"studyA.yaml", "office.yaml", "density.yaml"}) CHECK(refusal(shipped_script(study)).empty());
+  for (const char* study : {"studyA.yaml", "office.yaml", "density.yaml"})
+    CHECK(refusal(shipped_script(study)).empty());
 }
 
 TEST_CASE("a number out of its range is refused by file and by object", "[both-ways]") {
@@ -266,8 +267,9 @@ TEST_CASE("what else a script can't be is refused by file and by object", "[both
   wrong(plain, person + ".actions[0].point", [&](ScriptSpec& s) { doing(s, 0) = action::Appear{{1e9, 0}}; });
   wrong(plain, person + ".actions[2].points[0]", [&](ScriptSpec& s) { doing(s, 2) = action::Walk{{{0, -1e9}}}; });
   wrong(plain, person + ".actions[2].points", [&](ScriptSpec& s) { doing(s, 2) = action::Walk{}; });
-  wrong(plain, person + ".actions[1].activity",
-        [&](ScriptSpec& s) { doing(s, 1) = action::Wait{1.0, Activity::phone}; });
+  wrong(plain, person + ".actions[1].activity", [&](ScriptSpec& s) {
+    doing(s, 1) = action::Wait{1.0, Activity::phone};
+  });
   wrong(plain, person + ".actions[1].activity", [&](ScriptSpec& s) {
     first(s).style = MotionStyle::natural;
     doing(s, 1) = action::Wait{1.0, Activity::typing};
@@ -314,7 +316,8 @@ TEST_CASE("what a scene can't be is refused by file and by object", "[both-ways]
     CHECK_FALSE(refusal_of_file(scene).empty());
   };
   const std::string with_nul("a\0b", 3);
-  for (const std::string& name : {std::string("../x,=cmd()"), std::string("a\nb"), with_nul, std::string(".a"), std::string()}) {
+  for (const std::string& name :
+       {std::string("../x,=cmd()"), std::string("a\nb"), with_nul, std::string(".a"), std::string()}) {
     wrong("scene.sensors[0].id", [&](SceneSpec& s) { s.sensors[0].id = name; });
     wrong("scene.seats[0].id", [&](SceneSpec& s) { s.seats[0].id = name; });
     wrong("scene.entrances[0].id", [&](SceneSpec& s) { s.entrances[0].id = name; });
