@@ -145,6 +145,8 @@ def test_objects_are_checked_as_files_are():
              "scene.meshes[1].positions[0]"),
             (scene(lambda s: s.meshes.append(pirsim.Mesh("m", box, [(0, 1, 2**40)]))), ValueError,
              "scene.meshes[1].triangles"),
+            (scene(lambda s: s.meshes.append(pirsim.Mesh("m", box, np.array([(0, 1, 2**40)])))), ValueError,
+             "scene.meshes[1].triangles"),
             (scene(lambda s: s.meshes.append(pirsim.Mesh("m", box, [(0, 1, -1)]))), ValueError,
              "scene.meshes[1].triangles"),
             (scene(lambda s: s.meshes.append(pirsim.Mesh("m", box, [(0, 1.5, 2)]))), TypeError,
