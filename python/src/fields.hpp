@@ -37,6 +37,7 @@ constexpr bool has_fields() {
     else if constexpr (n == 8) { auto& [a, b, c, d, e, f, g, h] = spec; (void)a; }
     else if constexpr (n == 9) { auto& [a, b, c, d, e, f, g, h, i] = spec; (void)a; }
     else if constexpr (n == 10) { auto& [a, b, c, d, e, f, g, h, i, j] = spec; (void)a; }
+    else if constexpr (n == 11) { auto& [a, b, c, d, e, f, g, h, i, j, k] = spec; (void)a; }
     else if constexpr (n == 12) { auto& [a, b, c, d, e, f, g, h, i, j, k, l] = spec; (void)a; }
     else if constexpr (n == 14) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o] = spec; (void)a; }
     else if constexpr (n == 15) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p] = spec; (void)a; }
