@@ -52,9 +52,10 @@ struct Measured {
   [[nodiscard]] int n_replicates() const noexcept;        ///< the greatest number of runs of a trial
   [[nodiscard]] std::vector<std::size_t> trials() const;  ///< ascending; of which anything was measured
 };
-/// Reads pirsim's own rows (docs/formats/rows.md), or sums with the columns trial (or seat), sensor, seconds (or real)
-/// and, if it is there, replicate. Empty fields are missing values. Throws Error: io (no such file), input (all faults
-/// with file:line:column: unknown names, other values than 0 and 1, rows that aren't a window apart, too little data).
+/// Reads pirsim's own rows (docs/formats/rows.md), compressed or not, or sums with the columns trial (or seat), sensor,
+/// seconds (or real) and, if it is there, replicate. Empty fields are missing values. Throws Error: io (no such file),
+/// input (all faults with file:line:column: unknown names, other values than 0 and 1, rows that aren't a window apart,
+/// too little data).
 [[nodiscard]] Measured read_measured(const std::filesystem::path& file, const SceneSpec& scene,
                                      const ScriptSpec& script);
 /// The same of a text; file: its name in messages.

@@ -58,7 +58,7 @@ struct FamilyScore {
 
 /// Why an effect was kept or dropped.
 namespace reason {
-struct NotRuledOut {     ///< kept
+struct NotRuledOut {  ///< kept
   double p = 0.0;
 };
 struct Sure {  ///< kept, though data of its own seldom look like these
@@ -87,8 +87,8 @@ struct SameAs {  ///< judged as that effect, which changes the model in the same
   std::string effect;
 };
 }  // namespace reason
-using Reason = std::variant<reason::NotRuledOut, reason::Sure, reason::MayBeNone,
-                            reason::LessLikely, reason::Improbable, reason::LikeImpostors, reason::HardlySimulated, reason::RuledOut,
+using Reason = std::variant<reason::NotRuledOut, reason::Sure, reason::MayBeNone, reason::LessLikely,
+                            reason::Improbable, reason::LikeImpostors, reason::HardlySimulated, reason::RuledOut,
                             reason::RefusedWhenApplied, reason::SameAs>;
 
 /// What became of one effect of the catalogue.
@@ -111,23 +111,23 @@ struct LocatedCell {
 /// What a number that data are turned into is of.
 struct FeatureName {
   enum class Kind {
-    cell,                    ///< `statistic` of a trial and a sensor, as all that follow against the plain model
-    sensor,                  ///< mean over the trials
-    trial,                   ///< mean over the sensors
-    mean,                    ///< over all cells, or all trials
-    size,                    ///< the same of its size, whatever its sign
-    greatest,                ///< of all cells
+    cell,      ///< `statistic` of a trial and a sensor, as all that follow against the plain model
+    sensor,    ///< mean over the trials
+    trial,     ///< mean over the sensors
+    mean,      ///< over all cells, or all trials
+    size,      ///< the same of its size, whatever its sign
+    greatest,  ///< of all cells
     least,
-    slope,                   ///< over all cells, on `other`: what is expected or known of a cell
-    first_less_second,       ///< of the sensors in order of their means
+    slope,              ///< over all cells, on `other`: what is expected or known of a cell
+    first_less_second,  ///< of the sensors in order of their means
     last_but_one_less_last,
     first_less_last,
-    share_of_time,           ///< of a sensor's motion (empty: all sensors'), in `part` of `n_parts` parts of the time
-    together,                ///< odds that `sensor` moves while `other`, a sensor, does
-    most_together,           ///< of all pairs
+    share_of_time,  ///< of a sensor's motion (empty: all sensors'), in `part` of `n_parts` parts of the time
+    together,       ///< odds that `sensor` moves while `other`, a sensor, does
+    most_together,  ///< of all pairs
     least_together,
-    likeness,                ///< of all cells' seconds to those of the model
-    likeness_gained          ///< by permuting trials or sensors
+    likeness,        ///< of all cells' seconds to those of the model
+    likeness_gained  ///< by permuting trials or sensors
   };
   enum class Permutation {
     trials_shifted,  ///< by one
@@ -268,7 +268,8 @@ struct DataNote {
     tail_left_out,    ///< what comes after them
     runs_begin_late,  ///< n runs begin in a counted phase
     runs_end_early,   ///< n runs end before any simulated one
-    runs_go_on        ///< n runs go on after any simulated one
+    runs_go_on,       ///< n runs go on after any simulated one
+    people_unused     ///< a column `people`
   };
   What what = What::rows_missing;
   std::size_t n = 0;
@@ -327,12 +328,12 @@ struct Outcome {
   Location location;
   /// Most probable first; without `nothing` and effects that are the same change. None without a disagreement.
   std::vector<Candidate> candidates;
-  HypothesisScore nothing;            ///< how well the plain model fits
-  FamilyScore family;                 ///< whose effects are likeliest together
-  std::vector<std::string> named;     ///< effects applied to the model, or those that can't be told apart; of `one_of`
-                                      ///< the plain model is one more if nothing.p exceeds the level
-  std::vector<FittedEffect> fits;     ///< of the effects that were applied
-  std::vector<Look> looks;            ///< with the effects applied, one after the other
+  HypothesisScore nothing;         ///< how well the plain model fits
+  FamilyScore family;              ///< whose effects are likeliest together
+  std::vector<std::string> named;  ///< effects applied to the model, or those that can't be told apart; of `one_of`
+                                   ///< the plain model is one more if nothing.p exceeds the level
+  std::vector<FittedEffect> fits;  ///< of the effects that were applied
+  std::vector<Look> looks;         ///< with the effects applied, one after the other
   std::optional<Verification> verification;
   std::optional<Residuals> residuals;  ///< if nothing fits and the data are series
   std::vector<FeatureName> telling_features;

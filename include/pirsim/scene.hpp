@@ -7,6 +7,7 @@
 
 #include "pirsim/error.hpp"
 #include "pirsim/geometry.hpp"
+#include "pirsim/input_file.hpp"
 #include "pirsim/sensor.hpp"
 
 namespace pirsim {
@@ -41,7 +42,7 @@ struct SceneSpec {
   std::vector<EntranceSpec> entrances;
   FloorArea floor;
   std::map<std::string, SensorModelSpec> sensor_models;  ///< every model that a sensor names
-  std::vector<std::string> files;                        ///< all that was read: scene, its buffers, sensors
+  std::vector<InputFile> files;                          ///< all that was read: scene, its buffers, sensors
   std::vector<Issue> warnings;                           ///< what the reader noticed and repaired or ignored
 };
 

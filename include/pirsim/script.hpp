@@ -11,6 +11,7 @@
 
 #include "pirsim/error.hpp"
 #include "pirsim/geometry.hpp"
+#include "pirsim/input_file.hpp"
 #include "pirsim/schedule.hpp"
 #include "pirsim/sensor.hpp"
 #include "pirsim/shapes.hpp"
@@ -166,8 +167,8 @@ struct ScriptSpec {
   std::vector<TrialSpec> trials;
   std::vector<EffectSpec> effects;  ///< what the plain model leaves out; applied when a Model is compiled
   std::vector<Issue> warnings;
-  std::string directory;           ///< of the script file, for relative references
-  std::vector<std::string> files;  ///< all that was read: script, body meshes and their buffers
+  std::string directory;         ///< of the script file, for relative references
+  std::vector<InputFile> files;  ///< all that was read: script, body meshes and their buffers
 };
 
 /// Refuses what the reader of files would refuse, each fault with its field: `script.trials[0].people[1].stature_m:

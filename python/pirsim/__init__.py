@@ -22,15 +22,15 @@ from ._wings import Candidate, Cell, FittedEffect, Reconciliation, dataset, reco
 from .errors import (Error, ErrorCode, FileError, IncompleteWarning, InfeasibleError, InputError, InputWarning,
                      InternalError, UsageError)
 from .specs import (Action, Amplifier, Appear, Clock, Cluster, Comparator, Detector, Diagnostic, Effect, Element,
-                    Enter, Entrance, Floor, Frame, HeldMeeting, Leave, Meetings, Mesh, Optics, Person, Profile, Rise, Scene,
-                    Schedule, Script, Seat, SeatScatter, Sensing, Sensor, SensorModel, Sit, Staff, Summary, Trial,
+                    Enter, Entrance, Floor, Frame, HeldMeeting, InputFile, Leave, Meetings, Mesh, Optics, Person, Profile, Rise,
+                    Scene, Schedule, Script, Seat, SeatScatter, Sensing, Sensor, SensorModel, Sit, Staff, Summary, Trial,
                     Turn, Wait, Walk, Warmth, Where, Work, Zone)
 
 __all__ = [
     "Action", "Amplifier", "Appear", "Candidate", "Cell", "Clock", "Cluster", "Comparator", "CoverageMap",
     "Detector", "Diagnostic", "Effect", "EffectInfo", "EffectParameter", "Element", "Enter", "Entrance", "Error",
     "ErrorCode", "Fault", "FileError", "Findings", "FittedEffect", "Floor", "Frame", "Grid", "HeldMeeting",
-    "Incident", "IncompleteWarning", "InfeasibleError", "InputError", "InputWarning", "InternalError", "Leave",
+    "Incident", "IncompleteWarning", "InfeasibleError", "InputError", "InputFile", "InputWarning", "InternalError", "Leave",
     "Meetings", "Mesh", "Model", "Optics", "Page", "Person", "Picture", "PlacementScore", "Placements", "Poses",
     "Profile", "Rays", "Reconciliation", "Result", "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter",
     "Sensing", "Sensor", "SensorModel", "SensorSight", "Sit", "Staff", "Summary", "Trace", "Trial", "Turn",

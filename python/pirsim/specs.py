@@ -50,6 +50,14 @@ class Where:
     column: int = 0
 
 
+@dataclass(slots=True)
+class InputFile:
+    """A file that was read, and the SHA-256 of the bytes that it had then."""
+
+    path: str = ""
+    sha256: str = ""
+
+
 def _where() -> Any:
     return field(default_factory=Where, repr=False, compare=False, kw_only=True)
 
@@ -253,7 +261,7 @@ class Scene:
     floor: Floor = field(default_factory=Floor)
     sensor_models: dict[str, SensorModel] = field(default_factory=dict)
     """Every model that a sensor names."""
-    files: list[str] = field(default_factory=list)
+    files: list[InputFile] = field(default_factory=list)
     """All that was read."""
     warnings: list[Diagnostic] = field(default_factory=list)
 
@@ -542,7 +550,7 @@ class Script:
     summary: Summary = field(default_factory=Summary)
     directory: str = ""
     """Of the script file, for relative references."""
-    files: list[str] = field(default_factory=list)
+    files: list[InputFile] = field(default_factory=list)
     warnings: list[Diagnostic] = field(default_factory=list)
 
     def __repr__(self) -> str:

@@ -117,6 +117,12 @@ struct Fields<Where> {
                                   Field{"column", &Where::column}};
 };
 
+template <>
+struct Fields<InputFile> {
+  static constexpr const char* name = "InputFile";
+  static constexpr std::tuple all{Field{"path", &InputFile::path}, Field{"sha256", &InputFile::sha256}};
+};
+
 // Scenes.
 
 template <>

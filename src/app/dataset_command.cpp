@@ -74,7 +74,8 @@ void add_dataset_command(CLI::App& app) {
   pirsim dataset recipe.yaml -o DIR --finish              ... and when all are through
 )");
   const auto options = std::make_shared<DatasetCommand>();
-  command.add_option("RECIPE", options->recipe, "what the rooms, people and days are like: a YAML file")->required();
+  as_input(command.add_option("RECIPE", options->recipe, "what the rooms, people and days are like: a YAML file"))
+      ->required();
   offer_output(command, options->folder, "DIR", "folder of the dataset");
   command.add_option("--shard", options->shard, "only the I-th of N parts, or auto/N from the job array")
       ->option_text("I/N");

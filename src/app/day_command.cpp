@@ -71,10 +71,12 @@ void require_plain(const std::string& option, const std::string& text) {
     throw Error(ErrorCode::usage, option + ": '" + text + "' is not made of digits, ':' and '-' alone");
 }
 
+constexpr const char* no_file = "";  // nobody could look up a line of it
+
 /// The faults of a script that nobody wrote, told of the options that it was made from.
 void check_made_script(const std::string& text, const std::string& first_day) {
   try {
-    static_cast<void>(io::parse_script(text, "the script of pirsim day"));
+    static_cast<void>(io::parse_script(text, no_file));
   } catch (const Error& fault) {
     const std::string& message = fault.issues().front().message;
     for (const auto& [key, option] : {std::pair("first_day: ", "--first-day: "), std::pair("from: ", "--from: "),
@@ -95,7 +97,7 @@ void day(const Inputs& inputs, const DayOptions& options) {
   if (options.cleaning != "none") require_plain("--cleaning", options.cleaning);
   const std::string text = script_text(options);
   check_made_script(text, options.first_day);
-  ScriptSpec script = io::parse_script(text, "the script of pirsim day", inputs.overrides);
+  ScriptSpec script = io::parse_script(text, no_file, inputs.overrides);
   if (options.action == DayOptions::Action::print_script) {
     std::cout << (inputs.overrides.empty() ? text : io::to_yaml(script));
     require_written();

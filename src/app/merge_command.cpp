@@ -84,7 +84,7 @@ void add_merge_command(CLI::App& app) {
       .add_option("--summary", options->summary,
                   "table of sums per trial and sensor, " + in_words(summary_endings()) + "; needs --script")
       ->option_text("FILE");
-  command.add_option("--script", options->script, "the shards' script, for the summary")->option_text("FILE");
+  offer_input_file(command, "--script", options->script, "the shards' script, for the summary");
   command.add_option("--set", options->overrides, "as for the shards")
       ->option_text("KEY=VALUE")
       ->allow_extra_args(false);

@@ -1,45 +1,41 @@
 #include "app/options.hpp"
 
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <array>
 #include <boost/algorithm/string/join.hpp>
 #include <utility>
 
 #include "io/atomic_file.hpp"
+#include "io/posix_file.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::app {
 namespace {
 
-constexpr const char* standard_input = "/dev/stdin";
+constexpr const char* said_of_inputs = ", - for standard input";
 
-/// Inputs are opened more than once, as for the manifest: what comes down a pipe is kept in memory, in its place.
-void keep_standard_input() {
-  const int kept = ::memfd_create("stdin", MFD_CLOEXEC);
-  std::array<char, 8192> block;
-  ssize_t n = 0;
-  while (kept >= 0 && (n = ::read(STDIN_FILENO, block.data(), block.size())) > 0) {
-    if (::write(kept, block.data(), static_cast<std::size_t>(n)) != n) break;
-  }
-  if (kept < 0 || n != 0 || ::dup2(kept, STDIN_FILENO) < 0) throw Error(ErrorCode::io, "standard input can't be read");
-  ::close(kept);
-}
+bool is_input(const CLI::Option& option) { return option.get_description().ends_with(said_of_inputs); }
 
 /// CLI11's transformation of a file's name.
 std::string take_standard_input(std::string& file) {
-  if (file != "-") return {};
-  struct stat status {};
-  if (::fstat(STDIN_FILENO, &status) != 0 || !S_ISREG(status.st_mode)) keep_standard_input();
-  file = standard_input;
+  if (file == "-") file = io::standard_input;
   return {};
 }
 
+}  // namespace
+
+void require_one_standard_input(const CLI::App& command) {
+  const CLI::Option* first = nullptr;
+  for (const CLI::Option* option : command.get_options(nullptr)) {
+    if (!is_input(*option) || option->count() == 0 || option->results().back() != io::standard_input) continue;
+    if (first != nullptr) {
+      throw Error(ErrorCode::usage, first->get_name() + " and " + option->get_name() + " can't both be standard input");
+    }
+    first = option;
+  }
+}
+
+namespace {
+
 void require_inputs(const Inputs& inputs, Needs needs) {
-  if (inputs.scene == standard_input && inputs.script == standard_input)
-    throw Error(ErrorCode::usage, "--scene and --script can't both be standard input");
   if (!inputs.scene.empty() && (needs == Needs::scene || !inputs.script.empty())) return;
   throw Error(ErrorCode::usage,
               std::string(inputs.scene.empty() ? "--scene" : "--script") + " FILE is missing; see pirsim --help");
@@ -160,11 +156,14 @@ void offer_changes(CLI::App& command, Inputs& inputs) {
 
 }  // namespace
 
-void offer_input_file(CLI::App& command, const std::string& name, std::filesystem::path& file,
-                      const std::string& what) {
-  command.add_option(name, file, what + ", - for standard input")
-      ->option_text("FILE")
+CLI::Option* as_input(CLI::Option* option) {
+  return option->description(option->get_description() + said_of_inputs)
       ->transform(CLI::Validator(take_standard_input, ""));
+}
+
+CLI::Option* offer_input_file(CLI::App& command, const std::string& name, std::filesystem::path& file,
+                              const std::string& what) {
+  return as_input(command.add_option(name, file, what))->option_text("FILE");
 }
 
 void offer_scene(CLI::App& command, Inputs& inputs) {
@@ -179,7 +178,7 @@ void offer_study(CLI::App& command, Inputs& inputs) {
 }
 
 std::vector<std::string> model_options(const Inputs& inputs) {
-  const auto typed = [](const std::filesystem::path& file) { return file == standard_input ? "-" : file.string(); };
+  const auto typed = [](const std::filesystem::path& file) { return file == io::standard_input ? "-" : file.string(); };
   std::vector<std::string> words{"--scene", typed(inputs.scene), "--script", typed(inputs.script)};
   for (const std::string& change : inputs.overrides) words.insert(words.end(), {"--set", change});
   for (const std::filesystem::path& folder : inputs.sensor_directories)
@@ -258,6 +257,7 @@ void on_call(CLI::App& command, std::shared_ptr<const Inputs> inputs, std::funct
              Needs needs) {
   command.callback([&command, inputs = std::move(inputs), work = std::move(work), needs] {
     if (!command.get_subcommands().empty()) return;
+    require_one_standard_input(command);
     require_inputs(*inputs, needs);
     work(*inputs);
   });

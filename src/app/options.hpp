@@ -31,8 +31,13 @@ struct RunChoice {
   int replicate = 1;
 };
 
-/// A file that may be standard input; one of a command's files at most.
-void offer_input_file(CLI::App& command, const std::string& name, std::filesystem::path& file, const std::string& what);
+/// Lets the option's file be standard input, by "-"; one of a command's files at most.
+CLI::Option* as_input(CLI::Option* option);
+/// Throws Error(usage) if two inputs are standard input, which is read once. For commands without on_call().
+void require_one_standard_input(const CLI::App& command);
+/// An option for a file that may be standard input.
+CLI::Option* offer_input_file(CLI::App& command, const std::string& name, std::filesystem::path& file,
+                              const std::string& what);
 /// --scene, --set, --sensors and --quiet: for commands that make the script themselves.
 void offer_scene(CLI::App& command, Inputs& inputs);
 /// The same and --script: every other command that reads a room uses them.

@@ -103,8 +103,8 @@ reconcile::Context context_of(const AnalysisOptions& options, Teller& teller) {
 }
 
 std::string made_by(const Inputs& inputs) {
-  return "pirsim " + version() + " " + git_revision() + ", " + inputs.scene.filename().string() + ", " +
-         inputs.script.filename().string();
+  return "pirsim " + version() + " " + git_revision() + ", " + io::name_of_input(inputs.scene) + ", " +
+         io::name_of_input(inputs.script);
 }
 
 void reconcile_selftest(const Inputs& inputs, const AnalysisOptions& analysis, const SelftestOptions& options) {
@@ -176,14 +176,14 @@ void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const
   require_written();
   reconcile::write_report(
       options.output, outcome, measured, script, settings, context,
-      {"pirsim " + version() + " " + git_revision(), inputs.scene.filename().string(),
-       inputs.script.filename().string(), options.measured.filename().string(), model_options(inputs)});
+      {"pirsim " + version() + " " + git_revision(), io::name_of_input(inputs.scene), io::name_of_input(inputs.script),
+       io::name_of_input(options.measured), model_options(inputs)});
 }
 
 void offer_analysis(CLI::App& command, AnalysisOptions& options) {
   command.add_option("--table", options.table, "folder that keeps the reference table (default: DIR/table)")
       ->option_text("DIR");
-  command.add_option("--nuisance", options.nuisance, "what is uncertain about the room, YAML; or none")
+  as_input(command.add_option("--nuisance", options.nuisance, "what is uncertain about the room, YAML; or none"))
       ->option_text("FILE");
   command.add_option("--alpha", options.alpha, "level of the tests (default: 0.05)")
       ->option_text("P")

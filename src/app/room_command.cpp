@@ -27,7 +27,7 @@ struct RoomOptions {
 dataset::RoomSpec room_by_settings(const RoomOptions& options) {
   try {
     Diagnostics faults;
-    io::YamlMap map(io::YamlNode::parse("", "command line", options.settings), faults, "room");
+    io::YamlMap map(io::YamlNode::parse("", "", options.settings), faults, "room");
     dataset::RoomSpec spec = dataset::read_room_keys(map);
     map.finish();
     faults.throw_if_errors(ErrorCode::usage);
@@ -57,6 +57,7 @@ dataset::DrawnRoom draw(const RoomOptions& options) {
   if (!options.settings.empty())
     throw Error(ErrorCode::usage, "a recipe says what its rooms are like: no other options");
   const dataset::RecipeSpec recipe = dataset::read_recipe(options.recipe);
+  keep_inputs({{"-o", options.output}}, scenes_of(recipe));
   const dataset::RoomGroupSpec& group = dataset::group_of(recipe, options.number);
   if (!group.scenes.empty()) {
     throw Error(ErrorCode::usage, "--number: room " + std::to_string(options.number) + " is a file already: '" +
@@ -84,7 +85,6 @@ void print(const dataset::DrawnRoom& room, const std::filesystem::path& file) {
 void make_room(const RoomOptions& options) {
   if (options.output.empty()) throw Error(ErrorCode::usage, "-o FILE is missing: room.gltf or room.glb");
   check_outputs({{"-o", options.output, {".gltf", ".glb"}}}, {});
-  if (!options.recipe.empty()) keep_inputs({{"-o", options.output}}, scenes_of(dataset::read_recipe(options.recipe)));
   const dataset::DrawnRoom room = draw(options);
   io::write_scene(options.output, room.scene);
   if (options.inputs.verbosity != Verbosity::quiet) print(room, options.output);
@@ -115,7 +115,7 @@ void add_room_command(CLI::App& app) {
   pirsim room --set "sensors=[{mount: corner, count: 2, model: EKMC1603111}]" -o room.gltf
 )");
   const auto options = std::make_shared<RoomOptions>();
-  command.add_option("RECIPE", options->recipe, "take the ranges of its rooms: docs/formats/dataset.md");
+  as_input(command.add_option("RECIPE", options->recipe, "take the ranges of its rooms: docs/formats/dataset.md"));
   offer_setting(command, *options, "--kind", "kind", "KIND", "office or meeting (default: office)");
   offer_setting(command, *options, "--width", "width_m", "M", "along x: metres, or [least,most]");
   offer_setting(command, *options, "--depth", "depth_m", "M", "along -z");

@@ -123,7 +123,7 @@ void add_seal_command(CLI::App& reconcile_command) {
   command.add_option("-o,--out", options->output, "folder for data and hash (default: challenge)")->option_text("DIR");
   command.add_option("--answer", options->answer, "where the sealed answer goes, JSON; keep it secret")
       ->option_text("FILE");
-  command.add_option("--nuisance", options->nuisance, "what is uncertain about the room, YAML; or none")
+  as_input(command.add_option("--nuisance", options->nuisance, "what is uncertain about the room, YAML; or none"))
       ->option_text("FILE");
   command.add_option("--hide", options->hidden, "any, nothing, one, two or out-of-catalogue (default: any)")
       ->option_text("KIND")
@@ -146,10 +146,13 @@ void add_open_command(CLI::App& reconcile_command) {
   pirsim reconcile open --answer secret/answer.json --commitment challenge/commitment.sha256 --report found/report.json
 )");
   const auto options = std::make_shared<OpenOptions>();
-  command.add_option("--answer", options->answer, "the sealed answer")->option_text("FILE")->required();
-  command.add_option("--commitment", options->commitment, "the published hash")->option_text("FILE")->required();
-  command.add_option("--report", options->report, "report.json to be scored")->option_text("FILE")->required();
-  command.callback([options] { open_challenge(*options); });
+  offer_input_file(command, "--answer", options->answer, "the sealed answer")->required();
+  offer_input_file(command, "--commitment", options->commitment, "the published hash")->required();
+  offer_input_file(command, "--report", options->report, "report.json to be scored")->required();
+  command.callback([options, &command] {
+    require_one_standard_input(command);
+    open_challenge(*options);
+  });
 }
 
 }  // namespace pirsim::app

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/near_names.hpp"
+#include "core/text.hpp"
 #include "io/csv_reader.hpp"
 #include "pirsim/effects.hpp"
 #include "pirsim/error.hpp"
@@ -170,8 +171,10 @@ void keep_inputs(const std::vector<NamedOutput>& outputs, const std::vector<std:
 }
 
 std::vector<std::string> files_read(const ScriptSpec& script, const SceneSpec& scene) {
-  std::vector<std::string> files = script.files;
-  files.insert(files.end(), scene.files.begin(), scene.files.end());
+  std::vector<std::string> files;
+  for (const std::vector<InputFile>* read : {&script.files, &scene.files}) {
+    for (const InputFile& file : *read) files.push_back(file.path);
+  }
   const std::string& reference = script.summary.reference_file;
   if (!reference.empty()) files.push_back((fs::path(script.directory) / reference).string());
   return files;
@@ -197,7 +200,7 @@ std::vector<MeasuredCell> measured_cells(const ScriptSpec& script) {
 void write_summary(const studies::Summary& summary, io::AtomicFile& file, const std::filesystem::path& path,
                    const std::string& title, const std::string& remarks, Verbosity verbosity) {
   const bool is_document = path.extension() == ".md";
-  if (is_document) file.stream() << "# " << title << ": seconds with motion\n\n";
+  if (is_document) file.stream() << "# " << markdown_text(title) << ": seconds with motion\n\n";
   file.stream() << (is_document ? studies::to_markdown(summary) : studies::to_csv(summary));
   if (is_document && !remarks.empty()) file.stream() << '\n' << remarks << '\n';
   file.commit();
@@ -205,8 +208,8 @@ void write_summary(const studies::Summary& summary, io::AtomicFile& file, const 
 }
 
 void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs) {
-  report.footer = "pirsim " + version() + " (" + git_revision() + "), " + inputs.scene.filename().string();
-  if (!inputs.script.empty()) report.footer += ", " + inputs.script.filename().string();
+  report.footer = "pirsim " + version() + " (" + git_revision() + "), " + io::name_of_input(inputs.scene);
+  if (!inputs.script.empty()) report.footer += ", " + io::name_of_input(inputs.script);
   file.stream() << io::to_html(report);
   file.commit();
 }

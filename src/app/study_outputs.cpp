@@ -90,14 +90,14 @@ std::string tracer_used(const Model& model) {
 }
 
 io::Manifest manifest_of(const Model& model) {
-  std::vector<std::string> files = model.script().files;
+  std::vector<InputFile> files = model.script().files;
   files.insert(files.end(), model.scene().files.begin(), model.scene().files.end());
   io::Manifest manifest;
   manifest.provenance = {.version = version(),
                          .git_revision = git_revision(),
                          .compiler = compiler(),
                          .embree = rt::embree_version() + " " + rt::instruction_set(),
-                         .inputs = io::hashed(files),
+                         .inputs = io::named(files),
                          .resolved_script = io::to_yaml(model.script()),
                          .seed = model.script().seed,
                          .study_runs = model.n_runs()};

@@ -42,8 +42,8 @@ void view(const Inputs& inputs, const ViewOptions& options) {
   if (!options.from.empty()) request.from_s = run_seconds("--from", options.from, trial);
   if (!options.to.empty()) request.to_s = run_seconds("--to", options.to, trial);
   request.keys_per_s = options.keys_per_s;
-  request.scene = inputs.scene.filename().string();
-  request.script = inputs.script.filename().string();
+  request.scene = io::name_of_input(inputs.scene);
+  request.script = io::name_of_input(inputs.script);
   if (!options.coverage.empty()) {
     request.coverage = io::read_coverage(options.coverage);
     const studies::CoverageStudy study(model.compiled().scene(), *request.coverage);
@@ -85,8 +85,7 @@ void add_view_command(CLI::App& app) {
       ->option_text("TIME");
   command.add_option("--to", options->to, "where it ends (default: the end, 1200 s later at most)")
       ->option_text("TIME");
-  command.add_option("--coverage", options->coverage, "a coverage study, YAML, whose map is laid on the floor")
-      ->option_text("FILE");
+  offer_input_file(command, "--coverage", options->coverage, "a coverage study, YAML, whose map is laid on the floor");
   command
       .add_option("--keys-per-s", options->keys_per_s, "pictures a second, between which it interpolates (default: 10)")
       ->option_text("N")

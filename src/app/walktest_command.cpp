@@ -21,7 +21,7 @@ void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
   check_outputs({{"-o", options.output, {".csv"}}, {"--report", options.report, {".html"}}}, inputs);
   WalkTestSpec spec = io::read_walk_test(inputs.script, inputs.overrides);
   SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
-  keep_inputs({{"-o", options.output}, {"--report", options.report}}, scene.files);
+  keep_inputs({{"-o", options.output}, {"--report", options.report}}, files_read({}, scene));
   tell(scene.warnings, inputs.verbosity);
   const studies::WalkTest test(std::move(scene), std::move(spec));
   tell(test.warnings(), inputs.verbosity);

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/text.hpp"
+
 namespace pirsim {
 namespace {
 
@@ -69,14 +71,15 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string to_string(const Issue& issue) {
+  constexpr std::size_t longest_place = 4096;  // as paths; `--set KEY=VALUE` is a place, too
   std::string text;
   if (!issue.where.file.empty()) {
-    text += issue.where.file + ':';
+    text += tellable(issue.where.file.size() > longest_place ? shortened(issue.where.file) : issue.where.file) + ':';
     if (issue.where.line > 0) text += std::to_string(issue.where.line) + ':';
     if (issue.where.line > 0 && issue.where.column > 0) text += std::to_string(issue.where.column) + ':';
     text += ' ';
   }
-  return text + (issue.severity == Severity::error ? "error: " : "warning: ") + issue.message;
+  return text + (issue.severity == Severity::error ? "error: " : "warning: ") + tellable(issue.message);
 }
 
 Error::Error(ErrorCode code, std::vector<Issue> issues)

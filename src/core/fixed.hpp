@@ -1,6 +1,8 @@
 // Numbers as texts and tables show them.
 #pragma once
 
+#include <array>
+#include <charconv>
 #include <iomanip>
 #include <sstream>
 #include <string>
@@ -12,6 +14,12 @@ namespace pirsim {
   std::ostringstream out;
   out << std::fixed << std::setprecision(digits) << value;
   return out.str();
+}
+
+/// With as many digits as tell it from every other number.
+[[nodiscard]] inline std::string shortest_number(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
 }  // namespace pirsim

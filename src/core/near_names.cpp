@@ -1,5 +1,6 @@
 #include "core/near_names.hpp"
 
+#include "core/text.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim {
@@ -9,7 +10,8 @@ std::string near_or_all(std::string_view name, const std::vector<std::string>& k
   if (known.empty()) return "; there are none";
   std::string text = did_you_mean(name, known);
   if (!text.empty()) return text;
-  for (std::size_t i = 0; i < known.size() && i < most; ++i) text += (i == 0 ? "; there are " : ", ") + known[i];
+  for (std::size_t i = 0; i < known.size() && i < most; ++i)
+    text += (i == 0 ? "; there are " : ", ") + shortened(known[i]);
   if (known.size() > most) text += " and " + std::to_string(known.size() - most) + " more";
   return text;
 }

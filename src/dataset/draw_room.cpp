@@ -54,6 +54,8 @@ void find_models(const RoomSpec& spec, SceneSpec& scene, std::map<std::string, S
       try {
         known.emplace(sensor.model, io::find_sensor_model(sensor.model, {}, options));
       } catch (const Error& error) {
+        const bool is_in_a_file = !error.issues().front().where.file.empty();  // the sensor's own
+        if (is_in_a_file) throw;
         const auto group = std::ranges::find_if(spec.sensors, [&](const SensorGroupSpec& g) {
           return std::ranges::find(g.models, sensor.model) != g.models.end();
         });

@@ -4,6 +4,7 @@
 #include <set>
 #include <sstream>
 
+#include "core/text.hpp"
 #include "dataset/description.hpp"
 #include "dataset/exports.hpp"
 #include "pirsim/version.hpp"
@@ -118,8 +119,10 @@ std::string rooms_and_scripts(const Description& described) {
   if (!std::ranges::all_of(described.rooms, is_drawn))
     text += " The recipe's own scenes aren't part of the dataset; the lines below name them with their hashes.";
   const DescribedRoom& shown = drawn == described.rooms.end() ? described.rooms.front() : *drawn;
-  return text + " A day again, to look at: `pirsim --scene " + shown.scene_file + " --script scripts/" +
-         room_name(shown.number) + "/day_01.yaml`, whose replicate 1 is day 1.\n";
+  return text + " A day again, to look at: " +
+         markdown_code("pirsim --scene " + shown.scene_file + " --script scripts/" + room_name(shown.number) +
+                       "/day_01.yaml") +
+         ", whose replicate 1 is day 1.\n";
 }
 
 }  // namespace
@@ -135,7 +138,7 @@ std::string readme(const Description& described) {
     most_people = std::max(most_people, day.most_people);
     failed += day.fault.empty() ? 0 : 1;
   }
-  std::string text = "# " + recipe.name + "\n";
+  std::string text = "# " + markdown_text(recipe.name) + "\n";
   text += hours(seconds) + " hours of passive-infrared motion sensors in " + std::to_string(described.rooms.size()) +
           (described.rooms.size() == 1 ? " room" : " rooms") + " (" + about_rooms(described) + "), " +
           std::to_string(recipe.days) + (recipe.days == 1 ? " day" : " days") +

@@ -5,8 +5,8 @@
 
 #include "dataset/exports.hpp"
 #include "dataset/room_reader.hpp"
-#include "io/atomic_file.hpp"
 #include "io/compression.hpp"
+#include "io/input.hpp"
 #include "io/reader_parts.hpp"
 #include "pirsim/dataset.hpp"
 #include "pirsim/effects.hpp"
@@ -123,10 +123,16 @@ RoomGroupSpec read_group(const YamlNode& node, const RecipeSpec& recipe, const s
   group.where = node.where();
   if (map.has("scenes")) {
     for (const YamlNode& scene : map.required_list("scenes", limits::rooms)) {
-      group.scenes.push_back(recipe.file.parent_path() / scene.text(faults, "scenes"));
+      group.scenes.push_back(io::folder_of_input(recipe.file) / scene.text(faults, "scenes"));
       std::error_code unreadable;
-      if (!std::filesystem::is_regular_file(group.scenes.back(), unreadable))
-        faults.error(scene.where(), "scenes: there is no file '" + group.scenes.back().string() + "'");
+      const auto status = std::filesystem::status(group.scenes.back(), unreadable);
+      const std::string name = "'" + group.scenes.back().string() + "'";
+      if (!std::filesystem::exists(status)) {
+        faults.error(scene.where(), "scenes: there is no file " + name);
+      } else if (!std::filesystem::is_regular_file(status)) {
+        faults.error(scene.where(),
+                     "scenes: " + name + " isn't a regular file: it is read again for each part of the work");
+      }
     }
     group.count = static_cast<int>(group.scenes.size());
   } else {
@@ -189,14 +195,15 @@ int RecipeSpec::n_rooms() const {
 }
 
 RecipeSpec read_recipe(const std::filesystem::path& file) {
-  const YamlNode root = YamlNode::load(file);
+  const io::Input input = io::read_input(file);
+  const YamlNode root = YamlNode::load(input);
   Diagnostics faults;
   YamlMap map(root, faults, "recipe");
   io::check_version(map, "pirsim_recipe");
   RecipeSpec recipe;
   recipe.file = file;
-  recipe.text = io::read_text_file(file);
-  recipe.name = map.text("name", file.stem().string());
+  recipe.text = input.bytes;
+  recipe.name = map.text("name", io::stem_of_input(file));
   recipe.seed = map.unsigned_integer("seed", recipe.seed);
   recipe.days = map.integer("days", recipe.days, {.min = 1, .max = most_days});
   recipe.sensing = io::read_sensing(map.child("sensing"), faults);

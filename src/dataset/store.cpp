@@ -1,18 +1,22 @@
 #include "dataset/store.hpp"
 
 #include "core/digest.hpp"
-#include "io/manifest.hpp"
+#include "io/input.hpp"
 #include "pirsim/version.hpp"
 
 namespace pirsim::dataset {
 
 namespace fs = std::filesystem;
 
+namespace {
+constexpr std::size_t largest_scene = 1'000'000'000;  // as io::read_scene() takes it
+}
+
 std::string provenance(const RecipeSpec& recipe) {
   std::string text = "recipe " + sha256(recipe.text);
   for (const RoomGroupSpec& group : recipe.rooms) {
     for (const fs::path& scene : group.scenes)
-      text += ", " + scene.filename().string() + ' ' + io::hashed({scene.string()}).front().sha256;
+      text += ", " + scene.filename().string() + ' ' + io::read_input(scene, largest_scene).file().sha256;
   }
   return text + ", pirsim " + version() + " (" + git_revision() + "), " + compiler();
 }

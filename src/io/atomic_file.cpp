@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <fstream>
 #include <string>
@@ -157,25 +156,7 @@ bool write_once(const std::filesystem::path& path, std::string_view text) {
 }
 
 std::string read_text_file(const std::filesystem::path& path, std::size_t max_bytes) {
-  const Where where{path.string(), 0, 0};
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) throw Error(ErrorCode::io, where, "is a directory");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    const bool exists = std::filesystem::exists(path, ignored);
-    throw Error(ErrorCode::io, where, exists ? "can't be read" : "no such file");
-  }
-  // In blocks, since most files are small; one byte more than allowed, so that endless devices end too.
-  std::string text;
-  std::array<char, 1U << 13U> block;
-  while (text.size() <= max_bytes && file) {
-    file.read(block.data(), static_cast<std::streamsize>(block.size()));
-    text.append(block.data(), static_cast<std::size_t>(file.gcount()));
-  }
-  if (file.bad()) throw Error(ErrorCode::io, where, "can't be read");
-  if (text.size() > max_bytes)
-    throw Error(ErrorCode::input, where, "larger than " + std::to_string(max_bytes / 1'000'000) + " MB");
-  return text;
+  return read_input(path, max_bytes).bytes;
 }
 
 }  // namespace pirsim::io

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "io/input.hpp"
+
 namespace pirsim::io {
 
 /// A path that exists and isn't a regular file: /dev/stdout, a pipe.
@@ -81,9 +83,7 @@ void write_text_file(const std::filesystem::path& path, std::string_view text);
 
 // What every reader of text files needs.
 
-constexpr std::size_t max_text_file_bytes = 16'000'000;
-
-/// The whole file. Throws Error: io if it can't be read, input if it is larger than that.
+/// The bytes of what pirsim itself wrote, as read_input() reads them; what users write is read as text.
 [[nodiscard]] std::string read_text_file(const std::filesystem::path& path,
                                          std::size_t max_bytes = max_text_file_bytes);
 

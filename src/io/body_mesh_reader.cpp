@@ -22,7 +22,7 @@ class BodyBuilder {
   BodyBuilder(const std::filesystem::path& file, Diagnostics& faults)
       : faults_(faults), document_(load_gltf(file, faults)) {}
 
-  [[nodiscard]] const std::vector<std::string>& files() const noexcept { return document_.files; }
+  [[nodiscard]] const std::vector<InputFile>& files() const noexcept { return document_.files; }
   BodyMeshes build() {
     const PlacedNodes nodes = place_nodes(document_, faults_);
     for (const PlacedNode& placed : nodes.shown) {
@@ -67,7 +67,8 @@ BodyMeshes BodyMeshReader::read(const std::string& file, const Where& where, Dia
   const auto [known, is_first] = known_.try_emplace(file);
   if (!is_first) return known->second;
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(folder_ / file, ignored)) {
+  if (const auto status = std::filesystem::status(folder_ / file, ignored);
+      !std::filesystem::exists(status) || std::filesystem::is_directory(status)) {
     faults.error(where, "body_mesh: there is no file '" + (folder_ / file).string() + "'");
     return {};
   }

@@ -7,6 +7,7 @@
 #include <array>
 #include <new>
 #include <string>
+#include <utility>
 
 #include "io/posix_file.hpp"
 #include "pirsim/error.hpp"
@@ -125,12 +126,12 @@ void DataWriter::finish() { encoder_->put({}, Encoder::Step::finish); }
 // ---------------------------------------------------------------------------------------------------------- reading
 struct DataReader::Decoder {
   std::filesystem::path path;
-  PosixFile file;
-  explicit Decoder(const std::filesystem::path& name) : path(name), file(name, PosixFile::Mode::read) {}
+  DataReader::ByteSource source;
+  Decoder(std::filesystem::path name, DataReader::ByteSource bytes) : path(std::move(name)), source(std::move(bytes)) {}
   Decoder(const Decoder&) = delete;
   Decoder& operator=(const Decoder&) = delete;
   virtual ~Decoder() = default;
-  virtual std::size_t get(char* to, std::size_t size) { return file.read(to, size); }
+  virtual std::size_t get(char* to, std::size_t size) { return source(to, size); }
 
  protected:
   std::array<char, block> buffer{};
@@ -140,7 +141,7 @@ struct DataReader::Decoder {
 struct GzipDecoder final : DataReader::Decoder {
   z_stream state{};
   bool in_member = false;
-  explicit GzipDecoder(const std::filesystem::path& name) : Decoder(name) {
+  GzipDecoder(std::filesystem::path name, DataReader::ByteSource bytes) : Decoder(std::move(name), std::move(bytes)) {
     if (inflateInit2(&state, gzip_format) != Z_OK) throw std::bad_alloc();
   }
   ~GzipDecoder() override { inflateEnd(&state); }
@@ -151,7 +152,7 @@ struct GzipDecoder final : DataReader::Decoder {
     while (state.avail_out > 0) {
       if (state.avail_in == 0) {
         state.next_in = reinterpret_cast<Bytef*>(buffer.data());
-        state.avail_in = static_cast<uInt>(file.read(buffer.data(), buffer.size()));
+        state.avail_in = static_cast<uInt>(source(buffer.data(), buffer.size()));
         if (state.avail_in == 0) break;
       }
       in_member = true;
@@ -172,7 +173,7 @@ struct ZstdDecoder final : DataReader::Decoder {
   std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> state{ZSTD_createDCtx(), &ZSTD_freeDCtx};
   ZSTD_inBuffer in{buffer.data(), 0, 0};
   std::size_t wanted = 0;  ///< 0: between frames
-  explicit ZstdDecoder(const std::filesystem::path& name) : Decoder(name) {
+  ZstdDecoder(std::filesystem::path name, DataReader::ByteSource bytes) : Decoder(std::move(name), std::move(bytes)) {
     if (!state) throw std::bad_alloc();
   }
   std::size_t get(char* to, std::size_t size) override {
@@ -180,7 +181,7 @@ struct ZstdDecoder final : DataReader::Decoder {
     while (made.pos < made.size) {
       const std::size_t before = made.pos;
       if (in.pos == in.size) {
-        in = {buffer.data(), file.read(buffer.data(), buffer.size()), 0};
+        in = {buffer.data(), source(buffer.data(), buffer.size()), 0};
         if (in.size == 0 && wanted == 0) break;
       }
       const bool at_end = in.size == 0;
@@ -195,19 +196,47 @@ struct ZstdDecoder final : DataReader::Decoder {
   }
 };
 
-DataReader::DataReader(const std::filesystem::path& file) {
-  switch (compression_of(file)) {
+DataReader::DataReader(const std::filesystem::path& path, Compression compression, ByteSource source) {
+  switch (compression) {
     case Compression::gzip:
-      decoder_ = std::make_unique<GzipDecoder>(file);
+      decoder_ = std::make_unique<GzipDecoder>(path, std::move(source));
       break;
     case Compression::zstd:
-      decoder_ = std::make_unique<ZstdDecoder>(file);
+      decoder_ = std::make_unique<ZstdDecoder>(path, std::move(source));
       break;
     case Compression::none:
-      decoder_ = std::make_unique<Decoder>(file);
+      decoder_ = std::make_unique<Decoder>(path, std::move(source));
   }
 }
+DataReader::DataReader(const std::filesystem::path& file)
+    : DataReader(file, compression_of(file),
+                 [opened = std::make_shared<PosixFile>(file, PosixFile::Mode::read)](char* to, std::size_t size) {
+                   return opened->read(to, size);
+                 }) {}
 DataReader::~DataReader() = default;
 std::size_t DataReader::read(char* to, std::size_t size) { return decoder_->get(to, size); }
+
+std::string decompressed(Input input, std::size_t max_bytes) {
+  const std::string_view bytes = input.bytes;
+  const Compression compression = bytes.starts_with("\x1F\x8B")           ? Compression::gzip
+                                  : bytes.starts_with("\x28\xB5\x2F\xFD") ? Compression::zstd
+                                                                          : Compression::none;
+  if (compression == Compression::none) return std::move(input.bytes);
+  DataReader reader(input.path, compression, [left = bytes](char* to, std::size_t size) mutable {
+    const std::size_t n = left.copy(to, size);
+    left.remove_prefix(n);
+    return n;
+  });
+  std::string text;
+  std::string part(block, '\0');
+  while (const std::size_t n = reader.read(part.data(), part.size())) {
+    text.append(part, 0, n);
+    if (text.size() > max_bytes) {
+      throw Error(ErrorCode::input, Where{input.path.string()},
+                  "holds more than " + std::to_string(max_bytes / 1'000'000) + " MB, decompressed");
+    }
+  }
+  return text;
+}
 
 }  // namespace pirsim::io

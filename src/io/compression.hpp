@@ -3,11 +3,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "io/input.hpp"
 
 namespace pirsim::io {
 
@@ -19,6 +22,10 @@ enum class Compression { none, gzip, zstd };
 [[nodiscard]] Compression compression_of(const std::filesystem::path& file);
 /// The name without .gz or .zst.
 [[nodiscard]] std::filesystem::path without_compression(const std::filesystem::path& file);
+
+/// What an input holds without gzip or Zstandard, which are told by its first bytes; as it is if they are others'.
+/// Throws Error(input) for what is damaged, cut short, or holds more than that.
+[[nodiscard]] std::string decompressed(Input input, std::size_t max_bytes);
 
 /// Compresses into a stream. The same bytes give the same file: no time and no name is stored.
 class DataWriter {
@@ -38,7 +45,12 @@ class DataWriter {
 /// Reads what DataWriter, or gzip and zstd themselves, wrote. Memory is bounded whatever the file says.
 class DataReader {
  public:
+  /// Fills a buffer; 0 at the end.
+  using ByteSource = std::function<std::size_t(char* to, std::size_t size)>;
+
   explicit DataReader(const std::filesystem::path& file);
+  /// What comes from elsewhere; path: its name in messages.
+  DataReader(const std::filesystem::path& path, Compression compression, ByteSource source);
   ~DataReader();
   /// Up to `size` bytes; 0 at the end. Throws Error: io, or input for a file that is damaged or cut short.
   [[nodiscard]] std::size_t read(char* to, std::size_t size);

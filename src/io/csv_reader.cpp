@@ -5,16 +5,40 @@
 #include <set>
 #include <utility>
 
+#include "core/text.hpp"
 #include "io/atomic_file.hpp"
+#include "io/compression.hpp"
+#include "io/input.hpp"
 
 namespace pirsim::io {
+
+void RepeatedFaults::add(const std::string& kind, const Where& where, const std::string& message) {
+  const auto known = std::ranges::find(kinds_, kind, &Kind::name);
+  if (known == kinds_.end()) {
+    kinds_.push_back({kind, where, message, 1});
+  } else {
+    ++known->n;
+  }
+}
+
+void RepeatedFaults::add(const std::string& kind, const Diagnostics& found) {
+  for (const Issue& issue : found.issues()) {
+    if (issue.severity == Severity::error) add(kind, issue.where, issue.message);
+  }
+}
+
+void RepeatedFaults::tell(Diagnostics& faults) const {
+  for (const Kind& kind : kinds_) {
+    const std::size_t more = kind.n - 1;
+    faults.error(kind.first, kind.message + (more == 0 ? "" : "; " + std::to_string(more) + " more like this"));
+  }
+}
 
 /// Reads one character after the other; knows line and column.
 class CsvParser {
  public:
-  CsvParser(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {
-    if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
-  }
+  /// The text outlives the parser.
+  CsvParser(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {}
 
   CsvTable table() {
     CsvTable table;
@@ -31,6 +55,7 @@ class CsvParser {
       }
     }
     if (table.header_.empty()) throw Error(ErrorCode::input, {file_, 1, 1}, "expected a line with column names");
+    widths_.tell(faults_);
     faults_.throw_if_errors();
     return table;
   }
@@ -85,6 +110,8 @@ class CsvParser {
         advance();
       }
     }
+    if (const std::string found = invisible_character(field.text, Lines::many); !found.empty())
+      refuse(field.line, field.column, "the field '" + field.text + "' contains " + found);
     return field;
   }
   void read_quoted(CsvTable::Field& field) {
@@ -119,8 +146,8 @@ class CsvParser {
   }
   void check_width(const CsvTable& table, const std::vector<CsvTable::Field>& record) {
     if (record.size() == table.header_.size()) return;
-    faults_.error({file_, record.front().line, record.front().column},
-                  "expected " + std::to_string(table.header_.size()) + " fields, got " + std::to_string(record.size()));
+    widths_.add("width", {file_, record.front().line, record.front().column},
+                "expected " + std::to_string(table.header_.size()) + " fields, got " + std::to_string(record.size()));
   }
 
   static constexpr std::size_t max_fields = 10'000;  // assumed: a column a sensor makes some tens
@@ -130,10 +157,16 @@ class CsvParser {
   int line_ = 1;
   int column_ = 1;
   Diagnostics faults_;
+  RepeatedFaults widths_;
 };
 
-CsvTable CsvTable::read(const std::filesystem::path& path) { return parse(read_text_file(path), path.string()); }
-CsvTable CsvTable::parse(std::string_view text, const std::string& file) { return CsvParser(text, file).table(); }
+CsvTable CsvTable::read(const std::filesystem::path& path) {
+  return parse(decompressed(read_input(path), max_text_file_bytes), path.string());
+}
+CsvTable CsvTable::parse(std::string_view text, const std::string& file) {
+  const std::string read = text_from(std::string(text), file);
+  return CsvParser(read, file).table();
+}
 
 std::vector<std::string> CsvTable::names() const {
   std::vector<std::string> names;

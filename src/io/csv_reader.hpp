@@ -12,11 +12,28 @@
 
 namespace pirsim::io {
 
+/// Faults that a file has line after line: each kind is told once, with the place of the first and how many there are.
+class RepeatedFaults {
+ public:
+  void add(const std::string& kind, const Where& where, const std::string& message);
+  void add(const std::string& kind, const Diagnostics& found);  ///< each of its errors
+  void tell(Diagnostics& faults) const;
+
+ private:
+  struct Kind {
+    std::string name;
+    Where first;
+    std::string message;
+    std::size_t n = 0;
+  };
+  std::vector<Kind> kinds_;
+};
+
 /// A header and rows of as many fields. Quoted fields, doubled quotes, line ends inside quotes, CRLF and a byte order
-/// mark are understood; empty lines and lines that begin with '#' are skipped.
+/// mark are understood, and UTF-16 with its mark; empty lines and lines that begin with '#' are skipped.
 class CsvTable {
  public:
-  /// Throws Error: io (no file), input (content).
+  /// The file may be compressed by gzip or Zstandard. Throws Error: io (no file), input (content).
   [[nodiscard]] static CsvTable read(const std::filesystem::path& path);
   [[nodiscard]] static CsvTable parse(std::string_view text, const std::string& file);
 

@@ -1,9 +1,10 @@
-#include "io/gltf_document.hpp"
-
 #include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
+
+#include "core/text.hpp"
+#include "io/gltf_document.hpp"
 
 namespace pirsim::io::detail {
 namespace {
@@ -164,8 +165,7 @@ class StructureCheck {
     const std::string key = std::string("'") + rule.key + "' ";
     switch (rule.kind) {
       case Kind::text:
-        if (!value.is_string()) fault(pointer, key + "must be a text");
-        return;
+        return text(value, pointer, key);
       case Kind::flag:
         if (!value.is_boolean()) fault(pointer, key + "must be true or false");
         return;
@@ -181,6 +181,12 @@ class StructureCheck {
       case Kind::numbers:
         return numbers(value, pointer, rule);
     }
+  }
+
+  void text(const json& value, const std::string& pointer, const std::string& key) {
+    if (!value.is_string()) return fault(pointer, key + "must be a text");
+    const std::string found = invisible_character(value.get_ref<const std::string&>(), Lines::one);
+    if (!found.empty()) fault(pointer, key + "contains " + found);
   }
 
   void count(const json& value, const std::string& pointer, const std::string& key) {
@@ -216,7 +222,7 @@ class StructureCheck {
 
   void fault(const std::string& pointer, std::string message) {
     if (++n_faults_ > max_faults) return;
-    faults_.error(text_.where(pointer), pointer + ": " + std::move(message));
+    faults_.error(text_.where(pointer), shortened(pointer) + ": " + std::move(message));
   }
 
   const JsonText& text_;

@@ -3,11 +3,11 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
-#include <fstream>
-#include <iterator>
 #include <utility>
 
+#include "core/text.hpp"
 #include "io/file_kinds.hpp"
+#include "io/input.hpp"
 
 namespace pirsim::io::detail {
 namespace {
@@ -17,19 +17,7 @@ namespace fs = std::filesystem;
 constexpr std::uint32_t chunk_json = 0x4E4F534A;    // "JSON", glTF 2.0 section 4.4
 constexpr std::uint32_t chunk_binary = 0x004E4942;  // "BIN\0"
 
-constexpr std::uintmax_t largest_file = 1'000'000'000;  // assumed; tinygltf counts bytes in 32 bits
-
-std::string read_bytes(const fs::path& file) {
-  std::error_code fault;
-  const fs::file_status status = fs::status(file, fault);
-  if (!fs::exists(status)) throw Error(ErrorCode::io, {file.string()}, "no such file");
-  if (!fs::is_regular_file(status)) throw Error(ErrorCode::io, {file.string()}, "is not a regular file");
-  if (fs::file_size(file, fault) > largest_file) throw Error(ErrorCode::input, {file.string()}, "is larger than 1 GB");
-  std::ifstream stream(file, std::ios::binary);
-  std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (!stream && !stream.eof()) throw Error(ErrorCode::io, {file.string()}, "can't be read");
-  return bytes;
-}
+constexpr std::size_t largest_file = 1'000'000'000;  // assumed; tinygltf counts bytes in 32 bits
 
 std::uint32_t little_endian(const std::string& bytes, std::size_t offset) {
   std::uint32_t value = 0;
@@ -63,6 +51,7 @@ GltfContainer split_binary(const std::string& bytes, const std::string& file) {
     at += 8;
     if (size > length - at) refuse("is cut short: a chunk of " + std::to_string(size) + " bytes passes its end");
     if (type == chunk_json) result.json = bytes.substr(at, size);
+    if (type == chunk_json && first_not_utf8(result.json)) refuse("has a JSON chunk that isn't UTF-8");
     if (type == chunk_binary && result.binary_chunk.empty()) {
       result.binary_chunk.assign(bytes.begin() + static_cast<std::ptrdiff_t>(at),
                                  bytes.begin() + static_cast<std::ptrdiff_t>(at + size));
@@ -70,6 +59,14 @@ GltfContainer split_binary(const std::string& bytes, const std::string& file) {
     at += size;
   }
   return result;
+}
+
+/// By its first character, which may be UTF-16.
+bool may_be_json(std::string_view bytes) {
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) return true;
+  const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && bytes[first] == '{';
 }
 
 std::string percent_decoded(const std::string& uri) {
@@ -107,34 +104,35 @@ std::string reason_to_refuse(const std::string& name, const fs::path& folder) {
   return {};
 }
 
-std::vector<unsigned char> read_external(const std::string& uri, const fs::path& folder, std::string& fault) {
+std::vector<unsigned char> read_external(const std::string& uri, const fs::path& folder, GltfContainer& container,
+                                         std::string& fault) {
   const std::string name = percent_decoded(uri);
   if (const std::string why = reason_to_refuse(name, folder); !why.empty()) {
     fault = "buffer file '" + name + "' " + why;
     return {};
   }
-  const std::string bytes = read_bytes(folder / name);
-  return {bytes.begin(), bytes.end()};
+  const Input input = read_input(folder / name, largest_file);
+  container.files.push_back(input.file());
+  return {input.bytes.begin(), input.bytes.end()};
 }
 
 }  // namespace
 
 GltfContainer read_container(const fs::path& file) {
-  std::string bytes = read_bytes(file);
+  const Input input = read_input(file, largest_file);
+  const std::string& bytes = input.bytes;
   if (bytes.empty()) throw Error(ErrorCode::input, {file.string()}, "the file is empty");
   if (bytes.starts_with("glTF")) {
     GltfContainer container = split_binary(bytes, file.string());
-    container.files = {file.string()};
+    container.files = {input.file()};
     return container;
   }
-  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);  // byte order mark
-  const std::size_t first = bytes.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos || bytes[first] != '{') {
+  if (!may_be_json(bytes)) {
     const std::string kind = kind_of_text(bytes);
     throw Error(ErrorCode::input, {file.string(), 1, 1},
                 "is neither glTF (.gltf, JSON) nor binary glTF (.glb)" + (kind.empty() ? kind : ", but " + kind));
   }
-  return {GltfContainer::Kind::json, std::move(bytes), {}, {file.string()}};
+  return {GltfContainer::Kind::json, input.text(), {}, {input.file()}};
 }
 
 std::vector<std::vector<unsigned char>> read_buffers(const JsonText& text, GltfContainer& container,
@@ -157,8 +155,7 @@ std::vector<std::vector<unsigned char>> read_buffers(const JsonText& text, GltfC
       std::string media_type;
       if (!tinygltf::DecodeDataURI(&bytes, media_type, uri, 0, false)) fault = "data: URI can't be decoded";
     } else {
-      bytes = read_external(uri, folder, fault);
-      container.files.push_back((folder / percent_decoded(uri)).string());
+      bytes = read_external(uri, folder, container, fault);
     }
     const auto wanted = buffers[i]["byteLength"].get<std::size_t>();
     if (fault.empty() && bytes.size() < wanted) {

@@ -1,9 +1,10 @@
 #include "io/gltf_document.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <map>
 #include <utility>
+
+#include "core/text.hpp"
+#include "io/input.hpp"
 
 namespace pirsim::io::detail {
 namespace {
@@ -35,8 +36,9 @@ void check_extensions(const JsonText& text, Diagnostics& faults) {
     for (std::size_t i = 0; i < required->size(); ++i) {
       const json& name = (*required)[i];
       if (name.is_string() && is_harmless(name.get<std::string>())) continue;
-      faults.error(text.where("/extensionsRequired/" + std::to_string(i)),
-                   "the file requires the extension " + name.dump() + ", which is not supported; export it without");
+      faults.error(
+          text.where("/extensionsRequired/" + std::to_string(i)),
+          "the file requires the extension " + shortened(name.dump()) + ", which is not supported; export it without");
     }
   }
   const auto used = text.root().find("extensionsUsed");
@@ -147,10 +149,8 @@ tinygltf::Model model_of(const json& root) {
   return model;
 }
 
-std::string label(const char* what, std::string name, int index) {
-  const auto is_control = [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; };
-  std::replace_if(name.begin(), name.end(), is_control, '?');  // messages go to terminals
-  return what + (name.empty() ? ' ' + std::to_string(index) : " '" + name + "'");
+std::string label(const char* what, const std::string& name, int index) {
+  return what + (name.empty() ? ' ' + std::to_string(index) : " '" + shortened(name) + "'");
 }
 
 }  // namespace
@@ -170,7 +170,7 @@ GltfDocument load_gltf(const std::filesystem::path& file, Diagnostics& remarks) 
   check_extensions(document.text, faults);
   check_structure(document.text, faults);
   faults.throw_if_errors();
-  auto buffers = read_buffers(document.text, container, file.parent_path(), faults);
+  auto buffers = read_buffers(document.text, container, folder_of_input(file), faults);
   faults.throw_if_errors();
   document.model = model_of(document.text.root());
   document.files = std::move(container.files);

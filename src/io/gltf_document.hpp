@@ -8,14 +8,15 @@
 #include <vector>
 
 #include "io/json_text.hpp"
+#include "pirsim/input_file.hpp"
 
 namespace pirsim::io::detail {
 
 struct GltfDocument {
   std::string file;  ///< as messages name it
   JsonText text;
-  tinygltf::Model model;             ///< scenes, nodes, meshes, accessors, buffer views and buffers only
-  std::vector<std::string> files{};  ///< all that was read: the file and those of its buffers
+  tinygltf::Model model;           ///< scenes, nodes, meshes, accessors, buffer views and buffers only
+  std::vector<InputFile> files{};  ///< all that was read: the file and those of its buffers
 };
 
 /// Reads a .gltf or .glb (told apart by content). Indices between top-level arrays are in range afterwards;
@@ -42,7 +43,7 @@ struct GltfContainer {
   Kind kind = Kind::json;
   std::string json;
   std::vector<unsigned char> binary_chunk;  ///< of a .glb, may be empty
-  std::vector<std::string> files{};         ///< all that was read
+  std::vector<InputFile> files{};           ///< all that was read
 };
 
 /// Throws Error(io) for a missing or unreadable file, Error(input) for a file that is no glTF or is cut short.

@@ -98,9 +98,16 @@ auto numbered(const Members& members, const std::string& number) {
   return index < members.size() ? std::optional(members[index]) : std::nullopt;
 }
 
-/// Where the token begins that the parser had read up to `last`: a text is complained about at its closing quote.
+bool is_of_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+/// Where the token begins that the parser had read up to `last`: a text is complained about at its closing quote, a
+/// word at the first letter that doesn't fit, as the y of `type` where `true` might have stood.
 std::size_t start_of_token(std::string_view text, std::size_t last) {
-  if (last >= text.size() || text[last] != '"') return std::min(last, text.size());
+  if (last >= text.size()) return text.size();
+  if (text[last] != '"') {
+    while (last > 0 && is_of_word(text[last]) && is_of_word(text[last - 1])) --last;
+    return last;
+  }
   std::size_t begin = last;
   do {
     begin = begin == 0 ? std::string_view::npos : text.rfind('"', begin - 1);

@@ -5,9 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/digest.hpp"
 #include "io/atomic_file.hpp"
-#include "io/posix_file.hpp"
+#include "io/input.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::io {
@@ -207,23 +206,9 @@ std::vector<std::string> differences(const Provenance& one, const Provenance& ot
   return found;
 }
 
-namespace {
-
-std::string sha256_of_file(const std::filesystem::path& file) {
-  PosixFile input(file, PosixFile::Mode::read);
-  Sha256 hash;
-  std::string block(1U << 18U, '\0');
-  while (const std::size_t n = input.read(block.data(), block.size())) hash.add({block.data(), n});
-  return hash.hex();
-}
-
-}  // namespace
-
-std::vector<HashedFile> hashed(const std::vector<std::string>& files) {
+std::vector<HashedFile> named(const std::vector<InputFile>& files) {
   std::vector<HashedFile> result;
-  for (const std::string& file : files) {
-    result.push_back({std::filesystem::path(file).filename().string(), sha256_of_file(file)});
-  }
+  for (const InputFile& file : files) result.push_back({name_of_input(file.path), file.sha256});
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "pirsim/input_file.hpp"
 #include "pirsim/sample.hpp"
 
 namespace pirsim::io {
@@ -66,8 +67,8 @@ struct Manifest {
 
 /// What differs, in words: "git revision (1a2b3c, not 4d5e6f)". Empty if nothing does.
 [[nodiscard]] std::vector<std::string> differences(const Provenance& one, const Provenance& other);
-/// The files with their hashes. Throws Error(io).
-[[nodiscard]] std::vector<HashedFile> hashed(const std::vector<std::string>& files);
+/// As manifests name them.
+[[nodiscard]] std::vector<HashedFile> named(const std::vector<InputFile>& files);
 
 [[nodiscard]] std::string to_json(const Manifest& manifest, int indent);
 /// In one line, and back; std::nullopt for what was damaged.

@@ -1,6 +1,7 @@
 #include "io/posix_file.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -28,11 +29,17 @@ auto without_interruption(const Call& call) {
 }  // namespace
 
 PosixFile::PosixFile(std::filesystem::path path, Mode mode) : path_(std::move(path)) {
-  const int flags = mode == Mode::read ? O_RDONLY : O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW;
-  descriptor_ = without_interruption([&] { return ::open(path_.c_str(), flags | O_CLOEXEC, 0666); });
+  // A pipe that nobody writes to yet is opened at once, and waited for where a signal can end the waiting.
+  const int flags = mode == Mode::read ? O_RDONLY | O_NONBLOCK : O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW;
+  const bool is_standard_input = mode == Mode::read && path_ == standard_input;  // which can't be opened if a socket
+  descriptor_ = is_standard_input
+                    ? ::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
+                    : without_interruption([&] { return ::open(path_.c_str(), flags | O_CLOEXEC, 0666); });
   if (descriptor_ < 0 && errno == ELOOP && mode == Mode::append) refuse(path_, "is a link, which isn't followed");
   if (descriptor_ < 0) fail(mode == Mode::read ? "can't be read" : "can't write");
   if (mode == Mode::append) require_own();
+  struct stat status {};
+  is_regular_ = ::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode);
 }
 
 PosixFile::~PosixFile() { ::close(descriptor_); }
@@ -46,9 +53,19 @@ void PosixFile::require_own() const {
 }
 
 std::size_t PosixFile::read(char* to, std::size_t size) {
-  const ssize_t n = without_interruption([&] { return ::read(descriptor_, to, size); });
-  if (n < 0) fail("can't be read");
-  return static_cast<std::size_t>(n);
+  while (true) {
+    if (!is_regular_) wait();
+    const ssize_t n = ::read(descriptor_, to, size);
+    if (n >= 0) return static_cast<std::size_t>(n);
+    if (errno != EINTR && errno != EAGAIN) fail("can't be read");
+  }
+}
+
+void PosixFile::wait() const {
+  pollfd input{descriptor_, POLLIN, 0};
+  if (::poll(&input, 1, -1) >= 0) return;
+  if (errno != EINTR) fail("can't be read");
+  throw Error(ErrorCode::stopped, Where{path_.string()}, "a signal came while this was waited for");
 }
 
 void PosixFile::append(std::string_view bytes) {

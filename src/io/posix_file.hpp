@@ -7,6 +7,9 @@
 
 namespace pirsim::io {
 
+/// What "-" on a command line stands for: read as it was inherited, and so from where it stands.
+constexpr const char* standard_input = "/dev/stdin";
+
 class PosixFile {
  public:
   enum class Mode {
@@ -21,7 +24,7 @@ class PosixFile {
   PosixFile(const PosixFile&) = delete;
   PosixFile& operator=(const PosixFile&) = delete;
 
-  /// How many bytes were read; 0 at the end.
+  /// How many bytes were read; 0 at the end. Throws Error(stopped) if a signal is handled while a pipe is waited for.
   [[nodiscard]] std::size_t read(char* to, std::size_t size);
   void append(std::string_view bytes);  ///< all of them
   void truncate(std::uint64_t size);
@@ -33,10 +36,12 @@ class PosixFile {
 
  private:
   void require_own() const;
+  void wait() const;                               ///< until there is something to read, or nobody left who writes
   [[noreturn]] void fail(const char* what) const;  ///< says what errno means
 
   std::filesystem::path path_;
   int descriptor_;
+  bool is_regular_ = false;
 };
 
 }  // namespace pirsim::io

@@ -94,12 +94,12 @@ class BodyMeshReader {
   /// The mesh of every node that has one; a node's name is its part's, a node's frame is its part's frame. Faults of
   /// the file go to `faults` with their place in it; a missing file is a fault at `where`.
   [[nodiscard]] BodyMeshes read(const std::string& file, const Where& where, Diagnostics& faults);
-  [[nodiscard]] const std::vector<std::string>& files() const noexcept { return files_; }  ///< all that was read
+  [[nodiscard]] const std::vector<InputFile>& files() const noexcept { return files_; }  ///< all that was read
 
  private:
   std::filesystem::path folder_;
   std::map<std::string, BodyMeshes> known_;
-  std::vector<std::string> files_;
+  std::vector<InputFile> files_;
 };
 
 }  // namespace pirsim::io::detail
@@ -128,8 +128,8 @@ struct NamedText {
 
 struct FoundSensor {
   SensorModelSpec model;
-  std::string file;            ///< empty for a shipped one
-  std::vector<Issue> remarks;  ///< warnings
+  std::optional<InputFile> file;  ///< none for a shipped one
+  std::vector<Issue> remarks;     ///< warnings
 };
 
 /// Where sensors of a scene are looked for.
@@ -141,7 +141,8 @@ class SensorSearch {
 
   /// Nothing for a name that isn't known. Throws Error (io, input) for a faulty file.
   [[nodiscard]] std::optional<FoundSensor> find(const std::string& model) const;
-  [[nodiscard]] std::vector<std::string> names() const;  ///< of all models, sorted, each once
+  [[nodiscard]] std::vector<std::string> names() const;               ///< of all models, sorted, each once
+  [[nodiscard]] std::string unknown(const std::string& model) const;  ///< what to say of one that isn't found
 
  private:
   std::vector<std::filesystem::path> folders_;

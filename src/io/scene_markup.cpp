@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "core/text.hpp"
 #include "schema/check_specs.hpp"
 #include "schema/spec_numbers.hpp"
 
@@ -154,7 +155,7 @@ class MarkupReader {
     if (!value_[key].is_string()) return error(pointer, std::string("'") + key + "' must be a text"), "";
     const auto text = value_[key].get<std::string>();
     const std::string fault = name_fault(text);
-    if (!fault.empty()) error(pointer, std::string("'") + key + "' is " + value_[key].dump() + "; " + fault);
+    if (!fault.empty()) error(pointer, std::string("'") + key + "' is " + shortened(value_[key].dump()) + "; " + fault);
     return text;
   }
 
@@ -243,7 +244,7 @@ void warn_of_near_marks(const GltfDocument& document, int node, GroupedWarnings&
   const auto types = MarkupReader::types();
   if (std::ranges::find(types, type->get<std::string>()) == types.end()) return;
   warn("/extras/type", "'type' is not read here: a mark's keys must be in extras.pirsim, {\"pirsim\": {\"type\": " +
-                           type->dump() + ", ...}}");
+                           shortened(type->dump()) + ", ...}}");
 }
 
 }  // namespace pirsim::io::detail

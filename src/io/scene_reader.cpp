@@ -20,7 +20,7 @@ class SceneBuilder {
  public:
   SceneBuilder(const std::filesystem::path& file, const SceneOptions& options)
       : file_(file), options_(options), document_(load_gltf(file, remarks_)), floor_(remarks_) {
-    spec_.name = file.filename().string();
+    spec_.name = name_of_input(file);
   }
 
   SceneSpec build() {
@@ -257,27 +257,22 @@ class SceneBuilder {
   }
 
   void read_sensor_models() {
-    const SensorSearch search(options_, file_.parent_path());
+    const SensorSearch search(options_, folder_of_input(file_));
     for (const auto& [model, where] : model_places_) {
       try {
         auto found = search.find(model);
         if (!found) {
-          unknown_sensor(model, where, search.names());
+          remarks_.error(where, search.unknown(model));
           continue;
         }
         for (const Issue& remark : found->remarks)
           warnings_.add("sensor id", remark.where, "model '" + model + "'", remark.message);
         spec_.sensor_models.emplace(model, std::move(found->model));
-        if (!found->file.empty()) spec_.files.push_back(found->file);
+        if (found->file) spec_.files.push_back(*found->file);
       } catch (const Error& fault) {
         for (const Issue& issue : fault.issues()) remarks_.error(issue.where, issue.message);
       }
     }
-  }
-  void unknown_sensor(const std::string& model, const Where& where, const std::vector<std::string>& names) {
-    std::string known;
-    for (const std::string& name : names) known += (known.empty() ? "; known are " : ", ") + name;
-    remarks_.error(where, "sensor model '" + model + "' is not known" + did_you_mean(model, names) + known);
   }
 
   /// A faulty exporter makes thousands, each of which is looked for in the text.
@@ -302,9 +297,9 @@ class SceneBuilder {
   FloorBuilder floor_;
   SceneSpec spec_;
   MarkedNodes nodes_;
-  std::map<int, Markup> marks_;                             ///< by node
-  std::set<int> meshes_as_meant_;                           ///< of a node that says so
-  std::string hidden_floor_;                                ///< its node, as messages name it
+  std::map<int, Markup> marks_;    ///< by node
+  std::set<int> meshes_as_meant_;  ///< of a node that says so
+  std::string hidden_floor_;       ///< its node, as messages name it
   std::size_t n_floors_ = 0;
   std::vector<std::optional<double>> temperatures_c_;       ///< (n_materials)
   std::map<int, std::vector<TriMesh>> meshes_;              ///< in their own frames, by index, in equally warm parts

@@ -181,18 +181,18 @@ void warn_of_days_off(const YamlNode& node, const ScheduleSpec& schedule, int n_
       "schedule: nobody comes on Saturdays and Sundays, and there is no other day from " + schedule.first_day + " on");
 }
 
-ScriptSpec script_of(const YamlNode& root, const std::filesystem::path& file) {
+/// name: of the script, if it doesn't say; folder: what file names in it are relative to.
+ScriptSpec script_of(const YamlNode& root, const std::string& name, const std::filesystem::path& folder) {
   Diagnostics faults;
   YamlMap map(root, faults, "script");
   check_version(map, "pirsim_script");
   ScriptSpec script;
-  script.name = map.text("name", file.stem().string());
-  const bool is_stream = file == "/dev/stdin";  // its own folder has nothing that a script could mean
-  script.directory = is_stream ? std::string() : file.parent_path().string();
+  script.name = map.text("name", name);
+  script.directory = folder.string();
   read_numbers(map, script);
   script.sensing = read_sensing(map.child("sensing"), faults);
   script.summary = read_summary(map.child("summary"), faults);
-  BodyMeshReader body_meshes(file.parent_path());
+  BodyMeshReader body_meshes(folder);
   script.trials = read_trials(map.child("trials"), map.list("people", limits::people), body_meshes, faults);
   TrialSpec every_trial;
   read_numbers(map, every_trial);
@@ -228,13 +228,14 @@ ScriptSpec script_of(const YamlNode& root, const std::filesystem::path& file) {
 }  // namespace
 
 ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::string> overrides) {
-  ScriptSpec script = script_of(YamlNode::load(file, overrides), file);
-  script.files.insert(script.files.begin(), file.string());
+  const Input input = read_input(file);
+  ScriptSpec script = script_of(YamlNode::load(input, overrides), stem_of_input(file), folder_of_input(file));
+  script.files.insert(script.files.begin(), input.file());
   return script;
 }
 
 ScriptSpec parse_script(std::string_view text, const std::string& name, std::span<const std::string> overrides) {
-  return script_of(YamlNode::parse(text, name, overrides), name);
+  return script_of(YamlNode::parse(text, name, overrides), stem_of_input(name), folder_of_input(name));
 }
 
 }  // namespace pirsim::io

@@ -198,7 +198,7 @@ void check_sources(YamlMap& map, const YamlNode& root) {
   Diagnostics& faults = map.faults();
   YamlMap sources(map.required_child("sources"), faults, "sources");
   for (const std::string& name : sourced_keys()) {
-    const std::string text = sources.text(name, "assumed:");
+    const std::string text = sources.prose(name, "assumed:");
     const std::string tag = text.substr(0, text.find(':'));
     if (tag != "quoted" && tag != "measured" && tag != "inferred" && tag != "assumed") {
       faults.error(sources.where(name),
@@ -286,7 +286,7 @@ SensorModelSpec read_model(const YamlNode& root) {
   YamlMap map(root, faults, "sensor");
   SensorModelSpec model;
   model.id = map.required_text("id");
-  model.description = map.text("description");
+  model.description = map.prose("description");
   map.require("plane_m");
   read_numbers(map, model);
   std::optional<double> range_m = read_common_range(map);
@@ -315,7 +315,9 @@ SensorModelSpec read_model(const YamlNode& root) {
 
 }  // namespace
 
-SensorModelSpec read_sensor_model(const std::filesystem::path& path) { return read_model(YamlNode::load(path)); }
+SensorModelSpec read_sensor_model(const std::filesystem::path& path) {
+  return read_model(YamlNode::load(read_input(path)));
+}
 
 }  // namespace pirsim::io
 
@@ -337,9 +339,10 @@ std::optional<FoundSensor> SensorSearch::find(const std::string& model) const {
   for (const fs::path& folder : folders_) {
     std::error_code fault;
     const fs::path file = folder / (model + ".yaml");
-    if (!fs::is_regular_file(file, fault)) continue;
-    const YamlNode root = YamlNode::load(file);
-    FoundSensor found{read_model(root), file.string(), {}};
+    if (const auto status = fs::status(file, fault); !fs::exists(status) || fs::is_directory(status)) continue;
+    const Input input = read_input(file);
+    const YamlNode root = YamlNode::load(input);
+    FoundSensor found{read_model(root), input.file(), {}};
     if (found.model.id != model) {
       Diagnostics remarks;
       remarks.warning(YamlMap(root, remarks, "sensor").where("id"),
@@ -366,15 +369,25 @@ std::vector<std::string> SensorSearch::names() const {
   return {names.begin(), names.end()};
 }
 
+std::string SensorSearch::unknown(const std::string& model) const {
+  const auto told = [](const fs::path& folder) { return "'" + folder.lexically_normal().string() + "'"; };
+  std::string searched;
+  for (const fs::path& folder : folders_) {
+    if (searched.find(told(folder)) == std::string::npos) searched += (searched.empty() ? "" : ", ") + told(folder);
+  }
+  return "sensor model '" + model + "' is not known" + near_or_all(model, names()) + "; looked for '" + model +
+         ".yaml' in " + searched + " and among the models that pirsim carries";
+}
+
 }  // namespace pirsim::io::detail
 
 namespace pirsim::io {
 
 SensorModelSpec find_sensor_model(const std::string& model, const std::filesystem::path& scene_file,
                                   const SceneOptions& options) {
-  const detail::SensorSearch search(options, scene_file.parent_path());
+  const detail::SensorSearch search(options, folder_of_input(scene_file));
   if (auto found = search.find(model)) return std::move(found->model);
-  throw Error(ErrorCode::input, "no sensor model '" + model + "'" + near_or_all(model, search.names()));
+  throw Error(ErrorCode::input, search.unknown(model));
 }
 
 }  // namespace pirsim::io

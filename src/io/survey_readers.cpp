@@ -74,7 +74,7 @@ void read_coverage_keys(YamlMap& map, CoverageSpec& spec) {
 template <typename Fill>
 auto read_versioned(const std::filesystem::path& file, std::span<const std::string> overrides, const char* what,
                     const char* version_key, Fill fill) {
-  const YamlNode root = YamlNode::load(file, overrides);
+  const YamlNode root = YamlNode::load(read_input(file), overrides);
   Diagnostics faults;
   YamlMap map(root, faults, what);
   check_version(map, version_key);
@@ -89,7 +89,7 @@ auto read_versioned(const std::filesystem::path& file, std::span<const std::stri
 CoverageSpec read_coverage(const std::filesystem::path& file, std::span<const std::string> overrides) {
   return read_versioned(file, overrides, "coverage study", "pirsim_coverage", [&](YamlMap& map) {
     CoverageSpec spec;
-    spec.name = map.text("name", file.stem().string());
+    spec.name = map.text("name", stem_of_input(file));
     read_coverage_keys(map, spec);
     return spec;
   });
@@ -156,7 +156,7 @@ PlacementSearchSpec read_search(const YamlNode& node, ModelPlaces& models, Diagn
 PlacementSpec read_placements(const std::filesystem::path& file, std::span<const std::string> overrides) {
   return read_versioned(file, overrides, "placement study", "pirsim_placements", [&](YamlMap& map) {
     PlacementSpec spec;
-    spec.coverage.name = map.text("name", file.stem().string());
+    spec.coverage.name = map.text("name", stem_of_input(file));
     read_coverage_keys(map, spec.coverage);
     std::set<std::string> ids;
     for (const YamlNode& set : map.list("sets")) {
@@ -205,7 +205,7 @@ void read_person(const YamlNode& node, WalkTestSpec& spec, Diagnostics& faults) 
 WalkTestSpec read_walk_test(const std::filesystem::path& file, std::span<const std::string> overrides) {
   return read_versioned(file, overrides, "walk test", "pirsim_walk_test", [&](YamlMap& map) {
     WalkTestSpec spec;
-    spec.name = map.text("name", file.stem().string());
+    spec.name = map.text("name", stem_of_input(file));
     spec.sensing = read_sensing(map.child("sensing"), map.faults());
     spec.spacing_m = map.number("spacing_m", spec.spacing_m, {.min = 0.05, .max = 10.0});
     if (const auto node = map.child("person")) read_person(*node, spec, map.faults());

@@ -72,6 +72,10 @@ std::string YamlMap::text(const std::string& key, std::string otherwise) {
   const std::optional<YamlNode> node = child(key);
   return node ? node->text(*faults_, label(key)) : otherwise;
 }
+std::string YamlMap::prose(const std::string& key, std::string otherwise) {
+  const std::optional<YamlNode> node = child(key);
+  return node ? node->prose(*faults_, label(key)) : otherwise;
+}
 std::string YamlMap::required_text(const std::string& key) {
   const std::optional<YamlNode> node = child(key);
   if (!node) {

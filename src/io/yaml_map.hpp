@@ -33,7 +33,8 @@ class YamlMap {
   [[nodiscard]] std::uint64_t unsigned_integer(const std::string& key, std::uint64_t otherwise);  ///< up to 2^63 - 1
   [[nodiscard]] bool flag(const std::string& key, bool otherwise);
   [[nodiscard]] std::string text(const std::string& key, std::string otherwise = {});
-  [[nodiscard]] std::string required_text(const std::string& key);  ///< and not empty
+  [[nodiscard]] std::string prose(const std::string& key, std::string otherwise = {});  ///< of several lines
+  [[nodiscard]] std::string required_text(const std::string& key);                      ///< and not empty
 
   /// One of several names, each standing for a value: `choice("way", Way::find, {{"find", Way::find}, ...})`.
   template <typename Value>

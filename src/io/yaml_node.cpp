@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/text.hpp"
 #include "io/atomic_file.hpp"
 
 namespace pirsim::io {
@@ -20,8 +21,7 @@ std::string describe(const YamlTree& tree) {
     case YamlTree::Kind::scalar:
       break;
   }
-  constexpr std::size_t enough = 60;
-  return "'" + (tree.scalar.size() > enough ? tree.scalar.substr(0, enough) + "..." : tree.scalar) + "'";
+  return "'" + shortened(tree.scalar) + "'";
 }
 
 std::string fault_text(std::string_view what, const std::string& expected, const YamlTree& tree) {
@@ -60,15 +60,14 @@ void report_once(Diagnostics& faults, const Where& where, const std::string& mes
 
 }  // namespace
 
-YamlNode YamlNode::load(const std::filesystem::path& path, std::span<const std::string> overrides) {
-  const std::string text = read_text_file(path);
-  if (text.starts_with("glTF")) {
-    throw Error(ErrorCode::input, {path.string()}, "this is a glTF scene: `--scene` takes it");
+YamlNode YamlNode::load(const Input& input, std::span<const std::string> overrides) {
+  if (input.bytes.starts_with("glTF")) {
+    throw Error(ErrorCode::input, {input.path.string()}, "this is a glTF scene: `--scene` takes it");
   }
-  return parse(text, path.string(), overrides);
+  return parse(input.bytes, input.path.string(), overrides);
 }
 YamlNode YamlNode::parse(std::string_view text, const std::string& name, std::span<const std::string> overrides) {
-  YamlTreePtr root = parse_yaml_tree(text, name);
+  YamlTreePtr root = parse_yaml_tree(text_from(std::string(text), name), name);
   for (const std::string& change : overrides) root = apply_override(root, change);
   return YamlNode(std::move(root));
 }
@@ -112,6 +111,12 @@ long long YamlNode::integer(Diagnostics& faults, std::string_view what, IntegerR
   return range.min;
 }
 std::string YamlNode::text(Diagnostics& faults, std::string_view what) const {
+  std::string value = prose(faults, what);
+  if (const std::string fault = line_fault(value); !fault.empty())
+    faults.error(where(), std::string(what) + ": " + fault);
+  return value;
+}
+std::string YamlNode::prose(Diagnostics& faults, std::string_view what) const {
   if (is_scalar()) return tree_->scalar;
   faults.error(where(), fault_text(what, "a text", *tree_));
   return {};

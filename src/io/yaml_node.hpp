@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "core/range.hpp"
+#include "io/input.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::io {
@@ -30,10 +30,10 @@ class YamlNode {
  public:
   explicit YamlNode(std::shared_ptr<const YamlTree> tree) : tree_(std::move(tree)) {}
 
-  /// Reads a file with one document, within the limits of schema/limits.hpp; a map that
+  /// Reads a text with one document, within the limits of schema/limits.hpp; a map that
   /// has a key twice is refused. Each override `a.b.0.c=value` (value: YAML) then replaces or adds one node; list
   /// items are addressed by number from 0. Throws Error: io (no file), input (content), usage (an override).
-  [[nodiscard]] static YamlNode load(const std::filesystem::path& path, std::span<const std::string> overrides = {});
+  [[nodiscard]] static YamlNode load(const Input& input, std::span<const std::string> overrides = {});
   /// The same from memory; `name` stands in messages.
   [[nodiscard]] static YamlNode parse(std::string_view text, const std::string& name,
                                       std::span<const std::string> overrides = {});
@@ -56,7 +56,8 @@ class YamlNode {
   [[nodiscard]] double number(Diagnostics& faults, std::string_view what, NumberRange range = {}) const;
   [[nodiscard]] long long integer(Diagnostics& faults, std::string_view what, IntegerRange range = {}) const;
   [[nodiscard]] std::string text(Diagnostics& faults, std::string_view what) const;
-  [[nodiscard]] bool flag(Diagnostics& faults, std::string_view what) const;  ///< true or false
+  [[nodiscard]] std::string prose(Diagnostics& faults, std::string_view what) const;  ///< text of several lines
+  [[nodiscard]] bool flag(Diagnostics& faults, std::string_view what) const;          ///< true or false
   /// Index into `names`; none after a fault.
   [[nodiscard]] std::optional<std::size_t> choice(Diagnostics& faults, std::string_view what,
                                                   const std::vector<std::string>& names) const;

@@ -42,7 +42,8 @@ Override parse_override(const std::string& text) {
     throw Error(ErrorCode::usage, place.where(), "expected key.key=value: a key is empty");
   }
   try {
-    const YamlTreePtr value = parse_yaml_tree(std::string_view(text).substr(equals + 1), *place.file);
+    const std::string value_text = text_from(text.substr(equals + 1), *place.file);
+    const YamlTreePtr value = parse_yaml_tree(value_text, *place.file);
     return {place.where(), std::move(path), relocated(value, place)};
   } catch (const Error& fault) {
     throw Error(ErrorCode::usage, place.where(), fault.issues().front().message);

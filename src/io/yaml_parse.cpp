@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "core/text.hpp"
 #include "io/yaml_node.hpp"
 #include "schema/limits.hpp"
 
@@ -43,7 +44,11 @@ class TreeBuilder final : public YAML::EventHandler {
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
     refuse_unknown(tag, mark);
-    if (expects_key()) return add_key(mark, value);
+    if (expects_key()) {
+      refuse_invisible(mark, value, Lines::one);
+      return add_key(mark, value);
+    }
+    refuse_invisible(mark, value, Lines::many);
     add({YamlTree::Kind::scalar, place(mark), value, {}, {}}, anchor);
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
@@ -82,6 +87,11 @@ class TreeBuilder final : public YAML::EventHandler {
   void refuse_unknown(const std::string& tag, const YAML::Mark& mark) const {
     if (tag.empty() || tag == "?" || tag == "!" || tag.starts_with("tag:yaml.org,2002:")) return;
     refuse(mark, "the tag '" + tag + "' isn't known (a text that begins with ! stands in quotes)");
+  }
+  /// Names go to rows, pages and terminals; a text of several lines may still be a description.
+  void refuse_invisible(const YAML::Mark& mark, const std::string& value, Lines lines) const {
+    if (const std::string found = invisible_character(value, lines); !found.empty())
+      refuse(mark, "'" + value + "' contains " + found);
   }
   void add_key(const YAML::Mark& mark, const std::string& name) {
     Open& map = open_.back();

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/near_names.hpp"
+#include "core/text.hpp"
 #include "geom/triangle_surface.hpp"
 #include "schema/body_part_names.hpp"
 #include "schema/phase_names.hpp"
@@ -51,6 +52,7 @@ class ScriptCheck {
   void run() {
     const SpecPath path("script");
     faults_.numbers(script_, path);
+    faults_.error_if(path.field("name"), line_fault(script_.name));
     check_sensing(path.field("sensing"));
     if (!faults_.few(path.field("trials"), script_.trials.size(), limits::trials)) return;
     if (!faults_.few(path.field("effects"), script_.effects.size(), limits::list_entries)) return;
@@ -76,6 +78,7 @@ class ScriptCheck {
 
   void check_id(const std::string& id, const SpecPath& path, Names& ids) {
     if (id.empty()) faults_.error(path.field("id"), "expected a text that isn't empty");
+    faults_.error_if(path.field("id"), line_fault(id));
     faults_.error_if(path.field("id"), ids.fault_of_adding(id));
   }
 
@@ -109,6 +112,7 @@ class ScriptCheck {
   }
 
   void check_action(const PersonSpec& person, const ScriptedAction& action, const SpecPath& path) {
+    faults_.error_if(path.field("phase"), line_fault(action.phase));
     if (action.at_s) faults_.number(path.field("at_s"), *action.at_s, accepted::at_s);
     faults_.error_if(path.field("activity"), activity_fault(person, action));
     std::visit([&](const auto& what) { faults_.numbers(what, path); }, action.what);

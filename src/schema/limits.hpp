@@ -27,10 +27,16 @@ inline constexpr std::size_t seats = 5'000;
 inline constexpr std::size_t entrances = 1'000;
 inline constexpr std::size_t floors = 1'000;
 inline constexpr std::size_t floor_corners = 10'000;  ///< of all floors; every pair is compared
-inline constexpr std::size_t scene_elements = 20'000'000;  ///< vertices and triangles; a scanned office has a few million
-inline constexpr std::size_t rays = 2'000'000;        ///< of all sensors together
+inline constexpr std::size_t scene_elements =
+    20'000'000;                                 ///< vertices and triangles; a scanned office has a few million
+inline constexpr std::size_t rays = 2'000'000;  ///< of all sensors together
 /// Of squares of 0.1 m on which ways are found, over all sizes of people: each has a map of its own, some 12 bytes a
 /// square.
 inline constexpr std::size_t way_squares = 500'000'000;
+
+// Of measured data, of which each dataset of a reconciliation has as many.
+inline constexpr double measured_run_s = 1e7;               ///< as a script's duration_s
+inline constexpr std::size_t measured_rows = 10'000'000;    ///< with gaps filled; 100 MB of ten sensors
+inline constexpr std::size_t measured_replicates = 10'000;  ///< of a trial: 27 years of days
 
 }  // namespace pirsim::limits

@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 
+#include "core/fixed.hpp"
 #include "core/near_names.hpp"
 #include "pirsim/error.hpp"
 
@@ -27,7 +28,11 @@ class Check {
 
   void operator()(const ScriptedAction& action) {
     if (action.at_s) {
-      if (*action.at_s < last_at_s_) fault(action, "starts before an earlier action: time runs backwards");
+      if (*action.at_s < last_at_s_) {
+        fault(action, "starts at " + shortest_number(*action.at_s) +
+                          " s, before an action that is written above it and starts at " + shortest_number(last_at_s_) +
+                          " s: time runs backwards");
+      }
       last_at_s_ = *action.at_s;
     }
     where_ = &action;

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "core/fixed.hpp"
+#include "core/text.hpp"
 #include "pirsim/csv.hpp"
 #include "studies/summary.hpp"
 
@@ -126,21 +127,11 @@ std::string aligned(const std::vector<Row>& table, std::size_t left) {
   return text;
 }
 
-/// As the reader is to see it: no HTML, no end of the column.
-std::string markdown_field(const std::string& text) {
-  std::string field;
-  for (const char c : text) {
-    if (std::string_view("|<>&*_`[]\\").find(c) != std::string_view::npos) field += '\\';
-    field += c == '\n' || c == '\r' ? ' ' : c;
-  }
-  return field;
-}
-
 std::string markdown(const std::vector<Row>& table, std::size_t left) {
   std::string text;
   for (std::size_t r = 0; r < table.size(); ++r) {
     text += '|';
-    for (const std::string& field : table[r]) text += ' ' + markdown_field(field) + " |";
+    for (const std::string& field : table[r]) text += ' ' + markdown_text(field) + " |";
     text += '\n';
     if (r > 0) continue;
     text += '|';

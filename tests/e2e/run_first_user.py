@@ -705,7 +705,7 @@ sets:
                                r"outside of the room, 7\d\.\d m from the floor's edge")
         self.assertNotIn("PIR2", told)
         placements.write_text(placements.read_text().replace("EKMC1604111", "EKMC160411", 1))
-        self.assertIn("placements.yaml:8:17: error: no sensor model 'EKMC160411' (did you mean 'EKMC1604111'?)",
+        self.assertIn("placements.yaml:8:17: error: sensor model 'EKMC160411' is not known (did you mean 'EKMC1604111'?)",
                       pirsim("placements", *scene, "--script", placements, code=3).stderr)
 
     def own_model(self, change):
@@ -936,8 +936,8 @@ class Streams(unittest.TestCase):
         self.assertIn("stdin:2:", pirsim("reconcile", *study_files, "--measured", "-", code=3, input=rows).stderr)
 
     def test_two_inputs_can_not_be_one_stream(self):
-        self.assertIn("can't be the same file or stream", pirsim("reconcile", "--scene", "room.gltf", "--script", "-",
-                                                                 "--measured", "-", code=2, input="").stderr)
+        self.assertIn("--script and --measured can't both be standard input",
+                      pirsim("reconcile", "--scene", "room.gltf", "--script", "-", "--measured", "-", code=2, input="").stderr)
         self.assertIn("can't both be standard input", pirsim("--scene", "-", "--script", "-", code=2, input="").stderr)
 
 

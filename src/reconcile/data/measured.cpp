@@ -5,7 +5,8 @@
 #include <numeric>
 #include <set>
 
-#include "io/atomic_file.hpp"
+#include "io/compression.hpp"
+#include "io/input.hpp"
 #include "reconcile/data/measured_reader.hpp"
 
 namespace pirsim::reconcile {
@@ -47,13 +48,9 @@ std::optional<Series> series_of(const StudyFrame& frame, int replicate, std::str
 }
 
 int Measured::n_replicates() const noexcept {
-  std::map<std::size_t, std::vector<int>> seen;  // of a trial
-  const auto add = [&](std::size_t trial, int replicate) {
-    std::vector<int>& numbers = seen[trial];
-    if (std::ranges::find(numbers, replicate) == numbers.end()) numbers.push_back(replicate);
-  };
-  for (const Series& run : runs) add(run.trial, run.replicate);
-  for (const Sum& sum : sums) add(sum.trial, sum.replicate);
+  std::map<std::size_t, std::set<int>> seen;  // of a trial
+  for (const Series& run : runs) seen[run.trial].insert(run.replicate);
+  for (const Sum& sum : sums) seen[sum.trial].insert(sum.replicate);
   std::size_t most = 0;
   for (const auto& [trial, numbers] : seen) most = std::max(most, numbers.size());
   return static_cast<int>(most);
@@ -71,7 +68,7 @@ Measured parse_measured(std::string_view text, const std::string& file, const St
 }
 
 Measured read_measured(const std::filesystem::path& file, const StudyFrame& frame) {
-  return parse_measured(io::read_text_file(file), file.string(), frame);
+  return parse_measured(io::decompressed(io::read_input(file), io::max_text_file_bytes), file.string(), frame);
 }
 
 Measured read_measured(const std::filesystem::path& file, const SceneSpec& scene, const ScriptSpec& script) {

@@ -7,14 +7,15 @@
 #include <span>
 
 #include "core/digest.hpp"
+#include "core/fixed.hpp"
 #include "core/near_names.hpp"
 #include "pirsim/csv.hpp"
+#include "schema/limits.hpp"
 
 namespace pirsim::reconcile {
 namespace {
 
 constexpr std::size_t fewest_rows = 30;  ///< of the main parts together
-constexpr std::size_t most_faults_told = 10;
 constexpr double most_missing_rows = 3600.0;
 constexpr std::size_t fewest_cells = 5;  ///< of sums
 
@@ -45,6 +46,7 @@ Measured MeasuredReader::read() {
   } else {
     read_rows();
   }
+  repeated_.tell(faults_);
   faults_.throw_if_errors();
   number_runs();
   refuse_too_little();
@@ -69,7 +71,27 @@ std::optional<std::size_t> MeasuredReader::trial_of(std::size_t row) {
 
 int MeasuredReader::replicate_of(std::size_t row) {
   if (!replicate_) return 1;
-  return table_.integer(row, *replicate_, faults_).value_or(1);
+  Diagnostics found;
+  const int replicate = table_.integer(row, *replicate_, found).value_or(1);
+  repeated_.add("replicate", found);
+  return replicate;
+}
+
+std::optional<double> MeasuredReader::number(std::size_t row, std::size_t column) {
+  Diagnostics found;
+  const std::optional<double> value = table_.number(row, column, found);
+  repeated_.add("number " + std::to_string(column), found);
+  return value;
+}
+
+/// Before anything is made of them: each is simulated as often as there are datasets in the reference table.
+void MeasuredReader::refuse_too_many(const RunKey& run, std::size_t row) {
+  std::set<int>& replicates = replicates_[run.first];
+  replicates.insert(run.second);
+  if (replicates.size() <= limits::measured_replicates) return;
+  throw Error(ErrorCode::input, table_.where(row, *replicate_),
+              "more than " + std::to_string(limits::measured_replicates) + " replicates of trial '" +
+                  frame_.trials[run.first] + "': measured data can't have more");
 }
 
 void MeasuredReader::read_sums() {
@@ -88,12 +110,13 @@ void MeasuredReader::read_sums() {
     const auto trial = trial_of(row);
     const auto which = find(frame_.sensors, "sensor", row, sensor);
     const int replicate = replicate_of(row);
-    const auto value = table_.number(row, *seconds, faults_);
+    const auto value = number(row, *seconds);
     if (!trial || !which) continue;
-    if (!seen.insert({{*trial, replicate}, *which}).second) {
-      faults_.error(table_.where(row, sensor), "this trial and sensor appear twice");
-    }
-    if (value && *value < 0.0) faults_.error(table_.where(row, *seconds), "seconds with motion can't be negative");
+    refuse_too_many({*trial, replicate}, row);
+    if (!seen.insert({{*trial, replicate}, *which}).second)
+      repeated_.add("twice", table_.where(row, sensor), "this trial and sensor appear twice");
+    if (value && *value < 0.0)
+      repeated_.add("negative", table_.where(row, *seconds), "seconds with motion can't be negative");
     if (!value) {
       ++missing;
       continue;
@@ -148,7 +171,7 @@ void MeasuredReader::refuse_unknown_columns(const std::vector<std::string>& know
 void MeasuredReader::read_rows() {
   if (!time_) static_cast<void>(table_.required_column("time_s", faults_));
   const auto columns = sensor_columns();
-  std::vector<std::string> known{"replicate", "trial", "seat", "time_s", "phase", "people"};
+  std::vector<std::string> known{"replicate", "trial", "seat", "time_s", "time", "phase", "people"};
   known.insert(known.end(), frame_.sensors.begin(), frame_.sensors.end());
   if (!faults_.has_errors()) refuse_unknown_columns(known);
   faults_.throw_if_errors();
@@ -156,17 +179,18 @@ void MeasuredReader::read_rows() {
   std::map<RunKey, std::vector<Row>> runs;
   for (std::size_t row = 0; row < table_.n_rows(); ++row) {
     const auto trial = trial_of(row);
-    const auto time = table_.number(row, *time_, faults_);
+    const auto time = number(row, *time_);
     if (!time && table_.text(row, *time_).empty())
-      faults_.error(table_.where(row, *time_), "time_s: expected a number");
-    if (trial && time) runs[{*trial, replicate_of(row)}].push_back({row, *time});
+      repeated_.add("no time", table_.where(row, *time_), "time_s: expected a number");
+    if (!trial || !time) continue;
+    const RunKey run{*trial, replicate_of(row)};
+    refuse_too_many(run, row);
+    runs[run].push_back({row, *time});
   }
+  repeated_.tell(faults_);
   faults_.throw_if_errors();
   for (auto& [key, rows] : runs) add_run(key, std::move(rows), columns);
-  if (bad_bits_ > most_faults_told) {
-    faults_.error({file_, 0, 0},
-                  plural(bad_bits_ - most_faults_told, "more reading is", "more readings are") + " neither 0 nor 1");
-  }
+  if (table_.column("people")) measured_.notes.push_back({DataNote::What::people_unused});
   measured_.tells_phases = phase_.has_value();
   if (!phase_ && !frame_.counted_phases.empty()) {
     measured_.notes.push_back({DataNote::What::phases_unknown, frame_.counted_phases.size(), frame_.counted_phases});
@@ -187,36 +211,39 @@ bool MeasuredReader::check_times(const std::vector<Row>& rows) {
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const double step = rows[i].time_s - rows[i - 1].time_s;
     if (step <= 0.0) {
-      faults_.error(table_.where(rows[i].line, *time_), "time_s doesn't grow: " + io::csv_number(rows[i].time_s) +
-                                                            " after " + io::csv_number(rows[i - 1].time_s));
+      repeated_.add(
+          "order", table_.where(rows[i].line, *time_),
+          "time_s doesn't grow: " + io::csv_number(rows[i].time_s) + " after " + io::csv_number(rows[i - 1].time_s));
       return false;
     }
     ++steps[std::round(step * 1e6) / 1e6];
   }
   const double first_s = rows.front().time_s;
   if (frame_.counted_phases.empty() && !(first_s >= 0.0 && first_s <= most_missing_rows * frame_.window_s)) {
-    faults_.error(table_.where(rows.front().line, *time_), "time_s counts from the beginning of the trial; this one " +
-                                                               std::string("begins with ") +
-                                                               io::csv_number(rows.front().time_s));
+    repeated_.add("begin", table_.where(rows.front().line, *time_),
+                  "time_s counts from the beginning of the trial; this one " + std::string("begins with ") +
+                      io::csv_number(rows.front().time_s));
     return false;
   }
   if (steps.empty()) return true;
   const auto usual = std::ranges::max_element(steps, {}, &std::pair<const double, std::size_t>::second);
   if (std::abs(usual->first - frame_.window_s) > 1e-6 * frame_.window_s) {
-    faults_.error(table_.where(rows.front().line, *time_), "rows are " + io::csv_number(usual->first) +
-                                                               " s apart, the script's window is " +
-                                                               io::csv_number(frame_.window_s) + " s");
+    repeated_.add("window", table_.where(rows.front().line, *time_),
+                  "rows are " + io::csv_number(usual->first) + " s apart, the script's window is " +
+                      io::csv_number(frame_.window_s) + " s");
     return false;
   }
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const double windows = (rows[i].time_s - rows[i - 1].time_s) / frame_.window_s;
     if (windows > most_missing_rows) {
-      faults_.error(table_.where(rows[i].line, *time_), "this row comes " + io::csv_number(std::round(windows)) +
-                                                            " windows after the one before: too long a gap");
+      repeated_.add(
+          "gap", table_.where(rows[i].line, *time_),
+          "this row comes " + io::csv_number(std::round(windows)) + " windows after the one before: too long a gap");
       return false;
     }
     if (std::abs(windows - std::round(windows)) < 1e-3) continue;
-    faults_.error(table_.where(rows[i].line, *time_), "this row isn't a whole number of windows after the one before");
+    repeated_.add("off", table_.where(rows[i].line, *time_),
+                  "this row isn't a whole number of windows after the one before");
     return false;
   }
   return true;
@@ -229,12 +256,15 @@ std::vector<std::uint8_t> MeasuredReader::bits_of(std::size_t row,
     bits.push_back(unknown_bit);
     if (!column) continue;
     const std::string& text = table_.text(row, *column);
-    if (text == "0" || text == "1") {
-      bits.back() = text == "1" ? 1 : 0;
+    if (text == "0" || text == "0.0") {  // with the point, as tables are written that had a missing value once
+      bits.back() = 0;
+    } else if (text == "1" || text == "1.0") {
+      bits.back() = 1;
     } else if (text.empty()) {
       ++unknown_bits_;
-    } else if (++bad_bits_ <= most_faults_told) {
-      faults_.error(table_.where(row, *column), table_.names()[*column] + ": expected 0 or 1, got '" + text + "'");
+    } else {
+      repeated_.add("bit", table_.where(row, *column),
+                    table_.names()[*column] + ": expected 0 or 1, got '" + text + "'");
     }
   }
   return bits;
@@ -261,9 +291,25 @@ std::size_t MeasuredReader::first_place(double time_s) const {
   return static_cast<std::size_t>(std::max(0L, std::lround(time_s / frame_.window_s) - 1));
 }
 
+/// Before gaps are filled, which a small file may have many of.
+void MeasuredReader::refuse_too_long(const std::vector<Row>& rows) {
+  const double lasts_s = rows.back().time_s - rows.front().time_s;
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorCode::input, table_.where(rows.back().line, *time_), why);
+  };
+  if (lasts_s > limits::measured_run_s) {
+    refuse("this run lasts " + fixed(lasts_s, 0) + " s; a simulated one lasts " + fixed(limits::measured_run_s, 0) +
+           " s at most");
+  }
+  filled_rows_ += 1 + first_place(rows.front().time_s) + static_cast<std::size_t>(lasts_s / frame_.window_s);
+  if (filled_rows_ > limits::measured_rows)
+    refuse("up to here the data have more than " + std::to_string(limits::measured_rows) + " rows, gaps included");
+}
+
 void MeasuredReader::add_run(RunKey key, std::vector<Row> rows,
                              const std::vector<std::optional<std::size_t>>& columns) {
   if (!check_times(rows)) return;
+  refuse_too_long(rows);
   Series series{key.first, key.second, 0, 0, {}};
   std::vector<std::size_t> places;  // of the rows, gaps counted
   const std::size_t first = first_place(rows.front().time_s);
@@ -294,10 +340,12 @@ void MeasuredReader::number_runs() {
   std::map<std::size_t, std::set<int>> known;  // of a trial
   for (const Series& run : measured_.runs) known[run.trial].insert(run.replicate);
   for (const Measured::Sum& sum : measured_.sums) known[sum.trial].insert(sum.replicate);
-  const auto rank = [&](std::size_t trial, int replicate) {
-    const std::set<int>& numbers = known.at(trial);
-    return 1 + static_cast<int>(std::distance(numbers.begin(), numbers.find(replicate)));
-  };
+  std::map<RunKey, int> ranks;
+  for (const auto& [trial, numbers] : known) {
+    int rank = 0;
+    for (const int number : numbers) ranks[{trial, number}] = ++rank;
+  }
+  const auto rank = [&](std::size_t trial, int replicate) { return ranks.at({trial, replicate}); };
   for (Series& run : measured_.runs) run.replicate = rank(run.trial, run.replicate);
   for (Measured::Sum& sum : measured_.sums) sum.replicate = rank(sum.trial, sum.replicate);
 }

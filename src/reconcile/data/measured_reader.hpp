@@ -33,6 +33,9 @@ class MeasuredReader {
   void refuse_unknown_columns(const std::vector<std::string>& known);
   [[nodiscard]] std::optional<std::size_t> trial_of(std::size_t row);
   [[nodiscard]] int replicate_of(std::size_t row);
+  [[nodiscard]] std::optional<double> number(std::size_t row, std::size_t column);
+  void refuse_too_many(const RunKey& run, std::size_t row);
+  void refuse_too_long(const std::vector<Row>& rows);
   [[nodiscard]] std::optional<std::size_t> find(const std::vector<std::string>& names, const std::string& what,
                                                 std::size_t row, std::size_t column);
   [[nodiscard]] std::size_t first_place(double time_s) const;
@@ -49,10 +52,12 @@ class MeasuredReader {
   std::string file_;
   io::CsvTable table_;
   Diagnostics faults_;
+  io::RepeatedFaults repeated_;
   Measured measured_;
   std::optional<std::size_t> trial_, replicate_, phase_, time_;
   std::set<std::string> unknown_names_;
-  std::size_t inserted_rows_ = 0, unknown_bits_ = 0, bad_bits_ = 0, unread_runs_ = 0;
+  std::map<std::size_t, std::set<int>> replicates_;  ///< of a trial
+  std::size_t inserted_rows_ = 0, unknown_bits_ = 0, unread_runs_ = 0, filled_rows_ = 0;
 };
 
 }  // namespace pirsim::reconcile

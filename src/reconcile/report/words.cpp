@@ -203,6 +203,8 @@ std::string in_words(const DataNote& note) {
     case What::runs_end_early:
       return "The main part of " + runs(note.n) +
              " of the file ends before any simulated one, by a twentieth or more: compared as far as it goes.";
+    case What::people_unused:
+      return "The column 'people' is left out of every comparison: it is the script that says who is there.";
     case What::runs_go_on:
       break;
   }
@@ -362,7 +364,9 @@ std::string what_of(const ResidualDriver& driver) {
     case more_where_much:
       return up ? "still more motion where much is expected" : "less motion where much is expected";
     case opposite:
-      return up ? "the opposite of what is expected" : "what is expected, with less chance in it: likely motion comes nearly always, unlikely motion nearly never";
+      return up ? "the opposite of what is expected"
+                : "what is expected, with less chance in it: likely motion comes nearly always, unlikely motion nearly "
+                  "never";
     case beside:
       break;
   }

@@ -170,7 +170,7 @@ TEST_CASE("sensor files are looked for in the given folders before those beside 
   const TemporaryFolder folder;
   const auto file = folder.write("rooms/room.gltf", scene.text());
   const auto read = [&] { return pirsim::io::read_scene(file); };
-  const auto sensor_file = [&] { return read().files.size() < 2 ? "" : read().files.at(1); };
+  const auto sensor_file = [&] { return read().files.size() < 2 ? std::string() : read().files.at(1).path; };
   CHECK(read().sensor_models.count("EKMC1604111") == 1);
   CHECK(sensor_file().empty());
   REQUIRE(setenv("PIRSIM_DATA_DIR", pirsim::test::data_dir().c_str(), 1) == 0);

@@ -115,8 +115,8 @@ TEST_CASE("an alias bomb is refused before it is expanded", "[yaml]") {
 }
 
 TEST_CASE("a file that is missing or a directory is an io error", "[yaml]") {
-  CHECK(refusal([] { (void)YamlNode::load("no/such.yaml"); }) == "4 no/such.yaml: error: no such file");
-  CHECK(refusal([] { (void)YamlNode::load("/"); }).find("4 /: error: is a directory") == 0);
+  CHECK(refusal([] { (void)pirsim::io::read_input("no/such.yaml"); }) == "4 no/such.yaml: error: no such file");
+  CHECK(refusal([] { (void)pirsim::io::read_input("/"); }).find("4 /: error: is a directory") == 0);
 }
 
 TEST_CASE("overrides replace or add one node", "[yaml]") {

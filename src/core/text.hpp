@@ -1,0 +1,36 @@
+// Texts that come from outside: whether they are UTF-8, whether they can be names, and how much of them is told.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace pirsim {
+
+/// Offset of the first byte that isn't part of a UTF-8 character; none if all are.
+[[nodiscard]] std::optional<std::size_t> first_not_utf8(std::string_view text);
+
+enum class Lines { one, many };  ///< many: line breaks and tabs may be in it
+
+/// A character that nobody sees for what it is, in words: "the control character U+0007", "U+202E, which turns the
+/// direction of writing". Empty if there is none. The text is UTF-8.
+[[nodiscard]] std::string invisible_character(std::string_view text, Lines lines);
+
+/// Why a text can't be a name, or nothing.
+[[nodiscard]] std::string line_fault(std::string_view text);
+
+/// A name as messages quote it: what is longer than 300 bytes is cut after 100, never inside a character.
+[[nodiscard]] std::string shortened(std::string_view name);
+
+/// A message as it is told: what stands in quotes is shortened, and what a terminal would obey, or a reader of C
+/// strings would stop at, becomes a question mark. Line breaks stay.
+[[nodiscard]] std::string tellable(std::string_view message);
+
+/// Markdown that shows the text as it is, in one line: no HTML, no markup, no end of a table's column.
+[[nodiscard]] std::string markdown_text(std::string_view text);
+
+/// The same as code, in backticks.
+[[nodiscard]] std::string markdown_code(std::string_view text);
+
+}  // namespace pirsim
