@@ -10,6 +10,9 @@ if(TARGET pirsim_app)
 endif()
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/data/" DESTINATION "${PIRSIM_DATA_INSTALL_DIR}" COMPONENT command)
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}" RENAME copyright COMPONENT command)
+# Of the font that pictures are lettered in; three.js has its own within each page.
+install(FILES "${PROJECT_SOURCE_DIR}/third_party/dejavu/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}"
+  RENAME copyright.dejavu COMPONENT command)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/pirsim")
 install(EXPORT pirsimTargets NAMESPACE pirsim:: DESTINATION "${package_dir}" COMPONENT library)

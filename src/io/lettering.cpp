@@ -137,7 +137,7 @@ class Mask {
 
 void write_text(Pixels& picture, const Vec2& bottom, std::string_view text, double size_px, const Vec3& colour) {
   const Font font(size_px);
-  const double width = font.lay_out(text, [](int, double) {}), rim = std::max(1.0, 0.13 * size_px);
+  const double width = font.lay_out(text, [](int, double) {}), rim = std::max(1.5, 0.18 * size_px);
   const Vec2 origin = bottom - Vec2(0.5 * width, below_baseline * size_px);
   // Accents and long tails reach beyond the line.
   const auto pixel = [](double v, int limit) {
@@ -151,7 +151,7 @@ void write_text(Pixels& picture, const Vec2& bottom, std::string_view text, doub
     font.paint(glyph, origin + Vec2(x, 0.0), [&](int px, int py, double share) { ink.cover(px, py, share); });
   });
   Canvas canvas(picture);
-  ink.grown(rim).each([&](int x, int y, double share) { canvas.blend(x, y, Vec3(255.0), 0.8 * share); });
+  ink.grown(rim).each([&](int x, int y, double share) { canvas.blend(x, y, Vec3(255.0), 0.85 * share); });
   ink.each([&](int x, int y, double share) { canvas.blend(x, y, colour, share); });
 }
 

@@ -142,7 +142,7 @@ class MapPicture {
       line(at, at + along, black, no_dashes);
       line(at, at + along, white, short_dashes);
     });
-    add(!chart_.plan.walls.empty() || !chart_.plan.wall_lines.empty(), "wall", [=, this](const Vec2& at) {
+    add(has_inner_wall(), "wall", [=, this](const Vec2& at) {
       rectangle(at - Vec2(0.0, 4.0), Vec2(sign_px, 8.0), [](double) { return black; });
     });
     add(!chart_.dashed.empty(), "taken out", [=, this](const Vec2& at) {
@@ -194,6 +194,21 @@ class MapPicture {
     });
   }
 
+  /// Of others the floor's edge alone is drawn.
+  [[nodiscard]] bool has_inner_wall() const {
+    const Vec2 end = chart_.lower + chart_.spacing_m * Vec2(chart_.columns, chart_.rows);
+    const auto enters = [&](const std::vector<Vec2>& points) {
+      Vec2 lower(1e9), upper(-1e9);
+      for (const Vec2& p : points) lower = glm::min(lower, p), upper = glm::max(upper, p);
+      const double slack_m = chart_.spacing_m;  // squares reach beyond the floor
+      return lower.x < end.x - slack_m && lower.y < end.y - slack_m && upper.x > chart_.lower.x + slack_m &&
+             upper.y > chart_.lower.y + slack_m;
+    };
+    return std::ranges::any_of(chart_.plan.wall_lines, enters) ||
+           std::ranges::any_of(chart_.plan.walls,
+                               [&](const auto& loops) { return std::ranges::any_of(loops, enters); });
+  }
+
   [[nodiscard]] Vec2 pixel_of(const Vec2& point) const {
     return Vec2(margin_px) + (point - chart_.lower) * (square_px_ / chart_.spacing_m);
   }
@@ -241,17 +256,17 @@ class MapPicture {
     for (const auto& loops : walls) inside.area(loops, black);
   }
 
-  /// Of sensors above their signs, and of seats behind the backs of who sits there. A name that would cover another or
-  /// a sign is left out.
+  /// Behind what looks or faces somewhere. A name that would cover another or a sign is left out.
   void write_names() {
     std::vector<PixelBox> taken;
     for (const auto* signs : {&chart_.markers, &chart_.plan.seats}) {
       for (const MapChart::Marker& sign : *signs)
         taken.push_back({pixel_of(sign.point) - 7.5, pixel_of(sign.point) + 7.5});
     }
-    const auto write = [&](const MapChart::Marker& marker, const Vec2& way, double away_px, double size_px) {
+    const auto write = [&](const MapChart::Marker& marker, double away_px, double size_px) {
       const Vec2 extent = text_extent(marker.label, size_px), reach = 0.5 * extent + away_px;
-      for (const Vec2& side : {way, Vec2(0.0, -1.0), Vec2(0.0, 1.0), Vec2(1.0, 0.0), Vec2(-1.0, 0.0)}) {
+      const Vec2 ahead = direction_of(marker.heading), aside(-ahead.y, ahead.x);
+      for (const Vec2& side : {-ahead, aside, -aside, ahead}) {
         const Vec2 bottom = glm::round(pixel_of(marker.point) + side * reach + Vec2(0.0, 0.5 * extent.y));
         const Lettering text{bottom, marker.label, black};
         const PixelBox box = box_of(text, size_px);
@@ -263,8 +278,8 @@ class MapPicture {
         return;
       }
     };
-    for (const MapChart::Marker& marker : chart_.markers) write(marker, Vec2(0.0, -1.0), 10.0, 15.0);
-    for (const MapChart::Marker& marker : chart_.plan.seats) write(marker, -direction_of(marker.heading), 9.0, 12.0);
+    for (const MapChart::Marker& marker : chart_.markers) write(marker, 10.0, 15.0);
+    for (const MapChart::Marker& marker : chart_.plan.seats) write(marker, 9.0, 13.0);
   }
 
   void polygon(const std::vector<Vec2>& loop, const Vec3& colour, double dash_px) {

@@ -21,7 +21,7 @@ double hours_of(const std::string& clock) {
   return two(11) + two(14) / 60.0 + two(17) / hour_s;
 }
 
-/// "8:30", or "8:30:15" with seconds; beyond midnight as the next day's clock shows it.
+/// "8:30"; beyond midnight as the next day's clock shows it.
 std::string clock_of(double hours) {
   const auto minutes = static_cast<int>(std::lround(60.0 * hours)) % (24 * 60);
   return std::to_string(minutes / 60) + (minutes % 60 < 10 ? ":0" : ":") + std::to_string(minutes % 60);
@@ -101,7 +101,8 @@ void DayReport::note_moment(const RunResult& result) {
     const auto n = static_cast<std::size_t>(std::count_if(first, last, inside));
     const std::size_t known = rank(busiest_.people.size(), seated_of(busiest_.people.begin(), busiest_.people.end()));
     if (n > 0 && (busiest_.people.empty() || rank(n, seated_of(first, last)) > known)) {
-      busiest_.time = first->clock.empty() ? "second " + fixed(first->time_s, 0) : first->clock;
+      busiest_.time = first->clock.empty() ? "second " + fixed(first->time_s, 0)
+                                           : first->clock.substr(0, 10) + ' ' + first->clock.substr(11);
       busiest_.people.clear();
       std::copy_if(first, last, std::back_inserter(busiest_.people), inside);
     }
@@ -186,7 +187,7 @@ io::MapChart DayReport::floor_chart() const {
       std::string(days_ == 1   ? "added up. "
                   : has_clock_ ? "added up, on an average day. "
                                : "added up, in an average run. ") +
-      "Red dots: who was there at " + busiest_.time + ".";
+      "Blue dots: who was there at " + busiest_.time + ".";
   chart.label = "somebody was here";
   chart.unit = days_ == 1 ? "min" : has_clock_ ? "min a day" : "min a run";
   // Seats are taken for hours and ways for seconds: an even scale would show either the one or the other.
@@ -248,7 +249,7 @@ io::ReportSection DayReport::moment_section(const std::string& heading) const {
   io::ReportSection section{heading, {}, {}, {}};
   section.paragraphs.push_back("Most people were in the room at " + busiest_.time +
                                "; of all such moments it is the first at which the most of them were on their feet. "
-                               "This is what each of them did. Red dots in the map above show where.");
+                               "This is what each of them did. Blue dots in the map above show where.");
   io::Table table{{"who", "does", "seat"}, {}};
   for (const OccupantRow& row : busiest_.people) table.rows.push_back({row.person, row.activity, row.seat});
   section.tables.push_back(std::move(table));

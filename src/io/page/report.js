@@ -131,7 +131,7 @@
         { type: "symbol", from: { data: "markers" }, encode: { enter: {
           x: { scale: "x", field: "x" }, y: { scale: "z", field: "z" },
           shape: { value: chart.people ? "circle" : "triangle-up" }, size: { value: 110 }, angle: { field: "angle_deg" },
-          fill: { value: "#ff4d6d" }, stroke: { value: "#ffffff" }, strokeWidth: { value: 1.2 },
+          fill: { value: chart.people ? "#1f6feb" : "#ff4d6d" }, stroke: { value: "#ffffff" }, strokeWidth: { value: 1.2 },
           tooltip: { field: "label" } } } },
         label("#000000", "#000000"), label("#ffffff", null),
       ],

@@ -84,7 +84,7 @@ TEST_CASE("a map is drawn in viridis, white off the floor, with the edge in blac
   CHECK(colour(plain, 800, 100) == white);
 
   chart.plan.outline = {{{0, 0}, {1, 0}, {1, 0.5}, {0, 0.5}}};
-  chart.markers = {{"PIR1", {0.25, 0.25}, -pi / 2}};  // looks along +X: to the right
+  chart.markers = {{"", {0.25, 0.25}, -pi / 2}};  // looks along +X: to the right
   const Pixels marked = drawn(chart);
   CHECK(colour(marked, 16, 166) == black);
   CHECK(colour(marked, 616, 166) == black);
