@@ -25,9 +25,10 @@ class CsvWriter {
 
  private:
   std::ostream& out_;
+  enum class Clock { none, told } clock_;  ///< is there a column `time`?
 };
 
-/// Rows as somebody measures them: the same but for `people`, whom nobody counts.
+/// Rows as somebody measures them: without `people`, whom nobody counts, and with `time_s` as their only time.
 class MeasuredCsvWriter {
  public:
   MeasuredCsvWriter(std::ostream& out, const std::vector<std::string>& sensors);

@@ -56,11 +56,17 @@ struct Page {
 /// Throws as picture_of() and run_coverage() do.
 [[nodiscard]] Page page_of(const Model& model, const PageRequest& request);
 
-/// Writes the run as an animated glTF (docs/formats/gltf_export.md): .glb, or by any other extension .gltf. beams: as
-/// of a picture, all unless said; keys_per_s: 0.001 to 10000. Returns how long the run is, seconds. Throws as
-/// picture_of() does, and Error(io).
-double export_run(const std::filesystem::path& file, const Model& model, std::uint32_t run = 0,
-                  const std::vector<std::string>& beams = {"all"}, double keys_per_s = 10.0);
+struct FilmRequest {
+  std::uint32_t run = 0;
+  std::vector<std::string> beams{"all"};  ///< as of a picture
+  double keys_per_s = 10.0;               ///< 0.001 to 10000
+  std::optional<double> from_s, to_s;     ///< seconds of the run; none: its beginning, its end
+};
+
+/// Writes the run as an animated glTF (docs/formats/gltf_export.md): .glb, or by any other extension .gltf. Its
+/// animation begins at 0, however late in the run. Returns how long it is, seconds. Throws as picture_of() does, and
+/// Error(io).
+double export_run(const std::filesystem::path& file, const Model& model, const FilmRequest& request = {});
 
 /// What a sensor sees of a person who stands or sits still.
 struct SensorSight {

@@ -36,7 +36,7 @@ class Model {
   [[nodiscard]] const std::string& trial_of(std::uint32_t run) const noexcept;
   [[nodiscard]] int replicate_of(std::uint32_t run) const noexcept;  ///< counts from 1
   [[nodiscard]] double tick_s() const noexcept;
-  /// Of the rows: replicate, trial, time_s, phase, people, then one a sensor.
+  /// Of the rows: replicate, trial, time_s, `time` if runs have a clock, phase, people, then one a sensor.
   [[nodiscard]] std::vector<std::string> columns() const;
   /// Of all sensors with every effect applied, world frame, cut at the room.
   [[nodiscard]] const RayBundle& rays() const noexcept;
@@ -53,8 +53,8 @@ class Model {
 };
 
 /// The only door from Spec to Model; script.effects are applied here, so that whoever uses a Model has them. Throws
-/// Error(input) for what a file's reader would refuse as well (see check()), names that the scene or the catalogue lacks or actions in
-/// an impossible order, Error(infeasible) for a seat or point that can't be reached.
+/// Error(input) for what a file's reader would refuse as well (see check()), names that the scene or the catalogue
+/// lacks or actions in an impossible order, Error(infeasible) for a seat or point that can't be reached.
 [[nodiscard]] Model compile(SceneSpec scene, ScriptSpec script, const CompileOptions& options = {});
 
 }  // namespace pirsim

@@ -22,7 +22,7 @@ struct Sample {
   std::string phase;               ///< what the first person does; with a schedule what the room is used for
   int people = 0;                  ///< people whose pelvis stands over the floor area
   std::vector<std::uint8_t> bits;  ///< (n_sensors) 1 where the sensor saw motion
-  std::string clock{};             ///< "2026-03-02T08:30:00" of time_s; empty without a schedule
+  std::string clock{};             ///< "2026-03-02T08:30:00" of time_s; empty without a clock
   bool operator==(const Sample&) const = default;
 };
 

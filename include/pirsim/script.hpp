@@ -162,6 +162,8 @@ struct ScriptSpec {
   std::string name;
   std::uint64_t seed = 1;
   int replicates = 1;
+  /// Local date and time at which every run begins, "2026-03-02T07:00"; empty: runs have no clock, or the schedule's.
+  std::string begin;
   SensingSpec sensing;
   SummarySpec summary;
   std::vector<TrialSpec> trials;

@@ -71,7 +71,7 @@ class Result:
     seed: int
     """Of the study, or of what `Trace.emit()` drew."""
     clock: npt.NDArray[np.datetime64] | None = None
-    """[run, second] local wall-clock time at its end, NaT behind the end of a run; None without a schedule."""
+    """[run, second] local wall-clock time at its end, NaT behind the end of a run; None without a clock (`Script.begin`, or a schedule)."""
     zones: list[npt.NDArray[np.uint8]] = field(default_factory=list, repr=False)
     """A [tick, zone] array for each run, 1 where the zone sees somebody; empty ones unless `run(zones=True)`."""
     occupants: dict[str, npt.NDArray[Any]] = field(default_factory=dict, repr=False)

@@ -548,6 +548,8 @@ class Script:
     sensing: Sensing = field(default_factory=Sensing)
     effects: list[Effect] = field(default_factory=list)
     summary: Summary = field(default_factory=Summary)
+    begin: str = ""
+    """Local date and time at which every run begins, "2026-03-02T07:00"; empty: no clock, or the schedule's."""
     directory: str = ""
     """Of the script file, for relative references."""
     files: list[InputFile] = field(default_factory=list)

@@ -391,11 +391,13 @@ struct Fields<EffectSpec> {
 template <>
 struct Fields<ScriptSpec> {
   static constexpr const char* name = "Script";
-  static constexpr std::tuple all{Field{"name", &ScriptSpec::name},       Field{"trials", &ScriptSpec::trials},
-                                  Field{"seed", &ScriptSpec::seed},       Field{"replicates", &ScriptSpec::replicates},
-                                  Field{"sensing", &ScriptSpec::sensing}, Field{"effects", &ScriptSpec::effects},
-                                  Field{"summary", &ScriptSpec::summary}, Field{"directory", &ScriptSpec::directory},
-                                  Field{"files", &ScriptSpec::files},     Field{"warnings", &ScriptSpec::warnings}};
+  static constexpr std::tuple all{
+      Field{"name", &ScriptSpec::name},           Field{"trials", &ScriptSpec::trials},
+      Field{"seed", &ScriptSpec::seed},           Field{"replicates", &ScriptSpec::replicates},
+      Field{"sensing", &ScriptSpec::sensing},     Field{"effects", &ScriptSpec::effects},
+      Field{"summary", &ScriptSpec::summary},     Field{"begin", &ScriptSpec::begin},
+      Field{"directory", &ScriptSpec::directory}, Field{"files", &ScriptSpec::files},
+      Field{"warnings", &ScriptSpec::warnings}};
 };
 
 }  // namespace pirsim::python

@@ -52,7 +52,7 @@ nb::dict page(const Model& model, std::uint32_t run, std::optional<double> from_
 double export_to(const Model& model, const std::string& file, std::uint32_t run, const std::vector<std::string>& beams,
                  double keys_per_s) {
   double length_s = 0.0;
-  attend(nb::none(), [&](Job&) { length_s = export_run(file, model, run, beams, keys_per_s); });
+  attend(nb::none(), [&](Job&) { length_s = export_run(file, model, {run, beams, keys_per_s, {}, {}}); });
   return length_s;
 }
 

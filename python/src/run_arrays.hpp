@@ -24,7 +24,7 @@ class RunArrays {
   struct Rows {
     std::vector<std::uint8_t> bits;  ///< (n_windows x n_sensors)
     std::vector<std::uint16_t> people, phase;
-    std::vector<std::int64_t> clock;  ///< seconds since 1970; empty without a schedule
+    std::vector<std::int64_t> clock;  ///< seconds since 1970; empty without a clock
   };
   struct Fault {
     std::uint32_t run = 0;

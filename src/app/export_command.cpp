@@ -1,8 +1,10 @@
 #include <iostream>
 
 #include "app/commands.hpp"
+#include "app/moment.hpp"
 #include "app/session.hpp"
 #include "pirsim/look.hpp"
+#include "sim/compiled_study.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -10,8 +12,8 @@ namespace {
 struct ExportOptions {
   std::filesystem::path output = "run.glb";
   RunChoice run;
-  double keys_per_s = 10.0;
-  std::vector<std::string> beams{"all"};
+  FilmRequest film;
+  std::string from, to;  ///< empty: not given
 };
 
 void export_gltf(const Inputs& inputs, const ExportOptions& options) {
@@ -19,7 +21,12 @@ void export_gltf(const Inputs& inputs, const ExportOptions& options) {
   const Model model = load(inputs);
   keep_inputs({{"-o", options.output}}, files_read(model.script(), model.scene()));
   const std::uint32_t run = find_run(model, options.run);
-  const double length_s = export_run(options.output, model, run, options.beams, options.keys_per_s);
+  const std::optional<RunClock> clock = model.compiled().clock_of(run);
+  FilmRequest film = options.film;
+  film.run = run;
+  if (!options.from.empty()) film.from_s = moment("--from", options.from, clock);
+  if (!options.to.empty()) film.to_s = moment("--to", options.to, clock);
+  const double length_s = export_run(options.output, model, film);
   if (inputs.verbosity != Verbosity::quiet) {
     std::cerr << "wrote " << options.output.string() << ": " << model.script().name << ", trial " << model.trial_of(run)
               << ", " << length_s << " s\n";
@@ -32,6 +39,7 @@ void add_export_command(CLI::App& app) {
   CLI::App& command = add_command(app, "export", "write one run as an animated glTF", R"(
   pirsim export --scene room.gltf --script study.yaml -o run.glb   the first trial
   pirsim export --scene room.gltf --script study.yaml --trial S8 --beams PIR4,PIR5 -o S8.gltf
+  pirsim export --scene office.gltf --script week.yaml --from 09:00 --to 09:05      part of a day
 )");
   const auto inputs = std::make_shared<Inputs>();
   const auto options = std::make_shared<ExportOptions>();
@@ -40,10 +48,12 @@ void add_export_command(CLI::App& app) {
   offer_seed(command, *inputs);
   offer_output(command, options->output, "FILE", "glTF file, .gltf or .glb (default: run.glb)");
   offer_run_choice(command, options->run);
-  command.add_option("--keys-per-s", options->keys_per_s, "animation keys a second (default: 10)")
+  offer_moment(command, "--from", options->from, "where the film begins", "the run's beginning");
+  offer_moment(command, "--to", options->to, "where the film ends", "the run's end");
+  command.add_option("--keys-per-s", options->film.keys_per_s, "animation keys a second (default: 10)")
       ->option_text("N")
       ->check(CLI::Range(0.001, 10000.0));
-  command.add_option("--beams", options->beams, "sensors whose beams are drawn, or all or none (default: all)")
+  command.add_option("--beams", options->film.beams, "sensors whose beams are drawn, or all or none (default: all)")
       ->option_text("ID,...")
       ->delimiter(',');
   on_call(command, inputs, [options](const Inputs& given) { export_gltf(given, *options); });

@@ -105,7 +105,7 @@ std::string explain_conversion(const CLI::App& app, const std::string& complaint
   if (option == nullptr) return {};
   const std::string type = option->get_type_name();
   std::string wanted = type.starts_with("UINT") ? "a whole number from 0" : "a whole number";
-  if (type.starts_with("FLOAT")) wanted = option->get_option_text() == "S" ? "a number of seconds" : "a number";
+  if (type.starts_with("FLOAT")) wanted = "a number";
   if (option->get_items_expected_max() > 1) wanted = "a list of numbers";
   return "error: " + name + ": '" + complaint.substr(end + between.size()) + "' is not " + wanted + "\n";
 }

@@ -4,8 +4,10 @@
 #include <sstream>
 
 #include "app/commands.hpp"
+#include "app/moment.hpp"
 #include "app/session.hpp"
 #include "pirsim/look.hpp"
+#include "sim/compiled_study.hpp"
 #include "studies/picture.hpp"
 
 namespace pirsim::app {
@@ -14,6 +16,7 @@ namespace {
 struct PreviewOptions {
   std::filesystem::path output = "preview.png";
   RunChoice run;
+  std::string time;  ///< empty: not given
   PictureRequest picture;
 };
 
@@ -23,11 +26,13 @@ void preview(const Inputs& inputs, const PreviewOptions& options) {
   keep_inputs({{"-o", options.output}}, files_read(model.script(), model.scene()));
   PictureRequest request = options.picture;
   request.run = find_run(model, options.run);
+  const std::optional<RunClock> clock = model.compiled().clock_of(request.run);
+  if (!options.time.empty()) request.time_s = moment("--time", options.time, clock);
   const Picture picture = picture_of(model, request);
   io::write_text_file(options.output, picture.png);
   if (inputs.verbosity != Verbosity::quiet) {
     std::cerr << "wrote " << options.output.string() << ": trial " << model.trial_of(request.run) << " at "
-              << picture.time_s << " s\n";
+              << moment_text(clock, picture.time_s) << '\n';
   }
 }
 
@@ -64,8 +69,7 @@ void add_preview_command(CLI::App& app) {
   offer_seed(command, *inputs);
   offer_output(command, options->output, "FILE", "PNG file (default: preview.png)");
   offer_run_choice(command, options->run);
-  command.add_option("--time", options->picture.time_s, "moment of the run in seconds (default: 10 s into desk work)")
-      ->option_text("S");
+  offer_moment(command, "--time", options->time, "which moment", "10 s into desk work");
   command
       .add_option("--beams", options->picture.beams,
                   "sensors whose beams are drawn, or all or none (default: the first)")

@@ -10,35 +10,44 @@
 #include "app/session.hpp"
 #include "app/study_outputs.hpp"
 #include "pirsim/study.hpp"
+#include "sim/compiled_study.hpp"
 #include "studies/sight.hpp"
 
 namespace pirsim::app {
 namespace {
 
-io::FailedRun failed_run(const RunResult& result) {
-  return {result.run, result.trial, result.replicate, result.fault->time_s, result.fault->message};
+io::FailedRun failed_run(const RunResult& result, const std::optional<RunClock>& clock) {
+  const double time_s = result.fault->time_s;
+  return {result.run, result.trial, result.replicate, time_s, clock ? clock->text(time_s) : "", result.fault->message};
 }
 
-std::string place_of(const RunIncident& incident, const RunResult& result) {
+/// As rows tell the time: "2026-03-02T08:30:00", or without a clock "second 123".
+std::string time_of(const std::optional<RunClock>& clock, double run_s) {
+  if (clock) return clock->text(run_s);
+  return "second " + std::to_string(std::lround(run_s));
+}
+
+std::string place_of(const RunIncident& incident, const RunResult& result, const std::optional<RunClock>& clock) {
   std::ostringstream text;
   text.precision(3);
   text << "trial " << result.trial << ", replicate " << result.replicate << ", '" << incident.person << "' at ("
-       << incident.place_m.x << ", " << incident.place_m.y << ") m, second " << std::lround(incident.time_s);
+       << incident.place_m.x << ", " << incident.place_m.y << ") m, " << time_of(clock, incident.time_s);
   return text.str();
 }
 
-std::string moment_of(const RunIncident& incident, const RunResult& result) {
-  return "trial " + result.trial + ", replicate " + std::to_string(result.replicate) + ", '" + incident.person +
-         "', second " + std::to_string(std::lround(incident.time_s));
+std::string moment_of(const RunIncident& incident, const RunResult& result, const std::optional<RunClock>& clock) {
+  return "trial " + result.trial + ", replicate " + std::to_string(result.replicate) + ", '" + incident.person + "', " +
+         time_of(clock, incident.time_s);
 }
 
-io::RunNotes notes_of(const RunResult& result) {
+io::RunNotes notes_of(const RunResult& result, const Model& model) {
+  const std::optional<RunClock> clock = model.compiled().clock_of(result.run);
   io::RunNotes notes;
   for (const RunIncident& incident : result.incidents) {
     switch (incident.kind) {
       case IncidentKind::passed_through:
         ++notes.passes_through;
-        if (notes.first_pass.empty()) notes.first_pass = place_of(incident, result);
+        if (notes.first_pass.empty()) notes.first_pass = place_of(incident, result, clock);
         break;
       case IncidentKind::seat_changed:
         ++notes.seats_changed;
@@ -48,17 +57,23 @@ io::RunNotes notes_of(const RunResult& result) {
         break;
       case IncidentKind::waited_outside:
         ++notes.waits_outside;
-        if (notes.first_wait.empty()) notes.first_wait = moment_of(incident, result);
+        if (notes.first_wait.empty()) notes.first_wait = moment_of(incident, result, clock);
         break;
     }
   }
-  if (result.fault) notes.failed.push_back(failed_run(result));
+  if (result.fault) notes.failed.push_back(failed_run(result, clock));
   return notes;
 }
 
 std::string describe(const io::FailedRun& run) {
   std::ostringstream text;
-  text << "trial " << run.trial << ", replicate " << run.replicate << ", second " << run.time_s << ": " << run.message;
+  text << "trial " << run.trial << ", replicate " << run.replicate << ", ";
+  if (run.time.empty()) {
+    text << "second " << run.time_s;
+  } else {
+    text << run.time;
+  }
+  text << ": " << run.message;
   return text.str();
 }
 
@@ -183,9 +198,9 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
   try {
     run_study(model, study, [&](const RunResult& result) {
       if (result.fault && options.faults == RunOptions::Faults::stop) {
-        throw Error(ErrorCode::infeasible, describe(failed_run(result)));
+        throw Error(ErrorCode::infeasible, describe(failed_run(result, model.compiled().clock_of(result.run))));
       }
-      rows->add_run(result.samples, notes_of(result));
+      rows->add_run(result.samples, notes_of(result, model));
       others.add(result);
       ++done;
       progress.run_finished();

@@ -2,9 +2,9 @@
 #include <iostream>
 
 #include "app/commands.hpp"
+#include "app/moment.hpp"
 #include "app/session.hpp"
 #include "pirsim/look.hpp"
-#include "schema/schedule_people.hpp"
 #include "sim/compiled_study.hpp"
 #include "studies/coverage.hpp"
 
@@ -19,28 +19,15 @@ struct ViewOptions {
   double keys_per_s = 10.0;
 };
 
-/// Of run seconds or, in a run of a schedule, of a time of day.
-double run_seconds(const std::string& option, const std::string& text, const sim::TrialModel& trial) {
-  if (const auto hour = trial.schedule ? clock_hours(text) : std::nullopt)
-    return 3600.0 * (*hour - trial.schedule->from_h);
-  const auto seconds = io::parse_number<double>(text);
-  if (!seconds || !(*seconds >= 0.0)) {
-    throw Error(ErrorCode::usage, option + ": expected seconds since the run began" +
-                                      (trial.schedule ? ", or a time of day such as 09:30" : "") + ", not '" + text +
-                                      "'");
-  }
-  return *seconds;
-}
-
 void view(const Inputs& inputs, const ViewOptions& options) {
   check_outputs({{"-o", options.output, {".html"}}}, inputs);
   const Model model = load(inputs);
   keep_inputs({{"-o", options.output}}, files_read(model.script(), model.scene()));
   PageRequest request;
   request.run = find_run(model, options.run);
-  const sim::TrialModel& trial = model.compiled().trial_of(request.run);
-  if (!options.from.empty()) request.from_s = run_seconds("--from", options.from, trial);
-  if (!options.to.empty()) request.to_s = run_seconds("--to", options.to, trial);
+  const std::optional<RunClock> clock = model.compiled().clock_of(request.run);
+  if (!options.from.empty()) request.from_s = moment("--from", options.from, clock);
+  if (!options.to.empty()) request.to_s = moment("--to", options.to, clock);
   request.keys_per_s = options.keys_per_s;
   request.scene = io::name_of_input(inputs.scene);
   request.script = io::name_of_input(inputs.script);
@@ -53,9 +40,9 @@ void view(const Inputs& inputs, const ViewOptions& options) {
   const Page page = page_of(model, request);
   io::write_text_file(options.output, page.html);
   if (inputs.verbosity == Verbosity::quiet) return;
-  std::cerr << "wrote " << options.output.string() << ": " << page.about << ", " << page.from_s << " to " << page.to_s
-            << " s of " << page.run_s << " s, " << std::ceil(static_cast<double>(page.html.size()) / 1e5) / 10.0
-            << " MB\n";
+  std::cerr << "wrote " << options.output.string() << ": " << page.about << ", "
+            << span_text(clock, page.from_s, page.to_s) << " of " << span_text(clock, 0.0, page.run_s) << ", "
+            << std::ceil(static_cast<double>(page.html.size()) / 1e5) / 10.0 << " MB\n";
   if (page.is_busiest_part) {
     std::cerr << "the run is longer than " << page.to_s - page.from_s
               << " s: these are the seconds with most motion; --from and --to choose others\n";
@@ -78,13 +65,10 @@ void add_view_command(CLI::App& app) {
   offer_seed(command, *inputs);
   offer_output(command, options->output, "FILE", "page, .html (default: run.html)");
   offer_run_choice(command, options->run);
-  command
-      .add_option("--from", options->from,
-                  "where the page begins: seconds of the run, or a time of day such as 09:30 if it has a schedule "
-                  "(default: the beginning; of runs over 1200 s the 1200 s with most motion)")
-      ->option_text("TIME");
-  command.add_option("--to", options->to, "where it ends (default: the end, 1200 s later at most)")
-      ->option_text("TIME");
+  offer_moment(command, "--from", options->from, "where the page begins",
+               "the run's beginning; of runs over 1200 s the 1200 s with most motion");
+  offer_moment(command, "--to", options->to, "where the page ends, however long it gets",
+               "the run's end, but at most 1200 s after --from");
   offer_input_file(command, "--coverage", options->coverage, "a coverage study, YAML, whose map is laid on the floor");
   command
       .add_option("--keys-per-s", options->keys_per_s, "pictures a second, between which it interpolates (default: 10)")

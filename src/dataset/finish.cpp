@@ -10,7 +10,7 @@
 #include "io/atomic_file.hpp"
 #include "io/png.hpp"
 #include "pirsim/state.hpp"
-#include "schema/schedule_people.hpp"
+#include "schema/clock.hpp"
 #include "studies/picture.hpp"
 
 namespace pirsim::dataset {

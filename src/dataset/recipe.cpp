@@ -10,7 +10,7 @@
 #include "dataset/floor_plan.hpp"
 #include "effects/catalogue.hpp"
 #include "pirsim/random.hpp"
-#include "schema/schedule_people.hpp"
+#include "schema/clock.hpp"
 
 namespace pirsim::dataset {
 namespace {

@@ -11,7 +11,7 @@
 #include "io/compression.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/io.hpp"
-#include "schema/schedule_people.hpp"
+#include "schema/clock.hpp"
 
 namespace pirsim::dataset {
 namespace {

@@ -121,11 +121,43 @@ std::string hint(const std::string& name) {
   return text;
 }
 
-ScriptedAction read_action_map(const YamlNode& node, Diagnostics& faults) {
+/// The moment of the run that `at` names. The caller knows that the action has it.
+std::optional<double> read_at(YamlMap& map, const ScriptTime& time) {
+  Diagnostics& faults = map.faults();
+  const std::string text = map.text("at");
+  const auto refuse = [&](const std::string& why) {
+    faults.error(map.where("at"), "at: " + why);
+    return std::nullopt;
+  };
+  if (map.has("at_s")) return refuse("stands beside at_s, and an action begins once: leave out one of them");
+  if (!time.clock) {
+    constexpr const char* why =
+        "the script has no clock: add `begin: 2026-03-02T00:00`, the date and time at which a run begins, at its top, "
+        "or write at_s, the seconds since a run began";
+    return refuse(why);
+  }
+  const auto at_s = time.clock->run_seconds(text);
+  if (!at_s) return refuse("expected a time of day, e.g. 06:45, or a date and a time, e.g. 2026-03-03T06:45");
+  if (time.day_s) {
+    if (text.find('-') != std::string::npos)
+      return refuse("with a schedule every run is another day: leave out the date");
+    if (*at_s > *time.day_s)
+      return refuse(text + " isn't between the schedule's `from` and `to`, the part of a day that is simulated");
+  }
+  if (*at_s < 0.0) return refuse(text + " is before the run begins, at " + time.clock->text(0.0));
+  if (!accepted::at_s.holds(*at_s)) return refuse(text + " is more than 115 days after the run begins");
+  return at_s;
+}
+
+bool stands_beside_an_action(const std::string& key) { return key == "at_s" || key == "at" || key == "phase"; }
+
+ScriptedAction read_action_map(const YamlNode& node, const ScriptTime& time, Diagnostics& faults) {
   YamlMap map(node, faults, "action");
   ScriptedAction action;
   action.where = node.where();
   action.at_s = map.optional_number("at_s", accepted::at_s);
+  static_cast<void>(map.text("at"));  // known, so that finish() can suggest it
+  if (map.has("at")) action.at_s = read_at(map, time);
   action.phase = map.text("phase");
   int found = 0;
   for (const ActionKind& kind : kinds) {
@@ -138,14 +170,13 @@ ScriptedAction read_action_map(const YamlNode& node, Diagnostics& faults) {
     ++found;
   }
   const std::vector<YamlKey> keys = node.keys();
-  if (found == 0 && keys.size() == 1 && keys[0].name != "at_s" && keys[0].name != "phase") {
+  if (found == 0 && keys.size() == 1 && !stands_beside_an_action(keys[0].name)) {
     faults.error(keys[0].where, "'" + keys[0].name + "' isn't an action" + hint(keys[0].name));
     return action;
   }
   map.finish();
   if (found > 1) faults.error(node.where(), "one action per entry: start each with its own '-'");
-  const bool nothing_else =
-      std::ranges::all_of(node.keys(), [](const YamlKey& key) { return key.name == "at_s" || key.name == "phase"; });
+  const bool nothing_else = std::ranges::all_of(keys, stands_beside_an_action, &YamlKey::name);
   if (found == 0 && nothing_else && (node.is_map() || node.is_null()))
     faults.error(node.where(), "an action is missing, e.g. `sit: S1`");
   return action;
@@ -153,8 +184,8 @@ ScriptedAction read_action_map(const YamlNode& node, Diagnostics& faults) {
 
 }  // namespace
 
-ScriptedAction read_action(const YamlNode& node, Diagnostics& faults) {
-  if (!node.is_scalar()) return read_action_map(node, faults);
+ScriptedAction read_action(const YamlNode& node, const ScriptTime& time, Diagnostics& faults) {
+  if (!node.is_scalar()) return read_action_map(node, time, faults);
   const std::string word = node.text(faults, "action");
   if (word != "rise") {
     const bool is_known = std::ranges::any_of(kinds, [&](const ActionKind& kind) { return kind.key == word; });

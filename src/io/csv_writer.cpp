@@ -1,5 +1,6 @@
 #include "pirsim/csv.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -9,8 +10,7 @@ namespace pirsim::io {
 namespace {
 
 std::string when(const Sample& sample) {
-  return std::to_string(sample.replicate) + ',' + csv_field(sample.trial) + ',' + csv_number(sample.time_s) + ',' +
-         (sample.clock.empty() ? "" : sample.clock + ',') + csv_field(sample.phase);
+  return std::to_string(sample.replicate) + ',' + csv_field(sample.trial) + ',' + csv_number(sample.time_s) + ',';
 }
 
 void add_bits(std::string& line, const Sample& sample) {
@@ -35,14 +35,16 @@ std::string csv_number(double value) {
   return {text.data(), end};
 }
 
-CsvWriter::CsvWriter(std::ostream& out, const std::vector<std::string>& columns) : out_(out) {
+CsvWriter::CsvWriter(std::ostream& out, const std::vector<std::string>& columns)
+    : out_(out), clock_(std::ranges::find(columns, "time") == columns.end() ? Clock::none : Clock::told) {
   std::string line;
   for (const std::string& column : columns) line += (line.empty() ? "" : ",") + csv_field(column);
   out_ << line << '\n';
 }
 
 void CsvWriter::write(const Sample& sample) {
-  std::string line = when(sample) + ',' + std::to_string(sample.people);
+  std::string line = when(sample) + (clock_ == Clock::told ? sample.clock + ',' : "") + csv_field(sample.phase) + ',' +
+                     std::to_string(sample.people);
   add_bits(line, sample);
   out_ << line << '\n';
 }
@@ -54,7 +56,7 @@ MeasuredCsvWriter::MeasuredCsvWriter(std::ostream& out, const std::vector<std::s
 }
 
 void MeasuredCsvWriter::write(const Sample& sample) {
-  std::string line = when(sample);
+  std::string line = when(sample) + csv_field(sample.phase);
   add_bits(line, sample);
   out_ << line << '\n';
 }

@@ -58,11 +58,10 @@ ordered_json tree_of(const RunNotes& notes) {
   }
   tree["failed_runs"] = ordered_json::array();
   for (const FailedRun& run : notes.failed) {
-    tree["failed_runs"].push_back({{"run", run.run},
-                                   {"trial", run.trial},
-                                   {"replicate", run.replicate},
-                                   {"time_s", run.time_s},
-                                   {"message", run.message}});
+    ordered_json failed{{"run", run.run}, {"trial", run.trial}, {"replicate", run.replicate}, {"time_s", run.time_s}};
+    if (!run.time.empty()) failed["time"] = run.time;
+    failed["message"] = run.message;
+    tree["failed_runs"].push_back(std::move(failed));
   }
   return tree;
 }
@@ -113,6 +112,7 @@ RunNotes notes_from(const ordered_json& tree) {
     each.at("trial").get_to(run.trial);
     take_count(each.at("replicate"), run.replicate);
     each.at("time_s").get_to(run.time_s);
+    run.time = each.value("time", "");
     each.at("message").get_to(run.message);
   }
   return notes;

@@ -36,6 +36,7 @@ struct FailedRun {
   std::string trial;
   int replicate = 0;
   double time_s = 0.0;
+  std::string time;     ///< as rows tell it; empty without a clock
   std::string message;  ///< says which person, where, doing what
 };
 

@@ -19,6 +19,7 @@
 #include "pirsim/script.hpp"
 #include "pirsim/sensor.hpp"
 #include "schema/check_specs.hpp"
+#include "schema/clock.hpp"
 #include "schema/spec_numbers.hpp"
 
 namespace pirsim::io {
@@ -72,12 +73,20 @@ void check_version(YamlMap& map, const std::string& key);
 
 // One entry of a person's `actions`.
 
-/// `- sit: S1`, with `at_s` and `phase` beside the action where wanted; `- rise` alone may be a plain word.
-[[nodiscard]] ScriptedAction read_action(const YamlNode& node, Diagnostics& faults);
+/// What `at` of an action refers to.
+struct ScriptTime {
+  std::optional<RunClock> clock;     ///< none: the script doesn't say when a run begins
+  std::optional<double> day_s = {};  ///< of a schedule: how much of each day is simulated
+};
 
-// The `schedule` of a script.
+/// `- sit: S1`, with `at_s` or `at`, and `phase`, beside the action where wanted; `- rise` alone may be a plain word.
+[[nodiscard]] ScriptedAction read_action(const YamlNode& node, const ScriptTime& time, Diagnostics& faults);
+
+// When a script's people are there: its `schedule`, or its `begin`.
 
 [[nodiscard]] std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, Diagnostics& faults);
+/// Reads `begin` as well; check_together() tells what is wrong with it.
+[[nodiscard]] ScriptTime read_time(YamlMap& script, const std::optional<ScheduleSpec>& schedule, ScriptSpec& spec);
 
 }  // namespace pirsim::io
 

@@ -1,15 +1,16 @@
 #include "io/reader_parts.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "io/yaml_map.hpp"
-#include "schema/schedule_people.hpp"
+#include "schema/clock.hpp"
 
 namespace pirsim::io {
 namespace {
 
 /// "08:30", as hours.
-double read_time(YamlMap& map, const std::string& key, double otherwise, Diagnostics& faults) {
+double read_hours(YamlMap& map, const std::string& key, double otherwise, Diagnostics& faults) {
   if (!map.has(key)) {
     static_cast<void>(map.text(key));
     return otherwise;
@@ -26,7 +27,7 @@ ClockSpec read_clock(YamlMap& map, const std::string& key, const ClockSpec& othe
   if (!child) return otherwise;
   YamlMap own(*child, faults, key);
   ClockSpec clock;
-  clock.mean_h = read_time(own, "mean", otherwise.mean_h, faults);
+  clock.mean_h = read_hours(own, "mean", otherwise.mean_h, faults);
   clock.sd_min = otherwise.sd_min;
   read_numbers(own, clock);
   own.finish();
@@ -51,7 +52,7 @@ HeldMeetingSpec read_held(const YamlNode& node, Diagnostics& faults) {
   HeldMeetingSpec held;
   held.where = node.where();
   if (!map.has("at")) faults.error(node.where(), "held: `at` is missing");
-  held.at_h = read_time(map, "at", held.at_h, faults);
+  held.at_h = read_hours(map, "at", held.at_h, faults);
   read_numbers(map, held);
   check_together(held, [&](std::string_view, const std::string& message) {
     faults.error(node.where(), "held: at " + map.text("at") + ": " + message);
@@ -72,8 +73,8 @@ MeetingsSpec read_meetings(const YamlNode& node, Diagnostics& faults) {
   spec.where = node.where();
   read_numbers(map, spec);
   if (!map.has("most_a_day")) spec.most_a_day = std::max(spec.most_a_day, spec.fewest_a_day);
-  spec.from_h = read_time(map, "from", spec.from_h, faults);
-  spec.to_h = read_time(map, "to", spec.to_h, faults);
+  spec.from_h = read_hours(map, "from", spec.from_h, faults);
+  spec.to_h = read_hours(map, "to", spec.to_h, faults);
   for (const YamlNode& held : map.list("held", limits::held_meetings)) spec.held.push_back(read_held(held, faults));
   check_together(spec.held, [&](std::size_t i, std::size_t j) {
     faults.error(spec.held[i].where, "held: overlaps the meeting of line " + std::to_string(spec.held[j].where.line) +
@@ -106,8 +107,8 @@ std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, D
   ScheduleSpec spec;
   spec.where = node->where();
   spec.first_day = map.text("first_day", spec.first_day);
-  spec.from_h = read_time(map, "from", spec.from_h, faults);
-  spec.to_h = read_time(map, "to", spec.to_h, faults);
+  spec.from_h = read_hours(map, "from", spec.from_h, faults);
+  spec.to_h = read_hours(map, "to", spec.to_h, faults);
   for (const YamlNode& staff : map.list("staff")) spec.staff.push_back(read_staff(staff, faults));
   if (const auto child = map.child("meetings")) spec.meetings = read_meetings(*child, faults);
   if (const auto child = map.child("profile")) spec.profile = read_profile(*child, faults);
@@ -116,7 +117,7 @@ std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, D
   spec.lunch = read_clock(map, "lunch", spec.lunch, faults);
   read_numbers(map, spec);
   if (map.has("cleaning")) {
-    spec.cleaning_h = read_time(map, "cleaning", 19.0, faults);
+    spec.cleaning_h = read_hours(map, "cleaning", 19.0, faults);
   } else {
     static_cast<void>(map.text("cleaning"));
   }
@@ -129,6 +130,20 @@ std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, D
   });
   map.finish();
   return spec;
+}
+
+ScriptTime read_time(YamlMap& script, const std::optional<ScheduleSpec>& schedule, ScriptSpec& spec) {
+  constexpr RunClock any{};  // where it isn't understood, so that no second fault follows
+  spec.begin = script.text("begin");
+  if (schedule) {
+    const double day_s = std::round(3600.0 * (schedule->to_h - schedule->from_h));
+    if (script.faults().has_errors()) return {any, day_s};
+    TrialSpec day;
+    day.schedule = schedule;
+    return {clock_of(spec, day), day_s};
+  }
+  if (!script.has("begin")) return {};
+  return {clock_from(spec.begin).value_or(any)};
 }
 
 }  // namespace pirsim::io

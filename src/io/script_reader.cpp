@@ -7,7 +7,7 @@
 #include "io/reader_parts.hpp"
 #include "io/yaml_map.hpp"
 #include "schema/body_part_names.hpp"
-#include "schema/schedule_people.hpp"
+#include "schema/clock.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -45,7 +45,13 @@ WarmthSpec read_warmth(const std::optional<YamlNode>& node, Diagnostics& faults)
 
 constexpr double natural_speed_m_s = 1.2;  // indoors; Ref: [Weidmann1993] has 1.34 in the open
 
-PersonSpec read_person(const YamlNode& node, BodyMeshReader& body_meshes, Diagnostics& faults) {
+/// What a person's text refers to.
+struct Surroundings {
+  BodyMeshReader body_meshes;
+  ScriptTime time;
+};
+
+PersonSpec read_person(const YamlNode& node, Surroundings& around, Diagnostics& faults) {
   YamlMap map(node, faults, "person");
   PersonSpec person;
   person.id = map.required_text("id");
@@ -55,14 +61,14 @@ PersonSpec read_person(const YamlNode& node, BodyMeshReader& body_meshes, Diagno
     scatter.finish();
   }
   person.body_mesh_file = map.text("body_mesh");
-  person.body_meshes = body_meshes.read(person.body_mesh_file, map.where("body_mesh"), faults);
+  person.body_meshes = around.body_meshes.read(person.body_mesh_file, map.where("body_mesh"), faults);
   person.style = map.choice<MotionStyle>(
       "style", person.style, {{"choreographed", MotionStyle::choreographed}, {"natural", MotionStyle::natural}});
   if (person.style == MotionStyle::natural) person.walking_speed_m_s = natural_speed_m_s;
   read_numbers(map, person);
   person.warmth = read_warmth(map.child("warmth"), faults);
   for (const YamlNode& action : map.list("actions", limits::actions))
-    person.actions.push_back(read_action(action, faults));
+    person.actions.push_back(read_action(action, around.time, faults));
   for (const ScriptedAction& action : person.actions) {
     const std::string fault = activity_fault(person, action);
     if (!fault.empty()) faults.error(action.where, fault);
@@ -72,11 +78,11 @@ PersonSpec read_person(const YamlNode& node, BodyMeshReader& body_meshes, Diagno
 }
 
 std::vector<PersonSpec> read_people(const std::vector<YamlNode>& nodes, const Variables& variables,
-                                    BodyMeshReader& body_meshes, Diagnostics& faults) {
+                                    Surroundings& around, Diagnostics& faults) {
   std::vector<PersonSpec> people;
   Names ids("person");
   for (const YamlNode& node : nodes) {
-    people.push_back(read_person(node.with(variables, faults), body_meshes, faults));
+    people.push_back(read_person(node.with(variables, faults), around, faults));
     const std::string fault = ids.fault_of_adding(people.back().id);
     if (!fault.empty()) faults.error(node.where(), fault);
   }
@@ -109,13 +115,12 @@ std::vector<Variables> combinations(const std::optional<YamlNode>& for_each, Dia
 }
 
 /// Trials written out one by one, each with people of its own.
-std::vector<TrialSpec> read_listed_trials(const YamlNode& list, BodyMeshReader& body_meshes, Diagnostics& faults) {
+std::vector<TrialSpec> read_listed_trials(const YamlNode& list, Surroundings& around, Diagnostics& faults) {
   std::vector<TrialSpec> trials;
   Names ids("trial");
   for (const YamlNode& item : read_list(list, faults, "trials", limits::trials)) {
     YamlMap map(item, faults, "trial");
-    trials.push_back(
-        {map.required_text("id"), read_people(map.list("people", limits::people), {}, body_meshes, faults)});
+    trials.push_back({map.required_text("id"), read_people(map.list("people", limits::people), {}, around, faults)});
     read_numbers(map, trials.back());
     const std::string fault = ids.fault_of_adding(trials.back().id);
     if (!fault.empty()) faults.error(item.where(), fault);
@@ -137,12 +142,12 @@ bool fit_written_out(std::size_t n_trials, const std::vector<YamlNode>& people, 
 
 /// One trial for every combination of variables, all with the same people.
 std::vector<TrialSpec> read_trials(const std::optional<YamlNode>& node, const std::vector<YamlNode>& people,
-                                   BodyMeshReader& body_meshes, Diagnostics& faults) {
-  if (!node) return {{"1", read_people(people, {}, body_meshes, faults)}};
+                                   Surroundings& around, Diagnostics& faults) {
+  if (!node) return {{"1", read_people(people, {}, around, faults)}};
   if (node->is_list()) {
     if (!people.empty())
       faults.error(people.front().where(), "`people` belongs inside each listed trial, not beside `trials`");
-    return read_listed_trials(*node, body_meshes, faults);
+    return read_listed_trials(*node, around, faults);
   }
   YamlMap map(*node, faults, "trials");
   std::vector<TrialSpec> trials;
@@ -157,7 +162,7 @@ std::vector<TrialSpec> read_trials(const std::optional<YamlNode>& node, const st
     trial.id = substitute(pattern, variables, map.where("id"), found);
     if (trial.id.empty() && !pattern.empty())
       found.error(map.where("id"), "trials: id: expected a text that isn't empty");
-    trial.people = read_people(people, variables, body_meshes, found);
+    trial.people = read_people(people, variables, around, found);
     const std::string fault = ids.fault_of_adding(trial.id);
     if (!fault.empty() && !pattern.empty() && !found.has_errors()) found.error(map.where("id"), fault);
   }
@@ -181,6 +186,21 @@ void warn_of_days_off(const YamlNode& node, const ScheduleSpec& schedule, int n_
       "schedule: nobody comes on Saturdays and Sundays, and there is no other day from " + schedule.first_day + " on");
 }
 
+/// Actions after the end of a run that lasts for a given time.
+void warn_of_what_never_begins(const ScriptSpec& script, const ScriptTime& time, Diagnostics& faults) {
+  for (const TrialSpec& trial : script.trials) {
+    const auto end_s = trial.schedule ? time.day_s : trial.duration_s;
+    for (const PersonSpec& person : trial.people) {
+      for (const ScriptedAction& action : person.actions) {
+        if (!end_s || !action.at_s || *action.at_s < *end_s) continue;
+        faults.warning(action.where, "'" + person.id + "' is to begin this at " +
+                                         moment_text(time.clock, *action.at_s) + ", but the run ends at " +
+                                         moment_text(time.clock, *end_s) + ": it never happens");
+      }
+    }
+  }
+}
+
 /// name: of the script, if it doesn't say; folder: what file names in it are relative to.
 ScriptSpec script_of(const YamlNode& root, const std::string& name, const std::filesystem::path& folder) {
   Diagnostics faults;
@@ -192,14 +212,15 @@ ScriptSpec script_of(const YamlNode& root, const std::string& name, const std::f
   read_numbers(map, script);
   script.sensing = read_sensing(map.child("sensing"), faults);
   script.summary = read_summary(map.child("summary"), faults);
-  BodyMeshReader body_meshes(folder);
-  script.trials = read_trials(map.child("trials"), map.list("people", limits::people), body_meshes, faults);
+  const auto schedule = read_schedule(map.child("schedule"), faults);
+  Surroundings around{BodyMeshReader(folder), read_time(map, schedule, script)};
+  script.trials = read_trials(map.child("trials"), map.list("people", limits::people), around, faults);
   TrialSpec every_trial;
   read_numbers(map, every_trial);
   for (TrialSpec& trial : script.trials) {
     if (!trial.duration_s) trial.duration_s = every_trial.duration_s;
   }
-  if (const auto schedule = read_schedule(map.child("schedule"), faults)) {
+  if (schedule) {
     warn_of_days_off(*map.child("schedule"), *schedule, script.replicates, faults);
     for (TrialSpec& trial : script.trials) {
       trial.schedule = schedule;
@@ -208,6 +229,7 @@ ScriptSpec script_of(const YamlNode& root, const std::string& name, const std::f
       });
     }
   }
+  warn_of_what_never_begins(script, around.time, faults);
   if (!faults.has_errors() && map.has("summary")) {
     const std::vector<YamlNode> phases = YamlMap(*map.child("summary"), faults, "summary").list("phases");
     check_phases(script, [&](std::size_t phase, const std::string& message) {
@@ -220,7 +242,7 @@ ScriptSpec script_of(const YamlNode& root, const std::string& name, const std::f
   });
   map.finish();
   faults.throw_if_errors();
-  script.files = body_meshes.files();
+  script.files = around.body_meshes.files();
   script.warnings = faults.warnings();
   return script;
 }

@@ -1,10 +1,13 @@
 #include <yaml-cpp/yaml.h>
 
+#include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "io/schedule_writer.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/io.hpp"
+#include "schema/clock.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -70,10 +73,14 @@ struct ActionWriter {
   void operator()(const action::Leave& leave) { entry["leave"] = leave.entrance; }
 };
 
-YAML::Node write(const ScriptedAction& action) {
+/// On a script's own clock, a moment is written as the time that it shows.
+YAML::Node write(const ScriptedAction& action, const std::optional<RunClock>& clock) {
   ActionWriter writer;
   std::visit(writer, action.what);
-  if (action.at_s) writer.entry["at_s"] = number(*action.at_s);
+  if (action.at_s) {
+    const bool is_shown = clock && *action.at_s == std::floor(*action.at_s);
+    writer.entry[is_shown ? "at" : "at_s"] = is_shown ? clock->shortest_text(*action.at_s) : csv_number(*action.at_s);
+  }
   if (!action.phase.empty()) writer.entry["phase"] = action.phase;
   return writer.entry;
 }
@@ -91,7 +98,7 @@ void escape_variables(YAML::Node node) {
   }
 }
 
-YAML::Node write(const PersonSpec& person) {
+YAML::Node write(const PersonSpec& person, const std::optional<RunClock>& clock) {
   YAML::Node node;
   node["id"] = person.id;
   node["stature_m"] = number(person.stature_m);
@@ -106,7 +113,7 @@ YAML::Node write(const PersonSpec& person) {
   node["warmth"]["bare"] = person.warmth.bare;
   for (const auto& [part, temperature] : person.warmth.parts_c) node["warmth"]["parts_c"][part] = number(temperature);
   node["actions"] = YAML::Node(YAML::NodeType::Sequence);
-  for (const ScriptedAction& action : person.actions) node["actions"].push_back(write(action));
+  for (const ScriptedAction& action : person.actions) node["actions"].push_back(write(action, clock));
   escape_variables(node);
   return node;
 }
@@ -158,6 +165,7 @@ std::string to_yaml(const ScriptSpec& script) {
   root["name"] = script.name;
   root["seed"] = script.seed;
   root["replicates"] = script.replicates;
+  if (!script.begin.empty()) root["begin"] = script.begin;
   root["sensing"] = write(script.sensing);
   root["summary"]["phases"] = script.summary.phases;
   root["summary"]["reference"] = script.summary.reference_file;
@@ -165,11 +173,12 @@ std::string to_yaml(const ScriptSpec& script) {
   if (!script.trials.empty() && script.trials.front().schedule) {
     root["schedule"] = to_node(*script.trials.front().schedule);
   }
+  const std::optional<RunClock> clock = clock_from(script.begin);
   for (const TrialSpec& trial : script.trials) {
     YAML::Node node;
     node["id"] = trial.id;
     if (trial.duration_s) node["duration_s"] = number(*trial.duration_s);
-    for (const PersonSpec& person : trial.people) node["people"].push_back(write(person));
+    for (const PersonSpec& person : trial.people) node["people"].push_back(write(person, clock));
     root["trials"].push_back(node);
   }
   for (const EffectSpec& effect : script.effects) root["effects"].push_back(write(effect));

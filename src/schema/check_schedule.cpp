@@ -1,6 +1,6 @@
 #include <numeric>
 
-#include "schema/schedule_people.hpp"
+#include "schema/clock.hpp"
 #include "schema/spec_faults.hpp"
 
 namespace pirsim {

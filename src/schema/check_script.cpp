@@ -9,6 +9,7 @@
 #include "core/text.hpp"
 #include "geom/triangle_surface.hpp"
 #include "schema/body_part_names.hpp"
+#include "schema/clock.hpp"
 #include "schema/phase_names.hpp"
 #include "schema/spec_faults.hpp"
 
@@ -203,6 +204,12 @@ void check_phases(const ScriptSpec& script, const std::function<void(std::size_t
 }
 
 void check_together(const ScriptSpec& script, const TellFault& tell) {
+  const auto has_schedule = [](const TrialSpec& trial) { return trial.schedule.has_value(); };
+  if (!script.begin.empty() && !clock_from(script.begin)) {
+    tell("begin", "expected the date and time at which runs begin, e.g. 2026-03-02T07:00, got '" + script.begin + "'");
+  } else if (!script.begin.empty() && std::ranges::any_of(script.trials, has_schedule)) {
+    tell("begin", "a schedule's `first_day` and `from` say when its runs begin: leave out `begin`");
+  }
   constexpr std::uint32_t most = std::numeric_limits<std::uint32_t>::max();
   if (script.replicates < 0 || script.trials.size() * static_cast<std::size_t>(script.replicates) <= most) return;
   tell("replicates", "trials times replicates are more than " + std::to_string(most) + " runs");

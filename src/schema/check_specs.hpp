@@ -82,7 +82,7 @@ void check_together(const TrialSpec& trial, const TellFault& tell);
 /// Of a phase that no run has, every sum would be 0. phase: index into those of the summary.
 void check_phases(const ScriptSpec& script,
                   const std::function<void(std::size_t phase, const std::string& message)>& tell);
-/// Runs are counted in 32 bits.
+/// Runs are counted in 32 bits, and have one clock: the script's or the schedule's.
 void check_together(const ScriptSpec& script, const TellFault& tell);
 
 }  // namespace pirsim

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -157,44 +156,6 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
   for (int i = 1; i <= guests; ++i) add(SchedulePart::guest, Role::staff, "guest_" + std::to_string(i), "");
   if (schedule.cleaning_h) add(SchedulePart::cleaner, Role::staff, "cleaner", "");
   return people;
-}
-
-std::int64_t day_number(const std::string& iso_date, const Where& where) {
-  int year = 0;
-  unsigned month = 0, day = 0;
-  char more = 0;
-  if (iso_date.size() == 10 && std::sscanf(iso_date.c_str(), "%4d-%2u-%2u%c", &year, &month, &day, &more) == 3) {
-    const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(month), std::chrono::day(day)};
-    if (date.ok()) return std::chrono::sys_days(date).time_since_epoch().count();
-  }
-  throw Error(ErrorCode::input, where, "'" + iso_date + "' is no date: expected year-month-day, e.g. 2026-03-02");
-}
-
-bool is_working_day(std::int64_t day) noexcept {
-  const std::chrono::weekday weekday{std::chrono::sys_days(std::chrono::days(day))};
-  return weekday != std::chrono::Saturday && weekday != std::chrono::Sunday;
-}
-
-std::optional<double> clock_hours(const std::string& text) {
-  unsigned hour = 0, minute = 0, second = 0;
-  int read = 0;
-  const bool is_whole = (std::sscanf(text.c_str(), "%2u:%2u%n", &hour, &minute, &read) == 2 &&
-                         static_cast<std::size_t>(read) == text.size()) ||
-                        (std::sscanf(text.c_str(), "%2u:%2u:%2u%n", &hour, &minute, &second, &read) == 3 &&
-                         static_cast<std::size_t>(read) == text.size());
-  if (!is_whole || minute >= 60 || second >= 60 || 3600 * hour + 60 * minute + second > 24 * 3600) return std::nullopt;
-  return hour + minute / 60.0 + second / 3600.0;
-}
-
-std::string clock_text(std::int64_t day, double seconds) {
-  const auto whole = static_cast<std::int64_t>(std::floor(seconds + 1e-9));
-  const std::int64_t in_day = whole % 86400;
-  const std::chrono::year_month_day date{std::chrono::sys_days(std::chrono::days(day + whole / 86400))};
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d", static_cast<int>(date.year()),
-                static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()), static_cast<int>(in_day / 3600),
-                static_cast<int>(in_day / 60 % 60), static_cast<int>(in_day % 60));
-  return text.data();
 }
 
 }  // namespace pirsim

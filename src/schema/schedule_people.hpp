@@ -1,4 +1,4 @@
-// The people that a schedule adds to a trial, and its calendar.
+// The people that a schedule adds to a trial.
 #pragma once
 
 #include <cstdint>
@@ -29,13 +29,5 @@ struct ScheduledPerson {
 /// Where meetings are held: the seats that are asked for, or those that are nobody's own desk.
 [[nodiscard]] std::vector<std::string> meeting_seats(const MeetingsSpec& meetings, const SceneSpec& scene,
                                                      const ScheduleSpec& schedule);
-
-/// Days since 1970-01-01 of "2026-03-02". Throws Error(input) for what is no date.
-[[nodiscard]] std::int64_t day_number(const std::string& iso_date, const Where& where);
-[[nodiscard]] bool is_working_day(std::int64_t day) noexcept;  ///< Monday to Friday
-/// "2026-03-02T08:30:00" of a day and seconds into it.
-/// Hours of "08:30" or "08:30:15", up to "24:00"; none for any other text.
-[[nodiscard]] std::optional<double> clock_hours(const std::string& text);
-[[nodiscard]] std::string clock_text(std::int64_t day, double seconds);
 
 }  // namespace pirsim

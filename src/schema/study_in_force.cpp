@@ -11,7 +11,8 @@ namespace pirsim {
 StudyInForce as_given(SceneSpec scene, const ScriptSpec& script) {
   StudyInForce study{std::move(scene), {script.sensing}, script.seed, {}};
   for (const TrialSpec& trial : script.trials) {
-    TrialInForce& own = study.trials.emplace_back(TrialInForce{trial.id, {}, trial.duration_s, trial.schedule});
+    TrialInForce& own = study.trials.emplace_back(
+        TrialInForce{trial.id, {}, trial.duration_s, trial.schedule, clock_of(script, trial)});
     for (const PersonSpec& person : trial.people) own.people.push_back({person, {}, {}});
     if (!trial.schedule) continue;
     for (const ScheduledPerson& scheduled : people_of(*trial.schedule, study.scene, script.seed)) {

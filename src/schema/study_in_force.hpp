@@ -8,6 +8,7 @@
 
 #include "pirsim/scene.hpp"
 #include "pirsim/script.hpp"
+#include "schema/clock.hpp"
 #include "schema/schedule_people.hpp"
 
 namespace pirsim {
@@ -102,6 +103,7 @@ struct TrialInForce {
   std::vector<PersonInForce> people;  ///< those of the script, then whom effects added
   std::optional<double> duration_s{};
   std::optional<ScheduleSpec> schedule{};
+  std::optional<RunClock> clock{};  ///< of the first replicate
 };
 
 struct StudyInForce {

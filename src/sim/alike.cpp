@@ -132,8 +132,9 @@ auto clock(const SensingInForce& sensing) {
 }
 
 bool same_trial(const TrialModel& planned, const TrialInForce& trial, double ambient_c) {
-  const auto& [id, people, duration_s, schedule] = trial;
+  const auto& [id, people, duration_s, schedule, run_clock] = trial;
   return planned.id == id && planned.duration_s == duration_s && planned.schedule == schedule &&
+         planned.clock == run_clock &&
          std::ranges::equal(planned.people, people, [&](const PersonModel& a, const PersonInForce& b) {
            return same_person(a.spec, b) && a.radiance == radiance_of(b.warmth, ambient_c);
          });

@@ -4,7 +4,6 @@
 #include <set>
 #include <string>
 
-#include "core/fixed.hpp"
 #include "core/near_names.hpp"
 #include "pirsim/error.hpp"
 
@@ -23,15 +22,16 @@ void check_name(const std::vector<Spec>& known, const std::string& id, const std
 /// Follows one person from action to action.
 class Check {
  public:
-  Check(const SceneSpec& scene, const PersonSpec& person, Diagnostics& diagnostics)
-      : scene_(scene), person_(person), diagnostics_(diagnostics) {}
+  Check(const SceneSpec& scene, const PersonSpec& person, const std::optional<RunClock>& clock,
+        Diagnostics& diagnostics)
+      : scene_(scene), person_(person), clock_(clock), diagnostics_(diagnostics) {}
 
   void operator()(const ScriptedAction& action) {
     if (action.at_s) {
       if (*action.at_s < last_at_s_) {
-        fault(action, "starts at " + shortest_number(*action.at_s) +
-                          " s, before an action that is written above it and starts at " + shortest_number(last_at_s_) +
-                          " s: time runs backwards");
+        fault(action, "starts at " + moment_text(clock_, *action.at_s) +
+                          ", before an action that is written above it and starts at " +
+                          moment_text(clock_, last_at_s_) + ": time runs backwards");
       }
       last_at_s_ = *action.at_s;
     }
@@ -90,6 +90,7 @@ class Check {
 
   const SceneSpec& scene_;
   const PersonSpec& person_;
+  const std::optional<RunClock>& clock_;
   Diagnostics& diagnostics_;
   const ScriptedAction* where_ = nullptr;
   double last_at_s_ = 0.0;
@@ -105,7 +106,7 @@ void check_actions(const SceneSpec& scene, const std::vector<TrialInForce>& tria
   for (const TrialInForce& trial : trials) {
     for (const PersonInForce& person : trial.people) {
       Diagnostics found;
-      Check check(scene, person, found);
+      Check check(scene, person, trial.clock, found);
       for (const ScriptedAction& action : person.actions) check(action);
       for (const Issue& issue : found.issues()) {
         if (told.insert(to_string(issue)).second) diagnostics.error(issue.where, issue.message);

@@ -19,6 +19,13 @@ std::uint32_t CompiledStudy::n_runs() const noexcept {
   return static_cast<std::uint32_t>(trials().size()) * static_cast<std::uint32_t>(script_given_.replicates);
 }
 
+std::optional<RunClock> CompiledStudy::clock_of(std::uint32_t run) const noexcept {
+  std::optional<RunClock> clock = trial_of(run).clock;
+  constexpr std::int64_t day_s = 86400;
+  if (trial_of(run).schedule) clock->begin_s += day_s * (replicate_of(run) - 1);
+  return clock;
+}
+
 CompiledStudy::CompiledStudy(SceneSpec scene, ScriptSpec script, TracerKind tracer, const CompiledStudy* like)
     : CompiledStudy(scene, script, effects::in_force(scene, script), tracer, like) {}
 

@@ -47,6 +47,7 @@ struct TrialModel {
   std::vector<PersonModel> people;
   std::optional<double> duration_s{};
   std::optional<ScheduleSpec> schedule{};
+  std::optional<RunClock> clock{};  ///< of the first replicate
 };
 
 class CompiledStudy {
@@ -78,6 +79,8 @@ class CompiledStudy {
   [[nodiscard]] int replicate_of(std::uint32_t run) const noexcept {
     return static_cast<int>(run / trials().size()) + 1;
   }
+  /// Replicates of a schedule are days that follow each other; all others begin at the same time.
+  [[nodiscard]] std::optional<RunClock> clock_of(std::uint32_t run) const noexcept;
 
  private:
   CompiledStudy(SceneSpec scene, ScriptSpec script, StudyInForce study, TracerKind tracer, const CompiledStudy* like);

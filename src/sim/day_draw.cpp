@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "schema/clock.hpp"
+
 namespace pirsim::sim {
 namespace {
 

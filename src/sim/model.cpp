@@ -18,8 +18,8 @@ const RayBundle& Model::rays() const noexcept { return compiled_->array().clippe
 
 std::vector<std::string> Model::columns() const {
   std::vector<std::string> names{"replicate", "trial", "time_s", "phase", "people"};
-  const auto has_schedule = [](const TrialSpec& trial) { return trial.schedule.has_value(); };
-  if (std::ranges::any_of(script().trials, has_schedule)) names.insert(names.begin() + 3, "time");
+  const auto has_clock = [](const sim::TrialModel& trial) { return trial.clock.has_value(); };
+  if (std::ranges::any_of(compiled_->trials(), has_clock)) names.insert(names.begin() + 3, "time");
   for (const SensorSpec& sensor : scene().sensors) names.push_back(sensor.id);
   return names;
 }

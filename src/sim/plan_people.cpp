@@ -386,6 +386,7 @@ std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std:
     planned.id = trial.id;
     planned.duration_s = trial.duration_s;
     planned.schedule = trial.schedule;
+    planned.clock = trial.clock;
     for (const PersonInForce& spec : trial.people) {
       body::Humanoid humanoid(spec);
       double clearance_m = humanoid.clearance_radius_m();

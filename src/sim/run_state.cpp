@@ -3,8 +3,6 @@
 #include <algorithm>
 
 #include "schema/phase_names.hpp"
-#include "schema/schedule_people.hpp"
-#include "sim/schedule.hpp"
 
 namespace pirsim::sim {
 namespace {
@@ -27,8 +25,8 @@ void end_window(const CompiledStudy& study, RunState& state) {
   const TrialModel& trial = study.trial_of(state.run);
   Sample& sample = state.sample;
   sample.time_s = static_cast<double>(state.tick) / study.sensing().tick_rate_hz;
-  if (state.day) sample.clock = clock_text(*state.day, 3600.0 * trial.schedule->from_h + sample.time_s);
-  sample.phase = state.day ? use_of(study, state.crowd) : state.crowd.phase();
+  if (state.clock) sample.clock = state.clock->text(sample.time_s);
+  sample.phase = trial.schedule ? use_of(study, state.crowd) : state.crowd.phase();
   sample.people = state.crowd.n_on_floor(study.scene().floor);
   state.finished = trial.duration_s ? sample.time_s >= *trial.duration_s : state.crowd.done();
 }
@@ -41,12 +39,12 @@ RunState::RunState(const CompiledStudy& study, std::uint32_t run_number)
       exposures{study.array().unexposed(), study.array().unexposed()},
       detector(study.array()),
       logger(study.stages(), study.sensing(), study.array().n_sensors()),
+      clock(study.clock_of(run)),
       triggers(study.array().n_sensors(), 0) {
   detector.begin_run(study.seed(), run, exposure());
   logger.begin_run(study.seed(), run);
   sample.replicate = study.replicate_of(run);
   sample.trial = study.trial_of(run).id;
-  if (study.trial_of(run).schedule) day = day_of(study, run);
 }
 
 bool move_tick(const CompiledStudy& study, RunState& state) {

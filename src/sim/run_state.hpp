@@ -55,7 +55,7 @@ struct RunState {
   Logger logger;
   std::int64_t empty_ticks = 0;  ///< how many ticks in a row, up to this one, nobody was there
   bool at_rest = false;  ///< sensors and logger can't change until somebody comes, so windows can be passed over
-  std::optional<std::int64_t> day;     ///< since 1970-01-01, of a schedule
+  std::optional<RunClock> clock;       ///< none: rows have no time of day
   std::vector<std::uint8_t> triggers;  ///< (n_sensors) at this tick
   Sample sample;                       ///< at the end of the last whole window
   /// Remembers what has been traced; changes no result. Made when first needed, unless a pool lends one.

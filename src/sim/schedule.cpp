@@ -246,10 +246,7 @@ class Day {
 
 }  // namespace
 
-std::int64_t day_of(const CompiledStudy& study, std::uint32_t run) {
-  const ScheduleSpec& schedule = *study.trial_of(run).schedule;
-  return day_number(schedule.first_day, schedule.where) + study.replicate_of(run) - 1;
-}
+std::int64_t day_of(const CompiledStudy& study, std::uint32_t run) { return study.clock_of(run)->begin_day(); }
 
 DayDraw draw_times(const CompiledStudy& study, std::uint32_t run) {
   const TrialModel& trial = study.trial_of(run);

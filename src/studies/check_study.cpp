@@ -52,6 +52,22 @@ void print(std::ostream& out, const SightReport& report, const SceneSpec& scene)
   }
 }
 
+/// When the first trial's people begin what they are to do at a given time.
+void print_times(std::ostream& out, const sim::TrialModel& trial) {
+  constexpr int most_told = 12;
+  out << "clock: every run begins at " << trial.clock->text(0.0) << '\n';
+  for (const sim::PersonModel& person : trial.people) {
+    int n = 0;
+    for (const ScriptedAction& action : person.spec.actions) {
+      if (!action.at_s || ++n > most_told) continue;
+      out << (n == 1 ? "  " + person.spec.id + " begins an action at " : ", ");
+      out << trial.clock->shortest_text(*action.at_s);
+    }
+    if (n > 0) out << (n > most_told ? " and so on\n" : "\n");
+  }
+  out << '\n';
+}
+
 void print_study(std::ostream& out, const Model& model, const SightReport& report) {
   const SceneSpec& scene = model.compiled().scene();
   const ScriptSpec& script = model.script();
@@ -64,6 +80,7 @@ void print_study(std::ostream& out, const Model& model, const SightReport& repor
   if (!script.trials.empty() && script.trials.front().schedule) {
     studies::print(out, studies::outlook(model.compiled(), 0), model.compiled());
   }
+  if (!script.begin.empty() && !script.trials.empty()) print_times(out, model.compiled().trials().front());
   print(out, report, scene);
 }
 

@@ -42,7 +42,8 @@ Stretch busiest(const std::vector<Sample>& rows, double window_s) {
   return {rows[best_end - length].time_s - window_s, rows[best_end - 1].time_s};
 }
 
-Stretch chosen_stretch(const PageRequest& request, const std::vector<Sample>& rows, double window_s) {
+Stretch chosen_stretch(const PageRequest& request, const std::optional<RunClock>& clock,
+                       const std::vector<Sample>& rows, double window_s) {
   const double end_s = rows.back().time_s;
   if (!request.from_s && !request.to_s && end_s > longest_unasked_s) return busiest(rows, window_s);
   Stretch stretch{request.from_s.value_or(0.0), end_s};
@@ -52,12 +53,12 @@ Stretch chosen_stretch(const PageRequest& request, const std::vector<Sample>& ro
   } else {
     stretch.to_s = std::min(end_s, stretch.from_s + longest_unasked_s);
   }
-  if (!(stretch.from_s >= 0.0 && stretch.from_s < end_s)) {
-    std::ostringstream lasts;
-    lasts << "from: the run lasts from 0 to " << end_s << " s";
-    throw Error(ErrorCode::usage, lasts.str());
+  if (!(stretch.from_s >= 0.0 && stretch.from_s < end_s))
+    throw Error(ErrorCode::usage, "from: the run lasts from " + span_text(clock, 0.0, end_s));
+  if (!(stretch.to_s > stretch.from_s)) {
+    throw Error(ErrorCode::usage, "to: the page would begin at " + moment_text(clock, stretch.from_s) + " and end at " +
+                                      moment_text(clock, stretch.to_s));
   }
-  if (!(stretch.to_s > stretch.from_s)) throw Error(ErrorCode::usage, "to: must be later than from");
   // Whole windows, so that rows and pictures begin together.
   stretch.from_s = std::floor(stretch.from_s / window_s + 1e-9) * window_s;
   stretch.to_s = std::min(end_s, std::ceil(stretch.to_s / window_s - 1e-9) * window_s);
@@ -155,7 +156,7 @@ Page page_of(const Model& model, const PageRequest& request) {
   require("keys_per_s", request.keys_per_s, {.min = 0.1, .max = 100.0});
   std::vector<Sample> rows = rows_of(model, request.run);
   const double window_s = model.tick_s() * model.compiled().sensing().ticks_per_window;
-  const Stretch stretch = chosen_stretch(request, rows, window_s);
+  const Stretch stretch = chosen_stretch(request, model.compiled().clock_of(request.run), rows, window_s);
   io::RunPage page = run_page(model, request, stretch);
   page.run_s = rows.back().time_s;
   page.window_s = window_s;

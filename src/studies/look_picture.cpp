@@ -7,6 +7,7 @@
 #include "io/gltf_writer.hpp"
 #include "io/png.hpp"
 #include "pirsim/look.hpp"
+#include "sim/compiled_study.hpp"
 #include "sim/run_state.hpp"
 #include "studies/look.hpp"
 #include "studies/picture.hpp"
@@ -35,11 +36,11 @@ State state_at(const Model& model, std::uint32_t run, const std::optional<double
     step_tick(model, state);
   }
   // Where somebody asks for a moment that never comes, a picture of another one would mislead.
-  if (asked_s && !(time_s(model, state) >= *asked_s)) {
-    std::ostringstream message;
-    message << "time: the run is shorter than " << *asked_s << " s, trial " << model.trial_of(run) << " lasts "
-            << time_s(model, state) << " s";
-    throw Error(ErrorCode::usage, message.str());
+  if (asked_s && !(*asked_s >= 0.0 && time_s(model, state) >= *asked_s)) {
+    const std::optional<RunClock> clock = model.compiled().clock_of(run);
+    throw Error(ErrorCode::usage, "time: " + moment_text(clock, *asked_s) + " isn't in the run: trial " +
+                                      model.trial_of(run) + " lasts from " +
+                                      span_text(clock, 0.0, time_s(model, state)));
   }
   return state;
 }
@@ -112,14 +113,24 @@ Picture picture_of(const Model& model, const PictureRequest& request) {
   return {io::to_png(image.width, image.height, image.rgb), studies::time_s(model, state)};
 }
 
-double export_run(const std::filesystem::path& file, const Model& model, std::uint32_t run,
-                  const std::vector<std::string>& beams, double keys_per_s) {
-  studies::require("keys_per_s", keys_per_s, {.min = 0.001, .max = 10000.0});
-  studies::require_run(model, run);
-  const io::ExportedRun film =
-      studies::film(model, run, {.keys_per_s = keys_per_s, .beams_of = studies::sensors_named(model, beams)}).run;
+double export_run(const std::filesystem::path& file, const Model& model, const FilmRequest& request) {
+  studies::require("keys_per_s", request.keys_per_s, {.min = 0.001, .max = 10000.0});
+  studies::require_run(model, request.run);
+  const std::optional<RunClock> clock = model.compiled().clock_of(request.run);
+  studies::FilmSpec spec{.keys_per_s = request.keys_per_s, .beams_of = studies::sensors_named(model, request.beams)};
+  spec.from_s = request.from_s.value_or(spec.from_s);
+  spec.to_s = request.to_s.value_or(spec.to_s);
+  if (!(spec.to_s > spec.from_s)) {
+    throw Error(ErrorCode::usage, "to: the film would begin at " + moment_text(clock, spec.from_s) + " and end at " +
+                                      moment_text(clock, spec.to_s));
+  }
+  io::ExportedRun film = studies::film(model, request.run, spec).run;
+  const double end_s = film.key_times_s.back(), begin_s = film.key_times_s.front();
+  if (request.from_s && !(spec.from_s >= 0.0 && spec.from_s < end_s))
+    throw Error(ErrorCode::usage, "from: the run lasts from " + span_text(clock, 0.0, end_s));
+  for (double& time_s : film.key_times_s) time_s -= begin_s;
   io::write_gltf(file, film);
-  return film.key_times_s.back();
+  return end_s - begin_s;
 }
 
 }  // namespace pirsim

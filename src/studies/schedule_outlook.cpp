@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/counted.hpp"
+#include "schema/clock.hpp"
 #include "sim/schedule.hpp"
 
 namespace pirsim::studies {

@@ -276,6 +276,77 @@ class Days(unittest.TestCase):
             self.assertIn(told, pirsim("day", *room, "--staff", 2, option, value, code=2).stderr)
 
 
+class OwnClock(unittest.TestCase):
+    """The example of docs/formats/script.md: anna comes at 06:45 and goes at 08:15, in a run that begins at 06:00."""
+    PAGE = HERE.parents[1] / "docs" / "formats" / "script.md"
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        example = next(block for block in re.findall(r"```yaml part of script\n(.*?)```", self.PAGE.read_text(), re.DOTALL)
+                       if block.startswith("begin:"))
+        self.assertEqual(example.count("\n"), 3)
+        self.files = "--scene", DATA / "rooms" / "meeting_room.gltf", "--script", write(
+            self.folder, "anna.yaml", "pirsim_script: 1\n" + example)
+
+    def test_rows_have_the_time_and_people_keep_to_it(self):
+        pirsim(*self.files, "-o", self.folder / "rows.csv", "--occupants", self.folder / "who.csv", "-q")
+        table = rows((self.folder / "rows.csv").read_text())
+        self.assertEqual(list(table[0])[:5], ["replicate", "trial", "time_s", "time", "phase"])
+        self.assertEqual((table[0]["time"], table[0]["time_s"]), ("2026-03-02T06:00:01", "1"))
+        seen = [row["time"] for row in table if row["phase"] != "outside"]
+        self.assertEqual((seen[0], seen[-1][:16]), ("2026-03-02T06:45:01", "2026-03-02T08:15"))
+        self.assertEqual(rows((self.folder / "who.csv").read_text())[0]["time"], "2026-03-02T06:45:01")
+        resolved = json.loads((self.folder / "rows.csv.json").read_text())["resolved_script"]
+        self.assertIn("begin: 2026-03-02T06:00", resolved)
+        self.assertIn("at: 06:45", resolved)
+        again = pirsim(*self.files[:3], write(self.folder, "again.yaml", resolved), "-q").stdout
+        self.assertEqual(again, (self.folder / "rows.csv").read_text())
+        later = rows(pirsim(*self.files, "--set", "begin=2026-03-02T06:40", "-q").stdout)
+        self.assertEqual([row["time"] for row in later if row["phase"] != "outside"], seen)
+        self.assertEqual(later[0]["time"], "2026-03-02T06:40:01")
+
+    def test_check_and_the_resolved_script_tell_the_times(self):
+        told = pirsim("check", *self.files).stdout
+        self.assertIn("clock: every run begins at 2026-03-02T06:00:00\n  anna begins an action at 06:45, 08:15\n", told)
+        self.assertIn("at: 08:15", pirsim(*self.files, "--print-config").stdout)
+
+    def test_every_option_that_takes_a_moment_takes_what_rows_and_pages_show(self):
+        small = "--width", 64, "--height", 64
+        pictures = set()
+        for moment in ("06:45:03", "2026-03-02T06:45:03", "6:45:03", 2703):
+            told = pirsim("preview", *self.files, "-o", self.folder / "p.png", "--time", moment, *small).stderr
+            self.assertIn("at 2026-03-02T06:45:03\n", told)
+            pictures.add((self.folder / "p.png").read_bytes())
+        self.assertEqual(len(pictures), 1)
+        part = "--from", "06:44", "--to", "06:46"
+        told = pirsim("view", *self.files, "-o", self.folder / "v.html", *part).stderr
+        self.assertIn("2026-03-02T06:44:00 to 2026-03-02T06:46:00 of 2026-03-02T06:00:00 to 2026-03-02T08:15:", told)
+        told = pirsim("export", *self.files, "-o", self.folder / "r.gltf", *part, "--beams", "none").stderr
+        self.assertIn(", 120 s\n", told)
+        keys = json.loads((self.folder / "r.gltf").read_text())
+        times = keys["accessors"][keys["animations"][0]["samplers"][0]["input"]]
+        self.assertEqual((times["min"], times["max"]), ([0], [120]))
+        for command, option in (("preview", "--time"), ("view", "--from"), ("export", "--from")):
+            refused = pirsim(command, *self.files, option, "05:00", code=2).stderr
+            self.assertRegex(refused, rf"error: {option[2:]}: .*lasts from 2026-03-02T06:00:00 to 2026-03-02T08:15:")
+            refused = pirsim(command, *self.files, option, "quarter past", code=2).stderr
+            self.assertIn(f"error: {option}: expected seconds or H:MM:SS since the run began, or a time of day", refused)
+        refused = pirsim("view", *self.files, "--from", "07:00", "--to", "06:30", code=2).stderr
+        self.assertIn("error: to: the page would begin at 2026-03-02T07:00:00 and end at 2026-03-02T06:30:00", refused)
+
+    def test_without_a_clock_times_of_day_are_refused_and_the_time_since_the_beginning_is_not(self):
+        for command, option in (("preview", "--time"), ("view", "--from"), ("view", "--to"), ("export", "--to")):
+            refused = pirsim(command, *study_files(), option, "19:00", code=2).stderr
+            self.assertEqual(refused.splitlines()[-1], f"error: {option}: '19:00' is a time of day, and this study has no "
+                             "clock: add `begin: 2026-03-02T00:00` to its script, or give seconds or H:MM:SS since the run "
+                             "began")
+        told = pirsim("preview", *study_files(), "-o", self.folder / "p.png", "--time", "0:00:20", "--width", 64, "--height",
+                      64).stderr
+        self.assertIn(" at 20 s\n", told)
+
+
 class FailedRuns(unittest.TestCase):
     """Seats before a wall, scattered so far that some can't be reached: replicates 6 and 10 of S5."""
     FAILING = ("-q", "--threads", 1, "--replicates", 12, "--seed", 2, "--set", "trials.for_each.seat=[S5,S6]", "--set",
@@ -296,6 +367,13 @@ class FailedRuns(unittest.TestCase):
             self.assertEqual([(run["trial"], run["replicate"]) for run in failed], [("S5", 6), ("S5", 10)])
             self.assertIn("'occupant' at (", failed[0]["message"])
             self.assertIn("Runs that failed and are left out: 2.", (folder / "table.md").read_text())
+
+    def test_a_run_that_failed_is_told_by_the_clock_that_rows_have(self):
+        with tempfile.TemporaryDirectory() as name:
+            told = self.failing("--set", "begin=2026-03-02T06:00", "-o", f"{name}/rows.csv", code=6).stderr
+            self.assertIn("trial S5, replicate 6, 2026-03-02T06:00:00: 'occupant' at (", told)
+            failed = json.loads(pathlib.Path(name, "rows.csv.json").read_text())["people"]["failed_runs"]
+            self.assertEqual([run["time"] for run in failed], ["2026-03-02T06:00:00"] * 2)
 
     def test_strict_stops_at_the_first_keeps_what_is_finished_and_can_be_resumed(self):
         with tempfile.TemporaryDirectory() as name:
@@ -348,7 +426,8 @@ class Help(unittest.TestCase):
             self.assertEqual(pirsim(*args, code=2).stderr, f"error: {told}\n")
 
     def test_values_that_are_no_numbers_are_named_with_their_option(self):
-        for args, told in ((("preview", "--time", "10s"), "--time: '10s' is not a number of seconds"),
+        for args, told in ((("preview", "--time", "10s"), "--time: expected seconds or H:MM:SS since the run "
+                            "began, or a time of day as its rows have it (19:00), not '10s'"),
                            (("--threads", "-1"), "--threads: '-1' is not a whole number from 0"),
                            (("--seed", "abc"), "--seed: 'abc' is not a whole number"),
                            (("room", "--seed", "-1"), "--seed: '-1' is not a whole number from 0 to 2^64 - 1"),
@@ -630,8 +709,8 @@ class Looking(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder) / "p.png"
             refused = pirsim("preview", *study_files(), "-o", out, "--time", 99999, code=2).stderr
-            self.assertIn("shorter than 99999 s", refused)
-            end = re.search(r"lasts (\S+) s", refused)[1]
+            self.assertIn("time: 99999 s isn't in the run", refused)
+            end = re.search(r"lasts from 0 to (\S+) s", refused)[1]
             self.assertFalse(out.exists())
             pirsim("preview", *study_files(), "-o", out, "--time", end, "--width", 64, "--height", 64)
             self.assertTrue(out.exists())

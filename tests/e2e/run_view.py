@@ -150,6 +150,10 @@ OFFICE_STEPS = """
 
 CLOCK_STEPS = """
   seen.marks = document.getElementById("rows").getAttribute("aria-label");
+  seen.notice = document.getElementById("notice").textContent;
+  await showing(12);
+  seen.now = document.getElementById("now").textContent;
+  seen.clock = document.getElementById("clock").textContent;
 """
 
 VISIT = """
@@ -170,6 +174,14 @@ pirsim_script: 1
 duration_s: 60
 people:
   - {id: anna, actions: [{enter: door}, {sit: D4}, {work: {duration_s: 50}}]}
+"""
+
+OWN_CLOCK = """
+pirsim_script: 1
+begin: 2026-03-02T06:44:48
+duration_s: 60
+sensing: {window_s: 0.5}
+people: [{id: anna, actions: [{enter: door, at: "06:45"}, {sit: S1}]}]
 """
 
 MORNING = """
@@ -295,7 +307,15 @@ def check_clock(pages, data):
     page = pages.made("morning.html", "--scene", data / "rooms/open_office.gltf", "--script", pages.folder / "morning.yaml")
     marks = re.findall(r"\d\d:\d\d(?::\d\d)?", pages.seen(page, CLOCK_STEPS)["marks"])
     assert len(marks) >= 4 and all(re.fullmatch(r"08:\d[02468]", mark) for mark in marks), marks
-    print("view: the time line has its marks where the clock shows whole minutes")
+    (pages.folder / "anna.yaml").write_text(OWN_CLOCK, encoding="utf-8")
+    page = pages.made("anna.html", "--scene", data / "rooms/meeting_room.gltf", "--script", pages.folder / "anna.yaml",
+                      "--to", "06:45:38")
+    seen = pages.seen(page, CLOCK_STEPS, "#t=55")
+    assert re.findall(r"\d\d:\d\d:\d\d", seen["marks"])[:3] == ["06:44:50", "06:44:55", "06:45:00"], seen["marks"]
+    assert "06:45:43 isn't on this page: it holds 06:44:48 to 06:45:38" in seen["notice"], seen["notice"]
+    assert seen["now"].startswith("row 06:45:00: anna: outside"), seen["now"]
+    assert seen["clock"] == "2026-03-02 06:45:00", seen["clock"]
+    print("view: the time line has its marks where the clock shows whole minutes, a script's own clock too")
 
 
 def main():

@@ -27,7 +27,7 @@ def test_what_a_preview_can_not_show_is_refused(model):
     for arguments, error, message in (
             ({"run": 10}, IndexError, "run 10: the study has runs 0 to 9"),
             ({"run": 1.5}, TypeError, "run: expected a whole number"),
-            ({"time_s": 1e6}, pirsim.UsageError, "the run is shorter than"),
+            ({"time_s": 1e6}, pirsim.UsageError, "isn.t in the run"),
             ({"beams": "PIR9"}, pirsim.UsageError, "sensor 'PIR9' is not in the scene"),
             ({"marks": "seat"}, pirsim.UsageError, "did you mean 'seats'"),
             ({"width": 10**9}, ValueError, "width: expected a whole number from 16 up to 7680"),

@@ -89,6 +89,23 @@ def test_a_room_and_a_person_made_in_python():
     assert not pirsim.run(pirsim.compile(hidden, own_script())).bits.any()
 
 
+def test_a_script_with_a_clock_of_its_own(tmp_path):
+    script = own_script()
+    assert pirsim.run(pirsim.compile(own_room(), script)).clock is None
+    script.begin = "2026-03-02T06:00"
+    script.trials[0].people[0].actions[1].at_s = 60.0
+    result = pirsim.run(pirsim.compile(own_room(), script))
+    assert result.clock[0, 0] == np.datetime64("2026-03-02T06:00:01")
+    walks = result.clock[0, result.phase[0] == "to and fro"]
+    assert walks[0] == np.datetime64("2026-03-02T06:01:00")
+    pirsim.write_script(script, tmp_path / "written.yaml")
+    assert "at: 06:01" in (tmp_path / "written.yaml").read_text()
+    read = pirsim.read_script(tmp_path / "written.yaml")
+    assert (read.begin, read.trials[0].people[0].actions[1].at_s) == (script.begin, 60.0)
+    later = pirsim.read_script(tmp_path / "written.yaml", set={"begin": "2026-03-02T06:00:30"})
+    assert later.trials[0].people[0].actions[1].at_s == 30.0
+
+
 def test_what_a_reader_would_refuse_is_refused():
     def scene(change):
         room = own_room()
@@ -111,6 +128,7 @@ def test_what_a_reader_would_refuse_is_refused():
             (script(lambda s: setattr(s.sensing, "tick_rate_hz", 0)), "tick_rate_hz"),
             (script(lambda s: setattr(s.trials[0].people[0], "stature_m", nan)), "stature_m"),
             (script(lambda s: setattr(s, "replicates", -1)), "replicates"),
+            (script(lambda s: setattr(s, "begin", "soon")), "begin: expected the date and time"),
             (script(lambda s: s.trials.append(s.trials[0])), "a second trial 'walk'"),
             (script(lambda s: s.effects.append(pirsim.Effect("dead_tyme"))), "did you mean 'dead_time'"),
             (script(lambda s: s.trials[0].people[0].actions.append(pirsim.Sit(seat="S1"))), "seat 'S1'")):

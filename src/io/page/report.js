@@ -193,7 +193,7 @@
       x2: i + 1 < chart.people.length ? chart.people[i + 1].from_s : chart.end_s }));
     const most = Math.max(1, ...people.map((p) => p.n));
     const rows = 26 * chart.rows.length + 8, height = strip + gap + rows;
-    const begin = chart.first_clock ? Date.parse(chart.first_clock + "Z") / 1000 - chart.window_s : 0;
+    const begin = chart.first_clock ? Math.ceil(Date.parse(chart.first_clock + "Z") / 1000 - chart.window_s - 1e-6) : 0;
     // A moment, given as an expression, as the rows tell it.
     const moment = (t) => chart.first_clock ? `utcFormat(1000 * (${t} + ${begin}), '%H:%M:%S')` : `format(${t}, ',')`;
     const unit = chart.first_clock ? "" : " s";

@@ -46,7 +46,8 @@ class Run {
   /// What the clock says at the run's second 0, in seconds since 1970; 0 if the rows have no clock.
   clockBegin() {
     const { rows } = this;
-    return rows.first_clock ? Date.parse(rows.first_clock + "Z") / 1000 - rows.time_s[0] : 0;
+    // The clock is cut off to whole seconds, and a run begins at one.
+    return rows.first_clock ? Math.ceil(Date.parse(rows.first_clock + "Z") / 1000 - rows.time_s[0] - 1e-6) : 0;
   }
 
   /// A moment as the rows tell it: by the clock if they have one, or in seconds.

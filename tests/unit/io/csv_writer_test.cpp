@@ -34,6 +34,19 @@ TEST_CASE("measured rows are the others without the number of people") {
   CHECK(out.str() == "replicate,trial,time_s,phase,people,\"A,1\",B\n2,\"S,1\",0.5,\"at, work\",3,1,0\n");
 }
 
+TEST_CASE("a row has as many fields as its header, whether it knows the time of day or not") {
+  std::ostringstream out, measured;
+  const Sample timed{1, "S1", 0.5, "working", 2, {1}, "2026-03-02T07:00:00"}, untimed{1, "S1", 0.5, "working", 2, {1}};
+  io::CsvWriter csv(out, {"replicate", "trial", "time_s", "time", "phase", "people", "A"});
+  csv.write(timed);
+  csv.write(untimed);
+  CHECK(out.str() ==
+        "replicate,trial,time_s,time,phase,people,A\n"
+        "1,S1,0.5,2026-03-02T07:00:00,working,2,1\n1,S1,0.5,,working,2,1\n");
+  io::MeasuredCsvWriter(measured, {"A"}).write(timed);
+  CHECK(measured.str() == "replicate,trial,time_s,phase,A\n1,S1,0.5,working,1\n");
+}
+
 TEST_CASE("zone activity is one line a sensor, zones split at the sensors' borders") {
   std::ostringstream out;
   io::ZoneCsvWriter zones(out, {"A", "B"}, {0, 2, 5});

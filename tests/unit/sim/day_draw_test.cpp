@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 
+#include "schema/clock.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;
