@@ -42,7 +42,8 @@ TEST_CASE("measured rows in pirsim's own format keep their bits and their main p
   CHECK(measured.runs[0].n_rows(2) == 42);
   CHECK(measured.runs[0].bits[0] == 1);
   CHECK(measured.runs[1].bits[0] == 0);
-  CHECK(measured.notes.empty());
+  REQUIRE(measured.notes.size() == 1);
+  CHECK_THAT(in_words(measured.notes[0]), contains("column 'people' is left out"));
   CHECK(measured.n_replicates() == 1);
 }
 
@@ -57,10 +58,11 @@ TEST_CASE("gaps and empty readings become unknown and are told", "[measured]") {
   CHECK(measured.runs[0].bits[19 * 2 + 1] == unknown_bit);
   CHECK(measured.runs[0].bits[29 * 2] == unknown_bit);
   CHECK(measured.runs[0].bits[29 * 2 + 1] == 1);
-  REQUIRE(measured.notes.size() == 3);
-  CHECK_THAT(in_words(measured.notes[0]), contains("1 row is missing"));
-  CHECK_THAT(in_words(measured.notes[1]), contains("1 reading is empty"));
-  CHECK_THAT(in_words(measured.notes[2]), contains("nothing of S2"));
+  REQUIRE(measured.notes.size() == 4);
+  CHECK_THAT(in_words(measured.notes[0]), contains("column 'people' is left out"));
+  CHECK_THAT(in_words(measured.notes[1]), contains("1 row is missing"));
+  CHECK_THAT(in_words(measured.notes[2]), contains("1 reading is empty"));
+  CHECK_THAT(in_words(measured.notes[3]), contains("nothing of S2"));
 }
 
 TEST_CASE("rows without phases are taken for the counted phases", "[measured]") {
