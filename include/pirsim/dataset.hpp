@@ -77,13 +77,21 @@ struct RecipeSpec {
 /// Which rooms and days are for what: (n_rooms x days), room by room. The same for the same recipe.
 [[nodiscard]] std::vector<Part> parts_of(const RecipeSpec& recipe);
 
+/// What a caller may tell its user while it waits. Functions may be empty.
+struct DatasetObserver {
+  enum class Stage { looking_for_days, checking_rooms, making_days, describing_rooms };
+  std::function<void(Stage stage, std::uint32_t total)> begin{};
+  std::function<void()> done_one{};  ///< of the stage's total; from one thread at a time
+};
+
 struct DatasetOptions {
   io::SceneOptions scenes;
   unsigned threads = 0;  ///< 0: all cores; changes no byte
   std::optional<Shard> shard;
   enum class Start { anew, resume } start = Start::anew;
-  std::function<bool()> goes_on{};           ///< asked before each room-day
-  std::function<void()> made_one{};          ///< after each room-day
+  std::function<bool()> goes_on{};   ///< asked before each room-day
+  std::function<void()> made_one{};  ///< after each room-day
+  DatasetObserver observer{};
   std::function<void(const Issue&)> tell{};  ///< of what a user should know, from one thread at a time
 };
 
@@ -98,6 +106,7 @@ bool make_room_days(const RecipeSpec& recipe, const std::filesystem::path& folde
 
 /// When all room-days are there: tables, datapackage.json, README.md, pictures, exports of the whole. Throws
 /// Error(input) if some are missing.
-void finish_dataset(const RecipeSpec& recipe, const std::filesystem::path& folder, const io::SceneOptions& options);
+void finish_dataset(const RecipeSpec& recipe, const std::filesystem::path& folder, const io::SceneOptions& options,
+                    const DatasetObserver& observer = {});
 
 }  // namespace pirsim::dataset

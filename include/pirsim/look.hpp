@@ -16,6 +16,10 @@
 
 namespace pirsim {
 
+/// Called whenever so many more seconds of the run are simulated, so that a caller can tell how far it is. May throw,
+/// which ends the work.
+using Simulated = std::function<void(double seconds)>;
+
 /// "1280 x 720 pixels of run 0 at 20 s, with the first sensor's beams."
 struct PictureRequest {
   std::uint32_t run = 0;
@@ -25,6 +29,7 @@ struct PictureRequest {
   std::optional<Vec3> camera, look_at;    ///< none: from above and beside, the whole floor in view
   double field_of_view_deg = 45.0;        ///< vertical, 1 to 170
   int width = 1280, height = 720;         ///< pixels: 16 to 7680, 16 to 4320
+  Simulated simulated{};
 };
 
 struct Picture {
@@ -44,6 +49,7 @@ struct PageRequest {
   double keys_per_s = 10.0;              ///< pictures a second, between which the page interpolates: 0.1 to 100
   std::optional<CoverageSpec> coverage;  ///< whose map is laid on the floor
   std::string scene, script;             ///< names that the page gives; empty: those of the specs
+  Simulated simulated{};
 };
 
 struct Page {
@@ -61,6 +67,7 @@ struct FilmRequest {
   std::vector<std::string> beams{"all"};  ///< as of a picture
   double keys_per_s = 10.0;               ///< 0.001 to 10000
   std::optional<double> from_s, to_s;     ///< seconds of the run; none: its beginning, its end
+  Simulated simulated{};
 };
 
 /// Writes the run as an animated glTF (docs/formats/gltf_export.md): .glb, or by any other extension .gltf. Its
@@ -123,7 +130,7 @@ struct PlacementOptions {
   unsigned threads = 0;                ///< 0: all cores; changes no number
   std::filesystem::path scene_file{};  ///< beside which models of sensors are looked for
   io::SceneOptions scenes{};
-  std::function<void()> set_done{};  ///< after each set that the search has tried
+  std::function<void()> set_done{};  ///< after each set of the study, and each that the search has tried
 };
 
 /// Compares a placement study's sets of sensors, and looks for a better one if it asks for that. Throws Error(input)

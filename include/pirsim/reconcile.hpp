@@ -123,7 +123,8 @@ struct Stage {
 /// What a caller may tell its user while it waits. Functions may be empty.
 struct Observer {
   std::function<void(const Stage&)> stage;
-  std::function<void(std::uint32_t done, std::uint32_t total)> progress;  ///< of the table's realizations
+  /// Of the table's realizations: begins with 0, goes up by one for each that is simulated, by more for what was kept.
+  std::function<void(std::uint32_t done, std::uint32_t total)> progress;
 };
 
 /// What every part of an analysis needs.

@@ -42,8 +42,9 @@ struct RunResult {
 struct StudyOptions {
   unsigned threads = 0;  ///< 0: all cores. Never changes a byte of the results.
   Record record = Record::samples;
-  std::optional<RunRange> runs{};   ///< default: all of the study
-  std::function<bool()> goes_on{};  ///< asked before each run; after a false no further one begins
+  std::optional<RunRange> runs{};       ///< default: all of the study
+  std::function<bool()> goes_on{};      ///< asked before each run; after a false no further one begins
+  std::function<void()> window_done{};  ///< after each simulated window of any run, from any thread; keep it short
   Trace trace = Trace::none;
   Occupants occupants = Occupants::counted;
   std::optional<std::vector<std::uint32_t>> chosen{};  ///< instead of `runs`: these, in this order

@@ -1,6 +1,7 @@
 #include <iostream>
 
 #include "app/commands.hpp"
+#include "app/long_work.hpp"
 #include "app/session.hpp"
 #include "pirsim/look.hpp"
 
@@ -11,8 +12,11 @@ void check(const Inputs& inputs) {
   // Warnings are what a check is made for: --quiet leaves out only the report.
   Inputs with_warnings = inputs;
   with_warnings.verbosity = Verbosity::normal;
-  const Model model = load(with_warnings);
-  const CheckReport report = check_study(model);
+  const Model model = load(with_warnings, inputs.verbosity);
+  const CheckReport report = [&] {
+    const Progress progress({.what = "looking at what sensors see"}, inputs.verbosity);
+    return check_study(model);
+  }();
   if (inputs.verbosity != Verbosity::quiet) std::cout << report.text;
   require_written();
   tell(report.warnings, Verbosity::normal);  // last, where a terminal shows them

@@ -37,13 +37,13 @@ CoverageMap compute(const studies::CoverageStudy& study, studies::RowStore& rows
   if (rows.n_found_rows() > 0 && inputs.verbosity != Verbosity::quiet) {
     std::cerr << "continuing after " << rows.n_found_rows() << " of " << study.grid().n_rows() << " rows of squares\n";
   }
-  Progress progress(static_cast<std::uint32_t>(study.grid().n_rows() - rows.n_found_rows()), inputs.verbosity,
-                    "rows of squares");
+  Progress progress({"moving a target over the floor", study.grid().n_rows() - rows.n_found_rows(), "rows of squares"},
+                    inputs.verbosity);
   const StopRequest stop;
   const auto keep = [&](std::size_t, const std::vector<MotionCount>& counts) {
     rows.append(counts);
     map.counts.insert(map.counts.end(), counts.begin(), counts.end());
-    progress.run_finished();
+    progress.finished();
     stop.throw_if_made();
   };
   studies::run_rows(study, rows.n_found_rows(), threads, keep);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <iostream>
+#include <optional>
 
 #include "app/commands.hpp"
 #include "app/long_work.hpp"
@@ -19,18 +20,41 @@ struct DatasetCommand {
   Inputs inputs;
 };
 
+/// Tells stages and progress on standard error.
+class Teller {
+ public:
+  explicit Teller(Verbosity verbosity) : verbosity_(verbosity) {}
+  [[nodiscard]] dataset::DatasetObserver observer() {
+    return {[this](Stage stage, std::uint32_t total) { progress_.emplace(work_of(stage, total), verbosity_); },
+            [this] { progress_->finished(); }};
+  }
+
+ private:
+  using Stage = dataset::DatasetObserver::Stage;
+  static Work work_of(Stage stage, std::uint32_t total) {
+    switch (stage) {
+      case Stage::looking_for_days:
+        return {"looking for what is there", total, "room-days"};
+      case Stage::checking_rooms:
+        return {"drawing and checking all rooms before the first day", total, "rooms"};
+      case Stage::making_days:
+        return {"simulating", total, "room-days"};
+      case Stage::describing_rooms:
+        break;
+    }
+    return {"describing", total, "rooms"};
+  }
+
+  Verbosity verbosity_;
+  std::optional<Progress> progress_;
+};
+
 void finish(const DatasetCommand& command, const dataset::RecipeSpec& recipe) {
-  dataset::finish_dataset(recipe, command.folder, scene_options(command.inputs));
+  Teller teller(command.inputs.verbosity);
+  dataset::finish_dataset(recipe, command.folder, scene_options(command.inputs), teller.observer());
   if (command.inputs.verbosity != Verbosity::quiet)
     std::cerr << "wrote " << (command.folder / "datapackage.json").string() << ": " << recipe.n_rooms() << " rooms, "
               << recipe.n_room_days() << " room-days\n";
-}
-
-std::uint32_t n_to_make(const dataset::RecipeSpec& recipe, const DatasetCommand& command, const RunRange& range) {
-  if (command.start == dataset::DatasetOptions::Start::anew) return range.count();
-  return static_cast<std::uint32_t>(
-      std::ranges::count_if(dataset::missing_room_days(recipe, command.folder),
-                            [&](std::uint32_t i) { return i >= range.first && i < range.end; }));
 }
 
 void make(const DatasetCommand& command, const dataset::RecipeSpec& recipe) {
@@ -39,11 +63,10 @@ void make(const DatasetCommand& command, const dataset::RecipeSpec& recipe) {
   options.threads = command.threads;
   options.start = command.start;
   if (!command.shard.empty()) options.shard = studies::parse_shard(command.shard);
-  const RunRange range = runs_of(options.shard.value_or(Shard{}), recipe.n_room_days());
   const StopRequest stop;
-  Progress progress(n_to_make(recipe, command, range), command.inputs.verbosity, "room-days");
+  Teller teller(command.inputs.verbosity);
   options.goes_on = [&] { return !stop.was_made(); };
-  options.made_one = [&] { progress.run_finished(); };
+  options.observer = teller.observer();
   options.tell = [&](const Issue& issue) { tell({issue}, command.inputs.verbosity); };
   if (!dataset::make_room_days(recipe, command.folder, options)) {
     throw Error(ErrorCode::stopped, stop.signal_name() + ": stopped at the end of a room-day; continue with --resume");
@@ -52,7 +75,10 @@ void make(const DatasetCommand& command, const dataset::RecipeSpec& recipe) {
 
 void run(const DatasetCommand& command) {
   if (command.folder.empty()) throw Error(ErrorCode::usage, "-o DIR is missing");
-  const dataset::RecipeSpec recipe = dataset::read_recipe(command.recipe);
+  const dataset::RecipeSpec recipe = [&] {
+    const Progress progress({.what = "reading " + command.recipe.filename().string()}, command.inputs.verbosity);
+    return dataset::read_recipe(command.recipe);
+  }();
   if (command.work == DatasetCommand::Work::make) make(command, recipe);
   if (command.work == DatasetCommand::Work::finish || command.shard.empty()) return finish(command, recipe);
   const std::size_t missing = dataset::missing_room_days(recipe, command.folder).size();

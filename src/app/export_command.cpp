@@ -1,7 +1,12 @@
+#include <algorithm>
 #include <iostream>
+#include <limits>
+#include <utility>
 
 #include "app/commands.hpp"
+#include "app/long_work.hpp"
 #include "app/moment.hpp"
+#include "app/output_size.hpp"
 #include "app/session.hpp"
 #include "pirsim/look.hpp"
 #include "sim/compiled_study.hpp"
@@ -14,7 +19,25 @@ struct ExportOptions {
   RunChoice run;
   FilmRequest film;
   std::string from, to;  ///< empty: not given
+  Size size = Size::usual;
 };
+
+/// How long a run is may be known only when it ends, so that a film that gets too large is refused when it does.
+double write_film(const Model& model, FilmRequest film, const ExportOptions& options, Verbosity verbosity) {
+  const sim::TrialModel& trial = model.compiled().trial_of(film.run);
+  const FilmSize size{"the film", trial.people.size(), film.keys_per_s};
+  const double from_s = film.from_s.value_or(0.0);
+  const double known_end_s =
+      std::min(film.to_s.value_or(std::numeric_limits<double>::max()), trial.duration_s.value_or(0.0));
+  require_usual(size, known_end_s - from_s, options.size);
+  Progress progress({"simulating and filming", 1, "runs", known_end_s}, verbosity);
+  double so_far_s = 0.0;
+  film.simulated = [&](double seconds) {
+    progress.simulated(seconds);
+    require_usual(size, (so_far_s += seconds) - from_s, options.size);
+  };
+  return export_run(options.output, model, film);
+}
 
 void export_gltf(const Inputs& inputs, const ExportOptions& options) {
   check_outputs({{"-o", options.output, {".gltf", ".glb"}}}, inputs);
@@ -26,7 +49,7 @@ void export_gltf(const Inputs& inputs, const ExportOptions& options) {
   film.run = run;
   if (!options.from.empty()) film.from_s = moment("--from", options.from, clock);
   if (!options.to.empty()) film.to_s = moment("--to", options.to, clock);
-  const double length_s = export_run(options.output, model, film);
+  const double length_s = write_film(model, std::move(film), options, inputs.verbosity);
   if (inputs.verbosity != Verbosity::quiet) {
     std::cerr << "wrote " << options.output.string() << ": " << model.script().name << ", trial " << model.trial_of(run)
               << ", " << length_s << " s\n";
@@ -56,6 +79,7 @@ void add_export_command(CLI::App& app) {
   command.add_option("--beams", options->film.beams, "sensors whose beams are drawn, or all or none (default: all)")
       ->option_text("ID,...")
       ->delimiter(',');
+  offer_size(command, options->size);
   on_call(command, inputs, [options](const Inputs& given) { export_gltf(given, *options); });
 }
 

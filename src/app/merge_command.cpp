@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "app/commands.hpp"
+#include "app/long_work.hpp"
 #include "app/session.hpp"
 #include "app/study_run.hpp"
 #include "pirsim/error.hpp"
@@ -59,7 +60,10 @@ void merge(const MergeOptions& options) {
     tally.emplace(trial_ids(script), script.summary, measured_cells(script));
   }
   const studies::Sink sink = [&](std::string_view bytes) { tally->add(bytes); };
+  std::optional<Progress> progress;
+  progress.emplace(Work{.what = "joining the shards of " + options.folder.string()}, options.verbosity);
   const io::Manifest merged = studies::merge_campaign(options.folder, options.output, tally ? sink : studies::Sink());
+  progress.reset();
   if (tally) {
     write_summary(tally->finish(), *file, options.summary, script.name, merged.notes.remarks(), options.verbosity);
   }

@@ -17,10 +17,9 @@ void placements(const Inputs& inputs, unsigned threads) {
   tell(scene.warnings, inputs.verbosity);
   PlacementOptions options{threads, inputs.scene, scene_options(inputs)};
   std::optional<Progress> progress;
-  if (spec.search) {
-    progress.emplace(static_cast<std::uint32_t>(spec.search->evaluations), inputs.verbosity, "sets");
-    options.set_done = [&] { progress->run_finished(); };
-  }
+  const auto n_tried = static_cast<std::uint64_t>(spec.search ? spec.search->evaluations : 0);
+  progress.emplace(Work{"scoring sets of sensors", spec.sets.size() + n_tried, "sets"}, inputs.verbosity);
+  options.set_done = [&] { progress->finished(); };
   const PlacementReport report = run_placements(std::move(scene), spec, options);
   progress.reset();
   tell(report.warnings, inputs.verbosity);

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "app/commands.hpp"
+#include "app/long_work.hpp"
 #include "app/moment.hpp"
 #include "app/session.hpp"
 #include "pirsim/look.hpp"
@@ -28,7 +29,11 @@ void preview(const Inputs& inputs, const PreviewOptions& options) {
   request.run = find_run(model, options.run);
   const std::optional<RunClock> clock = model.compiled().clock_of(request.run);
   if (!options.time.empty()) request.time_s = moment("--time", options.time, clock);
+  std::optional<Progress> progress;
+  progress.emplace(Work{"simulating up to that moment", 1, "runs", request.time_s.value_or(0.0)}, inputs.verbosity);
+  request.simulated = [&](double seconds) { progress->simulated(seconds); };
   const Picture picture = picture_of(model, request);
+  progress.reset();
   io::write_text_file(options.output, picture.png);
   if (inputs.verbosity != Verbosity::quiet) {
     std::cerr << "wrote " << options.output.string() << ": trial " << model.trial_of(request.run) << " at "

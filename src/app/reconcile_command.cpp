@@ -82,11 +82,18 @@ class Teller {
     observer.stage = [this](const reconcile::Stage& stage) {
       progress_.reset();
       told_ = 0;
-      if (verbosity_ != Verbosity::quiet) std::cerr << reconcile::in_words(stage) << " ...\n";
+      stage_ = reconcile::in_words(stage);
+      if (verbosity_ != Verbosity::quiet) std::cerr << stage_ << " ...\n";
+      progress_.emplace(Work{.what = stage_}, verbosity_);
     };
     observer.progress = [this](std::uint32_t done, std::uint32_t total) {
-      if (!progress_) progress_.emplace(total, verbosity_, "realizations");
-      for (; told_ < done; ++told_) progress_->run_finished();
+      if (done == 0) progress_.emplace(Work{stage_, total, "realizations"}, verbosity_);
+      if (done == told_ + 1) {
+        progress_->finished();
+      } else if (done > told_) {
+        progress_->found(done - told_);
+      }
+      told_ = done;
     };
     return observer;
   }
@@ -94,6 +101,7 @@ class Teller {
 
  private:
   Verbosity verbosity_;
+  std::string stage_;
   std::optional<Progress> progress_;
   std::uint32_t told_ = 0;
 };

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "app/long_work.hpp"
 #include "core/near_names.hpp"
 #include "core/text.hpp"
 #include "io/csv_reader.hpp"
@@ -65,13 +66,11 @@ io::SceneOptions scene_options(const Inputs& inputs) {
   return {inputs.sensor_directories, {program / ".." / "share" / "pirsim", program / ".." / ".." / "data"}};
 }
 
-Model load(const Inputs& inputs) {
-  static_cast<void>(tracer_kind(inputs.tracer));  // before any file
-  return load(inputs, io::read_script(inputs.script, inputs.overrides));
-}
+namespace {
 
-Model load(const Inputs& inputs, ScriptSpec script) {
+Model compiled(const Inputs& inputs, Verbosity of_progress, ScriptSpec script) {
   const TracerKind tracer = tracer_kind(inputs.tracer);
+  const Progress progress({.what = "reading and compiling " + inputs.scene.filename().string()}, of_progress);
   SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
   tell(script.warnings, inputs.verbosity);
@@ -80,6 +79,21 @@ Model load(const Inputs& inputs, ScriptSpec script) {
   tell(effects::idle(study.script_given().effects, study.scene(), study.sensing()), inputs.verbosity);
   return model;
 }
+
+}  // namespace
+
+Model load(const Inputs& inputs) { return load(inputs, inputs.verbosity); }
+
+Model load(const Inputs& inputs, Verbosity of_progress) {
+  static_cast<void>(tracer_kind(inputs.tracer));  // before any file
+  ScriptSpec script = [&] {
+    const Progress progress({.what = "reading " + inputs.script.filename().string()}, of_progress);
+    return io::read_script(inputs.script, inputs.overrides);
+  }();
+  return compiled(inputs, of_progress, std::move(script));
+}
+
+Model load(const Inputs& inputs, ScriptSpec script) { return compiled(inputs, inputs.verbosity, std::move(script)); }
 
 std::uint32_t find_run(const Model& model, const RunChoice& choice) {
   if (choice.replicate < 1 || choice.replicate > model.script().replicates) {

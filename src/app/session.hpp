@@ -22,6 +22,8 @@ namespace pirsim::app {
 
 /// Reads and compiles; warnings of the readers go to standard error unless quiet.
 [[nodiscard]] Model load(const Inputs& inputs);
+/// With warnings as the inputs ask for them, and progress told or not.
+[[nodiscard]] Model load(const Inputs& inputs, Verbosity of_progress);
 /// The same for a script that the command made.
 [[nodiscard]] Model load(const Inputs& inputs, ScriptSpec script);
 /// Index of a run. Throws Error(usage).

@@ -1,6 +1,7 @@
 #include <iostream>
 
 #include "app/commands.hpp"
+#include "app/long_work.hpp"
 #include "app/session.hpp"
 #include "studies/campaign.hpp"
 
@@ -13,7 +14,10 @@ struct StatusOptions {
 };
 
 void status(const StatusOptions& options) {
-  const std::vector<studies::ShardReport> shards = studies::campaign_status(options.folder);
+  const std::vector<studies::ShardReport> shards = [&] {
+    const Progress progress({.what = "reading the shards of " + options.folder.string()}, options.verbosity);
+    return studies::campaign_status(options.folder);
+  }();
   if (options.verbosity != Verbosity::quiet) std::cerr << studies::to_text(shards);
   if (const std::string rest = studies::array_specification(shards); !rest.empty()) std::cout << rest << '\n';
   require_written();

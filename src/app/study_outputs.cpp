@@ -6,6 +6,7 @@
 #include <sstream>
 #include <utility>
 
+#include "app/output_size.hpp"
 #include "app/session.hpp"
 #include "io/atomic_file.hpp"
 #include "io/compression.hpp"
@@ -190,13 +191,32 @@ class LineOutput {
   std::ostringstream lines_;
 };
 
+/// What is recorded at every tick is in memory until its run ends.
+void require_memory(const std::string& option, double bytes_a_tick, const Model& model) {
+  const SensingInForce& sensing = model.compiled().sensing();
+  for (const sim::TrialModel& trial : model.compiled().trials()) {
+    const double bytes = trial.duration_s.value_or(0.0) * sensing.tick_rate_hz * bytes_a_tick;
+    if (bytes <= run_bytes) continue;
+    throw Error(ErrorCode::usage, option + ": a run of trial '" + trial.id + "' would take about " +
+                                      bytes_in_words(bytes) + " of memory, more than " + bytes_in_words(run_bytes) +
+                                      ": simulate a shorter part of it, or fewer ticks a second");
+  }
+}
+
+void require_memory(const Model& model, const RunOptions& options) {
+  const sim::AnalogModel* analog = model.compiled().array().analog();
+  if (!options.zones.empty()) require_memory("--zones", static_cast<double>(model.rays().n_zones()), model);
+  if (!options.trace.empty() && analog != nullptr)
+    require_memory("--trace", static_cast<double>(sizeof(TraceRow) * model.scene().sensors.size()), model);
+}
+
 /// Once the first run tells how much a run writes: some studies would fill a disk.
-void announce(std::size_t run_bytes, const Model& model, Verbosity verbosity) {
+void announce(const std::string& option, std::size_t run_bytes, const Model& model, Verbosity verbosity) {
   constexpr double worth_telling = 1e8;  // assumed: 0.1 GB surprises nobody
   const double bytes = static_cast<double>(run_bytes) * model.n_runs();
   if (verbosity == Verbosity::quiet || bytes < worth_telling) return;
   std::ostringstream text;
-  text << std::setprecision(2) << "--zones: the first of " << model.n_runs() << " runs has "
+  text << std::setprecision(2) << option << ": the first of " << model.n_runs() << " runs has "
        << static_cast<double>(run_bytes) * 1e-6 << " MB, so all will have about " << bytes * 1e-9
        << " GB before compression\n";
   std::cerr << text.str();
@@ -231,9 +251,10 @@ class TraceOutput {
       throw Error(ErrorCode::usage, "--trace: no sensor has an analog response");
   }
 
-  void add(const RunResult& result) {
+  /// Bytes before compression.
+  std::size_t add(const RunResult& result) {
     for (const TraceRow& row : result.trace) csv_.write(result.replicate, result.trial, row);
-    output_.pass_on();
+    return output_.pass_on();
   }
   void commit() { output_.commit(); }
 
@@ -247,9 +268,10 @@ class OccupantOutput {
  public:
   explicit OccupantOutput(const std::filesystem::path& file) : output_(file), csv_(output_.lines()) {}
 
-  void add(const RunResult& result) {
+  /// Bytes before compression.
+  std::size_t add(const RunResult& result) {
     for (const OccupantRow& row : result.occupants) csv_.write(result.replicate, result.trial, row);
-    output_.pass_on();
+    return output_.pass_on();
   }
   void commit() { output_.commit(); }
 
@@ -272,7 +294,7 @@ struct WholeStudyOutputs::Files {
   studies::Summary summary;
   studies::StudyReport report;
   std::optional<ZoneOutput> zones{};
-  bool zones_unannounced = true;
+  bool unannounced = true;
   std::optional<TraceOutput> trace{};
   std::optional<OccupantOutput> occupants{};
   std::optional<io::AtomicFile> summary_file{}, report_file{};
@@ -280,6 +302,7 @@ struct WholeStudyOutputs::Files {
 
 WholeStudyOutputs::WholeStudyOutputs(const Model& model, const Inputs& inputs, const RunOptions& options)
     : files_(new Files{model, inputs, options, make_summary(model, options), studies::StudyReport(model)}) {
+  require_memory(model, options);
   if (!options.zones.empty()) files_->zones.emplace(options.zones, model);
   if (!options.trace.empty()) files_->trace.emplace(options.trace, model);
   if (!options.occupants.empty()) files_->occupants.emplace(options.occupants);
@@ -297,12 +320,15 @@ Occupants WholeStudyOutputs::occupants() const noexcept {
 void WholeStudyOutputs::add(const RunResult& result) {
   Files& files = *files_;
   if (result.fault) return;
-  if (files.zones) {
-    const std::size_t n_bytes = files.zones->add(result);
-    if (std::exchange(files.zones_unannounced, false)) announce(n_bytes, files.model, files.inputs.verbosity);
-  }
-  if (files.trace) files.trace->add(result);
-  if (files.occupants) files.occupants->add(result);
+  const bool first = std::exchange(files.unannounced, false);
+  const auto add = [&](auto& output, const std::string& option) {
+    if (!output) return;
+    const std::size_t n_bytes = output->add(result);
+    if (first) announce(option, n_bytes, files.model, files.inputs.verbosity);
+  };
+  add(files.zones, "--zones");
+  add(files.trace, "--trace");
+  add(files.occupants, "--occupants");
   if (files.report_file) files.report.add_run(result);
   if (!files.summary_file && !files.report_file) return;
   studies::RunCounts counts(files.model.scene().sensors.size(), files.model.script().summary);

@@ -118,6 +118,17 @@ void tell_what_is_written(const RunOptions& options, const RowOutput& rows, std:
   if (!text.empty()) std::cerr << text << '\n';
 }
 
+/// Of all these runs, nearly; 0 if runs end when everybody is done.
+double simulated_s(const Model& model, const RunRange& runs) {
+  const std::vector<sim::TrialModel>& trials = model.compiled().trials();
+  double sum_s = 0.0;
+  for (const sim::TrialModel& trial : trials) {
+    if (!trial.duration_s) return 0.0;
+    sum_s += *trial.duration_s;
+  }
+  return sum_s / static_cast<double>(trials.size()) * runs.count();
+}
+
 std::string stop_message(const RunOptions& options, const std::string& cause, const Model& model,
                          const RowOutput& rows) {
   const RunRange left = rows.missing_runs();
@@ -176,16 +187,17 @@ void check_options(const Inputs& inputs, const RunOptions& options) {
 void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
   keep_inputs(outputs_of(options), files_read(model.script(), model.scene()));
   if (inputs.verbosity != Verbosity::quiet) {
+    const Progress looking({.what = "looking at what sensors see"}, inputs.verbosity);
     tell(studies::warnings(studies::look_around(model), model.scene()), inputs.verbosity);
   }
 
   // Rows that only go to a stream can end anywhere, as by Ctrl-C.
   std::optional<StopRequest> stop;
   if (!options.rows.output.empty() || has_whole_study_outputs(options)) stop.emplace();
+  WholeStudyOutputs others(model, inputs, options);  // first: what it refuses must leave no rows behind
   const std::unique_ptr<RowOutput> rows = open_rows(model, options.rows);
-  WholeStudyOutputs others(model, inputs, options);
   const std::uint32_t wanted = rows->missing_runs().count();
-  Progress progress(wanted, inputs.verbosity);
+  Progress progress({"simulating", wanted, "runs", simulated_s(model, rows->missing_runs())}, inputs.verbosity);
   std::atomic<std::uint32_t> done = 0;
   const auto out_of_time = [&] { return options.max_time_s && done > 0 && progress.seconds() >= *options.max_time_s; };
   StudyOptions study;
@@ -194,6 +206,8 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
   study.trace = options.trace.empty() ? Trace::none : Trace::signals;
   study.occupants = others.occupants();
   study.runs = rows->missing_runs();
+  const double window_s = model.tick_s() * model.compiled().sensing().ticks_per_window;
+  study.window_done = [&] { progress.simulated(window_s); };
   study.goes_on = [&] { return !(stop && stop->was_made()) && !out_of_time(); };
   try {
     run_study(model, study, [&](const RunResult& result) {
@@ -203,7 +217,7 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
       rows->add_run(result.samples, notes_of(result, model));
       others.add(result);
       ++done;
-      progress.run_finished();
+      progress.finished();
     });
   } catch (const Error& error) {
     // A study that --strict stopped can be resumed, as one that a full disk stopped.

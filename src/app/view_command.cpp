@@ -1,8 +1,12 @@
+#include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <optional>
 
 #include "app/commands.hpp"
+#include "app/long_work.hpp"
 #include "app/moment.hpp"
+#include "app/output_size.hpp"
 #include "app/session.hpp"
 #include "pirsim/look.hpp"
 #include "sim/compiled_study.hpp"
@@ -17,7 +21,17 @@ struct ViewOptions {
   std::string from, to;            ///< empty: not given
   std::filesystem::path coverage;  ///< a coverage study; empty: no map
   double keys_per_s = 10.0;
+  Size size = Size::usual;
 };
+
+/// Of a part that is asked for: what nobody asks for is short.
+void require_usual(const PageRequest& request, const Model& model, Size size) {
+  if (!request.from_s || !request.to_s) return;
+  constexpr double base64_and_copies = 1.4;  // of what is in the page, four characters of three bytes
+  const sim::TrialModel& trial = model.compiled().trial_of(request.run);
+  const double to_s = std::min(*request.to_s, trial.duration_s.value_or(*request.to_s));
+  require_usual({"the page", trial.people.size(), request.keys_per_s, base64_and_copies}, to_s - *request.from_s, size);
+}
 
 void view(const Inputs& inputs, const ViewOptions& options) {
   check_outputs({{"-o", options.output, {".html"}}}, inputs);
@@ -37,7 +51,12 @@ void view(const Inputs& inputs, const ViewOptions& options) {
     tell(study.warnings(), inputs.verbosity);
     tell_what_is_left_out(study, inputs.verbosity);
   }
+  require_usual(request, model, options.size);
+  std::optional<Progress> progress;
+  progress.emplace(Work{"simulating", 1, "runs", request.to_s.value_or(0.0)}, inputs.verbosity);
+  request.simulated = [&](double seconds) { progress->simulated(seconds); };
   const Page page = page_of(model, request);
+  progress.reset();
   io::write_text_file(options.output, page.html);
   if (inputs.verbosity == Verbosity::quiet) return;
   std::cerr << "wrote " << options.output.string() << ": " << page.about << ", "
@@ -74,6 +93,7 @@ void add_view_command(CLI::App& app) {
       .add_option("--keys-per-s", options->keys_per_s, "pictures a second, between which it interpolates (default: 10)")
       ->option_text("N")
       ->check(CLI::Range(0.1, 100.0));
+  offer_size(command, options->size);
   on_call(command, inputs, [options](const Inputs& given) { view(given, *options); });
 }
 

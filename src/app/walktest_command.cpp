@@ -31,9 +31,9 @@ void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
   if (!options.report.empty()) report_file.emplace(options.report);
   const StopRequest stop;
   const WalkTestResult result = [&] {
-    Progress progress(static_cast<std::uint32_t>(test.grid().n_rows()), inputs.verbosity, "rows of points");
+    Progress progress({"walking and sitting", test.grid().n_rows(), "rows of points"}, inputs.verbosity);
     return studies::run_walk_test(test, options.threads, [&] {
-      progress.run_finished();
+      progress.finished();
       stop.throw_if_made();
     });
   }();

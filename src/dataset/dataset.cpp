@@ -93,6 +93,7 @@ void check_rooms(const RecipeSpec& recipe, const std::vector<std::uint32_t>& wan
     const int room = room_and_day(recipe, i).first;
     if (rooms.empty() || rooms.back() != room) rooms.push_back(room);
   }
+  begin(options.observer, DatasetObserver::Stage::checking_rooms, rooms.size());
   ordered_parallel<bool>(
       rooms.size(), options.threads,
       [&](std::size_t i) {
@@ -104,7 +105,7 @@ void check_rooms(const RecipeSpec& recipe, const std::vector<std::uint32_t>& wan
         }
         return true;
       },
-      [](bool&) {}, options.goes_on);
+      [&](bool&) { done_one(options.observer); }, options.goes_on);
 }
 
 }  // namespace
@@ -114,7 +115,9 @@ bool make_room_days(const RecipeSpec& recipe, const fs::path& folder, const Data
   const std::vector<std::string> columns = sensor_columns(recipe, options.scenes);
   const RunRange range = runs_of(options.shard.value_or(Shard{}), recipe.n_room_days());
   std::vector<std::uint32_t> wanted;
+  begin(options.observer, DatasetObserver::Stage::looking_for_days, range.count());
   for (std::uint32_t i = range.first; i < range.end; ++i) {
+    done_one(options.observer);
     const bool is_there = options.start == DatasetOptions::Start::resume && whole_record(recipe, folder, i, made_by);
     if (!is_there) wanted.push_back(i);
   }
@@ -126,6 +129,7 @@ bool make_room_days(const RecipeSpec& recipe, const fs::path& folder, const Data
     std::string lack;
   };
   std::size_t done = 0;
+  begin(options.observer, DatasetObserver::Stage::making_days, wanted.size());
   bool lack_told = false;  // rooms are alike: one speaks for all
   ordered_parallel<Made>(
       wanted.size(), options.threads,
@@ -140,6 +144,7 @@ bool make_room_days(const RecipeSpec& recipe, const fs::path& folder, const Data
         const RoomDayRecord& record = made.record;
         ++done;
         if (options.made_one) options.made_one();
+        done_one(options.observer);
         if (!options.tell) return;
         if (!made.lack.empty() && !lack_told) {
           options.tell({Severity::warning, Where{recipe.file.string()}, made.lack});

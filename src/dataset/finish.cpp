@@ -92,10 +92,13 @@ void write_energyplus(const Description& described, const fs::path& folder) {
 
 }  // namespace
 
-void finish_dataset(const RecipeSpec& recipe, const fs::path& folder, const io::SceneOptions& options) {
+void finish_dataset(const RecipeSpec& recipe, const fs::path& folder, const io::SceneOptions& options,
+                    const DatasetObserver& observer) {
   Description described{recipe, provenance(recipe), sensor_columns(recipe, options), {}, {}, parts_of(recipe), {}};
   described.days = read_records(recipe, folder, described.provenance);
+  begin(observer, DatasetObserver::Stage::describing_rooms, static_cast<std::size_t>(recipe.n_rooms()));
   for (int number = 1; number <= recipe.n_rooms(); ++number) {
+    done_one(observer);
     DescribedRoom room = described_room(recipe, folder, number, options);
     const auto first = static_cast<std::size_t>((number - 1) * recipe.days);
     room.part = described.parts[first];

@@ -47,6 +47,13 @@ std::optional<RoomDayRecord> whole_record(const RecipeSpec& recipe, const fs::pa
   }
 }
 
+void begin(const DatasetObserver& observer, DatasetObserver::Stage stage, std::size_t total) {
+  if (observer.begin) observer.begin(stage, static_cast<std::uint32_t>(total));
+}
+void done_one(const DatasetObserver& observer) {
+  if (observer.done_one) observer.done_one();
+}
+
 void make_folders(const fs::path& folder) {
   std::error_code fault;
   fs::create_directories(folder, fault);

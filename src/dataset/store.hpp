@@ -23,6 +23,10 @@ namespace pirsim::dataset {
                                                         std::uint32_t index, const std::string& made_by);
 
 /// Throws Error(io).
+/// Of an observer that may be empty.
+void begin(const DatasetObserver& observer, DatasetObserver::Stage stage, std::size_t total);
+void done_one(const DatasetObserver& observer);
+
 void make_folders(const std::filesystem::path& folder);
 /// A file that several shards may write at once, all the same: each under a name of its own, then moved into its place.
 /// Throws Error(input) if another is in that place.

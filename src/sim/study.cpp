@@ -38,7 +38,7 @@ void add_occupants(const sim::CompiledStudy& study, const sim::RunState& state, 
 }
 
 RunResult run_with(sim::ZoneCachePool& caches, const sim::CompiledStudy& study, std::uint32_t run, Record record,
-                   Trace trace, Occupants occupants) {
+                   Trace trace, Occupants occupants, const std::function<void()>& window_done = {}) {
   RunResult result;
   result.run = run;
   result.replicate = study.replicate_of(run);
@@ -53,6 +53,7 @@ RunResult run_with(sim::ZoneCachePool& caches, const sim::CompiledStudy& study, 
     while (!state.finished) {
       if (may_pass && sim::pass_empty_window(study, state)) {
         result.samples.push_back(state.sample);
+        if (window_done) window_done();
         continue;
       }
       const bool window_ended = sim::step_tick(study, state);
@@ -61,6 +62,7 @@ RunResult run_with(sim::ZoneCachePool& caches, const sim::CompiledStudy& study, 
       if (window_ended) result.samples.push_back(state.sample);
       if (window_ended && occupants == Occupants::told) add_occupants(study, state, result.occupants);
       note_incidents(study, state, result.incidents);
+      if (window_ended && window_done) window_done();
     }
   } catch (const Error& error) {
     if (error.code() != ErrorCode::infeasible) throw;
@@ -89,7 +91,8 @@ void run_study(const Model& model, const StudyOptions& options, const std::funct
   ordered_parallel<RunResult>(
       options.chosen ? options.chosen->size() : range.count(), options.threads,
       [&](std::size_t i) {
-        return run_with(caches, model.compiled(), run_of(i), options.record, options.trace, options.occupants);
+        return run_with(caches, model.compiled(), run_of(i), options.record, options.trace, options.occupants,
+                        options.window_done);
       },
       [&](RunResult& result) { consume(result); }, options.goes_on);
 }

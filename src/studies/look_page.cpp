@@ -22,6 +22,7 @@ constexpr double longest_unasked_s = 1200.0;
 
 struct Stretch {
   double from_s = 0.0, to_s = 0.0;
+  double run_s = 0.0;  ///< of the whole run
 };
 
 int bits_set(const Sample& row) { return std::accumulate(row.bits.begin(), row.bits.end(), 0); }
@@ -42,10 +43,25 @@ Stretch busiest(const std::vector<Sample>& rows, double window_s) {
   return {rows[best_end - length].time_s - window_s, rows[best_end - 1].time_s};
 }
 
-Stretch chosen_stretch(const PageRequest& request, const std::optional<RunClock>& clock,
-                       const std::vector<Sample>& rows, double window_s) {
-  const double end_s = rows.back().time_s;
-  if (!request.from_s && !request.to_s && end_s > longest_unasked_s) return busiest(rows, window_s);
+bool wants_busiest(const PageRequest& request, double end_s) {
+  return !request.from_s && !request.to_s && end_s > longest_unasked_s;
+}
+
+/// When the run ends, where that is known before it is simulated: at the end of a window.
+std::optional<double> known_end_s(const Model& model, std::uint32_t run) {
+  const auto& duration_s = model.compiled().trial_of(run).duration_s;
+  if (!duration_s) return std::nullopt;
+  const SensingInForce& sensing = model.compiled().sensing();
+  const auto end_of = [&](std::int64_t window) {
+    return static_cast<double>(window * sensing.ticks_per_window) / sensing.tick_rate_hz;
+  };
+  auto window = std::max<std::int64_t>(1, std::llround(std::floor(*duration_s / end_of(1))) - 1);
+  while (end_of(window) < *duration_s) ++window;
+  return end_of(window);
+}
+
+Stretch chosen_stretch(const PageRequest& request, const std::optional<RunClock>& clock, double end_s,
+                       double window_s) {
   Stretch stretch{request.from_s.value_or(0.0), end_s};
   if (request.to_s) {
     stretch.to_s = std::min(end_s, *request.to_s);
@@ -120,7 +136,8 @@ io::RunPage run_page(const Model& model, const PageRequest& request, const Stret
   std::vector<std::size_t> all_sensors(model.scene().sensors.size());
   std::iota(all_sensors.begin(), all_sensors.end(), 0);
   Film film =
-      studies::film(model, request.run, {stretch.from_s, stretch.to_s, request.keys_per_s, std::move(all_sensors)});
+      studies::film(model, request.run,
+                    {stretch.from_s, stretch.to_s, request.keys_per_s, std::move(all_sensors), request.simulated});
   const auto or_else = [](const std::string& given, const std::string& own) { return given.empty() ? own : given; };
   io::RunPage page;
   page.title = model.script().name + ", " + model.trial_of(request.run);
@@ -132,6 +149,7 @@ io::RunPage run_page(const Model& model, const PageRequest& request, const Stret
   page.made_by = "pirsim " + version() + " (" + git_revision() + ")";
   page.sensors = page_sensors(model, film);
   page.run = std::move(film.run);
+  page.rows = std::move(film.rows);
   drop_absent_people(page.run);
   page.active_zones = std::move(film.active_zones);
   for (const SeatSpec& seat : model.compiled().scene().seats)
@@ -141,10 +159,31 @@ io::RunPage run_page(const Model& model, const PageRequest& request, const Stret
   return page;
 }
 
-std::vector<Sample> rows_of(const Model& model, std::uint32_t run) {
-  RunResult result = run_once(model, run);
-  if (result.fault) throw Error(ErrorCode::infeasible, result.fault->message);
-  return std::move(result.samples);
+std::vector<Sample> rows_of(const Model& model, const PageRequest& request) {
+  const double window_s = model.tick_s() * model.compiled().sensing().ticks_per_window;
+  StudyOptions study;
+  study.threads = 1;
+  study.runs = RunRange{request.run, request.run + 1};
+  if (request.simulated) study.window_done = [&] { request.simulated(window_s); };
+  std::vector<Sample> rows;
+  run_study(model, study, [&](const RunResult& result) {
+    if (result.fault) throw Error(ErrorCode::infeasible, result.fault->message);
+    rows = result.samples;
+  });
+  return rows;
+}
+
+/// A whole run is simulated beforehand only where that tells what to show.
+Stretch find_stretch(const Model& model, const PageRequest& request, double window_s) {
+  const std::optional<double> known_s = known_end_s(model, request.run);
+  std::vector<Sample> rows;
+  if (!known_s || wants_busiest(request, *known_s)) rows = rows_of(model, request);
+  const double end_s = known_s ? *known_s : rows.back().time_s;
+  Stretch stretch = wants_busiest(request, end_s)
+                        ? busiest(rows, window_s)
+                        : chosen_stretch(request, model.compiled().clock_of(request.run), end_s, window_s);
+  stretch.run_s = end_s;
+  return stretch;
 }
 
 }  // namespace
@@ -154,15 +193,11 @@ Page page_of(const Model& model, const PageRequest& request) {
   using namespace studies;
   require_run(model, request.run);
   require("keys_per_s", request.keys_per_s, {.min = 0.1, .max = 100.0});
-  std::vector<Sample> rows = rows_of(model, request.run);
   const double window_s = model.tick_s() * model.compiled().sensing().ticks_per_window;
-  const Stretch stretch = chosen_stretch(request, model.compiled().clock_of(request.run), rows, window_s);
+  const Stretch stretch = find_stretch(model, request, window_s);
   io::RunPage page = run_page(model, request, stretch);
-  page.run_s = rows.back().time_s;
+  page.run_s = stretch.run_s;
   page.window_s = window_s;
-  std::erase_if(
-      rows, [&](const Sample& row) { return row.time_s <= stretch.from_s + 1e-6 || row.time_s > stretch.to_s + 1e-6; });
-  page.rows = std::move(rows);
   if (request.coverage) page.map = page_map(model.compiled().scene(), *request.coverage);
   std::ostringstream text;
   io::write_run_page(text, page);

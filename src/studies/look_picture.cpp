@@ -27,13 +27,14 @@ bool reached_default_time(const State& state, std::int64_t& work_began, const Mo
   return work_began >= 0 && static_cast<double>(state.tick() - work_began) * model.tick_s() >= into_work_s;
 }
 
-State state_at(const Model& model, std::uint32_t run, const std::optional<double>& asked_s) {
+State state_at(const Model& model, std::uint32_t run, const std::optional<double>& asked_s,
+               const Simulated& simulated) {
   require_run(model, run);
   State state(model, run);
   std::int64_t work_began = -1;
   while (!state.finished()) {
     if (asked_s ? time_s(model, state) >= *asked_s : reached_default_time(state, work_began, model)) break;
-    step_tick(model, state);
+    if (step_tick(model, state) && simulated) simulated(model.tick_s() * model.compiled().sensing().ticks_per_window);
   }
   // Where somebody asks for a moment that never comes, a picture of another one would mislead.
   if (asked_s && !(*asked_s >= 0.0 && time_s(model, state) >= *asked_s)) {
@@ -108,7 +109,7 @@ Picture picture_of(const Model& model, const PictureRequest& request) {
                                   request.field_of_view_deg,
                                   request.width,
                                   request.height};
-  const State state = studies::state_at(model, request.run, request.time_s);
+  const State state = studies::state_at(model, request.run, request.time_s, request.simulated);
   const io::Pixels image = studies::picture(model, state, spec);
   return {io::to_png(image.width, image.height, image.rgb), studies::time_s(model, state)};
 }
@@ -117,7 +118,9 @@ double export_run(const std::filesystem::path& file, const Model& model, const F
   studies::require("keys_per_s", request.keys_per_s, {.min = 0.001, .max = 10000.0});
   studies::require_run(model, request.run);
   const std::optional<RunClock> clock = model.compiled().clock_of(request.run);
-  studies::FilmSpec spec{.keys_per_s = request.keys_per_s, .beams_of = studies::sensors_named(model, request.beams)};
+  studies::FilmSpec spec{.keys_per_s = request.keys_per_s,
+                         .beams_of = studies::sensors_named(model, request.beams),
+                         .simulated = request.simulated};
   spec.from_s = request.from_s.value_or(spec.from_s);
   spec.to_s = request.to_s.value_or(spec.to_s);
   if (!(spec.to_s > spec.from_s)) {

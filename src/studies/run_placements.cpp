@@ -26,12 +26,13 @@ void add_models(SceneSpec& scene, const PlacementSpec& spec, const PlacementOpti
 PlacementReport run_placements(SceneSpec scene, const PlacementSpec& spec, const PlacementOptions& options) {
   add_models(scene, spec, options);
   PlacementReport report;
+  const auto set_done = options.set_done ? options.set_done : [] {};
   for (const SensorSetSpec& set : spec.sets) {
     report.ranked.push_back(studies::score(scene, spec.coverage, set, options.threads));
+    set_done();
   }
   report.warnings = studies::warnings(report.ranked, scene.floor);
   if (spec.search) {
-    const auto set_done = options.set_done ? options.set_done : [] {};
     report.search = studies::search_placement(scene, spec.coverage, *spec.search, options.threads, set_done);
     report.ranked.push_back(report.search->even);
     report.ranked.push_back(report.search->found);

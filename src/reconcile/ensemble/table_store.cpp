@@ -146,18 +146,27 @@ void TableStore::keep(std::uint32_t number, const TableChunk& chunk) const {
 
 void for_each_chunk(const TableStore& store, std::uint32_t n_items, const Context& context, const ItemJob& job,
                     const std::function<void(TableChunk&)>& use) {
+  const auto tell = [&](std::uint32_t n_there) {
+    if (context.observer.progress) context.observer.progress(n_there, n_items);
+  };
+  tell(0);
   for (std::uint32_t first = 0; first < n_items; first += items_per_chunk) {
     const std::uint32_t n = std::min(items_per_chunk, n_items - first);
     std::optional<TableChunk> chunk = store.find(first / items_per_chunk);
-    if (!chunk) {
+    if (chunk) {
+      tell(first + n);
+    } else {
+      std::uint32_t n_there = first;
       chunk.emplace();
       ordered_parallel<TableChunk>(
           n, context.threads, [&](std::size_t i) { return job(first + static_cast<std::uint32_t>(i)); },
-          [&](TableChunk& one) { append(*chunk, one); });
+          [&](TableChunk& one) {
+            append(*chunk, one);
+            tell(++n_there);
+          });
       store.keep(first / items_per_chunk, *chunk);
     }
     use(*chunk);
-    if (context.observer.progress) context.observer.progress(first + n, n_items);
   }
 }
 
