@@ -238,7 +238,7 @@ ScriptSpec script_of(const YamlNode& root, const std::string& name, const std::f
   }
   script.effects = read_effects(map.list("effects"), faults);
   check_together(script, [&](std::string_view field, const std::string& message) {
-    faults.error(map.where(std::string(field)), message);
+    faults.error(map.where(std::string(field)), std::string(field) + ": " + message);
   });
   map.finish();
   faults.throw_if_errors();
