@@ -89,24 +89,24 @@ struct DatasetOptions {
   unsigned threads = 0;  ///< 0: all cores; changes no byte
   std::optional<Shard> shard;
   enum class Start { anew, resume } start = Start::anew;
-  std::function<bool()> goes_on{};   ///< asked before each room-day
-  std::function<void()> made_one{};  ///< after each room-day
+  std::function<bool()> goes_on{};  ///< asked before each room-day, and before each piece of other work
   DatasetObserver observer{};
   std::function<void(const Issue&)> tell{};  ///< of what a user should know, from one thread at a time
 };
 
 /// Makes the room-days of the recipe, or a shard of them, each a file of its own that appears whole or not at all; what
-/// is there already of the same recipe and build is kept if it is to be resumed. Throws Error(input) for a folder that
-/// holds another dataset. False if it was stopped.
+/// is there already of the same recipe and build is kept if it is to be resumed and if its content is what was written.
+/// Throws Error(input) for a folder that holds another dataset, and for a room that was changed; Error(io) if another
+/// process is at the same shard. False if it was stopped.
 bool make_room_days(const RecipeSpec& recipe, const std::filesystem::path& folder, const DatasetOptions& options);
 
-/// Room-days that aren't there yet, by index (room by room).
+/// Room-days that aren't there yet, by index (room by room). Files are told by their sizes.
 [[nodiscard]] std::vector<std::uint32_t> missing_room_days(const RecipeSpec& recipe,
-                                                           const std::filesystem::path& folder);
+                                                           const std::filesystem::path& folder,
+                                                           const io::SceneOptions& options);
 
 /// When all room-days are there: tables, datapackage.json, README.md, pictures, exports of the whole. Throws
-/// Error(input) if some are missing.
-void finish_dataset(const RecipeSpec& recipe, const std::filesystem::path& folder, const io::SceneOptions& options,
-                    const DatasetObserver& observer = {});
+/// Error(input) if some are missing or aren't what was written. False if it was stopped.
+bool finish_dataset(const RecipeSpec& recipe, const std::filesystem::path& folder, const DatasetOptions& options);
 
 }  // namespace pirsim::dataset

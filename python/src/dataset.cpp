@@ -21,10 +21,15 @@ nb::object make_dataset(const std::string& recipe, const std::string& folder, st
   std::vector<Issue> told;
   options.tell = [&](const Issue& issue) { told.push_back(issue); };
   attend(progress, [&](Job& job) {
-    job.n_all = resume ? dataset::missing_room_days(spec, folder).size() : spec.n_room_days();
+    using Stage = dataset::DatasetObserver::Stage;
+    Stage stage = Stage::looking_for_days;
     options.goes_on = [&] { return !job.stop; };
-    options.made_one = [&] { ++job.n_done; };
-    if (dataset::make_room_days(spec, folder, options)) dataset::finish_dataset(spec, folder, options.scenes);
+    options.observer.begin = [&](Stage begun, std::uint32_t total) {
+      stage = begun;
+      if (stage == Stage::making_days) job.n_all = total;
+    };
+    options.observer.done_one = [&] { job.n_done += stage == Stage::making_days ? 1 : 0; };
+    if (dataset::make_room_days(spec, folder, options)) dataset::finish_dataset(spec, folder, options);
   });
   return to_python(told);
 }

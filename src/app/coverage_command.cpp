@@ -31,7 +31,7 @@ studies::CoverageStudy load_coverage(const Inputs& inputs) {
 
 /// Goes on where an interrupted run of the same study stopped.
 CoverageMap compute(const studies::CoverageStudy& study, studies::RowStore& rows, const Inputs& inputs,
-                    unsigned threads) {
+                    unsigned threads, const StopRequest& stop) {
   CoverageMap map = studies::empty_map(study);
   map.counts = rows.found();
   if (rows.n_found_rows() > 0 && inputs.verbosity != Verbosity::quiet) {
@@ -39,7 +39,6 @@ CoverageMap compute(const studies::CoverageStudy& study, studies::RowStore& rows
   }
   Progress progress({"moving a target over the floor", study.grid().n_rows() - rows.n_found_rows(), "rows of squares"},
                     inputs.verbosity);
-  const StopRequest stop;
   const auto keep = [&](std::size_t, const std::vector<MotionCount>& counts) {
     rows.append(counts);
     map.counts.insert(map.counts.end(), counts.begin(), counts.end());
@@ -50,8 +49,10 @@ CoverageMap compute(const studies::CoverageStudy& study, studies::RowStore& rows
   return map;
 }
 
-void draw_maps(const studies::CoverageStudy& study, const CoverageMap& map, const std::filesystem::path& folder) {
+void draw_maps(const studies::CoverageStudy& study, const CoverageMap& map, const std::filesystem::path& folder,
+               const StopRequest& stop) {
   const auto write = [&](const std::string& name, const io::MapChart& chart) {
+    stop.throw_if_made();
     const io::Pixels picture = io::drawn(chart);
     io::write_png(folder / (name + ".png"), picture.width, picture.height, picture.rgb);
   };
@@ -67,10 +68,11 @@ void coverage(const Inputs& inputs, const CoverageOptions& options) {
   if (!options.report.empty()) report_file.emplace(options.report);
   make_folder(options.output);
   studies::RowStore rows(options.output / "coverage.rows", study);
-  const CoverageMap map = compute(study, rows, inputs, options.threads);
+  const StopRequest stop;  // until all is written: rows are kept as long
+  const CoverageMap map = compute(study, rows, inputs, options.threads, stop);
   const studies::CoverageFigures figures = studies::figures_of(map);
   io::write_text_file(options.output / "coverage.csv", studies::to_csv(map));
-  draw_maps(study, map, options.output);
+  draw_maps(study, map, options.output, stop);
   if (report_file) write_page(*report_file, studies::coverage_report(study, map, figures), inputs);
   rows.remove();
   if (inputs.verbosity == Verbosity::quiet) return;

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <iostream>
 #include <optional>
 
@@ -49,27 +48,33 @@ class Teller {
   std::optional<Progress> progress_;
 };
 
-void finish(const DatasetCommand& command, const dataset::RecipeSpec& recipe) {
-  Teller teller(command.inputs.verbosity);
-  dataset::finish_dataset(recipe, command.folder, scene_options(command.inputs), teller.observer());
+[[noreturn]] void stop_at(const StopRequest& stop, const std::string& what) {
+  throw Error(ErrorCode::stopped, stop.signal_name() + ": stopped " + what);
+}
+
+void finish(const DatasetCommand& command, const dataset::RecipeSpec& recipe, const dataset::DatasetOptions& options,
+            const StopRequest& stop) {
+  if (!dataset::finish_dataset(recipe, command.folder, options))
+    stop_at(stop, "before the dataset was described; continue with --finish");
   if (command.inputs.verbosity != Verbosity::quiet)
     std::cerr << "wrote " << (command.folder / "datapackage.json").string() << ": " << recipe.n_rooms() << " rooms, "
               << recipe.n_room_days() << " room-days\n";
 }
 
-void make(const DatasetCommand& command, const dataset::RecipeSpec& recipe) {
-  dataset::DatasetOptions options;
-  options.scenes = scene_options(command.inputs);
-  options.threads = command.threads;
-  options.start = command.start;
-  if (!command.shard.empty()) options.shard = studies::parse_shard(command.shard);
-  const StopRequest stop;
-  Teller teller(command.inputs.verbosity);
-  options.goes_on = [&] { return !stop.was_made(); };
-  options.observer = teller.observer();
-  options.tell = [&](const Issue& issue) { tell({issue}, command.inputs.verbosity); };
-  if (!dataset::make_room_days(recipe, command.folder, options)) {
-    throw Error(ErrorCode::stopped, stop.signal_name() + ": stopped at the end of a room-day; continue with --resume");
+void make(const DatasetCommand& command, const dataset::RecipeSpec& recipe, const dataset::DatasetOptions& options,
+          const StopRequest& stop) {
+  if (!dataset::make_room_days(recipe, command.folder, options))
+    stop_at(stop, "at the end of a room-day; continue with --resume");
+}
+
+void tell_what_is_missing(const DatasetCommand& command, const dataset::RecipeSpec& recipe,
+                          const dataset::DatasetOptions& options) {
+  if (command.inputs.verbosity == Verbosity::quiet) return;
+  const std::size_t missing = dataset::missing_room_days(recipe, command.folder, options.scenes).size();
+  if (missing == 0) {
+    std::cerr << "all " << recipe.n_room_days() << " room-days are there: finish with --finish\n";
+  } else {
+    std::cerr << missing << " of " << recipe.n_room_days() << " room-days aren't there yet\n";
   }
 }
 
@@ -79,15 +84,20 @@ void run(const DatasetCommand& command) {
     const Progress progress({.what = "reading " + command.recipe.filename().string()}, command.inputs.verbosity);
     return dataset::read_recipe(command.recipe);
   }();
-  if (command.work == DatasetCommand::Work::make) make(command, recipe);
-  if (command.work == DatasetCommand::Work::finish || command.shard.empty()) return finish(command, recipe);
-  const std::size_t missing = dataset::missing_room_days(recipe, command.folder).size();
-  if (command.inputs.verbosity == Verbosity::quiet) return;
-  if (missing == 0) {
-    std::cerr << "all " << recipe.n_room_days() << " room-days are there: finish with --finish\n";
-  } else {
-    std::cerr << missing << " of " << recipe.n_room_days() << " room-days aren't there yet\n";
-  }
+  const StopRequest stop;  // of all phases: the last one takes minutes too
+  Teller teller(command.inputs.verbosity);
+  dataset::DatasetOptions options;
+  options.scenes = scene_options(command.inputs);
+  options.threads = command.threads;
+  options.start = command.start;
+  options.goes_on = [&] { return !stop.was_made(); };
+  options.observer = teller.observer();
+  options.tell = [&](const Issue& issue) { tell({issue}, command.inputs.verbosity); };
+  if (!command.shard.empty()) options.shard = studies::parse_shard(command.shard);
+  if (command.work == DatasetCommand::Work::make) make(command, recipe, options, stop);
+  if (command.work == DatasetCommand::Work::finish || command.shard.empty())
+    return finish(command, recipe, options, stop);
+  tell_what_is_missing(command, recipe, options);
 }
 
 }  // namespace

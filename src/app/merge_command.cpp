@@ -59,10 +59,14 @@ void merge(const MergeOptions& options) {
     file.emplace(options.summary);
     tally.emplace(trial_ids(script), script.summary, measured_cells(script));
   }
-  const studies::Sink sink = [&](std::string_view bytes) { tally->add(bytes); };
+  const StopRequest stop;
+  const studies::Sink sink = [&](std::string_view bytes) {
+    stop.throw_if_made();
+    if (tally) tally->add(bytes);
+  };
   std::optional<Progress> progress;
   progress.emplace(Work{.what = "joining the shards of " + options.folder.string()}, options.verbosity);
-  const io::Manifest merged = studies::merge_campaign(options.folder, options.output, tally ? sink : studies::Sink());
+  const io::Manifest merged = studies::merge_campaign(options.folder, options.output, sink);
   progress.reset();
   if (tally) {
     write_summary(tally->finish(), *file, options.summary, script.name, merged.notes.remarks(), options.verbosity);

@@ -38,9 +38,9 @@ class StreamedRows final : public RowOutput {
     for (const Sample& sample : rows) csv_.write(sample);
     notes_ += notes;
     rows_ += rows.size();
-    if (!stream()) commit();  // which says why
+    if (!stream()) commit({});  // which says why
   }
-  void commit() override { file_ ? file_->commit() : require_written(); }
+  void commit(const std::function<bool()>&) override { file_ ? file_->commit() : require_written(); }
   void discard() noexcept override {}
   [[nodiscard]] std::uint64_t rows() const override { return rows_; }
   [[nodiscard]] const io::RunNotes& notes() const override { return notes_; }
@@ -70,8 +70,8 @@ class ResumableRows final : public RowOutput {
     for (const Sample& sample : rows) csv_.write(sample);
     file_.add_run(lines_.view(), rows.size(), notes);
   }
-  void commit() override {
-    if (!file_.finished()) file_.commit();
+  void commit(const std::function<bool()>& goes_on) override {
+    if (!file_.finished()) file_.commit(goes_on);
   }
   void discard() noexcept override { file_.discard(); }
   [[nodiscard]] std::uint64_t rows() const override { return file_.rows(); }
@@ -246,10 +246,7 @@ class ZoneOutput {
 class TraceOutput {
  public:
   TraceOutput(const std::filesystem::path& file, const Model& model)
-      : output_(file), csv_(output_.lines(), sensor_ids(model), model.compiled().sensing().tick_rate_hz) {
-    if (model.compiled().array().analog() == nullptr)
-      throw Error(ErrorCode::usage, "--trace: no sensor has an analog response");
-  }
+      : output_(file), csv_(output_.lines(), sensor_ids(model), model.compiled().sensing().tick_rate_hz) {}
 
   /// Bytes before compression.
   std::size_t add(const RunResult& result) {
@@ -302,6 +299,8 @@ struct WholeStudyOutputs::Files {
 
 WholeStudyOutputs::WholeStudyOutputs(const Model& model, const Inputs& inputs, const RunOptions& options)
     : files_(new Files{model, inputs, options, make_summary(model, options), studies::StudyReport(model)}) {
+  if (!options.trace.empty() && model.compiled().array().analog() == nullptr)
+    throw Error(ErrorCode::usage, "--trace: no sensor has an analog response");
   require_memory(model, options);
   if (!options.zones.empty()) files_->zones.emplace(options.zones, model);
   if (!options.trace.empty()) files_->trace.emplace(options.trace, model);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -22,8 +23,9 @@ class RowOutput {
   virtual void add_run(std::span<const Sample> rows, const io::RunNotes& notes) = 0;
   /// Of all runs, also of those that were there before.
   [[nodiscard]] virtual const io::RunNotes& notes() const = 0;
-  /// After the last run.
-  virtual void commit() = 0;
+  /// After the last run. To compress much takes long: goes_on is asked meanwhile, and if it says no, Error(stopped) is
+  /// thrown and nothing is lost.
+  virtual void commit(const std::function<bool()>& goes_on) = 0;
   /// The study ends early and won't be resumed: removes what was written.
   virtual void discard() noexcept = 0;
   [[nodiscard]] virtual std::uint64_t rows() const = 0;
@@ -37,6 +39,7 @@ class RowOutput {
 /// Nothing of them is left if the study ends early.
 class WholeStudyOutputs {
  public:
+  /// Throws Error: usage for what the study hasn't got (before anything is opened), io.
   WholeStudyOutputs(const Model& model, const Inputs& inputs, const RunOptions& options);
   ~WholeStudyOutputs();
   void add(const RunResult& result);

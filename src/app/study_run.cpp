@@ -208,7 +208,8 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
   study.runs = rows->missing_runs();
   const double window_s = model.tick_s() * model.compiled().sensing().ticks_per_window;
   study.window_done = [&] { progress.simulated(window_s); };
-  study.goes_on = [&] { return !(stop && stop->was_made()) && !out_of_time(); };
+  const auto is_wanted = [&] { return !(stop && stop->was_made()); };
+  study.goes_on = [&] { return is_wanted() && !out_of_time(); };
   try {
     run_study(model, study, [&](const RunResult& result) {
       if (result.fault && options.faults == RunOptions::Faults::stop) {
@@ -228,7 +229,7 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
     const std::string cause = stop && stop->was_made() ? stop->signal_name() : "--max-time";
     throw Error(ErrorCode::stopped, stop_message(options, cause, model, *rows));
   }
-  rows->commit();
+  rows->commit(is_wanted);
   others.commit(rows->notes());
   tell_what_is_written(options, *rows, done, inputs.verbosity);
   tell(rows->notes(), inputs.verbosity);

@@ -8,6 +8,7 @@
 #include "dataset/room_day.hpp"
 #include "dataset/store.hpp"
 #include "io/atomic_file.hpp"
+#include "io/scene_writer.hpp"
 
 namespace pirsim::dataset {
 namespace {
@@ -17,31 +18,37 @@ namespace fs = std::filesystem;
 /// Rooms as files of the dataset, which are what is simulated: whoever runs them again has the same.
 class Rooms {
  public:
+  struct Room {
+    SceneSpec scene;
+    std::optional<WrittenFile> file;  ///< of a drawn room
+  };
   Rooms(const RecipeSpec& recipe, const fs::path& folder, const DatasetOptions& options)
       : recipe_(recipe), folder_(folder), options_(options) {}
 
-  std::shared_ptr<const SceneSpec> room(int number) {
+  std::shared_ptr<const Room> room(int number) {
     const std::lock_guard lock(mutex_);
     if (const auto known = known_[number].lock()) return known;
-    auto scene = std::make_shared<const SceneSpec>(read(number));
-    known_[number] = scene;
-    return scene;
+    auto room = std::make_shared<const Room>(read(number));
+    known_[number] = room;
+    return room;
   }
 
  private:
-  SceneSpec read(int number) const {
-    if (const fs::path own = own_scene(recipe_, number); !own.empty()) return io::read_scene(own, options_.scenes);
+  Room read(int number) const {
+    if (const fs::path own = own_scene(recipe_, number); !own.empty())
+      return {io::read_scene(own, options_.scenes), std::nullopt};
     const fs::path file = room_file(folder_, number);
-    const SceneSpec drawn = room_of(recipe_, number, options_.scenes);
-    write_once(file, shard_name(options_), [&](const fs::path& here) { io::write_scene(here, drawn); });
-    return io::read_scene(file, options_.scenes);
+    const std::string text = io::scene_text(room_of(recipe_, number, options_.scenes), Where{file.string()});
+    write_once(file, text);
+    const WrittenFile written{"rooms/" + file.filename().string(), text.size(), sha256(text)};
+    return {io::read_scene(file, options_.scenes), written};
   }
 
   const RecipeSpec& recipe_;
   const fs::path& folder_;
   const DatasetOptions& options_;
   std::mutex mutex_;
-  std::map<int, std::weak_ptr<const SceneSpec>> known_;
+  std::map<int, std::weak_ptr<const Room>> known_;
 };
 
 /// The record last, so that a room-day with a record is whole.
@@ -65,8 +72,7 @@ fs::path first_in_the_way(const RecipeSpec& recipe, const fs::path& folder) {
   return fs::exists(there) && io::read_text_file(there) != recipe.text ? there : fs::path();
 }
 
-void claim_folder(const RecipeSpec& recipe, const fs::path& folder, const std::string& made_by,
-                  const DatasetOptions& options) {
+void claim_folder(const RecipeSpec& recipe, const fs::path& folder, const std::string& made_by) {
   make_folders(folder);
   const fs::path in_the_way = first_in_the_way(recipe, folder);  // before the next look: another shard may claim now
   const fs::path file = folder / "provenance.txt";
@@ -81,9 +87,8 @@ void claim_folder(const RecipeSpec& recipe, const fs::path& folder, const std::s
     throw Error(ErrorCode::input, Where{in_the_way.string()},
                 "is there already, and of no dataset: it would be replaced; name another folder");
   }
-  write_once(folder / "recipe.yaml", shard_name(options),
-             [&](const fs::path& here) { io::write_text_file(here, recipe.text); });
-  write_once(file, shard_name(options), [&](const fs::path& here) { io::write_text_file(here, made_by + '\n'); });
+  write_once(folder / "recipe.yaml", recipe.text);
+  write_once(file, made_by + '\n');
 }
 
 /// Throws for a room that can't be drawn and for what a room lacks, before hours of work on others.
@@ -108,21 +113,39 @@ void check_rooms(const RecipeSpec& recipe, const std::vector<std::uint32_t>& wan
       [&](bool&) { done_one(options.observer); }, options.goes_on);
 }
 
+/// Of the shard, by index. Contents are read, since nobody will notice an altered row later.
+std::vector<std::uint32_t> wanted_room_days(const RecipeSpec& recipe, const fs::path& folder,
+                                            const std::string& made_by, const DatasetOptions& options) {
+  const RunRange range = runs_of(options.shard.value_or(Shard{}), recipe.n_room_days());
+  std::vector<std::uint32_t> wanted;
+  std::uint32_t next = range.first;
+  const bool resumes = options.start == DatasetOptions::Start::resume;
+  begin(options.observer, DatasetObserver::Stage::looking_for_days, range.count());
+  ordered_parallel<bool>(
+      range.count(), options.threads,
+      [&](std::size_t i) {
+        const auto index = range.first + static_cast<std::uint32_t>(i);
+        return resumes && whole_record(recipe, folder, index, made_by, Look::contents).has_value();
+      },
+      [&](bool& is_there) {
+        if (!is_there) wanted.push_back(next);
+        ++next;
+        done_one(options.observer);
+      },
+      options.goes_on);
+  return wanted;
+}
+
 }  // namespace
 
 bool make_room_days(const RecipeSpec& recipe, const fs::path& folder, const DatasetOptions& options) {
-  const std::string made_by = provenance(recipe);
+  const std::string made_by = provenance(recipe, options.scenes);
   const std::vector<std::string> columns = sensor_columns(recipe, options.scenes);
-  const RunRange range = runs_of(options.shard.value_or(Shard{}), recipe.n_room_days());
-  std::vector<std::uint32_t> wanted;
-  begin(options.observer, DatasetObserver::Stage::looking_for_days, range.count());
-  for (std::uint32_t i = range.first; i < range.end; ++i) {
-    done_one(options.observer);
-    const bool is_there = options.start == DatasetOptions::Start::resume && whole_record(recipe, folder, i, made_by);
-    if (!is_there) wanted.push_back(i);
-  }
+  const std::vector<std::uint32_t> wanted = wanted_room_days(recipe, folder, made_by, options);
   check_rooms(recipe, wanted, options);
-  claim_folder(recipe, folder, made_by, options);  // not by a recipe that can't be followed
+  if (options.goes_on && !options.goes_on()) return false;  // not all of them was looked at
+  claim_folder(recipe, folder, made_by);                    // not by a recipe that can't be followed
+  const AtWork at_work(folder, options.shard);
   Rooms rooms(recipe, folder, options);
   struct Made {
     RoomDayRecord record;
@@ -135,15 +158,15 @@ bool make_room_days(const RecipeSpec& recipe, const fs::path& folder, const Data
       wanted.size(), options.threads,
       [&](std::size_t i) {
         const auto [room, day] = room_and_day(recipe, wanted[i]);
-        const auto scene = rooms.room(room);
-        const RoomDay made = simulate(recipe, *scene, columns, room, day);
+        const auto in = rooms.room(room);
+        RoomDay made = simulate(recipe, in->scene, columns, room, day);
+        made.record.scene = in->file;
         write(made, folder, made_by);
-        return Made{made.record, lack_of_people(recipe, *scene, room)};
+        return Made{made.record, lack_of_people(recipe, in->scene, room)};
       },
       [&](Made& made) {
         const RoomDayRecord& record = made.record;
         ++done;
-        if (options.made_one) options.made_one();
         done_one(options.observer);
         if (!options.tell) return;
         if (!made.lack.empty() && !lack_told) {
@@ -159,11 +182,12 @@ bool make_room_days(const RecipeSpec& recipe, const fs::path& folder, const Data
   return done == wanted.size();
 }
 
-std::vector<std::uint32_t> missing_room_days(const RecipeSpec& recipe, const fs::path& folder) {
-  const std::string made_by = provenance(recipe);
+std::vector<std::uint32_t> missing_room_days(const RecipeSpec& recipe, const fs::path& folder,
+                                             const io::SceneOptions& options) {
+  const std::string made_by = provenance(recipe, options);
   std::vector<std::uint32_t> missing;
   for (std::uint32_t i = 0; i < recipe.n_room_days(); ++i) {
-    if (!whole_record(recipe, folder, i, made_by)) missing.push_back(i);
+    if (!whole_record(recipe, folder, i, made_by, Look::sizes)) missing.push_back(i);
   }
   return missing;
 }

@@ -1,9 +1,8 @@
 #include <algorithm>
 #include <chrono>
-#include <fstream>
-#include <sstream>
 
 #include "core/digest.hpp"
+#include "core/parallel.hpp"
 #include "dataset/description.hpp"
 #include "dataset/exports.hpp"
 #include "dataset/store.hpp"
@@ -19,31 +18,36 @@ namespace {
 namespace fs = std::filesystem;
 constexpr int most_pictures = 6;
 
-std::string hash_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  Sha256 hash;
-  std::string piece(1U << 20U, '\0');
-  while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0)
-    hash.add({piece.data(), static_cast<std::size_t>(in.gcount())});
-  return hash.hex();
+/// What was written differs from what is there, though it may be as long.
+void require_written(const fs::path& folder, const RoomDayRecord& record) {
+  for (const WrittenFile& file : record.files) {
+    if (!is_whole(folder, file, Look::contents))
+      throw Error(ErrorCode::input, Where{(folder / file.path).string()},
+                  "isn't what was written: remove it and make it anew with --resume");
+  }
+  if (record.scene && !is_whole(folder, *record.scene, Look::contents))
+    throw Error(ErrorCode::input, Where{(folder / record.scene->path).string()},
+                "isn't there or isn't the room that the rows were made of: move it away, and make it anew with --resume");
 }
 
-std::vector<RoomDayRecord> read_records(const RecipeSpec& recipe, const fs::path& folder, const std::string& made_by) {
+/// Those that were read until it was stopped.
+std::vector<RoomDayRecord> read_records(const RecipeSpec& recipe, const fs::path& folder, const std::string& made_by,
+                                        const DatasetOptions& options) {
+  using Found = std::optional<RoomDayRecord>;
   std::vector<RoomDayRecord> records;
   std::uint32_t missing = 0;
-  for (std::uint32_t i = 0; i < recipe.n_room_days(); ++i) {
-    auto record = whole_record(recipe, folder, i, made_by);
-    if (!record) {
-      ++missing;
-      continue;
-    }
-    for (const WrittenFile& file : record->files) {
-      if (hash_of(folder / file.path) != file.sha256)
-        throw Error(ErrorCode::input, Where{(folder / file.path).string()},
-                    "isn't what was written: remove it and make it anew with --resume");
-    }
-    records.push_back(std::move(*record));
-  }
+  ordered_parallel<Found>(
+      recipe.n_room_days(), options.threads,
+      [&](std::size_t i) {
+        Found record = whole_record(recipe, folder, static_cast<std::uint32_t>(i), made_by, Look::sizes);
+        if (record) require_written(folder, *record);
+        return record;
+      },
+      [&](Found& record) {
+        if (record) records.push_back(std::move(*record));
+        else ++missing;
+      },
+      options.goes_on);
   if (missing > 0) {
     throw Error(ErrorCode::input, Where{folder.string()},
                 std::to_string(missing) + " of " + std::to_string(recipe.n_room_days()) +
@@ -92,14 +96,16 @@ void write_energyplus(const Description& described, const fs::path& folder) {
 
 }  // namespace
 
-void finish_dataset(const RecipeSpec& recipe, const fs::path& folder, const io::SceneOptions& options,
-                    const DatasetObserver& observer) {
-  Description described{recipe, provenance(recipe), sensor_columns(recipe, options), {}, {}, parts_of(recipe), {}};
-  described.days = read_records(recipe, folder, described.provenance);
-  begin(observer, DatasetObserver::Stage::describing_rooms, static_cast<std::size_t>(recipe.n_rooms()));
+bool finish_dataset(const RecipeSpec& recipe, const fs::path& folder, const DatasetOptions& options) {
+  const auto is_stopped = [&] { return options.goes_on && !options.goes_on(); };
+  Description described{recipe, provenance(recipe, options.scenes), sensor_columns(recipe, options.scenes), {}, {},
+                        parts_of(recipe), {}};
+  described.days = read_records(recipe, folder, described.provenance, options);
+  begin(options.observer, DatasetObserver::Stage::describing_rooms, static_cast<std::size_t>(recipe.n_rooms()));
   for (int number = 1; number <= recipe.n_rooms(); ++number) {
-    done_one(observer);
-    DescribedRoom room = described_room(recipe, folder, number, options);
+    if (is_stopped()) return false;
+    done_one(options.observer);
+    DescribedRoom room = described_room(recipe, folder, number, options.scenes);
     const auto first = static_cast<std::size_t>((number - 1) * recipe.days);
     room.part = described.parts[first];
     room.staff = described.days[first].staff;
@@ -110,6 +116,7 @@ void finish_dataset(const RecipeSpec& recipe, const fs::path& folder, const io::
     }
     described.rooms.push_back(std::move(room));
   }
+  if (is_stopped()) return false;
   std::map<std::string, WrittenFile> written;
   for (const auto& [name, text] : tables(described)) {
     io::write_text_file(folder / name, text);
@@ -119,6 +126,7 @@ void finish_dataset(const RecipeSpec& recipe, const fs::path& folder, const io::
     write_energyplus(described, folder);
   io::write_text_file(folder / "README.md", readme(described));
   io::write_text_file(folder / "datapackage.json", data_package(described, written));
+  return true;
 }
 
 }  // namespace pirsim::dataset

@@ -290,14 +290,12 @@ class Furnisher {
   // ---------------------------------------------------------------------------------------------------------
 
   void add_sensor(const SensorGroupSpec& group) {
-    const bool on_ceiling = group.mount == Mount::ceiling;
-    static const std::vector<std::string> ceiling_default{"EKMC1601111"}, other_default{"EKMC1604111"};
     SensorSpec& sensor = room_.scene.sensors.emplace_back();
     sensor.id = "PIR" + std::to_string(room_.scene.sensors.size());
-    sensor.model = one_of(!group.models.empty() ? group.models : on_ceiling ? ceiling_default : other_default, stream_);
+    sensor.model = one_of(models_of(group), stream_);
     const double height = std::min(draw_length(group.height_m, stream_), room_.height_m - off_wall_m);
     const double tilt = radians(std::round(draw(group.tilt_deg, stream_)));
-    if (on_ceiling) return hang_on_ceiling(sensor);
+    if (group.mount == Mount::ceiling) return hang_on_ceiling(sensor);
     const Quat down = glm::angleAxis(-tilt, Vec3(1, 0, 0));
     const auto& [place, direction] = group.mount == Mount::wall ? place_on_wall() : place_in_corner();
     sensor.world_from_sensor = {rotation_from_heading(heading_of(direction)) * down, Vec3(place.x, height, place.y)};
@@ -356,6 +354,12 @@ class Furnisher {
 };
 
 }  // namespace
+
+const std::vector<std::string>& models_of(const SensorGroupSpec& group) {
+  static const std::vector<std::string> ceiling_default{"EKMC1601111"}, other_default{"EKMC1604111"};
+  if (!group.models.empty()) return group.models;
+  return group.mount == Mount::ceiling ? ceiling_default : other_default;
+}
 
 std::variant<DrawnRoom, NoPlace> furnish(const RoomSpec& spec, Stream& stream) {
   return Furnisher(spec, stream).furnish();

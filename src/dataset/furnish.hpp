@@ -3,6 +3,7 @@
 
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "dataset/floor_plan.hpp"
 
@@ -13,6 +14,8 @@ struct NoPlace {
   std::string reason;
 };
 
+/// Which models a sensor of the group may be: its own, or the usual one for where it hangs.
+[[nodiscard]] const std::vector<std::string>& models_of(const SensorGroupSpec& group);
 /// A room that isn't checked yet. Sensors have their models' names, but not the models.
 [[nodiscard]] std::variant<DrawnRoom, NoPlace> furnish(const RoomSpec& spec, Stream& stream);
 

@@ -224,15 +224,19 @@ std::map<int, MotionCount> counts_from_json(const json& list) {
   return counts;
 }
 
+json file_to_json(const WrittenFile& file) {
+  return {{"path", file.path}, {"bytes", file.bytes}, {"sha256", file.sha256}};
+}
+WrittenFile file_from_json(const json& file) { return {file.at("path"), file.at("bytes"), file.at("sha256")}; }
+
 }  // namespace
 
 std::string to_json(const RoomDayRecord& r, const std::string& made_by) {
   json effects = json::array(), files = json::array();
   for (const EffectSpec& effect : r.effects)
     effects.push_back({{"name", effect.name}, {"parameters", effect.parameters}, {"choices", effect.choices}});
-  for (const WrittenFile& file : r.files)
-    files.push_back({{"path", file.path}, {"bytes", file.bytes}, {"sha256", file.sha256}});
-  const json document{{"made_by", made_by},
+  for (const WrittenFile& file : r.files) files.push_back(file_to_json(file));
+  json document{{"made_by", made_by},
                       {"room", r.room},
                       {"day", r.day},
                       {"date", r.date},
@@ -250,12 +254,17 @@ std::string to_json(const RoomDayRecord& r, const std::string& made_by) {
                       {"effects", effects},
                       {"files", files},
                       {"fault", r.fault}};
+  if (r.scene) document["scene"] = file_to_json(*r.scene);
+  document["record_sha256"] = sha256(document.dump());
   return document.dump(1) + '\n';
 }
 
 std::pair<RoomDayRecord, std::string> record_from_json(const std::string& text, const std::string& name) {
   try {
-    const json d = json::parse(text);
+    json d = json::parse(text);
+    const std::string digest = d.at("record_sha256");
+    d.erase("record_sha256");
+    if (sha256(d.dump()) != digest) throw Error(ErrorCode::input, Where{name}, "isn't what pirsim wrote");
     RoomDayRecord r;
     r.room = d.at("room");
     r.day = d.at("day");
@@ -277,7 +286,8 @@ std::pair<RoomDayRecord, std::string> record_from_json(const std::string& text, 
       for (const auto& [key, value] : e.at("parameters").items()) effect.parameters[key] = value;
       for (const auto& [key, value] : e.at("choices").items()) effect.choices[key] = value;
     }
-    for (const json& f : d.at("files")) r.files.push_back({f.at("path"), f.at("bytes"), f.at("sha256")});
+    for (const json& f : d.at("files")) r.files.push_back(file_from_json(f));
+    if (d.contains("scene")) r.scene = file_from_json(d.at("scene"));
     r.fault = d.at("fault");
     return {std::move(r), d.at("made_by").get<std::string>()};
   } catch (const json::exception& fault) {

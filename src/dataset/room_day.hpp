@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,7 @@ struct RoomDayRecord {
   std::array<double, 24> presence{}, people{};  ///< share of the hour with anybody there; people on average
   std::vector<EffectSpec> effects;
   std::vector<WrittenFile> files;  ///< the first is that of the rows; none if the day failed
+  std::optional<WrittenFile> scene;  ///< a drawn room's file, of which the day was made
   std::string fault;               ///< why there are no rows
 };
 
@@ -50,7 +52,7 @@ struct RoomDay {
                                const std::vector<std::string>& sensor_columns, int room, int day);
 
 [[nodiscard]] std::string to_json(const RoomDayRecord& record, const std::string& made_by);
-/// The record, and what made it. Throws Error(input).
+/// The record, and what made it. Throws Error(input), also for a record of which a letter was altered.
 [[nodiscard]] std::pair<RoomDayRecord, std::string> record_from_json(const std::string& text, const std::string& name);
 
 /// Relative to the dataset's folder.

@@ -1,24 +1,57 @@
 #include "dataset/store.hpp"
 
+#include <algorithm>
+#include <fstream>
+
 #include "core/digest.hpp"
-#include "io/input.hpp"
+#include "dataset/furnish.hpp"
 #include "pirsim/version.hpp"
+#include "schema/fingerprint.hpp"
 
 namespace pirsim::dataset {
 
 namespace fs = std::filesystem;
 
 namespace {
-constexpr std::size_t largest_scene = 1'000'000'000;  // as io::read_scene() takes it
+
+std::string hash_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  Sha256 hash;
+  std::string piece(1U << 20U, '\0');
+  while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0)
+    hash.add({piece.data(), static_cast<std::size_t>(in.gcount())});
+  return hash.hex();
 }
 
-std::string provenance(const RecipeSpec& recipe) {
-  std::string text = "recipe " + sha256(recipe.text);
-  for (const RoomGroupSpec& group : recipe.rooms) {
-    for (const fs::path& scene : group.scenes)
-      text += ", " + scene.filename().string() + ' ' + io::read_input(scene, largest_scene).file().sha256;
+void add_sensors(Fingerprint& print, const RoomGroupSpec& group, const io::SceneOptions& options) {
+  for (const SensorGroupSpec& sensors : group.rooms.sensors) {
+    for (const std::string& model : models_of(sensors)) {
+      try {
+        print.add(io::find_sensor_model(model, {}, options));
+      } catch (const Error& error) {
+        const Issue& first = error.issues().front();
+        if (!first.where.file.empty()) throw;  // of the model's own file
+        throw Error(error.code(), sensors.where, first.message);
+      }
+    }
   }
-  return text + ", pirsim " + version() + " (" + git_revision() + "), " + compiler();
+}
+
+}  // namespace
+
+std::string provenance(const RecipeSpec& recipe, const io::SceneOptions& options) {
+  std::string text = "recipe " + sha256(recipe.text);
+  Fingerprint print;
+  for (const RoomGroupSpec& group : recipe.rooms) {
+    for (const fs::path& scene : group.scenes) {
+      const SceneSpec read = io::read_scene(scene, options);
+      text += ", " + scene.filename().string() + ' ' + read.files.front().sha256;
+      print.add(read);
+    }
+    if (group.scenes.empty()) add_sensors(print, group, options);
+  }
+  return text + ", sensors " + print.digest().substr(0, 16) + ", pirsim " + version() + " (" + git_revision() + "), " +
+         compiler();
 }
 
 std::pair<int, int> room_and_day(const RecipeSpec& recipe, std::uint32_t index) {
@@ -28,8 +61,15 @@ std::pair<int, int> room_and_day(const RecipeSpec& recipe, std::uint32_t index) 
 
 fs::path room_file(const fs::path& folder, int room) { return folder / "rooms" / (room_name(room) + ".gltf"); }
 
+bool is_whole(const fs::path& folder, const WrittenFile& written, Look look) {
+  const fs::path file = folder / written.path;
+  std::error_code fault;
+  if (!fs::is_regular_file(file, fault) || fs::file_size(file, fault) != written.bytes || fault) return false;
+  return look == Look::sizes || hash_of(file) == written.sha256;
+}
+
 std::optional<RoomDayRecord> whole_record(const RecipeSpec& recipe, const fs::path& folder, std::uint32_t index,
-                                          const std::string& made_by) {
+                                          const std::string& made_by, Look look) {
   const auto [room, day] = room_and_day(recipe, index);
   const fs::path file = folder / record_path(room, day);
   std::error_code fault;
@@ -37,9 +77,9 @@ std::optional<RoomDayRecord> whole_record(const RecipeSpec& recipe, const fs::pa
   try {
     auto [record, by] = record_from_json(io::read_text_file(file), file.string());
     if (by != made_by || record.room != room || record.day != day) return std::nullopt;
-    for (const WrittenFile& written : record.files) {
-      if (fs::file_size(folder / written.path, fault) != written.bytes || fault) return std::nullopt;
-    }
+    const auto is_there = [&](const WrittenFile& written) { return is_whole(folder, written, look); };
+    if (!std::ranges::all_of(record.files, is_there)) return std::nullopt;
+    if (look == Look::contents && record.scene && !is_there(*record.scene)) return std::nullopt;
     return std::move(record);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::input) throw;
@@ -60,22 +100,30 @@ void make_folders(const fs::path& folder) {
   if (fault) throw Error(ErrorCode::io, Where{folder.string()}, "can't make the folder: " + fault.message());
 }
 
-void write_once(const fs::path& file, const std::string& shard, const std::function<void(const fs::path&)>& write) {
+void write_once(const fs::path& file, const std::string& text) {
   make_folders(file.parent_path());
-  const fs::path own = file.parent_path() / (file.stem().string() + '.' + shard + file.extension().string());
-  write(own);
-  std::error_code fault;
-  if (fs::exists(file, fault) && io::read_text_file(file) != io::read_text_file(own)) {
-    fs::remove(own, fault);
-    throw Error(ErrorCode::input, Where{file.string()},
-                "isn't what this recipe makes: move it away, or name another folder");
-  }
-  fs::rename(own, file, fault);
-  if (fault) throw Error(ErrorCode::io, Where{file.string()}, "can't be put in its place: " + fault.message());
+  if (io::write_once(file, text)) return;
+  throw Error(ErrorCode::input, Where{file.string()},
+              "isn't what this recipe makes: move it away, or name another folder");
 }
 
-std::string shard_name(const DatasetOptions& options) {
-  return "shard" + std::to_string(options.shard ? options.shard->index : 0);
+namespace {
+
+fs::path lock_path(const fs::path& folder, const std::optional<Shard>& shard) {
+  if (!shard) return folder / "at_work.lock";
+  return folder / ("at_work_" + std::to_string(shard->index) + "_of_" + std::to_string(shard->count) + ".lock");
+}
+
+}  // namespace
+
+AtWork::AtWork(const fs::path& folder, const std::optional<Shard>& shard)
+    : path_(lock_path(folder, shard)), file_(path_, io::PosixFile::Mode::append) {
+  file_.lock();
+}
+
+AtWork::~AtWork() {
+  std::error_code ignored;
+  fs::remove(path_, ignored);
 }
 
 }  // namespace pirsim::dataset

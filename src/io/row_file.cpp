@@ -251,7 +251,7 @@ struct RowFile::Work {
     return hash.hex() == wanted.sha256;
   }
 
-  void put_in_place() {
+  void put_in_place(const std::function<bool()>& goes_on) {
     const Compression compression = compression_of(file);
     if (compression == Compression::none) return rename_or_throw(partial_path, file);
     AtomicFile out(file);
@@ -261,6 +261,8 @@ struct RowFile::Work {
     while (const std::size_t n = partial->read(buffer.data(), buffer.size())) {
       writer.write({buffer.data(), n});
       if (!out.stream()) break;
+      if (n == buffer.size() && goes_on && !goes_on())
+        throw Error(ErrorCode::stopped, "stopped while the rows were compressed; --resume continues");
     }
     writer.finish();
     out.commit();
@@ -294,7 +296,7 @@ void RowFile::add_run(std::string_view lines, std::uint64_t n_rows, const RunNot
   work_->write(lines, n_rows, notes);
 }
 
-void RowFile::commit() {
+void RowFile::commit(const std::function<bool()>& goes_on) {
   Work& work = *work_;
   if (work.mark.next_run != work.made.runs.end) throw Error(ErrorCode::internal, "committed before the last run");
   work.made.rows = work.mark.rows;
@@ -302,7 +304,7 @@ void RowFile::commit() {
   work.made.sha256 = work.mark.sha256;
   work.made.notes = work.notes;
   remove_or_throw(manifest_path(work.file));  // of an older file: it must not speak for the new one
-  work.put_in_place();
+  work.put_in_place(goes_on);
   write_manifest(manifest_path(work.file), work.made);
   work.remove_traces();
   work.finished = true;

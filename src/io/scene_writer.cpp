@@ -1,3 +1,5 @@
+#include "io/scene_writer.hpp"
+
 #include <algorithm>
 #include <array>
 
@@ -62,10 +64,7 @@ void add_mesh(GltfBuilder& document, const TriMesh& mesh, int material) {
   document.add_node(std::move(node));
 }
 
-}  // namespace
-
-void write_scene(const std::filesystem::path& file, const SceneSpec& scene) {
-  const Where where{file.string()};
+GltfBuilder document_of(const SceneSpec& scene, const Where& where) {
   GltfBuilder document(scene.name);
   Materials materials(document);
   add_floor(document, scene.floor, where);
@@ -83,7 +82,17 @@ void write_scene(const std::filesystem::path& file, const SceneSpec& scene) {
   for (const SeatSpec& seat : scene.seats) {
     document.add_node(placed_node(seat.id, seat.world_from_seat, pirsim_extras("seat", {{"id", Value(seat.id)}})));
   }
-  document.write(file, "scene");
+  return document;
+}
+
+}  // namespace
+
+std::string scene_text(const SceneSpec& scene, const Where& where) {
+  return document_of(scene, where).bytes(GltfBuilder::Container::text, where, "scene");
+}
+
+void write_scene(const std::filesystem::path& file, const SceneSpec& scene) {
+  document_of(scene, Where{file.string()}).write(file, "scene");
 }
 
 }  // namespace pirsim::io

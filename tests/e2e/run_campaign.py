@@ -397,6 +397,21 @@ class Links(unittest.TestCase):
             self.assertEqual(names(folder), ["s.md"])
 
 
+class Refusals(unittest.TestCase):
+    def test_what_is_refused_leaves_nothing_behind(self):
+        with scratch() as folder:
+            missing = folder / "none"
+            for args, code, told in (
+                    (("--trace", folder / "t.csv"), 2, "--trace: no sensor has an analog response"),
+                    (("--trace", folder / "t.csv", "--zones", folder / "z.csv", "--summary", folder / "s.md"), 2, "--trace"),
+                    (("--summary", missing / "s.md"), 4, "no folder"), (("--zones", missing / "z.csv"), 4, "no folder"),
+                    (("--report", missing / "r.html"), 4, "no folder"),
+                    (("--occupants", missing / "o.csv"), 4, "no folder")):
+                with self.subTest(args):
+                    self.assertIn(told, study("-o", folder / "rows.csv", *args, code=code, replicates=1).stderr)
+                    self.assertEqual(names(folder), [])
+
+
 class FailingCalls(unittest.TestCase):
     """Every call in turn, until none is left that could fail."""
 
@@ -537,11 +552,60 @@ exec {PIRSIM} "$@"
             call(run_shards)  # nothing is left to do
             self.assertEqual((folder / "out/all.csv").read_bytes(), (folder / "one.csv").read_bytes())
 
+    def test_the_users_own_words_are_left_alone(self):
+        with scratch() as folder:
+            script = folder / "a {} b" / "study {}.yaml"
+            script.parent.mkdir()
+            shutil.copy(DATA / "studies/studyA.yaml", script)
+            call([DATA.parent / "tools" / "run_shards", "-n", 2, "-j", 2, "-o", folder / "out {}", "-p", PIRSIM, "--",
+                  "--scene", DATA / "rooms/meeting_room.gltf", "--script", script, "--replicates", 1])
+            self.assertIn("all.csv", names(folder / "out {}"))
+
+    def test_no_shard_is_begun_after_one_that_was_refused(self):
+        with scratch() as folder:
+            script = folder / "study.yaml"
+            script.write_text("pirsim_script: 1\npeopel: []\n")
+            scene = DATA / "rooms/meeting_room.gltf"
+            for code, files in ((3, ("--scene", scene, "--script", script)), (2, ("--scene", scene, "--scirpt", script)),
+                                (4, ("--scene", scene, "--script", folder / "missing.yaml"))):
+                told = call([DATA.parent / "tools" / "run_shards", "-n", 50, "-j", 1, "-o", folder / "out", "-p", PIRSIM,
+                             "--", *files], code).stderr
+                self.assertEqual(told.count("error:"), 1, told)
+                self.assertIn("tools/run_shards: shard 1 was refused", told)
+
     def test_what_is_missing_is_told(self):
         tool = DATA.parent / "tools" / "run_shards"
         for words, message in ((("-o", "x", "--", "--scene"), "-n N"), (("-n", 0, "-o", "x", "--", "y"), "-n N"),
                                (("-n", 2, "--", "y"), "-o DIR"), (("-n", 2, "-o", "x"), "after --")):
             self.assertIn(message, call([tool, *words], 2).stderr)
+
+
+class LongEnds(unittest.TestCase):
+    """Phases after the last run obey signals too."""
+
+    def test_a_signal_while_rows_are_compressed_stops_and_loses_nothing(self):
+        with scratch() as folder:
+            (folder / "wait.yaml").write_text("""pirsim_script: 1
+name: A long wait
+sensing: {tick_rate_hz: 1, rays_per_zone: 1}
+people: [{id: one, stature_m: 1.8, mass_kg: 80, actions: [{enter: door}, {wait_s: 1000000}, {wait_s: 1000000}]}]
+""")
+            command = list(map(str, [PIRSIM, "--scene", DATA / "rooms/meeting_room.gltf", "--script",
+                                     folder / "wait.yaml", "-q", "-o", folder / "rows.csv.gz", "--resume"]))
+            process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+            until = time.monotonic() + 200
+            while not list(folder.glob("rows.csv.gz.writing*")) and process.poll() is None and time.monotonic() < until:
+                time.sleep(0.005)
+            process.send_signal(signal.SIGTERM)
+            told = process.communicate(timeout=200)[1]
+            self.assertEqual(process.returncode, 75, told)
+            self.assertIn("--resume continues", told)
+            self.assertEqual(names(folder), ["rows.csv.journal", "rows.csv.partial", "wait.yaml"])
+            n_lines = (folder / "rows.csv.partial").read_bytes().count(b"\n")
+            call(command)
+            with gzip.open(folder / "rows.csv.gz") as rows:
+                self.assertEqual(sum(1 for _ in rows), n_lines)
+            self.assertEqual(n_lines, 1 + json.loads((folder / "rows.csv.gz.json").read_text())["rows"])
 
 
 class Memory(unittest.TestCase):

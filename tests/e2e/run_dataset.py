@@ -8,9 +8,11 @@ import gzip
 import json
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 PIRSIM = DATA = TOOLS = None
@@ -120,6 +122,73 @@ class Dataset(unittest.TestCase):
             self.assertIn("rooms.csv", check.stdout)
             package = json.loads((one / "datapackage.json").read_text())
             self.assertIn("train", [resource["name"] for resource in package["resources"]])
+
+    def made(self, folder):
+        """A dataset whose days are made and that isn't described yet."""
+        pirsim("dataset", DATA / "recipes" / "tiny.yaml", "-o", folder, "--shard", "1/1", "-q")
+
+    def test_a_room_that_was_edited_is_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            self.made(folder)
+            file = folder / "rooms/room_0001.gltf"
+            as_made, scene = file.read_bytes(), json.loads(file.read_text())
+            sensor = next(n for n in scene["nodes"] if n.get("extras", {}).get("pirsim", {}).get("type") == "sensor")
+            if "translation" in sensor:
+                sensor["translation"][1] -= 0.5
+            else:
+                sensor["matrix"][13] -= 0.5
+            file.write_text(json.dumps(scene))
+            for how in ("--resume", "--finish"):
+                told = pirsim("dataset", DATA / "recipes" / "tiny.yaml", "-o", folder, how, "-q", code=3).stderr
+                self.assertIn("room_0001.gltf: error: ", told)
+                self.assertIn("move it away", told)
+            self.assertFalse((folder / "datapackage.json").exists())
+            file.write_bytes(as_made)
+            pirsim("dataset", DATA / "recipes" / "tiny.yaml", "-o", folder, "--finish", "-q")
+
+    def test_an_altered_bit_of_rows_is_made_again(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            self.made(folder)
+            file = folder / "rows/room_0002/day_02.csv.gz"
+            as_made = file.read_bytes()
+            altered = bytearray(as_made)
+            altered[len(altered) // 2] ^= 1
+            file.write_bytes(altered)
+            told = pirsim("dataset", DATA / "recipes" / "tiny.yaml", "-o", folder, "--finish", "-q", code=3).stderr
+            self.assertIn("day_02.csv.gz: error: isn't what was written", told)
+            pirsim("dataset", DATA / "recipes" / "tiny.yaml", "-o", folder, "--resume", "-q")
+            self.assertEqual(file.read_bytes(), as_made)
+
+    def test_a_second_process_is_refused_in_words(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for i in range(6):
+                command = [PIRSIM, "dataset", DATA / "recipes" / "tiny.yaml", "-o", pathlib.Path(folder) / str(i), "--shard",
+                           "1/2", "--resume", "-q"]
+                both = [subprocess.Popen(command, stderr=subprocess.PIPE, text=True) for _ in range(2)]
+                ends = [(process.communicate(timeout=300)[1], process.returncode) for process in both]
+                for told, code in ends:  # the second may have come when the first was done
+                    self.assertTrue((code, told) == (0, "") or (code == 4 and "another process is at work" in told),
+                                    (code, told))
+                self.assertIn(0, [code for _, code in ends])
+                self.assertEqual(list(pathlib.Path(folder).rglob("*.lock")) + list(pathlib.Path(folder).rglob("*writing*")), [])
+
+    def test_a_signal_in_the_last_phase_is_one_of_any_phase(self):
+        recipe = (DATA / "recipes" / "tiny.yaml").read_text().replace("count: 3,", "count: 20,")
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            (folder / "many.yaml").write_text(recipe)
+            command = [PIRSIM, "dataset", folder / "many.yaml", "-o", folder / "D", "-q"]
+            process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+            until = time.monotonic() + 200
+            while not (folder / "D/pictures").exists() and process.poll() is None and time.monotonic() < until:
+                time.sleep(0.002)
+            process.send_signal(signal.SIGTERM)
+            told = process.communicate(timeout=200)[1]
+            self.assertEqual(process.returncode, 75, told)
+            self.assertIn("continue with --finish", told)
+            pirsim("dataset", folder / "many.yaml", "-o", folder / "D", "--finish", "-q")
 
     def test_the_shipped_recipes_are_read(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -92,7 +92,13 @@ struct Made {
     return options;
   }
   void make(const DatasetOptions& how) const { REQUIRE(make_room_days(recipe, out(), how)); }
-  void finish() const { finish_dataset(recipe, out(), shipped_sensors()); }
+  void finish() const {
+    const bool is_whole = finish_dataset(recipe, out(), options());
+    REQUIRE(is_whole);
+  }
+  [[nodiscard]] std::vector<std::uint32_t> missing() const {
+    return missing_room_days(recipe, out(), shipped_sensors());
+  }
   [[nodiscard]] fs::path day(const std::string& kind, int room, int day, const std::string& ending) const {
     return out() / kind / room_name(room) / (day_name(day) + ending);
   }
@@ -118,18 +124,20 @@ TEST_CASE("threads, shards and resuming change no byte of a dataset", "[dataset]
   second.shard = Shard{2, 2};
   first.shard = Shard{1, 2};
   other.make(second);
-  CHECK(missing_room_days(other.recipe, other.out()).size() == 6);
+  CHECK(other.missing().size() == 6);
   CHECK_THROWS_WITH(other.finish(), contains("6 of 12 room-days"));
   other.make(first);
   // Torn in three ways: a lost record, a record that broke off, and lost rows.
   fs::remove(other.day("rows", 1, 2, ".json"));
   fs::resize_file(other.day("rows", 2, 1, ".json"), 100);
   fs::remove(other.day("rows", 3, 3, ".csv.gz"));
-  CHECK(missing_room_days(other.recipe, other.out()) == std::vector<std::uint32_t>{1, 3, 8});
+  CHECK(other.missing() == std::vector<std::uint32_t>{1, 3, 8});
   auto again = other.options(2);
   again.start = DatasetOptions::Start::resume;
-  int made = 0;
-  again.made_one = [&] { ++made; };
+  std::uint32_t made = 0;
+  again.observer.begin = [&](DatasetObserver::Stage stage, std::uint32_t total) {
+    if (stage == DatasetObserver::Stage::making_days) made = total;
+  };
   other.make(again);
   CHECK(made == 3);
   other.finish();
