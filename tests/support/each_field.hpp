@@ -1,6 +1,8 @@
 // Changes every field of a spec in turn, by the one list of fields, so that no test of "all fields" forgets one.
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -134,7 +136,9 @@ void each_change(Value& value, const std::string& path, const Check& check) {
   } else if constexpr (std::is_enum_v<Value>) {
     const auto& all = python::Words<Value>::all;
     with(value, all[0].second == value ? all[1].second : all[0].second, path, check);
-  } else if constexpr (std::is_arithmetic_v<Value>) {
+  } else if constexpr (std::is_floating_point_v<Value>) {
+    with(value, std::nextafter(value, std::numeric_limits<Value>::max()), path, check);  // what is valid stays so
+  } else if constexpr (std::is_integral_v<Value>) {
     with(value, static_cast<Value>(value + 1), path, check);
   } else if constexpr (std::is_same_v<Value, std::string>) {
     with(value, value + "x", path, check);

@@ -230,7 +230,7 @@ TEST_CASE("a run that failed has no rows, costs no other run any, and is told af
           "[io][row_file]") {
   const auto notes_of = [](std::uint32_t run) {
     io::RunNotes notes;
-    if (run == 2) notes.failed.push_back({2, "S3", 1, 41.5, "'anna' finds no way"});
+    if (run == 2) notes.failed.push_back({2, "S3", 1, 41.5, "2026-03-02T10:00:41", "'anna' finds no way"});
     if (run == 1 || run == 4) notes.passes_through = run;
     if (run == 1 || run == 4) notes.first_pass = "run " + std::to_string(run);
     return notes;
@@ -255,6 +255,7 @@ TEST_CASE("a run that failed has no rows, costs no other run any, and is told af
     REQUIRE(told.failed.size() == 1);
     CHECK(told.failed.front().trial == "S3");
     CHECK(told.failed.front().time_s == 41.5);
+    CHECK(told.failed.front().time == "2026-03-02T10:00:41");
     CHECK(told.failed.front().message == "'anna' finds no way");
     CHECK(told.passes_through == 5);
     CHECK(told.first_pass == "run 1");
