@@ -96,8 +96,9 @@ def test_a_script_with_a_clock_of_its_own(tmp_path):
     script.trials[0].people[0].actions[1].at_s = 60.0
     result = pirsim.run(pirsim.compile(own_room(), script))
     assert result.clock[0, 0] == np.datetime64("2026-03-02T06:00:01")
+    # A row tells how its second ended: the first one that is walked in ends a second after the walk began.
     walks = result.clock[0, result.phase[0] == "to and fro"]
-    assert walks[0] == np.datetime64("2026-03-02T06:01:00")
+    assert walks[0] == np.datetime64("2026-03-02T06:01:01")
     pirsim.write_script(script, tmp_path / "written.yaml")
     assert "at: 06:01" in (tmp_path / "written.yaml").read_text()
     read = pirsim.read_script(tmp_path / "written.yaml")
