@@ -58,7 +58,7 @@ struct Measured {
 /// too little data).
 [[nodiscard]] Measured read_measured(const std::filesystem::path& file, const SceneSpec& scene,
                                      const ScriptSpec& script);
-/// The same of a text; file: its name in messages.
+/// Reads measured data from a text, as read_measured does from a file; file: its name in messages.
 [[nodiscard]] Measured parse_measured(std::string_view text, const std::string& file, const SceneSpec& scene,
                                       const ScriptSpec& script);
 
@@ -69,9 +69,9 @@ struct TableSettings {
   std::vector<std::string> effects;     ///< names; empty: the whole catalogue
   bool operator==(const TableSettings&) const = default;
 };
-/// Two fifths calibrate, and two tests are combined, so that p of a hypothesis can't fall below 5 / (its number of
-/// datasets): with fewer than these, which leave a tenth for realizations in which nobody can get about, nothing is
-/// ever ruled out at the level.
+/// The fewest datasets of a hypothesis with which it can be ruled out at the level. Two fifths of its datasets calibrate
+/// it, and two tests are combined: its p can't fall below 5 / (its number of datasets). A tenth is added for
+/// realizations in which nobody can get about.
 [[nodiscard]] constexpr std::uint32_t fewest_datasets_to_refuse(double level) {
   return static_cast<std::uint32_t>(5.5 / level + 0.5);
 }
@@ -86,7 +86,7 @@ struct Settings {
   std::uint32_t verify_realizations = 60;  ///< simulated with each patched model
   std::vector<std::size_t> holdout;        ///< trials (ascending) kept from naming and fitting; none: folds
 };
-/// The usual ones at another level (0.001 to 0.5), with so many times the usual number of simulated datasets (0.05 to
+/// The usual settings at another level (0.001 to 0.5), with so many times the usual number of simulated datasets (0.05 to
 /// 20) and these effects to look for (none: the whole catalogue). Throws Error(usage) for other numbers, and for an
 /// effect that isn't known, stands there twice or is in the script already.
 [[nodiscard]] Settings settings_of(const ScriptSpec& script, double alpha, double budget,

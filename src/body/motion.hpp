@@ -27,14 +27,14 @@ enum class Channel : std::size_t {
   trunk_lean,  ///< radians, positive to the right
   head_turn,   ///< radians, positive to the left
   chair_turn,  ///< radians, positive to the left; while seated
-  /// Metres along the table, as the next three, of somebody 1.86 m tall, in proportion to stature; while the forearms
-  /// are on it.
-  left_hand_ahead,
-  right_hand_ahead,
-  left_hand_up,  ///< metres above the table
-  right_hand_up,
-  left_hand_to_head,  ///< 0: as otherwise; 1: beside mouth and ear; whatever the legs do
-  right_hand_to_head,
+  // The four channels of the hands on the table act while the forearms lie on it. Their metres are those of somebody
+  // 1.86 m tall; other people's hands move in proportion to their stature.
+  left_hand_ahead,   ///< metres along the table, positive forward
+  right_hand_ahead,  ///< metres along the table, positive forward
+  left_hand_up,      ///< metres above the table
+  right_hand_up,     ///< metres above the table
+  left_hand_to_head,   ///< 0: the hand is where the posture puts it; 1: it is beside mouth and ear, sitting or standing
+  right_hand_to_head,  ///< 0: the hand is where the posture puts it; 1: it is beside mouth and ear, sitting or standing
 };
 inline constexpr std::size_t n_channels = 10;
 inline constexpr double fidget_s = 0.6;  ///< assumed (0.4-1): a small move of trunk or head

@@ -16,12 +16,14 @@ namespace pirsim::sim {
 
 enum class Progress { going_on, done };
 
-/// A value. Commands are repeated every tick until they are done; advance() ends the tick.
+/// One person on their feet or on a seat. A value: copies are independent. Its commands are repeated every tick until
+/// they are done, and advance() ends the tick.
 ///
-/// Who is held up for a second tells others the way that they wish to go; whoever stands on it and has not been held
-/// up for longer steps aside, to the nearest place off that way, with the precedence of whom they make way for. Sitters
-/// lean forward for who squeezes past, and get up for who can't. After 20 s (longer while somebody gets up for them)
-/// the person walks through the others, which is an incident.
+/// People make way for each other. Somebody who has been held up for a second tells the others which way they wish to
+/// go. Another person who stands on that way steps aside, to the nearest place off it, unless they have been held up for
+/// longer themselves. That person then has the precedence of the one for whom they make way. A sitter leans forward for
+/// somebody who squeezes past, and gets up for somebody who can't squeeze past. Somebody who is still held up after
+/// 20 s (longer while a sitter gets up for them) walks through the others, which is an incident.
 class Pedestrian {
  public:
   Pedestrian(const CompiledStudy& study, const PersonModel& person, std::uint32_t index, const Vec2& point,

@@ -49,9 +49,9 @@ struct Presence {
   /// Of somebody who is held up: the way that they would go if nobody were there; others leave it if they can.
   std::shared_ptr<const std::vector<Vec2>> wished_way;
   Precedence precedence;  ///< of that wish
-  /// Sitters past whom not even who squeezes gets there: they are to get up.
+  /// Sitters who block the way even for somebody who squeezes past: this person asks them to get up.
   std::shared_ptr<const std::vector<std::uint32_t>> asks_up;
-  /// Of a sitter who got up for somebody: where they sat and go back to; and for whom, as long as they wait for them.
+  // A sitter who got up for somebody goes back to the place where they sat, once that person has passed.
   std::optional<Vec2> got_up_from;
   std::optional<std::uint32_t> got_up_for;
 };

@@ -20,13 +20,15 @@ struct PatchedModel {
   std::span<const float> observed;  ///< statistics of the data
 };
 
-/// p of each model's global test, its datasets simulated in realizations that no table has seen. What was fitted isn't
-/// known for sure: in every realization the parameters are other ones of those that are equally likely. Datasets are
-/// simulated only until they surely don't refuse the model, and all of them if they do, so that looking more than once
-/// refuses no more models than the level allows. 0 if people can hardly get about in it. A realization is traced once
-/// for all models; what is said of one doesn't depend on the others. map: of the plain model, with the trials to be
-/// looked at; level: of the global test; on_look is told how many models are still simulated, and in how many
-/// realizations.
+/// p of the global test of each model: (n_models) values, 0 for a model in which people can hardly get about.
+///
+/// The datasets come from realizations that no table has seen. Each realization draws the fitted parameters anew, since
+/// they are known only up to their posterior. A model is simulated until its datasets surely don't refuse it; a model
+/// that is refused is simulated in all of them, so that looking more than once refuses no more models than the level
+/// allows. All models share the tracing of a realization, and p of one doesn't depend on the others.
+///
+/// map: features of the plain model, for the trials to be looked at. level: of the global test. on_look: is told how many
+/// models are still simulated, and in how many realizations.
 [[nodiscard]] std::vector<double> p_with(std::span<const PatchedModel> models, const ReferenceStudy& reference,
                                          const FeatureMap& map, double level, const Context& context,
                                          const std::function<void(std::size_t, std::uint32_t)>& on_look = {});
