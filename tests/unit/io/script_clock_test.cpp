@@ -36,7 +36,7 @@ TEST_CASE("at is the first time of the run that the clock shows this, and beside
   CHECK(times_of(script_with(six, "{enter: door, at: 06:00}, {leave: door, at: 05:00}")) == Times{0.0, 82800.0});
 }
 
-TEST_CASE("--set begin moves what is at a time of day") {
+TEST_CASE("Overriding begin moves what is at a time of day") {
   const std::string actions = "{enter: door, at: 06:45}, {leave: door, at_s: 9000}";
   CHECK(times_of(script_with(six, actions, {"begin=2026-03-02T05:00"})) == Times{6300.0, 9000.0});
   CHECK(times_of(script_with("", actions, {"begin=2026-03-02 06:30"})) == Times{900.0, 9000.0});
