@@ -16,8 +16,11 @@ namespace pirsim {
 
 /// What the zones did during one run.
 struct RecordedRun {
-  RunResult rows;                   ///< as the study has them; of interest is all but the bits
-  std::vector<std::uint32_t> sets;  ///< (n_ticks) from tick 1 on: index into Recording::sets
+  RunResult rows;          ///< as the study has them; of interest is all but the bits
+  std::uint32_t rest = 0;  ///< index into Recording::sets: what stands before tick 1, and has for long
+  /// (n_ticks) from tick 1 on: indices into Recording::sets. They go on beyond the last row as far as the study's
+  /// clock_lag needs them.
+  std::vector<std::uint32_t> sets;
   struct SeatLeft {
     std::int64_t tick = 0;
     std::size_t seat = 0;  ///< index into the scene's seats
@@ -26,7 +29,7 @@ struct RecordedRun {
 };
 
 struct Recording {
-  std::vector<ZoneSet> sets;  ///< of active zones, each once; the first is the empty one, which stands before tick 1
+  std::vector<ZoneSet> sets;  ///< of active zones, each once; the first is the empty one
   std::vector<RecordedRun> runs;
   std::size_t n_sensors = 0;
   SensingSpec sensing;  ///< how rows are read from triggers
@@ -48,7 +51,7 @@ class DetectorLogic {
   /// All randomness follows from these two.
   virtual void begin_run(std::uint64_t seed, std::uint32_t run) = 0;
   /// From one tick to the next: sets triggers[s] to 1 where sensor s triggers (they come as 0). before, after: indices
-  /// of sets.
+  /// of sets. What is `before` the first tick of a run has stood there for long.
   virtual void tick(std::uint32_t before, std::uint32_t after, std::span<std::uint8_t> triggers) noexcept = 0;
 };
 
@@ -64,8 +67,8 @@ struct EmitOptions {
 };
 
 /// The rows of all recorded runs, in order, as the Model's own detector gives them: without options the study's, bit
-/// for bit. Throws Error(input) for unknown effects, Error(usage) for effects that reach the geometry, which need a
-/// Model of their own; and what `consume` throws.
+/// for bit. Throws Error(input) for unknown effects, Error(usage) for effects that reach the geometry or a clock_lag
+/// that looks further ahead than was recorded, which need a Model of their own; and what `consume` throws.
 void emit(const Model& model, const Recording& recording, const EmitOptions& options,
           const std::function<void(const RunResult&)>& consume);
 

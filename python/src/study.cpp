@@ -9,6 +9,7 @@
 #include "attend.hpp"
 #include "bindings.hpp"
 #include "convert.hpp"
+#include "pirsim/sensor_keys.hpp"
 #include "run_arrays.hpp"
 
 namespace pirsim::python {
@@ -27,6 +28,7 @@ nb::object warnings(const Model& model) {
   const auto add = [&](const std::vector<Issue>& issues) { all.insert(all.end(), issues.begin(), issues.end()); };
   add(model.script().warnings);
   add(effects::idle(model.script().effects, model.scene(), model.script().sensing));
+  add(idle_sensor_keys(model.scene(), model.script().sensing));
   return to_python(all);
 }
 

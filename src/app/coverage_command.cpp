@@ -7,6 +7,7 @@
 #include "io/atomic_file.hpp"
 #include "io/png.hpp"
 #include "pirsim/io.hpp"
+#include "pirsim/sensor_keys.hpp"
 #include "studies/coverage.hpp"
 #include "studies/study_report.hpp"
 
@@ -23,6 +24,7 @@ studies::CoverageStudy load_coverage(const Inputs& inputs) {
   CoverageSpec spec = io::read_coverage(inputs.script, inputs.overrides);
   SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
+  tell(idle_sensor_keys(scene, spec.sensing), inputs.verbosity);
   studies::CoverageStudy study(std::move(scene), std::move(spec));
   tell(study.warnings(), inputs.verbosity);
   tell_what_is_left_out(study, inputs.verbosity);

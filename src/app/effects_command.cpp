@@ -23,7 +23,8 @@ void print_csv(std::ostream& out, const effects::Effect& effect) {
         << io::csv_number(parameter.typical) << ',' << io::csv_number(parameter.low) << ','
         << io::csv_number(parameter.high) << ',' << name(parameter.scale) << ',' << io::csv_field(parameter.source)
         << ',' << io::csv_field(info.fingerprint) << ','
-        << (parameter.only_if.choice.empty() ? "" : parameter.only_if.choice + ": " + parameter.only_if.word) << '\n';
+        << (parameter.only_if.choice.empty() ? "" : parameter.only_if.choice + ": " + parameter.only_if.word) << ','
+        << io::csv_number(parameter.least) << ',' << io::csv_number(parameter.most) << '\n';
   }
 }
 
@@ -31,7 +32,8 @@ void list_effects(const EffectsOptions& options) {
   std::vector<const effects::Effect*> chosen = effects::catalogue();
   if (!options.name.empty()) chosen = {&effects::find(options.name)};
   if (options.format == "csv") {
-    std::cout << "effect,family,stage,reach,parameter,unit,off,typical,low,high,scale,source,fingerprint,only_if\n";
+    std::cout << "effect,family,stage,reach,parameter,unit,off,typical,low,high,scale,source,fingerprint,only_if,least,"
+                 "most\n";
     for (const effects::Effect* effect : chosen) print_csv(std::cout, *effect);
   } else if (options.format == "md") {
     std::cout << effects::list_markdown();

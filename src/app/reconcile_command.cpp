@@ -8,6 +8,7 @@
 #include "effects/catalogue.hpp"
 #include "io/atomic_file.hpp"
 #include "pirsim/io.hpp"
+#include "pirsim/sensor_keys.hpp"
 #include "pirsim/version.hpp"
 #include "reconcile/data/measured.hpp"
 #include "reconcile/inference/verify.hpp"
@@ -162,6 +163,7 @@ void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
   tell(script.warnings, inputs.verbosity);
+  tell(idle_sensor_keys(scene, script.sensing), inputs.verbosity);
   std::vector<std::string> read = files_read(script, scene);
   read.insert(read.end(), {options.measured.string(), analysis.nuisance});
   std::vector<NamedOutput> written;

@@ -14,6 +14,7 @@
 #include "pirsim/effects.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
+#include "pirsim/sensor_keys.hpp"
 #include "pirsim/version.hpp"
 #include "rt/tracer.hpp"
 #include "sim/compiled_study.hpp"
@@ -77,6 +78,7 @@ Model compiled(const Inputs& inputs, Verbosity of_progress, ScriptSpec script) {
   Model model = compile(std::move(scene), std::move(script), {tracer});
   const sim::CompiledStudy& study = model.compiled();
   tell(effects::idle(study.script_given().effects, study.scene(), study.sensing()), inputs.verbosity);
+  tell(idle_sensor_keys(study.scene_given(), study.sensing()), inputs.verbosity);
   return model;
 }
 

@@ -6,6 +6,7 @@
 #include "app/session.hpp"
 #include "io/atomic_file.hpp"
 #include "pirsim/io.hpp"
+#include "pirsim/sensor_keys.hpp"
 #include "studies/walk_test.hpp"
 
 namespace pirsim::app {
@@ -23,6 +24,7 @@ void walk_test(const Inputs& inputs, const WalkTestOptions& options) {
   SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   keep_inputs({{"-o", options.output}, {"--report", options.report}}, files_read({}, scene));
   tell(scene.warnings, inputs.verbosity);
+  tell(idle_sensor_keys(scene, spec.sensing), inputs.verbosity);
   const studies::WalkTest test(std::move(scene), std::move(spec));
   tell(test.warnings(), inputs.verbosity);
   const bool is_stream = io::is_written_directly(options.output);

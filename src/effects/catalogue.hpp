@@ -19,6 +19,8 @@ struct Effect {
   EffectInfo info;
   void (*alter)(StudyInForce& study, const EffectSpec& effect) = nullptr;
   std::unique_ptr<TriggerStage> (*make_stage)(const EffectSpec& effect, const StageContext& context) = nullptr;
+  /// Puts the clocks of the sensors that it is for wrong; stages come before.
+  void (*set_clocks)(const EffectSpec& effect, const StageContext& context, Clocks& clocks) = nullptr;
   std::unique_ptr<RowStage> (*make_row_stage)(const EffectSpec& effect, const StageContext& context) = nullptr;
   /// Puts what the ranges alone can't draw (a free place in the room) into a spec drawn from them.
   void (*draw)(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec& script, Stream& stream) = nullptr;

@@ -23,6 +23,14 @@ std::string range_of(const ParameterInfo& parameter) {
   return out.str();
 }
 
+/// What a script may say.
+std::string limits_of(const ParameterInfo& parameter) {
+  std::ostringstream out;
+  out << parameter.least << " to " << parameter.most;
+  if (!parameter.unit.empty()) out << ' ' << parameter.unit;
+  return out.str();
+}
+
 std::string off_of(const ParameterInfo& parameter) {
   return parameter.role == Role::detail ? "-" : with_unit(parameter.off, parameter.unit);
 }
@@ -64,14 +72,14 @@ void add_markdown(std::ostream& out, const Effect& effect) {
     out << "Easily taken for: " << boost::algorithm::join(info.confused_with, ", ") << ".\n";
   if (!info.same_as.empty()) out << same_as_sentence(info) << "\n";
   out << "Stage: " << info.stage << "; reach: " << name(info.reach) << ".\n\n";
-  out << "| parameter | off | typical | prior | source |\n|---|---|---|---|---|\n";
+  out << "| parameter | off | typical | prior | accepted | source |\n|---|---|---|---|---|---|\n";
   for (const ParameterInfo& parameter : info.parameters) {
     out << "| `" << parameter.name << "` | " << off_of(parameter) << " | "
-        << with_unit(parameter.typical, parameter.unit) << " | " << range_of(parameter) << " | " << source_of(parameter)
-        << " |\n";
+        << with_unit(parameter.typical, parameter.unit) << " | " << range_of(parameter) << " | " << limits_of(parameter)
+        << " | " << source_of(parameter) << " |\n";
   }
   for (const ChoiceInfo& choice : info.choices) {
-    out << "| `" << choice.name << "` | - | " << choice.otherwise << " | " << values_of(choice) << " | |\n";
+    out << "| `" << choice.name << "` | - | " << choice.otherwise << " | " << values_of(choice) << " | | |\n";
   }
   out << '\n';
 }
@@ -102,7 +110,8 @@ std::string to_text(const Effect& effect) {
   for (const ParameterInfo& parameter : info.parameters) {
     out << "  " << std::left << std::setw(16) << parameter.name << "off " << std::setw(8) << off_of(parameter)
         << "typical " << std::setw(10) << with_unit(parameter.typical, parameter.unit) << "prior "
-        << range_of(parameter) << "\n                  source: " << source_of(parameter) << '\n';
+        << range_of(parameter) << "\n                  accepted: " << limits_of(parameter)
+        << "\n                  source: " << source_of(parameter) << '\n';
   }
   for (const ChoiceInfo& choice : info.choices) {
     out << "  " << std::left << std::setw(16) << choice.name << values_of(choice) << " (else: " << choice.otherwise

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "effects/clocks.hpp"
 #include "pirsim/rays.hpp"
 #include "pirsim/sample.hpp"
 #include "pirsim/scene.hpp"
@@ -59,17 +60,29 @@ class Pipeline {
 
   void add(std::unique_ptr<TriggerStage> stage) { trigger_stages_.push_back(std::move(stage)); }
   void add(std::unique_ptr<RowStage> stage) { row_stages_.push_back(std::move(stage)); }
-  [[nodiscard]] std::size_t size() const noexcept { return trigger_stages_.size() + row_stages_.size(); }
-
-  [[nodiscard]] bool acts_on_triggers() const noexcept { return !trigger_stages_.empty(); }
+  /// Whether it does nothing to anything.
+  [[nodiscard]] bool empty() const noexcept {
+    return trigger_stages_.empty() && clocks_.all_right() && row_stages_.empty();
+  }
+  [[nodiscard]] bool acts_on_triggers() const noexcept { return !trigger_stages_.empty() || !clocks_.all_right(); }
 
   void begin_run(std::uint64_t seed, std::uint32_t run);
   void seat_left(std::size_t seat);
-  void tick(std::int64_t tick, std::span<std::uint8_t> triggers) noexcept;
+  /// Once a tick, from tick 1 on. triggers: (n_sensors) the detectors' at this tick; the stages change them.
+  void hear(std::int64_t tick, std::span<std::uint8_t> triggers);
+  /// Whether heard_by() may be a later tick than was asked for.
+  [[nodiscard]] bool looks_ahead() const noexcept { return clocks_.any_early(); }
+  /// The tick that has to be heard before it can be told what is logged at `tick`: that one, or a later one where a
+  /// clock is early.
+  [[nodiscard]] std::int64_t heard_by(std::int64_t tick) const noexcept { return clocks_.heard_by(tick); }
+  /// Once a tick, from tick 1 on, after hear(heard_by(tick)). triggers: (n_sensors) set to those that are logged at
+  /// this tick; left as hear() made them if all clocks are right.
+  void log(std::int64_t tick, std::span<std::uint8_t> triggers) noexcept { clocks_.log(tick, triggers); }
   void apply(Sample& row) noexcept;
 
  private:
   std::vector<std::unique_ptr<TriggerStage>> trigger_stages_;
+  Clocks clocks_;
   std::vector<std::unique_ptr<RowStage>> row_stages_;
 };
 

@@ -37,7 +37,8 @@ const Effect& thermal_contrast() {
                                .scale = Scale::logarithmic,
                                .source =
                                    "Panasonic data sheet EKMC: rated at 4 K; range assumed: warm clothes in a warm "
-                                   "room to bare skin in a cool one"}},
+                                   "room to bare skin in a cool one; only its size counts: surroundings warmer by as "
+                                   "much change zones alike"}},
                .reach = Reach::geometry},
       .alter = alter};
   return effect;

@@ -222,8 +222,12 @@ void Comparator::count_pulse(State& state) const noexcept {
 }
 
 void Comparator::advance(State& state, double volts) const noexcept {
+  advance_to(state, static_cast<std::int8_t>(volts > spec_.positive_v ? 1 : volts < -spec_.negative_v ? -1 : 0));
+}
+
+void Comparator::advance_to(State& state, std::int8_t side) const noexcept {
   const std::int8_t before = state.side;
-  state.side = static_cast<std::int8_t>(volts > spec_.positive_v ? 1 : volts < -spec_.negative_v ? -1 : 0);
+  state.side = side;
   if (state.blind_left > 0) {
     --state.blind_left;
     return;
@@ -233,8 +237,7 @@ void Comparator::advance(State& state, double volts) const noexcept {
     std::copy(state.pulse_age + 1, state.pulse_age + state.pulses, state.pulse_age);
     state.pulse_age[--state.pulses] = 0;
   }
-  age(state.since_outside);
-  if (state.side != 0) state.since_outside = 0;
+  state.since_outside = state.side != 0 ? 0 : std::min(state.since_outside + 1, hold_ + 1);
   if (state.on) {
     if (state.since_outside <= hold_) return;
     state = {.side = state.side, .since_outside = state.since_outside, .blind_left = blind_};

@@ -67,7 +67,7 @@ class Comparator {
     bool on = false;
     std::int8_t pulses = 0;                    ///< counted
     std::int32_t pulse_age[most_pulses] = {};  ///< ticks since each began, the oldest first
-    std::int32_t since_outside = 0;            ///< ticks
+    std::int32_t since_outside = 0;            ///< ticks, no more than one beyond the hold time
     std::int32_t blind_left = 0;               ///< ticks
     bool operator==(const State&) const = default;
   };
@@ -77,6 +77,8 @@ class Comparator {
 
   /// One tick on. volts: above the offset.
   void advance(State& state, double volts) const noexcept;
+  /// One tick on. side: +1 above the window, -1 below, 0 inside.
+  void advance_to(State& state, std::int8_t side) const noexcept;
 
  private:
   void count_pulse(State& state) const noexcept;

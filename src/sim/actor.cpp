@@ -62,6 +62,23 @@ void Actor::note(IncidentKind kind, std::int64_t tick) {
   incidents_.push_back({kind, tick, index_, body_ ? body_->motion().position() : Vec2(0.0)});
 }
 
+void Actor::begin(const CompiledStudy& study, std::span<const Presence> others) {
+  if (done() || action().at_s.value_or(0.0) > 0.0) return;
+  const auto* appear = std::get_if<action::Appear>(&action().what);
+  if (appear == nullptr || somebody_near(appear->point, others)) return;
+  const Scene scene{study, others, 0};
+  start_action(scene);
+  carry_out_first(scene);
+  errands_.pop_front();
+}
+
+void Actor::start_action(const Scene& scene) {
+  begun_ = true;
+  began_ = scene.now;
+  note_times(scene.study);
+  plan(scene);
+}
+
 void Actor::advance(const CompiledStudy& study, std::int64_t tick, std::span<const Presence> others,
                     std::size_t n_before) {
   incidents_.clear();
@@ -86,10 +103,7 @@ void Actor::carry_on(const Scene& scene) {
   while (!done()) {
     if (!begun_) {
       if (action().at_s && scene.now < ticks(*action().at_s, scene.study)) return;
-      begun_ = true;
-      began_ = scene.now;
-      note_times(scene.study);
-      plan(scene);
+      start_action(scene);
     }
     if (!busy && sits_on_ && errands_.empty() && body_->got_up()) {
       body_->set_out();

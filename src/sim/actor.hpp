@@ -27,6 +27,9 @@ class Actor {
   /// plan: actions drawn for this run, or null: those of the script.
   Actor(const CompiledStudy& study, std::uint32_t run, std::uint32_t person, std::shared_ptr<const DayPlan> plan);
 
+  /// Before tick 1, with those in the scene already: who appears at the start has been there all along, unless somebody
+  /// stands there.
+  void begin(const CompiledStudy& study, std::span<const Presence> others);
   /// From tick - 1 to tick: starts, goes on with or interrupts actions, then moves the body. others: everyone else in
   /// the scene, in the order of the script; those before this person go first where ways cross.
   /// Throws Error(infeasible) if there is no way to where the script leads, even without others.
@@ -104,6 +107,7 @@ class Actor {
   };
 
   [[nodiscard]] bool is_at_meeting() const;
+  void start_action(const Scene& scene);
   void plan(const Scene& scene);
   void plan_entering(const EntranceSpec& door);
   void plan_leaving(const EntranceSpec& door);

@@ -15,6 +15,12 @@ Crowd::Crowd(const CompiledStudy& study, std::uint32_t run) : conversation_(stud
   for (std::uint32_t person = 0; person < n_people; ++person) actors_.emplace_back(study, run, person, plan);
   presences_.resize(n_people);
   seated_.resize(n_people, 0);
+  for (std::size_t i = 0; i < n_people; ++i) {
+    actors_[i].begin(study, others_);
+    if (n_people == 1 || !actors_[i].present()) continue;  // of one nobody asks
+    presences_[i] = actors_[i].presence();
+    others_.push_back(*presences_[i]);
+  }
 }
 
 void Crowd::gather_others_of_first() {

@@ -13,11 +13,15 @@ Detector::Detector(const SensorArray& array)
     : array_(&array),
       edges_(array.channels(), array.n_levels(), array.soft_edges(), array.ticks_per_window(), array.tick_s()),
       polarity_(array.polarity()),
+      outputs_(array.n_sensors()),
       analog_(array.analog() != nullptr ? array.n_sensors() : 0) {}
 
 void Detector::begin_run(std::uint64_t seed, std::uint32_t run, const Exposure& rest) {
   edges_.begin_run(seed, run, rest.channels);
   if (polarity_) polarity_->begin_run(rest.sums);
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    if (array_->zone_outputs()[i]) outputs_[i].emplace();
+  }
   for (std::uint32_t i = 0; i < analog_.size(); ++i) {
     const auto& sensor = array_->analog()->sensors()[i];
     if (!sensor) continue;
@@ -32,7 +36,8 @@ void Detector::tick(const Exposure& before, const Exposure& after, std::span<std
   } else {
     edges_.tick(before.channels, after.channels, triggers);
   }
-  if (!analog_.empty()) advance_analog(after, triggers);
+  switch_outputs(triggers);
+  advance_analog(after, triggers);
 }
 
 void Detector::tick_unchanged(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept {
@@ -42,7 +47,16 @@ void Detector::tick_unchanged(const Exposure& exposure, std::span<std::uint8_t> 
   } else {
     edges_.tick_unchanged(exposure.channels, triggers);
   }
+  switch_outputs(triggers);
   advance_analog(exposure, triggers);
+}
+
+void Detector::switch_outputs(std::span<std::uint8_t> triggers) noexcept {
+  for (std::size_t i = 0; i < outputs_.size(); ++i) {
+    if (!outputs_[i]) continue;
+    array_->zone_outputs()[i]->advance_to(*outputs_[i], triggers[i] != 0 ? 1 : 0);
+    triggers[i] = outputs_[i]->on ? 1 : 0;
+  }
 }
 
 void Detector::advance_analog(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept {
@@ -60,9 +74,14 @@ bool Detector::is_at_rest(const Exposure& exposure) const {
   std::vector<std::uint8_t> triggers(array_->n_sensors());
   next.tick_unchanged(exposure, triggers);
   const auto off = [](std::uint8_t trigger) { return trigger == 0; };
-  return next.polarity_ == polarity_ && next.analog_ == analog_ && std::ranges::all_of(triggers, off);
+  return next.polarity_ == polarity_ && next.outputs_ == outputs_ && next.analog_ == analog_ &&
+         std::ranges::all_of(triggers, off);
 }
 
-bool Detector::is_memoryless() const noexcept { return !polarity_ && analog_.empty() && array_->n_levels() == 1; }
+bool Detector::is_memoryless() const noexcept {
+  const bool no_output =
+      std::ranges::none_of(array_->zone_outputs(), [](const auto& output) { return output.has_value(); });
+  return !polarity_ && no_output && analog_.empty() && array_->n_levels() == 1;
+}
 
 }  // namespace pirsim::sim

@@ -13,9 +13,9 @@
 
 namespace pirsim::sim {
 
-/// The detectors of all sensors of an array, each as its response asks: a change of a channel, the pair of opposite
-/// polarity, or the analog chain. Runs, recordings, coverage studies and walk tests all decide by tick(). A value; the
-/// array outlives it.
+/// The detectors of all sensors of an array, each as its response asks: a change of a channel or the pair of opposite
+/// polarity, with the counting, holding and blind time that come behind them, or the analog chain. Runs, recordings,
+/// coverage studies and walk tests all decide by tick(). A value; the array outlives it.
 class Detector {
  public:
   explicit Detector(const SensorArray& array);
@@ -37,11 +37,14 @@ class Detector {
   }
 
  private:
+  /// triggers: (n_sensors) changes of zones; set to 1 where the output behind them is on.
+  void switch_outputs(std::span<std::uint8_t> triggers) noexcept;
   void advance_analog(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept;
 
   const SensorArray* array_;
   pir::SoftEdges edges_;
   std::optional<pir::PolarityDetector> polarity_;
+  std::vector<std::optional<pir::Comparator::State>> outputs_;  ///< (n_sensors) behind zones, where there is any
   std::vector<std::optional<pir::AnalogDetector::State>> analog_;
 };
 

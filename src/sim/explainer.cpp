@@ -20,6 +20,17 @@ std::uint32_t Explainer::sensor_of(std::uint32_t zone) const {
   return study_.array().analog()->power().sensor_of(bundle.zone_rays_begin[zone]);
 }
 
+void Explainer::settle(const RunState& state) {
+  meter_.explain(state.crowd.actors(), met_);
+  for (const PowerShare& each : met_) {
+    shares_[{zone_of_ray_[each.ray], each.person, each.part}].before_w +=
+        static_cast<double>(each.power) * watts_per_step;
+  }
+  for (auto& [source, share] : shares_) {
+    share.sections = filters_[sensor_of(std::get<0>(source))]->at_rest(share.before_w);
+  }
+}
+
 void Explainer::advance() {
   for (auto& [source, share] : shares_) {
     filters_[sensor_of(std::get<0>(source))]->advance(share.sections, share.before_w, share.now_w, 0.0);

@@ -17,6 +17,8 @@ namespace pirsim::sim {
 class Explainer {
  public:
   explicit Explainer(const CompiledStudy& study);
+  /// Before the first step_tick(): whoever is there has been there for long and shares in no signal until they move.
+  void settle(const RunState& state);
   /// After each step_tick(), from the first on; appends one row an analog sensor.
   void explain(const RunState& state, std::vector<TraceRow>& rows);
 

@@ -23,11 +23,6 @@ void Logger::begin_run(std::uint64_t seed, std::uint32_t run) {
                 : pir::WindowReader(pir::drawn_leads(n_sensors_, ticks_per_window_, seed, run), ticks_per_window_);
 }
 
-void Logger::tick(std::int64_t tick, std::span<std::uint8_t> triggers) noexcept {
-  stages_.tick(tick, triggers);
-  reader_.advance(triggers);
-}
-
 void Logger::complete(Sample& row) noexcept {
   row.bits.assign(reader_.readings().begin(), reader_.readings().end());
   stages_.apply(row);

@@ -20,8 +20,16 @@ class Logger {
   void begin_run(std::uint64_t seed, std::uint32_t run);
   /// Somebody left a seat (index into the scene's) in the step to the next tick: effects may leave it warm.
   void seat_left(std::size_t seat) { stages_.seat_left(seat); }
-  /// triggers: (n_sensors) the detectors' triggers at this tick (1, 2, ...); the effects change them.
-  void tick(std::int64_t tick, std::span<std::uint8_t> triggers) noexcept;
+  /// Once a tick, from tick 1 on. triggers: (n_sensors) the detectors' at this tick; the effects change them.
+  void hear(std::int64_t tick, std::span<std::uint8_t> triggers) { stages_.hear(tick, triggers); }
+  [[nodiscard]] bool looks_ahead() const noexcept { return stages_.looks_ahead(); }
+  /// The tick that has to be heard before it can be told what is logged at `tick`.
+  [[nodiscard]] std::int64_t heard_by(std::int64_t tick) const noexcept { return stages_.heard_by(tick); }
+  /// Once a tick, from tick 1 on, after hear(heard_by(tick)). triggers: (n_sensors) as hear() left them; set to those
+  /// that are logged at this tick.
+  void log(std::int64_t tick, std::span<std::uint8_t> triggers) noexcept { stages_.log(tick, triggers); }
+  /// Once a tick: triggers that were logged, to be read once a window.
+  void read(std::span<const std::uint8_t> triggers) noexcept { reader_.advance(triggers); }
   /// True if whole windows without triggers would leave it as it is.
   [[nodiscard]] bool is_at_rest() const noexcept { return !stages_.acts_on_triggers() && reader_.is_at_rest(); }
   /// The row's bits as they were read last, then what the effects do to the row.

@@ -1,6 +1,7 @@
 #include "sim/people_tracks.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "sim/run_state.hpp"
 
@@ -9,14 +10,20 @@ namespace pirsim::sim {
 PeopleTrack Postures::follow(const CompiledStudy& study, std::uint32_t run) {
   RunState state(study, run);
   const std::vector<Actor>& actors = state.crowd.actors();
-  PeopleTrack track{{{run, study.replicate_of(run), study.trial_of(run).id, {}, {}, {}}, {}, {}}, 0, actors.size(), {}};
+  PeopleTrack track{
+      {{run, study.replicate_of(run), study.trial_of(run).id, {}, {}, {}}, 0, {}, {}}, 0, actors.size(), {}};
   std::vector<std::uint64_t> bodies;
   for (const Actor& actor : actors) bodies.push_back(number_of(actor.person().humanoid));
   index_.make_room_for(actors.size());
-  while (!state.finished) {
-    if (move_tick(study, state)) track.rows.rows.samples.push_back(state.sample);
-    for (const std::size_t seat : state.crowd.seats_left()) track.rows.seats_left.push_back({state.tick, seat});
+  const auto note_postures = [&] {
     for (std::uint32_t i = 0; i < actors.size(); ++i) track.postures.push_back(number_of(i, bodies[i], actors[i]));
+  };
+  note_postures();
+  for (std::optional<std::int64_t> end; !end || state.tick < *end;) {
+    if (move_tick(study, state) && !end) track.rows.rows.samples.push_back(state.sample);
+    if (state.finished && !end) end = study.stages().heard_by(state.tick);
+    for (const std::size_t seat : state.crowd.seats_left()) track.rows.seats_left.push_back({state.tick, seat});
+    note_postures();
   }
   track.n_ticks = static_cast<std::size_t>(state.tick);
   return track;

@@ -15,12 +15,13 @@ namespace pirsim::sim {
 struct PeopleTrack {
   RecordedRun rows;  ///< all but the sets
   std::size_t n_ticks = 0, n_people = 0;
-  std::vector<PostureIndex::Number> postures;  ///< (n_ticks x n_people); 0: not there
+  std::vector<PostureIndex::Number> postures;  ///< (1 + n_ticks x n_people) from before tick 1 on; 0: not there
 };
 
 /// All postures of some studies, each once, in the order in which they came.
 class Postures {
  public:
+  /// As far as the study's stages look ahead of the last row.
   [[nodiscard]] PeopleTrack follow(const CompiledStudy& study, std::uint32_t run);
   [[nodiscard]] std::size_t size() const noexcept { return index_.size(); }
   /// Forgets all but the first n.

@@ -1,6 +1,7 @@
 #include "pirsim/recording.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "core/parallel.hpp"
@@ -20,15 +21,18 @@ struct NumberedRun {
 };
 
 NumberedRun record_run(const CompiledStudy& study, std::uint32_t run, ZoneCachePool& caches) {
-  NumberedRun recorded{{{run, study.replicate_of(run), study.trial_of(run).id, {}, {}, {}}, {}, {}}, {}};
+  NumberedRun recorded{{{run, study.replicate_of(run), study.trial_of(run).id, {}, {}, {}}, 0, {}, {}}, {}};
   const std::size_t n_zones = study.array().channels().n_zones();
   SetNumbering numbering(n_zones);
   RunState state(study, run);
   *state.cache = caches.borrow();
-  ZoneSet last(n_zones);
-  std::uint32_t number = 0;
-  while (!state.finished) {
-    if (step_tick(study, state)) recorded.track.rows.samples.push_back(state.sample);
+  settle(study, state);
+  ZoneSet last = state.exposure().zones;
+  std::uint32_t number = numbering.number(last);
+  recorded.track.rest = number;
+  for (std::optional<std::int64_t> end; !end || state.tick < *end;) {
+    if (step_tick(study, state) && !end) recorded.track.rows.samples.push_back(state.sample);
+    if (state.finished && !end) end = study.stages().heard_by(state.tick);
     for (const std::size_t seat : state.crowd.seats_left()) recorded.track.seats_left.push_back({state.tick, seat});
     if (state.exposure().zones != last) {
       last = state.exposure().zones;
@@ -53,14 +57,21 @@ class ReplayedDetector final : public DetectorLogic {
       array_.expose(exposures_.back());
     }
   }
-  void begin_run(std::uint64_t seed, std::uint32_t run) override { detector_.begin_run(seed, run, array_.unexposed()); }
+  void begin_run(std::uint64_t seed, std::uint32_t run) override { begins_ = {seed, run}; }
   void tick(std::uint32_t before, std::uint32_t after, std::span<std::uint8_t> triggers) noexcept override {
+    if (begins_) detector_.begin_run(begins_->seed, begins_->run, exposures_[before]);
+    begins_.reset();
     detector_.tick(exposures_[before], exposures_[after], triggers);
   }
 
  private:
+  struct Run {
+    std::uint64_t seed = 0;
+    std::uint32_t run = 0;
+  };
   const SensorArray& array_;
   Detector detector_;
+  std::optional<Run> begins_;  ///< with the tick that comes next, which tells what it begins from
   std::vector<Exposure> exposures_;
 };
 
@@ -85,26 +96,39 @@ effects::Pipeline make_stages(const Model& model, std::span<const EffectSpec> ef
   return {effects, {study.scene(), study.sensing(), study.array().clipped()}};
 }
 
+bool goes_as_far_as(const RecordedRun& track, const SensingSpec& sensing, const effects::Pipeline& stages) {
+  const auto last_row = static_cast<std::int64_t>(track.rows.samples.size()) * sensing.ticks_per_window;
+  return static_cast<std::int64_t>(track.sets.size()) >= stages.heard_by(last_row);
+}
+
 RunResult replay(const Recording& recording, std::size_t index, DetectorLogic& detector, std::uint64_t seed,
                  const effects::Pipeline& stages) {
   const RecordedRun& track = recording.runs[index];
+  if (!goes_as_far_as(track, recording.sensing, stages)) {
+    throw Error(ErrorCode::usage,
+                "clock_lag looks further ahead than was recorded: compile a model with it and record that");
+  }
   RunResult result = track.rows;
   Logger logger(stages, recording.sensing, recording.n_sensors);
   logger.begin_run(seed, result.run);
   detector.begin_run(seed, result.run);
   std::vector<std::uint8_t> triggers(recording.n_sensors);
   auto left = track.seats_left.begin();
-  std::uint32_t before = 0;
-  std::int64_t tick = 0;
+  std::uint32_t before = track.rest;
+  std::int64_t tick = 0, heard = 0;
   for (Sample& sample : result.samples) {
     for (int i = 0; i < recording.sensing.ticks_per_window; ++i) {
-      const std::uint32_t after = track.sets[static_cast<std::size_t>(tick)];
-      ++tick;
-      std::ranges::fill(triggers, std::uint8_t{0});
-      detector.tick(before, after, triggers);
-      before = after;
-      for (; left != track.seats_left.end() && left->tick == tick; ++left) logger.seat_left(left->seat);
-      logger.tick(tick, triggers);
+      for (const std::int64_t heard_by = logger.heard_by(++tick); heard < heard_by;) {
+        const std::uint32_t after = track.sets[static_cast<std::size_t>(heard)];
+        ++heard;
+        std::ranges::fill(triggers, std::uint8_t{0});
+        detector.tick(before, after, triggers);
+        before = after;
+        for (; left != track.seats_left.end() && left->tick == heard; ++left) logger.seat_left(left->seat);
+        logger.hear(heard, triggers);
+      }
+      logger.log(tick, triggers);
+      logger.read(triggers);
     }
     logger.complete(sample);
   }
@@ -124,6 +148,7 @@ Recording record(const Model& model, std::span<const std::uint32_t> runs, unsign
       [&](sim::NumberedRun& recorded) {
         std::vector<std::uint32_t> renumbered;
         for (const ZoneSet& set : recorded.sets) renumbered.push_back(numbering.number(set));
+        recorded.track.rest = renumbered[recorded.track.rest];
         for (std::uint32_t& number : recorded.track.sets) number = renumbered[number];
         recording.runs.push_back(std::move(recorded.track));
         if (run_done) run_done();

@@ -162,7 +162,8 @@ class Painter {
   [[nodiscard]] RecordedRun paint(const PeopleTrack& people) {
     RecordedRun track = people.rows;
     const std::size_t n = people.n_people;
-    for (std::size_t tick = 0; tick < people.n_ticks; ++tick) {
+    track.rest = set_of(std::span(people.postures).first(n));
+    for (std::size_t tick = 1; tick <= people.n_ticks; ++tick) {
       track.sets.push_back(set_of(std::span(people.postures).subspan(tick * n, n)));
     }
     return track;
@@ -210,7 +211,13 @@ struct RecordingFamily::Impl {
 
   [[nodiscard]] PeopleTrack follow(const CompiledStudy& other, std::uint32_t run) {
     const auto known = std::ranges::find(people, run, [](const PeopleTrack& track) { return track.rows.rows.run; });
-    return other.moves_people_as(first) && known != people.end() ? *known : postures.follow(other, run);
+    const auto goes_far_enough = [&](const PeopleTrack& track) {
+      const auto last_row =
+          static_cast<std::int64_t>(track.rows.rows.samples.size()) * other.sensing().ticks_per_window;
+      return static_cast<std::int64_t>(track.n_ticks) >= other.stages().heard_by(last_row);
+    };
+    const bool knows = other.moves_people_as(first) && known != people.end() && goes_far_enough(*known);
+    return knows ? *known : postures.follow(other, run);
   }
 
   [[nodiscard]] Recording record(const CompiledStudy& other, std::span<const std::uint32_t> runs) {

@@ -16,8 +16,12 @@ namespace pirsim::sim {
 /// The detector that the Model's own runs have: sim::Detector, fed by a recording.
 [[nodiscard]] std::unique_ptr<DetectorLogic> make_logic(const Model& model);
 
+/// Whether the run was recorded as far as clocks among the stages look ahead of its last row.
+[[nodiscard]] bool goes_as_far_as(const RecordedRun& track, const SensingSpec& sensing,
+                                  const effects::Pipeline& stages);
+
 /// replay() with what the stages do to triggers and rows. With make_logic(model), the script's seed and the Model's
-/// stages: the study's rows, bit for bit.
+/// stages: the study's rows, bit for bit. Throws Error(usage) unless the run goes_as_far_as() the stages.
 [[nodiscard]] RunResult replay(const Recording& recording, std::size_t index, DetectorLogic& detector,
                                std::uint64_t seed, const effects::Pipeline& stages);
 

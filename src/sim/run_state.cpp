@@ -41,7 +41,6 @@ RunState::RunState(const CompiledStudy& study, std::uint32_t run_number)
       logger(study.stages(), study.sensing(), study.array().n_sensors()),
       clock(study.clock_of(run)),
       triggers(study.array().n_sensors(), 0) {
-  detector.begin_run(study.seed(), run, exposure());
   logger.begin_run(study.seed(), run);
   sample.replicate = study.replicate_of(run);
   sample.trial = study.trial_of(run).id;
@@ -58,14 +57,54 @@ bool move_tick(const CompiledStudy& study, RunState& state) {
   return true;
 }
 
-bool step_tick(const CompiledStudy& study, RunState& state) {
-  const bool window_ended = move_tick(study, state);
+namespace {
+
+/// The run that knows what is logged at this tick.
+RunState& listener(RunState& state) { return state.ahead.get() != nullptr ? *state.ahead.get() : state; }
+
+ZoneCache& cache_of(const CompiledStudy& study, RunState& state) {
   if (!*state.cache) *state.cache = std::make_shared<ZoneCache>(study);
+  return **state.cache;
+}
+
+void sense(ZoneCache& cache, RunState& state) {
   const Exposure& before = state.exposures[static_cast<std::size_t>((state.tick - 1) % 2)];
-  (*state.cache)->look(state.crowd.actors(), state.exposure());
+  cache.look(state.crowd.actors(), state.exposure());
   state.detector.tick(before, state.exposure(), state.triggers);
+}
+
+void hear(RunState& state) {
   for (const std::size_t seat : state.crowd.seats_left()) state.logger.seat_left(seat);
-  state.logger.tick(state.tick, state.triggers);
+  state.logger.hear(state.tick, state.triggers);
+}
+
+/// What is logged at this tick, once those ahead have heard of it.
+void log(const CompiledStudy& study, RunState& state) {
+  RunState& listening = listener(state);
+  const std::int64_t heard_by = listening.logger.heard_by(state.tick);
+  while (listening.tick < heard_by) {
+    move_tick(study, listening);
+    sense(cache_of(study, state), listening);
+    hear(listening);
+  }
+  listening.logger.log(state.tick, state.triggers);
+  state.logger.read(state.triggers);
+}
+
+}  // namespace
+
+void settle(const CompiledStudy& study, RunState& state) {
+  cache_of(study, state).look(state.crowd.actors(), state.exposure());
+  state.detector.begin_run(study.seed(), state.run, state.exposure());
+  if (state.logger.looks_ahead() && state.ahead.get() == nullptr) state.ahead.hold(state);
+}
+
+bool step_tick(const CompiledStudy& study, RunState& state) {
+  if (state.tick == 0) settle(study, state);
+  const bool window_ended = move_tick(study, state);
+  sense(cache_of(study, state), state);
+  if (state.ahead.get() == nullptr) hear(state);
+  log(study, state);
   if (window_ended) state.logger.complete(state.sample);
   return window_ended;
 }
@@ -80,7 +119,9 @@ bool pass_empty_window(const CompiledStudy& study, RunState& state) {
   } else {
     for (std::int64_t i = 0; i < n_ticks; ++i) {
       state.detector.tick_unchanged(state.exposure(), state.triggers);
-      state.logger.tick(++state.tick, state.triggers);
+      ++state.tick;
+      if (state.ahead.get() == nullptr) state.logger.hear(state.tick, state.triggers);
+      log(study, state);
     }
     state.at_rest = state.logger.is_at_rest() && state.detector.is_at_rest(state.exposure());
   }

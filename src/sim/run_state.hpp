@@ -37,6 +37,24 @@ class Scratch {
   T value_{};
 };
 
+/// A member on the heap, or none: copied with its owner.
+template <typename T>
+class Held {
+ public:
+  Held() = default;
+  Held(const Held& other) : value_(other.value_ ? std::make_unique<T>(*other.value_) : nullptr) {}
+  Held(Held&& other) noexcept = default;
+  Held& operator=(const Held& other) { return *this = Held(other); }
+  Held& operator=(Held&& other) noexcept = default;
+  ~Held() = default;
+
+  void hold(const T& value) { value_ = std::make_unique<T>(value); }
+  [[nodiscard]] T* get() const noexcept { return value_.get(); }
+
+ private:
+  std::unique_ptr<T> value_;
+};
+
 /// A value: a copy continues independently from the same tick. The study must outlive it.
 struct RunState {
   /// The moment before the first tick of a run, run in [0, study.n_runs()).
@@ -58,10 +76,16 @@ struct RunState {
   std::optional<RunClock> clock;       ///< none: rows have no time of day
   std::vector<std::uint8_t> triggers;  ///< (n_sensors) at this tick
   Sample sample;                       ///< at the end of the last whole window
+  /// Of a logger with an early clock: the run as it goes on, beyond its end if need be, which tells what is logged
+  /// already. It steps by itself; none if all clocks are right or late.
+  Held<RunState> ahead{};
   /// Remembers what has been traced; changes no result. Made when first needed, unless a pool lends one.
   Scratch<std::shared_ptr<ZoneCache>> cache;
 };
 
+/// At tick 0: whoever is there has been there for long, and detectors have settled to them. The first step_tick()
+/// begins with it.
+void settle(const CompiledStudy& study, RunState& state);
 /// Advances people alone by a tick and leaves the sensors as they are; don't mix it with step_tick() on one state. True
 /// if a window ended with it.
 bool move_tick(const CompiledStudy& study, RunState& state);

@@ -138,6 +138,11 @@ SensorArray::SensorArray(const SceneSpec& scene, const SensingInForce& sensing, 
   if (sensing.dual_polarity) {
     polarity_.emplace(scene, *sensing.dual_polarity, n_levels_, 1.0 / sensing.tick_rate_hz);
   }
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+    const ComparatorSpec& comparator = scene.sensor_models.at(scene.sensors[i].model).detector.comparator;
+    const bool by_zones = AnalogModel::response(scene, sensing, i) == Response::zones;
+    zone_outputs_.push_back(by_zones ? pir::zone_output(comparator, tick_s_) : std::nullopt);
+  }
   if (AnalogModel::is_needed(scene, sensing)) analog_.emplace(scene, sensing, *room_);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pir/motion_detector.hpp"
+#include "pir/zone_output.hpp"
 #include "pirsim/rays.hpp"
 #include "rt/room.hpp"
 #include "rt/tracer.hpp"
@@ -44,6 +45,11 @@ class SensorArray {
   [[nodiscard]] double tick_s() const noexcept { return tick_s_; }
   /// Replaces the detection of changes if an effect asks for it.
   [[nodiscard]] const std::optional<pir::PolarityDetector>& polarity() const noexcept { return polarity_; }
+  /// (n_sensors) what comes behind the zones of a sensor that answers by them: its counting of pulses, hold and blind
+  /// time. None if its output is on just while they change.
+  [[nodiscard]] const std::vector<std::optional<pir::Comparator>>& zone_outputs() const noexcept {
+    return zone_outputs_;
+  }
   /// The sensors that answer physically, or null if none does.
   [[nodiscard]] const AnalogModel* analog() const noexcept { return analog_ ? &*analog_ : nullptr; }
 
@@ -65,6 +71,7 @@ class SensorArray {
   RayBundle rated_, clipped_;
   pir::MotionDetector channels_;
   std::optional<pir::PolarityDetector> polarity_;
+  std::vector<std::optional<pir::Comparator>> zone_outputs_;
   std::optional<AnalogModel> analog_;
 };
 

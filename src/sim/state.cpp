@@ -5,7 +5,9 @@
 namespace pirsim {
 
 State::State(const Model& model, std::uint32_t run)
-    : study_(model.compiled_), run_state_(std::make_unique<sim::RunState>(model.compiled(), run)) {}
+    : study_(model.compiled_), run_state_(std::make_unique<sim::RunState>(model.compiled(), run)) {
+  sim::settle(*study_, *run_state_);
+}
 State::State(const State& other)
     : study_(other.study_), run_state_(std::make_unique<sim::RunState>(*other.run_state_)) {}
 State& State::operator=(const State& other) { return *this = State(other); }

@@ -47,6 +47,7 @@ RunResult run_with(sim::ZoneCachePool& caches, const sim::CompiledStudy& study, 
   *state.cache = caches.borrow();
   std::optional<sim::Explainer> explainer;
   if (trace == Trace::signals && study.array().analog() != nullptr) explainer.emplace(study);
+  if (explainer) explainer->settle(state);
   // Zones and signals are recorded at every tick, so no window may be passed over.
   const bool may_pass = record == Record::samples && !explainer;
   try {

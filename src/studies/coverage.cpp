@@ -54,7 +54,7 @@ class SquareCounter {
         n_poses_(study.target().n_poses()),
         detector_(study.survey().make_detector()),
         logger_(study.survey().make_logger()),
-        repeats_(detector_.is_memoryless() && study.survey().stages().size() == 0 &&
+        repeats_(detector_.is_memoryless() && study.survey().stages().empty() &&
                  study.survey().sensing().reader == Reader::in_step),
         active_(padded(n_poses_)),
         exposures_(n_poses_, array_.unexposed()),
@@ -172,13 +172,17 @@ class SquareCounter {
     detector_.begin_run(study_.survey().seed(), square, exposures_[0]);
     logger_.begin_run(study_.survey().seed(), square);
     std::size_t pose = 0;
-    std::int64_t tick = 0;
+    std::int64_t tick = 0, heard = 0;
     for (int window = 1; window <= study_.n_windows(); ++window) {
       for (int i = 0; i < study_.survey().sensing().ticks_per_window; ++i) {
-        const std::size_t next = after(pose);
-        detector_.tick(exposures_[pose], exposures_[next], triggers_);
-        logger_.tick(++tick, triggers_);
-        pose = next;
+        for (const std::int64_t heard_by = logger_.heard_by(++tick); heard < heard_by;) {
+          const std::size_t next = after(pose);
+          detector_.tick(exposures_[pose], exposures_[next], triggers_);
+          logger_.hear(++heard, triggers_);
+          pose = next;
+        }
+        logger_.log(tick, triggers_);
+        logger_.read(triggers_);
       }
       row_.time_s = static_cast<double>(tick) / study_.survey().sensing().tick_rate_hz;
       logger_.complete(row_);

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "pirsim/look.hpp"
+#include "pirsim/sensor_keys.hpp"
 #include "studies/placement.hpp"
 
 namespace pirsim {
@@ -21,6 +22,18 @@ void add_models(SceneSpec& scene, const PlacementSpec& spec, const PlacementOpti
   }
 }
 
+/// Of the sensors of any set.
+std::vector<Issue> idle_keys(const SceneSpec& scene, const PlacementSpec& spec) {
+  SceneSpec hung;
+  hung.sensors = scene.sensors;
+  for (const SensorSetSpec& set : spec.sets) {
+    hung.sensors.insert(hung.sensors.end(), set.sensors.begin(), set.sensors.end());
+  }
+  hung.sensor_models = scene.sensor_models;
+  hung.files = scene.files;
+  return idle_sensor_keys(hung, spec.coverage.sensing);
+}
+
 }  // namespace
 
 PlacementReport run_placements(SceneSpec scene, const PlacementSpec& spec, const PlacementOptions& options) {
@@ -32,6 +45,8 @@ PlacementReport run_placements(SceneSpec scene, const PlacementSpec& spec, const
     set_done();
   }
   report.warnings = studies::warnings(report.ranked, scene.floor);
+  const std::vector<Issue> idle = idle_keys(scene, spec);
+  report.warnings.insert(report.warnings.end(), idle.begin(), idle.end());
   if (spec.search) {
     report.search = studies::search_placement(scene, spec.coverage, *spec.search, options.threads, set_done);
     report.ranked.push_back(report.search->even);

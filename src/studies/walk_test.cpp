@@ -127,7 +127,7 @@ bool WalkTester::is_noticed(const WalkTest::Movement& movement, const Frame& wor
     std::swap(before_, after_);
     look(movement[tick], world_from_movement, after_);
     detector_.tick(before_, after_, triggers_);
-    logger_.tick(static_cast<std::int64_t>(tick), triggers_);
+    logger_.hear(static_cast<std::int64_t>(tick), triggers_);
     if (std::ranges::find(triggers_, 1) != triggers_.end()) return true;
   }
   return false;

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The README's worked example of `pirsim reconcile`, word for word but on a study of one seat and half a minute; then
-`plan` and `selftest` on the same; and all three pages in a browser, if there is one.
+`plan` and `selftest` on the same; and all three pages in a browser, if there is one. Then data whose clock is late, or
+early, by three seconds.
 
 Usage: run_reconcile.py PIRSIM SOURCE_DIRECTORY
 """
@@ -57,11 +58,45 @@ def run_example(pirsim, source, folder):
     return report
 
 
+def stamped(rows, by_s):
+    """CSV text of measured rows, each with the bits of the row so many seconds before; 0 where there is none."""
+    lines = [line for line in rows.splitlines() if not line.startswith("#")]
+    table = list(csv.DictReader(lines))
+    sensors = [name for name in table[0] if name not in ("replicate", "trial", "time_s", "phase", "people")]
+    at = {(row["replicate"], row["trial"], float(row["time_s"])): [row[s] for s in sensors] for row in table}
+    text = ",".join(["replicate", "trial", "time_s", *sensors]) + "\n"
+    for replicate, trial, time_s in at:
+        bits = at.get((replicate, trial, time_s - by_s), ["0"] * len(sensors))
+        text += ",".join([replicate, trial, f"{time_s:g}", *bits]) + "\n"
+    return text
+
+
+def check_clocks(pirsim, source, folder):
+    """Late and early data are told apart, by about as much as they are off, and the patched script repairs them."""
+    script = folder / "errand.yaml"
+    script.write_text("pirsim_script: 1\nreplicates: 4\ntrials: {for_each: {k: [a, b]}, id: '${k}'}\npeople:\n  - id: p\n"
+                      "    actions: [{enter: door}, {sit: S4}, {work: {duration_s: 30}}, rise, {leave: door}]\n")
+    study = ["-q", "--scene", source / "data/rooms/meeting_room.gltf", "--script", script]
+    rows = subprocess.run([pirsim, *study, "--seed", "99", "-o", "-"], capture_output=True, text=True, check=True).stdout
+    for by_s in (3, -3):
+        measured, out = folder / f"clock_{by_s}.csv", folder / f"clock_{by_s}"
+        measured.write_text(stamped(rows, by_s))
+        subprocess.run([pirsim, "reconcile", *study, "--measured", measured, "--effects", "clock_lag,trunk_tilt",
+                        "--budget", "1", "--out", out], capture_output=True, text=True, check=True)
+        report = json.loads((out / "report.json").read_text())
+        assert report["verdict"] == "named" and report["effects"] == ["clock_lag"], report["sentence"]
+        lag_s = float(re.search(r"lag_s: (\S+)", (out / "script_patched.yaml").read_text()).group(1))
+        assert abs(lag_s - by_s) < 1.5, (by_s, report["sentence"])
+        before, after = report["verification"]["before"], report["verification"]["after"]
+        assert after["energy_score"] < 0.6 * before["energy_score"], report["verification"]
+
+
 def main():
     pirsim, source = str(pathlib.Path(sys.argv[1]).resolve()), pathlib.Path(sys.argv[2]).resolve()
     chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
+        check_clocks(pirsim, source, folder)
         report = run_example(pirsim, source, folder)
         study = ["-q", "--scene", folder / "data/rooms/meeting_room.gltf", "--script", folder / "data/studies/studyA.yaml"]
 

@@ -16,6 +16,8 @@ namespace {
 constexpr float silent_below = 0.02F;  ///< expected share of rows with motion
 constexpr std::size_t block_rows = 10;
 constexpr std::size_t shortest_period_rows = 8;
+constexpr std::ptrdiff_t farthest_shift_rows = 20;  ///< beyond the prior of clock_lag at a row a second
+constexpr double least_likeness = 0.3;              ///< assumed (0.2-0.45): correlation from which a shift is told
 
 double& at(CellValues& values, CellStatistic statistic) { return values[static_cast<std::size_t>(statistic)]; }
 
@@ -134,6 +136,45 @@ double agreement(const BitSeries& series) {
   return correlation.value();
 }
 
+/// Rows by which the motion has to be earlier to be most like what is expected, with a parabola between rows.
+double shift_rows(const BitSeries& series) {
+  const auto n = static_cast<std::ptrdiff_t>(series.bits.size());
+  double n_known = 0.0, mean_bit = 0.0, mean_expected = 0.0;
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    if (series.bits[row] == unknown_bit) continue;
+    n_known += 1.0;
+    mean_bit += series.bits[row];
+    mean_expected += static_cast<double>(series.expected[row]);
+  }
+  if (n_known == 0.0) return 0.0;
+  mean_bit /= n_known;
+  mean_expected /= n_known;
+  std::vector<double> bits, expected;
+  double bit_squares = 0.0, expected_squares = 0.0;
+  for (std::size_t row = 0; row < series.bits.size(); ++row) {
+    bits.push_back(series.bits[row] == unknown_bit ? 0.0 : series.bits[row] - mean_bit);
+    expected.push_back(static_cast<double>(series.expected[row]) - mean_expected);
+    bit_squares += bits.back() * bits.back();
+    expected_squares += expected.back() * expected.back();
+  }
+  const std::ptrdiff_t farthest = std::min(farthest_shift_rows, n / 2);
+  std::vector<double> likeness;
+  for (std::ptrdiff_t shift = -farthest; shift <= farthest; ++shift) {
+    double sum = 0.0;
+    for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(0, shift); i < std::min(n, n + shift); ++i) {
+      sum += bits[static_cast<std::size_t>(i)] * expected[static_cast<std::size_t>(i - shift)];
+    }
+    likeness.push_back(sum);
+  }
+  const auto best = std::ranges::max_element(likeness);
+  if (*best <= least_likeness * std::sqrt(bit_squares * expected_squares)) return 0.0;
+  const auto rows = static_cast<double>(best - likeness.begin() - farthest);
+  if (best == likeness.begin() || best + 1 == likeness.end()) return rows;
+  const double before = *(best - 1), after = *(best + 1), bend = 2.0 * *best - before - after;
+  return bend > 0.0 ? rows + 0.5 * (after - before) / bend : rows;
+}
+
 }  // namespace
 
 void add_main_statistics(const BitSeries& series, double window_s, CellValues& values) {
@@ -149,6 +190,7 @@ void add_main_statistics(const BitSeries& series, double window_s, CellValues& v
   at(values, CellStatistic::period_power) += period_power(series.bits);
   at(values, CellStatistic::cycle_strength) += cycle_strength(series.bits, series.cycle_rows);
   at(values, CellStatistic::agreement) += agreement(series);
+  at(values, CellStatistic::shift_s) += shift_rows(series) * window_s;
 }
 
 }  // namespace pirsim::reconcile

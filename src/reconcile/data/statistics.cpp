@@ -217,6 +217,7 @@ double arm_period_s(const TrialSpec& trial) {
 
 std::string name(CellStatistic statistic) {
   const auto index = static_cast<std::size_t>(statistic);
+  if (statistic == CellStatistic::shift_s) return "shift_s";
   return index < first_sixth ? std::string(cell_names[index]) : "sixth_" + std::to_string(index - first_sixth + 1);
 }
 std::string name(TrialStatistic statistic) {

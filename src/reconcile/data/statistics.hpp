@@ -52,6 +52,7 @@ enum class CellStatistic : std::uint8_t {
   run_variance,       ///< of the seconds, from run to run
   sixth_1,            ///< seconds in the first sixth of the time
   sixth_6 = sixth_1 + 5,
+  shift_s,  ///< by which motion comes later than expected, or earlier; 0 where it isn't like what is expected
   count
 };
 /// Per trial, over all sensors.

@@ -86,9 +86,15 @@ SimulatedRealization::~SimulatedRealization() = default;
 SimulatedRealization::SimulatedRealization(SimulatedRealization&&) noexcept = default;
 SimulatedRealization& SimulatedRealization::operator=(SimulatedRealization&&) noexcept = default;
 
-std::vector<Series> SimulatedRealization::with(std::span<const EffectSpec> more, int first, int n) const {
-  const std::vector<EffectSpec> all = together(realization_.script.effects, more);
-  return traced_->emitter.emit(*frame_, sim::make_stages(traced_->model, all), first, n);
+std::optional<std::vector<Series>> SimulatedRealization::with(std::span<const EffectSpec> more, int first,
+                                                              int n) const {
+  if (!acts_on_remembered_zones(more)) return std::nullopt;
+  const effects::Pipeline stages = sim::make_stages(traced_->model, together(realization_.script.effects, more));
+  const Recording& tracks = traced_->family.first();
+  const bool far_enough = std::ranges::all_of(
+      tracks.runs, [&](const RecordedRun& track) { return sim::goes_as_far_as(track, tracks.sensing, stages); });
+  if (!far_enough) return std::nullopt;
+  return traced_->emitter.emit(*frame_, stages, first, n);
 }
 
 std::vector<Series> SimulatedRealization::anew(std::span<const EffectSpec> more, int n,
@@ -105,7 +111,8 @@ std::optional<std::vector<Series>> SimulatedRealization::with_effects(std::span<
                                                                       int n,
                                                                       std::span<const std::size_t> trials) const {
   try {
-    auto data = acts_on_remembered_zones(more) ? with(more, first, n) : anew(more, n, trials);
+    auto remembered = with(more, first, n);
+    auto data = remembered ? std::move(*remembered) : anew(more, n, trials);
     std::erase_if(data, [&](const Series& run) {
       return !trials.empty() && std::ranges::find(trials, run.trial) == trials.end();
     });

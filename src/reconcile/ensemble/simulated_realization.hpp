@@ -38,7 +38,7 @@ class SimulatedRealization {
 
   [[nodiscard]] const Realization& drawn() const noexcept { return realization_; }
   /// The model as it is: runs first + 1 to first + n of every trial, numbered from 1.
-  [[nodiscard]] std::vector<Series> plain(int first, int n) const { return with({}, first, n); }
+  [[nodiscard]] std::vector<Series> plain(int first, int n) const { return *with({}, first, n); }
   /// With more effects, in the same realization: bit for bit what a study with all of them gives, of these trials (none
   /// given: all). None if people can't get about in it.
   [[nodiscard]] std::optional<std::vector<Series>> with_effects(std::span<const EffectSpec> more, int first, int n,
@@ -46,7 +46,8 @@ class SimulatedRealization {
 
  private:
   struct Traced;
-  [[nodiscard]] std::vector<Series> with(std::span<const EffectSpec> more, int first, int n) const;
+  /// From what is remembered; none if that isn't enough.
+  [[nodiscard]] std::optional<std::vector<Series>> with(std::span<const EffectSpec> more, int first, int n) const;
   [[nodiscard]] std::vector<Series> anew(std::span<const EffectSpec> more, int n,
                                          std::span<const std::size_t> trials) const;
 

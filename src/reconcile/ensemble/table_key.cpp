@@ -53,7 +53,7 @@ std::string table_key(const RealizationSource& source, const StudyFrame& frame, 
   print.add(io::to_yaml(script));
   add_body_meshes(print, script);
   add(print, source.nuisance);
-  print.add_each(source.seed, n_replicates);
+  print.add_each(source.seed, n_replicates, n_statistics(frame));
   add(print, settings);
   add(print, frame);
   return print.digest();

@@ -17,7 +17,7 @@ FeatureName gained_by(FeatureName::Permutation permutation) {
   return {.kind = Kind::likeness_gained, .permutation = permutation};
 }
 
-constexpr std::size_t n_sixths = n_cell_statistics - n_told_of_cells;
+constexpr std::size_t n_sixths = static_cast<std::size_t>(CellStatistic::shift_s) - n_told_of_cells;
 constexpr std::size_t n_slices = n_trial_statistics - n_told_of_trials;
 /// Statistics whose means over the sensors of a trial are looked at one by one.
 constexpr std::array told_by_trial{CellStatistic::seconds,       CellStatistic::half_difference,
@@ -36,11 +36,9 @@ void FeatureMap::write_cells(const Scaled& data, Writer& out) const {
     for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
       if (!known(trial, sensor, 0)) continue;
       out.test_next();
-      out.add(data.values[cell_index(frame_, trial, sensor, CellStatistic::seconds)],
-              [&] {
-                return FeatureName{Kind::cell, frame_.trials[trial], frame_.sensors[sensor],
-                                   name(CellStatistic::seconds)};
-              });
+      out.add(data.values[cell_index(frame_, trial, sensor, CellStatistic::seconds)], [&] {
+        return FeatureName{Kind::cell, frame_.trials[trial], frame_.sensors[sensor], name(CellStatistic::seconds)};
+      });
     }
   }
 }
@@ -59,9 +57,8 @@ void FeatureMap::write_sensors(const Scaled& data, Writer& out) const {
       means.push_back(sum / count);
       out.test_next();
       out.add(means.back(), [&] {
-        return FeatureName{.kind = Kind::sensor,
-                           .sensor = frame_.sensors[sensor],
-                           .statistic = name(static_cast<CellStatistic>(k))};
+        return FeatureName{
+            .kind = Kind::sensor, .sensor = frame_.sensors[sensor], .statistic = name(static_cast<CellStatistic>(k))};
       });
     }
     if (std::ranges::find(told_in_order, static_cast<CellStatistic>(k)) == told_in_order.end()) continue;
@@ -104,6 +101,29 @@ void FeatureMap::write_trials(const Scaled& data, Writer& out) const {
     out.add(sum / count, [&] { return of_statistic(Kind::mean, statistic); });
     out.add(std::sqrt(squares / count), [&] { return of_statistic(Kind::size, statistic); });
   }
+  write_shifts(data, out);
+}
+
+/// What a clock's error is read off, of either sign: over the trials, of each sensor and of all.
+void FeatureMap::write_shifts(const Scaled& data, Writer& out) const {
+  const std::string statistic = name(CellStatistic::shift_s);
+  double all = 0.0, n_all = 0.0;
+  for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+    double sum = 0.0, count = 0.0;
+    for (const std::size_t trial : trials_) {
+      const std::size_t i = cell_index(frame_, trial, sensor, CellStatistic::shift_s);
+      if (known_[i] == 0) continue;
+      sum += data.values[i];
+      count += 1.0;
+    }
+    if (count == 0.0) continue;
+    out.add(sum / count, [&] {
+      return FeatureName{.kind = Kind::sensor, .sensor = frame_.sensors[sensor], .statistic = statistic};
+    });
+    all += sum;
+    n_all += count;
+  }
+  if (n_all > 0.0) out.add(all / n_all, [&] { return of_statistic(Kind::mean, statistic); });
 }
 
 /// Sum of a statistic over the trials in which it is known; none if there are no such trials. What a dataset has
@@ -131,9 +151,8 @@ void FeatureMap::write_time(std::span<const float> statistics, Writer& out) cons
     const double all = std::accumulate(totals.begin(), totals.end(), 0.0) + static_cast<double>(n);
     for (std::size_t k = 0; k < n; ++k) {
       out.test_next();
-      out.add(std::log((totals[k] + 1.0) / all), [&] {
-        return FeatureName{.kind = Kind::share_of_time, .sensor = sensor, .part = k + 1, .n_parts = n};
-      });
+      out.add(std::log((totals[k] + 1.0) / all),
+              [&] { return FeatureName{.kind = Kind::share_of_time, .sensor = sensor, .part = k + 1, .n_parts = n}; });
     }
   };
   write_shares(
@@ -204,9 +223,8 @@ void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
     out.add(greatest, [&] { return of_statistic(Kind::greatest, statistic); });
     out.add(least, [&] { return of_statistic(Kind::least, statistic); });
     for (std::size_t c = 0; c < slopes.size(); ++c) {
-      out.add(slopes[c] / count, [&] {
-        return FeatureName{.kind = Kind::slope, .statistic = statistic, .other = covariate_names_[c]};
-      });
+      out.add(slopes[c] / count,
+              [&] { return FeatureName{.kind = Kind::slope, .statistic = statistic, .other = covariate_names_[c]}; });
     }
   }
 }

@@ -138,8 +138,14 @@ FeatureMap::Scaled FeatureMap::scaled(std::span<const float> statistics) const {
     }
   };
   for (const std::size_t trial : trials_) {
-    for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor)
+    for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
       scale(cell_index(frame_, trial, sensor, CellStatistic::seconds), n_told_of_cells);
+      // A clock's error is read off it, so that it stays in proportion; a few windows are much.
+      constexpr double much_windows = 4.0;
+      const std::size_t shift = cell_index(frame_, trial, sensor, CellStatistic::shift_s);
+      if (known_[shift] == 0 || std::isnan(statistics[shift])) continue;
+      data.values[shift] = (static_cast<double>(statistics[shift]) - mean_[shift]) / (much_windows * frame_.window_s);
+    }
     scale(trial_index(frame_, trial, TrialStatistic::lag_minus_4), n_told_of_trials);
   }
   return data;

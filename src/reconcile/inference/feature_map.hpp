@@ -52,6 +52,7 @@ class FeatureMap {
   void write_cells(const Scaled& data, Writer& out) const;
   void write_sensors(const Scaled& data, Writer& out) const;
   void write_trials(const Scaled& data, Writer& out) const;
+  void write_shifts(const Scaled& data, Writer& out) const;
   void write_time(std::span<const float> statistics, Writer& out) const;
   void write_pairs(std::span<const float> statistics, Writer& out) const;
   void write_contrasts(const Scaled& data, Writer& out) const;

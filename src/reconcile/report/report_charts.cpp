@@ -82,6 +82,7 @@ std::string in_plain_words(const std::string& statistic) {
                                                         {"period_power", "motion comes periodically"},
                                                         {"cycle_strength", "motion keeps time with the arms"},
                                                         {"agreement", "motion comes when expected"},
+                                                        {"shift_s", "motion comes later than expected"},
                                                         {"lead_seconds", "motion before the main part"},
                                                         {"tail_seconds", "motion after the main part"},
                                                         {"late_tail_seconds", "motion long after the main part"},
@@ -137,8 +138,8 @@ io::BandChart envelope_chart(const Location& location, double alpha) {
     const bool outside = feature.adjusted_p <= alpha;
     chart.rows[row->second].points.push_back(
         {beside_band(feature),
-         place_of(feature.name) + "\n" + subject + "\n" + (outside ? "outside" : "inside") +
-             " the band, adjusted p " + short_number(feature.adjusted_p),
+         place_of(feature.name) + "\n" + subject + "\n" + (outside ? "outside" : "inside") + " the band, adjusted p " +
+             short_number(feature.adjusted_p),
          outside ? io::BandChart::Point::Mark::outside : io::BandChart::Point::Mark::inside});
   }
   return chart;

@@ -87,12 +87,12 @@ TEST_CASE("remembered zones give the rows of the study with every effect that ac
     const EffectSpec spec = strong(*effect);
     const Model model = model_of(place, {spec});
     const auto rows = results_of(model);
-    const bool traced_anew = effect->info.reach == Reach::geometry;
+    const effects::Pipeline pipeline = sim::make_stages(plain, std::vector{spec});
+    const bool traced_anew = effect->info.reach == Reach::geometry || pipeline.looks_ahead();
     const Recording own_tracks = traced_anew ? record(model, all_runs(model), 1) : Recording{};
     const Recording& tracks = traced_anew ? own_tracks : plain_tracks;
     const auto logic = sim::make_logic(model);
     logic->prepare(tracks.sets);
-    const effects::Pipeline pipeline = sim::make_stages(plain, std::vector{spec});
     for (std::size_t i = 0; i < rows.size(); ++i) {
       CHECK(sim::replay(tracks, i, *logic, model.script().seed, pipeline).samples == rows[i].samples);
     }
@@ -196,7 +196,8 @@ TEST_CASE("entries are complete and refer to one another by name") {
       CHECK((parameter.scale != effects::Scale::logarithmic || parameter.low > 0.0));
       CHECK((parameter.role == effects::Role::strength || parameter.off == parameter.typical));
     }
-    const bool rows = effect->make_row_stage != nullptr, triggers = effect->make_stage != nullptr;
+    const bool rows = effect->make_row_stage != nullptr,
+               triggers = effect->make_stage != nullptr || effect->set_clocks != nullptr;
     CHECK((effect->alter != nullptr || rows || triggers));
     CHECK((info.reach == Reach::rows) == rows);
     CHECK((info.reach == Reach::triggers) == triggers);

@@ -33,7 +33,7 @@ std::vector<double> after_leaving(const Model& model, std::size_t seat, double r
     pipeline.seat_left(seat);
     for (int tick = 1; tick <= 50 * seconds; ++tick) {
       std::vector<std::uint8_t> triggers(counts.size(), 0);
-      pipeline.tick(tick, triggers);
+      pipeline.hear(tick, triggers);
       for (std::size_t s = 0; s < counts.size(); ++s) counts[s] += triggers[s];
     }
   }
@@ -161,7 +161,7 @@ TEST_CASE("a burst is under way when a run begins as often as at any other time"
     std::array<bool, parts> any{};
     for (int tick = 0; tick < 3000; ++tick) {
       std::vector<std::uint8_t> triggers(model.scene().sensors.size(), 0);
-      pipeline.tick(tick, triggers);
+      pipeline.hear(tick, triggers);
       any[static_cast<std::size_t>(tick / 300)] |= triggers[0] != 0;
     }
     for (std::size_t part = 0; part < parts; ++part) with_triggers[part] += any[part] ? 1 : 0;

@@ -14,12 +14,18 @@ namespace {
 
 constexpr int rate_hz = 50;
 
-/// Both sensors' triggers after the pipeline; sensor A is given `before`, sensor B nothing.
+/// Both sensors' triggers after the pipeline, as they are logged; sensor A is given `before`, and nothing more after
+/// its end, sensor B nothing.
 std::array<Series, 2> through(effects::Pipeline pipeline, const Series& before) {
   std::array<Series, 2> after;
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    std::array<std::uint8_t, 2> triggers{before[i], 0};
-    pipeline.tick(static_cast<std::int64_t>(i) + 1, triggers);
+  std::int64_t heard = 0;
+  std::array<std::uint8_t, 2> triggers{};
+  for (std::int64_t tick = 1; tick <= std::ssize(before); ++tick) {
+    while (heard < pipeline.heard_by(tick)) {
+      triggers = {heard < std::ssize(before) ? before[static_cast<std::size_t>(heard)] : std::uint8_t{0}, 0};
+      pipeline.hear(++heard, triggers);
+    }
+    pipeline.log(tick, triggers);
     for (std::size_t s : {0U, 1U}) after[s].push_back(triggers[s]);
   }
   return after;
@@ -170,6 +176,38 @@ TEST_CASE("a late clock stamps every trigger later by its lag and its drift") {
   CHECK(ones(lag[0]) == std::vector<std::size_t>{51, 52, 100, 1050, 1051, 3050});
   const auto drift = through(Bench().pipeline({effect("clock_lag", {{"lag_s", 0.0}, {"drift_percent", 1.0}})}), before);
   CHECK(ones(drift[0]) == std::vector<std::size_t>{1, 2, 51, 1010, 1011, 3030});
+}
+
+TEST_CASE("an early clock stamps every trigger earlier, and loses what it would stamp before the beginning") {
+  const Series before = with_ones(5000, {1, 50, 51, 1000, 1001, 3000, 4999});
+  const auto clock = [&](double lag_s, double drift_percent, std::map<std::string, std::string, std::less<>> of = {}) {
+    return through(
+        Bench().pipeline({effect("clock_lag", {{"lag_s", lag_s}, {"drift_percent", drift_percent}}, std::move(of))}),
+        before);
+  };
+  CHECK(ones(clock(-1.0, 0.0)[0]) == std::vector<std::size_t>{1, 950, 951, 2950, 4949});
+  CHECK(ones(clock(0.0, -1.0)[0]) == std::vector<std::size_t>{1, 49, 50, 990, 991, 2970, 4949});
+  CHECK(ones(clock(-1.0, 1.0)[0]) == std::vector<std::size_t>{2, 960, 961, 2980, 4999});
+  CHECK(ones(clock(1.0, -50.0)[0]) == std::vector<std::size_t>{51, 75, 76, 550, 1550, 2549});
+  // The other sensor's clock is right: its triggers are logged as they happen.
+  CHECK(clock(-1.0, 0.0, {{"sensor", "B"}})[0] == before);
+}
+
+TEST_CASE("whatever is logged by a tick has been heard by then, and the tick after that isn't needed") {
+  for (const auto& [lag, drift] : {std::pair{-3.0, 0.0}, std::pair{-0.31, -0.005}, std::pair{2.0, -0.5},
+                                   std::pair{-7.0, 0.3}, std::pair{4.0, 0.1}}) {
+    INFO(lag << ' ' << drift);
+    effects::Clocks clocks;
+    clocks.set(1, 0, lag, drift);
+    for (std::int64_t tick = 1; tick < 3000; ++tick) {
+      const auto logged_at = [&, lag = lag, drift = drift](std::int64_t t) {
+        return t + std::llround(lag + drift * static_cast<double>(t));
+      };
+      std::int64_t last = tick;
+      for (std::int64_t t = tick; t < 3 * tick + 20; ++t) last = logged_at(t) <= tick ? t : last;
+      REQUIRE(clocks.heard_by(tick) == last);
+    }
+  }
 }
 
 TEST_CASE("stages act in the catalogue's order whatever the script's") {

@@ -111,15 +111,15 @@ class StandingFeet {
   int n_ticks_ = 0, n_ticks_in_the_air_ = 0;
 };
 
-/// Twelve metres long and too narrow for two: nobody can step aside.
-SceneSpec corridor() {
+/// Twelve metres long. With half a width of 0.4 m it is too narrow for two: nobody can step aside.
+SceneSpec corridor(double half_m = 0.4) {
   SceneSpec scene = shipped_scene("meeting_room.gltf");
-  constexpr double length_m = 12.0, half_m = 0.4;
+  constexpr double length_m = 12.0;
   scene.floor = FloorArea({{{0, -half_m}, {length_m, -half_m}, {length_m, half_m}, {0, half_m}}}, 0.0);
   scene.meshes = {pirsim::testing::box_mesh({-2, 0, half_m}, {length_m + 2, 2.5, half_m + 0.1}),
                   pirsim::testing::box_mesh({-2, 0, -half_m - 0.1}, {length_m + 2, 2.5, -half_m})};
   scene.seats.clear();
-  const auto door = [](const char* id, double x, const Vec2& inwards) {
+  const auto door = [half_m](const char* id, double x, const Vec2& inwards) {
     return EntranceSpec{id, {rotation_from_heading(heading_of(inwards)), Vec3(x, 0, 0)}, 2.0 * half_m, 1.5};
   };
   scene.entrances = {door("west", 0.0, {1, 0}), door("east", length_m, {-1, 0})};
@@ -217,6 +217,37 @@ TEST_CASE(
   CHECK(first.place_m.x > 0.0);
   CHECK(first.place_m.x < 12.0);
   for (const Stay& stay : record.stays) CHECK(stay.left_s > 0.0);
+}
+
+TEST_CASE("who squeezes past somebody goes at half the pace, and at the usual one before") {
+  constexpr double half_m = 0.5, stands_x_m = 6.0, abreast_m = 0.3;
+  const double dt = 0.02, pace = PersonSpec{}.walking_speed_m_s;
+  // By the wall: trunks get past, arms don't.
+  const Model model =
+      compile(corridor(half_m),
+              script_of({person("walker", {act(action::Enter{"west"}), act(action::Leave{"east"})}),
+                         person("stands", {act(action::Appear{{stands_x_m, -0.25}, 90.0}), act(action::Wait{30.0})})}));
+  std::optional<Vec2> before;
+  double fastest = 0.0, fastest_abreast = 0.0;
+  int n_abreast = 0;
+  const CrowdRecord record = watch_crowd(model, 0, 1, [&](const sim::RunState& state) {
+    const sim::Actor &walker = state.crowd.actors()[0], &stands = state.crowd.actors()[1];
+    if (!walker.present() || !stands.present()) return before.reset();
+    const Vec2 place = walker.motion().position(), other = stands.motion().position();
+    if (before) {
+      const double speed = glm::distance(place, *before) / dt;
+      const bool abreast = std::abs(place.x - other.x) < abreast_m;
+      n_abreast += abreast ? 1 : 0;
+      if (abreast) fastest_abreast = std::max(fastest_abreast, speed);
+      if (place.x < other.x - 2.0) fastest = std::max(fastest, speed);
+    }
+    before = place;
+  });
+  CHECK(record.incidents.empty());
+  CHECK(record.least_gap_m > 0.0);
+  CHECK(n_abreast > 20);
+  CHECK(fastest == Approx(pace).epsilon(0.02));
+  CHECK(fastest_abreast == Approx(0.5 * pace).epsilon(0.02));
 }
 
 TEST_CASE("who stands in a doorway lets others in, and nobody passes through anybody") {

@@ -46,7 +46,8 @@ TEST_CASE("Empty hours that are passed over leave every bit as if they had been 
       "effects: [soft_zone_edges]\n",
       "effects: [dual_polarity]\n",
       "effects: [{false_triggers: {rate_per_s: 0.05}}, pulse_stretching, {trigger_bursts: {length_s: 5}}]\n",
-      "effects: [warm_chair, missed_triggers, clock_lag, dead_time, dead_sensor]\n"};
+      "effects: [warm_chair, missed_triggers, clock_lag, dead_time, dead_sensor]\n",
+      "effects: [warm_chair, {clock_lag: {lag_s: -7.3, drift_percent: -0.5}}, dead_time]\n"};
   for (const std::string& more : variants) {
     INFO(more);
     const Model model = model_of(short_meeting, more);

@@ -52,6 +52,7 @@ bool noticed_in_study(const SceneSpec& scene, const WalkTestSpec& spec, const Ve
   constexpr double still_s = 20.0;  // so that appearing is over
   const Vec2 half_path = spec.path_m / 2 * direction_of(radians(heading_deg));
   PersonSpec walker = spec.person;
+  walker.id = "walker";
   walker.actions = {act(action::Appear{point - half_path, heading_deg}), act(action::Wait{still_s}),
                     act(action::Walk{{point + half_path}}), act(action::Wait{spec.major.within_s})};
   ScriptSpec script = script_of({walker});

@@ -111,6 +111,22 @@ TEST_CASE("motion that keeps to the arm's cycle is told from motion that does no
   CHECK(of(statistics(without, none), CellStatistic::cycle_strength) == Approx(0.0).margin(1e-6));
 }
 
+TEST_CASE("motion that comes early shows at its lag", "[statistics]") {
+  std::string expected(180, '0'), early(180, '0');
+  for (const std::size_t at : {10U, 47U, 100U, 131U}) {
+    expected[at] = '1';
+    early[at - 3] = '1';
+  }
+  const auto s = statistics(early, expected);
+  const auto lag = [&](TrialStatistic which) { return s[trial_index(frame, 0, which)]; };
+  CHECK(name(CellStatistic::shift_s) == "shift_s");
+  CHECK(of(s, CellStatistic::shift_s) == Approx(-3.0).margin(0.01));
+  CHECK(of(statistics(expected, early), CellStatistic::shift_s) == Approx(3.0).margin(0.01));
+  CHECK(of(statistics(early, early), CellStatistic::shift_s) == Approx(0.0));
+  CHECK(of(statistics(early, std::string(90, '0') + std::string(90, '1')), CellStatistic::shift_s) == 0.0F);
+  CHECK(lag(TrialStatistic::lag_0) < 0.0F);
+}
+
 TEST_CASE("motion that comes late shows at its lag", "[statistics]") {
   std::string expected(180, '0'), late(180, '0');
   for (const std::size_t at : {10U, 47U, 100U, 131U}) {

@@ -151,7 +151,7 @@ TEST_CASE("a patch that puts somebody into the only doorway is judged as any oth
   for (double x = lower.x; x < upper.x + 1.0; x += 1.0) {
     for (double z = lower.y; z < upper.y + 1.0; z += 1.0) {
       SeatSpec& seat = blocked.source.scene.seats.emplace_back(blocked.source.scene.seats.front());
-      seat.id = "unused " + std::to_string(blocked.source.scene.seats.size());
+      seat.id = "unused_" + std::to_string(blocked.source.scene.seats.size());
       seat.world_from_seat.origin = Vec3(x, seat.world_from_seat.origin.y, z);
     }
   }

@@ -336,7 +336,7 @@ TEST_CASE("the whole loop writes a patched script that runs and closes the gap",
   const ScriptSpec patched_script = io::read_script(folder.path() / "script_patched.yaml");
   REQUIRE(patched_script.effects.size() == 1);
   CHECK(patched_script.effects[0].name == "false_triggers");
-  CHECK(compile(scene, patched_script).compiled().stages().size() == 1);
+  CHECK_FALSE(compile(scene, patched_script).compiled().stages().empty());
   std::ifstream page_file(folder.path() / "report.html");
   const std::string page{std::istreambuf_iterator<char>(page_file), {}};
   CHECK_THAT(page, contains(sentence(outcome)) && contains("Does it help"));
@@ -401,7 +401,8 @@ TEST_CASE("two effects at once are found one after the other", "[reconcile][thre
   CHECK_FALSE(std::filesystem::exists(folder.path() / "script_patched.yaml"));
 }
 
-TEST_CASE("what no effect of the catalogue makes gets no name, and the residuals say what is left", "[reconcile][three-seats]") {
+TEST_CASE("what no effect of the catalogue makes gets no name, and the residuals say what is left",
+          "[reconcile][three-seats]") {
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
   ScriptSpec hidden = short_study();
   hidden.seed = 7;

@@ -18,9 +18,9 @@ ScriptSpec short_study() { return test::short_study({"S1", "S4", "S8"}, 60.0); }
 SelftestSettings small() {
   SelftestSettings settings;
   settings.analysis.table = {
-      400,
-      400,
-      400,
+      500,
+      500,
+      500,
       {"false_triggers", "missed_triggers", "pulse_stretching", "dead_time", "clock_lag", "dead_sensor"}};
   settings.analysis.trees = 100;
   settings.n_nulls = 200;
