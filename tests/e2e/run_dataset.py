@@ -138,7 +138,9 @@ class Dataset(unittest.TestCase):
                 sensor["translation"][1] -= 0.5
             else:
                 sensor["matrix"][13] -= 0.5
-            file.write_text(json.dumps(scene))
+            # As long as before: sizes alone would tell nothing.
+            file.write_text(json.dumps(scene, separators=(",", ":")).ljust(len(as_made)))
+            self.assertEqual(file.stat().st_size, len(as_made))
             for how in ("--resume", "--finish"):
                 told = pirsim("dataset", DATA / "recipes" / "tiny.yaml", "-o", folder, how, "-q", code=3).stderr
                 self.assertIn("room_0001.gltf: error: ", told)
