@@ -69,8 +69,8 @@ struct TableSettings {
   std::vector<std::string> effects;     ///< names; empty: the whole catalogue
   bool operator==(const TableSettings&) const = default;
 };
-/// The fewest datasets of a hypothesis with which it can be ruled out at the level. Two fifths of its datasets calibrate
-/// it, and two tests are combined: its p can't fall below 5 / (its number of datasets). A tenth is added for
+/// The fewest datasets of a hypothesis with which it can be ruled out at the level. Two fifths of its datasets
+/// calibrate it, and two tests are combined: its p can't fall below 5 / (its number of datasets). A tenth is added for
 /// realizations in which nobody can get about.
 [[nodiscard]] constexpr std::uint32_t fewest_datasets_to_refuse(double level) {
   return static_cast<std::uint32_t>(5.5 / level + 0.5);
@@ -86,8 +86,8 @@ struct Settings {
   std::uint32_t verify_realizations = 60;  ///< simulated with each patched model
   std::vector<std::size_t> holdout;        ///< trials (ascending) kept from naming and fitting; none: folds
 };
-/// The usual settings at another level (0.001 to 0.5), with so many times the usual number of simulated datasets (0.05 to
-/// 20) and these effects to look for (none: the whole catalogue). Throws Error(usage) for other numbers, and for an
+/// The usual settings at another level (0.001 to 0.5), with so many times the usual number of simulated datasets (0.05
+/// to 20) and these effects to look for (none: the whole catalogue). Throws Error(usage) for other numbers, and for an
 /// effect that isn't known, stands there twice or is in the script already.
 [[nodiscard]] Settings settings_of(const ScriptSpec& script, double alpha, double budget,
                                    const std::vector<std::string>& effects);

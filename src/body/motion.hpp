@@ -29,10 +29,10 @@ enum class Channel : std::size_t {
   chair_turn,  ///< radians, positive to the left; while seated
   // The four channels of the hands on the table act while the forearms lie on it. Their metres are those of somebody
   // 1.86 m tall; other people's hands move in proportion to their stature.
-  left_hand_ahead,   ///< metres along the table, positive forward
-  right_hand_ahead,  ///< metres along the table, positive forward
-  left_hand_up,      ///< metres above the table
-  right_hand_up,     ///< metres above the table
+  left_hand_ahead,     ///< metres along the table, positive forward
+  right_hand_ahead,    ///< metres along the table, positive forward
+  left_hand_up,        ///< metres above the table
+  right_hand_up,       ///< metres above the table
   left_hand_to_head,   ///< 0: the hand is where the posture puts it; 1: it is beside mouth and ear, sitting or standing
   right_hand_to_head,  ///< 0: the hand is where the posture puts it; 1: it is beside mouth and ear, sitting or standing
 };

@@ -15,8 +15,8 @@ namespace pirsim::body {
 namespace {
 
 constexpr double cell_m = WalkableFloor::cell_m;
-constexpr double max_cells = 2.5e7;   ///< assumed: an airport's hall of 1.2 km x 200 m just fits, in some 300 MB
-constexpr double lead_m = 0.5;        ///< how far a start or goal may be from a walkable cell
+constexpr double max_cells = 2.5e7;  ///< assumed: an airport's hall of 1.2 km x 200 m just fits, in some 300 MB
+constexpr double lead_m = 0.5;       ///< how far a start or goal may be from a walkable cell
 /// How far the strip of an entrance reaches into the room. assumed: more than the depth of a door's reveal (0.1-0.5).
 constexpr double strip_inside_m = 0.5;
 /// How far the strip goes on behind the place where people wait. assumed: a body's length of room (0.3-1 m).

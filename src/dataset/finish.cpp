@@ -26,8 +26,9 @@ void require_written(const fs::path& folder, const RoomDayRecord& record) {
                   "isn't what was written: remove it and make it anew with --resume");
   }
   if (record.scene && !is_whole(folder, *record.scene, Look::contents))
-    throw Error(ErrorCode::input, Where{(folder / record.scene->path).string()},
-                "isn't there or isn't the room that the rows were made of: move it away, and make it anew with --resume");
+    throw Error(
+        ErrorCode::input, Where{(folder / record.scene->path).string()},
+        "isn't there or isn't the room that the rows were made of: move it away, and make it anew with --resume");
 }
 
 /// Those that were read until it was stopped.
@@ -44,8 +45,10 @@ std::vector<RoomDayRecord> read_records(const RecipeSpec& recipe, const fs::path
         return record;
       },
       [&](Found& record) {
-        if (record) records.push_back(std::move(*record));
-        else ++missing;
+        if (record)
+          records.push_back(std::move(*record));
+        else
+          ++missing;
       },
       options.goes_on);
   if (missing > 0) {
@@ -98,8 +101,8 @@ void write_energyplus(const Description& described, const fs::path& folder) {
 
 bool finish_dataset(const RecipeSpec& recipe, const fs::path& folder, const DatasetOptions& options) {
   const auto is_stopped = [&] { return options.goes_on && !options.goes_on(); };
-  Description described{recipe, provenance(recipe, options.scenes), sensor_columns(recipe, options.scenes), {}, {},
-                        parts_of(recipe), {}};
+  Description described{
+      recipe, provenance(recipe, options.scenes), sensor_columns(recipe, options.scenes), {}, {}, parts_of(recipe), {}};
   described.days = read_records(recipe, folder, described.provenance, options);
   begin(options.observer, DatasetObserver::Stage::describing_rooms, static_cast<std::size_t>(recipe.n_rooms()));
   for (int number = 1; number <= recipe.n_rooms(); ++number) {

@@ -237,23 +237,23 @@ std::string to_json(const RoomDayRecord& r, const std::string& made_by) {
     effects.push_back({{"name", effect.name}, {"parameters", effect.parameters}, {"choices", effect.choices}});
   for (const WrittenFile& file : r.files) files.push_back(file_to_json(file));
   json document{{"made_by", made_by},
-                      {"room", r.room},
-                      {"day", r.day},
-                      {"date", r.date},
-                      {"rows", r.rows},
-                      {"seconds", r.seconds},
-                      {"staff", r.staff},
-                      {"most_people", r.most_people},
-                      {"arrivals", r.arrivals},
-                      {"departures", r.departures},
-                      {"passes_through", r.passes_through},
-                      {"rows_by_people", counts_to_json(r.rows_by_people)},
-                      {"readings_by_people", counts_to_json(r.readings_by_people)},
-                      {"presence", r.presence},
-                      {"people", r.people},
-                      {"effects", effects},
-                      {"files", files},
-                      {"fault", r.fault}};
+                {"room", r.room},
+                {"day", r.day},
+                {"date", r.date},
+                {"rows", r.rows},
+                {"seconds", r.seconds},
+                {"staff", r.staff},
+                {"most_people", r.most_people},
+                {"arrivals", r.arrivals},
+                {"departures", r.departures},
+                {"passes_through", r.passes_through},
+                {"rows_by_people", counts_to_json(r.rows_by_people)},
+                {"readings_by_people", counts_to_json(r.readings_by_people)},
+                {"presence", r.presence},
+                {"people", r.people},
+                {"effects", effects},
+                {"files", files},
+                {"fault", r.fault}};
   if (r.scene) document["scene"] = file_to_json(*r.scene);
   document["record_sha256"] = sha256(document.dump());
   return document.dump(1) + '\n';

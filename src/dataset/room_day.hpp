@@ -37,9 +37,9 @@ struct RoomDayRecord {
   std::map<int, MotionCount> rows_by_people, readings_by_people;
   std::array<double, 24> presence{}, people{};  ///< share of the hour with anybody there; people on average
   std::vector<EffectSpec> effects;
-  std::vector<WrittenFile> files;  ///< the first is that of the rows; none if the day failed
+  std::vector<WrittenFile> files;    ///< the first is that of the rows; none if the day failed
   std::optional<WrittenFile> scene;  ///< a drawn room's file, of which the day was made
-  std::string fault;               ///< why there are no rows
+  std::string fault;                 ///< why there are no rows
 };
 
 struct RoomDay {

@@ -10,8 +10,7 @@ namespace pirsim::dataset {
 [[nodiscard]] RoomSpec read_room_keys(io::YamlMap& map);
 
 /// A number, or a list of the least and the most; `otherwise` if the key isn't there.
-[[nodiscard]] Range read_range(io::YamlMap& map, const std::string& key, const Range& otherwise,
-                               NumberRange limits);
+[[nodiscard]] Range read_range(io::YamlMap& map, const std::string& key, const Range& otherwise, NumberRange limits);
 [[nodiscard]] CountRange read_count(io::YamlMap& map, const std::string& key, const CountRange& otherwise,
                                     IntegerRange limits);
 

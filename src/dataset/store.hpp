@@ -19,8 +19,8 @@ namespace pirsim::dataset {
 [[nodiscard]] std::pair<int, int> room_and_day(const RecipeSpec& recipe, std::uint32_t index);
 [[nodiscard]] std::filesystem::path room_file(const std::filesystem::path& folder, int room);
 enum class Look {
-  sizes,   ///< of files
-  contents ///< as well, by their hashes
+  sizes,    ///< of files
+  contents  ///< as well, by their hashes
 };
 [[nodiscard]] bool is_whole(const std::filesystem::path& folder, const WrittenFile& written, Look look);
 /// The record of a room-day whose files are there, and the room that they were made of; none if it has to be made.

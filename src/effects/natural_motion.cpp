@@ -21,19 +21,17 @@ void alter(StudyInForce& study, const EffectSpec& effect) {
 
 const Effect& natural_motion() {
   static const Effect effect{
-      .info =
-          {.name = "natural_motion",
-           .family = Family::motion,
-           .stage = "body",
-           .summary =
-               "Everybody moves naturally instead of by the paper's choreography: still, then moving, "
-               "at all scales of time.",
-           .fingerprint = "the arms' line in the spectrum is gone; activity comes in bouts of all lengths",
-           .confused_with = {"fidgeting", "uneven_arms", "soft_zone_edges"},
-           .parameters = {whether("present", "assumed")},
-           .choices = {{"activity", ChoiceKind::variant, activities(), "typing"}},
-           .reach = Reach::geometry,
-           .idle_in = {Survey::coverage, Survey::walk_test}},
+      .info = {.name = "natural_motion",
+               .family = Family::motion,
+               .stage = "body",
+               .summary = "Everybody moves naturally instead of by the paper's choreography: still, then moving, "
+                          "at all scales of time.",
+               .fingerprint = "the arms' line in the spectrum is gone; activity comes in bouts of all lengths",
+               .confused_with = {"fidgeting", "uneven_arms", "soft_zone_edges"},
+               .parameters = {whether("present", "assumed")},
+               .choices = {{"activity", ChoiceKind::variant, activities(), "typing"}},
+               .reach = Reach::geometry,
+               .idle_in = {Survey::coverage, Survey::walk_test}},
       .alter = alter};
   return effect;
 }

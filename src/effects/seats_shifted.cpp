@@ -23,27 +23,26 @@ void draw(EffectSpec& effect, const SceneSpec&, const ScriptSpec&, Stream& strea
 }  // namespace
 
 const Effect& seats_shifted() {
-  static const Effect effect{
-      .info = {.name = "seats_shifted",
-               .family = Family::data,
-               .stage = "books",
-               .summary = "Seat names are shifted: each names the seat so many places further.",
-               .fingerprint = "rows of the table of sums are permuted",
-               .confused_with = {"mirrored_room"},
-               .parameters = {{.name = "places",
-                               .unit = "",
-                               .off = 0.0,
-                               .typical = 1.0,
-                               .low = 1.0,
-                               .high = 1.0,
-                               .least = -1000.0,
-                               .most = 1000.0,
-                               .scale = Scale::whole,
-                               .source = "assumed: one, either way"}},
-               .reach = Reach::geometry,
-               .idle_in = {Survey::coverage}},
-      .alter = alter,
-      .draw = draw};
+  static const Effect effect{.info = {.name = "seats_shifted",
+                                      .family = Family::data,
+                                      .stage = "books",
+                                      .summary = "Seat names are shifted: each names the seat so many places further.",
+                                      .fingerprint = "rows of the table of sums are permuted",
+                                      .confused_with = {"mirrored_room"},
+                                      .parameters = {{.name = "places",
+                                                      .unit = "",
+                                                      .off = 0.0,
+                                                      .typical = 1.0,
+                                                      .low = 1.0,
+                                                      .high = 1.0,
+                                                      .least = -1000.0,
+                                                      .most = 1000.0,
+                                                      .scale = Scale::whole,
+                                                      .source = "assumed: one, either way"}},
+                                      .reach = Reach::geometry,
+                                      .idle_in = {Survey::coverage}},
+                             .alter = alter,
+                             .draw = draw};
   return effect;
 }
 

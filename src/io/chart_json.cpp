@@ -61,7 +61,8 @@ Json to_json(const MapChart& chart) {
   for (const auto& value : chart.values) values.push_back(value ? number(*value) : Json(nullptr));
   json["values"] = std::move(values);
   json["classes"] = Json::array();
-  for (const MapChart::Class& one : chart.classes) json["classes"].push_back({{"above", one.above}, {"name", one.name}});
+  for (const MapChart::Class& one : chart.classes)
+    json["classes"].push_back({{"above", one.above}, {"name", one.name}});
   json["people"] = chart.signs == MapChart::Signs::people;
   json["markers"] = markers(chart.markers);
   json["seats"] = markers(chart.plan.seats);
@@ -81,10 +82,8 @@ Json to_json(const HistogramChart& chart) {
 }
 
 Json to_json(const SeriesChart& chart) {
-  Json json{{"kind", "series"},
-            {"window_s", chart.window_s},
-            {"end_s", chart.end_s},
-            {"first_clock", chart.first_clock}};
+  Json json{
+      {"kind", "series"}, {"window_s", chart.window_s}, {"end_s", chart.end_s}, {"first_clock", chart.first_clock}};
   json["rows"] = Json::array();
   for (const auto& row : chart.rows) json["rows"].push_back({{"name", row.name}, {"times_s", row.times_s}});
   json["people"] = Json::array();

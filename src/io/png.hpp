@@ -16,9 +16,9 @@ struct Pixels {
   std::vector<std::uint8_t> rgb;  ///< (height x width x 3), row by row from the top left, sRGB
 };
 
-/// Squares in the colours that pages use (viridis, from 0 to `max`), white off the floor, outlines black, furniture black
-/// and white, `dashed` polygons white, doors green, a white disc with a nose for each seat, and a red arrow from each
-/// marker, both the way they face. Below the map: its title, what the colours and signs mean, and a scale.
+/// Squares in the colours that pages use (viridis, from 0 to `max`), white off the floor, outlines black, furniture
+/// black and white, `dashed` polygons white, doors green, a white disc with a nose for each seat, and a red arrow from
+/// each marker, both the way they face. Below the map: its title, what the colours and signs mean, and a scale.
 [[nodiscard]] Pixels drawn(const MapChart& chart);
 
 /// The bytes of a PNG file; rgb as in Pixels. Throws Error(usage) if the sizes don't match.

@@ -36,8 +36,8 @@ class RowFile {
   void add_run(std::string_view lines, std::uint64_t n_rows, const RunNotes& notes = {});
   /// Of all runs that are in the file.
   [[nodiscard]] const RunNotes& notes() const noexcept;
-  /// After the last run. Asks goes_on, if given, while it compresses; after a no it throws Error(stopped), and to resume
-  /// puts the file in its place.
+  /// After the last run. Asks goes_on, if given, while it compresses; after a no it throws Error(stopped), and to
+  /// resume puts the file in its place.
   void commit(const std::function<bool()>& goes_on = {});
   /// Removes what was written: there is no sense in going on.
   void discard() noexcept;

@@ -20,9 +20,9 @@ enum class Progress { going_on, done };
 /// they are done, and advance() ends the tick.
 ///
 /// People make way for each other. Somebody who has been held up for a second tells the others which way they wish to
-/// go. Another person who stands on that way steps aside, to the nearest place off it, unless they have been held up for
-/// longer themselves. That person then has the precedence of the one for whom they make way. A sitter leans forward for
-/// somebody who squeezes past, and gets up for somebody who can't squeeze past. Somebody who is still held up after
+/// go. Another person who stands on that way steps aside, to the nearest place off it, unless they have been held up
+/// for longer themselves. That person then has the precedence of the one for whom they make way. A sitter leans forward
+/// for somebody who squeezes past, and gets up for somebody who can't squeeze past. Somebody who is still held up after
 /// 20 s (longer while a sitter gets up for them) walks through the others, which is an incident.
 class Pedestrian {
  public:

@@ -16,17 +16,17 @@ namespace pirsim::stats {
 class ImpostorTests {
  public:
   ImpostorTests() = default;
-  /// log_densities: (n_rows x n_classes >= 2); labels: (n_rows). Class 0 has no impostors and is none: that something is
-  /// there is asked elsewhere. The split's fitting rows teach, its calibration rows are compared with.
+  /// log_densities: (n_rows x n_classes >= 2); labels: (n_rows). Class 0 has no impostors and is none: that something
+  /// is there is asked elsewhere. The split's fitting rows teach, its calibration rows are compared with.
   [[nodiscard]] static ImpostorTests fit(const Matrix<double>& log_densities, std::span<const int> labels,
                                          const Split& split, unsigned threads = 0);
-  /// log_densities: (n_classes) of a row that is taken for class k. If k made it, P(p <= a) <= a; 1 for a class that has
-  /// too few impostors to tell.
+  /// log_densities: (n_classes) of a row that is taken for class k. If k made it, P(p <= a) <= a; 1 for a class that
+  /// has too few impostors to tell.
   [[nodiscard]] double p(std::size_t k, std::span<const double> log_densities) const;
 
  private:
   struct Test {
-    double centre = 0.0;             ///< log density that is usual in the class itself
+    double centre = 0.0;              ///< log density that is usual in the class itself
     std::vector<double> slopes;       ///< (n_classes); none without enough impostors
     std::vector<double> calibration;  ///< scores of own rows
     [[nodiscard]] double score(std::span<const double> log_densities) const;  ///< greater: more like an impostor

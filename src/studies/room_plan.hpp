@@ -16,8 +16,10 @@ enum class MeshRole { ceiling, wall, floor, furniture };
 
 /// What the signs of a report's maps mean, where their markers are sensors.
 inline constexpr const char* signs_of_maps =
-    "Red triangles are sensors and white ones seats, both pointing the way they face; a name is left out where there is "
-    "no room for it, then point at the seat. A green line is a door, dotted lines are furniture, black areas are walls, "
+    "Red triangles are sensors and white ones seats, both pointing the way they face; a name is left out where there "
+    "is "
+    "no room for it, then point at the seat. A green line is a door, dotted lines are furniture, black areas are "
+    "walls, "
     "the solid line is the floor's edge.";
 
 }  // namespace pirsim::studies

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "pir/calibration.hpp"
 #include "pir/analog_detector.hpp"
+#include "pir/calibration.hpp"
 #include "pirsim/io.hpp"
 
 namespace {

@@ -141,7 +141,8 @@ void run(Options& options) {
           if (record.least_gap_m < 0.0) {
             options.incidents << trial << ",overlap," << record.least_gap_at_s << ",p" << record.least_gap_of[0] + 1
                               << "+p" << record.least_gap_of[1] + 1 << ',' << record.least_gap_m << ','
-                              << body::name(record.least_gap_in[0]) << '+' << body::name(record.least_gap_in[1]) << '\n';
+                              << body::name(record.least_gap_in[0]) << '+' << body::name(record.least_gap_in[1])
+                              << '\n';
           }
           ++trial;
         });

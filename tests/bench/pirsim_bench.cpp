@@ -470,8 +470,8 @@ int main(int argc, char** argv) {
   for (const Section& section :
        {Section{"start-up", start_up}, Section{"first", first_runs}, Section{"anew", postures_anew},
         Section{"limit", limit}, Section{"people", people}, Section{"known", people_known},
-         Section{"hours", hours_per_second}, Section{"realizations", realizations}, Section{"ticks", ticks_by_phase},
-         Section{"responses", responses}, Section{"runs", runs_per_second}}) {
+        Section{"hours", hours_per_second}, Section{"realizations", realizations}, Section{"ticks", ticks_by_phase},
+        Section{"responses", responses}, Section{"runs", runs_per_second}}) {
     if (wanted.empty() || wanted == section.name) section.run();
   }
 }

@@ -28,7 +28,8 @@ int main(int argc, char** argv) {
       if (const auto* out = std::get_if<rec::reason::RuledOut>(&candidate.reason))
         std::cerr << candidate.score.hypothesis << ' ' << out->p_relative.value_or(1.0) << '\n';
     }
-    rec::write_report(argv[4], outcome, measured, script, settings, context, {"own_analysis", argv[1], argv[2], argv[3]});
+    rec::write_report(argv[4], outcome, measured, script, settings, context,
+                      {"own_analysis", argv[1], argv[2], argv[3]});
     return stages > 2 && outcome.location.cells.size() == scene.sensors.size() ? 0 : 1;
   } catch (const pirsim::Error& error) {
     std::cerr << error.what() << '\n';

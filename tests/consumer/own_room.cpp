@@ -21,9 +21,9 @@ pirsim::SceneSpec make_room() {
     cluster.range_m = 8.0;
     for (int row = -2; row < 2; ++row) {
       const double x = 0.4 * column + 0.2, y = 0.2 * row + 0.1, half = 0.05;
-      cluster.zones.push_back({{Vec2(x - half, y - half), Vec2(x + half, y - half), Vec2(x + half, y + half),
-                                Vec2(x - half, y + half)},
-                               1});
+      cluster.zones.push_back(
+          {{Vec2(x - half, y - half), Vec2(x + half, y - half), Vec2(x + half, y + half), Vec2(x - half, y + half)},
+           1});
     }
   }
   scene.sensor_models["grid"] = model;

@@ -212,8 +212,8 @@ inline std::vector<PersonSpec> random_people(const SceneSpec& scene, const Crowd
     const std::string& door = scene.entrances[stream.index(std::uint32_t(scene.entrances.size()))].id;
     // Nine statures, so that their floors can be shared.
     const double stature_m = 1.55 + 0.05 * stream.index(9);
-    PersonSpec spec = person("p" + std::to_string(i + 1), {act(action::Wait{due_s}), act(action::Enter{door}),
-                                                           act(action::Sit{seats[i]})});
+    PersonSpec spec = person("p" + std::to_string(i + 1),
+                             {act(action::Wait{due_s}), act(action::Enter{door}), act(action::Sit{seats[i]})});
     if (plan.kind == CrowdPlan::Case::in_turn) {
       spec.actions.push_back(act(action::Work{600.0}));
       spec.actions.push_back(act(action::Leave{door}));

@@ -17,7 +17,13 @@ constexpr double most_arm_amplitude_m = 0.15;  // what a script may ask for
 double between(Stream& stream, double half_width) { return half_width * (2.0 * stream.uniform() - 1.0); }
 
 /// Entities of the nuisance streams: sensors, seats and people don't share numbers, nor do attempts.
-enum Entity : std::uint32_t { sensors = 0, seats = 1U << 16U, people = 1U << 17U, motion = 1U << 18U, attempts = 1U << 20U };
+enum Entity : std::uint32_t {
+  sensors = 0,
+  seats = 1U << 16U,
+  people = 1U << 17U,
+  motion = 1U << 18U,
+  attempts = 1U << 20U
+};
 
 struct Draw {
   const NuisanceSpec& nuisance;

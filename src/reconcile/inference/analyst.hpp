@@ -21,7 +21,7 @@ struct Judgement {
   std::vector<HypothesisScore> scores;  ///< (n_hypotheses) nothing first
   FamilyScore family;                   ///< the likeliest
   Verdict verdict = Verdict::no_disagreement;
-  std::vector<std::size_t> kept;  ///< hypotheses that survive, the named one first, then by p
+  std::vector<std::size_t> kept;        ///< hypotheses that survive, the named one first, then by p
   std::optional<std::size_t> likeness;  ///< hypothesis that would have been named, but is taken for something unknown
 };
 

@@ -26,8 +26,8 @@ class Loop {
   struct Step {
     ReferenceStudy reference;
     std::shared_ptr<const TableView> view;  ///< of the reference's table, in the trials that are looked at
-    std::vector<DataNote> notes;  ///< what was done with which measured rows
-    std::vector<float> observed;  ///< statistics of the measured data
+    std::vector<DataNote> notes;            ///< what was done with which measured rows
+    std::vector<float> observed;            ///< statistics of the measured data
     Outcome outcome;
     SeenRows seen;
     std::size_t likeliest = 0;  ///< hypothesis

@@ -20,7 +20,6 @@ struct Partner {
 /// absolute test of the classifier). A superposition is no simulation (docs/validation/method.md tells how often it
 /// finds the true partner). first: hypothesis, 1 or more. measured: statistics.
 [[nodiscard]] std::vector<Partner> partners_of(const TableView& view, std::size_t first,
-                                                   std::span<const float> measured, double level,
-                                                   const Context& context);
+                                               std::span<const float> measured, double level, const Context& context);
 
 }  // namespace pirsim::reconcile

@@ -74,8 +74,10 @@ std::string no_effect(const Outcome& outcome, double alpha) {
   return (likeliest_is_possible ? std::string("of ") : "the likelier ones of ") +
          (outcome.looked_for.empty() ? "the catalogue's effects" : "the effects looked for") +
          (likeliest_is_possible ? " only " : " are ruled out; ") + joined(possible, "and") +
-         (one && likeliest_is_possible ? " isn't ruled out" : one ? " isn't" : " aren't ruled out") + ", but " +
-         (one ? "its probability" : "their probability together") + " is only " + short_number(together);
+         (one && likeliest_is_possible ? " isn't ruled out"
+          : one                        ? " isn't"
+                                       : " aren't ruled out") +
+         ", but " + (one ? "its probability" : "their probability together") + " is only " + short_number(together);
 }
 
 /// What else may have made the data beside the effect that is named.
@@ -124,7 +126,8 @@ std::string sentence_of_nearest(const Outcome& outcome) {
          short_number(look.p) + "). It was dropped all the same: " + why(nearest->reason);
 }
 
-/// Which strengths were looked for of the likeliest effects, and how to try others: a fault outside a prior has no name.
+/// Which strengths were looked for of the likeliest effects, and how to try others: a fault outside a prior has no
+/// name.
 std::string ranges_looked_for(const Outcome& outcome) {
   constexpr std::size_t most_told = 3;
   std::vector<Candidate> likeliest = outcome.candidates;
@@ -139,7 +142,8 @@ std::string ranges_looked_for(const Outcome& outcome) {
   }
   if (ranges.empty()) return {};
   return "Each effect was looked for in a range only: " + joined(ranges, "and") +
-         " (pirsim effects lists all). Yours may lie outside: write it with its value under effects: of the script, and "
+         " (pirsim effects lists all). Yours may lie outside: write it with its value under effects: of the script, "
+         "and "
          "reconcile again. ";
 }
 

@@ -337,8 +337,8 @@ void count_pairs(const SelftestResult& result, std::vector<Rate>& rates) {
 }  // namespace
 
 std::string_view name(CaseKind kind) noexcept {
-  constexpr std::array<std::string_view, 7> names{
-      "nothing", "one", "beyond_prior", "left_out", "left_out_variant", "two", "out_of_catalogue"};
+  constexpr std::array<std::string_view, 7> names{"nothing",          "one", "beyond_prior",    "left_out",
+                                                  "left_out_variant", "two", "out_of_catalogue"};
   return names[static_cast<std::size_t>(kind)];
 }
 

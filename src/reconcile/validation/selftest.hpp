@@ -45,12 +45,12 @@ struct SelftestSettings {
 /// What is hidden in a dataset, and from whom.
 enum class CaseKind {
   nothing,
-  one,              ///< effect of the catalogue, strength from its prior
-  beyond_prior,     ///< stronger than any in the table, in a room drawn from a wider nuisance
-  left_out,         ///< effect that the catalogue lacks when this dataset is judged
-  left_out_variant, ///< the catalogue has the effect in other variants only
-  two,              ///< effects together
-  out_of_catalogue  ///< something that no catalogue has
+  one,               ///< effect of the catalogue, strength from its prior
+  beyond_prior,      ///< stronger than any in the table, in a room drawn from a wider nuisance
+  left_out,          ///< effect that the catalogue lacks when this dataset is judged
+  left_out_variant,  ///< the catalogue has the effect in other variants only
+  two,               ///< effects together
+  out_of_catalogue   ///< something that no catalogue has
 };
 enum class Strength { none, weak, medium, strong, beyond };  ///< thirds of the prior, by distance from off
 [[nodiscard]] std::string_view name(CaseKind kind) noexcept;
@@ -115,8 +115,9 @@ enum class Counted {
   left_out_passes,
   out_of_catalogue_passes,
   left_out_seen,
-  left_out_none,        ///< called none in the catalogue, given a disagreement
-  told_left_out_none,   ///< the same of those that the whole catalogue gives the right name: others are as good as nested
+  left_out_none,       ///< called none in the catalogue, given a disagreement
+  told_left_out_none,  ///< the same of those that the whole catalogue gives the right name: others are as good as
+                       ///< nested
   left_out_named,
   left_out_named_outside,  ///< by a name of another family
   variant_named,           ///< by the others, given that the whole catalogue gives the right name

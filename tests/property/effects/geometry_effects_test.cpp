@@ -70,8 +70,8 @@ TEST_CASE("a tilted sensor looks so much further down and a lowered one looks fr
     };
     CHECK(down_deg(tilted) == Approx(down_deg(plain) + 4.0));
     CHECK(down_deg(lowered) == down_deg(plain));
-    const Vec3 up =
-        lowered.compiled().scene().sensors[i].world_from_sensor.origin - plain.scene().sensors[i].world_from_sensor.origin;
+    const Vec3 up = lowered.compiled().scene().sensors[i].world_from_sensor.origin -
+                    plain.scene().sensors[i].world_from_sensor.origin;
     CHECK(glm::distance(up, Vec3(0, -0.2, 0)) < 1e-12);
   }
 }

@@ -1,8 +1,8 @@
 // Mesh bodies before every tracer.
 #include <algorithm>
 
-#include "rt/tracer.hpp"
 #include "pirsim/model.hpp"
+#include "rt/tracer.hpp"
 #include "support/catch.hpp"
 #include "support/fine_mesh.hpp"
 

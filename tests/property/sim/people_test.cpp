@@ -133,8 +133,7 @@ TEST_CASE("waiting for good ends after 20 s by passing through, or without the s
   };
   const PersonSpec stays = person("stays", {act(action::Appear{{6, -2}, 0}), act(action::Wait{60.0})});
   const PersonSpec sits = person("sits", {act(action::Enter{"door"}), act(action::Sit{"S4"})});
-  CHECK(kinds({stays, person("b", {act(action::Appear{{6, -2}, 0})})}) ==
-        std::vector{IncidentKind::passed_through});
+  CHECK(kinds({stays, person("b", {act(action::Appear{{6, -2}, 0})})}) == std::vector{IncidentKind::passed_through});
   CHECK(kinds({sits, person("b", {act(action::Wait{5.0}), act(action::Enter{"door"}), act(action::Sit{"S4"})})}) ==
         std::vector{IncidentKind::seat_missed});
   // Who stands close behind a chair and has nothing left to do makes way for its sitter, if there is room.

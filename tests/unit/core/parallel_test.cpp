@@ -92,9 +92,8 @@ TEST_CASE("what comes before a failure in order has been consumed, and nothing a
       if (i == 20 || i == 23) throw std::runtime_error(std::to_string(i));
       return Counted(i);
     };
-    CHECK_THROWS_WITH(ordered_parallel<Counted>(100, threads, produce,
-                                                [&](Counted& one) { consumed.push_back(one.number); }),
-                      "20");
+    CHECK_THROWS_WITH(
+        ordered_parallel<Counted>(100, threads, produce, [&](Counted& one) { consumed.push_back(one.number); }), "20");
     CHECK(consumed.size() == 20);
   }
 }

@@ -106,8 +106,9 @@ TEST_CASE("a body file that can't be worn is refused with its place", "[body_mes
     return fault(file);
   };
   CHECK_THAT(with_node("left_forarm"), contains("body.gltf:"));
-  CHECK_THAT(with_node("left_forarm"), contains("node 'left_forarm': no part of the body is called 'left_forarm' (did you mean "
-                                                "'left_forearm'?)"));
+  CHECK_THAT(with_node("left_forarm"),
+             contains("node 'left_forarm': no part of the body is called 'left_forarm' (did you mean "
+                      "'left_forearm'?)"));
   CHECK_THAT(with_node(""), contains("no part of the body is called ''"));
   CHECK_THAT(with_node("torso", {{"scale", {1000, 1000, 1000}}}), contains("more than 3 m from the part's origin"));
   CHECK_THAT(with_node("torso", {{"scale", {1, 0, 1}}}), contains("singular"));

@@ -32,8 +32,8 @@ std::string doubts_of_door(double x, double y, double z, const json& more = json
 std::string doubts_of_gap(double x, double width_m = 0.9) {
   GltfBuilder scene;
   scene.floor();
-  const int corners = scene.positions({-5, 0, 5, -0.5, 0, 5, -0.5, 2.5, 5, -5, 2.5, 5, 0.5, 0, 5, 5, 0, 5, 5, 2.5, 5,
-                                       0.5, 2.5, 5});
+  const int corners =
+      scene.positions({-5, 0, 5, -0.5, 0, 5, -0.5, 2.5, 5, -5, 2.5, 5, 0.5, 0, 5, 5, 0, 5, 5, 2.5, 5, 0.5, 2.5, 5});
   const int mesh = scene.mesh(corners, scene.indices<std::uint8_t>({0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7}));
   scene.node("front wall", {{"mesh", mesh}});
   json mark = door_mark();
@@ -86,8 +86,8 @@ TEST_CASE("an entrance that is partly in a wall is in doubt", "[scene]") {
 
 TEST_CASE("'occludes' of a polygon without a mesh says nothing, and that is told", "[scene]") {
   GltfBuilder scene;
-  scene.node("ground", GltfBuilder::marked({{"type", "floor"},
-                                            {"polygon_xz_m", {{0, 0}, {4, 0}, {4, -3}, {0, -3}}},
-                                            {"occludes", true}}));
+  scene.node("ground",
+             GltfBuilder::marked(
+                 {{"type", "floor"}, {"polygon_xz_m", {{0, 0}, {4, 0}, {4, -3}, {0, -3}}}, {"occludes", true}}));
   CHECK_THAT(doubts(scene), contains("warning: node 'ground': 'occludes' has no effect without a mesh"));
 }

@@ -59,8 +59,7 @@ TEST_CASE(
   double wrongly = 0.0, relative_only = 0.0, unknown_refused = 0.0, unknown_refused_by_margin = 0.0, least = 1.0;
   for (std::uint32_t study = 0; study < 3; ++study) {
     const ConformalClassifier classifier = fit(10 * study);
-    const Labelled known = draw(300, {0, 1, 2}, 10 * study + 1),
-                   unknown = draw(300, {3}, 10 * study + 2);
+    const Labelled known = draw(300, {0, 1, 2}, 10 * study + 1), unknown = draw(300, {3}, 10 * study + 2);
     const auto of_known = classifier.classify(known.features);
     for (std::size_t r = 0; r < of_known.size(); ++r) {
       const auto own = static_cast<std::size_t>(known.labels[r]);

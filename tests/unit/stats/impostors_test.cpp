@@ -42,7 +42,8 @@ Rows rows_of_all(Stream& stream) {
   for (int label = 0; label < 4; ++label) {
     for (int i = 0; i < 600; ++i) {
       (i < 300 ? rows.split.fitting : rows.split.calibration).push_back(rows.labels.size());
-      rows.log_densities.append_row(std::span<const double>(densities_at(centres[static_cast<std::size_t>(label)], stream)));
+      rows.log_densities.append_row(
+          std::span<const double>(densities_at(centres[static_cast<std::size_t>(label)], stream)));
       rows.labels.push_back(label);
     }
   }

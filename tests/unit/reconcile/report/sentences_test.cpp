@@ -109,11 +109,13 @@ TEST_CASE("where no name is given the sentence says why", "[reconcile]") {
 
 TEST_CASE("improbable effects that might have made the data are told with their probability", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"seat_shift", 0.1}, {"body_size", 0.03}});
-  CHECK_THAT(verdict_sentence(outcome, 0.05),
-             contains("of the catalogue's effects only seat_shift and body_size aren't ruled out, but their probability "
-                      "together is only 0.13"));
+  CHECK_THAT(
+      verdict_sentence(outcome, 0.05),
+      contains("of the catalogue's effects only seat_shift and body_size aren't ruled out, but their probability "
+               "together is only 0.13"));
   outcome.candidates.push_back({{"dead_time", 0.6, 0.0, 0.0, 0.01}, effects::Family::electronics, false, {}});
-  CHECK_THAT(verdict_sentence(outcome, 0.05), contains("the likelier ones of the catalogue's effects are ruled out; seat_shift and body_size"));
+  CHECK_THAT(verdict_sentence(outcome, 0.05),
+             contains("the likelier ones of the catalogue's effects are ruled out; seat_shift and body_size"));
   CHECK_THAT(in_words(reason::Improbable{0.6}), contains("Dropped: by itself it might have made these data (p 0.6)"));
   for (Candidate& candidate : outcome.candidates) candidate.score.p = 0.01;
   CHECK_THAT(verdict_sentence(outcome, 0.05), contains("no effect of the catalogue is likely"));
@@ -164,8 +166,10 @@ TEST_CASE("of a catalogue cut down nothing is said about the effects that weren'
   CHECK_THAT(sentence(cut_down(outcome_of(Verdict::named, {{"seat_shift", 0.6}})), 0.05),
              contains("no other effect of those looked for explains the data"));
   Outcome none = cut_down(outcome_of(Verdict::none_in_catalogue, {{"seat_shift", 0.1}}));
-  CHECK_THAT(sentence(none, 0.05), contains("something that is not among the effects looked for: ") &&
-                                       contains("of the effects looked for only seat_shift isn't ruled out, but its probability is only 0.1"));
+  CHECK_THAT(
+      sentence(none, 0.05),
+      contains("something that is not among the effects looked for: ") &&
+          contains("of the effects looked for only seat_shift isn't ruled out, but its probability is only 0.1"));
   none.candidates.front().score.p = 0.01;
   CHECK_THAT(sentence(none, 0.05), contains("no effect of those looked for is likely"));
   none.candidates.front().reason = reason::RefusedWhenApplied{0.005};
