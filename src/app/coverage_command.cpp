@@ -31,24 +31,13 @@ studies::CoverageStudy load_coverage(const Inputs& inputs) {
   return study;
 }
 
-/// Goes on where an interrupted run of the same study stopped.
-CoverageMap compute(const studies::CoverageStudy& study, studies::RowStore& rows, const Inputs& inputs,
-                    unsigned threads, const StopRequest& stop) {
-  CoverageMap map = studies::empty_map(study);
-  map.counts = rows.found();
-  if (rows.n_found_rows() > 0 && inputs.verbosity != Verbosity::quiet) {
-    std::cerr << "continuing after " << rows.n_found_rows() << " of " << study.grid().n_rows() << " rows of squares\n";
-  }
-  Progress progress({"moving a target over the floor", study.grid().n_rows() - rows.n_found_rows(), "rows of squares"},
-                    inputs.verbosity);
-  const auto keep = [&](std::size_t, const std::vector<MotionCount>& counts) {
-    rows.append(counts);
-    map.counts.insert(map.counts.end(), counts.begin(), counts.end());
+CoverageMap compute(const studies::CoverageStudy& study, const Inputs& inputs, unsigned threads,
+                    const StopRequest& stop) {
+  Progress progress({"moving a target over the floor", study.grid().n_rows(), "rows of squares"}, inputs.verbosity);
+  return studies::run_coverage(study, threads, [&](std::size_t, std::size_t) {
     progress.finished();
     stop.throw_if_made();
-  };
-  studies::run_rows(study, rows.n_found_rows(), threads, keep);
-  return map;
+  });
 }
 
 void draw_maps(const studies::CoverageStudy& study, const CoverageMap& map, const std::filesystem::path& folder,
@@ -68,15 +57,13 @@ void coverage(const Inputs& inputs, const CoverageOptions& options) {
   const studies::CoverageStudy study = load_coverage(inputs);
   std::optional<io::AtomicFile> report_file;
   if (!options.report.empty()) report_file.emplace(options.report);
+  const StopRequest stop;
   make_folder(options.output);
-  studies::RowStore rows(options.output / "coverage.rows", study);
-  const StopRequest stop;  // until all is written: rows are kept as long
-  const CoverageMap map = compute(study, rows, inputs, options.threads, stop);
+  const CoverageMap map = compute(study, inputs, options.threads, stop);
   const studies::CoverageFigures figures = studies::figures_of(map);
   io::write_text_file(options.output / "coverage.csv", studies::to_csv(map));
   draw_maps(study, map, options.output, stop);
   if (report_file) write_page(*report_file, studies::coverage_report(study, map, figures), inputs);
-  rows.remove();
   if (inputs.verbosity == Verbosity::quiet) return;
   std::cout << studies::to_text(map, figures);
   require_written();

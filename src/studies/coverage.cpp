@@ -293,21 +293,16 @@ CoverageMap empty_map(const CoverageStudy& study) {
   return map;
 }
 
-void run_rows(const CoverageStudy& study, std::size_t first_row, unsigned threads,
-              const std::function<void(std::size_t row, const std::vector<MotionCount>& counts)>& consume) {
-  const std::size_t n_rows = study.grid().n_rows();
-  std::size_t row = first_row;
-  ordered_parallel<std::vector<MotionCount>>(
-      n_rows - std::min(first_row, n_rows), threads, [&](std::size_t i) { return study.counts_of_row(first_row + i); },
-      [&](std::vector<MotionCount>& counts) { consume(row++, counts); });
-}
-
 CoverageMap run_coverage(const CoverageStudy& study, unsigned threads, const RowDone& row_done) {
   CoverageMap map = empty_map(study);
-  run_rows(study, 0, threads, [&](std::size_t row, const std::vector<MotionCount>& counts) {
-    map.counts.insert(map.counts.end(), counts.begin(), counts.end());
-    if (row_done) row_done(row + 1, study.grid().n_rows());
-  });
+  const std::size_t n_rows = study.grid().n_rows();
+  std::size_t n_done = 0;
+  ordered_parallel<std::vector<MotionCount>>(
+      n_rows, threads, [&](std::size_t row) { return study.counts_of_row(row); },
+      [&](std::vector<MotionCount>& counts) {
+        map.counts.insert(map.counts.end(), counts.begin(), counts.end());
+        if (row_done) row_done(++n_done, n_rows);
+      });
   return map;
 }
 

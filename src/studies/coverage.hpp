@@ -1,16 +1,13 @@
-// Coverage: where each sensor sees a target that turns on the spot, in figures too, kept while it is computed.
+// Coverage: where each sensor sees a target that turns on the spot, in figures too.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "io/posix_file.hpp"
-#include "io/sealed_lines.hpp"
 #include "pirsim/coverage.hpp"
 #include "pirsim/shapes.hpp"
 #include "pirsim/survey.hpp"
@@ -83,11 +80,7 @@ class CoverageStudy {
 /// A map without counts yet.
 [[nodiscard]] CoverageMap empty_map(const CoverageStudy& study);
 
-/// Computes the rows [first_row, n_rows) and hands each to `consume` in order, from one thread at a time.
 /// threads 0: all cores; changes no byte.
-void run_rows(const CoverageStudy& study, std::size_t first_row, unsigned threads,
-              const std::function<void(std::size_t row, const std::vector<MotionCount>& counts)>& consume);
-/// All rows, in memory.
 [[nodiscard]] CoverageMap run_coverage(const CoverageStudy& study, unsigned threads = 0, const RowDone& row_done = {});
 
 // What a coverage map says in a few numbers.
@@ -112,34 +105,5 @@ struct CoverageFigures {
 [[nodiscard]] std::string to_csv(const CoverageMap& map);
 /// Aligned, for a terminal.
 [[nodiscard]] std::string to_text(const CoverageMap& map, const CoverageFigures& figures);
-
-// Finished rows of a coverage map on disk, so that an interrupted study goes on where it stopped.
-
-/// A number for everything that the counts depend on: the spec, sensor models, rays as cut, squares, poses, the build.
-[[nodiscard]] std::string fingerprint(const CoverageStudy& study);
-
-/// A text file: a line with the fingerprint, then a line a row of squares with its counts; each ends in a digest of all
-/// up to there. Rows of another study, and everything from the first damaged line on, are thrown away. One process at a
-/// time works on a file.
-class RowStore {
- public:
-  /// Opens or begins the file. Throws Error(io), also for a second process.
-  RowStore(std::filesystem::path path, const CoverageStudy& study);
-
-  /// Counts of the first rows, as found: (n x n_columns x n_sensors).
-  [[nodiscard]] const std::vector<MotionCount>& found() const noexcept { return found_; }
-  [[nodiscard]] std::size_t n_found_rows() const noexcept { return n_found_rows_; }
-  /// The next row. It is on disk when this returns. Throws Error(io).
-  void append(const std::vector<MotionCount>& counts);
-  /// The study is complete: the file goes.
-  void remove();
-
- private:
-  std::filesystem::path path_;
-  io::PosixFile file_;
-  io::SealedLines lines_;
-  std::vector<MotionCount> found_;
-  std::size_t n_found_rows_ = 0;
-};
 
 }  // namespace pirsim::studies
