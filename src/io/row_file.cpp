@@ -1,17 +1,15 @@
 #include "io/row_file.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <optional>
-#include <sstream>
 #include <system_error>
 #include <utility>
 
 #include "core/digest.hpp"
 #include "io/atomic_file.hpp"
 #include "io/compression.hpp"
+#include "io/journal.hpp"
 #include "io/posix_file.hpp"
-#include "io/sealed_lines.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::io {
@@ -107,14 +105,6 @@ std::optional<Mark> mark_from(std::string_view text) {
   return mark;
 }
 
-/// What a journal says, as far as it was written whole.
-struct Journal {
-  std::optional<Mark> last;
-  RunNotes notes;  ///< of all runs
-  std::uint64_t whole_bytes = 0;
-  SealedLines lines;  ///< up to there
-};
-
 /// What no journal of these runs says, though every digest is right.
 void require_next(const std::optional<Mark>& last, const Mark& mark, const RunRange& runs, const Where& where) {
   const std::uint32_t expected = last ? last->next_run + 1 : runs.first;
@@ -125,29 +115,21 @@ void require_next(const std::optional<Mark>& last, const Mark& mark, const RunRa
                   " rows, where run " + std::to_string(expected) + " of " + in_words(runs) + " would follow" + remedy);
 }
 
-Journal read_journal(const fs::path& file, const Manifest& wanted) {
-  std::ifstream stream(file, std::ios::binary);
-  Journal journal;
-  std::string line;
-  if (!std::getline(stream, line) || stream.eof()) return journal;
-  journal.whole_bytes = line.size() + 1;
-  const std::optional<std::string> made = journal.lines.opened(line);
-  if (!made) {
-    throw Error(ErrorCode::input, Where{file.string(), 1, 1}, "is damaged, or of another version of pirsim" + remedy);
-  }
-  require_fit(manifest_from_json(*made, file.string()), wanted, file);
-  for (int number = 2; std::getline(stream, line) && !stream.eof(); ++number) {
-    const std::optional<std::string> text = journal.lines.opened(line);
-    if (!text) break;  // torn: its run is simulated again
-    const Where where{file.string(), number, 1};
-    const std::optional<Mark> mark = mark_from(*text);
+/// How far the rows reach by a journal, with the notes of all runs; none if nothing was written.
+std::optional<Mark> last_mark(const Journal::Content& journal, const fs::path& file, const RunRange& runs) {
+  std::optional<Mark> last;
+  RunNotes notes;
+  int line = 1;
+  for (const std::string& piece : journal.pieces) {
+    const Where where{file.string(), ++line, 1};
+    std::optional<Mark> mark = mark_from(piece);
     if (!mark) throw Error(ErrorCode::input, where, "isn't what a journal says of a run" + remedy);
-    require_next(journal.last, *mark, wanted.runs, where);
-    journal.last = mark;
-    journal.notes += mark->notes;
-    journal.whole_bytes += line.size() + 1;
+    require_next(last, *mark, runs, where);
+    notes += mark->notes;
+    last = std::move(mark);
   }
-  return journal;
+  if (last) last->notes = std::move(notes);
+  return last;
 }
 
 }  // namespace
@@ -156,22 +138,17 @@ struct RowFile::Work {
   fs::path file, partial_path, journal_path;
   Manifest made;
   bool finished = false;
-  std::optional<PosixFile> partial, journal;
+  std::optional<PosixFile> partial;
+  std::optional<Journal> journal;
   Sha256 hash;
-  SealedLines journal_lines;
   Mark mark;
   RunNotes notes;
-
-  void take_journal() {
-    journal.emplace(journal_path, PosixFile::Mode::append);
-    journal->lock();
-  }
 
   void take_partial() {
     try {
       partial.emplace(partial_path, PosixFile::Mode::append);
     } catch (const Error&) {
-      if (journal->size() == 0) remove_or_throw(journal_path);  // of what never began
+      if (journal->is_empty()) journal->remove();  // of what never began
       throw;
     }
   }
@@ -179,7 +156,7 @@ struct RowFile::Work {
   /// Leaves a damaged file or manifest to be made anew, but refuses one that something else made.
   bool is_finished() {
     std::error_code fault;
-    if (fs::exists(journal_path, fault)) take_journal();
+    if (fs::exists(journal_path, fault)) journal.emplace(journal_path);
     const fs::path manifest = manifest_path(file);
     const std::optional<Manifest> found = readable_manifest(manifest);
     if (!found) return false;
@@ -194,16 +171,14 @@ struct RowFile::Work {
   }
 
   void open(const std::string& header, Start start) {
-    if (!journal) take_journal();
+    if (!journal) journal.emplace(journal_path);
     if (start == Start::resume && recover()) return;
     take_partial();
     partial->truncate(0);
-    journal->truncate(0);
     hash = {};
-    journal_lines = {};
     mark = {made.runs.first, 0, 0, {}};
     notes = {};
-    journal->append(journal_lines.sealed(to_json(made, -1)));
+    journal->begin(to_json(made, -1));
     write(header, 0, {});
   }
 
@@ -215,24 +190,26 @@ struct RowFile::Work {
     mark.sha256 = hash.hex();
     mark.notes = of_run;
     notes += of_run;
-    journal->append(journal_lines.sealed(to_text(mark)));
+    journal->add(to_text(mark));
   }
 
   /// False if there is nothing to resume.
   bool recover() {
-    const Journal found = read_journal(journal_path, made);
-    if (!found.last) return false;
+    const std::optional<Journal::Content> found = Journal::read(journal_path);
+    if (!found) return false;
+    require_fit(manifest_from_json(found->made_from, journal_path.string()), made, journal_path);
+    const std::optional<Mark> last = last_mark(*found, journal_path, made.runs);
+    if (!last) return false;
     std::error_code fault;
     const bool was_put_in_place = !fs::exists(partial_path, fault) && fs::is_regular_file(file, fault) &&
                                   compression_of(file) == Compression::none;
     if (was_put_in_place) rename_or_throw(file, partial_path);  // killed before its manifest
     if (!fs::is_regular_file(partial_path, fault)) return false;
     take_partial();
-    if (!hash_whole_runs(*found.last)) return false;
+    if (!hash_whole_runs(*last)) return false;
     partial->truncate(mark.bytes);
-    journal->truncate(found.whole_bytes);
-    notes = found.notes;
-    journal_lines = found.lines;
+    journal->resume(*found);
+    notes = last->notes;
     return true;
   }
 

@@ -113,7 +113,7 @@ ReferenceTable make_reference_table(const RealizationSource& source, const Study
     throw Error(ErrorCode::usage, "nothing is left to be looked for: the script has every effect that is asked for");
   ReferenceTable table;
   table.key = table_key(source, frame, shape.n_replicates, settings);
-  const TableStore store(folder, table.key);
+  TableStore store(folder, table.key);
   const RealizationJob job(source, frame, shape.n_replicates, settings);
   table.effects = settings.effects;
   table.profile = profile;

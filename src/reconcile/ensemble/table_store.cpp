@@ -98,14 +98,34 @@ void append(TableChunk& chunk, TableChunk& more) {
 }  // namespace
 
 TableStore::TableStore(std::filesystem::path folder, const std::string& key) : folder_(std::move(folder)), key_(key) {
-  if (folder_.empty()) return;
-  std::error_code fault;
-  std::filesystem::create_directories(folder_, fault);
-  const std::filesystem::path key_file = folder_ / "key.txt";
-  if (io::write_once(key_file, key + '\n')) return;
-  throw Error(ErrorCode::input, {key_file.string(), 0, 0},
-              "this folder holds simulated datasets of other inputs, settings (seed, effects, numbers of datasets or "
-              "runs, nuisance) or of another build: remove it or name another folder with --table");
+  if (!folder_.empty()) take(io::Journal::read(journal_path()));
+}
+
+std::filesystem::path TableStore::journal_path() const { return folder_ / "table.journal"; }
+
+void TableStore::take(const std::optional<io::Journal::Content>& journal) {
+  if (journal && journal->made_from != key_) {
+    throw Error(ErrorCode::input, {journal_path().string(), 0, 0},
+                "this folder holds simulated datasets of other inputs, settings (seed, effects, numbers of datasets or "
+                "runs, nuisance) or of another build: remove it or name another folder with --table");
+  }
+  if (!journal && std::filesystem::exists(file(0))) {
+    throw Error(ErrorCode::input, {folder_.string(), 0, 0},
+                "this folder holds simulated datasets without table.journal, as pirsim 0.1.0 wrote them: remove it or "
+                "name another folder with --table");
+  }
+  there_.clear();
+  if (journal) there_.insert(journal->pieces.begin(), journal->pieces.end());
+}
+
+void TableStore::claim() {
+  if (folder_.empty() || journal_) return;
+  std::error_code ignored;
+  std::filesystem::create_directories(folder_, ignored);  // opening the journal says why it can't be
+  journal_.emplace(journal_path());
+  const auto found = io::Journal::read(journal_path());  // another process may have come first
+  take(found);
+  found ? journal_->resume(*found) : journal_->begin(key_);
 }
 
 std::filesystem::path TableStore::file(std::uint32_t number) const {
@@ -114,7 +134,7 @@ std::filesystem::path TableStore::file(std::uint32_t number) const {
 }
 
 std::optional<TableChunk> TableStore::find(std::uint32_t number) const {
-  if (folder_.empty() || !std::filesystem::exists(file(number))) return std::nullopt;
+  if (!there_.contains(file(number).filename()) || !std::filesystem::exists(file(number))) return std::nullopt;
   std::ifstream stream(file(number), std::ios::binary);
   try {
     return read_chunk(stream, key_, number);
@@ -124,8 +144,9 @@ std::optional<TableChunk> TableStore::find(std::uint32_t number) const {
   }
 }
 
-void TableStore::keep(std::uint32_t number, const TableChunk& chunk) const {
+void TableStore::keep(std::uint32_t number, const TableChunk& chunk) {
   if (folder_.empty()) return;
+  claim();
   io::AtomicFile file_out(file(number));
   stats::BinaryWriter out(file_out.stream(), kind, format);
   out.write(std::string_view(key_));
@@ -142,9 +163,11 @@ void TableStore::keep(std::uint32_t number, const TableChunk& chunk) const {
   }
   out.finish();
   file_out.commit();
+  const std::string name = file(number).filename();
+  if (there_.insert(name).second) journal_->add(name);
 }
 
-void for_each_chunk(const TableStore& store, std::uint32_t n_items, const Context& context, const ItemJob& job,
+void for_each_chunk(TableStore& store, std::uint32_t n_items, const Context& context, const ItemJob& job,
                     const std::function<void(TableChunk&)>& use) {
   const auto tell = [&](std::uint32_t n_there) {
     if (context.observer.progress) context.observer.progress(n_there, n_items);
@@ -153,6 +176,10 @@ void for_each_chunk(const TableStore& store, std::uint32_t n_items, const Contex
   for (std::uint32_t first = 0; first < n_items; first += items_per_chunk) {
     const std::uint32_t n = std::min(items_per_chunk, n_items - first);
     std::optional<TableChunk> chunk = store.find(first / items_per_chunk);
+    if (!chunk) {
+      store.claim();
+      chunk = store.find(first / items_per_chunk);
+    }
     if (chunk) {
       tell(first + n);
     } else {

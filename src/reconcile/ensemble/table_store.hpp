@@ -1,14 +1,16 @@
-// Simulated datasets on disk: a folder with the key of what they depend on and chunks of finished realizations, each of
-// which names key and number too. Private to reconcile.
+// Simulated datasets on disk: a folder with chunks of finished realizations, each of which names its key and number,
+// and a journal of them. Private to reconcile.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "io/journal.hpp"
 #include "reconcile/ensemble/reference_table.hpp"
 
 namespace pirsim::reconcile {
@@ -27,23 +29,32 @@ struct TableChunk {
 
 class TableStore {
  public:
-  /// An empty folder name keeps nothing. Throws Error(input) if the folder holds a table with another key.
+  /// `key`: what the datasets depend on. An empty folder name keeps nothing. Throws Error(input) if the folder holds a
+  /// table with another key.
   TableStore(std::filesystem::path folder, const std::string& key);
   /// None if the chunk isn't there. Throws Error(input) if it is damaged, of another table or of other realizations.
   [[nodiscard]] std::optional<TableChunk> find(std::uint32_t number) const;
-  void keep(std::uint32_t number, const TableChunk& chunk) const;
+  /// Before work that is to be kept; afterwards what another process kept meanwhile is found too. Throws Error(io) if
+  /// the folder can't be written or another process is at work on it, which two may read.
+  void claim();
+  void keep(std::uint32_t number, const TableChunk& chunk);
 
  private:
   [[nodiscard]] std::filesystem::path file(std::uint32_t number) const;
+  [[nodiscard]] std::filesystem::path journal_path() const;
+  void take(const std::optional<io::Journal::Content>& journal);
+
   std::filesystem::path folder_;
   std::string key_;
+  std::set<std::string> there_;         ///< names of chunks
+  std::optional<io::Journal> journal_;  ///< once it is claimed
 };
 
 /// Simulates item `index` (a realization) with all of its datasets.
 using ItemJob = std::function<TableChunk(std::uint32_t index)>;
 /// Calls use(chunk) for the datasets of items 0 to n_items - 1, in order: those that aren't in the store are simulated,
 /// on several threads, and kept there; the context is told how many are done.
-void for_each_chunk(const TableStore& store, std::uint32_t n_items, const Context& context, const ItemJob& job,
+void for_each_chunk(TableStore& store, std::uint32_t n_items, const Context& context, const ItemJob& job,
                     const std::function<void(TableChunk&)>& use);
 
 /// A row a dataset.

@@ -183,7 +183,7 @@ std::vector<InjectedDataset> inject(const ReferenceStudy& reference, const Selft
   context.begin({Stage::What::injecting_faults});
   const InjectionJob job(reference, settings, context.seed);
   const std::string key = key_of(reference, settings, context.seed);
-  const TableStore store(folder_of(settings, key), key);
+  TableStore store(folder_of(settings, key), key);
   std::vector<InjectedDataset> injected;
   stats::Matrix<float> statistics;
   for_each_chunk(

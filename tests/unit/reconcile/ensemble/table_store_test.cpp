@@ -12,7 +12,7 @@ using namespace pirsim::reconcile;
 
 TEST_CASE("a damaged chunk of a table is named, and what to do about it", "[reconcile]") {
   const TemporaryFolder folder;
-  const TableStore store(folder.path(), "key");
+  TableStore store(folder.path(), "key");
   TableChunk chunk;
   chunk.datasets.push_back({{1, 7, {{"dead_time", {{"dead_s", 2.0}}, {}, {}}}}, {}});
   store.keep(3, chunk);
@@ -24,9 +24,46 @@ TEST_CASE("a damaged chunk of a table is named, and what to do about it", "[reco
   store.keep(2, chunk);
   std::filesystem::rename(folder.path() / "realizations_0002.bin", file);
   CHECK_THROWS_WITH(store.find(3), contains("of other realizations"));
-  std::filesystem::remove(folder.path() / "key.txt");
-  const TableStore other(folder.path(), "another key");
-  CHECK_THROWS_WITH(other.find(3), contains("of other inputs or settings"));
+  CHECK_THROWS_WITH(TableStore(folder.path(), "another key"), contains("holds simulated datasets of other inputs"));
   std::filesystem::remove(file);
   CHECK_FALSE(store.find(3));
+}
+
+TEST_CASE("chunks that no journal tells of are refused, and not replaced", "[reconcile]") {
+  const TemporaryFolder folder;
+  folder.write("realizations_0000.bin", "of 0.1.0");
+  CHECK_THROWS_WITH(TableStore(folder.path(), "key"), contains("without table.journal, as pirsim 0.1.0 wrote them"));
+}
+
+TEST_CASE("two may read a table, one at a time adds to it", "[reconcile]") {
+  const TemporaryFolder folder;
+  TableChunk chunk;
+  chunk.datasets.push_back({{1, 7, {}}, {}});
+  {
+    TableStore writer(folder.path(), "key");
+    writer.keep(0, chunk);
+    TableStore reader(folder.path(), "key");
+    CHECK(reader.find(0));
+    CHECK_FALSE(reader.find(1));
+    CHECK_THROWS_WITH(reader.keep(1, chunk), contains("another process is at work"));
+  }
+  TableStore later(folder.path(), "key");
+  later.keep(1, chunk);
+  const TableStore again(folder.path(), "key");
+  CHECK(again.find(0));
+  CHECK(again.find(1));
+  CHECK_FALSE(again.find(2));
+}
+
+TEST_CASE("a chunk that was moved here from another table is told from this table's", "[reconcile]") {
+  const TemporaryFolder folder, other;
+  TableChunk chunk;
+  chunk.datasets.push_back({{1, 7, {}}, {}});
+  TableStore store(folder.path(), "key"), elsewhere(other.path(), "another key");
+  store.keep(0, chunk);
+  elsewhere.keep(0, chunk);
+  const std::string name = "realizations_0000.bin";
+  std::filesystem::copy_file(other.path() / name, folder.path() / name,
+                             std::filesystem::copy_options::overwrite_existing);
+  CHECK_THROWS_WITH(store.find(0), contains("of other inputs or settings"));
 }
