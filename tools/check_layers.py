@@ -36,7 +36,7 @@ ROOMS = {
 }
 # public header -> the layer that it belongs to; include/pirsim/pirsim.hpp is the umbrella and belongs to none
 PUBLIC = {
-    "error": "core", "input_file": "core", "random": "core", "version": "core",
+    "error": "core", "input_file": "core", "interval": "core", "random": "core", "version": "core",
     "geometry": "geom", "shapes": "geom", "rays": "geom",
     "sensor": "schema", "scene": "schema", "script": "schema", "schedule": "schema", "survey": "schema", "sample": "schema",
     "effects": "effects",

@@ -10,15 +10,10 @@
 #include <vector>
 
 #include "pirsim/effects.hpp"
+#include "pirsim/interval.hpp"
 #include "pirsim/script.hpp"
 
 namespace pirsim::reconcile {
-
-struct Interval {
-  double low = 0.0, high = 0.0;
-  [[nodiscard]] bool contains(double value) const noexcept { return low <= value && value <= high; }
-  bool operator==(const Interval&) const = default;
-};
 
 enum class Verdict {
   no_disagreement,   ///< the model without any effect isn't refused
@@ -36,7 +31,7 @@ inline constexpr std::array<std::string_view, 5> verdict_names{"no-disagreement"
 
 /// How one hypothesis fits the data: `nothing` (the model as it is), or an effect of the catalogue by its name.
 struct HypothesisScore {
-  std::string hypothesis;
+  std::string hypothesis = {};
   double probability = 0.0;  ///< calibrated, among all hypotheses, each as likely as the others beforehand
   double p_relative = 0.0;   ///< share of the hypothesis's own datasets that another hypothesis explains as well
   double p_absolute = 0.0;   ///< share of the hypothesis's own datasets that lie as far from the rest of them

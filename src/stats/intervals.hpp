@@ -4,13 +4,9 @@
 #include <cstddef>
 #include <span>
 
-namespace pirsim::stats {
+#include "pirsim/interval.hpp"
 
-struct Interval {
-  double low = 0.0, high = 0.0;
-  [[nodiscard]] bool contains(double value) const noexcept { return low <= value && value <= high; }
-  bool operator==(const Interval&) const = default;
-};
+namespace pirsim::stats {
 
 /// Quantile of a sample that needn't be sorted, linear between order statistics (type 7 of [Hyndman1996]).
 /// probability in [0, 1]. Throws Error(usage) for an empty sample.

@@ -144,7 +144,7 @@ DataShape shape_of(const StudyFrame& frame, const Measured& measured, std::span<
   const std::size_t n = frame.sensors.size();
   DataShape shape = full_shape(frame, measured.kind, measured.n_replicates(), pilot);
   std::ranges::fill(shape.known_cells, std::uint8_t{0});
-  for (const Measured::Sum& sum : measured.sums) shape.known_cells[sum.trial * n + sum.sensor] = 1;
+  for (const Measured::Sum& sum : measured.sums) shape.known_cells[frame.cell(sum.trial, sum.sensor)] = 1;
   if (measured.kind == Measured::Kind::sums) {
     shape.runs = summed(measured, n, shape.runs);
     return shape;
@@ -154,7 +154,7 @@ DataShape shape_of(const StudyFrame& frame, const Measured& measured, std::span<
     const Lengths usual = lengths_of(run.trial, pilot, n);
     shape.runs.push_back(shape_of_run(run, n_main_of(run, usual), usual, n));
     for (std::size_t i = run.main_begin * n; i < run.main_end * n; ++i) {
-      if (run.bits[i] != unknown_bit) shape.known_cells[run.trial * n + i % n] = 1;
+      if (run.bits[i] != unknown_bit) shape.known_cells[frame.cell(run.trial, i % n)] = 1;
     }
   }
   return shape;

@@ -19,17 +19,15 @@ constexpr std::size_t shortest_period_rows = 8;
 constexpr std::ptrdiff_t farthest_shift_rows = 20;  ///< beyond the prior of clock_lag at a row a second
 constexpr double least_likeness = 0.3;              ///< assumed (0.2-0.45): correlation from which a shift is told
 
-double& at(CellValues& values, CellStatistic statistic) { return values[static_cast<std::size_t>(statistic)]; }
-
 void add_counts(const BitSeries& series, double window_s, CellValues& values) {
   const std::size_t n = series.bits.size();
   for (std::size_t i = 0; i < n; ++i) {
     if (series.bits[i] != 1) continue;
-    at(values, CellStatistic::seconds) += window_s;
-    if (series.busy[i] != 0) at(values, CellStatistic::busy_seconds) += window_s;
-    if (series.expected[i] < silent_below) at(values, CellStatistic::silent_seconds) += window_s;
-    at(values, CellStatistic::half_difference) += 2 * i < n ? window_s : -window_s;
-    values[static_cast<std::size_t>(CellStatistic::sixth_1) + 6 * i / n] += window_s;
+    values[CellStatistic::seconds] += window_s;
+    if (series.busy[i] != 0) values[CellStatistic::busy_seconds] += window_s;
+    if (series.expected[i] < silent_below) values[CellStatistic::silent_seconds] += window_s;
+    values[CellStatistic::half_difference] += 2 * i < n ? window_s : -window_s;
+    values.values[static_cast<std::size_t>(CellStatistic::sixth_1) + 6 * i / n] += window_s;
   }
 }
 
@@ -44,17 +42,17 @@ void add_stretches(const BitSeries& series, CellValues& values) {
     const bool inner = begin > 0 && end < n && series.bits[begin - 1] != unknown_bit && series.bits[end] != unknown_bit;
     if (series.bits[begin] == 1) {
       longest_run = std::max(longest_run, static_cast<double>(length));
-      if (begin > 0 && series.bits[begin - 1] == 0) at(values, CellStatistic::onsets) += 1.0;
-      if (inner && length == 1) at(values, CellStatistic::isolated) += 1.0;
+      if (begin > 0 && series.bits[begin - 1] == 0) values[CellStatistic::onsets] += 1.0;
+      if (inner && length == 1) values[CellStatistic::isolated] += 1.0;
     } else if (series.bits[begin] == 0) {
       longest_gap = std::max(longest_gap, static_cast<double>(length));
-      if (inner && length == 1) at(values, CellStatistic::single_gaps) += 1.0;
-      if (inner && length == 2) at(values, CellStatistic::double_gaps) += 1.0;
+      if (inner && length == 1) values[CellStatistic::single_gaps] += 1.0;
+      if (inner && length == 2) values[CellStatistic::double_gaps] += 1.0;
     }
     begin = end;
   }
-  at(values, CellStatistic::longest_run) += longest_run;
-  at(values, CellStatistic::longest_gap) += longest_gap;
+  values[CellStatistic::longest_run] += longest_run;
+  values[CellStatistic::longest_gap] += longest_gap;
 }
 
 double share_again_after(std::span<const std::uint8_t> bits, std::size_t lag) {
@@ -185,12 +183,12 @@ void add_main_statistics(const BitSeries& series, double window_s, CellValues& v
                                                                        {CellStatistic::again_after_3, 3},
                                                                        {CellStatistic::again_after_4, 4},
                                                                        {CellStatistic::again_after_6, 6}}};
-  for (const auto& [statistic, lag] : lags) at(values, statistic) += share_again_after(series.bits, lag);
-  at(values, CellStatistic::dispersion) += dispersion(series.bits);
-  at(values, CellStatistic::period_power) += period_power(series.bits);
-  at(values, CellStatistic::cycle_strength) += cycle_strength(series.bits, series.cycle_rows);
-  at(values, CellStatistic::agreement) += agreement(series);
-  at(values, CellStatistic::shift_s) += shift_rows(series) * window_s;
+  for (const auto& [statistic, lag] : lags) values[statistic] += share_again_after(series.bits, lag);
+  values[CellStatistic::dispersion] += dispersion(series.bits);
+  values[CellStatistic::period_power] += period_power(series.bits);
+  values[CellStatistic::cycle_strength] += cycle_strength(series.bits, series.cycle_rows);
+  values[CellStatistic::agreement] += agreement(series);
+  values[CellStatistic::shift_s] += shift_rows(series) * window_s;
 }
 
 }  // namespace pirsim::reconcile

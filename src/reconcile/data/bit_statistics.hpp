@@ -17,7 +17,12 @@ struct BitSeries {
   double cycle_rows = 3.0;
 };
 
-using CellValues = std::array<double, n_cell_statistics>;
+/// A number for every statistic of one cell.
+struct CellValues {
+  std::array<double, n_cell_statistics> values{};
+  [[nodiscard]] double& operator[](CellStatistic s) noexcept { return values[static_cast<std::size_t>(s)]; }
+  [[nodiscard]] double operator[](CellStatistic s) const noexcept { return values[static_cast<std::size_t>(s)]; }
+};
 
 /// Those of the main part; the others stay as they are.
 void add_main_statistics(const BitSeries& series, double window_s, CellValues& values);

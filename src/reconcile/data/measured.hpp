@@ -21,6 +21,10 @@ struct StudyFrame {
   double window_s = 1.0;
 
   [[nodiscard]] std::size_t n_cells() const noexcept { return trials.size() * sensors.size(); }
+  /// Its place among the cells: by trial, then sensor.
+  [[nodiscard]] std::size_t cell(std::size_t trial, std::size_t sensor) const noexcept {
+    return trial * sensors.size() + sensor;
+  }
   bool operator==(const StudyFrame&) const = default;
 };
 [[nodiscard]] StudyFrame frame_of(const SceneSpec& scene, const ScriptSpec& script);

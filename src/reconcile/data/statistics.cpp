@@ -78,23 +78,21 @@ class TrialStatistics {
     ++n_runs_;
   }
 
-  void write(std::size_t trial, const DataShape& shape, std::vector<float>& out) const {
+  void write(std::size_t trial, const DataShape& shape, const Statistics<std::span<float>>& out) const {
     if (n_runs_ == 0) return;
     for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
-      if (shape.known_cells[trial * frame_.sensors.size() + sensor] == 0) continue;
+      if (shape.known_cells[frame_.cell(trial, sensor)] == 0) continue;
       for (std::size_t i = 0; i < n_cell_statistics; ++i) {
         const auto statistic = static_cast<CellStatistic>(i);
         if (!known(sensor, statistic, shape.kind)) continue;
-        out[cell_index(frame_, trial, sensor, statistic)] = static_cast<float>(value_of(sensor, statistic));
+        out.cell(trial, sensor, statistic) = static_cast<float>(value_of(sensor, statistic));
       }
     }
     if (shape.kind != Measured::Kind::series) return;
     for (std::size_t i = 0; i < n_trial_statistics; ++i) {
-      out[trial_index(frame_, trial, static_cast<TrialStatistic>(i))] = static_cast<float>(trial_[i] / n_runs_);
+      out.trial(trial, static_cast<TrialStatistic>(i)) = static_cast<float>(trial_[i] / n_runs_);
     }
-    for (std::size_t i = 0; i < pairs_.size(); ++i) {
-      out[pair_index(frame_, trial, 0, 1) + i] = static_cast<float>(pairs_[i] / n_runs_);
-    }
+    for (std::size_t i = 0; i < pairs_.size(); ++i) out.pairs(trial)[i] = static_cast<float>(pairs_[i] / n_runs_);
   }
 
  private:
@@ -112,9 +110,9 @@ class TrialStatistics {
   [[nodiscard]] double value_of(std::size_t sensor, CellStatistic statistic) const {
     const auto n_runs = static_cast<double>(seconds_[sensor].size());
     if (statistic != CellStatistic::run_variance) {
-      return cells_[sensor][static_cast<std::size_t>(statistic)] / n_runs;
+      return cells_[sensor][statistic] / n_runs;
     }
-    const double mean = cells_[sensor][static_cast<std::size_t>(CellStatistic::seconds)] / n_runs;
+    const double mean = cells_[sensor][CellStatistic::seconds] / n_runs;
     double squares = 0.0;
     for (const double seconds : seconds_[sensor]) squares += (seconds - mean) * (seconds - mean);
     return squares / (n_runs - 1.0);
@@ -128,17 +126,17 @@ class TrialStatistics {
     std::vector<std::uint8_t> busy = profile_.busy;
     expected.resize(shape.n_main, 0.0F);
     busy.resize(shape.n_main, 0);
-    CellValues values{};
+    CellValues values;
     add_main_statistics({own, expected, busy, profile_.cycle_rows}, frame_.window_s, values);
     const std::size_t n_rows = run.n_rows(n), half_tail = run.main_end + (n_rows - run.main_end) / 2;
     const auto set = [&](CellStatistic statistic, std::size_t begin, std::size_t end) {
-      values[static_cast<std::size_t>(statistic)] = seconds_between(run, begin, end, sensor, n, frame_.window_s);
+      values[statistic] = seconds_between(run, begin, end, sensor, n, frame_.window_s);
     };
     set(CellStatistic::lead_seconds, 0, run.main_begin);
     set(CellStatistic::tail_seconds, run.main_end, n_rows);
     set(CellStatistic::late_tail_seconds, half_tail, n_rows);
-    for (std::size_t i = 0; i < n_cell_statistics; ++i) cells_[sensor][i] += values[i];
-    seconds_[sensor].push_back(values[static_cast<std::size_t>(CellStatistic::seconds)]);
+    for (std::size_t i = 0; i < n_cell_statistics; ++i) cells_[sensor].values[i] += values.values[i];
+    seconds_[sensor].push_back(values[CellStatistic::seconds]);
   }
 
   void add_trial(const std::vector<std::uint8_t>& bits) {
@@ -229,6 +227,36 @@ std::size_t n_statistics(const StudyFrame& frame) noexcept {
   return frame.n_cells() * n_cell_statistics + frame.trials.size() * (n_trial_statistics + n_pairs(frame));
 }
 
+double seconds_of(const DatasetStatistics& dataset, std::size_t trial, std::size_t sensor) {
+  return static_cast<double>(dataset.cell(trial, sensor, CellStatistic::seconds));
+}
+
+std::vector<double> seconds_of(const StudyFrame& frame, const stats::Matrix<float>& datasets, std::size_t trial,
+                               std::size_t sensor) {
+  std::vector<double> seconds;
+  for (std::size_t row = 0; row < datasets.rows(); ++row) {
+    const double of_row = seconds_of(DatasetStatistics(frame, datasets.row(row)), trial, sensor);
+    if (!std::isnan(of_row)) seconds.push_back(of_row);
+  }
+  return seconds;
+}
+
+std::vector<std::vector<std::size_t>> alike_places(const StudyFrame& frame) {
+  std::vector<std::vector<std::size_t>> alike;
+  std::size_t next = 0;
+  const auto add_block = [&](std::size_t n_owners, std::size_t n_each) {
+    for (std::size_t k = 0; k < n_each; ++k) {
+      alike.emplace_back();
+      for (std::size_t owner = 0; owner < n_owners; ++owner) alike.back().push_back(next + owner * n_each + k);
+    }
+    next += n_owners * n_each;
+  };
+  add_block(frame.n_cells(), n_cell_statistics);
+  add_block(frame.trials.size(), n_trial_statistics);
+  add_block(frame.trials.size(), n_pairs(frame));
+  return alike;
+}
+
 Profile profile_of(const StudyFrame& frame, const ScriptSpec& script, std::span<const Series> runs) {
   const std::size_t n = frame.sensors.size();
   Profile profile;
@@ -275,7 +303,7 @@ std::vector<float> statistics_of(const StudyFrame& frame, const DataShape& shape
     if (run != runs.end()) trials[wanted.trial].add(*run, wanted, shape.kind);
   }
   std::vector<float> values(n_statistics(frame), nothing_known);
-  for (std::size_t t = 0; t < trials.size(); ++t) trials[t].write(t, shape, values);
+  for (std::size_t t = 0; t < trials.size(); ++t) trials[t].write(t, shape, {frame, values});
   return values;
 }
 
@@ -283,19 +311,21 @@ std::vector<float> statistics_of(const StudyFrame& frame, const DataShape& shape
                                  const Measured& measured) {
   if (measured.kind == Measured::Kind::series) return statistics_of(frame, shape, profile, measured.runs);
   std::vector<std::vector<double>> sums(frame.n_cells());
-  for (const Measured::Sum& sum : measured.sums)
-    sums[sum.trial * frame.sensors.size() + sum.sensor].push_back(sum.seconds);
+  for (const Measured::Sum& sum : measured.sums) sums[frame.cell(sum.trial, sum.sensor)].push_back(sum.seconds);
   std::vector<float> values(n_statistics(frame), nothing_known);
-  for (std::size_t cell = 0; cell < sums.size(); ++cell) {
-    if (sums[cell].empty()) continue;
-    double mean = 0.0, squares = 0.0;
-    for (const double seconds : sums[cell]) mean += seconds / static_cast<double>(sums[cell].size());
-    for (const double seconds : sums[cell]) squares += (seconds - mean) * (seconds - mean);
-    const std::size_t first = cell * n_cell_statistics;
-    values[first + static_cast<std::size_t>(CellStatistic::seconds)] = static_cast<float>(mean);
-    if (sums[cell].size() < 2) continue;
-    values[first + static_cast<std::size_t>(CellStatistic::run_variance)] =
-        static_cast<float>(squares / static_cast<double>(sums[cell].size() - 1));
+  const Statistics out(frame, std::span(values));
+  for (std::size_t trial = 0; trial < frame.trials.size(); ++trial) {
+    for (std::size_t sensor = 0; sensor < frame.sensors.size(); ++sensor) {
+      const std::vector<double>& own = sums[frame.cell(trial, sensor)];
+      if (own.empty()) continue;
+      double mean = 0.0, squares = 0.0;
+      for (const double seconds : own) mean += seconds / static_cast<double>(own.size());
+      for (const double seconds : own) squares += (seconds - mean) * (seconds - mean);
+      out.cell(trial, sensor, CellStatistic::seconds) = static_cast<float>(mean);
+      if (own.size() < 2) continue;
+      out.cell(trial, sensor, CellStatistic::run_variance) =
+          static_cast<float>(squares / static_cast<double>(own.size() - 1));
+    }
   }
   return values;
 }

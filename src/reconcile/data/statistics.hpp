@@ -5,9 +5,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "reconcile/data/alignment.hpp"
+#include "stats/matrix.hpp"
 
 namespace pirsim::reconcile {
 
@@ -81,35 +83,68 @@ inline constexpr std::size_t n_trial_statistics = static_cast<std::size_t>(Trial
 [[nodiscard]] std::string name(CellStatistic statistic);
 [[nodiscard]] std::string name(TrialStatistic statistic);
 
-/// Besides there is one number per trial and ordered pair of sensors: rows in which the second one has motion and the
-/// first one has none, mean over runs.
-///
-/// All statistics of a dataset: (n_cells x n_cell_statistics) by trial, then sensor; (n_trials x n_trial_statistics);
-/// (n_trials x n_pairs). NaN where the shape knows nothing. Of sums there is only CellStatistic::seconds.
-[[nodiscard]] std::size_t n_statistics(const StudyFrame& frame) noexcept;
-[[nodiscard]] inline std::size_t cell_index(const StudyFrame& frame, std::size_t trial, std::size_t sensor,
-                                            CellStatistic statistic) noexcept {
-  return (trial * frame.sensors.size() + sensor) * n_cell_statistics + static_cast<std::size_t>(statistic);
-}
-[[nodiscard]] inline std::size_t trial_index(const StudyFrame& frame, std::size_t trial,
-                                             TrialStatistic statistic) noexcept {
-  return frame.n_cells() * n_cell_statistics + trial * n_trial_statistics + static_cast<std::size_t>(statistic);
-}
 /// Ordered pairs of different sensors.
 [[nodiscard]] inline std::size_t n_pairs(const StudyFrame& frame) noexcept {
   return frame.sensors.size() * (frame.sensors.size() - 1);
 }
-/// first != second.
-[[nodiscard]] inline std::size_t pair_index(const StudyFrame& frame, std::size_t trial, std::size_t first,
-                                            std::size_t second) noexcept {
-  return frame.n_cells() * n_cell_statistics + frame.trials.size() * n_trial_statistics + trial * n_pairs(frame) +
-         first * (frame.sensors.size() - 1) + (second < first ? second : second - 1);
-}
+/// Of one dataset.
+[[nodiscard]] std::size_t n_statistics(const StudyFrame& frame) noexcept;
 
-/// Of simulated or measured series; runs that the shape doesn't have are left out.
+/// A number for every statistic of a dataset, in blocks: of each cell, of each trial over all its sensors, and of each
+/// ordered pair of sensors in a trial, that is the rows in which the second one has motion and the first one has none,
+/// mean over runs. Values: a vector that keeps the numbers, or a span of those that somebody else keeps, as a row of a
+/// table. A statistic of a dataset is NaN where the shape knows nothing; of sums there is CellStatistic::seconds alone.
+template <typename Values>
+class Statistics {
+ public:
+  Statistics() = default;
+  /// values: (n_statistics)
+  Statistics(const StudyFrame& frame, Values values)
+      : n_trials_(frame.trials.size()), n_sensors_(frame.sensors.size()), values_(std::move(values)) {}
+
+  [[nodiscard]] auto& cell(std::size_t trial, std::size_t sensor, CellStatistic statistic) const noexcept {
+    return values_[(trial * n_sensors_ + sensor) * n_cell_statistics + static_cast<std::size_t>(statistic)];
+  }
+  /// (n_sensors x n_cell_statistics)
+  [[nodiscard]] auto cells(std::size_t trial) const noexcept {
+    const std::size_t n = n_sensors_ * n_cell_statistics;
+    return std::span(values_).subspan(trial * n, n);
+  }
+  [[nodiscard]] auto& trial(std::size_t trial, TrialStatistic statistic) const noexcept {
+    return values_[before_trials() + trial * n_trial_statistics + static_cast<std::size_t>(statistic)];
+  }
+  /// first != second.
+  [[nodiscard]] auto& pair(std::size_t trial, std::size_t first, std::size_t second) const noexcept {
+    return pairs(trial)[first * (n_sensors_ - 1) + (second < first ? second : second - 1)];
+  }
+  /// (n_pairs) by the first sensor, then the second.
+  [[nodiscard]] auto pairs(std::size_t trial) const noexcept {
+    const std::size_t n = n_sensors_ * (n_sensors_ - 1);
+    return std::span(values_).subspan(before_trials() + n_trials_ * n_trial_statistics + trial * n, n);
+  }
+  [[nodiscard]] const Values& values() const noexcept { return values_; }
+
+ private:
+  [[nodiscard]] std::size_t before_trials() const noexcept { return n_trials_ * n_sensors_ * n_cell_statistics; }
+  std::size_t n_trials_ = 0, n_sensors_ = 0;
+  Values values_;  ///< cells, trials, pairs
+};
+/// Those of one dataset.
+using DatasetStatistics = Statistics<std::span<const float>>;
+
+/// Seconds with motion of a cell; NaN if they aren't known.
+[[nodiscard]] double seconds_of(const DatasetStatistics& dataset, std::size_t trial, std::size_t sensor);
+/// Those of all datasets (n x n_statistics) that have them: a counted phase may not come in some.
+[[nodiscard]] std::vector<double> seconds_of(const StudyFrame& frame, const stats::Matrix<float>& datasets,
+                                             std::size_t trial, std::size_t sensor);
+
+/// Places among a dataset's statistics that hold the same one: of all cells, of all trials, of a pair in all trials.
+[[nodiscard]] std::vector<std::vector<std::size_t>> alike_places(const StudyFrame& frame);
+
+/// (n_statistics) of simulated or measured series; runs that the shape doesn't have are left out.
 [[nodiscard]] std::vector<float> statistics_of(const StudyFrame& frame, const DataShape& shape, const Profile& profile,
                                                std::span<const Series> runs);
-/// Of measured data of either kind.
+/// (n_statistics) of measured data of either kind.
 [[nodiscard]] std::vector<float> statistics_of(const StudyFrame& frame, const DataShape& shape, const Profile& profile,
                                                const Measured& measured);
 

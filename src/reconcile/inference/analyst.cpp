@@ -5,29 +5,8 @@
 
 #include "effects/catalogue.hpp"
 #include "reconcile/inference/locate.hpp"
-#include "stats/decision.hpp"
 
 namespace pirsim::reconcile {
-namespace {
-
-/// Of one by itself.
-Reason reason_of(const HypothesisScore& score, bool kept, double alpha) {
-  if (kept && score.p <= alpha) return reason::Sure{score.p, score.probability};
-  if (kept) return reason::NotRuledOut{score.p};
-  if (score.p > alpha) return reason::Improbable{score.p};
-  if (score.p == 0.0) return reason::HardlySimulated{};
-  reason::RuledOut by;
-  if (2.0 * score.p_relative <= alpha) by.p_relative = score.p_relative;
-  if (2.0 * score.p_absolute <= alpha) by.p_absolute = score.p_absolute;
-  return by;
-}
-
-/// In the order of stats' own.
-Verdict verdict_of(stats::Verdict verdict) { return static_cast<Verdict>(verdict); }
-static_assert(static_cast<int>(stats::Verdict::none_in_catalogue) == static_cast<int>(Verdict::none_in_catalogue));
-
-}  // namespace
-
 Analyst::Analyst(std::shared_ptr<const TableView> view, const ClassifierSettings& settings, const Context& context)
     : view_(std::move(view)),
       settings_(settings),
@@ -48,13 +27,7 @@ Judgement Analyst::judge(std::span<const float> measured) const {
   judgement.p = view_->p(measured);
   judgement.scores = classifier_.judge(measured);
   judgement.family = likeliest_family(judgement.scores);
-  std::vector<stats::Candidate> candidates;
-  for (const HypothesisScore& score : judgement.scores)
-    candidates.push_back({score.p, score.probability, score.least_p, score.p_own});
-  const stats::Decision decision = stats::decide(judgement.p, candidates, {settings_.alpha});
-  judgement.verdict = verdict_of(decision.verdict);
-  judgement.kept = decision.kept;
-  judgement.likeness = decision.likeness;
+  judgement.decision = decide(judgement.p, judgement.scores, {settings_.alpha});
   return judgement;
 }
 
@@ -68,7 +41,8 @@ Outcome agreement(const TableView& view, std::span<const float> measured, double
 Outcome Analyst::analyse(std::span<const float> measured) const {
   Outcome outcome = agreement(*view_, measured, settings_.alpha, context_);
   const Judgement judgement = judge(measured);
-  outcome.verdict = judgement.verdict;
+  const auto& [verdict, kept, likeness] = judgement.decision;
+  outcome.verdict = verdict;
   if (outcome.verdict == Verdict::no_disagreement) return outcome;
   outcome.nothing = judgement.scores.front();
   outcome.family = judgement.family;
@@ -76,13 +50,13 @@ Outcome Analyst::analyse(std::span<const float> measured) const {
   for (std::size_t hypothesis = 1; hypothesis < judgement.scores.size(); ++hypothesis) {
     const HypothesisScore& score = judgement.scores[hypothesis];
     Candidate candidate{score, effects::find(score.hypothesis).info.family, false, {}};
-    candidate.kept = std::ranges::find(judgement.kept, hypothesis) != judgement.kept.end();
+    candidate.kept = std::ranges::find(kept, hypothesis) != kept.end();
     candidate.reason = reason_of(score, candidate.kept, settings_.alpha);
-    if (judgement.likeness == hypothesis) {
+    if (likeness == hypothesis) {
       candidate.reason = reason::LikeImpostors{score.p_own};
-    } else if (judgement.likeness && score.p > settings_.alpha) {
-      const HypothesisScore& likeness = judgement.scores[*judgement.likeness];
-      candidate.reason = reason::LessLikely{score.p, score.probability, likeness.hypothesis, likeness.probability};
+    } else if (likeness && score.p > settings_.alpha) {
+      const HypothesisScore& alike = judgement.scores[*likeness];
+      candidate.reason = reason::LessLikely{score.p, score.probability, alike.hypothesis, alike.probability};
     }
     outcome.candidates.push_back(std::move(candidate));
   }

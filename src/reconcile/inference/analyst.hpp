@@ -3,13 +3,13 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "pirsim/reconcile.hpp"
 #include "reconcile/inference/classifier.hpp"
+#include "reconcile/inference/decision.hpp"
 #include "reconcile/inference/fit.hpp"
 #include "reconcile/inference/table_view.hpp"
 
@@ -20,9 +20,7 @@ struct Judgement {
   double p = 1.0;                       ///< of the global test
   std::vector<HypothesisScore> scores;  ///< (n_hypotheses) nothing first
   FamilyScore family;                   ///< the likeliest
-  Verdict verdict = Verdict::no_disagreement;
-  std::vector<std::size_t> kept;        ///< hypotheses that survive, the named one first, then by p
-  std::optional<std::size_t> likeness;  ///< hypothesis that would have been named, but is taken for something unknown
+  Decision decision;
 };
 
 /// What is said of data that the plain model may have made. Nothing is looked for, and so nothing has to be learnt.

@@ -1,7 +1,6 @@
 #include "reconcile/inference/classifier.hpp"
 
 #include <algorithm>
-#include <map>
 #include <numeric>
 
 #include "pirsim/error.hpp"
@@ -46,14 +45,6 @@ std::vector<std::size_t> still_made(const ReferenceTable& table, std::vector<std
                                [&](const EffectSpec& drawn) { return left_out.covers(drawn); });
   });
   return rows;
-}
-
-FamilyScore likeliest_family(std::span<const HypothesisScore> scores) {
-  std::map<effects::Family, double> sums;
-  for (const HypothesisScore& score : scores.subspan(1))
-    sums[effects::find(score.hypothesis).info.family] += score.probability;
-  const auto likeliest = std::ranges::max_element(sums, {}, [](const auto& sum) { return sum.second; });
-  return likeliest == sums.end() ? FamilyScore{} : FamilyScore{likeliest->first, likeliest->second};
 }
 
 SeenRows seen_rows(const TableView& view, double alpha, const Omission& left_out) {
@@ -104,16 +95,6 @@ std::vector<double> LabelledRows::by_hypothesis(std::span<const double> of_class
   std::vector<double> values(n_hypotheses, 0.0);
   for (std::size_t c = 0; c < hypotheses.size(); ++c) values[hypotheses[c]] = of_classes[c];
   return values;
-}
-
-std::size_t likeliest_hypothesis(std::span<const double> probabilities,
-                                 const std::function<bool(std::size_t)>& wanted) {
-  std::size_t best = 0;
-  for (std::size_t hypothesis = 1; hypothesis < probabilities.size(); ++hypothesis) {
-    const double most = best == 0 ? 0.0 : probabilities[best];  // what is no candidate has 0
-    if (wanted(hypothesis) && probabilities[hypothesis] > most) best = hypothesis;
-  }
-  return best;
 }
 
 HypothesisProbabilities::HypothesisProbabilities(const ReferenceTable& table, const FeatureMap& map,

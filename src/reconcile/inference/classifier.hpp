@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,13 +11,9 @@
 #include "reconcile/inference/table_view.hpp"
 #include "stats/calibration.hpp"
 #include "stats/conformal.hpp"
-#include "stats/decision.hpp"
 #include "stats/impostors.hpp"
 
 namespace pirsim::reconcile {
-
-/// The likeliest family. scores: (n_hypotheses) nothing first.
-[[nodiscard]] FamilyScore likeliest_family(std::span<const HypothesisScore> scores);
 
 /// (n_hypotheses) Datasets (rows of the table) that nothing is learnt from and in which the global test sees something,
 /// as in data that a name is given to; or, of few, the likeliest to be seen.
@@ -64,10 +59,6 @@ struct LabelledRows {
   std::vector<std::size_t> hypotheses;  ///< (n_classes)
   std::size_t n_hypotheses = 0;
 };
-
-/// The hypothesis of the greatest probability (at least 1) for which `wanted` holds; 0 if there is none above 0.
-[[nodiscard]] std::size_t likeliest_hypothesis(std::span<const double> probabilities,
-                                               const std::function<bool(std::size_t)>& wanted);
 
 /// How probable each hypothesis is, seen in some of the trials only, without a test of whether it can have made the
 /// data.

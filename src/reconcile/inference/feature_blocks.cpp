@@ -17,8 +17,8 @@ FeatureName gained_by(FeatureName::Permutation permutation) {
   return {.kind = Kind::likeness_gained, .permutation = permutation};
 }
 
-constexpr std::size_t n_sixths = static_cast<std::size_t>(CellStatistic::shift_s) - n_told_of_cells;
-constexpr std::size_t n_slices = n_trial_statistics - n_told_of_trials;
+constexpr std::size_t n_sixths = static_cast<std::size_t>(CellStatistic::shift_s) - told_of_cells.size();
+constexpr std::size_t n_slices = n_trial_statistics - told_of_trials.size();
 /// Statistics whose means over the sensors of a trial are looked at one by one.
 constexpr std::array told_by_trial{CellStatistic::seconds,       CellStatistic::half_difference,
                                    CellStatistic::onsets,        CellStatistic::isolated,
@@ -29,14 +29,19 @@ constexpr std::array told_in_order{CellStatistic::seconds,      CellStatistic::s
                                    CellStatistic::onsets,       CellStatistic::again_after_1,
                                    CellStatistic::period_power, CellStatistic::half_difference};
 
+template <typename Statistic>
+Statistic nth_after(Statistic first, std::size_t n) {
+  return static_cast<Statistic>(static_cast<std::size_t>(first) + n);
+}
+
 }  // namespace
 
 void FeatureMap::write_cells(const Scaled& data, Writer& out) const {
   for (const std::size_t trial : trials_) {
     for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
-      if (!known(trial, sensor, 0)) continue;
+      if (!known(trial, sensor, CellStatistic::seconds)) continue;
       out.test_next();
-      out.add(data.values[cell_index(frame_, trial, sensor, CellStatistic::seconds)], [&] {
+      out.add(data.cell(trial, sensor, CellStatistic::seconds), [&] {
         return FeatureName{Kind::cell, frame_.trials[trial], frame_.sensors[sensor], name(CellStatistic::seconds)};
       });
     }
@@ -44,31 +49,28 @@ void FeatureMap::write_cells(const Scaled& data, Writer& out) const {
 }
 
 void FeatureMap::write_sensors(const Scaled& data, Writer& out) const {
-  for (std::size_t k = 0; k < n_told_of_cells; ++k) {
+  for (const CellStatistic statistic : told_of_cells) {
     std::vector<double> means;
     for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
       double sum = 0.0, count = 0.0;
       for (const std::size_t trial : trials_) {
-        if (!known(trial, sensor, k)) continue;
-        sum += data.values[cell_index(frame_, trial, sensor, static_cast<CellStatistic>(k))];
+        if (!known(trial, sensor, statistic)) continue;
+        sum += data.cell(trial, sensor, statistic);
         count += 1.0;
       }
       if (count == 0.0) continue;
       means.push_back(sum / count);
       out.test_next();
       out.add(means.back(), [&] {
-        return FeatureName{
-            .kind = Kind::sensor, .sensor = frame_.sensors[sensor], .statistic = name(static_cast<CellStatistic>(k))};
+        return FeatureName{.kind = Kind::sensor, .sensor = frame_.sensors[sensor], .statistic = name(statistic)};
       });
     }
-    if (std::ranges::find(told_in_order, static_cast<CellStatistic>(k)) == told_in_order.end()) continue;
-    if (means.size() < 3) continue;
+    if (std::ranges::find(told_in_order, statistic) == told_in_order.end() || means.size() < 3) continue;
     std::ranges::sort(means);
-    const std::string statistic = name(static_cast<CellStatistic>(k));
     out.add(means[means.size() - 1] - means[means.size() - 2],
-            [&] { return of_statistic(Kind::first_less_second, statistic); });
-    out.add(means[1] - means[0], [&] { return of_statistic(Kind::last_but_one_less_last, statistic); });
-    out.add(means.back() - means.front(), [&] { return of_statistic(Kind::first_less_last, statistic); });
+            [&] { return of_statistic(Kind::first_less_second, name(statistic)); });
+    out.add(means[1] - means[0], [&] { return of_statistic(Kind::last_but_one_less_last, name(statistic)); });
+    out.add(means.back() - means.front(), [&] { return of_statistic(Kind::first_less_last, name(statistic)); });
   }
 }
 
@@ -77,8 +79,8 @@ void FeatureMap::write_trials(const Scaled& data, Writer& out) const {
     for (const std::size_t trial : trials_) {
       double sum = 0.0, count = 0.0;
       for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
-        if (!known(trial, sensor, static_cast<std::size_t>(statistic))) continue;
-        sum += data.values[cell_index(frame_, trial, sensor, statistic)];
+        if (!known(trial, sensor, statistic)) continue;
+        sum += data.cell(trial, sensor, statistic);
         count += 1.0;
       }
       if (count == 0.0) continue;
@@ -87,19 +89,18 @@ void FeatureMap::write_trials(const Scaled& data, Writer& out) const {
       });
     }
   }
-  for (std::size_t k = 0; k < n_told_of_trials; ++k) {
+  for (const TrialStatistic statistic : told_of_trials) {
     double sum = 0.0, squares = 0.0, count = 0.0;
     for (const std::size_t trial : trials_) {
-      const std::size_t i = trial_index(frame_, trial, static_cast<TrialStatistic>(k));
-      if (known_[i] == 0) continue;
-      sum += data.values[i];
-      squares += data.values[i] * data.values[i];
+      if (known_.trial(trial, statistic) == 0) continue;
+      const double value = data.trial(trial, statistic);
+      sum += value;
+      squares += value * value;
       count += 1.0;
     }
     if (count == 0.0) continue;
-    const std::string statistic = name(static_cast<TrialStatistic>(k));
-    out.add(sum / count, [&] { return of_statistic(Kind::mean, statistic); });
-    out.add(std::sqrt(squares / count), [&] { return of_statistic(Kind::size, statistic); });
+    out.add(sum / count, [&] { return of_statistic(Kind::mean, name(statistic)); });
+    out.add(std::sqrt(squares / count), [&] { return of_statistic(Kind::size, name(statistic)); });
   }
   write_shifts(data, out);
 }
@@ -111,9 +112,8 @@ void FeatureMap::write_shifts(const Scaled& data, Writer& out) const {
   for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
     double sum = 0.0, count = 0.0;
     for (const std::size_t trial : trials_) {
-      const std::size_t i = cell_index(frame_, trial, sensor, CellStatistic::shift_s);
-      if (known_[i] == 0) continue;
-      sum += data.values[i];
+      if (!known(trial, sensor, CellStatistic::shift_s)) continue;
+      sum += data.cell(trial, sensor, CellStatistic::shift_s);
       count += 1.0;
     }
     if (count == 0.0) continue;
@@ -126,21 +126,21 @@ void FeatureMap::write_shifts(const Scaled& data, Writer& out) const {
   if (n_all > 0.0) out.add(all / n_all, [&] { return of_statistic(Kind::mean, statistic); });
 }
 
-/// Sum of a statistic over the trials in which it is known; none if there are no such trials. What a dataset has
-/// depends on the shape alone: a trial that one dataset lacks adds nothing.
-std::optional<double> FeatureMap::total(std::span<const float> statistics,
-                                        const std::function<std::size_t(std::size_t)>& index) const {
+/// Sum of a statistic, of(data, trial), over the trials in which it is known; none if there are no such trials. What a
+/// dataset has depends on the shape alone: a trial that one dataset lacks adds nothing.
+template <typename Of>
+std::optional<double> FeatureMap::total(const DatasetStatistics& data, const Of& of) const {
   std::optional<double> sum;
   for (const std::size_t trial : trials_) {
-    const std::size_t i = index(trial);
-    if (known_[i] == 0) continue;
-    sum = sum.value_or(0.0) + (std::isnan(statistics[i]) ? 0.0 : static_cast<double>(statistics[i]));
+    if (of(known_, trial) == 0) continue;
+    const float value = of(data, trial);
+    sum = sum.value_or(0.0) + (std::isnan(value) ? 0.0 : static_cast<double>(value));
   }
   return sum;
 }
 
 /// How motion spreads over the time, whatever there is of it: logarithms of shares, of all sensors and of each.
-void FeatureMap::write_time(std::span<const float> statistics, Writer& out) const {
+void FeatureMap::write_time(const DatasetStatistics& data, Writer& out) const {
   const auto write_shares = [&](std::size_t n, const auto& part, const std::string& sensor) {
     std::vector<double> totals;
     for (std::size_t k = 0; k < n; ++k) {
@@ -158,16 +158,17 @@ void FeatureMap::write_time(std::span<const float> statistics, Writer& out) cons
   write_shares(
       n_slices,
       [&](std::size_t k) {
-        return total(statistics,
-                     [&](std::size_t trial) { return trial_index(frame_, trial, TrialStatistic::slice_1) + k; });
+        return total(data, [&](const auto& all, std::size_t trial) {
+          return all.trial(trial, nth_after(TrialStatistic::slice_1, k));
+        });
       },
       "");
   for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
     write_shares(
         n_sixths,
         [&](std::size_t k) {
-          return total(statistics, [&](std::size_t trial) {
-            return cell_index(frame_, trial, sensor, CellStatistic::sixth_1) + k;
+          return total(data, [&](const auto& all, std::size_t trial) {
+            return all.cell(trial, sensor, nth_after(CellStatistic::sixth_1, k));
           });
         },
         frame_.sensors[sensor]);
@@ -175,14 +176,14 @@ void FeatureMap::write_time(std::span<const float> statistics, Writer& out) cons
 }
 
 /// How much oftener than not a sensor moves while another does: logarithms of odds over all trials.
-void FeatureMap::write_pairs(std::span<const float> statistics, Writer& out) const {
+void FeatureMap::write_pairs(const DatasetStatistics& data, Writer& out) const {
   std::vector<double> odds;
   for (std::size_t first = 0; first < frame_.sensors.size(); ++first) {
     for (std::size_t second = 0; second < frame_.sensors.size(); ++second) {
       if (first == second) continue;
-      const auto alone = total(statistics, [&](std::size_t t) { return pair_index(frame_, t, first, second); });
+      const auto alone = total(data, [&](const auto& all, std::size_t t) { return all.pair(t, first, second); });
       const auto seconds =
-          total(statistics, [&](std::size_t t) { return cell_index(frame_, t, second, CellStatistic::seconds); });
+          total(data, [&](const auto& all, std::size_t t) { return all.cell(t, second, CellStatistic::seconds); });
       if (!alone || !seconds) continue;
       const double together = std::max(0.0, *seconds / frame_.window_s - *alone);
       odds.push_back(std::log((together + 0.5) / (*alone + 0.5)));
@@ -198,58 +199,58 @@ void FeatureMap::write_pairs(std::span<const float> statistics, Writer& out) con
 }
 
 void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
-  for (std::size_t k = 0; k < n_told_of_cells; ++k) {
+  for (const CellStatistic statistic : told_of_cells) {
     double count = 0.0, sum = 0.0, size = 0.0, greatest = -1e9, least = 1e9;
     std::vector<double> slopes(covariates_.size(), 0.0);
     for (const std::size_t trial : trials_) {
       for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
-        if (!known(trial, sensor, k)) continue;
-        const std::size_t cell = trial * frame_.sensors.size() + sensor;
-        const double value = data.values[cell * n_cell_statistics + k];
+        if (!known(trial, sensor, statistic)) continue;
+        const double value = data.cell(trial, sensor, statistic);
         count += 1.0;
         sum += value;
         size += std::abs(value);
         greatest = std::max(greatest, value);
         least = std::min(least, value);
-        for (std::size_t c = 0; c < slopes.size(); ++c) slopes[c] += value * covariates_[c][cell];
+        for (std::size_t c = 0; c < slopes.size(); ++c) slopes[c] += value * covariates_[c][frame_.cell(trial, sensor)];
       }
     }
     if (count == 0.0) continue;
-    const std::string statistic = name(static_cast<CellStatistic>(k));
     out.test_next();
-    out.add(sum / count, [&] { return of_statistic(Kind::mean, statistic); });
+    out.add(sum / count, [&] { return of_statistic(Kind::mean, name(statistic)); });
     out.test_next();
-    out.add(size / count, [&] { return of_statistic(Kind::size, statistic); });
-    out.add(greatest, [&] { return of_statistic(Kind::greatest, statistic); });
-    out.add(least, [&] { return of_statistic(Kind::least, statistic); });
+    out.add(size / count, [&] { return of_statistic(Kind::size, name(statistic)); });
+    out.add(greatest, [&] { return of_statistic(Kind::greatest, name(statistic)); });
+    out.add(least, [&] { return of_statistic(Kind::least, name(statistic)); });
     for (std::size_t c = 0; c < slopes.size(); ++c) {
-      out.add(slopes[c] / count,
-              [&] { return FeatureName{.kind = Kind::slope, .statistic = statistic, .other = covariate_names_[c]}; });
+      out.add(slopes[c] / count, [&] {
+        return FeatureName{.kind = Kind::slope, .statistic = name(statistic), .other = covariate_names_[c]};
+      });
     }
   }
 }
 
 double FeatureMap::likeness(std::span<const double> values, std::span<const std::size_t> trial_order,
                             std::span<const std::size_t> sensor_order) const {
-  const std::size_t n_sensors = frame_.sensors.size();
   Correlation correlation;
   for (const std::size_t trial : trials_) {
-    for (std::size_t sensor = 0; sensor < n_sensors; ++sensor) {
-      const std::size_t from = trial_order[trial] * n_sensors + sensor_order[sensor];
-      const std::size_t cell = trial * n_sensors + sensor;
-      if (known_[cell * n_cell_statistics] == 0 || known_[from * n_cell_statistics] == 0) continue;
-      correlation.add(values[cell], expected_log_[from]);
+    for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
+      const std::size_t from_trial = trial_order[trial], from_sensor = sensor_order[sensor];
+      if (!known(trial, sensor, CellStatistic::seconds) || !known(from_trial, from_sensor, CellStatistic::seconds))
+        continue;
+      correlation.add(values[frame_.cell(trial, sensor)], expected_log_[frame_.cell(from_trial, from_sensor)]);
     }
   }
   return correlation.value();
 }
 
-void FeatureMap::write_permutations(std::span<const float> statistics, Writer& out) const {
+void FeatureMap::write_permutations(const DatasetStatistics& data, Writer& out) const {
   const std::size_t n_trials = frame_.trials.size(), n_sensors = frame_.sensors.size();
   std::vector<double> values(frame_.n_cells(), 0.0);
-  for (std::size_t cell = 0; cell < values.size(); ++cell) {
-    const float seconds = statistics[cell * n_cell_statistics];
-    if (!std::isnan(seconds)) values[cell] = std::log1p(static_cast<double>(seconds));
+  for (std::size_t trial = 0; trial < n_trials; ++trial) {
+    for (std::size_t sensor = 0; sensor < n_sensors; ++sensor) {
+      const double seconds = seconds_of(data, trial, sensor);
+      if (!std::isnan(seconds)) values[frame_.cell(trial, sensor)] = std::log1p(seconds);
+    }
   }
   std::vector<std::size_t> trials(n_trials), sensors(n_sensors);
   std::iota(trials.begin(), trials.end(), std::size_t{0});
@@ -291,7 +292,7 @@ void FeatureMap::write_permutations(std::span<const float> statistics, Writer& o
   }
 }
 
-void FeatureMap::write_all(std::span<const float> statistics, Writer& out) const {
+void FeatureMap::write_all(const DatasetStatistics& statistics, Writer& out) const {
   const Scaled data = scaled(statistics);
   write_cells(data, out);
   out.end_block();

@@ -28,6 +28,14 @@ void for_all_known(const stats::Matrix<float>& table, const Visit& visit) {
   }
 }
 
+/// Calls visit(trial, sensor).
+template <typename Visit>
+void for_each_cell(const StudyFrame& frame, const Visit& visit) {
+  for (std::size_t trial = 0; trial < frame.trials.size(); ++trial) {
+    for (std::size_t sensor = 0; sensor < frame.sensors.size(); ++sensor) visit(trial, sensor);
+  }
+}
+
 const action::Sit* first_seat(const TrialSpec& trial) {
   for (const PersonSpec& person : trial.people) {
     for (const ScriptedAction& action : person.actions) {
@@ -58,55 +66,51 @@ std::vector<CellKnowledge> cell_knowledge(const SceneSpec& scene, const ScriptSp
 FeatureMap::FeatureMap(const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge,
                        const stats::Matrix<float>& plain, std::vector<std::size_t> trials)
     : frame_(frame), trials_(std::move(trials)) {
-  known_.assign(plain.columns(), 0);
-  for_all_known(plain, [&](std::size_t i, double) { known_[i] = 1; });
+  std::vector<std::uint8_t> known(plain.columns(), 0);
+  for_all_known(plain, [&](std::size_t i, double) { known[i] = 1; });
+  known_ = {frame_, std::move(known)};
   learn_scales(plain);
   learn_covariates(knowledge);
   Writer writer;
   writer.names = &names_;
   writer.envelope = &envelope_columns_;
   writer.blocks = &blocks_;
-  write_all(plain.row(0), writer);
-}
-
-bool FeatureMap::known(std::size_t trial, std::size_t sensor, std::size_t statistic) const {
-  return known_[cell_index(frame_, trial, sensor, static_cast<CellStatistic>(statistic))] != 0;
+  write_all({frame_, plain.row(0)}, writer);
 }
 
 void FeatureMap::learn_scales(const stats::Matrix<float>& plain) {
   const std::size_t n = plain.columns();
   std::vector<double> rows(n, 0.0);  // that have the statistic: in some a counted phase may not come
   std::vector<double> square(n, 0.0);
-  mean_.assign(n, 0.0);
+  std::vector<double> mean(n, 0.0), scale(n, 1.0);
   expected_log_.assign(frame_.n_cells(), 0.0);
   for_all_known(plain, [&](std::size_t i, double) { rows[i] += 1.0; });
-  for_all_known(plain, [&](std::size_t i, double value) { mean_[i] += value / rows[i]; });
+  for_all_known(plain, [&](std::size_t i, double value) { mean[i] += value / rows[i]; });
   for_all_known(plain,
-                [&](std::size_t i, double value) { square[i] += (value - mean_[i]) * (value - mean_[i]) / rows[i]; });
+                [&](std::size_t i, double value) { square[i] += (value - mean[i]) * (value - mean[i]) / rows[i]; });
+  const Statistics rows_with(frame_, std::span<const double>(rows));
   for (std::size_t row = 0; row < plain.rows(); ++row) {
-    for (std::size_t cell = 0; cell < frame_.n_cells(); ++cell) {
-      const std::size_t i = cell * n_cell_statistics;  // its seconds
-      if (!std::isnan(plain(row, i))) expected_log_[cell] += std::log1p(static_cast<double>(plain(row, i))) / rows[i];
-    }
+    for_each_cell(frame_, [&](std::size_t trial, std::size_t sensor) {
+      const double seconds = seconds_of(DatasetStatistics(frame_, plain.row(row)), trial, sensor);
+      if (std::isnan(seconds)) return;
+      expected_log_[frame_.cell(trial, sensor)] +=
+          std::log1p(seconds) / rows_with.cell(trial, sensor, CellStatistic::seconds);
+    });
   }
   // A statistic that hardly varies in one cell must not drown the others: its scatter is at least a part of what the
   // same statistic has elsewhere.
-  const std::size_t in_cells = frame_.n_cells() * n_cell_statistics;
-  scale_.assign(n, 1.0);
-  const auto set_scales = [&](std::size_t first, std::size_t step, std::size_t last) {
+  for (const std::vector<std::size_t>& places : alike_places(frame_)) {
     std::vector<double> scatters;
-    for (std::size_t i = first; i < last; i += step) {
-      if (known_[i] != 0) scatters.push_back(std::sqrt(square[i]));
+    for (const std::size_t i : places) {
+      if (known_.values()[i] != 0) scatters.push_back(std::sqrt(square[i]));
     }
-    if (scatters.empty()) return;
-    double mean = std::accumulate(scatters.begin(), scatters.end(), 0.0) / static_cast<double>(scatters.size());
-    if (mean < 1e-6) mean = 1.0;
-    for (std::size_t i = first; i < last; i += step) scale_[i] = std::sqrt(square[i] + 0.04 * mean * mean);
-  };
-  for (std::size_t k = 0; k < n_cell_statistics; ++k) set_scales(k, n_cell_statistics, in_cells);
-  const std::size_t in_trials = in_cells + frame_.trials.size() * n_trial_statistics;
-  for (std::size_t k = 0; k < n_trial_statistics; ++k) set_scales(in_cells + k, n_trial_statistics, in_trials);
-  for (std::size_t k = 0; k < n_pairs(frame_); ++k) set_scales(in_trials + k, n_pairs(frame_), n);
+    if (scatters.empty()) continue;
+    double usual = std::accumulate(scatters.begin(), scatters.end(), 0.0) / static_cast<double>(scatters.size());
+    if (usual < 1e-6) usual = 1.0;
+    for (const std::size_t i : places) scale[i] = std::sqrt(square[i] + 0.04 * usual * usual);
+  }
+  mean_ = {frame_, std::move(mean)};
+  scale_ = {frame_, std::move(scale)};
 }
 
 void FeatureMap::learn_covariates(const std::vector<CellKnowledge>& knowledge) {
@@ -115,46 +119,51 @@ void FeatureMap::learn_covariates(const std::vector<CellKnowledge>& knowledge) {
   std::vector<std::size_t> over;
   for (const std::size_t trial : trials_) {
     for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
-      if (known(trial, sensor, 0)) over.push_back(trial * frame_.sensors.size() + sensor);
+      if (known(trial, sensor, CellStatistic::seconds)) over.push_back(frame_.cell(trial, sensor));
     }
   }
-  for (std::size_t cell = 0; cell < frame_.n_cells(); ++cell) {
-    const std::size_t seconds = cell * n_cell_statistics;
+  for_each_cell(frame_, [&](std::size_t trial, std::size_t sensor) {
+    const std::size_t cell = frame_.cell(trial, sensor);
     covariates_[0][cell] = expected_log_[cell];
-    covariates_[1][cell] = std::log((scale_[seconds] + 0.5) / (mean_[seconds] + 1.0));
+    covariates_[1][cell] = std::log((scale_.cell(trial, sensor, CellStatistic::seconds) + 0.5) /
+                                    (mean_.cell(trial, sensor, CellStatistic::seconds) + 1.0));
     covariates_[2][cell] = knowledge[cell].distance_m;
     covariates_[3][cell] = knowledge[cell].facing;
-  }
+  });
   for (std::vector<double>& covariate : covariates_) standardise(covariate, over);
 }
 
-FeatureMap::Scaled FeatureMap::scaled(std::span<const float> statistics) const {
-  Scaled data;
-  data.values.resize(statistics.size(), 0.0);
-  const auto scale = [&](std::size_t first, std::size_t n) {
-    for (std::size_t i = first; i < first + n; ++i) {
-      if (known_[i] == 0 || std::isnan(statistics[i])) continue;
-      data.values[i] = std::asinh((static_cast<double>(statistics[i]) - mean_[i]) / scale_[i]);
-    }
+/// Deviations in units of the plain model's scatter, drawn in at the ends: of what is told of the trials looked at, 0
+/// elsewhere.
+FeatureMap::Scaled FeatureMap::scaled(const DatasetStatistics& data) const {
+  std::vector<double> values(data.values().size(), 0.0);
+  const Statistics out(frame_, std::span(values));
+  const auto off = [&](const auto& of) {
+    return of(known_) == 0 || std::isnan(of(data)) ? 0.0 : static_cast<double>(of(data)) - of(mean_);
   };
   for (const std::size_t trial : trials_) {
     for (std::size_t sensor = 0; sensor < frame_.sensors.size(); ++sensor) {
-      scale(cell_index(frame_, trial, sensor, CellStatistic::seconds), n_told_of_cells);
+      for (const CellStatistic statistic : told_of_cells) {
+        const auto of = [&](const auto& all) -> auto& { return all.cell(trial, sensor, statistic); };
+        of(out) = std::asinh(off(of) / of(scale_));
+      }
       // A clock's error is read off it, so that it stays in proportion; a few windows are much.
       constexpr double much_windows = 4.0;
-      const std::size_t shift = cell_index(frame_, trial, sensor, CellStatistic::shift_s);
-      if (known_[shift] == 0 || std::isnan(statistics[shift])) continue;
-      data.values[shift] = (static_cast<double>(statistics[shift]) - mean_[shift]) / (much_windows * frame_.window_s);
+      const auto shift = [&](const auto& all) -> auto& { return all.cell(trial, sensor, CellStatistic::shift_s); };
+      shift(out) = off(shift) / (much_windows * frame_.window_s);
     }
-    scale(trial_index(frame_, trial, TrialStatistic::lag_minus_4), n_told_of_trials);
+    for (const TrialStatistic statistic : told_of_trials) {
+      const auto of = [&](const auto& all) -> auto& { return all.trial(trial, statistic); };
+      of(out) = std::asinh(off(of) / of(scale_));
+    }
   }
-  return data;
+  return {frame_, std::move(values)};
 }
 
 std::vector<float> FeatureMap::features(std::span<const float> statistics) const {
   Writer writer;
   writer.values.reserve(names_.size());
-  write_all(statistics, writer);
+  write_all({frame_, statistics}, writer);
   return std::move(writer.values);
 }
 

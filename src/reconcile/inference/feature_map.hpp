@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -33,7 +32,9 @@ class FeatureMap {
 
   [[nodiscard]] const std::vector<FeatureName>& names() const noexcept { return names_; }
   [[nodiscard]] const std::vector<std::size_t>& trials() const noexcept { return trials_; }
-  [[nodiscard]] bool knows_cell(std::size_t trial, std::size_t sensor) const { return known(trial, sensor, 0); }
+  [[nodiscard]] bool knows_cell(std::size_t trial, std::size_t sensor) const {
+    return known(trial, sensor, CellStatistic::seconds);
+  }
   /// What the global test looks at: first the cells' seconds, by trial, then sensor; then the sensors' means and the
   /// means and sizes over all cells.
   [[nodiscard]] const std::vector<std::size_t>& envelope_columns() const noexcept { return envelope_columns_; }
@@ -45,30 +46,32 @@ class FeatureMap {
 
  private:
   struct Writer;
-  struct Scaled;
+  using Scaled = Statistics<std::vector<double>>;
   void learn_scales(const stats::Matrix<float>& plain);
   void learn_covariates(const std::vector<CellKnowledge>& knowledge);
-  [[nodiscard]] Scaled scaled(std::span<const float> statistics) const;
+  [[nodiscard]] Scaled scaled(const DatasetStatistics& data) const;
   void write_cells(const Scaled& data, Writer& out) const;
   void write_sensors(const Scaled& data, Writer& out) const;
   void write_trials(const Scaled& data, Writer& out) const;
   void write_shifts(const Scaled& data, Writer& out) const;
-  void write_time(std::span<const float> statistics, Writer& out) const;
-  void write_pairs(std::span<const float> statistics, Writer& out) const;
+  void write_time(const DatasetStatistics& data, Writer& out) const;
+  void write_pairs(const DatasetStatistics& data, Writer& out) const;
   void write_contrasts(const Scaled& data, Writer& out) const;
-  void write_permutations(std::span<const float> statistics, Writer& out) const;
-  void write_all(std::span<const float> statistics, Writer& out) const;
-  [[nodiscard]] std::optional<double> total(std::span<const float> statistics,
-                                            const std::function<std::size_t(std::size_t trial)>& index) const;
-  [[nodiscard]] bool known(std::size_t trial, std::size_t sensor, std::size_t statistic) const;
+  void write_permutations(const DatasetStatistics& data, Writer& out) const;
+  void write_all(const DatasetStatistics& statistics, Writer& out) const;
+  template <typename Of>
+  [[nodiscard]] std::optional<double> total(const DatasetStatistics& data, const Of& of) const;
+  [[nodiscard]] bool known(std::size_t trial, std::size_t sensor, CellStatistic statistic) const {
+    return known_.cell(trial, sensor, statistic) != 0;
+  }
   [[nodiscard]] double likeness(std::span<const double> values, std::span<const std::size_t> trial_order,
                                 std::span<const std::size_t> sensor_order) const;
 
   StudyFrame frame_;
   std::vector<std::size_t> trials_;
-  std::vector<std::uint8_t> known_;   ///< (n_statistics)
-  std::vector<double> mean_, scale_;  ///< (n_statistics) of the plain model
-  std::vector<double> expected_log_;  ///< (n_cells) mean of log(1 + seconds)
+  Statistics<std::vector<std::uint8_t>> known_;
+  Statistics<std::vector<double>> mean_, scale_;  ///< of the plain model
+  std::vector<double> expected_log_;              ///< (n_cells) mean of log(1 + seconds)
   std::vector<std::string> covariate_names_;
   std::vector<std::vector<double>> covariates_;  ///< (n_covariates x n_cells) mean 0, variance 1 over known cells
   std::vector<FeatureName> names_;

@@ -1,6 +1,7 @@
 // Features as they are written, one after the other. Private to reconcile.
 #pragma once
 
+#include <array>
 #include <numeric>
 #include <vector>
 
@@ -8,14 +9,16 @@
 
 namespace pirsim::reconcile {
 
+/// Those before `end`, in order.
+template <auto end>
+[[nodiscard]] constexpr auto statistics_before() {
+  std::array<decltype(end), static_cast<std::size_t>(end)> all{};
+  for (std::size_t k = 0; k < all.size(); ++k) all[k] = static_cast<decltype(end)>(k);
+  return all;
+}
 /// Statistics that are looked at as they are; those after them are parts of the time.
-constexpr auto n_told_of_cells = static_cast<std::size_t>(CellStatistic::sixth_1);
-constexpr auto n_told_of_trials = static_cast<std::size_t>(TrialStatistic::slice_1);
-
-/// Deviations in units of the plain model's scatter, drawn in at the ends: of what is told of the trials looked at.
-struct FeatureMap::Scaled {
-  std::vector<double> values;  ///< (n_statistics) 0 where nobody looks
-};
+inline constexpr auto told_of_cells = statistics_before<CellStatistic::sixth_1>();
+inline constexpr auto told_of_trials = statistics_before<TrialStatistic::slice_1>();
 
 /// Numbers in the order in which they come; their names too when those are wanted.
 struct FeatureMap::Writer {

@@ -56,7 +56,7 @@ std::vector<std::size_t> without(std::vector<std::size_t> rows, std::size_t row)
 
 /// How far beyond its interval's ends, as a share of the way from the median, a known truth lies.
 double reach(const stats::AbcPosterior& posterior, std::size_t parameter, double truth) {
-  const stats::Interval interval = posterior.interval(parameter, confidence);
+  const Interval interval = posterior.interval(parameter, confidence);
   const double median = posterior.quantile(parameter, 0.5);
   const double half = truth < median ? median - interval.low : interval.high - median;
   return std::abs(truth - median) / std::max(half, 1e-12);
@@ -136,7 +136,7 @@ FittedEffect EffectFitter::fit(std::size_t hypothesis, std::span<const float> me
   for (std::size_t p = 0; p < estimator.infos().size(); ++p) {
     const ParameterInfo& info = *estimator.infos()[p];
     if (!applies(info, alike)) continue;
-    const stats::Interval flat = posterior.interval(p, confidence, widening[p]);
+    const Interval flat = posterior.interval(p, confidence, widening[p]);
     FittedParameter parameter{info.name, info.unit, from_flat(info, posterior.quantile(p, 0.5)),
                               {},        info.off,  info.role == effects::Role::strength,
                               {}};

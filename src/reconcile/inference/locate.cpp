@@ -11,12 +11,10 @@ namespace {
 
 LocatedCell cell_of(const StudyFrame& frame, const stats::Matrix<float>& plain, std::span<const float> measured,
                     std::size_t trial, std::size_t sensor) {
-  const std::size_t column = cell_index(frame, trial, sensor, CellStatistic::seconds);
-  LocatedCell cell{frame.trials[trial], frame.sensors[sensor], static_cast<double>(measured[column]), 0, 0, 0, 1.0};
-  std::vector<double> simulated;
-  for (std::size_t row = 0; row < plain.rows(); ++row) {  // a counted phase may not come in some
-    if (!std::isnan(plain(row, column))) simulated.push_back(static_cast<double>(plain(row, column)));
-  }
+  LocatedCell cell{.trial = frame.trials[trial],
+                   .sensor = frame.sensors[sensor],
+                   .measured_s = seconds_of(DatasetStatistics(frame, measured), trial, sensor)};
+  const std::vector<double> simulated = seconds_of(frame, plain, trial, sensor);
   if (simulated.empty()) return cell;
   for (const double seconds : simulated) cell.expected_s += seconds / static_cast<double>(simulated.size());
   cell.low_s = stats::quantile(simulated, 0.025);
@@ -41,16 +39,16 @@ std::size_t hypothesis_of(const ReferenceTable& table, const std::string& effect
 }
 
 std::vector<double> tested_features(const FeatureMap& map, std::span<const float> features) {
-  std::vector<double> hypotheses;
-  for (const std::size_t column : map.envelope_columns()) hypotheses.push_back(static_cast<double>(features[column]));
-  return hypotheses;
+  std::vector<double> tested;
+  for (const std::size_t column : map.envelope_columns()) tested.push_back(static_cast<double>(features[column]));
+  return tested;
 }
 
 stats::Matrix<double> tested_features(const FeatureMap& map, const stats::Matrix<float>& features) {
-  stats::Matrix<double> hypotheses(features.rows(), map.envelope_columns().size());
+  stats::Matrix<double> tested(features.rows(), map.envelope_columns().size());
   for (std::size_t row = 0; row < features.rows(); ++row)
-    std::ranges::copy(tested_features(map, features.row(row)), hypotheses.row(row).begin());
-  return hypotheses;
+    std::ranges::copy(tested_features(map, features.row(row)), tested.row(row).begin());
+  return tested;
 }
 
 std::vector<double> tested_statistics(const FeatureMap& map, std::span<const float> statistics) {

@@ -73,8 +73,8 @@ PointEstimator::PointEstimator(const ReferenceTable& table, std::size_t hypothes
     estimates_.append_row(std::span<const double>(of(held_back.features.row(i))));
 }
 
-std::vector<stats::Interval> PointEstimator::bounds() const {
-  std::vector<stats::Interval> bounds;
+std::vector<Interval> PointEstimator::bounds() const {
+  std::vector<Interval> bounds;
   for (const ParameterInfo* info : infos_) bounds.push_back({to_flat(*info, info->low), to_flat(*info, info->high)});
   return bounds;
 }

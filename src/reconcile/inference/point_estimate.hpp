@@ -32,7 +32,7 @@ class PointEstimator {
                  const HypothesisDatasets& held_back);
 
   [[nodiscard]] const std::vector<const effects::ParameterInfo*>& infos() const noexcept { return infos_; }
-  [[nodiscard]] std::vector<stats::Interval> bounds() const;
+  [[nodiscard]] std::vector<Interval> bounds() const;
   /// As a training dataset of the likeliest kind was drawn.
   [[nodiscard]] const EffectSpec& kind_of(std::span<const float> features) const;
   /// How probable the words of each choice are, by the kinds that the training datasets were drawn as.

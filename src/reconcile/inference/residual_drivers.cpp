@@ -110,7 +110,7 @@ std::vector<Who> all_who(const ReferenceStudy& reference) {
   for (std::size_t t = 0; t < frame.trials.size(); ++t)
     all.push_back(cells_of(reference, trial, frame.trials[t], [t](std::size_t number, auto) { return number == t; }));
   const auto knowledge = [&](std::size_t t, std::size_t s) -> const CellKnowledge& {
-    return reference.knowledge[t * frame.sensors.size() + s];
+    return reference.knowledge[frame.cell(t, s)];
   };
   std::vector<double> distances;
   for (const CellKnowledge& cell : reference.knowledge) distances.push_back(cell.distance_m);

@@ -99,7 +99,7 @@ class Scores {
   /// What the driver multiplies its coefficient with, at one place of a dataset.
   [[nodiscard]] double value(const Driver& driver, std::span<const std::uint8_t> bits, std::size_t place) const {
     const Place& at = bits_.places[place];
-    const std::size_t cell = at.trial * reference_.frame.sensors.size() + at.sensor;
+    const std::size_t cell = reference_.frame.cell(at.trial, at.sensor);
     if (who_[driver.who].cells[cell] == 0) return 0.0;
     return when_[driver.when].weight[at.trial][at.row] * factor(driver.how, driver.other, bits, place);
   }

@@ -11,6 +11,7 @@
 #include "core/near_names.hpp"
 #include "core/parallel.hpp"
 #include "effects/catalogue.hpp"
+#include "reconcile/inference/decision.hpp"
 #include "reconcile/inference/fit.hpp"
 #include "reconcile/inference/locate.hpp"
 #include "reconcile/inference/reference_study.hpp"
@@ -190,14 +191,9 @@ double own_score(const stats::Matrix<double>& ensemble) {
 void add_cells(const StudyFrame& frame, const stats::Matrix<float>& ensemble, std::span<const float> measured,
                std::size_t trial, Gap& gap) {
   for (std::size_t sensor = 0; sensor < frame.sensors.size(); ++sensor) {
-    const std::size_t column = cell_index(frame, trial, sensor, CellStatistic::seconds);
-    if (std::isnan(measured[column])) continue;
-    std::vector<double> seconds;
-    for (std::size_t row = 0; row < ensemble.rows(); ++row) {  // a counted phase may not come in some
-      if (!std::isnan(ensemble(row, column))) seconds.push_back(static_cast<double>(ensemble(row, column)));
-    }
-    if (seconds.empty()) continue;
-    const auto real = static_cast<double>(measured[column]);
+    const double real = seconds_of(DatasetStatistics(frame, measured), trial, sensor);
+    const std::vector<double> seconds = seconds_of(frame, ensemble, trial, sensor);
+    if (std::isnan(real) || seconds.empty()) continue;
     gap.area_s += stats::area_between(seconds, std::span(&real, 1));
     gap.cells_outside += real < stats::quantile(seconds, 0.025) || real > stats::quantile(seconds, 0.975) ? 1 : 0;
     ++gap.n_cells;
@@ -218,16 +214,14 @@ class Judge {
   void add_trial(std::size_t trial, Verification& result) {
     const FeatureMap map(reference_.frame, reference_.knowledge, scales_, {trial});
     if (map.envelope_columns().empty()) return;
-    const auto hypotheses = [&](const stats::Matrix<float>& all) {
-      return tested_statistics(map, all, context_.threads);
-    };
+    const auto tested = [&](const stats::Matrix<float>& all) { return tested_statistics(map, all, context_.threads); };
     const std::vector<double> real = tested_statistics(map, measured_);
-    const stats::Matrix<double> after = hypotheses(ensembles_.after);
-    const double score_before = stats::energy_score(hypotheses(ensembles_.before), real);
+    const stats::Matrix<double> after = tested(ensembles_.after);
+    const double score_before = stats::energy_score(tested(ensembles_.before), real);
     const double score_after = stats::energy_score(after, real);
     result.before.energy_score += score_before;
     result.after.energy_score += score_after;
-    result.placebo += stats::energy_score(hypotheses(ensembles_.placebo), real);
+    result.placebo += stats::energy_score(tested(ensembles_.placebo), real);
     result.noise_floor += own_score(after);
     drops_.push_back(score_before - score_after);
     add_cells(reference_.frame, ensembles_.before, measured_, trial, result.before);
@@ -253,10 +247,7 @@ class Judge {
     result.sign_p = stats::sign_test_greater(result.n_better, static_cast<std::size_t>(worse));
     const double closable = result.before.energy_score - result.noise_floor;
     if (closable > 0.0) result.share_closed = (result.before.energy_score - result.after.energy_score) / closable;
-    if (drops_.size() > 1) {
-      const stats::Interval mean = stats::mean_interval(drops_);
-      result.gain = {mean.low, mean.high};
-    }
+    if (drops_.size() > 1) result.gain = stats::mean_interval(drops_);
   }
 
  private:

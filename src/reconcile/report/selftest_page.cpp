@@ -138,7 +138,7 @@ io::LineChart reliability_chart(const SelftestResult& result) {
   for (const stats::ReliabilityBin& bin : result.reliability.bins) {
     if (bin.rows == 0) continue;
     const auto hits = static_cast<std::size_t>(bin.share_right * static_cast<double>(bin.rows) + 0.5);
-    const stats::Interval interval = stats::clopper_pearson(hits, bin.rows);
+    const Interval interval = stats::clopper_pearson(hits, bin.rows);
     chart.lines[0].points.push_back({bin.mean_probability, bin.share_right, interval.low, interval.high,
                                      "called " + percent(bin.mean_probability) + ", right in " + std::to_string(hits) +
                                          " of " + std::to_string(bin.rows)});

@@ -89,14 +89,16 @@ double share_right(const ReferenceStudy& reference, const Judged& judged) {
 
 /// The planned trial whose cells differ most between effects, compared with how they differ within: worth repeating.
 std::size_t most_telling_trial(const ReferenceStudy& reference, std::size_t n_planned) {
-  const std::size_t n_hypotheses = reference.table.n_hypotheses(),
-                    per_trial = reference.frame.sensors.size() * n_cell_statistics;
+  const std::size_t n_hypotheses = reference.table.n_hypotheses();
+  const auto cells_of = [&](std::size_t row, std::size_t trial) {
+    return DatasetStatistics(reference.frame, reference.table.statistics.row(row)).cells(trial);
+  };
   std::vector<double> ratio(n_planned, 0.0);
-  for (std::size_t column = 0; column < n_planned * per_trial; ++column) {
+  const auto add = [&](std::size_t trial, std::size_t column) {
     std::vector<double> n(n_hypotheses, 0.0), sum(n_hypotheses, 0.0);
     double all = 0.0, squares = 0.0, count = 0.0;
     for (std::size_t row = 0; row < reference.table.rows.size(); ++row) {
-      const auto value = static_cast<double>(reference.table.statistics(row, column));
+      const auto value = static_cast<double>(cells_of(row, trial)[column]);
       if (std::isnan(value)) continue;
       n[reference.table.rows[row].hypothesis] += 1.0;
       sum[reference.table.rows[row].hypothesis] += value;
@@ -104,12 +106,15 @@ std::size_t most_telling_trial(const ReferenceStudy& reference, std::size_t n_pl
       squares += value * value;
       count += 1.0;
     }
-    if (count == 0.0) continue;
+    if (count == 0.0) return;
     double between = 0.0;
     for (std::size_t e = 0; e < n_hypotheses; ++e) between += n[e] > 0.0 ? sum[e] * sum[e] / n[e] : 0.0;
     between -= all * all / count;
     const double total = squares - all * all / count;
-    if (total > 1e-9 * count) ratio[column / per_trial] += between / total;
+    if (total > 1e-9 * count) ratio[trial] += between / total;
+  };
+  for (std::size_t trial = 0; trial < n_planned; ++trial) {
+    for (std::size_t column = 0; column < cells_of(0, trial).size(); ++column) add(trial, column);
   }
   return static_cast<std::size_t>(std::ranges::max_element(ratio) - ratio.begin());
 }

@@ -26,7 +26,7 @@ struct Design {
   double bits = 0.0;       ///< told about which effect it is, mean over datasets; 0: no better than chance
   double right = 0.0;      ///< share of datasets whose effect is the likeliest
   double more_bits = 0.0;  ///< than what is planned
-  stats::Interval more_bits_95;
+  Interval more_bits_95;
   /// Bits more a minute that the interval's lower end promises; infinite for a gain that takes no time.
   [[nodiscard]] double surely_per_minute() const noexcept {
     return minutes > 0.0 ? more_bits_95.low / minutes : std::numeric_limits<double>::infinity();

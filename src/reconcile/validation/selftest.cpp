@@ -40,8 +40,8 @@ InjectedCase judged(const ReferenceStudy& reference, const Analyst& analyst, con
   result.truth = injected.truth();
   result.strength = injected.strength;
   result.effects = injected.effects;
-  result.verdict = judgement.verdict;
-  for (const std::size_t hypothesis : judgement.kept) {
+  result.verdict = judgement.decision.verdict;
+  for (const std::size_t hypothesis : judgement.decision.kept) {
     if (hypothesis > 0) result.named.push_back(reference.table.hypothesis_name(hypothesis));
   }
   result.p = judgement.p;
@@ -188,7 +188,7 @@ class Counter {
   }
   [[nodiscard]] Rate rate() const {
     Rate rate = rate_;
-    rate.interval = rate.of == 0 ? stats::Interval{0.0, 1.0} : stats::clopper_pearson(rate.hits, rate.of);
+    rate.interval = rate.of == 0 ? Interval{0.0, 1.0} : stats::clopper_pearson(rate.hits, rate.of);
     return rate;
   }
 

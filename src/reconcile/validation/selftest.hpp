@@ -138,7 +138,7 @@ enum class Counted {
 struct Rate {
   Counted what = Counted::seen;
   std::size_t hits = 0, of = 0;
-  stats::Interval interval;            ///< empty (0 to 1) without any case
+  Interval interval;                   ///< empty (0 to 1) without any case
   Strength strength = Strength::none;  ///< of one effect, where only that is counted
   [[nodiscard]] double value() const noexcept {
     return of == 0 ? 0.0 : static_cast<double>(hits) / static_cast<double>(of);

@@ -39,7 +39,7 @@ std::vector<float> statistics(const std::string& bits, const std::string& expect
 }
 
 float of(const std::vector<float>& values, CellStatistic statistic) {
-  return values[cell_index(frame, 0, 0, statistic)];
+  return DatasetStatistics(frame, values).cell(0, 0, statistic);
 }
 
 }  // namespace
@@ -118,7 +118,7 @@ TEST_CASE("motion that comes early shows at its lag", "[statistics]") {
     early[at - 3] = '1';
   }
   const auto s = statistics(early, expected);
-  const auto lag = [&](TrialStatistic which) { return s[trial_index(frame, 0, which)]; };
+  const auto lag = [&](TrialStatistic which) { return DatasetStatistics(frame, s).trial(0, which); };
   CHECK(name(CellStatistic::shift_s) == "shift_s");
   CHECK(of(s, CellStatistic::shift_s) == Approx(-3.0).margin(0.01));
   CHECK(of(statistics(expected, early), CellStatistic::shift_s) == Approx(3.0).margin(0.01));
@@ -134,7 +134,7 @@ TEST_CASE("motion that comes late shows at its lag", "[statistics]") {
     late[at + 3] = '1';
   }
   const auto s = statistics(late, expected);
-  const auto lag = [&](TrialStatistic which) { return s[trial_index(frame, 0, which)]; };
+  const auto lag = [&](TrialStatistic which) { return DatasetStatistics(frame, s).trial(0, which); };
   CHECK(lag(TrialStatistic::lag_3) > 3.5F);
   CHECK(lag(TrialStatistic::lag_0) < 0.0F);
   CHECK(lag(TrialStatistic::lag_2) < 0.0F);
@@ -147,7 +147,10 @@ TEST_CASE("motion is told by the sixth and the eighteenth of the time in which i
   CHECK(of(s, CellStatistic::sixth_1) == 2.0F);
   CHECK(of(s, static_cast<CellStatistic>(static_cast<int>(CellStatistic::sixth_1) + 1)) == 0.0F);
   CHECK(of(s, CellStatistic::sixth_6) == 1.0F);
-  const auto slice = [&](std::size_t n) { return s[trial_index(frame, 0, TrialStatistic::slice_1) + n - 1]; };
+  const auto slice = [&](std::size_t n) {
+    return DatasetStatistics(frame, s).trial(
+        0, static_cast<TrialStatistic>(static_cast<std::size_t>(TrialStatistic::slice_1) + n - 1));
+  };
   CHECK(slice(1) == 1.0F);
   CHECK(slice(2) == 1.0F);
   CHECK(slice(3) == 0.0F);
@@ -161,9 +164,9 @@ TEST_CASE("a sensor that repeats another shows in the pair and not the other way
   const std::vector<Series> runs{{0, 1, 0, 8, {1, 1, 1, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0}}};
   const auto s =
       statistics_of(two, full_shape(two, Measured::Kind::series, 1, runs), profile_of(two, one_trial(), runs), runs);
-  CHECK(s[pair_index(two, 0, 0, 1)] == 0.0F);  // B never moves without A
-  CHECK(s[pair_index(two, 0, 1, 0)] == 2.0F);
-  CHECK(pair_index(two, 0, 1, 0) + 1 == n_statistics(two));
+  CHECK(DatasetStatistics(two, s).pair(0, 0, 1) == 0.0F);  // B never moves without A
+  CHECK(DatasetStatistics(two, s).pair(0, 1, 0) == 2.0F);
+  CHECK(&DatasetStatistics(two, s).pair(0, 1, 0) == &s.back());
 }
 
 TEST_CASE("sums give seconds and nothing else", "[statistics]") {
@@ -176,7 +179,7 @@ TEST_CASE("sums give seconds and nothing else", "[statistics]") {
   CHECK(of(s, CellStatistic::seconds) == 2.0F);
   CHECK(of(s, CellStatistic::run_variance) == 4.5F);
   CHECK(std::isnan(of(s, CellStatistic::onsets)));
-  CHECK(std::isnan(s[trial_index(frame, 0, TrialStatistic::lag_0)]));
+  CHECK(std::isnan(DatasetStatistics(frame, s).trial(0, TrialStatistic::lag_0)));
   // Simulated data are made to tell as little.
   std::vector<Series> runs{series_from("0111"), series_from("0001")};
   runs[1].replicate = 2;
@@ -200,12 +203,12 @@ TEST_CASE("a cell's mean is over the runs in which its sensor is known", "[stati
   const Profile profile = profile_of(two, script, pilot);
   const std::vector<Series> runs{{0, 1, 0, 4, both}, {0, 2, 0, 4, none}, {1, 1, 0, 4, both}, {1, 2, 0, 4, none}};
   for (const auto& s : {statistics_of(two, shape, profile, runs), statistics_of(two, shape, profile, measured)}) {
-    CHECK(s[cell_index(two, 0, 0, CellStatistic::seconds)] == 2.0F);
-    CHECK(s[cell_index(two, 0, 0, CellStatistic::run_variance)] == 8.0F);
-    CHECK(s[cell_index(two, 0, 1, CellStatistic::seconds)] == 4.0F);
-    CHECK(std::isnan(s[cell_index(two, 0, 1, CellStatistic::run_variance)]));
-    CHECK(s[cell_index(two, 1, 0, CellStatistic::seconds)] == 4.0F);
-    CHECK(s[cell_index(two, 1, 1, CellStatistic::seconds)] == 4.0F);
+    CHECK(DatasetStatistics(two, s).cell(0, 0, CellStatistic::seconds) == 2.0F);
+    CHECK(DatasetStatistics(two, s).cell(0, 0, CellStatistic::run_variance) == 8.0F);
+    CHECK(DatasetStatistics(two, s).cell(0, 1, CellStatistic::seconds) == 4.0F);
+    CHECK(std::isnan(DatasetStatistics(two, s).cell(0, 1, CellStatistic::run_variance)));
+    CHECK(DatasetStatistics(two, s).cell(1, 0, CellStatistic::seconds) == 4.0F);
+    CHECK(DatasetStatistics(two, s).cell(1, 1, CellStatistic::seconds) == 4.0F);
   }
 }
 
@@ -264,9 +267,9 @@ TEST_CASE("what was recorded of the walks in and out is compared only if none of
   CHECK_THAT(only_note(phased, gap, pilot), contains("before the counted phases") && contains("some readings"));
   const Profile profile = profile_of(phased, one_trial(), pilot);
   const std::vector<float> values = statistics_of(phased, half, profile, pilot);
-  CHECK_FALSE(std::isnan(values[cell_index(phased, 0, 0, CellStatistic::lead_seconds)]));
-  CHECK(std::isnan(values[cell_index(phased, 0, 1, CellStatistic::lead_seconds)]));
-  CHECK_FALSE(std::isnan(values[cell_index(phased, 0, 1, CellStatistic::tail_seconds)]));
+  CHECK_FALSE(std::isnan(DatasetStatistics(phased, values).cell(0, 0, CellStatistic::lead_seconds)));
+  CHECK(std::isnan(DatasetStatistics(phased, values).cell(0, 1, CellStatistic::lead_seconds)));
+  CHECK_FALSE(std::isnan(DatasetStatistics(phased, values).cell(0, 1, CellStatistic::tail_seconds)));
 
   Series no_b = phased_run(8, 60, 7);  // B was measured nowhere: that is told elsewhere
   for (std::size_t i = 1; i < no_b.bits.size(); i += 2) no_b.bits[i] = unknown_bit;

@@ -19,10 +19,7 @@ TEST_CASE("features are finite and keep their places where some simulated datase
   }
   const FeatureMap all(frame, std::vector<CellKnowledge>(frame.n_cells()), plain, {0, 1});
   const auto lose_second_trial = [&](std::size_t row) {  // nobody stood in it
-    for (std::size_t sensor = 0; sensor < 2; ++sensor) {
-      for (std::size_t k = 0; k < n_cell_statistics; ++k)
-        plain(row, cell_index(frame, 1, sensor, static_cast<CellStatistic>(k))) = std::nanf("");
-    }
+    std::ranges::fill(Statistics(frame, plain.row(row)).cells(1), std::nanf(""));
   };
   for (const std::size_t row : {0, 7, 8}) lose_second_trial(row);
   const FeatureMap some(frame, std::vector<CellKnowledge>(frame.n_cells()), plain, {0, 1});

@@ -77,10 +77,9 @@ TEST_CASE("a fold names and fits without its own trials", "[reconcile][six-seats
   const auto run = [&] { return verify_one({applied(reference, data, "false_triggers")}, folds); };
   const Verification before = run();
   for (const std::size_t trial : folds[1]) {
-    for (std::size_t i = 0; i < reference.frame.sensors.size() * n_cell_statistics; ++i)
-      data[trial * reference.frame.sensors.size() * n_cell_statistics + i] *= 1.5F;
-    for (std::size_t i = 0; i < n_trial_statistics; ++i)
-      data[trial_index(reference.frame, trial, static_cast<TrialStatistic>(i))] *= 1.5F;
+    const Statistics changed(reference.frame, std::span(data));
+    for (float& value : changed.cells(trial)) value *= 1.5F;
+    for (std::size_t i = 0; i < n_trial_statistics; ++i) changed.trial(trial, static_cast<TrialStatistic>(i)) *= 1.5F;
   }
   const Verification after = run();
   CHECK(same(before.patches[1], after.patches[1]));

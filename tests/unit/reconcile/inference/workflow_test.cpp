@@ -288,11 +288,7 @@ TEST_CASE("a held-out trial has no part in features and names", "[reconcile][thr
   std::vector<float> data = injected(300, {many_false_triggers});
   const Analyst without(reference.view({0, 2}, 0), {0.05, 30}, {});
   const auto before = without.map().features(data);
-  for (std::size_t sensor = 0; sensor < reference.frame.sensors.size(); ++sensor) {
-    for (std::size_t k = 0; k < n_cell_statistics; ++k) {
-      data[cell_index(reference.frame, 1, sensor, static_cast<CellStatistic>(k))] += 50.0F;
-    }
-  }
+  for (float& value : Statistics(reference.frame, std::span(data)).cells(1)) value += 50.0F;
   CHECK(without.map().features(data) == before);
   CHECK(analyst().map().features(data) != analyst().map().features(injected(300, {many_false_triggers})));
 }

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "reconcile/inference/decision.hpp"
 #include "reconcile/report/pages.hpp"
 #include "support/catch.hpp"
 

@@ -1,31 +1,18 @@
-// From p-values to a verdict.
+// From how well every hypothesis fits to a verdict.
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
-namespace pirsim::stats {
+#include "pirsim/reconcile_outcome.hpp"
 
-enum class Verdict {
-  no_disagreement,    ///< the model without any effect isn't refused
-  named,              ///< one effect survives, or one of several is far likelier than the others
-  one_of,             ///< several survive: these data can't tell them apart
-  several,            ///< effects applied one after the other made the data together; decide() never says so
-  none_in_catalogue,  ///< nothing known makes such data, or only what is improbable
-};
-
-/// What the tests say of the model as it is, or with one effect.
-struct Candidate {
-  double p = 0.0;            ///< of "this and nothing else made the data"
-  double probability = 0.0;  ///< calibrated, among all candidates
-  double least_p = 0.0;      ///< no p is smaller, whatever the data: few datasets can't tell how rare a row is
-  double p_own = 1.0;        ///< of "its own, and not something unknown that is taken for it"
-};
+namespace pirsim::reconcile {
 
 struct DecisionLevels {
-  double alpha = 0.05;  ///< a candidate survives if its p exceeds it
+  double alpha = 0.05;  ///< a hypothesis survives if its p exceeds it
   /// An effect at least as probable is named though others survive: their own tests lack the power to refuse them. On
   /// 1,620 injected datasets (Study A, one run) 0.8, 0.85, 0.9 and 0.95 gave the right name in 0.80, 0.79, 0.78 and
   /// 0.76 of the disagreements and a wrong one in 0.9, 0.6, 0.4 and 0.3 % of all.
@@ -49,15 +36,23 @@ struct DecisionLevels {
 
 struct Decision {
   Verdict verdict = Verdict::no_disagreement;
-  std::vector<std::size_t> kept;  ///< indices of the surviving candidates, the named one first, then by p; none if
-                                  ///< nothing of the catalogue made the data
-  /// Would have been named, but looks like something unknown that is taken for it.
+  /// The surviving hypotheses, the named one first, then by p; none if nothing of the catalogue made the data.
+  std::vector<std::size_t> kept;
+  /// The hypothesis that would have been named, but looks like something unknown that is taken for it.
   std::optional<std::size_t> likeness = {};
   bool operator==(const Decision&) const = default;
 };
 
-/// null_p: of the global test of the model as it is. candidates: the model as it is, then with each effect. While the
-/// model as it is survives too, nothing is named: the disagreement is too weak (one_of).
-[[nodiscard]] Decision decide(double null_p, std::span<const Candidate> candidates, const DecisionLevels& levels);
+/// null_p: of the global test of the model as it is. scores: (n_hypotheses) nothing first. While the model as it is
+/// survives too, no effect is named: the disagreement is too weak (one_of). Never `several`, which takes a second look.
+[[nodiscard]] Decision decide(double null_p, std::span<const HypothesisScore> scores, const DecisionLevels& levels);
 
-}  // namespace pirsim::stats
+/// Why a hypothesis is kept or dropped, looked at by itself.
+[[nodiscard]] Reason reason_of(const HypothesisScore& score, bool kept, double alpha);
+/// The likeliest family. scores: (n_hypotheses) nothing first.
+[[nodiscard]] FamilyScore likeliest_family(std::span<const HypothesisScore> scores);
+/// The hypothesis of the greatest probability (at least 1) for which `wanted` holds; 0 if there is none above 0.
+[[nodiscard]] std::size_t likeliest_hypothesis(std::span<const double> probabilities,
+                                               const std::function<bool(std::size_t)>& wanted);
+
+}  // namespace pirsim::reconcile

@@ -4,14 +4,15 @@
 #include <cmath>
 #include <vector>
 
+#include "reconcile/inference/decision.hpp"
 #include "stats/conformal.hpp"
-#include "stats/decision.hpp"
 #include "stats/envelope.hpp"
 #include "support/catch.hpp"
 #include "support/labelled.hpp"
 #include "support/toy_catalogue.hpp"
 
 using namespace pirsim;
+using namespace pirsim::reconcile;
 using namespace pirsim::stats;
 
 namespace {
@@ -58,9 +59,10 @@ struct Study {
     for (std::size_t row = 0; row < rows; ++row) {
       const double p = global_envelope_test(statistics.row(row), null, {.rank = PointwiseRank::continuous}).p;
       const Classification found = classifier.classify(drawn.row(row));
-      std::vector<Candidate> candidates;
-      for (std::size_t k = 0; k < toy::n_known; ++k) candidates.push_back({found.p[k], found.probabilities[k]});
-      const Decision decision = decide(p, candidates, {alpha});
+      std::vector<HypothesisScore> scores;
+      for (std::size_t k = 0; k < toy::n_known; ++k)
+        scores.push_back({.probability = found.probabilities[k], .p = found.p[k]});
+      const Decision decision = decide(p, scores, {alpha});
       const auto truth = static_cast<std::size_t>(effect);  // of nothing: index 0, the model as it is
       const bool kept = std::find(decision.kept.begin(), decision.kept.end(), truth) != decision.kept.end();
       rates.alarms += p <= alpha ? share : 0.0;
