@@ -1,14 +1,14 @@
-// Rows as CSV (RFC 4180): comma, LF, quotes only where needed, numbers in their shortest exact form.
+// Tables as CSV (RFC 4180): comma, LF, quotes only where needed, numbers in their shortest exact form.
 #pragma once
 
-#include <cstdint>
+#include <algorithm>
 #include <ostream>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "pirsim/sample.hpp"
+#include "pirsim/columns.hpp"
+#include "pirsim/error.hpp"
 
 namespace pirsim::io {
 
@@ -17,61 +17,56 @@ namespace pirsim::io {
 /// Shortest decimal that reads back as the same double: "1", "0.02".
 [[nodiscard]] std::string csv_number(double value);
 
-class CsvWriter {
+/// Adds it to a line.
+void add_csv(std::string& line, const Cell& cell, int decimals);
+
+/// The one writer of tables. The stream outlives it, and tells about write errors by its state.
+template <typename Row>
+class TableWriter {
  public:
-  /// Writes the header line. The stream outlives the writer; its state tells about write errors.
-  CsvWriter(std::ostream& out, const std::vector<std::string>& columns);
-  void write(const Sample& sample);
+  /// Writes the header line. A name that no column has belongs to a sensor: the first such to the first sensor.
+  explicit TableWriter(std::ostream& out, const std::vector<std::string>& names = column_names<Row>()) : out_(out) {
+    const std::span<const Column<Row>> columns = columns_of<Row>();
+    std::size_t n_sensors = 0;
+    for (const std::string& name : names) {
+      const auto single = std::ranges::find_if(
+          columns, [&](const Column<Row>& column) { return column.each == nullptr && column.name == name; });
+      const auto repeated =
+          std::ranges::find_if(columns, [](const Column<Row>& column) { return column.each != nullptr; });
+      if (single != columns.end()) {
+        fields_.push_back({&*single, 0});
+      } else if (repeated != columns.end()) {
+        fields_.push_back({&*repeated, n_sensors++});
+      } else {
+        throw Error(ErrorCode::internal, "the table has no column '" + name + "'");
+      }
+      line_ += (line_.empty() ? "" : ",") + csv_field(name);
+    }
+    out_ << line_ << '\n';
+  }
+
+  void write(const Row& row) {
+    line_.clear();
+    for (const Field& field : fields_) {
+      const Column<Row>& column = *field.column;
+      add_csv(line_, column.each == nullptr ? column.value(row) : column.each(row, field.sensor), column.decimals);
+      line_ += ',';
+    }
+    line_.back() = '\n';
+    out_ << line_;
+  }
 
  private:
+  struct Field {
+    const Column<Row>* column;
+    std::size_t sensor;
+  };
   std::ostream& out_;
-  enum class Clock { none, told } clock_;  ///< is there a column `time`?
+  std::vector<Field> fields_;
+  std::string line_;
 };
 
-/// Rows as somebody measures them: without `people`, whom nobody counts, and with `time_s` as their only time.
-class MeasuredCsvWriter {
- public:
-  MeasuredCsvWriter(std::ostream& out, const std::vector<std::string>& sensors);
-  void write(const Sample& sample);
-
- private:
-  std::ostream& out_;
-};
-
-/// Zone activity, so that others can check the bits: one line a tick and sensor, `zones` a string of 0 and 1 in the
-/// order of the sensor's zones.
-class ZoneCsvWriter {
- public:
-  /// zones_begin: (n_sensors + 1) index of every sensor's first zone.
-  ZoneCsvWriter(std::ostream& out, std::vector<std::string> sensors, std::vector<std::size_t> zones_begin);
-  void write(int replicate, std::string_view trial, std::int64_t tick, std::span<const std::uint8_t> zones);
-
- private:
-  std::ostream& out_;
-  std::vector<std::string> sensors_;
-  std::vector<std::size_t> zones_begin_;
-};
-
-/// Who is where and does what: one line a window and person.
-class OccupantCsvWriter {
- public:
-  explicit OccupantCsvWriter(std::ostream& out);
-  void write(int replicate, std::string_view trial, const OccupantRow& row);
-
- private:
-  std::ostream& out_;
-};
-
-/// What analog sensors received, made of it and why: one line a tick and sensor.
-class TraceCsvWriter {
- public:
-  TraceCsvWriter(std::ostream& out, std::vector<std::string> sensors, int tick_rate_hz);
-  void write(int replicate, std::string_view trial, const TraceRow& row);
-
- private:
-  std::ostream& out_;
-  std::vector<std::string> sensors_;
-  int tick_rate_hz_;
-};
+/// Of a study's rows; takes Model::columns().
+using CsvWriter = TableWriter<Sample>;
 
 }  // namespace pirsim::io

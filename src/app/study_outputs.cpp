@@ -226,38 +226,53 @@ void announce(const std::string& option, std::size_t run_bytes, const Model& mod
 class ZoneOutput {
  public:
   ZoneOutput(const std::filesystem::path& file, const Model& model)
-      : output_(file), csv_(output_.lines(), sensor_ids(model), first_zones(model)) {}
+      : sensors_(sensor_ids(model)), first_zones_(first_zones(model)), output_(file), csv_(output_.lines()) {}
 
   /// Bytes before compression.
   std::size_t add(const RunResult& result) {
-    for (std::size_t i = 0; i < result.zones.size(); ++i) {
-      csv_.write(result.replicate, result.trial, static_cast<std::int64_t>(i) + 1, result.zones[i]);
+    std::int64_t tick = 0;
+    for (const ZoneActivity& activity : result.zones) {
+      ++tick;
+      for (std::size_t i = 0; i < sensors_.size(); ++i) {
+        const auto zones = std::span(activity).subspan(first_zones_[i], first_zones_[i + 1] - first_zones_[i]);
+        csv_.write({result.replicate, result.trial, tick, sensors_[i], zones});
+      }
     }
     return output_.pass_on();
   }
   void commit() { output_.commit(); }
 
  private:
+  std::vector<std::string> sensors_;
+  std::vector<std::size_t> first_zones_;  ///< of each sensor, and behind the last one
   LineOutput output_;
-  io::ZoneCsvWriter csv_;
+  io::TableWriter<ZoneLine> csv_;
 };
 
 /// Signals of all runs and what is behind them.
 class TraceOutput {
  public:
   TraceOutput(const std::filesystem::path& file, const Model& model)
-      : output_(file), csv_(output_.lines(), sensor_ids(model), model.compiled().sensing().tick_rate_hz) {}
+      : sensors_(sensor_ids(model)),
+        tick_rate_hz_(model.compiled().sensing().tick_rate_hz),
+        output_(file),
+        csv_(output_.lines()) {}
 
   /// Bytes before compression.
   std::size_t add(const RunResult& result) {
-    for (const TraceRow& row : result.trace) csv_.write(result.replicate, result.trial, row);
+    for (const TraceRow& row : result.trace) {
+      const double time_s = static_cast<double>(row.tick) / tick_rate_hz_;
+      csv_.write({result.replicate, result.trial, time_s, sensors_[row.sensor], row});
+    }
     return output_.pass_on();
   }
   void commit() { output_.commit(); }
 
  private:
+  std::vector<std::string> sensors_;
+  int tick_rate_hz_;
   LineOutput output_;
-  io::TraceCsvWriter csv_;
+  io::TableWriter<TraceLine> csv_;
 };
 
 /// Who is where in all runs.
@@ -267,14 +282,14 @@ class OccupantOutput {
 
   /// Bytes before compression.
   std::size_t add(const RunResult& result) {
-    for (const OccupantRow& row : result.occupants) csv_.write(result.replicate, result.trial, row);
+    for (const OccupantRow& row : result.occupants) csv_.write({result.replicate, result.trial, row});
     return output_.pass_on();
   }
   void commit() { output_.commit(); }
 
  private:
   LineOutput output_;
-  io::OccupantCsvWriter csv_;
+  io::TableWriter<OccupantLine> csv_;
 };
 
 }  // namespace

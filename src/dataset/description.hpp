@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dataset/room_day.hpp"
+#include "pirsim/columns.hpp"
 
 namespace pirsim::dataset {
 
@@ -30,10 +31,13 @@ struct Description {
   std::vector<std::string> pictures;  ///< of rooms, relative to the dataset
 };
 
+struct Table {
+  std::string text;
+  std::vector<ColumnInfo> columns;
+};
 /// By file name: rooms.csv, sensors.csv, days.csv, effects.csv.
-[[nodiscard]] std::map<std::string, std::string> tables(const Description& described);
-/// tables: as written, by name.
-[[nodiscard]] std::string data_package(const Description& described, const std::map<std::string, WrittenFile>& tables);
+[[nodiscard]] std::map<std::string, Table> tables(const Description& described);
+[[nodiscard]] std::string data_package(const Description& described, const std::map<std::string, Table>& tables);
 [[nodiscard]] std::string readme(const Description& described);
 
 }  // namespace pirsim::dataset

@@ -120,15 +120,12 @@ bool finish_dataset(const RecipeSpec& recipe, const fs::path& folder, const Data
     described.rooms.push_back(std::move(room));
   }
   if (is_stopped()) return false;
-  std::map<std::string, WrittenFile> written;
-  for (const auto& [name, text] : tables(described)) {
-    io::write_text_file(folder / name, text);
-    written[name] = {name, text.size(), sha256(text)};
-  }
+  const std::map<std::string, Table> drawn = tables(described);
+  for (const auto& [name, table] : drawn) io::write_text_file(folder / name, table.text);
   if (std::ranges::find(recipe.exports, Export::energyplus) != recipe.exports.end())
     write_energyplus(described, folder);
   io::write_text_file(folder / "README.md", readme(described));
-  io::write_text_file(folder / "datapackage.json", data_package(described, written));
+  io::write_text_file(folder / "datapackage.json", data_package(described, drawn));
   return true;
 }
 

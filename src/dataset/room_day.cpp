@@ -1,7 +1,6 @@
 #include "dataset/room_day.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -52,12 +51,11 @@ Movements movements(const RunResult& result) {
 class DayWriter {
  public:
   DayWriter(const RecipeSpec& recipe, const SceneSpec& scene, const std::vector<std::string>& columns, RoomDay& made)
-      : recipe_(recipe), made_(made), room_(made.record.room), day_(made.record.day) {
+      : recipe_(recipe), columns_(columns), made_(made), room_(made.record.room), day_(made.record.day) {
     for (const SensorSpec& sensor : scene.sensors) sensors_.push_back(sensor.id);
     for (const std::string& column : columns) {
       const auto found = std::ranges::find(sensors_, column);
       sensor_of_column_.push_back(found == sensors_.end() ? -1 : static_cast<int>(found - sensors_.begin()));
-      header_ += ',' + io::csv_field(column);
     }
   }
 
@@ -89,32 +87,18 @@ class DayWriter {
   }
 
   [[nodiscard]] std::string rows(const std::vector<Sample>& samples, const Movements& moved) const {
-    std::string text = "room,day,time,time_s,people,presence,arrivals,departures" + header_ + '\n';
-    text.reserve(samples.size() * (60 + 2 * sensor_of_column_.size()));
-    const std::string begin = std::to_string(room_) + ',' + std::to_string(day_) + ',';
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const Sample& row = samples[i];
-      text += begin + row.clock + ',' + io::csv_number(row.time_s) + ',' + std::to_string(row.people) +
-              (row.people > 0 ? ",1," : ",0,") + std::to_string(moved.arrivals[i]) + ',' +
-              std::to_string(moved.departures[i]);
-      for (const int sensor : sensor_of_column_) {
-        text += sensor < 0 ? "," : row.bits[static_cast<std::size_t>(sensor)] != 0 ? ",1" : ",0";
-      }
-      text += '\n';
-    }
-    return text;
+    std::ostringstream text;
+    io::TableWriter<DayLine> csv(text, column_names<DayLine>(columns_));
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      csv.write({room_, day_, samples[i], moved.arrivals[i], moved.departures[i], sensor_of_column_});
+    return text.str();
   }
 
   [[nodiscard]] std::string occupants(const std::vector<OccupantRow>& rows) const {
-    std::string text = "room,day,time,time_s,person,where,activity,seat,x_m,z_m\n";
-    const std::string begin = std::to_string(room_) + ',' + std::to_string(day_) + ',';
-    const auto millimetres = [](double metres) { return io::csv_number(std::round(1000.0 * metres) / 1000.0); };
-    for (const OccupantRow& row : rows) {
-      text += begin + row.clock + ',' + io::csv_number(row.time_s) + ',' + io::csv_field(row.person) +
-              (row.where == OccupantRow::Where::inside ? ",inside," : ",outside,") + io::csv_field(row.activity) + ',' +
-              io::csv_field(row.seat) + ',' + millimetres(row.place_m.x) + ',' + millimetres(row.place_m.y) + '\n';
-    }
-    return text;
+    std::ostringstream text;
+    io::TableWriter<DayOccupantLine> csv(text);
+    for (const OccupantRow& row : rows) csv.write({room_, day_, row});
+    return text.str();
   }
 
   void note(const RunResult& result, const Movements& moved) {
@@ -159,11 +143,11 @@ class DayWriter {
   }
 
   const RecipeSpec& recipe_;
+  const std::vector<std::string>& columns_;  ///< of the dataset's sensors
   RoomDay& made_;
   int room_, day_;
   std::vector<std::string> sensors_;
   std::vector<int> sensor_of_column_;  ///< -1: the room has no such sensor
-  std::string header_;
 };
 
 std::string script_path(int room, int day) { return "scripts/" + room_name(room) + '/' + day_name(day) + ".yaml"; }

@@ -1,89 +1,215 @@
+// The tables of what was drawn: a list of columns for each, and the lines.
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "dataset/description.hpp"
 #include "pirsim/csv.hpp"
+#include "schema/columns.hpp"
 
 namespace pirsim::dataset {
 namespace {
 
-std::string rounded(double value) { return io::csv_number(std::round(1000.0 * value) / 1000.0); }
+constexpr int decimals = 3;  ///< of what isn't a whole number
 
-std::string kind_of(const DescribedRoom& room) {
-  if (!room.kind) return "own";
-  return *room.kind == RoomKind::office ? "office" : "meeting";
-}
+Cell whole(auto number) { return static_cast<std::int64_t>(number); }
 
-std::string rooms_table(const Description& described) {
-  std::string text = "room,part,kind,scene,floor_m2,doors,seats,sensors,staff\n";
-  for (const DescribedRoom& room : described.rooms) {
-    const SceneSpec& scene = room.scene;
-    text += std::to_string(room.number) + ',' + (room.part == Part::test_days ? "train" : name_of(room.part)) + ',' +
-            kind_of(room) + ',' + io::csv_field(room.scene_file) + ',' + rounded(scene.floor.area_m2()) + ',' +
-            std::to_string(scene.entrances.size()) + ',' + std::to_string(scene.seats.size()) + ',' +
-            std::to_string(scene.sensors.size()) + ',' + std::to_string(room.staff) + '\n';
+constexpr auto room = [](const auto& line) -> Cell { return line.room; };
+constexpr auto day = [](const auto& line) -> Cell { return line.day; };
+
+struct RoomLine {
+  int room;
+  std::string part;
+  const DescribedRoom& described;
+};
+
+constexpr Column<RoomLine> rooms[]{
+    {room_column, room},
+    {{"part", Holds::text, "train, validation or test_rooms; test_days are days of rooms in train."},
+     [](const RoomLine& line) -> Cell { return line.part; }},
+    {{"kind", Holds::text, "office or meeting; own: a scene of the recipe's author."},
+     [](const RoomLine& line) -> Cell {
+       const auto kind = line.described.kind;
+       return std::string_view(!kind ? "own" : *kind == RoomKind::office ? "office" : "meeting");
+     }},
+    {{"scene", Holds::text, "glTF file of the room."},
+     [](const RoomLine& line) -> Cell { return line.described.scene_file; }},
+    {{"floor_m2", Holds::number, "Floor area.", "m2", When::always, {}, decimals},
+     [](const RoomLine& line) -> Cell { return line.described.scene.floor.area_m2(); }},
+    {{"doors", Holds::count, "Entrances.", "1"},
+     [](const RoomLine& line) { return whole(line.described.scene.entrances.size()); }},
+    {{"seats", Holds::count, "Seats.", "1"},
+     [](const RoomLine& line) { return whole(line.described.scene.seats.size()); }},
+    {{"sensors", Holds::count, "Sensors.", "1"},
+     [](const RoomLine& line) { return whole(line.described.scene.sensors.size()); }},
+    {{"staff", Holds::count, "People with a desk of their own here.", "1"},
+     [](const RoomLine& line) { return whole(line.described.staff); }},
+};
+
+struct SensorLine {
+  int room;
+  const SensorSpec& sensor;
+
+  [[nodiscard]] Vec3 place() const { return sensor.world_from_sensor.origin; }
+  [[nodiscard]] double tilt_deg() const {
+    return degrees(std::asin(std::clamp(-sensor.world_from_sensor.forward().y, -1.0, 1.0)));
   }
-  return text;
-}
-
-std::string sensors_table(const Description& described) {
-  std::string text = "room,sensor,model,x_m,y_m,z_m,heading_deg,tilt_deg\n";
-  for (const DescribedRoom& room : described.rooms) {
-    for (const SensorSpec& sensor : room.scene.sensors) {
-      const Frame& frame = sensor.world_from_sensor;
-      const Vec3 forward = frame.forward();
-      const double down = degrees(std::asin(std::clamp(-forward.y, -1.0, 1.0)));
-      // Of one that looks straight down, where its picture's upper edge points.
-      const bool looks_down = down > 89.9;
-      const double heading = degrees(heading_of(looks_down ? floor_point(frame.up()) : floor_point(forward)));
-      text += std::to_string(room.number) + ',' + io::csv_field(sensor.id) + ',' + io::csv_field(sensor.model) + ',' +
-              rounded(frame.origin.x) + ',' + rounded(frame.origin.y) + ',' + rounded(frame.origin.z) + ',' +
-              rounded(heading) + ',' + rounded(down) + '\n';
-    }
+  /// Of one that looks straight down, where its picture's upper edge points.
+  [[nodiscard]] double heading_deg() const {
+    const Frame& frame = sensor.world_from_sensor;
+    return degrees(heading_of(floor_point(tilt_deg() > 89.9 ? frame.up() : frame.forward())));
   }
-  return text;
-}
+};
 
-std::string days_table(const Description& described) {
-  std::string text =
-      "room,day,date,part,rows,hours,most_people,presence_share,arrivals,departures,passes_through,failed\n";
-  for (std::size_t i = 0; i < described.days.size(); ++i) {
-    const RoomDayRecord& day = described.days[i];
-    const auto empty = day.rows_by_people.find(0);
-    const double absent = empty == day.rows_by_people.end() ? 0.0 : static_cast<double>(empty->second.all);
-    text += std::to_string(day.room) + ',' + std::to_string(day.day) + ',' + day.date + ',' +
-            name_of(described.parts[i]) + ',' + std::to_string(day.rows) + ',' + rounded(day.seconds / 3600.0) + ',' +
-            std::to_string(day.most_people) + ',' +
-            (day.rows == 0 ? "" : rounded(1.0 - absent / static_cast<double>(day.rows))) + ',' +
-            std::to_string(day.arrivals) + ',' + std::to_string(day.departures) + ',' +
-            std::to_string(day.passes_through) + ',' + io::csv_field(day.fault) + '\n';
-  }
-  return text;
-}
+constexpr Column<SensorLine> sensors[]{
+    {room_column, room},
+    {{"sensor", Holds::text, "Name of the rows' column."},
+     [](const SensorLine& line) -> Cell { return line.sensor.id; }},
+    {{"model", Holds::text, "Which lens: a file of data/sensors of pirsim."},
+     [](const SensorLine& line) -> Cell { return line.sensor.model; }},
+    {{"x_m", Holds::number, "Place in the room's scene.", "m", When::always, {}, decimals},
+     [](const SensorLine& line) -> Cell { return line.place().x; }},
+    {{"y_m", Holds::number, "Height.", "m", When::always, {}, decimals},
+     [](const SensorLine& line) -> Cell { return line.place().y; }},
+    {{"z_m", Holds::number, "Place in the room's scene.", "m", When::always, {}, decimals},
+     [](const SensorLine& line) -> Cell { return line.place().z; }},
+    {{"heading_deg",
+      Holds::number,
+      "Direction in which it looks, 0 along -z, positive to the left; of one that looks straight down, the direction "
+      "of "
+      "its picture's upper edge.",
+      "deg",
+      When::always,
+      {},
+      decimals},
+     [](const SensorLine& line) -> Cell { return line.heading_deg(); }},
+    {{"tilt_deg", Holds::number, "Of its axis below the horizon.", "deg", When::always, {}, decimals},
+     [](const SensorLine& line) -> Cell { return line.tilt_deg(); }},
+};
 
-std::string effects_table(const Description& described) {
-  std::string text = "room,day,effect,sensor,parameter,value\n";
-  for (const RoomDayRecord& day : described.days) {
-    for (const EffectSpec& effect : day.effects) {
-      const auto sensor = effect.choices.find("sensor");
-      const std::string begin = std::to_string(day.room) + ',' + std::to_string(day.day) + ',' + effect.name + ',' +
-                                (sensor == effect.choices.end() ? "" : io::csv_field(sensor->second)) + ',';
-      for (const auto& [name, value] : effect.parameters) text += begin + name + ',' + io::csv_number(value) + '\n';
-      for (const auto& [name, choice] : effect.choices) {
-        if (name != "sensor") text += begin + name + ',' + io::csv_field(choice) + '\n';
-      }
-    }
-  }
-  return text;
+struct RecordLine {
+  int room, day;
+  std::string part;
+  const RoomDayRecord& record;
+};
+
+constexpr Column<RecordLine> days[]{
+    {room_column, room},
+    {day_column, day},
+    {{"date", Holds::date, "Calendar date."}, [](const RecordLine& line) -> Cell { return line.record.date; }},
+    {{"part", Holds::text, "train, validation, test_days or test_rooms."},
+     [](const RecordLine& line) -> Cell { return line.part; }},
+    {{"rows", Holds::count, "Rows of this day.", "1"}, [](const RecordLine& line) { return whole(line.record.rows); }},
+    {{"hours", Holds::number, "That they cover.", "h", When::always, {}, decimals},
+     [](const RecordLine& line) -> Cell { return line.record.seconds / 3600.0; }},
+    {{"most_people", Holds::count, "At once.", "1"},
+     [](const RecordLine& line) { return whole(line.record.most_people); }},
+    {{"presence_share", Holds::number, "Share of rows with anybody there.", {}, When::always, {}, decimals},
+     [](const RecordLine& line) -> Cell {
+       if (line.record.rows == 0) return {};
+       const auto empty = line.record.rows_by_people.find(0);
+       const std::uint64_t absent = empty == line.record.rows_by_people.end() ? 0 : empty->second.all;
+       return 1.0 - static_cast<double>(absent) / static_cast<double>(line.record.rows);
+     }},
+    {{"arrivals", Holds::count, "Of the day.", "1"},
+     [](const RecordLine& line) { return whole(line.record.arrivals); }},
+    {{"departures", Holds::count, "Of the day.", "1"},
+     [](const RecordLine& line) { return whole(line.record.departures); }},
+    {{"passes_through", Holds::count, "How often two people who found no way round each other went through each other.",
+      "1"},
+     [](const RecordLine& line) { return whole(line.record.passes_through); }},
+    {{"failed", Holds::text, "Why the day has no rows, if it hasn't."},
+     [](const RecordLine& line) -> Cell { return line.record.fault; }},
+};
+
+struct EffectLine {
+  int room, day;
+  const std::string &effect, &sensor, &parameter;
+  Cell value;
+};
+
+constexpr Column<EffectLine> effects[]{
+    {room_column, room},
+    {day_column, day},
+    {{"effect", Holds::text, "Entry of pirsim's catalogue of effects."},
+     [](const EffectLine& line) -> Cell { return line.effect; }},
+    {{"sensor", Holds::text, "The sensor that it acts on; empty: all, or the effect's own way."},
+     [](const EffectLine& line) -> Cell { return line.sensor; }},
+    {{"parameter", Holds::text, "Its name ends in its unit."},
+     [](const EffectLine& line) -> Cell { return line.parameter; }},
+    {{"value", Holds::text, "A number or a word."}, [](const EffectLine& line) { return line.value; }},
+};
+
+/// fill: writes the lines.
+template <typename Row>
+Table table_of(auto fill) {
+  std::ostringstream text;
+  io::TableWriter<Row> csv(text);
+  fill(csv);
+  return {text.str(), {columns_of<Row>().begin(), columns_of<Row>().end()}};
 }
 
 }  // namespace
+}  // namespace pirsim::dataset
 
-std::map<std::string, std::string> tables(const Description& described) {
-  return {{"rooms.csv", rooms_table(described)},
-          {"sensors.csv", sensors_table(described)},
-          {"days.csv", days_table(described)},
-          {"effects.csv", effects_table(described)}};
+namespace pirsim {
+
+template <>
+std::span<const Column<dataset::RoomLine>> columns_of() {
+  return dataset::rooms;
+}
+template <>
+std::span<const Column<dataset::SensorLine>> columns_of() {
+  return dataset::sensors;
+}
+template <>
+std::span<const Column<dataset::RecordLine>> columns_of() {
+  return dataset::days;
+}
+template <>
+std::span<const Column<dataset::EffectLine>> columns_of() {
+  return dataset::effects;
+}
+
+}  // namespace pirsim
+
+namespace pirsim::dataset {
+
+std::map<std::string, Table> tables(const Description& described) {
+  const auto add_rooms = [&](auto& csv) {
+    for (const DescribedRoom& one : described.rooms)
+      csv.write({one.number, one.part == Part::test_days ? "train" : name_of(one.part), one});
+  };
+  const auto add_sensors = [&](auto& csv) {
+    for (const DescribedRoom& one : described.rooms) {
+      for (const SensorSpec& sensor : one.scene.sensors) csv.write({one.number, sensor});
+    }
+  };
+  const auto add_days = [&](auto& csv) {
+    for (std::size_t i = 0; i < described.days.size(); ++i) {
+      const RoomDayRecord& record = described.days[i];
+      csv.write({record.room, record.day, name_of(described.parts[i]), record});
+    }
+  };
+  const auto add_effects = [&](auto& csv) {
+    const std::string all;
+    for (const RoomDayRecord& record : described.days) {
+      for (const EffectSpec& effect : record.effects) {
+        const auto chosen = effect.choices.find("sensor");
+        const std::string& sensor = chosen == effect.choices.end() ? all : chosen->second;
+        for (const auto& [name, value] : effect.parameters)
+          csv.write({record.room, record.day, effect.name, sensor, name, value});
+        for (const auto& [name, choice] : effect.choices) {
+          if (name != "sensor")
+            csv.write({record.room, record.day, effect.name, sensor, name, std::string_view(choice)});
+        }
+      }
+    }
+  };
+  return {{"rooms.csv", table_of<RoomLine>(add_rooms)},
+          {"sensors.csv", table_of<SensorLine>(add_sensors)},
+          {"days.csv", table_of<RecordLine>(add_days)},
+          {"effects.csv", table_of<EffectLine>(add_effects)}};
 }
 
 }  // namespace pirsim::dataset

@@ -4,7 +4,7 @@
 
 #include "core/near_names.hpp"
 #include "pirsim/scene.hpp"
-#include "schema/column_names.hpp"
+#include "schema/columns.hpp"
 #include "schema/limits.hpp"
 #include "schema/spec_faults.hpp"
 

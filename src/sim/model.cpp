@@ -1,9 +1,9 @@
 #include "pirsim/model.hpp"
 
 #include <algorithm>
-
 #include <utility>
 
+#include "pirsim/columns.hpp"
 #include "sim/compiled_study.hpp"
 
 namespace pirsim {
@@ -17,11 +17,11 @@ double Model::tick_s() const noexcept { return compiled_->tick_s(); }
 const RayBundle& Model::rays() const noexcept { return compiled_->array().clipped(); }
 
 std::vector<std::string> Model::columns() const {
-  std::vector<std::string> names{"replicate", "trial", "time_s", "phase", "people"};
-  const auto has_clock = [](const sim::TrialModel& trial) { return trial.clock.has_value(); };
-  if (std::ranges::any_of(compiled_->trials(), has_clock)) names.insert(names.begin() + 3, "time");
-  for (const SensorSpec& sensor : scene().sensors) names.push_back(sensor.id);
-  return names;
+  const bool has_clock =
+      std::ranges::any_of(compiled_->trials(), [](const sim::TrialModel& trial) { return trial.clock.has_value(); });
+  std::vector<std::string> sensors;
+  for (const SensorSpec& sensor : scene().sensors) sensors.push_back(sensor.id);
+  return column_names<Sample>(sensors, [&](When when) { return when != When::with_clock || has_clock; });
 }
 
 Model compile(SceneSpec scene, ScriptSpec script, const CompileOptions& options) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "pirsim/columns.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::studies {
@@ -54,15 +55,14 @@ void RowTally::end_line() {
 }
 
 void RowTally::take_header() {
-  const std::vector<std::string> plain{"replicate", "trial", "time_s", "phase", "people"},
-      of_days{"replicate", "trial", "time_s", "time", "phase", "people"};
   const auto begins_with = [&](const std::vector<std::string>& columns) {
     return fields_.size() >= columns.size() && std::equal(columns.begin(), columns.end(), fields_.begin());
   };
-  if (!begins_with(plain) && !begins_with(of_days))
-    throw Error(ErrorCode::input, "the rows don't begin with the header of a study's rows");
-  first_sensor_ = begins_with(plain) ? plain.size() : of_days.size();
-  phase_ = first_sensor_ - 2;
+  std::vector<std::string> columns = column_names<Sample>();  // of days
+  if (!begins_with(columns)) columns = column_names<Sample>({}, [](When when) { return when != When::with_clock; });
+  if (!begins_with(columns)) throw Error(ErrorCode::input, "the rows don't begin with the header of a study's rows");
+  first_sensor_ = columns.size();
+  phase_ = static_cast<std::size_t>(std::ranges::find(columns, "phase") - columns.begin());
   const std::vector<std::string> sensors(fields_.begin() + static_cast<std::ptrdiff_t>(first_sensor_), fields_.end());
   summary_.emplace(trials_, sensors, std::move(measured_));
   counts_.emplace(sensors.size(), spec_);

@@ -7,6 +7,7 @@
 
 #include "io/compression.hpp"
 #include "io/input.hpp"
+#include "pirsim/columns.hpp"
 #include "reconcile/data/measured_reader.hpp"
 
 namespace pirsim::reconcile {
@@ -18,6 +19,10 @@ StudyFrame frame_of(const SceneSpec& scene, const ScriptSpec& script) {
   frame.counted_phases = script.summary.phases;
   frame.window_s = static_cast<double>(script.sensing.ticks_per_window) / script.sensing.tick_rate_hz;
   return frame;
+}
+
+std::vector<std::string> measured_columns(const StudyFrame& frame) {
+  return column_names<Sample>(frame.sensors, [](When when) { return when == When::always; });
 }
 
 std::vector<std::size_t> all_trials(const StudyFrame& frame) {

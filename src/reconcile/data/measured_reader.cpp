@@ -10,6 +10,7 @@
 #include "core/fixed.hpp"
 #include "core/near_names.hpp"
 #include "pirsim/csv.hpp"
+#include "schema/columns.hpp"
 #include "schema/limits.hpp"
 
 namespace pirsim::reconcile {
@@ -23,6 +24,15 @@ std::string plural(std::size_t n, const std::string& one, const std::string& man
   return std::to_string(n) + " " + (n == 1 ? one : many);
 }
 
+/// Those that a run's rows may have beside the sensors'.
+std::vector<ColumnInfo> row_columns() {
+  std::vector<ColumnInfo> columns;
+  for (const Column<Sample>& column : columns_of<Sample>()) {
+    if (column.each == nullptr) columns.push_back(column);
+  }
+  return columns;
+}
+
 }  // namespace
 
 MeasuredReader::MeasuredReader(std::string_view text, const std::string& file, const StudyFrame& frame)
@@ -32,16 +42,17 @@ MeasuredReader::MeasuredReader(std::string_view text, const std::string& file, c
 }
 
 Measured MeasuredReader::read() {
-  trial_ = table_.column("trial") ? table_.column("trial") : table_.column("seat");
   replicate_ = table_.column("replicate");
   phase_ = table_.column("phase");
   time_ = table_.column("time_s");
-  refuse_both("trial", "seat");
+  const bool has_sums = table_.column("sensor").has_value();
+  columns_ = has_sums ? std::vector<ColumnInfo>(sum_columns().begin(), sum_columns().end()) : row_columns();
+  trial_ = column_of("trial");
   if (!trial_ && frame_.trials.size() > 1) {
     static_cast<void>(table_.required_column("trial", faults_));
     faults_.throw_if_errors();
   }
-  if (table_.column("sensor")) {
+  if (has_sums) {
     read_sums();
   } else {
     read_rows();
@@ -97,12 +108,11 @@ void MeasuredReader::refuse_too_many(const RunKey& run, std::size_t row) {
 void MeasuredReader::read_sums() {
   measured_.kind = Measured::Kind::sums;
   const std::size_t sensor = *table_.column("sensor");
-  const auto seconds = table_.column("real") ? table_.column("real") : table_.required_column("seconds", faults_);
-  refuse_both("real", "seconds");
+  std::optional<std::size_t> seconds = column_of("seconds");
+  if (!seconds) seconds = table_.required_column("seconds", faults_);
   // A missing column that is misspelt would be told a second time, as unknown.
   faults_.throw_if_errors();
-  refuse_unknown_columns({"trial", "seat", "sensor", "replicate", "seconds", "real", "min_sim", "max_sim", "mean_sim",
-                          "in_range"});  // the last four: simulated by others, in the table that is shipped
+  refuse_unknown_columns({});
   faults_.throw_if_errors();
   std::set<std::pair<RunKey, std::size_t>> seen;
   std::size_t missing = 0;
@@ -155,14 +165,25 @@ std::vector<std::optional<std::size_t>> MeasuredReader::sensor_columns() {
   return columns;
 }
 
-void MeasuredReader::refuse_both(const std::string& one, const std::string& other) {
-  if (table_.column(one) && table_.column(other))
-    faults_.error({file_, 1, 1}, "columns '" + one + "' and '" + other + "' mean the same: give one of them");
+/// By its name or its alias. The columns of the table are known by then.
+std::optional<std::size_t> MeasuredReader::column_of(std::string_view name) {
+  const ColumnInfo& column = *std::ranges::find(columns_, name, &ColumnInfo::name);
+  const auto named = table_.column(column.name), by_alias = table_.column(column.alias);
+  if (named && by_alias) {
+    faults_.error({file_, 1, 1}, "columns '" + std::string(column.name) + "' and '" + std::string(column.alias) +
+                                     "' mean the same: give one of them");
+  }
+  return named ? named : by_alias;
 }
 
-void MeasuredReader::refuse_unknown_columns(const std::vector<std::string>& known) {
-  const std::vector<std::string> names = table_.names();
-  for (const std::string& name : names) {
+void MeasuredReader::refuse_unknown_columns(const std::vector<std::string>& sensors) {
+  std::vector<std::string> known;
+  for (const ColumnInfo& column : columns_) {
+    known.emplace_back(column.name);
+    if (!column.alias.empty()) known.emplace_back(column.alias);
+  }
+  known.insert(known.end(), sensors.begin(), sensors.end());
+  for (const std::string& name : table_.names()) {
     if (std::ranges::find(known, name) != known.end()) continue;
     faults_.error({file_, 1, 1}, "unknown column '" + name + "'" + near_or_all(name, known));
   }
@@ -171,9 +192,7 @@ void MeasuredReader::refuse_unknown_columns(const std::vector<std::string>& know
 void MeasuredReader::read_rows() {
   if (!time_) static_cast<void>(table_.required_column("time_s", faults_));
   const auto columns = sensor_columns();
-  std::vector<std::string> known{"replicate", "trial", "seat", "time_s", "time", "phase", "people"};
-  known.insert(known.end(), frame_.sensors.begin(), frame_.sensors.end());
-  if (!faults_.has_errors()) refuse_unknown_columns(known);
+  if (!faults_.has_errors()) refuse_unknown_columns(frame_.sensors);
   faults_.throw_if_errors();
 
   std::map<RunKey, std::vector<Row>> runs;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/csv_reader.hpp"
+#include "pirsim/columns.hpp"
 #include "reconcile/data/measured.hpp"
 
 namespace pirsim::reconcile {
@@ -29,8 +30,8 @@ class MeasuredReader {
   void read_sums();
   void read_rows();
   [[nodiscard]] std::vector<std::optional<std::size_t>> sensor_columns();
-  void refuse_both(const std::string& one, const std::string& other);
-  void refuse_unknown_columns(const std::vector<std::string>& known);
+  [[nodiscard]] std::optional<std::size_t> column_of(std::string_view name);
+  void refuse_unknown_columns(const std::vector<std::string>& sensors);
   [[nodiscard]] std::optional<std::size_t> trial_of(std::size_t row);
   [[nodiscard]] int replicate_of(std::size_t row);
   [[nodiscard]] std::optional<double> number(std::size_t row, std::size_t column);
@@ -51,6 +52,7 @@ class MeasuredReader {
   const StudyFrame& frame_;
   std::string file_;
   io::CsvTable table_;
+  std::vector<ColumnInfo> columns_;  ///< that the table may have, beside the sensors'
   Diagnostics faults_;
   io::RepeatedFaults repeated_;
   Measured measured_;

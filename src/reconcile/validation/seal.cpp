@@ -68,7 +68,7 @@ Answer draw_answer(const SceneSpec& scene, const ScriptSpec& script, Hidden want
 std::string simulate(const Realization& realization, const Answer& answer, Stream& stream) {
   const Model model = compile(realization.scene, realization.script);
   std::ostringstream text;
-  io::MeasuredCsvWriter csv(text, frame_of(realization.scene, realization.script).sensors);
+  io::CsvWriter csv(text, measured_columns(frame_of(realization.scene, realization.script)));
   run_study(model, {.threads = 1}, [&](const RunResult& result) {
     std::vector<Sample> rows = result.samples;
     if (answer.fault != nullptr) answer.fault->apply(rows, answer.faulty_sensor, stream);

@@ -141,7 +141,7 @@ TEST_CASE("sums are read with seats as trials and empty ones are left out", "[me
   CHECK_THROWS_WITH(parse_measured("trial,sensor,seconds,PIR9\nS1,PIR1,3,1\n", "m.csv", frame),
                     contains("m.csv:1:1: error: unknown column 'PIR9'"));
   CHECK_THROWS_WITH(parse_measured("trial,sensor,seconds,real\nS1,PIR1,5,50\n", "m.csv", frame),
-                    contains("'real' and 'seconds' mean the same"));
+                    contains("'seconds' and 'real' mean the same"));
   CHECK_THROWS_WITH(parse_measured("trial,seat,sensor,seconds\nS1,S2,PIR1,5\n", "m.csv", frame),
                     contains("'trial' and 'seat' mean the same"));
 }

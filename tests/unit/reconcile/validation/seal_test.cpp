@@ -23,7 +23,7 @@ ScriptSpec one_seat() { return test::short_study({"S4"}, 30.0); }
 std::string rows_of(const Realization& realization) {
   const Model model = compile(realization.scene, realization.script);
   std::ostringstream text;
-  io::MeasuredCsvWriter csv(text, frame_of(realization.scene, realization.script).sensors);
+  io::CsvWriter csv(text, measured_columns(frame_of(realization.scene, realization.script)));
   run_study(model, {.threads = 1}, [&](const RunResult& result) {
     for (const Sample& row : result.samples) csv.write(row);
   });
