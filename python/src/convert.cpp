@@ -215,7 +215,6 @@ nb::object Special<ScriptedAction>::to(const ScriptedAction& action) {
       },
       action.what);
 }
-static_assert(has_fields<4, ScriptedAction>() && has_fields<5, TriMesh>() && has_fields<3, Issue>());
 
 template <>
 ScriptedAction Special<ScriptedAction>::from(nb::handle value, const std::string& path) {

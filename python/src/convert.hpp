@@ -12,7 +12,26 @@
 #include <variant>
 #include <vector>
 
-#include "fields.hpp"
+#include "pirsim/effects.hpp"
+#include "pirsim/sample.hpp"
+#include "schema/fields.hpp"
+
+namespace pirsim {
+
+template <>
+struct Words<IncidentKind> {
+  static constexpr WordList<IncidentKind, 4> all{{{"passed_through", IncidentKind::passed_through},
+                                                  {"seat_changed", IncidentKind::seat_changed},
+                                                  {"seat_missed", IncidentKind::seat_missed},
+                                                  {"waited_outside", IncidentKind::waited_outside}}};
+};
+template <>
+struct Words<effects::Reach> {
+  static constexpr WordList<effects::Reach, 3> all{
+      {{"geometry", effects::Reach::geometry}, {"triggers", effects::Reach::triggers}, {"rows", effects::Reach::rows}}};
+};
+
+}  // namespace pirsim
 
 namespace pirsim::python {
 
@@ -38,15 +57,6 @@ template <typename T>
 [[nodiscard]] nb::object item(nb::handle sequence, std::size_t i);
 /// Of anything that can be iterated over but a text.
 [[nodiscard]] nb::object as_tuple(nb::handle value, const std::string& path, const std::string& what);
-
-template <typename T>
-concept Described = requires {
-  Fields<T>::name;
-};
-template <typename T>
-concept Worded = requires {
-  Words<T>::all;
-};
 
 template <>
 struct Convert<double> {
@@ -74,12 +84,7 @@ struct Convert<RaysPerZone> {
 };
 template <Worded T>
 struct Convert<T> {
-  static nb::object to(T value) {
-    for (const auto& [word, meaning] : Words<T>::all) {
-      if (meaning == value) return nb::str(word);
-    }
-    return nb::none();
-  }
+  static nb::object to(T value) { return nb::str(word_of(value)); }
   static T from(nb::handle value, const std::string& path) {
     std::string known;
     for (const auto& [word, meaning] : Words<T>::all) {
@@ -154,19 +159,16 @@ struct Convert<T> {
     return spec_class(Fields<T>::name)(**fields);
   }
   static void add(const T& spec, nb::dict& fields) {
-    std::apply([&](const auto&... field) { ((fields[field.name] = to_python(spec.*field.member)), ...); },
-               Fields<T>::all);
+    each_field<T>([&](const auto& field) { fields[field.name] = to_python(spec.*field.member); });
   }
   static T from(nb::handle value, const std::string& path) {
-    static_assert(has_fields<std::tuple_size_v<std::remove_cvref_t<decltype(Fields<T>::all)>>, T>());
     if (!nb::isinstance(value, spec_class(Fields<T>::name)))
       refuse(value, path, "a pirsim." + std::string(Fields<T>::name));
     T spec;
-    const auto set = [&](const auto& field) {
+    each_field<T>([&](const auto& field) {
       using Value = std::remove_cvref_t<decltype(spec.*field.member)>;
       spec.*field.member = from_python<Value>(value.attr(field.name), path + "." + field.name);
-    };
-    std::apply([&](const auto&... field) { (set(field), ...); }, Fields<T>::all);
+    });
     return spec;
   }
 };

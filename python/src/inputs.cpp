@@ -25,13 +25,7 @@ nb::dict defaults() {
           }()),
      ...);
   };
-  add(static_cast<std::tuple<Where, InputFile, SensorSpec, SeatSpec, EntranceSpec, SceneSpec, OpticsSpec, ElementSpec,
-                             AmplifierSpec, ComparatorSpec, DetectorSpec, ZoneSpec, ClusterSpec, SensorModelSpec,
-                             action::Wait, action::Appear, action::Enter, action::Walk, action::Sit, action::Work,
-                             action::Rise, action::Leave, action::Turn>*>(nullptr));
-  add(static_cast<
-      std::tuple<SeatScatterSpec, WarmthSpec, PersonSpec, ClockSpec, StaffSpec, HeldMeetingSpec, MeetingsSpec,
-                 ProfileSpec, ScheduleSpec, TrialSpec, SensingSpec, SummarySpec, EffectSpec, ScriptSpec>*>(nullptr));
+  add(static_cast<SpecsOfPython*>(nullptr));
   return all;
 }
 

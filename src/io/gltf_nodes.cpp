@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "schema/check_specs.hpp"
-#include "schema/spec_numbers.hpp"
+#include "schema/fields.hpp"
 
 namespace pirsim::io::detail {
 namespace {

@@ -20,7 +20,7 @@
 #include "pirsim/sensor.hpp"
 #include "schema/check_specs.hpp"
 #include "schema/clock.hpp"
-#include "schema/spec_numbers.hpp"
+#include "schema/fields.hpp"
 
 namespace pirsim::io {
 

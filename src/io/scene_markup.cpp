@@ -6,7 +6,7 @@
 
 #include "core/text.hpp"
 #include "schema/check_specs.hpp"
-#include "schema/spec_numbers.hpp"
+#include "schema/fields.hpp"
 
 namespace pirsim::io::detail {
 namespace {

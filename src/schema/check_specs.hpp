@@ -1,4 +1,4 @@
-// What specs must hold beyond the ranges of their numbers (schema/spec_numbers.hpp), said once: readers of files call
+// What specs must hold beyond the ranges of their numbers (schema/fields.hpp), said once: readers of files call
 // these with the places of their keys, check() with the names of fields.
 #pragma once
 

@@ -1,23 +1,23 @@
 // The digest of what results were made from, by which kept results are known as those of a study or refused.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "core/digest.hpp"
-#include "pirsim/scene.hpp"
-#include "pirsim/script.hpp"
-#include "pirsim/sensor.hpp"
+#include "schema/fields.hpp"
 
 namespace pirsim {
 
 /// Everything that is added, one after the other; every list and text with its length. Of a spec that is all of its
-/// fields, but for what only messages say (names, descriptions, places in files).
+/// fields but those that only messages say.
 class Fingerprint {
  public:
   template <typename Number>
@@ -45,18 +45,23 @@ class Fingerprint {
     add(values.size());
     for (const auto& [name, value] : values) add_each(name, value);
   }
-  void add(const DetectorSpec& detector);
-  void add(const ZoneSpec& zone);
-  void add(const ClusterSpec& cluster);
-  void add(const SensorModelSpec& model);
-  void add(const TriMesh& mesh);
-  void add(const SensorSpec& sensor);
-  void add(const SeatSpec& seat);
-  void add(const EntranceSpec& entrance);
+  template <typename Value, std::size_t n>
+  void add(const std::array<Value, n>& values) {
+    for (const Value& value : values) add(value);
+  }
+  template <typename... Values>
+  void add(const std::variant<Values...>& value) {
+    add(value.index());
+    std::visit([&](const auto& one) { add(one); }, value);
+  }
   void add(const FloorArea& floor);
-  void add(const SceneSpec& scene);
-  void add(const SensingSpec& sensing);
-  void add(const EffectSpec& effect);
+  void add(const MeshSolid& solid);
+  template <Described Spec>
+  void add(const Spec& spec) {
+    each_field<Spec>([&](const auto& field) {
+      if (field.use == Use::study) add(spec.*field.member);
+    });
+  }
 
   template <typename... Values>
   void add_each(const Values&... values) {

@@ -12,8 +12,8 @@
 
 #include "pirsim/error.hpp"
 #include "schema/check_specs.hpp"
+#include "schema/fields.hpp"
 #include "schema/limits.hpp"
-#include "schema/spec_numbers.hpp"
 
 namespace pirsim {
 

@@ -9,68 +9,10 @@
 #include <variant>
 #include <vector>
 
-#include "../../python/src/fields.hpp"
-
-namespace pirsim::python {
-
-// Specs that Python has no class of.
-template <>
-struct Fields<TurnSpec> {
-  static constexpr std::tuple all{Field{"axis", &TurnSpec::axis}, Field{"deg_per_s", &TurnSpec::deg_per_s}};
-};
-template <>
-struct Fields<XShapesSpec> {
-  static constexpr std::tuple all{
-      Field{"heights_m", &XShapesSpec::heights_m}, Field{"bar_length_m", &XShapesSpec::bar_length_m},
-      Field{"bar_width_m", &XShapesSpec::bar_width_m}, Field{"temperature_c", &XShapesSpec::temperature_c},
-      Field{"turns", &XShapesSpec::turns}};
-};
-template <>
-struct Fields<CoverageSpec> {
-  static constexpr std::tuple all{
-      Field{"name", &CoverageSpec::name},           Field{"sensing", &CoverageSpec::sensing},
-      Field{"spacing_m", &CoverageSpec::spacing_m}, Field{"duration_s", &CoverageSpec::duration_s},
-      Field{"without", &CoverageSpec::without},     Field{"without_where", &CoverageSpec::without_where},
-      Field{"target", &CoverageSpec::target},       Field{"seed", &CoverageSpec::seed},
-      Field{"effects", &CoverageSpec::effects}};
-};
-template <>
-struct Fields<NuisanceSpec> {
-  static constexpr std::tuple all{
-      Field{"seat_position_m", &NuisanceSpec::seat_position_m}, Field{"sensor_yaw_deg", &NuisanceSpec::sensor_yaw_deg},
-      Field{"sensor_tilt_deg", &NuisanceSpec::sensor_tilt_deg}, Field{"body_size", &NuisanceSpec::body_size},
-      Field{"arm_amplitude", &NuisanceSpec::arm_amplitude},     Field{"uneven_arms", &NuisanceSpec::uneven_arms},
-      Field{"trunk_sway_deg", &NuisanceSpec::trunk_sway_deg}};
-};
-template <>
-struct Fields<TriMesh> {
-  static constexpr std::tuple all{Field{"name", &TriMesh::name}, Field{"positions", &TriMesh::positions},
-                                  Field{"triangles", &TriMesh::triangles}, Field{"solidity", &TriMesh::solidity},
-                                  Field{"temperature_c", &TriMesh::temperature_c}};
-};
-template <>
-struct Fields<ScriptedAction> {
-  static constexpr std::tuple all{Field{"what", &ScriptedAction::what}, Field{"at_s", &ScriptedAction::at_s},
-                                  Field{"phase", &ScriptedAction::phase}, Field{"where", &ScriptedAction::where}};
-};
-template <>
-struct Fields<Issue> {
-  static constexpr std::tuple all{Field{"severity", &Issue::severity}, Field{"where", &Issue::where},
-                                  Field{"message", &Issue::message}};
-};
-template <>
-struct Words<RaysPerZone> {
-  static constexpr std::array all{std::pair{"five", RaysPerZone::five}, std::pair{"nine", RaysPerZone::nine}};
-};
-
-}  // namespace pirsim::python
+#include "schema/fields.hpp"
 
 namespace pirsim::test {
 
-template <typename Spec>
-concept HasFields = requires {
-  python::Fields<Spec>::all;
-};
 template <typename Value>
 concept HasItems = requires(Value& value) {
   value.begin()->second;
@@ -126,15 +68,12 @@ void each_change_of(std::variant<Items...>& item, const std::string& path, const
 
 template <typename Value, typename Check>
 void each_change(Value& value, const std::string& path, const Check& check) {
-  if constexpr (HasFields<Value>) {
-    constexpr auto& all = python::Fields<Value>::all;
-    static_assert(python::has_fields<std::tuple_size_v<std::remove_cvref_t<decltype(all)>>, Value>());
-    std::apply([&](const auto&... field) { (each_change(value.*field.member, path + '.' + field.name, check), ...); },
-               all);
+  if constexpr (Described<Value>) {
+    each_field<Value>([&](const auto& field) { each_change(value.*field.member, path + '.' + field.name, check); });
   } else if constexpr (std::is_same_v<Value, bool>) {
     with(value, !value, path, check);
   } else if constexpr (std::is_enum_v<Value>) {
-    const auto& all = python::Words<Value>::all;
+    const auto& all = Words<Value>::all;
     with(value, all[0].second == value ? all[1].second : all[0].second, path, check);
   } else if constexpr (std::is_floating_point_v<Value>) {
     with(value, std::nextafter(value, std::numeric_limits<Value>::max()), path, check);  // what is valid stays so

@@ -7,7 +7,7 @@
 #include "effects/catalogue.hpp"
 #include "pirsim/geometry.hpp"
 #include "pirsim/random.hpp"
-#include "schema/spec_numbers.hpp"
+#include "schema/fields.hpp"
 
 namespace pirsim::reconcile {
 namespace {

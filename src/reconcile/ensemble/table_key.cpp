@@ -1,6 +1,4 @@
 #include "effects/catalogue.hpp"
-#include "geom/triangle_surface.hpp"
-#include "pirsim/io.hpp"
 #include "pirsim/version.hpp"
 #include "reconcile/ensemble/reference_table.hpp"
 #include "schema/fingerprint.hpp"
@@ -8,24 +6,7 @@
 namespace pirsim::reconcile {
 namespace {
 
-/// What YAML doesn't hold of it.
-void add_body_meshes(Fingerprint& print, const ScriptSpec& script) {
-  for (const TrialSpec& trial : script.trials) {
-    for (const PersonSpec& person : trial.people) {
-      print.add(person.body_meshes.size());
-      for (const auto& [part, mesh] : person.body_meshes) print.add_each(part, mesh.surface->mesh());
-    }
-  }
-}
-
 // Structured bindings name every field, so that a new one doesn't compile until it stands here.
-
-void add(Fingerprint& print, const NuisanceSpec& nuisance) {
-  const auto& [seat_position_m, sensor_yaw_deg, sensor_tilt_deg, body_size, arm_amplitude, uneven_arms,
-               trunk_sway_deg] = nuisance;
-  print.add_each(seat_position_m, sensor_yaw_deg, sensor_tilt_deg, body_size, arm_amplitude, uneven_arms,
-                 trunk_sway_deg);
-}
 
 void add(Fingerprint& print, const StudyFrame& frame) {
   const auto& [trials, sensors, counted_phases, window_s] = frame;
@@ -50,10 +31,7 @@ std::string table_key(const RealizationSource& source, const StudyFrame& frame, 
   ScriptSpec script = source.script;
   script.seed = 0;  // realizations have seeds of their own
   script.replicates = 1;
-  print.add(io::to_yaml(script));
-  add_body_meshes(print, script);
-  add(print, source.nuisance);
-  print.add_each(source.seed, n_replicates, n_statistics(frame));
+  print.add_each(script, source.nuisance, source.seed, n_replicates, n_statistics(frame));
   add(print, settings);
   add(print, frame);
   return print.digest();

@@ -7,7 +7,7 @@
 
 #include "gltf_builder.hpp"
 #include "pirsim/io.hpp"
-#include "schema/spec_numbers.hpp"
+#include "schema/fields.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 

@@ -9,28 +9,28 @@
 using namespace pirsim;
 using namespace pirsim::reconcile;
 
-namespace pirsim::python {
+namespace pirsim {
 
 template <>
 struct Fields<RealizationSource> {
   static constexpr std::tuple all{
-      Field{"scene", &RealizationSource::scene}, Field{"script", &RealizationSource::script},
-      Field{"nuisance", &RealizationSource::nuisance}, Field{"seed", &RealizationSource::seed}};
+      field("scene", &RealizationSource::scene), field("script", &RealizationSource::script),
+      field("nuisance", &RealizationSource::nuisance), field("seed", &RealizationSource::seed)};
 };
 template <>
 struct Fields<StudyFrame> {
-  static constexpr std::tuple all{Field{"trials", &StudyFrame::trials}, Field{"sensors", &StudyFrame::sensors},
-                                  Field{"counted_phases", &StudyFrame::counted_phases},
-                                  Field{"window_s", &StudyFrame::window_s}};
+  static constexpr std::tuple all{field("trials", &StudyFrame::trials), field("sensors", &StudyFrame::sensors),
+                                  field("counted_phases", &StudyFrame::counted_phases),
+                                  field("window_s", &StudyFrame::window_s)};
 };
 template <>
 struct Fields<TableSettings> {
   static constexpr std::tuple all{
-      Field{"n_realizations", &TableSettings::n_realizations}, Field{"n_remembered", &TableSettings::n_remembered},
-      Field{"n_traced", &TableSettings::n_traced}, Field{"effects", &TableSettings::effects}};
+      field("n_realizations", &TableSettings::n_realizations), field("n_remembered", &TableSettings::n_remembered),
+      field("n_traced", &TableSettings::n_traced), field("effects", &TableSettings::effects)};
 };
 
-}  // namespace pirsim::python
+}  // namespace pirsim
 
 TEST_CASE("whatever field of a room, a script or the settings is changed, its table is another", "[reconcile]") {
   SceneSpec scene = test::shipped_scene("meeting_room.gltf");
@@ -60,6 +60,6 @@ TEST_CASE("whatever field of a room, a script or the settings is changed, its ta
     if (!is_place) told_only.insert(path);
   }
   // Realizations have seeds of their own, and as many runs as the data. Meshes count, wherever they were read from.
-  CHECK(told_only == std::set<std::string>{"source.scene.name", "source.script.directory", "source.script.replicates",
-                                           "source.script.seed"});
+  CHECK(told_only == std::set<std::string>{"source.scene.name", "source.script.directory", "source.script.name",
+                                           "source.script.replicates", "source.script.seed"});
 }

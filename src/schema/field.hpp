@@ -1,0 +1,162 @@
+// What describes a spec: one entry a field with its name, the numbers that it accepts and what it means. Whatever goes
+// through all fields of a spec goes through this description: fingerprints, comparisons, readers, checks, Python, docs.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "core/range.hpp"
+
+namespace pirsim {
+
+enum class Use {
+  study,   ///< what a study yields hangs on it
+  message  ///< only messages and outputs say it: names, descriptions, places in files
+};
+
+/// The range of fields that have none.
+struct Unbounded {};
+/// Of hours since midnight, which files give as a time of day: `from_h` is `from: 08:30`.
+struct TimeOfDay : NumberRange {};
+
+template <typename Spec, typename Value, typename Range = Unbounded>
+struct Field {
+  const char* name;  ///< of the member, in files and in Python
+  Value Spec::*member;
+  Range range;          ///< a NumberRange, an IntegerRange, or a function that makes one from the spec's other fields
+  const char* meaning;  ///< in a few words, for Python and the pages; "": the name says it
+  Use use;
+};
+
+template <typename Spec, typename Value>
+constexpr Field<Spec, Value> field(const char* name, Value Spec::*member, const char* meaning = "") {
+  return {name, member, {}, meaning, Use::study};
+}
+template <typename Spec, typename Value, typename Range>
+requires(!std::convertible_to<Range, const char*>)  //
+    constexpr Field<Spec, Value, Range> field(const char* name, Value Spec::*member, Range range,
+                                              const char* meaning = "") {
+  return {name, member, range, meaning, Use::study};
+}
+/// A field that only messages say.
+template <typename Spec, typename Value>
+constexpr Field<Spec, Value> label(const char* name, Value Spec::*member, const char* meaning = "") {
+  return {name, member, {}, meaning, Use::message};
+}
+
+/// Specialised for each spec (schema/fields.hpp): its `name` in Python, what it is `about`, and `all` fields.
+template <typename Spec>
+struct Fields;
+
+template <typename T>
+concept Described = requires {
+  Fields<T>::all;
+};
+
+/// Doesn't compile for a spec that has another number of fields than n.
+template <std::size_t n, typename Spec>
+constexpr bool has_fields() {
+  [[maybe_unused]] const auto take = [](Spec& spec) {
+    // clang-format off
+    if constexpr (n == 1) { auto& [a] = spec; (void)a; }
+    else if constexpr (n == 2) { auto& [a, b] = spec; (void)a; }
+    else if constexpr (n == 3) { auto& [a, b, c] = spec; (void)a; }
+    else if constexpr (n == 4) { auto& [a, b, c, d] = spec; (void)a; }
+    else if constexpr (n == 5) { auto& [a, b, c, d, e] = spec; (void)a; }
+    else if constexpr (n == 6) { auto& [a, b, c, d, e, f] = spec; (void)a; }
+    else if constexpr (n == 7) { auto& [a, b, c, d, e, f, g] = spec; (void)a; }
+    else if constexpr (n == 8) { auto& [a, b, c, d, e, f, g, h] = spec; (void)a; }
+    else if constexpr (n == 9) { auto& [a, b, c, d, e, f, g, h, i] = spec; (void)a; }
+    else if constexpr (n == 10) { auto& [a, b, c, d, e, f, g, h, i, j] = spec; (void)a; }
+    else if constexpr (n == 11) { auto& [a, b, c, d, e, f, g, h, i, j, k] = spec; (void)a; }
+    else if constexpr (n == 12) { auto& [a, b, c, d, e, f, g, h, i, j, k, l] = spec; (void)a; }
+    else if constexpr (n == 13) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = spec; (void)a; }
+    else if constexpr (n == 14) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o] = spec; (void)a; }
+    else if constexpr (n == 15) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p] = spec; (void)a; }
+    else static_assert(n == 0 && std::is_empty_v<Spec>);
+    // clang-format on
+  };
+  return true;
+}
+
+/// Calls visit(field) for every field. A spec whose description lacks one doesn't compile.
+template <Described Spec, typename Visit>
+constexpr void each_field(Visit&& visit) {
+  static_assert(has_fields<std::tuple_size_v<std::remove_cvref_t<decltype(Fields<Spec>::all)>>, Spec>());
+  std::apply([&](const auto&... field) { (visit(field), ...); }, Fields<Spec>::all);
+}
+
+/// What a field accepts, in a spec with these other fields.
+template <typename Spec, typename Value, typename Range>
+[[nodiscard]] constexpr auto range_of(const Field<Spec, Value, Range>& field, const Spec& spec) {
+  if constexpr (std::invocable<Range, const Spec&>) {
+    return field.range(spec);
+  } else {
+    return field.range;
+  }
+}
+template <typename Range>
+concept OfNumbers = std::same_as<Range, NumberRange> || std::same_as<Range, IntegerRange>;
+
+/// Calls `visit(name, number, range)` for every number of the spec itself that is given as a number, not of its parts.
+template <typename Spec, typename Visit>
+requires Described<std::remove_const_t<Spec>>
+void each_number(Spec& spec, Visit&& visit) {
+  each_field<std::remove_const_t<Spec>>([&](const auto& field) {
+    if constexpr (OfNumbers<decltype(range_of(field, spec))>)
+      visit(field.name, spec.*field.member, range_of(field, std::as_const(spec)));
+  });
+}
+
+/// Are two values the same but for what only messages say?
+template <typename Value>
+[[nodiscard]] bool same(const Value& a, const Value& b) {
+  if constexpr (Described<Value>) {
+    bool is_same = true;
+    each_field<Value>([&](const auto& field) {
+      if (field.use == Use::study) is_same = is_same && same(a.*field.member, b.*field.member);
+    });
+    return is_same;
+  } else if constexpr (requires { std::variant_size<Value>::value; }) {
+    return a.index() == b.index() &&
+           std::visit([&](const auto& one) { return same(one, std::get<std::remove_cvref_t<decltype(one)>>(b)); }, a);
+  } else if constexpr (requires { a.has_value(); }) {
+    return a.has_value() == b.has_value() && (!a || same(*a, *b));
+  } else if constexpr (requires { a.data(); }) {
+    return std::ranges::equal(a, b, [](const auto& x, const auto& y) { return same(x, y); });
+  } else {
+    return a == b;
+  }
+}
+
+/// The description of one field: `field_of<&WalkTestSpec::path_m>()`.
+template <auto member>
+[[nodiscard]] constexpr auto field_of() {
+  return []<typename Spec, typename Value>(Value Spec::*) {
+    constexpr auto& all = Fields<Spec>::all;
+    constexpr std::size_t index = []<std::size_t... i>(std::index_sequence<i...>) {
+      std::size_t found = sizeof...(i);
+      const auto compare = [&]<std::size_t at>() {
+        if constexpr (std::same_as<std::remove_cvref_t<decltype(std::get<at>(Fields<Spec>::all).member)>,
+                                   Value Spec::*>) {
+          if (std::get<at>(Fields<Spec>::all).member == member) found = at;
+        }
+      };
+      (compare.template operator()<i>(), ...);
+      return found;
+    }
+    (std::make_index_sequence<std::tuple_size_v<std::remove_cvref_t<decltype(all)>>>());
+    return std::get<index>(all);
+  }(member);
+}
+
+}  // namespace pirsim

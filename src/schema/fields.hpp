@@ -1,0 +1,592 @@
+// Every spec's fields, said once: what is called how, which numbers are accepted, what it means. A field that is added
+// to a struct is added here, without which nothing compiles that goes through all fields; fingerprints, comparisons,
+// checks, plain keys of files, Python's classes and the pages' tables of keys then follow (tools/specs).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <tuple>
+
+#include "pirsim/scene.hpp"
+#include "pirsim/schedule.hpp"
+#include "pirsim/script.hpp"
+#include "pirsim/survey.hpp"
+#include "schema/field.hpp"
+#include "schema/words.hpp"
+
+namespace pirsim {
+
+namespace accepted {
+
+inline constexpr TimeOfDay hour_of_day{{.min = 0.0, .max = 24.0}};
+inline constexpr NumberRange at_s{.min = 0.0, .max = 1e7};
+inline constexpr NumberRange on_floor_m{.min = -1e4, .max = 1e4};  ///< where people go
+/// assumed: far beyond any building, yet 1e-5 of it is still exact in float
+inline constexpr NumberRange in_world_m{.min = -1e5, .max = 1e5};
+inline constexpr NumberRange on_lens_plane_m{.min = -1e3, .max = 1e3};
+inline constexpr NumberRange window_s{.above = 0.0, .max = 3600.0};
+inline constexpr NumberRange probability{.min = 0.0, .max = 1.0};
+inline constexpr NumberRange surface_c{.min = -50.0, .max = 200.0};  ///< degrees Celsius, of what stands in rooms
+inline constexpr NumberRange skin_c{.min = -50.0, .max = 60.0};
+inline constexpr NumberRange turned_deg{.min = -360.0, .max = 360.0};
+inline constexpr NumberRange tilted_deg{.min = -90.0, .max = 90.0};
+inline constexpr NumberRange time_constant_s{.above = 0.0, .max = 1000.0};
+inline constexpr NumberRange corner_hz{.above = 0.0, .max = 1000.0};
+inline constexpr NumberRange output_v{.min = 0.0, .max = 100.0};
+inline constexpr NumberRange threshold_v{.above = 0.0, .max = 100.0};
+inline constexpr NumberRange held_s{.min = 0.0, .max = 3600.0};
+inline constexpr NumberRange waited_s{.min = 0.0, .max = 1e6};
+inline constexpr NumberRange worked_s{.above = 0.0, .max = 1e6};
+inline constexpr NumberRange meeting_min{.min = 1.0, .max = 1440.0};
+inline constexpr IntegerRange meetings_a_day{.min = 0, .max = 100};
+inline constexpr IntegerRange people_at_once{.min = 1, .max = 200};
+
+}  // namespace accepted
+
+// FIELD and LABEL name a member of the spec `S` of the description that they stand in.
+#define FIELD(member, ...) field(#member, &S::member __VA_OPT__(, ) __VA_ARGS__)
+#define LABEL(member, ...) label(#member, &S::member __VA_OPT__(, ) __VA_ARGS__)
+
+template <>
+struct Fields<Where> {
+  using S = Where;
+  static constexpr const char* name = "Where";
+  static constexpr const char* about = "A place in a file, for messages; line and column count from 1.";
+  static constexpr std::tuple all{LABEL(file), LABEL(line), LABEL(column)};
+};
+
+template <>
+struct Fields<InputFile> {
+  using S = InputFile;
+  static constexpr const char* name = "InputFile";
+  static constexpr const char* about = "A file that was read, and the SHA-256 of the bytes that it had then.";
+  static constexpr std::tuple all{LABEL(path), LABEL(sha256)};
+};
+
+template <>
+struct Fields<Issue> {
+  using S = Issue;
+  static constexpr const char* name = "Issue";
+  static constexpr const char* about = "One fault or remark.";
+  static constexpr std::tuple all{LABEL(severity), LABEL(where), LABEL(message)};
+};
+
+// Sensors.
+
+template <>
+struct Fields<OpticsSpec> {
+  using S = OpticsSpec;
+  static constexpr const char* name = "Optics";
+  static constexpr const char* about = "What the physical response needs of a lens beyond its zones.";
+  static constexpr std::tuple all{
+      FIELD(blur_deg, NumberRange{.min = 0.0, .max = 10.0},
+            "standard deviation of the Gaussian that softens a zone's edges"),
+      FIELD(aperture_mm2, NumberRange{.above = 0.0, .max = 1000.0}, "area of a facet of the first lens step")};
+};
+template <>
+struct Fields<ElementSpec> {
+  using S = ElementSpec;
+  static constexpr const char* name = "Element";
+  static constexpr const char* about = "The pyroelectric element's time constants.";
+  static constexpr std::tuple all{FIELD(thermal_s, accepted::time_constant_s, "thermal time constant"),
+                                  FIELD(electrical_s, accepted::time_constant_s, "electrical time constant")};
+};
+template <>
+struct Fields<AmplifierSpec> {
+  using S = AmplifierSpec;
+  static constexpr const char* name = "Amplifier";
+  static constexpr const char* about = "A band-pass with noise.";
+  static constexpr std::tuple all{
+      FIELD(low_hz, accepted::corner_hz, "lower corner frequency (-3 dB)"),
+      FIELD(high_hz, accepted::corner_hz, "upper corner frequency (-3 dB)"),
+      FIELD(order, IntegerRange{.min = 1, .max = 3}, "one-pole sections per edge, 1 to 3"),
+      FIELD(volts_per_watt, NumberRange{.above = 0.0},
+            "total gain from the power on the element to the output; by default calibrated on the rated distance of "
+            "the first lens step"),
+      FIELD(noise_v_pp, accepted::output_v, "noise at the output, peak to peak (6.6 standard deviations); 0: none"),
+      FIELD(offset_v, accepted::output_v, "output at rest"),
+      FIELD(lowest_v, accepted::output_v, "where the output saturates at its lower end"),
+      FIELD(highest_v, accepted::output_v, "where the output saturates at its upper end")};
+};
+template <>
+struct Fields<ComparatorSpec> {
+  using S = ComparatorSpec;
+  static constexpr const char* name = "Comparator";
+  static constexpr const char* about = "When the amplified signal switches the output on and off.";
+  static constexpr std::tuple all{
+      FIELD(positive_v, accepted::threshold_v, "threshold above the offset"),
+      FIELD(negative_v, accepted::threshold_v, "threshold below the offset, as a positive number"),
+      FIELD(pulse_count, IntegerRange{.min = 1, .max = 8}, "number of pulses that switches the output on, 1 to 8"),
+      FIELD(pulse_window_s, accepted::held_s,
+            "time within which the pulses must begin; required for more than one pulse"),
+      FIELD(pulse_signs, "`alternating`: a pulse counts only on the opposite side to the last"),
+      FIELD(hold_s, accepted::held_s,
+            "how long the output stays on after the signal has returned between the thresholds"),
+      FIELD(blind_s, accepted::held_s, "how long pulses are ignored after the output has switched off")};
+};
+template <>
+struct Fields<DetectorSpec> {
+  using S = DetectorSpec;
+  static constexpr const char* name = "Detector";
+  static constexpr const char* about = "A sensor's electronics, for the physical response.";
+  static constexpr std::tuple all{FIELD(element), FIELD(amplifier), FIELD(comparator)};
+};
+template <>
+struct Fields<ZoneSpec> {
+  using S = ZoneSpec;
+  static constexpr const char* name = "Zone";
+  static constexpr const char* about =
+      "A detection zone, drawn on the plane `plane_m` ahead of the sensor: four corners (x right, y up), metres.";
+  static constexpr std::tuple all{FIELD(corners, "in order round the zone, convex"),
+                                  FIELD(polarity, "+1 or -1, the sign of the element")};
+};
+template <>
+struct Fields<ClusterSpec> {
+  using S = ClusterSpec;
+  static constexpr const char* name = "Cluster";
+  static constexpr const char* about = "The zones of one facet of the lens.";
+  static constexpr std::tuple all{
+      FIELD(centre, "on the plane"),
+      FIELD(range_m, NumberRange{.above = 0.0, .max = 1000.0}, "rated detection distance"),
+      FIELD(lens_step, IntegerRange{.min = 1, .max = 99}, "row of the lens: 1 reaches farthest"), FIELD(zones)};
+};
+template <>
+struct Fields<SensorModelSpec> {
+  using S = SensorModelSpec;
+  static constexpr const char* name = "SensorModel";
+  static constexpr const char* about = "A sensor's lens and electronics. `pirsim.sensor_model()` has the shipped ones.";
+  static constexpr std::tuple all{
+      FIELD(id, "as scenes name it"), LABEL(description, "free text"),
+      // less leaves no digits to directions
+      FIELD(plane_m, NumberRange{.min = 1e-3, .max = 1000.0}, "distance of the plane on which the zones are drawn"),
+      FIELD(clusters), FIELD(response, "`zones`: a change of activity is motion; `analog`: the physical response"),
+      FIELD(optics, "for the physical response"), FIELD(detector, "electronics, for the physical response")};
+};
+
+// Scenes.
+
+template <>
+struct Fields<TriMesh> {
+  using S = TriMesh;
+  static constexpr const char* name = "Mesh";
+  static constexpr const char* about = "Triangles that hide what is behind them.";
+  static constexpr std::tuple all{FIELD(name), FIELD(positions), FIELD(triangles), FIELD(solidity),
+                                  FIELD(temperature_c, accepted::surface_c)};
+};
+template <>
+struct Fields<SensorSpec> {
+  using S = SensorSpec;
+  static constexpr const char* name = "Sensor";
+  static constexpr const char* about = "A sensor looks along its frame's -Z.";
+  static constexpr std::tuple all{FIELD(id), FIELD(model, "key into `Scene.sensor_models`"), FIELD(world_from_sensor)};
+};
+template <>
+struct Fields<SeatSpec> {
+  using S = SeatSpec;
+  static constexpr const char* name = "Seat";
+  static constexpr const char* about = "The sitter's pelvis rests at the origin and faces -Z.";
+  static constexpr std::tuple all{FIELD(id), FIELD(world_from_seat)};
+};
+template <>
+struct Fields<EntranceSpec> {
+  using S = EntranceSpec;
+  static constexpr const char* name = "Entrance";
+  static constexpr const char* about = "A doorway: the origin is the middle of the threshold, -Z points into the room.";
+  static constexpr std::tuple all{
+      FIELD(id), FIELD(world_from_entrance),
+      // assumed: nobody passes a narrower gap or waits farther off
+      FIELD(width_m, NumberRange{.min = 0.3, .max = 20.0}, "of the opening"),
+      FIELD(outside_m, NumberRange{.min = 0.3, .max = 50.0}, "how far behind it people wait")};
+};
+template <>
+struct Fields<SceneSpec> {
+  using S = SceneSpec;
+  static constexpr const char* name = "Scene";
+  static constexpr const char* about = "A room: what hides, where the sensors hang, where people sit, enter and walk.";
+  static constexpr std::tuple all{LABEL(name),
+                                  FIELD(meshes),
+                                  FIELD(sensors, "in the order of the output's columns"),
+                                  FIELD(seats),
+                                  FIELD(entrances),
+                                  FIELD(floor),
+                                  FIELD(sensor_models, "every model that a sensor names"),
+                                  LABEL(files, "all that was read"),
+                                  LABEL(warnings)};
+};
+
+// Scripts.
+
+template <>
+struct Fields<action::Wait> {
+  using S = action::Wait;
+  static constexpr const char* name = "Wait";
+  static constexpr const char* about = "Goes on standing or sitting.";
+  static constexpr std::tuple all{
+      FIELD(duration_s, accepted::waited_s),
+      FIELD(activity, std::array{Activity::meeting, Activity::phone, Activity::whiteboard}, "of natural style")};
+};
+template <>
+struct Fields<action::Appear> {
+  using S = action::Appear;
+  static constexpr const char* name = "Appear";
+  static constexpr const char* about = "Stands on the floor from now on, without having entered.";
+  static constexpr std::tuple all{FIELD(point),
+                                  FIELD(heading_deg, NumberRange{}, "0 facing -Z, positive turning left")};
+};
+template <>
+struct Fields<action::Enter> {
+  using S = action::Enter;
+  static constexpr const char* name = "Enter";
+  static constexpr const char* about = "Appears outside the entrance and walks in.";
+  static constexpr std::tuple all{FIELD(entrance)};
+};
+template <>
+struct Fields<action::Walk> {
+  using S = action::Walk;
+  static constexpr const char* name = "Walk";
+  static constexpr const char* about = "Walks to each of the floor points in turn.";
+  static constexpr std::tuple all{FIELD(points), FIELD(activity, std::array{Activity::phone}, "of natural style")};
+};
+template <>
+struct Fields<action::Sit> {
+  using S = action::Sit;
+  static constexpr const char* name = "Sit";
+  static constexpr const char* about =
+      "Walks to the seat, turns and sits down; waits for it for a while if somebody else has it.";
+  static constexpr std::tuple all{
+      FIELD(seat),
+      FIELD(wait_s, accepted::waited_s, "for a taken seat; no longer if all others have carried out their scripts"),
+      FIELD(if_taken, "what somebody does whose seat stays taken")};
+};
+template <>
+struct Fields<action::Work> {
+  using S = action::Work;
+  static constexpr const char* name = "Work";
+  static constexpr const char* about =
+      "Desk work while seated: both forearms slide on the table, the spine changes its tilt.";
+  static constexpr std::tuple all{
+      FIELD(duration_s, accepted::worked_s),
+      FIELD(arm_amplitude_m, NumberRange{.min = 0.0, .max = 0.15}),
+      FIELD(arm_period_s, NumberRange{.min = 0.2, .max = 1e6}),
+      FIELD(tilt_choices_deg, NumberRange{.min = -30.0, .max = 45.0}, "positive forward"),
+      FIELD(tilt_every_s, accepted::worked_s),
+      FIELD(activity, std::array{Activity::typing, Activity::reading, Activity::meeting, Activity::phone},
+            "of natural style, which has no use for the swing and the tilts; none: typing")};
+};
+template <>
+struct Fields<action::Rise> {
+  using S = action::Rise;
+  static constexpr const char* name = "Rise";
+  static constexpr const char* about = "Rises from the seat and stays standing behind it.";
+  static constexpr std::tuple<> all{};
+};
+template <>
+struct Fields<action::Leave> {
+  using S = action::Leave;
+  static constexpr const char* name = "Leave";
+  static constexpr const char* about = "Walks out through the entrance and disappears.";
+  static constexpr std::tuple all{FIELD(entrance)};
+};
+template <>
+struct Fields<action::Turn> {
+  using S = action::Turn;
+  static constexpr const char* name = "Turn";
+  static constexpr const char* about = "Stands on the spot and turns.";
+  static constexpr std::tuple all{FIELD(heading_deg, accepted::turned_deg, "0 facing -Z, positive turning left")};
+};
+template <>
+struct Fields<ScriptedAction> {
+  using S = ScriptedAction;
+  static constexpr const char* name = "ScriptedAction";
+  static constexpr const char* about = "An action and when it begins.";
+  static constexpr std::tuple all{
+      FIELD(what),
+      FIELD(at_s, accepted::at_s, "starts then: interrupts what goes on, or waits if that is already done"),
+      FIELD(phase, "label of rows while this action runs; empty: what the body is doing"), LABEL(where)};
+};
+template <>
+struct Fields<SeatScatterSpec> {
+  using S = SeatScatterSpec;
+  static constexpr const char* name = "SeatScatter";
+  static constexpr const char* about = "How far from the seat's place people sit down, drawn once a run and person.";
+  static constexpr std::tuple all{
+      FIELD(position_sd_m, NumberRange{.min = 0.0, .max = 0.2}, "of each horizontal coordinate"),
+      FIELD(heading_sd_deg, NumberRange{.min = 0.0, .max = 30.0})};
+};
+template <>
+struct Fields<WarmthSpec> {
+  using S = WarmthSpec;
+  static constexpr const char* name = "Warmth";
+  static constexpr const char* about = "How warm a person's surface is, for the physical response.";
+  static constexpr std::tuple all{
+      FIELD(skin_c, accepted::skin_c),
+      FIELD(clothing_clo, NumberRange{.min = 0.0, .max = 10.0}, "insulation of what covers the parts that aren't bare"),
+      FIELD(bare, "parts that show skin"), FIELD(parts_c, "surface temperatures that are known, by part")};
+};
+template <>
+struct Fields<PersonSpec> {
+  using S = PersonSpec;
+  static constexpr const char* name = "Person";
+  static constexpr const char* about = "A person and what they do, one action after the other.";
+  static constexpr std::tuple all{
+      FIELD(id),
+      FIELD(actions),
+      FIELD(stature_m, NumberRange{.min = 0.8, .max = 2.3}, "lengths of the body follow from it"),
+      FIELD(mass_kg, NumberRange{.min = 10.0, .max = 250.0}),
+      FIELD(walking_speed_m_s, NumberRange{.min = 0.1, .max = 3.0}),
+      FIELD(seat_scatter),
+      FIELD(style),
+      FIELD(warmth),
+      FIELD(body_mesh_file, "glTF, relative to `Script.directory`; its meshes are read by `read_script()`"),
+      FIELD(body_meshes)};
+};
+template <>
+struct Fields<ClockSpec> {
+  using S = ClockSpec;
+  static constexpr const char* name = "Clock";
+  static constexpr const char* about = "A time of day: normal, cut at three standard deviations.";
+  static constexpr std::tuple all{FIELD(mean_h, accepted::hour_of_day),
+                                  FIELD(sd_min, NumberRange{.min = 0.0, .max = 240.0})};
+};
+template <>
+struct Fields<StaffSpec> {
+  using S = StaffSpec;
+  static constexpr auto enough_for_seats = [](const StaffSpec& staff) {
+    return IntegerRange{.min = std::max(1LL, static_cast<long long>(staff.seats.size())), .max = 200};
+  };
+  static constexpr const char* name = "Staff";
+  static constexpr const char* about = "People of one role.";
+  static constexpr std::tuple all{FIELD(role), FIELD(count, enough_for_seats),
+                                  FIELD(seats, "their own desks; none: the scene's seats that nobody has, in order"),
+                                  LABEL(where)};
+};
+template <>
+struct Fields<HeldMeetingSpec> {
+  using S = HeldMeetingSpec;
+  static constexpr const char* name = "HeldMeeting";
+  static constexpr const char* about = "A meeting whose time is known.";
+  static constexpr std::tuple all{FIELD(at_h, accepted::hour_of_day), FIELD(duration_min, accepted::meeting_min),
+                                  FIELD(people, accepted::people_at_once), LABEL(where)};
+};
+template <>
+struct Fields<MeetingsSpec> {
+  using S = MeetingsSpec;
+  static constexpr auto no_fewer_meetings = [](const MeetingsSpec& meetings) {
+    return IntegerRange{.min = meetings.fewest_a_day, .max = accepted::meetings_a_day.max};
+  };
+  static constexpr auto no_fewer_people = [](const MeetingsSpec& meetings) {
+    return IntegerRange{.min = meetings.fewest_people, .max = accepted::people_at_once.max};
+  };
+  static constexpr const char* name = "Meetings";
+  static constexpr const char* about = "Meetings that are held in the room.";
+  static constexpr std::tuple all{FIELD(fewest_a_day, accepted::meetings_a_day),
+                                  FIELD(most_a_day, no_fewer_meetings),
+                                  FIELD(fewest_people, accepted::people_at_once),
+                                  FIELD(most_people, no_fewer_people, "none: 8, or as many as there are seats"),
+                                  FIELD(durations_min, accepted::meeting_min),
+                                  FIELD(probabilities, accepted::probability, "of each duration"),
+                                  FIELD(from_h, accepted::hour_of_day, "when the first may begin"),
+                                  FIELD(to_h, accepted::hour_of_day, "when the last has ended"),
+                                  FIELD(lateness_min, NumberRange{.min = 0.0, .max = 60.0},
+                                        "mean of how much later than its beginning people come"),
+                                  FIELD(held, "these, every working day, instead of drawn ones"),
+                                  FIELD(seats, "none: those that are nobody's own desk"),
+                                  LABEL(where)};
+};
+template <>
+struct Fields<ProfileSpec> {
+  using S = ProfileSpec;
+  static constexpr const char* name = "Profile";
+  static constexpr const char* about = "Presence as a Markov chain that follows a profile.";
+  static constexpr std::tuple all{
+      FIELD(presence, accepted::probability, "share of people present in each of the 24 hours of a working day"),
+      FIELD(mobility, NumberRange{.min = 0.0, .max = 10.0}, "of the chain"),
+      FIELD(step_min, NumberRange{.min = 1.0, .max = 120.0})};
+};
+template <>
+struct Fields<ScheduleSpec> {
+  using S = ScheduleSpec;
+  static constexpr const char* name = "Schedule";
+  static constexpr const char* about =
+      "Adds people whose actions are drawn anew for every run; replicates are days that follow each other.";
+  static constexpr std::tuple all{
+      FIELD(first_day, "ISO 8601"),
+      FIELD(from_h, accepted::hour_of_day, "the part of the day that a run simulates begins"),
+      FIELD(to_h, accepted::hour_of_day, "and ends"),
+      FIELD(staff),
+      FIELD(meetings),
+      FIELD(profile, "instead of the agents' times and moves"),
+      FIELD(arrival),
+      FIELD(departure),
+      FIELD(lunch),
+      FIELD(lunch_min, NumberRange{.min = 0.0, .max = 240.0}, "mean of its length"),
+      FIELD(lunch_sd_min, NumberRange{.min = 0.0, .max = 120.0}),
+      FIELD(cleaning_h, accepted::hour_of_day, "somebody cleans then, on working days"),
+      FIELD(entrances, "that people use, each their own; none: all of the scene"),
+      FIELD(style),
+      LABEL(where)};
+};
+template <>
+struct Fields<TrialSpec> {
+  using S = TrialSpec;
+  static constexpr const char* name = "Trial";
+  static constexpr const char* about = "One choreography; a study runs every trial once per replicate.";
+  static constexpr std::tuple all{FIELD(id, "as the output names it"),
+                                  FIELD(people, "the first one's actions name the rows' phase"),
+                                  FIELD(duration_s, NumberRange{.min = 1.0, .max = 1e7},
+                                        "of a run; none: until everybody has carried out all actions"),
+                                  FIELD(schedule)};
+};
+template <>
+struct Fields<SensingSpec> {
+  using S = SensingSpec;
+  static constexpr const char* name = "Sensing";
+  static constexpr const char* about = "How sensors are read.";
+  static constexpr std::tuple all{
+      FIELD(tick_rate_hz, IntegerRange{.min = 1, .max = 10000}),
+      FIELD(ticks_per_window, "a row and its bits cover this many ticks"),
+      FIELD(rays_per_zone),
+      FIELD(change_per, "whose change of activity is motion"),
+      FIELD(reader, "when in a window each sensor is asked"),
+      FIELD(response, "of all sensors; none: each its own"),
+      FIELD(ambient_c, accepted::skin_c, "of surfaces and of the air, where the scene says nothing else"),
+      FIELD(analog_rays_per_zone, IntegerRange{.min = 1, .max = 10000}, "in the physical response")};
+};
+template <>
+struct Fields<SummarySpec> {
+  using S = SummarySpec;
+  static constexpr const char* name = "Summary";
+  static constexpr const char* about =
+      "Which rows the command line's --summary adds up, and what they are compared with.";
+  static constexpr std::tuple all{FIELD(phases, "rows in these phases count"),
+                                  FIELD(reference_file, "CSV with measured sums, or empty; relative to the script")};
+};
+template <>
+struct Fields<EffectSpec> {
+  using S = EffectSpec;
+  static constexpr const char* name = "Effect";
+  static constexpr const char* about =
+      "Something that the plain model leaves out; `pirsim.effects()` lists all. What isn't given is the typical value.";
+  static constexpr std::tuple all{FIELD(name), FIELD(parameters, "by name with unit: {\"sigma_deg\": 1.0}"),
+                                  FIELD(choices, "{\"sensor\": \"PIR3\"}"), LABEL(where)};
+};
+template <>
+struct Fields<ScriptSpec> {
+  using S = ScriptSpec;
+  static constexpr const char* name = "Script";
+  static constexpr const char* about = "A study: people and their actions, the trials, how sensors are read.";
+  static constexpr std::tuple all{
+      LABEL(name),
+      FIELD(trials),
+      FIELD(seed, IntegerRange{.min = 0, .max = std::numeric_limits<long long>::max()}),
+      FIELD(replicates, IntegerRange{.min = 1, .max = 10000000}),
+      FIELD(sensing),
+      FIELD(effects),
+      FIELD(summary),
+      FIELD(begin,
+            "local date and time at which every run begins, \"2026-03-02T07:00\"; empty: no clock, or the schedule's"),
+      LABEL(directory, "of the script file, for relative references"),
+      LABEL(files, "all that was read"),
+      LABEL(warnings)};
+};
+
+// Coverage studies, walk tests, placements.
+
+template <>
+struct Fields<TurnSpec> {
+  using S = TurnSpec;
+  static constexpr std::tuple all{FIELD(axis), FIELD(deg_per_s, NumberRange{.min = -3600.0, .max = 3600.0})};
+};
+template <>
+struct Fields<XShapesSpec> {
+  using S = XShapesSpec;
+  static constexpr std::tuple all{
+      FIELD(heights_m, NumberRange{.min = 0.0, .max = 10.0}, "of the crosses' centres over the floor"),
+      FIELD(bar_length_m, NumberRange{.above = 0.0, .max = 5.0}, "from tip to tip, caps included"),
+      FIELD(bar_width_m, NumberRange{.above = 0.0, .max = 1.0}, "diameter"),
+      FIELD(temperature_c, accepted::surface_c, "of the crosses, for the physical response, which has no noise here"),
+      FIELD(turns)};
+};
+template <>
+struct Fields<CoverageSpec> {
+  using S = CoverageSpec;
+  static constexpr std::tuple all{
+      LABEL(name),
+      FIELD(sensing),
+      FIELD(spacing_m, NumberRange{.min = 0.005, .max = 10.0}, "side of a square"),
+      FIELD(duration_s, NumberRange{.above = 0.0, .max = 3600.0}, "in every square; a whole number of windows"),
+      FIELD(without, "what is taken out of the room: meshes of this name, or of this first word"),
+      LABEL(without_where),
+      FIELD(target),
+      FIELD(seed),
+      FIELD(effects)};
+};
+template <>
+struct Fields<MountingLineSpec> {
+  using S = MountingLineSpec;
+  static constexpr std::tuple all{FIELD(from), FIELD(to),
+                                  FIELD(yaw_deg, accepted::turned_deg, "0 facing -Z, positive turning left"),
+                                  FIELD(tilt_deg, accepted::tilted_deg, "downwards")};
+};
+template <>
+struct Fields<PlacementSearchSpec> {
+  using S = PlacementSearchSpec;
+  static constexpr std::tuple all{
+      FIELD(n_sensors, IntegerRange{.min = 1, .max = 20}), FIELD(model), FIELD(lines),
+      FIELD(evaluations, IntegerRange{.min = 1, .max = 100000}, "sensor sets that are tried")};
+};
+template <>
+struct Fields<WalkRequirement> {
+  using S = WalkRequirement;
+  static constexpr std::tuple all{
+      FIELD(within_s, NumberRange{.above = 0.0, .max = 600.0}, "from the start of the movement"),
+      FIELD(probability, NumberRange{.above = 0.0, .max = 1.0}, "required share of noticed tries"),
+      FIELD(directions, IntegerRange{.min = 1, .max = 360}, "number of directions tried, evenly spaced")};
+};
+template <>
+struct Fields<WalkTestSpec> {
+  using S = WalkTestSpec;
+  static constexpr std::tuple all{
+      LABEL(name),
+      FIELD(sensing),
+      FIELD(spacing_m, NumberRange{.min = 0.05, .max = 10.0}, "of the points"),
+      FIELD(person),
+      FIELD(major),
+      FIELD(path_m, NumberRange{.min = 0.5, .max = 20.0}, "length of the straight walk; the point is its middle"),
+      FIELD(minor),
+      FIELD(seat_height_m, NumberRange{.min = 0.3, .max = 0.8}, "of the pelvis"),
+      FIELD(desk_height_m, NumberRange{.min = 0.5, .max = 1.1}, "of the forearms"),
+      FIELD(arm_amplitude_m, NumberRange{.min = 0.0, .max = 0.15}),
+      FIELD(arm_period_s, NumberRange{.min = 0.5, .max = 60.0}),
+      FIELD(seed),
+      FIELD(effects)};
+};
+
+// Reconciliation.
+
+template <>
+struct Fields<NuisanceSpec> {
+  using S = NuisanceSpec;
+  static constexpr std::tuple all{
+      FIELD(seat_position_m, NumberRange{.min = 0.0, .max = 0.2}, "of each horizontal coordinate of a seat"),
+      FIELD(sensor_yaw_deg, NumberRange{.min = 0.0, .max = 10.0}, "of each sensor"),
+      FIELD(sensor_tilt_deg, NumberRange{.min = 0.0, .max = 10.0}, "of each sensor"),
+      FIELD(body_size, NumberRange{.min = 0.0, .max = 0.2}, "of stature, relative; mass follows with its cube"),
+      FIELD(arm_amplitude, NumberRange{.min = 0.0, .max = 0.5}, "of desk work, relative"),
+      FIELD(uneven_arms, NumberRange{.min = 0.0, .max = 1.0}, "upper end of the spread of `uneven_arms`"),
+      FIELD(trunk_sway_deg, NumberRange{.min = 0.0, .max = 12.0}, "upper end of the amplitude of `trunk_sway`")};
+};
+
+#undef FIELD
+#undef LABEL
+
+/// Specs that Python has classes of, each before those that it is a part of.
+using SpecsOfPython =
+    std::tuple<Where, InputFile, SensorSpec, SeatSpec, EntranceSpec, OpticsSpec, ElementSpec, AmplifierSpec,
+               ComparatorSpec, DetectorSpec, ZoneSpec, ClusterSpec, SensorModelSpec, SceneSpec, action::Wait,
+               action::Appear, action::Enter, action::Walk, action::Sit, action::Work, action::Rise, action::Leave,
+               action::Turn, SeatScatterSpec, WarmthSpec, PersonSpec, ClockSpec, StaffSpec, HeldMeetingSpec,
+               MeetingsSpec, ProfileSpec, ScheduleSpec, TrialSpec, SensingSpec, SummarySpec, EffectSpec, ScriptSpec>;
+
+}  // namespace pirsim

@@ -1,0 +1,89 @@
+// The words of enumerations, as files and Python have them: each is said here alone.
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "pirsim/error.hpp"
+#include "pirsim/geometry.hpp"
+#include "pirsim/script.hpp"
+
+namespace pirsim {
+
+/// Specialised for each enumeration: its values as words.
+template <typename Enum>
+struct Words;
+
+template <typename T>
+concept Worded = requires {
+  Words<T>::all;
+};
+
+/// Values in order, and what they are called.
+template <typename Enum, std::size_t n>
+using WordList = std::array<std::pair<const char*, Enum>, n>;
+
+template <>
+struct Words<Solidity> {
+  static constexpr WordList<Solidity, 2> all{{{"solid", Solidity::solid}, {"screen", Solidity::screen}}};
+};
+template <>
+struct Words<Response> {
+  static constexpr WordList<Response, 2> all{{{"zones", Response::zones}, {"analog", Response::analog}}};
+};
+template <>
+struct Words<PulseSigns> {
+  static constexpr WordList<PulseSigns, 2> all{{{"any", PulseSigns::any}, {"alternating", PulseSigns::alternating}}};
+};
+template <>
+struct Words<RaysPerZone> {
+  static constexpr WordList<RaysPerZone, 4> all{
+      {{"1", RaysPerZone::one}, {"5", RaysPerZone::five}, {"9", RaysPerZone::nine}, {"16", RaysPerZone::sixteen}}};
+};
+template <>
+struct Words<ChangePer> {
+  static constexpr WordList<ChangePer, 2> all{{{"cluster", ChangePer::cluster}, {"beam", ChangePer::beam}}};
+};
+template <>
+struct Words<Reader> {
+  static constexpr WordList<Reader, 2> all{{{"in_step", Reader::in_step}, {"free_running", Reader::free_running}}};
+};
+template <>
+struct Words<MotionStyle> {
+  static constexpr WordList<MotionStyle, 2> all{
+      {{"choreographed", MotionStyle::choreographed}, {"natural", MotionStyle::natural}}};
+};
+template <>
+struct Words<Activity> {
+  static constexpr auto all = [] {
+    WordList<Activity, activity_names.size()> words{};
+    for (std::size_t i = 0; i < words.size(); ++i) words[i] = {activity_names[i], static_cast<Activity>(i)};
+    return words;
+  }();
+};
+template <>
+struct Words<action::IfTaken> {
+  static constexpr WordList<action::IfTaken, 2> all{
+      {{"next_action", action::IfTaken::next_action}, {"other_seat", action::IfTaken::other_seat}}};
+};
+template <>
+struct Words<Role> {
+  static constexpr WordList<Role, 3> all{
+      {{"staff", Role::staff}, {"manager", Role::manager}, {"administrator", Role::administrator}}};
+};
+template <>
+struct Words<Severity> {
+  static constexpr WordList<Severity, 2> all{{{"warning", Severity::warning}, {"error", Severity::error}}};
+};
+
+/// What a value is called.
+template <Worded Enum>
+[[nodiscard]] constexpr const char* word_of(Enum value) {
+  for (const auto& [word, meaning] : Words<Enum>::all) {
+    if (meaning == value) return word;
+  }
+  return "";
+}
+
+}  // namespace pirsim
