@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "pirsim/geometry.hpp"
+#include "schema/action_facts.hpp"
 
 namespace pirsim::effects {
 namespace {
@@ -21,29 +22,21 @@ double longest_s(const TrialInForce& trial, const SceneSpec& scene) {
     double sum = 0.0;
     for (const ScriptedAction& action : person.actions) {
       constexpr double any_s = 60.0;  // turning, sitting down: more than enough
+      const ActionFacts facts = facts_of(action.what);
       sum += any_s + way_s + action.at_s.value_or(0.0);
-      if (const auto* wait = std::get_if<action::Wait>(&action.what)) sum += wait->duration_s;
-      if (const auto* work = std::get_if<action::Work>(&action.what)) sum += work->duration_s;
-      if (const auto* walk = std::get_if<action::Walk>(&action.what))
-        sum += way_s * static_cast<double>(walk->points.size());
+      sum += facts.lasts_s + way_s * static_cast<double>(facts.walks_to.size());
     }
     longest = std::max(longest, sum);
   }
   return longest;
 }
 
-/// What the actions take at least, seconds: waits, and ways as the crow flies.
-double shortest_s(const BystanderPlan& plan) {
+/// What all that is done again takes at least, seconds.
+double once_around_s(const BystanderPlan& plan) {
   constexpr double least_s = 1.0;  // so that their number is bounded, whatever they are
   double sum = 0.0;
   Vec2 at = plan.place;
-  for (const Action& what : plan.again) {
-    if (const auto* wait = std::get_if<action::Wait>(&what)) sum += wait->duration_s;
-    if (const auto* walk = std::get_if<action::Walk>(&what)) {
-      sum += glm::distance(at, walk->points.back()) / plan.speed_m_s;
-      at = walk->points.back();
-    }
-  }
+  for (const Action& what : plan.again) sum += shortest_s(facts_of(what), plan.speed_m_s, at);
   return std::max(least_s, sum);
 }
 
@@ -63,7 +56,7 @@ void add_bystander(StudyInForce& study, const BystanderPlan& plan, const Where& 
     person.mass_kg = plan.mass_kg;
     person.walking_speed_m_s = plan.speed_m_s;
     person.actions.push_back({action::Appear{plan.place, plan.heading_deg}, {}, {}, where});
-    const double until_s = longest_s(trial, study.scene), once_s = shortest_s(plan);
+    const double until_s = longest_s(trial, study.scene), once_s = once_around_s(plan);
     for (double s = 0.0; s < until_s; s += once_s) {
       for (const Action& what : plan.again) person.actions.push_back({what, {}, {}, where});
     }

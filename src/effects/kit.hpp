@@ -7,6 +7,7 @@
 
 #include "effects/catalogue.hpp"
 #include "pirsim/scene.hpp"
+#include "schema/action_facts.hpp"
 
 namespace pirsim::effects {
 
@@ -147,11 +148,7 @@ void for_each_person(StudyInForce& study, const Change& change) {
 /// change(action::Work&) for whatever anybody does at a seat.
 template <typename Change>
 void for_each_work(StudyInForce& study, const Change& change) {
-  for_each_person(study, [&](PersonInForce& person) {
-    for (ScriptedAction& scripted : person.actions) {
-      if (auto* work = std::get_if<action::Work>(&scripted.what)) change(*work);
-    }
-  });
+  for_each_person(study, [&](PersonInForce& person) { for_each<action::Work>(person, change); });
 }
 
 /// clone() by copying.

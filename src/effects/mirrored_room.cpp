@@ -3,6 +3,7 @@
 
 #include "effects/kit.hpp"
 #include "pirsim/geometry.hpp"
+#include "schema/action_facts.hpp"
 
 namespace pirsim::effects {
 namespace {
@@ -54,14 +55,9 @@ void mirror_meshes(std::vector<TriMesh>& meshes, const Mirror& mirror) {
 
 void mirror_actions(std::vector<ScriptedAction>& actions, const Mirror& mirror) {
   for (ScriptedAction& action : actions) {
-    if (auto* appear = std::get_if<action::Appear>(&action.what)) {
-      appear->point = mirror.point(appear->point);
-      appear->heading_deg = mirror.heading_deg(appear->heading_deg);
-    } else if (auto* walk = std::get_if<action::Walk>(&action.what)) {
-      for (Vec2& p : walk->points) p = mirror.point(p);
-    } else if (auto* turn = std::get_if<action::Turn>(&action.what)) {
-      turn->heading_deg = mirror.heading_deg(turn->heading_deg);
-    }
+    for_each_place(
+        action.what, [&](Vec2& point) { point = mirror.point(point); },
+        [&](double& heading_deg) { heading_deg = mirror.heading_deg(heading_deg); });
   }
 }
 

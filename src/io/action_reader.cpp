@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "io/yaml_map.hpp"
+#include "schema/action_facts.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -20,7 +21,8 @@ Vec2 read_point(const YamlNode& node, Diagnostics& faults, std::string_view what
 template <typename What>
 void read_activity(YamlMap& map, What& what) {
   std::vector<std::pair<std::string, std::optional<Activity>>> names;
-  for (const Activity one : activities_of(what)) names.emplace_back(activity_names[static_cast<std::size_t>(one)], one);
+  for (const Activity one : facts_of(what).may_be_asked)
+    names.emplace_back(activity_names[static_cast<std::size_t>(one)], one);
   what.activity = map.choice<std::optional<Activity>>("activity", std::nullopt, names);
 }
 

@@ -1,13 +1,13 @@
 #include "pirsim/script.hpp"
 
 #include <algorithm>
-#include <array>
 #include <glm/geometric.hpp>
 #include <limits>
 
 #include "core/near_names.hpp"
 #include "core/text.hpp"
 #include "geom/triangle_surface.hpp"
+#include "schema/action_facts.hpp"
 #include "schema/body_part_names.hpp"
 #include "schema/clock.hpp"
 #include "schema/phase_names.hpp"
@@ -32,7 +32,7 @@ std::vector<std::string> phases_of(const ScriptSpec& script) {
     for (std::size_t i = 0; !trial.people.empty() && i < trial.people.front().actions.size(); ++i) {
       const ScriptedAction& action = trial.people.front().actions[i];
       if (!action.phase.empty()) phases.insert(action.phase);
-      if (action.phase.empty() && std::holds_alternative<action::Work>(action.what)) phases.emplace(phase_working);
+      if (action.phase.empty() && facts_of(action.what).desk_work != nullptr) phases.emplace(phase_working);
     }
   }
   return {phases.begin(), phases.end()};
@@ -136,26 +136,13 @@ class ScriptCheck {
 
 }  // namespace
 
-std::span<const Activity> activities_of(const action::Wait&) noexcept {
-  static constexpr std::array known{Activity::meeting, Activity::phone, Activity::whiteboard};
-  return known;
-}
-std::span<const Activity> activities_of(const action::Walk&) noexcept {
-  static constexpr std::array known{Activity::phone};
-  return known;
-}
-std::span<const Activity> activities_of(const action::Work&) noexcept {
-  static constexpr std::array known{Activity::typing, Activity::reading, Activity::meeting, Activity::phone};
-  return known;
-}
-
 std::string activity_fault(const PersonSpec& person, const ScriptedAction& action) {
   return std::visit(
       [&](const auto& what) -> std::string {
         if constexpr (requires { what.activity; }) {
           if (!what.activity) return {};
           if (person.style != MotionStyle::natural) return "an activity needs `style: natural` of the person";
-          const auto known = activities_of(what);
+          const auto known = facts_of(what).may_be_asked;
           if (std::ranges::find(known, *what.activity) == known.end()) return "expected one of " + names_of(known);
         }
         return {};

@@ -59,10 +59,6 @@ void check_together(const DetectorSpec& detector, const TellFault& tell);
 
 // Scripts.
 
-/// What somebody of natural style can be busy with during an action.
-[[nodiscard]] std::span<const Activity> activities_of(const action::Wait&) noexcept;
-[[nodiscard]] std::span<const Activity> activities_of(const action::Walk&) noexcept;
-[[nodiscard]] std::span<const Activity> activities_of(const action::Work&) noexcept;
 /// The choreographed style would ignore an activity. A message or none.
 [[nodiscard]] std::string activity_fault(const PersonSpec& person, const ScriptedAction& action);
 void check_together(const WarmthSpec& warmth, const TellFault& tell);

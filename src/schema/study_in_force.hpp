@@ -98,13 +98,16 @@ struct PersonInForce : PersonSpec {
   std::optional<ScheduledPerson> part{};  ///< in the trial's schedule; its actions are drawn for each run
 };
 
-struct TrialInForce {
+/// people: those of the script, then whom effects added.
+template <typename Person>
+struct TrialOf {
   std::string id;
-  std::vector<PersonInForce> people;  ///< those of the script, then whom effects added
+  std::vector<Person> people;
   std::optional<double> duration_s{};
   std::optional<ScheduleSpec> schedule{};
   std::optional<RunClock> clock{};  ///< of the first replicate
 };
+using TrialInForce = TrialOf<PersonInForce>;
 
 struct StudyInForce {
   SceneSpec scene;

@@ -14,6 +14,9 @@ namespace pirsim::sim {
 namespace {
 
 using body::Stage;
+using Course = ActionFacts::Course;
+using Needs = ActionFacts::Needs;
+using Pose = ActionFacts::Pose;
 
 constexpr double gap_m = 0.1;          ///< assumed: kept between two people beside their radii
 constexpr double doorway_m = 2.5;      ///< assumed: who comes in is through the door at that distance (tried 2-3)
@@ -40,10 +43,9 @@ Actor::Actor(const CompiledStudy& study, std::uint32_t run, std::uint32_t person
 }
 
 std::string_view Actor::current_phase() const noexcept {
-  if (!done() && begun_ && !action().phase.empty()) return action().phase;
+  if (begun_ && !action().phase.empty()) return action().phase;
   if (!present()) return phase_outside;
-  const bool is_up = body_->got_up();
-  if (!done() && begun_ && !is_up && std::holds_alternative<action::Work>(action().what)) return phase_working;
+  if (facts_.desk_work != nullptr && !body_->got_up()) return phase_working;
   return body::name(body_->motion().stage());
 }
 
@@ -64,8 +66,8 @@ void Actor::note(IncidentKind kind, std::int64_t tick) {
 
 void Actor::begin(const CompiledStudy& study, std::span<const Presence> others) {
   if (done() || action().at_s.value_or(0.0) > 0.0) return;
-  const auto* appear = std::get_if<action::Appear>(&action().what);
-  if (appear == nullptr || somebody_near(appear->point, others)) return;
+  const Vec2* place = facts_of(action().what).appears_at;
+  if (place == nullptr || somebody_near(*place, others)) return;
   const Scene scene{study, others, 0};
   start_action(scene);
   carry_out_first(scene);
@@ -74,6 +76,7 @@ void Actor::begin(const CompiledStudy& study, std::span<const Presence> others) 
 
 void Actor::start_action(const Scene& scene) {
   begun_ = true;
+  facts_ = facts_of(action().what);
   began_ = scene.now;
   note_times(scene.study);
   plan(scene);
@@ -114,7 +117,7 @@ void Actor::carry_on(const Scene& scene) {
       waited_ticks_ = 0;
       if (body_) body_->set_out();
     }
-    if (const auto* work_action = std::get_if<action::Work>(&action().what)) work(*work_action, scene.now);
+    tilt_at_work(scene.now);
     const auto next = scene.now < called_at_ ? std::nullopt : interrupting_action(scene);
     if (!next && !(errands_.empty() && time_is_up(scene.now))) return;
     finish_action();
@@ -131,7 +134,7 @@ std::int64_t Actor::away_until(const CompiledStudy& study, std::int64_t tick) co
     if (actions()[i].at_s) until = ticks(*actions()[i].at_s, study);
   }
   if (!begun_) return action().at_s ? until : tick;
-  const bool waits = errands_.empty() && std::holds_alternative<action::Wait>(action().what);
+  const bool waits = errands_.empty() && facts_.course == Course::stays && facts_.needs == Needs::nothing;
   return waits ? std::min(until, began_ + lasts_ticks_ - 1) : tick;
 }
 
@@ -141,10 +144,11 @@ void Actor::finish_action() {
   if (body_) {
     body_->forget_way();
     body_->set_out();
-    if (std::holds_alternative<action::Work>(action().what)) body_motion().rest();
+    if (facts_.desk_work != nullptr) body_motion().rest();
   }
   ++action_;
   begun_ = false;
+  facts_ = {};
 }
 
 std::optional<std::size_t> Actor::interrupting_action(const Scene& scene) const {
@@ -162,12 +166,9 @@ void Actor::note_times(const CompiledStudy& study) {
   const auto later = std::span(actions()).subspan(action_ + 1);
   const auto call = std::ranges::find_if(later, [](const ScriptedAction& other) { return other.at_s.has_value(); });
   called_at_ = call == later.end() ? std::numeric_limits<std::int64_t>::max() : ticks(*call->at_s, study);
-  lasts_ticks_ = 0;
-  if (const auto* wait = std::get_if<action::Wait>(&action().what)) lasts_ticks_ = ticks(wait->duration_s, study);
-  if (const auto* work = std::get_if<action::Work>(&action().what)) {
-    lasts_ticks_ = ticks(work->duration_s, study);
-    tilt_every_ticks_ = std::max<std::int64_t>(1, ticks(work->tilt_every_s, study));
-  }
+  lasts_ticks_ = ticks(facts_.lasts_s, study);
+  if (facts_.desk_work == nullptr) return;
+  tilt_every_ticks_ = std::max<std::int64_t>(1, ticks(facts_.desk_work->tilt_every_s, study));
 }
 
 bool Actor::time_is_up(std::int64_t now) const noexcept { return now - began_ >= lasts_ticks_; }
@@ -176,48 +177,44 @@ void Actor::plan(const Scene& scene) {
   const auto entrance = [&](const std::string& id) -> const EntranceSpec& {
     return *std::ranges::find(scene.study.scene().entrances, id, &EntranceSpec::id);
   };
-  const Action& what = action().what;
-  const bool stays = std::holds_alternative<action::Work>(what) || std::holds_alternative<action::Wait>(what);
-  if (!stays) sits_on_.reset();
-  const bool arrives = std::holds_alternative<action::Appear>(what) || std::holds_alternative<action::Enter>(what) ||
-                       std::holds_alternative<action::Wait>(what);
-  if (!present() && !arrives) return;  // called away before they came: nothing to do
-  const bool comes_in = std::holds_alternative<action::Appear>(what) || std::holds_alternative<action::Enter>(what);
-  if (present() && comes_in) return;  // called back before they had left
-  if (const auto* appear = std::get_if<action::Appear>(&what)) {
-    errands_.push_back(ComeIn{appear->point, radians(appear->heading_deg)});
-  } else if (const auto* enter = std::get_if<action::Enter>(&what)) {
-    plan_entering(entrance(enter->entrance));
-  } else if (const auto* walk = std::get_if<action::Walk>(&what)) {
-    for (const Vec2& point : walk->points) errands_.push_back(WalkTo{point});
-  } else if (std::holds_alternative<action::Sit>(what)) {
-    plan_sitting(std::get<action::Sit>(what).seat);
-  } else if (std::holds_alternative<action::Rise>(what)) {
+  if (facts_.course != Course::stays) sits_on_.reset();
+  if (!present() && facts_.needs != Needs::nothing) return;  // called away before they came: nothing to do
+  if (present() && facts_.course == Course::comes) return;   // called back before they had left
+  if (facts_.appears_at != nullptr) {
+    errands_.push_back(ComeIn{*facts_.appears_at, radians(*facts_.heading_deg)});
+  } else if (facts_.course == Course::comes) {
+    plan_entering(entrance(*facts_.entrance));
+  } else if (facts_.course == Course::goes) {
+    plan_leaving(entrance(*facts_.entrance));
+  } else if (facts_.seat != nullptr) {
+    plan_sitting(*facts_.seat);
+  } else if (facts_.walks()) {
+    for (const Vec2& point : facts_.walks_to) errands_.push_back(WalkTo{point});
+  } else if (facts_.heading_deg) {
+    errands_.push_back(FaceTo{radians(*facts_.heading_deg)});
+  } else if (facts_.pose == Pose::upright) {
     errands_.push_back(StandUp{});
-  } else if (const auto* turn = std::get_if<action::Turn>(&what)) {
-    errands_.push_back(FaceTo{radians(turn->heading_deg)});
-  } else if (const auto* leave = std::get_if<action::Leave>(&what)) {
-    plan_leaving(entrance(leave->entrance));
-  } else if (const auto* work_action = std::get_if<action::Work>(&what)) {
+  } else if (facts_.desk_work != nullptr) {
     if (body_->motion().stage() == Stage::seated) {
-      begin_work(*work_action);
+      begin_work();
     } else if (!sits_on_) {
       lasts_ticks_ = 0;  // did without a seat
     }
   }
 }
 
-void Actor::begin_work(const action::Work& work) {
+void Actor::begin_work() {
+  const action::Work& work = *facts_.desk_work;
   body_motion().work({natural_ ? 0.0 : work.arm_amplitude_m, work.arm_period_s});
 }
 
 void Actor::plan_entering(const EntranceSpec& door) {
   const ScriptedAction* next = action_ + 1 < actions().size() ? &actions()[action_ + 1] : nullptr;
-  const auto* sit_next = next != nullptr ? std::get_if<action::Sit>(&next->what) : nullptr;
-  if (sit_next != nullptr) errands_.push_back(WaitForSeat{sit_next->seat});  // better outside than in the doorway
+  const std::string* seat_next = next != nullptr ? facts_of(next->what).seat : nullptr;
+  if (seat_next != nullptr) errands_.push_back(WaitForSeat{*seat_next});  // better outside than in the doorway
   errands_.push_back(WaitForDoor{outside_of(door), Through::in});
   errands_.push_back(ComeIn{outside_of(door), heading_of(door.world_from_entrance)});
-  if (next != nullptr && leads_elsewhere(*next)) return;
+  if (next != nullptr && leads_on(*next)) return;
   errands_.push_back(WalkTo{inside_of(door, person().humanoid)});
 }
 
@@ -263,35 +260,25 @@ Vec2 Actor::standing_place(const body::SeatPlace& place, const SeatPlan& seat) c
   return pelvis - seat.stand_back_m * facing;
 }
 
-void Actor::work(const action::Work& work, std::int64_t now) {
+void Actor::tilt_at_work(std::int64_t now) {
+  if (facts_.desk_work == nullptr || natural_ || !body_ || body_->motion().stage() != Stage::seated) return;
+  const std::vector<double>& choices_deg = facts_.desk_work->tilt_choices_deg;
   const std::int64_t since = now - began_;
-  if (natural_ || body_->motion().stage() != Stage::seated) return;
-  if (work.tilt_choices_deg.empty() || since >= lasts_ticks_ || since % tilt_every_ticks_ != 0) return;
-  const auto choice = tilt_stream_.index(static_cast<std::uint32_t>(work.tilt_choices_deg.size()));
-  body_motion().tilt_spine(radians(work.tilt_choices_deg[choice]));
+  if (choices_deg.empty() || since >= lasts_ticks_ || since % tilt_every_ticks_ != 0) return;
+  body_motion().tilt_spine(radians(choices_deg[tilt_stream_.index(static_cast<std::uint32_t>(choices_deg.size()))]));
 }
 
 const action::Work* Actor::choreographed_work() const {
-  if (natural_ || done() || !begun_ || !errands_.empty()) return nullptr;
-  return std::get_if<action::Work>(&action().what);
+  return natural_ || !errands_.empty() ? nullptr : facts_.desk_work;
 }
 
 void Actor::move_naturally() {
-  const std::optional<Activity> busy_with = activity();
-  if (busy_with != Activity::meeting) attention_ = {};
-  natural_->tick(body_motion(), busy_with, attention_);
-}
-
-std::optional<Activity> Actor::activity() const {
-  if (done() || !begun_) return std::nullopt;
-  if (const auto* work = std::get_if<action::Work>(&action().what)) return work->activity.value_or(Activity::typing);
-  if (const auto* wait = std::get_if<action::Wait>(&action().what)) return wait->activity;
-  if (const auto* walk = std::get_if<action::Walk>(&action().what)) return walk->activity;
-  return std::nullopt;
+  if (facts_.activity != Activity::meeting) attention_ = {};
+  natural_->tick(body_motion(), facts_.activity, attention_);
 }
 
 bool Actor::is_at_meeting() const {
-  if (activity() != Activity::meeting) return false;
+  if (facts_.activity != Activity::meeting) return false;
   const Stage stage = body_->motion().stage();
   return stage == Stage::seated || stage == Stage::standing;
 }
@@ -323,12 +310,11 @@ Progress Actor::carry_out(const WaitForDoor& door, const Scene& scene) {
 
 Progress Actor::carry_out(const WaitForSeat& wait, const Scene& scene) {
   if (std::ranges::find(scene.others, wait.seat, &Presence::seat) == scene.others.end()) return Progress::done;
-  const auto* sit = std::get_if<action::Sit>(&action().what);
-  const bool before_coming_in = sit == nullptr;
-  if (before_coming_in) sit = &std::get<action::Sit>(actions()[action_ + 1].what);
+  const bool before_coming_in = facts_.seat == nullptr;
+  const double wait_s = (before_coming_in ? facts_of(actions()[action_ + 1].what) : facts_).seat_wait_s;
   const bool for_good = std::ranges::none_of(
       scene.others, [](const Presence& other) { return other.script == Presence::Script::going_on; });
-  if (!for_good && ++seat_wait_ticks_ < ticks(sit->wait_s, scene.study)) {
+  if (!for_good && ++seat_wait_ticks_ < ticks(wait_s, scene.study)) {
     // Nobody sees them there: rows and occupants tell of it only by who is missing.
     if (before_coming_in && seat_wait_ticks_ == ticks(told_after_s, scene.study)) {
       const auto& next = std::get<WaitForDoor>(errands_[1]);
@@ -341,8 +327,7 @@ Progress Actor::carry_out(const WaitForSeat& wait, const Scene& scene) {
 }
 
 void Actor::do_without_seat(const Scene& scene) {
-  const auto& sit = std::get<action::Sit>(action().what);
-  const SeatSpec* other = sit.if_taken == action::IfTaken::other_seat ? nearest_free_seat(scene) : nullptr;
+  const SeatSpec* other = facts_.if_taken == action::IfTaken::other_seat ? nearest_free_seat(scene) : nullptr;
   note(other != nullptr ? IncidentKind::seat_changed : IncidentKind::seat_missed, scene.now + 1);
   // The errand that asks for this is the first, and about to be popped.
   errands_.resize(1, errands_.front());
@@ -371,14 +356,14 @@ Progress Actor::carry_out(const TakeSeat& take, const Scene&) {
 
 Progress Actor::carry_out(const WalkTo& walk, const Scene& scene) {
   constexpr double near_m = 1.5;  // assumed (1-2): where somebody stands already, beside them will do
-  if (std::holds_alternative<action::Walk>(action().what) && body_->is_held_up(scene.now) &&
-      somebody_near(walk.target, scene.others) && glm::distance(body_->motion().position(), walk.target) < near_m) {
+  if (facts_.walks() && body_->is_held_up(scene.now) && somebody_near(walk.target, scene.others) &&
+      glm::distance(body_->motion().position(), walk.target) < near_m) {
     body_->forget_way();
     return Progress::done;
   }
   const Progress progress = body_->go_to(walk.target, scene.others, scene.now);
   // A seat is left where the walk away from it begins, unless they are about to come back to it.
-  const bool keeps_seat = std::holds_alternative<action::Sit>(action().what) || sits_on_;
+  const bool keeps_seat = facts_.seat != nullptr || sits_on_;
   if (!keeps_seat && body_->motion().stage() == Stage::walking) seat_ = {};
   return progress;
 }
@@ -400,7 +385,7 @@ Progress Actor::carry_out(const SitOn& seat, const Scene& scene) {
   if (body_->motion().stage() == Stage::seated && body_->motion().settled()) {
     sits_on_ = seat;
     // Who got up for somebody goes on with what they were at.
-    if (const auto* work = std::get_if<action::Work>(&action().what)) begin_work(*work);
+    if (facts_.desk_work != nullptr) begin_work();
     return Progress::done;
   }
   if (body_->motion().stage() != Stage::standing || !body_->motion().settled()) return Progress::going_on;

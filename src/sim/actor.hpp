@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "pirsim/random.hpp"
+#include "schema/action_facts.hpp"
 #include "schema/phase_names.hpp"
 #include "sim/compiled_study.hpp"
 #include "sim/natural_motion.hpp"
@@ -112,12 +113,10 @@ class Actor {
   void plan_entering(const EntranceSpec& door);
   void plan_leaving(const EntranceSpec& door);
   void plan_sitting(std::string_view seat);
-  void work(const action::Work& work, std::int64_t now);
+  void tilt_at_work(std::int64_t now);
   /// What a person of the paper's style is at, at a seat; null: nothing.
   [[nodiscard]] const action::Work* choreographed_work() const;
   void move_naturally();
-  /// What somebody of natural style is busy with by the current action.
-  [[nodiscard]] std::optional<Activity> activity() const;
   void carry_on(const Scene& scene);
   void finish_action();
   void note(IncidentKind kind, std::int64_t tick);
@@ -139,7 +138,7 @@ class Actor {
   Progress carry_out(const StandUp& errand, const Scene& scene);
   Progress carry_out(const WalkOut& errand, const Scene& scene);
   Progress carry_out(const Vanish& errand, const Scene& scene);
-  void begin_work(const action::Work& work);
+  void begin_work();
   /// The seat stayed taken: another one, or none.
   void do_without_seat(const Scene& scene);
   [[nodiscard]] const SeatSpec* nearest_free_seat(const Scene& scene) const;
@@ -158,6 +157,7 @@ class Actor {
   std::optional<NaturalMotion> natural_;  ///< of who is of that style
   std::size_t action_ = 0;                ///< index of the current action
   bool begun_ = false;                    ///< the current action has begun
+  ActionFacts facts_;                     ///< of the current action; of none unless it has begun
   std::int64_t began_ = 0;                ///< tick at which it did
   std::int64_t lasts_ticks_ = 0;          ///< of a wait or work; others end when their errands are done
   std::int64_t called_at_ = 0;            ///< tick at which a later action interrupts the current one

@@ -6,9 +6,14 @@
 
 #include "core/near_names.hpp"
 #include "pirsim/error.hpp"
+#include "schema/action_facts.hpp"
 
 namespace pirsim::sim {
 namespace {
+
+using Course = ActionFacts::Course;
+using Needs = ActionFacts::Needs;
+using Pose = ActionFacts::Pose;
 
 template <typename Spec>
 void check_name(const std::vector<Spec>& known, const std::string& id, const std::string& kind, const SceneSpec& scene,
@@ -35,56 +40,31 @@ class Check {
       }
       last_at_s_ = *action.at_s;
     }
-    where_ = &action;
-    std::visit(*this, action.what);
-  }
-  void operator()(const action::Wait&) {}
-  void operator()(const action::Appear& appear) {
-    arrive();
-    if (!scene_.floor.contains(appear.point)) fault(*where_, "appears outside the floor area");
-  }
-  void operator()(const action::Enter& enter) {
-    arrive();
-    check_name(scene_.entrances, enter.entrance, "entrance", scene_, where_->where, diagnostics_);
-  }
-  void operator()(const action::Walk&) {
-    need_presence();
-    seated_ = false;
-  }
-  void operator()(const action::Turn&) {
-    need_presence();
-    seated_ = false;
-  }
-  void operator()(const action::Rise&) {
-    need_presence();
-    if (present_ && !seated_) fault(*where_, "rises without having sat down");
-    seated_ = false;
-  }
-  void operator()(const action::Sit& sit) {
-    need_presence();
-    check_name(scene_.seats, sit.seat, "seat", scene_, where_->where, diagnostics_);
-    seated_ = true;
-  }
-  void operator()(const action::Work&) {
-    need_presence();
-    if (present_ && !seated_) fault(*where_, "works without having sat down");
-  }
-  void operator()(const action::Leave& leave) {
-    need_presence();
-    check_name(scene_.entrances, leave.entrance, "entrance", scene_, where_->where, diagnostics_);
-    present_ = seated_ = false;
+    const ActionFacts facts = facts_of(action.what);
+    if (facts.course == Course::comes) arrive(action);
+    if (facts.needs != Needs::nothing) need_presence(action);
+    if (facts.appears_at != nullptr && !scene_.floor.contains(*facts.appears_at)) {
+      fault(action, "appears outside the floor area");
+    }
+    if (facts.entrance != nullptr) {
+      check_name(scene_.entrances, *facts.entrance, "entrance", scene_, action.where, diagnostics_);
+    }
+    if (facts.seat != nullptr) check_name(scene_.seats, *facts.seat, "seat", scene_, action.where, diagnostics_);
+    if (facts.needs == Needs::seat && !seated_) fault(action, std::string(facts.name) + "s without having sat down");
+    if (facts.course == Course::goes) present_ = false;
+    if (facts.course != Course::comes && facts.pose != Pose::kept) seated_ = facts.pose == Pose::seated;
   }
 
  private:
   void fault(const ScriptedAction& action, const std::string& what) {
     diagnostics_.error(action.where, "'" + person_.id + "' " + what);
   }
-  void arrive() {
-    if (present_) fault(*where_, "is in the room already");
+  void arrive(const ScriptedAction& action) {
+    if (present_) fault(action, "is in the room already");
     present_ = true;
   }
-  void need_presence() {
-    if (!present_) fault(*where_, "is not in the room yet: let them `enter` or `appear` first");
+  void need_presence(const ScriptedAction& action) {
+    if (!present_) fault(action, "is not in the room yet: let them `enter` or `appear` first");
     present_ = true;  // one message is enough
   }
 
@@ -92,7 +72,6 @@ class Check {
   const PersonSpec& person_;
   const std::optional<RunClock>& clock_;
   Diagnostics& diagnostics_;
-  const ScriptedAction* where_ = nullptr;
   double last_at_s_ = 0.0;
   bool present_ = false;
   bool seated_ = false;

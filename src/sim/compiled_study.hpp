@@ -42,13 +42,7 @@ struct PersonModel {
   BodyRadiance radiance{};
 };
 
-struct TrialModel {
-  std::string id;
-  std::vector<PersonModel> people;
-  std::optional<double> duration_s{};
-  std::optional<ScheduleSpec> schedule{};
-  std::optional<RunClock> clock{};  ///< of the first replicate
-};
+using TrialModel = TrialOf<PersonModel>;
 
 class CompiledStudy {
  public:

@@ -3,7 +3,6 @@
 
 #include "body/humanoid.hpp"
 #include "pirsim/scene.hpp"
-#include "pirsim/script.hpp"
 
 namespace pirsim::sim {
 
@@ -14,11 +13,6 @@ namespace pirsim::sim {
 /// Where they stop who only come in.
 [[nodiscard]] inline Vec2 inside_of(const EntranceSpec& door, const body::Humanoid& humanoid) {
   return floor_point(door.world_from_entrance * Vec3(0, 0, -2.0 * humanoid.clearance_radius_m()));
-}
-/// Does one who comes in go on at once to where this action leads?
-[[nodiscard]] inline bool leads_elsewhere(const ScriptedAction& action) {
-  return !action.at_s &&
-         (std::holds_alternative<action::Sit>(action.what) || std::holds_alternative<action::Walk>(action.what));
 }
 
 }  // namespace pirsim::sim

@@ -15,6 +15,7 @@
 #include "body/footprint.hpp"
 #include "body/seat_height.hpp"
 #include "core/fixed.hpp"
+#include "schema/action_facts.hpp"
 #include "schema/limits.hpp"
 #include "sim/alike.hpp"
 #include "sim/check_actions.hpp"
@@ -79,24 +80,20 @@ class Rehearsal {
     if (person_.spec.part) rehearse_schedule(*schedule);
     const std::vector<ScriptedAction>& actions = person_.spec.actions;
     for (std::size_t i = 0; i < actions.size(); ++i) {
-      const ScriptedAction& action = actions[i];
-      if (const auto* appear = std::get_if<action::Appear>(&action.what)) come_into_being(appear->point, action.where);
-      if (const auto* enter = std::get_if<action::Enter>(&action.what)) {
-        const bool goes_on = i + 1 < actions.size() && leads_elsewhere(actions[i + 1]);
-        come_in_by(enter->entrance);
-        if (!goes_on)
-          go_to(inside_of(door_of(enter->entrance), person_.humanoid),
-                "the floor behind entrance '" + enter->entrance + "'", action.where);
+      const auto& [what, at_s, phase, where] = actions[i];
+      const ActionFacts facts = facts_of(what);
+      const bool comes_in = facts.course == ActionFacts::Course::comes && facts.entrance != nullptr;
+      if (facts.appears_at != nullptr) come_into_being(*facts.appears_at, where);
+      if (comes_in) come_in_by(*facts.entrance);
+      if (comes_in && !(i + 1 < actions.size() && leads_on(actions[i + 1]))) {
+        go_to(inside_of(door_of(*facts.entrance), person_.humanoid),
+              "the floor behind entrance '" + *facts.entrance + "'", where);
       }
       if (!at_) continue;
-      if (const auto* sit = std::get_if<action::Sit>(&action.what)) {
-        sit_down(sit->seat, action.where);
-        if (at_ && sit->if_taken == action::IfTaken::other_seat) note_other_seats();
-      }
-      if (const auto* leave = std::get_if<action::Leave>(&action.what)) go_out_by(leave->entrance, action.where);
-      if (const auto* walk = std::get_if<action::Walk>(&action.what)) {
-        for (const Vec2& point : walk->points) go_to(point, "point " + text(point), action.where);
-      }
+      for (const Vec2& point : facts.walks_to) go_to(point, "point " + text(point), where);
+      if (facts.seat != nullptr) sit_down(*facts.seat, where);
+      if (at_ && facts.if_taken == action::IfTaken::other_seat) note_other_seats();
+      if (facts.course == ActionFacts::Course::goes) go_out_by(*facts.entrance, where);
     }
   }
 
@@ -382,11 +379,8 @@ std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std:
   Diagnostics diagnostics;
   for (const TrialInForce& trial : trials) {
     const std::vector<PersonSpec>& written = study.script_given().trials[planned_trials.size()].people;
-    TrialModel& planned = planned_trials.emplace_back();
-    planned.id = trial.id;
-    planned.duration_s = trial.duration_s;
-    planned.schedule = trial.schedule;
-    planned.clock = trial.clock;
+    TrialModel& planned =
+        planned_trials.emplace_back(TrialModel{trial.id, {}, trial.duration_s, trial.schedule, trial.clock});
     for (const PersonInForce& spec : trial.people) {
       body::Humanoid humanoid(spec);
       double clearance_m = humanoid.clearance_radius_m();
