@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "reconcile/data/bit_statistics.hpp"
+#include "schema/action_facts.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -203,12 +204,8 @@ class TrialStatistics {
 
 /// Of the first desk work in a trial; any other number where there is none.
 double arm_period_s(const TrialSpec& trial) {
-  for (const PersonSpec& person : trial.people) {
-    for (const ScriptedAction& action : person.actions) {
-      if (const auto* work = std::get_if<action::Work>(&action.what)) return work->arm_period_s;
-    }
-  }
-  return action::Work{}.arm_period_s;
+  const auto* work = first<action::Work>(trial);
+  return (work != nullptr ? *work : action::Work{}).arm_period_s;
 }
 
 }  // namespace

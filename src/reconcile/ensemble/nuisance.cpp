@@ -7,6 +7,7 @@
 #include "effects/catalogue.hpp"
 #include "pirsim/geometry.hpp"
 #include "pirsim/random.hpp"
+#include "schema/action_facts.hpp"
 #include "schema/fields.hpp"
 
 namespace pirsim::reconcile {
@@ -70,12 +71,10 @@ void change(PersonSpec& person, const Body& body) {
   each_number(person, [](const char*, double& value, const NumberRange& accepted) {
     value = std::clamp(value, accepted.min, accepted.max);
   });
-  for (ScriptedAction& action : person.actions) {
-    if (auto* work = std::get_if<action::Work>(&action.what)) {
-      work->arm_amplitude_m =
-          std::min(work->arm_amplitude_m * body.arms, std::max(work->arm_amplitude_m, most_arm_amplitude_m));
-    }
-  }
+  for_each<action::Work>(person, [&](action::Work& work) {
+    work.arm_amplitude_m =
+        std::min(work.arm_amplitude_m * body.arms, std::max(work.arm_amplitude_m, most_arm_amplitude_m));
+  });
 }
 
 void change_people(ScriptSpec& script, const Draw& draw) {

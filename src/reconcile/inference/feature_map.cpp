@@ -7,6 +7,7 @@
 
 #include "core/parallel.hpp"
 #include "reconcile/inference/feature_writer.hpp"
+#include "schema/action_facts.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -36,21 +37,12 @@ void for_each_cell(const StudyFrame& frame, const Visit& visit) {
   }
 }
 
-const action::Sit* first_seat(const TrialSpec& trial) {
-  for (const PersonSpec& person : trial.people) {
-    for (const ScriptedAction& action : person.actions) {
-      if (const auto* sit = std::get_if<action::Sit>(&action.what)) return sit;
-    }
-  }
-  return nullptr;
-}
-
 }  // namespace
 
 std::vector<CellKnowledge> cell_knowledge(const SceneSpec& scene, const ScriptSpec& script) {
   std::vector<CellKnowledge> cells;
   for (const TrialSpec& trial : script.trials) {
-    const action::Sit* sit = first_seat(trial);
+    const action::Sit* sit = first<action::Sit>(trial);
     const auto seat = sit == nullptr ? scene.seats.end() : std::ranges::find(scene.seats, sit->seat, &SeatSpec::id);
     for (const SensorSpec& sensor : scene.sensors) {
       cells.emplace_back();

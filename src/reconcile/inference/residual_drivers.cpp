@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "schema/action_facts.hpp"
 #include "stats/intervals.hpp"
 
 namespace pirsim::reconcile {
@@ -70,11 +71,7 @@ class Times {
 
 const action::Work* first_work(const ScriptSpec& script) {
   for (const TrialSpec& trial : script.trials) {
-    for (const PersonSpec& person : trial.people) {
-      for (const ScriptedAction& step : person.actions) {
-        if (const auto* work = std::get_if<action::Work>(&step.what)) return work;
-      }
-    }
+    if (const auto* work = first<action::Work>(trial)) return work;
   }
   return nullptr;
 }
