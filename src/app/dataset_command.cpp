@@ -20,9 +20,9 @@ struct DatasetCommand {
 };
 
 /// Tells stages and progress on standard error.
-class Teller {
+class DatasetTeller {
  public:
-  explicit Teller(Verbosity verbosity) : verbosity_(verbosity) {}
+  explicit DatasetTeller(Verbosity verbosity) : verbosity_(verbosity) {}
   [[nodiscard]] dataset::DatasetObserver observer() {
     return {[this](Stage stage, std::uint32_t total) { progress_.emplace(work_of(stage, total), verbosity_); },
             [this] { progress_->finished(); }};
@@ -85,7 +85,7 @@ void run(const DatasetCommand& command) {
     return dataset::read_recipe(command.recipe);
   }();
   const StopRequest stop;  // of all phases: the last one takes minutes too
-  Teller teller(command.inputs.verbosity);
+  DatasetTeller teller(command.inputs.verbosity);
   dataset::DatasetOptions options;
   options.scenes = scene_options(command.inputs);
   options.threads = command.threads;

@@ -75,9 +75,9 @@ void tell_notes(const std::vector<reconcile::DataNote>& notes, Verbosity verbosi
 }
 
 /// Tells stages and progress on standard error.
-class Teller {
+class AnalysisTeller {
  public:
-  explicit Teller(Verbosity verbosity) : verbosity_(verbosity) {}
+  explicit AnalysisTeller(Verbosity verbosity) : verbosity_(verbosity) {}
   [[nodiscard]] reconcile::Observer observer() {
     reconcile::Observer observer;
     observer.stage = [this](const reconcile::Stage& stage) {
@@ -107,7 +107,7 @@ class Teller {
   std::uint32_t told_ = 0;
 };
 
-reconcile::Context context_of(const AnalysisOptions& options, Teller& teller) {
+reconcile::Context context_of(const AnalysisOptions& options, AnalysisTeller& teller) {
   return {options.seed, options.threads, teller.observer()};
 }
 
@@ -131,7 +131,7 @@ void reconcile_selftest(const Inputs& inputs, const AnalysisOptions& analysis, c
                                        options.verified};
   require_writable(options.output);
   settings.injected_folder = settings.analysis.table_folder / "injected";
-  Teller teller(inputs.verbosity);
+  AnalysisTeller teller(inputs.verbosity);
   const reconcile::SelftestResult result = reconcile::selftest(scene, script, settings, context_of(analysis, teller));
   teller.finish();
   std::cout << reconcile::to_markdown(result);
@@ -146,7 +146,7 @@ void reconcile_plan(const Inputs& inputs, const AnalysisOptions& analysis, const
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   reconcile::PlanSettings settings{settings_of(analysis, options.output, script), options.kind, options.runs};
   require_writable(options.output);
-  Teller teller(inputs.verbosity);
+  AnalysisTeller teller(inputs.verbosity);
   const reconcile::PlanResult result = reconcile::plan(scene, script, settings, context_of(analysis, teller));
   teller.finish();
   std::cout << reconcile::sentence(result) << '\n';
@@ -177,7 +177,7 @@ void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const
   settings.max_effects = options.max_effects;
   settings.holdout = reconcile::holdout_of(options.holdout, frame, measured);
 
-  Teller teller(inputs.verbosity);
+  AnalysisTeller teller(inputs.verbosity);
   const reconcile::Context context = context_of(analysis, teller);
   const reconcile::Outcome outcome = reconcile::reconcile(scene, script, measured, settings, context);
   teller.finish();

@@ -11,14 +11,13 @@ namespace pirsim::body {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double fitted_stature_m = 1.86;
 
 // assumed: abduction 10 (5-15), elbow 15 (10-30), swing 18 (15-25) degrees at the longest step.
-constexpr double hanging_abduction = 10 * degree;
-constexpr double hanging_elbow = 15 * degree;
+constexpr double hanging_abduction = radians(10);
+constexpr double hanging_elbow = radians(15);
 constexpr double elbow_per_swing = 0.4;  // 0.3-1: the elbow bends further as the arm comes forward
-constexpr double widest_swing = 18 * degree;
+constexpr double widest_swing = radians(18);
 constexpr double longest_half_step_m = 0.25;  // semi-axis of the foot's ellipse, paper section 2.2
 
 constexpr double hand_along_thigh = 0.68;  // assumed (0.5-0.9): from hip to knee
@@ -40,9 +39,8 @@ constexpr double longest_reach = 0.995;  // of the stretched arm, assumed (0.98-
 // as in the fitted base place. The transition has this width, so that the elbow's speed stays bounded.
 constexpr double lowest_elbow = 0.97;
 constexpr double lowest_elbow_blend = 0.06;
-constexpr double lift_over_edge = 35 * degree;  // assumed (20-60): further bending of the elbow on the way
+constexpr double lift_over_edge = radians(35);  // assumed (20-60): further bending of the elbow on the way
 
-double sign_of(std::size_t side) { return side == 0 ? -1.0 : 1.0; }
 
 /// min(x, limit) without a kink.
 double smooth_min(double x, double limit, double width) {

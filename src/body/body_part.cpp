@@ -8,7 +8,7 @@ namespace pirsim::body {
 
 static_assert(body_part_names.size() == n_parts);
 
-std::string_view name(Part part) noexcept { return body_part_names[static_cast<std::size_t>(part)]; }
+std::string_view name(Part part) noexcept { return body_part_names[at(part)]; }
 
 std::array<double, n_parts> surface_temperatures_c(const WarmthSpec& warmth, double ambient_c) {
   constexpr double insulation_per_clo = 0.155;  // m^2 K/W

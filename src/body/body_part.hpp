@@ -28,6 +28,8 @@ enum class Part : std::size_t {
   right_foot,  ///< boxes
 };
 inline constexpr std::size_t n_parts = 13;
+/// The index of a part in an array that has an element a part.
+[[nodiscard]] constexpr std::size_t at(Part part) noexcept { return static_cast<std::size_t>(part); }
 /// "left_upper_arm" and so on, as glTF node names and messages use it.
 [[nodiscard]] std::string_view name(Part part) noexcept;
 

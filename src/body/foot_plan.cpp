@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numbers>
 
 namespace pirsim::body {
 
 namespace {
-constexpr double pi = std::numbers::pi;
 constexpr int samples_per_step = 8;
 // Within one step's way; assumed (90-120 degrees): beyond, the hips would pass their limits.
 constexpr double sharpest_bend = 100.0 * pi / 180.0;

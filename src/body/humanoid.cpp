@@ -25,7 +25,6 @@ constexpr double foot = 0.0143;
 
 constexpr double tissue_density_kg_m3 = 1050.0;  // assumed; limbs 1030-1100
 // Widths without a source, assumed; the range considered stands behind each.
-constexpr double reference_stature_m = 1.86;
 constexpr double reference_mass_kg = 80.0;
 constexpr double pelvis_radius_m = 0.09;          // 0.08-0.10: 0.09 sits on a chair of 0.44 m
 constexpr double torso_half_width_m = 0.165;      // 0.15-0.18
@@ -92,8 +91,8 @@ Humanoid::Humanoid(const PersonSpec& person)
   const double h = m.stature_m;
   // Widths grow as those of a body of constant density do.
   const double girth = std::sqrt((person.mass_kg / reference_mass_kg) / (h / reference_stature_m));
-  const auto set = [this](Part part, const Shape& shape) { primitives_[static_cast<std::size_t>(part)] = shape; };
-  const auto mass = [this](Part part) { return masses_kg_[static_cast<std::size_t>(part)]; };
+  const auto set = [this](Part part, const Shape& shape) { primitives_[at(part)] = shape; };
+  const auto mass = [this](Part part) { return masses_kg_[at(part)]; };
 
   set(Part::pelvis, Capsule{pelvis_radius_m * girth, 0.5 * m.hip_width_m});
   const double torso_half_height = 0.5 * (torso_top * h - m.hip_height_m - torso_bottom * h);
@@ -116,24 +115,24 @@ Humanoid::Humanoid(const PersonSpec& person)
 
 double Humanoid::half_depth_m() const noexcept {
   constexpr double to_spare_m = 0.01;  // assumed (0-0.03)
-  return std::get<Box>(primitives_[static_cast<std::size_t>(Part::torso)]).half_extents.z + to_spare_m;
+  return std::get<Box>(primitives_[at(Part::torso)]).half_extents.z + to_spare_m;
 }
 
 double Humanoid::half_width_m() const noexcept {
   constexpr double to_spare_m = 0.02;  // assumed (0-0.04)
-  return std::get<Box>(primitives_[static_cast<std::size_t>(Part::torso)]).half_extents.x + to_spare_m;
+  return std::get<Box>(primitives_[at(Part::torso)]).half_extents.x + to_spare_m;
 }
 
 double Humanoid::trunk_radius_m() const noexcept {
-  const Vec3& torso = std::get<Box>(primitives_[static_cast<std::size_t>(Part::torso)]).half_extents;
-  const auto& pelvis = std::get<Capsule>(primitives_[static_cast<std::size_t>(Part::pelvis)]);
+  const Vec3& torso = std::get<Box>(primitives_[at(Part::torso)]).half_extents;
+  const auto& pelvis = std::get<Capsule>(primitives_[at(Part::pelvis)]);
   return std::max(std::hypot(torso.x, torso.z), pelvis.half_length + pelvis.radius);
 }
 
 double Humanoid::trunk_height_m() const noexcept { return torso_top * measures_.stature_m - measures_.hip_height_m; }
 
 double Humanoid::radius_m(Part part) const noexcept {
-  const Shape& shape = primitives_[static_cast<std::size_t>(part)];
+  const Shape& shape = primitives_[at(part)];
   if (const auto* capsule = std::get_if<Capsule>(&shape)) return capsule->radius;
   const auto* sphere = std::get_if<Sphere>(&shape);
   assert(sphere != nullptr);

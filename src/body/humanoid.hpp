@@ -8,6 +8,9 @@
 
 namespace pirsim::body {
 
+/// Of the person whose widths and movements the sources give; those of others are scaled from theirs.
+inline constexpr double reference_stature_m = 1.86;
+
 /// Lengths in metres as fractions of stature. Ref: [DrillisContini1966].
 struct Measures {
   double stature_m = 0.0;

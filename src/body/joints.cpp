@@ -10,8 +10,6 @@ namespace pirsim::body {
 
 namespace {
 
-constexpr std::size_t at(Part part) { return static_cast<std::size_t>(part); }
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double rounding = 1e-6;  // degrees: a hinge is exact but for rounding
 
 struct Link {
@@ -33,8 +31,8 @@ constexpr std::array<Link, n_joints> links{{{Part::pelvis, Part::torso},
                                             {Part::right_shank, Part::right_foot}}};
 
 constexpr JointLimits degrees(const JointAngles& lower, const JointAngles& upper) {
-  return {{lower.flexion * degree, lower.abduction * degree, lower.twist * degree},
-          {upper.flexion * degree, upper.abduction * degree, upper.twist * degree}};
+  return {{radians(lower.flexion), radians(lower.abduction), radians(lower.twist)},
+          {radians(upper.flexion), radians(upper.abduction), radians(upper.twist)}};
 }
 
 // Ref: [AAOS1965] for the ranges of motion; rows marked `assumed` differ from it, with the reason.

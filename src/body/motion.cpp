@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numbers>
 #include <string>
 
 #include "pirsim/error.hpp"
@@ -14,20 +13,18 @@ namespace pirsim::body {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
-constexpr double reference_stature_m = 1.86;
 
 // Paper, section 2.2: ellipse 0.5 m long and 0.3 m high.
 constexpr double longest_step_m = 0.5;
 constexpr double walking_lift_m = 0.15;
 constexpr double walking_pitch_per_lift = 2.6;         // assumed (1-2.9 rad/m): 13 degrees at mid-swing
 constexpr double walking_acceleration_m_s2 = 1.5;      // assumed (1-2)
-constexpr double turning_step = 22.5 * degree;         // of the pelvis; each foot turns by up to twice that
+constexpr double turning_step = radians(22.5);         // of the pelvis; each foot turns by up to twice that
 constexpr double turning_lift_m = 0.05;                // assumed (0.03-0.08)
-constexpr double turning_speed = 90 * degree;          // per second, assumed (60-120)
-constexpr double turning_acceleration = 180 * degree;  // per second squared, assumed (120-360)
+constexpr double turning_speed = radians(90);          // per second, assumed (60-120)
+constexpr double turning_acceleration = radians(180);  // per second squared, assumed (120-360)
 constexpr double standstill_m_s = 0.05;                // assumed: slower than this is waiting
-constexpr double turn_before_walking = 20 * degree;    // assumed: less is blended into the first step
+constexpr double turn_before_walking = radians(20);    // assumed: less is blended into the first step
 constexpr double furthest_from_route_m = 0.1;          // assumed: more than that is another place
 
 constexpr double fall_s = 1.2;                  // assumed (0.8-2)
@@ -37,8 +34,8 @@ constexpr double reach_s = 1.0;                 // assumed (0.6-1.5): hands betw
 constexpr double tilt_s = 1.0;                  // assumed (0.5-2): for 15 degrees of spine tilt
 constexpr double shortest_tilt_s = 0.4;         // assumed
 constexpr double chair_turn_s = 1.5;            // assumed (1-3): a quarter turn
-constexpr double backmost_tilt = -20 * degree;  // within the spine's limits, with room for a passing overshoot
-constexpr double foremost_tilt = 50 * degree;
+constexpr double backmost_tilt = radians(-20);  // within the spine's limits, with room for a passing overshoot
+constexpr double foremost_tilt = radians(50);
 
 [[noreturn]] void refuse(const char* command, Stage stage) {
   throw Error(ErrorCode::internal, std::string(command) + " is not possible while " + std::string(name(stage)));
@@ -181,10 +178,10 @@ void Motion::rest() {
   if (stage_ == Stage::seated) tilt_spine(0.0);
 }
 
-void Motion::tilt_spine(double radians) {
+void Motion::tilt_spine(double target_rad) {
   if (stage_ != Stage::seated) refuse("tilting the spine", stage_);
-  const double target = std::clamp(radians, backmost_tilt, foremost_tilt);
-  const double seconds = tilt_s * std::sqrt(std::abs(target - tilt_.value()) / (15 * degree));
+  const double target = std::clamp(target_rad, backmost_tilt, foremost_tilt);
+  const double seconds = tilt_s * std::sqrt(std::abs(target - tilt_.value()) / radians(15));
   tilt_.move_to(target, ticks(std::max(seconds, shortest_tilt_s)));
 }
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numbers>
 
 #include "body/motion.hpp"
 #include "body/poser.hpp"
@@ -11,8 +10,6 @@ namespace pirsim::body {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-constexpr double reference_stature_m = 1.86;
 constexpr double furthest_extension = 0.998;  // of a stretched leg that stands off to the side; assumed (0.995-1)
 /// Within the spine's limits; tilts alone are within them already.
 double swayed(double tilt) { return std::clamp(tilt, -20 * pi / 180, 50 * pi / 180); }

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdio>
 #include <glm/geometric.hpp>
-#include <numbers>
 #include <string>
 
 #include "pirsim/error.hpp"
@@ -16,14 +15,13 @@ namespace pirsim::body {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double leg_extension = 0.995;      // assumed (0.99-1): knees 11 degrees bent
 constexpr double furthest_off_axis_m = 0.3;  // assumed: more than that is another place, not an error
-constexpr double furthest_off_heading = 45 * degree;
+constexpr double furthest_off_heading = radians(45);
 constexpr double furthest_slide_m = 1.5;       // assumed: a chair's way from under a table
 constexpr double negligible_slide_m = 0.02;    // assumed: less is leaned away rather than walked
-constexpr double lowest_thigh = 120 * degree;  // from the vertical; knees bent by about 130 degrees
-constexpr double highest_thigh = 30 * degree;  // leaning rather than sitting
+constexpr double lowest_thigh = radians(120);  // from the vertical; knees bent by about 130 degrees
+constexpr double highest_thigh = radians(30);  // leaning rather than sitting
 // A chair is moved by small steps. assumed (step 0.15-0.3 m, lift 0.02-0.05 m)
 constexpr StepStyle shuffle{.step = 0.2, .lift_m = 0.03, .pitch_per_lift = 1.0, .first_foot = 0};
 

@@ -15,9 +15,7 @@ const Vec3 x_axis(1, 0, 0);
 const Vec3 y_axis(0, 1, 0);
 const Vec3 z_axis(0, 0, 1);
 
-constexpr std::size_t at(Part part) { return static_cast<std::size_t>(part); }
-constexpr std::size_t at(Part left, std::size_t side) { return static_cast<std::size_t>(left) + side; }
-double sign_of(std::size_t side) { return side == 0 ? -1.0 : 1.0; }
+constexpr std::size_t at(Part left, std::size_t side) { return at(left) + side; }
 
 /// The pelvis capsule's Y points to the person's right.
 Quat hips_from_pelvis() { return {std::numbers::sqrt2 / 2, 0.0, 0.0, -std::numbers::sqrt2 / 2}; }

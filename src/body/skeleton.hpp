@@ -60,7 +60,9 @@ struct Pose {
 [[nodiscard]] Frame world_from_torso(const Pose& pose) noexcept;
 /// The neck's axis, behind the head's centre.
 [[nodiscard]] double neck_behind_m(const Measures& measures) noexcept;
-/// The shoulder joint in that frame.
+/// The direction along X of the left side, 0, or the right side, 1.
+[[nodiscard]] constexpr double sign_of(std::size_t side) noexcept { return side == 0 ? -1.0 : 1.0; }
+/// The shoulder joint in the torso's frame.
 [[nodiscard]] Vec3 shoulder(const Measures& measures, std::size_t side) noexcept;
 /// The arm whose elbow and hand are at these points of the torso's frame; bone lengths win over the hand's place.
 [[nodiscard]] ArmPose arm_through(const Vec3& shoulder, const Vec3& elbow, const Vec3& hand) noexcept;

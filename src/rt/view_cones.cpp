@@ -12,7 +12,7 @@ namespace {
 /// Widens cones (radians) and spheres (metres, and as a share of the distance) far beyond single precision's rounding.
 constexpr double angle_margin = 1e-4;
 constexpr float distance_margin = 1e-3F;
-constexpr float relative_margin = 1e-5F;
+constexpr float distance_share = 1e-5F;
 
 ViewCone touches_everything() noexcept {
   ViewCone cone;
@@ -64,7 +64,7 @@ bool may_touch(const ViewCone& cone, const BoundingSphere& sphere) noexcept {
   const Vec3f offset = sphere.centre - cone.apex;
   const float along = glm::dot(offset, cone.axis);
   const float across = glm::length(offset - cone.axis * along);
-  const float reach = sphere.radius + distance_margin + relative_margin * (std::abs(along) + across);
+  const float reach = sphere.radius + distance_margin + distance_share * (std::abs(along) + across);
   // Projection of the offset on the cone's outward normal: at most the distance to the cone, equal beside it.
   const bool is_beside = across * cone.cosine - along * cone.sine > reach;
   return !is_beside && along - reach <= cone.length;

@@ -10,7 +10,7 @@ namespace pirsim::sim {
 namespace {
 
 using body::Stage;
-using Solidity = Presence::Solidity;
+using PersonSolidity = Presence::Solidity;
 
 constexpr double wish_reaches_m = 3.0;  ///< assumed: who stands farther along a wished way isn't concerned yet
 constexpr double aside_most_s = 10.0;   ///< assumed: nobody waits aside for longer (tried 5-20)
@@ -156,7 +156,7 @@ bool Pedestrian::gets_up(std::span<const Presence> others, std::int64_t now) {
 bool Pedestrian::makes_way_among(std::span<const Presence> others, std::int64_t now, Sitter sitter) {
   if (aside_) return waits_aside(others, now);
   if (motion_.stage() == Stage::seated) {
-    return sitter == Sitter::may_get_up && solidity_ == Solidity::solid && gets_up(others, now);
+    return sitter == Sitter::may_get_up && solidity_ == PersonSolidity::solid && gets_up(others, now);
   }
   return steps_aside(others, now);
 }
@@ -186,7 +186,7 @@ bool Pedestrian::is_past(const Aside& aside, std::span<const Presence> others) c
 
 /// Off the way that somebody on foot wishes to go, if there is a place to wait.
 bool Pedestrian::steps_aside(std::span<const Presence> others, std::int64_t now) {
-  if (!on_feet() || solidity_ != Solidity::solid) return false;
+  if (!on_feet() || solidity_ != PersonSolidity::solid) return false;
   if (motion_.stage() == Stage::turning || now % ticks(search_every_s) != 0) return false;
   const bool walks_freely = motion_.speed_m_s() > 0.0 && !held_up_since_;
   if (walks_freely) return false;

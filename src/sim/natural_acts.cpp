@@ -11,7 +11,6 @@ using body::Channel;
 using Side = Stroke::Side;
 using enum Act::After;
 
-constexpr double degree = pi / 180.0;
 
 // The exponent: Ref: [Nakamura2007], near 0.9 for the locomotor activity of healthy people. The ends are assumed
 // (shortest 0.5-2 s, longest 300-1200 s).
@@ -23,16 +22,16 @@ constexpr const char* assumed = "assumed";
 constexpr const char* reading_speed = "weight: a page of 300 words takes 75 s at 238 words a minute [Brysbaert2019]";
 
 // Shifts: the body comes to rest in another posture.
-constexpr Stroke lean[]{{Channel::trunk_tilt, -10 * degree, 14 * degree}};
-constexpr Stroke shift_on_chair[]{{Channel::trunk_lean, 2 * degree, 7 * degree, Side::either},
-                                  {Channel::trunk_tilt, -6 * degree, 8 * degree}};
-constexpr Stroke turn_chair[]{{Channel::chair_turn, 4 * degree, 18 * degree, Side::either}};
+constexpr Stroke lean[]{{Channel::trunk_tilt, radians(-10), radians(14)}};
+constexpr Stroke shift_on_chair[]{{Channel::trunk_lean, radians(2), radians(7), Side::either},
+                                  {Channel::trunk_tilt, radians(-6), radians(8)}};
+constexpr Stroke turn_chair[]{{Channel::chair_turn, radians(4), radians(18), Side::either}};
 constexpr Act seated_shifts[]{{"lean", 1, lean, 1.4, 1, 1, stays, assumed},
                               {"shift on the chair", 1, shift_on_chair, 1.0, 1, 1, stays, assumed},
                               {"turn the chair", 1, turn_chair, 1.5, 1, 1, stays, assumed}};
 
-constexpr Stroke look[]{{Channel::head_turn, 15 * degree, 50 * degree, Side::either}};
-constexpr Stroke sway[]{{Channel::trunk_tilt, 1 * degree, 4 * degree, Side::either}};
+constexpr Stroke look[]{{Channel::head_turn, radians(15), radians(50), Side::either}};
+constexpr Stroke sway[]{{Channel::trunk_tilt, radians(1), radians(4), Side::either}};
 constexpr Stroke touch_face[]{{Channel::right_hand_to_head, 0.8, 1.0}};
 constexpr Act fidgets_of_all[]{{"look round", 1, look, 0.7, 1, 2, returns, assumed},
                                {"sway", 1, sway, 0.6, 1, 3, returns, assumed},
@@ -40,13 +39,13 @@ constexpr Act fidgets_of_all[]{{"look round", 1, look, 0.7, 1, 2, returns, assum
 
 constexpr Stroke type[]{{Channel::left_hand_ahead, -0.025, 0.025}, {Channel::right_hand_ahead, -0.025, 0.025}};
 constexpr Stroke mouse[]{{Channel::right_hand_ahead, -0.05, 0.05}};
-constexpr Stroke reach[]{{Channel::right_hand_ahead, 0.03, 0.08}, {Channel::trunk_tilt, 6 * degree, 14 * degree}};
+constexpr Stroke reach[]{{Channel::right_hand_ahead, 0.03, 0.08}, {Channel::trunk_tilt, radians(6), radians(14)}};
 constexpr Act typing[]{{"type", 2, type, 0.3, 3, 14, returns, assumed},
                        {"use the mouse", 1, mouse, 0.5, 2, 6, returns, assumed},
                        {"reach for something", 1, reach, 1.0, 1, 1, returns, assumed}};
 
 constexpr Stroke turn_page[]{{Channel::right_hand_up, 0.03, 0.07}, {Channel::right_hand_ahead, -0.10, 0.04}};
-constexpr Stroke glance[]{{Channel::head_turn, 4 * degree, 12 * degree, Side::either}};
+constexpr Stroke glance[]{{Channel::head_turn, radians(4), radians(12), Side::either}};
 constexpr Act reading[]{{"follow the lines", 7, glance, 0.8, 1, 4, returns, assumed},
                         {"turn a page", 1, turn_page, 0.7, 1, 2, returns, reading_speed}};
 
@@ -54,7 +53,7 @@ constexpr Stroke gesture[]{{Channel::left_hand_up, 0.04, 0.18},
                            {Channel::right_hand_up, 0.04, 0.18},
                            {Channel::left_hand_ahead, -0.08, 0.08},
                            {Channel::right_hand_ahead, -0.08, 0.08}};
-constexpr Stroke nod[]{{Channel::trunk_tilt, 0.5 * degree, 2 * degree}};
+constexpr Stroke nod[]{{Channel::trunk_tilt, radians(0.5), radians(2)}};
 constexpr Stroke take_notes[]{{Channel::right_hand_ahead, -0.03, 0.03}};
 constexpr Act listening[]{{"nod", 1, nod, 0.4, 1, 3, returns, assumed},
                           {"take notes", 1, take_notes, 0.3, 2, 12, returns, assumed},
@@ -70,14 +69,14 @@ constexpr Act sitting_idly[]{{"look round", 1, look, 0.7, 1, 2, returns, assumed
                              {"sway", 1, sway, 0.6, 1, 3, returns, assumed}};
 
 // On the feet. Hands that hang are raised part of the way to the head.
-constexpr Stroke shift_weight[]{{Channel::trunk_lean, 1 * degree, 3 * degree, Side::either}};
+constexpr Stroke shift_weight[]{{Channel::trunk_lean, radians(1), radians(3), Side::either}};
 constexpr Act standing_shifts[]{{"shift the weight", 1, shift_weight, 1.2, 1, 1, stays, assumed}};
 constexpr Act looking[]{{"look round", 1, look, 0.7, 1, 2, returns, assumed}};
 constexpr Stroke raise_hands[]{{Channel::left_hand_to_head, 0.15, 0.45}, {Channel::right_hand_to_head, 0.15, 0.45}};
 constexpr Stroke raise_one_hand[]{{Channel::right_hand_to_head, 0.15, 0.45}};
-constexpr Stroke write_high[]{{Channel::right_hand_to_head, 0.45, 0.65}, {Channel::trunk_tilt, 0.0, 4 * degree}};
-constexpr Stroke turn_trunk[]{{Channel::head_turn, 30 * degree, 55 * degree, Side::either},
-                              {Channel::trunk_lean, 1 * degree, 4 * degree, Side::either}};
+constexpr Stroke write_high[]{{Channel::right_hand_to_head, 0.45, 0.65}, {Channel::trunk_tilt, 0.0, radians(4)}};
+constexpr Stroke turn_trunk[]{{Channel::head_turn, radians(30), radians(55), Side::either},
+                              {Channel::trunk_lean, radians(1), radians(4), Side::either}};
 constexpr Act standing_listening[]{{"nod", 1, nod, 0.4, 1, 3, returns, assumed},
                                    {"glance", 1, glance, 0.6, 1, 1, returns, assumed}};
 constexpr Act standing_speaking[]{{"gesture", 1, raise_hands, 0.6, 2, 8, returns, assumed}};

@@ -12,18 +12,17 @@ namespace {
 using body::Channel;
 using body::Stage;
 
-constexpr double degree = pi / 180.0;
 
 constexpr double goes_on = 0.4;        // assumed (0.2-0.6): another act follows at once
 constexpr double liveliness_sd = 0.4;  // assumed (0.3-0.6): of the logarithm of a person's rate
 constexpr double pace_sd_m_s = 0.2;    // Ref: [Weidmann1993]: 0.26 in the open
 constexpr double slowest_breath_hz = 0.2, fastest_breath_hz = 0.3;  // 12 to 18 breaths a minute, at rest
-constexpr double breath_tilt = 0.25 * degree;                       // assumed (0.1-0.5): +-2.4 mm at the shoulders
+constexpr double breath_tilt = radians(0.25);                       // assumed (0.1-0.5): +-2.4 mm at the shoulders
 constexpr int breath_levels = 4;   // to either side: a posture changes 16 times a breath instead of 200 times
 constexpr double settles_s = 1.0;  // assumed (0.6-1.5): into the posture of a new activity
 constexpr double looks_s = 0.8;    // assumed (0.5-1): the head turns to who speaks
 constexpr double speaks_up_s = 1.0;
-constexpr double farthest_look = 50 * degree;
+constexpr double farthest_look = radians(50);
 
 struct Bounds {
   double low, high;
@@ -32,11 +31,11 @@ struct Bounds {
 constexpr Bounds bounds_of(Channel channel) noexcept {
   switch (channel) {
     case Channel::trunk_tilt:
-      return {-15 * degree, 30 * degree};
+      return {radians(-15), radians(30)};
     case Channel::trunk_lean:
-      return {-12 * degree, 12 * degree};
+      return {radians(-12), radians(12)};
     case Channel::head_turn:
-      return {-55 * degree, 55 * degree};
+      return {radians(-55), radians(55)};
     case Channel::left_hand_ahead:
     case Channel::right_hand_ahead:
       return {-0.15, 0.08};

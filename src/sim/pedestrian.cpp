@@ -15,7 +15,7 @@ namespace pirsim::sim {
 namespace {
 
 using body::Stage;
-using Solidity = Presence::Solidity;
+using PersonSolidity = Presence::Solidity;
 
 constexpr double look_ahead_m = 1.2;      ///< assumed: how far ahead a walker minds others (tried 0.8-2)
 constexpr double foresight_s = 1.5;       ///< assumed: how long before ways cross one gives way (tried 1-2)
@@ -127,13 +127,13 @@ void Pedestrian::be_held_up(std::int64_t now) {
     asks_up_.reset();
     is_let_by_ = false;
   }
-  if (solidity_ != Solidity::solid) return;
+  if (solidity_ != PersonSolidity::solid) return;
   const bool stuck = !is_let_by_ && now - *held_up_since_ >= ticks(stuck_s);
   if (stuck || held_up_ticks_ >= ticks(stuck_in_all_s)) pass_through(now);
 }
 
 void Pedestrian::pass_through(std::int64_t now) {
-  solidity_ = Solidity::passing_through;
+  solidity_ = PersonSolidity::passing_through;
   held_up_at_ = motion_.position();
   incident_ = Incident{IncidentKind::passed_through, now, index_, motion_.position()};
   aside_.reset();
@@ -151,13 +151,13 @@ void Pedestrian::end_passing(std::span<const Presence> others) noexcept {
   });
   const bool done = on_feet() ? !target_ || glm::distance(motion_.position(), held_up_at_) > passed_m
                               : motion_.stage() == Stage::seated;
-  if (clear && done) solidity_ = Solidity::solid;
+  if (clear && done) solidity_ = PersonSolidity::solid;
 }
 
 Progress Pedestrian::stand_up(std::span<const Presence> others, std::int64_t now) {
   if (motion_.stage() == Stage::standing) return motion_.settled() ? Progress::done : Progress::going_on;
   const bool on_seat = motion_.stage() == Stage::seated || motion_.stage() == Stage::sitting_down;
-  if (on_seat && (solidity_ != Solidity::solid || free_to_draw_back(motion_.drawn_back(), others))) {
+  if (on_seat && (solidity_ != PersonSolidity::solid || free_to_draw_back(motion_.drawn_back(), others))) {
     motion_.rise();
     wished_way_.reset();
     held_up_since_.reset();
@@ -172,7 +172,7 @@ Progress Pedestrian::stand_up(std::span<const Presence> others, std::int64_t now
 
 void Pedestrian::sit_down(const body::SeatPlace& seat, std::span<const Presence> others, std::int64_t now) {
   const Vec2 back = motion_.position() - body::fall_back_m(person_->humanoid, seat) * direction_of(motion_.heading());
-  if (solidity_ != Solidity::solid || free_to_draw_back(back, others)) {
+  if (solidity_ != PersonSolidity::solid || free_to_draw_back(back, others)) {
     motion_.sit_down(seat);
     wished_way_.reset();
     held_up_since_.reset();
@@ -204,7 +204,7 @@ bool Pedestrian::free_to_draw_back(const Vec2& to, std::span<const Presence> oth
 }
 
 std::optional<std::vector<Vec2>> Pedestrian::way_among(const Vec2& target, std::span<const Presence> others) const {
-  if (solidity_ != Solidity::solid) {
+  if (solidity_ != PersonSolidity::solid) {
     auto way = floor().find_way(motion_.position(), target);
     return way || !person_->narrow_floor ? way : person_->narrow_floor->find_way(motion_.position(), target);
   }
@@ -307,7 +307,7 @@ bool Pedestrian::must_give_way(std::span<const Presence> others) const {
 }
 
 void Pedestrian::keep_distance(std::span<const Presence> others, std::size_t n_before, std::int64_t now) {
-  if (solidity_ != Solidity::solid) {
+  if (solidity_ != PersonSolidity::solid) {
     motion_.limit_speed(motion_.pace_m_s());
     return;
   }
@@ -321,7 +321,7 @@ void Pedestrian::keep_distance(std::span<const Presence> others, std::size_t n_b
     return;
   }
   be_held_up(now);
-  if (solidity_ != Solidity::solid) return;
+  if (solidity_ != PersonSolidity::solid) return;
   if (blocked_ticks_ % ticks(patience_s + patience_step_s * (index_ % 4)) == 0) {
     motion_.stop();  // stands, then looks for a way round the others
     route_.reset();
@@ -332,7 +332,7 @@ void Pedestrian::keep_distance(std::span<const Presence> others, std::size_t n_b
 bool Pedestrian::bumps_into(std::span<const Presence> others) const {
   constexpr double near_m = 0.05;  // more than any step
   const bool moves = motion_.stage() != Stage::seated && motion_.stage() != Stage::standing;
-  if (!moves || solidity_ != Solidity::solid) return false;
+  if (!moves || solidity_ != PersonSolidity::solid) return false;
   const double radius_m = person_->humanoid.trunk_radius_m();
   const Vec2 here = motion_.position();
   const auto is_near = [&](const Presence& other) {
@@ -355,13 +355,13 @@ void Pedestrian::advance(std::span<const Presence> others, std::size_t n_before,
   const Vec2 before = motion_.position();
   const bool waits = !others.empty() && bumps_into(others);
   if (waits && held_up_ticks_ == counted) be_held_up(now);
-  if (waits && solidity_ == Solidity::solid) motion_.halt();
+  if (waits && solidity_ == PersonSolidity::solid) motion_.halt();
   // Who is on the way onto a chair or off it waits where they are.
-  const bool frozen = waits && solidity_ == Solidity::solid && !on_feet();
+  const bool frozen = waits && solidity_ == PersonSolidity::solid && !on_feet();
   if (!frozen) motion_.advance();
   if (route_) walked_m_ += glm::distance(before, motion_.position());
   if (motion_.stage() == Stage::seated && !aside_) got_up_from_.reset();
-  if (solidity_ != Solidity::solid) end_passing(others);
+  if (solidity_ != PersonSolidity::solid) end_passing(others);
   if (held_up_since_ && glm::distance(motion_.position(), held_up_at_) > walked_on_m) {
     held_up_since_.reset();
     wished_way_.reset();

@@ -15,7 +15,7 @@ namespace pirsim::studies {
 namespace {
 
 namespace fs = std::filesystem;
-using State = ShardReport::State;
+using ShardState = ShardReport::State;
 
 /// What is known of one shard without reading its data. Of the manifest only what differs from shard to shard is kept:
 /// there may be many thousands.
@@ -41,38 +41,38 @@ void read_manifest_of(Entry& entry) {
     const RunRange runs = runs_of(entry.report.shard, entry.brief.provenance.study_runs);
     entry.brief.provenance.resolved_script.clear();
     entry.brief.provenance.inputs.clear();
-    entry.report.state = State::done;
+    entry.report.state = ShardState::done;
     if (entry.brief.shard == entry.report.shard && entry.brief.runs == runs) return;
     entry.report.why = "its manifest is that of another shard";
   } catch (const Error& error) {
     if (error.code() != ErrorCode::input) throw;
     entry.report.why = error.issues().front().message;
   }
-  entry.report.state = State::broken;
+  entry.report.state = ShardState::broken;
 }
 
 /// Told as broken: whoever isn't of the largest party (the first one of them, if there are more).
 void compare_provenances(std::vector<Entry>& entries) {
   std::map<std::string, std::size_t> parties;
   for (const Entry& entry : entries) {
-    if (entry.report.state == State::done) ++parties[entry.made];
+    if (entry.report.state == ShardState::done) ++parties[entry.made];
   }
   const Entry* typical = nullptr;
   for (const Entry& entry : entries) {
-    if (entry.report.state != State::done) continue;
+    if (entry.report.state != ShardState::done) continue;
     if (typical == nullptr || parties[entry.made] > parties[typical->made]) typical = &entry;
   }
   std::map<std::string, const Entry*> by_hash;  // of the data: no two shards hold the same rows
   for (Entry& entry : entries) {
-    if (entry.report.state != State::done) continue;
+    if (entry.report.state != ShardState::done) continue;
     if (entry.made != typical->made) {
       const auto unlike = io::differences(io::read_manifest(io::manifest_path(entry.file)).provenance,
                                           io::read_manifest(io::manifest_path(typical->file)).provenance);
-      entry.report.state = State::broken;
+      entry.report.state = ShardState::broken;
       entry.report.why = "remove it: its inputs differ from those of " + typical->file.filename().string() + ":";
       for (const std::string& each : unlike) entry.report.why += ' ' + each;
     } else if (entry.brief.rows > 0 && !by_hash.emplace(entry.brief.sha256, &entry).second) {
-      entry.report.state = State::broken;
+      entry.report.state = ShardState::broken;
       entry.report.why = "holds the rows of " + by_hash[entry.brief.sha256]->file.filename().string();
     }
   }
@@ -118,9 +118,9 @@ std::vector<Entry> survey(const fs::path& folder) {
     entry.report.shard = {i + 1, listing.count};
     const auto found = listing.with_manifest.find(i + 1);
     if (found == listing.with_manifest.end()) {
-      if (listing.begun.contains(i + 1)) entry.report.state = State::unfinished;
+      if (listing.begun.contains(i + 1)) entry.report.state = ShardState::unfinished;
     } else if (found->second.size() > 1) {
-      entry.report.state = State::broken;
+      entry.report.state = ShardState::broken;
       entry.report.why = "is there more than once: " + found->second[0].filename().string() + " and " +
                          found->second[1].filename().string();
     } else {
@@ -203,15 +203,15 @@ std::string option_of(const Shard& shard) {
          " --resume";
 }
 
-const char* name(State state) {
+const char* name(ShardState state) {
   switch (state) {
-    case State::done:
+    case ShardState::done:
       return "done";
-    case State::missing:
+    case ShardState::missing:
       return "missing";
-    case State::unfinished:
+    case ShardState::unfinished:
       return "unfinished";
-    case State::broken:
+    case ShardState::broken:
       break;
   }
   return "broken";
@@ -222,9 +222,9 @@ const char* name(State state) {
 std::vector<ShardReport> campaign_status(const fs::path& folder) {
   std::vector<ShardReport> reports;
   for (Entry& entry : survey(folder)) {
-    if (entry.report.state == State::done) {
+    if (entry.report.state == ShardState::done) {
       entry.report.why = io::fault_of_data(entry.file, entry.brief);
-      if (!entry.report.why.empty()) entry.report.state = State::broken;
+      if (!entry.report.why.empty()) entry.report.state = ShardState::broken;
     }
     reports.push_back(std::move(entry.report));
   }
@@ -234,9 +234,9 @@ std::vector<ShardReport> campaign_status(const fs::path& folder) {
 std::string array_specification(const std::vector<ShardReport>& shards) {
   std::string text;
   for (std::size_t i = 0; i < shards.size(); ++i) {
-    if (shards[i].state == State::done) continue;
+    if (shards[i].state == ShardState::done) continue;
     const std::size_t first = i;
-    while (i + 1 < shards.size() && shards[i + 1].state != State::done) ++i;
+    while (i + 1 < shards.size() && shards[i + 1].state != ShardState::done) ++i;
     text += (text.empty() ? "" : ",") + std::to_string(shards[first].shard.index);
     if (i > first) text += '-' + std::to_string(shards[i].shard.index);
   }
@@ -247,7 +247,7 @@ std::string to_text(const std::vector<ShardReport>& shards) {
   std::string text;
   std::size_t done = 0;
   for (const ShardReport& each : shards) {
-    if (each.state == State::done) {
+    if (each.state == ShardState::done) {
       ++done;
       continue;
     }
@@ -261,7 +261,7 @@ std::string to_text(const std::vector<ShardReport>& shards) {
 
 io::Provenance campaign_provenance(const fs::path& folder) {
   for (const Entry& entry : survey(folder)) {
-    if (entry.report.state == State::done) return io::read_manifest(io::manifest_path(entry.file)).provenance;
+    if (entry.report.state == ShardState::done) return io::read_manifest(io::manifest_path(entry.file)).provenance;
   }
   throw Error(ErrorCode::input, Where{folder.string()}, "no shard is finished");
 }
@@ -270,7 +270,7 @@ io::Manifest merge_campaign(const fs::path& folder, const fs::path& output, cons
   const std::vector<Entry> entries = survey(folder);
   Diagnostics faults;
   for (const Entry& entry : entries) {
-    if (entry.report.state == State::done) continue;
+    if (entry.report.state == ShardState::done) continue;
     const std::string why = entry.report.why.empty() ? "" : ": " + entry.report.why;
     faults.error(Where{(folder / shard_name(entry.report.shard)).string()},
                  name(entry.report.state) + why + "; run it by its command with " + option_of(entry.report.shard));
