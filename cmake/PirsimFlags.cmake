@@ -13,9 +13,9 @@ if(PIRSIM_SANITIZE)
   target_link_options(pirsim_flags INTERFACE -fsanitize=${PIRSIM_SANITIZE})
 endif()
 
-# Parses headers that nearly every file includes once a target instead of once a file. Off unless a preset asks for it, so
-# that the release build finds a file that forgets an include.
-option(PIRSIM_PRECOMPILE_HEADERS "precompile the commonest headers" OFF)
+# Two ways to parse headers less often. A preset asks for them; without, each file compiles alone, as a package's build
+# does, and finds that it forgets an include.
+option(PIRSIM_PRECOMPILE_HEADERS "precompile the tests' commonest headers" OFF)
 function(pirsim_precompile target)
   if(PIRSIM_PRECOMPILE_HEADERS)
     target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory>
@@ -23,24 +23,32 @@ function(pirsim_precompile target)
   endif()
 endfunction()
 
-# Compiles the files of a folder together, a dozen at a time, so that headers are parsed once a dozen. Off unless a preset
-# asks for it: while writing, a file alone compiles sooner. Names of anonymous namespaces must be unlike within a layer.
-option(PIRSIM_UNITY_BUILD "compile files together" OFF)
+# The files of a folder are compiled together, a dozen at a time: names in their anonymous namespaces mustn't clash.
+option(PIRSIM_UNITY_BUILD "compile the files of a folder together" OFF)
 function(pirsim_unity target)
   if(NOT PIRSIM_UNITY_BUILD)
     return()
   endif()
   get_target_property(files ${target} SOURCES)
-  set(folder "")
   foreach(file IN LISTS files)
-    get_filename_component(at "${file}" DIRECTORY)
+    cmake_path(GET file PARENT_PATH at)
     if(NOT at STREQUAL folder OR n EQUAL 12)
       set(folder "${at}")
-      string(MAKE_C_IDENTIFIER "${file}" group)
+      cmake_path(RELATIVE_PATH file BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" OUTPUT_VARIABLE first)
+      string(MAKE_C_IDENTIFIER "${first}" group)
       set(n 0)
     endif()
     math(EXPR n "${n} + 1")
-    set_source_files_properties("${file}" PROPERTIES UNITY_GROUP "${group}")
+    set_source_files_properties("${file}" PROPERTIES UNITY_GROUP ${group})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
+
+# What compiled before, here or in another clone, is taken from ccache where that is installed.
+if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  find_program(PIRSIM_CCACHE ccache)
+  if(PIRSIM_CCACHE)
+    # Precompiled headers don't change between two builds of the same sources.
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${PIRSIM_CCACHE}" sloppiness=pch_defines,time_macros base_dir=${PROJECT_SOURCE_DIR})
+  endif()
+endif()

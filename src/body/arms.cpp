@@ -41,7 +41,6 @@ constexpr double lowest_elbow = 0.97;
 constexpr double lowest_elbow_blend = 0.06;
 constexpr double lift_over_edge = radians(35);  // assumed (20-60): further bending of the elbow on the way
 
-
 /// min(x, limit) without a kink.
 double smooth_min(double x, double limit, double width) {
   const double overlap = std::max(width - std::abs(x - limit), 0.0) / width;

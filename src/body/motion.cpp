@@ -13,7 +13,6 @@ namespace pirsim::body {
 
 namespace {
 
-
 // Paper, section 2.2: ellipse 0.5 m long and 0.3 m high.
 constexpr double longest_step_m = 0.5;
 constexpr double walking_lift_m = 0.15;

@@ -11,7 +11,6 @@ using body::Channel;
 using Side = Stroke::Side;
 using enum Act::After;
 
-
 // The exponent: Ref: [Nakamura2007], near 0.9 for the locomotor activity of healthy people. The ends are assumed
 // (shortest 0.5-2 s, longest 300-1200 s).
 constexpr StillPeriods by_power_law{0.9, 1.0, 600.0};

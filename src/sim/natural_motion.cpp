@@ -12,7 +12,6 @@ namespace {
 using body::Channel;
 using body::Stage;
 
-
 constexpr double goes_on = 0.4;        // assumed (0.2-0.6): another act follows at once
 constexpr double liveliness_sd = 0.4;  // assumed (0.3-0.6): of the logarithm of a person's rate
 constexpr double pace_sd_m_s = 0.2;    // Ref: [Weidmann1993]: 0.26 in the open

@@ -471,7 +471,7 @@ class FailingCalls(unittest.TestCase):
                 self.assertEqual(names(folder), ["rows.csv", "rows.csv.json"])
 
     def test_memory_that_runs_out_while_loading_is_told(self):
-        if "PIRSIM_NO_FAILING_MALLOC" in os.environ:
+        if "PIRSIM_SANITIZED" in os.environ:
             self.skipTest("the sanitizers have an allocator of their own")
         outcomes = set()
         for once in ({"PIRSIM_FAIL_ONCE": "1"}, {}):
@@ -487,7 +487,7 @@ class FailingCalls(unittest.TestCase):
         self.assertIn(70, outcomes)
 
     def test_memory_that_is_short_ends_with_a_message(self):
-        if "PIRSIM_NO_FAILING_MALLOC" in os.environ:
+        if "PIRSIM_SANITIZED" in os.environ:
             self.skipTest("the sanitizers need much address space")
         with scratch() as folder:
             big = folder / "big.gltf"
@@ -617,7 +617,7 @@ class Memory(unittest.TestCase):
         return usage.ru_maxrss / 1024
 
     def test_merging_twenty_times_as_much_takes_no_more_memory(self):
-        if "PIRSIM_NO_FAILING_MALLOC" in os.environ:
+        if "PIRSIM_SANITIZED" in os.environ:
             self.skipTest("the sanitizers keep what was freed")
         with scratch() as folder:
             (folder / "wait.yaml").write_text("""pirsim_script: 1
@@ -636,7 +636,7 @@ people: [{id: one, stature_m: 1.8, mass_kg: 80, actions: [{enter: door}, {wait_s
             self.assertLess(peaks[1], peaks[0] + 4)
 
     def test_a_hundred_times_as_many_runs_take_no_more_memory(self):
-        if "PIRSIM_NO_FAILING_MALLOC" in os.environ:
+        if "PIRSIM_SANITIZED" in os.environ:
             self.skipTest("the sanitizers keep what was freed")
         with scratch() as folder:
             (folder / "short.yaml").write_text("""pirsim_script: 1

@@ -34,7 +34,7 @@ std::vector<EffectSpec> everything(EffectSpec (*at)(const Effect&)) {
 
 }  // namespace
 
-TEST_CASE("every effect at off leaves every row as it is: in a meeting room and an open office") {
+TEST_CASE("every effect at off leaves every row as it is: in a meeting room and an open office", "[seconds]") {
   for (const Place& place : places()) {
     const auto plain = results_of(model_of(place, {}));
     CHECK(same_rows(results_of(model_of(place, everything(effects::off))), plain));
@@ -45,7 +45,7 @@ TEST_CASE("every effect at off leaves every row as it is: in a meeting room and 
   }
 }
 
-TEST_CASE("every effect at full strength changes some row: in one of the rooms at least") {
+TEST_CASE("every effect at full strength changes some row: in one of the rooms at least", "[seconds]") {
   std::set<std::string> seen;
   for (const Place& place : places()) {
     const auto plain = results_of(model_of(place, {}));
@@ -60,7 +60,7 @@ TEST_CASE("every effect at full strength changes some row: in one of the rooms a
   }
 }
 
-TEST_CASE("an effect's rows don't depend on the number of threads and a copied state goes on alike") {
+TEST_CASE("an effect's rows don't depend on the number of threads and a copied state goes on alike", "[seconds]") {
   const Place place = places().front();
   for (const Effect* effect : effects::catalogue()) {
     INFO(effect->info.name);

@@ -88,7 +88,7 @@ RandomScene mirrored(RandomScene scene) {
 
 TEST_CASE(
     "all tracers, on every instruction set, give the same zones in 2000 random scenes, while people come, move and go",
-    "[rt]") {
+    "[rt][seconds]") {
   std::size_t n_zones = 0, n_active = 0;
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     Draw draw(1000 + seed);
@@ -129,7 +129,7 @@ TEST_CASE("people traced one by one give the zones of all of them together", "[r
   }
 }
 
-TEST_CASE("the tracers agree with a loop over all triangles and solids in double precision", "[rt]") {
+TEST_CASE("the tracers agree with a loop over all triangles and solids in double precision", "[rt][seconds]") {
   constexpr double grazing = 1e-5;  // metres
   std::size_t n_zones = 0, n_grazing = 0;
   for (std::uint64_t seed = 0; seed < 150; ++seed) {

@@ -150,7 +150,8 @@ TEST_CASE("warm surfaces are the background before which people are seen", "[sim
   check_ratio(powers_of(heated, script), powers_of(scene, script), contrast(60.0) / contrast(20.0));
 }
 
-TEST_CASE("all tracers give the same powers and signals of two people one of whom is a mesh", "[sim][analog]") {
+TEST_CASE("all tracers give the same powers and signals of two people one of whom is a mesh",
+          "[sim][analog][seconds]") {
   const SceneSpec scene = shipped_scene("meeting_room.gltf");
   ScriptSpec script = walkers(2);
   script.sensing.analog_rays_per_zone = 13;

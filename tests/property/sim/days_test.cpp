@@ -38,7 +38,7 @@ const std::string short_meeting =
 
 }  // namespace
 
-TEST_CASE("Empty hours that are passed over leave every bit as if they had been ticked") {
+TEST_CASE("Empty hours that are passed over leave every bit as if they had been ticked", "[seconds]") {
   const std::vector<std::string> variants{
       "",
       "sensing: {reader: free_running}\n",
@@ -166,7 +166,7 @@ TEST_CASE("A wait's label ends with the wait, also where empty seconds are passe
   CHECK(std::ranges::count(rows, "early", &Sample::phase) == 5);
 }
 
-TEST_CASE("A thing that an effect adds is nobody, and nobody's day is another for it") {
+TEST_CASE("A thing that an effect adds is nobody, and nobody's day is another for it", "[seconds]") {
   const std::string schedule =
       "  from: 08:30\n  to: 13:00\n  staff: [{count: 3}]\n  arrival: {mean: 09:00}\n  cleaning: 08:35\n"
       "  meetings: {held: [{at: 10:00, duration_min: 20, people: 2}]}\n";

@@ -75,7 +75,7 @@ Rate rate_of(const std::vector<double>& counts, const std::vector<double>& livel
 
 }  // namespace
 
-TEST_CASE("natural sitters shift and fidget as often as was measured at desks, whatever they do") {
+TEST_CASE("natural sitters shift and fidget as often as was measured at desks, whatever they do", "[seconds]") {
   for (const Activity activity : activities) {
     const Office& office = hours_of(activity);
     const Rate shifts = rate_of(office.shifts, office.liveliness), fidgets = rate_of(office.fidgets, office.liveliness);
@@ -95,7 +95,7 @@ TEST_CASE("natural sitters shift and fidget as often as was measured at desks, w
   }
 }
 
-TEST_CASE("still periods of natural sitters follow a power law between 5 s and 5 min") {
+TEST_CASE("still periods of natural sitters follow a power law between 5 s and 5 min", "[seconds]") {
   for (const Activity activity : activities) {
     const PowerLawFit fit = fit_power_law(hours_of(activity).still_s, 5.0, 300.0);
     INFO(activity_names[static_cast<std::size_t>(activity)] << ": exponent " << fit.exponent << " +- "
@@ -133,7 +133,7 @@ TEST_CASE("neither exponential still periods nor the paper's choreography pass f
   }
 }
 
-TEST_CASE("natural movements keep joints within their limits, and speeds and accelerations bounded") {
+TEST_CASE("natural movements keep joints within their limits, and speeds and accelerations bounded", "[seconds]") {
   // assumed: unhurried reaching and looking round. Seen were 0.95 m/s, 6.4 m/s2, 5.0 rad/s (a head that looks from one
   // side to the other) and 88 rad/s2 (a forearm that is lifted from the table turns about its own axis as well).
   constexpr double fastest_m_s = 1.5, hardest_m_s2 = 10.0, fastest_rad_s = 6.5, hardest_rad_s2 = 120.0;

@@ -66,7 +66,8 @@ std::string room_of(const std::string& study) {
 
 }  // namespace
 
-TEST_CASE("the direct tracer with its memory gives embree's zones at every tick of every shipped study's trials") {
+TEST_CASE("the direct tracer with its memory gives embree's zones at every tick of every shipped study's trials",
+          "[seconds]") {
   for (const std::string study : {"studyA.yaml", "office.yaml", "density.yaml"}) {
     INFO(study);
     const Comparison c = compare_study(room_of(study), shipped_script(study, {"replicates=1"}), TracerKind::embree, 1);
@@ -76,7 +77,7 @@ TEST_CASE("the direct tracer with its memory gives embree's zones at every tick 
   }
 }
 
-TEST_CASE("and the reference's zones, sampled through all of them and with scattered seats") {
+TEST_CASE("and the reference's zones, sampled through all of them and with scattered seats", "[seconds]") {
   for (const std::string study : {"studyA.yaml", "office.yaml", "density.yaml"}) {
     INFO(study);
     CHECK(

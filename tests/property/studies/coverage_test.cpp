@@ -88,7 +88,7 @@ std::size_t seen_squares(const CoverageMap& map) {
 
 }  // namespace
 
-TEST_CASE("the fast map of Study B equals the plain tracer's in random squares, bit for bit", "[coverage]") {
+TEST_CASE("the fast map of Study B equals the plain tracer's in random squares, bit for bit", "[coverage][seconds]") {
   const CoverageStudy study(test::shipped_scene("meeting_room.gltf"), study_b({"duration_s=18"}));
   REQUIRE(study.target().n_poses() == 180);  // 2 deg a tick
   CHECK(check_against_plain(study, 1, 8) > 8);

@@ -72,7 +72,7 @@ std::set<std::string> names_in(const std::vector<Issue>& warnings) {
 
 }  // namespace
 
-TEST_CASE("a walk is noticed in a walk test where it is noticed in a study: hard zones and analog", "[walk]") {
+TEST_CASE("a walk is noticed in a walk test where it is noticed in a study: hard zones and analog", "[walk][seconds]") {
   const SceneSpec scene = silent_meeting_room();
   for (const Response response : {Response::zones, Response::analog}) {
     WalkTestSpec spec = coarse_walk_test(response);
@@ -177,7 +177,7 @@ TEST_CASE("a walk test warns of exactly those effects that change no try", "[wal
   }
 }
 
-TEST_CASE("an effect is called idle exactly where it does nothing to sensors of that response", "[effects]") {
+TEST_CASE("an effect is called idle exactly where it does nothing to sensors of that response", "[effects][seconds]") {
   std::set<std::string> acting;
   for (const auto& [scene, written] : {std::pair{shipped_scene("meeting_room.gltf"), short_study_a()},
                                        std::pair{shipped_scene("open_office.gltf"), short_office()}}) {

@@ -116,7 +116,7 @@ std::string faults_of(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("threads, shards and resuming change no byte of a dataset", "[dataset]") {
+TEST_CASE("threads, shards and resuming change no byte of a dataset", "[dataset][seconds]") {
   const Made one, other;
   one.make(one.options());
   one.finish();
@@ -177,7 +177,7 @@ TEST_CASE("no room and no day is in two parts, whatever the numbers", "[dataset]
   }
 }
 
-TEST_CASE("the description tells each file with its hash, its columns and its part", "[dataset]") {
+TEST_CASE("the description tells each file with its hash, its columns and its part", "[dataset][seconds]") {
   const Made made;
   made.make(made.options(2));
   made.finish();
@@ -240,7 +240,7 @@ TEST_CASE("people are those who arrived and haven't left", "[dataset]") {
   CHECK(arrivals > 2);
 }
 
-TEST_CASE("the exports say what the rows say", "[dataset]") {
+TEST_CASE("the exports say what the rows say", "[dataset][seconds]") {
   const Made made;
   made.make(made.options(2));
   made.finish();
@@ -385,7 +385,7 @@ TEST_CASE("a folder of another recipe is refused, and damage is told", "[dataset
   CHECK_THROWS_WITH(made.finish(), contains("day_02.csv.gz") && contains("isn't what was written"));
 }
 
-TEST_CASE("the user's own scenes are rooms like others", "[dataset]") {
+TEST_CASE("the user's own scenes are rooms like others", "[dataset][seconds]") {
   const std::string own = (test::data_dir() / "rooms" / "meeting_room.gltf").string();
   const Made made("pirsim_recipe: 1\nrooms: [{scenes: [" + own + "], people: 2}, {count: 1}]\ndays: 1\n" +
                   "sensing: {tick_rate_hz: 10}\n" +

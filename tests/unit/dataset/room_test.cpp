@@ -178,7 +178,7 @@ TEST_CASE("the floor of an L is the rectangle without its corner", "[room]") {
   }
 }
 
-TEST_CASE("a hundred rooms: seats can be reached, and nothing stands in anything else", "[room]") {
+TEST_CASE("a hundred rooms: seats can be reached, and nothing stands in anything else", "[room][seconds]") {
   std::set<int> tries;
   for (int number = 1; number <= 100; ++number) {
     const DrawnRoom room = drawn(number % 2 == 0 ? meeting_room() : crowded_office(), number);

@@ -102,7 +102,7 @@ TEST_CASE("a hit at exactly the end of the ray's range is no hit", "[shapes]") {
   CHECK(hits > 2000);
 }
 
-TEST_CASE("ray tests agree with a search on the signed distance in double precision", "[shapes]") {
+TEST_CASE("ray tests agree with a search on the signed distance in double precision", "[shapes][seconds]") {
   constexpr int n = 100000;
   constexpr double grazing = 1e-5;  // metres
   Draw draw(4);

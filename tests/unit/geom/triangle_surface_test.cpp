@@ -71,7 +71,7 @@ TEST_CASE("a posed mesh is hit where a loop over its triangles in the world hits
 }
 
 TEST_CASE("a fine mesh of a sphere, capsule or box is hit as the exact solid is, but for a grazing ray",
-          "[triangle_surface]") {
+          "[triangle_surface][seconds]") {
   Draw draw(42);
   int hits = 0, different = 0;
   constexpr int n_solids = 150, n_rays = 400;

@@ -261,7 +261,7 @@ TEST_CASE("room and beams are exported as triangles and lines at their places", 
   CHECK(model.materials[static_cast<std::size_t>(primitive("wall").material)].alphaMode == "BLEND");
 }
 
-TEST_CASE("exported runs pass the Khronos validator without errors or warnings", "[gltf_writer]") {
+TEST_CASE("exported runs pass the Khronos validator without errors or warnings", "[gltf_writer][seconds]") {
   const TemporaryFolder folder;
   ExportedRun without_people = some_run();
   without_people.people.clear();

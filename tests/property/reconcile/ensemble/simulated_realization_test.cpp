@@ -57,15 +57,15 @@ void check_every_effect(const RealizationSource& source, int n_draws) {
 
 }  // namespace
 
-TEST_CASE("a realization with any effect of the catalogue gives the rows of a study with it") {
+TEST_CASE("a realization with any effect of the catalogue gives the rows of a study with it", "[seconds]") {
   check_every_effect({shipped_scene("meeting_room.gltf"), short_study_a(), {}, 11}, 3);
 }
 
-TEST_CASE("the same with several people who keep out of each other's way") {
+TEST_CASE("the same with several people who keep out of each other's way", "[seconds]") {
   check_every_effect({shipped_scene("open_office.gltf"), short_office(), {}, 12}, 1);
 }
 
-TEST_CASE("the same on top of a model that has effects already: soft edges and two elements") {
+TEST_CASE("the same on top of a model that has effects already: soft edges and two elements", "[seconds]") {
   const EffectSpec edges{"soft_zone_edges", {{"sigma_deg", 1.0}}, {}, {}};
   const EffectSpec elements{"dual_polarity", {{"threshold", 0.6}}, {}, {}};
   for (const EffectSpec& own : {edges, elements}) {

@@ -55,7 +55,7 @@ double p_of(const std::vector<FittedEffect>& applied, std::span<const float> obs
 
 }  // namespace
 
-TEST_CASE("a model passes with what made the data applied, and no other", "[reconcile]") {
+TEST_CASE("a model passes with what made the data applied, and no other", "[reconcile][seconds]") {
   const FittedEffect right = false_triggers(0.1, {});
   int right_passes = 0;
   constexpr int n = 4;
@@ -68,7 +68,8 @@ TEST_CASE("a model passes with what made the data applied, and no other", "[reco
   CHECK(p_of({right}, injected(100, {})) <= level);
 }
 
-TEST_CASE("right models fail as often as the level says, and oftener if their rooms are all alike", "[reconcile]") {
+TEST_CASE("right models fail as often as the level says, and oftener if their rooms are all alike",
+          "[reconcile][seconds]") {
   constexpr std::uint32_t n = 40;
   const FittedEffect right = false_triggers(0.02, {});
   std::vector<std::vector<float>> observed;
@@ -86,19 +87,19 @@ TEST_CASE("right models fail as often as the level says, and oftener if their ro
   CHECK(n_refused(alike) > 9);
 }
 
-TEST_CASE("what a fit doesn't know for sure widens what the model can have made", "[reconcile]") {
+TEST_CASE("what a fit doesn't know for sure widens what the model can have made", "[reconcile][seconds]") {
   const std::vector<float> observed = injected(3, {false_triggers(0.1, {}).effect});
   CHECK(p_of({false_triggers(0.01, {})}, observed) <= level);
   CHECK(p_of({false_triggers(0.01, {0.01, 0.05, 0.1, 0.2})}, observed) > level);
 }
 
-TEST_CASE("a model's p is the same on any number of threads", "[reconcile]") {
+TEST_CASE("a model's p is the same on any number of threads", "[reconcile][seconds]") {
   const std::vector<float> observed = injected(7, {});
   const std::vector<FittedEffect> applied{false_triggers(0.01, {0.005, 0.01, 0.02})};
   CHECK(p_of(applied, observed, 1) == p_of(applied, observed, 3));
 }
 
-TEST_CASE("what is said of a model doesn't depend on those that are looked at beside it", "[reconcile]") {
+TEST_CASE("what is said of a model doesn't depend on those that are looked at beside it", "[reconcile][seconds]") {
   FittedEffect taller;
   taller.effect = {"body_size", {{"scale", 1.1}}, {}, {}};
   const std::vector<FittedEffect> right{false_triggers(0.1, {0.08, 0.1, 0.12})}, wrong{false_triggers(0.01, {})},

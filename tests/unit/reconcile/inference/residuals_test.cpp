@@ -60,7 +60,7 @@ Change fault(const std::string& name, std::size_t sensor) {
 
 }  // namespace
 
-TEST_CASE("residuals name the sensor that says the opposite for a while", "[reconcile]") {
+TEST_CASE("residuals name the sensor that says the opposite for a while", "[reconcile][seconds]") {
   for (const std::size_t sensor : {std::size_t{0}, std::size_t{3}}) {
     const Residuals found = explained(injected(1, fault("inverted_for_a_while", sensor)));
     INFO(sentence(found, {}));
@@ -70,7 +70,7 @@ TEST_CASE("residuals name the sensor that says the opposite for a while", "[reco
   }
 }
 
-TEST_CASE("residuals tell the seconds of each minute in which a sensor is triggered", "[reconcile]") {
+TEST_CASE("residuals tell the seconds of each minute in which a sensor is triggered", "[reconcile][seconds]") {
   const Residuals found = explained(injected(4, [](std::vector<Sample>& rows, Stream& stream) {
     std::size_t begin = 0;
     while (begin < rows.size() && rows[begin].phase != reference_study().frame.counted_phases.front()) ++begin;
@@ -84,7 +84,7 @@ TEST_CASE("residuals tell the seconds of each minute in which a sensor is trigge
   CHECK_THAT(when_of(found.drivers.front()), contains("first 6 s of each minute") && contains("whatever the seat"));
 }
 
-TEST_CASE("residuals of the model itself follow nothing", "[reconcile]") {
+TEST_CASE("residuals of the model itself follow nothing", "[reconcile][seconds]") {
   // At the 5 % level; of 5 datasets 3 or more with a driver have a chance of 0.1 %.
   int with_driver = 0;
   for (std::uint32_t realization = 0; realization < 5; ++realization)
@@ -92,7 +92,7 @@ TEST_CASE("residuals of the model itself follow nothing", "[reconcile]") {
   CHECK(with_driver <= 2);
 }
 
-TEST_CASE("sensors that are dead or stuck are explained as well", "[reconcile]") {
+TEST_CASE("sensors that are dead or stuck are explained as well", "[reconcile][seconds]") {
   const ReferenceStudy known = make_reference_study({0.0, 0.0, 0.0, 0.0, 0.0});
   for (const std::uint8_t bit : {std::uint8_t{0}, std::uint8_t{1}}) {
     const Measured measured = injected(2, [bit](std::vector<Sample>& rows, Stream&) {

@@ -94,7 +94,7 @@ std::vector<int> turned(std::vector<int> labels) {
 
 }  // namespace
 
-TEST_CASE("a toy study is located and named with the rates that are promised", "[stats]") {
+TEST_CASE("a toy study is located and named with the rates that are promised", "[stats][seconds]") {
   const Study study(as_they_are);
   const Rates nulls = study.rates(toy::nothing, 200);
   CHECK(nulls.alarms < alpha + tolerance(alpha, 200));

@@ -70,7 +70,7 @@ Verification verify_one(const std::vector<AppliedEffect>& steps, const Folds& fo
 
 }  // namespace
 
-TEST_CASE("a fold names and fits without its own trials", "[reconcile][six-seats]") {
+TEST_CASE("a fold names and fits without its own trials", "[reconcile][minutes][six-seats]") {
   const ReferenceStudy& reference = plain_reference();
   std::vector<float> data = injected(reference, 1, {false_triggers});
   const Folds folds = three_folds(reference);
@@ -90,7 +90,7 @@ TEST_CASE("a fold names and fits without its own trials", "[reconcile][six-seats
 }
 
 TEST_CASE("with the injected effect held-out trials are predicted and with shuffled labels they are not",
-          "[reconcile][six-seats]") {
+          "[reconcile][minutes][six-seats]") {
   const ReferenceStudy& reference = plain_reference();
   const ReferenceStudy confused = shuffled(reference);
   double honest_share = 0.0, confused_share = 0.0;
@@ -109,7 +109,7 @@ TEST_CASE("with the injected effect held-out trials are predicted and with shuff
   CHECK(confused_share < 0.5);
 }
 
-TEST_CASE("nothing is closed where nothing was open", "[reconcile][six-seats]") {
+TEST_CASE("nothing is closed where nothing was open", "[reconcile][minutes][six-seats]") {
   // The plain model is refused on its own data with a chance of 5 %: two of four or more with one of 1.4 %.
   int refused = 0;
   for (std::uint32_t realization = 20; realization < 24; ++realization) {
@@ -122,7 +122,7 @@ TEST_CASE("nothing is closed where nothing was open", "[reconcile][six-seats]") 
   CHECK(refused <= 1);
 }
 
-TEST_CASE("claims that are judged together are judged as each by itself", "[reconcile][six-seats]") {
+TEST_CASE("claims that are judged together are judged as each by itself", "[reconcile][minutes][six-seats]") {
   const ReferenceStudy& reference = plain_reference();
   const ReferenceStudy again = plain_reference();  // whose analysts can't be taken for those of the first
   const std::vector<float> one = injected(reference, 50, {false_triggers}),
@@ -142,7 +142,7 @@ TEST_CASE("claims that are judged together are judged as each by itself", "[reco
 }
 
 TEST_CASE("a patch that puts somebody into the only doorway is judged as any other, since people get past",
-          "[reconcile][six-seats]") {
+          "[reconcile][minutes][six-seats]") {
   // False triggers under the name of somebody who stands in the only doorway, in a room with so many seats (that nobody
   // uses) that there is no better place.
   ReferenceStudy blocked = plain_reference();
@@ -179,7 +179,7 @@ TEST_CASE("a patch that puts somebody into the only doorway is judged as any oth
   CHECK(found[1].n_trials == plain_reference().frame.trials.size());
 }
 
-TEST_CASE("an effect that is no candidate is never the likeliest", "[reconcile][six-seats]") {
+TEST_CASE("an effect that is no candidate is never the likeliest", "[reconcile][minutes][six-seats]") {
   const ReferenceStudy& reference = plain_reference();
   const Analyst analyst(reference.view(all_trials(reference.frame), 0), {0.05, 40, "false_triggers"}, {});
   const std::vector<float> data = injected(reference, 60, {false_triggers});
@@ -188,7 +188,7 @@ TEST_CASE("an effect that is no candidate is never the likeliest", "[reconcile][
   CHECK(analyst.likeliest(data, [](std::size_t) { return true; }) != left_out);
 }
 
-TEST_CASE("two effects are judged together and close more than one of them", "[reconcile][six-seats]") {
+TEST_CASE("two effects are judged together and close more than one of them", "[reconcile][minutes][six-seats]") {
   const std::vector<EffectSpec> both{false_triggers, stretching};
   const std::vector<float> data = injected(plain_reference(), 30, both);
   const Analyst analyst(plain_reference().view(all_trials(plain_reference().frame), 0), {0.05, 40}, {});
@@ -216,7 +216,7 @@ TEST_CASE("two effects are judged together and close more than one of them", "[r
   CHECK(together.share_closed > alone.share_closed);
 }
 
-TEST_CASE("of sums nearly all seats must be better", "[reconcile][six-seats]") {
+TEST_CASE("of sums nearly all seats must be better", "[reconcile][minutes][six-seats]") {
   const ReferenceStudy reference = make({}, Measured::Kind::sums);
   const std::vector<float> data =
       injected(reference, 40, {{"missed_triggers", {{"probability", 0.6}}, {}, {}}});  // in all seats

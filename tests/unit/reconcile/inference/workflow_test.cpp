@@ -86,7 +86,8 @@ TEST_CASE("a realization is a pure function of seed and index and stays within t
   CHECK(exact.script.trials[0].people[0].stature_m == script.trials[0].people[0].stature_m);
 }
 
-TEST_CASE("effects on a remembered realization give what a study with them gives", "[reconcile][three-seats]") {
+TEST_CASE("effects on a remembered realization give what a study with them gives",
+          "[reconcile][minutes][three-seats]") {
   const ReferenceStudy& reference = reference_study();
   const SimulatedRealization realization(reference.source, reference.frame, 5, 1);
   ScriptSpec script = realization.drawn().script;
@@ -100,7 +101,8 @@ TEST_CASE("effects on a remembered realization give what a study with them gives
   }
 }
 
-TEST_CASE("a table goes on where it was interrupted and refuses another study's chunks", "[reconcile][three-seats]") {
+TEST_CASE("a table goes on where it was interrupted and refuses another study's chunks",
+          "[reconcile][minutes][three-seats]") {
   const ReferenceStudy& reference = reference_study();
   const TemporaryFolder folder;
   const TableSettings settings{30, 30, 30, {"false_triggers"}};
@@ -122,7 +124,7 @@ TEST_CASE("a table goes on where it was interrupted and refuses another study's 
   CHECK_THROWS_WITH(make(other), contains("holds simulated datasets of other inputs"));
 }
 
-TEST_CASE("pilot runs are of realizations that no table has", "[reconcile][three-seats]") {
+TEST_CASE("pilot runs are of realizations that no table has", "[reconcile][minutes][three-seats]") {
   const ReferenceStudy& reference = reference_study();
   const std::vector<Series> pilot = pilot_runs(reference.source, reference.frame, 2);
   REQUIRE(pilot.size() == 2 * reference.frame.trials.size());
@@ -134,7 +136,7 @@ TEST_CASE("pilot runs are of realizations that no table has", "[reconcile][three
 }
 
 TEST_CASE("effects are trained in the same realizations and calibrated in realizations that differ",
-          "[reconcile][three-seats]") {
+          "[reconcile][minutes][three-seats]") {
   const ReferenceStudy& reference = reference_study();
   const std::vector<std::string> hypotheses{"seats_shifted", "sensor_tilt", "dual_polarity"};
   const ReferenceTable table =
@@ -159,7 +161,7 @@ TEST_CASE("effects are trained in the same realizations and calibrated in realiz
   CHECK(of_all.empty());
 }
 
-TEST_CASE("an injected effect is located and named and nothing is not", "[reconcile][three-seats]") {
+TEST_CASE("an injected effect is located and named and nothing is not", "[reconcile][minutes][three-seats]") {
   const Outcome found = analyst().analyse(injected(1, {many_false_triggers}));
   CHECK(found.verdict == Verdict::named);
   REQUIRE_FALSE(found.named.empty());
@@ -173,7 +175,7 @@ TEST_CASE("an injected effect is located and named and nothing is not", "[reconc
   CHECK(alarms <= 5);
 }
 
-TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile][three-seats]") {
+TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile][minutes][three-seats]") {
   ReferenceTable shuffled = reference_study().table;
   Stream stream({5, 0, 0, Purpose::test});
   for (std::size_t i = shuffled.rows.size(); i > 1; --i) {
@@ -196,7 +198,7 @@ TEST_CASE("with shuffled labels nothing is named rightly", "[reconcile][three-se
   CHECK(sure_of_truth_when_confused < 0.5);
 }
 
-TEST_CASE("which way an effect goes is told even if its size is but one number", "[reconcile][three-seats]") {
+TEST_CASE("which way an effect goes is told even if its size is but one number", "[reconcile][minutes][three-seats]") {
   // A table in which false triggers are what comes of one way, missed ones of the other.
   const ReferenceStudy& reference = reference_study();
   ReferenceTable table = reference.table;
@@ -219,7 +221,7 @@ TEST_CASE("which way an effect goes is told even if its size is but one number",
 }
 
 TEST_CASE("a name is taken back whose strength may be none, unless the plain model is refused outright",
-          "[reconcile][three-seats]") {
+          "[reconcile][minutes][three-seats]") {
   const FittedEffect surely_there{{"false_triggers", {}, {}, {}}, {}, false}, maybe_none{surely_there.effect, {}, true};
   CHECK(analyst().takes_back(maybe_none, 0.04));
   CHECK_FALSE(analyst().takes_back(maybe_none, 0.01));  // a fifth of the level
@@ -227,7 +229,7 @@ TEST_CASE("a name is taken back whose strength may be none, unless the plain mod
 }
 
 TEST_CASE("an effect is calibrated on held-back datasets in which the global test sees it",
-          "[reconcile][three-seats]") {
+          "[reconcile][minutes][three-seats]") {
   const ReferenceTable& table = reference_study().table;
   const auto view = reference_study().view(all_trials(reference_study().frame), 0);
   const SeenRows seen = seen_rows(*view, 0.05);
@@ -275,7 +277,7 @@ TEST_CASE("folds follow from the data alone and hold out every trial once", "[re
   CHECK(folds_of(digest, {3, 4}, 5).size() == 2);
 }
 
-TEST_CASE("features keep their places in a dataset that lacks a trial", "[reconcile][three-seats]") {
+TEST_CASE("features keep their places in a dataset that lacks a trial", "[reconcile][minutes][three-seats]") {
   const ReferenceStudy& reference = reference_study();
   const FeatureMap map(reference.frame, reference.knowledge,
                        reference.table.statistics.select_rows(rows_of(reference.table, 0, Part::training)), {1});
@@ -283,7 +285,7 @@ TEST_CASE("features keep their places in a dataset that lacks a trial", "[reconc
   CHECK(map.features(nothing_measured).size() == map.names().size());
 }
 
-TEST_CASE("a held-out trial has no part in features and names", "[reconcile][three-seats]") {
+TEST_CASE("a held-out trial has no part in features and names", "[reconcile][minutes][three-seats]") {
   const ReferenceStudy& reference = reference_study();
   std::vector<float> data = injected(300, {many_false_triggers});
   const Analyst without(reference.view({0, 2}, 0), {0.05, 30}, {});
@@ -293,7 +295,7 @@ TEST_CASE("a held-out trial has no part in features and names", "[reconcile][thr
   CHECK(analyst().map().features(data) != analyst().map().features(injected(300, {many_false_triggers})));
 }
 
-TEST_CASE("the whole loop writes a patched script that runs and closes the gap", "[reconcile][three-seats]") {
+TEST_CASE("the whole loop writes a patched script that runs and closes the gap", "[reconcile][minutes][three-seats]") {
   const TemporaryFolder folder;
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
   ScriptSpec hidden = short_study();
@@ -349,7 +351,7 @@ TEST_CASE("with the fewest datasets that can refuse p falls below the level, wit
   }
 }
 
-TEST_CASE("two effects at once are found one after the other", "[reconcile][three-seats]") {
+TEST_CASE("two effects at once are found one after the other", "[reconcile][minutes][three-seats]") {
   const TemporaryFolder folder;
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
   const EffectSpec swapped{"labels_swapped", {}, {{"sensor", "PIR2"}, {"other", "PIR5"}}, {}};
@@ -398,7 +400,7 @@ TEST_CASE("two effects at once are found one after the other", "[reconcile][thre
 }
 
 TEST_CASE("what no effect of the catalogue makes gets no name, and the residuals say what is left",
-          "[reconcile][three-seats]") {
+          "[reconcile][minutes][three-seats]") {
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
   ScriptSpec hidden = short_study();
   hidden.seed = 7;
@@ -426,7 +428,7 @@ TEST_CASE("what no effect of the catalogue makes gets no name, and the residuals
   CHECK_THAT(sentence(outcome), contains("PIR2, in the middle third") && contains("the opposite"));
 }
 
-TEST_CASE("the seed of the script plays no part in the analysis", "[reconcile][three-seats]") {
+TEST_CASE("the seed of the script plays no part in the analysis", "[reconcile][minutes][three-seats]") {
   const SceneSpec scene = test::shipped_scene("meeting_room.gltf");
   ScriptSpec one = short_study(), other = short_study();
   other.seed = one.seed + 1;

@@ -67,7 +67,7 @@ TEST_CASE("a room without an entrance has no slow walk and the plan says so", "[
   CHECK_THAT(in_words(study.left_out.front()), contains("a slow walk is left out"));
 }
 
-TEST_CASE("a plan is the same for any number of threads and its numbers hold together", "[plan]") {
+TEST_CASE("a plan is the same for any number of threads and its numbers hold together", "[plan][seconds]") {
   const TemporaryFolder folder;
   const PlanResult result = planned(folder.path() / "t", 2);
   CHECK(to_json(result) == to_json(planned(folder.path() / "t", 1)));

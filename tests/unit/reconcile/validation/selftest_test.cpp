@@ -73,7 +73,7 @@ ReferenceStudy changed(const std::function<void(ReferenceTable&)>& change) {
 }  // namespace
 
 TEST_CASE("of a study of one trial nothing is held out and named effects are applied all the same",
-          "[reconcile][selftest]") {
+          "[reconcile][selftest][seconds]") {
   SelftestSettings settings = small();
   settings.analysis.table = {250, 250, 250, {"false_triggers", "dead_sensor"}};
   settings.n_nulls = 5;
@@ -88,7 +88,7 @@ TEST_CASE("of a study of one trial nothing is held out and named effects are app
 }
 
 // One case: its sections share the reference study and the injected datasets.
-TEST_CASE("a small self-test keeps its promises and what must break it does", "[reconcile][selftest]") {
+TEST_CASE("a small self-test keeps its promises and what must break it does", "[reconcile][selftest][minutes]") {
   SECTION("a small self-test keeps its promises") {
     const SelftestResult result = judge(reference_study(), injected(), small());
     const auto at_most = [&](const std::string& what, double share) {
