@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Iterable, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .specs import _listed
+from ._spec_parts import counted
 
 if TYPE_CHECKING:
     import pandas
@@ -96,7 +96,7 @@ class Result:
         for name, table in (("occupants", self.occupants), ("signals", self.signals)):
             rows = len(table.get("run", ()))
             extra += [f"{name}: {rows} rows"] if rows else []
-        lines = [f"<pirsim.Result: {runs} runs of {_listed(trials, 'trial', 'trials')}, up to {seconds} rows each, "
+        lines = [f"<pirsim.Result: {runs} runs of {counted(trials, 'trial', 'trials')}, up to {seconds} rows each, "
                  f"seed {self.seed}",
                  f"  bits {list(self.bits.shape)}, seconds with motion: {shares}{more}",
                  f"  people 0 to {int(self.people.max(initial=0))}; phases: {', '.join(filter(None, self.phases))}",

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from . import _core
 from ._result import Result, make_result
 from .errors import IncompleteWarning, InputWarning
-from .specs import Effect, Scene, Script, _listed
+from .specs import Effect, Scene, Script
 
 PathOr = Union[str, "os.PathLike[str]"]
 Progress = Callable[[int, int], Any]
@@ -37,7 +37,7 @@ class Poses(NamedTuple):
     """[item, 3] unit vectors."""
 
     def __repr__(self) -> str:
-        return f"<pirsim.Poses of {_listed(self.names, 'thing', 'things')}>"
+        return f"<pirsim.Poses of {counted(self.names, 'thing', 'things')}>"
 
 
 class Rays(NamedTuple):
@@ -211,8 +211,8 @@ class Model:
         return range(self.trials.index(trial), self.n_runs, len(self.trials))
 
     def __repr__(self) -> str:
-        return (f"<pirsim.Model: {self.n_runs} runs of {_listed(self.trials, 'trial', 'trials')}, "
-                f"{_listed(self.sensors.names, 'sensor', 'sensors')}, {self.tick_s:g} s a tick, seed {self.seed}>")
+        return (f"<pirsim.Model: {self.n_runs} runs of {counted(self.trials, 'trial', 'trials')}, "
+                f"{counted(self.sensors.names, 'sensor', 'sensors')}, {self.tick_s:g} s a tick, seed {self.seed}>")
 
     __reduce__ = _refuse_pickling
 

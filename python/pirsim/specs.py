@@ -3,6 +3,8 @@
 Each class is one of the library's specs, with the same fields, units and defaults; a field's name ends in its unit.
 Points are (x, y, z) in metres in glTF's frame (right-handed, +Y up, floor in XZ), floor points are (x, z). Lists and
 dicts are ordinary ones. Nothing is checked before `pirsim.compile()`, which then names what it refuses.
+
+Written by tools/specs/write.py from src/schema/fields.hpp; what has a form of its own is in _spec_parts.py.
 """
 
 from __future__ import annotations
@@ -10,35 +12,27 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, Sequence, Union
 
-import numpy as np
-import numpy.typing as npt
+from . import _spec_parts
+from ._spec_parts import Diagnostic, Floor, Frame, Mesh, Point2, Point3
 
 if TYPE_CHECKING:
     from ._core import MeshSolid
 
-Point2 = tuple[float, float]
-"""(x, z) on the floor, or (x, y) on a sensor's plane; metres."""
-Point3 = tuple[float, float, float]
-"""(x, y, z), metres."""
+__all__ = [
+    "Action", "Activity", "Amplifier", "Appear", "Clock", "Cluster", "Comparator", "Detector", "Diagnostic", "Effect",
+    "Element", "Enter", "Entrance", "Floor", "Frame", "HeldMeeting", "InputFile", "Leave", "Meetings", "Mesh", "Optics",
+    "Person", "Point2", "Point3", "Profile", "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter", "Sensing",
+    "Sensor", "SensorModel", "Sit", "Staff", "Summary", "Trial", "Turn", "Wait", "Walk", "Warmth", "Where", "Work",
+    "Zone",
+]
 
 
-@dataclass(slots=True)
-class Diagnostic:
-    """One fault or remark. line and column count from 1; 0: unknown."""
+def _where() -> Any:
+    return field(default_factory=Where, repr=False, compare=False, kw_only=True)
 
-    severity: Literal["warning", "error"]
-    file: str
-    line: int
-    column: int
-    text: str
 
-    def __str__(self) -> str:
-        place = self.file
-        if self.line:
-            place += f":{self.line}"
-            if self.column:
-                place += f":{self.column}"
-        return f"{place}: {self.severity}: {self.text}" if place else f"{self.severity}: {self.text}"
+Activity = Literal["typing", "reading", "meeting", "phone", "whiteboard"]
+"""What people of natural style are busy with; each action knows some of them."""
 
 
 @dataclass(slots=True)
@@ -56,77 +50,6 @@ class InputFile:
 
     path: str = ""
     sha256: str = ""
-
-
-def _where() -> Any:
-    return field(default_factory=Where, repr=False, compare=False, kw_only=True)
-
-
-# ------------------------------------------------------------------------------------------------------------ scenes
-@dataclass(slots=True)
-class Frame:
-    """Where something is and how it is turned: it faces its local -Z, with +Y up. `pirsim.facing()` makes one."""
-
-    origin: Point3 = (0.0, 0.0, 0.0)
-    rotation: tuple[float, float, float, float] = (1.0, 0.0, 0.0, 0.0)
-    """Unit quaternion (w, x, y, z)."""
-
-
-def _listed(names: Sequence[str], one: str, many: str, most: int = 5) -> str:
-    """For reprs: "12 seats (S1, S2, S3, S4, S5, ...)"."""
-    text = f"{len(names)} {one if len(names) == 1 else many}"
-    return f"{text} ({', '.join(names[:most])}{', ...' if len(names) > most else ''})" if names else text
-
-
-@dataclass(slots=True)
-class Floor:
-    """The floor on which people walk and are counted: polygons, inside by the even-odd rule."""
-
-    loops: list[list[Point2]] = field(default_factory=list)
-    height_m: float = 0.0
-
-    def __repr__(self) -> str:
-        corners = sum(len(loop) for loop in self.loops)
-        return f"<pirsim.Floor: {corners} corners in {len(self.loops)} outlines, at {self.height_m:g} m>"
-
-    @staticmethod
-    def rectangle(x0: float, z0: float, x1: float, z1: float, height_m: float = 0.0) -> Floor:
-        """From corner (x0, z0) to corner (x1, z1), metres."""
-        return Floor([[(x0, z0), (x1, z0), (x1, z1), (x0, z1)]], height_m)
-
-
-@dataclass(slots=True, eq=False)
-class Mesh:
-    """Triangles that hide what is behind them. positions: float64 (n, 3), metres; triangles: uint32 (m, 3) indices."""
-
-    name: str
-    positions: npt.ArrayLike
-    triangles: npt.ArrayLike
-    solidity: Literal["solid", "screen"] = "solid"
-    """A screen hides, but nobody walks round it: what people move with them, a chair's back."""
-    temperature_c: float | None = None
-    """Of its surface, where it differs from the room's."""
-
-    @staticmethod
-    def box(name: str, lower: Point3, upper: Point3) -> Mesh:
-        """A closed box between two corners, metres."""
-        ends = np.array([lower, upper], dtype=np.float64)
-        corners = np.array([[ends[i, 0], ends[j, 1], ends[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
-        quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-        triangles = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
-        return Mesh(name, corners, np.array(triangles, dtype=np.uint32))
-
-    def __repr__(self) -> str:
-        sizes = len(np.asarray(self.positions)), len(np.asarray(self.triangles))
-        warm = "" if self.temperature_c is None else f", {self.temperature_c:g} degrees Celsius"
-        return f"<pirsim.Mesh {self.name!r}: {sizes[0]} vertices, {sizes[1]} triangles, {self.solidity}{warm}>"
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Mesh):
-            return NotImplemented
-        return ((self.name, self.solidity, self.temperature_c) == (other.name, other.solidity, other.temperature_c)
-                and np.array_equal(np.asarray(self.positions), np.asarray(other.positions))
-                and np.array_equal(np.asarray(self.triangles), np.asarray(other.triangles)))
 
 
 @dataclass(slots=True)
@@ -154,6 +77,7 @@ class Entrance:
     id: str = ""
     world_from_entrance: Frame = field(default_factory=Frame)
     width_m: float = 0.9
+    """Of the opening."""
     outside_m: float = 1.5
     """How far behind it people wait."""
 
@@ -163,7 +87,9 @@ class Optics:
     """What the physical response needs of a lens beyond its zones."""
 
     blur_deg: float = 0.5
+    """Standard deviation of the Gaussian that softens a zone's edges."""
     aperture_mm2: float = 20.0
+    """Area of a facet of the first lens step."""
 
 
 @dataclass(slots=True)
@@ -171,21 +97,32 @@ class Element:
     """The pyroelectric element's time constants."""
 
     thermal_s: float = 0.15
+    """Thermal time constant."""
     electrical_s: float = 1.0
+    """Electrical time constant."""
 
 
 @dataclass(slots=True)
 class Amplifier:
-    """A band-pass with noise. volts_per_watt None: calibrated on the rated distance."""
+    """A band-pass with noise."""
 
     low_hz: float = 0.3
+    """Lower corner frequency (-3 dB)."""
     high_hz: float = 6.5
+    """Upper corner frequency (-3 dB)."""
     order: int = 2
+    """One-pole sections per edge, 1 to 3."""
     volts_per_watt: float | None = None
-    noise_v_pp: float = 0.080
+    """Total gain from the power on the element to the output; by default calibrated on the rated distance of the first
+    lens step."""
+    noise_v_pp: float = 0.08
+    """Noise at the output, peak to peak (6.6 standard deviations); 0: none."""
     offset_v: float = 1.1
+    """Output at rest."""
     lowest_v: float = 0.2
+    """Where the output saturates at its lower end."""
     highest_v: float = 1.9
+    """Where the output saturates at its upper end."""
 
 
 @dataclass(slots=True)
@@ -193,12 +130,19 @@ class Comparator:
     """When the amplified signal switches the output on and off."""
 
     positive_v: float = 0.45
+    """Threshold above the offset."""
     negative_v: float = 0.45
+    """Threshold below the offset, as a positive number."""
     pulse_count: int = 1
+    """Number of pulses that switches the output on, 1 to 8."""
     pulse_window_s: float = 0.0
+    """Time within which the pulses must begin; required for more than one pulse."""
     pulse_signs: Literal["any", "alternating"] = "any"
+    """`alternating`: a pulse counts only on the opposite side to the last."""
     hold_s: float = 0.0
+    """How long the output stays on after the signal has returned between the thresholds."""
     blind_s: float = 0.0
+    """How long pulses are ignored after the output has switched off."""
 
 
 @dataclass(slots=True)
@@ -214,9 +158,10 @@ class Detector:
 class Zone:
     """A detection zone, drawn on the plane `plane_m` ahead of the sensor: four corners (x right, y up), metres."""
 
-    corners: Sequence[Point2] = ((0.0, 0.0),) * 4
+    corners: Sequence[Point2] = ((0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (0.0, 0.0))
     """In order round the zone, convex."""
     polarity: int = 1
+    """+1 or -1, the sign of the element."""
 
 
 @dataclass(slots=True)
@@ -224,38 +169,41 @@ class Cluster:
     """The zones of one facet of the lens."""
 
     centre: Point2 = (0.0, 0.0)
+    """On the plane."""
     range_m: float = 0.0
+    """Rated detection distance."""
     lens_step: int = 1
+    """Row of the lens: 1 reaches farthest."""
     zones: list[Zone] = field(default_factory=list, repr=False)
 
 
-@dataclass(slots=True)
-class SensorModel:
+@dataclass(slots=True, repr=False)
+class SensorModel(_spec_parts.OfSensorModel):
     """A sensor's lens and electronics. `pirsim.sensor_model()` has the shipped ones."""
 
     id: str = ""
+    """As scenes name it."""
     description: str = ""
+    """Free text."""
     plane_m: float = 1.0
+    """Distance of the plane on which the zones are drawn."""
     clusters: list[Cluster] = field(default_factory=list)
     response: Literal["zones", "analog"] = "zones"
+    """`zones`: a change of activity is motion; `analog`: the physical response."""
     optics: Optics = field(default_factory=Optics)
+    """For the physical response."""
     detector: Detector = field(default_factory=Detector)
-
-    def __repr__(self) -> str:
-        zones = sum(len(cluster.zones) for cluster in self.clusters)
-        reach = max((cluster.range_m for cluster in self.clusters), default=0.0)
-        return (f"<pirsim.SensorModel {self.id!r}: {zones} zones in {len(self.clusters)} clusters, up to {reach:g} m, "
-                f"response {self.response}>")
+    """Electronics, for the physical response."""
 
 
-@dataclass(slots=True)
-class Scene:
+@dataclass(slots=True, repr=False)
+class Scene(_spec_parts.OfScene):
     """A room: what hides, where the sensors hang, where people sit, enter and walk."""
 
     name: str = ""
     meshes: list[Mesh] = field(default_factory=list)
     sensors: list[Sensor] = field(default_factory=list)
-    """In the order of the arrays."""
+    """In the order of the output's columns."""
     seats: list[Seat] = field(default_factory=list)
     entrances: list[Entrance] = field(default_factory=list)
     floor: Floor = field(default_factory=Floor)
@@ -265,28 +213,16 @@ class Scene:
     """All that was read."""
     warnings: list[Diagnostic] = field(default_factory=list)
 
-    def __repr__(self) -> str:
-        parts = [_listed([sensor.id for sensor in self.sensors], "sensor", "sensors"),
-                 _listed([seat.id for seat in self.seats], "seat", "seats"),
-                 _listed([entrance.id for entrance in self.entrances], "entrance", "entrances"),
-                 _listed([mesh.name for mesh in self.meshes], "mesh", "meshes"),
-                 _listed(list(self.sensor_models), "sensor model", "sensor models")]
-        return f"<pirsim.Scene {self.name!r}\n  " + "\n  ".join(parts) + f"\n  {self.floor!r}>"
-
-
-# ----------------------------------------------------------------------------------------------------------- scripts
-Activity = Literal["typing", "reading", "meeting", "phone", "whiteboard"]
-"""What people of natural style are busy with: typing and reading at `Work` only, whiteboard at `Wait` only; a `Walk`
-knows phone."""
-
 
 @dataclass(slots=True, kw_only=True)
 class _Action:
+    """An action and when it begins."""
+
     at_s: float | None = None
     """Starts then: interrupts what goes on, or waits if that is already done."""
     phase: str = ""
     """Label of rows while this action runs; empty: what the body is doing."""
-    where: Where = field(default_factory=Where, repr=False, compare=False)
+    where: Where = _where()
 
 
 @dataclass(slots=True)
@@ -295,15 +231,16 @@ class Wait(_Action):
 
     duration_s: float = 0.0
     activity: Activity | None = None
-    """Of natural style, as in other actions."""
+    """One of meeting, phone, whiteboard; of natural style."""
 
 
 @dataclass(slots=True)
 class Appear(_Action):
-    """Stands on the floor from now on, without having entered. heading_deg: 0 facing -Z, positive turning left."""
+    """Stands on the floor from now on, without having entered."""
 
     point: Point2 = (0.0, 0.0)
     heading_deg: float = 0.0
+    """0 facing -Z, positive turning left."""
 
 
 @dataclass(slots=True)
@@ -319,6 +256,7 @@ class Walk(_Action):
 
     points: list[Point2] = field(default_factory=list)
     activity: Activity | None = None
+    """One of phone; of natural style."""
 
 
 @dataclass(slots=True)
@@ -327,7 +265,9 @@ class Sit(_Action):
 
     seat: str = ""
     wait_s: float = 120.0
+    """For a taken seat; no longer if all others have carried out their scripts."""
     if_taken: Literal["next_action", "other_seat"] = "next_action"
+    """What somebody does whose seat stays taken."""
 
 
 @dataclass(slots=True)
@@ -338,9 +278,11 @@ class Work(_Action):
     arm_amplitude_m: float = 0.1
     arm_period_s: float = 3.0
     tilt_choices_deg: list[float] = field(default_factory=lambda: [-15.0, 0.0, 15.0])
+    """Positive forward."""
     tilt_every_s: float = 30.0
     activity: Activity | None = None
-    """Of natural style, which has no use for the swing and the tilts; None: typing."""
+    """One of typing, reading, meeting, phone; of natural style, which has no use for the swing and the tilts; none:
+    typing."""
 
 
 @dataclass(slots=True)
@@ -357,9 +299,10 @@ class Leave(_Action):
 
 @dataclass(slots=True)
 class Turn(_Action):
-    """Stands on the spot and turns. heading_deg: 0 facing -Z, positive turning left."""
+    """Stands on the spot and turns."""
 
     heading_deg: float = 0.0
+    """0 facing -Z, positive turning left."""
 
 
 Action = Union[Wait, Appear, Enter, Walk, Sit, Work, Rise, Leave, Turn]
@@ -370,6 +313,7 @@ class SeatScatter:
     """How far from the seat's place people sit down, drawn once a run and person."""
 
     position_sd_m: float = 0.0
+    """Of each horizontal coordinate."""
     heading_sd_deg: float = 0.0
 
 
@@ -379,30 +323,29 @@ class Warmth:
 
     skin_c: float = 33.5
     clothing_clo: float = 1.0
+    """Insulation of what covers the parts that aren't bare."""
     bare: list[str] = field(default_factory=lambda: ["head", "left_forearm", "right_forearm"])
+    """Parts that show skin."""
     parts_c: dict[str, float] = field(default_factory=dict)
+    """Surface temperatures that are known, by part."""
 
 
-@dataclass(slots=True)
-class Person:
+@dataclass(slots=True, repr=False)
+class Person(_spec_parts.OfPerson):
     """A person and what they do, one action after the other."""
 
     id: str = ""
     actions: list[Action] = field(default_factory=list)
     stature_m: float = 1.86
+    """Lengths of the body follow from it."""
     mass_kg: float = 80.0
     walking_speed_m_s: float = 1.0
     seat_scatter: SeatScatter = field(default_factory=SeatScatter)
     style: Literal["choreographed", "natural"] = "choreographed"
     warmth: Warmth = field(default_factory=Warmth)
     body_mesh_file: str = ""
-    """glTF, relative to `Script.directory`; its meshes are read by `read_script()`."""
+    """GlTF, relative to `Script.directory`; its meshes are read by `read_script()`."""
     body_meshes: dict[str, MeshSolid] = field(default_factory=dict, repr=False)
-
-    def __repr__(self) -> str:
-        doing = ", ".join(type(action).__name__ for action in self.actions[:8])
-        more = ", ..." if len(self.actions) > 8 else ""
-        return f"<pirsim.Person {self.id!r}: {self.stature_m:g} m, {self.style}, {len(self.actions)} actions: {doing}{more}>"
 
 
 @dataclass(slots=True)
@@ -415,11 +358,12 @@ class Clock:
 
 @dataclass(slots=True)
 class Staff:
-    """People of one role; seats: their own desks, none: the scene's free ones in order."""
+    """People of one role."""
 
     role: Literal["staff", "manager", "administrator"] = "staff"
     count: int = 1
     seats: list[str] = field(default_factory=list)
+    """Their own desks; none: the scene's seats that nobody has, in order."""
     where: Where = _where()
 
 
@@ -443,23 +387,29 @@ class Meetings:
     most_people: int | None = None
     """None: 8, or as many as there are seats."""
     durations_min: list[float] = field(default_factory=lambda: [30.0, 60.0, 90.0, 120.0])
-    probabilities: list[float] = field(default_factory=lambda: [0.13, 0.70, 0.12, 0.05])
+    probabilities: list[float] = field(default_factory=lambda: [0.13, 0.7, 0.12, 0.05])
+    """Of each duration."""
     from_h: float = 9.0
+    """When the first may begin."""
     to_h: float = 18.0
+    """When the last has ended."""
     lateness_min: float = 2.0
+    """Mean of how much later than its beginning people come."""
     held: list[HeldMeeting] = field(default_factory=list)
     """These, every working day, instead of drawn ones."""
     seats: list[str] = field(default_factory=list)
-    """None given: those that are nobody's own desk."""
+    """None: those that are nobody's own desk."""
     where: Where = _where()
 
 
 @dataclass(slots=True)
 class Profile:
-    """Presence as a Markov chain that follows a profile. presence: share present in each of 24 hours."""
+    """Presence as a Markov chain that follows a profile."""
 
     presence: list[float] = field(default_factory=list)
+    """Share of people present in each of the 24 hours of a working day."""
     mobility: float = 0.5
+    """Of the chain."""
     step_min: float = 15.0
 
 
@@ -468,53 +418,60 @@ class Schedule:
     """Adds people whose actions are drawn anew for every run; replicates are days that follow each other."""
 
     first_day: str = "2026-03-02"
+    """ISO 8601."""
     from_h: float = 0.0
+    """The part of the day that a run simulates begins."""
     to_h: float = 24.0
+    """And ends."""
     staff: list[Staff] = field(default_factory=list)
     meetings: Meetings | None = None
     profile: Profile | None = None
-    arrival: Clock = field(default_factory=lambda: Clock(8.5, 30.0))
-    departure: Clock = field(default_factory=lambda: Clock(17.5, 30.0))
-    lunch: Clock = field(default_factory=lambda: Clock(12.0, 30.0))
+    """Instead of the agents' times and moves."""
+    arrival: Clock = field(default_factory=lambda: Clock(mean_h=8.5))
+    departure: Clock = field(default_factory=lambda: Clock(mean_h=17.5))
+    lunch: Clock = field(default_factory=lambda: Clock(mean_h=12.0))
     lunch_min: float = 60.0
+    """Mean of its length."""
     lunch_sd_min: float = 15.0
     cleaning_h: float | None = None
+    """Somebody cleans then, on working days."""
     entrances: list[str] = field(default_factory=list)
+    """That people use, each their own; none: all of the scene."""
     style: Literal["choreographed", "natural"] = "natural"
     where: Where = _where()
 
 
-@dataclass(slots=True)
-class Trial:
+@dataclass(slots=True, repr=False)
+class Trial(_spec_parts.OfTrial):
     """One choreography; a study runs every trial once per replicate."""
 
     id: str = ""
+    """As the output names it."""
     people: list[Person] = field(default_factory=list)
+    """The first one's actions name the rows' phase."""
     duration_s: float | None = None
-    """Of a run; None: until everybody has carried out all actions."""
+    """Of a run; none: until everybody has carried out all actions."""
     schedule: Schedule | None = None
-
-    def __repr__(self) -> str:
-        who = _listed([person.id for person in self.people], "person", "people")
-        if self.schedule is not None:
-            who += " and a schedule"
-        lasts = "" if self.duration_s is None else f", {self.duration_s:g} s"
-        return f"<pirsim.Trial {self.id!r}: {who}{lasts}>"
 
 
 @dataclass(slots=True)
 class Sensing:
-    """How sensors are read. A row covers `ticks_per_window` ticks."""
+    """How sensors are read."""
 
     tick_rate_hz: int = 50
     ticks_per_window: int = 50
+    """A row and its bits cover this many ticks."""
     rays_per_zone: Literal[1, 5, 9, 16] = 5
     change_per: Literal["cluster", "beam"] = "cluster"
+    """Whose change of activity is motion."""
     reader: Literal["in_step", "free_running"] = "in_step"
+    """When in a window each sensor is asked."""
     response: Literal["zones", "analog"] | None = None
-    """Of all sensors; None: each its own."""
+    """Of all sensors; none: each its own."""
     ambient_c: float = 20.0
+    """Of surfaces and of the air, where the scene says nothing else."""
     analog_rays_per_zone: int = 34
+    """In the physical response."""
 
 
 @dataclass(slots=True)
@@ -522,12 +479,15 @@ class Summary:
     """Which rows the command line's --summary adds up, and what they are compared with."""
 
     phases: list[str] = field(default_factory=list)
+    """Rows in these phases count."""
     reference_file: str = ""
+    """CSV with measured sums, or empty; relative to the script."""
 
 
 @dataclass(slots=True)
 class Effect:
-    """Something that the plain model leaves out; `pirsim.effects()` lists all. What isn't given is the typical value."""
+    """Something that the plain model leaves out; `pirsim.effects()` lists all. What isn't given is the typical
+    value."""
 
     name: str = ""
     parameters: dict[str, float] = field(default_factory=dict)
@@ -537,8 +497,8 @@ class Effect:
     where: Where = _where()
 
 
-@dataclass(slots=True)
-class Script:
+@dataclass(slots=True, repr=False)
+class Script(_spec_parts.OfScript):
     """A study: people and their actions, the trials, how sensors are read."""
 
     name: str = ""
@@ -553,9 +513,5 @@ class Script:
     directory: str = ""
     """Of the script file, for relative references."""
     files: list[InputFile] = field(default_factory=list)
+    """All that was read."""
     warnings: list[Diagnostic] = field(default_factory=list)
-
-    def __repr__(self) -> str:
-        effects = ", ".join(effect.name for effect in self.effects) or "none"
-        return (f"<pirsim.Script {self.name!r}: seed {self.seed}, {self.replicates} replicates of "
-                f"{_listed([trial.id for trial in self.trials], 'trial', 'trials')}\n  effects: {effects}\n  {self.sensing!r}>")

@@ -1,7 +1,8 @@
 #include "schema/action_facts.hpp"
 
-#include <array>
 #include <glm/geometric.hpp>
+
+#include "schema/fields.hpp"
 
 namespace pirsim {
 namespace {
@@ -13,7 +14,7 @@ using Pose = ActionFacts::Pose;
 }  // namespace
 
 ActionFacts facts_of(const action::Wait& wait) noexcept {
-  static constexpr std::array known{Activity::meeting, Activity::phone, Activity::whiteboard};
+  static constexpr auto known = field_of<&action::Wait::activity>().range;
   return {.name = "wait", .lasts_s = wait.duration_s, .activity = wait.activity, .may_be_asked = known};
 }
 
@@ -30,7 +31,7 @@ ActionFacts facts_of(const action::Enter& enter) noexcept {
 }
 
 ActionFacts facts_of(const action::Walk& walk) noexcept {
-  static constexpr std::array known{Activity::phone};
+  static constexpr auto known = field_of<&action::Walk::activity>().range;
   return {.name = "walk",
           .course = Course::moves,
           .needs = Needs::presence,
@@ -51,7 +52,7 @@ ActionFacts facts_of(const action::Sit& sit) noexcept {
 }
 
 ActionFacts facts_of(const action::Work& work) noexcept {
-  static constexpr std::array known{Activity::typing, Activity::reading, Activity::meeting, Activity::phone};
+  static constexpr auto known = field_of<&action::Work::activity>().range;
   return {.name = "work",
           .needs = Needs::seat,
           .lasts_s = work.duration_s,

@@ -67,7 +67,7 @@ struct Fields<InputFile> {
 template <>
 struct Fields<Issue> {
   using S = Issue;
-  static constexpr const char* name = "Issue";
+  static constexpr const char* name = "Diagnostic";
   static constexpr const char* about = "One fault or remark.";
   static constexpr std::tuple all{LABEL(severity), LABEL(where), LABEL(message)};
 };

@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""Writes what follows from the description of the specs (src/schema/fields.hpp): Python's classes,
+python/pirsim/specs.py, and the tables of keys on pages, between `<!-- keys: ... -->` and `<!-- end of keys -->`.
+
+Usage: write.py [--check] [COMPILER]   --check: says which of them isn't as it would be written, and exits with 1
+
+A table's comment names what it has, part by part: `[FIELD... of] SPEC [in MAP] [but FIELD...]; ...`. Without names of
+fields that is every field whose form in files is a plain number, word or list of numbers.
+"""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import textwrap
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CLASSES = ROOT / "python/pirsim/specs.py"
+PAGES = ("docs/formats/sensor.md", "docs/formats/coverage.md")
+WIDTH = 120
+
+HEAD = '''"""Scenes and scripts as plain objects: read from files, changed, or made from nothing.
+
+Each class is one of the library's specs, with the same fields, units and defaults; a field's name ends in its unit.
+Points are (x, y, z) in metres in glTF's frame (right-handed, +Y up, floor in XZ), floor points are (x, z). Lists and
+dicts are ordinary ones. Nothing is checked before `pirsim.compile()`, which then names what it refuses.
+
+Written by tools/specs/write.py from src/schema/fields.hpp; what has a form of its own is in _spec_parts.py.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal, Sequence, Union
+
+from . import _spec_parts
+from ._spec_parts import Diagnostic, Floor, Frame, Mesh, Point2, Point3
+
+if TYPE_CHECKING:
+    from ._core import MeshSolid
+
+__all__ = [
+{names}
+]
+
+
+def _where() -> Any:
+    return field(default_factory=Where, repr=False, compare=False, kw_only=True)
+
+
+Activity = {activity}
+"""What people of natural style are busy with; each action knows some of them."""
+'''
+OF_ITS_OWN = ["Diagnostic", "Floor", "Frame", "Mesh", "Point2", "Point3", "Activity", "Action"]
+NOT_PRINTED = {("Cluster", "zones"), ("Person", "body_meshes")}
+UNITS = {"_m": "m", "_s": "s", "_hz": "Hz", "_v": "V", "_v_pp": "V", "_deg": "deg", "_c": "deg C", "_mm2": "mm²",
+         "volts_per_watt": "V/W"}
+
+
+def description(compiler):
+    with tempfile.TemporaryDirectory() as folder:
+        program = pathlib.Path(folder) / "describe"
+        subprocess.run([compiler, "-std=c++20", f"-I{ROOT / 'include'}", f"-I{ROOT / 'src'}",
+                        str(ROOT / "tools/specs/describe.cpp"), "-o", str(program)], check=True)
+        return json.loads(subprocess.run([program], check=True, capture_output=True, text=True).stdout)
+
+
+def docstring(text, indent="    "):
+    sentence = text[0].upper() + text[1:] + ("" if text.endswith(".") else ".")
+    return textwrap.fill(f'{indent}"""{sentence}"""', WIDTH, subsequent_indent=indent)
+
+
+def default(spec, one):
+    """The right side of a field: values that could be changed are made anew for each object."""
+    value = one["default"]
+    if one["name"] == "where":
+        return "_where()"
+    factory = {"[]": "list", "{}": "dict"}.get(value)
+    if value.endswith("()") and value[0].isalpha():
+        factory = value[:-2]
+    elif value.startswith("[") and value != "[]" or value.endswith(")") and value[0].isalpha():
+        factory = f"lambda: {value}"
+    if factory is None:
+        return value
+    return f"field(default_factory={factory}{', repr=False' if (spec, one['name']) in NOT_PRINTED else ''})"
+
+
+def class_text(name, spec):
+    part = printing_part(name)
+    bases = [base for base in ("_Action" if spec["is_action"] else "", f"_spec_parts.{part}" if part else "") if base]
+    options = "slots=True" + (", repr=False" if part else "") + (", kw_only=True" if name == "_Action" else "")
+    lines = [f"@dataclass({options})", f"class {name}{'(' + ', '.join(bases) + ')' if bases else ''}:",
+             docstring(spec["about"])]
+    if spec["fields"]:
+        lines.append("")
+    for one in spec["fields"]:
+        if name == "_Action" and one["name"] == "what":
+            continue  # the classes that are derived from it
+        lines.append(f"    {one['name']}: {one['type']} = {default(name, one)}")
+        meaning = [text for text in (f"one of {', '.join(one['among'])}" if "among" in one else "", one["meaning"]) if text]
+        if meaning:
+            lines.append(docstring("; ".join(meaning)))
+    return "\n".join(lines)
+
+
+def printing_part(name):
+    """The class of _spec_parts.py that says how objects of this class print, if there is one."""
+    text = (ROOT / "python/pirsim/_spec_parts.py").read_text(encoding="utf-8")
+    return f"Of{name}" if f"class Of{name}:" in text else None
+
+
+def classes(specs):
+    made = {name: spec for name, spec in specs.items() if name[0].isupper() and "about" in spec}
+    actions = [name for name, spec in made.items() if spec["is_action"]]
+    names = textwrap.fill(", ".join(f'"{name}"' for name in sorted([*made, *OF_ITS_OWN])) + ",", WIDTH,
+                          initial_indent="    ", subsequent_indent="    ")
+    blocks = []
+    for name, spec in made.items():
+        if actions and name == actions[0]:
+            blocks.append(class_text("_Action", specs["_Action"]))
+        blocks.append(class_text(name, spec))
+        if actions and name == actions[-1]:
+            blocks.append(f"Action = Union[{', '.join(actions)}]")
+    return HEAD.format(names=names, activity=specs["Activity"]) + "\n\n" + "\n\n\n".join(blocks) + "\n"
+
+
+def shown(value):
+    """A default value as a page has it."""
+    if value == "None":
+        return ""
+    text = re.sub(r"(\d)\.0\b", r"\1", value)
+    return f"`{text[1:-1]}`" if text.startswith('"') else text
+
+
+def unit(name):
+    return next((text for ending, text in sorted(UNITS.items(), key=lambda one: -len(one[0])) if name.endswith(ending)),
+                "")
+
+
+def is_plain(one):
+    return re.fullmatch(r"(float|int|list\[float\]|Literal\[.*\])( \| None)?", one["type"]) is not None
+
+
+def keys_of(part, specs):
+    """(map, field) of each row."""
+    wanted = re.fullmatch(r"(?:([\w ]+) of )?(\w+)(?: in ([\w.]+))?(?: but ([\w ]+))?", part.strip())
+    only, spec, where, but = wanted.groups()
+    fields = {one["name"]: one for one in specs[spec]["fields"]}
+    if only:
+        return [(where, fields[name]) for name in only.split()]
+    return [(where, one) for name, one in fields.items() if is_plain(one) and name not in (but or "").split()]
+
+
+def table(parts, specs):
+    lines = ["| key | unit | default | meaning |", "|---|---|---|---|"]
+    for where, one in [row for part in parts.split(";") for row in keys_of(part, specs)]:
+        key = f"{where}.{one['name']}" if where else one["name"]
+        cells = [f"`{key}`", unit(one["name"]), shown(one["default"]), one["meaning"]]
+        lines.append("|" + "".join(f" {cell} |" if cell else " |" for cell in cells))
+    return "\n".join(lines)
+
+
+def page(text, specs):
+    return re.sub(r"(<!-- keys: (.*?) -->\n).*?(<!-- end of keys -->)",
+                  lambda found: f"{found[1]}{table(found[2], specs)}\n{found[3]}", text, flags=re.DOTALL)
+
+
+def main():
+    arguments = [one for one in sys.argv[1:] if one != "--check"]
+    specs = description(arguments[0] if arguments else "c++")
+    written = {CLASSES: classes(specs)}
+    written |= {ROOT / name: page((ROOT / name).read_text(encoding="utf-8"), specs) for name in PAGES}
+    others = [file for file, text in written.items() if not file.exists() or file.read_text(encoding="utf-8") != text]
+    for file in others:
+        if "--check" in sys.argv:
+            print(f"{file.relative_to(ROOT)}:1: isn't what src/schema/fields.hpp describes; tools/specs/write.py writes it")
+        else:
+            file.write_text(written[file], encoding="utf-8")
+    return 1 if others and "--check" in sys.argv else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
