@@ -102,53 +102,38 @@ def counted(names: Sequence[str], one: str, many: str, most: int = 5) -> str:
     return f"{text} ({', '.join(names[:most])}{', ...' if len(names) > most else ''})" if names else text
 
 
-class OfSensorModel:
-    __slots__ = ()
-
-    def __repr__(self: specs.SensorModel) -> str:
-        zones = sum(len(cluster.zones) for cluster in self.clusters)
-        reach = max((cluster.range_m for cluster in self.clusters), default=0.0)
-        return (f"<pirsim.SensorModel {self.id!r}: {zones} zones in {len(self.clusters)} clusters, up to {reach:g} m, "
-                f"response {self.response}>")
+def sensor_model_text(model: specs.SensorModel) -> str:
+    zones = sum(len(cluster.zones) for cluster in model.clusters)
+    reach = max((cluster.range_m for cluster in model.clusters), default=0.0)
+    return (f"<pirsim.SensorModel {model.id!r}: {zones} zones in {len(model.clusters)} clusters, up to {reach:g} m, "
+            f"response {model.response}>")
 
 
-class OfScene:
-    __slots__ = ()
-
-    def __repr__(self: specs.Scene) -> str:
-        parts = [counted([sensor.id for sensor in self.sensors], "sensor", "sensors"),
-                 counted([seat.id for seat in self.seats], "seat", "seats"),
-                 counted([entrance.id for entrance in self.entrances], "entrance", "entrances"),
-                 counted([mesh.name for mesh in self.meshes], "mesh", "meshes"),
-                 counted(list(self.sensor_models), "sensor model", "sensor models")]
-        return f"<pirsim.Scene {self.name!r}\n  " + "\n  ".join(parts) + f"\n  {self.floor!r}>"
+def scene_text(scene: specs.Scene) -> str:
+    parts = [counted([sensor.id for sensor in scene.sensors], "sensor", "sensors"),
+             counted([seat.id for seat in scene.seats], "seat", "seats"),
+             counted([entrance.id for entrance in scene.entrances], "entrance", "entrances"),
+             counted([mesh.name for mesh in scene.meshes], "mesh", "meshes"),
+             counted(list(scene.sensor_models), "sensor model", "sensor models")]
+    return f"<pirsim.Scene {scene.name!r}\n  " + "\n  ".join(parts) + f"\n  {scene.floor!r}>"
 
 
-class OfPerson:
-    __slots__ = ()
-
-    def __repr__(self: specs.Person) -> str:
-        doing = ", ".join(type(action).__name__ for action in self.actions[:8])
-        more = ", ..." if len(self.actions) > 8 else ""
-        return f"<pirsim.Person {self.id!r}: {self.stature_m:g} m, {self.style}, {len(self.actions)} actions: {doing}{more}>"
+def person_text(person: specs.Person) -> str:
+    doing = ", ".join(type(action).__name__ for action in person.actions[:8])
+    more = ", ..." if len(person.actions) > 8 else ""
+    return f"<pirsim.Person {person.id!r}: {person.stature_m:g} m, {person.style}, {len(person.actions)} actions: {doing}{more}>"
 
 
-class OfTrial:
-    __slots__ = ()
-
-    def __repr__(self: specs.Trial) -> str:
-        who = counted([person.id for person in self.people], "person", "people")
-        if self.schedule is not None:
-            who += " and a schedule"
-        lasts = "" if self.duration_s is None else f", {self.duration_s:g} s"
-        return f"<pirsim.Trial {self.id!r}: {who}{lasts}>"
+def trial_text(trial: specs.Trial) -> str:
+    who = counted([person.id for person in trial.people], "person", "people")
+    if trial.schedule is not None:
+        who += " and a schedule"
+    lasts = "" if trial.duration_s is None else f", {trial.duration_s:g} s"
+    return f"<pirsim.Trial {trial.id!r}: {who}{lasts}>"
 
 
-class OfScript:
-    __slots__ = ()
-
-    def __repr__(self: specs.Script) -> str:
-        effects = ", ".join(effect.name for effect in self.effects) or "none"
-        return (f"<pirsim.Script {self.name!r}: seed {self.seed}, {self.replicates} replicates of "
-                f"{counted([trial.id for trial in self.trials], 'trial', 'trials')}\n  effects: {effects}\n  {self.sensing!r}>")
+def script_text(script: specs.Script) -> str:
+    effects = ", ".join(effect.name for effect in script.effects) or "none"
+    return (f"<pirsim.Script {script.name!r}: seed {script.seed}, {script.replicates} replicates of "
+            f"{counted([trial.id for trial in script.trials], 'trial', 'trials')}\n  effects: {effects}\n  {script.sensing!r}>")
 

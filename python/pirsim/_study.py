@@ -14,6 +14,7 @@ import numpy.typing as npt
 from . import _core
 from ._result import Result, make_result
 from .errors import IncompleteWarning, InputWarning
+from ._spec_parts import counted
 from .specs import Effect, Scene, Script
 
 PathOr = Union[str, "os.PathLike[str]"]

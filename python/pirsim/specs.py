@@ -177,8 +177,8 @@ class Cluster:
     zones: list[Zone] = field(default_factory=list, repr=False)
 
 
-@dataclass(slots=True, repr=False)
-class SensorModel(_spec_parts.OfSensorModel):
+@dataclass(slots=True)
+class SensorModel:
     """A sensor's lens and electronics. `pirsim.sensor_model()` has the shipped ones."""
 
     id: str = ""
@@ -195,9 +195,12 @@ class SensorModel(_spec_parts.OfSensorModel):
     detector: Detector = field(default_factory=Detector)
     """Electronics, for the physical response."""
 
+    def __repr__(self) -> str:
+        return _spec_parts.sensor_model_text(self)
 
-@dataclass(slots=True, repr=False)
-class Scene(_spec_parts.OfScene):
+
+@dataclass(slots=True)
+class Scene:
     """A room: what hides, where the sensors hang, where people sit, enter and walk."""
 
     name: str = ""
@@ -212,6 +215,9 @@ class Scene(_spec_parts.OfScene):
     files: list[InputFile] = field(default_factory=list)
     """All that was read."""
     warnings: list[Diagnostic] = field(default_factory=list)
+
+    def __repr__(self) -> str:
+        return _spec_parts.scene_text(self)
 
 
 @dataclass(slots=True, kw_only=True)
@@ -330,8 +336,8 @@ class Warmth:
     """Surface temperatures that are known, by part."""
 
 
-@dataclass(slots=True, repr=False)
-class Person(_spec_parts.OfPerson):
+@dataclass(slots=True)
+class Person:
     """A person and what they do, one action after the other."""
 
     id: str = ""
@@ -344,8 +350,11 @@ class Person(_spec_parts.OfPerson):
     style: Literal["choreographed", "natural"] = "choreographed"
     warmth: Warmth = field(default_factory=Warmth)
     body_mesh_file: str = ""
-    """GlTF, relative to `Script.directory`; its meshes are read by `read_script()`."""
+    """glTF, relative to `Script.directory`; its meshes are read by `read_script()`."""
     body_meshes: dict[str, MeshSolid] = field(default_factory=dict, repr=False)
+
+    def __repr__(self) -> str:
+        return _spec_parts.person_text(self)
 
 
 @dataclass(slots=True)
@@ -441,8 +450,8 @@ class Schedule:
     where: Where = _where()
 
 
-@dataclass(slots=True, repr=False)
-class Trial(_spec_parts.OfTrial):
+@dataclass(slots=True)
+class Trial:
     """One choreography; a study runs every trial once per replicate."""
 
     id: str = ""
@@ -452,6 +461,9 @@ class Trial(_spec_parts.OfTrial):
     duration_s: float | None = None
     """Of a run; none: until everybody has carried out all actions."""
     schedule: Schedule | None = None
+
+    def __repr__(self) -> str:
+        return _spec_parts.trial_text(self)
 
 
 @dataclass(slots=True)
@@ -497,8 +509,8 @@ class Effect:
     where: Where = _where()
 
 
-@dataclass(slots=True, repr=False)
-class Script(_spec_parts.OfScript):
+@dataclass(slots=True)
+class Script:
     """A study: people and their actions, the trials, how sensors are read."""
 
     name: str = ""
@@ -515,3 +527,6 @@ class Script(_spec_parts.OfScript):
     files: list[InputFile] = field(default_factory=list)
     """All that was read."""
     warnings: list[Diagnostic] = field(default_factory=list)
+
+    def __repr__(self) -> str:
+        return _spec_parts.script_text(self)

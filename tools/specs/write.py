@@ -67,7 +67,7 @@ def description(compiler):
 
 
 def docstring(text, indent="    "):
-    sentence = text[0].upper() + text[1:] + ("" if text.endswith(".") else ".")
+    sentence = (text[0].upper() + text[1:] if text.split()[0].islower() else text) + "." * (not text.endswith("."))
     return textwrap.fill(f'{indent}"""{sentence}"""', WIDTH, subsequent_indent=indent)
 
 
@@ -87,10 +87,8 @@ def default(spec, one):
 
 
 def class_text(name, spec):
-    part = printing_part(name)
-    bases = [base for base in ("_Action" if spec["is_action"] else "", f"_spec_parts.{part}" if part else "") if base]
-    options = "slots=True" + (", repr=False" if part else "") + (", kw_only=True" if name == "_Action" else "")
-    lines = [f"@dataclass({options})", f"class {name}{'(' + ', '.join(bases) + ')' if bases else ''}:",
+    lines = [f"@dataclass(slots=True{', kw_only=True' if name == '_Action' else ''})",
+             f"class {name}{'(_Action)' if spec['is_action'] else ''}:",
              docstring(spec["about"])]
     if spec["fields"]:
         lines.append("")
@@ -98,16 +96,20 @@ def class_text(name, spec):
         if name == "_Action" and one["name"] == "what":
             continue  # the classes that are derived from it
         lines.append(f"    {one['name']}: {one['type']} = {default(name, one)}")
-        meaning = [text for text in (f"one of {', '.join(one['among'])}" if "among" in one else "", one["meaning"]) if text]
+        words = f"one of {', '.join(one['among'])}" if "among" in one else ""
+        meaning = [text for text in (words, one["meaning"]) if text]
         if meaning:
             lines.append(docstring("; ".join(meaning)))
+    if printing(name):
+        lines += ["", "    def __repr__(self) -> str:", f"        return _spec_parts.{printing(name)}(self)"]
     return "\n".join(lines)
 
 
-def printing_part(name):
-    """The class of _spec_parts.py that says how objects of this class print, if there is one."""
+def printing(name):
+    """The function of _spec_parts.py that says how objects of this class print, if there is one."""
     text = (ROOT / "python/pirsim/_spec_parts.py").read_text(encoding="utf-8")
-    return f"Of{name}" if f"class Of{name}:" in text else None
+    found = re.search(rf"^def (\w+)\(\w+: specs\.{name}\)", text, flags=re.MULTILINE)
+    return found and found[1]
 
 
 def classes(specs):
