@@ -17,15 +17,6 @@ Vec2 read_point(const YamlNode& node, Diagnostics& faults, std::string_view what
   return Vec2(0.0);
 }
 
-/// One of those that the action knows, of somebody of natural style: read_person() refuses it for others.
-template <typename What>
-void read_activity(YamlMap& map, What& what) {
-  std::vector<std::pair<std::string, std::optional<Activity>>> names;
-  for (const Activity one : facts_of(what).may_be_asked)
-    names.emplace_back(activity_names[static_cast<std::size_t>(one)], one);
-  what.activity = map.choice<std::optional<Activity>>("activity", std::nullopt, names);
-}
-
 Action read_wait_s(const YamlNode& node, Diagnostics& faults) {
   action::Wait wait;
   each_number(wait, [&](const char*, double& value, const NumberRange& range) {
@@ -37,8 +28,7 @@ Action read_wait(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "wait");
   action::Wait wait;
   map.require("duration_s");
-  read_numbers(map, wait);
-  read_activity(map, wait);
+  read_fields(map, wait);
   map.finish();
   return wait;
 }
@@ -55,7 +45,7 @@ Action read_walk(const YamlNode& node, Diagnostics& faults) {
   action::Walk walk;
   for (const YamlNode& point : map.required_list("to_xz_m", limits::walk_points))
     walk.points.push_back(read_point(point, faults, "to_xz_m"));
-  read_activity(map, walk);
+  read_fields(map, walk);
   map.finish();
   return walk;
 }
@@ -64,18 +54,14 @@ Action read_sit(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "sit");
   action::Sit sit;
   sit.seat = map.required_text("seat");
-  read_numbers(map, sit);
-  sit.if_taken = map.choice<action::IfTaken>(
-      "if_taken", sit.if_taken,
-      {{"next_action", action::IfTaken::next_action}, {"other_seat", action::IfTaken::other_seat}});
+  read_fields(map, sit);
   map.finish();
   return sit;
 }
 Action read_work(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "work");
   action::Work work;
-  read_numbers(map, work);
-  read_activity(map, work);
+  read_fields(map, work);
   map.finish();
   return work;
 }

@@ -24,27 +24,86 @@
 
 namespace pirsim::io {
 
-/// Reads what is there of the numbers of a spec that each_number() lists; the others keep their values.
+/// "08:30", as hours.
+[[nodiscard]] double read_hours(YamlMap& map, const std::string& key, double otherwise);
+
+/// Reads one number; what isn't there keeps its value.
+template <typename Spec, typename Value, typename Range>
+void read_number(YamlMap& map, Spec& spec, const Field<Spec, Value, Range>& field) {
+  Value& value = spec.*field.member;
+  const std::string key = key_of(field);
+  const auto range = range_of(field, std::as_const(spec));
+  if constexpr (std::same_as<Range, TimeOfDay>) {
+    if (map.child(key)) value = read_hours(map, key, std::optional<double>(value).value_or(0.0));
+  } else if constexpr (std::same_as<Value, double>) {
+    value = map.number(key, value, range);
+  } else if constexpr (std::same_as<Value, std::vector<double>>) {
+    value = map.numbers(key, value, range);
+  } else if constexpr (std::same_as<Value, int>) {
+    value = map.integer(key, value, range);
+  } else if constexpr (std::same_as<Value, std::uint64_t>) {
+    value = map.unsigned_integer(key, value);
+  } else if constexpr (std::same_as<Value, std::optional<double>>) {
+    if (const auto given = map.optional_number(key, range)) value = given;
+  } else {
+    static_assert(std::same_as<Value, std::optional<int>>);
+    const int given = map.integer(key, value.value_or(0), range);
+    if (map.has(key)) value = given;
+  }
+}
+/// Reads what is there of a spec's numbers and times of day.
 template <typename Spec>
 void read_numbers(YamlMap& map, Spec& spec) {
-  each_number(spec, [&](const std::string& key, auto& value, const auto& range) {
+  each_field<Spec>([&](const auto& field) {
+    using F = std::remove_cvref_t<decltype(field)>;
+    if constexpr (NumberField<F> || TimeField<F>) read_number(map, spec, field);
+  });
+}
+
+/// The words that a field may have.
+template <typename Value, typename Enum, typename Spec, typename Range>
+[[nodiscard]] std::vector<std::pair<std::string, Value>> words_of(const Field<Spec, Value, Range>& field) {
+  std::vector<std::pair<std::string, Value>> words;
+  if constexpr (std::same_as<Range, Unbounded>) {
+    for (const auto& [word, value] : Words<Enum>::all) words.emplace_back(word, value);
+  } else {
+    for (const Enum value : field.range) words.emplace_back(word_of(value), value);
+  }
+  return words;
+}
+/// Reads every field whose form is plain: words, lists of names, numbers, times of day. What isn't there keeps its
+/// value. Numbers come last, since how many names there are may bound them.
+template <typename Spec>
+void read_fields(YamlMap& map, Spec& spec) {
+  each_field<Spec>([&](const auto& field) {
+    auto& value = spec.*field.member;
     using Value = std::remove_reference_t<decltype(value)>;
-    if constexpr (std::same_as<Value, double>) {
-      value = map.number(key, value, range);
-    } else if constexpr (std::same_as<Value, std::vector<double>>) {
-      value = map.numbers(key, value, range);
-    } else if constexpr (std::same_as<Value, int>) {
-      value = map.integer(key, value, range);
-    } else if constexpr (std::same_as<Value, std::uint64_t>) {
-      value = map.unsigned_integer(key, value);
-    } else if constexpr (std::same_as<Value, std::optional<double>>) {
-      if (const auto given = map.optional_number(key, range)) value = given;
-    } else {
-      static_assert(std::same_as<Value, std::optional<int>>);
-      const int given = map.integer(key, value.value_or(0), range);
-      if (map.has(key)) value = given;
+    if constexpr (Worded<Value>) {
+      value = map.choice<Value>(field.name, value, words_of<Value, Value>(field));
+    } else if constexpr (std::same_as<Value, std::vector<std::string>>) {
+      value = map.texts(field.name, value);
+    } else if constexpr (requires {
+                           requires Worded<typename Value::value_type>;
+                           value.has_value();
+                         }) {
+      value = map.choice<Value>(field.name, value, words_of<Value, typename Value::value_type>(field));
     }
   });
+  read_numbers(map, spec);
+}
+/// Reads the map `key` into a part of a spec, if it is there; `also` reads or checks the rest of the map.
+template <typename Spec, typename Also>
+void read_part(YamlMap& above, const std::string& key, Spec& part, const Also& also) {
+  const std::optional<YamlNode> node = above.child(key);
+  if (!node) return;
+  YamlMap map(*node, above.faults(), key);
+  read_fields(map, part);
+  also(map);
+  map.finish();
+}
+template <typename Spec>
+void read_part(YamlMap& above, const std::string& key, Spec& part) {
+  read_part(above, key, part, [](YamlMap&) {});
 }
 /// Takes the faults of check_together() to the keys of a map: "amplifier: expected high_hz above low_hz".
 [[nodiscard]] inline TellFault faults_of(const YamlMap& map, const std::string& what) {
@@ -115,13 +174,8 @@ class BodyMeshReader {
 
 namespace pirsim::io {
 
-// A sensor file's element, amplifier and comparator.
-
-/// Reads the maps `element`, `amplifier` and `comparator` of a sensor file; what isn't there keeps its default.
-[[nodiscard]] DetectorSpec read_detector(YamlMap& sensor);
-
-/// The names of their keys that need a source.
-[[nodiscard]] const std::vector<std::string>& sourced_detector_keys();
+/// Those keys of a sensor file's element, amplifier and comparator that need a source.
+[[nodiscard]] std::vector<std::string> sourced_detector_keys();
 
 }  // namespace pirsim::io
 

@@ -72,9 +72,9 @@ class MarkupReader {
     if (!value_["type"].is_string()) return error("/type", "'type' must be a text; " + types_told()), std::nullopt;
     const auto type = value_["type"].get<std::string>();
     std::optional<Markup> result;
-    if (type == "sensor") result = sensor();
-    if (type == "seat") result = seat();
-    if (type == "entrance") result = entrance();
+    if (type == "sensor") result = placed<SensorSpec>();
+    if (type == "seat") result = placed<SeatSpec>();
+    if (type == "entrance") result = placed<EntranceSpec>();
     if (type == "floor") result = floor();
     if (type == "surface") result = surface();
     if (type == "ignore") result = ignore();
@@ -90,23 +90,24 @@ class MarkupReader {
  private:
   static std::string types_told() { return "known are sensor, seat, entrance, floor, surface and ignore"; }
 
-  mark::Sensor sensor() {
-    only({"type", "id", "model"});
-    return {name("id"), name("model")};
-  }
-  mark::Seat seat() {
-    only({"type", "id"});
-    return {name("id")};
-  }
-  mark::Entrance entrance() {
-    only({"type", "id", "width_m", "outside_m"});
-    mark::Entrance result{name("id")};
-    EntranceSpec numbers;
-    each_number(numbers,
-                [&](const char* key, double& value, const NumberRange& range) { value = number(key, value, range); });
-    result.width_m = numbers.width_m;
-    result.outside_m = numbers.outside_m;
-    return result;
+  /// Names and numbers of what has a place in the room.
+  template <typename Spec>
+  Spec placed() {
+    Spec spec;
+    std::vector<std::string> keys{"type"};
+    each_field<Spec>([&](const auto& field) {
+      auto& value = spec.*field.member;
+      using Value = std::remove_reference_t<decltype(value)>;
+      if constexpr (!std::same_as<Value, Frame>) keys.emplace_back(field.name);
+    });
+    only(keys);
+    each_field<Spec>([&](const auto& field) {
+      auto& value = spec.*field.member;
+      using Value = std::remove_reference_t<decltype(value)>;
+      if constexpr (std::same_as<Value, std::string>) value = name(field.name);
+      if constexpr (std::same_as<Value, double>) value = number(field.name, value, field.range);
+    });
+    return spec;
   }
   mark::Floor floor() {
     only({"type", "polygon_xz_m", "occludes"});

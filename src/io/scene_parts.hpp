@@ -25,17 +25,6 @@ namespace pirsim::io::detail {
 // What a node is, if it isn't just geometry: `extras.pirsim`.
 
 namespace mark {
-struct Sensor {
-  std::string id, model;
-};
-struct Seat {
-  std::string id;
-};
-struct Entrance {
-  std::string id;
-  double width_m = 0.9;
-  double outside_m = 1.5;
-};
 enum class Occludes { yes, no };
 struct Floor {
   std::optional<std::vector<Vec2>> polygon;  ///< in the node's local XZ; otherwise the outline of the node's mesh
@@ -48,7 +37,8 @@ struct Surface {
 struct Ignore {};
 }  // namespace mark
 
-using Markup = std::variant<mark::Sensor, mark::Seat, mark::Entrance, mark::Floor, mark::Surface, mark::Ignore>;
+/// Sensors, seats and entrances without their place, which is the node's.
+using Markup = std::variant<SensorSpec, SeatSpec, EntranceSpec, mark::Floor, mark::Surface, mark::Ignore>;
 
 enum class Doubts { told, not_told };
 struct NodeMark {

@@ -107,9 +107,9 @@ class SceneBuilder {
   }
   static std::string name_of_mark(const Markup& markup) {
     const auto name = [](const char* type, const std::string& id) { return std::string(type) + " '" + id + "'"; };
-    if (const auto* sensor = std::get_if<mark::Sensor>(&markup)) return name("sensor", sensor->id);
-    if (const auto* seat = std::get_if<mark::Seat>(&markup)) return name("seat", seat->id);
-    if (const auto* entrance = std::get_if<mark::Entrance>(&markup)) return name("entrance", entrance->id);
+    if (const auto* sensor = std::get_if<SensorSpec>(&markup)) return name("sensor", sensor->id);
+    if (const auto* seat = std::get_if<SeatSpec>(&markup)) return name("seat", seat->id);
+    if (const auto* entrance = std::get_if<EntranceSpec>(&markup)) return name("entrance", entrance->id);
     return std::holds_alternative<mark::Floor>(markup) ? "a floor" : "";
   }
 
@@ -135,9 +135,9 @@ class SceneBuilder {
       add_mesh(placed, mesh, markup);
     }
     if (!markup) return;
-    if (const auto* sensor = std::get_if<mark::Sensor>(&*markup)) add_sensor(placed, *sensor);
-    if (const auto* seat = std::get_if<mark::Seat>(&*markup)) add_seat(placed, *seat);
-    if (const auto* entrance = std::get_if<mark::Entrance>(&*markup)) add_entrance(placed, *entrance);
+    if (const auto* sensor = std::get_if<SensorSpec>(&*markup)) add_sensor(placed, *sensor);
+    if (const auto* seat = std::get_if<SeatSpec>(&*markup)) add_seat(placed, *seat);
+    if (const auto* entrance = std::get_if<EntranceSpec>(&*markup)) add_entrance(placed, *entrance);
     if (const auto* floor = std::get_if<mark::Floor>(&*markup); floor && floor->polygon) add_polygon(placed, *floor);
   }
 
@@ -194,25 +194,28 @@ class SceneBuilder {
     warn(audit.non_manifold_triangles, "not manifold (an edge or corner shared by too many); kept as occluders");
   }
 
-  void add_sensor(const PlacedNode& placed, const mark::Sensor& sensor) {
+  void add_sensor(const PlacedNode& placed, SensorSpec sensor) {
     if (!has_room(spec_.sensors.size(), limits::sensors, "sensors")) return;
     check_unique("sensor", sensor.id, placed.node);
     const std::string fault = column_fault(sensor.id);
     if (!fault.empty()) node_error(placed.node, "/extras/pirsim/id", fault);
     model_places_.try_emplace(sensor.model, document_.text.where(markup_pointer(placed.node) + "/model"));
-    spec_.sensors.push_back({sensor.id, sensor.model, rigid_frame(placed.world_from_node)});
+    sensor.world_from_sensor = rigid_frame(placed.world_from_node);
+    spec_.sensors.push_back(std::move(sensor));
   }
-  void add_seat(const PlacedNode& placed, const mark::Seat& seat) {
+  void add_seat(const PlacedNode& placed, SeatSpec seat) {
     if (!has_room(spec_.seats.size(), limits::seats, "seats")) return;
     check_unique("seat", seat.id, placed.node);
     nodes_.seats.push_back(placed.node);
-    spec_.seats.push_back({seat.id, upright_frame(placed)});
+    seat.world_from_seat = upright_frame(placed);
+    spec_.seats.push_back(std::move(seat));
   }
-  void add_entrance(const PlacedNode& placed, const mark::Entrance& entrance) {
+  void add_entrance(const PlacedNode& placed, EntranceSpec entrance) {
     if (!has_room(spec_.entrances.size(), limits::entrances, "entrances")) return;
     check_unique("entrance", entrance.id, placed.node);
     nodes_.entrances.push_back(placed.node);
-    spec_.entrances.push_back({entrance.id, upright_frame(placed), entrance.width_m, entrance.outside_m});
+    entrance.world_from_entrance = upright_frame(placed);
+    spec_.entrances.push_back(std::move(entrance));
   }
   void add_polygon(const PlacedNode& placed, const mark::Floor& floor) {
     std::vector<Vec3> corners;

@@ -6,6 +6,7 @@
 #include "io/gltf_builder.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
+#include "schema/fields.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -64,24 +65,25 @@ void add_mesh(GltfBuilder& document, const TriMesh& mesh, int material) {
   document.add_node(std::move(node));
 }
 
+/// A node with the names and numbers of what is there.
+template <typename Spec>
+void add_mark(GltfBuilder& document, const char* type, const Spec& spec, const Frame& frame) {
+  Value::Object members;
+  each_field<Spec>([&](const auto& field) {
+    using FieldValue = std::remove_cvref_t<decltype(spec.*field.member)>;
+    if constexpr (!std::same_as<FieldValue, Frame>) members[field.name] = Value(spec.*field.member);
+  });
+  document.add_node(placed_node(spec.id, frame, pirsim_extras(type, std::move(members))));
+}
+
 GltfBuilder document_of(const SceneSpec& scene, const Where& where) {
   GltfBuilder document(scene.name);
   Materials materials(document);
   add_floor(document, scene.floor, where);
   for (const TriMesh& mesh : scene.meshes) add_mesh(document, mesh, materials.of(mesh, scene.floor.height_m()));
-  for (const EntranceSpec& door : scene.entrances) {
-    document.add_node(placed_node(door.id, door.world_from_entrance,
-                                  pirsim_extras("entrance", {{"id", Value(door.id)},
-                                                             {"width_m", Value(door.width_m)},
-                                                             {"outside_m", Value(door.outside_m)}})));
-  }
-  for (const SensorSpec& sensor : scene.sensors) {
-    document.add_node(placed_node(sensor.id, sensor.world_from_sensor,
-                                  pirsim_extras("sensor", {{"id", Value(sensor.id)}, {"model", Value(sensor.model)}})));
-  }
-  for (const SeatSpec& seat : scene.seats) {
-    document.add_node(placed_node(seat.id, seat.world_from_seat, pirsim_extras("seat", {{"id", Value(seat.id)}})));
-  }
+  for (const EntranceSpec& door : scene.entrances) add_mark(document, "entrance", door, door.world_from_entrance);
+  for (const SensorSpec& sensor : scene.sensors) add_mark(document, "sensor", sensor, sensor.world_from_sensor);
+  for (const SeatSpec& seat : scene.seats) add_mark(document, "seat", seat, seat.world_from_seat);
   return document;
 }
 

@@ -20,11 +20,19 @@ void check_version(YamlMap& map, const std::string& key) {
                                          " isn't known: this pirsim reads version " + std::to_string(format_version));
 }
 
+double read_hours(YamlMap& map, const std::string& key, double otherwise) {
+  const std::string text = map.text(key);
+  constexpr std::size_t to_minutes = 5;
+  const auto hours = text.size() <= to_minutes ? clock_hours(text) : std::nullopt;
+  if (!hours) map.faults().error(map.where(key), key + ": expected a time of day from 00:00 to 24:00, e.g. 08:30");
+  return hours.value_or(otherwise);
+}
+
 SensingSpec read_sensing(const std::optional<YamlNode>& node, Diagnostics& faults) {
   SensingSpec sensing;
   if (!node) return sensing;
   YamlMap map(*node, faults, "sensing");
-  read_numbers(map, sensing);
+  read_fields(map, sensing);
   const double window_s = map.number("window_s", 1.0, accepted::window_s);
   const double ticks = window_s * sensing.tick_rate_hz;
   if (std::abs(ticks - std::round(ticks)) > 1e-9 * ticks || ticks < 1.0) {
@@ -32,15 +40,6 @@ SensingSpec read_sensing(const std::optional<YamlNode>& node, Diagnostics& fault
                  "window_s: expected a whole number of ticks of 1/" + std::to_string(sensing.tick_rate_hz) + " s");
   }
   sensing.ticks_per_window = static_cast<int>(std::lround(ticks));
-  sensing.rays_per_zone = map.choice<RaysPerZone>(
-      "rays_per_zone", sensing.rays_per_zone,
-      {{"1", RaysPerZone::one}, {"5", RaysPerZone::five}, {"9", RaysPerZone::nine}, {"16", RaysPerZone::sixteen}});
-  sensing.change_per = map.choice<ChangePer>("change_per", sensing.change_per,
-                                             {{"cluster", ChangePer::cluster}, {"beam", ChangePer::beam}});
-  sensing.reader = map.choice<Reader>("reader", sensing.reader,
-                                      {{"in_step", Reader::in_step}, {"free_running", Reader::free_running}});
-  sensing.response = map.choice<std::optional<Response>>("response", sensing.response,
-                                                         {{"zones", Response::zones}, {"analog", Response::analog}});
   map.finish();
   return sensing;
 }

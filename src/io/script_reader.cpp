@@ -14,32 +14,25 @@ namespace {
 
 using detail::BodyMeshReader;
 
-SummarySpec read_summary(const std::optional<YamlNode>& node, Diagnostics& faults) {
+SummarySpec read_summary(YamlMap& script) {
   SummarySpec summary;
-  if (!node) return summary;
-  YamlMap map(*node, faults, "summary");
-  summary.phases = map.texts("phases");
-  summary.reference_file = map.text("reference");
-  map.finish();
+  read_part(script, "summary", summary, [&](YamlMap& map) { summary.reference_file = map.text("reference"); });
   return summary;
 }
 
-WarmthSpec read_warmth(const std::optional<YamlNode>& node, Diagnostics& faults) {
+WarmthSpec read_warmth(YamlMap& person) {
   WarmthSpec warmth;
-  if (!node) return warmth;
-  YamlMap map(*node, faults, "warmth");
-  read_numbers(map, warmth);
-  warmth.bare = map.texts("bare", warmth.bare);
-  if (const auto child = map.child("parts_c")) {
-    YamlMap known(*child, faults, "parts_c");
-    for (const std::string_view part : body_part_names) {
-      const std::string name(part);
-      if (const auto temperature = known.optional_number(name, accepted::skin_c)) warmth.parts_c[name] = *temperature;
+  read_part(person, "warmth", warmth, [&](YamlMap& map) {
+    if (const auto child = map.child("parts_c")) {
+      YamlMap known(*child, map.faults(), "parts_c");
+      for (const std::string_view part : body_part_names) {
+        const std::string name(part);
+        if (const auto temperature = known.optional_number(name, accepted::skin_c)) warmth.parts_c[name] = *temperature;
+      }
+      known.finish();
     }
-    known.finish();
-  }
-  check_together(warmth, faults_by_key(map));
-  map.finish();
+    check_together(warmth, faults_by_key(map));
+  });
   return warmth;
 }
 
@@ -55,18 +48,13 @@ PersonSpec read_person(const YamlNode& node, Surroundings& around, Diagnostics& 
   YamlMap map(node, faults, "person");
   PersonSpec person;
   person.id = map.required_text("id");
-  if (const auto child = map.child("seat_scatter")) {
-    YamlMap scatter(*child, faults, "seat_scatter");
-    read_numbers(scatter, person.seat_scatter);
-    scatter.finish();
-  }
+  read_part(map, "seat_scatter", person.seat_scatter);
   person.body_mesh_file = map.text("body_mesh");
   person.body_meshes = around.body_meshes.read(person.body_mesh_file, map.where("body_mesh"), faults);
-  person.style = map.choice<MotionStyle>(
-      "style", person.style, {{"choreographed", MotionStyle::choreographed}, {"natural", MotionStyle::natural}});
-  if (person.style == MotionStyle::natural) person.walking_speed_m_s = natural_speed_m_s;
-  read_numbers(map, person);
-  person.warmth = read_warmth(map.child("warmth"), faults);
+  read_fields(map, person);
+  const bool has_own_speed = map.has("walking_speed_m_s");
+  if (person.style == MotionStyle::natural && !has_own_speed) person.walking_speed_m_s = natural_speed_m_s;
+  person.warmth = read_warmth(map);
   for (const YamlNode& action : map.list("actions", limits::actions))
     person.actions.push_back(read_action(action, around.time, faults));
   for (const ScriptedAction& action : person.actions) {
@@ -211,7 +199,7 @@ ScriptSpec script_of(const YamlNode& root, const std::string& name, const std::f
   script.directory = folder.string();
   read_numbers(map, script);
   script.sensing = read_sensing(map.child("sensing"), faults);
-  script.summary = read_summary(map.child("summary"), faults);
+  script.summary = read_summary(map);
   const auto schedule = read_schedule(map.child("schedule"), faults);
   Surroundings around{BodyMeshReader(folder), read_time(map, schedule, script)};
   script.trials = read_trials(map.child("trials"), map.list("people", limits::people), around, faults);

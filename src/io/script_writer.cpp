@@ -4,15 +4,12 @@
 #include <filesystem>
 #include <optional>
 
-#include "io/schedule_writer.hpp"
-#include "pirsim/csv.hpp"
+#include "io/spec_writer.hpp"
 #include "pirsim/io.hpp"
 #include "schema/clock.hpp"
 
 namespace pirsim::io {
 namespace {
-
-YAML::Node number(double value) { return YAML::Node(csv_number(value)); }
 
 YAML::Node point(const Vec2& p) {
   YAML::Node node;
@@ -22,16 +19,13 @@ YAML::Node point(const Vec2& p) {
   return node;
 }
 
-const char* name(Activity activity) { return activity_names[static_cast<std::size_t>(activity)]; }
-
 /// Adds an action's key and value to its entry.
 struct ActionWriter {
   YAML::Node entry;
 
   void operator()(const action::Wait& wait) {
     if (wait.activity) {
-      entry["wait"]["duration_s"] = number(wait.duration_s);
-      entry["wait"]["activity"] = name(*wait.activity);
+      entry["wait"] = written(wait);
     } else {
       entry["wait_s"] = number(wait.duration_s);
     }
@@ -44,32 +38,14 @@ struct ActionWriter {
   void operator()(const action::Walk& walk) {
     entry["walk"]["to_xz_m"] = YAML::Node(YAML::NodeType::Sequence);
     for (const Vec2& p : walk.points) entry["walk"]["to_xz_m"].push_back(point(p));
-    if (walk.activity) entry["walk"]["activity"] = name(*walk.activity);
+    if (walk.activity) entry["walk"]["activity"] = word_of(*walk.activity);
   }
   void operator()(const action::Sit& sit) {
-    const action::Sit plain{sit.seat};
-    if (sit.wait_s == plain.wait_s && sit.if_taken == plain.if_taken) {
-      entry["sit"] = sit.seat;
-      return;
-    }
-    entry["sit"]["seat"] = sit.seat;
-    entry["sit"]["wait_s"] = number(sit.wait_s);
-    entry["sit"]["if_taken"] = sit.if_taken == action::IfTaken::other_seat ? "other_seat" : "next_action";
+    entry["sit"] = same(sit, action::Sit{sit.seat}) ? YAML::Node(sit.seat) : written(sit);
   }
-  void operator()(const action::Work& work) {
-    YAML::Node node;
-    node["duration_s"] = number(work.duration_s);
-    node["arm_amplitude_m"] = number(work.arm_amplitude_m);
-    node["arm_period_s"] = number(work.arm_period_s);
-    node["tilt_choices_deg"] = YAML::Node(YAML::NodeType::Sequence);
-    for (const double tilt : work.tilt_choices_deg) node["tilt_choices_deg"].push_back(number(tilt));
-    node["tilt_choices_deg"].SetStyle(YAML::EmitterStyle::Flow);
-    node["tilt_every_s"] = number(work.tilt_every_s);
-    if (work.activity) node["activity"] = name(*work.activity);
-    entry["work"] = node;
-  }
+  void operator()(const action::Work& work) { entry["work"] = written(work); }
   void operator()(const action::Rise&) { entry["rise"] = YAML::Node(YAML::NodeType::Null); }
-  void operator()(const action::Turn& turn) { entry["turn"]["heading_deg"] = number(turn.heading_deg); }
+  void operator()(const action::Turn& turn) { entry["turn"] = written(turn); }
   void operator()(const action::Leave& leave) { entry["leave"] = leave.entrance; }
 };
 
@@ -101,17 +77,11 @@ void escape_variables(YAML::Node node) {
 YAML::Node write(const PersonSpec& person, const std::optional<RunClock>& clock) {
   YAML::Node node;
   node["id"] = person.id;
-  node["stature_m"] = number(person.stature_m);
-  node["mass_kg"] = number(person.mass_kg);
-  node["walking_speed_m_s"] = number(person.walking_speed_m_s);
-  node["seat_scatter"]["position_sd_m"] = number(person.seat_scatter.position_sd_m);
-  node["seat_scatter"]["heading_sd_deg"] = number(person.seat_scatter.heading_sd_deg);
+  write_numbers(person, node);
+  node["seat_scatter"] = written(person.seat_scatter);
   if (!person.body_mesh_file.empty()) node["body_mesh"] = person.body_mesh_file;
-  if (person.style == MotionStyle::natural) node["style"] = "natural";
-  node["warmth"]["skin_c"] = number(person.warmth.skin_c);
-  node["warmth"]["clothing_clo"] = number(person.warmth.clothing_clo);
-  node["warmth"]["bare"] = person.warmth.bare;
-  for (const auto& [part, temperature] : person.warmth.parts_c) node["warmth"]["parts_c"][part] = number(temperature);
+  if (person.style != PersonSpec{}.style) node["style"] = word_of(person.style);
+  node["warmth"] = written(person.warmth);
   node["actions"] = YAML::Node(YAML::NodeType::Sequence);
   for (const ScriptedAction& action : person.actions) node["actions"].push_back(write(action, clock));
   escape_variables(node);
@@ -122,12 +92,10 @@ YAML::Node write(const SensingSpec& sensing) {
   YAML::Node node;
   node["tick_rate_hz"] = sensing.tick_rate_hz;
   node["window_s"] = number(static_cast<double>(sensing.ticks_per_window) / sensing.tick_rate_hz);
-  node["rays_per_zone"] = static_cast<int>(sensing.rays_per_zone);
-  node["change_per"] = sensing.change_per == ChangePer::cluster ? "cluster" : "beam";
-  node["reader"] = sensing.reader == Reader::in_step ? "in_step" : "free_running";
-  if (sensing.response) node["response"] = *sensing.response == Response::analog ? "analog" : "zones";
-  node["ambient_c"] = number(sensing.ambient_c);
-  node["analog_rays_per_zone"] = sensing.analog_rays_per_zone;
+  const YAML::Node others = written(sensing);
+  for (const auto& entry : others) {
+    if (entry.first.Scalar() != "ticks_per_window") node[entry.first.Scalar()] = entry.second;
+  }
   return node;
 }
 
@@ -171,7 +139,7 @@ std::string to_yaml(const ScriptSpec& script) {
   root["summary"]["reference"] = script.summary.reference_file;
   // Read scripts have one schedule for all trials.
   if (!script.trials.empty() && script.trials.front().schedule) {
-    root["schedule"] = to_node(*script.trials.front().schedule);
+    root["schedule"] = written(*script.trials.front().schedule);
   }
   const std::optional<RunClock> clock = clock_from(script.begin);
   for (const TrialSpec& trial : script.trials) {

@@ -154,6 +154,11 @@ ClusterSpec read_cluster(const YamlNode& node, const std::optional<double>& rang
   return cluster;
 }
 
+template <typename Spec>
+void add_keys(std::vector<std::string>& keys) {
+  each_field<Spec>([&](const auto& field) { keys.emplace_back(field.name); });
+}
+
 const std::vector<std::string>& sourced_keys() {
   static const std::vector<std::string> keys = [] {
     std::vector<std::string> all{"plane_m",
@@ -167,10 +172,9 @@ const std::vector<std::string>& sourced_keys() {
                                  "zone_side_m",
                                  "pitch_m",
                                  "missing",
-                                 "corners_m",
-                                 "blur_deg",
-                                 "aperture_mm2"};
-    const std::vector<std::string>& detector = sourced_detector_keys();
+                                 "corners_m"};
+    add_keys<OpticsSpec>(all);
+    const std::vector<std::string> detector = sourced_detector_keys();
     all.insert(all.end(), detector.begin(), detector.end());
     return all;
   }();
@@ -220,13 +224,17 @@ void check_sources(YamlMap& map, const YamlNode& root) {
   }
 }
 
-OpticsSpec read_optics(const std::optional<YamlNode>& node, Diagnostics& faults) {
-  OpticsSpec optics;
-  if (!node) return optics;
-  YamlMap map(*node, faults, "optics");
-  read_numbers(map, optics);
-  map.finish();
-  return optics;
+/// Its element, amplifier and comparator; what isn't there keeps its default.
+DetectorSpec read_detector(YamlMap& sensor) {
+  DetectorSpec detector;
+  read_part(sensor, "element", detector.element);
+  read_part(sensor, "amplifier", detector.amplifier,
+            [&](YamlMap& map) { check_together(detector.amplifier, faults_of(map, "amplifier")); });
+  read_part(sensor, "comparator", detector.comparator,
+            [&](YamlMap& map) { check_together(detector.comparator, faults_of(map, "comparator")); });
+  // A signal that saturates before a threshold would never be noticed.
+  check_together(detector, faults_of(sensor, "comparator"));
+  return detector;
 }
 
 FacetLaw read_law(YamlMap& map, double plane_m, const std::optional<double>& range_m) {
@@ -245,18 +253,6 @@ FacetLaw read_law(YamlMap& map, double plane_m, const std::optional<double>& ran
   law.polarity = map.choice<Polarity>("polarity", Polarity::checkerboard,
                                       {{"checkerboard", Polarity::checkerboard}, {"same", Polarity::same}});
   return law;
-}
-
-/// Of all facets or clusters that don't say their own.
-std::optional<double> read_common_range(YamlMap& map) {
-  ClusterSpec every;
-  std::optional<double> range_m;
-  each_number(every, [&](std::string_view key, const auto&, const auto& range) {
-    if constexpr (std::same_as<std::remove_cvref_t<decltype(range)>, NumberRange>) {
-      if (key == "range_m") range_m = map.optional_number("range_m", range);
-    }
-  });
-  return range_m;
 }
 
 /// Is a key of the file meant for range_m? Then each facet would tell that it is missing.
@@ -288,12 +284,11 @@ SensorModelSpec read_model(const YamlNode& root) {
   model.id = map.required_text("id");
   model.description = map.prose("description");
   map.require("plane_m");
-  read_numbers(map, model);
-  std::optional<double> range_m = read_common_range(map);
+  read_fields(map, model);
+  std::optional<double> range_m =  // of all facets or clusters that don't say their own
+      map.optional_number("range_m", field_of<&ClusterSpec::range_m>().range);
   if (!range_m && misspells_range(root)) range_m = 1.0;  // the file is refused for that key
-  model.response =
-      map.choice<Response>("response", model.response, {{"zones", Response::zones}, {"analog", Response::analog}});
-  model.optics = read_optics(map.child("optics"), faults);
+  read_part(map, "optics", model.optics);
   model.detector = read_detector(map);
   if (map.has("facets") == map.has("clusters")) {
     faults.error(map.where(), "sensor: expected either 'facets' or 'clusters'");
@@ -314,6 +309,14 @@ SensorModelSpec read_model(const YamlNode& root) {
 }
 
 }  // namespace
+
+std::vector<std::string> sourced_detector_keys() {
+  std::vector<std::string> keys;
+  add_keys<ElementSpec>(keys);
+  add_keys<AmplifierSpec>(keys);
+  add_keys<ComparatorSpec>(keys);
+  return keys;
+}
 
 SensorModelSpec read_sensor_model(const std::filesystem::path& path) {
   return read_model(YamlNode::load(read_input(path)));

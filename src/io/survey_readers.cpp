@@ -20,7 +20,8 @@ TurnSpec read_turn(const YamlNode& node, Diagnostics& faults) {
   const std::vector<double> axis = map.required_numbers("axis", 3, {.min = -1e6, .max = 1e6});
   turn.axis = {axis[0], axis[1], axis[2]};
   if (glm::length(turn.axis) < 1e-9) faults.error(map.where("axis"), "axis: expected a direction, not a point");
-  turn.deg_per_s = map.required_number("deg_per_s", {.min = -3600.0, .max = 3600.0});
+  map.require("deg_per_s");
+  read_numbers(map, turn);
   map.finish();
   return turn;
 }
@@ -28,10 +29,7 @@ TurnSpec read_turn(const YamlNode& node, Diagnostics& faults) {
 XShapesSpec read_x_shapes(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "x_shapes");
   XShapesSpec target;
-  target.heights_m = map.numbers("heights_m", target.heights_m, {.min = 0.0, .max = 10.0});
-  target.bar_length_m = map.number("bar_length_m", target.bar_length_m, {.above = 0.0, .max = 5.0});
-  target.bar_width_m = map.number("bar_width_m", target.bar_width_m, {.above = 0.0, .max = 1.0});
-  target.temperature_c = map.number("temperature_c", target.temperature_c, {.min = -50.0, .max = 200.0});
+  read_numbers(map, target);
   if (target.bar_width_m > target.bar_length_m) {
     faults.error(map.where("bar_width_m"), "bar_width_m: a bar can't be wider than it is long");
   }
@@ -43,19 +41,18 @@ XShapesSpec read_x_shapes(const YamlNode& node, Diagnostics& faults) {
   return target;
 }
 
-/// `seed` and `effects` of any survey.
-void read_seed_and_effects(YamlMap& map, std::uint64_t& seed, std::vector<EffectSpec>& effects) {
-  seed = map.unsigned_integer("seed", seed);
-  effects = read_effects(map.list("effects"), map.faults());
+/// `effects` of any survey.
+std::vector<EffectSpec> read_survey_effects(YamlMap& map) {
+  const std::vector<EffectSpec> effects = read_effects(map.list("effects"), map.faults());
   pirsim::effects::check(effects, map.faults());
+  return effects;
 }
 
 /// sensing, spacing_m, duration_s, without, target, seed and effects.
 void read_coverage_keys(YamlMap& map, CoverageSpec& spec) {
   Diagnostics& faults = map.faults();
   spec.sensing = read_sensing(map.child("sensing"), faults);
-  spec.spacing_m = map.number("spacing_m", spec.spacing_m, {.min = 0.005, .max = 10.0});
-  spec.duration_s = map.number("duration_s", spec.duration_s, {.above = 0.0, .max = 3600.0});
+  read_numbers(map, spec);
   const double windows = spec.duration_s * spec.sensing.tick_rate_hz / spec.sensing.ticks_per_window;
   if (std::abs(windows - std::round(windows)) > 1e-9 * windows || windows < 1.0) {
     faults.error(map.where("duration_s"), "duration_s: expected a whole number of windows");
@@ -67,7 +64,7 @@ void read_coverage_keys(YamlMap& map, CoverageSpec& spec) {
   YamlMap target(map.required_child("target"), faults, "target");
   spec.target = read_x_shapes(target.required_child("x_shapes"), faults);
   target.finish();
-  read_seed_and_effects(map, spec.seed, spec.effects);
+  spec.effects = read_survey_effects(map);
 }
 
 /// A file of format version 1; all its faults are told at once.
@@ -113,8 +110,8 @@ SensorSpec read_sensor(const YamlNode& node, std::size_t index, ModelPlaces& mod
   sensor.model = map.required_text("model");
   models.try_emplace(sensor.model, map.where("model"));
   const Vec3 position = read_point(map, "position_m");
-  const double yaw_deg = map.number("yaw_deg", 0.0, {.min = -360.0, .max = 360.0});
-  sensor.world_from_sensor = mounted(position, yaw_deg, map.number("tilt_deg", 20.0, {.min = -90.0, .max = 90.0}));
+  const double yaw_deg = map.number("yaw_deg", 0.0, accepted::turned_deg);
+  sensor.world_from_sensor = mounted(position, yaw_deg, map.number("tilt_deg", 20.0, accepted::tilted_deg));
   map.finish();
   return sensor;
 }
@@ -134,17 +131,16 @@ SensorSetSpec read_set(const YamlNode& node, ModelPlaces& models, Diagnostics& f
 PlacementSearchSpec read_search(const YamlNode& node, ModelPlaces& models, Diagnostics& faults) {
   YamlMap map(node, faults, "search");
   PlacementSearchSpec search;
-  search.n_sensors = map.required_integer("n_sensors", {.min = 1, .max = 20});
+  map.require("n_sensors");
+  read_numbers(map, search);
   search.model = map.required_text("model");
   models.try_emplace(search.model, map.where("model"));
-  search.evaluations = map.integer("evaluations", search.evaluations, {.min = 1, .max = 100000});
   for (const YamlNode& item : map.required_list("lines")) {
     YamlMap line(item, faults, "line");
     MountingLineSpec& spec = search.lines.emplace_back();
     spec.from = read_point(line, "from_m");
     spec.to = read_point(line, "to_m");
-    spec.yaw_deg = line.number("yaw_deg", 0.0, {.min = -360.0, .max = 360.0});
-    spec.tilt_deg = line.number("tilt_deg", spec.tilt_deg, {.min = -90.0, .max = 90.0});
+    read_numbers(line, spec);
     line.finish();
   }
   map.finish();
@@ -171,33 +167,10 @@ PlacementSpec read_placements(const std::filesystem::path& file, std::span<const
 
 namespace {
 
-void read_requirement(YamlMap& map, WalkRequirement& requirement) {
-  requirement.within_s = map.number("within_s", requirement.within_s, {.above = 0.0, .max = 600.0});
-  requirement.probability = map.number("probability", requirement.probability, {.above = 0.0, .max = 1.0});
-  requirement.directions = map.integer("directions", requirement.directions, {.min = 1, .max = 360});
-}
-
-void read_major(const YamlNode& node, WalkTestSpec& spec, Diagnostics& faults) {
-  YamlMap map(node, faults, "major_motion");
-  read_requirement(map, spec.major);
-  spec.path_m = map.number("path_m", spec.path_m, {.min = 0.5, .max = 20.0});
-  map.finish();
-}
-
-void read_minor(const YamlNode& node, WalkTestSpec& spec, Diagnostics& faults) {
-  YamlMap map(node, faults, "minor_motion");
-  read_requirement(map, spec.minor);
-  spec.seat_height_m = map.number("seat_height_m", spec.seat_height_m, {.min = 0.3, .max = 0.8});
-  spec.desk_height_m = map.number("desk_height_m", spec.desk_height_m, {.min = 0.5, .max = 1.1});
-  spec.arm_amplitude_m = map.number("arm_amplitude_m", spec.arm_amplitude_m, {.min = 0.0, .max = 0.15});
-  spec.arm_period_s = map.number("arm_period_s", spec.arm_period_s, {.min = 0.5, .max = 60.0});
-  map.finish();
-}
-
-void read_person(const YamlNode& node, WalkTestSpec& spec, Diagnostics& faults) {
-  YamlMap map(node, faults, "person");
-  read_numbers(map, spec.person);
-  map.finish();
+/// Numbers of the test itself that stand with the movement that they are about.
+template <auto... members>
+void read_numbers_of(YamlMap& map, WalkTestSpec& spec) {
+  (read_number(map, spec, field_of<members>()), ...);
 }
 
 }  // namespace
@@ -207,11 +180,19 @@ WalkTestSpec read_walk_test(const std::filesystem::path& file, std::span<const s
     WalkTestSpec spec;
     spec.name = map.text("name", stem_of_input(file));
     spec.sensing = read_sensing(map.child("sensing"), map.faults());
-    spec.spacing_m = map.number("spacing_m", spec.spacing_m, {.min = 0.05, .max = 10.0});
-    if (const auto node = map.child("person")) read_person(*node, spec, map.faults());
-    if (const auto node = map.child("major_motion")) read_major(*node, spec, map.faults());
-    if (const auto node = map.child("minor_motion")) read_minor(*node, spec, map.faults());
-    read_seed_and_effects(map, spec.seed, spec.effects);
+    read_numbers_of<&WalkTestSpec::spacing_m, &WalkTestSpec::seed>(map, spec);
+    if (const auto node = map.child("person")) {
+      YamlMap person(*node, map.faults(), "person");
+      read_numbers(person, spec.person);
+      person.finish();
+    }
+    read_part(map, "major_motion", spec.major,
+              [&](YamlMap& major) { read_numbers_of<&WalkTestSpec::path_m>(major, spec); });
+    read_part(map, "minor_motion", spec.minor, [&](YamlMap& minor) {
+      read_numbers_of<&WalkTestSpec::seat_height_m, &WalkTestSpec::desk_height_m, &WalkTestSpec::arm_amplitude_m,
+                      &WalkTestSpec::arm_period_s>(minor, spec);
+    });
+    spec.effects = read_survey_effects(map);
     return spec;
   });
 }
@@ -219,13 +200,7 @@ WalkTestSpec read_walk_test(const std::filesystem::path& file, std::span<const s
 NuisanceSpec read_nuisance(const std::filesystem::path& file) {
   return read_versioned(file, {}, "nuisance", "pirsim_nuisance", [&](YamlMap& map) {
     NuisanceSpec spec;
-    spec.seat_position_m = map.number("seat_position_m", spec.seat_position_m, {.min = 0.0, .max = 0.2});
-    spec.sensor_yaw_deg = map.number("sensor_yaw_deg", spec.sensor_yaw_deg, {.min = 0.0, .max = 10.0});
-    spec.sensor_tilt_deg = map.number("sensor_tilt_deg", spec.sensor_tilt_deg, {.min = 0.0, .max = 10.0});
-    spec.body_size = map.number("body_size", spec.body_size, {.min = 0.0, .max = 0.2});
-    spec.arm_amplitude = map.number("arm_amplitude", spec.arm_amplitude, {.min = 0.0, .max = 0.5});
-    spec.uneven_arms = map.number("uneven_arms", spec.uneven_arms, {.min = 0.0, .max = 1.0});
-    spec.trunk_sway_deg = map.number("trunk_sway_deg", spec.trunk_sway_deg, {.min = 0.0, .max = 12.0});
+    read_numbers(map, spec);
     return spec;
   });
 }

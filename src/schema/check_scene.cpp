@@ -39,6 +39,7 @@ class SceneCheck {
       const SpecPath seat = path.item("seats", i);
       check_id(scene_.seats[i].id, seat, seats);
       check_upright(scene_.seats[i].world_from_seat, seat.field("world_from_seat"));
+      faults_.numbers(scene_.seats[i], seat);
     }
     for (std::size_t i = 0; i < scene_.entrances.size(); ++i) {
       const SpecPath entrance = path.item("entrances", i);
@@ -62,7 +63,7 @@ class SceneCheck {
       n_elements += mesh.positions.size() + mesh.triangles.size();
       const SpecPath here = path.item("meshes", i);
       check_corners(mesh, here);
-      if (mesh.temperature_c) faults_.number(here.field("temperature_c"), *mesh.temperature_c, accepted::surface_c);
+      faults_.numbers(mesh, here);
     }
     if (n_elements <= limits::scene_elements) return;
     faults_.error(path.field("meshes"),
@@ -96,6 +97,7 @@ class SceneCheck {
     check_id(sensor.id, path, ids);
     faults_.error_if(path.field("id"), column_fault(sensor.id));
     static_cast<void>(check_frame(sensor.world_from_sensor, path.field("world_from_sensor")));
+    faults_.numbers(sensor, path);
     if (scene_.sensor_models.contains(sensor.model)) return;
     std::vector<std::string> names;
     for (const auto& [name, model] : scene_.sensor_models) names.push_back(name);

@@ -12,18 +12,12 @@ void check(const MeetingsSpec& meetings, const SpecPath& path, SpecFaults& fault
   if (!faults.few(path.field("held"), meetings.held.size(), limits::held_meetings)) return;
   for (std::size_t i = 0; i < meetings.held.size(); ++i) {
     const SpecPath held = path.item("held", i);
-    faults.number(held.field("at_h"), meetings.held[i].at_h, accepted::hour_of_day);
     faults.numbers(meetings.held[i], held);
     faults.together(meetings.held[i], held);
   }
   check_together(meetings.held, [&](std::size_t i, std::size_t j) {
     faults.error(path.item("held", i), "overlaps held[" + std::to_string(j) + "], and there is one room");
   });
-}
-
-void check(const ClockSpec& clock, const SpecPath& path, SpecFaults& faults) {
-  faults.number(path.field("mean_h"), clock.mean_h, accepted::hour_of_day);
-  faults.numbers(clock, path);
 }
 
 }  // namespace
@@ -70,9 +64,6 @@ void check_together(const ScheduleSpec& schedule, const TellFault& tell) {
 
 void check(const ScheduleSpec& schedule, const SpecPath& path, SpecFaults& faults) {
   faults.numbers(schedule, path);
-  faults.number(path.field("from_h"), schedule.from_h, accepted::hour_of_day);
-  faults.number(path.field("to_h"), schedule.to_h, accepted::hour_of_day);
-  if (schedule.cleaning_h) faults.number(path.field("cleaning_h"), *schedule.cleaning_h, accepted::hour_of_day);
   faults.together(schedule, path);
   if (!faults.few(path.field("staff"), schedule.staff.size(), limits::list_entries)) return;
   for (std::size_t i = 0; i < schedule.staff.size(); ++i) faults.numbers(schedule.staff[i], path.item("staff", i));
@@ -81,9 +72,9 @@ void check(const ScheduleSpec& schedule, const SpecPath& path, SpecFaults& fault
     faults.numbers(*schedule.profile, path.field("profile"));
     faults.together(*schedule.profile, path.field("profile"));
   }
-  check(schedule.arrival, path.field("arrival"), faults);
-  check(schedule.departure, path.field("departure"), faults);
-  check(schedule.lunch, path.field("lunch"), faults);
+  faults.numbers(schedule.arrival, path.field("arrival"));
+  faults.numbers(schedule.departure, path.field("departure"));
+  faults.numbers(schedule.lunch, path.field("lunch"));
 }
 
 }  // namespace pirsim

@@ -114,7 +114,7 @@ class ScriptCheck {
 
   void check_action(const PersonSpec& person, const ScriptedAction& action, const SpecPath& path) {
     faults_.error_if(path.field("phase"), line_fault(action.phase));
-    if (action.at_s) faults_.number(path.field("at_s"), *action.at_s, accepted::at_s);
+    faults_.numbers(action, path);
     faults_.error_if(path.field("activity"), activity_fault(person, action));
     std::visit([&](const auto& what) { faults_.numbers(what, path); }, action.what);
     if (const auto* appear = std::get_if<action::Appear>(&action.what)) check_point(appear->point, path.field("point"));

@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -35,6 +37,7 @@ struct Field {
   Range range;          ///< a NumberRange, an IntegerRange, or a function that makes one from the spec's other fields
   const char* meaning;  ///< in a few words, for Python and the pages; "": the name says it
   Use use;
+  using Owner = Spec;
 };
 
 template <typename Spec, typename Value>
@@ -104,15 +107,28 @@ template <typename Spec, typename Value, typename Range>
     return field.range;
   }
 }
-template <typename Range>
-concept OfNumbers = std::same_as<Range, NumberRange> || std::same_as<Range, IntegerRange>;
+template <typename F>
+using RangeOf = decltype(range_of(std::declval<const F&>(), std::declval<const typename F::Owner&>()));
+/// A field that is given as a number.
+template <typename F>
+concept NumberField = std::same_as<RangeOf<F>, NumberRange> || std::same_as<RangeOf<F>, IntegerRange>;
+template <typename F>
+concept TimeField = std::same_as<RangeOf<F>, TimeOfDay>;
+
+/// The key of a field in files: times of day leave out their unit, `from_h` is `from`.
+template <typename Spec, typename Value, typename Range>
+[[nodiscard]] std::string key_of(const Field<Spec, Value, Range>& field) {
+  std::string key = field.name;
+  if constexpr (std::same_as<Range, TimeOfDay>) key.resize(key.size() - std::string_view("_h").size());
+  return key;
+}
 
 /// Calls `visit(name, number, range)` for every number of the spec itself that is given as a number, not of its parts.
 template <typename Spec, typename Visit>
 requires Described<std::remove_const_t<Spec>>
 void each_number(Spec& spec, Visit&& visit) {
   each_field<std::remove_const_t<Spec>>([&](const auto& field) {
-    if constexpr (OfNumbers<decltype(range_of(field, spec))>)
+    if constexpr (NumberField<std::remove_cvref_t<decltype(field)>>)
       visit(field.name, spec.*field.member, range_of(field, std::as_const(spec)));
   });
 }

@@ -41,6 +41,7 @@ inline constexpr NumberRange worked_s{.above = 0.0, .max = 1e6};
 inline constexpr NumberRange meeting_min{.min = 1.0, .max = 1440.0};
 inline constexpr IntegerRange meetings_a_day{.min = 0, .max = 100};
 inline constexpr IntegerRange people_at_once{.min = 1, .max = 200};
+inline constexpr IntegerRange seed{.min = 0, .max = std::numeric_limits<long long>::max()};
 
 }  // namespace accepted
 
@@ -479,7 +480,7 @@ struct Fields<ScriptSpec> {
   static constexpr std::tuple all{
       LABEL(name),
       FIELD(trials),
-      FIELD(seed, IntegerRange{.min = 0, .max = std::numeric_limits<long long>::max()}),
+      FIELD(seed, accepted::seed),
       FIELD(replicates, IntegerRange{.min = 1, .max = 10000000}),
       FIELD(sensing),
       FIELD(effects),
@@ -519,7 +520,7 @@ struct Fields<CoverageSpec> {
       FIELD(without, "what is taken out of the room: meshes of this name, or of this first word"),
       LABEL(without_where),
       FIELD(target),
-      FIELD(seed),
+      FIELD(seed, accepted::seed),
       FIELD(effects)};
 };
 template <>
@@ -559,7 +560,7 @@ struct Fields<WalkTestSpec> {
       FIELD(desk_height_m, NumberRange{.min = 0.5, .max = 1.1}, "of the forearms"),
       FIELD(arm_amplitude_m, NumberRange{.min = 0.0, .max = 0.15}),
       FIELD(arm_period_s, NumberRange{.min = 0.5, .max = 60.0}),
-      FIELD(seed),
+      FIELD(seed, accepted::seed),
       FIELD(effects)};
 };
 

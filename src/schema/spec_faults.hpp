@@ -58,11 +58,13 @@ class SpecFaults {
     error(path, "has " + std::to_string(n) + " entries, more than " + std::to_string(most));
     return false;
   }
-  /// Every number of the spec itself.
+  /// Every number and time of day of the spec itself.
   template <typename Spec>
   void numbers(const Spec& spec, const SpecPath& path) {
-    each_number(spec, [&](std::string_view name, const auto& value, const auto& range) {
-      number_of(path.field(name), value, range);
+    each_field<Spec>([&](const auto& field) {
+      using F = std::remove_cvref_t<decltype(field)>;
+      if constexpr (NumberField<F> || TimeField<F>)
+        number_of(path.field(field.name), spec.*field.member, range_of(field, spec));
     });
   }
   template <typename Spec>

@@ -66,7 +66,8 @@ const std::map<std::string, Change>& changes() {
 }  // namespace
 
 TEST_CASE("each number of a sensor's circuit and optics changes hard zones' rows or is told as unused", "[sensor]") {
-  std::set<std::string> keys(io::sourced_detector_keys().begin(), io::sourced_detector_keys().end());
+  const std::vector<std::string> circuit = io::sourced_detector_keys();
+  std::set<std::string> keys(circuit.begin(), circuit.end());
   keys.insert({"blur_deg", "aperture_mm2"});
   for (const std::string& key : keys) CHECK(changes().contains(key));
   const ScriptSpec script = study(Response::zones);
