@@ -72,6 +72,9 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # folders whose files, as any user of the library, may include public headers alone, beside their own and the description
 # of the specs
 OUTSIDE = ("python/src",)
+DESCRIPTION = "src/schema/fields.hpp"
+# a field: `spec.field`, `&Spec::field`, its name in quotes, or one of a structured binding
+NAMED = re.compile(r'(?:\.|::|->)(\w+)\b(?!\()|"(\w+)"|auto&? \[([^\]]*)')
 DESCRIPTIONS = ("schema/fields.hpp", "schema/words.hpp")
 
 
@@ -141,6 +144,7 @@ def violations(root: pathlib.Path):
                         yield f"{here}:{number}: {name} may only be included in src/{'/, src/'.join(sorted(homes))}/"
     yield from stray_files(root)
     yield from cycles(graph)
+    yield from listed_again(root)
     for folder in OUTSIDE:
         yield from private_includes(root, folder)
 
@@ -154,6 +158,35 @@ def private_includes(root: pathlib.Path, folder: str):
             name = match.group(2)
             if (root / "src" / name).is_file() or (match.group(1) == '"' and not name.startswith("pirsim/")):
                 yield f"{file.relative_to(root)}:{number}: only public headers may be included here ({name})"
+
+
+def listed_again(root: pathlib.Path):
+    """Every list of all fields of a larger spec, on lines that follow each other, outside of their description."""
+    specs = described_specs(root)
+    for file in sorted([*root.glob("src/**/*.[ch]pp"), *root.glob("python/src/*.[ch]pp")]):
+        here = file.relative_to(root)
+        lines = re.sub(r"auto&? \[[^\]]*\]", lambda found: found[0].replace("\n", " ") + "\n" * found[0].count("\n"),
+                       file.read_text()).splitlines()  # a structured binding is one line
+        for spec, fields in specs.items() if str(here) != DESCRIPTION else ():
+            began, last, seen = 0, 0, set()
+            for number, line in enumerate(lines, 1):
+                named = {name for names in NAMED.findall(line) for name in re.findall(r"\w+", "".join(names))} & fields
+                if not named:
+                    continue
+                if number > last + 1:
+                    began, seen = number, set()
+                last, seen = number, seen | named
+                if seen == fields:
+                    yield f"{here}:{began}: lists all fields of {spec} again: go through their description, {DESCRIPTION}"
+                    seen = set()
+
+
+def described_specs(root: pathlib.Path):
+    """The fields of each spec that has enough of them for a list to be one of all; labels are often left out."""
+    file = root / DESCRIPTION
+    found = re.findall(r"struct Fields<([\w:]+)> \{(.*?)\n\};", file.read_text() if file.is_file() else "", re.DOTALL)
+    specs = {spec: set(re.findall(r"FIELD\((\w+)", text)) for spec, text in found}
+    return {spec: fields for spec, fields in specs.items() if len(fields) >= 6}
 
 
 def cycles(graph):

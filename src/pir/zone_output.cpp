@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <initializer_list>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "pirsim/sensor_keys.hpp"
+#include "schema/fields.hpp"
 
 namespace pirsim {
 namespace pir {
@@ -24,29 +27,18 @@ namespace {
 /// "low_hz, high_hz": what differs from the default and only the analog response asks for.
 std::string analog_keys(const SensorModelSpec& model) {
   std::string keys;
-  const auto add = [&](const char* key, const auto& value, const auto& usual) {
-    if (value == usual) return;
-    keys += keys.empty() ? "" : ", ";
-    keys += key;
+  const auto add = [&]<typename Spec>(const Spec& spec, std::initializer_list<std::string_view> obeyed = {}) {
+    const Spec usual{};
+    each_field<Spec>([&](const auto& field) {
+      if (same(spec.*field.member, usual.*field.member)) return;
+      if (std::ranges::find(obeyed, field.name) == obeyed.end())
+        keys += (keys.empty() ? "" : ", ") + std::string(field.name);
+    });
   };
-  const OpticsSpec usual_optics;
-  add("blur_deg", model.optics.blur_deg, usual_optics.blur_deg);
-  add("aperture_mm2", model.optics.aperture_mm2, usual_optics.aperture_mm2);
-  const auto& [element, amplifier, comparator] = model.detector;
-  const DetectorSpec usual;
-  add("thermal_s", element.thermal_s, usual.element.thermal_s);
-  add("electrical_s", element.electrical_s, usual.element.electrical_s);
-  add("low_hz", amplifier.low_hz, usual.amplifier.low_hz);
-  add("high_hz", amplifier.high_hz, usual.amplifier.high_hz);
-  add("order", amplifier.order, usual.amplifier.order);
-  add("volts_per_watt", amplifier.volts_per_watt, usual.amplifier.volts_per_watt);
-  add("noise_v_pp", amplifier.noise_v_pp, usual.amplifier.noise_v_pp);
-  add("offset_v", amplifier.offset_v, usual.amplifier.offset_v);
-  add("lowest_v", amplifier.lowest_v, usual.amplifier.lowest_v);
-  add("highest_v", amplifier.highest_v, usual.amplifier.highest_v);
-  add("positive_v", comparator.positive_v, usual.comparator.positive_v);
-  add("negative_v", comparator.negative_v, usual.comparator.negative_v);
-  add("pulse_signs", comparator.pulse_signs, usual.comparator.pulse_signs);
+  add(model.optics);
+  add(model.detector.element);
+  add(model.detector.amplifier);
+  add(model.detector.comparator, {"pulse_count", "pulse_window_s", "hold_s", "blind_s"});
   return keys;
 }
 

@@ -17,7 +17,7 @@ import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CLASSES = ROOT / "python/pirsim/specs.py"
-PAGES = ("docs/formats/sensor.md", "docs/formats/coverage.md")
+PAGES = ("docs/formats/coverage.md", "docs/formats/scene.md", "docs/formats/sensor.md")
 WIDTH = 120
 
 HEAD = '''"""Scenes and scripts as plain objects: read from files, changed, or made from nothing.

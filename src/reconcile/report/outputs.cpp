@@ -10,6 +10,7 @@
 #include "reconcile/report/pages.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "reconcile/validation/seal.hpp"
+#include "schema/fields.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -126,6 +127,8 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
   std::vector<std::string> notes;
   for (const DataNote& note : measured.notes) notes.push_back(in_words(note));
   for (const DataNote& note : outcome.notes) notes.push_back(in_words(note));
+  Json nuisance;
+  each_number(settings.nuisance, [&](const char* key, double width, const auto&) { nuisance[key] = width; });
   Json json = {{"pirsim_reconcile_report", report_schema},
                {"verdict", name(outcome.verdict)},
                {"sentence", sentence(outcome, settings.alpha)},
@@ -142,14 +145,7 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
                {"alpha", settings.alpha},
                {"seed", context.seed},
                {"table", outcome.table_key},
-               {"nuisance",
-                {{"seat_position_m", settings.nuisance.seat_position_m},
-                 {"sensor_yaw_deg", settings.nuisance.sensor_yaw_deg},
-                 {"sensor_tilt_deg", settings.nuisance.sensor_tilt_deg},
-                 {"body_size", settings.nuisance.body_size},
-                 {"arm_amplitude", settings.nuisance.arm_amplitude},
-                 {"uneven_arms", settings.nuisance.uneven_arms},
-                 {"trunk_sway_deg", settings.nuisance.trunk_sway_deg}}}};
+               {"nuisance", nuisance}};
   json["where"] = to_json(outcome.location);
   Json candidates = Json::array(), fits = Json::array();
   for (const Candidate& candidate : with_twins(outcome.candidates)) candidates.push_back(to_json(candidate));

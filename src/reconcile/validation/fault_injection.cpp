@@ -8,6 +8,7 @@
 #include "reconcile/inference/flat_scale.hpp"
 #include "reconcile/validation/out_of_catalogue.hpp"
 #include "reconcile/validation/selftest.hpp"
+#include "schema/fields.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -89,11 +90,7 @@ class InjectionJob {
         seed_(seed),
         plans_(plans_of(reference, settings)),
         wide_source_(reference.source) {
-    NuisanceSpec& wide = wide_source_.nuisance;
-    for (double* width : {&wide.seat_position_m, &wide.sensor_yaw_deg, &wide.sensor_tilt_deg, &wide.body_size,
-                          &wide.arm_amplitude, &wide.uneven_arms, &wide.trunk_sway_deg}) {
-      *width *= beyond;
-    }
+    each_number(wide_source_.nuisance, [](const char*, double& width, const auto&) { width *= beyond; });
   }
   [[nodiscard]] const std::vector<Plan>& plans() const { return plans_; }
 

@@ -1,0 +1,57 @@
+#!/usr/bin/env python3
+"""tools/check_layers.py finds a list of all fields of a spec, and nothing else.
+
+Usage: test_check_layers.py SOURCE_DIRECTORY
+"""
+import importlib.util
+import pathlib
+import sys
+import tempfile
+import unittest
+
+SOURCE = pathlib.Path(sys.argv.pop() if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parents[2])
+module = importlib.util.spec_from_file_location("check_layers", SOURCE / "tools/check_layers.py")
+check_layers = importlib.util.module_from_spec(module)
+module.loader.exec_module(check_layers)
+
+NAMES = ["seat", "wait_s", "width_m", "order", "low_hz", "high_hz"]
+DESCRIPTION = ("struct Fields<DoorSpec> {\n  static constexpr std::tuple all{\n"
+               + ",\n".join(f"      FIELD({name})" for name in NAMES) + ",\n      LABEL(where)};\n};\n")
+
+
+class ListedAgain(unittest.TestCase):
+    def found_in(self, text):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            for name, content in (("src/schema/fields.hpp", DESCRIPTION), ("src/io/door.cpp", text)):
+                (root / name).parent.mkdir(parents=True, exist_ok=True)
+                (root / name).write_text(content)
+            return list(check_layers.listed_again(root))
+
+    def test_all_members_line_by_line(self):
+        found = self.found_in("\n" + "".join(f"  print(door.{name});\n" for name in NAMES))
+        self.assertEqual(len(found), 1)
+        self.assertTrue(found[0].startswith("src/io/door.cpp:2: lists all fields of DoorSpec again"), found)
+
+    def test_all_keys_or_pointers(self):
+        self.assertEqual(len(self.found_in("".join(f'add("{name}", &DoorSpec::{name});\n' for name in NAMES))), 1)
+
+    def test_a_structured_binding(self):
+        self.assertEqual(len(self.found_in(f"const auto& [{', '.join(NAMES)}, where] = door;\n")), 1)
+        self.assertEqual(len(self.found_in("const auto& [%s] = door;\n" % ",\n            ".join(NAMES))), 1)
+
+    def test_each_list_is_found(self):
+        one = "".join(f"  print(door.{name});\n" for name in NAMES)
+        self.assertEqual(len(self.found_in(one + "\n\n" + one)), 2)
+
+    def test_some_fields_or_all_of_them_far_apart_are_no_list(self):
+        self.assertEqual(self.found_in("".join(f"  print(door.{name});\n" for name in NAMES[1:])), [])
+        self.assertEqual(self.found_in("".join(f"  print(door.{name});\n\n" for name in NAMES)), [])
+        self.assertEqual(self.found_in(" ".join(NAMES) + "\n"), [])
+
+    def test_the_description_itself_is_none(self):
+        self.assertEqual(self.found_in(""), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
