@@ -9,6 +9,7 @@
 #include <set>
 
 #include "pirsim/random.hpp"
+#include "schema/words.hpp"
 
 namespace pirsim {
 namespace {
@@ -79,18 +80,6 @@ void check_entrances(const ScheduleSpec& schedule, const SceneSpec& scene, Diagn
   if (doors.empty()) diagnostics.error(schedule.where, "schedule: " + scene.name + " has no entrance to come in by");
 }
 
-std::string name_of(Role role) {
-  switch (role) {
-    case Role::manager:
-      return "manager";
-    case Role::administrator:
-      return "administrator";
-    case Role::staff:
-      break;
-  }
-  return "staff";
-}
-
 /// As many as ever meet at once.
 int guests_of(const ScheduleSpec& schedule, const SceneSpec& scene, Diagnostics& diagnostics) {
   if (!schedule.meetings) return 0;
@@ -145,7 +134,8 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
                                            " seats of " + scene.name);
         break;
       }
-      add(SchedulePart::staff, staff.role, name_of(staff.role) + '_' + std::to_string(++numbers[staff.role]), *seat);
+      add(SchedulePart::staff, staff.role,
+          std::string(word_of(staff.role)) + '_' + std::to_string(++numbers[staff.role]), *seat);
     }
   }
   if (schedule.meetings) {
