@@ -28,10 +28,7 @@ struct RayBundle {
   [[nodiscard]] std::size_t n_sensors() const noexcept { return sensor_clusters_begin.size() - 1; }
 };
 
-/// Activity of every zone at one tick: 1 where at least one of the zone's rays hits a person. (n_zones)
-using ZoneActivity = std::vector<std::uint8_t>;
-
-// Which zones are active, one bit a zone.
+// Which zones are active at a tick, one bit a zone: those with a ray that hits a person.
 
 /// A set of zones (or of other things counted from 0) as bits in 64-bit words. The unused bits of the last word are 0.
 class ZoneSet {

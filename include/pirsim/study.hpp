@@ -14,7 +14,7 @@ namespace pirsim {
 
 enum class Record {
   samples,           ///< rows only
-  samples_and_zones  ///< also every zone's activity at every tick: some 500 bytes a tick and sensor
+  samples_and_zones  ///< also which zones are active at every tick
 };
 
 enum class Trace {
@@ -32,7 +32,7 @@ struct RunResult {
   int replicate = 0;
   std::string trial;
   std::vector<Sample> samples;           ///< one a window
-  std::vector<ZoneActivity> zones;       ///< (n_ticks x n_zones) from tick 1 on, if recorded
+  std::vector<ZoneSet> zones;            ///< (n_ticks) active ones, from tick 1 on, if recorded
   std::vector<TraceRow> trace;           ///< (n_ticks x n_analog_sensors) if asked for; texts are the Model's
   std::vector<OccupantRow> occupants{};  ///< if asked for
   std::vector<RunIncident> incidents{};  ///< in the order of time

@@ -119,7 +119,9 @@ void RunArrays::add_signals(const RunResult& result) {
 void RunArrays::add_zones(const RunResult& result) {
   Zones& zones = zones_.emplace_back();
   zones.n_ticks = result.zones.size();
-  for (const ZoneActivity& tick : result.zones) zones.active.insert(zones.active.end(), tick.begin(), tick.end());
+  for (const ZoneSet& tick : result.zones) {
+    for (std::size_t zone = 0; zone < tick.size(); ++zone) zones.active.push_back(tick.test(zone) ? 1 : 0);
+  }
 }
 
 nb::dict RunArrays::occupants() {

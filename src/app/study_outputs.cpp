@@ -205,7 +205,8 @@ void require_memory(const std::string& option, double bytes_a_tick, const Model&
 
 void require_memory(const Model& model, const RunOptions& options) {
   const sim::AnalogModel* analog = model.compiled().array().analog();
-  if (!options.zones.empty()) require_memory("--zones", static_cast<double>(model.rays().n_zones()), model);
+  const std::size_t zone_bytes = sizeof(ZoneSet) + ZoneSet(model.rays().n_zones()).words().size_bytes();
+  if (!options.zones.empty()) require_memory("--zones", static_cast<double>(zone_bytes), model);
   if (!options.trace.empty() && analog != nullptr)
     require_memory("--trace", static_cast<double>(sizeof(TraceRow) * model.scene().sensors.size()), model);
 }
@@ -231,10 +232,12 @@ class ZoneOutput {
   /// Bytes before compression.
   std::size_t add(const RunResult& result) {
     std::int64_t tick = 0;
-    for (const ZoneActivity& activity : result.zones) {
+    for (const ZoneSet& active : result.zones) {
       ++tick;
+      std::vector<std::uint8_t> bits(active.size());
+      for (std::size_t zone = 0; zone < bits.size(); ++zone) bits[zone] = active.test(zone) ? 1 : 0;
       for (std::size_t i = 0; i < sensors_.size(); ++i) {
-        const auto zones = std::span(activity).subspan(first_zones_[i], first_zones_[i + 1] - first_zones_[i]);
+        const auto zones = std::span(bits).subspan(first_zones_[i], first_zones_[i + 1] - first_zones_[i]);
         csv_.write({result.replicate, result.trial, tick, sensors_[i], zones});
       }
     }

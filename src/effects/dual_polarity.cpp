@@ -5,7 +5,7 @@
 namespace pirsim::effects {
 namespace {
 
-/// Where the physics is: pir::PolarityDetector.
+/// Where the physics is: pir::PolarityFilter.
 void alter(StudyInForce& study, const EffectSpec& effect) {
   study.sensing.dual_polarity = {effect.parameters.at("threshold"), effect.parameters.at("high_pass_hz"),
                                  effect.parameters.at("low_pass_hz")};

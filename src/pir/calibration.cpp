@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <map>
 
-#include "pir/analog_detector.hpp"
+#include "pir/analog_circuit.hpp"
 #include "pir/optics.hpp"
 #include "pir/planck.hpp"
 #include "pirsim/error.hpp"

@@ -14,8 +14,8 @@ constexpr double no_difference = 1.0 / 64.0;  // of a zone; a filter that is so 
 
 }  // namespace
 
-SoftEdges::SoftEdges(const MotionDetector& detector, std::size_t n_levels, const SoftEdgesSpec& spec,
-                     int ticks_per_window, double tick_s)
+SoftEdges::SoftEdges(const Channels& detector, std::size_t n_levels, const SoftEdgesSpec& spec, int ticks_per_window,
+                     double tick_s)
     : detector_(&detector),
       spec_(spec),
       n_levels_(n_levels),

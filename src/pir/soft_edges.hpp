@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "pir/motion_detector.hpp"
+#include "pir/zone_motion.hpp"
 #include "pirsim/random.hpp"
 #include "pirsim/rays.hpp"
 #include "schema/study_in_force.hpp"
@@ -21,7 +21,7 @@ namespace pirsim::pir {
 /// With one level all are the change of that one, and nothing is drawn. A value; the detector outlives it.
 class SoftEdges {
  public:
-  SoftEdges(const MotionDetector& detector, std::size_t n_levels, const SoftEdgesSpec& spec, int ticks_per_window,
+  SoftEdges(const Channels& detector, std::size_t n_levels, const SoftEdgesSpec& spec, int ticks_per_window,
             double tick_s);
 
   /// rest: channels that have been active for long.
@@ -44,7 +44,7 @@ class SoftEdges {
   /// Active copies among the words of a channel set.
   [[nodiscard]] int n_active(const ZoneSet& channels, std::size_t sensor, std::size_t channel) const noexcept;
 
-  const MotionDetector* detector_;
+  const Channels* detector_;
   SoftEdgesSpec spec_;
   std::size_t n_levels_;
   int ticks_per_window_;

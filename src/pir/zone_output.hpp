@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "pir/analog_detector.hpp"
+#include "pir/analog_circuit.hpp"
 #include "pirsim/sensor.hpp"
 
 namespace pirsim::pir {

@@ -38,7 +38,8 @@ struct ViewCone {
 [[nodiscard]] std::vector<ViewCone> cluster_cones(const RayBundle& bundle);
 [[nodiscard]] std::vector<ViewCone> zone_cones(const RayBundle& bundle);
 
-/// False only if no ray of the cone can hit anything inside a sphere; true may be wrong.
+/// False only if no ray of the cone can hit anything inside the sphere, or inside any of them; true may be wrong.
+[[nodiscard]] bool may_touch(const ViewCone& cone, const BoundingSphere& sphere) noexcept;
 [[nodiscard]] bool may_touch_any(const ViewCone& cone, std::span<const BoundingSphere> spheres) noexcept;
 
 // The rays of a bundle in packets of sixteen that lie close together, and a cone around each packet; both laid out in

@@ -51,8 +51,7 @@ DirectTracer::DirectTracer(const TracerSetup& setup, const RayKernel& kernel)
       all_(packets_.size()),
       distances_(packets_.size() * packet_size),
       nearest_(setup.clipped->rays.size(), unlimited),
-      first_hit_(setup.clipped->rays.size()),
-      zones_(setup.clipped->n_zones()) {
+      first_hit_(setup.clipped->rays.size()) {
   std::iota(all_.begin(), all_.end(), 0U);
   for (const Ray& ray : setup.clipped->rays) farthest_m_ = std::max(farthest_m_, glm::length(ray.origin));
   near_person_cones_.reserve(cones_.size());
@@ -179,12 +178,6 @@ void DirectTracer::find_first(std::span<const PosedShape> solids, std::vector<Fi
     hits.push_back({ray, first_hit_[ray]});
     nearest_[ray] = unlimited;
   }
-}
-
-void DirectTracer::trace(std::span<const PosedShape> solids, std::span<std::uint8_t> zones) {
-  zones_.clear();
-  add(0, solids, zones_);
-  for (std::size_t i = 0; i < zones.size(); ++i) zones[i] = zones_.test(i) ? 1 : 0;
 }
 
 std::unique_ptr<Tracer> make_direct_tracer(const TracerSetup& setup) { return std::make_unique<DirectTracer>(setup); }

@@ -18,9 +18,9 @@ namespace pirsim::rt {
 class DirectTracer final : public Tracer {
  public:
   explicit DirectTracer(const TracerSetup& setup, const RayKernel& kernel = best_ray_kernel());
-  void trace(std::span<const PosedShape> solids, std::span<std::uint8_t> zones) override;
   void add(std::size_t person, std::span<const PosedShape> solids, ZoneSet& zones) override;
   void find_first(std::span<const PosedShape> solids, std::vector<FirstHit>& hits) override;
+  [[nodiscard]] bool may_be_remembered() const noexcept override { return true; }
 
  private:
   /// Of the packets around one solid; more are allocated when they are needed.
@@ -71,7 +71,6 @@ class DirectTracer final : public Tracer {
   std::vector<float> nearest_;            ///< (n_rays) infinite between calls
   std::vector<std::uint32_t> first_hit_;  ///< (n_rays) solid at the nearest distance
   std::vector<std::uint32_t> hit_rays_;
-  ZoneSet zones_;
 };
 
 }  // namespace pirsim::rt

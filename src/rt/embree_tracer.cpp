@@ -92,7 +92,7 @@ class EmbreeTracer final : public Tracer {
         cluster_cones_(cluster_cones(bundle_)),
         zone_cones_(zone_cones(bundle_)),
         cube_(make_scene(device_, RTC_SCENE_FLAG_ROBUST)),
-        scene_(make_scene(device_, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC)) {
+        everybody_(make_stage()) {
     const GeometryHandle cube = make_geometry(device_, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(cube.get(), 1);
     rtcSetGeometryBoundsFunction(cube.get(), bound_cube, nullptr);
@@ -103,17 +103,19 @@ class EmbreeTracer final : public Tracer {
     commit(device_, cube_.get());
   }
 
-  void trace(std::span<const PosedShape> solids, std::span<std::uint8_t> zones) override {
-    std::fill(zones.begin(), zones.end(), std::uint8_t{0});
+  void add(std::size_t person, std::span<const PosedShape> solids, ZoneSet& zones) override {
+    while (people_.size() <= person) people_.push_back(make_stage());
     SolidQuery query;
-    prepare(query, solids);
-    for (const std::size_t zone : candidates_) zones[zone] = sees_solid(query, zone);
+    prepare(query, solids, people_[person]);
+    for (const std::size_t zone : candidates_) {
+      if (sees_solid(query, people_[person], zone)) zones.insert(zone);
+    }
   }
 
   void find_first(std::span<const PosedShape> solids, std::vector<FirstHit>& hits) override {
     hits.clear();
     SolidQuery query;
-    prepare(query, solids);
+    prepare(query, solids, everybody_);
     for (const std::size_t zone : candidates_) {
       for (std::uint32_t i = bundle_.zone_rays_begin[zone]; i < bundle_.zone_rays_begin[zone + 1]; ++i) {
         if (const auto solid = first_solid(query, i)) hits.push_back({i, *solid});
@@ -122,11 +124,25 @@ class EmbreeTracer final : public Tracer {
   }
 
  private:
+  struct Instance {
+    GeometryHandle geometry;
+    Transform transform{};
+    bool is_enabled = false;
+  };
+  /// A scene of its own for everyone whose solids move by themselves.
+  struct Stage {
+    SceneHandle scene;
+    std::vector<Instance> instances;
+  };
+  [[nodiscard]] Stage make_stage() const {
+    return {make_scene(device_, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC), {}};
+  }
+
   /// Finds the candidates, of which the query can then be asked.
-  void prepare(SolidQuery& query, std::span<const PosedShape> solids) {
+  void prepare(SolidQuery& query, std::span<const PosedShape> solids, Stage& stage) {
     find_candidates(solids);
     if (candidates_.empty()) return;
-    move_instances(solids);
+    move_instances(solids, stage);
     initialise(query);
     query.solids = solids;
   }
@@ -148,33 +164,28 @@ class EmbreeTracer final : public Tracer {
     }
   }
 
-  struct Instance {
-    GeometryHandle geometry;
-    Transform transform{};
-    bool is_enabled = false;
-  };
-
-  void add_instance() {
+  void add_instance(Stage& stage) const {
     Instance instance{make_geometry(device_, RTC_GEOMETRY_TYPE_INSTANCE), {}, false};
     rtcSetGeometryInstancedScene(instance.geometry.get(), cube_.get());
     rtcSetGeometryTimeStepCount(instance.geometry.get(), 1);
     rtcCommitGeometry(instance.geometry.get());
-    rtcAttachGeometryByID(scene_.get(), instance.geometry.get(), static_cast<unsigned int>(instances_.size()));
+    rtcAttachGeometryByID(stage.scene.get(), instance.geometry.get(),
+                          static_cast<unsigned int>(stage.instances.size()));
     rtcDisableGeometry(instance.geometry.get());
     check(device_, "add an instance");
-    instances_.push_back(std::move(instance));
+    stage.instances.push_back(std::move(instance));
   }
 
   /// Instance i follows solid i; instances that are left over are switched off and kept.
-  void move_instances(std::span<const PosedShape> solids) {
-    while (instances_.size() < solids.size()) add_instance();
+  void move_instances(std::span<const PosedShape> solids, Stage& stage) const {
+    while (stage.instances.size() < solids.size()) add_instance(stage);
     bool has_changed = false;
-    for (std::size_t i = 0; i < instances_.size(); ++i) {
+    for (std::size_t i = 0; i < stage.instances.size(); ++i) {
       const bool is_wanted = i < solids.size();
-      has_changed |= set_enabled(instances_[i], is_wanted);
-      if (is_wanted) has_changed |= set_transform(instances_[i], cube_transform(solids[i]));
+      has_changed |= set_enabled(stage.instances[i], is_wanted);
+      if (is_wanted) has_changed |= set_transform(stage.instances[i], cube_transform(solids[i]));
     }
-    if (has_changed) commit(device_, scene_.get());
+    if (has_changed) commit(device_, stage.scene.get());
   }
 
   static bool set_enabled(Instance& instance, bool is_wanted) noexcept {
@@ -192,12 +203,12 @@ class EmbreeTracer final : public Tracer {
     return true;
   }
 
-  [[nodiscard]] bool sees_solid(SolidQuery& query, std::size_t zone) const noexcept {
+  [[nodiscard]] bool sees_solid(SolidQuery& query, const Stage& stage, std::size_t zone) const noexcept {
     for (std::uint32_t i = bundle_.zone_rays_begin[zone]; i < bundle_.zone_rays_begin[zone + 1]; ++i) {
       query.ray = bundle_.rays[i];
       query.range = bundle_.range[i];
       RTCRay ray = embree_ray(query.ray, query.range);
-      any_hit(scene_.get(), query, ray);
+      any_hit(stage.scene.get(), query, ray);
       if (ray.tfar < 0.0F) return true;
     }
     return false;
@@ -208,7 +219,7 @@ class EmbreeTracer final : public Tracer {
     query.range = bundle_.range[ray];
     query.nearest.reset();
     RTCRayHit nearest = embree_ray_hit(query.ray, query.range);
-    closest_hit(scene_.get(), query, nearest);
+    closest_hit(everybody_.scene.get(), query, nearest);
     return query.nearest;
   }
 
@@ -217,8 +228,8 @@ class EmbreeTracer final : public Tracer {
   std::vector<ViewCone> cluster_cones_;  ///< (n_clusters)
   std::vector<ViewCone> zone_cones_;     ///< (n_zones)
   SceneHandle cube_;                     ///< the one primitive that every instance shows: a cube around its solid
-  SceneHandle scene_;
-  std::vector<Instance> instances_;
+  Stage everybody_;                      ///< of find_first(), which knows no people
+  std::vector<Stage> people_;
   std::vector<BoundingSphere> spheres_;  ///< (n_solids)
   std::vector<std::size_t> candidates_;
 };

@@ -27,7 +27,7 @@ inline Vector load(const Column& x, const Column& y, const Column& z, std::size_
 }
 inline Lanes size_of(Lanes x) noexcept { return larger(x, Lanes(0.0F) - x); }
 
-/// may_touch() of view_cones.cpp.
+/// may_touch() of culling.cpp.
 [[gnu::flatten]] std::size_t cull(const ConeBlock* cones, std::size_t n_blocks, const BoundingSphere& sphere,
                                   std::uint32_t* indices) noexcept {
   const Vector centre = vector_of(sphere.centre);

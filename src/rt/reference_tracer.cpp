@@ -1,4 +1,4 @@
-// The plain way, which the others are measured against: at each tick a new scene of all triangles and all solids,
+// The plain way, which the others are measured against: at each look a new scene of all triangles and all solids,
 // and for every ray the nearest hit within the rated range. No ray is cut at the room, no zone is left early.
 #include <algorithm>
 #include <optional>
@@ -29,12 +29,11 @@ class ReferenceTracer final : public Tracer {
  public:
   explicit ReferenceTracer(const TracerSetup& setup) : room_(setup.room->impl()), rated_(*setup.rated) {}
 
-  void trace(std::span<const PosedShape> solids, std::span<std::uint8_t> zones) override {
+  void add(std::size_t, std::span<const PosedShape> solids, ZoneSet& zones) override {
     const SceneHandle scene = build(solids);
-    std::fill(zones.begin(), zones.end(), std::uint8_t{0});
     for (std::size_t zone = 0; zone < rated_.n_zones(); ++zone) {
       for (std::uint32_t i = rated_.zone_rays_begin[zone]; i < rated_.zone_rays_begin[zone + 1]; ++i) {
-        if (first_solid(scene.get(), i)) zones[zone] = 1;
+        if (first_solid(scene.get(), i)) zones.insert(zone);
       }
     }
   }

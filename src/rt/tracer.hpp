@@ -25,13 +25,13 @@ struct FirstHit {
 class Tracer {
  public:
   virtual ~Tracer() = default;
-  /// solids: everything of every person that is in the scene now (surfaces of meshes outlive the tracer); zones:
-  /// (n_zones) overwritten.
-  virtual void trace(std::span<const PosedShape> solids, std::span<std::uint8_t> zones) = 0;
-  /// Adds the zones that see one person of several to `zones`; what is kept from tick to tick is kept by `person`.
-  virtual void add(std::size_t person, std::span<const PosedShape> solids, ZoneSet& zones);
+  /// Adds the zones that see one person of several; what is kept from tick to tick is kept by `person`. solids:
+  /// surfaces of meshes outlive the tracer.
+  virtual void add(std::size_t person, std::span<const PosedShape> solids, ZoneSet& zones) = 0;
   /// One entry a ray that hits a solid within its range, in any order; `hits` is overwritten.
   virtual void find_first(std::span<const PosedShape> solids, std::vector<FirstHit>& hits) = 0;
+  /// May whoever asks remember the answers? The slow tracers are there to be compared with: they look at every tick.
+  [[nodiscard]] virtual bool may_be_remembered() const noexcept { return false; }
 };
 
 /// What a tracer works on; all of it outlives the tracer.

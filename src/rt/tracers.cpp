@@ -20,14 +20,6 @@ std::string_view name(TracerKind kind) noexcept {
 
 std::string_view direct_instruction_set() noexcept { return best_ray_kernel().name; }
 
-void Tracer::add(std::size_t, std::span<const PosedShape> solids, ZoneSet& zones) {
-  ZoneActivity seen(zones.size());
-  trace(solids, seen);
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (seen[i] != 0) zones.insert(i);
-  }
-}
-
 std::unique_ptr<Tracer> make_tracer(TracerKind kind, const TracerSetup& setup) {
   assert(setup.room != nullptr && setup.rated != nullptr && setup.clipped != nullptr);
   switch (kind) {

@@ -8,7 +8,7 @@
 
 #include "pirsim/error.hpp"
 #include "pirsim/geometry.hpp"
-#include "sim/doorway.hpp"
+#include "sim/plan_people.hpp"
 
 namespace pirsim::sim {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "body/body_part.hpp"
-#include "pir/analog_detector.hpp"
+#include "pir/analog_circuit.hpp"
 #include "pir/optics.hpp"
 #include "pirsim/script.hpp"
 #include "rt/tracer.hpp"
@@ -55,7 +55,7 @@ class PowerModel {
 
 /// One make of sensor, calibrated by its rated distances (pir::calibrate).
 struct CalibratedSensor {
-  pir::AnalogDetector detector;
+  pir::AnalogCircuit detector;
   pir::AnalogFilter silent_filter;   ///< the detector's element and amplifier, without noise
   std::vector<double> apertures_m2;  ///< (n_clusters)
 };

@@ -1,4 +1,4 @@
-#include "sim/check_actions.hpp"
+#include "sim/plan_people.hpp"
 
 #include <algorithm>
 #include <set>

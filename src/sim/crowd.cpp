@@ -1,11 +1,24 @@
 #include "sim/crowd.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "schema/phase_names.hpp"
 
 namespace pirsim::sim {
+
+std::optional<std::uint32_t> Conversation::speaker(std::span<const std::uint32_t> participants, std::int64_t tick,
+                                                   int tick_rate_hz) {
+  constexpr double shortest_turn_s = 2.0, mean_further_s = 18.0;  // assumed: seconds to minutes (means of 10-40 tried)
+  if (participants.size() < 2) return speaker_ = std::nullopt;
+  const bool there = speaker_ && std::ranges::binary_search(participants, *speaker_);
+  if (there && tick < until_) return speaker_;
+  speaker_ = participants[stream_.index(static_cast<std::uint32_t>(participants.size()))];
+  const double turn_s = shortest_turn_s - mean_further_s * std::log(1.0 - stream_.uniform());
+  until_ = tick + std::llround(turn_s * tick_rate_hz);
+  return speaker_;
+}
 
 Crowd::Crowd(const CompiledStudy& study, std::uint32_t run) : conversation_(study.seed(), run) {
   const std::size_t n_people = study.trial_of(run).people.size();

@@ -3,14 +3,30 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
+#include "pirsim/random.hpp"
 #include "sim/actor.hpp"
 #include "sim/compiled_study.hpp"
-#include "sim/conversation.hpp"
 
 namespace pirsim::sim {
+
+/// Turns of speech among whoever takes part. A value; draws from a stream of its own.
+class Conversation {
+ public:
+  Conversation(std::uint64_t seed, std::uint32_t run) : stream_({seed, run, 0, Purpose::conversation}) {}
+
+  /// Of these people, who speaks at this tick; nobody where fewer than two are. participants: ascending.
+  [[nodiscard]] std::optional<std::uint32_t> speaker(std::span<const std::uint32_t> participants, std::int64_t tick,
+                                                     int tick_rate_hz);
+
+ private:
+  Stream stream_;
+  std::optional<std::uint32_t> speaker_;
+  std::int64_t until_ = 0;
+};
 
 /// A value. Belongs to the study that it was made for, which outlives it.
 class Crowd {

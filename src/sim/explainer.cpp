@@ -5,7 +5,7 @@
 
 namespace pirsim::sim {
 
-Explainer::Explainer(const CompiledStudy& study) : study_(study), meter_(study) {
+Explainer::Explainer(const CompiledStudy& study) : study_(study), meter_(study.array(), study.tracer()) {
   for (const auto& sensor : study.array().analog()->sensors()) {
     filters_.push_back(sensor ? std::optional(sensor->silent_filter) : std::nullopt);
   }
@@ -55,7 +55,7 @@ void Explainer::explain(const RunState& state, std::vector<TraceRow>& rows) {
                     .sensor = i,
                     .power_w = detector->power_w,
                     .signal_v = detector->volts,
-                    .output = pir::AnalogDetector::on(*detector) ? std::uint8_t{1} : std::uint8_t{0}});
+                    .output = pir::AnalogCircuit::on(*detector) ? std::uint8_t{1} : std::uint8_t{0}});
   }
   for (const auto& [source, share] : shares_) {
     const auto& [zone, person, part] = source;

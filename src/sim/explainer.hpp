@@ -6,9 +6,9 @@
 #include <tuple>
 #include <vector>
 
-#include "pir/analog_detector.hpp"
+#include "pir/analog_circuit.hpp"
 #include "pirsim/sample.hpp"
-#include "sim/power_meter.hpp"
+#include "sim/observer.hpp"
 #include "sim/run_state.hpp"
 
 namespace pirsim::sim {

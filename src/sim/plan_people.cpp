@@ -18,8 +18,6 @@
 #include "schema/action_facts.hpp"
 #include "schema/limits.hpp"
 #include "sim/alike.hpp"
-#include "sim/check_actions.hpp"
-#include "sim/doorway.hpp"
 
 namespace pirsim::sim {
 namespace {

@@ -1,9 +1,13 @@
-// Resolves what the people of a script do against the scene, and finds out whether they can do it.
+// Resolves what the people of a script do against the scene, and finds out whether they can do it. People walk through
+// their actions in thought, one after the other, each as if alone in the room.
 #pragma once
 
 #include <vector>
 
+#include "body/humanoid.hpp"
+#include "pirsim/scene.hpp"
 #include "rt/room.hpp"
+#include "schema/study_in_force.hpp"
 #include "sim/compiled_study.hpp"
 
 namespace pirsim::sim {
@@ -14,5 +18,22 @@ namespace pirsim::sim {
 /// need be. like: a study whose floors are shared where they are the same, or null.
 [[nodiscard]] std::vector<TrialModel> plan_people(const CompiledStudy& study, const std::vector<TrialInForce>& trials,
                                                   const CompiledStudy* like);
+
+// Where people stand who come in through an entrance.
+
+/// Where they wait and come into being.
+[[nodiscard]] inline Vec2 outside_of(const EntranceSpec& door) {
+  return floor_point(door.world_from_entrance * Vec3(0, 0, door.outside_m));
+}
+/// Where they stop who only come in.
+[[nodiscard]] inline Vec2 inside_of(const EntranceSpec& door, const body::Humanoid& humanoid) {
+  return floor_point(door.world_from_entrance * Vec3(0, 0, -2.0 * humanoid.clearance_radius_m()));
+}
+
+// What can be said about a script's actions without moving anybody.
+
+/// Throws Error(input) with all faults: unknown seats and entrances (with the nearest name), actions before the
+/// person is there, work without a seat, times that run backwards.
+void check_actions(const SceneSpec& scene, const std::vector<TrialInForce>& trials);
 
 }  // namespace pirsim::sim

@@ -50,15 +50,17 @@ class PostureIndex {
   std::size_t free_bucket_ = 0;  ///< for wanted_
 };
 
-/// A row of words for each of a bounded number of postures. When it is full it starts anew.
+/// A row of words for each of a bounded number of postures. When it is full it starts anew. A capacity of 0 remembers
+/// nothing.
 class PostureMemory {
  public:
   using Word = ZoneSet::Word;
   /// Study A has some 30,000 different postures; with its 250 bytes each this bounds the memory to 16 MB a thread.
   static constexpr std::size_t most_entries = 65536;
 
-  explicit PostureMemory(std::size_t words_per_row) : words_per_row_(words_per_row), index_(most_entries) {
-    rows_.reserve(most_entries * words_per_row);
+  PostureMemory(std::size_t words_per_row, std::size_t capacity)
+      : words_per_row_(words_per_row), capacity_(capacity), index_(capacity) {
+    rows_.reserve(capacity * words_per_row);
   }
   /// Empty if the posture isn't known; see PostureIndex::find.
   [[nodiscard]] std::span<const Word> find(std::size_t person, const void* humanoid,
@@ -69,7 +71,8 @@ class PostureMemory {
   }
   /// Remembers the row under what find() was last asked for in vain, for the same person.
   void remember(std::size_t person, std::span<const Word> row) {
-    if (index_.size() == most_entries) {
+    if (capacity_ == 0) return;
+    if (index_.size() == capacity_) {
       index_.forget_all();
       rows_.clear();
     }
@@ -79,7 +82,7 @@ class PostureMemory {
   void make_room_for(std::size_t n_people) { index_.make_room_for(n_people); }
 
  private:
-  std::size_t words_per_row_;
+  std::size_t words_per_row_, capacity_;
   PostureIndex index_;
   std::vector<Word> rows_;  ///< (n_postures x words_per_row)
 };

@@ -6,9 +6,9 @@
 
 #include "core/parallel.hpp"
 #include "effects/catalogue.hpp"
+#include "sim/observer.hpp"
 #include "sim/replay.hpp"
 #include "sim/run_state.hpp"
-#include "sim/zone_cache.hpp"
 
 namespace pirsim {
 namespace sim {
@@ -20,12 +20,12 @@ struct NumberedRun {
   std::vector<ZoneSet> sets;
 };
 
-NumberedRun record_run(const CompiledStudy& study, std::uint32_t run, ZoneCachePool& caches) {
+NumberedRun record_run(const CompiledStudy& study, std::uint32_t run, ObserverPool& observers) {
   NumberedRun recorded{{{run, study.replicate_of(run), study.trial_of(run).id, {}, {}, {}}, 0, {}, {}}, {}};
   const std::size_t n_zones = study.array().channels().n_zones();
   SetNumbering numbering(n_zones);
   RunState state(study, run);
-  *state.cache = caches.borrow();
+  *state.observer = observers.borrow();
   settle(study, state);
   ZoneSet last = state.exposure().zones;
   std::uint32_t number = numbering.number(last);
@@ -45,9 +45,9 @@ NumberedRun record_run(const CompiledStudy& study, std::uint32_t run, ZoneCacheP
 }
 
 /// sim::Detector on a recording's sets, each of which is made ready for it once.
-class ReplayedDetector final : public DetectorLogic {
+class ReplayedSets final : public DetectorLogic {
  public:
-  explicit ReplayedDetector(const SensorArray& array) : array_(array), detector_(array) {}
+  explicit ReplayedSets(const SensorArray& array) : array_(array), detector_(array) {}
 
   void prepare(std::span<const ZoneSet> sets) override {
     exposures_.clear();
@@ -85,7 +85,7 @@ Recording empty_recording(const CompiledStudy& study) {
 }
 
 std::unique_ptr<DetectorLogic> make_logic(const Model& model) {
-  return std::make_unique<ReplayedDetector>(model.compiled().array());
+  return std::make_unique<ReplayedSets>(model.compiled().array());
 }
 
 effects::Pipeline make_stages(const Model& model, std::span<const EffectSpec> effects) {
@@ -115,21 +115,15 @@ RunResult replay(const Recording& recording, std::size_t index, DetectorLogic& d
   std::vector<std::uint8_t> triggers(recording.n_sensors);
   auto left = track.seats_left.begin();
   std::uint32_t before = track.rest;
-  std::int64_t tick = 0, heard = 0;
+  const auto sense = [&](std::int64_t tick) {
+    const std::uint32_t after = track.sets[static_cast<std::size_t>(tick - 1)];
+    std::ranges::fill(triggers, std::uint8_t{0});
+    detector.tick(before, after, triggers);
+    before = after;
+    for (; left != track.seats_left.end() && left->tick == tick; ++left) logger.seat_left(left->seat);
+  };
   for (Sample& sample : result.samples) {
-    for (int i = 0; i < recording.sensing.ticks_per_window; ++i) {
-      for (const std::int64_t heard_by = logger.heard_by(++tick); heard < heard_by;) {
-        const std::uint32_t after = track.sets[static_cast<std::size_t>(heard)];
-        ++heard;
-        std::ranges::fill(triggers, std::uint8_t{0});
-        detector.tick(before, after, triggers);
-        before = after;
-        for (; left != track.seats_left.end() && left->tick == heard; ++left) logger.seat_left(left->seat);
-        logger.hear(heard, triggers);
-      }
-      logger.log(tick, triggers);
-      logger.read(triggers);
-    }
+    for (int i = 0; i < recording.sensing.ticks_per_window; ++i) logger.observe_tick(triggers, sense);
     logger.complete(sample);
   }
   return result;
@@ -142,9 +136,9 @@ Recording record(const Model& model, std::span<const std::uint32_t> runs, unsign
   const sim::CompiledStudy& study = model.compiled();
   Recording recording = sim::empty_recording(study);
   sim::SetNumbering numbering(study.array().channels().n_zones());
-  sim::ZoneCachePool caches(study);
+  sim::ObserverPool observers(study);
   ordered_parallel<sim::NumberedRun>(
-      runs.size(), threads, [&](std::size_t i) { return sim::record_run(study, runs[i], caches); },
+      runs.size(), threads, [&](std::size_t i) { return sim::record_run(study, runs[i], observers); },
       [&](sim::NumberedRun& recorded) {
         std::vector<std::uint32_t> renumbered;
         for (const ZoneSet& set : recorded.sets) renumbered.push_back(numbering.number(set));

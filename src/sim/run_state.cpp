@@ -59,42 +59,34 @@ bool move_tick(const CompiledStudy& study, RunState& state) {
 
 namespace {
 
-/// The run that knows what is logged at this tick.
-RunState& listener(RunState& state) { return state.ahead.get() != nullptr ? *state.ahead.get() : state; }
-
-ZoneCache& cache_of(const CompiledStudy& study, RunState& state) {
-  if (!*state.cache) *state.cache = std::make_shared<ZoneCache>(study);
-  return **state.cache;
+Observer& observer_of(const CompiledStudy& study, RunState& state) {
+  if (!*state.observer) *state.observer = std::make_shared<Observer>(study.array(), study.tracer());
+  return **state.observer;
 }
 
-void sense(ZoneCache& cache, RunState& state) {
+void sense(Observer& observer, RunState& state) {
   const Exposure& before = state.exposures[static_cast<std::size_t>((state.tick - 1) % 2)];
-  cache.look(state.crowd.actors(), state.exposure());
+  observer.look(state.crowd.actors(), state.exposure());
   state.detector.tick(before, state.exposure(), state.triggers);
 }
 
-void hear(RunState& state) {
-  for (const std::size_t seat : state.crowd.seats_left()) state.logger.seat_left(seat);
-  state.logger.hear(state.tick, state.triggers);
-}
-
-/// What is logged at this tick, once those ahead have heard of it.
-void log(const CompiledStudy& study, RunState& state) {
-  RunState& listening = listener(state);
-  const std::int64_t heard_by = listening.logger.heard_by(state.tick);
-  while (listening.tick < heard_by) {
-    move_tick(study, listening);
-    sense(cache_of(study, state), listening);
-    hear(listening);
-  }
-  listening.logger.log(state.tick, state.triggers);
-  state.logger.read(state.triggers);
+/// What is logged at this tick, at which the state has sensed, once the run ahead has heard of it.
+void observe_tick(const CompiledStudy& study, RunState& state) {
+  RunState* const ahead = state.ahead.get();
+  state.logger.observe_tick(state.triggers, [&](std::int64_t) {
+    if (ahead != nullptr) {
+      move_tick(study, *ahead);
+      sense(observer_of(study, state), *ahead);
+      std::ranges::copy(ahead->triggers, state.triggers.begin());
+    }
+    for (const std::size_t seat : (ahead != nullptr ? *ahead : state).crowd.seats_left()) state.logger.seat_left(seat);
+  });
 }
 
 }  // namespace
 
 void settle(const CompiledStudy& study, RunState& state) {
-  cache_of(study, state).look(state.crowd.actors(), state.exposure());
+  observer_of(study, state).look(state.crowd.actors(), state.exposure());
   state.detector.begin_run(study.seed(), state.run, state.exposure());
   if (state.logger.looks_ahead() && state.ahead.get() == nullptr) state.ahead.hold(state);
 }
@@ -102,9 +94,8 @@ void settle(const CompiledStudy& study, RunState& state) {
 bool step_tick(const CompiledStudy& study, RunState& state) {
   if (state.tick == 0) settle(study, state);
   const bool window_ended = move_tick(study, state);
-  sense(cache_of(study, state), state);
-  if (state.ahead.get() == nullptr) hear(state);
-  log(study, state);
+  sense(observer_of(study, state), state);
+  observe_tick(study, state);
   if (window_ended) state.logger.complete(state.sample);
   return window_ended;
 }
@@ -116,12 +107,12 @@ bool pass_empty_window(const CompiledStudy& study, RunState& state) {
   if (state.crowd.away_until(study, state.tick) < state.tick + n_ticks) return false;
   if (state.at_rest) {
     state.tick += n_ticks;
+    state.logger.skip(n_ticks);
   } else {
     for (std::int64_t i = 0; i < n_ticks; ++i) {
-      state.detector.tick_unchanged(state.exposure(), state.triggers);
       ++state.tick;
-      if (state.ahead.get() == nullptr) state.logger.hear(state.tick, state.triggers);
-      log(study, state);
+      state.detector.tick_unchanged(state.exposure(), state.triggers);
+      observe_tick(study, state);
     }
     state.at_rest = state.logger.is_at_rest() && state.detector.is_at_rest(state.exposure());
   }

@@ -10,10 +10,9 @@
 
 #include "pirsim/sample.hpp"
 #include "sim/crowd.hpp"
-#include "sim/detector.hpp"
-#include "sim/logger.hpp"
+#include "sim/detection.hpp"
+#include "sim/observer.hpp"
 #include "sim/sensor_array.hpp"
-#include "sim/zone_cache.hpp"
 
 namespace pirsim::sim {
 
@@ -77,10 +76,10 @@ struct RunState {
   std::vector<std::uint8_t> triggers;  ///< (n_sensors) at this tick
   Sample sample;                       ///< at the end of the last whole window
   /// Of a logger with an early clock: the run as it goes on, beyond its end if need be, which tells what is logged
-  /// already. It steps by itself; none if all clocks are right or late.
+  /// already. Its own logger is idle. None if all clocks are right or late.
   Held<RunState> ahead{};
   /// Remembers what has been traced; changes no result. Made when first needed, unless a pool lends one.
-  Scratch<std::shared_ptr<ZoneCache>> cache;
+  Scratch<std::shared_ptr<Observer>> observer;
 };
 
 /// At tick 0: whoever is there has been there for long, and detectors have settled to them. The first step_tick()

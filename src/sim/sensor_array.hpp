@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "pir/motion_detector.hpp"
+#include "pir/zone_motion.hpp"
 #include "pir/zone_output.hpp"
 #include "pirsim/rays.hpp"
 #include "rt/room.hpp"
@@ -37,14 +37,14 @@ class SensorArray {
   [[nodiscard]] const RayBundle& clipped() const noexcept { return clipped_; }  ///< the same, cut at the room
   [[nodiscard]] std::size_t n_sensors() const noexcept { return clipped_.n_sensors(); }
   /// Zones joined as `change_per` says.
-  [[nodiscard]] const pir::MotionDetector& channels() const noexcept { return channels_; }
+  [[nodiscard]] const pir::Channels& channels() const noexcept { return channels_; }
   /// Nested copies of every zone that stand for soft edges; 1: hard edges.
   [[nodiscard]] std::size_t n_levels() const noexcept { return n_levels_; }
   [[nodiscard]] const SoftEdgesSpec& soft_edges() const noexcept { return soft_edges_; }
   [[nodiscard]] int ticks_per_window() const noexcept { return ticks_per_window_; }
   [[nodiscard]] double tick_s() const noexcept { return tick_s_; }
   /// Replaces the detection of changes if an effect asks for it.
-  [[nodiscard]] const std::optional<pir::PolarityDetector>& polarity() const noexcept { return polarity_; }
+  [[nodiscard]] const std::optional<pir::PolarityFilter>& polarity() const noexcept { return polarity_; }
   /// (n_sensors) what comes behind the zones of a sensor that answers by them: its counting of pulses, hold and blind
   /// time. None if its output is on just while they change.
   [[nodiscard]] const std::vector<std::optional<pir::Comparator>>& zone_outputs() const noexcept {
@@ -69,8 +69,8 @@ class SensorArray {
   std::size_t n_levels_;
   int ticks_per_window_;
   RayBundle rated_, clipped_;
-  pir::MotionDetector channels_;
-  std::optional<pir::PolarityDetector> polarity_;
+  pir::Channels channels_;
+  std::optional<pir::PolarityFilter> polarity_;
   std::vector<std::optional<pir::Comparator>> zone_outputs_;
   std::optional<AnalogModel> analog_;
 };

@@ -5,17 +5,11 @@
 #include "core/parallel.hpp"
 #include "pirsim/error.hpp"
 #include "sim/explainer.hpp"
+#include "sim/observer.hpp"
 #include "sim/run_state.hpp"
-#include "sim/zone_cache.hpp"
 
 namespace pirsim {
 namespace {
-
-ZoneActivity activity_of(const ZoneSet& zones) {
-  ZoneActivity activity(zones.size());
-  for (std::size_t i = 0; i < activity.size(); ++i) activity[i] = zones.test(i) ? 1 : 0;
-  return activity;
-}
 
 void note_incidents(const sim::CompiledStudy& study, const sim::RunState& state, std::vector<RunIncident>& incidents) {
   for (const sim::Actor& actor : state.crowd.actors()) {
@@ -37,14 +31,14 @@ void add_occupants(const sim::CompiledStudy& study, const sim::RunState& state, 
   }
 }
 
-RunResult run_with(sim::ZoneCachePool& caches, const sim::CompiledStudy& study, std::uint32_t run, Record record,
+RunResult run_with(sim::ObserverPool& observers, const sim::CompiledStudy& study, std::uint32_t run, Record record,
                    Trace trace, Occupants occupants, const std::function<void()>& window_done = {}) {
   RunResult result;
   result.run = run;
   result.replicate = study.replicate_of(run);
   result.trial = study.trial_of(run).id;
   sim::RunState state(study, run);
-  *state.cache = caches.borrow();
+  *state.observer = observers.borrow();
   std::optional<sim::Explainer> explainer;
   if (trace == Trace::signals && study.array().analog() != nullptr) explainer.emplace(study);
   if (explainer) explainer->settle(state);
@@ -58,7 +52,7 @@ RunResult run_with(sim::ZoneCachePool& caches, const sim::CompiledStudy& study, 
         continue;
       }
       const bool window_ended = sim::step_tick(study, state);
-      if (record == Record::samples_and_zones) result.zones.push_back(activity_of(state.exposure().zones));
+      if (record == Record::samples_and_zones) result.zones.push_back(state.exposure().zones);
       if (explainer) explainer->explain(state, result.trace);
       if (window_ended) result.samples.push_back(state.sample);
       if (window_ended && occupants == Occupants::told) add_occupants(study, state, result.occupants);
@@ -79,8 +73,8 @@ RunResult run_with(sim::ZoneCachePool& caches, const sim::CompiledStudy& study, 
 }  // namespace
 
 RunResult run_once(const Model& model, std::uint32_t run, Record record, Trace trace, Occupants occupants) {
-  sim::ZoneCachePool caches(model.compiled());
-  return run_with(caches, model.compiled(), run, record, trace, occupants);
+  sim::ObserverPool observers(model.compiled());
+  return run_with(observers, model.compiled(), run, record, trace, occupants);
 }
 
 void run_study(const Model& model, const StudyOptions& options, const std::function<void(const RunResult&)>& consume) {
@@ -88,11 +82,11 @@ void run_study(const Model& model, const StudyOptions& options, const std::funct
   const auto run_of = [&](std::size_t i) {
     return options.chosen ? (*options.chosen)[i] : range.first + static_cast<std::uint32_t>(i);
   };
-  sim::ZoneCachePool caches(model.compiled());
+  sim::ObserverPool observers(model.compiled());
   ordered_parallel<RunResult>(
       options.chosen ? options.chosen->size() : range.count(), options.threads,
       [&](std::size_t i) {
-        return run_with(caches, model.compiled(), run_of(i), options.record, options.trace, options.occupants,
+        return run_with(observers, model.compiled(), run_of(i), options.record, options.trace, options.occupants,
                         options.window_done);
       },
       [&](RunResult& result) { consume(result); }, options.goes_on);

@@ -8,7 +8,6 @@
 
 #include "core/parallel.hpp"
 #include "pir/planck.hpp"
-#include "studies/cross_tracer.hpp"
 
 namespace pirsim::studies {
 namespace {
@@ -103,7 +102,8 @@ class SquareCounter {
       bool near = false;
       for (std::size_t k = 0; k < posed_.size(); ++k) {
         const TurningCross& cross = study_.target().crosses()[k];
-        if (!may_hit(study_.zone_cones()[zone], foot_ + cross.middle, cross.reach_m)) continue;
+        const rt::BoundingSphere around{Vec3f(foot_ + cross.middle), static_cast<float>(cross.reach_m)};
+        if (!rt::may_touch(study_.zone_cones()[zone], around)) continue;
         for (auto i = rays.zone_rays_begin[zone]; i < rays.zone_rays_begin[zone + 1]; ++i) {
           mark_poses(rays.rays[i], rays.range[i], k, near);
         }
@@ -172,19 +172,14 @@ class SquareCounter {
     detector_.begin_run(study_.survey().seed(), square, exposures_[0]);
     logger_.begin_run(study_.survey().seed(), square);
     std::size_t pose = 0;
-    std::int64_t tick = 0, heard = 0;
+    const auto sense = [&](std::int64_t) {
+      const std::size_t before = std::exchange(pose, after(pose));
+      detector_.tick(exposures_[before], exposures_[pose], triggers_);
+    };
+    const SensingSpec& sensing = study_.survey().sensing();
     for (int window = 1; window <= study_.n_windows(); ++window) {
-      for (int i = 0; i < study_.survey().sensing().ticks_per_window; ++i) {
-        for (const std::int64_t heard_by = logger_.heard_by(++tick); heard < heard_by;) {
-          const std::size_t next = after(pose);
-          detector_.tick(exposures_[pose], exposures_[next], triggers_);
-          logger_.hear(++heard, triggers_);
-          pose = next;
-        }
-        logger_.log(tick, triggers_);
-        logger_.read(triggers_);
-      }
-      row_.time_s = static_cast<double>(tick) / study_.survey().sensing().tick_rate_hz;
+      for (int i = 0; i < sensing.ticks_per_window; ++i) logger_.observe_tick(triggers_, sense);
+      row_.time_s = static_cast<double>(std::int64_t{window} * sensing.ticks_per_window) / sensing.tick_rate_hz;
       logger_.complete(row_);
       for (std::size_t s = 0; s < counts.size(); ++s) counts[s] = static_cast<MotionCount>(counts[s] + row_.bits[s]);
     }
@@ -258,12 +253,8 @@ CoverageStudy::CoverageStudy(SceneSpec scene, CoverageSpec spec)
       survey_(std::move(scene), as_script(spec_)),
       grid_(survey_.scene().floor, spec_.spacing_m),
       n_windows_(count_windows(spec_)),
-      target_(spec_.target, spec_.sensing.tick_rate_hz, std::int64_t{n_windows_} * spec_.sensing.ticks_per_window) {
-  const RayBundle& rays = survey_.array().clipped();
-  for (std::size_t zone = 0; zone < rays.n_zones(); ++zone) {
-    zone_cones_.push_back(cone_of(rays, rays.zone_rays_begin[zone], rays.zone_rays_begin[zone + 1]));
-  }
-}
+      target_(spec_.target, spec_.sensing.tick_rate_hz, std::int64_t{n_windows_} * spec_.sensing.ticks_per_window),
+      zone_cones_(rt::zone_cones(survey_.array().clipped())) {}
 
 std::vector<Issue> CoverageStudy::warnings() const {
   return idle_effects(spec_.effects, survey_, effects::Survey::coverage);

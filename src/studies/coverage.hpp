@@ -11,36 +11,11 @@
 #include "pirsim/coverage.hpp"
 #include "pirsim/shapes.hpp"
 #include "pirsim/survey.hpp"
-#include "studies/cross_tracer.hpp"
+#include "rt/culling.hpp"
 #include "studies/survey_base.hpp"
+#include "studies/turning_target.hpp"
 
 namespace pirsim::studies {
-
-// The turning crosses of a coverage study, posed once for all squares.
-
-/// Bars that turn about a common middle.
-struct TurningCross {
-  Vec3 middle{0.0};                         ///< relative to the square's centre on the floor
-  double reach_m = 0.0;                     ///< from the middle to the farthest surface point
-  Capsule bar;                              ///< every bar's solid
-  std::vector<std::vector<Quat>> rotation;  ///< (n_bars x n_poses) world from bar
-};
-
-/// What turns alike in every square. Poses repeat after n_poses() ticks.
-class TurningTarget {
- public:
-  /// Poses of the ticks [0, n_ticks]; fewer if they repeat exactly before. n_ticks > 0.
-  TurningTarget(const XShapesSpec& spec, int tick_rate_hz, std::int64_t n_ticks);
-
-  [[nodiscard]] const std::vector<TurningCross>& crosses() const noexcept { return crosses_; }
-  [[nodiscard]] std::size_t n_poses() const noexcept { return n_poses_; }
-  /// World-space solids at a tick: what a tracer is given. `foot`: the square's centre on the floor.
-  [[nodiscard]] std::vector<PosedShape> solids(const Vec3& foot, std::int64_t tick) const;
-
- private:
-  std::vector<TurningCross> crosses_;
-  std::size_t n_poses_ = 0;
-};
 
 /// A compiled coverage study: immutable, shared by threads. The crosses have stood at tick 0, so appearing isn't
 /// motion.
@@ -56,7 +31,7 @@ class CoverageStudy {
   [[nodiscard]] const FloorGrid& grid() const noexcept { return grid_; }
   [[nodiscard]] const TurningTarget& target() const noexcept { return target_; }
   /// (n_zones) Round the clipped rays of each zone.
-  [[nodiscard]] const std::vector<RayCone>& zone_cones() const noexcept { return zone_cones_; }
+  [[nodiscard]] const std::vector<rt::ViewCone>& zone_cones() const noexcept { return zone_cones_; }
   [[nodiscard]] int n_windows() const noexcept { return n_windows_; }
   [[nodiscard]] const std::vector<TriMesh>& taken_out() const noexcept { return taken_out_; }
   /// Effects that a coverage study can't show.
@@ -74,7 +49,7 @@ class CoverageStudy {
   FloorGrid grid_;
   int n_windows_ = 0;
   TurningTarget target_;
-  std::vector<RayCone> zone_cones_;
+  std::vector<rt::ViewCone> zone_cones_;
 };
 
 /// A map without counts yet.

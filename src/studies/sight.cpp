@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
+#include <ranges>
 #include <sstream>
 
 #include "body/motion.hpp"
@@ -23,19 +24,19 @@ class Onlooker {
   Onlooker(const Model& model, const body::Humanoid& humanoid)
       : rays_(model.compiled().array().rated()),
         humanoid_(humanoid),
-        tracer_(model.compiled().array().make_tracer(model.compiled().tracer())),
-        zones_(rays_.n_zones()) {}
+        tracer_(model.compiled().array().make_tracer(model.compiled().tracer())) {}
 
   /// (n_sensors) whether the sensor sees the posture.
   std::vector<bool> sensors_that_see(const body::Posture& posture) {
     std::vector<PosedShape> solids;
     for (std::size_t i = 0; i < body::n_parts; ++i) solids.push_back(place(humanoid_.solids()[i], posture[i]));
-    tracer_->trace(solids, zones_);
+    ZoneSet zones(rays_.n_zones());
+    tracer_->add(0, solids, zones);
     std::vector<bool> seen;
     for (std::size_t sensor = 0; sensor < rays_.n_sensors(); ++sensor) {
       const auto first = rays_.cluster_zones_begin[rays_.sensor_clusters_begin[sensor]];
       const auto last = rays_.cluster_zones_begin[rays_.sensor_clusters_begin[sensor + 1]];
-      seen.push_back(std::any_of(zones_.begin() + first, zones_.begin() + last, [](auto zone) { return zone != 0; }));
+      seen.push_back(std::ranges::any_of(std::views::iota(first, last), [&](auto zone) { return zones.test(zone); }));
     }
     return seen;
   }
@@ -44,7 +45,6 @@ class Onlooker {
   const RayBundle& rays_;
   const body::Humanoid& humanoid_;
   std::unique_ptr<rt::Tracer> tracer_;
-  ZoneActivity zones_;
 };
 
 body::Posture seated_posture(const Model& model, const body::Humanoid& humanoid, const SeatSpec& seat) {

@@ -12,8 +12,7 @@
 #include "pirsim/scene.hpp"
 #include "pirsim/script.hpp"
 #include "schema/study_in_force.hpp"
-#include "sim/detector.hpp"
-#include "sim/logger.hpp"
+#include "sim/detection.hpp"
 #include "sim/sensor_array.hpp"
 
 namespace pirsim::studies {

@@ -90,14 +90,12 @@ WalkTest::Movement WalkTest::make_arm_work() const {
 WalkTester::WalkTester(const WalkTest& test)
     : test_(test),
       array_(test.survey().array()),
-      tracer_(array_.make_tracer(fastest_tracer)),
-      power_tracer_(array_.analog() != nullptr ? array_.make_power_tracer(fastest_tracer) : nullptr),
+      observer_(array_, fastest_tracer),
       detector_(test.survey().make_detector()),
       logger_(test.survey().make_logger()),
       before_(array_.unexposed()),
       after_(before_),
       radiance_(sim::radiance_of(test.spec().person.warmth, test.survey().sensing().ambient_c)),
-      activity_(array_.channels().n_zones()),
       solids_(body::n_parts),
       triggers_(array_.n_sensors()) {}
 
@@ -105,17 +103,7 @@ void WalkTester::look(const body::Posture& posture, const Frame& world_from_move
   for (std::size_t i = 0; i < body::n_parts; ++i) {
     solids_[i] = place(test_.humanoid().solids()[i], world_from_movement * posture[i]);
   }
-  tracer_->trace(solids_, activity_);
-  exposure.zones.clear();
-  for (std::size_t zone = 0; zone < activity_.size(); ++zone) {
-    if (activity_[zone] != 0) exposure.zones.insert(zone);
-  }
-  array_.expose(exposure);
-  if (!power_tracer_) return;
-  const sim::PowerModel& power = array_.analog()->power();
-  power_tracer_->find_first(solids_, hits_);
-  std::ranges::fill(exposure.powers, sim::PowerSteps{0});
-  for (const auto& [ray, solid] : hits_) exposure.powers[power.sensor_of(ray)] += power.power(ray, radiance_[solid]);
+  observer_.look(solids_, radiance_, exposure);
 }
 
 bool WalkTester::is_noticed(const WalkTest::Movement& movement, const Frame& world_from_movement,
@@ -124,10 +112,11 @@ bool WalkTester::is_noticed(const WalkTest::Movement& movement, const Frame& wor
   detector_.begin_run(test_.survey().seed(), try_number, after_);
   logger_.begin_run(test_.survey().seed(), try_number);
   for (std::size_t tick = 1; tick < movement.size(); ++tick) {
-    std::swap(before_, after_);
-    look(movement[tick], world_from_movement, after_);
-    detector_.tick(before_, after_, triggers_);
-    logger_.hear(static_cast<std::int64_t>(tick), triggers_);
+    logger_.hear_tick(triggers_, [&](std::int64_t) {
+      std::swap(before_, after_);
+      look(movement[tick], world_from_movement, after_);
+      detector_.tick(before_, after_, triggers_);
+    });
     if (std::ranges::find(triggers_, 1) != triggers_.end()) return true;
   }
   return false;

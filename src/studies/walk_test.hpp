@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,11 +9,9 @@
 #include "body/humanoid.hpp"
 #include "body/walkable_floor.hpp"
 #include "io/report.hpp"
-#include "pirsim/rays.hpp"
 #include "pirsim/scene.hpp"
 #include "pirsim/walk_test.hpp"
-#include "rt/tracer.hpp"
-#include "sim/analog_model.hpp"
+#include "sim/observer.hpp"
 #include "studies/survey_base.hpp"
 
 namespace pirsim::studies {
@@ -69,15 +66,13 @@ class WalkTester {
 
   const WalkTest& test_;
   const sim::SensorArray& array_;
-  std::unique_ptr<rt::Tracer> tracer_, power_tracer_;
+  sim::Observer observer_;
   sim::Detector detector_;
   sim::Logger logger_;
   sim::Exposure before_, after_;
   sim::BodyRadiance radiance_;
   // Scratch.
-  ZoneActivity activity_;
   std::vector<PosedShape> solids_;
-  std::vector<rt::FirstHit> hits_;
   std::vector<std::uint8_t> triggers_;
 };
 

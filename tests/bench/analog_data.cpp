@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pir/analog_detector.hpp"
+#include "pir/analog_circuit.hpp"
 #include "pir/calibration.hpp"
 #include "pirsim/io.hpp"
 
@@ -38,14 +38,14 @@ void write_alarms(const SensorModelSpec& model) {
       DetectorSpec spec = model.detector;
       spec.comparator = {.positive_v = level * spec.amplifier.noise_v_pp / 6.6,
                          .negative_v = level * spec.amplifier.noise_v_pp / 6.6};
-      const pir::AnalogDetector detector(spec, 1.0, tick_s);
-      pir::AnalogDetector::State state =
+      const pir::AnalogCircuit detector(spec, 1.0, tick_s);
+      pir::AnalogCircuit::State state =
           detector.start(0.0, {.seed = 1, .run = 0, .entity = 0, .purpose = Purpose::detector_noise});
       std::int64_t alarms = 0;
       for (std::int64_t tick = 0; tick < std::llround(seconds / tick_s); ++tick) {
-        const bool before = pir::AnalogDetector::on(state);
+        const bool before = pir::AnalogCircuit::on(state);
         detector.advance(state, 0.0);
-        if (!before && pir::AnalogDetector::on(state)) ++alarms;
+        if (!before && pir::AnalogCircuit::on(state)) ++alarms;
       }
       std::cout << tick_s << ',' << level << ',' << alarms << ',' << seconds << '\n';
     }

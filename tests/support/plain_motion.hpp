@@ -1,4 +1,4 @@
-// The rule of motion the slow way, byte by byte: what pir::MotionDetector is tested against.
+// The rule of motion the slow way, byte by byte: what pir::Channels is tested against.
 #pragma once
 
 #include <algorithm>

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "pir/motion_detector.hpp"
 #include "pir/optics.hpp"
 #include "pir/soft_edges.hpp"
+#include "pir/zone_motion.hpp"
 #include "pirsim/geometry.hpp"
 #include "pirsim/state.hpp"
 #include "sim/compiled_study.hpp"
@@ -67,7 +67,7 @@ TEST_CASE("somebody who crosses a soft edge is noticed with the probability of t
   RayBundle bundle;
   const std::vector<double> levels = pir::edge_levels(sigma_deg);
   pir::append(bundle, {"A", "m", {}}, model, RaysPerZone::five, levels);
-  const pir::MotionDetector detector(bundle, ChangePer::cluster);
+  const pir::Channels detector(bundle, ChangePer::cluster);
   REQUIRE(detector.n_channels() == levels.size());
   const auto channels_at = [&](double reach) {  // sees everything to the left of this angle
     ZoneSet zones(detector.n_zones()), channels(detector.n_channels());
@@ -207,7 +207,7 @@ TEST_CASE("a zone that becomes active triggers for as long as the high pass lets
   scene.sensor_models["m"] = model;
   scene.sensors = {{"A", "m", {}}};
   const double tick_s = 0.001, corner_hz = 0.5, threshold = 0.3;
-  pir::PolarityDetector detector(scene, {threshold, corner_hz, 100.0}, 1, tick_s);
+  pir::PolarityFilter detector(scene, {threshold, corner_hz, 100.0}, 1, tick_s);
   const auto ticks_on = [&](std::size_t n_zones_active) {
     std::array<double, 1> sums{};
     detector.begin_run(sums);
@@ -235,7 +235,7 @@ TEST_CASE("signed zones lose motion that is slower than the high pass") {
   for (int i = 0; i < 10; ++i) model.clusters.push_back({Vec2(0.0), 10.0, 1, {square(Vec2(0.1 * i, 0.0), 0.04)}});
   scene.sensor_models["m"] = model;
   scene.sensors = {{"A", "m", {}}};
-  pir::PolarityDetector detector(scene, {1.2, 0.3, 7.0}, 1, 0.02);
+  pir::PolarityFilter detector(scene, {1.2, 0.3, 7.0}, 1, 0.02);
   const auto triggers_when_zones_come_every = [&](int ticks) {
     std::array<double, 1> sums{};
     detector.begin_run(sums);

@@ -68,7 +68,7 @@ std::vector<double> while_seated(const Model& model, int n_ticks, Of of) {
 
 TEST_CASE("what sweeps a share of a blurred zone is noticed with that chance: swept area") {
   const RayBundle bundle = nested_zone();
-  const pir::MotionDetector detector(bundle, ChangePer::cluster);
+  const pir::Channels detector(bundle, ChangePer::cluster);
   pir::SoftEdges edges(detector, 7, {1.0, EdgeRule::swept_area}, 50, 0.02);
   edges.begin_run(1, 0, covered(0));
   constexpr int n = 20000;
@@ -88,7 +88,7 @@ TEST_CASE("what sweeps a share of a blurred zone is noticed with that chance: sw
 
 TEST_CASE("a covered share counts while it is beyond the threshold from what its high pass remembers") {
   const RayBundle bundle = nested_zone();
-  const pir::MotionDetector detector(bundle, ChangePer::cluster);
+  const pir::Channels detector(bundle, ChangePer::cluster);
   const double threshold = 0.5, tick_s = 0.02, pole_s = 1.0 / (2.0 * pi * 0.3);
   pir::SoftEdges edges(detector, 7, {1.0, EdgeRule::covered_area, threshold}, 50, tick_s);
   // A step of 5/7 decays like exp(-t / pole): it is beyond 1/2 for so long.

@@ -5,11 +5,13 @@
 #include "rt/tracer.hpp"
 #include "support/catch.hpp"
 #include "support/fine_mesh.hpp"
+#include "support/zone_bytes.hpp"
 
 using namespace pirsim;
 using pirsim::TracerKind;
 using pirsim::testing::Draw;
 using pirsim::testing::RandomScene;
+using namespace pirsim::test;
 
 namespace {
 
@@ -49,16 +51,15 @@ TEST_CASE("all tracers give the same zones in 600 random scenes with mesh bodies
       for (PosedShape& solid : solids) {
         if (draw.index(2) == 0) solid = place(any_of(meshes, draw), anywhere(draw));
       }
-      ZoneActivity expected(scene.bundle.n_zones()), without_meshes(expected), zones(expected);
-      tracers[0]->trace(solids, expected);
+      const std::size_t n = scene.bundle.n_zones();
+      const ZoneBytes expected = seen_by(*tracers[0], solids, n);
       for (std::size_t i = 1; i < kinds.size(); ++i) {
         INFO("seed " << seed << ", tick " << tick << ", " << rt::name(kinds[i]) << " tracer");
-        tracers[i]->trace(solids, zones);
-        REQUIRE(zones == expected);
+        REQUIRE(seen_by(*tracers[i], solids, n) == expected);
       }
       std::vector<PosedShape> primitives = solids;
       std::erase_if(primitives, [](const PosedShape& solid) { return std::holds_alternative<PosedMesh>(solid); });
-      tracers[0]->trace(primitives, without_meshes);
+      const ZoneBytes without_meshes = seen_by(*tracers[0], primitives, n);
       n_zones += expected.size();
       n_active += static_cast<std::size_t>(std::count(expected.begin(), expected.end(), 1));
       for (std::size_t i = 0; i < expected.size(); ++i) n_by_meshes += expected[i] != without_meshes[i] ? 1 : 0;
@@ -97,8 +98,7 @@ TEST_CASE("no tracer leaves out a mesh that a ray clips by micrometres at its ou
     const bool expected = entry_distance(bundle.rays[0], solids[0], 12.0F).has_value();
     n_hits += expected ? 1 : 0;
     for (const TracerKind kind : kinds) {
-      ZoneActivity zones(1);
-      rt::make_tracer(kind, {&nothing, &bundle, &bundle})->trace(solids, zones);
+      const ZoneBytes zones = seen_by(*rt::make_tracer(kind, {&nothing, &bundle, &bundle}), solids, 1);
       INFO("ray " << i << ", " << rt::name(kind) << " tracer");
       REQUIRE((zones[0] == 1) == expected);
     }
@@ -118,17 +118,12 @@ TEST_CASE("the usual tracer, which remembers what it has seen, tells two meshes 
   const MeshSolid in_the_way = testing::mesh_solid(testing::box_mesh(Vec3(-0.1), Vec3(0.1)));
   const MeshSolid beside = testing::mesh_solid(testing::box_mesh({0.2, -0.1, -0.1}, {0.4, 0.1, 0.1}));
   const auto tracer = rt::make_tracer(usual, {&nothing, &bundle, &bundle});
-  ZoneActivity zones(1);
+  const auto sees = [&](const PosedShape& solid) { return seen_by(*tracer, std::vector{solid}, 1)[0] == 1; };
   for (int round = 0; round < 2; ++round) {
-    tracer->trace(std::vector{place(in_the_way, {})}, zones);
-    CHECK(zones[0] == 1);
-    tracer->trace(std::vector{place(beside, {})}, zones);
-    CHECK(zones[0] == 0);
-    tracer->trace(std::vector{place(beside, {Quat(1, 0, 0, 0), {-0.3, 0, 0}})}, zones);
-    CHECK(zones[0] == 1);
-    tracer->trace(std::vector{place(beside, {glm::angleAxis(0.2, Vec3(0, 0, 1)), {-0.3, 0, 0}})}, zones);
-    CHECK(zones[0] == 1);
-    tracer->trace(std::vector{place(beside, {rotation_from_heading(1.5), {-0.3, 0, 0}})}, zones);
-    CHECK(zones[0] == 0);
+    CHECK(sees(place(in_the_way, {})));
+    CHECK_FALSE(sees(place(beside, {})));
+    CHECK(sees(place(beside, {Quat(1, 0, 0, 0), {-0.3, 0, 0}})));
+    CHECK(sees(place(beside, {glm::angleAxis(0.2, Vec3(0, 0, 1)), {-0.3, 0, 0}})));
+    CHECK_FALSE(sees(place(beside, {rotation_from_heading(1.5), {-0.3, 0, 0}})));
   }
 }

@@ -8,11 +8,13 @@
 #include "rt/direct_tracer.hpp"
 #include "support/catch.hpp"
 #include "support/random_scene.hpp"
+#include "support/zone_bytes.hpp"
 
 using namespace pirsim;
 using pirsim::TracerKind;
 using pirsim::testing::Draw;
 using pirsim::testing::RandomScene;
+using namespace pirsim::test;
 
 namespace {
 
@@ -27,10 +29,8 @@ struct Traced {
         direct.emplace_back(std::make_unique<rt::DirectTracer>(rt::TracerSetup{&room, &rated, &clipped}, *kernel));
     }
   }
-  ZoneActivity by(rt::Tracer& tracer, const std::vector<PosedShape>& solids) const {
-    ZoneActivity zones(rated.n_zones(), std::uint8_t{7});
-    tracer.trace(solids, zones);
-    return zones;
+  ZoneBytes by(rt::Tracer& tracer, const std::vector<PosedShape>& solids) const {
+    return seen_by(tracer, solids, rated.n_zones());
   }
 
   RayBundle rated, clipped;
@@ -39,7 +39,7 @@ struct Traced {
   std::vector<std::unique_ptr<rt::DirectTracer>> direct;  ///< one an instruction set
 };
 
-std::size_t active(const ZoneActivity& zones) {
+std::size_t active(const ZoneBytes& zones) {
   return static_cast<std::size_t>(std::count(zones.begin(), zones.end(), std::uint8_t{1}));
 }
 
@@ -97,7 +97,7 @@ TEST_CASE(
     std::vector<PosedShape> solids = scene.solids;
     for (int tick = 0; tick < 4; ++tick) {
       INFO("seed " << 1000 + seed << ", tick " << tick << ", " << solids.size() << " solids");
-      const ZoneActivity expected = traced.by(*traced.reference, solids);
+      const ZoneBytes expected = traced.by(*traced.reference, solids);
       REQUIRE(traced.by(*traced.embree, solids) == expected);
       for (const auto& direct : traced.direct) REQUIRE(traced.by(*direct, solids) == expected);
       n_zones += expected.size();
@@ -121,11 +121,13 @@ TEST_CASE("people traced one by one give the zones of all of them together", "[r
     const Traced traced(scene);
     const std::span<const PosedShape> all(scene.solids);
     const std::size_t cut = draw.index(static_cast<std::uint32_t>(all.size()) + 1);
-    const ZoneActivity together = traced.by(*traced.reference, scene.solids);
-    ZoneSet apart(together.size());
-    traced.direct.front()->add(0, all.first(cut), apart);
-    traced.direct.front()->add(1, all.subspan(cut), apart);
-    for (std::size_t zone = 0; zone < together.size(); ++zone) REQUIRE(apart.test(zone) == (together[zone] == 1));
+    const ZoneBytes together = traced.by(*traced.reference, scene.solids);
+    for (rt::Tracer* tracer : {static_cast<rt::Tracer*>(traced.direct.front().get()), traced.embree.get()}) {
+      ZoneSet apart(together.size());
+      tracer->add(0, all.first(cut), apart);
+      tracer->add(1, all.subspan(cut), apart);
+      REQUIRE(bytes_of(apart) == together);
+    }
   }
 }
 
@@ -136,7 +138,7 @@ TEST_CASE("the tracers agree with a loop over all triangles and solids in double
     Draw draw(5000 + seed);
     const RandomScene scene = testing::random_scene(draw);
     const Traced traced(scene);
-    const ZoneActivity zones = traced.by(*traced.embree, scene.solids);
+    const ZoneBytes zones = traced.by(*traced.embree, scene.solids);
     for (std::size_t zone = 0; zone < zones.size(); ++zone) {
       bool is_active = false, is_grazing = false;
       for (std::size_t i = scene.bundle.zone_rays_begin[zone]; i < scene.bundle.zone_rays_begin[zone + 1]; ++i) {
@@ -182,8 +184,7 @@ TEST_CASE("Embree leaves out no solid that a ray clips by micrometres at its out
     const bool expected = entry_distance(bundle.rays[0], solid, 12.0F).has_value();
     n_hits += expected ? 1 : 0;
     for (const TracerKind kind : {TracerKind::reference, TracerKind::embree}) {
-      ZoneActivity zones(1);
-      rt::make_tracer(kind, {&nothing, &bundle, &bundle})->trace(solids, zones);
+      const ZoneBytes zones = seen_by(*rt::make_tracer(kind, {&nothing, &bundle, &bundle}), solids, 1);
       INFO("ray " << i << ", shape " << solid.index() << ", " << rt::name(kind) << " tracer");
       REQUIRE((zones[0] == 1) == expected);
     }
@@ -197,11 +198,11 @@ TEST_CASE("an occluder that is added never adds an active zone, and boxed-in sen
     Draw draw(7000 + seed);
     RandomScene scene = testing::random_scene(draw);
     const Traced before(scene);
-    const ZoneActivity without = before.by(*before.embree, scene.solids);
+    const ZoneBytes without = before.by(*before.embree, scene.solids);
     const Vec3 low = draw.inside({-2.5, 0, -2.5}, {0.5, 0.5, 0.5});
     scene.room.push_back(testing::box_mesh(low, low + draw.inside({1, 1, 1}, {2, 2, 2})));
     const Traced after(scene);
-    const ZoneActivity with = after.by(*after.embree, scene.solids);
+    const ZoneBytes with = after.by(*after.embree, scene.solids);
     for (std::size_t zone = 0; zone < with.size(); ++zone) REQUIRE(with[zone] <= without[zone]);
     taken += active(without) - active(with);
 
@@ -228,7 +229,7 @@ TEST_CASE("the mirrored scene gives the mirrored zones, exactly", "[rt]") {
     const Traced here(scene), there(mirror);
     INFO("seed " << 9000 + seed);
     REQUIRE(here.clipped.range == there.clipped.range);
-    const ZoneActivity zones = here.by(*here.embree, scene.solids);
+    const ZoneBytes zones = here.by(*here.embree, scene.solids);
     REQUIRE(there.by(*there.embree, mirror.solids) == zones);
     REQUIRE(there.by(*there.reference, mirror.solids) == zones);
     n_active += active(zones);
@@ -246,19 +247,19 @@ TEST_CASE("tracers of one room on several threads give the zones that one thread
     constexpr std::array kinds{TracerKind::embree, TracerKind::reference, TracerKind::direct};
     const TracerKind kind = kinds[i % kinds.size()];
     const auto tracer = rt::make_tracer(kind, {&traced.room, &traced.rated, &traced.clipped});
-    ZoneActivity all;
+    ZoneBytes all;
     for (int tick = 0; tick < 50; ++tick) {
       std::vector<PosedShape> solids = scene.solids;
       for (PosedShape& solid : solids) {
         solid = place(own.shape(), {own.rotation(), own.inside({-2, 0, -2}, {2, 2, 2})});
       }
-      const ZoneActivity zones = traced.by(*tracer, solids);
+      const ZoneBytes zones = traced.by(*tracer, solids);
       all.insert(all.end(), zones.begin(), zones.end());
     }
     return all;
   };
-  std::vector<ZoneActivity> alone, together;
+  std::vector<ZoneBytes> alone, together;
   for (std::size_t i = 0; i < 24; ++i) alone.push_back(run(i));
-  ordered_parallel<ZoneActivity>(24, 0, run, [&](ZoneActivity& zones) { together.push_back(zones); });
+  ordered_parallel<ZoneBytes>(24, 0, run, [&](ZoneBytes& zones) { together.push_back(zones); });
   CHECK(alone == together);
 }

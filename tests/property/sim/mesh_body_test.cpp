@@ -35,8 +35,8 @@ Comparison compare(const RunResult& first, const RunResult& second) {
   Comparison result;
   for (std::size_t tick = 0; tick < first.zones.size(); ++tick) {
     for (std::size_t zone = 0; zone < first.zones[tick].size(); ++zone) {
-      const auto before = first.zones[tick][zone], after = second.zones[tick][zone];
-      result.active += before;
+      const auto before = first.zones[tick].test(zone), after = second.zones[tick].test(zone);
+      result.active += before ? 1 : 0;
       result.lost += before > after ? 1 : 0;
       result.gained += before < after ? 1 : 0;
     }

@@ -69,8 +69,8 @@ TEST_CASE("an added occluder never adds an active zone, at no tick of a whole tr
   std::size_t lost = 0, added = 0;
   for (std::size_t tick = 0; tick < a.zones.size(); ++tick) {
     for (std::size_t zone = 0; zone < a.zones[tick].size(); ++zone) {
-      if (a.zones[tick][zone] > b.zones[tick][zone]) ++lost;
-      if (a.zones[tick][zone] < b.zones[tick][zone]) ++added;
+      if (a.zones[tick].test(zone) > b.zones[tick].test(zone)) ++lost;
+      if (a.zones[tick].test(zone) < b.zones[tick].test(zone)) ++added;
     }
   }
   CHECK(added == 0);

@@ -8,6 +8,7 @@
 #include "sim/solids.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
+#include "support/zone_bytes.hpp"
 
 using namespace pirsim;
 using namespace pirsim::test;
@@ -23,7 +24,7 @@ struct Comparison {
 Comparison compare(const Model& fast, const Model& slow, std::uint32_t run, std::int64_t stride) {
   Comparison result;
   const auto tracer = slow.compiled().array().make_tracer(slow.compiled().tracer());
-  ZoneActivity expected(slow.compiled().array().rated().n_zones());
+  const std::size_t n_zones = slow.compiled().array().rated().n_zones();
   std::vector<PosedShape> solids;
   State state(fast, run);
   while (!state.finished()) {
@@ -31,7 +32,7 @@ Comparison compare(const Model& fast, const Model& slow, std::uint32_t run, std:
     if ((state.tick() + run) % stride != 0) continue;
     solids.clear();
     for (const sim::Actor& actor : state.run_state().crowd.actors()) sim::append_solids(actor, solids);
-    tracer->trace(solids, expected);
+    const ZoneBytes expected = seen_by(*tracer, solids, n_zones);
     ++result.n_ticks;
     bool differs = false;
     for (std::size_t zone = 0; zone < expected.size(); ++zone) {

@@ -1,4 +1,4 @@
-#include "pir/analog_detector.hpp"
+#include "pir/analog_circuit.hpp"
 
 #include <cmath>
 #include <complex>

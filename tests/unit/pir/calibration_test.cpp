@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "pir/analog_detector.hpp"
+#include "pir/analog_circuit.hpp"
 #include "pir/planck.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
@@ -24,12 +24,12 @@ bool detected(const SensorModelSpec& model, const Calibration& calibration, std:
   DetectorSpec spec = model.detector;
   spec.amplifier.noise_v_pp = 0.0;
   constexpr double tick_s = 0.004;  // another tick than the calibration's
-  const pir::AnalogDetector detector(spec, calibration.volts_per_watt, tick_s);
-  pir::AnalogDetector::State state = detector.start(0.0, {});
+  const pir::AnalogCircuit detector(spec, calibration.volts_per_watt, tick_s);
+  pir::AnalogCircuit::State state = detector.start(0.0, {});
   bool seen = false;
   for (const double power_w : target_power(model, facet, pass, calibration.apertures_m2[facet], tick_s)) {
     detector.advance(state, power_w);
-    seen = seen || pir::AnalogDetector::on(state);
+    seen = seen || pir::AnalogCircuit::on(state);
   }
   return seen;
 }

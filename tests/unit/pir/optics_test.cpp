@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "pir/motion_detector.hpp"
+#include "pir/zone_motion.hpp"
 #include "pirsim/io.hpp"
 #include "support/catch.hpp"
 #include "support/paths.hpp"
@@ -34,7 +34,7 @@ RayBundle small_bundle() {
 }
 void mark(ChangePer per, const std::array<std::uint8_t, 4>& before, const std::array<std::uint8_t, 4>& after,
           std::array<std::uint8_t, 3>& bits) {
-  const pir::MotionDetector detector(small_bundle(), per);
+  const pir::Channels detector(small_bundle(), per);
   const auto channels_of = [&](const std::array<std::uint8_t, 4>& activity) {
     ZoneSet zones(activity.size()), channels(detector.n_channels());
     for (std::size_t zone = 0; zone < activity.size(); ++zone) {

@@ -6,6 +6,7 @@
 #include "support/catch.hpp"
 #include "support/fine_mesh.hpp"
 #include "support/random_scene.hpp"
+#include "support/zone_bytes.hpp"
 
 using namespace pirsim;
 using namespace pirsim::rt;
@@ -90,9 +91,8 @@ TEST_CASE("a tracer that follows moving solids gives the bits of one that sees e
         frames[i] = moved(draw, frames[i], step_m, 0.05);
         solids.push_back(place(shapes[i], frames[i]));
       }
-      ZoneActivity expected(clipped.n_zones()), zones(clipped.n_zones());
-      fresh.trace(solids, expected);
-      following.trace(solids, zones);
+      const test::ZoneBytes expected = test::seen_by(fresh, solids, clipped.n_zones());
+      const test::ZoneBytes zones = test::seen_by(following, solids, clipped.n_zones());
       for (std::size_t zone = 0; zone < zones.size(); ++zone) {
         n_wrong += zones[zone] != expected[zone] ? 1 : 0;
         n_active += expected[zone];

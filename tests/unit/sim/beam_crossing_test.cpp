@@ -1,11 +1,12 @@
 // The whole chain from lens data to motion, against times that can be computed on paper.
 #include <cmath>
 
-#include "pir/motion_detector.hpp"
 #include "pir/optics.hpp"
+#include "pir/zone_motion.hpp"
 #include "rt/tracer.hpp"
 #include "support/catch.hpp"
 #include "support/plain_motion.hpp"
+#include "support/zone_bytes.hpp"
 
 using namespace pirsim;
 
@@ -31,12 +32,12 @@ Crossing cross(TracerKind kind, double speed, double height, double distance, do
   const rt::Room room({});
   const auto tracer = rt::make_tracer(kind, {&room, &rays, &rays});
   Crossing crossing;
-  ZoneActivity before(1, 0), after(1, 0);
+  test::ZoneBytes before(1, 0), after(1, 0);
   for (int tick = 0; tick <= 200; ++tick) {
     const double x = speed * tick / 50.0 - 2.0;
     const std::vector<PosedShape> solids{place(Sphere{radius}, {Quat(1, 0, 0, 0), Vec3(x, height, -distance)})};
     before = after;
-    tracer->trace(solids, after);
+    after = test::seen_by(*tracer, solids, 1);
     std::vector<std::uint8_t> bit(1, 0);
     test::mark_motion(rays, ChangePer::cluster, before, after, bit);
     if (bit[0] != 0) crossing.motion.push_back(tick);

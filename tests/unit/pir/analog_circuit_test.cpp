@@ -1,4 +1,4 @@
-#include "pir/analog_detector.hpp"
+#include "pir/analog_circuit.hpp"
 
 #include <cmath>
 #include <vector>
@@ -19,8 +19,8 @@ DetectorSpec silent() {
 }
 
 std::vector<double> volts(const DetectorSpec& spec, double scale, int n) {
-  const pir::AnalogDetector detector(spec, 1.0, 0.02);
-  pir::AnalogDetector::State state = detector.start(0.0, noise_of_sensor);
+  const pir::AnalogCircuit detector(spec, 1.0, 0.02);
+  pir::AnalogCircuit::State state = detector.start(0.0, noise_of_sensor);
   std::vector<double> values;
   for (int tick = 1; tick <= n; ++tick) {
     detector.advance(state, scale * std::sin(0.15 * tick));
@@ -69,10 +69,10 @@ TEST_CASE("the output saturates where the data sheet says") {
 }
 
 TEST_CASE("a copy of a detector's state goes on as the original does") {
-  const pir::AnalogDetector detector({}, 1.0, 0.02);
-  pir::AnalogDetector::State state = detector.start(0.2, noise_of_sensor);
+  const pir::AnalogCircuit detector({}, 1.0, 0.02);
+  pir::AnalogCircuit::State state = detector.start(0.2, noise_of_sensor);
   for (int tick = 0; tick < 50; ++tick) detector.advance(state, 0.1 * tick);
-  pir::AnalogDetector::State copy = state;
+  pir::AnalogCircuit::State copy = state;
   for (int tick = 0; tick < 50; ++tick) {
     detector.advance(state, 3.0);
     detector.advance(copy, 3.0);
@@ -83,8 +83,8 @@ TEST_CASE("a copy of a detector's state goes on as the original does") {
 }
 
 TEST_CASE("without noise no random number is drawn and a steady power is silent") {
-  const pir::AnalogDetector detector(silent(), 1.0, 0.02);
-  pir::AnalogDetector::State state = detector.start(0.4, noise_of_sensor);
+  const pir::AnalogCircuit detector(silent(), 1.0, 0.02);
+  pir::AnalogCircuit::State state = detector.start(0.4, noise_of_sensor);
   for (int tick = 0; tick < 100; ++tick) detector.advance(state, 0.4);
   REQUIRE(state.noise == Stream(noise_of_sensor));
   REQUIRE(std::abs(state.volts) < 1e-12);
@@ -93,12 +93,12 @@ TEST_CASE("without noise no random number is drawn and a steady power is silent"
 TEST_CASE("noise has the data sheet's strength from the first tick on and at any tick") {
   constexpr int n = 4000;  // independent sensors; relative standard error of the deviation 1 / sqrt(2 n) = 1.1 %
   for (const double tick_s : {0.005, 0.02, 0.1}) {
-    const pir::AnalogDetector detector({}, 1.0, tick_s);
+    const pir::AnalogCircuit detector({}, 1.0, tick_s);
     double at_start = 0.0, later = 0.0;
     for (std::uint32_t sensor = 0; sensor < n; ++sensor) {
       StreamKey key = noise_of_sensor;
       key.entity = sensor;
-      pir::AnalogDetector::State state = detector.start(0.0, key);
+      pir::AnalogCircuit::State state = detector.start(0.0, key);
       at_start += state.volts * state.volts;
       for (int tick = 0; tick < 40; ++tick) detector.advance(state, 0.0);
       later += state.volts * state.volts;
@@ -114,14 +114,14 @@ TEST_CASE("noise alone gives the rate of false alarms that Rice's formula predic
   constexpr double tick_s = 0.005, seconds = 30000.0, level_in_sd = 2.0;
   DetectorSpec spec;
   spec.comparator.positive_v = spec.comparator.negative_v = level_in_sd * noise_sd(spec);
-  const pir::AnalogDetector detector(spec, 1.0, tick_s);
-  pir::AnalogDetector::State state = detector.start(0.0, noise_of_sensor);
+  const pir::AnalogCircuit detector(spec, 1.0, tick_s);
+  pir::AnalogCircuit::State state = detector.start(0.0, noise_of_sensor);
   std::vector<double> alarms_by_part(100, 0.0);  // independent but for their ends
   for (double& alarms : alarms_by_part) {
     for (int tick = 0; tick < seconds / tick_s / 100.0; ++tick) {
-      const bool before = pir::AnalogDetector::on(state);
+      const bool before = pir::AnalogCircuit::on(state);
       detector.advance(state, 0.0);
-      if (!before && pir::AnalogDetector::on(state)) ++alarms;
+      if (!before && pir::AnalogCircuit::on(state)) ++alarms;
     }
   }
   double sum = 0.0, squares = 0.0;

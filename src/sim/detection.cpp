@@ -1,4 +1,4 @@
-#include "sim/detector.hpp"
+#include "sim/detection.hpp"
 
 #include <algorithm>
 
@@ -63,7 +63,7 @@ void Detector::advance_analog(const Exposure& exposure, std::span<std::uint8_t> 
   for (std::size_t i = 0; i < analog_.size(); ++i) {
     if (!analog_[i]) continue;
     array_->analog()->sensors()[i]->detector.advance(*analog_[i], watts(exposure.powers[i]));
-    triggers[i] = pir::AnalogDetector::on(*analog_[i]) ? 1 : 0;
+    triggers[i] = pir::AnalogCircuit::on(*analog_[i]) ? 1 : 0;
   }
 }
 
@@ -82,6 +82,34 @@ bool Detector::is_memoryless() const noexcept {
   const bool no_output =
       std::ranges::none_of(array_->zone_outputs(), [](const auto& output) { return output.has_value(); });
   return !polarity_ && no_output && analog_.empty() && array_->n_levels() == 1;
+}
+
+namespace {
+
+pir::WindowReader in_step(std::size_t n_sensors, std::int32_t ticks_per_window) {
+  return {std::vector<std::int32_t>(n_sensors, 0), ticks_per_window};
+}
+
+}  // namespace
+
+Logger::Logger(const effects::Pipeline& stages, const SensingSpec& sensing, std::size_t n_sensors)
+    : stages_(stages),
+      kind_(sensing.reader),
+      ticks_per_window_(sensing.ticks_per_window),
+      n_sensors_(n_sensors),
+      reader_(in_step(n_sensors, ticks_per_window_)) {}
+
+void Logger::begin_run(std::uint64_t seed, std::uint32_t run) {
+  stages_.begin_run(seed, run);
+  tick_ = heard_ = 0;
+  reader_ = kind_ == Reader::in_step
+                ? in_step(n_sensors_, ticks_per_window_)
+                : pir::WindowReader(pir::drawn_leads(n_sensors_, ticks_per_window_, seed, run), ticks_per_window_);
+}
+
+void Logger::complete(Sample& row) noexcept {
+  row.bits.assign(reader_.readings().begin(), reader_.readings().end());
+  stages_.apply(row);
 }
 
 }  // namespace pirsim::sim

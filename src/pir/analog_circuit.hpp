@@ -88,7 +88,7 @@ class Comparator {
 };
 
 /// Immutable, shared by all sensors of one model.
-class AnalogDetector {
+class AnalogCircuit {
  public:
   /// Everything that changes, of one sensor.
   struct State {
@@ -100,7 +100,7 @@ class AnalogDetector {
     bool operator==(const State&) const = default;
   };
 
-  AnalogDetector(const DetectorSpec& spec, double volts_per_watt, double tick_s);
+  AnalogCircuit(const DetectorSpec& spec, double volts_per_watt, double tick_s);
 
   /// Long after power-on, with this power on the element ever since. noise: Purpose::detector_noise, entity the sensor.
   [[nodiscard]] State start(double power_w, StreamKey noise) const noexcept;

@@ -1,4 +1,4 @@
-#include "pir/motion_detector.hpp"
+#include "pir/zone_motion.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -8,7 +8,7 @@
 
 namespace pirsim::pir {
 
-MotionDetector::MotionDetector(const RayBundle& bundle, ChangePer change_per) : n_sensors_(bundle.n_sensors()) {
+Channels::Channels(const RayBundle& bundle, ChangePer change_per) : n_sensors_(bundle.n_sensors()) {
   const bool per_cluster = change_per == ChangePer::cluster;
   n_channels_ = per_cluster ? bundle.n_clusters() : bundle.n_zones();
   for (std::uint32_t sensor = 0; sensor < n_sensors_; ++sensor) {
@@ -23,7 +23,7 @@ MotionDetector::MotionDetector(const RayBundle& bundle, ChangePer change_per) : 
   }
 }
 
-void MotionDetector::add_channels(const ZoneSet& zones, ZoneSet& channels) const noexcept {
+void Channels::add_channels(const ZoneSet& zones, ZoneSet& channels) const noexcept {
   std::size_t first = 0;
   for (ZoneSet::Word word : zones.words()) {
     for (; word != 0; word &= word - 1) {
@@ -33,8 +33,8 @@ void MotionDetector::add_channels(const ZoneSet& zones, ZoneSet& channels) const
   }
 }
 
-void MotionDetector::mark(std::span<const ZoneSet::Word> before, std::span<const ZoneSet::Word> after,
-                          std::span<const ZoneSet::Word> watched, std::span<std::uint8_t> bits) const noexcept {
+void Channels::mark(std::span<const ZoneSet::Word> before, std::span<const ZoneSet::Word> after,
+                    std::span<const ZoneSet::Word> watched, std::span<std::uint8_t> bits) const noexcept {
   for (std::size_t i = 0; i < before.size(); ++i) {
     const ZoneSet::Word changed = before[i] ^ after[i];
     if (changed == 0) continue;
@@ -44,8 +44,8 @@ void MotionDetector::mark(std::span<const ZoneSet::Word> before, std::span<const
   }
 }
 
-PolarityDetector::PolarityDetector(const SceneSpec& scene, const DualPolaritySpec& spec, std::size_t n_levels,
-                                   double tick_s)
+PolarityFilter::PolarityFilter(const SceneSpec& scene, const DualPolaritySpec& spec, std::size_t n_levels,
+                               double tick_s)
     : threshold_(spec.threshold),
       fast_share_(-std::expm1(-2.0 * pi * spec.low_pass_hz * tick_s)),
       slow_share_(-std::expm1(-2.0 * pi * spec.high_pass_hz * tick_s)),
@@ -62,11 +62,11 @@ PolarityDetector::PolarityDetector(const SceneSpec& scene, const DualPolaritySpe
   }
 }
 
-void PolarityDetector::begin_run(std::span<const double> rest) noexcept {
+void PolarityFilter::begin_run(std::span<const double> rest) noexcept {
   for (std::size_t s = 0; s < filters_.size(); ++s) filters_[s] = {rest[s], rest[s]};
 }
 
-void PolarityDetector::add_up(const ZoneSet& zones, std::span<double> sums) const noexcept {
+void PolarityFilter::add_up(const ZoneSet& zones, std::span<double> sums) const noexcept {
   std::ranges::fill(sums, 0.0);
   std::size_t first = 0;
   for (ZoneSet::Word word : zones.words()) {
@@ -78,7 +78,7 @@ void PolarityDetector::add_up(const ZoneSet& zones, std::span<double> sums) cons
   }
 }
 
-void PolarityDetector::tick(std::span<const double> sums, std::span<std::uint8_t> triggers) noexcept {
+void PolarityFilter::tick(std::span<const double> sums, std::span<std::uint8_t> triggers) noexcept {
   for (std::size_t s = 0; s < filters_.size(); ++s) {
     Filter& filter = filters_[s];
     filter.fast += fast_share_ * (sums[s] - filter.fast);

@@ -15,9 +15,9 @@ namespace pirsim::pir {
 
 /// A sensor sees motion where the activity of one of its channels changes from one tick to the next. A channel is a
 /// beam's zone, or a cluster of them, which is active where any of its zones is.
-class MotionDetector {
+class Channels {
  public:
-  MotionDetector(const RayBundle& bundle, ChangePer change_per);
+  Channels(const RayBundle& bundle, ChangePer change_per);
 
   [[nodiscard]] std::size_t n_zones() const noexcept { return channel_of_zone_.size(); }
   [[nodiscard]] std::size_t n_channels() const noexcept { return n_channels_; }
@@ -46,10 +46,10 @@ class MotionDetector {
 
 /// A sensor triggers while the filtered sum of its active zones, each with its element's sign, is beyond the threshold
 /// on either side. Zones of both signs under one person cancel, slow changes leak away. A value.
-class PolarityDetector {
+class PolarityFilter {
  public:
   /// n_levels: copies of every zone (pir::append), which share its weight.
-  PolarityDetector(const SceneSpec& scene, const DualPolaritySpec& spec, std::size_t n_levels, double tick_s);
+  PolarityFilter(const SceneSpec& scene, const DualPolaritySpec& spec, std::size_t n_levels, double tick_s);
 
   /// rest: (n_sensors) sums of the signs of zones that have been active for long.
   void begin_run(std::span<const double> rest) noexcept;
@@ -58,7 +58,7 @@ class PolarityDetector {
   /// One tick; sets triggers[s] (n_sensors) where sensor s triggers.
   void tick(std::span<const double> sums, std::span<std::uint8_t> triggers) noexcept;
   [[nodiscard]] std::size_t n_sensors() const noexcept { return filters_.size(); }
-  bool operator==(const PolarityDetector&) const = default;
+  bool operator==(const PolarityFilter&) const = default;
 
  private:
   struct Filter {
