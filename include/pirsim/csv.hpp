@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <ostream>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,25 +25,29 @@ void add_csv(std::string& line, const Cell& cell, int decimals);
 template <typename Row>
 class TableWriter {
  public:
-  /// Writes the header line. A name that no column has belongs to a sensor: the first such to the first sensor.
+  /// Writes the header line: all columns of this list, none of which is repeated. The list outlives the writer.
+  TableWriter(std::ostream& out, std::span<const Column<Row>> columns) : out_(out) {
+    for (const Column<Row>& column : columns) add(column, 0, column.name);
+    end_line();
+  }
+  /// The columns of columns_of<Row>() that are called so. A name that none of them has belongs to a sensor: the first
+  /// such to the first sensor.
   explicit TableWriter(std::ostream& out, const std::vector<std::string>& names = column_names<Row>()) : out_(out) {
     const std::span<const Column<Row>> columns = columns_of<Row>();
+    const auto repeated = std::ranges::find_if(columns, [](const auto& column) { return column.each != nullptr; });
     std::size_t n_sensors = 0;
     for (const std::string& name : names) {
       const auto single = std::ranges::find_if(
-          columns, [&](const Column<Row>& column) { return column.each == nullptr && column.name == name; });
-      const auto repeated =
-          std::ranges::find_if(columns, [](const Column<Row>& column) { return column.each != nullptr; });
+          columns, [&](const auto& column) { return column.each == nullptr && column.name == name; });
       if (single != columns.end()) {
-        fields_.push_back({&*single, 0});
+        add(*single, 0, name);
       } else if (repeated != columns.end()) {
-        fields_.push_back({&*repeated, n_sensors++});
+        add(*repeated, n_sensors++, name);
       } else {
         throw Error(ErrorCode::internal, "the table has no column '" + name + "'");
       }
-      line_ += (line_.empty() ? "" : ",") + csv_field(name);
     }
-    out_ << line_ << '\n';
+    end_line();
   }
 
   void write(const Row& row) {
@@ -52,8 +57,7 @@ class TableWriter {
       add_csv(line_, column.each == nullptr ? column.value(row) : column.each(row, field.sensor), column.decimals);
       line_ += ',';
     }
-    line_.back() = '\n';
-    out_ << line_;
+    end_line();
   }
 
  private:
@@ -61,6 +65,17 @@ class TableWriter {
     const Column<Row>* column;
     std::size_t sensor;
   };
+
+  void add(const Column<Row>& column, std::size_t sensor, std::string_view name) {
+    fields_.push_back({&column, sensor});
+    line_ += csv_field(name);
+    line_ += ',';
+  }
+  void end_line() {
+    line_.back() = '\n';
+    out_ << line_;
+  }
+
   std::ostream& out_;
   std::vector<Field> fields_;
   std::string line_;

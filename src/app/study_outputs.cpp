@@ -25,50 +25,105 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Standard output, or a device or pipe.
-class StreamedRows final : public RowOutput {
+/// Text for a file, compressed by the ending of its name, or for standard output.
+class LineOutput {
  public:
-  StreamedRows(const Model& model, const fs::path& file)
-      : runs_{0, model.n_runs()},
-        file_(file.empty() ? nullptr : std::make_unique<io::AtomicFile>(file)),
-        csv_(stream(), model.columns()) {}
+  explicit LineOutput(const fs::path& file)
+      : file_(file.empty() ? nullptr : std::make_unique<io::AtomicFile>(file)),
+        writer_(stream(), io::compression_of(file)) {}
+
+  /// What is written here is in the file after the next pass_on().
+  [[nodiscard]] std::ostream& lines() { return lines_; }
+  std::size_t pass_on() {
+    const std::size_t n_bytes = lines_.view().size();
+    writer_.write(lines_.view());
+    lines_.str({});
+    if (!stream()) put_in_place();  // says why it can't be written
+    return n_bytes;
+  }
+  void commit() {
+    pass_on();
+    writer_.finish();
+    put_in_place();
+  }
+
+ private:
+  [[nodiscard]] std::ostream& stream() { return file_ ? file_->stream() : std::cout; }
+  void put_in_place() { file_ ? file_->commit() : require_written(); }
+
+  std::unique_ptr<io::AtomicFile> file_;
+  io::DataWriter writer_;
+  std::ostringstream lines_;
+};
+
+/// Rows as lines.
+class RowLines {
+ public:
+  RowLines(std::ostream& out, const Model& model) : csv_(out, model.columns()) {}
+  std::size_t write(const RunResult& result) {
+    for (const Sample& sample : result.samples) csv_.write(sample);
+    return result.samples.size();
+  }
+
+ private:
+  io::CsvWriter csv_;
+};
+
+/// Who is where, as lines.
+class OccupantLines {
+ public:
+  OccupantLines(std::ostream& out, const Model& /*model*/) : csv_(out) {}
+  std::size_t write(const RunResult& result) {
+    for (const OccupantRow& row : result.occupants) csv_.write({result.replicate, result.trial, row});
+    return result.occupants.size();
+  }
+
+ private:
+  io::TableWriter<OccupantLine> csv_;
+};
+
+/// Standard output, a device or pipe, or what goes with these.
+template <typename Lines>
+class StreamedTable final : public TableOutput {
+ public:
+  StreamedTable(const Model& model, const fs::path& file)
+      : runs_{0, model.n_runs()}, output_(file), lines_(output_.lines(), model) {}
 
   [[nodiscard]] RunRange missing_runs() const override { return runs_; }
-  void add_run(std::span<const Sample> rows, const io::RunNotes& notes) override {
-    for (const Sample& sample : rows) csv_.write(sample);
+  std::size_t add_run(const RunResult& result, const io::RunNotes& notes) override {
+    rows_ += lines_.write(result);
     notes_ += notes;
-    rows_ += rows.size();
-    if (!stream()) commit({});  // which says why
+    return output_.pass_on();
   }
-  void commit(const std::function<bool()>&) override { file_ ? file_->commit() : require_written(); }
+  void commit(const std::function<bool()>&) override { output_.commit(); }
   void discard() noexcept override {}
   [[nodiscard]] std::uint64_t rows() const override { return rows_; }
   [[nodiscard]] const io::RunNotes& notes() const override { return notes_; }
 
  private:
-  [[nodiscard]] std::ostream& stream() { return file_ ? file_->stream() : std::cout; }
-
   RunRange runs_;
-  std::unique_ptr<io::AtomicFile> file_;
-  io::CsvWriter csv_;
+  LineOutput output_;
+  Lines lines_;
   std::uint64_t rows_ = 0;
   io::RunNotes notes_;
 };
 
-class ResumableRows final : public RowOutput {
+template <typename Lines>
+class ResumableTable final : public TableOutput {
  public:
-  ResumableRows(const fs::path& file, io::Manifest made, const std::vector<std::string>& columns,
-                RowOptions::Start start)
+  ResumableTable(const Model& model, const fs::path& file, io::Manifest made, RowOptions::Start start)
       : end_(made.runs.end),
-        csv_(lines_, columns),
-        file_(file, std::move(made), lines_.str(),
+        lines_(text_, model),
+        file_(file, std::move(made), text_.str(),
               start == RowOptions::Start::resume ? io::RowFile::Start::resume : io::RowFile::Start::anew) {}
 
   [[nodiscard]] RunRange missing_runs() const override { return {file_.next_run(), end_}; }
-  void add_run(std::span<const Sample> rows, const io::RunNotes& notes) override {
-    lines_.str({});
-    for (const Sample& sample : rows) csv_.write(sample);
-    file_.add_run(lines_.view(), rows.size(), notes);
+  std::size_t add_run(const RunResult& result, const io::RunNotes& notes) override {
+    if (result.run < file_.next_run()) return 0;  // another table of the study misses it
+    text_.str({});
+    const std::size_t n_rows = lines_.write(result);
+    file_.add_run(text_.view(), n_rows, notes);
+    return text_.view().size();
   }
   void commit(const std::function<bool()>& goes_on) override {
     if (!file_.finished()) file_.commit(goes_on);
@@ -79,8 +134,8 @@ class ResumableRows final : public RowOutput {
 
  private:
   std::uint32_t end_;
-  std::ostringstream lines_;
-  io::CsvWriter csv_;
+  std::ostringstream text_;
+  Lines lines_;
   io::RowFile file_;
 };
 
@@ -120,25 +175,61 @@ void refuse_other_shards(const fs::path& folder, const Shard& shard) {
   }
 }
 
-std::unique_ptr<RowOutput> open_shard(const Model& model, const RowOptions& options) {
-  const Shard shard = studies::parse_shard(options.shard);
-  make_folder(options.output);
-  refuse_other_shards(options.output, shard);
+template <typename Lines>
+std::unique_ptr<TableOutput> open_table(const Model& model, const RowOptions& options, const fs::path& output,
+                                        const std::string& table) {
   io::Manifest manifest = manifest_of(model);
+  manifest.table = table;
+  if (options.shard.empty()) {
+    if (!is_resumable(options) || io::is_written_directly(output))
+      return std::make_unique<StreamedTable<Lines>>(model, output);
+    return std::make_unique<ResumableTable<Lines>>(model, output, std::move(manifest), options.start);
+  }
+  const Shard shard = studies::parse_shard(options.shard);
+  make_folder(output);
+  refuse_other_shards(output, shard);
   manifest.shard = shard;
   manifest.runs = runs_of(shard, model.n_runs());
-  return std::make_unique<ResumableRows>(options.output / (studies::shard_name(shard) + options.format),
-                                         std::move(manifest), model.columns(), options.start);
+  return std::make_unique<ResumableTable<Lines>>(model, output / (studies::shard_name(shard) + options.format),
+                                                 std::move(manifest), options.start);
 }
 
 }  // namespace
 
-std::unique_ptr<RowOutput> open_rows(const Model& model, const RowOptions& options) {
-  if (!options.shard.empty()) return open_shard(model, options);
-  if (options.output.empty() || io::is_written_directly(options.output)) {
-    return std::make_unique<StreamedRows>(model, options.output);
+bool is_resumable(const RowOptions& options) {
+  return !options.output.empty() && !io::is_written_directly(options.output);
+}
+
+StudyTables::StudyTables(const Model& model, const RunOptions& options) {
+  const RowOptions& rows = options.rows;
+  tables_.push_back(open_table<RowLines>(model, rows, rows.output, ""));
+  if (options.occupants.empty()) return;
+  try {
+    tables_.push_back(open_table<OccupantLines>(model, rows, options.occupants, "occupants"));
+  } catch (...) {
+    if (rows.start == RowOptions::Start::anew) discard();
+    throw;
   }
-  return std::make_unique<ResumableRows>(options.output, manifest_of(model), model.columns(), options.start);
+}
+
+RunRange StudyTables::missing_runs() const {
+  RunRange missing = tables_.front()->missing_runs();
+  for (const auto& table : tables_) missing.first = std::min(missing.first, table->missing_runs().first);
+  return missing;
+}
+
+std::size_t StudyTables::add_run(const RunResult& result, const io::RunNotes& notes) {
+  std::size_t n_bytes = 0;
+  for (const auto& table : tables_) n_bytes = table->add_run(result, notes);
+  return n_bytes;
+}
+
+void StudyTables::commit(const std::function<bool()>& goes_on) {
+  for (const auto& table : tables_) table->commit(goes_on);
+}
+
+void StudyTables::discard() noexcept {
+  for (const auto& table : tables_) table->discard();
 }
 
 namespace {
@@ -164,33 +255,6 @@ studies::Summary make_summary(const Model& model, const RunOptions& options) {
   return {trials, sensor_ids(model), measured};
 }
 
-/// Lines of all runs, compressed by the ending of the file's name.
-class LineOutput {
- public:
-  explicit LineOutput(const std::filesystem::path& file)
-      : file_(file), writer_(file_.stream(), io::compression_of(file)) {}
-
-  /// What is written here is in the file after the next pass_on().
-  [[nodiscard]] std::ostream& lines() { return lines_; }
-  std::size_t pass_on() {
-    const std::size_t n_bytes = lines_.view().size();
-    writer_.write(lines_.view());
-    lines_.str({});
-    if (!file_.stream()) file_.commit();  // says why it can't be written
-    return n_bytes;
-  }
-  void commit() {
-    pass_on();
-    writer_.finish();
-    file_.commit();
-  }
-
- private:
-  io::AtomicFile file_;
-  io::DataWriter writer_;
-  std::ostringstream lines_;
-};
-
 /// What is recorded at every tick is in memory until its run ends.
 void require_memory(const std::string& option, double bytes_a_tick, const Model& model) {
   const SensingInForce& sensing = model.compiled().sensing();
@@ -209,18 +273,6 @@ void require_memory(const Model& model, const RunOptions& options) {
   if (!options.zones.empty()) require_memory("--zones", static_cast<double>(zone_bytes), model);
   if (!options.trace.empty() && analog != nullptr)
     require_memory("--trace", static_cast<double>(sizeof(TraceRow) * model.scene().sensors.size()), model);
-}
-
-/// Once the first run tells how much a run writes: some studies would fill a disk.
-void announce(const std::string& option, std::size_t run_bytes, const Model& model, Verbosity verbosity) {
-  constexpr double worth_telling = 1e8;  // assumed: 0.1 GB surprises nobody
-  const double bytes = static_cast<double>(run_bytes) * model.n_runs();
-  if (verbosity == Verbosity::quiet || bytes < worth_telling) return;
-  std::ostringstream text;
-  text << std::setprecision(2) << option << ": the first of " << model.n_runs() << " runs has "
-       << static_cast<double>(run_bytes) * 1e-6 << " MB, so all will have about " << bytes * 1e-9
-       << " GB before compression\n";
-  std::cerr << text.str();
 }
 
 /// Zones of all runs.
@@ -278,28 +330,21 @@ class TraceOutput {
   io::TableWriter<TraceLine> csv_;
 };
 
-/// Who is where in all runs.
-class OccupantOutput {
- public:
-  explicit OccupantOutput(const std::filesystem::path& file) : output_(file), csv_(output_.lines()) {}
-
-  /// Bytes before compression.
-  std::size_t add(const RunResult& result) {
-    for (const OccupantRow& row : result.occupants) csv_.write({result.replicate, result.trial, row});
-    return output_.pass_on();
-  }
-  void commit() { output_.commit(); }
-
- private:
-  LineOutput output_;
-  io::TableWriter<OccupantLine> csv_;
-};
-
 }  // namespace
 
+void announce(const std::string& option, std::size_t first_bytes, const Model& model, Verbosity verbosity) {
+  constexpr double worth_telling = 1e8;  // assumed: 0.1 GB surprises nobody
+  const double bytes = static_cast<double>(first_bytes) * model.n_runs();
+  if (verbosity == Verbosity::quiet || bytes < worth_telling) return;
+  std::ostringstream text;
+  text << std::setprecision(2) << option << ": the first of " << model.n_runs() << " runs has "
+       << static_cast<double>(first_bytes) * 1e-6 << " MB, so all will have about " << bytes * 1e-9
+       << " GB before compression\n";
+  std::cerr << text.str();
+}
+
 bool has_whole_study_outputs(const RunOptions& options) {
-  return !options.summary.empty() || !options.zones.empty() || !options.trace.empty() || !options.report.empty() ||
-         !options.occupants.empty();
+  return !options.summary.empty() || !options.zones.empty() || !options.trace.empty() || !options.report.empty();
 }
 
 struct WholeStudyOutputs::Files {
@@ -311,7 +356,6 @@ struct WholeStudyOutputs::Files {
   std::optional<ZoneOutput> zones{};
   bool unannounced = true;
   std::optional<TraceOutput> trace{};
-  std::optional<OccupantOutput> occupants{};
   std::optional<io::AtomicFile> summary_file{}, report_file{};
 };
 
@@ -322,16 +366,14 @@ WholeStudyOutputs::WholeStudyOutputs(const Model& model, const Inputs& inputs, c
   require_memory(model, options);
   if (!options.zones.empty()) files_->zones.emplace(options.zones, model);
   if (!options.trace.empty()) files_->trace.emplace(options.trace, model);
-  if (!options.occupants.empty()) files_->occupants.emplace(options.occupants);
   if (!options.summary.empty()) files_->summary_file.emplace(options.summary);
   if (!options.report.empty()) files_->report_file.emplace(options.report);
 }
 
 WholeStudyOutputs::~WholeStudyOutputs() = default;
 
-Occupants WholeStudyOutputs::occupants() const noexcept {
-  const bool reported = files_->report_file && files_->report.needs_occupants();
-  return files_->occupants || reported ? Occupants::told : Occupants::counted;
+bool WholeStudyOutputs::need_occupants() const noexcept {
+  return files_->report_file && files_->report.needs_occupants();
 }
 
 void WholeStudyOutputs::add(const RunResult& result) {
@@ -345,7 +387,6 @@ void WholeStudyOutputs::add(const RunResult& result) {
   };
   add(files.zones, "--zones");
   add(files.trace, "--trace");
-  add(files.occupants, "--occupants");
   if (files.report_file) files.report.add_run(result);
   if (!files.summary_file && !files.report_file) return;
   studies::RunCounts counts(files.model.scene().sensors.size(), files.model.script().summary);
@@ -357,7 +398,6 @@ void WholeStudyOutputs::commit(const io::RunNotes& notes) {
   Files& files = *files_;
   if (files.zones) files.zones->commit();
   if (files.trace) files.trace->commit();
-  if (files.occupants) files.occupants->commit();
   if (files.summary_file) {
     write_summary(files.summary, *files.summary_file, files.options.summary, files.model.script().name, notes.remarks(),
                   files.inputs.verbosity);

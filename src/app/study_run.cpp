@@ -100,7 +100,8 @@ void tell(const io::RunNotes& notes, Verbosity verbosity) {
 
 namespace {
 
-void tell_what_is_written(const RunOptions& options, const RowOutput& rows, std::uint32_t n_new, Verbosity verbosity) {
+void tell_what_is_written(const RunOptions& options, const TableOutput& rows, std::uint32_t n_new,
+                          Verbosity verbosity) {
   if (verbosity == Verbosity::quiet) return;
   std::string text;
   const auto add = [&](const std::filesystem::path& file) {
@@ -110,7 +111,7 @@ void tell_what_is_written(const RunOptions& options, const RowOutput& rows, std:
     std::cerr << options.rows.output.string() << ": nothing to resume, all runs are there\n";
     return;
   }
-  if (!options.rows.output.empty() && !io::is_written_directly(options.rows.output)) {
+  if (is_resumable(options.rows)) {
     add(options.rows.output);
     text += ": " + std::to_string(rows.rows()) + " rows";
   }
@@ -130,10 +131,10 @@ double simulated_s(const Model& model, const RunRange& runs) {
 }
 
 std::string stop_message(const RunOptions& options, const std::string& cause, const Model& model,
-                         const RowOutput& rows) {
-  const RunRange left = rows.missing_runs();
+                         const StudyTables& tables) {
+  const RunRange left = tables.missing_runs();
   std::string message = "stopped by " + cause;
-  if (options.rows.output.empty() || io::is_written_directly(options.rows.output)) return message;
+  if (!is_resumable(options.rows)) return message;
   message += ", " + std::to_string(left.count()) + " of " + std::to_string(model.n_runs()) + " runs are left";
   return message + "; --resume continues";
 }
@@ -143,14 +144,17 @@ std::string stop_message(const RunOptions& options, const std::string& cause, co
 namespace {
 
 std::vector<NamedOutput> outputs_of(const RunOptions& options) {
-  const std::filesystem::path rows = options.rows.shard.empty() ? options.rows.output : std::filesystem::path{};
+  const bool sharded = !options.rows.shard.empty();  // -o and --occupants are folders then
+  const std::filesystem::path rows = sharded ? std::filesystem::path{} : options.rows.output,
+                              occupants = sharded ? std::filesystem::path{} : options.occupants;
   std::vector<NamedOutput> outputs{{"-o", rows, io::table_endings()},
                                    {"--summary", options.summary, summary_endings()},
                                    {"--zones", options.zones, io::table_endings()},
                                    {"--trace", options.trace, io::table_endings()},
-                                   {"--occupants", options.occupants, io::table_endings()},
+                                   {"--occupants", occupants, io::table_endings()},
                                    {"--report", options.report, {".html"}}};
   if (!rows.empty()) outputs.push_back({"the manifest of -o", io::manifest_path(rows), {".json"}});
+  if (!occupants.empty()) outputs.push_back({"the manifest of --occupants", io::manifest_path(occupants), {".json"}});
   return outputs;
 }
 
@@ -167,20 +171,29 @@ void check_options(const Inputs& inputs, const RunOptions& options) {
   if (options.rows.output.empty()) {
     throw Error(ErrorCode::usage, std::string(partial) + " needs -o " + (sharded ? "DIR" : "FILE"));
   }
-  const std::string name = options.rows.output.filename().string();
-  if (sharded && std::ranges::any_of(io::table_endings(), [&](const auto& ending) { return name.ends_with(ending); })) {
-    throw Error(ErrorCode::usage, "--shard: -o '" + options.rows.output.string() +
-                                      "' is named as a file, but is to be a folder: a file a shard");
+  struct Table {
+    std::string option;
+    std::filesystem::path output;
+  };
+  for (const auto& [option, output] : {Table{"-o", options.rows.output}, Table{"--occupants", options.occupants}}) {
+    if (output.empty()) continue;
+    const std::string name = output.filename().string();
+    if (sharded &&
+        std::ranges::any_of(io::table_endings(), [&](const auto& ending) { return name.ends_with(ending); })) {
+      throw Error(ErrorCode::usage, "--shard: " + option + " '" + output.string() +
+                                        "' is named as a file, but is to be a folder: a file a shard");
+    }
+    if (!sharded && io::is_written_directly(output)) {
+      throw Error(ErrorCode::usage, std::string(partial) + ": '" + output.string() +
+                                        "' is not a regular file, so its rows can't be resumed");
+    }
   }
-  if (!sharded && io::is_written_directly(options.rows.output)) {
-    throw Error(ErrorCode::usage, std::string(partial) + ": '" + options.rows.output.string() +
-                                      "' is not a regular file, so its rows can't be resumed");
-  }
+  if (sharded && !options.occupants.empty() && io::resolved(options.occupants) == io::resolved(options.rows.output))
+    throw Error(ErrorCode::usage, "--shard: -o and --occupants are one folder, but their files have the same names");
   if (has_whole_study_outputs(options)) {
     throw Error(ErrorCode::usage,
                 std::string(partial) +
-                    " goes with none of --summary, --zones, --trace, --occupants and --report: they " +
-                    "need all runs at once");
+                    " goes with none of --summary, --zones, --trace and --report: they need all runs at once");
   }
 }
 
@@ -193,19 +206,20 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
 
   // Rows that only go to a stream can end anywhere, as by Ctrl-C.
   std::optional<StopRequest> stop;
-  if (!options.rows.output.empty() || has_whole_study_outputs(options)) stop.emplace();
+  if (!options.rows.output.empty() || !options.occupants.empty() || has_whole_study_outputs(options)) stop.emplace();
   WholeStudyOutputs others(model, inputs, options);  // first: what it refuses must leave no rows behind
-  const std::unique_ptr<RowOutput> rows = open_rows(model, options.rows);
-  const std::uint32_t wanted = rows->missing_runs().count();
-  Progress progress({"simulating", wanted, "runs", simulated_s(model, rows->missing_runs())}, inputs.verbosity);
+  StudyTables tables(model, options);
+  const RunRange runs = tables.missing_runs();
+  const std::uint32_t wanted = runs.count();
+  Progress progress({"simulating", wanted, "runs", simulated_s(model, runs)}, inputs.verbosity);
   std::atomic<std::uint32_t> done = 0;
   const auto out_of_time = [&] { return options.max_time_s && done > 0 && progress.seconds() >= *options.max_time_s; };
   StudyOptions study;
   study.threads = options.threads;
   study.record = options.zones.empty() ? Record::samples : Record::samples_and_zones;
   study.trace = options.trace.empty() ? Trace::none : Trace::signals;
-  study.occupants = others.occupants();
-  study.runs = rows->missing_runs();
+  study.occupants = !options.occupants.empty() || others.need_occupants() ? Occupants::told : Occupants::counted;
+  study.runs = runs;
   const double window_s = model.tick_s() * model.compiled().sensing().ticks_per_window;
   study.window_done = [&] { progress.simulated(window_s); };
   const auto is_wanted = [&] { return !(stop && stop->was_made()); };
@@ -215,26 +229,28 @@ void run(const Model& model, const Inputs& inputs, const RunOptions& options) {
       if (result.fault && options.faults == RunOptions::Faults::stop) {
         throw Error(ErrorCode::infeasible, describe(failed_run(result, model.compiled().clock_of(result.run))));
       }
-      rows->add_run(result.samples, notes_of(result, model));
+      const std::size_t n_bytes = tables.add_run(result, notes_of(result, model));
+      if (done == 0 && !options.occupants.empty()) announce("--occupants", n_bytes, model, inputs.verbosity);
       others.add(result);
       ++done;
       progress.finished();
     });
   } catch (const Error& error) {
     // A study that --strict stopped can be resumed, as one that a full disk stopped.
-    if (error.code() != ErrorCode::io && error.code() != ErrorCode::infeasible) rows->discard();
+    if (error.code() != ErrorCode::io && error.code() != ErrorCode::infeasible) tables.discard();
     throw;
   }
   if (done < wanted) {
     const std::string cause = stop && stop->was_made() ? stop->signal_name() : "--max-time";
-    throw Error(ErrorCode::stopped, stop_message(options, cause, model, *rows));
+    throw Error(ErrorCode::stopped, stop_message(options, cause, model, tables));
   }
-  rows->commit(is_wanted);
-  others.commit(rows->notes());
-  tell_what_is_written(options, *rows, done, inputs.verbosity);
-  tell(rows->notes(), inputs.verbosity);
+  tables.commit(is_wanted);
+  const TableOutput& rows = tables.rows();
+  others.commit(rows.notes());
+  tell_what_is_written(options, rows, done, inputs.verbosity);
+  tell(rows.notes(), inputs.verbosity);
   if (inputs.verbosity == Verbosity::verbose) {
-    std::cerr << done << " runs, " << rows->rows() << " rows in " << progress.seconds() << " s\n";
+    std::cerr << done << " runs, " << rows.rows() << " rows in " << progress.seconds() << " s\n";
   }
 }
 

@@ -141,39 +141,15 @@ constexpr Column<EffectLine> effects[]{
 };
 
 /// fill: writes the lines.
-template <typename Row>
-Table table_of(auto fill) {
+template <typename Row, std::size_t n>
+Table table_of(const Column<Row> (&columns)[n], auto fill) {
   std::ostringstream text;
-  io::TableWriter<Row> csv(text);
+  io::TableWriter<Row> csv(text, columns);
   fill(csv);
-  return {text.str(), {columns_of<Row>().begin(), columns_of<Row>().end()}};
+  return {text.str(), {std::begin(columns), std::end(columns)}};
 }
 
 }  // namespace
-}  // namespace pirsim::dataset
-
-namespace pirsim {
-
-template <>
-std::span<const Column<dataset::RoomLine>> columns_of() {
-  return dataset::rooms;
-}
-template <>
-std::span<const Column<dataset::SensorLine>> columns_of() {
-  return dataset::sensors;
-}
-template <>
-std::span<const Column<dataset::RecordLine>> columns_of() {
-  return dataset::days;
-}
-template <>
-std::span<const Column<dataset::EffectLine>> columns_of() {
-  return dataset::effects;
-}
-
-}  // namespace pirsim
-
-namespace pirsim::dataset {
 
 std::map<std::string, Table> tables(const Description& described) {
   const auto add_rooms = [&](auto& csv) {
@@ -206,10 +182,10 @@ std::map<std::string, Table> tables(const Description& described) {
       }
     }
   };
-  return {{"rooms.csv", table_of<RoomLine>(add_rooms)},
-          {"sensors.csv", table_of<SensorLine>(add_sensors)},
-          {"days.csv", table_of<RecordLine>(add_days)},
-          {"effects.csv", table_of<EffectLine>(add_effects)}};
+  return {{"rooms.csv", table_of(rooms, add_rooms)},
+          {"sensors.csv", table_of(sensors, add_sensors)},
+          {"days.csv", table_of(days, add_days)},
+          {"effects.csv", table_of(effects, add_effects)}};
 }
 
 }  // namespace pirsim::dataset

@@ -78,6 +78,7 @@ ordered_json to_tree(const Manifest& manifest) {
                        {"tracer", manifest.tracer},
                        {"seed", made.seed},
                        {"study_runs", made.study_runs}};
+  if (!manifest.table.empty()) tree["table"] = manifest.table;
   if (manifest.shard) tree["shard"] = {{"index", manifest.shard->index}, {"count", manifest.shard->count}};
   tree["first_run"] = manifest.runs.first;
   tree["runs"] = manifest.runs.count();
@@ -126,6 +127,7 @@ Manifest from_tree(const ordered_json& tree) {
   tree.at("compiler").get_to(made.compiler);
   tree.at("embree").get_to(made.embree);
   tree.at("tracer").get_to(manifest.tracer);
+  manifest.table = tree.value("table", "");
   take_count(tree.at("seed"), made.seed);
   take_count(tree.at("study_runs"), made.study_runs);
   if (tree.contains("shard")) {

@@ -58,6 +58,7 @@ struct RunNotes {
 struct Manifest {
   Provenance provenance;
   std::string tracer;  ///< changes no bit of the rows
+  std::string table;   ///< "occupants"; empty: the rows
   std::optional<Shard> shard;
   RunRange runs;
   std::uint64_t rows = 0;

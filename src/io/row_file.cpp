@@ -51,7 +51,7 @@ std::string in_words(const std::optional<Shard>& shard) {
 }
 
 bool fits(const Manifest& found, const Manifest& wanted) {
-  return found.runs == wanted.runs && found.shard == wanted.shard &&
+  return found.runs == wanted.runs && found.shard == wanted.shard && found.table == wanted.table &&
          differences(found.provenance, wanted.provenance).empty();
 }
 
@@ -59,6 +59,10 @@ void require_fit(const Manifest& found, const Manifest& wanted, const fs::path& 
   std::vector<std::string> unlike = differences(found.provenance, wanted.provenance);
   if (found.runs != wanted.runs)
     unlike.push_back("runs (" + in_words(found.runs) + ", not " + in_words(wanted.runs) + ')');
+  if (found.table != wanted.table) {
+    const auto name = [](const Manifest& one) { return one.table.empty() ? "rows" : one.table; };
+    unlike.push_back("table (" + name(found) + ", not " + name(wanted) + ')');
+  }
   if (found.shard != wanted.shard)
     unlike.push_back("shard (" + in_words(found.shard) + ", not " + in_words(wanted.shard) + ')');
   if (unlike.empty()) return;

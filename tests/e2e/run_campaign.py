@@ -201,6 +201,84 @@ class Shards(unittest.TestCase):
         self.assertIn("use --shard auto/5", fault)
 
 
+class Occupants(unittest.TestCase):
+    """Who is where is cut, stopped and joined as rows are."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        folder = pathlib.Path(cls.scratch.name)
+        study("-o", "/dev/null", "--occupants", folder / "plain.csv")
+        study("-o", folder / "rows.csv", "--occupants", folder / "who.csv")
+        cls.rows, cls.bytes = ((folder / name).read_bytes() for name in ("rows.csv", "who.csv"))
+        cls.manifest = json.loads((folder / "who.csv.json").read_text())
+        assert (folder / "plain.csv").read_bytes() == cls.bytes, "a file that can be resumed holds other bytes"
+        assert names(folder) == ["plain.csv", "rows.csv", "rows.csv.json", "who.csv", "who.csv.json"], names(folder)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    def assert_whole(self, folder):
+        self.assertEqual((folder / "rows.csv").read_bytes(), self.rows)
+        self.assertEqual((folder / "who.csv").read_bytes(), self.bytes)
+        self.assertEqual(names(folder), ["rows.csv", "rows.csv.json", "who.csv", "who.csv.json"])
+
+    def test_merged_shards_are_what_one_process_writes_with_the_same_manifest(self):
+        self.assertEqual((self.manifest["table"], self.manifest["rows"]), ("occupants", self.bytes.count(b"\n") - 1))
+        with scratch() as folder:
+            for i in (2, 3, 1):
+                study("--shard", f"{i}/3", "-o", folder / "out", "--occupants", folder / "who", "--threads", i)
+            for name, expected in (("out", self.rows), ("who", self.bytes)):
+                self.assertEqual(call([PIRSIM, "status", folder / name]).stdout, "")
+                call([PIRSIM, "merge", folder / name, "-o", folder / f"{name}.csv"])
+                self.assertEqual((folder / f"{name}.csv").read_bytes(), expected)
+            self.assertEqual(json.loads((folder / "who.csv.json").read_text()), self.manifest)
+            study("--shard", "2/3", "-o", folder / "out", "--resume")
+            shutil.copytree(folder / "out", folder / "mixed")
+            for path in (folder / "who").glob("shard-0002*"):
+                shutil.copy(path, folder / "mixed")
+            self.assertIn("columns are not those", call([PIRSIM, "merge", folder / "mixed", "-o", folder / "m.csv"], 3).stderr)
+
+    def test_both_tables_are_resumed_however_far_each_got(self):
+        files = ("-o", "rows.csv", "--occupants", "who.csv", "--resume")
+        with scratch() as folder:
+            for _ in range(2):
+                study(*files, "--max-time", "0.001s", "--threads", 1, code=75, cwd=folder)
+            self.assertEqual(names(folder), [f"{table}.csv.{part}" for table in ("rows", "who")
+                                             for part in ("journal", "partial")])
+            journal = folder / "who.csv.journal"  # as if the process had been killed between the two
+            journal.write_text("".join(journal.read_text().splitlines(keepends=True)[:-1]))
+            study(*files, cwd=folder)
+            self.assert_whole(folder)
+            for path in folder.glob("who.csv*"):
+                path.unlink()
+            study(*files, cwd=folder)  # all rows are there
+            self.assert_whole(folder)
+
+    def test_one_table_is_not_taken_for_the_other(self):
+        with scratch() as folder:
+            study("-o", "rows.csv", "--occupants", "who.csv", cwd=folder)
+            told = study("-o", "who.csv", "--occupants", "rows.csv", "--resume", code=3, cwd=folder).stderr
+            self.assertIn("table (occupants, not rows)", told)
+            self.assert_whole(folder)
+            for args, message in ((("-o", "a", "--occupants", "a"), "are one folder"),
+                                  (("-o", "a", "--occupants", "w.csv"), "--occupants 'w.csv' is named as a file")):
+                self.assertIn(message, study("--shard", "1/2", *args, code=2, cwd=folder).stderr)
+            self.assertIn("not a regular file", study("-o", "a.csv", "--occupants", "/dev/null", "--resume", code=2,
+                                                      cwd=folder).stderr)
+            self.assert_whole(folder)
+
+    def test_nothing_is_left_where_rows_can_not_be_resumed(self):
+        with scratch() as folder:
+            process = subprocess.Popen(arguments("--occupants", folder / "who.csv", replicates=1000),
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            time.sleep(1.0)
+            process.send_signal(signal.SIGINT)
+            self.assertIn("stopped by SIGINT", process.communicate(timeout=60)[1])
+            self.assertEqual((process.returncode, names(folder)), (75, []))
+
+
 class Stopping(unittest.TestCase):
     REPLICATES = 40
 
