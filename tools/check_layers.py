@@ -2,7 +2,8 @@
 """Checks the layers of pirsim and the rooms of a layer: who may include whom, no cycles, each third-party library in its one place.
 
 Usage: check_layers.py [ROOT]; prints every violation as file:line: message and exits with 1 if there is any.
-The tables below are those in docs/architecture.md.
+The tables below are those in docs/architecture.md. Beside the layers it finds columns of rows that are listed outside
+of schema/columns.
 """
 import pathlib
 import re
@@ -145,6 +146,7 @@ def violations(root: pathlib.Path):
     yield from stray_files(root)
     yield from cycles(graph)
     yield from listed_again(root)
+    yield from second_lists(root)
     for folder in OUTSIDE:
         yield from private_includes(root, folder)
 
@@ -187,6 +189,49 @@ def described_specs(root: pathlib.Path):
     found = re.findall(r"struct Fields<([\w:]+)> \{(.*?)\n\};", file.read_text() if file.is_file() else "", re.DOTALL)
     specs = {spec: set(re.findall(r"FIELD\((\w+)", text)) for spec, text in found}
     return {spec: fields for spec, fields in specs.items() if len(fields) >= 6}
+
+
+COLUMNS = "columns"  # the files that have the lists of rows
+COLUMN_LIST = re.compile(r"(?:Column<\w+>|ColumnInfo) (\w+)\[\]\{(.*?)\n\};", re.DOTALL)
+COLUMN = re.compile(r'\{"(\w+)",\s*Holds::')
+LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
+LITERALS = re.compile(LITERAL.pattern + r"(?:\s*,\s*" + LITERAL.pattern + ")+")
+
+
+def tables_in(text: str):
+    """Names of the columns of each list; those of a single ColumnInfo belong to every table."""
+    shared = {name for name in COLUMN.findall(COLUMN_LIST.sub("", text))}
+    shared |= set(re.findall(r'\w+\{"(\w+)",\s*Holds::', text))
+    return {table: set(COLUMN.findall(body)) | shared for table, body in COLUMN_LIST.findall(text)}
+
+
+def columns_again(text: str, tables, enough=3):
+    """Lines on which so many columns of a table stand one after the other, in one text or in neighbouring ones."""
+    found = {}
+    for match in [*LITERAL.finditer(text), *LITERALS.finditer(text)]:
+        words = [word for part in LITERAL.findall(match.group(0)) for word in part.replace("\\n", "").split(",")]
+        longest = {table: longest_run(words, names) for table, names in tables.items()}
+        table = max(longest, key=longest.get, default=None)
+        if table and longest[table] >= enough:
+            found[text.count("\n", 0, match.start()) + 1] = table
+    return sorted(found.items())
+
+
+def longest_run(words, names):
+    run = longest = 0
+    for word in words:
+        run = run + 1 if word.strip() in names else 0
+        longest = max(longest, run)
+    return longest
+
+
+def second_lists(root: pathlib.Path):
+    texts = {file: file.read_text() for folder in ("include", "src", "python/src")
+             for file in sorted((root / folder).rglob("*.?pp"))}
+    tables = tables_in("\n".join(text for file, text in texts.items() if file.stem == COLUMNS))
+    for file, text in texts.items():
+        for number, table in columns_again(text, tables) if file.stem != COLUMNS else ():
+            yield f"{file.relative_to(root)}:{number}: columns of '{table}' are listed a second time: take them from their list"
 
 
 def cycles(graph):

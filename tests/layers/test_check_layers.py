@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tools/check_layers.py finds a list of all fields of a spec, and nothing else.
+"""tools/check_layers.py finds a list of all fields of a spec, and one of a table's columns, and nothing else.
 
 Usage: test_check_layers.py SOURCE_DIRECTORY
 """
@@ -51,6 +51,33 @@ class ListedAgain(unittest.TestCase):
 
     def test_the_description_itself_is_none(self):
         self.assertEqual(self.found_in(""), [])
+
+
+class Columns(unittest.TestCase):
+    LISTS = ('constexpr ColumnInfo day{"day", Holds::whole, "x"};\n'
+             'constexpr Column<Sample> rows[]{\n    {{"trial", Holds::text, "x"}, trial},\n'
+             '    {{"time_s",\n Holds::number}, time_s},\n    {{"people", Holds::count}, people},\n};\n')
+
+    def test_a_list_gives_its_names_and_what_tables_share(self):
+        self.assertEqual(check_layers.tables_in(self.LISTS), {"rows": {"trial", "time_s", "people", "day"}})
+
+    def test_three_columns_in_a_row_are_a_list(self):
+        tables = check_layers.tables_in(self.LISTS)
+        for text, lines in ((r'a;\nout << "trial,time_s,people\n";', [1]),
+                            ('\n\nnames{"trial", "time_s",\n "people"}', [3]), ('"x,day,trial,people,y"', [1]),
+                            ('{"trial", "x", "people", "day"}', []), ('"trial,people"', []),
+                            ('{{"trial", trial}, {"time_s", time}, {"people", people}}', [])):
+            with self.subTest(text):
+                self.assertEqual([line for line, _ in check_layers.columns_again(text, tables)], lines)
+
+    def test_they_are_told_with_their_place(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            for name, content in (("src/schema/columns.cpp", self.LISTS), ("src/io/a.cpp", '\nf("time_s,people,day");\n')):
+                (root / name).parent.mkdir(parents=True, exist_ok=True)
+                (root / name).write_text(content)
+            self.assertEqual(list(check_layers.second_lists(root)),
+                             ["src/io/a.cpp:2: columns of 'rows' are listed a second time: take them from their list"])
 
 
 if __name__ == "__main__":
