@@ -24,12 +24,15 @@ std::string plural(std::size_t n, const std::string& one, const std::string& man
   return std::to_string(n) + " " + (n == 1 ? one : many);
 }
 
-/// Those that a run's rows may have beside the sensors'.
+/// Those that a run's rows, or a dataset's, may have beside the sensors'.
 std::vector<ColumnInfo> row_columns() {
   std::vector<ColumnInfo> columns;
-  for (const Column<Sample>& column : columns_of<Sample>()) {
-    if (column.each == nullptr) columns.push_back(column);
-  }
+  const auto add = [&](const auto& column) {
+    const bool known = std::ranges::find(columns, column.name, &ColumnInfo::name) != columns.end();
+    if (column.each == nullptr && !known) columns.push_back(column);
+  };
+  std::ranges::for_each(columns_of<Sample>(), add);
+  std::ranges::for_each(columns_of<DayLine>(), add);
   return columns;
 }
 
@@ -43,6 +46,7 @@ MeasuredReader::MeasuredReader(std::string_view text, const std::string& file, c
 
 Measured MeasuredReader::read() {
   replicate_ = table_.column("replicate");
+  if (!replicate_) replicate_ = table_.column("day");  // each day of a dataset is a run of its script
   phase_ = table_.column("phase");
   time_ = table_.column("time_s");
   const bool has_sums = table_.column("sensor").has_value();

@@ -1,5 +1,8 @@
 #include "reconcile/data/measured.hpp"
 
+#include <sstream>
+
+#include "pirsim/csv.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;
@@ -45,6 +48,29 @@ TEST_CASE("measured rows in pirsim's own format keep their bits and their main p
   REQUIRE(measured.notes.size() == 1);
   CHECK_THAT(in_words(measured.notes[0]), contains("column 'people' is left out"));
   CHECK(measured.n_replicates() == 1);
+}
+
+TEST_CASE("every table of rows that pirsim writes is read, a dataset's days as runs", "[measured]") {
+  const StudyFrame frame{{"S1"}, {"PIR1", "PIR2"}, {}, 1.0};
+  std::ostringstream study, dataset;
+  io::CsvWriter rows(study, column_names<Sample>(frame.sensors));
+  io::TableWriter<DayLine> days(dataset, column_names<DayLine>(frame.sensors));
+  const std::vector<int> sensors{0, 1};
+  for (const int day : {4, 7}) {
+    for (int i = 1; i <= 40; ++i) {
+      const Sample row{day, "S1", double(i), "empty", 1, {1, 0}, "2026-03-02T07:00:00"};
+      rows.write(row);
+      days.write({1, day, row, 0, 0, sensors});
+    }
+  }
+  const Measured one = parse_measured(study.str(), "m.csv", frame),
+                 other = parse_measured(dataset.str(), "m.csv", frame);
+  for (const Measured* measured : {&one, &other}) {
+    REQUIRE(measured->runs.size() == 2);
+    CHECK(measured->runs[1].replicate == 2);
+    CHECK(measured->runs[1].bits == one.runs[0].bits);
+    CHECK(measured->runs[1].n_rows(2) == 40);
+  }
 }
 
 TEST_CASE("gaps and empty readings become unknown and are told", "[measured]") {
