@@ -179,9 +179,13 @@ def _texts(column: npt.NDArray[np.uint16], texts: tuple[str, ...]) -> npt.NDArra
 def make_result(arrays: dict[str, Any], sensors: tuple[str, ...], seed: int) -> Result:
     """Of what the module gives."""
     texts = arrays.pop("texts")
-    for table, columns in (("occupants", ("person", "activity", "seat")), ("signals", ("person", "part"))):
+    occupants, signals = arrays["occupants"], arrays["signals"]
+    for table, columns in ((occupants, [name for name in occupants if occupants[name].dtype == np.uint16]),
+                           (signals, ("person", "part"))):
         for column in columns:
-            arrays[table][column] = _texts(arrays[table][column], texts)
+            table[column] = _texts(table[column], texts)
+    occupants["inside"] = occupants.pop("where") == "inside"
+    occupants["inside"].flags.writeable = False
     arrays["faults"] = [Fault(*fault) for fault in arrays["faults"]]
     arrays["incidents"] = [Incident(*incident) for incident in arrays["incidents"]]
     arrays["trial"] = np.array(arrays["trial"], dtype=np.str_)

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <chrono>
 #include <limits>
+#include <variant>
 
 #include "arrays.hpp"
 #include "convert.hpp"
@@ -66,6 +67,13 @@ std::uint16_t RunArrays::Words::number(std::string_view text) {
 
 nb::tuple RunArrays::Words::all() const { return nb::tuple(to_python(texts_)); }
 
+RunArrays::RunArrays(std::size_t n_sensors) : n_sensors_(n_sensors) {
+  for (const Column<OccupantLine>& one : columns_of<OccupantLine>()) {
+    const bool told_by_run = one.name == "replicate" || one.name == "trial" || one.holds == Holds::moment;
+    if (!told_by_run) occupants_.push_back({&one, {}, {}});
+  }
+}
+
 void RunArrays::add(const RunResult& result) {
   run_.push_back(result.run);
   replicate_.push_back(result.replicate);
@@ -90,14 +98,12 @@ void RunArrays::add(const RunResult& result) {
 
 void RunArrays::add_occupants(const RunResult& result) {
   for (const OccupantRow& row : result.occupants) {
-    occupants_.run.push_back(result.run);
-    occupants_.time_s.push_back(row.time_s);
-    occupants_.x_m.push_back(row.place_m.x);
-    occupants_.z_m.push_back(row.place_m.y);
-    occupants_.person.push_back(texts_.number(row.person));
-    occupants_.activity.push_back(texts_.number(row.activity));
-    occupants_.seat.push_back(texts_.number(row.seat));
-    occupants_.inside.push_back(row.where == OccupantRow::Where::inside ? 1 : 0);
+    occupant_run_.push_back(result.run);
+    for (TableColumn& one : occupants_) {
+      const Cell cell = one.column->value({result.replicate, result.trial, row});
+      if (const auto* number = std::get_if<double>(&cell)) one.numbers.push_back(*number);
+      if (const auto* text = std::get_if<std::string_view>(&cell)) one.texts.push_back(texts_.number(*text));
+    }
   }
 }
 
@@ -126,14 +132,11 @@ void RunArrays::add_zones(const RunResult& result) {
 
 nb::dict RunArrays::occupants() {
   nb::dict table;
-  table["run"] = column(occupants_.run);
-  table["time_s"] = column(occupants_.time_s);
-  table["person"] = column(occupants_.person);
-  table["activity"] = column(occupants_.activity);
-  table["seat"] = column(occupants_.seat);
-  table["x_m"] = column(occupants_.x_m);
-  table["z_m"] = column(occupants_.z_m);
-  table["inside"] = column_as<bool>(occupants_.inside);
+  table["run"] = column(occupant_run_);
+  for (TableColumn& one : occupants_) {
+    const nb::str name(one.column->name.data(), one.column->name.size());
+    table[name] = one.column->holds == Holds::text ? column(one.texts) : column(one.numbers);
+  }
   return table;
 }
 

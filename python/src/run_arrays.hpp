@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <pirsim/columns.hpp>
 #include <pirsim/pirsim.hpp>
 #include <string>
 #include <vector>
@@ -14,7 +15,7 @@ namespace pirsim::python {
 /// Takes results in order, without the GIL; to_dict() gives the arrays, with it.
 class RunArrays {
  public:
-  explicit RunArrays(std::size_t n_sensors) : n_sensors_(n_sensors) {}
+  explicit RunArrays(std::size_t n_sensors);
 
   void add(const RunResult& result);
   /// Runs differ in length: arrays are as long as the longest, zeros behind the end of a run, where `valid` is false.
@@ -34,12 +35,11 @@ class RunArrays {
     std::uint32_t run = 0;
     RunIncident incident;
   };
-  /// Columns of what the people do, of all runs together.
-  struct Occupants {
-    std::vector<std::uint32_t> run;
-    std::vector<double> time_s, x_m, z_m;
-    std::vector<std::uint16_t> person, activity, seat;
-    std::vector<std::uint8_t> inside;
+  /// A column of the command line's table, of all runs together.
+  struct TableColumn {
+    const Column<OccupantLine>* column;
+    std::vector<double> numbers;
+    std::vector<std::uint16_t> texts;  ///< by number
   };
   struct Signals {
     std::vector<std::uint32_t> run;
@@ -78,7 +78,8 @@ class RunArrays {
   std::vector<Fault> faults_;
   std::vector<Incident> incidents_;
   Words phases_, texts_;
-  Occupants occupants_;
+  std::vector<std::uint32_t> occupant_run_;
+  std::vector<TableColumn> occupants_;
   Signals signals_;
   struct Zones {
     std::size_t n_ticks = 0;
