@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "core/near_names.hpp"
 #include "effects/kit.hpp"
@@ -12,15 +13,18 @@ namespace pirsim::effects {
 // The order in which effects act: the room and its people, the optics, what disturbs the element, what the electronics
 // make of it, and the books.
 const std::vector<const Effect*>& catalogue() {
-  static const std::vector<const Effect*> effects{
-      &seats_shifted(),   &mirrored_room(),  &missing_occluder(), &second_person(),    &warm_object(),
-      &seat_shift(),      &seat_scatter(),   &body_size(),        &sensor_yaw(),       &sensor_tilt(),
-      &sensor_height(),   &arm_motion(),     &trunk_tilt(),       &natural_motion(),   &uneven_arms(),
-      &trunk_sway(),      &chair_swing(),    &fidgeting(),        &thermal_contrast(), &range_scale(),
-      &soft_zone_edges(), &blind_field(),    &wall_reflection(),  &dual_polarity(),    &warm_chair(),
-      &false_triggers(),  &trigger_bursts(), &missed_triggers(),  &dead_time(),        &pulse_stretching(),
-      &clock_lag(),       &dead_sensor(),    &labels_swapped(),
-  };
+  static const std::vector<Effect> entries = [] {
+    std::vector<Effect> all;
+    for (const auto group : {room_effects, people_effects, mounting_effects, motion_effects, lens_effects,
+                             environment_effects, electronics_effects, books_effects})
+      std::ranges::move(group(), std::back_inserter(all));
+    return all;
+  }();
+  static const std::vector<const Effect*> effects = [] {
+    std::vector<const Effect*> all;
+    for (const Effect& entry : entries) all.push_back(&entry);
+    return all;
+  }();
   return effects;
 }
 
@@ -133,7 +137,7 @@ StudyInForce in_force(SceneSpec scene, const ScriptSpec& script) {
 
 namespace {
 
-double draw(const ParameterInfo& parameter, Stream& stream) {
+double drawn_value(const ParameterInfo& parameter, Stream& stream) {
   const double u = stream.uniform();
   switch (parameter.scale) {
     case Scale::logarithmic:
@@ -151,7 +155,7 @@ double draw(const ParameterInfo& parameter, Stream& stream) {
 EffectSpec draw_from_prior(const Effect& effect, const SceneSpec& scene, const ScriptSpec& script, Stream& stream) {
   EffectSpec spec{effect.info.name, {}, {}, {}};
   for (const ParameterInfo& parameter : effect.info.parameters) {
-    spec.parameters[parameter.name] = draw(parameter, stream);
+    spec.parameters[parameter.name] = drawn_value(parameter, stream);
   }
   for (const ChoiceInfo& choice : effect.info.choices) {
     const auto pick = [&](const auto& list) { return list[stream.index(static_cast<std::uint32_t>(list.size()))]; };

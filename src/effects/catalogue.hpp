@@ -14,7 +14,7 @@
 
 namespace pirsim::effects {
 
-/// One file of src/effects. Hooks get an EffectSpec with every parameter filled in; null where the effect doesn't act.
+/// Hooks get an EffectSpec with every parameter filled in; null where the effect doesn't act.
 struct Effect {
   EffectInfo info;
   void (*alter)(StudyInForce& study, const EffectSpec& effect) = nullptr;

@@ -1,4 +1,4 @@
-// What the files of single effects share, and the catalogue's entries.
+// What the files of effects share, and the catalogue's entries.
 #pragma once
 
 #include <cmath>
@@ -11,41 +11,16 @@
 
 namespace pirsim::effects {
 
-// The catalogue's entries, one file each.
+// The catalogue's entries by group, a file each: in the order in which they act.
 
-const Effect& seats_shifted();
-const Effect& mirrored_room();
-const Effect& missing_occluder();
-const Effect& second_person();
-const Effect& warm_object();
-const Effect& seat_shift();
-const Effect& seat_scatter();
-const Effect& body_size();
-const Effect& sensor_yaw();
-const Effect& sensor_tilt();
-const Effect& sensor_height();
-const Effect& arm_motion();
-const Effect& trunk_tilt();
-const Effect& natural_motion();
-const Effect& uneven_arms();
-const Effect& trunk_sway();
-const Effect& chair_swing();
-const Effect& fidgeting();
-const Effect& thermal_contrast();
-const Effect& range_scale();
-const Effect& soft_zone_edges();
-const Effect& blind_field();
-const Effect& wall_reflection();
-const Effect& dual_polarity();
-const Effect& warm_chair();
-const Effect& false_triggers();
-const Effect& trigger_bursts();
-const Effect& missed_triggers();
-const Effect& dead_time();
-const Effect& pulse_stretching();
-const Effect& clock_lag();
-const Effect& dead_sensor();
-const Effect& labels_swapped();
+[[nodiscard]] std::vector<Effect> room_effects();
+[[nodiscard]] std::vector<Effect> people_effects();
+[[nodiscard]] std::vector<Effect> mounting_effects();
+[[nodiscard]] std::vector<Effect> motion_effects();
+[[nodiscard]] std::vector<Effect> lens_effects();
+[[nodiscard]] std::vector<Effect> environment_effects();
+[[nodiscard]] std::vector<Effect> electronics_effects();
+[[nodiscard]] std::vector<Effect> books_effects();
 
 // Short forms of parameters that many effects have alike.
 

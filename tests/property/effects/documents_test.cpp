@@ -73,11 +73,11 @@ TEST_CASE("the how-to shows the file that is compiled and tested here") {
 
 TEST_CASE("the effect of the how-to silences the first seconds and nothing after them") {
   const Model model = compile(shipped_scene("meeting_room.gltf"), short_study_a());
-  const EffectSpec spec = effects::resolved(effects::warm_up(), {"warm_up", {{"duration_s", 12.0}}, {}, {}});
+  const effects::Effect entry = effects::warm_up_effects().front();
+  const EffectSpec spec = effects::resolved(entry, {"warm_up", {{"duration_s", 12.0}}, {}, {}});
   effects::Pipeline pipeline;
-  pipeline.add(effects::warm_up().info.reach == effects::Reach::triggers
-                   ? effects::warm_up().make_stage(spec, {model.scene(), model.script().sensing, model.rays()})
-                   : nullptr);
+  REQUIRE(entry.info.reach == effects::Reach::triggers);
+  pipeline.add(entry.make_stage(spec, {model.scene(), model.script().sensing, model.rays()}));
   pipeline.begin_run(1, 0);
   for (std::int64_t tick = 1; tick <= 1000; ++tick) {
     std::vector<std::uint8_t> triggers(5, 1);
