@@ -1,8 +1,8 @@
 #include "app/options.hpp"
 
-#include <boost/algorithm/string/join.hpp>
 #include <utility>
 
+#include "core/text.hpp"
 #include "io/atomic_file.hpp"
 #include "io/posix_file.hpp"
 #include "pirsim/error.hpp"
@@ -299,8 +299,7 @@ CLI::Validator one_of_words(std::map<std::string, int> values) {
             }
             std::vector<std::string> words;
             for (const auto& [word, value] : values) words.push_back(word);
-            return "expected one of " + boost::algorithm::join(words, ", ") + ", not '" + text + "'" +
-                   did_you_mean(text, words);
+            return "expected one of " + joined(words, ", ") + ", not '" + text + "'" + did_you_mean(text, words);
           },
           "", "one of"};
 }

@@ -131,6 +131,15 @@ std::string tellable(std::string_view message) {
   return told;
 }
 
+std::string joined(const std::vector<std::string>& texts, std::string_view between) {
+  std::string all;
+  for (const std::string& text : texts) {
+    if (&text != &texts.front()) all += between;
+    all += text;
+  }
+  return all;
+}
+
 std::string markdown_text(std::string_view text) {
   std::string shown;
   for (const char c : text) {

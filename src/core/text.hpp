@@ -1,10 +1,11 @@
-// Texts that come from outside: whether they are UTF-8, whether they can be names, and how much of them is told.
+// Texts that come from outside: whether they are UTF-8, whether they can be names, and how they are told.
 #pragma once
 
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace pirsim {
 
@@ -26,6 +27,9 @@ enum class Lines { one, many };  ///< many: line breaks and tabs may be in it
 /// A message as it is told: what stands in quotes is shortened, and what a terminal would obey, or a reader of C
 /// strings would stop at, becomes a question mark. Line breaks stay.
 [[nodiscard]] std::string tellable(std::string_view message);
+
+/// The texts, one after the other, with `between` between them.
+[[nodiscard]] std::string joined(const std::vector<std::string>& texts, std::string_view between);
 
 /// Markdown that shows the text as it is, in one line: no HTML, no markup, no end of a table's column.
 [[nodiscard]] std::string markdown_text(std::string_view text);

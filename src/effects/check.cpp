@@ -1,9 +1,9 @@
 // Faults of `effects:`, all at once.
 #include <algorithm>
-#include <boost/algorithm/string/join.hpp>
 #include <sstream>
 
 #include "core/near_names.hpp"
+#include "core/text.hpp"
 #include "effects/catalogue.hpp"
 
 namespace pirsim::effects {
@@ -32,7 +32,7 @@ std::string nearest_or_all(const std::string& name, const EffectInfo& info) {
   const std::vector<std::string> names = setting_names(info);
   const std::string nearest = did_you_mean(name, names);
   if (!nearest.empty()) return nearest;
-  return names.empty() ? "; it has none" : "; known are " + boost::algorithm::join(names, ", ");
+  return names.empty() ? "; it has none" : "; known are " + joined(names, ", ");
 }
 
 void check_parameters(const EffectSpec& spec, const EffectInfo& info, Diagnostics& diagnostics) {
@@ -124,7 +124,7 @@ void check_all(std::span<const EffectSpec> effects, const SceneSpec* scene, Diag
       std::vector<std::string> names;
       for (const Effect* effect : catalogue()) names.push_back(effect->info.name);
       std::string hint = did_you_mean(spec.name, names);
-      if (hint.empty()) hint = "; known are " + boost::algorithm::join(names, ", ");
+      if (hint.empty()) hint = "; known are " + joined(names, ", ");
       diagnostics.error(spec.where, "'" + spec.name + "' is not an effect" + hint);
       continue;
     }

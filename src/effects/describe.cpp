@@ -1,7 +1,7 @@
+#include "core/text.hpp"
 #include "effects/catalogue.hpp"
 
 #include <array>
-#include <boost/algorithm/string/join.hpp>
 #include <iomanip>
 #include <sstream>
 
@@ -44,7 +44,7 @@ std::string source_of(const ParameterInfo& parameter) {
 std::string values_of(const ChoiceInfo& choice) {
   if (choice.kind == ChoiceKind::sensor) return "a sensor's name";
   if (choice.kind == ChoiceKind::mesh) return "a mesh's name";
-  return boost::algorithm::join(choice.words, ", ");
+  return joined(choice.words, ", ");
 }
 
 std::string in_script(const Effect& effect) {
@@ -68,8 +68,7 @@ void add_markdown(std::ostream& out, const Effect& effect) {
   const EffectInfo& info = effect.info;
   out << "### " << info.name << '\n' << info.summary << "\n\n";
   out << "Fingerprint: " << info.fingerprint << ".\n";
-  if (!info.confused_with.empty())
-    out << "Easily taken for: " << boost::algorithm::join(info.confused_with, ", ") << ".\n";
+  if (!info.confused_with.empty()) out << "Easily taken for: " << joined(info.confused_with, ", ") << ".\n";
   if (!info.same_as.empty()) out << same_as_sentence(info) << "\n";
   out << "Stage: " << info.stage << "; reach: " << name(info.reach) << ".\n\n";
   out << "| parameter | off | typical | prior | accepted | source |\n|---|---|---|---|---|---|\n";
@@ -104,7 +103,7 @@ std::string to_text(const Effect& effect) {
   std::ostringstream out;
   out << info.name << " (" << name(info.family) << ")\n" << info.summary << "\n\n";
   out << "fingerprint:      " << info.fingerprint << '\n';
-  out << "easily taken for: " << boost::algorithm::join(info.confused_with, ", ") << '\n';
+  out << "easily taken for: " << joined(info.confused_with, ", ") << '\n';
   if (!info.same_as.empty()) out << "in data:          " << same_as_sentence(info) << '\n';
   out << "acts in:          " << info.stage << " (" << name(info.reach) << ")\n\nparameters:\n";
   for (const ParameterInfo& parameter : info.parameters) {

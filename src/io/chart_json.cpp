@@ -1,5 +1,7 @@
 #include "io/page_parts.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "pirsim/geometry.hpp"
 
 namespace pirsim::io::detail {

@@ -1,6 +1,7 @@
 #include "io/gltf_document.hpp"
 
 #include <tiny_gltf.h>
+#include <nlohmann/json.hpp>
 
 #include <cstdint>
 #include <utility>

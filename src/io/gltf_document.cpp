@@ -1,6 +1,7 @@
 #include "io/gltf_document.hpp"
 
 #include <map>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/text.hpp"

@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "schema/check_specs.hpp"

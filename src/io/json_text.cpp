@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
@@ -204,7 +205,7 @@ JsonText::JsonText(std::string file, std::string text, Places places)
   if (const auto* fault = std::get_if<JsonFault>(&parsed)) {
     throw Error(ErrorCode::input, at(fault->offset), fault->message);
   }
-  root_ = std::get<nlohmann::json>(std::move(parsed));
+  root_ = std::make_shared<const nlohmann::json>(std::get<nlohmann::json>(std::move(parsed)));
 }
 
 Where JsonText::where(std::string_view pointer) const { return find(pointer, Target::value); }

@@ -3,7 +3,8 @@
 
 #include <cstddef>
 #include <map>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,7 +32,7 @@ class JsonText {
   /// Throws Error(input) with the place of a JsonFault.
   JsonText(std::string file, std::string text, Places places);
 
-  [[nodiscard]] const nlohmann::json& root() const noexcept { return root_; }
+  [[nodiscard]] const nlohmann::json& root() const noexcept { return *root_; }
   /// Place of the value at a JSON pointer such as `/nodes/4/extras`; of the nearest enclosing value that exists.
   [[nodiscard]] Where where(std::string_view pointer) const;
   /// Place of the key that names the value.
@@ -59,7 +60,7 @@ class JsonText {
   std::string file_;
   std::string text_;
   Places places_;
-  nlohmann::json root_;
+  std::shared_ptr<const nlohmann::json> root_;
   mutable std::map<std::size_t, Members> noted_;  ///< by offset
   mutable std::vector<LineAndColumn> counted_;    ///< at every so many bytes
 };

@@ -1,7 +1,7 @@
 // What pages carry: charts as JSON for their script, and texts that are built in. Private to io.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 

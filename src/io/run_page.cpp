@@ -1,6 +1,7 @@
 #include "io/run_page.hpp"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
 #include <utility>

@@ -1,6 +1,7 @@
 #include "io/scene_parts.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stats/eigen.hpp"
 #include "stats/kit.hpp"
+#include "stats/linear_algebra.hpp"
 
 namespace pirsim::stats {
 namespace {
@@ -56,7 +56,7 @@ LogPool LogPool::fit(std::span<const Matrix<double>> sources, std::span<const in
   LossTerms terms = loss_of(sources, labels, weights);
   for (int iteration = 0; iteration < 50; ++iteration) {
     terms.hessian.diagonal().array() += 1e-9;
-    Eigen::VectorXd step = terms.hessian.ldlt().solve(terms.gradient);
+    Eigen::VectorXd step = detail::solve_symmetric(terms.hessian, terms.gradient);
     LossTerms next = loss_of(sources, labels, weights - step);
     for (int halving = 0; next.loss > terms.loss && halving < 30; ++halving) {
       step *= 0.5;

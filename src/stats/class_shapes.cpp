@@ -6,9 +6,9 @@
 #include "core/parallel.hpp"
 #include "pirsim/random.hpp"
 #include "stats/discriminant.hpp"
-#include "stats/eigen.hpp"
 #include "stats/groups.hpp"
 #include "stats/kit.hpp"
+#include "stats/linear_algebra.hpp"
 
 namespace pirsim::stats {
 namespace {
@@ -20,12 +20,9 @@ Eigen::MatrixXd leading_directions(const Eigen::MatrixXd& rows, Eigen::Index cou
   Eigen::MatrixXd basis(rows.cols(), std::min(rows.cols(), count + 10));
   for (double& value : basis.reshaped()) value = stream.normal();
   for (int iteration = 0; iteration < 4; ++iteration) {
-    const Eigen::MatrixXd next = rows.transpose() * (rows * basis);
-    basis = Eigen::HouseholderQR<Eigen::MatrixXd>(next).householderQ() *
-            Eigen::MatrixXd::Identity(next.rows(), next.cols());
+    basis = detail::orthonormal(rows.transpose() * (rows * basis));
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> small(rows * basis, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  return basis * small.matrixV().leftCols(count);
+  return basis * detail::right_singular_vectors(rows * basis).leftCols(count);
 }
 
 /// 1 and the squares and products of the first coordinates, each in its standard deviations.
@@ -46,7 +43,7 @@ Eigen::MatrixXd take_off_bend(const Eigen::MatrixXd& places, std::span<const dou
                               Eigen::MatrixXd& residuals) {
   Eigen::MatrixXd design(places.rows(), products(places.row(0), spread, curved).size());
   for (Eigen::Index r = 0; r < places.rows(); ++r) design.row(r) = products(places.row(r), spread, curved);
-  const Eigen::MatrixXd bend = design.completeOrthogonalDecomposition().solve(residuals);
+  const Eigen::MatrixXd bend = detail::shortest_least_squares(design, residuals);
   residuals -= design * bend;
   return bend;
 }
@@ -64,7 +61,7 @@ void describe_residuals(const Eigen::MatrixXd& residuals, ClassShapes::Shape& sh
   covariance.diagonal().array() += 1e-9;
   shape.precision = Matrix<float>(shrunk.covariance.rows(), shrunk.covariance.columns());
   as_eigen(shape.precision) =
-      covariance.llt().solve(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols())).cast<float>();
+      detail::Cholesky(covariance).solve(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols())).cast<float>();
 }
 
 ClassShapes::Shape fit_shape(const Matrix<float>& features, const Eigen::RowVectorXd& pooled_sd,

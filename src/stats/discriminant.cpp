@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "stats/eigen.hpp"
 #include "stats/groups.hpp"
 #include "stats/kit.hpp"
+#include "stats/linear_algebra.hpp"
 
 namespace pirsim::stats {
 namespace {
@@ -55,13 +55,12 @@ Discriminant Discriminant::fit(const Matrix<float>& features, std::span<const in
   const Eigen::RowVectorXd centre = groups.means.colwise().mean();
   const Eigen::MatrixXd means = ((groups.means.rowwise() - centre).array().rowwise() * inverse.array()).transpose();
   const ShrunkCovariance within = shrink(groups.residuals);
-  const Eigen::LLT<Eigen::MatrixXd> factor(as_eigen(within.covariance));
-  const Eigen::MatrixXd whitened = factor.matrixL().solve(means);  // (n_columns x n_classes)
-  const Eigen::BDCSVD<Eigen::MatrixXd> parting(whitened, Eigen::ComputeThinU);
-  const auto& strength = parting.singularValues();
-  const Eigen::Index kept = (strength.array() > 1e-9 * strength(0)).count();
-  const Eigen::MatrixXd basis = parting.matrixU().leftCols(kept);
-  const Eigen::MatrixXd unwhitened = factor.matrixU().solve(basis);
+  const detail::Cholesky factor(as_eigen(within.covariance));
+  const Eigen::MatrixXd whitened = factor.solve_lower(means);  // (n_columns x n_classes)
+  const detail::SingularValues parting = detail::singular_values(whitened, detail::Sides::left);
+  const Eigen::Index kept = (parting.s.array() > 1e-9 * parting.s(0)).count();
+  const Eigen::MatrixXd basis = parting.u.leftCols(kept);
+  const Eigen::MatrixXd unwhitened = factor.solve_upper(basis);
 
   Discriminant fitted;
   fitted.centre_.assign(centre.begin(), centre.end());
@@ -116,9 +115,8 @@ NormalLayers::Layer fit_layer(const Matrix<double>& rows) {
   Eigen::MatrixXd covariance = as_eigen(shrunk.covariance);
   // Coordinates have variance 1 within classes; a layer that doesn't vary at all along one still has a width.
   covariance.diagonal().array() += 1e-6;
-  const Eigen::LLT<Eigen::MatrixXd> factor(covariance);
   const Eigen::MatrixXd whitening =
-      factor.matrixL().solve(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()));
+      detail::Cholesky(covariance).solve_lower(Eigen::MatrixXd::Identity(covariance.rows(), covariance.cols()));
   return {shrunk.mean, detail::to_matrix(whitening), whitening.diagonal().array().log().sum()};
 }
 

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "stats/eigen.hpp"
+#include "stats/linear_algebra.hpp"
 
 namespace pirsim::stats::detail {
 

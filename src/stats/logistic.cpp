@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "stats/eigen.hpp"
 #include "stats/kit.hpp"
+#include "stats/linear_algebra.hpp"
 
 namespace pirsim::stats {
 namespace {
@@ -54,8 +54,7 @@ double penalised(const Problem& problem, const Terms& terms, const Eigen::Vector
 }
 
 Eigen::MatrixXd covariance(const Problem& problem, const Terms& terms, std::span<const int> cluster) {
-  const Eigen::MatrixXd inverse =
-      terms.information.ldlt().solve(Eigen::MatrixXd::Identity(terms.information.rows(), terms.information.cols()));
+  const Eigen::MatrixXd inverse = detail::inverse_of_symmetric(terms.information);
   if (cluster.empty()) return inverse;
   std::map<int, Eigen::VectorXd> scores;
   for (std::size_t i = 0; i < cluster.size(); ++i) {
@@ -88,7 +87,7 @@ LogisticFit fit_logistic(const Matrix<double>& columns, std::span<const std::uin
   constexpr int most_iterations = 60;
   int iteration = 0;
   for (; iteration < most_iterations; ++iteration) {
-    Eigen::VectorXd step = terms.information.ldlt().solve(terms.gradient);
+    Eigen::VectorXd step = detail::solve_symmetric(terms.information, terms.gradient);
     const double before = penalised(problem, terms, at);
     Terms next = terms_at(problem, at + step);
     for (int halving = 0; penalised(problem, next, at + step) < before && halving < 40; ++halving) {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <numeric>
 
-#include "stats/eigen.hpp"
 #include "stats/kit.hpp"
+#include "stats/linear_algebra.hpp"
 
 namespace pirsim::stats {
 namespace {
@@ -75,7 +75,7 @@ Eigen::MatrixXd adjust(const Eigen::MatrixXd& parameters, const Eigen::MatrixXd&
   design << Eigen::VectorXd::Ones(off.rows()), off;
   const Eigen::VectorXd root = weights.cwiseSqrt();
   const Eigen::MatrixXd coefficients =
-      (root.asDiagonal() * design).colPivHouseholderQr().solve(root.asDiagonal() * parameters);
+      detail::least_squares(root.asDiagonal() * design, root.asDiagonal() * parameters);
   return parameters - off * coefficients.bottomRows(off.cols());
 }
 
@@ -94,9 +94,9 @@ ParameterEstimator ParameterEstimator::fit(const Matrix<double>& statistics, con
   const Eigen::RowVectorXd parameter_mean = as_eigen(parameters).colwise().mean();
   const Eigen::MatrixXd targets = as_eigen(parameters).rowwise() - parameter_mean;
 
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(centred, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::ArrayXd squares = svd.singularValues().array().square();
-  const Eigen::MatrixXd rotated = svd.matrixU().transpose() * targets;
+  const auto [u, s, v] = detail::singular_values(centred, detail::Sides::both);
+  const Eigen::ArrayXd squares = s.array().square();
+  const Eigen::MatrixXd rotated = u.transpose() * targets;
   const auto n = static_cast<double>(statistics.rows());
 
   ParameterEstimator estimate;
@@ -115,10 +115,9 @@ ParameterEstimator ParameterEstimator::fit(const Matrix<double>& statistics, con
         best_shrink = shrink;
       }
     }
-    const Eigen::ArrayXd safe = (squares > 1e-12 * squares(0)).select(svd.singularValues().array(), 1.0);
+    const Eigen::ArrayXd safe = (squares > 1e-12 * squares(0)).select(s.array(), 1.0);
     const Eigen::VectorXd slopes =
-        svd.matrixV() *
-        ((squares > 1e-12 * squares(0)).select(best_shrink / safe, 0.0) * rotated.col(p).array()).matrix();
+        v * ((squares > 1e-12 * squares(0)).select(best_shrink / safe, 0.0) * rotated.col(p).array()).matrix();
     const Eigen::VectorXd scaled = slopes.cwiseProduct(inverse.transpose());
     std::copy(scaled.begin(), scaled.end(), estimate.slopes_.row(static_cast<std::size_t>(p)).begin());
     estimate.intercept_.push_back(parameter_mean(p) - mean.dot(scaled));

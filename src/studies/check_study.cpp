@@ -1,11 +1,11 @@
 // What `pirsim check` tells, for a reader.
 #include <algorithm>
-#include <boost/algorithm/string/join.hpp>
 #include <iomanip>
 #include <sstream>
 
 #include "core/counted.hpp"
 #include "core/fixed.hpp"
+#include "core/text.hpp"
 #include "pirsim/look.hpp"
 #include "sim/compiled_study.hpp"
 #include "studies/room_plan.hpp"
@@ -22,7 +22,7 @@ std::string named(const std::vector<std::string>& seats, std::size_t n_all) {
   if (seats.empty()) return "none";
   if (seats.size() == n_all && n_all > 1) return "all " + std::to_string(n_all);
   const auto last = seats.begin() + static_cast<std::ptrdiff_t>(std::min(seats.size(), most_named));
-  const std::string first = boost::algorithm::join(std::vector(seats.begin(), last), " ");
+  const std::string first = joined(std::vector(seats.begin(), last), " ");
   return seats.size() <= most_named ? first : std::to_string(seats.size()) + ": " + first + " ...";
 }
 

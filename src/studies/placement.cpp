@@ -1,7 +1,6 @@
 #include "studies/placement.hpp"
 
 #include <algorithm>
-#include <boost/algorithm/string/join.hpp>
 #include <glm/geometric.hpp>
 #include <iomanip>
 #include <nlopt.hpp>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "core/grouped_warnings.hpp"
+#include "core/text.hpp"
 #include "studies/coverage.hpp"
 #include "studies/sight.hpp"
 
@@ -84,9 +84,7 @@ std::vector<std::size_t> idle_of(const CoverageMap& map, const std::vector<std::
   return idle;
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  return names.empty() ? "none" : boost::algorithm::join(names, " ");
-}
+std::string listed(const std::vector<std::string>& names) { return names.empty() ? "none" : joined(names, " "); }
 
 }  // namespace
 

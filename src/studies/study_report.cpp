@@ -1,10 +1,10 @@
 #include "studies/study_report.hpp"
 
 #include <algorithm>
-#include <boost/algorithm/string/join.hpp>
 #include <cmath>
 
 #include "core/fixed.hpp"
+#include "core/text.hpp"
 #include "studies/room_plan.hpp"
 
 namespace pirsim::studies {
@@ -192,11 +192,9 @@ std::string introduction(const Model& model, const std::vector<std::string>& sen
   return std::to_string(script.trials.size()) + (script.trials.size() == 1 ? " trial in " : " trials in ") +
          model.scene().name + ", " +
          (script.replicates == 1 ? "run once" : "each run " + std::to_string(script.replicates) + " times") +
-         ", watched by " + boost::algorithm::join(sensors, ", ") +
+         ", watched by " + joined(sensors, ", ") +
          ". A count is the number of windows in which a sensor reported motion" +
-         (script.summary.phases.empty()
-              ? "."
-              : " while the phase was " + boost::algorithm::join(script.summary.phases, ", ") + ".");
+         (script.summary.phases.empty() ? "." : " while the phase was " + joined(script.summary.phases, ", ") + ".");
 }
 
 /// Second by second nobody can read it. How long runs without a set duration are isn't known before they end.
@@ -267,7 +265,7 @@ io::Report StudyReport::finish(const Summary& summary) const {
   } else {
     const std::string unit = script.trials.front().schedule ? "day" : "run";
     report.paragraphs = {std::to_string(model_->n_runs()) + " " + unit + (model_->n_runs() == 1 ? " in " : "s in ") +
-                         model_->scene().name + ", watched by " + boost::algorithm::join(sensors_, ", ") + "."};
+                         model_->scene().name + ", watched by " + joined(sensors_, ", ") + "."};
   }
 
   for (std::size_t t = 0; t < trials_.size(); ++t) {

@@ -1,9 +1,9 @@
 #include "reconcile/data/alignment.hpp"
 
 #include <algorithm>
-#include <boost/algorithm/string/join.hpp>
 #include <utility>
 
+#include "core/text.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/error.hpp"
 
@@ -92,7 +92,7 @@ std::vector<DataShape::Run> summed(const Measured& measured, std::size_t n_senso
 void refuse_longer_than_study(const StudyFrame& frame, const Measured& measured, std::span<const Series> pilot) {
   // Without counted phases there is no part that rows could be taken for, but a sum can still be too large.
   const bool counts_all = frame.counted_phases.empty();
-  const std::string part = counts_all ? "a run" : "'" + boost::algorithm::join(frame.counted_phases, ", ") + "'";
+  const std::string part = counts_all ? "a run" : "'" + joined(frame.counted_phases, ", ") + "'";
   Diagnostics faults;
   for (std::size_t trial = 0; trial < frame.trials.size(); ++trial) {
     const auto longest = static_cast<double>(lengths_of(trial, pilot, frame.sensors.size()).longest_main);

@@ -1,7 +1,6 @@
 #include "reconcile/data/measured_reader.hpp"
 
 #include <algorithm>
-#include <boost/algorithm/string/join.hpp>
 #include <cmath>
 #include <set>
 #include <span>
@@ -9,6 +8,7 @@
 #include "core/digest.hpp"
 #include "core/fixed.hpp"
 #include "core/near_names.hpp"
+#include "core/text.hpp"
 #include "pirsim/csv.hpp"
 #include "schema/columns.hpp"
 #include "schema/limits.hpp"
@@ -160,8 +160,7 @@ std::vector<std::optional<std::size_t>> MeasuredReader::sensor_columns() {
     if (!columns.back()) absent.push_back(sensor);
   }
   if (absent.size() == frame_.sensors.size()) {
-    faults_.error({file_, 1, 1}, "none of the columns is a sensor of the scene (" +
-                                     boost::algorithm::join(frame_.sensors, ", ") +
+    faults_.error({file_, 1, 1}, "none of the columns is a sensor of the scene (" + joined(frame_.sensors, ", ") +
                                      "): is this the data of another scene?");
   } else if (!absent.empty()) {
     measured_.notes.push_back({DataNote::What::sensors_absent, absent.size(), absent});

@@ -1,7 +1,6 @@
 #include "reconcile/report/pages.hpp"
 
 #include <algorithm>
-#include <boost/algorithm/string/replace.hpp>
 #include <cctype>
 #include <string_view>
 
@@ -20,7 +19,9 @@ std::string shell_word(const std::string& text) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || plain_marks.find(c) != std::string_view::npos;
   };
   if (!text.empty() && std::ranges::all_of(text, plain)) return text;
-  return "'" + boost::algorithm::replace_all_copy(text, "'", "'\\''") + "'";
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
 }
 
 /// As part of a file's name.

@@ -1,12 +1,12 @@
 #include "reconcile/report/sentences.hpp"
 
 #include <algorithm>
-#include <boost/algorithm/string/join.hpp>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
 #include <variant>
 
+#include "core/text.hpp"
 #include "effects/catalogue.hpp"
 
 namespace pirsim::reconcile {
@@ -15,7 +15,7 @@ namespace {
 std::string fingerprints_of(const std::vector<std::string>& named) {
   std::vector<std::string> texts;
   for (const std::string& effect : named) texts.push_back(effect + ": " + effects::find(effect).info.fingerprint);
-  return boost::algorithm::join(texts, ". ");
+  return joined(texts, ". ");
 }
 
 /// Which kind of effect it is, if that is clear though its name isn't.
@@ -170,7 +170,7 @@ std::string next_step(const Outcome& outcome) {
         return "What to do next: measure more before anything is applied; pirsim reconcile plan finds what would tell "
                "most.";
       return "What to do next: measure more before one of them is applied. pirsim reconcile plan --effects " +
-             boost::algorithm::join(outcome.named, ",") +
+             joined(outcome.named, ",") +
              " finds the measurement that separates them best. What each does to the data: " +
              fingerprints_of(outcome.named) + ".";
     case Verdict::none_in_catalogue:

@@ -1,16 +1,15 @@
 // Scores, plans and what a self-test counts in words.
 #include <array>
-#include <boost/algorithm/string/join.hpp>
 
+#include "core/text.hpp"
 #include "reconcile/report/sentences.hpp"
 
 namespace pirsim::reconcile {
 
 std::string sentence(const Score& score) {
   return std::string(name(score.mark)) + ": hidden was " +
-         (score.hidden.empty() ? "nothing" : boost::algorithm::join(score.hidden, ", ")) + ", the verdict was " +
-         std::string(name(score.verdict)) +
-         (score.named.empty() ? "" : " (" + boost::algorithm::join(score.named, ", ") + ")");
+         (score.hidden.empty() ? "nothing" : joined(score.hidden, ", ")) + ", the verdict was " +
+         std::string(name(score.verdict)) + (score.named.empty() ? "" : " (" + joined(score.named, ", ") + ")");
 }
 
 std::string name(const Design& design) {

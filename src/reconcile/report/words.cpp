@@ -1,9 +1,9 @@
 // Reasons, notes, events and residuals in words.
 #include <array>
-#include <boost/algorithm/string/join.hpp>
 #include <cmath>
 #include <utility>
 
+#include "core/text.hpp"
 #include "reconcile/report/sentences.hpp"
 
 namespace pirsim::reconcile {
@@ -19,8 +19,8 @@ std::string plural(std::size_t n, const std::string& one, const std::string& man
 }
 std::string runs(std::size_t n) { return plural(n, "run", "runs"); }
 std::string whole(double value) { return std::to_string(std::lround(value)); }
-std::string list(const std::vector<std::string>& names) { return boost::algorithm::join(names, ", "); }
-std::string sum(const std::vector<std::string>& names) { return boost::algorithm::join(names, " + "); }
+std::string list(const std::vector<std::string>& names) { return joined(names, ", "); }
+std::string sum(const std::vector<std::string>& names) { return joined(names, " + "); }
 
 struct Worded {
   std::string head, body;  ///< "Kept", and why
@@ -216,9 +216,7 @@ std::string in_words(const TrailEvent& event) {
   return std::visit(
       Overloaded{[](const trail::Begun& e) { return "data " + e.digest + ", analysis seed " + std::to_string(e.seed); },
                  [](const DataNote& e) { return "data: " + in_words(e); },
-                 [](const trail::HeldOut& e) {
-                   return "held out from naming and fitting: " + boost::algorithm::join(e.trials, " ");
-                 },
+                 [](const trail::HeldOut& e) { return "held out from naming and fitting: " + joined(e.trials, " "); },
                  [](const trail::Table& e) {
                    return "table " + e.key + ": " + std::to_string(e.n_datasets) + " datasets, " +
                           std::to_string(e.n_left_out) + " left out because people couldn't get about";
@@ -226,7 +224,7 @@ std::string in_words(const TrailEvent& event) {
                  [](const trail::Tested& e) { return "global test: p " + short_number(e.p); },
                  [](const trail::NotRuledOut& e) {
                    return "hypotheses that can have made the data: " +
-                          (e.hypotheses.empty() ? "none" : boost::algorithm::join(e.hypotheses, " "));
+                          (e.hypotheses.empty() ? "none" : joined(e.hypotheses, " "));
                  },
                  [](const trail::IncludesOff& e) { return "the interval of " + e.effect + " includes off"; },
                  [](const Look& e) {

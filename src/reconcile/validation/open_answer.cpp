@@ -1,9 +1,9 @@
 #include <algorithm>
-#include <boost/algorithm/string/join.hpp>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/digest.hpp"
+#include "core/text.hpp"
 #include "effects/catalogue.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/reconcile.hpp"
@@ -39,7 +39,7 @@ class JsonFile {
     const auto known = std::ranges::find(words, word);
     if (known == words.end()) {
       const std::vector<std::string> all(words.begin(), words.end());
-      refuse("'" + place + "' is '" + word + "', not one of " + boost::algorithm::join(all, ", "));
+      refuse("'" + place + "' is '" + word + "', not one of " + joined(all, ", "));
     }
     return static_cast<std::size_t>(known - words.begin());
   }
