@@ -53,7 +53,7 @@ double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
 double cross(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
 
 /// Seen from above; 0 inside.
-double distance_to_triangle(const Vec2& p, const Vec2& a, const Vec2& b, const Vec2& c) {
+double floor_distance_to_triangle(const Vec2& p, const Vec2& a, const Vec2& b, const Vec2& c) {
   const double ab = cross(b - a, p - a), bc = cross(c - b, p - b), ca = cross(a - c, p - c);
   const bool has_area = cross(b - a, c - a) != 0.0;
   if (has_area && ((ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0))) return 0.0;
@@ -70,7 +70,7 @@ bool clear_of(const TriMesh& mesh, const Vec2& p, double floor_m, double clear_m
   return std::ranges::all_of(mesh.triangles, [&](const auto& triangle) {
     const Vec3 &a = mesh.positions[triangle[0]], &b = mesh.positions[triangle[1]], &c = mesh.positions[triangle[2]];
     return !is_in_the_way(a, b, c, floor_m) ||
-           distance_to_triangle(p, floor_point(a), floor_point(b), floor_point(c)) >= clear_m;
+           floor_distance_to_triangle(p, floor_point(a), floor_point(b), floor_point(c)) >= clear_m;
   });
 }
 
@@ -97,7 +97,7 @@ struct Barrier {
     if (std::max(a.x, b.x) < lower.x || std::min(a.x, b.x) > upper.x || std::max(a.y, b.y) < lower.y ||
         std::min(a.y, b.y) > upper.y)
       return false;
-    return distance_to_triangle(a, corners[0], corners[1], corners[2]) == 0.0 ||
+    return floor_distance_to_triangle(a, corners[0], corners[1], corners[2]) == 0.0 ||
            crosses(a, b, corners[0], corners[1]) || crosses(a, b, corners[1], corners[2]) ||
            crosses(a, b, corners[2], corners[0]);
   }

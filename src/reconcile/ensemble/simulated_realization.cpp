@@ -33,30 +33,30 @@ std::vector<EffectSpec> together(std::vector<EffectSpec> own, std::span<const Ef
   return own;
 }
 
-/// Zones as a Model's detector takes them.
-struct Emitter {
-  Emitter(const Model& of, const Recording& from) : model(of), tracks(from), logic(sim::make_logic(of)) {
-    logic->prepare(tracks.sets);
-  }
-  [[nodiscard]] std::vector<Series> emit(const StudyFrame& frame, const effects::Pipeline& pipeline, int first,
-                                         int n) const {
-    std::vector<Series> data;
-    for (std::size_t i = 0; i < tracks.runs.size(); ++i) {
-      const int replicate = tracks.runs[i].rows.replicate;
-      if (replicate <= first || replicate > first + n) continue;
-      add_series(frame, sim::replay(tracks, i, *logic, model.script().seed, pipeline), first, data);
-    }
-    return data;
-  }
-
-  const Model& model;
-  const Recording& tracks;
-  std::unique_ptr<DetectorLogic> logic;
-};
-
 }  // namespace
 
 struct SimulatedRealization::Traced {
+  /// Zones as a Model's detector takes them.
+  struct Emitter {
+    Emitter(const Model& of, const Recording& from) : model(of), tracks(from), logic(sim::make_logic(of)) {
+      logic->prepare(tracks.sets);
+    }
+    [[nodiscard]] std::vector<Series> emit(const StudyFrame& frame, const effects::Pipeline& pipeline, int first,
+                                           int n) const {
+      std::vector<Series> data;
+      for (std::size_t i = 0; i < tracks.runs.size(); ++i) {
+        const int replicate = tracks.runs[i].rows.replicate;
+        if (replicate <= first || replicate > first + n) continue;
+        add_series(frame, sim::replay(tracks, i, *logic, model.script().seed, pipeline), first, data);
+      }
+      return data;
+    }
+
+    const Model& model;
+    const Recording& tracks;
+    std::unique_ptr<DetectorLogic> logic;
+  };
+
   explicit Traced(const Realization& realization)
       : model(compile(realization.scene, realization.script)),
         family(model, runs_of(model, {})),
@@ -104,7 +104,7 @@ std::vector<Series> SimulatedRealization::anew(std::span<const EffectSpec> more,
   altered.script.replicates = n;
   const Model model = compile(altered.scene, altered.script, {.like = &traced_->model});
   const Recording tracks = traced_->family.record(model, runs_of(model, trials));
-  return Emitter(model, tracks).emit(*frame_, model.compiled().stages(), 0, n);
+  return Traced::Emitter(model, tracks).emit(*frame_, model.compiled().stages(), 0, n);
 }
 
 std::optional<std::vector<Series>> SimulatedRealization::with_effects(std::span<const EffectSpec> more, int first,

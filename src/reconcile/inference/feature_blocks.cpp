@@ -10,11 +10,13 @@
 namespace pirsim::reconcile {
 namespace {
 
-using Kind = FeatureName::Kind;
+using FeatureKind = FeatureName::Kind;
 
-FeatureName of_statistic(Kind kind, const std::string& statistic) { return {.kind = kind, .statistic = statistic}; }
+FeatureName of_statistic(FeatureKind kind, const std::string& statistic) {
+  return {.kind = kind, .statistic = statistic};
+}
 FeatureName gained_by(FeatureName::Permutation permutation) {
-  return {.kind = Kind::likeness_gained, .permutation = permutation};
+  return {.kind = FeatureKind::likeness_gained, .permutation = permutation};
 }
 
 constexpr std::size_t n_sixths = static_cast<std::size_t>(CellStatistic::shift_s) - told_of_cells.size();
@@ -42,7 +44,8 @@ void FeatureMap::write_cells(const Scaled& data, Writer& out) const {
       if (!known(trial, sensor, CellStatistic::seconds)) continue;
       out.test_next();
       out.add(data.cell(trial, sensor, CellStatistic::seconds), [&] {
-        return FeatureName{Kind::cell, frame_.trials[trial], frame_.sensors[sensor], name(CellStatistic::seconds)};
+        return FeatureName{FeatureKind::cell, frame_.trials[trial], frame_.sensors[sensor],
+                           name(CellStatistic::seconds)};
       });
     }
   }
@@ -62,15 +65,15 @@ void FeatureMap::write_sensors(const Scaled& data, Writer& out) const {
       means.push_back(sum / count);
       out.test_next();
       out.add(means.back(), [&] {
-        return FeatureName{.kind = Kind::sensor, .sensor = frame_.sensors[sensor], .statistic = name(statistic)};
+        return FeatureName{.kind = FeatureKind::sensor, .sensor = frame_.sensors[sensor], .statistic = name(statistic)};
       });
     }
     if (std::ranges::find(told_in_order, statistic) == told_in_order.end() || means.size() < 3) continue;
     std::ranges::sort(means);
     out.add(means[means.size() - 1] - means[means.size() - 2],
-            [&] { return of_statistic(Kind::first_less_second, name(statistic)); });
-    out.add(means[1] - means[0], [&] { return of_statistic(Kind::last_but_one_less_last, name(statistic)); });
-    out.add(means.back() - means.front(), [&] { return of_statistic(Kind::first_less_last, name(statistic)); });
+            [&] { return of_statistic(FeatureKind::first_less_second, name(statistic)); });
+    out.add(means[1] - means[0], [&] { return of_statistic(FeatureKind::last_but_one_less_last, name(statistic)); });
+    out.add(means.back() - means.front(), [&] { return of_statistic(FeatureKind::first_less_last, name(statistic)); });
   }
 }
 
@@ -85,7 +88,7 @@ void FeatureMap::write_trials(const Scaled& data, Writer& out) const {
       }
       if (count == 0.0) continue;
       out.add(sum / count, [&] {
-        return FeatureName{.kind = Kind::trial, .trial = frame_.trials[trial], .statistic = name(statistic)};
+        return FeatureName{.kind = FeatureKind::trial, .trial = frame_.trials[trial], .statistic = name(statistic)};
       });
     }
   }
@@ -99,8 +102,8 @@ void FeatureMap::write_trials(const Scaled& data, Writer& out) const {
       count += 1.0;
     }
     if (count == 0.0) continue;
-    out.add(sum / count, [&] { return of_statistic(Kind::mean, name(statistic)); });
-    out.add(std::sqrt(squares / count), [&] { return of_statistic(Kind::size, name(statistic)); });
+    out.add(sum / count, [&] { return of_statistic(FeatureKind::mean, name(statistic)); });
+    out.add(std::sqrt(squares / count), [&] { return of_statistic(FeatureKind::size, name(statistic)); });
   }
   write_shifts(data, out);
 }
@@ -118,12 +121,12 @@ void FeatureMap::write_shifts(const Scaled& data, Writer& out) const {
     }
     if (count == 0.0) continue;
     out.add(sum / count, [&] {
-      return FeatureName{.kind = Kind::sensor, .sensor = frame_.sensors[sensor], .statistic = statistic};
+      return FeatureName{.kind = FeatureKind::sensor, .sensor = frame_.sensors[sensor], .statistic = statistic};
     });
     all += sum;
     n_all += count;
   }
-  if (n_all > 0.0) out.add(all / n_all, [&] { return of_statistic(Kind::mean, statistic); });
+  if (n_all > 0.0) out.add(all / n_all, [&] { return of_statistic(FeatureKind::mean, statistic); });
 }
 
 /// Sum of a statistic, of(data, trial), over the trials in which it is known; none if there are no such trials. What a
@@ -151,8 +154,9 @@ void FeatureMap::write_time(const DatasetStatistics& data, Writer& out) const {
     const double all = std::accumulate(totals.begin(), totals.end(), 0.0) + static_cast<double>(n);
     for (std::size_t k = 0; k < n; ++k) {
       out.test_next();
-      out.add(std::log((totals[k] + 1.0) / all),
-              [&] { return FeatureName{.kind = Kind::share_of_time, .sensor = sensor, .part = k + 1, .n_parts = n}; });
+      out.add(std::log((totals[k] + 1.0) / all), [&] {
+        return FeatureName{.kind = FeatureKind::share_of_time, .sensor = sensor, .part = k + 1, .n_parts = n};
+      });
     }
   };
   write_shares(
@@ -189,13 +193,14 @@ void FeatureMap::write_pairs(const DatasetStatistics& data, Writer& out) const {
       odds.push_back(std::log((together + 0.5) / (*alone + 0.5)));
       out.test_next();
       out.add(odds.back(), [&] {
-        return FeatureName{.kind = Kind::together, .sensor = frame_.sensors[first], .other = frame_.sensors[second]};
+        return FeatureName{
+            .kind = FeatureKind::together, .sensor = frame_.sensors[first], .other = frame_.sensors[second]};
       });
     }
   }
   if (odds.empty()) return;
-  out.add(*std::ranges::max_element(odds), [] { return FeatureName{Kind::most_together}; });
-  out.add(*std::ranges::min_element(odds), [] { return FeatureName{Kind::least_together}; });
+  out.add(*std::ranges::max_element(odds), [] { return FeatureName{FeatureKind::most_together}; });
+  out.add(*std::ranges::min_element(odds), [] { return FeatureName{FeatureKind::least_together}; });
 }
 
 void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
@@ -216,14 +221,14 @@ void FeatureMap::write_contrasts(const Scaled& data, Writer& out) const {
     }
     if (count == 0.0) continue;
     out.test_next();
-    out.add(sum / count, [&] { return of_statistic(Kind::mean, name(statistic)); });
+    out.add(sum / count, [&] { return of_statistic(FeatureKind::mean, name(statistic)); });
     out.test_next();
-    out.add(size / count, [&] { return of_statistic(Kind::size, name(statistic)); });
-    out.add(greatest, [&] { return of_statistic(Kind::greatest, name(statistic)); });
-    out.add(least, [&] { return of_statistic(Kind::least, name(statistic)); });
+    out.add(size / count, [&] { return of_statistic(FeatureKind::size, name(statistic)); });
+    out.add(greatest, [&] { return of_statistic(FeatureKind::greatest, name(statistic)); });
+    out.add(least, [&] { return of_statistic(FeatureKind::least, name(statistic)); });
     for (std::size_t c = 0; c < slopes.size(); ++c) {
       out.add(slopes[c] / count, [&] {
-        return FeatureName{.kind = Kind::slope, .statistic = name(statistic), .other = covariate_names_[c]};
+        return FeatureName{.kind = FeatureKind::slope, .statistic = name(statistic), .other = covariate_names_[c]};
       });
     }
   }
@@ -256,7 +261,7 @@ void FeatureMap::write_permutations(const DatasetStatistics& data, Writer& out) 
   std::iota(trials.begin(), trials.end(), std::size_t{0});
   std::iota(sensors.begin(), sensors.end(), std::size_t{0});
   const double as_it_is = likeness(values, trials, sensors);
-  out.add(as_it_is, [] { return FeatureName{Kind::likeness}; });
+  out.add(as_it_is, [] { return FeatureName{FeatureKind::likeness}; });
   const auto add = [&](const auto& trial_order, const auto& sensor_order, FeatureName::Permutation permutation) {
     out.add(likeness(values, trial_order, sensor_order) - as_it_is, [&] { return gained_by(permutation); });
   };

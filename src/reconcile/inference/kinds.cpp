@@ -16,10 +16,10 @@ constexpr std::size_t fewest_in_part = 10;  ///< 10 and 20 were tried: no differ
 constexpr std::size_t most_parts = 3;       ///< by strength; 1, 2 and 3 were tried: 3 part the hypotheses best
 
 /// What isn't a matter of more or less: choices, and for each strength on which side of `off` it lies.
-using Kind = std::pair<std::map<std::string, std::string, std::less<>>, std::vector<int>>;
+using ChoicesAndSides = std::pair<std::map<std::string, std::string, std::less<>>, std::vector<int>>;
 
-Kind kind_of(const EffectSpec& effect) {
-  Kind kind{effect.choices, {}};
+ChoicesAndSides kind_of(const EffectSpec& effect) {
+  ChoicesAndSides kind{effect.choices, {}};
   for (const effects::ParameterInfo& info : effects::find(effect.name).info.parameters) {
     if (info.role != effects::Role::strength || !effects::applies(info, effect)) continue;
     const double value = effect.parameters.at(info.name);
@@ -37,7 +37,7 @@ double strength_of(const EffectSpec& effect) {
 
 std::vector<int> number_alike(const ReferenceTable& table, std::span<const std::size_t> rows, std::size_t fewest) {
   if (rows.empty() || table.rows[rows.front()].hypothesis == 0) return std::vector<int>(rows.size(), 0);
-  std::map<Kind, std::vector<std::pair<double, std::size_t>>> by_kind;  // strength and place of each
+  std::map<ChoicesAndSides, std::vector<std::pair<double, std::size_t>>> by_kind;  // strength and place of each
   for (std::size_t place = 0; place < rows.size(); ++place) {
     const EffectSpec& drawn = table.rows[rows[place]].effects.front();
     by_kind[kind_of(drawn)].emplace_back(strength_of(drawn), place);

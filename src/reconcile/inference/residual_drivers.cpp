@@ -13,7 +13,7 @@
 namespace pirsim::reconcile {
 namespace {
 
-using Kind = ResidualDriver::When;
+using DriverWhen = ResidualDriver::When;
 
 Who cells_of(const ReferenceStudy& reference, ResidualDriver::Who who, std::string name,
              const std::function<bool(std::size_t trial, std::size_t sensor)>& holds) {
@@ -79,7 +79,7 @@ const action::Work* first_work(const ScriptSpec& script) {
 void add_posture(Times& times, double period_s) {
   constexpr int parts = 6;
   times.add_phases(period_s, parts, [&](double begin, double end) {
-    return When{end > period_s - 1e-9 ? Kind::before_posture : Kind::after_posture, begin, end, {}};
+    return When{end > period_s - 1e-9 ? DriverWhen::before_posture : DriverWhen::after_posture, begin, end, {}};
   });
 }
 
@@ -90,7 +90,7 @@ void add_waves(Times& times, double longest_s) {
     if (1.5 * period_s > longest_s) continue;
     for (int i = 0; i < phases; ++i) {
       const double top_s = period_s * i / phases;
-      times.add(Kind::wave, period_s, top_s,
+      times.add(DriverWhen::wave, period_s, top_s,
                 [=](double t, double) { return std::cos(2.0 * std::numbers::pi * (t - top_s) / period_s); });
     }
   }
@@ -128,21 +128,23 @@ std::vector<When> all_when(const ReferenceStudy& reference) {
   double longest_s = 0.0;
   for (const Profile::Trial& trial : reference.table.profile.trials)
     longest_s = std::max(longest_s, static_cast<double>(trial.n_main) * reference.frame.window_s);
-  times.add(Kind::always, 0.0, 0.0, [](double, double) { return 1.0; });
-  times.add_part(Kind::first_half, 0.0, 0.5);
-  times.add_part(Kind::second_half, 0.5, 1.0);
-  times.add_part(Kind::first_third, 0.0, 1.0 / 3.0);
-  times.add_part(Kind::middle_third, 1.0 / 3.0, 2.0 / 3.0);
-  times.add_part(Kind::last_third, 2.0 / 3.0, 1.0);
+  times.add(DriverWhen::always, 0.0, 0.0, [](double, double) { return 1.0; });
+  times.add_part(DriverWhen::first_half, 0.0, 0.5);
+  times.add_part(DriverWhen::second_half, 0.5, 1.0);
+  times.add_part(DriverWhen::first_third, 0.0, 1.0 / 3.0);
+  times.add_part(DriverWhen::middle_third, 1.0 / 3.0, 2.0 / 3.0);
+  times.add_part(DriverWhen::last_third, 2.0 / 3.0, 1.0);
   constexpr double minute_s = 60.0;
   if (longest_s >= 2.0 * minute_s) {
-    times.add_phases(minute_s, 10, [](double begin, double end) { return When{Kind::of_minute, begin, end, {}}; });
+    times.add_phases(minute_s, 10, [](double begin, double end) {
+      return When{DriverWhen::of_minute, begin, end, {}};
+    });
   }
   if (const action::Work* work = first_work(reference.source.script)) {
     if (longest_s >= 2.0 * work->tilt_every_s && work->tilt_choices_deg.size() > 1)
       add_posture(times, work->tilt_every_s);
     times.add_phases(work->arm_period_s, 3, [&](double begin, double end) {
-      return When{Kind::of_arm_cycle, 100.0 * begin / work->arm_period_s, 100.0 * end / work->arm_period_s, {}};
+      return When{DriverWhen::of_arm_cycle, 100.0 * begin / work->arm_period_s, 100.0 * end / work->arm_period_s, {}};
     });
   }
   add_waves(times, longest_s);

@@ -110,7 +110,7 @@ class FoldSearch {
 
 /// Datasets of the same realizations (n_realizations x n_statistics): of the plain model, and with each fold's patch or
 /// placebo in the trials that the fold holds out. Realizations in which people can't get about with it are left out.
-struct Ensembles {
+struct HeldOutEnsembles {
   stats::Matrix<float> before, after, placebo;
 };
 
@@ -120,9 +120,9 @@ class Simulation {
       : reference_(reference), folds_(folds), found_(found) {}
 
   /// None if people can hardly get about with the patches.
-  [[nodiscard]] std::optional<Ensembles> run(const VerifySettings& settings, unsigned threads) const {
+  [[nodiscard]] std::optional<HeldOutEnsembles> run(const VerifySettings& settings, unsigned threads) const {
     using Rows = std::vector<std::vector<float>>;  // before, after, placebo
-    Ensembles all;
+    HeldOutEnsembles all;
     ordered_parallel<Rows>(
         std::max(settings.n_realizations, static_cast<std::uint32_t>(std::ceil(1.0 / settings.alpha))), threads,
         [&](std::size_t i) -> Rows {
@@ -203,7 +203,7 @@ void add_cells(const StudyFrame& frame, const stats::Matrix<float>& ensemble, st
 /// Scores of the held-out trials, one after the other.
 class Judge {
  public:
-  Judge(const AppliedEffect& plain, const Ensembles& ensembles, double alpha, const Context& context)
+  Judge(const AppliedEffect& plain, const HeldOutEnsembles& ensembles, double alpha, const Context& context)
       : reference_(*plain.reference),
         measured_(plain.observed),
         ensembles_(ensembles),
@@ -253,7 +253,7 @@ class Judge {
  private:
   const ReferenceStudy& reference_;
   std::span<const float> measured_;
-  const Ensembles& ensembles_;
+  const HeldOutEnsembles& ensembles_;
   double alpha_;
   const Context& context_;
   stats::Matrix<float> scales_;
@@ -271,7 +271,8 @@ Verification judge_claim(const Claim& claim, const Folds& folds, const std::vect
     result.patches.push_back(fold.patch);
     if (result.placebo_effect.empty()) result.placebo_effect = fold.placebo_name;
   }
-  const std::optional<Ensembles> ensembles = Simulation(*plain.reference, folds, found).run(settings, context.threads);
+  const std::optional<HeldOutEnsembles> ensembles =
+      Simulation(*plain.reference, folds, found).run(settings, context.threads);
   if (!ensembles) return result;
   Judge judge(plain, *ensembles, settings.alpha, context);
   for (const std::size_t trial : held_out) judge.add_trial(trial, result);
