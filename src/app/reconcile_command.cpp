@@ -12,8 +12,6 @@
 #include "pirsim/version.hpp"
 #include "reconcile/data/measured.hpp"
 #include "reconcile/inference/verify.hpp"
-#include "reconcile/report/charts.hpp"
-#include "reconcile/report/outputs.hpp"
 #include "reconcile/report/pages.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "reconcile/validation/plan.hpp"

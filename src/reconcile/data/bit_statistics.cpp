@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "pirsim/geometry.hpp"
-#include "reconcile/data/correlation.hpp"
 
 namespace pirsim::reconcile {
 namespace {

@@ -11,7 +11,7 @@
 #include "reconcile/inference/classifier.hpp"
 #include "reconcile/inference/decision.hpp"
 #include "reconcile/inference/fit.hpp"
-#include "reconcile/inference/table_view.hpp"
+#include "reconcile/inference/reference_study.hpp"
 
 namespace pirsim::reconcile {
 

@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "effects/catalogue.hpp"
-#include "reconcile/inference/table_view.hpp"
-#include "stats/calibration.hpp"
+#include "reconcile/inference/reference_study.hpp"
 #include "stats/conformal.hpp"
-#include "stats/impostors.hpp"
+#include "stats/pooled_classifier.hpp"
 
 namespace pirsim::reconcile {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "reconcile/data/correlation.hpp"
-#include "reconcile/inference/feature_writer.hpp"
+#include "reconcile/data/bit_statistics.hpp"
+#include "reconcile/inference/feature_map.hpp"
 
 namespace pirsim::reconcile {
 namespace {

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "core/parallel.hpp"
-#include "reconcile/inference/feature_writer.hpp"
 #include "schema/action_facts.hpp"
 
 namespace pirsim::reconcile {

@@ -7,9 +7,23 @@
 #include <utility>
 
 #include "effects/catalogue.hpp"
-#include "reconcile/inference/flat_scale.hpp"
 
 namespace pirsim::reconcile {
+
+using effects::ParameterInfo;
+using effects::Scale;
+
+double to_flat(const ParameterInfo& info, double value) {
+  const double within = std::clamp(value, info.low, info.high);
+  return info.scale == Scale::logarithmic ? std::log(within) : within;
+}
+
+double from_flat(const ParameterInfo& info, double value) {
+  const double natural = info.scale == Scale::logarithmic ? std::exp(value) : value;
+  const double rounded = info.scale == Scale::whole ? std::round(natural) : natural;
+  return std::clamp(rounded, info.least, info.most);
+}
+
 namespace {
 
 constexpr std::size_t fewest_in_part = 10;  ///< 10 and 20 were tried: no difference

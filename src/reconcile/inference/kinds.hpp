@@ -4,10 +4,18 @@
 #include <span>
 #include <vector>
 
+#include "effects/catalogue.hpp"
 #include "reconcile/ensemble/reference_table.hpp"
 #include "stats/discriminant.hpp"
 
 namespace pirsim::reconcile {
+
+/// A value beyond the prior is moved to its end.
+[[nodiscard]] double to_flat(const effects::ParameterInfo& info, double value);
+/// Whole where it must be, and within what is accepted.
+[[nodiscard]] double from_flat(const effects::ParameterInfo& info, double value);
+
+// An effect is several things: on this sensor or that, to the left or to the right, hardly or strongly.
 
 /// (n) numbers from 0 on of datasets of one hypothesis that are alike: with the same choices, strengths on the same
 /// side of `off`, and, as far as ten datasets remain in each, in the same third by the parameter that names the

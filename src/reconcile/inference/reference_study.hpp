@@ -1,16 +1,61 @@
-// A study with the reference table that its data are compared with.
+// A study with the reference table that its data are compared with, and how the table looks in some of the trials: its
+// datasets' features, and what the global test says of them.
 #pragma once
 
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "reconcile/ensemble/reference_table.hpp"
-#include "reconcile/inference/table_view.hpp"
+#include "reconcile/inference/feature_map.hpp"
+#include "stats/envelope.hpp"
 
 namespace pirsim::reconcile {
+
+/// Everything that doesn't depend on which effects are candidates, worked out once: what only a classifier asks for, at
+/// its first question, since data that agree with the model need none. Immutable to whoever looks at it.
+class TableView {
+ public:
+  /// scene, frame and table must outlive it. trials: those that are looked at (sorted).
+  TableView(const SceneSpec& scene, const StudyFrame& frame, const std::vector<CellKnowledge>& knowledge,
+            const ReferenceTable& table, std::vector<std::size_t> trials, unsigned threads);
+
+  [[nodiscard]] const SceneSpec& scene() const noexcept { return scene_; }
+  [[nodiscard]] const StudyFrame& frame() const noexcept { return frame_; }
+  [[nodiscard]] const ReferenceTable& table() const noexcept { return table_; }
+  [[nodiscard]] const FeatureMap& map() const noexcept { return map_; }
+  /// (n_rows x n_features) of the table's rows.
+  [[nodiscard]] const stats::Matrix<float>& features() const { return rows().features; }
+  /// (n_plain_datasets x n_statistics)
+  [[nodiscard]] const stats::Matrix<float>& plain() const noexcept { return plain_; }
+  /// The global test's p for a dataset's statistics.
+  [[nodiscard]] double p(std::span<const float> statistics) const;
+  /// The same for a row of the table that has an effect and is held back for calibration; 1 for any other row.
+  [[nodiscard]] double p_of_row(std::size_t row) const { return rows().p[row]; }
+
+ private:
+  /// Of the table.
+  struct Rows {
+    stats::Matrix<float> features;  ///< (n_rows x n_features)
+    std::vector<double> p;          ///< (n_rows)
+  };
+  [[nodiscard]] const Rows& rows() const;
+
+  const SceneSpec& scene_;
+  const StudyFrame& frame_;
+  const ReferenceTable& table_;
+  FeatureMap map_;
+  unsigned threads_;
+  stats::Matrix<float> plain_;
+  stats::EnvelopeReference plain_reference_;  ///< of what the global test looks at
+  mutable std::once_flag rows_known_;
+  mutable Rows rows_;
+};
+
+// A study with the reference table that its data are compared with.
 
 /// For one shape of data.
 struct ReferenceStudy {

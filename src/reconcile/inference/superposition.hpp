@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "reconcile/inference/table_view.hpp"
+#include "reconcile/inference/reference_study.hpp"
 
 namespace pirsim::reconcile {
 

@@ -15,7 +15,7 @@
 #include "reconcile/inference/fit.hpp"
 #include "reconcile/inference/locate.hpp"
 #include "reconcile/inference/reference_study.hpp"
-#include "stats/scores.hpp"
+#include "stats/intervals.hpp"
 
 namespace pirsim::reconcile {
 namespace {

@@ -1,4 +1,4 @@
-#include "reconcile/report/outputs.hpp"
+#include "reconcile/report/pages.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -7,7 +7,6 @@
 #include "io/atomic_file.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/io.hpp"
-#include "reconcile/report/pages.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "reconcile/validation/seal.hpp"
 #include "schema/fields.hpp"

@@ -3,7 +3,6 @@
 
 #include "io/atomic_file.hpp"
 #include "pirsim/csv.hpp"
-#include "reconcile/report/charts.hpp"
 #include "reconcile/report/pages.hpp"
 #include "reconcile/report/sentences.hpp"
 

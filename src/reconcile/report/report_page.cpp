@@ -4,7 +4,6 @@
 #include <cctype>
 #include <string_view>
 
-#include "reconcile/report/charts.hpp"
 #include "reconcile/report/sentences.hpp"
 
 namespace pirsim::reconcile {

@@ -3,7 +3,6 @@
 #include <map>
 
 #include "io/atomic_file.hpp"
-#include "reconcile/report/charts.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "stats/intervals.hpp"
 

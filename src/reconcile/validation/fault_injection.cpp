@@ -5,7 +5,7 @@
 #include "core/digest.hpp"
 #include "effects/catalogue.hpp"
 #include "reconcile/ensemble/table_store.hpp"
-#include "reconcile/inference/flat_scale.hpp"
+#include "reconcile/inference/kinds.hpp"
 #include "reconcile/validation/out_of_catalogue.hpp"
 #include "reconcile/validation/selftest.hpp"
 #include "schema/fields.hpp"

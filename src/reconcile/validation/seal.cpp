@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "core/digest.hpp"
+#include "core/text.hpp"
 #include "effects/catalogue.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/error.hpp"
+#include "pirsim/reconcile.hpp"
 #include "pirsim/study.hpp"
 #include "reconcile/ensemble/simulated_realization.hpp"
 #include "reconcile/validation/out_of_catalogue.hpp"
@@ -119,6 +122,149 @@ Challenge seal(const SceneSpec& scene, const ScriptSpec& script, const SealSetti
       if (error.code() != ErrorCode::infeasible || attempt + 1 == most_attempts) throw;
     }
   }
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// A JSON file of pirsim's own; what is wrong with it is told with its name.
+class JsonFile {
+ public:
+  JsonFile(const Document& document, const std::string& marker, int schema)
+      : name_(document.name), json_(Json::parse(document.text, nullptr, false)) {
+    if (!json_.is_object() || !json_.contains(marker)) refuse("expected a JSON object with '" + marker + "'");
+    if (json_[marker] != schema)
+      refuse("'" + marker + "' isn't " + std::to_string(schema) + ", the only one that this pirsim reads");
+  }
+
+  template <typename Value>
+  [[nodiscard]] Value get(const std::string& place) const {
+    try {
+      return json_.at(Json::json_pointer(place)).get<Value>();
+    } catch (const Json::exception&) {
+      refuse("'" + place + "' isn't there, or isn't what it should be");
+    }
+  }
+
+  /// The place of what is read there among these words.
+  [[nodiscard]] std::size_t get_one_of(std::span<const std::string_view> words, const std::string& place) const {
+    const auto word = get<std::string>(place);
+    const auto known = std::ranges::find(words, word);
+    if (known == words.end()) {
+      const std::vector<std::string> all(words.begin(), words.end());
+      refuse("'" + place + "' is '" + word + "', not one of " + joined(all, ", "));
+    }
+    return static_cast<std::size_t>(known - words.begin());
+  }
+
+  void require_effects(const std::vector<std::string>& names) const {
+    std::vector<EffectSpec> effects;
+    for (const std::string& name : names) effects.push_back({name, {}, {}, {name_}});
+    Diagnostics faults;
+    effects::check(effects, faults);
+    faults.throw_if_errors();
+  }
+
+  [[noreturn]] void refuse(const std::string& message) const { throw Error(ErrorCode::input, {name_}, message); }
+
+ private:
+  std::string name_;
+  Json json_;
+};
+
+struct Truth {
+  explicit Truth(const JsonFile& answer)
+      : kind(static_cast<Hidden>(answer.get_one_of(hidden_names, "/hidden"))),
+        measured(answer.get<std::string>("/measured_sha256")) {
+    const auto n = answer.get<std::vector<Json>>("/effects").size();
+    for (std::size_t i = 0; i < n; ++i)
+      effects.push_back(answer.get<std::string>("/effects/" + std::to_string(i) + "/name"));
+    answer.require_effects(effects);
+    std::ranges::sort(effects);
+    if (!answer.get<Json>("/out_of_catalogue_fault").is_null())
+      fault = answer.get<std::string>("/out_of_catalogue_fault/name");
+  }
+
+  Hidden kind;
+  std::vector<std::string> effects;
+  std::string fault;     ///< empty: none
+  std::string measured;  ///< SHA-256
+};
+
+struct Finding {
+  explicit Finding(const JsonFile& report)
+      : verdict(static_cast<Verdict>(report.get_one_of(verdict_names, "/verdict"))),
+        effects(report.get<std::vector<std::string>>("/effects")),
+        measured(report.get<std::string>("/measured/sha256")) {
+    report.require_effects(effects);
+    const bool names_none = verdict == Verdict::no_disagreement || verdict == Verdict::none_in_catalogue;
+    if (names_none && !effects.empty())
+      report.refuse("'/effects' isn't empty, though the verdict is " + std::string(name(verdict)));
+  }
+
+  Verdict verdict;
+  std::vector<std::string> effects;
+  std::string measured;  ///< SHA-256
+};
+
+std::set<std::string> families_of(const std::set<std::string>& names) {
+  std::set<std::string> families;
+  for (const std::string& effect : names) families.emplace(effects::name(effects::find(effect).info.family));
+  return families;
+}
+
+std::set<std::string> as_judged(const std::vector<std::string>& names) {
+  std::set<std::string> judged;
+  for (const std::string& name : names) judged.insert(effects::judged_as(name));
+  return judged;
+}
+
+Mark mark_of_effects(const Truth& hidden, const Finding& finding) {
+  const std::set<std::string> truth = as_judged(hidden.effects), named = as_judged(finding.effects);
+  if (named.empty()) return Mark::none;
+  const auto is_named = [&](const std::string& effect) { return named.contains(effect); };
+  if (finding.verdict == Verdict::one_of) {
+    if (std::ranges::any_of(truth, is_named)) return Mark::one_of;
+  } else {
+    if (named == truth) return Mark::exact;
+    if (std::ranges::includes(truth, named)) return Mark::part;
+  }
+  return families_of(named) == families_of(truth) ? Mark::family : Mark::wrong;
+}
+
+Mark mark_of(const Truth& hidden, const Finding& finding) {
+  const bool sees_nothing = finding.verdict == Verdict::no_disagreement;
+  if (hidden.kind == Hidden::nothing) return sees_nothing ? Mark::exact : Mark::wrong;
+  if (hidden.kind != Hidden::out_of_catalogue) return mark_of_effects(hidden, finding);
+  if (finding.verdict == Verdict::none_in_catalogue) return Mark::exact;
+  return sees_nothing ? Mark::none : Mark::wrong;
+}
+
+}  // namespace
+
+std::string_view name(Mark mark) noexcept {
+  constexpr std::string_view names[] = {"exact", "family", "one-of", "part", "wrong", "none"};
+  return names[static_cast<std::size_t>(mark)];
+}
+
+Score open_answer(const Document& answer, std::string_view commitment, const Document& report) {
+  const std::string digest = sha256(answer.text);
+  if (digest != commitment) {
+    throw Error(ErrorCode::input, {answer.name},
+                "the answer is not the one that was committed to: its SHA-256 is " + digest);
+  }
+  const Truth hidden(JsonFile(answer, "pirsim_sealed_answer", answer_schema));
+  const JsonFile judged(report, "pirsim_reconcile_report", report_schema);
+  const Finding finding(judged);
+  if (hidden.measured != finding.measured) judged.refuse("the report is about other data than those of this challenge");
+  Score score;
+  score.hidden = hidden.effects;
+  if (!hidden.fault.empty()) score.hidden.push_back(hidden.fault);
+  score.mark = mark_of(hidden, finding);
+  score.verdict = finding.verdict;
+  score.named = finding.effects;
+  return score;
 }
 
 }  // namespace pirsim::reconcile

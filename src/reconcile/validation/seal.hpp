@@ -9,7 +9,7 @@
 
 #include "pirsim/reconcile.hpp"
 #include "pirsim/sample.hpp"
-#include "reconcile/ensemble/nuisance.hpp"
+#include "reconcile/ensemble/simulated_realization.hpp"
 
 namespace pirsim::reconcile {
 

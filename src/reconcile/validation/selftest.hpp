@@ -12,8 +12,8 @@
 #include "reconcile/inference/analyst.hpp"
 #include "reconcile/inference/reference_study.hpp"
 #include "reconcile/inference/verify.hpp"
-#include "stats/calibration.hpp"
 #include "stats/intervals.hpp"
+#include "stats/pooled_classifier.hpp"
 
 namespace pirsim::reconcile {
 

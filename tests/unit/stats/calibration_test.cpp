@@ -1,4 +1,4 @@
-#include "stats/calibration.hpp"
+#include "stats/pooled_classifier.hpp"
 
 #include <algorithm>
 #include <cmath>

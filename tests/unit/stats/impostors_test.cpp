@@ -1,5 +1,5 @@
 // Rows of classes that the test has never seen, against rows of the class that they are taken for.
-#include "stats/impostors.hpp"
+#include "stats/conformal.hpp"
 
 #include <array>
 #include <cmath>

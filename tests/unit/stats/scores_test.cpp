@@ -1,4 +1,4 @@
-#include "stats/scores.hpp"
+#include "stats/intervals.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "reconcile/data/correlation.hpp"
+#include "reconcile/data/bit_statistics.hpp"
 
 #include <array>
 #include <utility>

@@ -1,5 +1,5 @@
 // Which sensor, which way, how much: a made-up study in which the truth is known.
-#include "reconcile/inference/point_estimate.hpp"
+#include "reconcile/inference/fit.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -13,7 +13,7 @@
 #include "reconcile/inference/locate.hpp"
 #include "reconcile/inference/reference_study.hpp"
 #include "reconcile/inference/verify.hpp"
-#include "reconcile/report/outputs.hpp"
+#include "reconcile/report/pages.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "sim/compiled_study.hpp"
 #include "support/catch.hpp"

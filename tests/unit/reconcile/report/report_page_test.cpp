@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "reconcile/report/charts.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "support/catch.hpp"
 

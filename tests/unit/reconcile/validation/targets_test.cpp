@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "io/report.hpp"
-#include "reconcile/report/charts.hpp"
 #include "reconcile/report/pages.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "support/catch.hpp"
