@@ -229,7 +229,7 @@ Effect wall_reflection() {
                                          "lacquer",
                                .only_if = {"finish", "rough"}}},
                .choices = {{"finish", ChoiceKind::variant, {"smooth", "rough"}, "smooth"},
-                           {"wall", ChoiceKind::mesh, {}, "the mesh with the largest_mesh upright faces"}},
+                           {"wall", ChoiceKind::mesh, {}, "the mesh with the largest upright faces"}},
                .reach = Reach::geometry,
                .acts_on = ActsOn::zone_sensors},
       .alter = alter_wall_reflection,
