@@ -277,7 +277,7 @@ void offer_run_options(CLI::App& command, const std::shared_ptr<RunOptions>& opt
       ->option_text("FILE");
   command
       .add_option("--occupants", options->occupants,
-                  "where everybody is and what they do, a row a window and person, " + tables)
+                  "where everybody is and what they do, a row a window and person, " + tables + "; of a shard a folder")
       ->option_text("FILE");
   offer_threads(command, options->threads);
   CLI::Option* shard =
