@@ -15,51 +15,50 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Which room and which of its days.
+std::pair<int, int> room_and_day(const RecipeSpec& recipe, std::uint32_t index) {
+  const int i = static_cast<int>(index);
+  return {i / recipe.days + 1, i % recipe.days + 1};
+}
+
+/// Drawn rooms as the text of their files, by number.
+using DrawnRooms = std::map<int, std::string>;
+
 /// Rooms as files of the dataset, which are what is simulated: whoever runs them again has the same.
 class Rooms {
  public:
-  struct Room {
-    SceneSpec scene;
-    std::optional<WrittenFile> file;  ///< of a drawn room
-  };
-  Rooms(const RecipeSpec& recipe, const fs::path& folder, const DatasetOptions& options)
-      : recipe_(recipe), folder_(folder), options_(options) {}
+  Rooms(const Store& store, const DrawnRooms& drawn) : store_(store), drawn_(drawn) {}
 
   std::shared_ptr<const Room> room(int number) {
     const std::lock_guard lock(mutex_);
-    if (const auto known = known_[number].lock()) return known;
-    auto room = std::make_shared<const Room>(read(number));
-    known_[number] = room;
+    std::shared_ptr<const Room> room = known_[number].lock();
+    if (!room) known_[number] = room = read(number);
+    newest_ = room;  // the next day is most likely one of this room
     return room;
   }
 
  private:
-  Room read(int number) const {
-    if (const fs::path own = own_scene(recipe_, number); !own.empty())
-      return {io::read_scene(own, options_.scenes), std::nullopt};
-    const fs::path file = room_file(folder_, number);
-    const std::string text = io::scene_text(room_of(recipe_, number, options_.scenes), Where{file.string()});
-    write_once(file, text);
-    const WrittenFile written{"rooms/" + file.filename().string(), text.size(), sha256(text)};
-    return {io::read_scene(file, options_.scenes), written};
+  [[nodiscard]] std::shared_ptr<const Room> read(int number) const {
+    if (const SceneSpec* own = store_.own_scene(number))
+      return std::make_shared<const Room>(number, *own, std::nullopt);
+    const std::string& text = drawn_.at(number);
+    write_once(store_.room_file(number), text);
+    return std::make_shared<const Room>(number, io::read_scene(store_.room_file(number), store_.scenes()),
+                                        WrittenFile{room_path(number), text.size(), sha256(text)});
   }
 
-  const RecipeSpec& recipe_;
-  const fs::path& folder_;
-  const DatasetOptions& options_;
+  const Store& store_;
+  const DrawnRooms& drawn_;
   std::mutex mutex_;
   std::map<int, std::weak_ptr<const Room>> known_;
+  std::shared_ptr<const Room> newest_;
 };
 
-/// The record last, so that a room-day with a record is whole.
-void write(const RoomDay& made, const fs::path& folder, const std::string& made_by) {
+void write(const RoomDay& made, const fs::path& folder) {
   for (const auto& [path, bytes] : made.contents) {
     make_folders((folder / path).parent_path());
     io::write_text_file(folder / path, bytes);
   }
-  const fs::path record = folder / record_path(made.record.room, made.record.day);
-  make_folders(record.parent_path());
-  io::write_text_file(record, to_json(made.record, made_by));
 }
 
 /// What lies where a dataset's files would be written; empty: nothing. The recipe itself may.
@@ -72,7 +71,10 @@ fs::path first_in_the_way(const RecipeSpec& recipe, const fs::path& folder) {
   return fs::exists(there) && io::read_text_file(there) != recipe.text ? there : fs::path();
 }
 
-void claim_folder(const RecipeSpec& recipe, const fs::path& folder, const std::string& made_by) {
+void claim_folder(const Store& store) {
+  const RecipeSpec& recipe = store.recipe();
+  const fs::path& folder = store.folder();
+  const std::string& made_by = store.provenance();
   make_folders(folder);
   const fs::path in_the_way = first_in_the_way(recipe, folder);  // before the next look: another shard may claim now
   const fs::path file = folder / "provenance.txt";
@@ -92,40 +94,52 @@ void claim_folder(const RecipeSpec& recipe, const fs::path& folder, const std::s
 }
 
 /// Throws for a room that can't be drawn and for what a room lacks, before hours of work on others.
-void check_rooms(const RecipeSpec& recipe, const std::vector<std::uint32_t>& wanted, const DatasetOptions& options) {
+DrawnRooms draw_and_check(const Store& store, const std::vector<std::uint32_t>& wanted, const DatasetOptions& options) {
+  const RecipeSpec& recipe = store.recipe();
   std::vector<int> rooms;
   for (const std::uint32_t i : wanted) {
     const int room = room_and_day(recipe, i).first;
     if (rooms.empty() || rooms.back() != room) rooms.push_back(room);
   }
+  const auto check = [&](const SceneSpec& scene, int room) {
+    try {
+      static_cast<void>(compile(scene, script_of(recipe, scene, room, 1)));
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::infeasible) throw;  // which is a day without rows
+    }
+  };
+  DrawnRooms drawn;
+  std::size_t n_checked = 0;
   begin(options.observer, DatasetObserver::Stage::checking_rooms, rooms.size());
-  ordered_parallel<bool>(
+  ordered_parallel<std::string>(
       rooms.size(), options.threads,
       [&](std::size_t i) {
-        const SceneSpec scene = room_of(recipe, rooms[i], options.scenes);
-        try {
-          static_cast<void>(compile(scene, script_of(recipe, scene, rooms[i], 1)));
-        } catch (const Error& error) {
-          if (error.code() != ErrorCode::infeasible) throw;  // which is a day without rows
-        }
-        return true;
+        const SceneSpec* own = store.own_scene(rooms[i]);
+        const SceneSpec scene = own != nullptr ? *own : room_of(recipe, rooms[i], store.scenes());
+        check(scene, rooms[i]);
+        return own != nullptr ? std::string{} : io::scene_text(scene, Where{store.room_file(rooms[i]).string()});
       },
-      [&](bool&) { done_one(options.observer); }, options.goes_on);
+      [&](std::string& text) {
+        drawn.emplace(rooms[n_checked++], std::move(text));
+        done_one(options.observer);
+      },
+      options.goes_on);
+  return drawn;
 }
 
 /// Of the shard, by index. Contents are read, since nobody will notice an altered row later.
-std::vector<std::uint32_t> wanted_room_days(const RecipeSpec& recipe, const fs::path& folder,
-                                            const std::string& made_by, const DatasetOptions& options) {
-  const RunRange range = runs_of(options.shard.value_or(Shard{}), recipe.n_room_days());
+std::vector<std::uint32_t> wanted_room_days(const Store& store, const DatasetOptions& options) {
+  const RunRange range = runs_of(options.shard.value_or(Shard{}), store.recipe().n_room_days());
+  const bool resumes = options.start == DatasetOptions::Start::resume;
+  const auto records = resumes ? store.records() : std::map<std::uint32_t, RoomDayRecord>{};
   std::vector<std::uint32_t> wanted;
   std::uint32_t next = range.first;
-  const bool resumes = options.start == DatasetOptions::Start::resume;
   begin(options.observer, DatasetObserver::Stage::looking_for_days, range.count());
   ordered_parallel<bool>(
       range.count(), options.threads,
       [&](std::size_t i) {
-        const auto index = range.first + static_cast<std::uint32_t>(i);
-        return resumes && whole_record(recipe, folder, index, made_by, Look::contents).has_value();
+        const auto found = records.find(range.first + static_cast<std::uint32_t>(i));
+        return found != records.end() && store.is_whole(found->second, Look::contents);
       },
       [&](bool& is_there) {
         if (!is_there) wanted.push_back(next);
@@ -139,14 +153,14 @@ std::vector<std::uint32_t> wanted_room_days(const RecipeSpec& recipe, const fs::
 }  // namespace
 
 bool make_room_days(const RecipeSpec& recipe, const fs::path& folder, const DatasetOptions& options) {
-  const std::string made_by = provenance(recipe, options.scenes);
-  const std::vector<std::string> columns = sensor_columns(recipe, options.scenes);
-  const std::vector<std::uint32_t> wanted = wanted_room_days(recipe, folder, made_by, options);
-  check_rooms(recipe, wanted, options);
+  const Store store(recipe, folder, options.scenes);
+  const std::vector<std::uint32_t> wanted = wanted_room_days(store, options);
+  const DrawnRooms drawn = draw_and_check(store, wanted, options);
   if (options.goes_on && !options.goes_on()) return false;  // not all of them was looked at
-  claim_folder(recipe, folder, made_by);                    // not by a recipe that can't be followed
-  const AtWork at_work(folder, options.shard);
-  Rooms rooms(recipe, folder, options);
+  claim_folder(store);                                      // not by a recipe that can't be followed
+  io::Journal journal = store.open_journal(options.shard, options.start);
+  std::mutex of_journal;
+  Rooms rooms(store, drawn);
   struct Made {
     RoomDayRecord record;
     std::string lack;
@@ -159,10 +173,11 @@ bool make_room_days(const RecipeSpec& recipe, const fs::path& folder, const Data
       [&](std::size_t i) {
         const auto [room, day] = room_and_day(recipe, wanted[i]);
         const auto in = rooms.room(room);
-        RoomDay made = simulate(recipe, in->scene, columns, room, day);
-        made.record.scene = in->file;
-        write(made, folder, made_by);
-        return Made{made.record, lack_of_people(recipe, in->scene, room)};
+        const RoomDay made = simulate(recipe, *in, day, store.sensor_columns());
+        write(made, folder);
+        const std::lock_guard lock(of_journal);
+        journal.add(to_json(made.record));  // last: what the journal names is whole
+        return Made{made.record, lack_of_people(recipe, in->scene(), room)};
       },
       [&](Made& made) {
         const RoomDayRecord& record = made.record;
@@ -184,10 +199,12 @@ bool make_room_days(const RecipeSpec& recipe, const fs::path& folder, const Data
 
 std::vector<std::uint32_t> missing_room_days(const RecipeSpec& recipe, const fs::path& folder,
                                              const io::SceneOptions& options) {
-  const std::string made_by = provenance(recipe, options);
+  const Store store(recipe, folder, options);
+  const auto records = store.records();
   std::vector<std::uint32_t> missing;
   for (std::uint32_t i = 0; i < recipe.n_room_days(); ++i) {
-    if (!whole_record(recipe, folder, i, made_by, Look::sizes)) missing.push_back(i);
+    const auto found = records.find(i);
+    if (found == records.end() || !store.is_whole(found->second, Look::sizes)) missing.push_back(i);
   }
   return missing;
 }

@@ -19,44 +19,45 @@ namespace fs = std::filesystem;
 constexpr int most_pictures = 6;
 
 /// What was written differs from what is there, though it may be as long.
-void require_written(const fs::path& folder, const RoomDayRecord& record) {
+void require_written(const Store& store, const RoomDayRecord& record) {
   for (const WrittenFile& file : record.files) {
-    if (!is_whole(folder, file, Look::contents))
-      throw Error(ErrorCode::input, Where{(folder / file.path).string()},
+    if (!store.is_whole(file, Look::contents))
+      throw Error(ErrorCode::input, Where{(store.folder() / file.path).string()},
                   "isn't what was written: remove it and make it anew with --resume");
   }
-  if (record.scene && !is_whole(folder, *record.scene, Look::contents))
+  if (record.scene && !store.is_whole(*record.scene, Look::contents))
     throw Error(
-        ErrorCode::input, Where{(folder / record.scene->path).string()},
+        ErrorCode::input, Where{(store.folder() / record.scene->path).string()},
         "isn't there or isn't the room that the rows were made of: move it away, and make it anew with --resume");
 }
 
-/// Those that were read until it was stopped.
-std::vector<RoomDayRecord> read_records(const RecipeSpec& recipe, const fs::path& folder, const std::string& made_by,
-                                        const DatasetOptions& options) {
-  using Found = std::optional<RoomDayRecord>;
-  std::vector<RoomDayRecord> records;
-  std::uint32_t missing = 0;
-  ordered_parallel<Found>(
-      recipe.n_room_days(), options.threads,
+/// Those that were looked at until it was stopped.
+std::vector<RoomDayRecord> whole_records(const Store& store, const DatasetOptions& options) {
+  auto found = store.records();
+  std::vector<RoomDayRecord> whole;
+  std::uint32_t missing = 0, next = 0;
+  ordered_parallel<bool>(
+      store.recipe().n_room_days(), options.threads,
       [&](std::size_t i) {
-        Found record = whole_record(recipe, folder, static_cast<std::uint32_t>(i), made_by, Look::sizes);
-        if (record) require_written(folder, *record);
-        return record;
+        const auto record = found.find(static_cast<std::uint32_t>(i));
+        if (record == found.end() || !store.is_whole(record->second, Look::sizes)) return false;
+        require_written(store, record->second);
+        return true;
       },
-      [&](Found& record) {
-        if (record)
-          records.push_back(std::move(*record));
+      [&](bool& is_there) {
+        const std::uint32_t index = next++;
+        if (is_there)
+          whole.push_back(found.at(index));
         else
           ++missing;
       },
       options.goes_on);
   if (missing > 0) {
-    throw Error(ErrorCode::input, Where{folder.string()},
-                std::to_string(missing) + " of " + std::to_string(recipe.n_room_days()) +
+    throw Error(ErrorCode::input, Where{store.folder().string()},
+                std::to_string(missing) + " of " + std::to_string(store.recipe().n_room_days()) +
                     " room-days aren't there yet, or are of another recipe or build: make them with --resume");
   }
-  return records;
+  return whole;
 }
 
 /// As it is before anybody comes. Beams would cover it: a sensor has hundreds.
@@ -72,14 +73,13 @@ void draw_room_picture(const RecipeSpec& recipe, const SceneSpec& scene, int roo
   io::write_png(file, image.width, image.height, image.rgb);
 }
 
-DescribedRoom described_room(const RecipeSpec& recipe, const fs::path& folder, int number,
-                             const io::SceneOptions& options) {
+DescribedRoom described_room(const Store& store, int number) {
   DescribedRoom room;
   room.number = number;
-  const fs::path own = own_scene(recipe, number);
-  if (own.empty()) room.kind = group_of(recipe, number).rooms.kind;
-  room.scene_file = own.empty() ? "rooms/" + room_name(number) + ".gltf" : own.filename().string();
-  room.scene = io::read_scene(own.empty() ? room_file(folder, number) : own, options);
+  const SceneSpec* own = store.own_scene(number);
+  if (own == nullptr) room.kind = group_of(store.recipe(), number).rooms.kind;
+  room.scene_file = own == nullptr ? room_path(number) : own_scene(store.recipe(), number).filename().string();
+  room.scene = own == nullptr ? io::read_scene(store.room_file(number), store.scenes()) : *own;
   return room;
 }
 
@@ -101,14 +101,14 @@ void write_energyplus(const Description& described, const fs::path& folder) {
 
 bool finish_dataset(const RecipeSpec& recipe, const fs::path& folder, const DatasetOptions& options) {
   const auto is_stopped = [&] { return options.goes_on && !options.goes_on(); };
-  Description described{
-      recipe, provenance(recipe, options.scenes), sensor_columns(recipe, options.scenes), {}, {}, parts_of(recipe), {}};
-  described.days = read_records(recipe, folder, described.provenance, options);
+  const Store store(recipe, folder, options.scenes);
+  Description described{recipe, store.provenance(), store.sensor_columns(), {}, {}, parts_of(recipe), {}};
+  described.days = whole_records(store, options);
   begin(options.observer, DatasetObserver::Stage::describing_rooms, static_cast<std::size_t>(recipe.n_rooms()));
   for (int number = 1; number <= recipe.n_rooms(); ++number) {
     if (is_stopped()) return false;
     done_one(options.observer);
-    DescribedRoom room = described_room(recipe, folder, number, options.scenes);
+    DescribedRoom room = described_room(store, number);
     const auto first = static_cast<std::size_t>((number - 1) * recipe.days);
     room.part = described.parts[first];
     room.staff = described.days[first].staff;
@@ -126,6 +126,7 @@ bool finish_dataset(const RecipeSpec& recipe, const fs::path& folder, const Data
     write_energyplus(described, folder);
   io::write_text_file(folder / "README.md", readme(described));
   io::write_text_file(folder / "datapackage.json", data_package(described, drawn));
+  store.join_journals(described.days);
   return true;
 }
 

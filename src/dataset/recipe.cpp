@@ -153,25 +153,6 @@ SceneSpec room_of(const RecipeSpec& recipe, int number, const io::SceneOptions& 
   return draw_room(group.rooms, recipe.seed, number, options).scene;
 }
 
-std::vector<std::string> sensor_columns(const RecipeSpec& recipe, const io::SceneOptions& options) {
-  int most = 0;
-  for (const RoomGroupSpec& group : recipe.rooms) {
-    int sensors = 0;
-    for (const SensorGroupSpec& sensor : group.rooms.sensors) sensors += sensor.count.most;
-    if (group.scenes.empty()) most = std::max(most, sensors);
-  }
-  std::vector<std::string> columns;
-  for (int i = 1; i <= most; ++i) columns.push_back("PIR" + std::to_string(i));
-  for (const RoomGroupSpec& group : recipe.rooms) {
-    for (const auto& file : group.scenes) {
-      for (const SensorSpec& sensor : io::read_scene(file, options).sensors) {
-        if (std::ranges::find(columns, sensor.id) == columns.end()) columns.push_back(sensor.id);
-      }
-    }
-  }
-  return columns;
-}
-
 std::vector<Part> parts_of(const RecipeSpec& recipe) {
   const int n = recipe.n_rooms();
   const int validation = share_of(recipe.split.validation_rooms, n), test = share_of(recipe.split.test_rooms, n);
@@ -238,15 +219,22 @@ std::string name_of(Part part) {
   return {};
 }
 
+std::uint32_t index_of(const RecipeSpec& recipe, int room, int day) {
+  return static_cast<std::uint32_t>((room - 1) * recipe.days + day - 1);
+}
+
 std::string room_name(int room) {
   std::array<char, 24> text{};
   std::snprintf(text.data(), text.size(), "room_%04d", room);
   return text.data();
 }
-std::string day_name(int day) {
-  std::array<char, 24> text{};
-  std::snprintf(text.data(), text.size(), "day_%02d", day);
-  return text.data();
+
+std::string room_path(int room) { return "rooms/" + room_name(room) + ".gltf"; }
+
+std::string day_path(const std::string& folder, int room, int day, const std::string& ending) {
+  std::array<char, 24> name{};
+  std::snprintf(name.data(), name.size(), "day_%02d", day);
+  return folder + '/' + room_name(room) + '/' + name.data() + ending;
 }
 
 }  // namespace pirsim::dataset

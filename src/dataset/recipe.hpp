@@ -8,9 +8,6 @@ namespace pirsim::dataset {
 [[nodiscard]] const RoomGroupSpec& group_of(const RecipeSpec& recipe, int room);
 /// The user's own file, or empty for a drawn room.
 [[nodiscard]] std::filesystem::path own_scene(const RecipeSpec& recipe, int room);
-/// Names of the columns of sensors in all rows: PIR1, PIR2, ... as many as a drawn room may have, and the ids of the
-/// user's own scenes that aren't among them. Reads those scenes.
-[[nodiscard]] std::vector<std::string> sensor_columns(const RecipeSpec& recipe, const io::SceneOptions& options);
 /// The study of one room on one of its days (from 1): replicate `day` of it is that day. Throws Error(input) for what
 /// doesn't fit the scene.
 [[nodiscard]] ScriptSpec script_of(const RecipeSpec& recipe, const SceneSpec& scene, int room, int day);
@@ -20,6 +17,11 @@ namespace pirsim::dataset {
 
 [[nodiscard]] std::string name_of(Part part);   ///< "test_days"
 [[nodiscard]] std::string room_name(int room);  ///< "room_0003"
-[[nodiscard]] std::string day_name(int day);    ///< "day_01"
+// Relative to the dataset's folder.
+[[nodiscard]] std::string room_path(int room);  ///< "rooms/room_0003.gltf"
+/// "rows/room_0003/day_01.csv"
+[[nodiscard]] std::string day_path(const std::string& folder, int room, int day, const std::string& ending);
+/// Of a room-day, room by room.
+[[nodiscard]] std::uint32_t index_of(const RecipeSpec& recipe, int room, int day);
 
 }  // namespace pirsim::dataset

@@ -62,16 +62,14 @@ class DayWriter {
   void write(const RunResult& result) {
     const Movements moved = movements(result);
     note(result, moved);
-    add(rows_path(recipe_, room_, day_), rows(result.samples, moved));
-    if (recipe_.occupants == Occupants::told)
-      add("occupants/" + room_name(room_) + '/' + day_name(day_) + recipe_.ending, occupants(result.occupants));
-    const std::string where = '/' + room_name(room_) + '/' + day_name(day_);
+    add(path("rows", recipe_.ending), rows(result.samples, moved));
+    if (recipe_.occupants == Occupants::told) add(path("occupants", recipe_.ending), occupants(result.occupants));
     for (const Export shape : recipe_.exports) {
       if (shape == Export::uci864) {
         const int n_rows = rows_per_reading(recipe_.sensing).value();
-        add("exports/uci864" + where + ".csv", to_uci864(readings(result.samples, n_rows), sensors_));
+        add(path("exports/uci864", ".csv"), to_uci864(readings(result.samples, n_rows), sensors_));
       }
-      if (shape == Export::casas) add("exports/casas" + where + ".txt", to_casas(result.samples, sensors_));
+      if (shape == Export::casas) add(path("exports/casas", ".txt"), to_casas(result.samples, sensors_));
     }
   }
 
@@ -82,6 +80,10 @@ class DayWriter {
   }
 
  private:
+  [[nodiscard]] std::string path(const std::string& folder, const std::string& ending) const {
+    return day_path(folder, room_, day_, ending);
+  }
+
   [[nodiscard]] double window_s() const {
     return static_cast<double>(recipe_.sensing.ticks_per_window) / recipe_.sensing.tick_rate_hz;
   }
@@ -150,30 +152,30 @@ class DayWriter {
   std::vector<int> sensor_of_column_;  ///< -1: the room has no such sensor
 };
 
-std::string script_path(int room, int day) { return "scripts/" + room_name(room) + '/' + day_name(day) + ".yaml"; }
-
 }  // namespace
 
-std::string rows_path(const RecipeSpec& recipe, int room, int day) {
-  return "rows/" + room_name(room) + '/' + day_name(day) + recipe.ending;
+Model Room::model(ScriptSpec script) const {
+  const std::lock_guard lock(mutex_);
+  Model model = compile(scene_, std::move(script), {.like = first_ ? &*first_ : nullptr});
+  if (!first_) first_ = model;
+  return model;
 }
-std::string record_path(int room, int day) { return "rows/" + room_name(room) + '/' + day_name(day) + ".json"; }
 
-RoomDay simulate(const RecipeSpec& recipe, const SceneSpec& scene, const std::vector<std::string>& sensor_columns,
-                 int room, int day) {
+RoomDay simulate(const RecipeSpec& recipe, const Room& room, int day, const std::vector<std::string>& sensor_columns) {
   RoomDay made;
   RoomDayRecord& record = made.record;
-  record.room = room;
+  record.room = room.number();
   record.day = day;
-  const ScheduleSpec& schedule = group_of(recipe, room).schedule;
+  record.scene = room.file();
+  ScriptSpec script = script_of(recipe, room.scene(), room.number(), day);
+  const ScheduleSpec& schedule = *script.trials.front().schedule;
   record.date = clock_text(day_number(schedule.first_day, schedule.where) + day - 1, 0.0).substr(0, 10);
-  ScriptSpec script = script_of(recipe, scene, room, day);
-  for (const StaffSpec& staff : script.trials.front().schedule->staff) record.staff += staff.count;
+  for (const StaffSpec& staff : schedule.staff) record.staff += staff.count;
   record.effects = script.effects;
-  DayWriter writer(recipe, scene, sensor_columns, made);
+  DayWriter writer(recipe, room.scene(), sensor_columns, made);
   const std::string script_text = io::to_yaml(script);
   try {
-    const Model model = compile(scene, std::move(script));
+    const Model model = room.model(std::move(script));
     const RunResult result =
         run_once(model, static_cast<std::uint32_t>(day - 1), Record::samples, Trace::none, Occupants::told);
     if (result.fault) {
@@ -185,7 +187,7 @@ RoomDay simulate(const RecipeSpec& recipe, const SceneSpec& scene, const std::ve
     if (error.code() != ErrorCode::infeasible) throw;
     record.fault = error.what();
   }
-  if (record.fault.empty()) writer.add(script_path(room, day), script_text);
+  if (record.fault.empty()) writer.add(day_path("scripts", room.number(), day, ".yaml"), script_text);
   return made;
 }
 
@@ -215,13 +217,12 @@ WrittenFile file_from_json(const json& file) { return {file.at("path"), file.at(
 
 }  // namespace
 
-std::string to_json(const RoomDayRecord& r, const std::string& made_by) {
+std::string to_json(const RoomDayRecord& r) {
   json effects = json::array(), files = json::array();
   for (const EffectSpec& effect : r.effects)
     effects.push_back({{"name", effect.name}, {"parameters", effect.parameters}, {"choices", effect.choices}});
   for (const WrittenFile& file : r.files) files.push_back(file_to_json(file));
-  json document{{"made_by", made_by},
-                {"room", r.room},
+  json document{{"room", r.room},
                 {"day", r.day},
                 {"date", r.date},
                 {"rows", r.rows},
@@ -239,16 +240,12 @@ std::string to_json(const RoomDayRecord& r, const std::string& made_by) {
                 {"files", files},
                 {"fault", r.fault}};
   if (r.scene) document["scene"] = file_to_json(*r.scene);
-  document["record_sha256"] = sha256(document.dump());
-  return document.dump(1) + '\n';
+  return document.dump();
 }
 
-std::pair<RoomDayRecord, std::string> record_from_json(const std::string& text, const std::string& name) {
+RoomDayRecord record_from_json(const std::string& text, const std::string& name) {
   try {
-    json d = json::parse(text);
-    const std::string digest = d.at("record_sha256");
-    d.erase("record_sha256");
-    if (sha256(d.dump()) != digest) throw Error(ErrorCode::input, Where{name}, "isn't what pirsim wrote");
+    const json d = json::parse(text);
     RoomDayRecord r;
     r.room = d.at("room");
     r.day = d.at("day");
@@ -273,9 +270,9 @@ std::pair<RoomDayRecord, std::string> record_from_json(const std::string& text, 
     for (const json& f : d.at("files")) r.files.push_back(file_from_json(f));
     if (d.contains("scene")) r.scene = file_from_json(d.at("scene"));
     r.fault = d.at("fault");
-    return {std::move(r), d.at("made_by").get<std::string>()};
+    return r;
   } catch (const json::exception& fault) {
-    throw Error(ErrorCode::input, Where{name}, std::string("isn't what pirsim writes beside rows: ") + fault.what());
+    throw Error(ErrorCode::input, Where{name}, std::string("isn't what pirsim writes of a room-day: ") + fault.what());
   }
 }
 

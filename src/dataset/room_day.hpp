@@ -4,8 +4,10 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dataset/recipe.hpp"
@@ -26,7 +28,7 @@ struct MotionCount {
   std::uint64_t all = 0, with_motion = 0;
 };
 
-/// What stands beside the rows, in `<rows>.json`: all that the description needs of them.
+/// What a journal says of a room-day: all that the description needs of it.
 struct RoomDayRecord {
   int room = 0, day = 0;
   std::string date;  ///< ISO 8601
@@ -47,16 +49,34 @@ struct RoomDay {
   std::map<std::string, std::string> contents;  ///< of record.files, by path
 };
 
+/// A room, which its days share: what was compiled for one of them isn't compiled again for the others.
+class Room {
+ public:
+  /// `file`: of a drawn room.
+  Room(int number, SceneSpec scene, std::optional<WrittenFile> file)
+      : number_(number), scene_(std::move(scene)), file_(std::move(file)) {}
+
+  [[nodiscard]] int number() const noexcept { return number_; }
+  [[nodiscard]] const SceneSpec& scene() const noexcept { return scene_; }
+  [[nodiscard]] const std::optional<WrittenFile>& file() const noexcept { return file_; }
+  /// From any thread.
+  [[nodiscard]] Model model(ScriptSpec script) const;
+
+ private:
+  int number_;
+  SceneSpec scene_;
+  std::optional<WrittenFile> file_;
+  mutable std::mutex mutex_;
+  mutable std::optional<Model> first_;
+};
+
 /// Simulates it and writes nothing. What makes a day impossible (a place that can't be reached) is the record's fault.
-[[nodiscard]] RoomDay simulate(const RecipeSpec& recipe, const SceneSpec& scene,
-                               const std::vector<std::string>& sensor_columns, int room, int day);
+[[nodiscard]] RoomDay simulate(const RecipeSpec& recipe, const Room& room, int day,
+                               const std::vector<std::string>& sensor_columns);
 
-[[nodiscard]] std::string to_json(const RoomDayRecord& record, const std::string& made_by);
-/// The record, and what made it. Throws Error(input), also for a record of which a letter was altered.
-[[nodiscard]] std::pair<RoomDayRecord, std::string> record_from_json(const std::string& text, const std::string& name);
-
-/// Relative to the dataset's folder.
-[[nodiscard]] std::string rows_path(const RecipeSpec& recipe, int room, int day);
-[[nodiscard]] std::string record_path(int room, int day);
+/// In one line.
+[[nodiscard]] std::string to_json(const RoomDayRecord& record);
+/// Throws Error(input).
+[[nodiscard]] RoomDayRecord record_from_json(const std::string& text, const std::string& name);
 
 }  // namespace pirsim::dataset

@@ -7,6 +7,7 @@
 #include "dataset/furnish.hpp"
 #include "pirsim/version.hpp"
 #include "schema/fingerprint.hpp"
+#include "studies/campaign.hpp"
 
 namespace pirsim::dataset {
 
@@ -37,16 +38,15 @@ void add_sensors(Fingerprint& print, const RoomGroupSpec& group, const io::Scene
   }
 }
 
-}  // namespace
-
-std::string provenance(const RecipeSpec& recipe, const io::SceneOptions& options) {
+std::string provenance_of(const RecipeSpec& recipe, const std::map<fs::path, SceneSpec>& own_scenes,
+                          const io::SceneOptions& options) {
   std::string text = "recipe " + sha256(recipe.text);
   Fingerprint print;
   for (const RoomGroupSpec& group : recipe.rooms) {
-    for (const fs::path& scene : group.scenes) {
-      const SceneSpec read = io::read_scene(scene, options);
-      text += ", " + scene.filename().string() + ' ' + read.files.front().sha256;
-      print.add(read);
+    for (const fs::path& file : group.scenes) {
+      const SceneSpec& scene = own_scenes.at(file);
+      text += ", " + file.filename().string() + ' ' + scene.files.front().sha256;
+      print.add(scene);
     }
     if (group.scenes.empty()) add_sensors(print, group, options);
   }
@@ -54,37 +54,108 @@ std::string provenance(const RecipeSpec& recipe, const io::SceneOptions& options
          compiler();
 }
 
-std::pair<int, int> room_and_day(const RecipeSpec& recipe, std::uint32_t index) {
-  const int i = static_cast<int>(index);
-  return {i / recipe.days + 1, i % recipe.days + 1};
+std::vector<std::string> sensor_columns_of(const RecipeSpec& recipe, const std::map<fs::path, SceneSpec>& own_scenes) {
+  int most = 0;
+  for (const RoomGroupSpec& group : recipe.rooms) {
+    int sensors = 0;
+    for (const SensorGroupSpec& sensor : group.rooms.sensors) sensors += sensor.count.most;
+    if (group.scenes.empty()) most = std::max(most, sensors);
+  }
+  std::vector<std::string> columns;
+  for (int i = 1; i <= most; ++i) columns.push_back("PIR" + std::to_string(i));
+  for (const RoomGroupSpec& group : recipe.rooms) {
+    for (const fs::path& file : group.scenes) {
+      for (const SensorSpec& sensor : own_scenes.at(file).sensors) {
+        if (std::ranges::find(columns, sensor.id) == columns.end()) columns.push_back(sensor.id);
+      }
+    }
+  }
+  return columns;
 }
 
-fs::path room_file(const fs::path& folder, int room) { return folder / "rooms" / (room_name(room) + ".gltf"); }
+constexpr const char* journal_ending = ".journal";
 
-bool is_whole(const fs::path& folder, const WrittenFile& written, Look look) {
-  const fs::path file = folder / written.path;
+/// Of a whole dataset, or of one shard.
+std::string journal_name(const std::optional<Shard>& shard) {
+  return (shard ? studies::shard_name(*shard) : "dataset") + journal_ending;
+}
+
+}  // namespace
+
+Store::Store(const RecipeSpec& recipe, fs::path folder, const io::SceneOptions& scenes)
+    : recipe_(recipe), folder_(std::move(folder)), scenes_(scenes) {
+  for (const RoomGroupSpec& group : recipe.rooms) {
+    for (const fs::path& file : group.scenes) {
+      if (!own_scenes_.contains(file)) own_scenes_.emplace(file, io::read_scene(file, scenes_));
+    }
+  }
+  provenance_ = provenance_of(recipe_, own_scenes_, scenes_);
+  sensor_columns_ = sensor_columns_of(recipe_, own_scenes_);
+}
+
+const SceneSpec* Store::own_scene(int room) const {
+  const fs::path file = dataset::own_scene(recipe_, room);
+  return file.empty() ? nullptr : &own_scenes_.at(file);
+}
+
+bool Store::is_whole(const WrittenFile& written, Look look) const {
+  const fs::path file = folder_ / written.path;
   std::error_code fault;
   if (!fs::is_regular_file(file, fault) || fs::file_size(file, fault) != written.bytes || fault) return false;
   return look == Look::sizes || hash_of(file) == written.sha256;
 }
 
-std::optional<RoomDayRecord> whole_record(const RecipeSpec& recipe, const fs::path& folder, std::uint32_t index,
-                                          const std::string& made_by, Look look) {
-  const auto [room, day] = room_and_day(recipe, index);
-  const fs::path file = folder / record_path(room, day);
-  std::error_code fault;
-  if (!fs::is_regular_file(file, fault)) return std::nullopt;
-  try {
-    auto [record, by] = record_from_json(io::read_text_file(file), file.string());
-    if (by != made_by || record.room != room || record.day != day) return std::nullopt;
-    const auto is_there = [&](const WrittenFile& written) { return is_whole(folder, written, look); };
-    if (!std::ranges::all_of(record.files, is_there)) return std::nullopt;
-    if (look == Look::contents && record.scene && !is_there(*record.scene)) return std::nullopt;
-    return std::move(record);
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::input) throw;
-    return std::nullopt;  // torn: made again
+bool Store::is_whole(const RoomDayRecord& record, Look look) const {
+  const auto is_there = [&](const WrittenFile& written) { return is_whole(written, look); };
+  return std::ranges::all_of(record.files, is_there) &&
+         (look == Look::sizes || !record.scene || is_there(*record.scene));
+}
+
+std::vector<fs::path> Store::journals() const {
+  std::vector<fs::path> files;
+  std::error_code fault;  // of a folder that isn't there yet
+  for (const auto& entry : fs::directory_iterator(folder_, fault)) {
+    if (entry.path().extension() == journal_ending) files.push_back(entry.path());
   }
+  std::ranges::sort(files);
+  return files;
+}
+
+std::map<std::uint32_t, RoomDayRecord> Store::records() const {
+  std::map<std::uint32_t, RoomDayRecord> records;
+  for (const fs::path& file : journals()) {
+    const auto journal = io::Journal::read(file);
+    if (!journal || journal->made_from != provenance_) continue;
+    for (const std::string& piece : journal->pieces) {
+      RoomDayRecord record = record_from_json(piece, file.string());
+      const std::uint32_t index = index_of(recipe_, record.room, record.day);
+      records.insert_or_assign(index, std::move(record));
+    }
+  }
+  return records;
+}
+
+io::Journal Store::open_journal(const std::optional<Shard>& shard, DatasetOptions::Start start) const {
+  const fs::path file = folder_ / journal_name(shard);
+  io::Journal journal(file);
+  const auto found = start == DatasetOptions::Start::resume ? io::Journal::read(file) : std::nullopt;
+  if (found && found->made_from == provenance_) {
+    journal.resume(*found);
+  } else {
+    journal.begin(provenance_);
+  }
+  return journal;
+}
+
+void Store::join_journals(const std::vector<RoomDayRecord>& records) const {
+  std::vector<io::Journal> open;  // so that nobody adds to one meanwhile
+  const fs::path whole = folder_ / journal_name({});
+  std::vector<io::Journal> parts;
+  for (const fs::path& file : journals()) (file == whole ? open : parts).emplace_back(file);
+  io::Journal::Content all{provenance_, {}};
+  for (const RoomDayRecord& record : records) all.pieces.push_back(to_json(record));
+  io::write_text_file(whole, io::Journal::text(all));
+  for (io::Journal& part : parts) part.remove();
 }
 
 void begin(const DatasetObserver& observer, DatasetObserver::Stage stage, std::size_t total) {
@@ -105,25 +176,6 @@ void write_once(const fs::path& file, const std::string& text) {
   if (io::write_once(file, text)) return;
   throw Error(ErrorCode::input, Where{file.string()},
               "isn't what this recipe makes: move it away, or name another folder");
-}
-
-namespace {
-
-fs::path lock_path(const fs::path& folder, const std::optional<Shard>& shard) {
-  if (!shard) return folder / "at_work.lock";
-  return folder / ("at_work_" + std::to_string(shard->index) + "_of_" + std::to_string(shard->count) + ".lock");
-}
-
-}  // namespace
-
-AtWork::AtWork(const fs::path& folder, const std::optional<Shard>& shard)
-    : path_(lock_path(folder, shard)), file_(path_, io::PosixFile::Mode::append) {
-  file_.lock();
-}
-
-AtWork::~AtWork() {
-  std::error_code ignored;
-  fs::remove(path_, ignored);
 }
 
 }  // namespace pirsim::dataset

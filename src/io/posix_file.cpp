@@ -42,7 +42,14 @@ PosixFile::PosixFile(std::filesystem::path path, Mode mode) : path_(std::move(pa
   is_regular_ = ::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode);
 }
 
-PosixFile::~PosixFile() { ::close(descriptor_); }
+PosixFile::PosixFile(PosixFile&& other) noexcept
+    : path_(std::move(other.path_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      is_regular_(other.is_regular_) {}
+
+PosixFile::~PosixFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
 
 void PosixFile::require_own() const {
   struct stat status {};

@@ -21,6 +21,7 @@ class PosixFile {
   /// Throws Error(io).
   PosixFile(std::filesystem::path path, Mode mode);
   ~PosixFile();
+  PosixFile(PosixFile&& other) noexcept;
   PosixFile(const PosixFile&) = delete;
   PosixFile& operator=(const PosixFile&) = delete;
 

@@ -100,7 +100,7 @@ struct Made {
     return missing_room_days(recipe, out(), shipped_sensors());
   }
   [[nodiscard]] fs::path day(const std::string& kind, int room, int day, const std::string& ending) const {
-    return out() / kind / room_name(room) / (day_name(day) + ending);
+    return out() / day_path(kind, room, day, ending);
   }
 };
 
@@ -120,18 +120,19 @@ TEST_CASE("threads, shards and resuming change no byte of a dataset", "[dataset]
   const Made one, other;
   one.make(one.options());
   one.finish();
-  auto second = other.options(2), first = other.options(2);
+  auto second = other.options(2), first = other.options(1);
   second.shard = Shard{2, 2};
   first.shard = Shard{1, 2};
   other.make(second);
   CHECK(other.missing().size() == 6);
   CHECK_THROWS_WITH(other.finish(), contains("6 of 12 room-days"));
   other.make(first);
-  // Torn in three ways: a lost record, a record that broke off, and lost rows.
-  fs::remove(other.day("rows", 1, 2, ".json"));
-  fs::resize_file(other.day("rows", 2, 1, ".json"), 100);
+  // Torn: a line that broke off, and rows that were lost of two days.
+  const fs::path journal = other.out() / "shard-0001-of-0002.journal";
+  fs::resize_file(journal, fs::file_size(journal) - 100);  // of room 2, day 3
+  fs::remove(other.day("rows", 1, 2, ".csv.gz"));
   fs::remove(other.day("rows", 3, 3, ".csv.gz"));
-  CHECK(other.missing() == std::vector<std::uint32_t>{1, 3, 8});
+  CHECK(other.missing() == std::vector<std::uint32_t>{1, 5, 8});
   auto again = other.options(2);
   again.start = DatasetOptions::Start::resume;
   std::uint32_t made = 0;
