@@ -31,9 +31,11 @@ double write_film(const Model& model, FilmRequest film, const ExportOptions& opt
       std::min(film.to_s.value_or(std::numeric_limits<double>::max()), trial.duration_s.value_or(0.0));
   require_usual(size, known_end_s - from_s, options.size);
   Progress progress({"simulating and filming", 1, "runs", known_end_s}, verbosity);
+  const StopRequest stop;
   double so_far_s = 0.0;
   film.simulated = [&](double seconds) {
     progress.simulated(seconds);
+    stop.throw_if_made();
     require_usual(size, (so_far_s += seconds) - from_s, options.size);
   };
   return export_run(options.output, model, film);

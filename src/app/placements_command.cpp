@@ -19,7 +19,11 @@ void placements(const Inputs& inputs, unsigned threads) {
   std::optional<Progress> progress;
   const auto n_tried = static_cast<std::uint64_t>(spec.search ? spec.search->evaluations : 0);
   progress.emplace(Work{"scoring sets of sensors", spec.sets.size() + n_tried, "sets"}, inputs.verbosity);
-  options.set_done = [&] { progress->finished(); };
+  const StopRequest stop;
+  options.set_done = [&] {
+    progress->finished();
+    stop.throw_if_made();
+  };
   const PlacementReport report = run_placements(std::move(scene), spec, options);
   progress.reset();
   tell(report.warnings, inputs.verbosity);

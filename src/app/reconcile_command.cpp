@@ -72,13 +72,15 @@ void tell_notes(const std::vector<reconcile::DataNote>& notes, Verbosity verbosi
   for (const reconcile::DataNote& note : notes) std::cerr << reconcile::in_words(note) << '\n';
 }
 
-/// Tells stages and progress on standard error.
+/// Tells stages and progress on standard error, and lets a signal stop the analysis at the end of any of them: the
+/// table keeps what was simulated.
 class AnalysisTeller {
  public:
   explicit AnalysisTeller(Verbosity verbosity) : verbosity_(verbosity) {}
   [[nodiscard]] reconcile::Observer observer() {
     reconcile::Observer observer;
     observer.stage = [this](const reconcile::Stage& stage) {
+      stop_.throw_if_made();
       progress_.reset();
       told_ = 0;
       stage_ = reconcile::in_words(stage);
@@ -86,6 +88,7 @@ class AnalysisTeller {
       progress_.emplace(Work{.what = stage_}, verbosity_);
     };
     observer.progress = [this](std::uint32_t done, std::uint32_t total) {
+      stop_.throw_if_made();
       if (done == 0) progress_.emplace(Work{stage_, total, "realizations"}, verbosity_);
       if (done == told_ + 1) {
         progress_->finished();
@@ -100,6 +103,7 @@ class AnalysisTeller {
 
  private:
   Verbosity verbosity_;
+  StopRequest stop_;
   std::string stage_;
   std::optional<Progress> progress_;
   std::uint32_t told_ = 0;

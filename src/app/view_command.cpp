@@ -54,7 +54,11 @@ void view(const Inputs& inputs, const ViewOptions& options) {
   require_usual(request, model, options.size);
   std::optional<Progress> progress;
   progress.emplace(Work{"simulating", 1, "runs", request.to_s.value_or(0.0)}, inputs.verbosity);
-  request.simulated = [&](double seconds) { progress->simulated(seconds); };
+  const StopRequest stop;
+  request.simulated = [&](double seconds) {
+    progress->simulated(seconds);
+    stop.throw_if_made();
+  };
   const Page page = page_of(model, request);
   progress.reset();
   io::write_text_file(options.output, page.html);

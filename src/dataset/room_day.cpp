@@ -155,10 +155,10 @@ class DayWriter {
 }  // namespace
 
 Model Room::model(ScriptSpec script) const {
-  const std::lock_guard lock(mutex_);
-  Model model = compile(scene_, std::move(script), {.like = first_ ? &*first_ : nullptr});
-  if (!first_) first_ = model;
-  return model;
+  std::unique_lock lock(mutex_);
+  if (!first_) return first_.emplace(compile(scene_, std::move(script)));
+  lock.unlock();  // nobody changes it any more
+  return compile(scene_, std::move(script), {.like = &*first_});
 }
 
 RoomDay simulate(const RecipeSpec& recipe, const Room& room, int day, const std::vector<std::string>& sensor_columns) {

@@ -34,8 +34,8 @@ class LongWork(unittest.TestCase):
         path.write_text(content if isinstance(content, str) else json.dumps(content))
         return path
 
-    def told(self, pattern, *args, terminal=True, seconds=120.0):
-        """What standard error says up to the pattern."""
+    def told(self, pattern, *args, terminal=True, seconds=120.0, stops=None):
+        """What standard error says up to the pattern. `stops`: the exit code with which SIGTERM ends it then."""
         ours, theirs = pty.openpty() if terminal else os.pipe()
         process = subprocess.Popen([PIRSIM, *args], stdout=subprocess.DEVNULL, stderr=theirs)
         os.close(theirs)
@@ -51,6 +51,9 @@ class LongWork(unittest.TestCase):
                 if not more:
                     break
                 text += more.decode()
+            if stops is not None:
+                process.send_signal(signal.SIGTERM)
+                self.assertEqual(process.wait(timeout=seconds), stops)
         finally:
             process.kill()
             process.wait()
@@ -71,29 +74,30 @@ class LongWork(unittest.TestCase):
         told = rf"\d+ of 1000000 s simulated, {LEFT}"
         self.told("simulating: " + told, "run", *study, "-o", self.folder / "rows.csv")
         self.told("simulating: " + told.replace("1000000", "900000"), "view", *study, "--from", "899900",
-                  "--to", "900000", "-o", self.folder / "p.html")
+                  "--to", "900000", "-o", self.folder / "p.html", stops=75)
         self.told("simulating up to that moment: " + told.replace("1000000", "900000"), "preview", *study,
                   "--time", "900000", "-o", self.folder / "p.png")
-        self.told("simulating and filming: " + told, "export", *study, "--large", "-o", self.folder / "p.glb")
+        self.told("simulating and filming: " + told, "export", *study, "--large", "-o", self.folder / "p.glb", stops=75)
+        self.assertEqual([path.name for path in self.folder.iterdir() if path.name.startswith("p.")], [])
 
     def test_a_recipe_of_many_rooms(self):
         recipe = self.write("recipe.yaml", "pirsim_recipe: 1\nrooms: [{count: 100000}]\ndays: 10\n")
         self.told(rf"drawing and checking all rooms before the first day: \d+ of 100000 rooms, {LEFT}", "dataset", recipe,
-                  "-o", self.folder / "D")
+                  "-o", self.folder / "D", stops=75)
 
     def test_surveys(self):
         self.told(rf"moving a target over the floor: \d+ of \d+ rows of squares, {LEFT}", "coverage",
                   "--scene", DATA / "rooms" / "meeting_room.gltf", "--script", DATA / "studies" / "studyB.yaml",
-                  "--set", "spacing_m=0.01", "-o", self.folder / "maps")
+                  "--set", "spacing_m=0.01", "-o", self.folder / "maps", stops=75)
         self.told(rf"scoring sets of sensors: \d+ of \d+ sets, {LEFT}", "placements",
                   "--scene", DATA / "rooms" / "meeting_room.gltf", "--script", DATA / "studies" / "placements.yaml",
-                  "--set", "search.evaluations=100000")
+                  "--set", "search.evaluations=100000", stops=75)
 
     def test_a_reference_table_is_estimated(self):
         rows = self.folder / "rows.csv"
         subprocess.run([PIRSIM, "run", "-q", *self.room, "--replicates", "1", "-o", rows], check=True)
         self.told(rf"reference table: \d+ of \d+ realizations, {LEFT}", "reconcile", *self.room, "--measured", rows,
-                  "-o", self.folder / "found")
+                  "-o", self.folder / "found", stops=75)
 
     def test_quiet_is_quiet(self):
         process = subprocess.Popen([PIRSIM, "run", "-q", *self.room, "--replicates", "100000", "-o",
