@@ -10,12 +10,33 @@
 #include <system_error>
 #include <utility>
 
+#include "io/posix_file.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::io {
 namespace {
 
 constexpr int most_names = 1000;  // of files that processes with this number left behind
+constexpr const char* writing = ".writing-";
+
+/// Of a writer of this path that was killed: nobody holds a lock on it.
+void remove_left_behind(const std::filesystem::path& path) {
+  const std::string begin = path.filename().string() + writing;
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  std::error_code fault;
+  for (std::filesystem::directory_iterator entry(folder, fault), end; !fault && entry != end; entry.increment(fault)) {
+    if (!entry->path().filename().string().starts_with(begin)) continue;
+    const int descriptor = ::open(entry->path().c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0) continue;
+    if (try_lock(descriptor) == Lock::taken && is_named(entry->path(), descriptor)) ::unlink(entry->path().c_str());
+    ::close(descriptor);
+  }
+}
+
+/// False if it was taken for one that was left behind.
+bool is_mine(const std::filesystem::path& path, int descriptor) {
+  return try_lock(descriptor) != Lock::of_another && is_named(path, descriptor);
+}
 
 }  // namespace
 
@@ -81,13 +102,18 @@ int AtomicFile::open() {
     } while (descriptor < 0 && errno == EINTR);
   } else {
     path_ = resolved(path_);
+    remove_left_behind(path_);
     // Exclusively: what stands there under such a name, or where a link leads that does, isn't ours.
     errno = EEXIST;
     for (int i = 0; descriptor < 0 && errno == EEXIST && i < most_names; ++i) {
       partial_ = path_;
-      partial_ += ".writing-" + std::to_string(::getpid()) + '-' + std::to_string(i);
+      partial_ += writing + std::to_string(::getpid()) + '-' + std::to_string(i);
       descriptor = ::open(partial_.c_str(), written | O_CREAT | O_EXCL, anybody);
+      if (descriptor < 0 || is_mine(partial_, descriptor)) continue;
+      ::close(std::exchange(descriptor, -1));
+      errno = EEXIST;
     }
+    if (descriptor >= 0) lock_ = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
   }
   if (descriptor >= 0) return descriptor;
   partial_ = path_;  // nothing is to be removed
@@ -95,10 +121,12 @@ int AtomicFile::open() {
 }
 
 AtomicFile::~AtomicFile() {
-  if (!buffer_.is_open()) return;
-  buffer_.close();
-  std::error_code ignored;
-  if (partial_ != path_) std::filesystem::remove(partial_, ignored);
+  if (buffer_.is_open()) {
+    buffer_.close();
+    std::error_code ignored;
+    if (partial_ != path_) std::filesystem::remove(partial_, ignored);
+  }
+  if (lock_ >= 0) ::close(lock_);
 }
 
 void AtomicFile::close() {

@@ -19,7 +19,8 @@ namespace pirsim::io {
 
 /// Writes a file of its own in the same folder (`<path>.writing-...`, which no other process has) and renames it onto
 /// the path at commit, so that no reader, crash or full disk ever leaves half a file, and an older file survives a
-/// failure. What is_written_directly() is not renamed. Every fault is Error(io) that names the path and the cause.
+/// failure. What a killed writer of this path left behind is removed. What is_written_directly() is not renamed. Every
+/// fault is Error(io) that names the path and the cause.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path);
@@ -63,6 +64,7 @@ class AtomicFile {
 
   std::filesystem::path path_;
   std::filesystem::path partial_;  ///< what is written; the path itself where it isn't a regular file
+  int lock_ = -1;                  ///< a descriptor that keeps the lock on it until it is in its place
   Buffer buffer_;
   std::ostream stream_{&buffer_};
 };

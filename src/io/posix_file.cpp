@@ -28,6 +28,18 @@ auto without_interruption(const Call& call) {
 
 }  // namespace
 
+Lock try_lock(int descriptor) noexcept {
+  if (without_interruption([&] { return ::flock(descriptor, LOCK_EX | LOCK_NB); }) == 0) return Lock::taken;
+  return errno == EWOULDBLOCK ? Lock::of_another : Lock::unknown;
+}
+
+bool is_named(const std::filesystem::path& path, int descriptor) noexcept {
+  struct stat opened {
+  }, named{};
+  return ::lstat(path.c_str(), &named) == 0 && ::fstat(descriptor, &opened) == 0 && opened.st_ino == named.st_ino &&
+         opened.st_dev == named.st_dev;
+}
+
 PosixFile::PosixFile(std::filesystem::path path, Mode mode) : path_(std::move(path)) {
   // A pipe that nobody writes to yet is opened at once, and waited for where a signal can end the waiting.
   const int flags = mode == Mode::read ? O_RDONLY | O_NONBLOCK : O_RDWR | O_CREAT | O_APPEND | O_NOFOLLOW;
@@ -98,16 +110,9 @@ std::uint64_t PosixFile::size() const {
 }
 
 void PosixFile::lock() {
-  const auto refuse = [&] { throw Error(ErrorCode::io, Where{path_.string()}, "another process is at work on this"); };
-  if (without_interruption([&] { return ::flock(descriptor_, LOCK_EX | LOCK_NB); }) < 0) {
-    if (errno == EWOULDBLOCK) refuse();
-    return;  // a file system without locks
-  }
-  struct stat mine {
-  }, named{};
-  const bool is_named = ::stat(path_.c_str(), &named) == 0 && ::fstat(descriptor_, &mine) == 0 &&
-                        mine.st_ino == named.st_ino && mine.st_dev == named.st_dev;
-  if (!is_named) refuse();  // it was finished and removed between opening and locking
+  const Lock lock = try_lock(descriptor_);
+  if (lock == Lock::unknown || (lock == Lock::taken && is_named(path_, descriptor_))) return;
+  throw Error(ErrorCode::io, Where{path_.string()}, "another process is at work on this");
 }
 
 void PosixFile::fail(const char* what) const {

@@ -10,6 +10,12 @@ namespace pirsim::io {
 /// What "-" on a command line stands for: read as it was inherited, and so from where it stands.
 constexpr const char* standard_input = "/dev/stdin";
 
+enum class Lock { taken, of_another, unknown };  ///< unknown: a file system without locks
+/// Until all copies of the descriptor are closed, however the process ends.
+[[nodiscard]] Lock try_lock(int descriptor) noexcept;
+/// False if the file was removed or replaced since it was opened.
+[[nodiscard]] bool is_named(const std::filesystem::path& path, int descriptor) noexcept;
+
 class PosixFile {
  public:
   enum class Mode {

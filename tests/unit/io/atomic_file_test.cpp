@@ -151,6 +151,23 @@ TEST_CASE("what is written never goes where a link of another leads", "[atomic_f
   CHECK(content(mine) == "mine");
 }
 
+TEST_CASE("what a killed writer left behind goes, and what another writes now stays", "[atomic_file]") {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "a.csv";
+  folder.write("a.csv.writing-1-0", "of a process that was killed");
+  folder.write("b.csv.writing-1-0", "of another file");
+  AtomicFile one(path);
+  CHECK_FALSE(fs::exists(folder.path() / "a.csv.writing-1-0"));
+  CHECK(fs::exists(folder.path() / "b.csv.writing-1-0"));
+  one.stream() << "one";
+  AtomicFile other(path);
+  other.stream() << "other";
+  one.commit();
+  other.commit();
+  CHECK(content(path) == "other");
+  CHECK(n_files(folder.path()) == 2);
+}
+
 TEST_CASE("a file that is to be written once stays as it is", "[atomic_file]") {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "a.txt";
