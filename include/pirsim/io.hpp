@@ -57,9 +57,9 @@ void write_scene(const std::filesystem::path& file, const SceneSpec& scene);
 
 // Sensor models by name.
 
-/// The model that a sensor of this scene would get. Throws Error(input) for a name that no folder has.
+/// The model that a sensor of this scene would get. Throws Error(input), at `named_at`, for a name that no folder has.
 [[nodiscard]] SensorModelSpec find_sensor_model(const std::string& model, const std::filesystem::path& scene_file,
-                                                const SceneOptions& options = {});
+                                                const SceneOptions& options = {}, const Where& named_at = {});
 
 // Coverage studies as YAML; the format is described in docs/formats/coverage.md.
 

@@ -51,17 +51,11 @@ void find_models(const RoomSpec& spec, SceneSpec& scene, std::map<std::string, S
                  const io::SceneOptions& options) {
   for (const SensorSpec& sensor : scene.sensors) {
     if (!known.contains(sensor.model)) {
-      try {
-        known.emplace(sensor.model, io::find_sensor_model(sensor.model, {}, options));
-      } catch (const Error& error) {
-        const bool is_in_a_file = !error.issues().front().where.file.empty();  // the sensor's own
-        if (is_in_a_file) throw;
-        const auto group = std::ranges::find_if(spec.sensors, [&](const SensorGroupSpec& g) {
-          return std::ranges::find(g.models, sensor.model) != g.models.end();
-        });
-        throw Error(error.code(), group == spec.sensors.end() ? spec.where : group->where,
-                    error.issues().front().message);
-      }
+      const auto group = std::ranges::find_if(spec.sensors, [&](const SensorGroupSpec& g) {
+        return std::ranges::find(g.models, sensor.model) != g.models.end();
+      });
+      const Where& named_at = group == spec.sensors.end() ? spec.where : group->where;
+      known.emplace(sensor.model, io::find_sensor_model(sensor.model, {}, options, named_at));
     }
     scene.sensor_models.emplace(sensor.model, known.at(sensor.model));
   }

@@ -26,15 +26,8 @@ std::string hash_of(const fs::path& file) {
 
 void add_sensors(Fingerprint& print, const RoomGroupSpec& group, const io::SceneOptions& options) {
   for (const SensorGroupSpec& sensors : group.rooms.sensors) {
-    for (const std::string& model : models_of(sensors)) {
-      try {
-        print.add(io::find_sensor_model(model, {}, options));
-      } catch (const Error& error) {
-        const Issue& first = error.issues().front();
-        if (!first.where.file.empty()) throw;  // of the model's own file
-        throw Error(error.code(), sensors.where, first.message);
-      }
-    }
+    for (const std::string& model : models_of(sensors))
+      print.add(io::find_sensor_model(model, {}, options, sensors.where));
   }
 }
 

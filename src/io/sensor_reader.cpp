@@ -387,10 +387,10 @@ std::string SensorSearch::unknown(const std::string& model) const {
 namespace pirsim::io {
 
 SensorModelSpec find_sensor_model(const std::string& model, const std::filesystem::path& scene_file,
-                                  const SceneOptions& options) {
+                                  const SceneOptions& options, const Where& named_at) {
   const detail::SensorSearch search(options, folder_of_input(scene_file));
   if (auto found = search.find(model)) return std::move(found->model);
-  throw Error(ErrorCode::input, search.unknown(model));
+  throw Error(ErrorCode::input, named_at, search.unknown(model));
 }
 
 }  // namespace pirsim::io

@@ -11,14 +11,8 @@ namespace {
 /// Models that the study names and the scene doesn't.
 void add_models(SceneSpec& scene, const PlacementSpec& spec, const PlacementOptions& options) {
   for (const auto& [name, where] : spec.models) {
-    if (scene.sensor_models.contains(name)) continue;
-    try {
-      scene.sensor_models[name] = io::find_sensor_model(name, options.scene_file, options.scenes);
-    } catch (const Error& fault) {
-      const Issue& first = fault.issues().front();
-      if (!first.where.file.empty()) throw;  // of the model's own file
-      throw Error(fault.code(), where, first.message);
-    }
+    if (!scene.sensor_models.contains(name))
+      scene.sensor_models[name] = io::find_sensor_model(name, options.scene_file, options.scenes, where);
   }
 }
 
