@@ -1,6 +1,7 @@
 #include "studies/placement.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <glm/geometric.hpp>
 #include <iomanip>
 #include <nlopt.hpp>
@@ -39,6 +40,7 @@ struct Objective {
   int evaluations = 0;
   double best_area = -1.0;
   std::vector<double> best;
+  std::exception_ptr fault{};  ///< which NLopt would replace by its own
 
   double area(const std::vector<double>& shares) {
     ++evaluations;
@@ -60,15 +62,25 @@ void maximise(nlopt::algorithm algorithm, Objective& objective, int evaluations)
   optimiser.set_maxeval(evaluations);
   optimiser.set_xtol_abs(1e-3);
   optimiser.set_initial_step(0.1);
-  optimiser.set_max_objective([](const std::vector<double>& shares, std::vector<double>&,
-                                 void* data) { return static_cast<Objective*>(data)->area(shares); },
-                              &objective);
+  optimiser.set_max_objective(
+      [](const std::vector<double>& shares, std::vector<double>&, void* data) {
+        auto& called = *static_cast<Objective*>(data);
+        try {
+          return called.area(shares);
+        } catch (...) {
+          called.fault = std::current_exception();
+          throw nlopt::forced_stop();
+        }
+      },
+      &objective);
   std::vector<double> shares = objective.best;
   double area = 0.0;
   try {
     optimiser.optimize(shares, area);
   } catch (const nlopt::roundoff_limited&) {
     // The best so far is kept: no further progress is possible.
+  } catch (const nlopt::forced_stop&) {
+    std::rethrow_exception(objective.fault);
   }
 }
 
