@@ -13,7 +13,7 @@ from make_vega_bundle import bundle
 from page_charts import charts_of
 
 VEGA = pathlib.Path("/usr/share/javascript/vega")
-PALETTE = pathlib.Path(__file__).parents[1] / "src/io/page/palette.css"
+PALETTE = pathlib.Path(__file__).parents[1] / "src/io/pages/palette.css"
 # Lines told apart by colour: the pages' own, on white.
 COLOURS = tuple(re.findall(r"--series-\d+: (#\w+)", PALETTE.read_text().split("@media")[0]))
 # Lines in the background, what was measured or what a formula says, lines to guide the eye.

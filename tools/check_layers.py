@@ -25,8 +25,9 @@ BELOW = {
     "reconcile": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "stats", "core"},
 }
 BELOW["app"] = set(BELOW)
-# rooms of a layer: who may include whom; only the app may include the last
+# rooms of a layer: who may include whom
 ROOMS = {
+    "io": {"files": set(), "read": {"files"}, "write": {"files"}, "pages": {"files", "write"}},
     "reconcile": {
         "data": set(),
         "ensemble": {"data"},

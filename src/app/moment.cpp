@@ -1,6 +1,6 @@
 #include "app/moment.hpp"
 
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::app {

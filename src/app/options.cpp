@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "core/text.hpp"
-#include "io/atomic_file.hpp"
-#include "io/posix_file.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/posix_file.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::app {

@@ -6,7 +6,7 @@
 #include "app/long_work.hpp"
 #include "app/session.hpp"
 #include "effects/catalogue.hpp"
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/sensor_keys.hpp"
 #include "pirsim/version.hpp"

@@ -6,7 +6,7 @@
 
 #include "app/commands.hpp"
 #include "app/session.hpp"
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "pirsim/io.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "reconcile/validation/seal.hpp"

@@ -8,9 +8,8 @@
 #include <set>
 
 #include "app/long_work.hpp"
-#include "core/near_names.hpp"
 #include "core/text.hpp"
-#include "io/csv_reader.hpp"
+#include "io/read/csv_reader.hpp"
 #include "pirsim/effects.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/io.hpp"

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "app/options.hpp"
-#include "io/atomic_file.hpp"
-#include "io/compression.hpp"
-#include "io/report.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/compression.hpp"
+#include "io/pages/report.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/model.hpp"
 #include "pirsim/script.hpp"

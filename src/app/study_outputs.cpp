@@ -8,9 +8,9 @@
 
 #include "app/output_size.hpp"
 #include "app/session.hpp"
-#include "io/atomic_file.hpp"
-#include "io/compression.hpp"
-#include "io/row_file.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/compression.hpp"
+#include "io/write/row_file.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/version.hpp"

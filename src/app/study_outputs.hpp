@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "app/study_run.hpp"
-#include "io/manifest.hpp"
+#include "io/write/manifest.hpp"
 #include "pirsim/model.hpp"
 #include "pirsim/study.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "app/options.hpp"
-#include "io/manifest.hpp"
+#include "io/write/manifest.hpp"
 #include "pirsim/model.hpp"
 
 namespace pirsim::app {

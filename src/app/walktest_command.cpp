@@ -4,7 +4,7 @@
 #include "app/commands.hpp"
 #include "app/long_work.hpp"
 #include "app/session.hpp"
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/sensor_keys.hpp"
 #include "studies/walk_test.hpp"

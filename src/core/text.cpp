@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cstdio>
+#include <iomanip>
+#include <sstream>
+
+#include "pirsim/error.hpp"
 
 namespace pirsim {
 namespace {
@@ -154,6 +159,32 @@ std::string markdown_code(std::string_view text) {
   while (text.find(fence) != std::string_view::npos) fence += '`';
   const std::string space = fence.size() > 1 ? " " : "";
   return fence + space + std::string(text) + space + fence;
+}
+
+std::string near_or_all(std::string_view name, const std::vector<std::string>& known) {
+  constexpr std::size_t most = 20;  // assumed: of more, as of meshes, nobody reads the list (tried 10-50)
+  if (known.empty()) return "; there are none";
+  std::string text = did_you_mean(name, known);
+  if (!text.empty()) return text;
+  for (std::size_t i = 0; i < known.size() && i < most; ++i)
+    text += (i == 0 ? "; there are " : ", ") + shortened(known[i]);
+  if (known.size() > most) text += " and " + std::to_string(known.size() - most) + " more";
+  return text;
+}
+
+std::string counted(std::size_t n, const std::string& name, const std::string& plural) {
+  return std::to_string(n) + ' ' + (n == 1 ? name : plural.empty() ? name + 's' : plural);
+}
+
+std::string fixed(double value, int digits) {
+  std::ostringstream out;
+  out << std::fixed << std::setprecision(digits) << value;
+  return out.str();
+}
+
+std::string shortest_number(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
 }  // namespace pirsim

@@ -37,4 +37,15 @@ enum class Lines { one, many };  ///< many: line breaks and tabs may be in it
 /// The same as code, in backticks.
 [[nodiscard]] std::string markdown_code(std::string_view text);
 
+/// ` (did you mean 'X'?)`, or `; there are A, B` if none is near; of very many only the first; `; there are none`.
+[[nodiscard]] std::string near_or_all(std::string_view name, const std::vector<std::string>& known);
+
+/// "1 seat", "5 seats"; plural: where it isn't the name and an s.
+[[nodiscard]] std::string counted(std::size_t n, const std::string& name, const std::string& plural = {});
+
+/// With so many digits after the point.
+[[nodiscard]] std::string fixed(double value, int digits);
+/// With as many digits as tell it from every other number.
+[[nodiscard]] std::string shortest_number(double value);
+
 }  // namespace pirsim

@@ -7,8 +7,8 @@
 #include "core/parallel.hpp"
 #include "dataset/room_day.hpp"
 #include "dataset/store.hpp"
-#include "io/atomic_file.hpp"
-#include "io/scene_writer.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/write/scene_writer.hpp"
 
 namespace pirsim::dataset {
 namespace {

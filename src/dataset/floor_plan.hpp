@@ -1,7 +1,9 @@
-// The plan of a parametric room: walls, what stands on the floor, and what must stay free. All sides along the axes.
+// The plan of a parametric room: walls, what stands on the floor, and what must stay free; and the boxes
+// that things are made of. All sides along the axes.
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -67,5 +69,16 @@ template <typename Item>
 [[nodiscard]] const Item& one_of(const std::vector<Item>& items, Stream& stream) {
   return items[stream.index(static_cast<std::uint32_t>(items.size()))];
 }
+
+/// In the axes of what it belongs to.
+struct BoxPart {
+  Rectangle footprint;
+  double from_y_m = 0.0, to_y_m = 0.0;
+};
+
+/// One mesh of closed boxes, in world axes, in coordinates that single precision holds exactly.
+[[nodiscard]] TriMesh boxes(const std::string& name, const Spot& spot, std::span<const BoxPart> parts);
+/// The outline, facing up.
+[[nodiscard]] TriMesh floor_mesh(const std::vector<Rectangle>& pieces);
 
 }  // namespace pirsim::dataset

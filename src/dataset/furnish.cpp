@@ -6,7 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "dataset/boxes.hpp"
+#include "dataset/floor_plan.hpp"
 
 namespace pirsim::dataset {
 namespace {

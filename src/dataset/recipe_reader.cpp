@@ -5,9 +5,9 @@
 
 #include "dataset/exports.hpp"
 #include "dataset/room_reader.hpp"
-#include "io/compression.hpp"
-#include "io/input.hpp"
-#include "io/reader_parts.hpp"
+#include "io/files/compression.hpp"
+#include "io/files/input.hpp"
+#include "io/read/reader_parts.hpp"
 #include "pirsim/dataset.hpp"
 #include "pirsim/effects.hpp"
 

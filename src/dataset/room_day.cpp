@@ -7,7 +7,7 @@
 
 #include "core/digest.hpp"
 #include "dataset/exports.hpp"
-#include "io/compression.hpp"
+#include "io/files/compression.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/io.hpp"
 #include "schema/clock.hpp"

@@ -1,7 +1,7 @@
 // Ranges of rooms as YAML: `rooms:` of a recipe, and the options of `pirsim room`.
 #pragma once
 
-#include "io/yaml_map.hpp"
+#include "io/read/yaml_map.hpp"
 #include "pirsim/room.hpp"
 
 namespace pirsim::dataset {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "dataset/room_day.hpp"
-#include "io/atomic_file.hpp"
-#include "io/journal.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/journal.hpp"
 
 namespace pirsim::dataset {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "core/near_names.hpp"
+#include "core/text.hpp"
 #include "effects/kit.hpp"
 
 namespace pirsim::effects {

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <sstream>
 
-#include "core/near_names.hpp"
 #include "core/text.hpp"
 #include "effects/catalogue.hpp"
 

@@ -2,7 +2,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "core/near_names.hpp"
+#include "core/text.hpp"
 #include "pirsim/scene.hpp"
 #include "schema/columns.hpp"
 #include "schema/limits.hpp"

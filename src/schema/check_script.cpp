@@ -4,7 +4,6 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "core/near_names.hpp"
 #include "core/text.hpp"
 #include "geom/triangle_surface.hpp"
 #include "schema/action_facts.hpp"

@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <string_view>
 
-#include "core/fixed.hpp"
+#include "core/text.hpp"
 
 namespace pirsim {
 namespace {

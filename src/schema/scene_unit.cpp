@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/fixed.hpp"
+#include "core/text.hpp"
 
 namespace pirsim {
 namespace {

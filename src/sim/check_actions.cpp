@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "core/near_names.hpp"
+#include "core/text.hpp"
 #include "pirsim/error.hpp"
 #include "schema/action_facts.hpp"
 

@@ -14,7 +14,7 @@
 
 #include "body/footprint.hpp"
 #include "body/seat_height.hpp"
-#include "core/fixed.hpp"
+#include "core/text.hpp"
 #include "schema/action_facts.hpp"
 #include "schema/limits.hpp"
 #include "sim/alike.hpp"

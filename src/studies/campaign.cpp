@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "core/digest.hpp"
-#include "io/atomic_file.hpp"
-#include "io/compression.hpp"
-#include "io/row_file.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/compression.hpp"
+#include "io/write/row_file.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::studies {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/manifest.hpp"
+#include "io/write/manifest.hpp"
 #include "pirsim/sample.hpp"
 #include "studies/summary.hpp"
 

@@ -3,8 +3,6 @@
 #include <iomanip>
 #include <sstream>
 
-#include "core/counted.hpp"
-#include "core/fixed.hpp"
 #include "core/text.hpp"
 #include "pirsim/look.hpp"
 #include "sim/compiled_study.hpp"

@@ -5,7 +5,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "core/fixed.hpp"
+#include "core/text.hpp"
 #include "pirsim/geometry.hpp"
 #include "sim/compiled_study.hpp"
 #include "studies/room_plan.hpp"

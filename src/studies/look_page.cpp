@@ -4,7 +4,7 @@
 #include <numeric>
 #include <sstream>
 
-#include "io/run_page.hpp"
+#include "io/pages/run_page.hpp"
 #include "pirsim/coverage.hpp"
 #include "pirsim/look.hpp"
 #include "pirsim/study.hpp"

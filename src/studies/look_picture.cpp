@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <sstream>
 
-#include "core/near_names.hpp"
 #include "core/range.hpp"
-#include "io/gltf_writer.hpp"
-#include "io/png.hpp"
+#include "core/text.hpp"
+#include "io/pages/png.hpp"
+#include "io/write/gltf_writer.hpp"
 #include "pirsim/look.hpp"
 #include "sim/compiled_study.hpp"
 #include "sim/run_state.hpp"

@@ -10,9 +10,9 @@
 #include <string>
 #include <utility>
 
-#include "io/canvas.hpp"
-#include "io/lettering.hpp"
-#include "io/person_colours.hpp"
+#include "io/pages/canvas.hpp"
+#include "io/pages/lettering.hpp"
+#include "io/write/gltf_writer.hpp"
 #include "pirsim/error.hpp"
 #include "rt/renderer.hpp"
 #include "sim/compiled_study.hpp"

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/png.hpp"
+#include "io/pages/png.hpp"
 #include "pirsim/state.hpp"
 
 namespace pirsim::studies {

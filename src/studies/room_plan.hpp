@@ -1,7 +1,7 @@
 // What a room looks like: what its meshes are, and its plan seen from above.
 #pragma once
 
-#include "io/charts.hpp"
+#include "io/pages/charts.hpp"
 #include "pirsim/scene.hpp"
 
 namespace pirsim::studies {

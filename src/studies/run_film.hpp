@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "io/gltf_writer.hpp"
+#include "io/write/gltf_writer.hpp"
 #include "pirsim/sample.hpp"
 #include "pirsim/state.hpp"
 

@@ -5,7 +5,7 @@
 #include <ostream>
 #include <set>
 
-#include "core/counted.hpp"
+#include "core/text.hpp"
 #include "schema/clock.hpp"
 #include "sim/schedule.hpp"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/fixed.hpp"
 #include "core/text.hpp"
 #include "studies/room_plan.hpp"
 

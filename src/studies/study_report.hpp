@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/report.hpp"
+#include "io/pages/report.hpp"
 #include "pirsim/study.hpp"
 #include "studies/coverage.hpp"
 #include "studies/summary.hpp"

@@ -3,7 +3,6 @@
 #include <cstdio>
 #include <functional>
 
-#include "core/fixed.hpp"
 #include "core/text.hpp"
 #include "pirsim/csv.hpp"
 #include "studies/summary.hpp"

@@ -8,7 +8,7 @@
 
 #include "body/humanoid.hpp"
 #include "body/walkable_floor.hpp"
-#include "io/report.hpp"
+#include "io/pages/report.hpp"
 #include "pirsim/scene.hpp"
 #include "pirsim/walk_test.hpp"
 #include "sim/observer.hpp"

@@ -1,7 +1,7 @@
 #include <iomanip>
 #include <sstream>
 
-#include "core/fixed.hpp"
+#include "core/text.hpp"
 #include "studies/room_plan.hpp"
 #include "studies/walk_test.hpp"
 

@@ -2,7 +2,7 @@
 #include <set>
 
 #include "fuzz_target.hpp"
-#include "io/csv_reader.hpp"
+#include "io/read/csv_reader.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return pirsim::test::read_as_file(data, size, ".csv", [](const std::filesystem::path& file) {

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <set>
 
-#include "io/compression.hpp"
-#include "io/input.hpp"
+#include "io/files/compression.hpp"
+#include "io/files/input.hpp"
 #include "pirsim/columns.hpp"
 #include "reconcile/data/measured_reader.hpp"
 

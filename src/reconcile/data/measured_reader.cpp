@@ -6,8 +6,6 @@
 #include <span>
 
 #include "core/digest.hpp"
-#include "core/fixed.hpp"
-#include "core/near_names.hpp"
 #include "core/text.hpp"
 #include "pirsim/csv.hpp"
 #include "schema/columns.hpp"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "io/csv_reader.hpp"
+#include "io/read/csv_reader.hpp"
 #include "pirsim/columns.hpp"
 #include "reconcile/data/measured.hpp"
 

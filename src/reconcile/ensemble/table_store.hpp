@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "io/journal.hpp"
+#include "io/files/journal.hpp"
 #include "reconcile/ensemble/reference_table.hpp"
 
 namespace pirsim::reconcile {

@@ -8,8 +8,8 @@
 #include <sstream>
 #include <utility>
 
-#include "core/near_names.hpp"
 #include "core/parallel.hpp"
+#include "core/text.hpp"
 #include "effects/catalogue.hpp"
 #include "reconcile/inference/decision.hpp"
 #include "reconcile/inference/fit.hpp"

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/io.hpp"
 #include "reconcile/report/sentences.hpp"

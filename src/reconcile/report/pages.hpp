@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "io/charts.hpp"
-#include "io/report.hpp"
+#include "io/pages/charts.hpp"
+#include "io/pages/report.hpp"
 #include "pirsim/reconcile.hpp"
 #include "reconcile/validation/plan.hpp"
 #include "reconcile/validation/selftest.hpp"

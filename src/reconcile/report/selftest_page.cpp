@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "stats/intervals.hpp"
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "io/reader_parts.hpp"
+#include "io/read/reader_parts.hpp"
 #include "pirsim/sensor_keys.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"

@@ -10,7 +10,7 @@
 #include "core/digest.hpp"
 #include "dataset/exports.hpp"
 #include "dataset/recipe.hpp"
-#include "io/compression.hpp"
+#include "io/files/compression.hpp"
 #include "support/catch.hpp"
 #include "support/paths.hpp"
 #include "support/temporary_folder.hpp"

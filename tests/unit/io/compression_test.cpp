@@ -1,4 +1,4 @@
-#include "io/compression.hpp"
+#include "io/files/compression.hpp"
 
 #include <fstream>
 #include <sstream>

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "io/csv_reader.hpp"
+#include "io/read/csv_reader.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -1,4 +1,4 @@
-#include "io/gltf_writer.hpp"
+#include "io/write/gltf_writer.hpp"
 
 #include <tiny_gltf.h>
 

@@ -1,5 +1,5 @@
 // Journal: a table that keeps its lines in one, ended anywhere, is gone on with to the same table.
-#include "io/journal.hpp"
+#include "io/files/journal.hpp"
 
 #include <fstream>
 #include <sstream>

@@ -1,5 +1,5 @@
-#include "io/png.hpp"
-#include "io/lettering.hpp"
+#include "io/pages/png.hpp"
+#include "io/pages/lettering.hpp"
 
 #include <algorithm>
 #include <array>

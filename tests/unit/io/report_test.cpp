@@ -1,4 +1,4 @@
-#include "io/report.hpp"
+#include "io/pages/report.hpp"
 
 #include "support/catch.hpp"
 

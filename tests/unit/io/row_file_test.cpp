@@ -1,11 +1,11 @@
 // RowFile: whatever is left on the disk, to resume gives the bytes of an undisturbed run.
-#include "io/row_file.hpp"
+#include "io/write/row_file.hpp"
 
 #include <fstream>
 #include <iterator>
 
 #include "core/digest.hpp"
-#include "io/atomic_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "pirsim/error.hpp"
 #include "support/catch.hpp"
 #include "support/temporary_folder.hpp"

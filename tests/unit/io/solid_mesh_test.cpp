@@ -1,4 +1,4 @@
-#include "io/gltf_builder.hpp"
+#include "io/write/gltf_builder.hpp"
 
 #include <algorithm>
 #include <array>

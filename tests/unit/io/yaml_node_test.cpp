@@ -1,9 +1,9 @@
-#include "io/yaml_node.hpp"
+#include "io/read/yaml_node.hpp"
 
 #include <array>
 #include <functional>
 
-#include "io/yaml_map.hpp"
+#include "io/read/yaml_map.hpp"
 #include "support/catch.hpp"
 
 using namespace pirsim;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "io/csv_reader.hpp"
+#include "io/read/csv_reader.hpp"
 #include "pirsim/error.hpp"
 #include "support/catch.hpp"
 #include "support/paths.hpp"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "io/report.hpp"
+#include "io/pages/report.hpp"
 #include "reconcile/report/pages.hpp"
 #include "reconcile/report/sentences.hpp"
 #include "support/catch.hpp"

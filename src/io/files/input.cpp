@@ -1,0 +1,129 @@
+#include "io/files/input.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "core/digest.hpp"
+#include "core/text.hpp"
+#include "io/files/posix_file.hpp"
+#include "pirsim/error.hpp"
+
+namespace pirsim::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// How `text` ends, as a place in its file: `text` is UTF-8 up to there.
+Where end_of(std::string_view text, const std::string& name) {
+  const auto line = 1 + std::ranges::count(text, '\n');
+  const std::string_view last = text.substr(text.rfind('\n') + 1);  // npos + 1 is 0
+  const auto column =
+      1 + std::ranges::count_if(last, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
+  return {name, static_cast<int>(line), static_cast<int>(column)};
+}
+
+void append_utf8(char32_t code, std::string& text) {
+  const auto add = [&](char32_t bits) { text += static_cast<char>(static_cast<unsigned char>(bits)); };
+  if (code < 0x80) return add(code);
+  if (code < 0x800) return add(0xC0U | code >> 6U), add(0x80U | (code & 0x3FU));
+  if (code < 0x10000) {
+    add(0xE0U | code >> 12U);
+  } else {
+    add(0xF0U | code >> 18U);
+    add(0x80U | (code >> 12U & 0x3FU));
+  }
+  add(0x80U | (code >> 6U & 0x3FU));
+  add(0x80U | (code & 0x3FU));
+}
+
+enum class ByteOrder { little, big };
+
+std::string from_utf16(std::string_view bytes, ByteOrder order, const std::string& name) {
+  std::string text;
+  const auto unit = [&](std::size_t at) -> char32_t {
+    const auto first = static_cast<unsigned char>(bytes[at]), second = static_cast<unsigned char>(bytes[at + 1]);
+    return order == ByteOrder::little ? first | second << 8U : first << 8U | second;
+  };
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorCode::input, end_of(text, name), "not UTF-16: " + why);
+  };
+  for (std::size_t at = 0; at < bytes.size(); at += 2) {
+    if (at + 1 == bytes.size()) refuse("it ends in half a character");
+    char32_t code = unit(at);
+    if (code >= 0xD800 && code < 0xE000) {
+      const char32_t low = at + 3 < bytes.size() ? unit(at + 2) : 0;
+      if (code >= 0xDC00 || low < 0xDC00 || low >= 0xE000) refuse("half of a pair of surrogates");
+      code = 0x10000 + ((code - 0xD800) << 10U) + (low - 0xDC00);
+      at += 2;
+    }
+    append_utf8(code, text);
+  }
+  return text;
+}
+
+bool has_folder(const fs::path& path) {
+  const std::string whole = path.lexically_normal().string();
+  std::error_code fault;
+  return !whole.starts_with("/dev/") && !whole.starts_with("/proc/") && !fs::is_fifo(path, fault);
+}
+
+}  // namespace
+
+InputFile Input::file() const { return {path.string(), sha256(bytes)}; }
+std::string Input::text() const { return text_from(bytes, path.string()); }
+
+Input read_input(const fs::path& path, std::size_t max_bytes) {
+  const Where where{path.string()};
+  std::error_code fault;
+  const fs::file_status status = fs::status(path, fault);
+  if (status.type() == fs::file_type::not_found) throw Error(ErrorCode::io, where, "no such file");
+  if (fs::is_directory(status)) throw Error(ErrorCode::io, where, "is a directory");
+  PosixFile file(path, PosixFile::Mode::read);
+  Input input{path, {}};
+  // In blocks, since most files are small; one byte more than allowed, so that endless devices end too.
+  std::array<char, 1U << 13U> block;  // threads may have a small stack
+  while (const std::size_t n = file.read(block.data(), block.size())) {
+    input.bytes.append(block.data(), n);
+    if (input.bytes.size() > max_bytes)
+      throw Error(ErrorCode::input, where, "larger than " + std::to_string(max_bytes / 1'000'000) + " MB");
+  }
+  return input;
+}
+
+std::string name_of_input(const fs::path& path) {
+  if (path == standard_input) return "stdin";
+  const std::string folder = path.parent_path().string();
+  const bool is_numbered = folder == "/dev/fd" || (folder.starts_with("/proc/") && folder.ends_with("/fd"));
+  return is_numbered ? "pipe" : path.filename().string();
+}
+
+std::string stem_of_input(const fs::path& path) { return fs::path(name_of_input(path)).stem().string(); }
+
+fs::path folder_of_input(const fs::path& path) { return has_folder(path) ? path.parent_path() : fs::path(); }
+
+std::string text_from(std::string bytes, const std::string& name) {
+  const std::string_view whole = bytes;
+  if (whole.starts_with(std::string_view("\xFF\xFE\0\0", 4)) || whole.starts_with(std::string_view("\0\0\xFE\xFF", 4)))
+    throw Error(ErrorCode::input, {name, 1, 1}, "UTF-32 isn't read: save the file as UTF-8");
+  if (whole.starts_with("\xFF\xFE")) {
+    bytes = from_utf16(whole.substr(2), ByteOrder::little, name);
+  } else if (whole.starts_with("\xFE\xFF")) {
+    bytes = from_utf16(whole.substr(2), ByteOrder::big, name);
+  } else if (whole.starts_with("\xEF\xBB\xBF")) {
+    bytes.erase(0, 3);
+  }
+  if (const auto bad = first_not_utf8(bytes)) {
+    std::array<char, 8> byte{};
+    std::snprintf(byte.data(), byte.size(), "0x%02X", static_cast<unsigned>(static_cast<unsigned char>(bytes[*bad])));
+    throw Error(ErrorCode::input, end_of(std::string_view(bytes).substr(0, *bad), name),
+                std::string("not UTF-8: byte ") + byte.data() + "; save the file as UTF-8");
+  }
+  if (const std::size_t zero = bytes.find('\0'); zero != std::string::npos) {
+    throw Error(ErrorCode::input, end_of(std::string_view(bytes).substr(0, zero), name),
+                "a NUL character in a text: is it UTF-16 without a byte order mark? Save the file as UTF-8");
+  }
+  return bytes;
+}
+
+}  // namespace pirsim::io

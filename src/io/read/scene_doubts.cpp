@@ -1,0 +1,278 @@
+// What a scene may say, but hardly means: each a warning.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <iomanip>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "geom/floor_distance.hpp"
+#include "io/read/scene_parts.hpp"
+#include "schema/scene_unit.hpp"
+
+namespace pirsim::io::detail {
+namespace {
+
+struct Box {
+  Vec3 least{std::numeric_limits<double>::max()}, most{std::numeric_limits<double>::lowest()};
+  [[nodiscard]] bool is_over(const Vec3& p) const {
+    return p.x >= least.x && p.x <= most.x && p.z >= least.z && p.z <= most.z;
+  }
+};
+
+Box box_of(const TriMesh& mesh) {
+  Box box;
+  for (const Vec3& p : mesh.positions) box.least = glm::min(box.least, p), box.most = glm::max(box.most, p);
+  return box;
+}
+
+std::string extent(double width, double depth) {
+  std::ostringstream text;
+  text << std::llround(width) << " m x " << std::llround(depth) << " m";
+  return text.str();
+}
+
+/// "0.25 m"
+std::string in_metres(double length_m) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(2) << length_m << " m";
+  return text.str();
+}
+
+/// Nobody means metres by thousands of them.
+std::string unit_of(double metres) { return metres >= 1000.0 ? "millimetres?" : "centimetres?"; }
+
+class SceneDoubts {
+ public:
+  SceneDoubts(const SceneSpec& scene, const MarkedNodes& nodes, const DoubtSink& tell)
+      : scene_(scene), nodes_(nodes), tell_(tell) {
+    for (const TriMesh& mesh : scene.meshes) boxes_.push_back(box_of(mesh));
+  }
+
+  void run() {
+    const auto unit = nodes_.as_meant.contains(nodes_.floor) ? std::nullopt : doubt_of_unit(scene_);
+    if (unit) return tell("unit", nodes_.floor, "the floor", *unit);
+    sizes();
+    for (std::size_t i = 0; i < scene_.entrances.size(); ++i) entrance(scene_.entrances[i], nodes_.entrances[i]);
+    for (std::size_t i = 0; i < scene_.seats.size(); ++i) seat(scene_.seats[i], nodes_.seats[i]);
+    neighbours();
+  }
+
+ private:
+  void tell(const char* kind, int node, std::string name, std::string message) const {
+    if (!nodes_.as_meant.contains(node)) tell_({kind, node, std::move(name), std::move(message)});
+  }
+
+  void sizes() {
+    constexpr double longest_m = 100.0, to_floor = 10.0;  // assumed: what stands in a room isn't ten times its size
+    const Vec2 floor = scene_.floor.upper() - scene_.floor.lower();
+    const double across = glm::length(floor);
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      if (scene_.meshes[i].positions.empty()) continue;
+      const Vec3 size = boxes_[i].most - boxes_[i].least;
+      const double longest = std::max({size.x, size.y, size.z});
+      if (longest <= std::max(longest_m, to_floor * across)) continue;
+      tell("size", nodes_.meshes[i], "'" + scene_.meshes[i].name + "'",
+           "its mesh spans " + extent(size.x, size.z) + " and is " + std::to_string(std::llround(size.y)) +
+               " m high, beside a floor of " + extent(floor.x, floor.y) + ": " + unit_of(longest));
+    }
+  }
+
+  void entrance(const EntranceSpec& entrance, int node) {
+    const auto is_floor = [&](double z) {
+      return scene_.floor.contains(floor_point(entrance.world_from_entrance * Vec3(0, 0, z)));
+    };
+    constexpr double step_m = 0.5;  // assumed: more than a threshold is deep, less than a corridor is wide
+    if (!is_floor(-step_m) && is_floor(step_m)) {
+      tell("turned round", node, "entrance '" + entrance.id + "'",
+           "entrance '" + entrance.id +
+               "' is turned round: the floor lies behind it, and its -Z must point into the room");
+    }
+    threshold(entrance, node);
+    doorway(entrance, node);
+  }
+
+  /// Its node is the middle of the threshold, where the floor ends.
+  void threshold(const EntranceSpec& entrance, int node) {
+    // assumed: what walkers step over, and half of a thick wall (0.1-0.2)
+    constexpr double most_above_m = 0.1, most_aside_m = 0.2;
+    const Vec3 at = entrance.world_from_entrance.origin;
+    if (const double above_m = at.y - scene_.floor.height_m(); std::abs(above_m) > most_above_m) {
+      tell("height", node, "entrance '" + entrance.id + "'",
+           "entrance '" + entrance.id + "' isn't on the floor, but " + in_metres(std::abs(above_m)) +
+               (above_m > 0.0 ? " above it" : " below it"));
+    }
+    const Vec2 place = floor_point(at);
+    if (const double aside_m = distance_to_edge_m(scene_.floor, place); aside_m > most_aside_m) {
+      tell("edge", node, "entrance '" + entrance.id + "'",
+           "entrance '" + entrance.id + "' isn't at the floor's edge, but " + in_metres(aside_m) +
+               (scene_.floor.contains(place) ? " inside" : " outside") +
+               " of it: its node is the middle of the threshold");
+    }
+  }
+
+  /// How much of its width is a wall, or furniture right before or behind it.
+  void doorway(const EntranceSpec& entrance, int node) {
+    constexpr int n_across = 20;
+    constexpr double share_in_doubt = 0.25;  // assumed: more than a frame and an open leaf take (0.05-0.2)
+    std::array<int, n_across> by{};          // the mesh that is met there
+    by.fill(-1);
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      if (reaches(boxes_[i], entrance)) close(entrance, static_cast<int>(i), by);
+    }
+    const auto closed = std::ranges::count_if(by, [](int mesh) { return mesh >= 0; });
+    if (static_cast<double>(closed) <= share_in_doubt * n_across) return;
+    tell("doorway", node, "entrance '" + entrance.id + "'",
+         "entrance '" + entrance.id + "': '" + name(*std::ranges::max_element(by)) + "' stands in " +
+             in_metres(entrance.width_m * static_cast<double>(closed) / n_across) + " of its width of " +
+             in_metres(entrance.width_m));
+  }
+  static constexpr double half_depth_m = 0.25;  ///< of a doorway; assumed: most of a wall, less than a person needs
+  [[nodiscard]] static bool reaches(const Box& box, const EntranceSpec& entrance) {
+    const double reach_m = 0.5 * entrance.width_m + half_depth_m;
+    const Vec3 at = entrance.world_from_entrance.origin;
+    return box.least.x <= at.x + reach_m && box.most.x >= at.x - reach_m && box.least.z <= at.z + reach_m &&
+           box.most.z >= at.z - reach_m;
+  }
+  /// Notes the mesh wherever it crosses a line through the doorway at the height of shins, hips or heads.
+  template <std::size_t n_across>
+  void close(const EntranceSpec& entrance, int mesh, std::array<int, n_across>& by) const {
+    const Frame entrance_from_world = inverse(entrance.world_from_entrance);
+    const TriMesh& given = scene_.meshes[static_cast<std::size_t>(mesh)];
+    const double floor_y = scene_.floor.height_m() - entrance.world_from_entrance.origin.y;
+    const auto local = [&](std::uint32_t corner) {  // so that a line through the doorway is upright
+      const Vec3 p = entrance_from_world * given.positions[corner];
+      return Vec3(p.x, p.z, p.y - floor_y);
+    };
+    for (const auto& [a, b, c] : given.triangles) {
+      const Vec3 at_a = local(a), at_b = local(b), at_c = local(c);
+      const Vec3 least = glm::min(at_a, glm::min(at_b, at_c)), most = glm::max(at_a, glm::max(at_b, at_c));
+      if (least.y > half_depth_m || most.y < -half_depth_m) continue;
+      if (2.0 * least.x > entrance.width_m || 2.0 * most.x < -entrance.width_m) continue;
+      for (std::size_t i = 0; i < n_across; ++i) {
+        const double x = entrance.width_m * ((static_cast<double>(i) + 0.5) / n_across - 0.5);
+        for (const double height_m : {0.3, 1.0, 1.7}) {
+          const auto depth_m = height_at(at_a, at_b, at_c, {x, 0.0, height_m});
+          if (depth_m && std::abs(*depth_m) <= half_depth_m) by[i] = mesh;
+        }
+      }
+    }
+  }
+
+  /// Seats as near as this are one that was copied, or two for one sitter; assumed: less than any chair is wide.
+  void neighbours() {
+    constexpr double least_apart_m = 0.4;
+    const auto place = [&](std::size_t i) -> const Vec3& { return scene_.seats[i].world_from_seat.origin; };
+    std::vector<std::size_t> along_x(scene_.seats.size());
+    std::iota(along_x.begin(), along_x.end(), std::size_t{0});
+    std::ranges::stable_sort(along_x, {}, [&](std::size_t i) { return place(i).x; });
+    for (auto i = along_x.begin(); i != along_x.end(); ++i) {
+      for (auto k = i; k != along_x.begin() && place(*i).x - place(*(k - 1)).x < least_apart_m; --k) {
+        const double apart_m = glm::distance(place(*i), place(*(k - 1)));
+        if (apart_m >= least_apart_m) continue;
+        const auto [first, second] = std::minmax(*i, *(k - 1));
+        const std::string name = "seat '" + scene_.seats[second].id + "'";
+        tell("neighbours", nodes_.seats[second], name,
+             name + " is " + in_metres(apart_m) + " from seat '" + scene_.seats[first].id +
+                 "': two sitters would sit in each other");
+        break;
+      }
+    }
+  }
+
+  void seat(const SeatSpec& seat, int node) {
+    if (!scene_.floor.contains(floor_point(seat.world_from_seat.origin))) {
+      tell("off the floor", node, "seat '" + seat.id + "'",
+           "seat '" + seat.id + "' lies off the floor: who sits there isn't counted in the column `people`");
+    }
+    // The trunk stands above the pelvis; a cushion or an arm's rest is lower (assumed).
+    const Vec3 hip = seat.world_from_seat.origin;
+    if (const int within = crossed(hip, hip.y + 0.15, hip.y + 0.6); within >= 0) {
+      tell("inside", node, "seat '" + seat.id + "'",
+           "seat '" + seat.id + "' is inside of '" + name(within) + "': the sitter's trunk would pass through it");
+      return;
+    }
+    if (table(seat, -1.0)) return;
+    if (const auto behind = table(seat, 1.0); behind && is_deep(seat, *behind) && !is_its_back(seat, *behind)) {
+      tell("faces away", node, "seat '" + seat.id + "'",
+           "seat '" + seat.id + "' faces away from '" + name(behind->mesh) + "': sitters look along the node's -Z");
+    }
+  }
+
+  struct Table {
+    int mesh;
+    double away_m;  ///< from the seat's point
+  };
+  /// Of what stands before the seat (towards -Z) or behind it.
+  [[nodiscard]] std::optional<Table> table(const SeatSpec& seat, double towards_z) const {
+    for (const double away_m : {0.35, 0.45, 0.55}) {  // beyond a chair's back, within the arms' reach
+      if (const int mesh = table_at(seat, towards_z * away_m); mesh >= 0) return Table{mesh, away_m};
+    }
+    return std::nullopt;
+  }
+  /// The mesh at a table's height at z in the seat's frame, or -1.
+  [[nodiscard]] int table_at(const SeatSpec& seat, double z) const {
+    constexpr double lowest_m = 0.6, highest_m = 0.9;  // above the floor; assumed: of desks and tables to sit at
+    const double floor_m = scene_.floor.height_m();
+    return crossed(seat.world_from_seat * Vec3(0, 0, z), floor_m + lowest_m, floor_m + highest_m);
+  }
+  /// Is there room for forearms on it? A sofa's back or a cistern has none.
+  [[nodiscard]] bool is_deep(const SeatSpec& seat, const Table& behind) const {
+    for (const double more_m : {0.1, 0.2, 0.3}) {  // assumed: of tables to sit at (tried 0.2-0.4)
+      if (table_at(seat, behind.away_m + more_m) < 0) return false;
+    }
+    return true;
+  }
+  /// Does what the sitter sits on reach back there without a gap? Then that is its back: a sofa's, say.
+  [[nodiscard]] bool is_its_back(const SeatSpec& seat, const Table& behind) const {
+    constexpr double step_m = 0.05;  // assumed: no gap between a chair and a table is narrower (tried 0.03-0.1)
+    constexpr double from_m = 0.1, head_m = 0.6;  // assumed: above feet and carpets, up to the sitter's neck
+    const double floor_m = scene_.floor.height_m(), pelvis_m = seat.world_from_seat.origin.y;
+    for (double away_m = 0.0; away_m < behind.away_m; away_m += step_m) {
+      if (crossed(seat.world_from_seat * Vec3(0, 0, away_m), floor_m + from_m, pelvis_m + head_m) < 0) return false;
+    }
+    return true;
+  }
+
+  /// The first mesh that an upright line through the place intersects between two heights, or -1.
+  [[nodiscard]] int crossed(const Vec3& place, double from_y, double to_y) const {
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      if (!boxes_[i].is_over(place) || boxes_[i].most.y < from_y || boxes_[i].least.y > to_y) continue;
+      const TriMesh& mesh = scene_.meshes[i];
+      for (const auto& [a, b, c] : mesh.triangles) {
+        const auto y = height_at(mesh.positions[a], mesh.positions[b], mesh.positions[c], place);
+        if (y && *y >= from_y && *y <= to_y) return static_cast<int>(i);
+      }
+    }
+    return -1;
+  }
+  [[nodiscard]] static std::optional<double> height_at(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+    const auto side = [](const Vec3& u, const Vec3& v, const Vec3& w) {
+      return (v.x - u.x) * (w.z - u.z) - (v.z - u.z) * (w.x - u.x);
+    };
+    const double whole = side(a, b, c);
+    if (std::abs(whole) < 1e-12) return std::nullopt;  // upright itself
+    const double at_a = side(p, b, c) / whole, at_b = side(a, p, c) / whole, at_c = side(a, b, p) / whole;
+    if (std::min({at_a, at_b, at_c}) < 0.0) return std::nullopt;
+    return at_a * a.y + at_b * b.y + at_c * c.y;
+  }
+  [[nodiscard]] const std::string& name(int mesh) const { return scene_.meshes[static_cast<std::size_t>(mesh)].name; }
+
+  const SceneSpec& scene_;
+  const MarkedNodes& nodes_;
+  const DoubtSink& tell_;
+  std::vector<Box> boxes_;  ///< (n_meshes)
+};
+
+}  // namespace
+
+void doubt(const SceneSpec& scene, const MarkedNodes& nodes, const DoubtSink& tell) {
+  SceneDoubts(scene, nodes, tell).run();
+}
+
+}  // namespace pirsim::io::detail

@@ -1,0 +1,320 @@
+#include "pirsim/io.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+#include "io/read/gltf_geometry.hpp"
+#include "io/read/reader_parts.hpp"
+#include "io/read/scene_parts.hpp"
+#include "schema/check_specs.hpp"
+
+namespace pirsim::io {
+namespace {
+
+using namespace detail;
+
+class SceneBuilder {
+ public:
+  SceneBuilder(const std::filesystem::path& file, const SceneOptions& options)
+      : file_(file), options_(options), document_(load_gltf(file, remarks_)), floor_(remarks_) {
+    spec_.name = name_of_input(file);
+  }
+
+  SceneSpec build() {
+    warn_of_what_is_left_out();
+    temperatures_c_ = material_temperatures_c(document_, remarks_);
+    const PlacedNodes nodes = place_nodes(document_, remarks_);
+    for (const HiddenNode& hidden : nodes.hidden) tell_of_hidden(hidden);
+    for (const PlacedNode& placed : nodes.shown) {
+      read_mark(placed.node);
+      if (too_many_faults()) break;
+    }
+    for (const PlacedNode& placed : nodes.shown) {
+      add_node(placed);
+      if (too_many_faults()) break;
+    }
+    spec_.files = document_.files;
+    spec_.floor = floor_.build();
+    require_floor();
+    if (!remarks_.has_errors()) warn_of_doubts();
+    if (spec_.sensors.empty() && !remarks_.has_errors()) {
+      remarks_.warning(document_.text.where(""), "the scene has no sensors");
+    }
+    read_sensor_models();
+    warnings_.tell(remarks_);
+    remarks_.throw_if_errors();
+    spec_.warnings = remarks_.warnings();
+    return std::move(spec_);
+  }
+
+ private:
+  void warn_of_what_is_left_out() {
+    const nlohmann::json& root = document_.text.root();
+    if (root.contains("animations") && !root["animations"].empty()) {
+      remarks_.warning(document_.text.where_key("/animations"), "animations are not played; nodes stay at rest");
+    }
+    if (root.contains("skins") && !root["skins"].empty()) {
+      remarks_.warning(document_.text.where_key("/skins"), "skins are not posed; meshes stay at rest");
+    }
+    for (const char* collection : {"meshes", "scenes"}) {
+      const auto array = root.find(collection);
+      for (std::size_t i = 0; array != root.end() && i < array->size(); ++i) {
+        const auto extras = (*array)[i].find("extras");
+        if (extras == (*array)[i].end() || !extras->is_object() || !extras->contains("pirsim")) continue;
+        const std::string name = label_of(collection, i);
+        warnings_.add(
+            "off nodes",
+            document_.text.where("/" + std::string(collection) + '/' + std::to_string(i) + "/extras/pirsim"), name,
+            "'pirsim' counts on nodes only; here, on " + name +
+                ", it is not read: put it on the object's node (in Blender: the object's properties, not its data's)");
+      }
+    }
+  }
+  [[nodiscard]] std::string label_of(const std::string& collection, std::size_t i) const {
+    return collection == "meshes" ? mesh_label(document_.model, static_cast<int>(i)) : "a scene";
+  }
+  void warn_of_doubts() {
+    doubt(spec_, nodes_, [&](const Doubt& doubt) {
+      warnings_.add(doubt.kind, place_of(doubt.node), doubt.name,
+                    node_label(document_.model, doubt.node) + ": " + doubt.message);
+    });
+  }
+
+  /// One warning for all; another for those whose marks go with them.
+  void tell_of_hidden(const HiddenNode& hidden) {
+    Diagnostics unread;
+    GroupedWarnings untold;
+    const auto own = read_markup(document_, hidden.node, unread, untold);
+    if (own && (own->doubts == Doubts::not_told || std::holds_alternative<mark::Ignore>(own->what))) return;
+    std::string marks;
+    const auto note_mark = [&](int node) {
+      const auto mark = read_markup(document_, node, unread, untold);
+      if (!mark) return;
+      if (std::holds_alternative<mark::Floor>(mark->what)) hidden_floor_ = node_label(document_.model, node);
+      const std::string name = name_of_mark(mark->what);
+      if (!name.empty()) marks += (marks.empty() ? "" : ", ") + name;
+    };
+    note_mark(hidden.node);
+    std::ranges::for_each(hidden.below, note_mark);
+    const std::string label = node_label(document_.model, hidden.node);
+    const std::string what = label + " is hidden and left out";
+    const std::string with = hidden.below.empty() ? "" : ", with all that is below it";
+    if (marks.empty()) return warnings_.add("hidden", place_of(hidden.node), label, what + with);
+    warnings_.add("hidden mark", place_of(hidden.node), marks, what + with + ": " + marks);
+  }
+  static std::string name_of_mark(const Markup& markup) {
+    const auto name = [](const char* type, const std::string& id) { return std::string(type) + " '" + id + "'"; };
+    if (const auto* sensor = std::get_if<SensorSpec>(&markup)) return name("sensor", sensor->id);
+    if (const auto* seat = std::get_if<SeatSpec>(&markup)) return name("seat", seat->id);
+    if (const auto* entrance = std::get_if<EntranceSpec>(&markup)) return name("entrance", entrance->id);
+    return std::holds_alternative<mark::Floor>(markup) ? "a floor" : "";
+  }
+
+  void read_mark(int node) {
+    auto mark = read_markup(document_, node, remarks_, warnings_);
+    if (!mark) return warn_of_near_marks(document_, node, warnings_);
+    if (mark->doubts == Doubts::not_told) {
+      nodes_.as_meant.insert(node);
+      meshes_as_meant_.insert(document_.model.nodes[static_cast<std::size_t>(node)].mesh);
+    }
+    marks_.emplace(node, std::move(mark->what));
+  }
+
+  void add_node(const PlacedNode& placed) {
+    const auto known = marks_.find(placed.node);
+    const Markup* markup = known == marks_.end() ? nullptr : &known->second;
+    if (markup && std::holds_alternative<mark::Floor>(*markup)) {
+      if (!has_room(n_floors_++, limits::floors, "floors")) return;
+      nodes_.floor = placed.node;
+    }
+    if (markup && std::holds_alternative<mark::Ignore>(*markup)) return;
+    if (const int mesh = document_.model.nodes[static_cast<std::size_t>(placed.node)].mesh; mesh >= 0) {
+      add_mesh(placed, mesh, markup);
+    }
+    if (!markup) return;
+    if (const auto* sensor = std::get_if<SensorSpec>(&*markup)) add_sensor(placed, *sensor);
+    if (const auto* seat = std::get_if<SeatSpec>(&*markup)) add_seat(placed, *seat);
+    if (const auto* entrance = std::get_if<EntranceSpec>(&*markup)) add_entrance(placed, *entrance);
+    if (const auto* floor = std::get_if<mark::Floor>(&*markup); floor && floor->polygon) add_polygon(placed, *floor);
+  }
+
+  void add_mesh(const PlacedNode& placed, int mesh, const Markup* markup) {
+    const auto* floor = std::get_if<mark::Floor>(markup);
+    const auto* surface = std::get_if<mark::Surface>(markup);
+    const auto temperature_c = surface ? surface->temperature_c : std::nullopt;
+    const auto [known, is_first] = meshes_.try_emplace(mesh);
+    GroupedWarnings untold;
+    GroupedWarnings& warnings = meshes_as_meant_.contains(mesh) ? untold : warnings_;
+    if (is_first) known->second = read_mesh_parts(document_, mesh, temperatures_c_, budget_, remarks_, warnings);
+    const TriMesh whole = joined(known->second);
+    if (whole.triangles.empty()) return;
+    if (!budget_.take(whole.positions.size() + whole.triangles.size())) {
+      return node_error(placed.node, "/mesh", "the copies of its mesh make the scene too large");
+    }
+    const TriMesh world = transformed(whole, placed.world_from_node, name_of(placed.node, mesh));
+    if (!std::ranges::all_of(world.positions, is_in_world)) {
+      return node_error(placed.node, "/mesh", "its mesh reaches more than 100 km from the origin");
+    }
+    CleanMesh cleaned = clean(world);
+    if (is_first) warn_of_audit(cleaned.audit, placed.node, mesh, warnings);
+    if (floor && !floor->polygon)
+      floor_.add_mesh(cleaned.mesh, markup_place(placed.node), node_label(document_.model, placed.node));
+    if (floor && floor->occludes == mark::Occludes::no) return;
+    if (temperature_c) cleaned.mesh.temperature_c = temperature_c;
+    nodes_.meshes.resize(spec_.meshes.size() + (temperature_c ? 1 : known->second.size()), placed.node);
+    if (temperature_c || known->second.size() == 1) {
+      spec_.meshes.push_back(std::move(cleaned.mesh));
+    } else {
+      for (const TriMesh& part : known->second) {
+        spec_.meshes.push_back(clean(transformed(part, placed.world_from_node, world.name)).mesh);
+      }
+    }
+  }
+
+  std::string name_of(int node_index, int mesh) const {
+    const auto& node = document_.model.nodes[static_cast<std::size_t>(node_index)];
+    if (!node.name.empty()) return node.name;
+    const auto& given = document_.model.meshes[static_cast<std::size_t>(mesh)];
+    return !given.name.empty() ? given.name : "mesh " + std::to_string(mesh);
+  }
+
+  void warn_of_audit(const MeshAudit& audit, int node, int mesh, GroupedWarnings& warnings) {
+    const auto warn = [&](std::size_t n, const char* what) {
+      if (n == 0) return;
+      const std::string label = mesh_label(document_.model, mesh);
+      warnings.add(what, document_.text.where("/meshes/" + std::to_string(mesh)), label,
+                   label + " (" + node_label(document_.model, node) + "): " + std::to_string(n) +
+                       (n == 1 ? " triangle " : " triangles ") + what);
+    };
+    warn(audit.degenerate_triangles, "without area, dropped");
+    warn(audit.duplicate_triangles, "given twice, dropped");
+    warn(audit.non_manifold_triangles, "not manifold (an edge or corner shared by too many); kept as occluders");
+  }
+
+  void add_sensor(const PlacedNode& placed, SensorSpec sensor) {
+    if (!has_room(spec_.sensors.size(), limits::sensors, "sensors")) return;
+    check_unique("sensor", sensor.id, placed.node);
+    const std::string fault = column_fault(sensor.id);
+    if (!fault.empty()) node_error(placed.node, "/extras/pirsim/id", fault);
+    model_places_.try_emplace(sensor.model, document_.text.where(markup_pointer(placed.node) + "/model"));
+    sensor.world_from_sensor = rigid_frame(placed.world_from_node);
+    spec_.sensors.push_back(std::move(sensor));
+  }
+  void add_seat(const PlacedNode& placed, SeatSpec seat) {
+    if (!has_room(spec_.seats.size(), limits::seats, "seats")) return;
+    check_unique("seat", seat.id, placed.node);
+    nodes_.seats.push_back(placed.node);
+    seat.world_from_seat = upright_frame(placed);
+    spec_.seats.push_back(std::move(seat));
+  }
+  void add_entrance(const PlacedNode& placed, EntranceSpec entrance) {
+    if (!has_room(spec_.entrances.size(), limits::entrances, "entrances")) return;
+    check_unique("entrance", entrance.id, placed.node);
+    nodes_.entrances.push_back(placed.node);
+    entrance.world_from_entrance = upright_frame(placed);
+    spec_.entrances.push_back(std::move(entrance));
+  }
+  void add_polygon(const PlacedNode& placed, const mark::Floor& floor) {
+    std::vector<Vec3> corners;
+    for (const Vec2& p : *floor.polygon) corners.emplace_back(placed.world_from_node * glm::dvec4(p.x, 0.0, p.y, 1.0));
+    floor_.add_polygon(corners, document_.text.where(markup_pointer(placed.node) + "/polygon_xz_m"),
+                       node_label(document_.model, placed.node));
+  }
+
+  /// So many are there already. A fault if the scene can't have one more.
+  bool has_room(std::size_t n, std::size_t most, const char* what) {
+    if (n < most) return true;
+    remarks_.error({file_.string()}, "the scene has " + too_many(most, what));
+    return false;
+  }
+
+  Frame upright_frame(const PlacedNode& placed) {
+    const Frame frame = rigid_frame(placed.world_from_node);
+    if (!is_upright(frame)) {
+      constexpr double flat = 0.0038;  // of the upward axis: within a quarter of a degree of level
+      remarks_.error(markup_place(placed.node),
+                     node_label(document_.model, placed.node) + ": must stand upright (its +Y up)" +
+                         (std::abs(frame.up().y) < flat ? "; it lies: is the file Z-up?" : ""));
+    }
+    return frame;
+  }
+
+  void check_unique(const std::string& type, const std::string& id, int node) {
+    const auto [first, is_new] = ids_.try_emplace({type, id}, node);
+    if (is_new) return;
+    node_error(node, "/extras/pirsim/id",
+               type + " id '" + id + "' is taken by " + node_label(document_.model, first->second));
+  }
+
+  void require_floor() {
+    if (!spec_.floor.empty() || remarks_.has_errors()) return;
+    if (!hidden_floor_.empty()) {
+      return remarks_.error(document_.text.where("/nodes"),
+                            "the scene has no floor area: " + hidden_floor_ + ", a floor, is hidden and left out");
+    }
+    remarks_.error(document_.text.where("/nodes"),
+                   "the scene has no floor area; give the floor's node extras {\"pirsim\": {\"type\": \"floor\"}}");
+  }
+
+  void read_sensor_models() {
+    const SensorSearch search(options_, folder_of_input(file_));
+    for (const auto& [model, where] : model_places_) {
+      try {
+        auto found = search.find(model);
+        if (!found) {
+          remarks_.error(where, search.unknown(model));
+          continue;
+        }
+        for (const Issue& remark : found->remarks)
+          warnings_.add("sensor id", remark.where, "model '" + model + "'", remark.message);
+        spec_.sensor_models.emplace(model, std::move(found->model));
+        if (found->file) spec_.files.push_back(*found->file);
+      } catch (const Error& fault) {
+        for (const Issue& issue : fault.issues()) remarks_.error(issue.where, issue.message);
+      }
+    }
+  }
+
+  /// A faulty exporter makes thousands, each of which is looked for in the text.
+  [[nodiscard]] bool too_many_faults() const {
+    const auto is_error = [](const Issue& issue) { return issue.severity == Severity::error; };
+    return remarks_.has_errors() && std::count_if(remarks_.issues().begin(), remarks_.issues().end(), is_error) >= 20;
+  }
+
+  [[nodiscard]] Where place_of(int node) const { return document_.text.where("/nodes/" + std::to_string(node)); }
+  [[nodiscard]] Where markup_place(int node) const { return document_.text.where(markup_pointer(node)); }
+  void node_error(int node, const std::string& member, const std::string& message) {
+    remarks_.error(document_.text.where("/nodes/" + std::to_string(node) + member),
+                   node_label(document_.model, node) + ": " + message);
+  }
+
+  std::filesystem::path file_;
+  const SceneOptions& options_;
+  Diagnostics remarks_;
+  GroupedWarnings warnings_;
+  GltfDocument document_;
+  GeometryBudget budget_;
+  FloorBuilder floor_;
+  SceneSpec spec_;
+  MarkedNodes nodes_;
+  std::map<int, Markup> marks_;    ///< by node
+  std::set<int> meshes_as_meant_;  ///< of a node that says so
+  std::string hidden_floor_;       ///< its node, as messages name it
+  std::size_t n_floors_ = 0;
+  std::vector<std::optional<double>> temperatures_c_;       ///< (n_materials)
+  std::map<int, std::vector<TriMesh>> meshes_;              ///< in their own frames, by index, in equally warm parts
+  std::map<std::string, Where> model_places_;               ///< where each sensor model is first named
+  std::map<std::pair<std::string, std::string>, int> ids_;  ///< (type, id) to node
+};
+
+}  // namespace
+
+SceneSpec read_scene(const std::filesystem::path& file, const SceneOptions& options) {
+  return SceneBuilder(file, options).build();
+}
+
+}  // namespace pirsim::io

@@ -1,0 +1,101 @@
+#include "io/read/reader_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/read/yaml_map.hpp"
+#include "schema/clock.hpp"
+
+namespace pirsim::io {
+namespace {
+
+StaffSpec read_staff(const YamlNode& node, Diagnostics& faults) {
+  YamlMap map(node, faults, "staff");
+  StaffSpec staff;
+  staff.where = node.where();
+  read_fields(map, staff);
+  if (!map.has("count")) staff.count = std::max(1, static_cast<int>(staff.seats.size()));
+  map.finish();
+  return staff;
+}
+
+HeldMeetingSpec read_held(const YamlNode& node, Diagnostics& faults) {
+  YamlMap map(node, faults, "held");
+  HeldMeetingSpec held;
+  held.where = node.where();
+  if (!map.has("at")) faults.error(node.where(), "held: `at` is missing");
+  read_numbers(map, held);
+  check_together(held, [&](std::string_view, const std::string& message) {
+    faults.error(node.where(), "held: at " + map.text("at") + ": " + message);
+  });
+  map.finish();
+  return held;
+}
+
+/// The field of a time is called so, its key isn't: `from_h`.
+std::string key_of(std::string_view field) {
+  if (field.ends_with("_h")) field.remove_suffix(2);
+  return std::string(field);
+}
+
+MeetingsSpec read_meetings(const YamlNode& node, Diagnostics& faults) {
+  YamlMap map(node, faults, "meetings");
+  MeetingsSpec spec;
+  spec.where = node.where();
+  read_fields(map, spec);
+  if (!map.has("most_a_day")) spec.most_a_day = std::max(spec.most_a_day, spec.fewest_a_day);
+  for (const YamlNode& held : map.list("held", limits::held_meetings)) spec.held.push_back(read_held(held, faults));
+  check_together(spec.held, [&](std::size_t i, std::size_t j) {
+    faults.error(spec.held[i].where, "held: overlaps the meeting of line " + std::to_string(spec.held[j].where.line) +
+                                         ", and there is one room");
+  });
+  check_together(spec, [&](std::string_view field, const std::string& message) {
+    const bool is_time = field == "to_h";
+    const std::string key = is_time ? "to" : map.has("probabilities") ? "probabilities" : "durations_min";
+    faults.error(map.where(key), (is_time ? "meetings: " : "probabilities: ") + message);
+  });
+  map.finish();
+  return spec;
+}
+
+}  // namespace
+
+std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, Diagnostics& faults) {
+  if (!node) return std::nullopt;
+  YamlMap map(*node, faults, "schedule");
+  ScheduleSpec spec;
+  spec.where = node->where();
+  spec.first_day = map.text("first_day", spec.first_day);
+  read_fields(map, spec);
+  for (const YamlNode& staff : map.list("staff")) spec.staff.push_back(read_staff(staff, faults));
+  if (const auto child = map.child("meetings")) spec.meetings = read_meetings(*child, faults);
+  if (map.child("profile")) {
+    ProfileSpec& profile = spec.profile.emplace();
+    read_part(map, "profile", profile, [&](YamlMap& own) { check_together(profile, faults_by_key(own)); });
+  }
+  read_part(map, "arrival", spec.arrival);
+  read_part(map, "departure", spec.departure);
+  read_part(map, "lunch", spec.lunch);
+  check_together(spec, [&](std::string_view field, const std::string& message) {
+    const bool is_date = field == "first_day";
+    faults.error(map.where(key_of(field)), is_date ? message : "schedule: " + message);
+  });
+  map.finish();
+  return spec;
+}
+
+ScriptTime read_time(YamlMap& script, const std::optional<ScheduleSpec>& schedule, ScriptSpec& spec) {
+  constexpr RunClock any{};  // where it isn't understood, so that no second fault follows
+  spec.begin = script.text("begin");
+  if (schedule) {
+    const double day_s = std::round(3600.0 * (schedule->to_h - schedule->from_h));
+    if (script.faults().has_errors()) return {any, day_s};
+    TrialSpec day;
+    day.schedule = schedule;
+    return {clock_of(spec, day), day_s};
+  }
+  if (!script.has("begin")) return {};
+  return {clock_from(spec.begin).value_or(any)};
+}
+
+}  // namespace pirsim::io

@@ -1,0 +1,396 @@
+#include "pirsim/io.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <set>
+
+#include "core/text.hpp"
+#include "io/read/reader_parts.hpp"
+#include "io/read/yaml_map.hpp"
+
+namespace pirsim::io {
+namespace {
+
+enum class Layout { diamond, square };
+enum class Polarity { checkerboard, same };
+enum class Missing { none, outer };
+
+constexpr NumberRange length_m{.min = 1e-3, .max = 1000.0};  ///< what is shorter leaves no digits to directions
+constexpr double pitch_to_side = 1.0 / 0.6;                  ///< of the quad's elements, quoted: docs/physics/zones.md
+
+/// What the facets of one lens share.
+struct FacetLaw {
+  double plane_m = 1.0;
+  Layout layout = Layout::diamond;
+  double half_spacing_ratio = 0.0;  ///< of the distance from the sensor to the facet's centre on the plane
+  double half_diagonal_ratio = 0.0;
+  std::optional<double> range_m;
+  Polarity polarity = Polarity::checkerboard;
+};
+
+/// Centres and half-sizes of the four zones of one facet, counter-clockwise from the right (or upper right) one.
+struct Quad {
+  std::array<Vec2, 4> centres;
+  std::array<Vec2, 4> corner_offsets;  ///< from a zone's centre
+};
+
+Quad diamond(const Vec2& facet, double half_spacing_m, double half_diagonal_m) {
+  Quad quad;
+  const std::array<Vec2, 4> axes{Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1)};
+  for (std::size_t i = 0; i < 4; ++i) {
+    quad.centres[i] = facet + axes[i] * half_spacing_m;
+    quad.corner_offsets[i] = axes[i] * half_diagonal_m;
+  }
+  return quad;
+}
+Quad square(const Vec2& facet, double pitch_m, double side_m) {
+  Quad quad;
+  const std::array<Vec2, 4> diagonals{Vec2(1, 1), Vec2(-1, 1), Vec2(-1, -1), Vec2(1, -1)};
+  for (std::size_t i = 0; i < 4; ++i) {
+    quad.centres[i] = facet + diagonals[i] * (0.5 * pitch_m);
+    quad.corner_offsets[i] = diagonals[i] * (0.5 * side_m);
+  }
+  return quad;
+}
+
+/// Index of the zone that lies farthest from the lens axis.
+std::size_t outermost(const Quad& quad) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < 4; ++i) {
+    if (glm::dot(quad.centres[i], quad.centres[i]) > glm::dot(quad.centres[best], quad.centres[best])) best = i;
+  }
+  return best;
+}
+
+std::vector<ZoneSpec> zones_of(const Quad& quad, Polarity polarity, Missing missing) {
+  std::vector<ZoneSpec> zones;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (missing == Missing::outer && i == outermost(quad)) continue;
+    ZoneSpec zone;
+    for (std::size_t k = 0; k < 4; ++k) zone.corners[k] = quad.centres[i] + quad.corner_offsets[k];
+    zone.polarity = polarity == Polarity::checkerboard && i % 2 == 1 ? -1 : 1;
+    zones.push_back(zone);
+  }
+  return zones;
+}
+
+/// What facets and clusters share; the sensor may say a range for all.
+void read_cluster_numbers(YamlMap& map, const std::optional<double>& range_m, ClusterSpec& cluster) {
+  if (range_m) {
+    cluster.range_m = *range_m;
+  } else {
+    map.require("range_m");
+  }
+  read_numbers(map, cluster);
+}
+
+ClusterSpec read_facet(const YamlNode& node, const FacetLaw& law, Diagnostics& faults) {
+  YamlMap map(node, faults, "facet");
+  ClusterSpec cluster;
+  cluster.centre = {map.required_number("x_m", accepted::on_lens_plane_m),
+                    map.required_number("y_m", accepted::on_lens_plane_m)};
+  read_cluster_numbers(map, law.range_m, cluster);
+  const auto missing =
+      map.choice<Missing>("missing", Missing::none, {{"none", Missing::none}, {"outer", Missing::outer}});
+  Quad quad;
+  if (law.layout == Layout::diamond) {
+    const double distance = std::sqrt(glm::dot(cluster.centre, cluster.centre) + law.plane_m * law.plane_m);
+    quad = diamond(cluster.centre, law.half_spacing_ratio * distance, law.half_diagonal_ratio * distance);
+  } else {
+    const double side = map.required_number("zone_side_m", length_m);
+    quad = square(cluster.centre, map.optional_number("pitch_m", length_m).value_or(pitch_to_side * side), side);
+  }
+  cluster.zones = zones_of(quad, law.polarity, missing);
+  if (!faults.has_errors()) {
+    for (const ZoneSpec& zone : cluster.zones) {
+      const std::string fault = corners_fault(zone);
+      if (!fault.empty()) faults.error(node.where(), "facet: the corners of its zones: " + fault);
+    }
+  }
+  map.finish();
+  return cluster;
+}
+
+ZoneSpec read_zone(const YamlNode& node, Diagnostics& faults) {
+  YamlMap map(node, faults, "zone");
+  ZoneSpec zone;
+  const std::vector<YamlNode> corners = map.required_list("corners_m");
+  zone.polarity = map.choice<int>("polarity", 1, {{"1", 1}, {"-1", -1}});
+  map.finish();
+  if (!map.has("corners_m")) return zone;
+  if (corners.size() != zone.corners.size()) {
+    faults.error(map.where("corners_m"), "zone: corners_m: expected 4 corners, got " + std::to_string(corners.size()));
+    return zone;
+  }
+  const std::size_t faults_before = faults.issues().size();
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const std::vector<double> xy = read_numbers(corners[i], faults, "zone: corner", accepted::on_lens_plane_m);
+    if (xy.size() == 2) {
+      zone.corners[i] = {xy[0], xy[1]};
+    } else if (corners[i].is_list()) {
+      faults.error(corners[i].where(), "zone: corner: expected [x, y]");
+    }
+  }
+  const std::string fault = corners_fault(zone);
+  if (faults.issues().size() == faults_before && !fault.empty()) {
+    faults.error(map.where("corners_m"), "zone: corners_m: " + fault);
+  }
+  return zone;
+}
+
+ClusterSpec read_cluster(const YamlNode& node, const std::optional<double>& range_m, Diagnostics& faults) {
+  YamlMap map(node, faults, "cluster");
+  ClusterSpec cluster;
+  read_cluster_numbers(map, range_m, cluster);
+  double corner_count = 0.0;
+  for (const YamlNode& zone : map.required_list("zones")) {
+    cluster.zones.push_back(read_zone(zone, faults));
+    for (const Vec2& corner : cluster.zones.back().corners) cluster.centre += corner;
+    corner_count += 4.0;
+  }
+  if (corner_count > 0.0) cluster.centre /= corner_count;
+  map.finish();
+  return cluster;
+}
+
+template <typename Spec>
+void add_keys(std::vector<std::string>& keys) {
+  each_field<Spec>([&](const auto& field) { keys.emplace_back(field.name); });
+}
+
+const std::vector<std::string>& sourced_keys() {
+  static const std::vector<std::string> keys = [] {
+    std::vector<std::string> all{"plane_m",
+                                 "half_spacing_ratio",
+                                 "half_diagonal_ratio",
+                                 "range_m",
+                                 "lens_step",
+                                 "polarity",
+                                 "x_m",
+                                 "y_m",
+                                 "zone_side_m",
+                                 "pitch_m",
+                                 "missing",
+                                 "corners_m"};
+    add_keys<OpticsSpec>(all);
+    const std::vector<std::string> detector = sourced_detector_keys();
+    all.insert(all.end(), detector.begin(), detector.end());
+    return all;
+  }();
+  return keys;
+}
+
+/// Adds the names of all keys in a tree that stand for a number with a source.
+void collect_sourced_keys(const YamlNode& node, std::vector<YamlKey>& found) {
+  const std::vector<YamlKey> keys = node.keys();
+  const std::vector<YamlNode> items = node.items();
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (i < keys.size()) {
+      const std::string& name = keys[i].name;
+      if (name == "sources") continue;
+      const auto same = [&](const YamlKey& key) { return key.name == name; };
+      const bool sourced = std::find(sourced_keys().begin(), sourced_keys().end(), name) != sourced_keys().end();
+      if (sourced && std::none_of(found.begin(), found.end(), same)) found.push_back(keys[i]);
+    }
+    collect_sourced_keys(items[i], found);
+  }
+}
+
+/// Every number in the file has to say where it comes from.
+void check_sources(YamlMap& map, const YamlNode& root) {
+  Diagnostics& faults = map.faults();
+  YamlMap sources(map.required_child("sources"), faults, "sources");
+  for (const std::string& name : sourced_keys()) {
+    const std::string text = sources.prose(name, "assumed:");
+    const std::string tag = text.substr(0, text.find(':'));
+    if (tag != "quoted" && tag != "measured" && tag != "inferred" && tag != "assumed") {
+      faults.error(sources.where(name),
+                   "sources: " + name + ": expected 'quoted:', 'measured:', 'inferred:' or 'assumed:' in front");
+    }
+  }
+  sources.finish();
+  if (!map.has("sources")) return;
+  std::vector<YamlKey> used;
+  collect_sourced_keys(root, used);
+  const std::vector<YamlKey> given = map.required_child("sources").keys();
+  for (const YamlKey& key : used) {
+    const bool is_misspelt = std::ranges::any_of(given, [&](const YamlKey& source) {  // which is told already
+      return std::ranges::find(sourced_keys(), source.name) == sourced_keys().end() &&
+             did_you_mean(source.name, sourced_keys()) == did_you_mean(source.name, {key.name});
+    });
+    if (!sources.has(key.name) && !is_misspelt)
+      faults.error(key.where, "'" + key.name + "' has no entry under 'sources'");
+  }
+}
+
+/// Its element, amplifier and comparator; what isn't there keeps its default.
+DetectorSpec read_detector(YamlMap& sensor) {
+  DetectorSpec detector;
+  read_part(sensor, "element", detector.element);
+  read_part(sensor, "amplifier", detector.amplifier,
+            [&](YamlMap& map) { check_together(detector.amplifier, faults_of(map, "amplifier")); });
+  read_part(sensor, "comparator", detector.comparator,
+            [&](YamlMap& map) { check_together(detector.comparator, faults_of(map, "comparator")); });
+  // A signal that saturates before a threshold would never be noticed.
+  check_together(detector, faults_of(sensor, "comparator"));
+  return detector;
+}
+
+FacetLaw read_law(YamlMap& map, double plane_m, const std::optional<double>& range_m) {
+  FacetLaw law;
+  law.plane_m = plane_m;
+  law.range_m = range_m;
+  if (!map.has("layout")) {
+    map.faults().error(map.where(), "sensor: 'layout' is missing");
+    for (const char* key : {"half_spacing_ratio", "half_diagonal_ratio"}) static_cast<void>(map.child(key));
+  }
+  law.layout = map.choice<Layout>("layout", Layout::square, {{"diamond", Layout::diamond}, {"square", Layout::square}});
+  if (law.layout == Layout::diamond) {
+    law.half_spacing_ratio = map.required_number("half_spacing_ratio", {.above = 0.0, .max = 1.0});
+    law.half_diagonal_ratio = map.required_number("half_diagonal_ratio", {.above = 0.0, .max = 1.0});
+  }
+  law.polarity = map.choice<Polarity>("polarity", Polarity::checkerboard,
+                                      {{"checkerboard", Polarity::checkerboard}, {"same", Polarity::same}});
+  return law;
+}
+
+/// Is a key of the file meant for range_m? Then each facet would tell that it is missing.
+bool misspells_range(const YamlNode& root) {
+  const std::vector<std::string> known{"id",
+                                       "description",
+                                       "plane_m",
+                                       "range_m",
+                                       "response",
+                                       "optics",
+                                       "facets",
+                                       "clusters",
+                                       "layout",
+                                       "polarity",
+                                       "sources",
+                                       "half_spacing_ratio",
+                                       "half_diagonal_ratio"};
+  const std::vector<YamlKey> keys = root.keys();
+  return std::ranges::any_of(keys, [&](const YamlKey& key) {
+    return std::ranges::find(known, key.name) == known.end() &&
+           did_you_mean(key.name, known) == did_you_mean("range_m", {"range_m"});
+  });
+}
+
+SensorModelSpec read_model(const YamlNode& root) {
+  Diagnostics faults;
+  YamlMap map(root, faults, "sensor");
+  SensorModelSpec model;
+  model.id = map.required_text("id");
+  model.description = map.prose("description");
+  map.require("plane_m");
+  read_fields(map, model);
+  std::optional<double> range_m =  // of all facets or clusters that don't say their own
+      map.optional_number("range_m", field_of<&ClusterSpec::range_m>().range);
+  if (!range_m && misspells_range(root)) range_m = 1.0;  // the file is refused for that key
+  read_part(map, "optics", model.optics);
+  model.detector = read_detector(map);
+  if (map.has("facets") == map.has("clusters")) {
+    faults.error(map.where(), "sensor: expected either 'facets' or 'clusters'");
+  }
+  if (map.has("clusters")) {
+    for (const YamlNode& node : map.required_list("clusters"))
+      model.clusters.push_back(read_cluster(node, range_m, faults));
+  } else if (map.has("facets")) {
+    const FacetLaw law = read_law(map, model.plane_m, range_m);
+    const std::vector<YamlNode> facets = map.required_list("facets");
+    for (const YamlNode& node : map.has("layout") ? facets : std::vector<YamlNode>{})  // which says what facets need
+      model.clusters.push_back(read_facet(node, law, faults));
+  }
+  check_sources(map, root);
+  map.finish();
+  faults.throw_if_errors();
+  return model;
+}
+
+}  // namespace
+
+std::vector<std::string> sourced_detector_keys() {
+  std::vector<std::string> keys;
+  add_keys<ElementSpec>(keys);
+  add_keys<AmplifierSpec>(keys);
+  add_keys<ComparatorSpec>(keys);
+  return keys;
+}
+
+SensorModelSpec read_sensor_model(const std::filesystem::path& path) {
+  return read_model(YamlNode::load(read_input(path)));
+}
+
+}  // namespace pirsim::io
+
+namespace pirsim::io::detail {
+
+namespace fs = std::filesystem;
+
+SensorSearch::SensorSearch(const SceneOptions& options, const fs::path& scene_folder)
+    : folders_(options.sensor_directories) {
+  folders_.push_back(scene_folder / "sensors");
+  folders_.push_back(scene_folder / ".." / "sensors");
+  if (const char* data = std::getenv("PIRSIM_DATA_DIR"); data != nullptr && *data != '\0') {
+    folders_.push_back(fs::path(data) / "sensors");
+  }
+  for (const fs::path& data : options.data_directories) folders_.push_back(data / "sensors");
+}
+
+std::optional<FoundSensor> SensorSearch::find(const std::string& model) const {
+  for (const fs::path& folder : folders_) {
+    std::error_code fault;
+    const fs::path file = folder / (model + ".yaml");
+    if (const auto status = fs::status(file, fault); !fs::exists(status) || fs::is_directory(status)) continue;
+    const Input input = read_input(file);
+    const YamlNode root = YamlNode::load(input);
+    FoundSensor found{read_model(root), input.file(), {}};
+    if (found.model.id != model) {
+      Diagnostics remarks;
+      remarks.warning(YamlMap(root, remarks, "sensor").where("id"),
+                      "id '" + found.model.id + "' isn't the file's name: scenes name this model '" + model + "'");
+      found.remarks = remarks.warnings();
+    }
+    return found;
+  }
+  for (const NamedText& shipped : shipped_sensors()) {
+    if (shipped.name == model) return FoundSensor{read_model(YamlNode::parse(shipped.text, model + ".yaml")), {}, {}};
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> SensorSearch::names() const {
+  std::set<std::string> names;
+  for (const NamedText& shipped : shipped_sensors()) names.emplace(shipped.name);
+  for (const fs::path& folder : folders_) {
+    std::error_code fault;
+    for (fs::directory_iterator entry(folder, fault), end; !fault && entry != end; entry.increment(fault)) {
+      if (entry->path().extension() == ".yaml") names.insert(entry->path().stem().string());
+    }
+  }
+  return {names.begin(), names.end()};
+}
+
+std::string SensorSearch::unknown(const std::string& model) const {
+  const auto told = [](const fs::path& folder) { return "'" + folder.lexically_normal().string() + "'"; };
+  std::string searched;
+  for (const fs::path& folder : folders_) {
+    if (searched.find(told(folder)) == std::string::npos) searched += (searched.empty() ? "" : ", ") + told(folder);
+  }
+  return "sensor model '" + model + "' is not known" + near_or_all(model, names()) + "; looked for '" + model +
+         ".yaml' in " + searched + " and among the models that pirsim carries";
+}
+
+}  // namespace pirsim::io::detail
+
+namespace pirsim::io {
+
+SensorModelSpec find_sensor_model(const std::string& model, const std::filesystem::path& scene_file,
+                                  const SceneOptions& options, const Where& named_at) {
+  const detail::SensorSearch search(options, folder_of_input(scene_file));
+  if (auto found = search.find(model)) return std::move(found->model);
+  throw Error(ErrorCode::input, named_at, search.unknown(model));
+}
+
+}  // namespace pirsim::io
