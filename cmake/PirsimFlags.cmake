@@ -1,9 +1,17 @@
+option(PIRSIM_UNITY_BUILD "compile the files of a folder together" OFF)
+
 # Compiler settings of our own targets; never exported to users of the library.
 add_library(pirsim_flags INTERFACE)
 target_compile_features(pirsim_flags INTERFACE cxx_std_20)
 # Contraction would let the compiler fuse a*b+c differently from build to build: results must be the same bytes.
 target_compile_options(pirsim_flags INTERFACE
-  -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor)
+  -ffp-contract=off -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor)
+if(PIRSIM_UNITY_BUILD)
+  # Between files that are compiled together these would warn of a name and a type that are private to one of them.
+  target_compile_options(pirsim_flags INTERFACE -Wno-subobject-linkage)
+else()
+  target_compile_options(pirsim_flags INTERFACE -Wshadow)
+endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   # GCC 12 takes `"text" + std::string` for an overlapping copy (its bug 105651).
   target_compile_options(pirsim_flags INTERFACE -Wno-restrict)
@@ -24,7 +32,6 @@ function(pirsim_precompile target)
 endfunction()
 
 # The files of a folder are compiled together, a dozen at a time: names in their anonymous namespaces mustn't clash.
-option(PIRSIM_UNITY_BUILD "compile the files of a folder together" OFF)
 function(pirsim_unity target)
   if(NOT PIRSIM_UNITY_BUILD)
     return()

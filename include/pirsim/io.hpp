@@ -40,14 +40,14 @@ void write_scene(const std::filesystem::path& file, const SceneSpec& scene);
 /// Throws Error (io: no such file; input: all faults with file:line:column; usage: an override).
 [[nodiscard]] ScriptSpec read_script(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
-/// The same from memory; `name` stands in messages, and files that it refers to are found from the working folder.
+/// Reads a script from memory; `name` stands in messages, and its files are found from the working folder.
 [[nodiscard]] ScriptSpec parse_script(std::string_view text, const std::string& name,
                                       std::span<const std::string> overrides = {});
 
 /// The script as YAML that read_script() reads back to the same spec: trials and people written out.
 [[nodiscard]] std::string to_yaml(const ScriptSpec& script);
 
-/// The same script for a file in another folder: the files that it refers to are found from there.
+/// This script for a file in another folder: the files that it refers to are found from there.
 [[nodiscard]] ScriptSpec moved(ScriptSpec script, const std::filesystem::path& folder);
 
 // Reads a sensor's optics; the format is docs/formats/sensor.md.

@@ -42,7 +42,7 @@ struct MeshSolid {
 };
 using Shape = std::variant<Sphere, Capsule, Box, MeshSolid>;
 
-// The same solids placed in the world, as the ray tests want them.
+// Solids placed in the world, as the ray tests want them.
 struct PosedSphere {
   Vec3f centre{0.0F};
   float radius = 0.0F;

@@ -40,7 +40,7 @@ CLI::Option* offer_input_file(CLI::App& command, const std::string& name, std::f
                               const std::string& what);
 /// --scene, --set, --sensors and --quiet: for commands that make the script themselves.
 void offer_scene(CLI::App& command, Inputs& inputs);
-/// The same and --script: every other command that reads a room uses them.
+/// The options of offer_scene() and --script: every other command that reads a room uses them.
 void offer_study(CLI::App& command, Inputs& inputs);
 /// What of it makes the model what it is, as the user typed it: a command with these words reads the same.
 [[nodiscard]] std::vector<std::string> model_options(const Inputs& inputs);

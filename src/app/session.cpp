@@ -135,7 +135,7 @@ void check_folder(const NamedOutput& output) {
               "can't write: " + (fs::exists(status) ? name + " isn't a folder" : "there is no folder " + name));
 }
 
-/// The same for all names of one file, as far as it can be told.
+/// A text that all names of one file share, as far as it can be told.
 std::string identity(const fs::path& file) {
   std::error_code fault;
   const fs::path whole = fs::weakly_canonical(fs::absolute(file, fault), fault);

@@ -24,7 +24,7 @@ namespace pirsim::app {
 [[nodiscard]] Model load(const Inputs& inputs);
 /// With warnings as the inputs ask for them, and progress told or not.
 [[nodiscard]] Model load(const Inputs& inputs, Verbosity of_progress);
-/// The same for a script that the command made.
+/// Compiles a script that the command made with the room that it reads.
 [[nodiscard]] Model load(const Inputs& inputs, ScriptSpec script);
 /// Index of a run. Throws Error(usage).
 [[nodiscard]] std::uint32_t find_run(const Model& model, const RunChoice& choice);

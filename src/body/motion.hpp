@@ -50,11 +50,11 @@ struct Outline {
   double fall = 0.0;                     ///< 0 standing, 1 at the seat's height
   double reach = 0.0;                    ///< of the arms: 0 on the thighs, 1 on the table
   double thigh_angle = 0.0;              ///< when seated; 0 while fall is 0
-  double table_height_m = 0.0;           ///< what the forearms rest on; 0 while reach is 0, as the next
+  double table_height_m = 0.0;           ///< what the forearms rest on; 0 while reach is 0
   double hand_offset_m = 0.0;            ///< of the left hand ahead of its base place
   double head_turn = 0.0;                ///< to the left
   double spine_lean = 0.0;               ///< to the right
-  std::array<double, 2> hand_ahead_m{};  ///< left, right; beyond hand_offset_m; 0 while reach is 0, as the next
+  std::array<double, 2> hand_ahead_m{};  ///< left, right; beyond hand_offset_m; 0 while reach is 0
   std::array<double, 2> hand_up_m{};
   std::array<double, 2> hand_to_head{};  ///< left, right; 0 to 1
   bool operator==(const Outline&) const = default;

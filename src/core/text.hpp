@@ -34,7 +34,7 @@ enum class Lines { one, many };  ///< many: line breaks and tabs may be in it
 /// Markdown that shows the text as it is, in one line: no HTML, no markup, no end of a table's column.
 [[nodiscard]] std::string markdown_text(std::string_view text);
 
-/// The same as code, in backticks.
+/// Markdown that shows the text as code, in backticks.
 [[nodiscard]] std::string markdown_code(std::string_view text);
 
 /// ` (did you mean 'X'?)`, or `; there are A, B` if none is near; of very many only the first; `; there are none`.

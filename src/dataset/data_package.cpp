@@ -9,7 +9,7 @@
 namespace pirsim::dataset {
 namespace {
 
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 /// Of Table Schema.
 std::string type_of(Holds holds) {
@@ -31,8 +31,8 @@ std::string type_of(Holds holds) {
   return "string";
 }
 
-json field(const ColumnInfo& column, std::string_view name) {
-  json one{{"name", name}, {"type", type_of(column.holds)}, {"description", column.meaning}};
+Json field(const ColumnInfo& column, std::string_view name) {
+  Json one{{"name", name}, {"type", type_of(column.holds)}, {"description", column.meaning}};
   if (column.holds == Holds::moment) one["format"] = "%Y-%m-%dT%H:%M:%S";
   if (!column.unit.empty()) one["unit"] = column.unit;
   if (column.holds == Holds::bit) one["constraints"] = {{"minimum", 0}, {"maximum", 1}};
@@ -42,8 +42,8 @@ json field(const ColumnInfo& column, std::string_view name) {
 
 /// sensors: names of the columns that the table has for each.
 template <typename Row>
-json fields_of(const std::vector<std::string>& sensors = {}) {
-  json fields = json::array();
+Json fields_of(const std::vector<std::string>& sensors = {}) {
+  Json fields = Json::array();
   for (const Column<Row>& column : columns_of<Row>()) {
     if (column.each == nullptr) {
       fields.push_back(field(column, column.name));
@@ -66,7 +66,7 @@ std::string slug(const std::string& name) {
   return result.empty() ? "dataset" : result;
 }
 
-json resource(const std::string& name, const std::string& title, json paths, json fields) {
+Json resource(const std::string& name, const std::string& title, Json paths, Json fields) {
   return {{"name", name},
           {"title", title},
           {"profile", "tabular-data-resource"},
@@ -78,8 +78,8 @@ json resource(const std::string& name, const std::string& title, json paths, jso
 }
 
 /// The rows, or the occupants, of one part; null if there are none.
-json resource_of_part(const Description& described, Part part, const std::string& folder) {
-  json paths = json::array(), files = json::array();
+Json resource_of_part(const Description& described, Part part, const std::string& folder) {
+  Json paths = Json::array(), files = Json::array();
   for (std::size_t i = 0; i < described.days.size(); ++i) {
     if (described.parts[i] != part) continue;
     for (const WrittenFile& file : described.days[i].files) {
@@ -90,7 +90,7 @@ json resource_of_part(const Description& described, Part part, const std::string
   }
   if (paths.empty()) return {};
   const bool is_rows = folder == "rows";
-  json one =
+  Json one =
       resource((is_rows ? "" : folder + "_") + name_of(part), (is_rows ? "Rows: " : "Who is where: ") + name_of(part),
                std::move(paths), is_rows ? fields_of<DayLine>(described.sensor_columns) : fields_of<DayOccupantLine>());
   // Neither `bytes` nor `hash` of the whole: readers take them of what is unpacked and joined.
@@ -101,23 +101,23 @@ json resource_of_part(const Description& described, Part part, const std::string
 }  // namespace
 
 std::string data_package(const Description& described, const std::map<std::string, Table>& tables) {
-  json resources = json::array();
+  Json resources = Json::array();
   for (const std::string folder : {"rows", "occupants"}) {
     for (const Part part : {Part::train, Part::validation, Part::test_days, Part::test_rooms}) {
-      json one = resource_of_part(described, part, folder);
+      Json one = resource_of_part(described, part, folder);
       if (!one.is_null()) resources.push_back(std::move(one));
     }
   }
   for (const auto& [name, table] : tables) {
     const std::string stem = name.substr(0, name.find('.'));
-    json fields = json::array();
+    Json fields = Json::array();
     for (const ColumnInfo& column : table.columns) fields.push_back(field(column, column.name));
-    json one = resource(stem, "One line each: " + stem, name, std::move(fields));
+    Json one = resource(stem, "One line each: " + stem, name, std::move(fields));
     one["bytes"] = table.text.size();
     one["hash"] = "sha256:" + sha256(table.text);
     resources.push_back(std::move(one));
   }
-  const json package{
+  const Json package{
       {"profile", "data-package"},
       {"name", slug(described.recipe.name)},
       {"title", described.recipe.name},

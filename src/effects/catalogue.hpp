@@ -68,7 +68,7 @@ struct Effect {
 [[nodiscard]] std::string list_text();
 /// All that is known of one effect, for a terminal.
 [[nodiscard]] std::string to_text(const Effect& effect);
-/// The same of all effects as Markdown: what docs/effects.md holds.
+/// All that is known of all effects, as Markdown: what docs/effects.md holds.
 [[nodiscard]] std::string list_markdown();
 
 }  // namespace pirsim::effects

@@ -41,7 +41,7 @@ class PassedFacet {
   double middle_tangent_ = 0.0;  ///< y of the first zone's middle
 };
 
-/// The same for a single pass.
+/// The power that a target gives a cluster in a single pass.
 [[nodiscard]] std::vector<double> target_power(const SensorModelSpec& model, std::size_t cluster,
                                                const TargetPass& pass, double aperture_m2, double tick_s,
                                                int rays_per_zone = 2048);
@@ -62,7 +62,7 @@ struct Calibration {
 /// thresholds, in units of them: 1 is just detected. Without noise and saturation.
 [[nodiscard]] double excursion(const DetectorSpec& spec, double volts_per_watt, std::span<const double> power_w,
                                double tick_s);
-/// The same for a target that passes one facet.
+/// How far a target that passes one facet drives the signal, in units of the thresholds.
 [[nodiscard]] double excursion(const SensorModelSpec& model, const Calibration& calibration, std::size_t cluster,
                                const TargetPass& pass);
 

@@ -29,7 +29,7 @@ class Channels {
             std::span<std::uint8_t> bits) const noexcept {
     mark(before, after, sensor_masks_, bits);
   }
-  /// The same where only some channels are watched. watched: (n_sensors x words of a channel set).
+  /// Marks sensors by changes of the channels that are watched alone. watched: (n_sensors x words of a channel set).
   void mark(std::span<const ZoneSet::Word> before, std::span<const ZoneSet::Word> after,
             std::span<const ZoneSet::Word> watched, std::span<std::uint8_t> bits) const noexcept;
   /// Every sensor's channels: (n_sensors x words of a channel set).

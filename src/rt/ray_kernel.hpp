@@ -29,7 +29,7 @@ struct RayKernel {
                             const PosedCapsule& solid, const BoundingSphere& around, PacketHits* hits) noexcept;
   void (*intersect_box)(const RayPacket* rays, const std::uint32_t* picked, std::size_t n, const PosedBox& solid,
                         const BoundingSphere& around, PacketHits* hits) noexcept;
-  /// The same, and where the rays enter: distances: (n x packet_size), metres, of rays that hit the solid.
+  /// These three also tell where the rays enter. distances: (n x packet_size), metres, of rays that hit the solid.
   void (*enter_sphere)(const RayPacket* rays, const std::uint32_t* picked, std::size_t n, const PosedSphere& solid,
                        const BoundingSphere& around, PacketHits* hits, float* distances) noexcept;
   void (*enter_capsule)(const RayPacket* rays, const std::uint32_t* picked, std::size_t n, const PosedCapsule& solid,

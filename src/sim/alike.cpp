@@ -22,7 +22,7 @@ auto fields(const UnevenArmsSpec& arms) {
   return std::tie(spread, pause_share);
 }
 
-/// But for the body, which is compared as the person's own.
+/// The body isn't compared here: it is compared as the person's own.
 bool same_part(const std::optional<ScheduledPerson>& a, const std::optional<ScheduledPerson>& b) {
   const auto fields_of = [](const ScheduledPerson& scheduled) {
     const auto& [part, role, seat, person] = scheduled;

@@ -5,9 +5,9 @@
 
 namespace pirsim::sim {
 
-/// The same surfaces: rays end alike.
+/// Whether two scenes have the same surfaces: rays end alike in both.
 [[nodiscard]] bool same_meshes(const SceneSpec& a, const SceneSpec& b);
-/// The same floor, entrances and solid meshes: one can walk alike.
+/// Whether two scenes have the same floor, entrances and solid meshes: one can walk alike in both.
 [[nodiscard]] bool same_ground(const SceneSpec& a, const SceneSpec& b);
 /// Would the people of `like` be planned and move the same in `study`, whose trials with all effects these are?
 [[nodiscard]] bool same_people(const CompiledStudy& like, const CompiledStudy& study,

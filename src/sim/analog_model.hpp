@@ -33,7 +33,7 @@ class PowerModel {
              std::span<const std::vector<double>> apertures_m2);
 
   [[nodiscard]] const pir::PowerRays& rays() const noexcept { return *rays_; }
-  /// The same rays cut at the room.
+  /// The rays cut at the room.
   [[nodiscard]] const RayBundle& clipped() const noexcept { return *clipped_; }
   [[nodiscard]] std::size_t n_sensors() const noexcept { return clipped_->n_sensors(); }
   [[nodiscard]] std::uint32_t sensor_of(std::uint32_t ray) const noexcept { return sensors_[ray]; }

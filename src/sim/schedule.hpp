@@ -19,7 +19,7 @@ using DayPlan = std::vector<std::vector<ScriptedAction>>;
 
 /// The times and places of that day. The same seed gives the same days. The run is of a trial with a schedule.
 [[nodiscard]] DayDraw draw_times(const CompiledStudy& study, std::uint32_t run);
-/// The same as actions. People without a part in the schedule keep the actions that they have.
+/// The actions of that day. People without a part in the schedule keep the actions that they have.
 [[nodiscard]] DayPlan draw_day(const CompiledStudy& study, std::uint32_t run);
 
 }  // namespace pirsim::sim

@@ -28,7 +28,7 @@ class Discriminant {
 
   /// (n_classes) log of the class densities up to a common number.
   [[nodiscard]] std::vector<double> log_densities(std::span<const float> features) const;
-  /// The same of a row that has been projected.
+  /// Log densities of a row that has been projected.
   [[nodiscard]] std::vector<double> log_densities_at(std::span<const double> place) const;
   /// (n_classes) softmax of log_densities(); too sure of itself where the classes aren't normal: calibrate.
   [[nodiscard]] std::vector<double> probabilities(std::span<const float> features) const;

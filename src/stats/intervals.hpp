@@ -13,7 +13,7 @@ namespace pirsim::stats {
 /// Quantile of a sample that needn't be sorted, linear between order statistics (type 7 of [Hyndman1996]).
 /// probability in [0, 1]. Throws Error(usage) for an empty sample.
 [[nodiscard]] double quantile(std::span<const double> sample, double probability);
-/// The same of an ascending sample.
+/// Quantile of an ascending sample.
 [[nodiscard]] double sorted_quantile(std::span<const double> sample, double probability);
 
 /// Exact interval of a probability after `hits` of `trials` (1 or more), at least `confidence` sure.
@@ -35,7 +35,7 @@ namespace pirsim::stats {
 /// In the unit of the values. Ref: [Gneiting2007] equation 21.
 [[nodiscard]] double crps(std::span<const double> ensemble, double observed);
 
-/// The same for vectors, with Euclidean distances: the energy score. ensemble: (n_members x n_entries); scale the
+/// The energy score: the CRPS of vectors, by Euclidean distances. ensemble: (n_members x n_entries); scale the
 /// entries first if their units differ. Ref: [Gneiting2007] equation 22.
 [[nodiscard]] double energy_score(const Matrix<double>& ensemble, std::span<const double> observed);
 

@@ -12,7 +12,7 @@ namespace pirsim::stats {
 struct LogisticSettings {
   /// Half of it times the sum of squared slopes is added to the loss; 0 or more.
   double ridge = 0.0;
-  /// The same of the intercept; keeps it finite if all outcomes are equal.
+  /// Half of it times the intercept's square is added too; keeps it finite if all outcomes are equal.
   double intercept_ridge = 0.0;
   /// (n_rows) added to the log-odds, not fitted; empty: none.
   std::span<const double> offset = {};

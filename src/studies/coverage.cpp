@@ -185,7 +185,7 @@ class SquareCounter {
     }
   }
 
-  /// The same where triggers repeat with the poses: one turn through the detector, then counted window by window.
+  /// Counts where triggers repeat with the poses: one turn through the detector, then window by window.
   void count_periods(std::span<MotionCount> counts) {
     const std::size_t n_sensors = counts.size();
     std::ranges::fill(counts, MotionCount{0});

@@ -21,7 +21,7 @@ double hours_of(const std::string& clock) {
   return two(11) + two(14) / 60.0 + two(17) / hour_s;
 }
 
-/// "8:30"; beyond midnight as the next day's clock shows it.
+/// "8:30"; after midnight it is the clock of the next day.
 std::string clock_of(double hours) {
   const auto minutes = static_cast<int>(std::lround(60.0 * hours)) % (24 * 60);
   return std::to_string(minutes / 60) + (minutes % 60 < 10 ? ":0" : ":") + std::to_string(minutes % 60);

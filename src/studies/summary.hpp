@@ -60,7 +60,7 @@ class Summary {
 
   [[nodiscard]] std::vector<CellSummary> cells() const;
   [[nodiscard]] OverallSummary overall() const;
-  /// The same figures of the published simulation, from its ranges and means; none if the measured cells have none.
+  /// The figures of the published simulation, from its ranges and means; none if the measured cells have none.
   [[nodiscard]] std::optional<OverallSummary> published() const;
   /// Measured cells whose trial or sensor the study doesn't have.
   [[nodiscard]] const std::vector<MeasuredCell>& unmatched() const noexcept { return unmatched_; }

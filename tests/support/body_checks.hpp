@@ -16,7 +16,6 @@ namespace pirsim::body::test {
 inline constexpr double degree = std::numbers::pi / 180.0;
 inline constexpr double tick_s = 0.02;
 
-inline std::size_t at(Part part) { return static_cast<std::size_t>(part); }
 inline const Humanoid& man() {
   static const Humanoid humanoid{PersonSpec{}};
   return humanoid;

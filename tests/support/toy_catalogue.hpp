@@ -91,7 +91,7 @@ inline Realization draw_realization(Effect effect, int seconds, pirsim::Stream& 
 constexpr std::size_t n_per_cell = 4;
 constexpr std::size_t n_statistics = n_per_cell * (n_trials * n_sensors + n_trials + n_sensors) + n_trials + 1;
 
-/// The same cells' sums over sensors, then over trials, are added: a small change that all cells share is seen there.
+/// Adds the cells' sums over sensors, then over trials: a small change that all cells share is seen there.
 inline void add_sums(std::vector<float>& statistics, const std::vector<float>& together) {
   std::array<float, n_per_cell * n_trials> per_trial{};
   std::array<float, n_per_cell * n_sensors> per_sensor{};

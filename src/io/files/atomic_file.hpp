@@ -71,7 +71,7 @@ class AtomicFile {
 
 /// An AtomicFile with this text.
 void write_text_file(const std::filesystem::path& path, std::string_view text);
-/// The same if there is no such file; one that is there stays as it is. False if another text is there.
+/// Writes this text if there is no such file; one that is there stays as it is. False if another text is there.
 [[nodiscard]] bool write_once(const std::filesystem::path& path, std::string_view text);
 
 // How outputs treat their paths.

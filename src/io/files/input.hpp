@@ -29,7 +29,7 @@ constexpr std::size_t max_text_file_bytes = 16'000'000;
 /// As records name it: the file's name, "stdin", or "pipe" for one that has none, whose number changes from call to
 /// call.
 [[nodiscard]] std::string name_of_input(const std::filesystem::path& path);
-/// The same without its ending: what a study is called that doesn't say.
+/// An input's name without its ending: what a study is called that doesn't say.
 [[nodiscard]] std::string stem_of_input(const std::filesystem::path& path);
 /// Where the files that it names are looked for: beside it, or in the working folder if it has no folder of its own.
 [[nodiscard]] std::filesystem::path folder_of_input(const std::filesystem::path& path);

@@ -23,7 +23,7 @@ struct Pixels {
 
 /// The bytes of a PNG file; rgb as in Pixels. Throws Error(usage) if the sizes don't match.
 [[nodiscard]] std::string to_png(int width, int height, std::span<const std::uint8_t> rgb);
-/// The same as a file. Atomically; Error(io) if it can't be written, Error(usage) if the sizes don't match.
+/// Writes a PNG file, atomically; Error(io) if it can't be written, Error(usage) if the sizes don't match.
 void write_png(const std::filesystem::path& path, int width, int height, std::span<const std::uint8_t> rgb);
 
 }  // namespace pirsim::io

@@ -65,7 +65,7 @@ double normalised(double c, int component_type) {
   }
 }
 
-std::string pointer_of(int accessor) { return "/accessors/" + std::to_string(accessor); }
+std::string accessor_pointer(int accessor) { return "/accessors/" + std::to_string(accessor); }
 
 }  // namespace
 
@@ -81,7 +81,7 @@ std::vector<Vec3> AccessorReader::positions(int accessor) {
   for (std::size_t i = 0; i < result.size(); ++i) {
     result[i] = Vec3(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
     if (std::isfinite(result[i].x) && std::isfinite(result[i].y) && std::isfinite(result[i].z)) continue;
-    fault(pointer_of(accessor), "position " + std::to_string(i) + " is not a finite number");
+    fault(accessor_pointer(accessor), "position " + std::to_string(i) + " is not a finite number");
     return {};
   }
   return result;
@@ -94,7 +94,7 @@ std::vector<std::uint32_t> AccessorReader::indices(int accessor) {
                      given.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
   if (!check_type(accessor, TINYGLTF_TYPE_SCALAR, "indices must be SCALAR")) return {};
   if (!whole || given.normalized) {
-    fault(pointer_of(accessor), "indices must be unsigned integers of 8, 16 or 32 bit");
+    fault(accessor_pointer(accessor), "indices must be unsigned integers of 8, 16 or 32 bit");
     return {};
   }
   std::vector<double> values;
@@ -106,9 +106,9 @@ std::vector<std::uint32_t> AccessorReader::indices(int accessor) {
 
 bool AccessorReader::check_type(int accessor, int type, const char* what) {
   const tinygltf::Accessor& given = document_.model.accessors[static_cast<std::size_t>(accessor)];
-  if (given.type != type) return fault(pointer_of(accessor) + "/type", what);
+  if (given.type != type) return fault(accessor_pointer(accessor) + "/type", what);
   if (component_size(given.componentType) == 0) {
-    return fault(pointer_of(accessor) + "/componentType",
+    return fault(accessor_pointer(accessor) + "/componentType",
                  "component type " + std::to_string(given.componentType) + " is not one of glTF's");
   }
   return true;
@@ -146,7 +146,7 @@ bool AccessorReader::locate(int view_index, std::size_t byte_offset, std::size_t
 
 bool AccessorReader::read_components(int accessor, std::size_t n_components, std::vector<double>& values) {
   const tinygltf::Accessor& given = document_.model.accessors[static_cast<std::size_t>(accessor)];
-  const std::string pointer = pointer_of(accessor);
+  const std::string pointer = accessor_pointer(accessor);
   const std::size_t size = component_size(given.componentType);
   if (given.count == 0) return fault(pointer + "/count", "an accessor without elements");
   Range range;
@@ -165,7 +165,7 @@ bool AccessorReader::read_components(int accessor, std::size_t n_components, std
 
 bool AccessorReader::apply_sparse(int accessor, std::size_t n_components, std::vector<double>& values) {
   const tinygltf::Accessor& given = document_.model.accessors[static_cast<std::size_t>(accessor)];
-  const std::string pointer = pointer_of(accessor) + "/sparse";
+  const std::string pointer = accessor_pointer(accessor) + "/sparse";
   const auto count = static_cast<std::size_t>(given.sparse.count);
   const int index_type = given.sparse.indices.componentType;
   const std::size_t size = component_size(given.componentType);

@@ -12,8 +12,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t max_faults = 20;  // told at once; a broken exporter would make thousands
-
 enum class Kind { text, flag, count, index, indices, numbers, object };
 enum class Need { optional, required };
 

@@ -12,6 +12,8 @@
 
 namespace pirsim::io::detail {
 
+constexpr std::size_t max_faults = 20;  ///< told at once; a broken exporter would make thousands
+
 struct GltfDocument {
   std::string file;  ///< as messages name it
   JsonText text;

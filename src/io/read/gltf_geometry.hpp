@@ -63,7 +63,7 @@ class GeometryBudget {
 [[nodiscard]] TriMesh read_mesh(const GltfDocument& document, int mesh, GeometryBudget& budget, Diagnostics& faults,
                                 GroupedWarnings& warnings);
 
-/// The same in parts that are equally warm, in the order in which they come; temperatures_c: (n_materials).
+/// Reads a mesh in parts that are equally warm, in the order in which they come; temperatures_c: (n_materials).
 [[nodiscard]] std::vector<TriMesh> read_mesh_parts(const GltfDocument& document, int mesh,
                                                    std::span<const std::optional<double>> temperatures_c,
                                                    GeometryBudget& budget, Diagnostics& faults,

@@ -16,9 +16,7 @@ namespace {
 
 constexpr double smallest_scale = 1e-9;  // assumed: a scale below turns a kilometre into a micrometre
 
-constexpr std::size_t max_faults = 20;  // told at once
-
-std::string pointer_of(int node) { return "/nodes/" + std::to_string(node); }
+std::string node_pointer(int node) { return "/nodes/" + std::to_string(node); }
 
 class Placement {
  public:
@@ -72,7 +70,7 @@ class Placement {
     HiddenNode& hidden = placed_.hidden.emplace_back(HiddenNode{node});
     const std::size_t others = pending_.size();
     const auto push_children = [&](int parent) {
-      push(document_.model.nodes[static_cast<std::size_t>(parent)].children, {}, pointer_of(parent) + "/children");
+      push(document_.model.nodes[static_cast<std::size_t>(parent)].children, {}, node_pointer(parent) + "/children");
     };
     push_children(node);
     while (pending_.size() > others) {
@@ -92,7 +90,7 @@ class Placement {
     if (is_hidden(pending.node) || is_nothing(world_from_node)) return hide(pending.node);
     if (!sane(world_from_node, pending.node)) return;
     placed_.shown.push_back({pending.node, world_from_node});
-    push(node.children, world_from_node, pointer_of(pending.node) + "/children");
+    push(node.children, world_from_node, node_pointer(pending.node) + "/children");
   }
 
   [[nodiscard]] bool is_hidden(int node) const {
@@ -158,7 +156,8 @@ class Placement {
 
   bool fault(int node, const std::string& member, const std::string& message) {
     ++n_faults_;
-    remarks_.error(document_.text.where(pointer_of(node) + member), node_label(document_.model, node) + ": " + message);
+    remarks_.error(document_.text.where(node_pointer(node) + member),
+                   node_label(document_.model, node) + ": " + message);
     return false;
   }
 

@@ -111,7 +111,7 @@ void read_part(YamlMap& above, const std::string& key, Spec& part) {
     map.faults().error(map.where(std::string(field)), what + ": " + message);
   };
 }
-/// The same where the field itself stands in front: "bare: no part ...".
+/// Tells faults of a map with the field itself in front: "bare: no part ...".
 [[nodiscard]] inline TellFault faults_by_key(const YamlMap& map) {
   return [&map](std::string_view field, const std::string& message) {
     map.faults().error(map.where(std::string(field)), std::string(field) + ": " + message);

@@ -34,7 +34,7 @@ class YamlNode {
   /// has a key twice is refused. Each override `a.b.0.c=value` (value: YAML) then replaces or adds one node; list
   /// items are addressed by number from 0. Throws Error: io (no file), input (content), usage (an override).
   [[nodiscard]] static YamlNode load(const Input& input, std::span<const std::string> overrides = {});
-  /// The same from memory; `name` stands in messages.
+  /// Reads a text from memory; `name` stands in messages.
   [[nodiscard]] static YamlNode parse(std::string_view text, const std::string& name,
                                       std::span<const std::string> overrides = {});
 
@@ -62,7 +62,7 @@ class YamlNode {
   [[nodiscard]] std::optional<std::size_t> choice(Diagnostics& faults, std::string_view what,
                                                   const std::vector<std::string>& names) const;
 
-  /// The same tree with every `${name}` in its scalars (not its keys) replaced; `$${` stands for a plain `${`. A
+  /// This tree with every `${name}` in its scalars (not its keys) replaced; `$${` stands for a plain `${`. A
   /// name that isn't in `variables` is reported once a place and left as it is.
   [[nodiscard]] YamlNode with(const Variables& variables, Diagnostics& faults) const;
 

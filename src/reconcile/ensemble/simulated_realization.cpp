@@ -61,7 +61,7 @@ void move_seats(SceneSpec& scene, const Draw& draw) {
   }
 }
 
-/// The same person in every trial, known by their id.
+/// A person is the same in every trial, known by their id.
 struct Body {
   double size = 1.0, arms = 1.0;
 };

@@ -19,7 +19,7 @@ namespace pirsim::reconcile {
 /// n_tested_statistics) of many.
 [[nodiscard]] std::vector<double> tested_features(const FeatureMap& map, std::span<const float> features);
 [[nodiscard]] stats::Matrix<double> tested_features(const FeatureMap& map, const stats::Matrix<float>& features);
-/// The same from statistics.
+/// What the global test looks at of datasets' statistics.
 [[nodiscard]] std::vector<double> tested_statistics(const FeatureMap& map, std::span<const float> statistics);
 [[nodiscard]] stats::Matrix<double> tested_statistics(const FeatureMap& map, const stats::Matrix<float>& statistics,
                                                       unsigned threads);

@@ -33,7 +33,7 @@ class TableView {
   [[nodiscard]] const stats::Matrix<float>& plain() const noexcept { return plain_; }
   /// The global test's p for a dataset's statistics.
   [[nodiscard]] double p(std::span<const float> statistics) const;
-  /// The same for a row of the table that has an effect and is held back for calibration; 1 for any other row.
+  /// The global test's p for a row of the table that has an effect and is held back for calibration; 1 for others.
   [[nodiscard]] double p_of_row(std::size_t row) const { return rows().p[row]; }
 
  private:

@@ -31,7 +31,7 @@ namespace pirsim::reconcile {
 [[nodiscard]] io::GridChart confusion_chart(const SelftestResult& result);
 /// How often an effect is seen, and is then in the set, against its strength.
 [[nodiscard]] io::LineChart power_chart(const SelftestResult& result, const std::string& effect);
-/// The same of all effects in one picture.
+/// How often each effect is seen against its strength, all in one picture.
 [[nodiscard]] io::GridChart power_grid(const SelftestResult& result);
 /// How often the likeliest hypothesis was right, against the probability that it was given.
 [[nodiscard]] io::LineChart reliability_chart(const SelftestResult& result);

@@ -107,7 +107,7 @@ enum class Counted {
   truth_in_set,
   none_in_catalogue,
   parameters_covered,  ///< by their 90 % intervals
-  shrunk,              ///< gaps on held-out trials, given the right name, as the next two
+  shrunk,              ///< gaps on held-out trials, given the right name
   closed,
   most_closed,  ///< nine tenths of what can be closed
   shrunk_on_nothing,

@@ -57,7 +57,7 @@ double tolerance(double share, const Rate& rate) {
   return 3.0 * std::sqrt(share * (1.0 - share) / static_cast<double>(rate.of));
 }
 
-/// The same where it is judged by quantiles of calibration datasets that are drawn once for all cases: of each effect
+/// A share's tolerance if it is judged by quantiles of calibration datasets, drawn once for all cases: of each effect
 /// 60 or more, so that the shares of so many datasets scatter too. Ref: [Vovk2013]
 double tolerance_when_calibrated(double share, const Rate& rate) {
   const double n_calibration = 60.0 * static_cast<double>(reference_study().table.effects.size());
