@@ -181,7 +181,7 @@ io::Report report_page(const Outcome& outcome, double alpha, const Watched& watc
   if (!outcome.fits.empty()) report.sections.push_back(strength(outcome.fits));
   if (outcome.verification) {
     const bool undecided = outcome.verdict == Verdict::one_of;
-    const std::string applied = undecided ? "the likeliest of each fold" : joined(outcome.named, "and");
+    const std::string applied = undecided ? "the likeliest of each fold" : enumerated(outcome.named, "and");
     report.sections.push_back(held_out(*outcome.verification, applied));
   }
   if (outcome.verdict != Verdict::no_disagreement) report.sections.push_back(reasons(outcome, alpha));

@@ -73,7 +73,7 @@ std::string no_effect(const Outcome& outcome, double alpha) {
   const bool one = possible.size() == 1;
   return (likeliest_is_possible ? std::string("of ") : "the likelier ones of ") +
          (outcome.looked_for.empty() ? "the catalogue's effects" : "the effects looked for") +
-         (likeliest_is_possible ? " only " : " are ruled out; ") + joined(possible, "and") +
+         (likeliest_is_possible ? " only " : " are ruled out; ") + enumerated(possible, "and") +
          (one && likeliest_is_possible ? " isn't ruled out"
           : one                        ? " isn't"
                                        : " aren't ruled out") +
@@ -94,10 +94,10 @@ std::string rivals(const Outcome& outcome) {
         unknown.push_back(candidate.score.hypothesis);
     }
     return ", and no other effect of " + all_of(outcome) + " explains the data" +
-           (unknown.empty() ? "." : "; " + joined(unknown, "and") + " could hardly be simulated in this room.");
+           (unknown.empty() ? "." : "; " + enumerated(unknown, "and") + " could hardly be simulated in this room.");
   }
   return "; with probability " + short_number(outcome.candidates.front().score.probability) + " it is this one, " +
-         joined(names, "and") + " can't be ruled out.";
+         enumerated(names, "and") + " can't be ruled out.";
 }
 
 /// The one effect that would have been named was dropped since the model with it can't have made the data.
@@ -111,7 +111,7 @@ bool was_refused(const Outcome& outcome) {
 std::string sentence_of_refused(const Outcome& outcome, double alpha) {
   const Look& look = outcome.looks.back();
   return lacks_something_else(outcome) + ": " + where(outcome, alpha) + ". What resembles it most, " +
-         joined(look.applied, "and") +
+         enumerated(look.applied, "and") +
          ", doesn't explain it: with that applied, the model still differs from the data (p = " + short_number(look.p) +
          "), and none of the others that were tried beside it explains what is left.";
 }
@@ -141,7 +141,7 @@ std::string ranges_looked_for(const Outcome& outcome) {
                      " to " + short_number(strength.high));
   }
   if (ranges.empty()) return {};
-  return "Each effect was looked for in a range only: " + joined(ranges, "and") +
+  return "Each effect was looked for in a range only: " + enumerated(ranges, "and") +
          " (pirsim effects lists all). Yours may lie outside: write it with its value under effects: of the script, "
          "and "
          "reconcile again. ";
@@ -149,7 +149,7 @@ std::string ranges_looked_for(const Outcome& outcome) {
 
 }  // namespace
 
-std::string joined(const std::vector<std::string>& names, const std::string& last) {
+std::string enumerated(const std::vector<std::string>& names, const std::string& last) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) {
     text += (i == 0 ? "" : i + 1 == names.size() ? " " + last + " " : ", ") + names[i];
@@ -236,10 +236,10 @@ std::string verdict_sentence(const Outcome& outcome, double alpha) {
       if (outcome.named.empty())
         return "Model and measurement differ, but so little that nothing can be named: " + where(outcome, alpha) + ".";
       return (outcome.named.size() == 1 ? "The model may lack " : "The model lacks one of ") +
-             joined(outcome.named, "or") + kind_of(outcome) + doubt(outcome, alpha) + ": " + where(outcome, alpha) +
+             enumerated(outcome.named, "or") + kind_of(outcome) + doubt(outcome, alpha) + ": " + where(outcome, alpha) +
              ".";
     case Verdict::several:
-      return "The model lacks " + joined(outcome.named, "and") + " together: " + where(outcome, alpha) + ".";
+      return "The model lacks " + enumerated(outcome.named, "and") + " together: " + where(outcome, alpha) + ".";
     case Verdict::none_in_catalogue:
       break;
   }
@@ -247,18 +247,19 @@ std::string verdict_sentence(const Outcome& outcome, double alpha) {
 }
 
 std::string in_words(const Look& look) {
-  std::string text = "With " + joined(look.applied, "and") + " applied, the model " +
+  std::string text = "With " + enumerated(look.applied, "and") + " applied, the model " +
                      (look.passes() ? "can have made these data" : "still differs from the data") +
                      " (p = " + short_number(look.p) + ").";
   if (look.one_of.size() == 1) text += " What is missing beside it may be " + look.one_of.front() + ".";
   if (look.one_of.size() > 1)
-    text += " What is missing beside it may be " + joined(look.one_of, "or") + ": these data can't tell.";
+    text += " What is missing beside it may be " + enumerated(look.one_of, "or") + ": these data can't tell.";
   return text;
 }
 
 std::string sentence(const Outcome& outcome, double alpha) {
   std::string text;
-  if (!outcome.looked_for.empty()) text = "The catalogue was cut down to " + joined(outcome.looked_for, "and") + ". ";
+  if (!outcome.looked_for.empty())
+    text = "The catalogue was cut down to " + enumerated(outcome.looked_for, "and") + ". ";
   const bool none = outcome.verdict == Verdict::none_in_catalogue;
   const bool taken_back = none && !outcome.looks.empty() && !outcome.looks.back().passes() && was_refused(outcome);
   text += taken_back ? sentence_of_refused(outcome, alpha) : verdict_sentence(outcome, alpha);

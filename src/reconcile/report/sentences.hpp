@@ -44,7 +44,7 @@ namespace pirsim::reconcile {
 [[nodiscard]] std::vector<Candidate> with_twins(const std::vector<Candidate>& candidates);
 
 /// "a, b or c"
-[[nodiscard]] std::string joined(const std::vector<std::string>& names, const std::string& last);
+[[nodiscard]] std::string enumerated(const std::vector<std::string>& names, const std::string& last);
 /// Three significant digits.
 [[nodiscard]] std::string short_number(double value);
 /// So many digits after the point; never "-0".

@@ -325,9 +325,9 @@ TEST_CASE("the whole loop writes a patched script that runs and closes the gap",
   CHECK(outcome.verification->share_closed > 0.7);
   CHECK(outcome.candidates.size() == 3);
   for (const Candidate& candidate : outcome.candidates) CHECK_FALSE(in_words(candidate).empty());
-  write_report(folder.path(), outcome, measured, short_study(), settings, {}, {"p", "s", "t", "m"});
+  write_report(folder.path(), outcome, measured, short_study(), settings, {}, {"p", "s", "t", "m", {}});
   // The trail is added to, and counts.
-  write_report(folder.path(), outcome, measured, short_study(), settings, {}, {"p", "s", "t", "m"});
+  write_report(folder.path(), outcome, measured, short_study(), settings, {}, {"p", "s", "t", "m", {}});
   std::ifstream trail_file(folder.path() / "trail.log");
   const std::string trail{std::istreambuf_iterator<char>(trail_file), {}};
   CHECK_THAT(trail, contains("analysed 0 times before") && contains("analysed 1 times before"));
@@ -378,7 +378,7 @@ TEST_CASE("two effects at once are found one after the other", "[reconcile][minu
   CHECK(outcome.looks[1].p > outcome.looks[1].level);
   REQUIRE(outcome.verification);
   CHECK(outcome.verification->n_better == 3);
-  write_report(folder.path(), outcome, measured, short_study(), settings, {}, {"p", "s", "t", "m"});
+  write_report(folder.path(), outcome, measured, short_study(), settings, {}, {"p", "s", "t", "m", {}});
   const ScriptSpec patched = io::read_script(folder.path() / "script_patched.yaml");
   REQUIRE(patched.effects.size() == 2);
   for (const EffectSpec& effect : patched.effects) {
@@ -395,7 +395,7 @@ TEST_CASE("two effects at once are found one after the other", "[reconcile][minu
   // What another analysis finds replaces it.
   Outcome nothing = outcome;
   nothing.verdict = Verdict::no_disagreement;
-  write_report(folder.path(), nothing, measured, short_study(), settings, {}, {"p", "s", "t", "m"});
+  write_report(folder.path(), nothing, measured, short_study(), settings, {}, {"p", "s", "t", "m", {}});
   CHECK_FALSE(std::filesystem::exists(folder.path() / "script_patched.yaml"));
 }
 
@@ -445,7 +445,7 @@ TEST_CASE("the seed of the script plays no part in the analysis", "[reconcile][m
   settings.trees = 20;
   const auto report = [&](const ScriptSpec& script, const Context& context = {}) {
     return to_json(reconcile::reconcile(scene, script, measured, settings, context), measured, settings, context,
-                   {"p", "s", "t", "m"});
+                   {"p", "s", "t", "m", {}});
   };
   const std::string first = report(one);
   CHECK(first == report(other));
