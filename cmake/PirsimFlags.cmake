@@ -56,6 +56,7 @@ if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   find_program(PIRSIM_CCACHE ccache)
   if(PIRSIM_CCACHE)
     # Precompiled headers don't change between two builds of the same sources.
-    set(CMAKE_CXX_COMPILER_LAUNCHER "${PIRSIM_CCACHE}" sloppiness=pch_defines,time_macros base_dir=${PROJECT_SOURCE_DIR})
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros
+        "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}" "${PIRSIM_CCACHE}")
   endif()
 endif()
