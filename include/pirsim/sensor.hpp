@@ -92,7 +92,7 @@ struct SensorModelSpec {
   std::string description;
   double plane_m = 1.0;  ///< distance of the plane on which the zones are drawn
   std::vector<ClusterSpec> clusters;
-  Response response = Response::zones;
+  Response response = Response::analog;
   OpticsSpec optics;
   DetectorSpec detector;  ///< electronics, for the physical response
 };
