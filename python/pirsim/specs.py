@@ -188,7 +188,7 @@ class SensorModel:
     plane_m: float = 1.0
     """Distance of the plane on which the zones are drawn."""
     clusters: list[Cluster] = field(default_factory=list)
-    response: Literal["zones", "analog"] = "zones"
+    response: Literal["zones", "analog"] = "analog"
     """`zones`: a change of activity is motion; `analog`: the physical response."""
     optics: Optics = field(default_factory=Optics)
     """For the physical response."""

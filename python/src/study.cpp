@@ -9,7 +9,7 @@
 #include "attend.hpp"
 #include "bindings.hpp"
 #include "convert.hpp"
-#include "pirsim/sensor_keys.hpp"
+#include "pirsim/response.hpp"
 #include "run_arrays.hpp"
 
 namespace pirsim::python {

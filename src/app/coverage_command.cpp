@@ -7,7 +7,7 @@
 #include "io/files/atomic_file.hpp"
 #include "io/pages/png.hpp"
 #include "pirsim/io.hpp"
-#include "pirsim/sensor_keys.hpp"
+#include "pirsim/response.hpp"
 #include "studies/coverage.hpp"
 #include "studies/study_report.hpp"
 

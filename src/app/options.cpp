@@ -1,11 +1,13 @@
 #include "app/options.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/text.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/files/posix_file.hpp"
 #include "pirsim/error.hpp"
+#include "schema/words.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -122,7 +124,8 @@ const CLI::Option* repeated_option(const CLI::App& app) {
   return nullptr;
 }
 
-/// Checked here, so that the message names the option and not a value of the script that nobody typed.
+// Values are checked here, so that the message names the option and not a value of the script that nobody typed.
+
 std::int64_t from(std::int64_t least, std::int64_t n, const std::string& option) {
   if (n < least) {
     throw CLI::ValidationError(option, "'" + std::to_string(n) + "' is less than " + std::to_string(least));
@@ -130,9 +133,12 @@ std::int64_t from(std::int64_t least, std::int64_t n, const std::string& option)
   return n;
 }
 
-}  // namespace
-
-namespace {
+const std::string& response(const std::string& word) {
+  std::vector<std::string> words;
+  for (const auto& [known, value] : Words<Response>::all) words.emplace_back(known);
+  if (std::ranges::find(words, word) != words.end()) return word;
+  throw CLI::ValidationError("--response", "'" + word + "' isn't a response" + near_or_all(word, words));
+}
 
 void offer_scene_file(CLI::App& command, Inputs& inputs) {
   offer_input_file(command, "--scene", inputs.scene, "room: a glTF 2.0 file (.gltf or .glb)");
@@ -148,6 +154,12 @@ void offer_changes(CLI::App& command, Inputs& inputs) {
           "override a value of the script: sensing.rays_per_zone=9")
       ->option_text("KEY=VALUE")
       ->allow_extra_args(false);
+  command
+      .add_option_function<std::string>(
+          "--response",
+          [&inputs](const std::string& word) { inputs.overrides.push_back("sensing.response=" + response(word)); },
+          "how all sensors answer: zones or analog (default: as the script says, or else the sensor)")
+      ->option_text("WORD");
   command.add_option("--sensors", inputs.sensor_directories, "folder with sensor models, searched first")
       ->option_text("DIR")
       ->allow_extra_args(false);

@@ -8,7 +8,7 @@
 #include "effects/catalogue.hpp"
 #include "io/files/atomic_file.hpp"
 #include "pirsim/io.hpp"
-#include "pirsim/sensor_keys.hpp"
+#include "pirsim/response.hpp"
 #include "pirsim/version.hpp"
 #include "reconcile/data/measured.hpp"
 #include "reconcile/inference/verify.hpp"

@@ -13,7 +13,7 @@
 #include "pirsim/effects.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
-#include "pirsim/sensor_keys.hpp"
+#include "pirsim/response.hpp"
 #include "pirsim/version.hpp"
 #include "rt/tracer.hpp"
 #include "sim/compiled_study.hpp"

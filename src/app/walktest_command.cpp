@@ -6,7 +6,7 @@
 #include "app/session.hpp"
 #include "io/files/atomic_file.hpp"
 #include "pirsim/io.hpp"
-#include "pirsim/sensor_keys.hpp"
+#include "pirsim/response.hpp"
 #include "studies/walk_test.hpp"
 
 namespace pirsim::app {

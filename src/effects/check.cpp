@@ -4,6 +4,7 @@
 
 #include "core/text.hpp"
 #include "effects/catalogue.hpp"
+#include "pirsim/response.hpp"
 
 namespace pirsim::effects {
 namespace {
@@ -147,7 +148,7 @@ void check(std::span<const EffectSpec> effects, const SceneSpec& scene, Diagnost
 
 std::vector<Issue> idle(std::span<const EffectSpec> effects, const SceneSpec& scene, const SensingSpec& sensing) {
   const auto by_zones = [&](const SensorSpec& sensor) {
-    return sensing.response.value_or(scene.sensor_models.at(sensor.model).response) == Response::zones;
+    return response_of(scene, sensing, sensor) == Response::zones;
   };
   Diagnostics remarks;
   for (const EffectSpec& spec : effects) {

@@ -1,17 +1,6 @@
 #include "pir/zone_output.hpp"
 
-#include <algorithm>
-#include <filesystem>
-#include <initializer_list>
-#include <set>
-#include <string>
-#include <string_view>
-
-#include "pirsim/sensor_keys.hpp"
-#include "schema/fields.hpp"
-
-namespace pirsim {
-namespace pir {
+namespace pirsim::pir {
 
 std::optional<Comparator> zone_output(const ComparatorSpec& spec, double tick_s) {
   if (spec.pulse_count == 1 && spec.hold_s == 0.0 && spec.blind_s == 0.0) return std::nullopt;
@@ -20,50 +9,4 @@ std::optional<Comparator> zone_output(const ComparatorSpec& spec, double tick_s)
   return Comparator(unsigned_pulses, tick_s);
 }
 
-}  // namespace pir
-
-namespace {
-
-/// "low_hz, high_hz": what differs from the default and only the analog response asks for.
-std::string analog_keys(const SensorModelSpec& model) {
-  std::string keys;
-  const auto add = [&]<typename Spec>(const Spec& spec, std::initializer_list<std::string_view> obeyed = {}) {
-    const Spec usual{};
-    each_field<Spec>([&](const auto& field) {
-      if (same(spec.*field.member, usual.*field.member)) return;
-      if (std::ranges::find(obeyed, field.name) == obeyed.end())
-        keys += (keys.empty() ? "" : ", ") + std::string(field.name);
-    });
-  };
-  add(model.optics);
-  add(model.detector.element);
-  add(model.detector.amplifier);
-  add(model.detector.comparator, {"pulse_count", "pulse_window_s", "hold_s", "blind_s"});
-  return keys;
-}
-
-/// Where the model was read from: a sensor's file is named after it.
-Where file_of(const std::string& model, const SceneSpec& scene) {
-  const auto file = std::ranges::find_if(scene.files, [&](const InputFile& read) {
-    return std::filesystem::path(read.path).filename() == model + ".yaml";
-  });
-  return file == scene.files.end() ? Where{} : Where{file->path, 0, 0};
-}
-
-}  // namespace
-
-std::vector<Issue> idle_sensor_keys(const SceneSpec& scene, const SensingSpec& sensing) {
-  Diagnostics remarks;
-  std::set<std::string> told;
-  for (const SensorSpec& sensor : scene.sensors) {
-    const SensorModelSpec& model = scene.sensor_models.at(sensor.model);
-    if (sensing.response.value_or(model.response) != Response::zones || !told.insert(sensor.model).second) continue;
-    const std::string keys = analog_keys(model);
-    if (keys.empty()) continue;
-    remarks.warning(file_of(sensor.model, scene),
-                    sensor.model + ": response: zones makes no use of " + keys + "; response: analog does");
-  }
-  return remarks.issues();
-}
-
-}  // namespace pirsim
+}  // namespace pirsim::pir

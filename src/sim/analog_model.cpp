@@ -1,10 +1,12 @@
 #include "sim/analog_model.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include "body/body_part.hpp"
 #include "pir/calibration.hpp"
 #include "pir/planck.hpp"
+#include "pirsim/response.hpp"
 
 namespace pirsim::sim {
 
@@ -57,25 +59,19 @@ CalibratedSensor calibrated(const SensorModelSpec& model, double tick_s) {
 
 }  // namespace
 
-Response AnalogModel::response(const SceneSpec& scene, const SensingSpec& sensing, std::size_t sensor) {
-  return sensing.response.value_or(scene.sensor_models.at(scene.sensors[sensor].model).response);
-}
-
 bool AnalogModel::is_needed(const SceneSpec& scene, const SensingSpec& sensing) {
-  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
-    if (response(scene, sensing, i) == Response::analog) return true;
-  }
-  return false;
+  return std::ranges::any_of(
+      scene.sensors, [&](const SensorSpec& sensor) { return response_of(scene, sensing, sensor) == Response::analog; });
 }
 
 AnalogModel::AnalogModel(const SceneSpec& scene, const SensingSpec& sensing, const rt::Room& room) {
   std::map<std::string, CalibratedSensor> known;
   std::vector<std::vector<double>> apertures_m2;
-  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+  for (const SensorSpec& sensor : scene.sensors) {
     sensors_.emplace_back();
     apertures_m2.emplace_back();
-    if (response(scene, sensing, i) != Response::analog) continue;
-    const SensorModelSpec& model = scene.sensor_models.at(scene.sensors[i].model);
+    if (response_of(scene, sensing, sensor) != Response::analog) continue;
+    const SensorModelSpec& model = scene.sensor_models.at(sensor.model);
     auto found = known.find(model.id);
     if (found == known.end()) found = known.emplace(model.id, calibrated(model, 1.0 / sensing.tick_rate_hz)).first;
     sensors_.back() = found->second;

@@ -64,8 +64,6 @@ class AnalogModel {
  public:
   AnalogModel(const SceneSpec& scene, const SensingSpec& sensing, const rt::Room& room);
 
-  /// How sensor `sensor` answers: as the study wants it, or as its own data says.
-  [[nodiscard]] static Response response(const SceneSpec& scene, const SensingSpec& sensing, std::size_t sensor);
   /// Is there any analog sensor?
   [[nodiscard]] static bool is_needed(const SceneSpec& scene, const SensingSpec& sensing);
 

@@ -7,6 +7,7 @@
 
 #include "pir/optics.hpp"
 #include "pirsim/error.hpp"
+#include "pirsim/response.hpp"
 #include "schema/limits.hpp"
 
 namespace pirsim::sim {
@@ -99,7 +100,7 @@ void require_limit(const SceneSpec& scene, const SensingInForce& sensing) {
   std::size_t n_rays = 0;
   for (const SensorSpec& sensor : scene.sensors) {
     const SensorModelSpec& model = scene.sensor_models.at(sensor.model);
-    const bool is_analog = sensing.response.value_or(model.response) == Response::analog;
+    const bool is_analog = response_of(scene, sensing, sensor) == Response::analog;
     const auto rays_per_zone =
         static_cast<std::size_t>(is_analog ? sensing.analog_rays_per_zone : static_cast<int>(sensing.rays_per_zone));
     for (const ClusterSpec& cluster : model.clusters) n_rays += cluster.zones.size() * rays_per_zone;
@@ -138,9 +139,9 @@ SensorArray::SensorArray(const SceneSpec& scene, const SensingInForce& sensing, 
   if (sensing.dual_polarity) {
     polarity_.emplace(scene, *sensing.dual_polarity, n_levels_, 1.0 / sensing.tick_rate_hz);
   }
-  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
-    const ComparatorSpec& comparator = scene.sensor_models.at(scene.sensors[i].model).detector.comparator;
-    const bool by_zones = AnalogModel::response(scene, sensing, i) == Response::zones;
+  for (const SensorSpec& sensor : scene.sensors) {
+    const ComparatorSpec& comparator = scene.sensor_models.at(sensor.model).detector.comparator;
+    const bool by_zones = response_of(scene, sensing, sensor) == Response::zones;
     zone_outputs_.push_back(by_zones ? pir::zone_output(comparator, tick_s_) : std::nullopt);
   }
   if (AnalogModel::is_needed(scene, sensing)) analog_.emplace(scene, sensing, *room_);

@@ -11,7 +11,7 @@
 #include "core/grouped_warnings.hpp"
 #include "core/text.hpp"
 #include "pirsim/look.hpp"
-#include "pirsim/sensor_keys.hpp"
+#include "pirsim/response.hpp"
 #include "studies/coverage.hpp"
 #include "studies/sight.hpp"
 

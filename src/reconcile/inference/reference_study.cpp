@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/parallel.hpp"
+#include "pirsim/response.hpp"
 #include "reconcile/inference/locate.hpp"
 
 namespace pirsim::reconcile {
@@ -46,11 +47,10 @@ constexpr std::uint32_t n_pilot_realizations = 40;
 /// Effects are applied to recorded zones, which an analog response needs more than.
 void require_hard_zones(const SceneSpec& scene, const ScriptSpec& script) {
   for (const SensorSpec& sensor : scene.sensors) {
-    const Response own = scene.sensor_models.at(sensor.model).response;
-    if (script.sensing.response.value_or(own) != Response::analog) continue;
+    if (response_of(scene, script.sensing, sensor) != Response::analog) continue;
     throw Error(ErrorCode::input, Where{script.name},
                 "reconcile compares hard zones only, and sensor '" + sensor.id +
-                    "' has an analog response: analyse with --set sensing.response=zones");
+                    "' has an analog response: analyse with --response zones");
   }
 }
 

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "io/read/reader_parts.hpp"
-#include "pirsim/sensor_keys.hpp"
+#include "pirsim/response.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
 

@@ -1,0 +1,23 @@
+// Which response the sensors of a study give, and which of their numbers mean nothing to it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pirsim/error.hpp"
+#include "pirsim/scene.hpp"
+#include "pirsim/script.hpp"
+
+namespace pirsim {
+
+/// The response in force: the study's word, or else the sensor model's own.
+[[nodiscard]] Response response_of(const SceneSpec& scene, const SensingSpec& sensing, const SensorSpec& sensor);
+
+/// For a reader: "analog", or a word a model of sensor if they differ: "EKMC1604111 analog, DUAL_DOME zones".
+[[nodiscard]] std::string responses_in_words(const SceneSpec& scene, const SensingSpec& sensing);
+
+/// A warning for each sensor model that hard zones leave numbers of unused: those that differ from the defaults, which
+/// stand for the EKMC family.
+[[nodiscard]] std::vector<Issue> idle_sensor_keys(const SceneSpec& scene, const SensingSpec& sensing);
+
+}  // namespace pirsim

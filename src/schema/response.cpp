@@ -1,0 +1,74 @@
+#include "pirsim/response.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <initializer_list>
+#include <map>
+#include <set>
+#include <string_view>
+
+#include "schema/fields.hpp"
+
+namespace pirsim {
+
+Response response_of(const SceneSpec& scene, const SensingSpec& sensing, const SensorSpec& sensor) {
+  return sensing.response.value_or(scene.sensor_models.at(sensor.model).response);
+}
+
+std::string responses_in_words(const SceneSpec& scene, const SensingSpec& sensing) {
+  std::map<std::string, Response> models;
+  std::set<Response> responses;
+  for (const SensorSpec& sensor : scene.sensors) {
+    models[sensor.model] = response_of(scene, sensing, sensor);
+    responses.insert(models[sensor.model]);
+  }
+  if (responses.size() == 1) return word_of(*responses.begin());
+  std::string text;
+  for (const auto& [model, response] : models) text += (text.empty() ? "" : ", ") + model + ' ' + word_of(response);
+  return text;
+}
+
+namespace {
+
+/// "low_hz, high_hz": what differs from the default and only the analog response asks for.
+std::string analog_keys(const SensorModelSpec& model) {
+  std::string keys;
+  const auto add = [&]<typename Spec>(const Spec& spec, std::initializer_list<std::string_view> obeyed = {}) {
+    const Spec usual{};
+    each_field<Spec>([&](const auto& field) {
+      if (same(spec.*field.member, usual.*field.member)) return;
+      if (std::ranges::find(obeyed, field.name) == obeyed.end())
+        keys += (keys.empty() ? "" : ", ") + std::string(field.name);
+    });
+  };
+  add(model.optics);
+  add(model.detector.element);
+  add(model.detector.amplifier);
+  add(model.detector.comparator, {"pulse_count", "pulse_window_s", "hold_s", "blind_s"});
+  return keys;
+}
+
+/// Where the model was read from: a sensor's file is named after it.
+Where file_of(const std::string& model, const SceneSpec& scene) {
+  const auto file = std::ranges::find_if(scene.files, [&](const InputFile& read) {
+    return std::filesystem::path(read.path).filename() == model + ".yaml";
+  });
+  return file == scene.files.end() ? Where{} : Where{file->path, 0, 0};
+}
+
+}  // namespace
+
+std::vector<Issue> idle_sensor_keys(const SceneSpec& scene, const SensingSpec& sensing) {
+  Diagnostics remarks;
+  std::set<std::string> told;
+  for (const SensorSpec& sensor : scene.sensors) {
+    if (response_of(scene, sensing, sensor) != Response::zones || !told.insert(sensor.model).second) continue;
+    const std::string keys = analog_keys(scene.sensor_models.at(sensor.model));
+    if (keys.empty()) continue;
+    remarks.warning(file_of(sensor.model, scene),
+                    sensor.model + ": response: zones makes no use of " + keys + "; response: analog does");
+  }
+  return remarks.issues();
+}
+
+}  // namespace pirsim
