@@ -13,8 +13,10 @@
 #include "io/write/row_file.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/io.hpp"
+#include "pirsim/response.hpp"
 #include "pirsim/version.hpp"
 #include "rt/tracer.hpp"
+#include "schema/words.hpp"
 #include "sim/compiled_study.hpp"
 #include "studies/campaign.hpp"
 #include "studies/study_report.hpp"
@@ -157,6 +159,10 @@ io::Manifest manifest_of(const Model& model) {
                          .resolved_script = io::to_yaml(model.script()),
                          .seed = model.script().seed,
                          .study_runs = model.n_runs()};
+  for (const SensorSpec& sensor : model.scene().sensors) {
+    const Response response = response_of(model.scene(), model.script().sensing, sensor);
+    manifest.provenance.responses.emplace_back(sensor.id, word_of(response));
+  }
   manifest.tracer = tracer_used(model);
   manifest.runs = {0, model.n_runs()};
   return manifest;

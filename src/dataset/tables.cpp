@@ -5,7 +5,9 @@
 
 #include "dataset/description.hpp"
 #include "pirsim/csv.hpp"
+#include "pirsim/response.hpp"
 #include "schema/columns.hpp"
+#include "schema/words.hpp"
 
 namespace pirsim::dataset {
 namespace {
@@ -49,6 +51,7 @@ constexpr Column<RoomLine> rooms[]{
 struct SensorLine {
   int room;
   const SensorSpec& sensor;
+  Response response;
 
   [[nodiscard]] Vec3 place() const { return sensor.world_from_sensor.origin; }
   [[nodiscard]] double tilt_deg() const {
@@ -67,6 +70,8 @@ constexpr Column<SensorLine> sensors[]{
      [](const SensorLine& line) -> Cell { return line.sensor.id; }},
     {{"model", Holds::text, "Which lens: a file of data/sensors of pirsim."},
      [](const SensorLine& line) -> Cell { return line.sensor.model; }},
+    {{"response", Holds::text, "How it answers: zones or analog."},
+     [](const SensorLine& line) -> Cell { return std::string_view(word_of(line.response)); }},
     {{"x_m", Holds::number, "Place in the room's scene.", "m", When::always, {}, decimals},
      [](const SensorLine& line) -> Cell { return line.place().x; }},
     {{"y_m", Holds::number, "Height.", "m", When::always, {}, decimals},
@@ -158,7 +163,8 @@ std::map<std::string, Table> tables(const Description& described) {
   };
   const auto add_sensors = [&](auto& csv) {
     for (const DescribedRoom& one : described.rooms) {
-      for (const SensorSpec& sensor : one.scene.sensors) csv.write({one.number, sensor});
+      for (const SensorSpec& sensor : one.scene.sensors)
+        csv.write({one.number, sensor, response_of(one.scene, described.recipe.sensing, sensor)});
     }
   };
   const auto add_days = [&](auto& csv) {

@@ -7,6 +7,7 @@
 #include <set>
 #include <string_view>
 
+#include "core/text.hpp"
 #include "schema/fields.hpp"
 
 namespace pirsim {
@@ -16,15 +17,13 @@ Response response_of(const SceneSpec& scene, const SensingSpec& sensing, const S
 }
 
 std::string responses_in_words(const SceneSpec& scene, const SensingSpec& sensing) {
-  std::map<std::string, Response> models;
-  std::set<Response> responses;
-  for (const SensorSpec& sensor : scene.sensors) {
-    models[sensor.model] = response_of(scene, sensing, sensor);
-    responses.insert(models[sensor.model]);
-  }
-  if (responses.size() == 1) return word_of(*responses.begin());
+  std::map<Response, std::set<std::string>> models;
+  for (const SensorSpec& sensor : scene.sensors) models[response_of(scene, sensing, sensor)].insert(sensor.model);
   std::string text;
-  for (const auto& [model, response] : models) text += (text.empty() ? "" : ", ") + model + ' ' + word_of(response);
+  for (const auto& [response, names] : models) {
+    text += (text.empty() ? "" : " and ") + std::string(word_of(response)) + " (" +
+            joined(std::vector(names.begin(), names.end()), ", ") + ')';
+  }
   return text;
 }
 

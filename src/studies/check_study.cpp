@@ -5,6 +5,7 @@
 
 #include "core/text.hpp"
 #include "pirsim/look.hpp"
+#include "pirsim/response.hpp"
 #include "sim/compiled_study.hpp"
 #include "studies/room_plan.hpp"
 #include "studies/schedule_outlook.hpp"
@@ -66,6 +67,18 @@ void print_times(std::ostream& out, const sim::TrialModel& trial) {
   out << '\n';
 }
 
+/// Rows of 0.1 were those of zones: who runs an older script should know that its rows are others now.
+void print_response(std::ostream& out, const Model& model) {
+  const SceneSpec& scene = model.scene();
+  const SensingSpec& sensing = model.script().sensing;
+  if (scene.sensors.empty()) return;
+  out << "response of the sensors: " << responses_in_words(scene, sensing) << '\n';
+  const bool is_any_analog = std::ranges::any_of(
+      scene.sensors, [&](const SensorSpec& sensor) { return response_of(scene, sensing, sensor) == Response::analog; });
+  if (!sensing.response && is_any_analog)
+    out << "  note: sensors answer by the analog response (since 0.2; 0.1 used zones: --response zones)\n";
+}
+
 void print_study(std::ostream& out, const Model& model, const SightReport& report) {
   const SceneSpec& scene = model.compiled().scene();
   const ScriptSpec& script = model.script();
@@ -74,7 +87,9 @@ void print_study(std::ostream& out, const Model& model, const SightReport& repor
       << counted(scene.entrances.size(), "entrance") << ", floor " << fixed(scene.floor.area_m2(), 2) << " m2\n";
   out << script.name << ": " << counted(script.trials.size(), "trial") << " x "
       << counted(static_cast<std::size_t>(script.replicates), "replicate") << " = " << counted(model.n_runs(), "run")
-      << "\n\n";
+      << '\n';
+  print_response(out, model);
+  out << '\n';
   if (!script.trials.empty() && script.trials.front().schedule) {
     studies::print(out, studies::outlook(model.compiled(), 0), model.compiled());
   }

@@ -7,6 +7,7 @@
 #include "io/pages/run_page.hpp"
 #include "pirsim/coverage.hpp"
 #include "pirsim/look.hpp"
+#include "pirsim/response.hpp"
 #include "pirsim/study.hpp"
 #include "pirsim/version.hpp"
 #include "sim/compiled_study.hpp"
@@ -143,7 +144,8 @@ io::RunPage run_page(const Model& model, const PageRequest& request, const Stret
   page.title = model.script().name + ", " + model.trial_of(request.run);
   page.about = "trial " + model.trial_of(request.run) + ", replicate " +
                std::to_string(model.replicate_of(request.run)) + ", " + or_else(request.scene, model.scene().name) +
-               ", " + or_else(request.script, model.script().name);
+               ", " + or_else(request.script, model.script().name) +
+               ", response of the sensors: " + responses_in_words(model.scene(), model.script().sensing);
   const TrialSpec& trial = model.script().trials[request.run % model.script().trials.size()];
   if (!trial.schedule && !trial.people.empty()) page.first_person = trial.people.front().id;
   page.made_by = "pirsim " + version() + " (" + git_revision() + ")";

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/text.hpp"
+#include "pirsim/response.hpp"
 #include "studies/room_plan.hpp"
 
 namespace pirsim::studies {
@@ -109,15 +110,16 @@ io::MapChart map_of_all(const CoverageStudy& study, const CoverageMap& map) {
 io::Report coverage_report(const CoverageStudy& study, const CoverageMap& map, const CoverageFigures& figures) {
   io::Report report;
   report.title = study.spec().name + ": where each sensor sees motion";
-  report.paragraphs = {
-      "A moving target stood for " + fixed(study.spec().duration_s, 0) + " s in every square of " +
-          fixed(100.0 * map.grid.spacing_m(), 0) + " cm of the floor of " + study.scene().name + " (" +
-          std::to_string(map.grid.n_squares()) +
-          " squares). The maps, seen from above, tell for each sensor in how many "
-          "of these windows it reported motion: 0 means blind there. Point at a square for its value.",
-      "The target is " + std::to_string(study.target().crosses().size()) + " crosses of two bars, turning on the spot.",
-      std::string(signs_of_maps) +
-          (study.taken_out().empty() ? "" : " Dashed lines are what was taken out of the room.")};
+  report.paragraphs = {"A moving target stood for " + fixed(study.spec().duration_s, 0) + " s in every square of " +
+                           fixed(100.0 * map.grid.spacing_m(), 0) + " cm of the floor of " + study.scene().name + " (" +
+                           std::to_string(map.grid.n_squares()) +
+                           " squares). The maps, seen from above, tell for each sensor in how many "
+                           "of these windows it reported motion: 0 means blind there. Point at a square for its value.",
+                       "The target is " + std::to_string(study.target().crosses().size()) +
+                           " crosses of two bars, turning on the spot. The sensors' response is " +
+                           responses_in_words(study.scene(), study.spec().sensing) + ".",
+                       std::string(signs_of_maps) +
+                           (study.taken_out().empty() ? "" : " Dashed lines are what was taken out of the room.")};
 
   io::Table table{{"sensor", "mean step", "greatest step", "blind", "area seen, m²"}, {}};
   for (std::size_t i = 0; i < map.sensors.size(); ++i) table.rows.push_back(row_of(map.sensors[i], figures.sensors[i]));
@@ -185,13 +187,17 @@ std::string note_of(const CellSummary& cell) {
   return note;
 }
 
+std::string watchers(const Model& model, const std::vector<std::string>& sensors) {
+  return joined(sensors, ", ") + ", whose response is " + responses_in_words(model.scene(), model.script().sensing);
+}
+
 /// What was run, and what a count is.
 std::string introduction(const Model& model, const std::vector<std::string>& sensors) {
   const ScriptSpec& script = model.script();
   return std::to_string(script.trials.size()) + (script.trials.size() == 1 ? " trial in " : " trials in ") +
          model.scene().name + ", " +
          (script.replicates == 1 ? "run once" : "each run " + std::to_string(script.replicates) + " times") +
-         ", watched by " + joined(sensors, ", ") +
+         ", watched by " + watchers(model, sensors) +
          ". A count is the number of windows in which a sensor reported motion" +
          (script.summary.phases.empty() ? "." : " while the phase was " + joined(script.summary.phases, ", ") + ".");
 }
@@ -264,7 +270,7 @@ io::Report StudyReport::finish(const Summary& summary) const {
   } else {
     const std::string unit = script.trials.front().schedule ? "day" : "run";
     report.paragraphs = {std::to_string(model_->n_runs()) + " " + unit + (model_->n_runs() == 1 ? " in " : "s in ") +
-                         model_->scene().name + ", watched by " + joined(sensors_, ", ") + "."};
+                         model_->scene().name + ", watched by " + watchers(*model_, sensors_) + "."};
   }
 
   for (std::size_t t = 0; t < trials_.size(); ++t) {

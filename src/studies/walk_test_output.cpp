@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "core/text.hpp"
+#include "pirsim/response.hpp"
 #include "studies/room_plan.hpp"
 #include "studies/walk_test.hpp"
 
@@ -120,7 +121,9 @@ io::Report walk_test_report(const WalkTest& test, const WalkTestResult& result) 
       "At every point of a grid a person of the study's measures walks across in several directions (major motion), "
       "and "
       "sits there facing several ways and moves both forearms (minor motion). A try counts as noticed if any sensor "
-      "reports motion in time. In the manner of NEMA WD 7 and EN 50131-2-2; not a conformity test.",
+      "reports motion in time; the sensors' response is " +
+          responses_in_words(test.scene(), spec.sensing) +
+          ". In the manner of NEMA WD 7 and EN 50131-2-2; not a conformity test.",
       signs_of_maps};
   io::ReportSection major{"Major motion: walking", {}, {}, {}}, minor{"Minor motion: arms of a sitter", {}, {}, {}};
   major.paragraphs = {sentence("Walker", count_passes(result, &PointResult::major, spec.major), spec.major) + "."};

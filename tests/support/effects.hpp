@@ -13,12 +13,12 @@ inline ScriptSpec short_study_a(int replicates = 1) {
   return shipped_script("studyA.yaml", {"trials.for_each.seat=[S4, S10]", "replicates=" + std::to_string(replicates),
                                         "people.0.actions.3.work.duration_s=35"});
 }
-/// The open office with three people, shortened.
+/// The open office with three people, shortened. Sensors answer by hard zones, on which all effects act.
 inline ScriptSpec short_office() {
   return shipped_script("office.yaml",
-                        {"replicates=1", "people.0.actions.2.work.duration_s=20", "people.1.actions.0.wait_s=1",
-                         "people.1.actions.3.work.duration_s=10", "people.1.actions.5.wait_s=5",
-                         "people.2.actions.0.wait_s=2", "people.2.actions.4.at_s=30"});
+                        {"sensing.response=zones", "replicates=1", "people.0.actions.2.work.duration_s=20",
+                         "people.1.actions.0.wait_s=1", "people.1.actions.3.work.duration_s=10",
+                         "people.1.actions.5.wait_s=5", "people.2.actions.0.wait_s=2", "people.2.actions.4.at_s=30"});
 }
 
 inline ScriptSpec with(ScriptSpec script, std::vector<EffectSpec> effects) {

@@ -87,6 +87,7 @@ ordered_json to_tree(const Manifest& manifest) {
   tree["sha256"] = manifest.sha256;
   if (!manifest.notes.empty()) tree["people"] = tree_of(manifest.notes);
   tree["inputs"] = std::move(inputs);
+  for (const auto& [sensor, response] : made.responses) tree["responses"][sensor] = response;
   tree["resolved_script"] = made.resolved_script;
   return tree;
 }
@@ -147,6 +148,10 @@ Manifest from_tree(const ordered_json& tree) {
   tree.at("sha256").get_to(manifest.sha256);
   if (tree.contains("people")) manifest.notes = notes_from(tree.at("people"));
   for (const ordered_json& file : tree.at("inputs")) made.inputs.push_back({file.at("file"), file.at("sha256")});
+  if (tree.contains("responses")) {
+    for (const auto& [sensor, response] : tree.at("responses").items())
+      made.responses.emplace_back(sensor, response.get<std::string>());
+  }
   tree.at("resolved_script").get_to(made.resolved_script);
   return manifest;
 }

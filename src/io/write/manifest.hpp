@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pirsim/input_file.hpp"
@@ -29,6 +30,8 @@ struct Provenance {
   std::string resolved_script;     ///< YAML, after overrides
   std::uint64_t seed = 0;
   std::uint32_t study_runs = 0;  ///< of the whole study
+  /// Sensors in order, and how each answers: "zones" or "analog". Follows from the inputs, and is told for a reader.
+  std::vector<std::pair<std::string, std::string>> responses{};
 };
 
 struct FailedRun {

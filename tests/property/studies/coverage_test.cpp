@@ -77,6 +77,7 @@ SceneSpec symmetric_hall(std::vector<TriMesh> things = {}) {
 
 CoverageSpec coarse(double spacing_m = 0.1) {
   CoverageSpec spec;
+  spec.sensing.response = Response::zones;
   spec.spacing_m = spacing_m;
   return spec;
 }

@@ -33,7 +33,7 @@ rooms:
      schedule: {from: "09:00", to: "09:10", meetings: {fewest_a_day: 1, from: "09:00", to: "09:15",
                 durations_min: [15], probabilities: [1], fewest_people: 3}}}
 days: 3
-sensing: {tick_rate_hz: 10}
+sensing: {tick_rate_hz: 10, response: zones}
 schedule: {from: "08:50", to: "08:56", arrival: {mean: "08:51", sd_min: 0.5}, staff: [{count: 1}, {role: manager, count: 1}]}
 effects:
   - soft_zone_edges: {sigma_deg: [0.5, 1.0]}

@@ -37,6 +37,7 @@ io::Manifest made(std::uint64_t seed = 1) {
   manifest.provenance.seed = seed;
   manifest.provenance.study_runs = n_runs;
   manifest.provenance.resolved_script = "a: 1\nb: \"\xC3\xA9\"\n";
+  manifest.provenance.responses = {{"PIR2", "analog"}, {"PIR1", "zones"}};
   manifest.runs = {0, n_runs};
   return manifest;
 }
@@ -75,6 +76,7 @@ TEST_CASE("a file of rows appears with its manifest and nothing else", "[io][row
     CHECK(manifest.bytes == whole().size());
     CHECK(manifest.rows == 12);
     CHECK(io::differences(manifest.provenance, made().provenance).empty());
+    CHECK(manifest.provenance.responses == made().provenance.responses);
     CHECK(io::fault_of_data(file, manifest).empty());
     const std::string bytes = content(file);
     work(file, Start::resume);

@@ -29,6 +29,7 @@ SceneSpec two_islands() {
 
 CoverageSpec fine() {
   CoverageSpec spec;
+  spec.sensing.response = Response::zones;
   spec.sensing.rays_per_zone = RaysPerZone::one;
   spec.spacing_m = 0.05;
   spec.duration_s = 4.0;

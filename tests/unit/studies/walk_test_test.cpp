@@ -26,6 +26,7 @@ SceneSpec needle_over_the_middle() {
 
 WalkTestSpec four_walks(double within_s) {
   WalkTestSpec spec;
+  spec.sensing.response = Response::zones;
   spec.sensing.rays_per_zone = RaysPerZone::one;
   spec.path_m = 2.0;
   spec.major = {within_s, 0.5, 4};

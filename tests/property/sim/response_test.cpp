@@ -1,10 +1,12 @@
-// Every number of a sensor file either changes the rows that hard zones give, or is told as unused.
+// Which response is in force, and what hard zones make of a sensor's file: each of its numbers either changes their
+// rows or is told as unused.
 #include <algorithm>
 #include <functional>
 #include <map>
 #include <set>
 
 #include "io/read/reader_parts.hpp"
+#include "pirsim/look.hpp"
 #include "pirsim/response.hpp"
 #include "support/catch.hpp"
 #include "support/effects.hpp"
@@ -64,6 +66,34 @@ const std::map<std::string, Change>& changes() {
 }
 
 }  // namespace
+
+TEST_CASE("a study's word on the response goes before a sensor's own, which is analog unless it says zones",
+          "[sensor]") {
+  SceneSpec scene = shipped_scene("meeting_room.gltf");
+  scene.sensors[1].model = "HARD";
+  scene.sensor_models["HARD"] = scene.sensor_models.at("EKMC1604111");
+  scene.sensor_models["HARD"].response = Response::zones;
+  const auto responses = [&](const SensingSpec& sensing) {
+    return std::pair(response_of(scene, sensing, scene.sensors[0]), response_of(scene, sensing, scene.sensors[1]));
+  };
+  CHECK(responses({}) == std::pair(Response::analog, Response::zones));
+  CHECK(responses(study(Response::zones).sensing) == std::pair(Response::zones, Response::zones));
+  CHECK(responses(study(Response::analog).sensing) == std::pair(Response::analog, Response::analog));
+  CHECK(responses_in_words(scene, {}) == "zones (HARD) and analog (EKMC1604111)");
+  CHECK(responses_in_words(scene, study(Response::analog).sensing) == "analog (EKMC1604111, HARD)");
+}
+
+TEST_CASE("check tells the response, and that it was another one in 0.1 to scripts that don't say", "[sensor]") {
+  const auto told = [](std::optional<Response> response) {
+    ScriptSpec script = short_study_a();
+    script.sensing.response = response;
+    return check_study(compile(shipped_scene("meeting_room.gltf"), script)).text;
+  };
+  const std::string note = "note: sensors answer by the analog response (since 0.2; 0.1 used zones: --response zones)";
+  CHECK_THAT(told(std::nullopt), contains("response of the sensors: analog (EKMC1604111)\n") && contains(note));
+  CHECK_THAT(told(Response::analog), contains("response of the sensors: analog") && !contains(note));
+  CHECK_THAT(told(Response::zones), contains("response of the sensors: zones (EKMC1604111)\n") && !contains(note));
+}
 
 TEST_CASE("each number of a sensor's circuit and optics changes hard zones' rows or is told as unused", "[sensor]") {
   const std::vector<std::string> circuit = io::sourced_detector_keys();
