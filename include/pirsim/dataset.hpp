@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -63,13 +64,14 @@ struct RecipeSpec {
   std::vector<Export> exports;
   std::string ending = ".csv.gz";  ///< of rows: .csv, .csv.gz or .csv.zst
   std::filesystem::path file;
-  std::string text;  ///< the file's
+  std::vector<std::string> overrides;  ///< "sensing.response=zones"
+  std::string text;                    ///< the file's, and a comment for each override
   [[nodiscard]] int n_rooms() const;
   [[nodiscard]] std::uint32_t n_room_days() const { return static_cast<std::uint32_t>(n_rooms() * days); }
 };
 
-/// Throws Error (io; input: all faults with file:line:column).
-[[nodiscard]] RecipeSpec read_recipe(const std::filesystem::path& file);
+/// Overrides are as of scripts. Throws Error (io; input: all faults with file:line:column; usage: an override).
+[[nodiscard]] RecipeSpec read_recipe(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
 /// A room of a recipe by its number, from 1 on: drawn, or read. Throws as draw_room() and io::read_scene() do.
 [[nodiscard]] SceneSpec room_of(const RecipeSpec& recipe, int number, const io::SceneOptions& options);

@@ -16,15 +16,17 @@ from .errors import InputWarning
 from .specs import Effect, Scene, Script
 
 
-def dataset(recipe: PathOr, folder: PathOr, *, resume: bool = False,
+def dataset(recipe: PathOr, folder: PathOr, *, set: Overrides | None = None, resume: bool = False,
             sensors: PathOr | Iterable[PathOr] | None = None, threads: int = 0,
             progress: Progress | None = None) -> None:
     """Makes a dataset of many rooms and days from a recipe's YAML file (docs/formats/dataset.md).
 
-    folder: gets a file of rows for each room and day, tables, datapackage.json and a README. resume: keeps the days
-    that are there already, as after Ctrl-C. progress is told in days of rooms.
+    folder: gets a file of rows for each room and day, tables, datapackage.json and a README. set: values to replace in
+    the recipe, {"sensing.response": "zones"}. resume: keeps the days that are there already, as after Ctrl-C. progress is
+    told in days of rooms.
     """
-    told = _core.dataset(as_path(recipe), as_path(folder), *folders(sensors), resume, as_threads(threads), progress)
+    told = _core.dataset(as_path(recipe), as_path(folder), as_overrides(set), *folders(sensors), resume,
+                         as_threads(threads), progress)
     for diagnostic in told:
         warnings.warn(str(diagnostic), InputWarning, stacklevel=2)
 

@@ -11,9 +11,10 @@
 namespace pirsim::python {
 namespace {
 
-nb::object make_dataset(const std::string& recipe, const std::string& folder, std::vector<std::string> sensors,
-                        std::vector<std::string> data, bool resume, unsigned threads, nb::handle progress) {
-  const dataset::RecipeSpec spec = dataset::read_recipe(recipe);
+nb::object make_dataset(const std::string& recipe, const std::string& folder, const std::vector<std::string>& set,
+                        std::vector<std::string> sensors, std::vector<std::string> data, bool resume, unsigned threads,
+                        nb::handle progress) {
+  const dataset::RecipeSpec spec = dataset::read_recipe(recipe, set);
   dataset::DatasetOptions options;
   options.scenes = options_of({std::move(sensors), std::move(data)});
   options.threads = threads;
@@ -46,8 +47,8 @@ nb::object room(const std::string& recipe, int number, std::vector<std::string> 
 }  // namespace
 
 void add_dataset(nb::module_& module) {
-  module.def("dataset", &make_dataset, nb::arg("recipe"), nb::arg("folder"), nb::arg("sensors"), nb::arg("data"),
-             nb::arg("resume"), nb::arg("threads"), nb::arg("progress").none(), "Diagnostics.");
+  module.def("dataset", &make_dataset, nb::arg("recipe"), nb::arg("folder"), nb::arg("set"), nb::arg("sensors"),
+             nb::arg("data"), nb::arg("resume"), nb::arg("threads"), nb::arg("progress").none(), "Diagnostics.");
   module.def("room", &room, nb::arg("recipe"), nb::arg("number"), nb::arg("sensors"), nb::arg("data"),
              "A pirsim.Scene.");
 }

@@ -82,7 +82,7 @@ void run(const DatasetCommand& command) {
   if (command.folder.empty()) throw Error(ErrorCode::usage, "-o DIR is missing");
   const dataset::RecipeSpec recipe = [&] {
     const Progress progress({.what = "reading " + command.recipe.filename().string()}, command.inputs.verbosity);
-    return dataset::read_recipe(command.recipe);
+    return dataset::read_recipe(command.recipe, command.inputs.overrides);
   }();
   const StopRequest stop;  // of all phases: the last one takes minutes too
   DatasetTeller teller(command.inputs.verbosity);
@@ -108,6 +108,7 @@ void add_dataset_command(CLI::App& app) {
   pirsim dataset recipe.yaml -o DIR --resume              continue where it was stopped
   pirsim dataset recipe.yaml -o DIR --shard 3/100         one part of a job array ...
   pirsim dataset recipe.yaml -o DIR --finish              ... and when all are through
+  pirsim dataset recipe.yaml -o DIR --response zones      as 0.1 made it; so must --resume and --finish say
 )");
   const auto options = std::make_shared<DatasetCommand>();
   as_input(command.add_option("RECIPE", options->recipe, "what the rooms, people and days are like: a YAML file"))
@@ -121,11 +122,8 @@ void add_dataset_command(CLI::App& app) {
   command.add_flag_callback(
       "--finish", [raw = options.get()] { raw->work = DatasetCommand::Work::finish; },
       "only describe what is there: tables, datapackage.json, README.md");
-  command.add_option("--sensors", options->inputs.sensor_directories, "folder with sensor models, searched first")
-      ->option_text("DIR")
-      ->allow_extra_args(false);
+  offer_changes(command, options->inputs, "recipe");
   offer_threads(command, options->threads);
-  offer_quiet(command, options->inputs.verbosity);
   command.callback([options] { run(*options); });
 }
 

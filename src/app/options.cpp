@@ -144,28 +144,6 @@ void offer_scene_file(CLI::App& command, Inputs& inputs) {
   offer_input_file(command, "--scene", inputs.scene, "room: a glTF 2.0 file (.gltf or .glb)");
 }
 
-void offer_changes(CLI::App& command, Inputs& inputs) {
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--set",
-          [&inputs](const std::vector<std::string>& given) {
-            inputs.overrides.insert(inputs.overrides.end(), given.begin(), given.end());
-          },
-          "override a value of the script: sensing.rays_per_zone=9")
-      ->option_text("KEY=VALUE")
-      ->allow_extra_args(false);
-  command
-      .add_option_function<std::string>(
-          "--response",
-          [&inputs](const std::string& word) { inputs.overrides.push_back("sensing.response=" + response(word)); },
-          "how all sensors answer: zones or analog (default: as the script says, or else the sensor)")
-      ->option_text("WORD");
-  command.add_option("--sensors", inputs.sensor_directories, "folder with sensor models, searched first")
-      ->option_text("DIR")
-      ->allow_extra_args(false);
-  offer_quiet(command, inputs.verbosity);
-}
-
 }  // namespace
 
 CLI::Option* as_input(CLI::Option* option) {
@@ -178,15 +156,37 @@ CLI::Option* offer_input_file(CLI::App& command, const std::string& name, std::f
   return as_input(command.add_option(name, file, what))->option_text("FILE");
 }
 
+void offer_changes(CLI::App& command, Inputs& inputs, const std::string& what) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--set",
+          [&inputs](const std::vector<std::string>& given) {
+            inputs.overrides.insert(inputs.overrides.end(), given.begin(), given.end());
+          },
+          "override a value of the " + what + ": sensing.rays_per_zone=9")
+      ->option_text("KEY=VALUE")
+      ->allow_extra_args(false);
+  command
+      .add_option_function<std::string>(
+          "--response",
+          [&inputs](const std::string& word) { inputs.overrides.push_back("sensing.response=" + response(word)); },
+          "how all sensors answer: zones or analog (default: as the " + what + " says, or else the sensor)")
+      ->option_text("WORD");
+  command.add_option("--sensors", inputs.sensor_directories, "folder with sensor models, searched first")
+      ->option_text("DIR")
+      ->allow_extra_args(false);
+  offer_quiet(command, inputs.verbosity);
+}
+
 void offer_scene(CLI::App& command, Inputs& inputs) {
   offer_scene_file(command, inputs);
-  offer_changes(command, inputs);
+  offer_changes(command, inputs, "script");
 }
 
 void offer_study(CLI::App& command, Inputs& inputs) {
   offer_scene_file(command, inputs);
   offer_input_file(command, "--script", inputs.script, "study: a YAML file");
-  offer_changes(command, inputs);
+  offer_changes(command, inputs, "script");
 }
 
 std::vector<std::string> model_options(const Inputs& inputs) {

@@ -38,7 +38,9 @@ void require_one_standard_input(const CLI::App& command);
 /// An option for a file that may be standard input.
 CLI::Option* offer_input_file(CLI::App& command, const std::string& name, std::filesystem::path& file,
                               const std::string& what);
-/// --scene, --set, --response, --sensors and --quiet: for commands that make the script themselves.
+/// --set, --response, --sensors and --quiet. `what` is changed: a script or a recipe.
+void offer_changes(CLI::App& command, Inputs& inputs, const std::string& what);
+/// --scene and the options of offer_changes(): for commands that make the script themselves.
 void offer_scene(CLI::App& command, Inputs& inputs);
 /// The options of offer_scene() and --script: every other command that reads a room uses them.
 void offer_study(CLI::App& command, Inputs& inputs);

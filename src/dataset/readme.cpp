@@ -177,7 +177,9 @@ std::string readme(const Description& described) {
   if (passes > 0)
     text += "Two people who found no way round each other went through each other " + std::to_string(passes) +
             " times.\n\n";
-  text += "## How it was made, and how to cite it\n`pirsim dataset recipe.yaml -o DIR` of pirsim " + version() + " (" +
+  std::string command = "pirsim dataset recipe.yaml -o DIR";
+  for (const std::string& change : recipe.overrides) command += " --set '" + change + "'";
+  text += "## How it was made, and how to cite it\n" + markdown_code(command) + " of pirsim " + version() + " (" +
           git_revision() +
           ") makes the same bytes again. Cite pirsim, a headless simulator of passive-infrared motion "
           "sensors, version " +

@@ -194,15 +194,17 @@ int RecipeSpec::n_rooms() const {
   return static_cast<int>(std::min<std::int64_t>(n, std::numeric_limits<int>::max()));
 }
 
-RecipeSpec read_recipe(const std::filesystem::path& file) {
+RecipeSpec read_recipe(const std::filesystem::path& file, std::span<const std::string> overrides) {
   const io::Input input = io::read_input(file);
-  const YamlNode root = YamlNode::load(input);
+  const YamlNode root = YamlNode::load(input, overrides);
   Diagnostics faults;
   YamlMap map(root, faults, "recipe");
   io::check_version(map, "pirsim_recipe");
   RecipeSpec recipe;
   recipe.file = file;
+  recipe.overrides.assign(overrides.begin(), overrides.end());
   recipe.text = input.bytes;
+  for (const std::string& change : overrides) recipe.text += "\n# --set " + change + '\n';
   recipe.name = map.text("name", io::stem_of_input(file));
   recipe.seed = map.unsigned_integer("seed", recipe.seed);
   recipe.days = map.integer("days", recipe.days, {.min = 1, .max = most_days});

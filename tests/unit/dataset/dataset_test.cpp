@@ -373,6 +373,16 @@ TEST_CASE("a chance is the share of rooms that an effect is in, and no other dra
   CHECK(std::abs(there / 400.0 - 0.3) < 0.092);
 }
 
+TEST_CASE("a recipe that is changed as it is read is another one, and says how it was changed", "[dataset]") {
+  const TemporaryFolder folder;
+  const auto file = folder.write("recipe.yaml", "pirsim_recipe: 1\nrooms: [{}]\n");
+  const std::vector<std::string> changes{"sensing.response=zones"};
+  const RecipeSpec plain = read_recipe(file), changed = read_recipe(file, changes);
+  CHECK(changed.sensing.response == Response::zones);
+  CHECK(plain.sensing.response == std::nullopt);
+  CHECK(changed.text == plain.text + "\n# --set sensing.response=zones\n");
+}
+
 TEST_CASE("a folder of another recipe is refused, and damage is told", "[dataset]") {
   Made made;
   made.make(made.options(2));
