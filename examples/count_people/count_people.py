@@ -22,7 +22,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 RECIPES = {"varied": ROOT / "data/recipes/uci_like.yaml",
            **{name: HERE / "recipes" / f"{name}.yaml" for name in ("one_room", "one_room_effects", "rooms_only", "paper_motion",
-                                                             "analog")}}
+                                                             "zones")}}
 REAL = "real: UCI 864"
 EQUAL = 8  # mornings in each training set, so that rows of the table differ by what their names say
 
@@ -141,10 +141,10 @@ def main():
     if not arguments.small:
         rows = {"one room, no variation": "one_room", "one room, effects varied": "one_room_effects",
                 "rooms varied, no effects": "rooms_only", "rooms and effects varied": "varied",
-                "the same, the paper's motion": "paper_motion", "the same, analog response": "analog"}
+                "the same, the paper's motion": "paper_motion", "the same, hard zones": "zones"}
         trainings = {row: first_mornings(train[name], EQUAL) for row, name in rows.items()}
         trainings["rooms and effects varied, twice the mornings"] = first_mornings(train["varied"], 2 * EQUAL)
-        tests["new rooms, analog"] = (whole(data["analog"]["test_rooms"]), True)
+        tests["new rooms, hard zones"] = (whole(data["zones"]["test_rooms"]), True)
     if real:
         tests[REAL] = (whole(real), True)
     results, sections = Results(), []

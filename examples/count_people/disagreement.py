@@ -18,7 +18,7 @@ NAMES = {1: "one", 2: "two", 3: "three"}
 def script_of(door, seats):
     """Trials with one, two and three people at these seats. Everybody has sat down when what counts begins."""
     work = f"{{work: {{duration_s: {RUN * SECONDS}}}, at_s: {SETTLING * SECONDS}}}"
-    lines = ["pirsim_script: 1", f"sensing: {{tick_rate_hz: 10, window_s: {SECONDS}}}", "summary: {phases: [working]}",
+    lines = ["pirsim_script: 1", f"sensing: {{tick_rate_hz: 10, window_s: {SECONDS}, response: zones}}", "summary: {phases: [working]}",
              f"replicates: {RUNS}", "trials:"]
     for n, name in NAMES.items():
         lines += [f"  - id: {name}", "    people:"]

@@ -9,6 +9,7 @@
 #include "dataset/store.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/write/scene_writer.hpp"
+#include "pirsim/effects.hpp"
 
 namespace pirsim::dataset {
 namespace {
@@ -93,6 +94,13 @@ void claim_folder(const Store& store) {
   write_once(file, made_by + '\n');
 }
 
+/// Of the recipe's effects those that do nothing in any of the rooms.
+void tell_idle_effects(const RecipeSpec& recipe, const SceneSpec& all_sensors, const DatasetOptions& options) {
+  std::vector<EffectSpec> all;
+  for (const VariedEffectSpec& effect : recipe.effects) all.push_back({effect.name, {}, {}, effect.where});
+  for (const Issue& issue : effects::idle(all, all_sensors, recipe.sensing)) options.tell(issue);
+}
+
 /// Throws for a room that can't be drawn and for what a room lacks, before hours of work on others.
 DrawnRooms draw_and_check(const Store& store, const std::vector<std::uint32_t>& wanted, const DatasetOptions& options) {
   const RecipeSpec& recipe = store.recipe();
@@ -108,22 +116,32 @@ DrawnRooms draw_and_check(const Store& store, const std::vector<std::uint32_t>& 
       if (error.code() != ErrorCode::infeasible) throw;  // which is a day without rows
     }
   };
+  struct Checked {
+    std::string text;
+    SceneSpec scene;
+  };
   DrawnRooms drawn;
+  SceneSpec all_sensors;  // of all rooms, and nothing else
   std::size_t n_checked = 0;
   begin(options.observer, DatasetObserver::Stage::checking_rooms, rooms.size());
-  ordered_parallel<std::string>(
+  ordered_parallel<Checked>(
       rooms.size(), options.threads,
       [&](std::size_t i) {
         const SceneSpec* own = store.own_scene(rooms[i]);
-        const SceneSpec scene = own != nullptr ? *own : room_of(recipe, rooms[i], store.scenes());
+        SceneSpec scene = own != nullptr ? *own : room_of(recipe, rooms[i], store.scenes());
         check(scene, rooms[i]);
-        return own != nullptr ? std::string{} : io::scene_text(scene, Where{store.room_file(rooms[i]).string()});
+        const Where file{store.room_file(rooms[i]).string()};
+        std::string text = own != nullptr ? std::string{} : io::scene_text(scene, file);
+        return Checked{std::move(text), std::move(scene)};
       },
-      [&](std::string& text) {
-        drawn.emplace(rooms[n_checked++], std::move(text));
+      [&](Checked& checked) {
+        drawn.emplace(rooms[n_checked++], std::move(checked.text));
+        std::ranges::copy(checked.scene.sensors, std::back_inserter(all_sensors.sensors));
+        all_sensors.sensor_models.merge(checked.scene.sensor_models);
         done_one(options.observer);
       },
       options.goes_on);
+  if (options.tell && !rooms.empty()) tell_idle_effects(recipe, all_sensors, options);
   return drawn;
 }
 

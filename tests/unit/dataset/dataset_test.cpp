@@ -400,9 +400,16 @@ TEST_CASE("the user's own scenes are rooms like others", "[dataset][seconds]") {
   const std::string own = (test::data_dir() / "rooms" / "meeting_room.gltf").string();
   const Made made("pirsim_recipe: 1\nrooms: [{scenes: [" + own + "], people: 2}, {count: 1}]\ndays: 1\n" +
                   "sensing: {tick_rate_hz: 10}\n" +
-                  "schedule: {from: '09:00', to: '09:02', arrival: {mean: '09:00', sd_min: 1}, staff: [{count: 2}]}\n");
-  made.make(made.options(2));
+                  "schedule: {from: '09:00', to: '09:02', arrival: {mean: '09:00', sd_min: 1}, staff: [{count: 2}]}\n" +
+                  "effects: [soft_zone_edges, missed_triggers]\n");
+  std::vector<Issue> told;
+  DatasetOptions options = made.options(2);
+  options.tell = [&](const Issue& issue) { told.push_back(issue); };
+  made.make(options);
+  REQUIRE(told.size() == 1);  // the sensors are analog
+  CHECK_THAT(to_string(told.front()), contains("recipe.yaml:5:") && contains("soft_zone_edges does nothing here"));
   made.finish();
+  CHECK_THAT(raw(made.out() / "sensors.csv"), contains("1,PIR1,EKMC1604111,analog,"));
   const auto rows = table(content(made.day("rows", 1, 1, ".csv.gz")));
   CHECK(rows.size() == 121);
   CHECK(rows[0].back() == "PIR5");
