@@ -16,7 +16,7 @@ SCRIPT = """pirsim_script: 1
 name: Two seats
 seed: SEED
 replicates: 1
-sensing: {tick_rate_hz: 10, window_s: 1, rays_per_zone: 1, change_per: cluster}
+sensing: {tick_rate_hz: 10, window_s: 1, rays_per_zone: 1, change_per: cluster, response: zones}
 trials:
   for_each: {seat: [S1, S8]}
   id: ${seat}

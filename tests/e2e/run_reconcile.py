@@ -74,7 +74,8 @@ def stamped(rows, by_s):
 def check_clocks(pirsim, source, folder):
     """Late and early data are told apart, by about as much as they are off, and the patched script repairs them."""
     script = folder / "errand.yaml"
-    script.write_text("pirsim_script: 1\nreplicates: 4\ntrials: {for_each: {k: [a, b]}, id: '${k}'}\npeople:\n  - id: p\n"
+    script.write_text("pirsim_script: 1\nreplicates: 4\nsensing: {response: zones}\n"
+                      "trials: {for_each: {k: [a, b]}, id: '${k}'}\npeople:\n  - id: p\n"
                       "    actions: [{enter: door}, {sit: S4}, {work: {duration_s: 30}}, rise, {leave: door}]\n")
     study = ["-q", "--scene", source / "data/rooms/meeting_room.gltf", "--script", script]
     rows = subprocess.run([pirsim, *study, "--seed", "99", "-o", "-"], capture_output=True, text=True, check=True).stdout

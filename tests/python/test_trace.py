@@ -5,6 +5,8 @@ import pytest
 
 import pirsim
 
+ZONES = {"sensing.response": "zones"}  # which traces keep
+
 
 def same(a, b):
     return all(np.array_equal(getattr(a, name), getattr(b, name))
@@ -17,7 +19,7 @@ def study(data):
 
 
 def test_a_trace_gives_the_studys_rows(study, room, study_a):
-    for scene, script, changes in ((*study, {"replicates": 3}),
+    for scene, script, changes in ((*study, {"replicates": 3, **ZONES}),
                                    (room, study_a, {"replicates": 1, "effects": ["soft_zone_edges", "dead_time"]})):
         model = pirsim.compile(scene, script, set=changes)
         trace = pirsim.trace(model)
@@ -27,13 +29,13 @@ def test_a_trace_gives_the_studys_rows(study, room, study_a):
 
 def test_effects_on_a_trace_are_those_of_a_model_that_has_them(study):
     scene, script = study
-    plain = pirsim.compile(scene, script, set={"replicates": 2})
+    plain = pirsim.compile(scene, script, set={"replicates": 2, **ZONES})
     trace = pirsim.trace(plain)
     for effects, written in (
             ([pirsim.Effect("missed_triggers", {"probability": 0.5})], [{"missed_triggers": {"probability": 0.5}}]),
             (["dead_time", {"false_triggers": {"sensor": plain.sensors.names[0]}}],
              ["dead_time", {"false_triggers": {"sensor": plain.sensors.names[0]}}])):
-        model = pirsim.compile(scene, script, set={"replicates": 2, "effects": written})
+        model = pirsim.compile(scene, script, set={"replicates": 2, "effects": written, **ZONES})
         emitted = trace.emit(effects=effects)
         assert same(emitted, pirsim.run(model))
         assert not np.array_equal(emitted.bits, trace.emit().bits)
@@ -42,7 +44,7 @@ def test_effects_on_a_trace_are_those_of_a_model_that_has_them(study):
 
 
 def test_effects_that_a_trace_can_not_show_are_refused(study, room, study_a):
-    trace = pirsim.trace(pirsim.compile(*study, set={"replicates": 1}))
+    trace = pirsim.trace(pirsim.compile(*study, set={"replicates": 1, **ZONES}))
     with pytest.raises(pirsim.UsageError, match="'sensor_yaw' changes what the zones see"):
         trace.emit(effects=["sensor_yaw"])
     with pytest.raises(pirsim.Error, match="did you mean 'dead_time'"):

@@ -27,7 +27,7 @@ SCRIPT = """pirsim_script: 1
 name: One seat
 seed: 5
 replicates: 1
-sensing: {tick_rate_hz: 50, window_s: 1, rays_per_zone: 5, change_per: cluster}
+sensing: {tick_rate_hz: 50, window_s: 1, rays_per_zone: 5, change_per: cluster, response: zones}
 trials:
   for_each: {seat: [S4]}
   id: ${seat}

@@ -50,7 +50,7 @@ void require_hard_zones(const SceneSpec& scene, const ScriptSpec& script) {
     if (response_of(scene, script.sensing, sensor) != Response::analog) continue;
     throw Error(ErrorCode::input, Where{script.name},
                 "reconcile compares hard zones only, and sensor '" + sensor.id +
-                    "' has an analog response: analyse with --response zones");
+                    "' has an analog response: analyse with --response zones (sensing.response=zones)");
   }
 }
 

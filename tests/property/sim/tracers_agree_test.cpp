@@ -71,7 +71,8 @@ TEST_CASE("the direct tracer with its memory gives embree's zones at every tick 
           "[seconds]") {
   for (const std::string study : {"studyA.yaml", "office.yaml", "density.yaml"}) {
     INFO(study);
-    const Comparison c = compare_study(room_of(study), shipped_script(study, {"replicates=1"}), TracerKind::embree, 1);
+    const Comparison c = compare_study(
+        room_of(study), shipped_script(study, {"replicates=1", "sensing.response=zones"}), TracerKind::embree, 1);
     CHECK(c.n_different == 0);
     CHECK(c.n_ticks > 1000);
     CHECK(c.n_active > 0);
@@ -81,9 +82,9 @@ TEST_CASE("the direct tracer with its memory gives embree's zones at every tick 
 TEST_CASE("and the reference's zones, sampled through all of them and with scattered seats", "[seconds]") {
   for (const std::string study : {"studyA.yaml", "office.yaml", "density.yaml"}) {
     INFO(study);
-    CHECK(
-        compare_study(room_of(study), shipped_script(study, {"replicates=1"}), TracerKind::reference, 11).n_different ==
-        0);
+    CHECK(compare_study(room_of(study), shipped_script(study, {"replicates=1", "sensing.response=zones"}),
+                        TracerKind::reference, 11)
+              .n_different == 0);
   }
   const ScriptSpec scattered = shipped_script(
       "studyA.yaml",
