@@ -127,6 +127,16 @@ class Dataset(unittest.TestCase):
         """A dataset whose days are made and that isn't described yet."""
         pirsim("dataset", DATA / "recipes" / "tiny.yaml", "-o", folder, "--shard", "1/1", "-q")
 
+    def test_a_recipe_of_which_something_is_changed_is_another_one(self):
+        recipe = DATA / "recipes" / "tiny.yaml"
+        with tempfile.TemporaryDirectory() as folder:
+            out = pathlib.Path(folder) / "out"
+            pirsim("dataset", recipe, "-o", out, "--response", "zones", "--shard", "1/8", "-q")
+            self.assertTrue((out / "recipe.yaml").read_text().endswith("\n# --set sensing.response=zones\n"))
+            self.assertIn("response: zones", (out / "scripts/room_0001/day_01.yaml").read_text())
+            self.assertIn("holds another dataset", pirsim("dataset", recipe, "-o", out, "--shard", "2/8", code=3).stderr)
+            pirsim("dataset", recipe, "-o", out, "--set", "sensing.response=zones", "--shard", "2/8", "-q")
+
     def test_a_room_that_was_edited_is_refused(self):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)

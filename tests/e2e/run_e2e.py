@@ -55,7 +55,7 @@ OTHERS = {("day",): ("--scene", "nowhere.gltf", "--staff", "2", "-o", "rows.csv"
           ("room",): ("-o", "room.gltf"), ("dataset",): ("recipe.yaml", "-o", "out")}
 ROOM_VALUES = {"--set": "cut_share=0.3", "--kind": "meeting", "--desks": "rows", "--width": "6", "--height": "3",
                "--depth": "5"}
-VALUES = {"--set": "name=other", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--format": ".csv",
+VALUES = {"--set": "name=other", "--response": "zones", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--format": ".csv",
           "--summary": "sums.csv", "--zones": "zones.csv", "--trace": "trace.csv",
           "--occupants": "occupants.csv", "--shard": "1/2", "--max-time": "5m",
           "--trial": "S1", "--beams": "all", "--marks": "seats", "--camera": "0,5,0", "--look-at": "1,0,1", "--width": "64",
@@ -148,6 +148,17 @@ class Options(unittest.TestCase):
                 return (pathlib.Path(folder) / "coverage.csv").read_bytes()
             self.assertEqual(map_of("--seed", 5), map_of("--set", "seed=5"))
             self.assertNotEqual(map_of("--seed", 5), map_of("--seed", 6))
+
+    def test_the_response_is_a_setting_like_others(self):
+        for given in (("run",), ("day", "--scene", "room.gltf", "--staff", 1)):
+            *command, asked = (*given, "--print-config" if given == ("run",) else "--print-script")
+            files = study_files() if given == ("run",) else ()
+            for word in ("zones", "analog"):
+                config = pirsim(*command, *files, asked, "--response", word).stdout
+                self.assertIn(f"response: {word}\n", config)
+                self.assertEqual(config, pirsim(*command, *files, asked, "--set", f"sensing.response={word}").stdout)
+        self.assertIn("error: --response: 'zone' isn't a response (did you mean 'zones'?)",
+                      pirsim("check", *study_files(), "--response", "zone", code=2).stderr)
 
     def test_options_before_a_command_count_as_after_it(self):
         after = pirsim("check", *study_files(), "--replicates", 3).stdout
@@ -488,8 +499,11 @@ class CommandLine(unittest.TestCase):
                              "".join(f"S1,PIR{i},{5000 if i == 1 else 3}\n" for i in range(1, 6)))
             call = ("reconcile", "--scene", DATA / "rooms/meeting_room.gltf", "--script", script, "--measured", measured,
                     "-o", f"{folder}/found", "-q")
-            self.assertIn("has 5000 s with motion, but a run lasts at most", pirsim(*call, code=3).stderr)
-            self.assertIn("hard zones only", pirsim(*call, "--set", "sensing.response=analog", code=3).stderr)
+            self.assertIn("has 5000 s with motion, but a run lasts at most",
+                          pirsim(*call, "--response", "zones", code=3).stderr)
+            refused = pirsim(*call, code=3).stderr
+            self.assertIn("hard zones only", refused)
+            self.assertIn("analyse with --response zones", refused)
 
     def test_outputs_of_like_names_do_not_meet(self):
         with tempfile.TemporaryDirectory() as name:
