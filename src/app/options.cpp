@@ -37,10 +37,11 @@ void require_one_standard_input(const CLI::App& command) {
 
 namespace {
 
-void require_inputs(const Inputs& inputs, Needs needs) {
+void require_inputs(const CLI::App& command, const Inputs& inputs, Needs needs) {
   if (!inputs.scene.empty() && (needs == Needs::scene || !inputs.script.empty())) return;
-  throw Error(ErrorCode::usage,
-              std::string(inputs.scene.empty() ? "--scene" : "--script") + " FILE is missing; see pirsim --help");
+  const std::string spoken = spoken_name(command);
+  throw Error(ErrorCode::usage, std::string(inputs.scene.empty() ? "--scene" : "--script") +
+                                    " FILE is missing; see pirsim " + (spoken.empty() ? "" : spoken + ' ') + "--help");
 }
 
 /// Functions that offer an option to several commands give it one description. Others mean something of their own.
@@ -270,7 +271,7 @@ void on_call(CLI::App& command, std::shared_ptr<const Inputs> inputs, std::funct
   command.callback([&command, inputs = std::move(inputs), work = std::move(work), needs] {
     if (!command.get_subcommands().empty()) return;
     require_one_standard_input(command);
-    require_inputs(*inputs, needs);
+    require_inputs(command, *inputs, needs);
     work(*inputs);
   });
 }

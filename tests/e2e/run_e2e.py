@@ -182,6 +182,11 @@ class Options(unittest.TestCase):
             refused = pirsim(*args, code=2).stderr
             self.assertTrue(refused.startswith("error: "), refused)
 
+    def test_what_is_missing_is_told_with_the_command_s_own_help(self):
+        for command in ((), ("run",), ("check",), ("reconcile", "plan")):
+            self.assertEqual(pirsim(*command, code=2).stderr,
+                             f"error: --scene FILE is missing; see {' '.join(('pirsim', *command))} --help\n")
+
     def test_quiet_and_verbose_exclude_each_other(self):
         for args in (("-q", "-v"), ("-v", "-q"), ("-q", "run", "-v"), ("run", "--verbose", "--quiet")):
             result = pirsim(*args, *study_files(), code=2)
