@@ -72,6 +72,15 @@ void Actor::begin(const CompiledStudy& study, std::span<const Presence> others) 
   start_action(scene);
   carry_out_first(scene);
   errands_.pop_front();
+  if (natural_) natural_->settle(body_motion(), activity_at_first());
+}
+
+/// What somebody who appears is busy with at once.
+std::optional<Activity> Actor::activity_at_first() const {
+  if (action_ + 1 == actions().size()) return std::nullopt;
+  const ScriptedAction& next = actions()[action_ + 1];
+  const ActionFacts facts = facts_of(next.what);
+  return facts.course == Course::stays && next.at_s.value_or(0.0) <= 0.0 ? facts.activity : std::nullopt;
 }
 
 void Actor::start_action(const Scene& scene) {

@@ -108,6 +108,7 @@ class Actor {
   };
 
   [[nodiscard]] bool is_at_meeting() const;
+  [[nodiscard]] std::optional<Activity> activity_at_first() const;
   void start_action(const Scene& scene);
   void plan(const Scene& scene);
   void plan_entering(const EntranceSpec& door);

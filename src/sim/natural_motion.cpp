@@ -182,6 +182,14 @@ void NaturalMotion::breathe(body::Motion& motion) const {
   motion.breathe(breath_tilt * std::round(breath * breath_levels) / breath_levels);
 }
 
+void NaturalMotion::settle(body::Motion& motion, std::optional<Activity> activity) const {
+  breathe(motion);
+  for (const Hold& hold : sim::repertoire(bearing_of(motion.stage()), activity, Talk::none).holds) {
+    motion.adjust(hold.channel, hold.value, settles_s);
+  }
+  for (int tick = 0; tick < settles_s * tick_rate_hz_; ++tick) motion.advance();
+}
+
 void NaturalMotion::tick(body::Motion& motion, std::optional<Activity> activity, const Attention& attention) {
   ++tick_;
   const Stage stage = motion.stage();

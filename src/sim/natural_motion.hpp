@@ -30,6 +30,8 @@ class NaturalMotion {
   [[nodiscard]] double pace(double scripted_m_s) const noexcept;
   /// This person's rate of shifts and fidgets relative to the mean person's.
   [[nodiscard]] double liveliness() const noexcept { return liveliness_; }
+  /// Before the first tick of somebody who has stood there all along: in the middle of a breath, and of the activity.
+  void settle(body::Motion& motion, std::optional<Activity> activity) const;
   /// One tick of somebody who sits, stands or walks, before the body moves. activity: as the script says.
   void tick(body::Motion& motion, std::optional<Activity> activity, const Attention& attention);
 

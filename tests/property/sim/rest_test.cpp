@@ -58,6 +58,26 @@ TEST_CASE("who stands still from the beginning is no motion until they walk, by 
   check_rests(model_of(script));
 }
 
+TEST_CASE("who stands there naturally from the beginning, on the phone too, is no motion in the first row", "[rest]") {
+  for (const std::optional<Activity> activity : {std::optional<Activity>(), std::optional(Activity::phone)}) {
+    ScriptSpec script =
+        script_of({person("a", {act(action::Appear{{2.5, -1.5}, 90.0}), act(action::Wait{600.0, activity})})});
+    script.trials.front().people.front().style = MotionStyle::natural;
+    script.replicates = 10;
+    script.trials.front().duration_s = 20.0;
+    for (const Response response : {Response::zones, Response::analog}) {
+      script.sensing.response = response;
+      script.sensing.change_per = ChangePer::beam;
+      int n_later = 0;
+      for (const RunResult& run : results_of(model_of(script))) {
+        CHECK(n_ones(run.samples, 0.0, 1.0) == 0);
+        n_later += n_ones(run.samples, 1.0, 20.0);
+      }
+      CHECK(n_later > 0);
+    }
+  }
+}
+
 TEST_CASE("what somebody who stands still shares in a signal is nothing until they walk", "[rest]") {
   ScriptSpec script = stands_then_walks();
   script.sensing.response = Response::analog;
