@@ -94,8 +94,40 @@ struct SightReport {
   std::vector<SensorSight> sensors;  ///< in the scene's order
 };
 
+/// What one sensor makes of somebody who works in a seat.
+struct WorkNotice {
+  int seconds = 0;           ///< with motion
+  std::size_t channels = 0;  ///< clusters (with `change_per: beam`, zones) that see the person at some moment
+  std::size_t for_good = 0;  ///< of those, that see the person at every moment: what moves there is no change
+  /// Sees the person and never reports motion.
+  [[nodiscard]] bool is_deaf() const noexcept { return channels > 0 && seconds == 0; }
+  bool operator==(const WorkNotice&) const = default;
+};
+
+/// Seats by what becomes of somebody who works there.
+struct SeatsAtWork {
+  std::vector<std::string> noticed;  ///< some sensor reports motion
+  std::vector<std::string> deaf;     ///< sensors see the person, and none ever reports motion
+  std::vector<std::string> unseen;
+};
+
+/// Somebody at work in one seat after the other, alone.
+struct WorkReport {
+  int seconds = 0;                  ///< in each seat
+  std::vector<std::string> seats;   ///< that were tried: of very many some
+  std::vector<WorkNotice> notices;  ///< (n_seats x n_sensors)
+  [[nodiscard]] const WorkNotice& notice(std::size_t seat, std::size_t sensor) const {
+    return notices[seat * (notices.size() / seats.size()) + sensor];
+  }
+  /// What becomes of the seats in sight of all sensors together.
+  [[nodiscard]] SeatsAtWork by_any() const;
+  /// Seats where the sensor is deaf.
+  [[nodiscard]] std::vector<std::string> deaf_seats(std::size_t sensor) const;
+};
+
 struct CheckReport {
   SightReport sight;
+  WorkReport work;
   std::string text;             ///< for a reader, as `pirsim check` prints it
   std::vector<Issue> warnings;  ///< of sensors that see nothing
 };
@@ -110,6 +142,7 @@ struct PlacementScore {
   double blind_fraction = 0.0;
   double overlap = 0.0;                  ///< share of the seen area that two sensors or more see
   std::vector<std::string> blind_seats;  ///< where no sensor sees the target
+  SeatsAtWork at_work{};                 ///< of somebody of natural style who types; of the ranked sets only
   std::vector<std::size_t> idle{};       ///< sensors of the set that see the target nowhere
 };
 

@@ -16,6 +16,7 @@ namespace pirsim {
 struct Tries {
   int made = 0;
   int noticed = 0;
+  int deaf = 0;  ///< of those not noticed, in which a sensor saw the person all the same
   [[nodiscard]] std::optional<double> probability() const {
     return made == 0 ? std::nullopt : std::optional(static_cast<double>(noticed) / made);
   }
@@ -28,6 +29,7 @@ struct PointResult {
 struct SeatResult {
   std::string seat;
   bool noticed = false;
+  bool deaf = false;  ///< not noticed, though a sensor sees the sitter
 };
 
 struct WalkTestResult {

@@ -126,6 +126,8 @@ class SensorSight(NamedTuple):
     """Places of the floor where it sees a standing person."""
     seats: tuple[str, ...]
     """Where it sees a sitter."""
+    deaf: tuple[str, ...]
+    """Where it sees somebody at work and never reports motion."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -177,6 +179,11 @@ class PlacementScore(NamedTuple):
     overlap: float
     """Share of the seen area that two sensors or more see."""
     blind_seats: tuple[str, ...]
+    noticed_seats: tuple[str, ...]
+    """Where somebody at work is noticed by a sensor."""
+    deaf_seats: tuple[str, ...]
+    """Where sensors see somebody at work, and none ever reports motion."""
+    unseen_seats: tuple[str, ...]
 
 
 @dataclass(frozen=True, repr=False)

@@ -74,6 +74,8 @@ class WalkTest(Grid):
     major_noticed: npt.NDArray[np.int32]
     minor_made: npt.NDArray[np.int32]
     minor_noticed: npt.NDArray[np.int32]
+    minor_deaf: npt.NDArray[np.int32]
+    """Tries that weren't noticed, though a sensor saw the sitter."""
     seats: dict[str, bool]
     """Is somebody noticed who sits there and moves their arms?"""
 

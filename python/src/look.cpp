@@ -60,9 +60,10 @@ nb::dict check_model(const Model& model) {
   CheckReport report;
   attend(nb::none(), [&](Job&) { report = check_study(model); });
   nb::list sensors;
-  for (const SensorSight& sight : report.sight.sensors) {
+  for (std::size_t i = 0; i < report.sight.sensors.size(); ++i) {
+    const SensorSight& sight = report.sight.sensors[i];
     sensors.append(nb::make_tuple(to_python(sight.sensor), sight.rays, sight.rays_cut, sight.longest_m, sight.places,
-                                  nb::tuple(to_python(sight.seats))));
+                                  nb::tuple(to_python(sight.seats)), nb::tuple(to_python(report.work.deaf_seats(i)))));
   }
   nb::dict result;
   result["sensors"] = sensors;
@@ -92,7 +93,9 @@ nb::dict placements(nb::handle scene, const std::string& script, const std::vect
   nb::list ranked;
   for (const PlacementScore& score : report.ranked) {
     ranked.append(nb::make_tuple(to_python(score.set.id), to_python(score.set.sensors), score.seen_area_m2,
-                                 score.blind_fraction, score.overlap, nb::tuple(to_python(score.blind_seats))));
+                                 score.blind_fraction, score.overlap, nb::tuple(to_python(score.blind_seats)),
+                                 nb::tuple(to_python(score.at_work.noticed)), nb::tuple(to_python(score.at_work.deaf)),
+                                 nb::tuple(to_python(score.at_work.unseen))));
   }
   std::vector<Issue> told = room.warnings;
   told.insert(told.end(), report.warnings.begin(), report.warnings.end());

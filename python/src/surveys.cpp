@@ -75,6 +75,7 @@ nb::dict walk_test(nb::handle scene, const std::string& script, const std::vecto
   result["major_noticed"] = column_of(test, &PointResult::major, &Tries::noticed);
   result["minor_made"] = column_of(test, &PointResult::minor, &Tries::made);
   result["minor_noticed"] = column_of(test, &PointResult::minor, &Tries::noticed);
+  result["minor_deaf"] = column_of(test, &PointResult::minor, &Tries::deaf);
   for (const SeatResult& seat : test.seats) seats[to_python(seat.seat)] = nb::bool_(seat.noticed);
   result["seats"] = seats;
   return result;

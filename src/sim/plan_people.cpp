@@ -20,9 +20,7 @@
 #include "sim/alike.hpp"
 
 namespace pirsim::sim {
-namespace {
 
-/// Height of the table top in front of a seat, or none: what lies under a point half an arm's length ahead.
 std::optional<double> table_height(const SeatSpec& seat, double floor_y, const rt::Room& room) {
   constexpr double ahead_m = 0.45;  // assumed: between the elbows and the hands (tried 0.3-0.6)
   constexpr double from_m = 1.3, lowest_m = 0.5, highest_m = 1.1;  // what counts as a table, above the floor
@@ -35,6 +33,8 @@ std::optional<double> table_height(const SeatSpec& seat, double floor_y, const r
   if (height < lowest_m || height > highest_m) return std::nullopt;
   return floor_y + height;
 }
+
+namespace {
 
 /// What is the same for all who rehearse among the same solids.
 class Grounds {

@@ -10,6 +10,7 @@
 #include "studies/room_plan.hpp"
 #include "studies/schedule_outlook.hpp"
 #include "studies/sight.hpp"
+#include "studies/sitters.hpp"
 
 namespace pirsim {
 namespace studies {
@@ -51,6 +52,49 @@ void print(std::ostream& out, const SightReport& report, const SceneSpec& scene)
   }
 }
 
+/// A line for each sensor that is deaf to any seat.
+void print_deaf_sensors(std::ostream& out, const WorkReport& work, const Model& model) {
+  const SceneSpec& scene = model.compiled().scene();
+  const SensingSpec& sensing = model.compiled().sensing();
+  const std::string channel = sensing.change_per == ChangePer::beam ? "beam" : "cluster";
+  bool by_zones = false;
+  for (std::size_t sensor = 0; sensor < scene.sensors.size(); ++sensor) {
+    const std::vector<std::string> deaf = work.deaf_seats(sensor);
+    if (deaf.empty()) continue;
+    std::size_t n_seen = 0, n_channels = 0, n_for_good = 0;
+    for (std::size_t seat = 0; seat < work.seats.size(); ++seat) {
+      const WorkNotice& notice = work.notice(seat, sensor);
+      n_seen += notice.channels > 0 ? 1 : 0;
+      if (!notice.is_deaf()) continue;
+      n_channels += notice.channels;
+      n_for_good += notice.for_good;
+    }
+    out << "  " << scene.sensors[sensor].id << " sees " << counted(n_seen, "seat") << " and is deaf to work in "
+        << named(deaf, work.seats.size()) << ": ";
+    if (response_of(scene, sensing, scene.sensors[sensor]) == Response::analog) {
+      out << "its signal stays within the threshold\n";
+    } else {
+      by_zones = true;
+      out << counted(n_channels, channel) << " touched there, " << n_for_good << " of them covered for good\n";
+    }
+  }
+  if (!by_zones) return;
+  out << "  (response: zones, change_per: " << channel << "; what helps may be --response analog"
+      << (sensing.change_per == ChangePer::beam ? "" : ", or change_per: beam") << ")\n";
+}
+
+void print(std::ostream& out, const WorkReport& work, const std::string& who, const Model& model) {
+  const std::size_t n_tried = work.seats.size(), n_seats = model.scene().seats.size();
+  if (n_tried == 0) return;
+  const SeatsAtWork seats = work.by_any();
+  out << who << ", at work for " << work.seconds << " s in each of "
+      << (n_tried < n_seats ? std::to_string(n_tried) + " of the " : "") << counted(n_seats, "seat") << ": noticed in "
+      << named(seats.noticed, n_tried) << "; seen, but never noticed, in " << named(seats.deaf, n_tried)
+      << "; unseen in " << named(seats.unseen, n_tried) << '\n';
+  print_deaf_sensors(out, work, model);
+  out << '\n';
+}
+
 /// When the first trial's people begin what they are to do at a given time.
 void print_times(std::ostream& out, const sim::TrialModel& trial) {
   constexpr int most_told = 12;
@@ -79,7 +123,12 @@ void print_response(std::ostream& out, const Model& model) {
     out << "  note: sensors answer by the analog response (since 0.2; 0.1 used zones: --response zones)\n";
 }
 
-void print_study(std::ostream& out, const Model& model, const SightReport& report) {
+/// "'reader'", or who is watched where the script has nobody work.
+std::string in_words(const Worker& worker) {
+  return worker.person.id.empty() ? "somebody of natural style" : "'" + worker.person.id + "'";
+}
+
+void print_study(std::ostream& out, const Model& model, const CheckReport& report, const Worker& worker) {
   const SceneSpec& scene = model.compiled().scene();
   const ScriptSpec& script = model.script();
   out << scene.name << ": " << counted(scene.meshes.size(), "mesh", "meshes") << ", "
@@ -94,7 +143,8 @@ void print_study(std::ostream& out, const Model& model, const SightReport& repor
     studies::print(out, studies::outlook(model.compiled(), 0), model.compiled());
   }
   if (!script.begin.empty() && !script.trials.empty()) print_times(out, model.compiled().trials().front());
-  print(out, report, scene);
+  print(out, report.sight, scene);
+  print(out, report.work, in_words(worker), model);
 }
 
 }  // namespace
@@ -103,8 +153,12 @@ void print_study(std::ostream& out, const Model& model, const SightReport& repor
 CheckReport check_study(const Model& model) {
   CheckReport report;
   report.sight = studies::look_around(model);
+  const sim::CompiledStudy& study = model.compiled();
+  const studies::Worker worker = studies::worker_of(study.trials());
+  report.work =
+      studies::watch_sitters({study.scene(), study.sensing(), study.array(), study.tracer(), study.seed()}, worker);
   std::ostringstream text;
-  studies::print_study(text, model, report.sight);
+  studies::print_study(text, model, report, worker);
   report.text = std::move(text).str();
   report.warnings = studies::warnings(report.sight, model.scene());
   return report;

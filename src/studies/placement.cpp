@@ -14,6 +14,7 @@
 #include "pirsim/response.hpp"
 #include "studies/coverage.hpp"
 #include "studies/sight.hpp"
+#include "studies/sitters.hpp"
 
 namespace pirsim::studies {
 namespace {
@@ -102,13 +103,20 @@ std::string listed(const std::vector<std::string>& names) { return names.empty()
 
 }  // namespace
 
+namespace {
+
+CoverageStudy study_of(SceneSpec scene, const CoverageSpec& coverage, const SensorSetSpec& set) {
+  if (!set.sensors.empty()) scene.sensors = set.sensors;
+  return {std::move(scene), coverage};
+}
+
+}  // namespace
+
 PlacementScore score(const SceneSpec& scene, const CoverageSpec& coverage, SensorSetSpec set, unsigned threads) {
-  SceneSpec with_set = scene;
-  if (!set.sensors.empty()) with_set.sensors = set.sensors;
-  const CoverageStudy study(std::move(with_set), coverage);
+  const CoverageStudy study = study_of(scene, coverage, set);
   const CoverageMap map = run_coverage(study, threads);
   const MapFigures figures = figures_of(map).all;
-  PlacementScore result{std::move(set), figures.seen_area_m2, figures.blind_fraction, overlap_of(map), {}};
+  PlacementScore result{std::move(set), figures.seen_area_m2, figures.blind_fraction, overlap_of(map), {}, {}, {}};
   std::vector<std::vector<MotionCount>> at_seats;
   for (const SeatSpec& seat : scene.seats) {
     const auto& counts = at_seats.emplace_back(study.counts_at(floor_point(seat.world_from_seat.origin)));
@@ -116,6 +124,15 @@ PlacementScore score(const SceneSpec& scene, const CoverageSpec& coverage, Senso
   }
   result.idle = idle_of(map, at_seats);
   return result;
+}
+
+SeatsAtWork seats_at_work(const SceneSpec& scene, const CoverageSpec& coverage, const SensorSetSpec& set,
+                          unsigned threads) {
+  const CoverageStudy study = study_of(scene, coverage, set);
+  const SurveyBase& survey = study.survey();
+  return watch_sitters({survey.scene(), survey.sensing(), survey.array(), fastest_tracer, survey.seed()},
+                       usual_worker(), threads)
+      .by_any();
 }
 
 std::vector<Issue> warnings(std::span<const PlacementScore> scores, const FloorArea& floor) {
@@ -178,12 +195,15 @@ PlacementSearch search_placement(const SceneSpec& scene, const CoverageSpec& cov
 
 std::string to_text(const std::vector<PlacementScore>& scores) {
   std::ostringstream out;
-  out << "  rank  seen, m2  blind, %  overlap, %  set (blind seats)\n" << std::fixed;
+  out << "                                       seats at work\n"
+         "  rank  seen, m2  blind, %  overlap, %  noticed  deaf  unseen  set (blind seats; deaf to work in)\n"
+      << std::fixed;
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const PlacementScore& s = scores[i];
     out << std::setw(6) << i + 1 << std::setprecision(2) << std::setw(10) << s.seen_area_m2 << std::setprecision(1)
-        << std::setw(10) << 100.0 * s.blind_fraction << std::setw(12) << 100.0 * s.overlap << "  " << s.set.id << " ("
-        << listed(s.blind_seats) << ")\n";
+        << std::setw(10) << 100.0 * s.blind_fraction << std::setw(12) << 100.0 * s.overlap << std::setw(9)
+        << s.at_work.noticed.size() << std::setw(6) << s.at_work.deaf.size() << std::setw(8) << s.at_work.unseen.size()
+        << "  " << s.set.id << " (" << listed(s.blind_seats) << "; " << listed(s.at_work.deaf) << ")\n";
   }
   return out.str();
 }
@@ -244,6 +264,9 @@ PlacementReport run_placements(SceneSpec scene, const PlacementSpec& spec, const
     report.ranked.push_back(report.search->found);
   }
   report.ranked = studies::ranked(std::move(report.ranked));
+  for (PlacementScore& score : report.ranked) {
+    score.at_work = studies::seats_at_work(scene, spec.coverage, score.set, options.threads);
+  }
   report.text = studies::to_text(report.ranked) + (report.search ? studies::to_text(*report.search) : "");
   return report;
 }

@@ -19,6 +19,10 @@ namespace pirsim::studies {
 [[nodiscard]] PlacementScore score(const SceneSpec& scene, const CoverageSpec& coverage, SensorSetSpec set,
                                    unsigned threads = 0);
 
+/// Somebody of natural style at work in each seat, in sight of the set. Throws as score() does.
+[[nodiscard]] SeatsAtWork seats_at_work(const SceneSpec& scene, const CoverageSpec& coverage, const SensorSetSpec& set,
+                                        unsigned threads = 0);
+
 /// Greatest seen area first; ties: fewer blind seats, then the order given.
 [[nodiscard]] std::vector<PlacementScore> ranked(std::vector<PlacementScore> scores);
 

@@ -11,6 +11,7 @@
 #include "geom/floor_distance.hpp"
 #include "schema/scene_unit.hpp"
 #include "sim/compiled_study.hpp"
+#include "studies/sitters.hpp"
 
 namespace pirsim::studies {
 namespace {
@@ -48,18 +49,12 @@ class Onlooker {
 };
 
 body::Posture seated_posture(const Model& model, const body::Humanoid& humanoid, const SeatSpec& seat) {
-  const body::SeatPlace place{seat.world_from_seat, model.compiled().scene().floor.height_m(), std::nullopt};
-  const double heading = heading_of(seat.world_from_seat);
-  const Vec2 stand =
-      floor_point(seat.world_from_seat.origin) + body::fall_back_m(humanoid, place) * direction_of(heading);
-  body::Motion motion(humanoid, stand, heading, place.floor_height_m, model.tick_s());
   try {
-    motion.sit_down(place);
+    return seated(humanoid, {seat.world_from_seat, model.scene().floor.height_m(), std::nullopt}, model.tick_s())
+        .posture();
   } catch (const Error& fault) {  // the body knows no names
     throw Error(fault.code(), Where{model.scene().name}, "seat '" + seat.id + "': " + fault.issues().front().message);
   }
-  while (!(motion.stage() == body::Stage::seated && motion.settled())) motion.advance();
-  return motion.posture();
 }
 
 void count_rays(const Model& model, std::size_t sensor, SensorSight& sight) {

@@ -6,6 +6,7 @@
 #include "body/motion.hpp"
 #include "core/parallel.hpp"
 #include "pirsim/geometry.hpp"
+#include "studies/sitters.hpp"
 
 namespace pirsim::studies {
 namespace {
@@ -71,10 +72,7 @@ WalkTest::Movement WalkTest::make_crossing() const {
 
 WalkTest::Movement WalkTest::make_arm_work() const {
   const body::SeatPlace seat{Frame{{1, 0, 0, 0}, {0.0, spec_.seat_height_m, 0.0}}, 0.0, spec_.desk_height_m};
-  const Vec2 stand = body::fall_back_m(humanoid_, seat) * direction_of(0.0);
-  body::Motion motion(humanoid_, stand, 0.0, 0.0, tick_s(spec_));
-  motion.sit_down(seat);
-  while (!(motion.stage() == body::Stage::seated && motion.settled())) motion.advance();
+  body::Motion motion = seated(humanoid_, seat, tick_s(spec_));
   motion.work({spec_.arm_amplitude_m, spec_.arm_period_s});
   // Reaching for the desk isn't the motion that is asked about.
   constexpr double reaching_s = 5.0;  // assumed: longer than it takes
@@ -106,20 +104,27 @@ void WalkTester::look(const body::Posture& posture, const Frame& world_from_move
   observer_.look(solids_, radiance_, exposure);
 }
 
-bool WalkTester::is_noticed(const WalkTest::Movement& movement, const Frame& world_from_movement,
-                            std::uint32_t try_number) {
+void WalkTester::attempt(const WalkTest::Movement& movement, const Frame& world_from_movement, std::uint32_t try_number,
+                         Tries& tries) {
+  ++tries.made;
   look(movement.front(), world_from_movement, after_);
   detector_.begin_run(test_.survey().seed(), try_number, after_);
   logger_.begin_run(test_.survey().seed(), try_number);
+  const ZoneSet nobody(after_.zones.size());
+  bool seen = after_.zones != nobody;
   for (std::size_t tick = 1; tick < movement.size(); ++tick) {
     logger_.hear_tick(triggers_, [&](std::int64_t) {
       std::swap(before_, after_);
       look(movement[tick], world_from_movement, after_);
       detector_.tick(before_, after_, triggers_);
     });
-    if (std::ranges::find(triggers_, 1) != triggers_.end()) return true;
+    if (std::ranges::find(triggers_, 1) != triggers_.end()) {
+      ++tries.noticed;
+      return;
+    }
+    seen = seen || after_.zones != nobody;
   }
-  return false;
+  tries.deaf += seen ? 1 : 0;
 }
 
 PointResult WalkTester::try_point(const Vec2& point, std::uint32_t number) {
@@ -132,23 +137,22 @@ PointResult WalkTester::try_point(const Vec2& point, std::uint32_t number) {
     const double heading = 2.0 * pi * i / spec.major.directions;
     const Vec2 half_path = spec.path_m / 2 * direction_of(heading);
     if (!test_.floor().walkable(point - half_path, point + half_path)) continue;
-    ++result.major.made;
-    if (is_noticed(test_.crossing(), {rotation_from_heading(heading), foot}, try_number)) ++result.major.noticed;
+    attempt(test_.crossing(), {rotation_from_heading(heading), foot}, try_number, result.major);
   }
   for (int i = 0; i < spec.minor.directions && test_.floor().walkable(point); ++i, ++try_number) {
     const double heading = 2.0 * pi * i / spec.minor.directions;
-    ++result.minor.made;
-    if (is_noticed(test_.arm_work(), {rotation_from_heading(heading), foot}, try_number)) ++result.minor.noticed;
+    attempt(test_.arm_work(), {rotation_from_heading(heading), foot}, try_number, result.minor);
   }
   return result;
 }
 
-bool WalkTester::notices_sitter(const SeatSpec& seat, std::uint32_t number) {
+SeatResult WalkTester::try_seat(const SeatSpec& seat, std::uint32_t number) {
   const Vec3 pelvis = seat.world_from_seat.origin;
   const Vec3 foot(pelvis.x, test_.scene().floor.height_m(), pelvis.z);
   const auto n_tries = static_cast<std::uint32_t>(test_.spec().major.directions + test_.spec().minor.directions);
-  return is_noticed(test_.arm_work(), {rotation_from_heading(heading_of(seat.world_from_seat)), foot},
-                    number * n_tries);
+  Tries tries;
+  attempt(test_.arm_work(), {rotation_from_heading(heading_of(seat.world_from_seat)), foot}, number * n_tries, tries);
+  return {seat.id, tries.noticed > 0, tries.deaf > 0};
 }
 
 WalkTestResult run_walk_test(const WalkTest& test, unsigned threads, const std::function<void()>& row_done) {
@@ -173,9 +177,7 @@ WalkTestResult run_walk_test(const WalkTest& test, unsigned threads, const std::
       });
   WalkTester tester(test);
   auto number = static_cast<std::uint32_t>(grid.n_rows() * grid.n_columns());
-  for (const SeatSpec& seat : test.scene().seats) {
-    result.seats.push_back({seat.id, tester.notices_sitter(seat, number++)});
-  }
+  for (const SeatSpec& seat : test.scene().seats) result.seats.push_back(tester.try_seat(seat, number++));
   return result;
 }
 

@@ -56,12 +56,13 @@ class WalkTester {
   /// A walk is tried if the whole path is walkable, sitting if the point is. number: of the point, which keys what
   /// effects draw.
   [[nodiscard]] PointResult try_point(const Vec2& point, std::uint32_t number);
-  /// Minor motion on a seat of the scene, facing as it does: noticed in time?
-  [[nodiscard]] bool notices_sitter(const SeatSpec& seat, std::uint32_t number);
+  /// Minor motion on a seat of the scene, facing as it does.
+  [[nodiscard]] SeatResult try_seat(const SeatSpec& seat, std::uint32_t number);
 
  private:
-  [[nodiscard]] bool is_noticed(const WalkTest::Movement& movement, const Frame& world_from_movement,
-                                std::uint32_t try_number);
+  /// Adds a try: noticed in time?
+  void attempt(const WalkTest::Movement& movement, const Frame& world_from_movement, std::uint32_t try_number,
+               Tries& tries);
   void look(const body::Posture& posture, const Frame& world_from_movement, sim::Exposure& exposure);
 
   const WalkTest& test_;

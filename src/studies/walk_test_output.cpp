@@ -42,10 +42,23 @@ std::string sentence(const std::string& motion, const PassCount& count, const Wa
 }
 
 std::string seats_in_words(const WalkTestResult& result) {
-  std::string noticed, missed;
-  for (const SeatResult& seat : result.seats) (seat.noticed ? noticed : missed) += " " + seat.seat;
-  return "seats where a sitter's arms are noticed:" + (noticed.empty() ? " none" : noticed) +
-         "; not noticed:" + (missed.empty() ? " none" : missed);
+  std::string noticed, deaf, unseen;
+  for (const SeatResult& seat : result.seats) {
+    (seat.noticed ? noticed : seat.deaf ? deaf : unseen) += " " + seat.seat;
+  }
+  const auto named = [](const std::string& seats) { return seats.empty() ? " none" : seats; };
+  return "seats where a sitter's arms are noticed:" + named(noticed) + "; seen, but not noticed:" + named(deaf) +
+         "; unseen:" + named(unseen);
+}
+
+/// Of all tries with a sitter: how many failed, and in how many of those the sitter was seen.
+std::string deafness_in_words(const WalkTestResult& result) {
+  int missed = 0, deaf = 0;
+  for (const PointResult& point : result.points) {
+    missed += point.minor.made - point.minor.noticed;
+    deaf += point.minor.deaf;
+  }
+  return "of " + std::to_string(missed) + " tries without notice, sensors saw the sitter in " + std::to_string(deaf);
 }
 
 io::MapChart map_of(const WalkTest& test, const std::string& title, const std::string& label) {
@@ -86,7 +99,7 @@ void add_maps(io::ReportSection& section, const WalkTest& test, const WalkTestRe
 
 std::string to_csv(const WalkTest& test, const WalkTestResult& result) {
   std::ostringstream out;
-  out << "x_m,z_m,major_tries,major_noticed,major,minor_tries,minor_noticed,minor\n"
+  out << "x_m,z_m,major_tries,major_noticed,major,minor_tries,minor_noticed,minor,minor_deaf\n"
       << std::fixed << std::setprecision(4);
   const FloorGrid& grid = test.grid();
   const auto write = [&](const Tries& tries, const WalkRequirement& requirement) {
@@ -101,7 +114,7 @@ std::string to_csv(const WalkTest& test, const WalkTestResult& result) {
       out << centre.x << ',' << centre.y;
       write(point.major, test.spec().major);
       write(point.minor, test.spec().minor);
-      out << '\n';
+      out << ',' << point.minor.deaf << '\n';
     }
   }
   return out.str();
@@ -110,7 +123,7 @@ std::string to_csv(const WalkTest& test, const WalkTestResult& result) {
 std::string to_text(const WalkTest& test, const WalkTestResult& result) {
   return sentence("walker", count_passes(result, &PointResult::major, test.spec().major), test.spec().major) + "\n" +
          sentence("sitter's arms", count_passes(result, &PointResult::minor, test.spec().minor), test.spec().minor) +
-         "\n" + (result.seats.empty() ? "" : seats_in_words(result) + "\n");
+         "; " + deafness_in_words(result) + "\n" + (result.seats.empty() ? "" : seats_in_words(result) + "\n");
 }
 
 io::Report walk_test_report(const WalkTest& test, const WalkTestResult& result) {
@@ -127,7 +140,8 @@ io::Report walk_test_report(const WalkTest& test, const WalkTestResult& result) 
       signs_of_maps};
   io::ReportSection major{"Major motion: walking", {}, {}, {}}, minor{"Minor motion: arms of a sitter", {}, {}, {}};
   major.paragraphs = {sentence("Walker", count_passes(result, &PointResult::major, spec.major), spec.major) + "."};
-  minor.paragraphs = {sentence("Arms", count_passes(result, &PointResult::minor, spec.minor), spec.minor) + "."};
+  minor.paragraphs = {sentence("Arms", count_passes(result, &PointResult::minor, spec.minor), spec.minor) + "; " +
+                      deafness_in_words(result) + "."};
   if (!result.seats.empty()) minor.paragraphs.push_back("Facing as the seats do, " + seats_in_words(result) + ".");
   add_maps(major, test, result, &PointResult::major, spec.major);
   add_maps(minor, test, result, &PointResult::minor, spec.minor);

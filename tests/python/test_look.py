@@ -92,3 +92,6 @@ def test_placements_are_the_command_lines(room, data, command):
     areas = [score.seen_area_m2 for score in found.ranked]
     assert areas == sorted(areas, reverse=True) and areas[0] > 0 and found.evaluations > 0
     assert all(isinstance(sensor, pirsim.Sensor) for sensor in found.ranked[0].sensors)
+    seats = sorted(pirsim.read_scene(room).seats, key=lambda seat: seat.id)
+    for score in found.ranked:
+        assert sorted(score.noticed_seats + score.deaf_seats + score.unseen_seats) == [seat.id for seat in seats]

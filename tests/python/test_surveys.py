@@ -42,7 +42,8 @@ def test_a_walk_test_equals_the_command_lines(room, data, command, tmp_path):
     row, column = np.nonzero(test.on_floor)
     assert len(rows) == len(row) > 10
     for name, array in (("major_tries", test.major_made), ("major_noticed", test.major_noticed),
-                        ("minor_tries", test.minor_made), ("minor_noticed", test.minor_noticed)):
+                        ("minor_tries", test.minor_made), ("minor_noticed", test.minor_noticed),
+                        ("minor_deaf", test.minor_deaf)):
         assert [int(r[name]) for r in rows] == array[row, column].tolist()
     assert set(test.seats) == set(pirsim.compile(room, data / "studies" / "studyA.yaml").seats.names)
 

@@ -90,6 +90,27 @@ TEST_CASE("sets are ranked by what they see, overlap and blind seats are told", 
   CHECK(best_first[2].blind_fraction == 1.0);
 }
 
+TEST_CASE("a needle into a sitter's middle sees them and is deaf to their work, which is told of each set",
+          "[placement]") {
+  SceneSpec scene = two_islands();
+  PlacementSpec spec;
+  spec.coverage = fine();
+  spec.coverage.spacing_m = 0.5;
+  spec.coverage.sensing.response = Response::zones;
+  const auto over = [](double x) { return SensorSpec{"A", "needle", mounted({x, 2.6, 0}, 0, 90)}; };
+  spec.sets = {{"left", {over(1.6)}}, {"nobody", {over(4.5)}}};
+  const PlacementReport report = run_placements(scene, spec);
+  for (const PlacementScore& score : report.ranked) {
+    INFO(score.set.id);
+    CHECK(score.at_work.noticed.empty());
+    CHECK(score.at_work.deaf ==
+          (score.set.id == "left" ? std::vector<std::string>{"left"} : std::vector<std::string>{}));
+    CHECK(score.at_work.unseen.size() == (score.set.id == "left" ? 1 : 2));
+  }
+  CHECK(report.text.find("noticed  deaf  unseen") != std::string::npos);
+  CHECK(report.text.find("; left)") != std::string::npos);
+}
+
 TEST_CASE("a mounted sensor looks along its yaw, tilted down", "[placement]") {
   const Frame frame = mounted({1, 2, 3}, 90.0, 30.0);
   CHECK(glm::distance(frame.forward(), Vec3(-std::cos(radians(30.0)), -0.5, 0.0)) < 1e-12);

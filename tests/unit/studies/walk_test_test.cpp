@@ -78,6 +78,27 @@ TEST_CASE("a sitter's arms are noticed under the needle only, and still arms nev
   for (double distance = 0.3; distance < 0.8; distance += 0.02) CHECK(noticed({distance, 0.2}).noticed == 0);
 }
 
+TEST_CASE("a sitter right under the needle covers it for good: seen in every try, noticed in none", "[walk]") {
+  WalkTestSpec spec = four_walks(2.0);
+  spec.sensing.response = Response::zones;
+  SceneSpec scene = needle_over_the_middle();
+  scene.seats = {{"under", Frame{{1, 0, 0, 0}, {0.0, 0.5, 0.0}}}, {"beside", Frame{{1, 0, 0, 0}, {1.5, 0.5, 0.0}}}};
+  spec.spacing_m = 6.0;
+  const WalkTest test(scene, spec);
+  const Tries under = WalkTester(test).try_point({0.0, 0.0}, 0).minor,
+              beside = WalkTester(test).try_point({1.5, 0.0}, 0).minor;
+  CHECK(under.made == 4);
+  CHECK(under.noticed == 0);
+  CHECK(under.deaf == 4);
+  CHECK(beside.noticed == 0);
+  CHECK(beside.deaf == 0);
+  const WalkTestResult result = run_walk_test(test, 1);
+  CHECK(result.seats[0].deaf);
+  CHECK_FALSE(result.seats[1].deaf);
+  CHECK(to_text(test, result).find("noticed: none; seen, but not noticed: under; unseen: beside") != std::string::npos);
+  CHECK(to_csv(test, result).find("minor,minor_deaf\n") != std::string::npos);
+}
+
 TEST_CASE("a walk test gives the same result for any number of threads, and says so point by point", "[walk]") {
   WalkTestSpec spec = four_walks(2.0);
   spec.spacing_m = 0.8;

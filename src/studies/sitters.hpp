@@ -1,0 +1,44 @@
+// Somebody at work in each seat: which sensors notice it, and which see the sitter and yet report nothing.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "body/motion.hpp"
+#include "pirsim/look.hpp"
+#include "schema/study_in_force.hpp"
+#include "sim/compiled_study.hpp"
+#include "sim/sensor_array.hpp"
+
+namespace pirsim::studies {
+
+/// Who sits there, and what they are at.
+struct Worker {
+  PersonInForce person;
+  action::Work work;
+};
+/// Somebody of natural style who types.
+[[nodiscard]] Worker usual_worker();
+/// The first person of the trials who works at a desk, as thirteen primitive solids (meshes would take minutes); the
+/// usual worker if nobody does.
+[[nodiscard]] Worker worker_of(std::span<const sim::TrialModel> trials);
+
+/// In whose sight the seats are.
+struct WatchedRoom {
+  const SceneSpec& scene;
+  const SensingInForce& sensing;
+  const sim::SensorArray& array;
+  TracerKind tracer = fastest_tracer;
+  std::uint64_t seed = 1;
+};
+
+/// Lets the worker sit in every seat, alone, and asks the sensors' own detectors at every tick. Seats that the worker
+/// can't sit on are left out. Of more than thirty seats, thirty are tried, spread evenly over their list, and fewer
+/// with more than twenty sensors. What effects do to triggers is left out. threads 0: all cores; changes nothing in the
+/// result.
+[[nodiscard]] WorkReport watch_sitters(const WatchedRoom& room, const Worker& worker, unsigned threads = 0);
+
+/// Seated and settled, hands on the thighs. Throws Error(infeasible) if the seat's height can't be sat on.
+[[nodiscard]] body::Motion seated(const body::Humanoid& humanoid, const body::SeatPlace& place, double tick_s);
+
+}  // namespace pirsim::studies
