@@ -66,7 +66,7 @@ WorkReport watched(const Model& model) { return watched(model, worker_of(model.c
 }  // namespace
 
 TEST_CASE("a seat where clusters are covered for good is told, and is as deaf in a run; beams and heat aren't",
-          "[sitters][seconds]") {
+          "[sitters]") {
   const auto compiled = [](Response response, ChangePer change_per) {
     return compile(den(), reads_for(3600.0, response, change_per));
   };
@@ -157,7 +157,7 @@ std::vector<WorkNotice> slowly_watched(const Model& model, const SeatSpec& seat,
 
 }  // namespace
 
-TEST_CASE("arms at desk work are noticed where the slow tracer's channels change", "[sitters][seconds]") {
+TEST_CASE("arms at desk work are noticed where the slow tracer's channels change", "[sitters]") {
   Worker worker;
   worker.person.stature_m = 1.75;
   worker.work.tilt_choices_deg = {};
