@@ -71,7 +71,6 @@ std::size_t reference_facet(const SensorModelSpec& model, int lens_step) {
 
 namespace {
 
-constexpr double m2_per_mm2 = 1e-6;
 constexpr double tick_s = 0.01;     // straight lines over it are good to 1e-3 at 2.4 Hz
 constexpr double settling_s = 5.0;  // many of the filter's time constants after the last change
 
@@ -108,7 +107,7 @@ double excursion(const DetectorSpec& spec, double volts_per_watt, std::span<cons
 
 Calibration calibrate(const SensorModelSpec& model) {
   const int first_step = std::ranges::min_element(model.clusters, {}, &ClusterSpec::lens_step)->lens_step;
-  const double first_aperture_m2 = model.optics.aperture_mm2 * m2_per_mm2;
+  const double first_aperture_m2 = aperture_m2(model.optics);
   const double first_excursion = rated_excursion(model, first_step);
   const double gain = model.detector.amplifier.volts_per_watt.value_or(1.0 / (first_excursion * first_aperture_m2));
   std::map<int, double> apertures{{first_step, first_aperture_m2}};

@@ -220,16 +220,20 @@ std::vector<WeightedDirection> zone_quadrature(const SensorModelSpec& model, con
   return directions;
 }
 
-void append(PowerRays& rays, const SensorSpec& sensor, const SensorModelSpec& model,
-            std::span<const double> apertures_m2, int rays_per_zone) {
+double aperture_m2(const OpticsSpec& optics) noexcept {
+  constexpr double m2_per_mm2 = 1e-6;
+  return optics.aperture_mm2 * m2_per_mm2;
+}
+
+void append(PowerRays& rays, const SensorSpec& sensor, const SensorModelSpec& model, int rays_per_zone) {
   const Frame& frame = sensor.world_from_sensor;
   RayBundle& bundle = rays.bundle;
-  for (std::size_t i = 0; i < model.clusters.size(); ++i) {
-    for (const ZoneSpec& zone : model.clusters[i].zones) {
+  for (const ClusterSpec& cluster : model.clusters) {
+    for (const ZoneSpec& zone : cluster.zones) {
       for (const WeightedDirection& each : zone_quadrature(model, zone, rays_per_zone)) {
         bundle.rays.push_back({Vec3f(frame.origin), Vec3f(glm::normalize(frame.rotation * each.direction))});
         bundle.range.push_back(out_of_sight_m);
-        rays.weights.push_back(zone.polarity * apertures_m2[i] * each.solid_angle_sr);
+        rays.weights.push_back(zone.polarity * aperture_m2(model.optics) * each.solid_angle_sr);
       }
       bundle.zone_rays_begin.push_back(static_cast<std::uint32_t>(bundle.rays.size()));
     }

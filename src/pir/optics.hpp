@@ -48,15 +48,19 @@ struct WeightedDirection {
 /// No rated distance cuts these rays; this far they reach where no room does, metres.
 inline constexpr float out_of_sight_m = 1000.0F;
 
+/// Of the first lens step's facets.
+[[nodiscard]] double aperture_m2(const OpticsSpec& optics) noexcept;
+
 struct PowerRays {
   RayBundle bundle;
-  /// (n_rays) polarity x facet's aperture x solid angle, m^2 sr: times a difference of radiance it is a power.
+  /// (n_rays) polarity x the first lens step's aperture x solid angle, m^2 sr: times a difference of radiance it is a
+  /// power. What the facets of other steps bring is as many times more as their aperture is larger, which follows from
+  /// the electronics (pir::calibrate) and isn't known here.
   std::vector<double> weights;
 };
 
-/// Appends a sensor's rays; apertures_m2: (n_clusters of the model).
-void append(PowerRays& rays, const SensorSpec& sensor, const SensorModelSpec& model,
-            std::span<const double> apertures_m2, int rays_per_zone);
+/// Appends a sensor's rays.
+void append(PowerRays& rays, const SensorSpec& sensor, const SensorModelSpec& model, int rays_per_zone);
 /// Appends a sensor without any.
 void append_blind(PowerRays& rays);
 

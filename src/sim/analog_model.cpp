@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "body/body_part.hpp"
 #include "pir/calibration.hpp"
@@ -10,17 +11,36 @@
 
 namespace pirsim::sim {
 
-PowerModel::PowerModel(const SceneSpec& scene, const SensingSpec& sensing, const rt::Room& room,
-                       std::span<const std::vector<double>> apertures_m2)
+namespace {
+
+/// Of all facets, each once, in ascending order.
+std::vector<int> lens_steps(const SensorModelSpec& model) {
+  std::set<int> steps;
+  for (const ClusterSpec& cluster : model.clusters) steps.insert(cluster.lens_step);
+  return {steps.begin(), steps.end()};
+}
+
+}  // namespace
+
+PowerModel::PowerModel(const SceneSpec& scene, const SensingSpec& sensing, const rt::Room& room)
     : rays_(std::make_unique<pir::PowerRays>()) {
-  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
-    const SensorSpec& sensor = scene.sensors[i];
-    if (apertures_m2[i].empty()) {
+  const RayBundle& bundle = rays_->bundle;
+  for (const SensorSpec& sensor : scene.sensors) {
+    if (response_of(scene, sensing, sensor) != Response::analog) {
       pir::append_blind(*rays_);
-    } else {
-      pir::append(*rays_, sensor, scene.sensor_models.at(sensor.model), apertures_m2[i], sensing.analog_rays_per_zone);
+      receivers_begin_.push_back(receivers_begin_.back());
+      continue;
     }
-    sensors_.resize(rays_->bundle.rays.size(), static_cast<std::uint32_t>(i));
+    const SensorModelSpec& model = scene.sensor_models.at(sensor.model);
+    const std::size_t first_cluster = bundle.n_clusters();
+    pir::append(*rays_, sensor, model, sensing.analog_rays_per_zone);
+    const std::vector<int> steps = lens_steps(model);
+    for (std::size_t c = 0; c < model.clusters.size(); ++c) {
+      const auto step = std::ranges::lower_bound(steps, model.clusters[c].lens_step) - steps.begin();
+      const std::size_t end = bundle.zone_rays_begin[bundle.cluster_zones_begin[first_cluster + c + 1]];
+      receivers_.resize(end, receivers_begin_.back() + static_cast<std::uint32_t>(step));
+    }
+    receivers_begin_.push_back(receivers_begin_.back() + static_cast<std::uint32_t>(steps.size()));
   }
   clipped_ = std::make_unique<RayBundle>(rays_->bundle);
   const double ambient = pir::band_radiance(pir::kelvin(sensing.ambient_c));
@@ -50,11 +70,16 @@ DetectorSpec without_noise(DetectorSpec spec) {
 }
 
 CalibratedSensor calibrated(const SensorModelSpec& model, double tick_s) {
-  pir::Calibration calibration = pir::calibrate(model);
+  const pir::Calibration calibration = pir::calibrate(model);
   const double gain = calibration.volts_per_watt;
-  return {{model.detector, gain, tick_s},
-          {without_noise(model.detector), gain, tick_s},
-          std::move(calibration.apertures_m2)};
+  std::map<int, double> by_step;
+  for (std::size_t i = 0; i < model.clusters.size(); ++i) {
+    by_step[model.clusters[i].lens_step] =
+        calibration.apertures_m2[i] / pir::aperture_m2(model.optics) * watts_per_step;
+  }
+  CalibratedSensor sensor{{model.detector, gain, tick_s}, {without_noise(model.detector), gain, tick_s}, {}};
+  for (const auto& [step, watts] : by_step) sensor.watts_per_step.push_back(watts);
+  return sensor;
 }
 
 }  // namespace
@@ -66,18 +91,15 @@ bool AnalogModel::is_needed(const SceneSpec& scene, const SensingSpec& sensing) 
 
 AnalogModel::AnalogModel(const SceneSpec& scene, const SensingSpec& sensing, const rt::Room& room) {
   std::map<std::string, CalibratedSensor> known;
-  std::vector<std::vector<double>> apertures_m2;
   for (const SensorSpec& sensor : scene.sensors) {
     sensors_.emplace_back();
-    apertures_m2.emplace_back();
     if (response_of(scene, sensing, sensor) != Response::analog) continue;
     const SensorModelSpec& model = scene.sensor_models.at(sensor.model);
     auto found = known.find(model.id);
     if (found == known.end()) found = known.emplace(model.id, calibrated(model, 1.0 / sensing.tick_rate_hz)).first;
     sensors_.back() = found->second;
-    apertures_m2.back() = found->second.apertures_m2;
   }
-  power_ = std::make_unique<PowerModel>(scene, sensing, room, apertures_m2);
+  power_ = std::make_unique<PowerModel>(scene, sensing, room);
 }
 
 }  // namespace pirsim::sim

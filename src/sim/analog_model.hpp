@@ -16,30 +16,34 @@
 
 namespace pirsim::sim {
 
-/// Power in whole steps of `watts_per_step`: sums don't depend on their order, so that no tracer and no memory changes
-/// a bit, what cancels is zero, and swapped polarity is a changed sign. Good for half a watt; one ray on a person is
-/// some 1e9 steps.
+/// Power in whole steps of `watts_per_step`, as if every facet had the aperture of its lens' first step: sums don't
+/// depend on their order, so that no tracer and no memory changes a bit, what cancels is zero, and swapped polarity is
+/// a changed sign. Good for half a watt; one ray on a person is some 1e9 steps.
 using PowerSteps = std::int64_t;
 inline constexpr double watts_per_step = 0x1p-64;
 
 /// Radiance of each of a person's parts, W m^-2 sr^-1.
 using BodyRadiance = std::array<double, body::n_parts>;
 
-/// Immutable. Sensors whose response is `zones` have no rays here.
+/// The rays of analog sensors and what they are worth: optics alone, whatever the electronics. Sensors whose response
+/// is `zones` have no rays here. Immutable.
+///
+/// A *receiver* is one lens step of one sensor. What each receives is kept apart: by how much the steps' apertures
+/// differ follows from the electronics, and powers that were measured once serve any of them.
 class PowerModel {
  public:
-  /// apertures_m2: (n_sensors) of each sensor's clusters; empty for a sensor that isn't analog.
-  PowerModel(const SceneSpec& scene, const SensingSpec& sensing, const rt::Room& room,
-             std::span<const std::vector<double>> apertures_m2);
+  PowerModel(const SceneSpec& scene, const SensingSpec& sensing, const rt::Room& room);
 
   [[nodiscard]] const pir::PowerRays& rays() const noexcept { return *rays_; }
   /// The rays cut at the room.
   [[nodiscard]] const RayBundle& clipped() const noexcept { return *clipped_; }
-  [[nodiscard]] std::size_t n_sensors() const noexcept { return clipped_->n_sensors(); }
-  [[nodiscard]] std::uint32_t sensor_of(std::uint32_t ray) const noexcept { return sensors_[ray]; }
+  [[nodiscard]] std::size_t n_receivers() const noexcept { return receivers_begin_.back(); }
+  /// (n_sensors + 1) sensor s has the receivers [begin[s], begin[s + 1]), in ascending order of their lens steps.
+  [[nodiscard]] const std::vector<std::uint32_t>& receivers_begin() const noexcept { return receivers_begin_; }
+  [[nodiscard]] std::uint32_t receiver_of(std::uint32_t ray) const noexcept { return receivers_[ray]; }
   /// Of the room where the ray hits it, or of the surroundings; W m^-2 sr^-1.
   [[nodiscard]] double background(std::uint32_t ray) const noexcept { return backgrounds_[ray]; }
-  /// What the sensor receives more because a ray ends on a surface of this radiance and not in the background.
+  /// What the receiver gets more because a ray ends on a surface of this radiance and not in the background.
   [[nodiscard]] PowerSteps power(std::uint32_t ray, double radiance) const noexcept {
     return static_cast<PowerSteps>(rays_->weights[ray] * (radiance - backgrounds_[ray]) / watts_per_step);
   }
@@ -47,8 +51,9 @@ class PowerModel {
  private:
   std::unique_ptr<pir::PowerRays> rays_;
   std::unique_ptr<RayBundle> clipped_;
-  std::vector<std::uint32_t> sensors_;  ///< (n_rays)
-  std::vector<double> backgrounds_;     ///< (n_rays)
+  std::vector<std::uint32_t> receivers_begin_{0};  ///< (n_sensors + 1)
+  std::vector<std::uint32_t> receivers_;           ///< (n_rays)
+  std::vector<double> backgrounds_;                ///< (n_rays)
 };
 
 [[nodiscard]] BodyRadiance radiance_of(const WarmthSpec& warmth, double ambient_c);
@@ -56,8 +61,8 @@ class PowerModel {
 /// One make of sensor, calibrated by its rated distances (pir::calibrate).
 struct CalibratedSensor {
   pir::AnalogCircuit detector;
-  pir::AnalogFilter silent_filter;   ///< the detector's element and amplifier, without noise
-  std::vector<double> apertures_m2;  ///< (n_clusters)
+  pir::AnalogFilter silent_filter;     ///< the detector's element and amplifier, without noise
+  std::vector<double> watts_per_step;  ///< (n_lens_steps) of power through facets with the step's own aperture
 };
 
 class AnalogModel {
@@ -68,6 +73,18 @@ class AnalogModel {
   [[nodiscard]] static bool is_needed(const SceneSpec& scene, const SensingSpec& sensing);
 
   [[nodiscard]] const PowerModel& power() const noexcept { return *power_; }
+  /// What one step of a receiver's power is worth with its own aperture.
+  [[nodiscard]] double watts_per_step(std::size_t sensor, std::size_t receiver) const noexcept {
+    return sensors_[sensor]->watts_per_step[receiver - power_->receivers_begin()[sensor]];
+  }
+  /// All that an analog sensor receives. powers: (n_receivers)
+  [[nodiscard]] double watts(std::size_t sensor, std::span<const PowerSteps> powers) const noexcept {
+    double sum = 0.0;
+    for (std::size_t i = power_->receivers_begin()[sensor]; i < power_->receivers_begin()[sensor + 1]; ++i) {
+      sum += static_cast<double>(powers[i]) * watts_per_step(sensor, i);
+    }
+    return sum;
+  }
   /// (n_sensors) nothing for a sensor that answers by its zones.
   [[nodiscard]] const std::vector<std::optional<CalibratedSensor>>& sensors() const noexcept { return sensors_; }
 

@@ -3,11 +3,6 @@
 #include <algorithm>
 
 namespace pirsim::sim {
-namespace {
-
-double watts(PowerSteps power) { return static_cast<double>(power) * watts_per_step; }
-
-}  // namespace
 
 Detector::Detector(const SensorArray& array)
     : array_(&array),
@@ -23,9 +18,10 @@ void Detector::begin_run(std::uint64_t seed, std::uint32_t run, const Exposure& 
     if (array_->zone_outputs()[i]) outputs_[i].emplace();
   }
   for (std::uint32_t i = 0; i < analog_.size(); ++i) {
-    const auto& sensor = array_->analog()->sensors()[i];
+    const AnalogModel& model = *array_->analog();
+    const auto& sensor = model.sensors()[i];
     if (!sensor) continue;
-    analog_[i] = sensor->detector.start(watts(rest.powers[i]), {seed, run, i, Purpose::detector_noise});
+    analog_[i] = sensor->detector.start(model.watts(i, rest.powers), {seed, run, i, Purpose::detector_noise});
   }
 }
 
@@ -62,7 +58,8 @@ void Detector::switch_outputs(std::span<std::uint8_t> triggers) noexcept {
 void Detector::advance_analog(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept {
   for (std::size_t i = 0; i < analog_.size(); ++i) {
     if (!analog_[i]) continue;
-    array_->analog()->sensors()[i]->detector.advance(*analog_[i], watts(exposure.powers[i]));
+    const AnalogModel& model = *array_->analog();
+    model.sensors()[i]->detector.advance(*analog_[i], model.watts(i, exposure.powers));
     triggers[i] = pir::AnalogCircuit::on(*analog_[i]) ? 1 : 0;
   }
 }

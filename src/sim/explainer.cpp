@@ -10,30 +10,33 @@ Explainer::Explainer(const CompiledStudy& study) : study_(study), meter_(study.a
     filters_.push_back(sensor ? std::optional(sensor->silent_filter) : std::nullopt);
   }
   const RayBundle& bundle = study.array().analog()->power().clipped();
+  for (std::uint32_t sensor = 0; sensor < bundle.n_sensors(); ++sensor) {
+    sensor_of_zone_.resize(bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor + 1]], sensor);
+  }
   for (std::uint32_t zone = 0; zone < bundle.n_zones(); ++zone) {
     zone_of_ray_.resize(bundle.zone_rays_begin[zone + 1], zone);
   }
 }
 
-std::uint32_t Explainer::sensor_of(std::uint32_t zone) const {
-  const RayBundle& bundle = study_.array().analog()->power().clipped();
-  return study_.array().analog()->power().sensor_of(bundle.zone_rays_begin[zone]);
+double Explainer::watts(const PowerShare& share) const {
+  const AnalogModel& analog = *study_.array().analog();
+  const std::uint32_t sensor = sensor_of_zone_[zone_of_ray_[share.ray]];
+  return static_cast<double>(share.power) * analog.watts_per_step(sensor, analog.power().receiver_of(share.ray));
 }
 
 void Explainer::settle(const RunState& state) {
   meter_.explain(state.crowd.actors(), met_);
   for (const PowerShare& each : met_) {
-    shares_[{zone_of_ray_[each.ray], each.person, each.part}].before_w +=
-        static_cast<double>(each.power) * watts_per_step;
+    shares_[{zone_of_ray_[each.ray], each.person, each.part}].before_w += watts(each);
   }
   for (auto& [source, share] : shares_) {
-    share.sections = filters_[sensor_of(std::get<0>(source))]->at_rest(share.before_w);
+    share.sections = filters_[sensor_of_zone_[std::get<0>(source)]]->at_rest(share.before_w);
   }
 }
 
 void Explainer::advance() {
   for (auto& [source, share] : shares_) {
-    filters_[sensor_of(std::get<0>(source))]->advance(share.sections, share.before_w, share.now_w, 0.0);
+    filters_[sensor_of_zone_[std::get<0>(source)]]->advance(share.sections, share.before_w, share.now_w, 0.0);
     share.before_w = share.now_w;
     share.now_w = 0.0;
   }
@@ -43,7 +46,7 @@ void Explainer::explain(const RunState& state, std::vector<TraceRow>& rows) {
   meter_.explain(state.crowd.actors(), met_);
   for (const PowerShare& each : met_) {
     Share& share = shares_[{zone_of_ray_[each.ray], each.person, each.part}];
-    share.now_w += static_cast<double>(each.power) * watts_per_step;
+    share.now_w += watts(each);
   }
   advance();
   const RayBundle& bundle = study_.array().analog()->power().clipped();
@@ -59,7 +62,7 @@ void Explainer::explain(const RunState& state, std::vector<TraceRow>& rows) {
   }
   for (const auto& [source, share] : shares_) {
     const auto& [zone, person, part] = source;
-    const std::size_t sensor = sensor_of(zone);
+    const std::size_t sensor = sensor_of_zone_[zone];
     const double volts = filters_[sensor]->output(share.sections);
     TraceRow& row = *std::find_if(rows.begin() + static_cast<std::ptrdiff_t>(first_row), rows.end(),
                                   [&](const TraceRow& candidate) { return candidate.sensor == sensor; });

@@ -31,12 +31,12 @@ class Explainer {
   };
 
   void advance();
-  [[nodiscard]] std::uint32_t sensor_of(std::uint32_t zone) const;
+  [[nodiscard]] double watts(const PowerShare& share) const;
 
   const CompiledStudy& study_;
   PowerMeter meter_;
   std::vector<std::optional<pir::AnalogFilter>> filters_;  ///< (n_sensors) without noise
-  std::vector<std::uint32_t> zone_of_ray_;
+  std::vector<std::uint32_t> sensor_of_zone_, zone_of_ray_;
   std::map<Source, Share> shares_;  ///< of all that ever brought power
   std::vector<PowerShare> met_;     ///< scratch
 };

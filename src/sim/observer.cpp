@@ -18,8 +18,8 @@ PostureMemory memory_for(const rt::Tracer& tracer, std::size_t words_per_row) {
 PowerMeter::PowerMeter(const SensorArray& array, TracerKind kind)
     : power_(array.analog()->power()),
       tracer_(array.make_power_tracer(kind)),
-      memory_(memory_for(*tracer_, power_.n_sensors())),
-      row_(power_.n_sensors()) {}
+      memory_(memory_for(*tracer_, power_.n_receivers())),
+      row_(power_.n_receivers()) {}
 
 bool PowerMeter::is_same(const Figure& a, const Figure& b) noexcept {
   return a.person == b.person && a.humanoid == b.humanoid && std::memcmp(&a.outline, &b.outline, sizeof a.outline) == 0;
@@ -97,7 +97,7 @@ void PowerMeter::add_up(std::span<PowerSteps> powers) const {
   std::ranges::fill(powers, PowerSteps{0});
   for (const auto& [ray, solid] : hits_) {
     const BodyRadiance& radiance = *radiances_[solid / body::n_parts];
-    powers[power_.sensor_of(ray)] += power_.power(ray, radiance[solid % body::n_parts]);
+    powers[power_.receiver_of(ray)] += power_.power(ray, radiance[solid % body::n_parts]);
   }
 }
 

@@ -28,7 +28,7 @@ struct PowerShare {
 class PowerMeter {
  public:
   PowerMeter(const SensorArray& array, TracerKind kind);
-  /// powers: (n_sensors) overwritten.
+  /// powers: (n_receivers) overwritten.
   void measure(const std::vector<Actor>& actors, std::span<PowerSteps> powers);
   /// The same of one body alone. solids: (n_parts) as append_solids() gives them.
   void measure(std::span<const PosedShape> solids, const BodyRadiance& radiance, std::span<PowerSteps> powers);
@@ -51,7 +51,7 @@ class PowerMeter {
   std::unique_ptr<rt::Tracer> tracer_;
   PostureMemory memory_;            ///< of who is alone
   std::vector<Figure> before_;      ///< several people, the last time that there were any
-  std::vector<PowerSteps> powers_;  ///< (n_sensors) then
+  std::vector<PowerSteps> powers_;  ///< (n_receivers) then
   // Scratch.
   std::vector<Figure> now_;
   std::vector<Mannequin> mannequins_;  ///< (n_people)

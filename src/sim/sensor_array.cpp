@@ -158,7 +158,7 @@ std::unique_ptr<rt::Tracer> SensorArray::make_power_tracer(TracerKind kind) cons
 Exposure SensorArray::unexposed() const {
   return {ZoneSet(channels_.n_zones()), ZoneSet(channels_.n_channels()),
           std::vector<double>(polarity_ ? n_sensors() : 0, 0.0),
-          std::vector<PowerSteps>(analog_ ? n_sensors() : 0, PowerSteps{0})};
+          std::vector<PowerSteps>(analog_ ? analog_->power().n_receivers() : 0, PowerSteps{0})};
 }
 
 void SensorArray::expose(Exposure& exposure) const noexcept {

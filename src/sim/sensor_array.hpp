@@ -21,7 +21,7 @@ struct Exposure {
   ZoneSet zones;             ///< active
   ZoneSet channels;          ///< of zones, as SensorArray::channels() joins them
   std::vector<double> sums;  ///< (n_sensors) of the active zones' polarities; empty unless the array has polarity()
-  std::vector<PowerSteps> powers;  ///< (n_sensors); empty unless the array has analog()
+  std::vector<PowerSteps> powers;  ///< (PowerModel::n_receivers()); empty unless the array has analog()
 };
 
 /// Immutable, shared by threads. Runs, recordings, coverage studies and walk tests trace these rays.

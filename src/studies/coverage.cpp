@@ -123,8 +123,8 @@ class SquareCounter {
       for (std::size_t k = 0; k < posed_.size(); ++k) mark_poses(rays.rays[i], rays.range[i], k, near);
       if (!near) continue;
       const sim::PowerSteps step = power.power(i, radiance_);
-      const std::uint32_t sensor = power.sensor_of(i);
-      for_active([&](std::size_t pose) { exposures_[pose].powers[sensor] += step; });
+      const std::uint32_t receiver = power.receiver_of(i);
+      for_active([&](std::size_t pose) { exposures_[pose].powers[receiver] += step; });
     }
   }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pir/calibration.hpp"
 #include "pir/planck.hpp"
 #include "pirsim/state.hpp"
 #include "sim/compiled_study.hpp"
@@ -16,7 +17,7 @@ using pirsim::test::shipped_scene;
 
 namespace {
 
-using Powers = std::vector<std::vector<sim::PowerSteps>>;  ///< (n_ticks x n_sensors)
+using Powers = std::vector<std::vector<sim::PowerSteps>>;  ///< (n_ticks x n_receivers)
 
 ScriptSpec walkers(int n_people) {
   std::vector<PersonSpec> people;
@@ -59,9 +60,8 @@ void check_ratio(const Powers& now, const Powers& before, double ratio) {
   REQUIRE(now.size() == before.size());
   REQUIRE(sum_of_squares(before) > 0.0);
   for (std::size_t tick = 0; tick < now.size(); ++tick) {
-    for (std::size_t sensor = 0; sensor < now[tick].size(); ++sensor) {
-      REQUIRE(std::abs(static_cast<double>(now[tick][sensor]) - ratio * static_cast<double>(before[tick][sensor])) <
-              1e4);
+    for (std::size_t i = 0; i < now[tick].size(); ++i) {
+      REQUIRE(std::abs(static_cast<double>(now[tick][i]) - ratio * static_cast<double>(before[tick][i])) < 1e4);
     }
   }
 }
@@ -74,7 +74,7 @@ TEST_CASE("in a room where everything is equally warm no sensor receives any pow
   script.sensing.ambient_c = 31.0;
   for (PersonSpec& person : script.trials[0].people) person.warmth.skin_c = 31.0;
   const Powers furnace = powers_of(scene, script);
-  CHECK(std::ranges::all_of(furnace, [](const auto& row) { return std::ranges::count(row, 0) == 5; }));
+  CHECK(std::ranges::all_of(furnace, [](const auto& row) { return std::ranges::count(row, 0) == std::ssize(row); }));
   script.trials[0].people[0].warmth.skin_c = 31.5;
   CHECK(sum_of_squares(powers_of(scene, script)) > 0.0);
 }
@@ -108,8 +108,44 @@ TEST_CASE("swapping the polarity of all zones negates every power", "[sim][analo
   REQUIRE(powers.size() == negative.size());
   CHECK(sum_of_squares(powers) > 0.0);
   for (std::size_t tick = 0; tick < powers.size(); ++tick) {
-    for (std::size_t sensor = 0; sensor < 5; ++sensor) REQUIRE(powers[tick][sensor] == -negative[tick][sensor]);
+    for (std::size_t i = 0; i < powers[tick].size(); ++i) REQUIRE(powers[tick][i] == -negative[tick][i]);
   }
+}
+
+TEST_CASE("what the lens' steps receive doesn't depend on the electronics, whose calibration weighs them",
+          "[sim][analog]") {
+  const SceneSpec scene = shipped_scene("meeting_room.gltf");
+  SceneSpec other = scene;
+  for (auto& [id, model] : other.sensor_models) {
+    model.detector.element.electrical_s = 0.4;
+    model.detector.amplifier.low_hz = 0.7;
+    model.detector.comparator.negative_v = 0.2;
+  }
+  const Powers powers = powers_of(scene, walkers(1));
+  CHECK(powers_of(other, walkers(1)) == powers);
+  const std::size_t n_steps = 3;
+  REQUIRE(powers[0].size() == 5 * n_steps);
+
+  const Model model = compile(scene, walkers(1)), model_of_other = compile(other, walkers(1));
+  int n_differ = 0;
+  for (const Model* of : {&model, &model_of_other}) {
+    const SensorModelSpec& sensor = of->scene().sensor_models.begin()->second;
+    const pir::Calibration calibration = pir::calibrate(sensor);
+    const sim::AnalogModel& analog = *of->compiled().array().analog();
+    for (const auto& row : powers) {
+      for (std::size_t s = 0; s < 5; ++s) {
+        double watts = 0.0;
+        for (std::size_t step = 0; step < n_steps; ++step) {
+          const double aperture_m2 = calibration.apertures_m2[pir::reference_facet(sensor, static_cast<int>(step) + 1)];
+          watts += static_cast<double>(row[s * n_steps + step]) * sim::watts_per_step * aperture_m2 /
+                   (1e-6 * sensor.optics.aperture_mm2);
+        }
+        CHECK(analog.watts(s, row) == Approx(watts).epsilon(1e-12).margin(1e-20));
+        n_differ += analog.watts(s, row) != model.compiled().array().analog()->watts(s, row) ? 1 : 0;
+      }
+    }
+  }
+  CHECK(n_differ > 0);  // the apertures do depend on it
 }
 
 TEST_CASE("zones superpose: what two halves of every facet receive adds up to the whole", "[sim][analog]") {
@@ -135,9 +171,7 @@ TEST_CASE("zones superpose: what two halves of every facet receive adds up to th
   CHECK(sum_of_squares(one) > 0.0);
   CHECK(sum_of_squares(other) > 0.0);
   for (std::size_t tick = 0; tick < all.size(); ++tick) {
-    for (std::size_t sensor = 0; sensor < 5; ++sensor) {
-      REQUIRE(all[tick][sensor] == one[tick][sensor] + other[tick][sensor]);
-    }
+    for (std::size_t i = 0; i < all[tick].size(); ++i) REQUIRE(all[tick][i] == one[tick][i] + other[tick][i]);
   }
 }
 

@@ -298,6 +298,7 @@ namespace {
 /// Power by a tracer at every tick, then filter and comparator.
 std::vector<MotionCount> plain_analog_counts(const CoverageStudy& study, const Vec2& point) {
   const sim::PowerModel& power = study.survey().array().analog()->power();
+  const std::size_t n_sensors = study.survey().array().n_sensors();
   const auto tracer =
       rt::make_tracer(TracerKind::embree, {&study.survey().array().room(), &power.rays().bundle, &power.clipped()});
   const double tick_s = 1.0 / study.spec().sensing.tick_rate_hz;
@@ -306,16 +307,16 @@ std::vector<MotionCount> plain_analog_counts(const CoverageStudy& study, const V
   std::vector<rt::FirstHit> hits;
   const auto watts_at = [&](std::int64_t tick) {
     tracer->find_first(study.target().solids(foot, tick), hits);
-    std::vector<sim::PowerSteps> steps(power.n_sensors(), 0);
-    for (const rt::FirstHit& each : hits) steps[power.sensor_of(each.ray)] += power.power(each.ray, radiance);
+    std::vector<sim::PowerSteps> steps(power.n_receivers(), 0);
+    for (const rt::FirstHit& each : hits) steps[power.receiver_of(each.ray)] += power.power(each.ray, radiance);
     std::vector<double> watts;
-    for (const sim::PowerSteps step : steps) watts.push_back(static_cast<double>(step) * sim::watts_per_step);
+    for (std::size_t s = 0; s < n_sensors; ++s) watts.push_back(study.survey().array().analog()->watts(s, steps));
     return watts;
   };
   DetectorSpec silent = study.scene().sensor_models.begin()->second.detector;
   silent.amplifier.noise_v_pp = 0.0;
   std::vector<pir::AnalogFilter::Sections> sections;
-  std::vector<pir::Comparator::State> states(power.n_sensors());
+  std::vector<pir::Comparator::State> states(n_sensors);
   const pir::Comparator comparator(silent.comparator, tick_s);
   std::vector<double> before = watts_at(0);
   for (std::size_t s = 0; s < before.size(); ++s) {
