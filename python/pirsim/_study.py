@@ -286,7 +286,7 @@ def run(model: Model, runs: int | Iterable[int] | None = None, *, threads: int =
 
 
 class Trace:
-    """What the zones did in some runs, from which rows are made with other electronics and seeds: see trace()."""
+    """What the optics showed in some runs, from which rows are made with other electronics and seeds: see trace()."""
 
     __slots__ = ("_handle", "_model")
     _handle: _core.Recording
@@ -307,18 +307,23 @@ class Trace:
         """Of the runs that were followed."""
         return self._handle.n_runs
 
-    def emit(self, *, effects: Iterable[EffectLike] | None = None, seed: int | None = None,
-             progress: Progress | None = None) -> Result:
+    def emit(self, *, model: Model | None = None, effects: Iterable[EffectLike] | None = None,
+             seed: int | None = None, progress: Progress | None = None) -> Result:
         """The rows of all followed runs. Without arguments they are the study's, bit for bit.
 
-        effects: on triggers and rows, instead of those of the script: `Effect`s, names, or dicts as in a script's
-        file, {"dead_time": {"dead_s": 2}}; effects that change what zones see are refused, they need a model of their
-        own. seed: instead of the script's, of what effects draw.
+        model: compiled with other electronics in its sensors (threshold, band, noise, pulses, hold, blind time) or
+        another script's effects; without it the one that was followed. Its people aren't asked: they did what was
+        followed. Raises UsageError if its room, its sensors' places, lenses or responses, or its ticks are others.
+        effects: on triggers and rows, instead of those of the model's script: `Effect`s, names, or dicts as in a
+        script's file, {"dead_time": {"dead_s": 2}}; effects that change what the optics show are refused, they need a
+        trace of their own. seed: instead of the model's, of the analog sensors' noise and of what effects draw.
         """
+        if model is None:
+            model = self._model
         listed = None if effects is None else [as_effect(effect) for effect in effects]
         own = None if seed is None else as_seed(seed)
-        return make_result(_core.emit(self._model._handle, self._handle, listed, own, progress),
-                           self._model.sensors.names, self._model.seed if own is None else own)
+        return make_result(_core.emit(_handle_of(model), self._handle, listed, own, progress),
+                           model.sensors.names, model.seed if own is None else own)
 
     def __repr__(self) -> str:
         return f"<pirsim.Trace of {self.n_runs} runs>"
@@ -330,7 +335,8 @@ def trace(model: Model, runs: int | Iterable[int] | None = None, *, threads: int
           progress: Progress | None = None) -> Trace:
     """Follows people and rays once, so that `emit()` gives rows with other effects and seeds without doing so again.
 
-    Arguments as of run(). Raises UsageError for sensors with an analog response, which zones alone don't explain.
+    It holds what each sensor's response needs, zones or the power that arrives, each different moment once. Arguments
+    as of run().
     """
     core = _core.record(_handle_of(model), _run_numbers(model, runs), as_threads(threads), progress)
     return Trace._of(core, model)

@@ -153,13 +153,13 @@ void add_study(nb::module_& module) {
       .def("script", [](const Model& model) { return to_python(model.script()); });
   nb::class_<Recording>(module, "Recording", "What pirsim.Trace holds.")
       .def_prop_ro("n_runs", [](const Recording& recording) { return recording.runs.size(); })
-      .def_prop_ro("n_sets", [](const Recording& recording) { return recording.sets.size(); });
+      .def_prop_ro("n_shown", &Recording::n_shown);
   module.def("compile", &compile_model, nb::arg("scene"), nb::arg("script"), nb::arg("overrides"), nb::arg("sensors"),
              nb::arg("data"), "From files (texts) or objects of pirsim.specs.");
   module.def("run", &run, nb::arg("model"), nb::arg("runs").none(), nb::arg("threads"), nb::arg("zones"),
              nb::arg("signals"), nb::arg("occupants"), nb::arg("progress").none(), "Arrays of pirsim.Result, by name.");
   module.def("record", &record_runs, nb::arg("model"), nb::arg("runs").none(), nb::arg("threads"),
-             nb::arg("progress").none(), "What the zones did in these runs.");
+             nb::arg("progress").none(), "What the optics showed in these runs.");
   module.def("emit", &emit_runs, nb::arg("model"), nb::arg("recording"), nb::arg("effects").none(),
              nb::arg("seed").none(), nb::arg("progress").none(), "Arrays of pirsim.Result, by name.");
 }

@@ -13,7 +13,7 @@ namespace pirsim::sim {
 
 /// One run.
 struct PeopleTrack {
-  RecordedRun rows;  ///< all but the sets
+  RecordedRun rows;  ///< all but what was shown
   std::size_t n_ticks = 0, n_people = 0;
   std::vector<PostureIndex::Number> postures;  ///< (1 + n_ticks x n_people) from before tick 1 on; 0: not there
 };

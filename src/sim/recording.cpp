@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <optional>
+#include <string_view>
 #include <utility>
 
+#include "core/digest.hpp"
 #include "core/parallel.hpp"
 #include "effects/catalogue.hpp"
 #include "sim/observer.hpp"
@@ -14,54 +16,130 @@ namespace pirsim {
 namespace sim {
 namespace {
 
-/// A run with its own numbering of sets.
+/// A run with its own numbering.
 struct NumberedRun {
+  Recording shown;  ///< sets and powers alone
   RecordedRun track;
-  std::vector<ZoneSet> sets;
 };
 
+std::vector<std::uint32_t> powers_begin(const SensorArray& array) {
+  return array.analog() != nullptr ? array.analog()->power().receivers_begin() : std::vector<std::uint32_t>{0};
+}
+
+/// Of the sensors that answer by zones, all zones.
+ZoneSet zones_of_zone_sensors(const SensorArray& array) {
+  const RayBundle& bundle = array.clipped();
+  ZoneSet zones(bundle.n_zones());
+  for (std::size_t sensor = 0; sensor < bundle.n_sensors(); ++sensor) {
+    if (array.is_analog(sensor)) continue;
+    const std::size_t end = bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor + 1]];
+    for (std::size_t i = bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor]]; i < end; ++i)
+      zones.insert(i);
+  }
+  return zones;
+}
+
 NumberedRun record_run(const CompiledStudy& study, std::uint32_t run, ObserverPool& observers) {
-  NumberedRun recorded{{{run, study.replicate_of(run), study.trial_of(run).id, {}, {}, {}}, 0, {}, {}}, {}};
-  const std::size_t n_zones = study.array().channels().n_zones();
-  SetNumbering numbering(n_zones);
+  NumberedRun recorded{{}, {{run, study.replicate_of(run), study.trial_of(run).id, {}, {}, {}}, 0, {}, {}}};
+  recorded.shown.powers_begin = powers_begin(study.array());
+  RecordedRun& track = recorded.track;
+  const ZoneSet kept = zones_of_zone_sensors(study.array());
+  ShownNumbering numbering(recorded.shown, kept.size());
   RunState state(study, run);
   *state.observer = observers.borrow();
   settle(study, state);
-  ZoneSet last = state.exposure().zones;
-  std::uint32_t number = numbering.number(last);
-  recorded.track.rest = number;
+  ZoneSet zones;
+  std::vector<PowerSteps> powers;
+  std::uint32_t number = 0;
+  const auto note = [&] {
+    const Exposure& now = state.exposure();
+    if (now.zones == zones && now.powers == powers) return;
+    zones = now.zones;
+    powers = now.powers;
+    ZoneSet shown = zones;
+    for (std::size_t i = 0; i < kept.words().size(); ++i) shown.words()[i] &= kept.words()[i];
+    number = numbering.number(shown.words(), powers);
+  };
+  note();
+  track.rest = number;
   for (std::optional<std::int64_t> end; !end || state.tick < *end;) {
-    if (step_tick(study, state) && !end) recorded.track.rows.samples.push_back(state.sample);
+    if (step_tick(study, state) && !end) track.rows.samples.push_back(state.sample);
     if (state.finished && !end) end = study.stages().heard_by(state.tick);
-    for (const std::size_t seat : state.crowd.seats_left()) recorded.track.seats_left.push_back({state.tick, seat});
-    if (state.exposure().zones != last) {
-      last = state.exposure().zones;
-      number = numbering.number(last);
-    }
-    recorded.track.sets.push_back(number);
+    for (const std::size_t seat : state.crowd.seats_left()) track.seats_left.push_back({state.tick, seat});
+    note();
+    track.shown.push_back(number);
   }
-  recorded.sets = std::move(numbering.sets());
   return recorded;
 }
 
-/// sim::Detector on a recording's sets, each of which is made ready for it once.
-class ReplayedSets final : public DetectorLogic {
- public:
-  explicit ReplayedSets(const SensorArray& array) : array_(array), detector_(array) {}
+template <typename T>
+std::string_view bytes(std::span<const T> values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
+}
+template <typename T>
+std::string_view bytes(const std::vector<T>& values) {
+  return bytes(std::span(values));
+}
 
-  void prepare(std::span<const ZoneSet> sets) override {
-    exposures_.clear();
-    for (const ZoneSet& set : sets) {
-      exposures_.push_back(array_.unexposed());
-      exposures_.back().zones = set;
-      array_.expose(exposures_.back());
+/// Digest of what an Exposure depends on besides people, and of when there is one.
+std::string optics_of(const CompiledStudy& study) {
+  const SensorArray& array = study.array();
+  const RayBundle& zones = array.clipped();
+  Sha256 digest;
+  digest.add(std::to_string(study.sensing().tick_rate_hz) + ' ' + std::to_string(array.ticks_per_window()));
+  digest.add(bytes(zones.cluster_zones_begin));
+  digest.add(bytes(zones.sensor_clusters_begin));
+  static_assert(sizeof(Ray) == 6 * sizeof(float));  // nothing but numbers: equal bytes are equal rays
+  for (std::size_t sensor = 0; sensor < zones.n_sensors(); ++sensor) {
+    digest.add(array.is_analog(sensor) ? "analog" : "zones");
+    if (array.is_analog(sensor)) continue;
+    const std::size_t first = zones.cluster_zones_begin[zones.sensor_clusters_begin[sensor]];
+    const std::size_t last = zones.cluster_zones_begin[zones.sensor_clusters_begin[sensor + 1]];
+    for (std::size_t zone = first; zone < last; ++zone) {
+      const std::size_t begin = zones.zone_rays_begin[zone], n = zones.zone_rays_begin[zone + 1] - begin;
+      digest.add(std::to_string(n));
+      digest.add(bytes(std::span(zones.rays).subspan(begin, n)));
+      digest.add(bytes(std::span(zones.range).subspan(begin, n)));
     }
+  }
+  if (array.analog() == nullptr) return digest.hex();
+  const PowerModel& power = array.analog()->power();
+  digest.add(bytes(power.receivers_begin()));
+  digest.add(bytes(power.clipped().zone_rays_begin));
+  digest.add(bytes(power.clipped().rays));
+  digest.add(bytes(power.clipped().range));
+  digest.add(bytes(power.rays().weights));
+  std::vector<double> backgrounds;
+  for (std::uint32_t ray = 0; ray < power.clipped().rays.size(); ++ray) backgrounds.push_back(power.background(ray));
+  digest.add(bytes(backgrounds));
+  return digest.hex();
+}
+
+/// sim::Detector on what a recording shows.
+class ReplayedOptics final : public DetectorLogic {
+ public:
+  explicit ReplayedOptics(const CompiledStudy& study)
+      : study_(study), detector_(study.array()), before_(study.array().unexposed()), after_(before_) {}
+
+  void prepare(const Recording& recording) override {
+    if (recording.optics != optics_of(study_)) {
+      throw Error(ErrorCode::usage,
+                  "the recording is of other optics than the model's: only electronics, effects on triggers and rows "
+                  "and the seed may differ; room, sensors' places, lenses, responses and ticks may not");
+    }
+    recording_ = &recording;
   }
   void begin_run(std::uint64_t seed, std::uint32_t run) override { begins_ = {seed, run}; }
   void tick(std::uint32_t before, std::uint32_t after, std::span<std::uint8_t> triggers) noexcept override {
-    if (begins_) detector_.begin_run(begins_->seed, begins_->run, exposures_[before]);
-    begins_.reset();
-    detector_.tick(exposures_[before], exposures_[after], triggers);
+    if (begins_) {
+      show(before, before_);
+      detector_.begin_run(begins_->seed, begins_->run, before_);
+      begins_.reset();
+    }
+    if (after == before) return detector_.tick_unchanged(before_, triggers);
+    show(after, after_);
+    detector_.tick(before_, after_, triggers);
+    std::swap(before_, after_);
   }
 
  private:
@@ -69,23 +147,71 @@ class ReplayedSets final : public DetectorLogic {
     std::uint64_t seed = 0;
     std::uint32_t run = 0;
   };
-  const SensorArray& array_;
+
+  void show(std::uint32_t number, Exposure& exposure) const noexcept {
+    exposure.zones = recording_->zones(number);
+    study_.array().expose(exposure);
+    std::ranges::copy(recording_->powers_of(number), exposure.powers.begin());
+  }
+
+  const CompiledStudy& study_;
+  const Recording* recording_ = nullptr;
   Detector detector_;
   std::optional<Run> begins_;  ///< with the tick that comes next, which tells what it begins from
-  std::vector<Exposure> exposures_;
+  Exposure before_, after_;    ///< of the last tick; scratch
 };
 
 }  // namespace
 
 Recording empty_recording(const CompiledStudy& study) {
-  if (study.array().analog() != nullptr) {
-    throw Error(ErrorCode::usage, "a recording of zones isn't enough for sensors with an analog response");
-  }
-  return {{}, {}, study.array().n_sensors(), study.sensing()};
+  Recording recording;
+  recording.n_sensors = study.array().n_sensors();
+  recording.sensing = study.sensing();
+  recording.optics = optics_of(study);
+  recording.powers_begin = powers_begin(study.array());
+  return recording;
+}
+
+namespace {
+
+std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) noexcept {
+  hash = (hash ^ word) * 0x9E3779B97F4A7C15U;
+  return hash ^ (hash >> 32U);
+}
+
+}  // namespace
+
+ShownNumbering::ShownNumbering(Recording& recording, std::size_t n_zones) : recording_(recording), n_zones_(n_zones) {
+  number(ZoneSet(n_zones).words(), std::vector<PowerSteps>(recording.n_powers(), 0));
+}
+
+std::uint32_t ShownNumbering::number_set(std::span<const ZoneSet::Word> zones) {
+  std::uint64_t hash = 0;
+  for (const ZoneSet::Word word : zones) hash = mixed(hash, word);
+  std::vector<ZoneSet>& sets = recording_.sets;
+  const std::uint32_t number =
+      sets_.number(hash, [&](std::uint32_t known) { return std::ranges::equal(sets[known].words(), zones); });
+  if (number < sets.size()) return number;
+  sets.emplace_back(n_zones_).add(zones);
+  return number;
+}
+
+std::uint32_t ShownNumbering::number(std::span<const ZoneSet::Word> zones, std::span<const PowerSteps> powers) {
+  const std::uint32_t set = number_set(zones);
+  if (powers.empty()) return set;
+  std::uint64_t hash = set;
+  for (const PowerSteps power : powers) hash = mixed(hash, static_cast<std::uint64_t>(power));
+  const std::uint32_t number = shown_.number(hash, [&](std::uint32_t known) {
+    return recording_.set_of[known] == set && std::ranges::equal(recording_.powers_of(known), powers);
+  });
+  if (number < recording_.set_of.size()) return number;
+  recording_.set_of.push_back(set);
+  recording_.powers.insert(recording_.powers.end(), powers.begin(), powers.end());
+  return number;
 }
 
 std::unique_ptr<DetectorLogic> make_logic(const Model& model) {
-  return std::make_unique<ReplayedSets>(model.compiled().array());
+  return std::make_unique<ReplayedOptics>(model.compiled());
 }
 
 effects::Pipeline make_stages(const Model& model, std::span<const EffectSpec> effects) {
@@ -98,35 +224,45 @@ effects::Pipeline make_stages(const Model& model, std::span<const EffectSpec> ef
 
 bool goes_as_far_as(const RecordedRun& track, const SensingSpec& sensing, const effects::Pipeline& stages) {
   const auto last_row = static_cast<std::int64_t>(track.rows.samples.size()) * sensing.ticks_per_window;
-  return static_cast<std::int64_t>(track.sets.size()) >= stages.heard_by(last_row);
+  return static_cast<std::int64_t>(track.shown.size()) >= stages.heard_by(last_row);
 }
 
-RunResult replay(const Recording& recording, std::size_t index, DetectorLogic& detector, std::uint64_t seed,
-                 const effects::Pipeline& stages) {
+namespace {
+
+/// As `sensing` reads rows from triggers.
+RunResult replay_as(const SensingSpec& sensing, const Recording& recording, std::size_t index, DetectorLogic& detector,
+                    std::uint64_t seed, const effects::Pipeline& stages) {
   const RecordedRun& track = recording.runs[index];
-  if (!goes_as_far_as(track, recording.sensing, stages)) {
+  if (!goes_as_far_as(track, sensing, stages)) {
     throw Error(ErrorCode::usage,
                 "clock_lag looks further ahead than was recorded: compile a model with it and record that");
   }
   RunResult result = track.rows;
-  Logger logger(stages, recording.sensing, recording.n_sensors);
+  Logger logger(stages, sensing, recording.n_sensors);
   logger.begin_run(seed, result.run);
   detector.begin_run(seed, result.run);
   std::vector<std::uint8_t> triggers(recording.n_sensors);
   auto left = track.seats_left.begin();
   std::uint32_t before = track.rest;
   const auto sense = [&](std::int64_t tick) {
-    const std::uint32_t after = track.sets[static_cast<std::size_t>(tick - 1)];
+    const std::uint32_t after = track.shown[static_cast<std::size_t>(tick - 1)];
     std::ranges::fill(triggers, std::uint8_t{0});
     detector.tick(before, after, triggers);
     before = after;
     for (; left != track.seats_left.end() && left->tick == tick; ++left) logger.seat_left(left->seat);
   };
   for (Sample& sample : result.samples) {
-    for (int i = 0; i < recording.sensing.ticks_per_window; ++i) logger.observe_tick(triggers, sense);
+    for (int i = 0; i < sensing.ticks_per_window; ++i) logger.observe_tick(triggers, sense);
     logger.complete(sample);
   }
   return result;
+}
+
+}  // namespace
+
+RunResult replay(const Recording& recording, std::size_t index, DetectorLogic& detector, std::uint64_t seed,
+                 const effects::Pipeline& stages) {
+  return replay_as(recording.sensing, recording, index, detector, seed, stages);
 }
 
 }  // namespace sim
@@ -135,19 +271,21 @@ Recording record(const Model& model, std::span<const std::uint32_t> runs, unsign
                  const std::function<void()>& run_done) {
   const sim::CompiledStudy& study = model.compiled();
   Recording recording = sim::empty_recording(study);
-  sim::SetNumbering numbering(study.array().channels().n_zones());
+  sim::ShownNumbering numbering(recording, study.array().channels().n_zones());
   sim::ObserverPool observers(study);
   ordered_parallel<sim::NumberedRun>(
       runs.size(), threads, [&](std::size_t i) { return sim::record_run(study, runs[i], observers); },
       [&](sim::NumberedRun& recorded) {
+        const auto& [shown, track] = recorded;
         std::vector<std::uint32_t> renumbered;
-        for (const ZoneSet& set : recorded.sets) renumbered.push_back(numbering.number(set));
-        recorded.track.rest = renumbered[recorded.track.rest];
-        for (std::uint32_t& number : recorded.track.sets) number = renumbered[number];
+        for (std::uint32_t i = 0; i < shown.n_shown(); ++i) {
+          renumbered.push_back(numbering.number(shown.zones(i).words(), shown.powers_of(i)));
+        }
+        recorded.track.rest = renumbered[track.rest];
+        for (std::uint32_t& number : recorded.track.shown) number = renumbered[number];
         recording.runs.push_back(std::move(recorded.track));
         if (run_done) run_done();
       });
-  recording.sets = std::move(numbering.sets());
   return recording;
 }
 
@@ -160,14 +298,14 @@ void emit(const Model& model, const Recording& recording, const EmitOptions& opt
   for (const EffectSpec& effect : options.effects.value_or(std::vector<EffectSpec>{})) {
     if (effects::info(effect.name).reach != effects::Reach::geometry) continue;
     throw Error(ErrorCode::usage,
-                "effect '" + effect.name + "' changes what the zones see: compile a model with it and record that");
+                "effect '" + effect.name + "' changes what the optics show: compile a model with it and record that");
   }
   const effects::Pipeline stages = sim::make_stages(model, options.effects.value_or(model.script().effects));
   const std::uint64_t seed = options.seed.value_or(model.script().seed);
   const std::unique_ptr<DetectorLogic> detector = sim::make_logic(model);
-  detector->prepare(recording.sets);
+  detector->prepare(recording);
   for (std::size_t i = 0; i < recording.runs.size(); ++i) {
-    consume(sim::replay(recording, i, *detector, seed, stages));
+    consume(sim::replay_as(model.compiled().sensing(), recording, i, *detector, seed, stages));
   }
 }
 

@@ -152,11 +152,26 @@ class Sight {
   std::vector<std::uint8_t> known_;  ///< (1 + n_postures) 1 where somebody asked
 };
 
+Recording empty_recording_of_zones(const CompiledStudy& study) {
+  if (study.array().analog() != nullptr) {
+    throw Error(
+        ErrorCode::usage,
+        "a family of recordings shares what zones see of postures, which analog sensors make no use of: record() "
+        "each study by itself");
+  }
+  return empty_recording(study);
+}
+
 /// The sets of zones of runs, tick by tick.
 class Painter {
  public:
-  Painter(const Postures& postures, Solids& solids, Sight& sight)
-      : postures_(postures), solids_(solids), sight_(sight), numbering_(sight.n_zones()), all_(sight.n_zones()) {
+  /// Adds to this recording, which is empty.
+  Painter(const Postures& postures, Solids& solids, Sight& sight, Recording& recording)
+      : postures_(postures),
+        solids_(solids),
+        sight_(sight),
+        numbering_(recording, sight.n_zones()),
+        all_(sight.n_zones()) {
     sets_.resize(postures.size() + 1, unknown);
   }
   [[nodiscard]] RecordedRun paint(const PeopleTrack& people) {
@@ -164,11 +179,10 @@ class Painter {
     const std::size_t n = people.n_people;
     track.rest = set_of(std::span(people.postures).first(n));
     for (std::size_t tick = 1; tick <= people.n_ticks; ++tick) {
-      track.sets.push_back(set_of(std::span(people.postures).subspan(tick * n, n)));
+      track.shown.push_back(set_of(std::span(people.postures).subspan(tick * n, n)));
     }
     return track;
   }
-  [[nodiscard]] std::vector<ZoneSet>& sets() noexcept { return numbering_.sets(); }
 
  private:
   static constexpr std::uint32_t unknown = 0xFFFFFFFFU;
@@ -182,13 +196,13 @@ class Painter {
   std::uint32_t number_anew(std::span<const Number> people) {
     all_.clear();
     for (const Number number : people) all_.add(sight_.zones(postures_, solids_, number));
-    return numbering_.number(all_);
+    return numbering_.number(all_.words(), {});
   }
 
   const Postures& postures_;
   Solids& solids_;
   Sight& sight_;
-  SetNumbering numbering_;
+  ShownNumbering numbering_;
   std::vector<std::uint32_t> sets_;  ///< (1 + n_postures) of who is alone, where they have been asked for
   ZoneSet all_;
 };
@@ -197,16 +211,15 @@ class Painter {
 
 struct RecordingFamily::Impl {
   Impl(const CompiledStudy& study, std::span<const std::uint32_t> runs) : first(study), sight(study) {
-    tracks = empty_recording(study);
+    tracks = empty_recording_of_zones(study);
     for (const std::uint32_t run : runs) people.push_back(postures.follow(study, run));
     n_postures = postures.size();
     paint(people, sight, tracks);
   }
 
   void paint(std::span<const PeopleTrack> who, Sight& from, Recording& to) {
-    Painter painter(postures, solids, from);
+    Painter painter(postures, solids, from, to);
     for (const PeopleTrack& one : who) to.runs.push_back(painter.paint(one));
-    to.sets = std::move(painter.sets());
   }
 
   [[nodiscard]] PeopleTrack follow(const CompiledStudy& other, std::uint32_t run) {
@@ -225,7 +238,7 @@ struct RecordingFamily::Impl {
     solids.shrink(n_postures);
     solids.keep();  // only now: many a family has but its first study
     sight.shrink(n_postures);
-    Recording result = empty_recording(other);
+    Recording result = empty_recording_of_zones(other);
     std::vector<PeopleTrack> who;
     for (const std::uint32_t run : runs) who.push_back(follow(other, run));
     const ZoneSet in_common = zones_in_common(first, other);

@@ -14,7 +14,8 @@ namespace pirsim::sim {
 /// study.
 class RecordingFamily {
  public:
-  /// Follows these runs of `first`, which must outlive the family. Throws as record() does.
+  /// Follows these runs of `first`, which must outlive the family. Throws Error(usage) for sensors with an analog
+  /// response.
   RecordingFamily(const Model& first, std::span<const std::uint32_t> runs);
   ~RecordingFamily();
   RecordingFamily(RecordingFamily&&) noexcept;
@@ -24,7 +25,7 @@ class RecordingFamily {
 
   [[nodiscard]] const Recording& first() const noexcept;
   /// record() of a Model compiled like the first one, but for the order of sets. runs: of `other`; each is run of
-  /// the same number of the first study as well, if that has been followed.
+  /// the same number of the first study as well, if that has been followed. Throws as the constructor does.
   [[nodiscard]] Recording record(const Model& other, std::span<const std::uint32_t> runs);
 
  private:

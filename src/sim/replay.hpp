@@ -13,7 +13,8 @@
 
 namespace pirsim::sim {
 
-/// The detector that the Model's own runs have: sim::Detector, fed by a recording.
+/// The detector that the Model's own runs have: sim::Detector, fed by a recording. Its prepare() throws Error(usage)
+/// for a recording of other optics than the Model's.
 [[nodiscard]] std::unique_ptr<DetectorLogic> make_logic(const Model& model);
 
 /// Whether the run was recorded as far as clocks among the stages look ahead of its last row.
@@ -29,46 +30,57 @@ namespace pirsim::sim {
 /// that reach geometry are passed over: they need a Model of their own. Throws Error(input) for unknown names.
 [[nodiscard]] effects::Pipeline make_stages(const Model& model, std::span<const EffectSpec> effects);
 
-/// Without runs yet. Throws Error(usage) for sensors with an analog response.
+/// Without runs yet.
 [[nodiscard]] Recording empty_recording(const CompiledStudy& study);
 
-class SetNumbering {
+/// Hands out numbers 0, 1, 2, ... to things that somebody else keeps.
+class Numbering {
  public:
-  /// Number 0 is the empty set.
-  explicit SetNumbering(std::size_t n_zones) : buckets_(fewest_buckets, 0) { (void)number(ZoneSet(n_zones)); }
-
-  std::uint32_t number(const ZoneSet& set) {
-    std::size_t bucket = bucket_of(set);
-    if (buckets_[bucket] != 0) return buckets_[bucket] - 1;
-    sets_.push_back(set);
-    buckets_[bucket] = static_cast<std::uint32_t>(sets_.size());
-    if (2 * sets_.size() > buckets_.size()) spread();
-    return static_cast<std::uint32_t>(sets_.size() - 1);
+  /// The number of the thing that is_it(number) says it is, or the next one. Equal things have equal hashes.
+  template <typename IsIt>
+  std::uint32_t number(std::uint64_t hash, const IsIt& is_it) {
+    std::size_t bucket = hash % buckets_.size();
+    for (; buckets_[bucket] != 0; bucket = (bucket + 1) % buckets_.size()) {
+      const std::uint32_t known = buckets_[bucket] - 1;
+      if (hashes_[known] == hash && is_it(known)) return known;
+    }
+    hashes_.push_back(hash);
+    buckets_[bucket] = static_cast<std::uint32_t>(hashes_.size());
+    if (2 * hashes_.size() > buckets_.size()) spread();
+    return static_cast<std::uint32_t>(hashes_.size() - 1);
   }
-  [[nodiscard]] std::vector<ZoneSet>& sets() noexcept { return sets_; }
 
  private:
   static constexpr std::size_t fewest_buckets = 1024;
 
-  [[nodiscard]] std::size_t bucket_of(const ZoneSet& set) const noexcept {
-    ZoneSet::Word hash = 0;
-    for (const ZoneSet::Word word : set.words()) {
-      hash = (hash ^ word) * 0x9E3779B97F4A7C15U;
-      hash ^= hash >> 32U;
-    }
-    std::size_t bucket = hash % buckets_.size();
-    while (buckets_[bucket] != 0 && sets_[buckets_[bucket] - 1] != set) bucket = (bucket + 1) % buckets_.size();
-    return bucket;
-  }
   void spread() {
     buckets_.assign(2 * buckets_.size(), 0);
-    for (std::size_t i = 0; i < sets_.size(); ++i) {
-      buckets_[bucket_of(sets_[i])] = static_cast<std::uint32_t>(i + 1);
+    for (std::size_t i = 0; i < hashes_.size(); ++i) {
+      std::size_t bucket = hashes_[i] % buckets_.size();
+      while (buckets_[bucket] != 0) bucket = (bucket + 1) % buckets_.size();
+      buckets_[bucket] = static_cast<std::uint32_t>(i + 1);
     }
   }
 
-  std::vector<std::uint32_t> buckets_;  ///< 1 + number, probed one after the other
-  std::vector<ZoneSet> sets_;
+  std::vector<std::uint32_t> buckets_ = std::vector<std::uint32_t>(fewest_buckets, 0);  ///< 1 + number
+  std::vector<std::uint64_t> hashes_;
+};
+
+/// Numbers what the optics show: fills in the sets and powers of a Recording.
+class ShownNumbering {
+ public:
+  /// Of an empty_recording(), to which it adds. Number 0 is the empty room.
+  ShownNumbering(Recording& recording, std::size_t n_zones);
+
+  /// zones: of sensors that answer by them, as words. powers: (n_powers)
+  std::uint32_t number(std::span<const ZoneSet::Word> zones, std::span<const PowerSteps> powers);
+
+ private:
+  std::uint32_t number_set(std::span<const ZoneSet::Word> zones);
+
+  Recording& recording_;
+  std::size_t n_zones_;
+  Numbering sets_, shown_;
 };
 
 }  // namespace pirsim::sim

@@ -52,6 +52,7 @@ class SensorArray {
   }
   /// The sensors that answer physically, or null if none does.
   [[nodiscard]] const AnalogModel* analog() const noexcept { return analog_ ? &*analog_ : nullptr; }
+  [[nodiscard]] bool is_analog(std::size_t sensor) const noexcept { return analog_ && analog_->sensors()[sensor]; }
 
   [[nodiscard]] std::unique_ptr<rt::Tracer> make_tracer(TracerKind kind) const;
   /// Of the analog sensors' rays; only if there are any.

@@ -10,9 +10,10 @@ class Crowded final : public pirsim::DetectorLogic {
  public:
   Crowded(const pirsim::RayBundle& rays, int least) : rays_(rays), least_(least) {}
 
-  void prepare(std::span<const pirsim::ZoneSet> sets) override {
+  void prepare(const pirsim::Recording& recording) override {
     crowded_.clear();
-    for (const pirsim::ZoneSet& set : sets) {
+    for (std::uint32_t shown = 0; shown < recording.n_shown(); ++shown) {
+      const pirsim::ZoneSet& set = recording.zones(shown);
       std::vector<std::uint8_t>& sensors = crowded_.emplace_back();
       for (std::size_t s = 0; s < rays_.n_sensors(); ++s) sensors.push_back(count(set, s) >= least_ ? 1 : 0);
     }
@@ -33,12 +34,12 @@ class Crowded final : public pirsim::DetectorLogic {
 
   const pirsim::RayBundle& rays_;
   int least_;
-  std::vector<std::vector<std::uint8_t>> crowded_;  ///< (n_sets x n_sensors)
+  std::vector<std::vector<std::uint8_t>> crowded_;  ///< (n_shown x n_sensors)
 };
 
 int seconds_with_motion(const pirsim::Model& model, const pirsim::Recording& recording, int least) {
   Crowded logic(model.rays(), least);
-  logic.prepare(recording.sets);
+  logic.prepare(recording);
   int seconds = 0;
   for (const pirsim::Sample& row : pirsim::replay(recording, 0, logic, /*seed=*/1).samples) {
     for (const auto bit : row.bits) seconds += bit;

@@ -5,8 +5,6 @@ import pytest
 
 import pirsim
 
-ZONES = {"sensing.response": "zones"}  # which traces keep
-
 
 def same(a, b):
     return all(np.array_equal(getattr(a, name), getattr(b, name))
@@ -19,7 +17,7 @@ def study(data):
 
 
 def test_a_trace_gives_the_studys_rows(study, room, study_a):
-    for scene, script, changes in ((*study, {"replicates": 3, **ZONES}),
+    for scene, script, changes in ((*study, {"replicates": 3}),
                                    (room, study_a, {"replicates": 1, "effects": ["soft_zone_edges", "dead_time"]})):
         model = pirsim.compile(scene, script, set=changes)
         trace = pirsim.trace(model)
@@ -29,13 +27,13 @@ def test_a_trace_gives_the_studys_rows(study, room, study_a):
 
 def test_effects_on_a_trace_are_those_of_a_model_that_has_them(study):
     scene, script = study
-    plain = pirsim.compile(scene, script, set={"replicates": 2, **ZONES})
+    plain = pirsim.compile(scene, script, set={"replicates": 2})
     trace = pirsim.trace(plain)
     for effects, written in (
             ([pirsim.Effect("missed_triggers", {"probability": 0.5})], [{"missed_triggers": {"probability": 0.5}}]),
             (["dead_time", {"false_triggers": {"sensor": plain.sensors.names[0]}}],
              ["dead_time", {"false_triggers": {"sensor": plain.sensors.names[0]}}])):
-        model = pirsim.compile(scene, script, set={"replicates": 2, "effects": written, **ZONES})
+        model = pirsim.compile(scene, script, set={"replicates": 2, "effects": written})
         emitted = trace.emit(effects=effects)
         assert same(emitted, pirsim.run(model))
         assert not np.array_equal(emitted.bits, trace.emit().bits)
@@ -44,16 +42,38 @@ def test_effects_on_a_trace_are_those_of_a_model_that_has_them(study):
 
 
 def test_effects_that_a_trace_can_not_show_are_refused(study, room, study_a):
-    trace = pirsim.trace(pirsim.compile(*study, set={"replicates": 1, **ZONES}))
-    with pytest.raises(pirsim.UsageError, match="'sensor_yaw' changes what the zones see"):
+    trace = pirsim.trace(pirsim.compile(*study, set={"replicates": 1}))
+    with pytest.raises(pirsim.UsageError, match="'sensor_yaw' changes what the optics show"):
         trace.emit(effects=["sensor_yaw"])
     with pytest.raises(pirsim.Error, match="did you mean 'dead_time'"):
         trace.emit(effects=["dead_tyme"])
     with pytest.raises(TypeError, match="dead_time"):
         trace.emit(effects=[{"dead_time": {}, "x": {}}])
-    analog = pirsim.compile(room, study_a, set={"sensing.response": "analog", "replicates": 1})
-    with pytest.raises(pirsim.UsageError, match="analog"):
-        pirsim.trace(analog)
+    other = pirsim.compile(room, study_a, set={"replicates": 1})
+    with pytest.raises(pirsim.UsageError, match="other optics"):
+        trace.emit(model=other)
+    with pytest.raises(TypeError, match="pirsim.Model"):
+        trace.emit(model="office.yaml")
+
+
+@pytest.mark.parametrize("response", ["zones", "analog"])
+def test_a_trace_serves_other_electronics(study, response):
+    scene, script = study
+    settings = {"replicates": 2, "sensing.response": response}
+    plain = pirsim.compile(scene, script, set=settings)
+    trace = pirsim.trace(plain)
+    assert same(trace.emit(), pirsim.run(plain))
+    altered = plain.scene
+    for sensor in altered.sensor_models.values():
+        sensor.detector.amplifier.low_hz = 0.7
+        sensor.detector.comparator.positive_v = 0.25
+        sensor.detector.comparator.hold_s = 2.0
+    other = pirsim.compile(altered, plain.script)
+    emitted = trace.emit(model=other)
+    assert same(emitted, pirsim.run(other))
+    assert emitted.bits.sum() > trace.emit().bits.sum()
+    noise = trace.emit(model=other, seed=100)
+    assert np.array_equal(noise.bits, emitted.bits) == (response == "zones") and noise.seed == 100
 
 
 def test_the_catalogue_is_the_command_lines(command):

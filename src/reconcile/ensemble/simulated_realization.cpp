@@ -155,7 +155,7 @@ struct SimulatedRealization::Traced {
   /// Zones as a Model's detector takes them.
   struct Emitter {
     Emitter(const Model& of, const Recording& from) : model(of), tracks(from), logic(sim::make_logic(of)) {
-      logic->prepare(tracks.sets);
+      logic->prepare(tracks);
     }
     [[nodiscard]] std::vector<Series> emit(const StudyFrame& frame, const effects::Pipeline& pipeline, int first,
                                            int n) const {

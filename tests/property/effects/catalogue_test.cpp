@@ -92,7 +92,7 @@ TEST_CASE("remembered zones give the rows of the study with every effect that ac
     const Recording own_tracks = traced_anew ? record(model, all_runs(model), 1) : Recording{};
     const Recording& tracks = traced_anew ? own_tracks : plain_tracks;
     const auto logic = sim::make_logic(model);
-    logic->prepare(tracks.sets);
+    logic->prepare(tracks);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       CHECK(sim::replay(tracks, i, *logic, model.script().seed, pipeline).samples == rows[i].samples);
     }

@@ -105,7 +105,7 @@ TEST_CASE("recordings begin with who is there", "[rest]") {
   const Model model = model_of(with(stands_then_walks(), {{"dual_polarity", {{"threshold", 0.3}}, {}, {}}}));
   const auto rows = results_of(model);
   const Recording tracks = record(model, all_runs(model), 1);
-  CHECK(tracks.sets[tracks.runs[0].rest] != ZoneSet(model.compiled().array().channels().n_zones()));
+  CHECK(tracks.zones(tracks.runs[0].rest) != ZoneSet(model.compiled().array().channels().n_zones()));
   sim::RecordingFamily family(model, all_runs(model));
   for (const Recording* recording : {&tracks, &family.first()}) {
     std::vector<RunResult> emitted;
