@@ -407,7 +407,7 @@ TEST_CASE("the user's own scenes are rooms like others", "[dataset][seconds]") {
   options.tell = [&](const Issue& issue) { told.push_back(issue); };
   made.make(options);
   REQUIRE(told.size() == 1);  // the sensors are analog
-  CHECK_THAT(to_string(told.front()), contains("recipe.yaml:5:") && contains("soft_zone_edges does nothing here"));
+  CHECK_THAT(to_string(told.front()), contains("recipe.yaml:6:") && contains("soft_zone_edges does nothing here"));
   made.finish();
   CHECK_THAT(raw(made.out() / "sensors.csv"), contains("1,PIR1,EKMC1604111,analog,"));
   const auto rows = table(content(made.day("rows", 1, 1, ".csv.gz")));
