@@ -153,7 +153,7 @@ void add_study(nb::module_& module) {
       .def("script", [](const Model& model) { return to_python(model.script()); });
   nb::class_<Recording>(module, "Recording", "What pirsim.Trace holds.")
       .def_prop_ro("n_runs", [](const Recording& recording) { return recording.runs.size(); })
-      .def_prop_ro("n_shown", &Recording::n_shown);
+      .def_prop_ro("n_moments", &Recording::n_moments);
   module.def("compile", &compile_model, nb::arg("scene"), nb::arg("script"), nb::arg("overrides"), nb::arg("sensors"),
              nb::arg("data"), "From files (texts) or objects of pirsim.specs.");
   module.def("run", &run, nb::arg("model"), nb::arg("runs").none(), nb::arg("threads"), nb::arg("zones"),

@@ -18,12 +18,20 @@ namespace {
 
 /// A run with its own numbering.
 struct NumberedRun {
-  Recording shown;  ///< sets and powers alone
+  Recording own;  ///< moments alone
   RecordedRun track;
 };
 
-std::vector<std::uint32_t> powers_begin(const SensorArray& array) {
-  return array.analog() != nullptr ? array.analog()->power().receivers_begin() : std::vector<std::uint32_t>{0};
+/// With room for what sensors of this array show.
+Recording nothing_shown(const SensorArray& array) {
+  Recording recording;
+  recording.n_sensors = array.n_sensors();
+  recording.powers.resize(array.n_sensors());
+  for (std::size_t sensor = 0; sensor < array.n_sensors() && array.analog() != nullptr; ++sensor) {
+    const std::vector<std::uint32_t>& begin = array.analog()->power().receivers_begin();
+    recording.powers[sensor].n_steps = begin[sensor + 1] - begin[sensor];
+  }
+  return recording;
 }
 
 /// Of the sensors that answer by zones, all zones.
@@ -40,11 +48,11 @@ ZoneSet zones_of_zone_sensors(const SensorArray& array) {
 }
 
 NumberedRun record_run(const CompiledStudy& study, std::uint32_t run, ObserverPool& observers) {
-  NumberedRun recorded{{}, {{run, study.replicate_of(run), study.trial_of(run).id, {}, {}, {}}, 0, {}, {}}};
-  recorded.shown.powers_begin = powers_begin(study.array());
+  NumberedRun recorded{nothing_shown(study.array()),
+                       {{run, study.replicate_of(run), study.trial_of(run).id, {}, {}, {}}, 0, {}, {}}};
   RecordedRun& track = recorded.track;
   const ZoneSet kept = zones_of_zone_sensors(study.array());
-  ShownNumbering numbering(recorded.shown, kept.size());
+  MomentNumbering numbering(recorded.own, kept.size());
   RunState state(study, run);
   *state.observer = observers.borrow();
   settle(study, state);
@@ -56,9 +64,9 @@ NumberedRun record_run(const CompiledStudy& study, std::uint32_t run, ObserverPo
     if (now.zones == zones && now.powers == powers) return;
     zones = now.zones;
     powers = now.powers;
-    ZoneSet shown = zones;
-    for (std::size_t i = 0; i < kept.words().size(); ++i) shown.words()[i] &= kept.words()[i];
-    number = numbering.number(shown.words(), powers);
+    ZoneSet those = zones;
+    for (std::size_t i = 0; i < kept.words().size(); ++i) those.words()[i] &= kept.words()[i];
+    number = numbering.number(those.words(), powers);
   };
   note();
   track.rest = number;
@@ -67,7 +75,7 @@ NumberedRun record_run(const CompiledStudy& study, std::uint32_t run, ObserverPo
     if (state.finished && !end) end = study.stages().heard_by(state.tick);
     for (const std::size_t seat : state.crowd.seats_left()) track.seats_left.push_back({state.tick, seat});
     note();
-    track.shown.push_back(number);
+    track.moments.push_back(number);
   }
   return recorded;
 }
@@ -151,7 +159,10 @@ class ReplayedOptics final : public DetectorLogic {
   void show(std::uint32_t number, Exposure& exposure) const noexcept {
     exposure.zones = recording_->zones(number);
     study_.array().expose(exposure);
-    std::ranges::copy(recording_->powers_of(number), exposure.powers.begin());
+    if (exposure.powers.empty()) return;
+    auto to = exposure.powers.begin();
+    for (std::size_t s = 0; s < recording_->n_sensors; ++s)
+      to = std::ranges::copy(recording_->powers_of(number, s), to).out;
   }
 
   const CompiledStudy& study_;
@@ -164,11 +175,9 @@ class ReplayedOptics final : public DetectorLogic {
 }  // namespace
 
 Recording empty_recording(const CompiledStudy& study) {
-  Recording recording;
-  recording.n_sensors = study.array().n_sensors();
+  Recording recording = nothing_shown(study.array());
   recording.sensing = study.sensing();
   recording.optics = optics_of(study);
-  recording.powers_begin = powers_begin(study.array());
   return recording;
 }
 
@@ -181,32 +190,52 @@ std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) noexcept {
 
 }  // namespace
 
-ShownNumbering::ShownNumbering(Recording& recording, std::size_t n_zones) : recording_(recording), n_zones_(n_zones) {
-  number(ZoneSet(n_zones).words(), std::vector<PowerSteps>(recording.n_powers(), 0));
+MomentNumbering::MomentNumbering(Recording& recording, std::size_t n_zones)
+    : recording_(recording), n_zones_(n_zones), rows_(recording.n_sensors) {
+  std::size_t n_receivers = 0;
+  for (const PowerRows& rows : recording.powers) n_receivers += rows.n_steps;
+  number(ZoneSet(n_zones).words(), std::vector<PowerSteps>(n_receivers, 0));
 }
 
-std::uint32_t ShownNumbering::number_set(std::span<const ZoneSet::Word> zones) {
+std::uint32_t MomentNumbering::number_set(std::span<const ZoneSet::Word> zones) {
   std::uint64_t hash = 0;
   for (const ZoneSet::Word word : zones) hash = mixed(hash, word);
   std::vector<ZoneSet>& sets = recording_.sets;
   const std::uint32_t number =
       sets_.number(hash, [&](std::uint32_t known) { return std::ranges::equal(sets[known].words(), zones); });
-  if (number < sets.size()) return number;
-  sets.emplace_back(n_zones_).add(zones);
+  if (number == sets.size()) sets.emplace_back(n_zones_).add(zones);
   return number;
 }
 
-std::uint32_t ShownNumbering::number(std::span<const ZoneSet::Word> zones, std::span<const PowerSteps> powers) {
+std::uint32_t MomentNumbering::number_row(std::size_t sensor, std::span<const PowerSteps> powers) {
+  std::uint64_t hash = 0;
+  for (const PowerSteps power : powers) hash = mixed(hash, static_cast<std::uint64_t>(power));
+  std::vector<std::int64_t>& known_powers = recording_.powers[sensor].power;
+  const std::uint32_t number = rows_[sensor].number(hash, [&](std::uint32_t known) {
+    return std::equal(powers.begin(), powers.end(), known_powers.begin() + known * std::ssize(powers));
+  });
+  if (number * powers.size() == known_powers.size()) {
+    known_powers.insert(known_powers.end(), powers.begin(), powers.end());
+  }
+  return number;
+}
+
+std::uint32_t MomentNumbering::number(std::span<const ZoneSet::Word> zones, std::span<const PowerSteps> powers) {
   const std::uint32_t set = number_set(zones);
   if (powers.empty()) return set;
-  std::uint64_t hash = set;
-  for (const PowerSteps power : powers) hash = mixed(hash, static_cast<std::uint64_t>(power));
-  const std::uint32_t number = shown_.number(hash, [&](std::uint32_t known) {
-    return recording_.set_of[known] == set && std::ranges::equal(recording_.powers_of(known), powers);
+  std::vector<std::uint32_t> moment{set};
+  for (std::size_t sensor = 0, begin = 0; sensor < recording_.n_sensors; ++sensor) {
+    const std::size_t n_steps = recording_.powers[sensor].n_steps;
+    moment.push_back(n_steps == 0 ? 0 : number_row(sensor, powers.subspan(begin, n_steps)));
+    begin += n_steps;
+  }
+  std::uint64_t hash = 0;
+  for (const std::uint32_t each : moment) hash = mixed(hash, each);
+  std::vector<std::uint32_t>& moments = recording_.moments;
+  const std::uint32_t number = moments_.number(hash, [&](std::uint32_t known) {
+    return std::equal(moment.begin(), moment.end(), moments.begin() + known * std::ssize(moment));
   });
-  if (number < recording_.set_of.size()) return number;
-  recording_.set_of.push_back(set);
-  recording_.powers.insert(recording_.powers.end(), powers.begin(), powers.end());
+  if (number * moment.size() == moments.size()) moments.insert(moments.end(), moment.begin(), moment.end());
   return number;
 }
 
@@ -224,7 +253,7 @@ effects::Pipeline make_stages(const Model& model, std::span<const EffectSpec> ef
 
 bool goes_as_far_as(const RecordedRun& track, const SensingSpec& sensing, const effects::Pipeline& stages) {
   const auto last_row = static_cast<std::int64_t>(track.rows.samples.size()) * sensing.ticks_per_window;
-  return static_cast<std::int64_t>(track.shown.size()) >= stages.heard_by(last_row);
+  return static_cast<std::int64_t>(track.moments.size()) >= stages.heard_by(last_row);
 }
 
 namespace {
@@ -245,7 +274,7 @@ RunResult replay_as(const SensingSpec& sensing, const Recording& recording, std:
   auto left = track.seats_left.begin();
   std::uint32_t before = track.rest;
   const auto sense = [&](std::int64_t tick) {
-    const std::uint32_t after = track.shown[static_cast<std::size_t>(tick - 1)];
+    const std::uint32_t after = track.moments[static_cast<std::size_t>(tick - 1)];
     std::ranges::fill(triggers, std::uint8_t{0});
     detector.tick(before, after, triggers);
     before = after;
@@ -271,18 +300,24 @@ Recording record(const Model& model, std::span<const std::uint32_t> runs, unsign
                  const std::function<void()>& run_done) {
   const sim::CompiledStudy& study = model.compiled();
   Recording recording = sim::empty_recording(study);
-  sim::ShownNumbering numbering(recording, study.array().channels().n_zones());
+  sim::MomentNumbering numbering(recording, study.array().channels().n_zones());
   sim::ObserverPool observers(study);
   ordered_parallel<sim::NumberedRun>(
       runs.size(), threads, [&](std::size_t i) { return sim::record_run(study, runs[i], observers); },
       [&](sim::NumberedRun& recorded) {
-        const auto& [shown, track] = recorded;
+        const auto& [own, track] = recorded;
         std::vector<std::uint32_t> renumbered;
-        for (std::uint32_t i = 0; i < shown.n_shown(); ++i) {
-          renumbered.push_back(numbering.number(shown.zones(i).words(), shown.powers_of(i)));
+        std::vector<sim::PowerSteps> powers;
+        for (std::uint32_t i = 0; i < own.n_moments(); ++i) {
+          powers.clear();
+          for (std::size_t sensor = 0; sensor < own.n_sensors && !own.moments.empty(); ++sensor) {
+            const auto row = own.powers_of(i, sensor);
+            powers.insert(powers.end(), row.begin(), row.end());
+          }
+          renumbered.push_back(numbering.number(own.zones(i).words(), powers));
         }
         recorded.track.rest = renumbered[track.rest];
-        for (std::uint32_t& number : recorded.track.shown) number = renumbered[number];
+        for (std::uint32_t& number : recorded.track.moments) number = renumbered[number];
         recording.runs.push_back(std::move(recorded.track));
         if (run_done) run_done();
       });

@@ -179,7 +179,7 @@ class Painter {
     const std::size_t n = people.n_people;
     track.rest = set_of(std::span(people.postures).first(n));
     for (std::size_t tick = 1; tick <= people.n_ticks; ++tick) {
-      track.shown.push_back(set_of(std::span(people.postures).subspan(tick * n, n)));
+      track.moments.push_back(set_of(std::span(people.postures).subspan(tick * n, n)));
     }
     return track;
   }
@@ -202,7 +202,7 @@ class Painter {
   const Postures& postures_;
   Solids& solids_;
   Sight& sight_;
-  ShownNumbering numbering_;
+  MomentNumbering numbering_;
   std::vector<std::uint32_t> sets_;  ///< (1 + n_postures) of who is alone, where they have been asked for
   ZoneSet all_;
 };

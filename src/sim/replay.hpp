@@ -66,21 +66,23 @@ class Numbering {
   std::vector<std::uint64_t> hashes_;
 };
 
-/// Numbers what the optics show: fills in the sets and powers of a Recording.
-class ShownNumbering {
+/// Numbers what the optics show: fills in a Recording, all but its runs.
+class MomentNumbering {
  public:
   /// Of an empty_recording(), to which it adds. Number 0 is the empty room.
-  ShownNumbering(Recording& recording, std::size_t n_zones);
+  MomentNumbering(Recording& recording, std::size_t n_zones);
 
-  /// zones: of sensors that answer by them, as words. powers: (n_powers)
+  /// zones: of sensors that answer by them, as words. powers: (n_receivers), empty if none is analog.
   std::uint32_t number(std::span<const ZoneSet::Word> zones, std::span<const PowerSteps> powers);
 
  private:
   std::uint32_t number_set(std::span<const ZoneSet::Word> zones);
+  std::uint32_t number_row(std::size_t sensor, std::span<const PowerSteps> powers);
 
   Recording& recording_;
   std::size_t n_zones_;
-  Numbering sets_, shown_;
+  Numbering sets_, moments_;
+  std::vector<Numbering> rows_;  ///< (n_sensors)
 };
 
 }  // namespace pirsim::sim

@@ -12,8 +12,8 @@ class Crowded final : public pirsim::DetectorLogic {
 
   void prepare(const pirsim::Recording& recording) override {
     crowded_.clear();
-    for (std::uint32_t shown = 0; shown < recording.n_shown(); ++shown) {
-      const pirsim::ZoneSet& set = recording.zones(shown);
+    for (std::uint32_t moment = 0; moment < recording.n_moments(); ++moment) {
+      const pirsim::ZoneSet& set = recording.zones(moment);
       std::vector<std::uint8_t>& sensors = crowded_.emplace_back();
       for (std::size_t s = 0; s < rays_.n_sensors(); ++s) sensors.push_back(count(set, s) >= least_ ? 1 : 0);
     }
@@ -34,7 +34,7 @@ class Crowded final : public pirsim::DetectorLogic {
 
   const pirsim::RayBundle& rays_;
   int least_;
-  std::vector<std::vector<std::uint8_t>> crowded_;  ///< (n_shown x n_sensors)
+  std::vector<std::vector<std::uint8_t>> crowded_;  ///< (n_moments x n_sensors)
 };
 
 int seconds_with_motion(const pirsim::Model& model, const pirsim::Recording& recording, int least) {

@@ -97,9 +97,9 @@ TEST_CASE("recordings don't depend on the number of threads") {
   for (const Model& model : {short_study("cluster"), compile(shipped_scene("open_office.gltf"), office)}) {
     const Recording one = record(model, all_runs(model), 1), two = record(model, all_runs(model), 2);
     CHECK(one.sets == two.sets);
-    CHECK(one.set_of == two.set_of);
-    CHECK(one.powers == two.powers);
-    for (std::size_t i = 0; i < one.runs.size(); ++i) REQUIRE(one.runs[i].shown == two.runs[i].shown);
+    CHECK(one.moments == two.moments);
+    CHECK(std::ranges::equal(one.powers, two.powers, {}, &PowerRows::power, &PowerRows::power));
+    for (std::size_t i = 0; i < one.runs.size(); ++i) REQUIRE(one.runs[i].moments == two.runs[i].moments);
   }
 }
 
@@ -228,8 +228,7 @@ TEST_CASE("a recording of any study serves its own and any other electronics, bi
       n_differ += same_rows(other_rows, rows) ? 0 : 1;
 
       (answers == Answers::analog ? n_sets_of_analog : n_sets) += recording.sets.size() - 1;
-      CHECK(recording.powers.empty() == (answers == Answers::zones));
-      CHECK(recording.set_of.empty() == (answers == Answers::zones));
+      CHECK(recording.moments.empty() == (answers == Answers::zones));
     }
   }
   CHECK(n_bits > 500);
@@ -251,25 +250,35 @@ TEST_CASE("another seed is another noise on the same people") {
   CHECK(same_rows(emitted(silent, recording, {.effects = {}, .seed = 8}), emitted(silent, recording)));
 }
 
-TEST_CASE("what the optics showed is kept once, and the powers of those who come back are the same") {
+TEST_CASE("what the optics showed is kept once, exactly as runs have it") {
   const Model model = compile(shipped_scene("open_office.gltf"), analog_office());
   const Recording recording = record(model, all_runs(model), 1);
   const RecordedRun& run = recording.runs[0];
   CHECK(run.rest == 0);  // nobody is there yet
-  CHECK(std::ranges::all_of(recording.powers_of(0), [](std::int64_t power) { return power == 0; }));
-  CHECK(recording.n_shown() < run.shown.size());
-  CHECK(recording.powers.size() == recording.n_shown() * recording.n_powers());
+  CHECK(recording.n_moments() < run.moments.size());
   State state(model, 0);
-  for (const std::uint32_t shown : run.shown) {
+  for (const std::uint32_t number : run.moments) {
     step_tick(model, state);
-    REQUIRE(std::ranges::equal(recording.powers_of(shown), state.run_state().exposure().powers));
+    std::vector<std::int64_t> powers;
+    for (std::size_t sensor = 0; sensor < recording.n_sensors; ++sensor) {
+      for (const std::int64_t power : recording.powers_of(number, sensor)) powers.push_back(power);
+    }
+    REQUIRE(powers == state.run_state().exposure().powers);
   }
-  std::set<std::vector<std::int64_t>> rows;
-  for (std::uint32_t shown = 0; shown < recording.n_shown(); ++shown) {
-    const auto row = recording.powers_of(shown);
-    rows.emplace(row.begin(), row.end());
+  std::set<std::vector<std::uint32_t>> different;
+  const auto width = static_cast<std::ptrdiff_t>(1 + recording.n_sensors);
+  for (auto moment = recording.moments.begin(); moment != recording.moments.end(); moment += width) {
+    different.emplace(moment, moment + width);
   }
-  CHECK(rows.size() == recording.n_shown());
+  CHECK(different.size() == recording.n_moments());
+  for (const auto& [n_steps, power] : recording.powers) {
+    std::set<std::vector<std::int64_t>> rows;
+    const auto n = static_cast<std::ptrdiff_t>(n_steps);
+    for (auto row = power.begin(); row != power.end(); row += n) rows.emplace(row, row + n);
+    CHECK(rows.size() * n_steps == power.size());
+    CHECK(rows.size() < recording.n_moments());
+    CHECK(std::ranges::all_of(std::span(power).first(n_steps), [](std::int64_t step) { return step == 0; }));
+  }
 }
 
 TEST_CASE("a recording is refused to a model whose optics it doesn't tell") {
