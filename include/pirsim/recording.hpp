@@ -66,7 +66,7 @@ struct Recording {
 /// Follows the given runs of a study on up to `threads` threads (0: all cores). It takes 4 bytes a tick and run. Each
 /// set of zones adds 32 bytes and a bit a zone; where there are analog sensors, each different moment adds 4 bytes a
 /// sensor and each different row of a sensor 8 a lens step. An hour of eight people who move naturally under ten
-/// sensors takes 1 MB if they answer by zones and 7 MB if they are analog. `run_done`, if given, is called after each
+/// sensors takes 2 MB if they answer by zones and 6 MB if they are analog. `run_done`, if given, is called after each
 /// run, from one thread at a time; what it throws ends the work.
 [[nodiscard]] Recording record(const Model& model, std::span<const std::uint32_t> runs, unsigned threads = 0,
                                const std::function<void()>& run_done = {});
