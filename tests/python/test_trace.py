@@ -57,6 +57,7 @@ def test_effects_that_a_trace_can_not_show_are_refused(study, room, study_a):
 
 
 @pytest.mark.parametrize("response", ["zones", "analog"])
+@pytest.mark.filterwarnings("ignore:.*makes no use of")
 def test_a_trace_serves_other_electronics(study, response):
     scene, script = study
     settings = {"replicates": 2, "sensing.response": response}
