@@ -30,6 +30,8 @@ def test_a_dataset_equals_the_command_lines(recipe, command, tmp_path):
     pirsim.dataset(recipe, tmp_path / "b", resume=True)  # nothing to do
     with pytest.raises(pirsim.InputError):
         pirsim.dataset(recipe.parent / "small_offices.yaml", tmp_path / "b")
+    with pytest.raises(pirsim.InputError, match="holds another dataset"):
+        pirsim.dataset(recipe, tmp_path / "b", set={"sensing.response": "zones"})
 
 
 def test_rooms_of_a_recipe_are_scenes(recipe, data, tmp_path):
