@@ -205,7 +205,12 @@ void Motion::advance() {
   const Stage before = stage_;
   const bool was_moving =
       on_track() || (on_seat() && !(fall_.settled() && slide_m_.settled() && channel(Channel::chair_turn).settled()));
-  for (MinJerk& motion : channels_) motion.advance();
+  if (++since_channel_step_ >= channel_step_) {
+    for (MinJerk& motion : channels_) {
+      for (int i = 0; i < since_channel_step_; ++i) motion.advance();
+    }
+    since_channel_step_ = 0;
+  }
   if (on_track()) advance_on_track();
   if (on_seat()) advance_on_seat();
   if (was_moving || stage_ != before) update_stance();

@@ -83,6 +83,8 @@ class Motion {
   void tilt_spine(double radians);       ///< target of the spine's tilt, positive forward; only while seated
   /// Anywhere but on the way onto or off a seat; rising brings all channels back to 0.
   void adjust(Channel channel, double target, double seconds);
+  /// From now on small movements go on at every n-th tick alone, as far as they are by then.
+  void move_in_steps_of(int n_ticks) noexcept { channel_step_ = n_ticks; }
   /// Where it goes or rests.
   [[nodiscard]] double target(Channel which) const noexcept { return channel(which).target(); }
   [[nodiscard]] double breath() const noexcept { return breath_; }
@@ -172,6 +174,8 @@ class Motion {
   MinJerk slide_m_;
   MinJerk tilt_;  ///< of the spine, beyond what falling and rising need
   std::array<MinJerk, n_channels> channels_;
+  int channel_step_ = 1;        ///< ticks
+  int since_channel_step_ = 0;  ///< ticks
   double breath_ = 0.0;
   MinJerk reach_;  ///< of the arms: 0 on the thighs, 1 on the table
   DeskWork work_;

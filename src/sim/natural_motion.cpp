@@ -17,7 +17,10 @@ constexpr double liveliness_sd = 0.4;  // assumed (0.3-0.6): of the logarithm of
 constexpr double pace_sd_m_s = 0.2;    // Ref: [Weidmann1993]: 0.26 in the open
 constexpr double slowest_breath_hz = 0.2, fastest_breath_hz = 0.3;  // 12 to 18 breaths a minute, at rest
 constexpr double breath_tilt = radians(0.25);                       // assumed (0.1-0.5): +-2.4 mm at the shoulders
-constexpr int breath_levels = 4;   // to either side: a posture changes 16 times a breath instead of 200 times
+constexpr int breath_levels = 4;  // to either side: a posture changes 16 times a breath instead of 200 times
+// How often a posture changes in small movements: `assumed` (5 to 50). 25 changes a signal by 2.8 % of its rms, less
+// than 34 rays a zone do; 5 by 16 % (analog_test.cpp).
+constexpr int small_movements_hz = 25;
 constexpr double settles_s = 1.0;  // assumed (0.6-1.5): into the posture of a new activity
 constexpr double looks_s = 0.8;    // assumed (0.5-1): the head turns to who speaks
 constexpr double speaks_up_s = 1.0;
@@ -100,6 +103,7 @@ void NaturalMotion::enter(body::Motion& motion, const Situation& situation) {
   }
   for (const Hold& hold : repertoire().holds) home_[static_cast<std::size_t>(hold.channel)] = hold.value;
   rest_ = home_;
+  motion.move_in_steps_of(std::max(1, tick_rate_hz_ / small_movements_hz));
   for (std::size_t i = 0; i < body::n_channels; ++i) motion.adjust(static_cast<Channel>(i), rest_[i], settles_s);
   act_ = nullptr;
   phase_ = Phase::still;
