@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
+#include "rt/anew_tracer.hpp"
 #include "rt/culling.hpp"
 #include "rt/room_impl.hpp"
-#include "rt/tracer.hpp"
 
 namespace pirsim::rt {
 namespace {
@@ -84,10 +84,11 @@ void offer_solid(const RTCIntersectFunctionNArguments* arguments) {
   RTCRayN_tfar(RTCRayHitN_RayN(arguments->rayhit, arguments->N), arguments->N, 0) = *distance;
 }
 
-class EmbreeTracer final : public Tracer {
+class EmbreeTracer final : public AnewTracer {
  public:
   explicit EmbreeTracer(const TracerSetup& setup)
-      : device_(setup.room->impl().device.get()),
+      : AnewTracer(setup.clipped->rays.size()),
+        device_(setup.room->impl().device.get()),
         bundle_(*setup.clipped),
         cluster_cones_(cluster_cones(bundle_)),
         zone_cones_(zone_cones(bundle_)),

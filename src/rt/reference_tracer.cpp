@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "rt/anew_tracer.hpp"
 #include "rt/room_impl.hpp"
-#include "rt/tracer.hpp"
 
 namespace pirsim::rt {
 namespace {
@@ -25,9 +25,10 @@ void intersect_solid(const RTCIntersectFunctionNArguments* arguments) {
   }
 }
 
-class ReferenceTracer final : public Tracer {
+class ReferenceTracer final : public AnewTracer {
  public:
-  explicit ReferenceTracer(const TracerSetup& setup) : room_(setup.room->impl()), rated_(*setup.rated) {}
+  explicit ReferenceTracer(const TracerSetup& setup)
+      : AnewTracer(setup.rated->rays.size()), room_(setup.room->impl()), rated_(*setup.rated) {}
 
   void add(std::size_t, std::span<const PosedShape> solids, ZoneSet& zones) override {
     const SceneHandle scene = build(solids);

@@ -14,11 +14,27 @@ namespace pirsim::rt {
 
 [[nodiscard]] std::string_view name(TracerKind kind) noexcept;
 
-/// A ray of the bundle and the solid that it hits before all others and the room.
-struct FirstHit {
+/// A person and one of their solids.
+struct SolidId {
+  std::uint16_t person = 0xFFFFU;
+  std::uint16_t solid = 0xFFFFU;
+  auto operator<=>(const SolidId&) const = default;
+};
+inline constexpr SolidId no_solid{};
+
+/// A person's solids as they are from now on. None: they are gone.
+struct Moved {
+  std::size_t person = 0;
+  std::span<const PosedShape> solids;
+  /// (n_solids) those of equal number are as one: which of them a ray hits makes no difference. A solid keeps its
+  /// number until it is gone.
+  std::span<const std::uint8_t> surfaces;
+};
+
+/// A ray of the bundle, and what it hit and hits before all other solids and the room.
+struct FirstHitChange {
   std::uint32_t ray = 0;
-  std::uint32_t solid = 0;  ///< index; the lower one where a ray enters two at once
-  bool operator==(const FirstHit&) const = default;
+  SolidId before, after;
 };
 
 /// Scratch memory of one thread; not shared.
@@ -28,8 +44,12 @@ class Tracer {
   /// Adds the zones that see one person of several; what is kept from tick to tick is kept by `person`. solids:
   /// surfaces of meshes outlive the tracer.
   virtual void add(std::size_t person, std::span<const PosedShape> solids, ZoneSet& zones) = 0;
-  /// One entry a ray that hits a solid within its range, in any order; `hits` is overwritten.
-  virtual void find_first(std::span<const PosedShape> solids, std::vector<FirstHit>& hits) = 0;
+  /// Takes people to where they are now, each at most once; who isn't named stays as they are. Tells of which rays that
+  /// changes the surface that they hit first, in any order: where a ray enters two solids at once, the lower person and
+  /// index. What changes within a surface may be told or not. changes: overwritten. Nobody is there at first.
+  virtual void follow(std::span<const Moved> moved, std::vector<FirstHitChange>& changes) = 0;
+  /// (n_rays) what each ray hits first since then, or no_solid.
+  [[nodiscard]] virtual std::vector<SolidId> first_hits() const = 0;
   /// May whoever asks remember the answers? The slow tracers are there to be compared with: they look at every tick.
   [[nodiscard]] virtual bool may_be_remembered() const noexcept { return false; }
 };

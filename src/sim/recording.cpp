@@ -34,25 +34,11 @@ Recording nothing_shown(const SensorArray& array) {
   return recording;
 }
 
-/// Of the sensors that answer by zones, all zones.
-ZoneSet zones_of_zone_sensors(const SensorArray& array) {
-  const RayBundle& bundle = array.clipped();
-  ZoneSet zones(bundle.n_zones());
-  for (std::size_t sensor = 0; sensor < bundle.n_sensors(); ++sensor) {
-    if (array.is_analog(sensor)) continue;
-    const std::size_t end = bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor + 1]];
-    for (std::size_t i = bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor]]; i < end; ++i)
-      zones.insert(i);
-  }
-  return zones;
-}
-
 NumberedRun record_run(const CompiledStudy& study, std::uint32_t run, ObserverPool& observers) {
   NumberedRun recorded{nothing_shown(study.array()),
                        {{run, study.replicate_of(run), study.trial_of(run).id, {}, {}, {}}, 0, {}, {}}};
   RecordedRun& track = recorded.track;
-  const ZoneSet kept = zones_of_zone_sensors(study.array());
-  MomentNumbering numbering(recorded.own, kept.size());
+  MomentNumbering numbering(recorded.own, study.array().channels().n_zones());
   RunState state(study, run);
   *state.observer = observers.borrow();
   settle(study, state);
@@ -64,9 +50,7 @@ NumberedRun record_run(const CompiledStudy& study, std::uint32_t run, ObserverPo
     if (now.zones == zones && now.powers == powers) return;
     zones = now.zones;
     powers = now.powers;
-    ZoneSet those = zones;
-    for (std::size_t i = 0; i < kept.words().size(); ++i) those.words()[i] &= kept.words()[i];
-    number = numbering.number(those.words(), powers);
+    number = numbering.number(zones.words(), powers);
   };
   note();
   track.rest = number;
@@ -301,7 +285,7 @@ Recording record(const Model& model, std::span<const std::uint32_t> runs, unsign
   const sim::CompiledStudy& study = model.compiled();
   Recording recording = sim::empty_recording(study);
   sim::MomentNumbering numbering(recording, study.array().channels().n_zones());
-  sim::ObserverPool observers(study);
+  sim::ObserverPool observers(study, sim::ZonesOf::zone_sensors);
   ordered_parallel<sim::NumberedRun>(
       runs.size(), threads, [&](std::size_t i) { return sim::record_run(study, runs[i], observers); },
       [&](sim::NumberedRun& recorded) {

@@ -53,22 +53,6 @@ std::size_t count(const ZoneSet& zones) {
   return n;
 }
 
-/// Without the rays of these zones, which stay in number.
-RayBundle without(const RayBundle& bundle, const ZoneSet& zones) {
-  RayBundle rest;
-  rest.cluster_zones_begin = bundle.cluster_zones_begin;
-  rest.sensor_clusters_begin = bundle.sensor_clusters_begin;
-  for (std::size_t zone = 0; zone < bundle.n_zones(); ++zone) {
-    for (std::size_t ray = bundle.zone_rays_begin[zone]; ray < bundle.zone_rays_begin[zone + 1] && !zones.test(zone);
-         ++ray) {
-      rest.rays.push_back(bundle.rays[ray]);
-      rest.range.push_back(bundle.range[ray]);
-    }
-    rest.zone_rays_begin.push_back(static_cast<std::uint32_t>(rest.rays.size()));
-  }
-  return rest;
-}
-
 /// Solids of postures. From keep() on it remembers those of the first postures, as many as the memory for them should
 /// hold: 30 MB. Study A has some 30,000.
 class Solids {

@@ -60,7 +60,8 @@ bool move_tick(const CompiledStudy& study, RunState& state) {
 namespace {
 
 Observer& observer_of(const CompiledStudy& study, RunState& state) {
-  if (!*state.observer) *state.observer = std::make_shared<Observer>(study.array(), study.tracer());
+  if (!*state.observer)
+    *state.observer = std::make_shared<Observer>(study.array(), study.tracer(), ZonesOf::all_sensors);
   return **state.observer;
 }
 

@@ -144,11 +144,39 @@ SensorArray::SensorArray(const SceneSpec& scene, const SensingInForce& sensing, 
     const bool by_zones = response_of(scene, sensing, sensor) == Response::zones;
     zone_outputs_.push_back(by_zones ? pir::zone_output(comparator, tick_s_) : std::nullopt);
   }
-  if (AnalogModel::is_needed(scene, sensing)) analog_.emplace(scene, sensing, *room_);
+  if (!AnalogModel::is_needed(scene, sensing)) return;
+  analog_.emplace(scene, sensing, *room_);
+  ZoneSet unheard(clipped_.n_zones());
+  for (std::size_t i = 0; i < n_sensors(); ++i) {
+    if (!is_analog(i)) continue;
+    const std::uint32_t end = clipped_.cluster_zones_begin[clipped_.sensor_clusters_begin[i + 1]];
+    for (auto zone = clipped_.cluster_zones_begin[clipped_.sensor_clusters_begin[i]]; zone < end; ++zone) {
+      unheard.insert(zone);
+    }
+  }
+  if (std::ranges::all_of(analog_->sensors(), [](const auto& sensor) { return sensor.has_value(); })) return;
+  of_zone_sensors_.emplace(without(rated_, unheard), without(clipped_, unheard));
 }
 
-std::unique_ptr<rt::Tracer> SensorArray::make_tracer(TracerKind kind) const {
-  return rt::make_tracer(kind, {room_.get(), &rated_, &clipped_});
+RayBundle without(const RayBundle& bundle, const ZoneSet& zones) {
+  RayBundle rest;
+  rest.cluster_zones_begin = bundle.cluster_zones_begin;
+  rest.sensor_clusters_begin = bundle.sensor_clusters_begin;
+  for (std::size_t zone = 0; zone < bundle.n_zones(); ++zone) {
+    for (std::size_t ray = bundle.zone_rays_begin[zone]; ray < bundle.zone_rays_begin[zone + 1] && !zones.test(zone);
+         ++ray) {
+      rest.rays.push_back(bundle.rays[ray]);
+      rest.range.push_back(bundle.range[ray]);
+    }
+    rest.zone_rays_begin.push_back(static_cast<std::uint32_t>(rest.rays.size()));
+  }
+  return rest;
+}
+
+std::unique_ptr<rt::Tracer> SensorArray::make_tracer(TracerKind kind, ZonesOf whose) const {
+  if (whose == ZonesOf::all_sensors || !analog_) return rt::make_tracer(kind, {room_.get(), &rated_, &clipped_});
+  if (!of_zone_sensors_) return nullptr;
+  return rt::make_tracer(kind, {room_.get(), &of_zone_sensors_->first, &of_zone_sensors_->second});
 }
 
 std::unique_ptr<rt::Tracer> SensorArray::make_power_tracer(TracerKind kind) const {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "pir/zone_motion.hpp"
@@ -23,6 +24,9 @@ struct Exposure {
   std::vector<double> sums;  ///< (n_sensors) of the active zones' polarities; empty unless the array has polarity()
   std::vector<PowerSteps> powers;  ///< (PowerModel::n_receivers()); empty unless the array has analog()
 };
+
+/// Whose zones are looked at: of all sensors, for whoever wants to see them, or only of those that answer by them.
+enum class ZonesOf { all_sensors, zone_sensors };
 
 /// Immutable, shared by threads. Runs, recordings, coverage studies and walk tests trace these rays.
 class SensorArray {
@@ -54,7 +58,8 @@ class SensorArray {
   [[nodiscard]] const AnalogModel* analog() const noexcept { return analog_ ? &*analog_ : nullptr; }
   [[nodiscard]] bool is_analog(std::size_t sensor) const noexcept { return analog_ && analog_->sensors()[sensor]; }
 
-  [[nodiscard]] std::unique_ptr<rt::Tracer> make_tracer(TracerKind kind) const;
+  /// Sees no zones at all, and is null, if none are to be looked at.
+  [[nodiscard]] std::unique_ptr<rt::Tracer> make_tracer(TracerKind kind, ZonesOf whose) const;
   /// Of the analog sensors' rays; only if there are any.
   [[nodiscard]] std::unique_ptr<rt::Tracer> make_power_tracer(TracerKind kind) const;
 
@@ -70,10 +75,15 @@ class SensorArray {
   std::size_t n_levels_;
   int ticks_per_window_;
   RayBundle rated_, clipped_;
+  /// Without the rays of analog sensors; only if there are analog sensors and others.
+  std::optional<std::pair<RayBundle, RayBundle>> of_zone_sensors_;
   pir::Channels channels_;
   std::optional<pir::PolarityFilter> polarity_;
   std::vector<std::optional<pir::Comparator>> zone_outputs_;
   std::optional<AnalogModel> analog_;
 };
+
+/// Without the rays of these zones, which stay in number.
+[[nodiscard]] RayBundle without(const RayBundle& bundle, const ZoneSet& zones);
 
 }  // namespace pirsim::sim

@@ -31,6 +31,10 @@ void add_occupants(const sim::CompiledStudy& study, const sim::RunState& state, 
   }
 }
 
+sim::ZonesOf zones_for(Record record) {
+  return record == Record::samples_and_zones ? sim::ZonesOf::all_sensors : sim::ZonesOf::zone_sensors;
+}
+
 RunResult run_with(sim::ObserverPool& observers, const sim::CompiledStudy& study, std::uint32_t run, Record record,
                    Trace trace, Occupants occupants, const std::function<void()>& window_done = {}) {
   RunResult result;
@@ -73,7 +77,7 @@ RunResult run_with(sim::ObserverPool& observers, const sim::CompiledStudy& study
 }  // namespace
 
 RunResult run_once(const Model& model, std::uint32_t run, Record record, Trace trace, Occupants occupants) {
-  sim::ObserverPool observers(model.compiled());
+  sim::ObserverPool observers(model.compiled(), zones_for(record));
   return run_with(observers, model.compiled(), run, record, trace, occupants);
 }
 
@@ -82,7 +86,7 @@ void run_study(const Model& model, const StudyOptions& options, const std::funct
   const auto run_of = [&](std::size_t i) {
     return options.chosen ? (*options.chosen)[i] : range.first + static_cast<std::uint32_t>(i);
   };
-  sim::ObserverPool observers(model.compiled());
+  sim::ObserverPool observers(model.compiled(), zones_for(options.record));
   ordered_parallel<RunResult>(
       options.chosen ? options.chosen->size() : range.count(), options.threads,
       [&](std::size_t i) {

@@ -25,7 +25,7 @@ class Onlooker {
   Onlooker(const Model& model, const body::Humanoid& humanoid)
       : rays_(model.compiled().array().rated()),
         humanoid_(humanoid),
-        tracer_(model.compiled().array().make_tracer(model.compiled().tracer())) {}
+        tracer_(model.compiled().array().make_tracer(model.compiled().tracer(), sim::ZonesOf::all_sensors)) {}
 
   /// (n_sensors) whether the sensor sees the posture.
   std::vector<bool> sensors_that_see(const body::Posture& posture) {

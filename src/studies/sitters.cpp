@@ -70,7 +70,7 @@ class View {
       : room_(room),
         humanoid_(humanoid),
         radiance_(sim::radiance_of(worker.person.warmth, room.sensing.ambient_c)),
-        observer_(room.array, room.tracer) {
+        observer_(room.array, room.tracer, sim::ZonesOf::all_sensors) {
     known_.make_room_for(1);
   }
 

@@ -71,10 +71,13 @@ class Observer {
   std::vector<double> still_s_;
 };
 
-/// Somebody of natural style on a seat at a table, from the moment on when they sit.
+/// Somebody of natural style on a seat that faces -Z, at a table, from the moment on when they sit.
 struct Sitter {
   Sitter(std::uint32_t person, const Humanoid& humanoid, const SeatPlace& seat)
-      : motion(humanoid, -0.6 * direction_of(seat.approach_turn), seat.approach_turn, 0.0, 1.0 / tick_rate_hz),
+      : motion(
+            humanoid,
+            Vec2(seat.world_from_seat.origin.x, seat.world_from_seat.origin.z) - 0.6 * direction_of(seat.approach_turn),
+            seat.approach_turn, 0.0, 1.0 / tick_rate_hz),
         natural(11, 0, person, tick_rate_hz) {
     motion.sit_down(seat);
     while (motion.stage() != Stage::seated) tick(std::nullopt);

@@ -1,14 +1,17 @@
 // The physical response from people to powers, on the shipped meeting room.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "pir/calibration.hpp"
 #include "pir/planck.hpp"
 #include "pirsim/state.hpp"
 #include "sim/compiled_study.hpp"
+#include "sim/power_meter.hpp"
 #include "sim/run_state.hpp"
 #include "support/catch.hpp"
 #include "support/fine_mesh.hpp"
+#include "support/natural_sitter.hpp"
 #include "support/shipped.hpp"
 
 using namespace pirsim;
@@ -204,6 +207,109 @@ TEST_CASE("all tracers give the same powers and signals of two people one of who
   CHECK(powers[2] == powers[0]);
   CHECK(results[1].samples == results[0].samples);
   CHECK(results[2].samples == results[0].samples);
+}
+
+TEST_CASE("a crowd of natural people gives embree's powers at every tick, whoever comes, passes and leaves",
+          "[sim][analog][seconds]") {
+  const SceneSpec scene = shipped_scene("meeting_room.gltf");
+  std::vector<PersonSpec> people;
+  for (const std::string seat : {"S1", "S2", "S6", "S7"}) {
+    action::Work work;
+    work.duration_s = 3.0;
+    work.activity = Activity::meeting;
+    people.push_back(test::person(seat, {act(action::Enter{"door"}), act(action::Sit{seat}), act(work),
+                                         act(action::Rise{}), act(action::Leave{"door"})}));
+    people.back().style = MotionStyle::natural;
+    people.back().warmth.clothing_clo = seat == "S1" ? 0.5 : 1.0;
+  }
+  ScriptSpec script = test::script_of(people);
+  script.sensing.response = Response::analog;
+  script.sensing.tick_rate_hz = 10;
+  script.sensing.ticks_per_window = 10;
+  script.sensing.analog_rays_per_zone = 13;
+  script.trials[0].duration_s = 45.0;
+  const Powers powers = powers_of(scene, script);
+  CHECK(sum_of_squares(powers) > 0.0);
+  CHECK(powers == powers_of(scene, script, TracerKind::embree));
+}
+
+namespace {
+
+/// A sitter's movements in steps of n ticks of 50 a second, and what the first sensor's amplifier makes of them.
+class SteppingSitter {
+ public:
+  SteppingSitter(const Model& model, std::uint32_t person, const body::SeatPlace& seat, int n_ticks)
+      : sitter_(person, body::Humanoid{PersonSpec{}}, seat),
+        n_ticks_(n_ticks),
+        humanoid_{PersonSpec{}},
+        radiance_(sim::radiance_of({}, 20.0)),
+        filter_(model.compiled().array().analog()->sensors().front()->silent_filter),
+        meter_(model.compiled().array(), fastest_tracer),
+        powers_(model.compiled().array().analog()->power().n_receivers()),
+        analog_(*model.compiled().array().analog()) {
+    watts_ = watts();
+    sections_ = filter_.at_rest(watts_);
+  }
+  double volts_after_tick(Activity activity) {
+    sitter_.natural.tick(sitter_.motion, activity, {});
+    sitter_.motion.move_in_steps_of(n_ticks_);
+    sitter_.motion.advance();
+    const double before = std::exchange(watts_, watts());
+    filter_.advance(sections_, before, watts_, 0.0);
+    return filter_.output(sections_);
+  }
+
+ private:
+  double watts() {
+    solids_.clear();
+    sim::append_solids(humanoid_, sitter_.motion.posture(), solids_);
+    meter_.measure(solids_, radiance_, powers_);
+    return analog_.watts(0, powers_);
+  }
+
+  body::test::Sitter sitter_;
+  int n_ticks_;
+  body::Humanoid humanoid_;
+  sim::BodyRadiance radiance_;
+  pir::AnalogFilter filter_;
+  sim::PowerMeter meter_;
+  std::vector<sim::PowerSteps> powers_;
+  const sim::AnalogModel& analog_;
+  std::vector<PosedShape> solids_;
+  double watts_ = 0.0;
+  pir::AnalogFilter::Sections sections_{};
+};
+
+}  // namespace
+
+TEST_CASE("small movements in steps of 40 ms change a signal by less than the rays' own error",
+          "[sim][analog][seconds]") {
+  // docs/physics/analog.md: 34 rays a zone leave 6.9 % (rms) of the power.
+  constexpr double error_of_rays = 0.069;
+  ScriptSpec script = walkers(1);
+  const Model model = compile(shipped_scene("meeting_room.gltf"), script);
+  body::SeatPlace place;
+  place.world_from_seat.origin = {3.5, 0.531, -2.0};
+  place.table_height_m = 0.74;
+  double squares = 0.0, squares_of_coarse = 0.0, signal = 0.0;
+  std::size_t n = 0;
+  for (const Activity activity : {Activity::typing, Activity::reading, Activity::meeting, Activity::phone}) {
+    for (std::uint32_t person = 0; person < 3; ++person) {
+      SteppingSitter exact(model, person, place, 1), stepping(model, person, place, 2),
+          coarse(model, person, place, 10);
+      for (int tick = 0; tick < 120 * body::test::tick_rate_hz; ++tick, ++n) {
+        const double volts = exact.volts_after_tick(activity);
+        signal += volts * volts;
+        squares += std::pow(stepping.volts_after_tick(activity) - volts, 2);
+        squares_of_coarse += std::pow(coarse.volts_after_tick(activity) - volts, 2);
+      }
+    }
+  }
+  const auto rms = [n](double sum) { return std::sqrt(sum / static_cast<double>(n)); };
+  INFO("rms of the signal " << rms(signal) << " V; of what steps of 40 ms change " << rms(squares) << " V, of 200 ms "
+                            << rms(squares_of_coarse) << " V");
+  CHECK(rms(squares) < error_of_rays * rms(signal));
+  CHECK(rms(squares_of_coarse) > error_of_rays * rms(signal));
 }
 
 TEST_CASE("a copied state with analog sensors goes on as the original does", "[sim][analog]") {

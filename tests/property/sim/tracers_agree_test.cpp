@@ -23,7 +23,7 @@ struct Comparison {
 /// of the state, so that all of a study's trials can be covered.
 Comparison compare(const Model& fast, const Model& slow, std::uint32_t run, std::int64_t stride) {
   Comparison result;
-  const auto tracer = slow.compiled().array().make_tracer(slow.compiled().tracer());
+  const auto tracer = slow.compiled().array().make_tracer(slow.compiled().tracer(), sim::ZonesOf::all_sensors);
   const std::size_t n_zones = slow.compiled().array().rated().n_zones();
   std::vector<PosedShape> solids;
   State state(fast, run);

@@ -304,11 +304,17 @@ std::vector<MotionCount> plain_analog_counts(const CoverageStudy& study, const V
   const double tick_s = 1.0 / study.spec().sensing.tick_rate_hz;
   const double radiance = pir::band_radiance(pir::kelvin(study.spec().target.temperature_c));
   const Vec3 foot(point.x, study.scene().floor.height_m(), point.y);
-  std::vector<rt::FirstHit> hits;
+  std::vector<rt::FirstHitChange> changes;
   const auto watts_at = [&](std::int64_t tick) {
-    tracer->find_first(study.target().solids(foot, tick), hits);
+    const auto solids = study.target().solids(foot, tick);
+    const std::vector<std::uint8_t> surfaces(solids.size(), 0);
+    const rt::Moved moved{0, solids, surfaces};
+    tracer->follow({&moved, 1}, changes);
     std::vector<sim::PowerSteps> steps(power.n_receivers(), 0);
-    for (const rt::FirstHit& each : hits) steps[power.receiver_of(each.ray)] += power.power(each.ray, radiance);
+    const std::vector<rt::SolidId> hits = tracer->first_hits();
+    for (std::uint32_t ray = 0; ray < hits.size(); ++ray) {
+      if (hits[ray] != rt::no_solid) steps[power.receiver_of(ray)] += power.power(ray, radiance);
+    }
     std::vector<double> watts;
     for (std::size_t s = 0; s < n_sensors; ++s) watts.push_back(study.survey().array().analog()->watts(s, steps));
     return watts;

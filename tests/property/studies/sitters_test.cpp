@@ -109,7 +109,7 @@ std::vector<WorkNotice> slowly_watched(const Model& model, const SeatSpec& seat,
   body::Motion motion =
       seated(humanoid, {seat.world_from_seat, floor_y, sim::table_height(seat, floor_y, array.room())}, model.tick_s());
   motion.work({0.1, 3.0});
-  const auto tracer = array.make_tracer(TracerKind::reference);
+  const auto tracer = array.make_tracer(TracerKind::reference, sim::ZonesOf::all_sensors);
   const auto channels = [&] {
     std::vector<PosedShape> solids;
     sim::append_solids(humanoid, motion.posture(), solids);
