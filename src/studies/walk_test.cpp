@@ -88,7 +88,7 @@ WalkTest::Movement WalkTest::make_arm_work() const {
 WalkTester::WalkTester(const WalkTest& test)
     : test_(test),
       array_(test.survey().array()),
-      observer_(array_, fastest_tracer, sim::ZonesOf::zone_sensors),
+      observer_(array_, fastest_tracer, sim::ZonesOf::all_sensors),
       detector_(test.survey().make_detector()),
       logger_(test.survey().make_logger()),
       before_(array_.unexposed()),

@@ -97,6 +97,12 @@ TEST_CASE("a sitter right under the needle covers it for good: seen in every try
   CHECK_FALSE(result.seats[1].deaf);
   CHECK(to_text(test, result).find("noticed: none; seen, but not noticed: under; unseen: beside") != std::string::npos);
   CHECK(to_csv(test, result).find("minor,minor_deaf\n") != std::string::npos);
+  // An analog sensor sees by its zones, too, though it doesn't answer by them. Still arms send it no signal.
+  spec.sensing.response = Response::analog;
+  spec.arm_amplitude_m = 0.0;
+  const WalkTest still(scene, spec);
+  CHECK(WalkTester(still).try_point({0.0, 0.0}, 0).minor.deaf == 4);
+  CHECK(WalkTester(still).try_point({1.5, 0.0}, 0).minor.deaf == 0);
 }
 
 TEST_CASE("a walk test gives the same result for any number of threads, and says so point by point", "[walk]") {
