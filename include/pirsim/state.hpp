@@ -26,8 +26,9 @@ class State {
 
   [[nodiscard]] std::uint32_t run() const noexcept;
   [[nodiscard]] std::int64_t tick() const noexcept;
-  /// (n_zones) active at the current tick; zones are those of Model::rays().
-  [[nodiscard]] const ZoneSet& zones() const noexcept;
+  /// (n_zones) active at the current tick, also of sensors that don't answer by them; zones are those of Model::rays().
+  /// Valid until the next call or tick.
+  [[nodiscard]] const ZoneSet& zones() const;
   /// The reading at the end of the last whole window.
   [[nodiscard]] const Sample& sample() const noexcept;
   /// Every person has carried out all actions and the last window is complete.

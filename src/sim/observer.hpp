@@ -22,11 +22,12 @@ class Observer {
   Observer(const SensorArray& array, TracerKind kind, ZonesOf whose);
   /// exposure: of the array, overwritten.
   void look(const std::vector<Actor>& actors, Exposure& exposure);
-  /// The same of one body alone, in any posture. solids: (n_parts) as append_solids() gives them.
+  /// At zones alone, which there are.
+  void look_at_zones(const std::vector<Actor>& actors, Exposure& exposure);
+  /// As look(), at one body alone, in any posture. solids: (n_parts) as append_solids() gives them.
   void look(std::span<const PosedShape> solids, const BodyRadiance& radiance, Exposure& exposure);
 
  private:
-  void look_at_zones(const std::vector<Actor>& actors, Exposure& exposure);
   std::span<const ZoneSet::Word> row_of(std::size_t person, const Actor& actor);
 
   const SensorArray& array_;

@@ -46,6 +46,17 @@ RunState::RunState(const CompiledStudy& study, std::uint32_t run_number)
   sample.trial = study.trial_of(run).id;
 }
 
+const ZoneSet& zones_of_all(const CompiledStudy& study, RunState& state) {
+  if (study.array().analog() == nullptr) return state.exposure().zones;
+  auto& [observer, exposure] = *state.onlooker;
+  if (!observer) {
+    observer = std::make_unique<Observer>(study.array(), study.tracer(), ZonesOf::all_sensors);
+    exposure = study.array().unexposed();
+  }
+  observer->look_at_zones(state.crowd.actors(), exposure);
+  return exposure.zones;
+}
+
 bool move_tick(const CompiledStudy& study, RunState& state) {
   ++state.tick;
   state.crowd.advance(study, state.tick);
@@ -61,7 +72,7 @@ namespace {
 
 Observer& observer_of(const CompiledStudy& study, RunState& state) {
   if (!*state.observer)
-    *state.observer = std::make_shared<Observer>(study.array(), study.tracer(), ZonesOf::all_sensors);
+    *state.observer = std::make_shared<Observer>(study.array(), study.tracer(), ZonesOf::zone_sensors);
   return **state.observer;
 }
 

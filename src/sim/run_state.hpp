@@ -80,7 +80,16 @@ struct RunState {
   Held<RunState> ahead{};
   /// Remembers what has been traced; changes no result. Made when first needed, unless a pool lends one.
   Scratch<std::shared_ptr<Observer>> observer;
+  /// Sees zones that no sensor answers by. Made when first asked for.
+  struct Onlooker {
+    std::unique_ptr<Observer> observer;
+    Exposure exposure;
+  };
+  Scratch<Onlooker> onlooker;
 };
+
+/// At this tick, of all sensors: also of those that don't answer by zones. Valid until the next call or tick.
+[[nodiscard]] const ZoneSet& zones_of_all(const CompiledStudy& study, RunState& state);
 
 /// At tick 0: whoever is there has been there for long, and detectors have settled to them. The first step_tick()
 /// begins with it.

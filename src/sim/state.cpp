@@ -17,7 +17,7 @@ State::~State() = default;
 
 std::uint32_t State::run() const noexcept { return run_state_->run; }
 std::int64_t State::tick() const noexcept { return run_state_->tick; }
-const ZoneSet& State::zones() const noexcept { return run_state_->exposure().zones; }
+const ZoneSet& State::zones() const { return sim::zones_of_all(*study_, *run_state_); }
 const Sample& State::sample() const noexcept { return run_state_->sample; }
 bool State::finished() const noexcept { return run_state_->finished; }
 
