@@ -76,7 +76,7 @@ void FirstHits::insert(std::uint32_t ray, SolidId solid, std::uint32_t lane, Lan
   }
   const std::uint32_t node = unused_.back();
   unused_.pop_back();
-  nodes_[node] = {ray, chains_[ray], solid, people_[solid.person].surfaces[solid.solid], lane};
+  nodes_[node] = {ray, chains_[ray], solid, people_[solid.person].surfaces[solid.solid], lane & 0xFFFFFFU};
   chains_[ray] = node;
   lanes.nodes[lane] = node;
   touch(ray);
