@@ -4,7 +4,7 @@ import csv
 import numpy as np
 from estimators import ESTIMATORS, LEARNED
 from readings import among, check_apart
-from scores import NAMES, score
+from scores import NAMES, mean_difference, score
 
 
 def trained(name, pieces):
@@ -24,8 +24,10 @@ class Results:
 
     def __init__(self):
         self.lines = []
+        self.errors = {}  # of every reading, with its unit
 
     def add(self, trained_on, estimator, tested_on, units, people, estimates):
+        self.errors[trained_on, estimator, tested_on] = units, np.abs(people - estimates)
         for name, (value, low, high) in zip(NAMES, score(units, people, estimates)):
             self.lines.append({"trained_on": trained_on, "estimator": estimator, "tested_on": tested_on, "score": name,
                                "value": value, "low": low, "high": high, "units": len(set(units)),
@@ -51,6 +53,18 @@ class Results:
                 cells.setdefault((line["trained_on"], line["estimator"]), {})[line["tested_on"]] = text
         out = [f"| trained on | estimator | {' | '.join(tests)} |", "|---|---|" + "---|" * len(tests)]
         out += [f"| {on} | {est} | {' | '.join(row.get(t, '-') for t in tests)} |" for (on, est), row in cells.items()]
+        return "\n".join(out)
+
+    def differences(self, trained_on, tests):
+        """How much greater the mean absolute error is than when trained on `trained_on`."""
+        out = [f"| trained on | estimator | {' | '.join(tests)} |", "|---|---|" + "---|" * len(tests)]
+        for row in dict.fromkeys(line["trained_on"] for line in self.lines if line["trained_on"] != trained_on):
+            for name in LEARNED:
+                cells = []
+                for test in tests:
+                    (units, error), (_, other) = self.errors[row, name, test], self.errors[trained_on, name, test]
+                    cells.append("{:+.2f} ({:+.2f} to {:+.2f})".format(*mean_difference(units, error, other)))
+                out.append(f"| {row} | {name} | {' | '.join(cells)} |")
         return "\n".join(out)
 
 

@@ -14,7 +14,7 @@ from disagreement import RUN, SETTLING, steady_runs  # noqa: E402
 from features import features, shares  # noqa: E402
 from hidden_markov import forward_filter  # noqa: E402
 from readings import BadInput, Stretch, among, check_apart, first_mornings, read_uci864, whole  # noqa: E402
-from scores import score, scores_of, tally  # noqa: E402
+from scores import mean_difference, score, scores_of, tally  # noqa: E402
 from table import equivalent  # noqa: E402
 
 
@@ -111,6 +111,12 @@ class Scores(unittest.TestCase):
         np.testing.assert_allclose(scores_of(tally(units, people, estimates, 4).sum(axis=0)), [0.75, 0.75, 0.5])
         value, low, high = score(units, people, estimates)[0]
         np.testing.assert_allclose([value, low, high], [0.75, 0.5, 1.0])  # of the days alone: 0.5 and 1
+
+    def test_what_a_unit_is_hard_for_cancels_in_a_difference(self):
+        units, other = np.repeat(["a", "b", "c"], [1, 2, 3]), np.array([0.0, 1.0, 3.0, 9.0, 9.0, 9.0])
+        np.testing.assert_allclose(mean_difference(units, other + 0.5, other), [0.5, 0.5, 0.5])
+        value, low, high = mean_difference(units, other + np.array([1.0, 0, 0, 0, 0, 0]), other)
+        np.testing.assert_allclose([value, low, high], [1 / 6, 0.0, 1.0])  # none of the unit that differs, nothing else
 
 
 class Disagreement(unittest.TestCase):
