@@ -31,7 +31,7 @@ class PowerMeter {
   void measure(const std::vector<Actor>& actors, std::span<PowerSteps> powers);
   /// The same of one body alone. solids: (n_parts) as append_solids() gives them.
   void measure(std::span<const PosedShape> solids, const BodyRadiance& radiance, std::span<PowerSteps> powers);
-  /// Ray by ray, without memory.
+  /// Ray by ray.
   void explain(const std::vector<Actor>& actors, std::vector<PowerShare>& shares);
 
  private:

@@ -65,7 +65,7 @@ WorkReport watched(const Model& model) { return watched(model, worker_of(model.c
 
 }  // namespace
 
-TEST_CASE("a seat where clusters are covered for good is told, and is as deaf in a run; beams and heat aren't",
+TEST_CASE("a seat where clusters are covered for good is told, and is as deaf in a run, as beams and heat aren't",
           "[sitters]") {
   const auto compiled = [](Response response, ChangePer change_per) {
     return compile(den(), reads_for(3600.0, response, change_per));
