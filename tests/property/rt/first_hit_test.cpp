@@ -41,6 +41,13 @@ std::vector<SolidId> by_brute_force(const RayBundle& clipped, const std::vector<
   return first;
 }
 
+PosedShape moved_by(PosedShape solid, const Vec3f& way) {
+  if (auto* sphere = std::get_if<PosedSphere>(&solid)) sphere->centre += way;
+  if (auto* capsule = std::get_if<PosedCapsule>(&solid)) capsule->a += way, capsule->b += way;
+  if (auto* box = std::get_if<PosedBox>(&solid)) box->centre += way;
+  return solid;
+}
+
 int surface_of(const std::vector<Person>& people, SolidId id) {
   return id == no_solid ? -1 : 1000 * id.person + people[id.person].surfaces[id.solid];
 }
@@ -83,19 +90,21 @@ TEST_CASE("all tracers agree in 400 random scenes on what each ray hits first of
       person.solids.push_back(scene.solids[i]);
       person.surfaces.push_back(static_cast<std::uint8_t>(draw.index(2)));
     }
-    for (int tick = 0; tick < 6; ++tick) {
+    for (int tick = 0; tick < 12; ++tick) {
       std::vector<rt::Moved> moved;
       for (std::size_t i = 0; i < people.size(); ++i) {
         if (tick > 0 && draw.index(2) == 0) continue;
         Person& person = people[i];
         for (PosedShape& solid : person.solids) {
           const Frame frame{draw.rotation(), draw.inside({-2, 0, -2}, {2, 2, 2})};
-          if (draw.index(3) == 0) solid = draw.index(4) == 0 ? place(mesh, frame) : place(draw.shape(), frame);
+          // Most go on a little, and come before or behind what they were behind or before.
+          if (draw.index(4) == 0) solid = draw.index(4) == 0 ? place(mesh, frame) : place(draw.shape(), frame);
+          if (draw.index(2) == 0) solid = moved_by(solid, Vec3f(draw.inside({-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1})));
         }
         // A twin in the same place is hit as early: the first of the two counts.
         if (person.solids.size() > 1) person.solids.back() = person.solids.front();
         // Somebody leaves, or part of them.
-        if (tick == 4) person.solids.resize(draw.index(2) == 0 ? 0 : person.solids.size() / 2);
+        if (tick == 8) person.solids.resize(draw.index(2) == 0 ? 0 : person.solids.size() / 2);
         person.surfaces.resize(person.solids.size());
         moved.push_back({i, person.solids, person.surfaces});
       }
@@ -105,7 +114,7 @@ TEST_CASE("all tracers agree in 400 random scenes on what each ray hits first of
         if (id == no_solid) continue;
         ++n_hits;
         const auto& solids = people[id.person].solids;
-        n_twins += id.solid > 0 && solids.size() > 1 && id.solid + 1U == solids.size() && tick < 4 ? 1 : 0;
+        n_twins += id.solid > 0 && solids.size() > 1 && id.solid + 1U == solids.size() && tick < 8 ? 1 : 0;
         n_of_others += id.person > 0 ? 1 : 0;
       }
       for (std::size_t i = 0; i < kinds.size(); ++i) {
