@@ -231,6 +231,26 @@ TEST_CASE("a crowd of natural people gives embree's powers at every tick, whoeve
   const Powers powers = powers_of(scene, script);
   CHECK(sum_of_squares(powers) > 0.0);
   CHECK(powers == powers_of(scene, script, TracerKind::embree));
+  // Whoever has just begun to look receives as much: nothing stays of who has moved or gone.
+  const Model model = compile(scene, script);
+  State state(model, 0);
+  std::vector<sim::PowerSteps> anew(powers.front().size());
+  std::size_t n_left = 0, n_before = 0;
+  for (std::size_t tick = 0; tick < powers.size(); ++tick) {
+    step_tick(model, state);
+    const auto& actors = state.run_state().crowd.actors();
+    const auto n_present = static_cast<std::size_t>(std::ranges::count_if(actors, &sim::Actor::present));
+    n_left += n_present < n_before ? 1 : 0;
+    n_before = n_present;
+    sim::PowerMeter(model.compiled().array(), fastest_tracer).measure(actors, anew);
+    REQUIRE(anew == powers[tick]);
+  }
+  CHECK(n_left >= 2);
+  // So do runs that take over what other runs remember.
+  script.replicates = 3;
+  const Model more = compile(scene, script);
+  run_study(more, {.threads = 1},
+            [&](const RunResult& result) { CHECK(result.samples == run_once(more, result.run).samples); });
 }
 
 namespace {
@@ -359,6 +379,40 @@ TEST_CASE("a trace explains every output and its shares stay within the signal's
     CHECK(std::abs(row.share_v) > 0.02);  // noise alone doesn't reach a threshold
   }
   CHECK(n_on > 50);
+}
+
+TEST_CASE("beside sensors of the other response each sensor answers as it does among its own kind", "[sim][analog]") {
+  SceneSpec scene = shipped_scene("meeting_room.gltf");
+  scene.sensor_models["HARD"] = scene.sensor_models.at("EKMC1604111");
+  scene.sensor_models["HARD"].response = Response::zones;
+  const std::vector<std::size_t> hard{1, 4};
+  for (const std::size_t sensor : hard) scene.sensors[sensor].model = "HARD";
+  ScriptSpec script = walkers(2);
+  const auto run = [&](std::optional<Response> response, Record record) {
+    script.sensing.response = response;
+    return run_once(compile(scene, script), 0, record);
+  };
+  const RunResult mixed = run(std::nullopt, Record::samples), zones = run(Response::zones, Record::samples_and_zones),
+                  analog = run(Response::analog, Record::samples);
+  std::size_t n_differ = 0;
+  for (std::size_t row = 0; row < mixed.samples.size(); ++row) {
+    for (std::size_t sensor = 0; sensor < scene.sensors.size(); ++sensor) {
+      const bool is_hard = std::ranges::find(hard, sensor) != hard.end();
+      const auto bit = [&](const RunResult& result) { return result.samples[row].bits[sensor]; };
+      REQUIRE(bit(mixed) == bit(is_hard ? zones : analog));
+      n_differ += bit(zones) != bit(analog) ? 1 : 0;
+    }
+  }
+  CHECK(n_differ > 0);
+  // Whoever asks for zones gets those of all sensors, whatever they answer by.
+  CHECK(run(std::nullopt, Record::samples_and_zones).zones == zones.zones);
+  CHECK(run(Response::analog, Record::samples_and_zones).zones == zones.zones);
+  const Model model = compile(scene, script);
+  State state(model, 0);
+  for (const ZoneSet& expected : zones.zones) {
+    step_tick(model, state);
+    REQUIRE(state.zones() == expected);
+  }
 }
 
 TEST_CASE("sensors answer physically unless their files or the study ask for zones", "[sim][analog]") {
