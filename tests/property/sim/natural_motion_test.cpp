@@ -195,6 +195,25 @@ TEST_CASE("natural movements keep joints within their limits, and speeds and acc
   CHECK(turn_acceleration.value < hardest_rad_s2);
 }
 
+TEST_CASE("small movements of a natural sitter go on at every second of 50 ticks a second") {
+  Sitter sitter(3, man(), desk_seat());
+  const int until_hands_lie = 5 * tick_rate_hz;
+  for (int tick = 0; tick < until_hands_lie; ++tick) sitter.tick(Activity::typing);
+  auto last = joints(sitter.motion);
+  int n_moved = 0;
+  bool has_moved = false;
+  for (int tick = 0; tick < 120 * tick_rate_hz; ++tick) {
+    sitter.tick(Activity::typing);
+    const auto now = joints(sitter.motion);
+    const bool moves = differ(now, last);
+    last = now;
+    REQUIRE_FALSE((moves && has_moved));
+    has_moved = moves;
+    n_moved += moves ? 1 : 0;
+  }
+  CHECK(n_moved > 100);
+}
+
 TEST_CASE("people of natural style differ in liveliness and pace as they should") {
   constexpr std::uint32_t n = 4000;
   double mean = 0.0, log_mean = 0.0, log_square = 0.0, pace = 0.0, pace_square = 0.0;
