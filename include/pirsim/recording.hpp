@@ -100,7 +100,7 @@ struct EmitOptions {
 /// The rows of all recorded runs, in order, as the Model's own detectors give them: without options those of its study,
 /// bit for bit. It may be another Model than the recorded one, with other electronics in its sensors, another seed or
 /// other effects on triggers and rows; its people are not asked, they did what was recorded. Throws Error(usage) for a
-/// Model whose room, sensors' places, lenses, responses or ticks aren't the recorded ones, for effects among the
+/// Model whose room, seats, sensors' places, lenses, responses or ticks aren't the recorded ones, for effects among the
 /// options that reach the geometry, and for a clock_lag that looks further ahead than was recorded, all of which need a
 /// recording of their own; Error(input) for unknown effects; and what `consume` throws.
 void emit(const Model& model, const Recording& recording, const EmitOptions& options,

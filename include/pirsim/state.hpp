@@ -27,7 +27,7 @@ class State {
   [[nodiscard]] std::uint32_t run() const noexcept;
   [[nodiscard]] std::int64_t tick() const noexcept;
   /// (n_zones) active at the current tick, also of sensors that don't answer by them; zones are those of Model::rays().
-  /// Valid until the next call or tick.
+  /// Valid until the next call or tick. It looks, so two threads may not ask one State.
   [[nodiscard]] const ZoneSet& zones() const;
   /// The reading at the end of the last whole window.
   [[nodiscard]] const Sample& sample() const noexcept;

@@ -313,7 +313,8 @@ class Trace:
 
         model: compiled with other electronics in its sensors (threshold, band, noise, pulses, hold, blind time) or
         another script's effects; without it the one that was followed. Its people aren't asked: they did what was
-        followed. Raises UsageError if its room, its sensors' places, lenses or responses, or its ticks are others.
+        followed. Raises UsageError if its room, seats, sensors' places, lenses or responses, or its
+        ticks are others.
         effects: on triggers and rows, instead of those of the model's script: `Effect`s, names, or dicts as in a
         script's file, {"dead_time": {"dead_s": 2}}; effects that change what the optics show are refused, they need a
         trace of their own. seed: instead of the model's, of the analog sensors' noise and of what effects draw.

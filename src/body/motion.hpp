@@ -83,7 +83,8 @@ class Motion {
   void tilt_spine(double radians);       ///< target of the spine's tilt, positive forward; only while seated
   /// Anywhere but on the way onto or off a seat; rising brings all channels back to 0.
   void adjust(Channel channel, double target, double seconds);
-  /// From now on small movements go on at every n-th tick alone, as far as they are by then.
+  /// From now on small movements go on at every n-th tick alone, by n ticks. One that is asked for in between begins
+  /// with the last of these: up to n - 1 ticks early.
   void move_in_steps_of(int n_ticks) noexcept { channel_step_ = n_ticks; }
   /// Where it goes or rests.
   [[nodiscard]] double target(Channel which) const noexcept { return channel(which).target(); }

@@ -204,7 +204,11 @@ RecipeSpec read_recipe(const std::filesystem::path& file, std::span<const std::s
   recipe.file = file;
   recipe.overrides.assign(overrides.begin(), overrides.end());
   recipe.text = input.bytes;
-  for (const std::string& change : overrides) recipe.text += "\n# --set " + change + '\n';
+  for (const std::string& change : overrides) {
+    // A dataset's own recipe has it already.
+    const std::string told = "\n# --set " + change + '\n';
+    if (recipe.text.find(told) == std::string::npos) recipe.text += told;
+  }
   recipe.name = map.text("name", io::stem_of_input(file));
   recipe.seed = map.unsigned_integer("seed", recipe.seed);
   recipe.days = map.integer("days", recipe.days, {.min = 1, .max = most_days});

@@ -18,7 +18,8 @@ constexpr double pace_sd_m_s = 0.2;    // Ref: [Weidmann1993]: 0.26 in the open
 constexpr double slowest_breath_hz = 0.2, fastest_breath_hz = 0.3;  // 12 to 18 breaths a minute, at rest
 constexpr double breath_tilt = radians(0.25);                       // assumed (0.1-0.5): +-2.4 mm at the shoulders
 constexpr int breath_levels = 4;  // to either side: a posture changes 16 times a breath instead of 200 times
-// How often a posture changes in small movements: `assumed` (5 to 50). 25 changes a signal by 2.8 % of its rms, less
+// How often a posture changes in small movements, or the next higher rate that divides the ticks: `assumed` (5 to 50).
+// 25 changes a signal by 2.8 % of its rms, less
 // than 34 rays a zone do; 5 by 16 % (analog_test.cpp).
 constexpr int small_movements_hz = 25;
 constexpr double settles_s = 1.0;  // assumed (0.6-1.5): into the posture of a new activity

@@ -54,9 +54,14 @@ void PowerMeter::measure(const std::vector<Actor>& actors, std::span<PowerSteps>
 
 void PowerMeter::measure(std::span<const PosedShape> solids, const BodyRadiance& radiance,
                          std::span<PowerSteps> powers) {
-  figures_.resize(1);
-  figures_.front().radiance = &radiance;
-  figures_.front().surfaces = surfaces_of(radiance);
+  moved_.clear();
+  for (std::size_t i = 0; i < figures_.size(); ++i) {
+    const Figure& figure = figures_[i];
+    if (figure.is_there && (figure.humanoid != nullptr || figure.radiance != radiance)) moved_.push_back({i, {}, {}});
+  }
+  take_away();
+  figures_.resize(std::max<std::size_t>(figures_.size(), 1));
+  if (!figures_.front().is_there) figures_.front() = {true, nullptr, radiance, surfaces_of(radiance), {}};
   moved_.assign(1, {0, solids, figures_.front().surfaces});
   follow(moved_);
   std::ranges::copy(powers_, powers.begin());
@@ -76,16 +81,10 @@ void PowerMeter::follow(const std::vector<Actor>& actors) {
   // Of who is another person now, or left with the last run, nothing stays.
   moved_.clear();
   for (std::size_t i = 0; i < figures_.size(); ++i) {
-    const bool stays = i < actors.size() && actors[i].present() &&
-                       figures_[i].humanoid == &actors[i].person().humanoid &&
-                       figures_[i].radiance == &actors[i].person().radiance;
-    if (figures_[i].humanoid == nullptr || stays) continue;
-    moved_.push_back({i, {}, {}});
+    const bool stays = i < actors.size() && actors[i].present() && figures_[i].humanoid == &actors[i].person().humanoid;
+    if (figures_[i].is_there && !stays) moved_.push_back({i, {}, {}});
   }
-  if (!moved_.empty()) {
-    follow(moved_);
-    for (const rt::Moved& gone : moved_) figures_[gone.person] = {};
-  }
+  take_away();
   moved_.clear();
   figures_.resize(std::max(figures_.size(), actors.size()));
   mannequins_.resize(figures_.size());
@@ -94,13 +93,19 @@ void PowerMeter::follow(const std::vector<Actor>& actors) {
     const PersonModel& person = actors[i].person();
     Figure& figure = figures_[i];
     const body::Outline outline = actors[i].motion().outline();
-    const bool is_new = figure.humanoid == nullptr;
+    const bool is_new = !figure.is_there;
     if (!is_new && tracer_->may_be_remembered() && is_same(outline, figure.outline)) continue;
-    if (is_new) figure = {&person.humanoid, &person.radiance, surfaces_of(person.radiance), {}};
+    if (is_new) figure = {true, &person.humanoid, person.radiance, surfaces_of(person.radiance), {}};
     figure.outline = outline;
     moved_.push_back({i, mannequins_[i].pose(person.humanoid, outline), figure.surfaces});
   }
   if (!moved_.empty()) follow(moved_);
+}
+
+void PowerMeter::take_away() {
+  if (moved_.empty()) return;
+  follow(moved_);
+  for (const rt::Moved& gone : moved_) figures_[gone.person] = {};
 }
 
 void PowerMeter::follow(std::span<const rt::Moved> moved) {

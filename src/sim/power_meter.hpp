@@ -35,20 +35,23 @@ class PowerMeter {
   void explain(const std::vector<Actor>& actors, std::vector<PowerShare>& shares);
 
  private:
-  /// What was followed last of a person. humanoid null: they weren't there.
+  /// What was followed last of a person.
   struct Figure {
-    const body::Humanoid* humanoid = nullptr;
-    const BodyRadiance* radiance = nullptr;
+    bool is_there = false;
+    const body::Humanoid* humanoid = nullptr;  ///< null: of a body that isn't an actor's
+    BodyRadiance radiance{};
     std::array<std::uint8_t, body::n_parts> surfaces{};  ///< parts of equal radiance
     body::Outline outline;
   };
 
+  /// Of those in moved_ nothing stays.
+  void take_away();
   /// Takes the tracer to where people are now.
   void follow(const std::vector<Actor>& actors);
   void follow(std::span<const rt::Moved> moved);
   [[nodiscard]] static std::array<std::uint8_t, body::n_parts> surfaces_of(const BodyRadiance& radiance) noexcept;
   [[nodiscard]] PowerSteps power(std::uint32_t ray, rt::SolidId solid) const noexcept {
-    return solid == rt::no_solid ? 0 : power_.power(ray, (*figures_[solid.person].radiance)[solid.solid]);
+    return solid == rt::no_solid ? 0 : power_.power(ray, figures_[solid.person].radiance[solid.solid]);
   }
 
   const PowerModel& power_;

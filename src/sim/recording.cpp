@@ -79,6 +79,8 @@ std::string optics_of(const CompiledStudy& study) {
   const RayBundle& zones = array.clipped();
   Sha256 digest;
   digest.add(std::to_string(study.sensing().tick_rate_hz) + ' ' + std::to_string(array.ticks_per_window()));
+  // Who left which seat is recorded by the seat's index.
+  for (const SeatSpec& seat : study.scene().seats) digest.add(seat.id + '\n');
   digest.add(bytes(zones.cluster_zones_begin));
   digest.add(bytes(zones.sensor_clusters_begin));
   static_assert(sizeof(Ray) == 6 * sizeof(float));  // nothing but numbers: equal bytes are equal rays
@@ -102,8 +104,13 @@ std::string optics_of(const CompiledStudy& study) {
   digest.add(bytes(power.clipped().range));
   digest.add(bytes(power.rays().weights));
   std::vector<double> backgrounds;
-  for (std::uint32_t ray = 0; ray < power.clipped().rays.size(); ++ray) backgrounds.push_back(power.background(ray));
+  std::vector<std::uint32_t> receivers;
+  for (std::uint32_t ray = 0; ray < power.clipped().rays.size(); ++ray) {
+    backgrounds.push_back(power.background(ray));
+    receivers.push_back(power.receiver_of(ray));
+  }
   digest.add(bytes(backgrounds));
+  digest.add(bytes(receivers));
   return digest.hex();
 }
 
@@ -117,7 +124,7 @@ class ReplayedOptics final : public DetectorLogic {
     if (recording.optics != optics_of(study_)) {
       throw Error(ErrorCode::usage,
                   "the recording is of other optics than the model's: only electronics, effects on triggers and rows "
-                  "and the seed may differ; room, sensors' places, lenses, responses and ticks may not");
+                  "and the seed may differ; room, seats, sensors' places, lenses, responses and ticks may not");
     }
     recording_ = &recording;
   }

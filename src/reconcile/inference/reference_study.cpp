@@ -44,7 +44,7 @@ namespace {
 
 constexpr std::uint32_t n_pilot_realizations = 40;
 
-/// Effects are applied to recorded zones, which an analog response needs more than.
+/// Realizations share recordings by RecordingFamily, which knows zones only.
 void require_hard_zones(const SceneSpec& scene, const ScriptSpec& script) {
   for (const SensorSpec& sensor : scene.sensors) {
     if (response_of(scene, script.sensing, sensor) != Response::analog) continue;

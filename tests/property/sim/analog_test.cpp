@@ -381,6 +381,30 @@ TEST_CASE("a trace explains every output and its shares stay within the signal's
   CHECK(n_on > 50);
 }
 
+TEST_CASE("what a meter has looked at before changes nothing, a body of another radiance or a crowd", "[sim][analog]") {
+  const Model model = compile(shipped_scene("meeting_room.gltf"), walkers(2));
+  const sim::SensorArray& array = model.compiled().array();
+  State state(model, 0);
+  for (int tick = 0; tick < 30; ++tick) step_tick(model, state);
+  const auto& actors = state.run_state().crowd.actors();
+  std::vector<PosedShape> solids;
+  sim::append_solids(actors.front(), solids);
+  const sim::BodyRadiance at_20 = sim::radiance_of({}, 20.0), at_10 = sim::radiance_of({}, 10.0);
+  sim::PowerMeter used(array, fastest_tracer);
+  const auto check_as_anew = [&](const auto&... what) {
+    std::vector<sim::PowerSteps> powers(array.analog()->power().n_receivers()), anew = powers;
+    used.measure(what..., powers);
+    sim::PowerMeter(array, fastest_tracer).measure(what..., anew);
+    CHECK(powers == anew);
+    CHECK(std::ranges::count(powers, 0) < static_cast<std::ptrdiff_t>(powers.size()));
+  };
+  check_as_anew(solids, at_20);
+  check_as_anew(solids, at_10);
+  check_as_anew(actors);
+  check_as_anew(solids, at_20);
+  check_as_anew(actors);
+}
+
 TEST_CASE("beside sensors of the other response each sensor answers as it does among its own kind", "[sim][analog]") {
   SceneSpec scene = shipped_scene("meeting_room.gltf");
   scene.sensor_models["HARD"] = scene.sensor_models.at("EKMC1604111");

@@ -303,6 +303,17 @@ TEST_CASE("a recording is refused to a model whose optics it doesn't tell") {
   SceneSpec fewer = scene;
   fewer.sensors.pop_back();
   check_refused(fewer, script);
+  SceneSpec other_seats = scene;
+  std::ranges::reverse(other_seats.seats);
+  check_refused(other_seats, script);
+  SceneSpec other_steps = scene;  // as many facets of each step as before, and as many rays
+  std::vector<ClusterSpec>& facets = other_steps.sensor_models.at("EKMC1604111").clusters;
+  const auto first = std::ranges::find(facets, 1, &ClusterSpec::lens_step);
+  const auto third = std::ranges::find(facets, 3, &ClusterSpec::lens_step);
+  REQUIRE(third != facets.end());
+  std::swap(first->lens_step, third->lens_step);
+  std::swap(first->range_m, third->range_m);
+  check_refused(other_steps, script);
   ScriptSpec zones = script;
   zones.sensing.response = Response::zones;
   check_refused(scene, zones);
