@@ -18,7 +18,7 @@ import sys
 import numpy as np
 
 import second_simulator as second
-from faults import FAULTS, rotation
+from faults import FAULTS, hung
 
 DATA = pathlib.Path(__file__).parents[2] / "data"
 COLUMNS = ("fault", "seed", "what", "truth", "score", "verdict", "effects", "p", "closed")
@@ -65,12 +65,7 @@ class AsBuilt:
         return second.sorted_sensors(self.scene)
 
     def hang(self, number, world):
-        """About the vertical through the sensor, and about its own level axis."""
-        turn = rotation([0, 1, 0], self.yaws[number])
-        turned = np.eye(4)
-        turned[:3, :3] = turn[:3, :3] @ world[:3, :3]
-        turned[:3, 3] = world[:3, 3]
-        return turned @ rotation([1, 0, 0], self.tilts[number])
+        return hung(world, self.yaws[number], self.tilts[number])
 
 
 class Challenger:

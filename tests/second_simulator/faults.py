@@ -91,6 +91,13 @@ def rotation(axis, degrees):
     return matrix
 
 
+def hung(world, yaw_deg, tilt_deg):
+    """A sensor's matrix, turned about the vertical through it and about its own level axis."""
+    result = world.copy()
+    result[:3, :3] = rotation([0, 1, 0], yaw_deg)[:3, :3] @ world[:3, :3]
+    return result @ rotation([1, 0, 0], tilt_deg)
+
+
 @fault
 def turned(draw):
     return hung_otherwise(draw, "a sensor is turned by 5 to 8 degrees", ("sensor_yaw",),
@@ -390,24 +397,30 @@ def lost_telegrams(draw):
                  books=lambda windows, random, done: windows & (random.random(windows.shape) >= chance))
 
 
-@fault
-def weak_comparator(draw):
+def heard(chance):
     """A change of one cluster is a weak signal; the more change at a tick, the surer it is heard."""
-    chance = draw.uniform(0.1, 0.25)
 
     def detect(rays, shares, rate_hz, random):
         active = shares > 0
         changed = active[1:] != active[:-1]
         return by_sensor(rays, changed & (random.random(changed.shape) < chance))
 
-    return Fault("the comparator misses weak signals", ("missed_triggers",), detect=detect)
+    return detect
+
+
+def noisy(rate):
+    """Triggers from nothing, by the second; rate: of all sensors, or of each."""
+    return lambda t, rate_hz, random: t | (random.random(t.shape) < rate / rate_hz)
+
+
+@fault
+def weak_comparator(draw):
+    return Fault("the comparator misses weak signals", ("missed_triggers",), detect=heard(draw.uniform(0.1, 0.25)))
 
 
 @fault
 def noise_spikes(draw):
-    rate = draw.uniform(0.02, 0.05)
-    return Fault("noise trips each sensor", ("false_triggers",),
-                 electronics=lambda t, rate_hz, random: t | (random.random(t.shape) < rate / rate_hz))
+    return Fault("noise trips each sensor", ("false_triggers",), electronics=noisy(draw.uniform(0.02, 0.05)))
 
 
 @fault
@@ -428,9 +441,8 @@ def draught(draw):
     return Fault("a heating's draught trips the sensors again and again", ("trigger_bursts",), electronics=electronics)
 
 
-@fault
-def lock_out(draw):
-    blind_s = draw.uniform(2.5, 4.5)
+def blind_after(blind_s):
+    """A trigger, then none for blind_s."""
 
     def electronics(triggers, rate_hz, random):
         triggers = triggers.copy()
@@ -441,20 +453,30 @@ def lock_out(draw):
                 awake = tick + round(blind_s * rate_hz) if tick >= awake else awake
         return triggers
 
-    return Fault("a sensor is blind for some seconds after a trigger", ("dead_time",), electronics=electronics)
+    return electronics
+
+
+def held_on(hold_s):
+    """The output is on for hold_s, at least a tick, from the last trigger on."""
+
+    def electronics(triggers, rate_hz, random):
+        held = np.cumsum(np.vstack([np.zeros((1, triggers.shape[1]), int), triggers]), axis=0)
+        before = np.maximum(np.arange(1, len(held)) - max(1, round(hold_s * rate_hz)), 0)
+        return held[1:] > held[before]
+
+    return electronics
+
+
+@fault
+def lock_out(draw):
+    return Fault("a sensor is blind for some seconds after a trigger", ("dead_time",),
+                 electronics=blind_after(draw.uniform(2.5, 4.5)))
 
 
 @fault
 def monostable(draw):
-    hold_s = draw.uniform(1.5, 3)
-
-    def electronics(triggers, rate_hz, random):
-        held = np.cumsum(np.vstack([np.zeros((1, triggers.shape[1]), int), triggers]), axis=0)
-        before = np.maximum(np.arange(1, len(held)) - round(hold_s * rate_hz), 0)
-        return held[1:] > held[before]
-
     return Fault("the output stays on for some seconds after the last trigger", ("pulse_stretching",),
-                 electronics=electronics)
+                 electronics=held_on(draw.uniform(1.5, 3)))
 
 
 # --------------------------------------------------------------------------------------------------------------- books

@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 """pirsim's rows against those of the second simulator, bit for bit. Usage: PIRSIM DATA_DIRECTORY. Needs numpy."""
 import csv
+import datetime
 import importlib.util
+import json
 import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 DEBIANS = "/usr/bin/python3"  # which has Debian's numpy
 if importlib.util.find_spec("numpy") is None:
@@ -20,7 +23,9 @@ import numpy as np
 
 import challenge
 import faults
+import own_rooms
 import second_simulator as second
+from long_runs import covered_in_blocks
 
 PIRSIM = DATA = None
 SCRIPT = """pirsim_script: 1
@@ -40,6 +45,17 @@ people:
       - sit: ${seat}
       - work: {duration_s: 24, arm_amplitude_m: 0.1, arm_period_s: 3, tilt_choices_deg: [-15, 0, 15], tilt_every_s: 6}
       - rise
+"""
+RECIPE = """pirsim_recipe: 1
+name: Short mornings
+rooms:
+  - {count: 3, width_m: 5, depth_m: 4, seats: 2,
+     sensors: [{mount: corner, count: 2, height_m: [2.2, 2.4], tilt_deg: [15, 45],
+                model: [EKMC1601111, EKMC1691111, EKMC1693111]}]}
+days: 2
+schedule: {from: "08:50", to: "08:58", arrival: {mean: "08:52", sd_min: 1}, staff: [{count: 2}]}
+effects: [{false_triggers: {rate_per_s: 0.5}}]
+split: {validation_rooms: 0, test_rooms: 0, test_days: 0}
 """
 
 
@@ -80,6 +96,12 @@ class SecondSimulator(unittest.TestCase):
             expected[int(row["tick"]), first[row["sensor"]]:][: len(clusters)] = clusters
         self.assertGreater(expected.sum(), 1000)
         self.assertLessEqual((expected != self.active).sum(), 1e-5 * expected.size)
+
+    def test_blocks_of_ticks_decide_as_single_ticks_do(self):
+        [(ticks, seen)] = covered_in_blocks(self.rays, self.motion)
+        expected = np.concatenate([part for _, part in second.covered_rays(self.rays, self.motion)])
+        self.assertEqual(ticks, slice(1, len(self.motion.times)))
+        np.testing.assert_array_equal(seen, expected)
 
     def test_a_sensor_that_is_turned_by_three_degrees_is_noticed(self):
         turned = second.Rays(self.room, DATA / "sensors", mount=lambda _, world: world @ faults.rotation([0, 1, 0], 3.0))
@@ -156,6 +178,88 @@ class SecondSimulator(unittest.TestCase):
         self.assertEqual(challenge.score((), told("none-in-catalogue")), "unknown")
         self.assertEqual(challenge.score(("a",), told("none-in-catalogue")), "unknown")
         self.assertEqual(challenge.score(("a",), told("no-disagreement")), "nothing seen")
+
+
+class OwnRooms(unittest.TestCase):
+    """Mornings of people of natural style, lenses with square zones."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        folder = pathlib.Path(cls.folder.name)
+        (folder / "recipe.yaml").write_text(RECIPE)
+        for name, *more in (("plain", "--plain", "--rooms", "1", "--days", "1"), ("faulty",)):
+            subprocess.run([sys.executable, own_rooms.__file__, PIRSIM, folder / "recipe.yaml", "-o", folder / name, *more],
+                           check=True, stdout=subprocess.DEVNULL)
+        cls.plain, cls.faulty = folder / "plain", folder / "faulty"
+
+    def test_sensors_without_faults_say_what_pirsims_zones_say(self):
+        """Each second, and in the file each reading."""
+        room = own_rooms.Room(PIRSIM, self.plain / "dataset", "room_0001", own_rooms.AsWired.plain)
+        [day] = room.days
+        with unittest.mock.patch.object(own_rooms, "PART_S", 100):  # five parts
+            outputs = day.outputs(room.rays, room.fault, np.random.default_rng(1))
+        expected = np.array([[int(row[sensor]) for sensor in room.rays.sensors] for row in day.rows], bool)
+        self.assertEqual(expected.shape, (480, 2))
+        self.assertGreater(expected.sum(0).min(), 5)
+        np.testing.assert_array_equal(second.windows_of(outputs, own_rooms.RATE_HZ), expected)
+        _, *readings = (line.split(",") for line in (self.plain / "room_0001/days/day_01.csv").read_text().splitlines())
+        self.assertEqual([reading[:2] for reading in readings[:2]], [["2026/03/02", "08:50:30"], ["2026/03/02", "08:51:00"]])
+        np.testing.assert_array_equal(np.array([reading[2:4] for reading in readings], int),
+                                      expected.reshape(16, 30, 2).any(1))
+        self.assertEqual([int(reading[4]) for reading in readings], [int(row["people"]) for row in day.rows[29::30]])
+        log = (self.plain / "room_0001/log.csv").read_text().splitlines()
+        np.testing.assert_array_equal(self.held(log[1:], self.home_assistants, room.rays.sensors), outputs)
+
+    def test_each_form_of_a_log_tells_of_the_first_day_what_its_readings_tell(self):
+        """Events, held from one to the next."""
+        forms = {}
+        for number in (1, 2, 3):
+            folder = self.faulty / f"room_{number:04}"
+            truth, log = json.loads((folder / "truth.json").read_text()), (folder / "log.csv").read_text().splitlines()
+            forms[truth["log"]] = log
+            _, *readings = (line.split(",") for line in (folder / "days/day_01.csv").read_text().splitlines())
+            told = np.array([reading[2:4] for reading in readings], int)
+            with self.subTest(truth["log"]):
+                np.testing.assert_array_equal(self.readings_of(truth["log"], log, truth["sensors"]), told)
+                self.assertGreater(told.sum(), 0)
+        self.assertEqual(set(forms), {"home_assistant", "casas", "wide"})
+        self.assertNotIn("Count", forms["wide"][0])
+
+    def readings_of(self, form, log, sensors):
+        if form == "wide":
+            return np.array([line.split(",")[2:] for line in log[1:]], int)
+        if form == "casas":
+            return second.windows_of(self.held(log, self.casas_, sensors), 300).astype(int)
+        return second.windows_of(self.held(log[1:], self.home_assistants, sensors), 300).astype(int)
+
+    @staticmethod
+    def casas_(line):
+        date, clock, sensor, state = line.split()
+        return sensor, state == "ON", datetime.datetime.fromisoformat(f"{date} {clock}")
+
+    @staticmethod
+    def home_assistants(line):
+        entity, state, stamp = line.split(",")
+        utc = datetime.datetime.fromisoformat(stamp[:-1])
+        return entity[len("binary_sensor."):-len("_motion")].upper(), state == "on", utc + datetime.timedelta(hours=1)
+
+    @staticmethod
+    def held(lines, parsed, sensors):
+        """(ticks, sensors) From tick 1 on: each state, from its moment to the next."""
+        on = np.zeros((480 * own_rooms.RATE_HZ, len(sensors)), bool)
+        for sensor, state, when in map(parsed, lines):
+            tick = round((when - datetime.datetime(2026, 3, 2, 8, 50)).total_seconds() * own_rooms.RATE_HZ)
+            on[max(tick - 1, 0):, sensors.index(sensor)] = state
+        return on
+
+    def test_every_room_has_faults_of_its_own_and_the_same_ones_again(self):
+        truths = [(self.faulty / f"room_{number:04}/truth.json").read_text() for number in (1, 2, 3)]
+        self.assertEqual(len({json.loads(truth)["hold_s"] for truth in truths}), 3)
+        self.assertFalse(any(effect for effect in (self.faulty / "dataset/effects.csv").read_text().splitlines()[1:]))
+        drawn = own_rooms.AsWired.drawn(np.random.default_rng([1, 4, 0]), 2)
+        self.assertEqual(drawn.hold_s, json.loads(truths[0])["hold_s"])
 
 
 if __name__ == "__main__":

@@ -29,23 +29,30 @@ CHUNK = 50  # ticks traced at once
 
 # ---------------------------------------------------------------------------------------------------------- glTF
 class Gltf:
-    """JSON glTF whose buffers stand in the file."""
+    """glTF whose buffers stand in the file: JSON, or binary, which is mapped and not read."""
 
     DTYPES = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
     WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 
     def __init__(self, path):
+        if pathlib.Path(path).suffix == ".glb":
+            binary = np.memmap(path, mode="r")
+            text_end = 20 + int(binary[12:16].view("<u4")[0])  # a header of 12 bytes, then chunks with one of 8
+            self.json = json.loads(binary[20:text_end].tobytes())
+            self.buffers = [binary[text_end + 8 :]]
+            return
         self.json = json.loads(pathlib.Path(path).read_text())
         self.buffers = [base64.b64decode(buffer["uri"].split(",", 1)[1]) for buffer in self.json["buffers"]]
 
-    def accessor(self, index):
+    def accessor(self, index, chosen=slice(None)):
+        """(n, width) Its rows, or the chosen ones, as floats or whole numbers."""
         accessor = self.json["accessors"][index]
         view = self.json["bufferViews"][accessor["bufferView"]]
         kind = np.dtype(self.DTYPES[accessor["componentType"]])
         width = self.WIDTHS[accessor["type"]]
         stride = view.get("byteStride", kind.itemsize * width)
         begin = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
-        rows = np.ndarray((accessor["count"], width), kind, self.buffers[view["buffer"]], begin, (stride, kind.itemsize))
+        rows = np.ndarray((accessor["count"], width), kind, self.buffers[view["buffer"]], begin, (stride, kind.itemsize))[chosen]
         return rows.astype(float) if kind.kind == "f" else rows.astype(int)
 
     def nodes(self):
@@ -146,20 +153,30 @@ def sorted_sensors(scene):
 
 
 def facets_of(path):
-    """Per facet of a diamond lens: twenty directions (five for each of four zones) and the range."""
+    """Per facet: twenty directions (five for each of four zones) and the range."""
     text = path.read_text()
-    number = lambda key: float(re.search(rf"^{key}: *([-\d.]+)", text, re.M).group(1))
-    assert re.search(r"^layout: *diamond", text, re.M), f"{path}: only diamond lenses are known here"
-    plane, spacing, half_diagonal = number("plane_m"), number("half_spacing_ratio"), number("half_diagonal_ratio")
-    steps = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]], float)
+    numbers_in = lambda part: {key: float(value) for key, value in re.findall(r"(\w+): *([-\d.]+)", part)}
+    lens = numbers_in("\n".join(re.findall(r"^\w+: *[-\d.]+ *$", text, re.M)))
+    layout = re.search(r"^layout: *(\w+)", text, re.M).group(1)
+    assert "missing: outer" not in text, f"{path}: only whole facets are known here"
     facets = []
-    for x, y, reach in re.findall(r"- \{x_m: *([-\d.]+), *y_m: *([-\d.]+),.*range_m: *([\d.]+)\}", text):
-        centre = np.array([float(x), float(y)])
-        length = np.sqrt(centre @ centre + plane**2)
-        points = [zone + step for zone in centre + spacing * length * steps
-                  for step in np.vstack([half_diagonal * length * steps, [[0, 0]]])]
-        facets.append((np.column_stack([points, np.full(len(points), -plane)]), float(reach)))
+    for facet in map(numbers_in, re.findall(r"^ *- \{(x_m:.*)\}", text, re.M)):
+        centre = np.array([facet["x_m"], facet["y_m"]])
+        to_zones, to_corners = quad(layout, lens, facet, np.sqrt(centre @ centre + lens["plane_m"] ** 2))
+        points = [centre + zone + corner for zone in to_zones for corner in np.vstack([to_corners, [[0, 0]]])]
+        directions = np.column_stack([points, np.full(len(points), -lens["plane_m"])])
+        facets.append((directions, facet.get("range_m", lens.get("range_m"))))
     return facets
+
+
+def quad(layout, lens, facet, distance):
+    """(4, 2) From a facet's centre to its zones' centres, and (4, 2) from these to a zone's corners, on the plane."""
+    if layout == "diamond":
+        axes = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]], float)
+        return lens["half_spacing_ratio"] * distance * axes, lens["half_diagonal_ratio"] * distance * axes
+    diagonals = np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]], float)
+    side = facet["zone_side_m"]
+    return facet.get("pitch_m", side / 0.6) / 2 * diagonals, side / 2 * diagonals
 
 
 # ---------------------------------------------------------------------------------------------------------- ray tests
@@ -218,15 +235,15 @@ def box_entry(o, d, centre, rotation, half):
 
 # ---------------------------------------------------------------------------------------------------------- motion
 class Motion:
-    """The solids of all people at every tick, from an exported run."""
+    """The solids of all people at every tick, or at the chosen ones, from an exported run."""
 
-    def __init__(self, exported):
+    def __init__(self, exported, ticks=slice(None)):
         tracks = {}
         animation = exported.json["animations"][0]
         for channel in animation["channels"]:
             sampler = animation["samplers"][channel["sampler"]]
-            tracks[channel["target"]["node"], channel["target"]["path"]] = exported.accessor(sampler["output"])
-            self.times = exported.accessor(sampler["input"])[:, 0]
+            tracks[channel["target"]["node"], channel["target"]["path"]] = exported.accessor(sampler["output"], ticks)
+            self.times = exported.accessor(sampler["input"], ticks)[:, 0]
         nodes = exported.json["nodes"]
         persons = {mark(node)["id"]: i for i, node in enumerate(nodes) if mark(node).get("type") == "person"}
         self.solids = []  # (about, origins, rotations, present)
@@ -277,10 +294,10 @@ def distance_of_line(rays, points):
     return np.sqrt(np.maximum(square + along * (along - 2 * to_point), 0))
 
 
-def covered_shares(rays, motion):
+def covered_shares(rays, motion, covered=covered_rays):
     """(ticks, clusters) share of a cluster's rays that hit a body. The first is empty."""
     shares = np.zeros((len(motion.times), len(rays.sensor_of_cluster)))
-    for ticks, seen in covered_rays(rays, motion):
+    for ticks, seen in covered(rays, motion):
         for cluster in range(shares.shape[1]):
             its = rays.clusters == cluster
             if its.any():
