@@ -9,6 +9,7 @@ find_package(TinyGLTF REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(Threads REQUIRED)
+find_package(date REQUIRED)  # time zones of logs, by the system's data base (tzdata)
 find_package(NLopt REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)  # SHA-256 of data and inputs

@@ -27,7 +27,8 @@ BELOW = {
 BELOW["app"] = set(BELOW)
 # rooms of a layer: who may include whom
 ROOMS = {
-    "io": {"files": set(), "read": {"files"}, "write": {"files"}, "pages": {"files", "write"}},
+    "io": {"files": set(), "read": {"files"}, "write": {"files"}, "log": {"files", "read"},
+           "pages": {"files", "write", "log"}},
     "reconcile": {
         "data": set(),
         "ensemble": {"data"},
@@ -45,7 +46,7 @@ PUBLIC = {
     "model": "sim", "state": "sim", "study": "sim", "recording": "sim",
     "coverage": "studies", "look": "studies", "walk_test": "studies",
     "room": "dataset", "dataset": "dataset",
-    "csv": "io", "io": "io",
+    "csv": "io", "io": "io", "log": "io",
     "reconcile": "reconcile", "reconcile_outcome": "reconcile",
 }
 # header prefix of a third-party library -> the only layers that may include it
@@ -58,6 +59,7 @@ THIRD_PARTY = {
     "zlib": {"io"},
     "zstd": {"io"},
     "OpenMesh": {"geom"},
+    "date": {"io"},
     "Random123": {"core"},
     "nlopt": {"studies"},
     "Eigen": {"stats"},

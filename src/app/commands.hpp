@@ -22,6 +22,7 @@ void add_placements_command(CLI::App& app);
 void add_status_command(CLI::App& app);
 void add_merge_command(CLI::App& app);
 void add_reconcile_command(CLI::App& app);
+void add_log_command(CLI::App& app);
 void add_help_command(CLI::App& app);
 /// These two belong to reconcile.
 void add_seal_command(CLI::App& reconcile_command);
@@ -29,9 +30,9 @@ void add_open_command(CLI::App& reconcile_command);
 
 /// In the order of the help.
 inline constexpr std::array all_commands{
-    add_run_command,     add_day_command,      add_check_command,     add_preview_command,
-    add_export_command,  add_view_command,     add_room_command,      add_dataset_command,
-    add_effects_command, add_coverage_command, add_walktest_command,  add_placements_command,
-    add_status_command,  add_merge_command,    add_reconcile_command, add_help_command};
+    add_run_command,      add_day_command,        add_check_command,   add_preview_command, add_export_command,
+    add_view_command,     add_room_command,       add_dataset_command, add_effects_command, add_coverage_command,
+    add_walktest_command, add_placements_command, add_status_command,  add_merge_command,   add_reconcile_command,
+    add_log_command,      add_help_command};
 
 }  // namespace pirsim::app

@@ -39,4 +39,9 @@ inline constexpr double measured_run_s = 1e7;               ///< as a script's d
 inline constexpr std::size_t measured_rows = 10'000'000;    ///< with gaps filled; 100 MB of ten sensors
 inline constexpr std::size_t measured_replicates = 10'000;  ///< of a trial: 27 years of days
 
+// Of logs. All limits are assumed: some ten times a year of ten sensors.
+inline constexpr std::size_t log_columns = 10'000;
+inline constexpr std::size_t log_changes = 20'000'000;  ///< of all sensors; 24 bytes each
+inline constexpr std::size_t log_windows = 1'000'000'000;
+
 }  // namespace pirsim::limits

@@ -7,6 +7,7 @@
 #include "core/digest.hpp"
 #include "core/text.hpp"
 #include "io/files/posix_file.hpp"
+#include "io/files/utf16.hpp"
 #include "pirsim/error.hpp"
 
 namespace pirsim::io {
@@ -23,42 +24,12 @@ Where end_of(std::string_view text, const std::string& name) {
   return {name, static_cast<int>(line), static_cast<int>(column)};
 }
 
-void append_utf8(char32_t code, std::string& text) {
-  const auto add = [&](char32_t bits) { text += static_cast<char>(static_cast<unsigned char>(bits)); };
-  if (code < 0x80) return add(code);
-  if (code < 0x800) return add(0xC0U | code >> 6U), add(0x80U | (code & 0x3FU));
-  if (code < 0x10000) {
-    add(0xE0U | code >> 12U);
-  } else {
-    add(0xF0U | code >> 18U);
-    add(0x80U | (code >> 12U & 0x3FU));
-  }
-  add(0x80U | (code >> 6U & 0x3FU));
-  add(0x80U | (code & 0x3FU));
-}
-
-enum class ByteOrder { little, big };
-
-std::string from_utf16(std::string_view bytes, ByteOrder order, const std::string& name) {
+std::string from_utf16(std::string_view bytes, Utf16Decoder::ByteOrder order, const std::string& name) {
+  Utf16Decoder decoder(order);
   std::string text;
-  const auto unit = [&](std::size_t at) -> char32_t {
-    const auto first = static_cast<unsigned char>(bytes[at]), second = static_cast<unsigned char>(bytes[at + 1]);
-    return order == ByteOrder::little ? first | second << 8U : first << 8U | second;
-  };
-  const auto refuse = [&](const std::string& why) {
-    throw Error(ErrorCode::input, end_of(text, name), "not UTF-16: " + why);
-  };
-  for (std::size_t at = 0; at < bytes.size(); at += 2) {
-    if (at + 1 == bytes.size()) refuse("it ends in half a character");
-    char32_t code = unit(at);
-    if (code >= 0xD800 && code < 0xE000) {
-      const char32_t low = at + 3 < bytes.size() ? unit(at + 2) : 0;
-      if (code >= 0xDC00 || low < 0xDC00 || low >= 0xE000) refuse("half of a pair of surrogates");
-      code = 0x10000 + ((code - 0xD800) << 10U) + (low - 0xDC00);
-      at += 2;
-    }
-    append_utf8(code, text);
-  }
+  auto fault = decoder.add(bytes, text);
+  if (!fault) fault = decoder.finish();
+  if (fault) throw Error(ErrorCode::input, end_of(text, name), "not UTF-16: " + *fault);
   return text;
 }
 
@@ -107,9 +78,9 @@ std::string text_from(std::string bytes, const std::string& name) {
   if (whole.starts_with(std::string_view("\xFF\xFE\0\0", 4)) || whole.starts_with(std::string_view("\0\0\xFE\xFF", 4)))
     throw Error(ErrorCode::input, {name, 1, 1}, "UTF-32 isn't read: save the file as UTF-8");
   if (whole.starts_with("\xFF\xFE")) {
-    bytes = from_utf16(whole.substr(2), ByteOrder::little, name);
+    bytes = from_utf16(whole.substr(2), Utf16Decoder::ByteOrder::little, name);
   } else if (whole.starts_with("\xFE\xFF")) {
-    bytes = from_utf16(whole.substr(2), ByteOrder::big, name);
+    bytes = from_utf16(whole.substr(2), Utf16Decoder::ByteOrder::big, name);
   } else if (whole.starts_with("\xEF\xBB\xBF")) {
     bytes.erase(0, 3);
   }

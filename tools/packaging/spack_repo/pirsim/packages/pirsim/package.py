@@ -39,6 +39,7 @@ class Pirsim(CMakePackage):
     depends_on("zlib-api")
     depends_on("zstd@1.4:")
     depends_on("openssl@3:")
+    depends_on("date@3: +tz tzdb=system")
 
     # Draws the charts of reports; built into the library.
     resource(

@@ -1,0 +1,209 @@
+// Logs of motion sensors as people have them, and windows made from them. The forms: docs/formats/log.md.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pirsim/error.hpp"
+#include "pirsim/input_file.hpp"
+
+namespace pirsim {
+
+// What a log's columns and times mean. All of it may be left to the reader, which takes what it finds.
+
+struct LogMap {
+  enum class Form {
+    found,  ///< as the log looks
+    wide,   ///< a row a reading, a column a sensor
+    events  ///< a row a change of one sensor
+  };
+  enum class Rows {
+    found,
+    readings,  ///< of a wide log: a row every interval, whose values hold for that interval
+    changes    ///< a row whenever something changed, whose values hold until the next row
+  };
+  enum class Dates { found, month_first, day_first };  ///< of 12/01/2017
+  enum class Stamps { end, begin };                    ///< which end of a reading its time stamp tells
+  enum class People {
+    count,    ///< how many are there
+    presence  ///< 1 if anybody is
+  };
+  struct Sensor {
+    std::string name;    ///< of the sensor in the scene
+    std::string in_log;  ///< its column or entity
+    bool operator==(const Sensor&) const = default;
+  };
+
+  Form form = Form::found;
+  Rows rows = Rows::found;
+  std::vector<std::string> time;  ///< a column, or those of date and time; empty: found
+  std::string sensor_column;      ///< of events
+  std::string state_column;       ///< of events
+  /// IANA name: "Europe/Berlin". Stamps without an offset are local times there, others are told so. Empty: local times
+  /// are taken as they are, and every day has 24 hours.
+  std::string time_zone;
+  Dates dates = Dates::found;
+  Stamps stamps = Stamps::end;
+  std::vector<Sensor> sensors;  ///< empty: all that the log has, under its own names
+  std::string people;           ///< column or entity of the count; empty: found in wide logs
+  People people_mean = People::count;
+  std::optional<double> interval_s;     ///< between readings; none: found
+  std::optional<double> longest_gap_s;  ///< what is longer isn't known. None: 1.5 intervals; of events: any is known
+  std::optional<double> hold_s;         ///< of events: how long motion lasts whose end isn't told
+  double shift_s = 0.0;                 ///< added to every time: the log's clock is so much late
+  std::string from, to;                 ///< local times, "2026-03-02T08:30"; empty: all
+  bool operator==(const LogMap&) const = default;
+};
+
+/// A moment of a log.
+struct LogMoment {
+  /// Microseconds since 1970-01-01T00:00 UTC; of a log that tells neither zone nor offset, of its own clock; of one
+  /// that tells elapsed seconds, since their zero. Never jumps.
+  std::int64_t us = 0;
+  std::int32_t offset_s = 0;  ///< local time is so much ahead of UTC
+
+  [[nodiscard]] double seconds() const noexcept { return static_cast<double>(us) * 1e-6; }
+  [[nodiscard]] std::int64_t local_us() const noexcept { return us + std::int64_t{offset_s} * 1'000'000; }
+  bool operator==(const LogMoment&) const = default;
+};
+
+enum class LogClock {
+  elapsed,  ///< seconds since something began
+  local,    ///< local times of an unknown zone, days of 24 hours
+  zoned     ///< local times whose offset from UTC is known
+};
+
+/// Local time, "2026-03-02T08:30:00", with as many decimals as it has; of elapsed time "30600 s".
+[[nodiscard]] std::string to_text(const LogMoment& moment, LogClock clock);
+
+// What was read: of each sensor when it changed.
+
+namespace log_state {
+inline constexpr std::int32_t off = 0, on = 1, unknown = 2;
+inline constexpr std::int32_t unknown_count = -1;
+}  // namespace log_state
+
+/// From this moment on. Of readings: from the one with this stamp, the one before being so much earlier.
+struct LogChange {
+  std::int64_t us = 0;
+  std::int64_t since_last_us = 0;  ///< of readings; 0 of events
+  std::int32_t value = 0;          ///< log_state, or a number of people
+  bool operator==(const LogChange&) const = default;
+};
+
+struct LogTrack {
+  std::string name;                ///< of the map, else of the log
+  std::string in_log;              ///< column or entity
+  std::vector<LogChange> changes;  ///< in order of time; neighbours differ. Before the first nothing is known
+  std::uint64_t n_read = 0;        ///< readings or events
+};
+
+/// From this moment on, local time is so much ahead of UTC.
+struct LogOffset {
+  std::int64_t from_us = 0;
+  std::int32_t offset_s = 0;
+};
+
+struct Log {
+  std::vector<InputFile> files;
+  LogMap map;  ///< as given, completed by what was found
+  LogClock clock = LogClock::local;
+  std::vector<LogOffset> offsets;  ///< in order of time; the first holds before it, too
+  std::vector<LogTrack> sensors;
+  std::optional<LogTrack> people;
+  std::int64_t begin_us = 0, end_us = 0;  ///< what it tells of: readings in (begin, end], or events in [begin, end)
+  std::int64_t interval_us = 0;           ///< between readings; 0: events
+  std::uint64_t n_rows = 0;               ///< that were read
+  std::vector<std::string> others;        ///< columns or entities that are no motion sensors
+  std::uint64_t n_other_rows = 0;         ///< events of those
+  std::vector<Issue> remarks;             ///< what is odd, a kind once
+
+  [[nodiscard]] bool has_readings() const noexcept { return interval_us > 0; }
+  [[nodiscard]] LogMoment moment(std::int64_t us) const;
+};
+
+namespace io {
+
+// Reading. A file may be a pipe, UTF-16, or compressed by gzip or Zstandard. It is read once, from begin to end, and
+// memory grows with the number of changes in it: 24 bytes each.
+
+struct LogObserver {
+  std::function<void(std::uint64_t rows)> read;  ///< now and then: so many rows so far; may throw to end the reading
+};
+
+/// One log: several files are parts of it, in any order. Throws Error: io; input with all faults that could be told
+/// apart, each kind once with its first place and how often it appears.
+[[nodiscard]] Log read_log(std::span<const std::filesystem::path> files, const LogMap& map = {},
+                           const LogObserver& observer = {});
+
+/// Throws Error (io, input, usage).
+[[nodiscard]] LogMap read_log_map(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+/// As YAML that read_log_map() reads back.
+[[nodiscard]] std::string to_yaml(const LogMap& map);
+
+}  // namespace io
+
+// Windows.
+
+/// Windows of equal length, in order of time, also those in which nothing is known.
+struct LogRows {
+  std::vector<std::string> sensors;
+  double window_s = 0.0;
+  LogClock clock = LogClock::local;
+  std::vector<LogMoment> begin;  ///< (n_windows)
+  /// (n_windows x n_sensors): 1 if any motion is in the window, 0 if it is known throughout and none is, otherwise 2.
+  std::vector<std::uint8_t> motion;
+  std::vector<std::int32_t> people;  ///< (n_windows) at the window's end, -1: unknown; empty if the log has no count
+  LogMap::People people_mean = LogMap::People::count;
+
+  [[nodiscard]] std::size_t n_windows() const noexcept { return begin.size(); }
+  [[nodiscard]] std::uint8_t at(std::size_t window, std::size_t sensor) const {
+    return motion[window * sensors.size() + sensor];
+  }
+};
+
+/// The windows of a log: of one length, and aligned to the first day's midnight. Readings belong to the window (begin,
+/// end] in which their stamp is, and to all that lie between their stamp and the one before; events to [begin, end).
+class LogWindows {
+ public:
+  /// The log outlives it. Throws Error(usage) for a length that isn't a whole number of milliseconds, or so short that
+  /// there would be more than a billion windows.
+  LogWindows(const Log& log, double window_s);
+
+  [[nodiscard]] std::size_t size() const noexcept { return n_; }
+  /// Windows first, first + 1, ... first + n - 1; fewer at the end.
+  [[nodiscard]] LogRows rows(std::size_t first, std::size_t n) const;
+  [[nodiscard]] LogRows rows() const { return rows(0, n_); }
+  [[nodiscard]] LogMoment begin(std::size_t window) const;  ///< also of the one after the last
+
+ private:
+  struct Span {
+    std::int64_t first, last;  ///< windows, counted from the grid's origin
+  };
+  struct Run;
+  [[nodiscard]] std::int64_t holding(std::int64_t us) const;
+  [[nodiscard]] Span span_of(const Run& run) const;
+  void fill_motion(const LogTrack& track, std::size_t sensor, std::size_t first, LogRows& rows) const;
+  void fill_people(std::size_t first, LogRows& rows) const;
+  template <typename Put>
+  void each_run(const LogTrack& track, std::size_t first, std::size_t n, Put put) const;
+
+  const Log* log_;
+  std::int64_t window_us_;
+  std::int64_t origin_us_;  ///< window 0 of the grid begins here
+  std::int64_t first_ = 0;  ///< of the log's windows, on the grid
+  std::size_t n_ = 0;
+};
+
+namespace io {
+/// All windows of a log. See read_log() and LogWindows.
+[[nodiscard]] LogRows read_log_rows(std::span<const std::filesystem::path> files, const LogMap& map, double window_s);
+}  // namespace io
+
+}  // namespace pirsim

@@ -1,0 +1,112 @@
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/commands.hpp"
+#include "app/long_work.hpp"
+#include "app/session.hpp"
+#include "core/text.hpp"
+#include "io/files/posix_file.hpp"
+#include "io/write/log_rows_writer.hpp"
+#include "pirsim/log.hpp"
+
+namespace pirsim::app {
+namespace {
+
+struct LogOptions {
+  std::vector<std::filesystem::path> files;
+  std::filesystem::path map, output;
+  std::vector<std::string> changes;
+  std::string from, to;
+  double window_s = 30.0;
+  bool prints_map = false;
+  Verbosity verbosity = Verbosity::normal;
+};
+
+LogMap map_of(const LogOptions& options) {
+  LogMap map;
+  if (!options.map.empty()) map = io::read_log_map(options.map, options.changes);
+  if (!options.from.empty()) map.from = options.from;
+  if (!options.to.empty()) map.to = options.to;
+  return map;
+}
+
+Log read(const LogOptions& options) {
+  const LogMap map = map_of(options);
+  const Progress progress({"reading the log"}, options.verbosity);
+  const StopRequest stop;
+  return io::read_log(options.files, map, {[&](std::uint64_t) { stop.throw_if_made(); }});
+}
+
+void write_rows(const Log& log, const LogOptions& options) {
+  const LogWindows windows(log, options.window_s);
+  io::AtomicFile file(options.output);
+  io::DataWriter data(file.stream(), io::compression_of(options.output));
+  const Progress progress({"writing rows"}, options.verbosity);
+  const StopRequest stop;
+  io::write_log_rows(windows, [&](std::string_view text) {
+    stop.throw_if_made();
+    data.write(text);
+  });
+  data.finish();
+  file.commit();
+}
+
+/// To a millisecond, which is where the last event ends.
+std::string moment_text(const Log& log, std::int64_t us) {
+  constexpr std::int64_t ms = 1'000;
+  return to_text(log.moment((us + ms / 2) / ms * ms), log.clock);
+}
+
+/// What form it has, and from when to when.
+void tell_what_it_is(std::ostream& out, const Log& log) {
+  out << (log.map.form == LogMap::Form::events ? "events"
+          : log.has_readings()                 ? "readings"
+                                               : "rows of changes")
+      << ", " << counted(log.n_rows, "row") << ", from " << moment_text(log, log.begin_us) << " to "
+      << moment_text(log, log.end_us);
+  if (log.has_readings()) out << ", every " << shortest_number(static_cast<double>(log.interval_us) * 1e-6) << " s";
+  out << '\n';
+}
+
+void run_log(const LogOptions& options) {
+  const Log log = read(options);
+  tell(log.remarks, options.verbosity);
+  if (options.prints_map) {
+    std::cout << io::to_yaml(log.map);
+  } else if (options.verbosity != Verbosity::quiet) {
+    tell_what_it_is(std::cout, log);
+  }
+  require_written();
+  if (!options.output.empty()) write_rows(log, options);
+}
+
+}  // namespace
+
+void add_log_command(CLI::App& app) {
+  CLI::App& command = add_command(app, "log", "read a log of real motion sensors, and say what it tells", R"(
+  pirsim log week.csv                                              form, sensors, times, and what they tell
+  pirsim log week.csv --print-map > map.yaml                       a map to start from: which column is which sensor
+  pirsim log week.csv --map map.yaml --window 30 -o rows.csv       rows of pirsim, empty where nothing is known
+)");
+  const auto options = std::make_shared<LogOptions>();
+  as_input(
+      command.add_option("files", options->files, "the log: CSV, or events as Home Assistant and CASAS write them"))
+      ->option_text("FILE...");
+  offer_input_file(command, "--map", options->map, "what its columns mean, YAML");
+  command.add_option("--from", options->from, "local time from which it is read")->option_text("TIME");
+  command.add_option("--to", options->to, "local time until which it is read")->option_text("TIME");
+  command.add_option("--window", options->window_s, "length of a row's window (default: 30)")->option_text("SECONDS");
+  offer_output(command, options->output, "FILE", "rows, .csv, .csv.gz or .csv.zst");
+  command.add_flag("--print-map", options->prints_map, "print the map that it was read by, and nothing else");
+  offer_quiet(command, options->verbosity);
+  command.callback([&command, options] {
+    require_one_standard_input(command);
+    if (options->files.empty()) throw Error(ErrorCode::usage, "FILE is missing; see pirsim log --help");
+    run_log(*options);
+  });
+}
+
+}  // namespace pirsim::app

@@ -1,0 +1,307 @@
+#include "io/log/log_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/text.hpp"
+#include "io/log/log_words.hpp"
+#include "schema/limits.hpp"
+
+namespace pirsim::io {
+namespace {
+
+constexpr std::size_t head_lines = 2000, head_bytes = 1'000'000;
+constexpr std::uint64_t most_faults = 1000;
+
+bool has_no_data(std::string_view line) {
+  return line.find_first_not_of(" \t;,") == std::string_view::npos || line.starts_with('#');
+}
+
+std::string quoted(std::string_view text) { return "'" + std::string(text) + "'"; }
+
+}  // namespace
+
+LogFile::LogFile(const std::filesystem::path& path, LogReading& reading, const LogObserver& observer)
+    : path_(path.string()), reading_(reading), observer_(observer), lines_(path), timer_({}, nullptr, 0.0) {
+  read_head();
+  shape_ = shape_of(head_, reading.map, path_);
+  timer_ = LogTimer(shape_.time, reading.zone, reading.map.shift_s);
+  if (shape_.header_line > 0) head_.erase(head_.begin());
+  values_.resize(shape_.sensors.size() + (shape_.people ? 1 : 0));
+  if (shape_.form == LogMap::Form::wide) find_cadence();
+}
+
+std::optional<HeadLine> LogFile::next_line() {
+  while (const auto line = lines_.next()) {
+    if (!has_no_data(*line)) return HeadLine{std::string(*line), lines_.where().line};
+  }
+  return std::nullopt;
+}
+
+void LogFile::read_head() {
+  std::size_t bytes = 0;
+  while (head_.size() < head_lines && bytes < head_bytes) {
+    auto line = next_line();
+    if (!line) break;
+    bytes += line->text.size();
+    if (head_.empty() && line->text.starts_with("sep=")) continue;  // for a spreadsheet
+    head_.push_back(std::move(*line));
+  }
+  if (head_.empty()) throw Error(ErrorCode::input, {path_, 1, 1}, "the log is empty");
+}
+
+void LogReading::note_row(std::int64_t us) {
+  first_us = std::min(first_us.value_or(us), us);
+  last_us = std::max(last_us.value_or(us), us);
+  if (!map.longest_gap_s) return;
+  const auto [at, is_new] = busy.try_emplace(us / std::llround(*map.longest_gap_s * 1e6), Moments{us, us});
+  at->second = {std::min(at->second.first_us, us), std::max(at->second.last_us, us)};
+}
+
+std::vector<LogReading::Moments> LogReading::silences() const {
+  std::vector<Moments> found;
+  const std::int64_t longest = map.longest_gap_s ? std::llround(*map.longest_gap_s * 1e6) : 0;
+  for (auto at = busy.begin(); at != busy.end() && std::next(at) != busy.end(); ++at) {
+    const Moments silence{at->second.last_us, std::next(at)->second.first_us};
+    if (silence.last_us - silence.first_us > longest) found.push_back(silence);
+  }
+  return found;
+}
+
+// ------------------------------------------------------------------------------------------------------------- cadence
+
+namespace {
+
+/// The value that this share of them doesn't exceed; reorders them.
+std::int64_t quantile(std::vector<std::int64_t>& values, double share) {
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+}  // namespace
+
+/// Whether a row is a reading or a change, and how far readings are apart.
+void LogFile::find_cadence() {
+  LogTimer timer = timer_;
+  std::vector<std::int64_t> apart;
+  std::optional<std::int64_t> last;
+  std::size_t n_rows = 0, n_changed = 0;
+  std::vector<std::string> before;
+  for (const HeadLine& line : head_) {
+    if (!split_fields(line.text, shape_.separator, fields_, unquoted_) || fields_.size() < shape_.names.size())
+      continue;
+    const auto us = timer.read(fields_).us;
+    if (!us) continue;
+    if (last && *us > *last) apart.push_back(*us - *last);
+    last = us;
+    std::vector<std::string> now;
+    for (const std::size_t column : shape_.sensors) now.emplace_back(fields_[column]);
+    n_changed += now != before ? 1 : 0;
+    ++n_rows;
+    before = std::move(now);
+  }
+  const LogMap& map = reading_.map;
+  const std::int64_t median = apart.empty() ? 0 : quantile(apart, 0.5);
+  const std::int64_t slow = apart.empty() ? 0 : quantile(apart, 0.95);
+  // Assumed: rows of changes come when they like, and nearly each changes something.
+  const bool are_changes =
+      map.rows == LogMap::Rows::changes || (map.rows == LogMap::Rows::found && !map.interval_s && n_rows >= 8 &&
+                                            slow > 4 * median && 10 * n_changed >= 9 * n_rows);
+  if (are_changes) return;
+  ReadingTracks::Cadence cadence;
+  cadence.interval_us = map.interval_s ? std::llround(*map.interval_s * 1e6) : median;
+  if (cadence.interval_us <= 0)
+    throw Error(ErrorCode::input, {path_, head_.front().line, 1},
+                "one reading alone doesn't tell for how long it holds; say interval_s in a map");
+  // Stamps of whole seconds may be two intervals apart where none is lost.
+  const std::int64_t usual = map.interval_s ? cadence.interval_us : std::clamp(slow, median, 5 * median / 3);
+  cadence.longest_gap_us = map.longest_gap_s ? std::llround(*map.longest_gap_s * 1e6) : 3 * usual / 2;
+  std::vector<std::int32_t> unknown(values_.size(), log_state::unknown);
+  if (shape_.people) unknown.back() = log_state::unknown_count;
+  readings_.emplace(cadence, std::move(unknown));
+}
+
+// ---------------------------------------------------------------------------------------------------------------- rows
+
+template <typename Message>
+void LogFile::fault(std::string_view kind, int line, std::size_t column, Message message) {
+  reading_.faults.add(
+      kind,
+      [&] {  // counted in the line as it stands, where fields are parts of it
+        int at = 1;
+        for (std::size_t i = 0; i < std::min(column, fields_.size()) && shape_.separator != ' '; ++i)
+          at += static_cast<int>(fields_[i].size()) + 1;
+        return Where{path_, line, at};
+      },
+      message);
+  if (reading_.faults.count() > most_faults) throw Error(ErrorCode::input, reading_.faults.issues(Severity::error));
+}
+
+template <typename Message>
+void LogFile::remark(std::string_view kind, int line, Message message) {
+  reading_.remarks.add(
+      kind,
+      [&] {
+        return Where{path_, line, 0};
+      },
+      message);
+}
+
+void LogFile::read() {
+  for (const HeadLine& line : std::exchange(head_, {})) take(line.text, line.line);
+  constexpr std::uint64_t now_and_then = 1U << 14U;
+  while (const auto line = lines_.next()) {
+    if (has_no_data(*line)) continue;
+    take(*line, lines_.where().line);
+    if (observer_.read && reading_.n_rows % now_and_then == 0) observer_.read(reading_.n_rows);
+  }
+}
+
+std::optional<std::int64_t> LogFile::limit(const std::string& key, const std::string& text) const {
+  if (text.empty()) return std::nullopt;
+  const bool is_elapsed = timer_.clock() == LogClock::elapsed;
+  if (const auto stamp = parse_stamp(text, shape_.time.order)) {
+    const bool counts = stamp->kind == Stamp::Kind::number || stamp->kind == Stamp::Kind::time_of_day;
+    TimeColumns columns;
+    columns.kind = stamp->kind == Stamp::Kind::date ? Stamp::Kind::local : stamp->kind;
+    const auto us = LogTimer(columns, reading_.zone, 0.0).read_text(text).us;
+    if (us && counts == is_elapsed) return us;
+  }
+  throw Error(ErrorCode::usage, key + ": '" + text + "' is no time of this log; expected " +
+                                    (is_elapsed ? "seconds, or hours:minutes:seconds" : "2026-03-02T08:30"));
+}
+
+std::optional<std::int64_t> LogFile::time_of_row(int line) {
+  LogTimer::Read read = timer_.read(fields_);
+  if (!read.us) {
+    fault("time", line, shape_.time.first, [&] { return read.fault; });
+    return std::nullopt;
+  }
+  if (read.oddity == LogTimer::Oddity::ambiguous)
+    remark("ambiguous", line, [&] {
+      return "clocks were put back in this hour, which " + reading_.map.time_zone +
+             " has twice; what comes before they step back is taken for the first one";
+    });
+  if (read.oddity == LogTimer::Oddity::missing)
+    remark("missing", line, [&] {
+      return quoted(fields_[shape_.time.first]) + " is a time that " + reading_.map.time_zone +
+             " left out, when clocks were put forward: is it another zone?";
+    });
+  return read.us;
+}
+
+void LogFile::take(std::string_view line, int number) {
+  if (!split_fields(line, shape_.separator, fields_, unquoted_)) {
+    fields_.clear();
+    return fault("quote", number, 0, [] { return "a quote that isn't closed, or text behind one that is"; });
+  }
+  const std::size_t wanted = shape_.n_fields();
+  const std::size_t least =
+      wanted > 0 ? wanted : std::max({shape_.time.first, shape_.time.second.value_or(0), shape_.state}) + 1;
+  if (fields_.size() < least || (wanted > 0 && fields_.size() > wanted)) {
+    return fault("fields", number, 0,
+                 [&] { return "expected " + counted(least, "field") + ", got " + std::to_string(fields_.size()); });
+  }
+  const auto us = time_of_row(number);
+  if (!us) return;
+  ++reading_.n_rows;
+  reading_.note_row(*us);
+  if (shape_.form == LogMap::Form::events) return take_event(*us, number);
+  read_values(number);
+  readings_ ? take_readings(*us, number) : take_changes(*us, number);
+}
+
+/// Of the sensors and people in this row.
+void LogFile::read_values(int line) {
+  for (std::size_t i = 0; i < shape_.sensors.size(); ++i) {
+    const std::string_view text = fields_[shape_.sensors[i]];
+    const auto state = read_state(text);
+    values_[i] = state.value_or(log_state::unknown);
+    if (state) continue;
+    const std::string& name = shape_.names[shape_.sensors[i]];
+    remark("state of " + name, line,
+           [&] { return quoted(text) + " in column '" + name + "' is no state: it counts as unknown"; });
+  }
+  if (!shape_.people) return;
+  const std::string_view text = fields_[*shape_.people];
+  const auto count = read_count(text);
+  values_.back() = count.value_or(log_state::unknown_count);
+  if (!count) remark("count", line, [&] { return quoted(text) + " is no number of people: it counts as unknown"; });
+}
+
+void LogFile::require_one_run(int line) {
+  if (shape_.runs.empty()) return;
+  std::vector<std::string> run;
+  for (const std::size_t column : shape_.runs) run.emplace_back(fields_[column]);
+  if (run_.empty()) run_ = run;
+  if (run == run_) return;
+  fault("runs", line, shape_.runs.front(), [&] {
+    return "another run begins here (" + joined(run, ", ") + " after " + joined(run_, ", ") +
+           "): a log is one stretch of time in one room; give its rows alone";
+  });
+}
+
+void LogFile::take_readings(std::int64_t us, int line) {
+  require_one_run(line);
+  const std::int64_t stamp = us + (reading_.map.stamps == LogMap::Stamps::begin ? readings_->cadence().interval_us : 0);
+  if ((reading_.from_us && stamp <= *reading_.from_us) || (reading_.to_us && stamp > *reading_.to_us)) return;
+  const auto order = readings_->add(stamp, values_);
+  if (order == ReadingTracks::Order::same)
+    remark("same time", line, [] { return "a second reading of the same time is left out"; });
+  if (order == ReadingTracks::Order::earlier) {
+    remark("backward", line, [&] {
+      return "the times step back here; readings up to the last time before the step are left out" +
+             std::string(timer_.clock() == LogClock::local ? " (were clocks put back? Say time_zone in a map)" : "");
+    });
+  }
+  if (readings_->n_changes() > limits::log_changes)
+    throw Error(ErrorCode::input, {path_, line, 1}, "more than " + std::to_string(limits::log_changes) + " changes");
+}
+
+void LogFile::take_changes(std::int64_t us, int line) {
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    if (!last_values_.empty() && last_values_[i] == values_[i]) continue;
+    const bool is_people = i == shape_.sensors.size();
+    const std::string& name = shape_.names[is_people ? *shape_.people : shape_.sensors[i]];
+    EventTracks::Track& track = *reading_.events.track(name);
+    ++track.n_states;
+    if (!reading_.events.add(track, us, values_[i]))
+      remark("backward", line, [] { return "the times step back here; the rows are put in order"; });
+  }
+  last_values_ = values_;
+}
+
+/// What is no state: of another kind of sensor, or a sensor's fault.
+void LogFile::take_odd_event(EventTracks::Track& track, std::int64_t us, int line) {
+  ++track.n_other;
+  if (track.n_states <= track.n_other) return;
+  reading_.events.add(track, us, log_state::unknown);
+  if (track.odd_text.empty()) {
+    track.odd_at = {path_, line, 0};
+    track.odd_text = fields_[shape_.state];
+  }
+}
+
+void LogFile::take_event(std::int64_t us, int line) {
+  const std::string_view name = fields_[shape_.sensor], text = fields_[shape_.state];
+  const bool is_people = !reading_.map.people.empty() && name == reading_.map.people;
+  EventTracks::Track* track = reading_.events.track(name);
+  if (track == nullptr)
+    return fault("sensors", line, shape_.sensor,
+                 [] { return "more than " + std::to_string(limits::log_columns) + " sensors"; });
+  const auto value = is_people ? read_count(text) : read_state(text);
+  if (!value) return take_odd_event(*track, us, line);
+  ++track->n_states;
+  if (!track->events.empty() && track->events.back() == LogChange{us, 0, *value})
+    return remark("same event", line, [&] { return "an event of " + quoted(name) + " stands here a second time"; });
+  if (!reading_.events.add(*track, us, *value)) {
+    remark("backward", line,
+           [&] { return "the times of " + quoted(name) + " step back here; its events are put in order"; });
+  }
+  if (reading_.events.n_events() > limits::log_changes)
+    throw Error(ErrorCode::input, {path_, line, 1}, "more than " + std::to_string(limits::log_changes) + " events");
+}
+
+}  // namespace pirsim::io

@@ -1,0 +1,84 @@
+// One file of a log, row by row. Private to io.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/files/line_reader.hpp"
+#include "io/log/log_remarks.hpp"
+#include "io/log/log_shape.hpp"
+#include "io/log/log_timer.hpp"
+#include "io/log/log_tracks.hpp"
+#include "pirsim/log.hpp"
+
+namespace pirsim::io {
+
+/// What all files of a log share.
+struct LogReading {
+  const LogMap& map;
+  LogZone* zone;  ///< none: null
+  LogRemarks faults, remarks;
+  EventTracks events;
+  std::uint64_t n_rows = 0;
+  std::optional<std::int64_t> first_us, last_us;  ///< of all rows, whether or not they tell of a sensor
+  std::optional<std::int64_t> from_us, to_us;     ///< what is wanted of it
+  struct Moments {
+    std::int64_t first_us, last_us;
+  };
+  std::map<std::int64_t, Moments> busy;  ///< of events, if silence tells: by times of the longest gap's length
+
+  void note_row(std::int64_t us);
+  /// Longer than the longest gap: when nothing at all was written.
+  [[nodiscard]] std::vector<Moments> silences() const;
+};
+
+class LogFile {
+ public:
+  LogFile(const std::filesystem::path& path, LogReading& reading, const LogObserver& observer);
+  /// All rows. Events go to the reading's tracks.
+  void read();
+
+  [[nodiscard]] const LogShape& shape() const noexcept { return shape_; }
+  [[nodiscard]] LogTimer& timer() noexcept { return timer_; }
+  /// None: events, or rows of changes.
+  [[nodiscard]] std::optional<ReadingTracks>& readings() noexcept { return readings_; }
+  [[nodiscard]] InputFile file() const { return lines_.file(); }
+  /// What a map's from and to say in this log's time; none for no text. Throws Error(usage).
+  [[nodiscard]] std::optional<std::int64_t> limit(const std::string& key, const std::string& text) const;
+
+ private:
+  [[nodiscard]] std::optional<HeadLine> next_line();
+  void read_head();
+  void find_cadence();
+  void take(std::string_view line, int number);
+  [[nodiscard]] std::optional<std::int64_t> time_of_row(int line);
+  void take_readings(std::int64_t us, int line);
+  void take_changes(std::int64_t us, int line);
+  void take_event(std::int64_t us, int line);
+  void take_odd_event(EventTracks::Track& track, std::int64_t us, int line);
+  void read_values(int line);
+  void require_one_run(int line);
+  template <typename Message>
+  void fault(std::string_view kind, int line, std::size_t column, Message message);
+  template <typename Message>
+  void remark(std::string_view kind, int line, Message message);
+
+  std::string path_;
+  LogReading& reading_;
+  const LogObserver& observer_;
+  LineReader lines_;
+  std::vector<HeadLine> head_;
+  LogShape shape_;
+  LogTimer timer_;
+  std::optional<ReadingTracks> readings_;
+  std::vector<std::string_view> fields_;
+  std::vector<std::string> unquoted_;
+  std::vector<std::int32_t> values_, last_values_;  ///< of a wide row: sensors, then people
+  std::vector<std::string> run_;                    ///< which of several runs is read
+};
+
+}  // namespace pirsim::io

@@ -1,0 +1,183 @@
+// What a log's columns mean, as YAML.
+#include <sstream>
+#include <utility>
+
+#include "core/text.hpp"
+#include "io/read/reader_parts.hpp"
+#include "io/read/yaml_map.hpp"
+#include "pirsim/csv.hpp"
+#include "pirsim/log.hpp"
+
+namespace pirsim::io {
+namespace {
+
+template <typename Value>
+using Names = std::vector<std::pair<std::string, Value>>;
+
+const Names<LogMap::Form>& forms() {
+  static const Names<LogMap::Form> names{{"wide", LogMap::Form::wide}, {"events", LogMap::Form::events}};
+  return names;
+}
+const Names<LogMap::Rows>& kinds_of_rows() {
+  static const Names<LogMap::Rows> names{{"readings", LogMap::Rows::readings}, {"changes", LogMap::Rows::changes}};
+  return names;
+}
+const Names<LogMap::Dates>& orders() {
+  static const Names<LogMap::Dates> names{{"month_first", LogMap::Dates::month_first},
+                                          {"day_first", LogMap::Dates::day_first}};
+  return names;
+}
+const Names<LogMap::Stamps>& stamps() {
+  static const Names<LogMap::Stamps> names{{"end", LogMap::Stamps::end}, {"begin", LogMap::Stamps::begin}};
+  return names;
+}
+const Names<LogMap::People>& meanings() {
+  static const Names<LogMap::People> names{{"count", LogMap::People::count}, {"presence", LogMap::People::presence}};
+  return names;
+}
+
+template <typename Value>
+const std::string& word(const Names<Value>& names, Value value) {
+  for (const auto& [name, known] : names) {
+    if (known == value) return name;
+  }
+  static const std::string none;
+  return none;
+}
+
+/// `time: stamp`, or `time: [Date, Time]`.
+std::vector<std::string> read_time(YamlMap& map) {
+  const auto node = map.child("time");
+  if (!node) return {};
+  std::vector<std::string> columns;
+  if (node->is_list()) {
+    for (const YamlNode& item : read_list(*node, map.faults(), "time"))
+      columns.push_back(item.text(map.faults(), "time"));
+  } else {
+    columns.push_back(node->text(map.faults(), "time"));
+  }
+  if (columns.empty() || columns.size() > 2)
+    map.faults().error(node->where(), "time: expected a column, or those of date and time");
+  return columns;
+}
+
+/// `sensors: {PIR1: S6_PIR}`, or `sensors: [S6_PIR, S7_PIR]` under their own names.
+std::vector<LogMap::Sensor> read_sensors(YamlMap& map) {
+  const auto node = map.child("sensors");
+  if (!node || node->is_null()) return {};
+  std::vector<LogMap::Sensor> sensors;
+  if (node->n_items() > limits::sensors) {
+    map.faults().error(node->where(), too_many(limits::sensors, "sensors"));
+    return {};
+  }
+  if (!node->is_map()) {
+    for (const YamlNode& item : read_list(*node, map.faults(), "sensors", limits::sensors)) {
+      const std::string name = item.text(map.faults(), "sensors");
+      sensors.push_back({name, name});
+    }
+    return sensors;
+  }
+  const std::vector<YamlKey> keys = node->keys();
+  const std::vector<YamlNode> values = node->items();
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (const std::string fault = line_fault(keys[i].name); !fault.empty())
+      map.faults().error(keys[i].where, "sensors: '" + keys[i].name + "': " + fault);
+    sensors.push_back({keys[i].name, values[i].text(map.faults(), "sensors: " + keys[i].name)});
+  }
+  return sensors;
+}
+
+/// `people: Room_Occupancy_Count`, or with what it means.
+void read_people(YamlMap& map, LogMap& log) {
+  const auto node = map.child("people");
+  if (!node) return;
+  if (!node->is_map()) {
+    log.people = node->text(map.faults(), "people");
+    return;
+  }
+  YamlMap people(*node, map.faults(), "people");
+  log.people = people.required_text("column");
+  log.people_mean = people.choice("means", log.people_mean, meanings());
+  people.finish();
+}
+
+}  // namespace
+
+LogMap read_log_map(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  const YamlNode root = YamlNode::load(read_input(file), overrides);
+  Diagnostics faults;
+  YamlMap map(root, faults, "map of a log");
+  check_version(map, "pirsim_log");
+  LogMap log;
+  log.form = map.choice("form", log.form, forms());
+  log.rows = map.choice("rows", log.rows, kinds_of_rows());
+  log.time = read_time(map);
+  log.sensor_column = map.text("sensor");
+  log.state_column = map.text("state");
+  log.time_zone = map.text("time_zone");
+  log.dates = map.choice("dates", log.dates, orders());
+  log.stamps = map.choice("stamps", log.stamps, stamps());
+  log.sensors = read_sensors(map);
+  read_people(map, log);
+  constexpr NumberRange length{.min = 1e-3, .max = 4e5};
+  log.interval_s = map.optional_number("interval_s", length);
+  log.longest_gap_s = map.optional_number("longest_gap_s", {.min = 1e-3, .max = 1e8});
+  log.hold_s = map.optional_number("hold_s", length);
+  log.shift_s = map.number("shift_s", log.shift_s, {.min = -1e6, .max = 1e6});
+  log.from = map.text("from");
+  log.to = map.text("to");
+  map.finish();
+  faults.throw_if_errors();
+  return log;
+}
+
+namespace {
+
+/// A text that YAML takes for nothing else.
+std::string quoted_yaml(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + '"';
+}
+
+}  // namespace
+
+std::string to_yaml(const LogMap& map) {
+  std::ostringstream out;
+  const auto line = [&](const char* key, const std::string& value) {
+    if (!value.empty()) out << key << ": " << value << '\n';
+  };
+  const auto text = [&](const char* key, const std::string& value) {
+    if (!value.empty()) line(key, quoted_yaml(value));
+  };
+  const auto number = [&](const char* key, const std::optional<double>& value) {
+    if (value) line(key, csv_number(*value));
+  };
+  line("pirsim_log", "1");
+  line("form", word(forms(), map.form));
+  line("rows", word(kinds_of_rows(), map.rows));
+  if (map.time.size() == 1) text("time", map.time.front());
+  if (map.time.size() == 2) line("time", "[" + quoted_yaml(map.time[0]) + ", " + quoted_yaml(map.time[1]) + "]");
+  text("sensor", map.sensor_column);
+  text("state", map.state_column);
+  text("time_zone", map.time_zone);
+  line("dates", word(orders(), map.dates));
+  if (map.stamps != LogMap::Stamps::end) line("stamps", word(stamps(), map.stamps));
+  if (!map.sensors.empty()) out << "sensors:\n";
+  for (const LogMap::Sensor& sensor : map.sensors)
+    out << "  " << quoted_yaml(sensor.name) << ": " << quoted_yaml(sensor.in_log) << '\n';
+  if (!map.people.empty())
+    out << "people: {column: " << quoted_yaml(map.people) << ", means: " << word(meanings(), map.people_mean) << "}\n";
+  number("interval_s", map.interval_s);
+  number("longest_gap_s", map.longest_gap_s);
+  number("hold_s", map.hold_s);
+  if (map.shift_s != 0.0) number("shift_s", map.shift_s);
+  text("from", map.from);
+  text("to", map.to);
+  return out.str();
+}
+
+}  // namespace pirsim::io

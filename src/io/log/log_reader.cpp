@@ -1,0 +1,353 @@
+// A log from its files.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include "core/text.hpp"
+#include "io/log/log_file.hpp"
+#include "io/log/log_words.hpp"
+#include "pirsim/log.hpp"
+
+namespace pirsim::io {
+namespace {
+
+std::string name_of(const LogMap& map, const std::string& in_log) {
+  const auto found = std::ranges::find(map.sensors, in_log, &LogMap::Sensor::in_log);
+  return found == map.sensors.end() ? in_log : found->name;
+}
+
+// ------------------------------------------------------------------------------------------------------------ readings
+
+/// Readings of one file after those of another.
+class ReadingParts {
+ public:
+  explicit ReadingParts(Log& log) : log_(log) {}
+
+  void add(LogFile& file) {
+    ReadingTracks& part = *file.readings();
+    if (part.is_empty()) return;
+    const std::int64_t interval = part.cadence().interval_us;
+    const Where where{file.file().path};
+    if (log_.interval_us == 0) {
+      log_.interval_us = interval;
+      log_.begin_us = part.first_us() - interval;
+    }
+    constexpr double alike = 0.2;  // assumed
+    if (std::abs(static_cast<double>(interval - log_.interval_us)) > alike * static_cast<double>(log_.interval_us))
+      throw Error(
+          ErrorCode::input, where,
+          "its readings are " + seconds(interval) + " apart, those of the other files " + seconds(log_.interval_us));
+    const LogShape& shape = file.shape();
+    for (std::size_t i = 0; i < shape.sensors.size(); ++i)
+      append(track(shape.names[shape.sensors[i]]), i, part, log_state::unknown, where);
+    if (shape.people) {
+      if (!log_.people) log_.people = LogTrack{"people", shape.names[*shape.people], {}, 0};
+      append(*log_.people, shape.sensors.size(), part, log_state::unknown_count, where);
+    }
+    log_.end_us = std::max(log_.end_us, part.last_us());
+  }
+  /// What ends before the log does is unknown from there on.
+  void finish() {
+    for (LogTrack& track : log_.sensors) end(track, log_.end_us + 1, log_state::unknown);
+    if (log_.people) end(*log_.people, log_.end_us + 1, log_state::unknown_count);
+  }
+
+ private:
+  static std::string seconds(std::int64_t us) { return shortest_number(static_cast<double>(us) * 1e-6) + " s"; }
+
+  LogTrack& track(const std::string& in_log) {
+    const auto found = std::ranges::find(log_.sensors, in_log, &LogTrack::in_log);
+    if (found != log_.sensors.end()) return *found;
+    return log_.sensors.emplace_back(LogTrack{name_of(log_.map, in_log), in_log, {}, 0});
+  }
+  std::int64_t* last_of(const LogTrack& track) {
+    const auto found = std::ranges::find(last_, track.in_log, &Last::in_log);
+    return found == last_.end() ? nullptr : &found->us;
+  }
+  /// With readings until `last` alone.
+  void end(LogTrack& track, std::int64_t next_us, std::int32_t unknown) {
+    const std::int64_t* last = last_of(track);
+    if (last == nullptr || next_us - *last <= 3 * log_.interval_us / 2) return;
+    if (track.changes.back().value != unknown)
+      track.changes.push_back({*last + log_.interval_us, log_.interval_us, unknown});
+  }
+  void append(LogTrack& track, std::size_t column, ReadingTracks& part, std::int32_t unknown, const Where& where) {
+    std::vector<LogChange> changes = std::move(part.changes()[column]);
+    std::int64_t* last = last_of(track);
+    if (last == nullptr) {
+      track.changes = std::move(changes);
+      last_.push_back({track.in_log, part.last_us()});
+    } else {
+      if (*last >= part.first_us())
+        throw Error(ErrorCode::input, where,
+                    "it overlaps another file in time, with the same column '" + track.in_log + "'");
+      end(track, part.first_us(), unknown);
+      changes.front().since_last_us = std::min(log_.interval_us, part.first_us() - *last);
+      if (changes.front().value == track.changes.back().value) changes.erase(changes.begin());
+      track.changes.insert(track.changes.end(), changes.begin(), changes.end());
+      *last = part.last_us();
+    }
+    track.n_read += part.n_readings();
+  }
+
+  struct Last {
+    std::string in_log;
+    std::int64_t us;
+  };
+  Log& log_;
+  std::vector<Last> last_;
+};
+
+// -------------------------------------------------------------------------------------------------------------- events
+
+bool may_be_sensor(const EventTracks::Track& track) {
+  const auto is_known = [](const LogChange& event) {
+    return event.value == log_state::on || event.value == log_state::off;
+  };
+  return track.n_states > track.n_other && std::ranges::any_of(track.events, is_known);
+}
+
+/// Which of the tracks are motion sensors, if no map says so.
+std::vector<std::size_t> motion_sensors(const std::vector<EventTracks::Track>& tracks) {
+  std::vector<std::size_t> all, motion, casas;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    if (!may_be_sensor(tracks[i])) continue;
+    const NameSays says = what_name_says(tracks[i].in_log);
+    if (is_casas_motion(tracks[i].in_log)) casas.push_back(i);
+    if (says == NameSays::motion || says == NameSays::presence) motion.push_back(i);
+    if (says != NameSays::other_quantity) all.push_back(i);
+  }
+  std::vector<std::size_t>& chosen = !casas.empty() ? casas : !motion.empty() ? motion : all;
+  std::ranges::sort(chosen, {}, [&](std::size_t i) { return tracks[i].in_log; });
+  return chosen;
+}
+
+std::vector<std::string> names_of(const std::vector<EventTracks::Track>& tracks) {
+  std::vector<std::string> names;
+  for (const EventTracks::Track& track : tracks) names.push_back(track.in_log);
+  return names;
+}
+
+/// In the map's order, or by name.
+std::vector<std::size_t> chosen_sensors(const std::vector<EventTracks::Track>& tracks, const LogMap& map,
+                                        const Where& where) {
+  if (map.sensors.empty()) return motion_sensors(tracks);
+  std::vector<std::size_t> chosen;
+  for (const LogMap::Sensor& sensor : map.sensors) {
+    const auto found = std::ranges::find(tracks, sensor.in_log, &EventTracks::Track::in_log);
+    if (found == tracks.end())
+      throw Error(ErrorCode::input, where,
+                  "the log has no events of '" + sensor.in_log + "'" + near_or_all(sensor.in_log, names_of(tracks)));
+    chosen.push_back(static_cast<std::size_t>(found - tracks.begin()));
+  }
+  return chosen;
+}
+
+/// Nothing is known of these times.
+std::vector<LogChange> without(const std::vector<LogChange>& changes, const std::vector<LogReading::Moments>& silences,
+                               std::int32_t unknown) {
+  std::vector<LogChange> result;
+  auto at = changes.begin();
+  for (const LogReading::Moments& silence : silences) {
+    while (at != changes.end() && at->us <= silence.first_us) result.push_back(*at++);
+    if (result.empty()) continue;
+    const std::int32_t before = result.back().value;
+    result.push_back({silence.first_us, 0, unknown});
+    if (at == changes.end() || at->us > silence.last_us) result.push_back({silence.last_us, 0, before});
+  }
+  result.insert(result.end(), at, changes.end());
+  return result;
+}
+
+/// What is known from `from` on, and until `to`.
+std::vector<LogChange> clipped(std::vector<LogChange> changes, std::int64_t from_us, std::int64_t to_us) {
+  const auto first_after = std::ranges::upper_bound(changes, from_us, {}, &LogChange::us);
+  if (first_after != changes.begin()) {
+    const auto holds = first_after - 1;
+    holds->us = std::max(holds->us, from_us);
+    changes.erase(changes.begin(), holds);
+  }
+  changes.erase(std::ranges::lower_bound(changes, to_us, {}, &LogChange::us), changes.end());
+  return changes;
+}
+
+LogTrack event_track(EventTracks::Track& track, const LogReading& reading, const Log& log, std::int32_t unknown) {
+  const bool is_people = unknown == log_state::unknown_count;
+  const auto hold_us =
+      reading.map.hold_s && !is_people ? std::optional(std::llround(*reading.map.hold_s * 1e6)) : std::nullopt;
+  std::vector<LogChange> changes = changes_of(track, hold_us);
+  if (const auto silences = reading.silences(); !silences.empty()) changes = without(changes, silences, unknown);
+  return {is_people ? "people" : name_of(log.map, track.in_log), track.in_log,
+          clipped(std::move(changes), log.begin_us, log.end_us), track.n_states + track.n_other};
+}
+
+void finish_events(Log& log, LogReading& reading) {
+  std::vector<EventTracks::Track>& tracks = reading.events.tracks();
+  const Where where{log.files.front().path};
+  const std::vector<std::size_t> chosen = chosen_sensors(tracks, reading.map, where);
+  log.begin_us = std::max(*reading.first_us, reading.from_us.value_or(*reading.first_us));
+  const std::int64_t after_last = *reading.last_us + 1;  // which belongs to it
+  log.end_us = std::min(after_last, reading.to_us.value_or(after_last));
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const bool is_people = !log.map.people.empty() && tracks[i].in_log == log.map.people;
+    if (is_people) log.people = event_track(tracks[i], reading, log, log_state::unknown_count);
+    if (is_people || std::ranges::find(chosen, i) != chosen.end()) continue;
+    log.others.push_back(tracks[i].in_log);
+    log.n_other_rows += tracks[i].n_states + tracks[i].n_other;
+  }
+  for (const std::size_t i : chosen) {
+    const EventTracks::Track& track = tracks[i];
+    if (!track.odd_text.empty()) {
+      reading.remarks.add(
+          "odd state", [&] { return track.odd_at; },
+          [&] { return "'" + track.odd_text + "' is no state of '" + track.in_log + "': it counts as unknown"; });
+    }
+    log.sensors.push_back(event_track(tracks[i], reading, log, log_state::unknown));
+  }
+  if (log.sensors.empty()) {
+    throw Error(
+        ErrorCode::input, where,
+        "no motion sensor is in it: nothing is on and off, 0 and 1, or true and false; it has events of " +
+            joined(log.others.size() > 12 ? std::vector(log.others.begin(), log.others.begin() + 12) : log.others,
+                   ", "));
+  }
+}
+
+// ----------------------------------------------------------------------------------------------------------------- all
+
+/// The map with what was found.
+void complete(LogMap& map, const LogFile& file, const Log& log) {
+  const LogShape& shape = file.shape();
+  map.form = shape.form;
+  map.time = {shape.names[shape.time.first]};
+  if (shape.time.second) map.time.push_back(shape.names[*shape.time.second]);
+  map.dates = shape.time.order;
+  if (shape.form == LogMap::Form::events) {
+    map.sensor_column = shape.names[shape.sensor];
+    map.state_column = shape.names[shape.state];
+  } else {
+    map.rows = log.has_readings() ? LogMap::Rows::readings : LogMap::Rows::changes;
+  }
+  if (log.has_readings() && !map.interval_s) map.interval_s = static_cast<double>(log.interval_us) * 1e-6;
+  map.sensors.clear();
+  for (const LogTrack& track : log.sensors) map.sensors.push_back({track.name, track.in_log});
+  if (log.people) map.people = log.people->in_log;
+  map.people_mean = shape.people_mean;
+}
+
+void remark_constant_sensors(const Log& log, LogReading& reading) {
+  for (const LogTrack& track : log.sensors) {
+    const auto has = [&](std::int32_t state) {
+      return std::ranges::any_of(track.changes, [&](const LogChange& change) { return change.value == state; });
+    };
+    if (has(log_state::on) && has(log_state::off)) continue;
+    const std::string always = has(log_state::on)    ? "is never off"
+                               : has(log_state::off) ? "is never on"
+                                                     : "is never known";
+    const std::string hint =
+        has(log_state::on) && !log.has_readings() ? "; if its log tells motion alone, say hold_s in a map" : "";
+    reading.remarks.add(
+        "constant " + always, [&] { return Where{log.files.front().path}; },
+        [&] { return "sensor '" + track.name + "' " + always + hint; });
+  }
+}
+
+void check_names(const Log& log) {
+  std::set<std::string> names;
+  for (const LogTrack& track : log.sensors) {
+    const Where where{log.files.front().path};
+    if (const std::string fault = line_fault(track.name); !fault.empty())
+      throw Error(ErrorCode::input, where, "sensor '" + track.name + "': " + fault);
+    if (!names.insert(track.name).second)
+      throw Error(ErrorCode::input, where, "two sensors are called '" + track.name + "'");
+  }
+}
+
+std::vector<LogOffset> in_order(std::vector<LogOffset> offsets) {
+  std::ranges::stable_sort(offsets, {}, &LogOffset::from_us);
+  const auto same = [](const LogOffset& a, const LogOffset& b) { return a.offset_s == b.offset_s; };
+  offsets.erase(std::unique(offsets.begin(), offsets.end(), same), offsets.end());
+  return offsets;
+}
+
+void require_one_form(const LogFile& first, LogFile& other, LogFile& first_again) {
+  const bool is_same =
+      first.shape().form == other.shape().form && first_again.readings().has_value() == other.readings().has_value();
+  const bool is_same_clock = first_again.timer().clock() == other.timer().clock();
+  if (is_same && is_same_clock) return;
+  throw Error(ErrorCode::input, Where{other.file().path},
+              is_same ? "its times are of another kind than those of the first file"
+                      : "it has another form than the first file");
+}
+
+}  // namespace
+
+Log read_log(std::span<const std::filesystem::path> files, const LogMap& map, const LogObserver& observer) {
+  if (files.empty()) throw Error(ErrorCode::usage, "a log has at least one file");
+  std::optional<LogZone> zone;
+  if (!map.time_zone.empty()) zone.emplace(map.time_zone, Where{});
+  LogReading reading{map, zone ? &*zone : nullptr, {}, {}, {}, 0, {}, {}, {}, {}, {}};
+  Log log;
+  log.map = map;
+  std::vector<std::unique_ptr<LogFile>> read;
+  for (const std::filesystem::path& file : files) {
+    LogFile& opened = *read.emplace_back(std::make_unique<LogFile>(file, reading, observer));
+    if (read.size() == 1) {
+      reading.from_us = opened.limit("from", map.from);
+      reading.to_us = opened.limit("to", map.to);
+    } else {
+      require_one_form(*read.front(), opened, *read.front());
+    }
+    opened.read();
+    log.files.push_back(opened.file());
+  }
+  if (reading.faults.count() > 0) throw Error(ErrorCode::input, reading.faults.issues(Severity::error));
+  LogFile& first = *read.front();
+  log.clock = first.timer().clock();
+  log.n_rows = reading.n_rows;
+  const auto refuse_part = [&] {
+    throw Error(ErrorCode::usage, "nothing of the log is between from and to; its first time is " +
+                                      to_text({*reading.first_us, 0}, log.clock) + (zone ? " UTC" : "") +
+                                      ", its last " + to_text({*reading.last_us, 0}, log.clock));
+  };
+  if (first.readings()) {
+    log.others = first.shape().others;
+    std::vector<LogFile*> parts;
+    for (const auto& file : read) parts.push_back(file.get());
+    std::ranges::stable_sort(parts, {}, [](LogFile* file) { return file->readings()->first_us(); });
+    ReadingParts all(log);
+    for (LogFile* part : parts) all.add(*part);
+    if (log.interval_us == 0) refuse_part();
+    all.finish();
+  } else {
+    log.others = first.shape().others;
+    if (reading.from_us.value_or(*reading.first_us) > *reading.last_us ||
+        reading.to_us.value_or(*reading.last_us) < *reading.first_us)
+      refuse_part();
+    finish_events(log, reading);
+  }
+  if (zone) {
+    log.offsets = zone->offsets(log.begin_us, log.end_us);
+  } else {
+    for (const auto& file : read) {
+      const std::vector<LogOffset> more = file->timer().offsets(log.begin_us, log.end_us);
+      log.offsets.insert(log.offsets.end(), more.begin(), more.end());
+    }
+    log.offsets = in_order(std::move(log.offsets));
+  }
+  check_names(log);
+  complete(log.map, first, log);
+  remark_constant_sensors(log, reading);
+  log.remarks = reading.remarks.issues(Severity::warning);
+  return log;
+}
+
+LogRows read_log_rows(std::span<const std::filesystem::path> files, const LogMap& map, double window_s) {
+  const Log log = read_log(files, map);
+  return LogWindows(log, window_s).rows();
+}
+
+}  // namespace pirsim::io

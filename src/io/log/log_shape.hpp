@@ -1,0 +1,45 @@
+// What a log's first lines tell of its form. Private to io.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/log/log_timer.hpp"
+#include "pirsim/log.hpp"
+
+namespace pirsim::io {
+
+struct HeadLine {
+  std::string text;
+  int line = 0;
+};
+
+/// How the columns of one file are to be read.
+struct LogShape {
+  char separator = ',';
+  int header_line = 0;             ///< 0: the first line is a row
+  std::vector<std::string> names;  ///< of the columns; "column 3" where none is told
+  TimeColumns time;
+  LogMap::Form form = LogMap::Form::wide;
+
+  // Of a wide log.
+  std::vector<std::size_t> sensors;   ///< columns
+  std::optional<std::size_t> people;  ///< column
+  LogMap::People people_mean = LogMap::People::count;
+  std::vector<std::size_t> runs;    ///< columns that tell runs apart, of rows that have no clock
+  std::vector<std::string> others;  ///< columns that nothing is read from
+
+  // Of events.
+  std::size_t sensor = 0, state = 0;
+
+  /// Every row has so many fields; 0: at least those that are read.
+  [[nodiscard]] std::size_t n_fields() const noexcept { return separator == ' ' ? 0 : names.size(); }
+};
+
+/// head: the first lines that are neither empty nor comments; one at least. Throws Error(input).
+[[nodiscard]] LogShape shape_of(const std::vector<HeadLine>& head, const LogMap& map, const std::string& file);
+
+}  // namespace pirsim::io

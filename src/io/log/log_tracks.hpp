@@ -1,0 +1,83 @@
+// Readings and events as they come in, put together to tracks. Private to io.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "pirsim/log.hpp"
+
+namespace pirsim::io {
+
+/// Of one file, all sensors at the same moments.
+class ReadingTracks {
+ public:
+  struct Cadence {
+    std::int64_t interval_us = 0;
+    std::int64_t longest_gap_us = 0;  ///< between two readings that both hold until the next one
+  };
+  /// unknown: of each track, the value that tells nothing.
+  ReadingTracks(const Cadence& cadence, std::vector<std::int32_t> unknown);
+
+  enum class Order { later, same, earlier };
+  /// What isn't later than the last reading is left out.
+  Order add(std::int64_t us, std::span<const std::int32_t> values);
+
+  [[nodiscard]] bool is_empty() const noexcept { return n_ == 0; }
+  [[nodiscard]] std::int64_t first_us() const noexcept { return first_us_; }
+  [[nodiscard]] std::int64_t last_us() const noexcept { return last_us_; }
+  [[nodiscard]] std::uint64_t n_readings() const noexcept { return n_; }
+  [[nodiscard]] std::size_t n_changes() const noexcept { return n_changes_; }
+  [[nodiscard]] const Cadence& cadence() const noexcept { return cadence_; }
+  [[nodiscard]] std::vector<std::vector<LogChange>>& changes() noexcept { return changes_; }
+
+ private:
+  void put(std::size_t track, std::int64_t us, std::int64_t since_last_us, std::int32_t value);
+
+  Cadence cadence_;
+  std::vector<std::int32_t> unknown_;
+  std::vector<std::vector<LogChange>> changes_;
+  std::int64_t first_us_ = 0, last_us_ = 0;
+  std::uint64_t n_ = 0;
+  std::size_t n_changes_ = 0;
+};
+
+/// Of all files; events may come in any order.
+class EventTracks {
+ public:
+  struct Track {
+    std::string in_log;
+    std::vector<LogChange> events;
+    std::uint64_t n_states = 0, n_other = 0;
+    bool is_sorted = true;
+    Where odd_at{};  ///< the first text that is no state, of a sensor that had some
+    std::string odd_text{};
+  };
+  /// Finds or makes it; none if there are too many.
+  [[nodiscard]] Track* track(std::string_view in_log);
+  /// False if it is earlier than the track's last one.
+  bool add(Track& track, std::int64_t us, std::int32_t value);
+
+  [[nodiscard]] std::size_t n_events() const noexcept { return n_events_; }
+  [[nodiscard]] std::vector<Track>& tracks() noexcept { return tracks_; }
+
+ private:
+  struct Hash {
+    using is_transparent = void;
+    std::size_t operator()(std::string_view text) const noexcept { return std::hash<std::string_view>{}(text); }
+  };
+  std::vector<Track> tracks_;
+  std::unordered_map<std::string, std::size_t, Hash, std::equal_to<>> index_;
+  std::size_t n_events_ = 0;
+};
+
+/// Events in order of time, those that change nothing left out. hold_us: how long an `on` lasts whose end isn't told.
+[[nodiscard]] std::vector<LogChange> changes_of(EventTracks::Track& track, std::optional<std::int64_t> hold_us);
+
+}  // namespace pirsim::io

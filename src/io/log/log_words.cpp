@@ -1,0 +1,180 @@
+#include "io/log/log_words.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "io/files/atomic_file.hpp"
+#include "pirsim/log.hpp"
+
+namespace pirsim::io {
+namespace {
+
+constexpr std::array on_words{"on",  "true",     "yes",    "motion",   "motion detected", "motion_detected",
+                              "det", "detected", "active", "occupied", "moving"};
+constexpr std::array off_words{"off",          "false",    "no",     "clear",        "no motion",  "no_motion",
+                               "not detected", "inactive", "vacant", "not_detected", "unoccupied", "idle"};
+constexpr std::array unknown_words{"", "unavailable", "unknown", "none", "null", "nan", "na", "n/a", "<na>", "-", "?"};
+
+std::string small(std::string_view text) {
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  while (text.ends_with(' ')) text.remove_suffix(1);
+  std::string result(text);
+  for (char& c : result) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return result;
+}
+
+template <typename Words>
+bool is_one_of(const Words& words, std::string_view text) {
+  return std::ranges::any_of(words, [&](std::string_view word) { return word == text; });
+}
+
+constexpr std::size_t longest_state = 24;
+
+std::optional<double> number_of(std::string text) {
+  if (const std::size_t comma = text.find(','); comma != std::string::npos) text[comma] = '.';
+  const auto value = parse_number<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+bool begins_with_one_of(const std::vector<std::string>& words, const auto& beginnings) {
+  return std::ranges::any_of(words, [&](const std::string& word) {
+    return std::ranges::any_of(beginnings, [&](std::string_view beginning) { return word.starts_with(beginning); });
+  });
+}
+
+}  // namespace
+
+std::optional<std::int32_t> read_state(std::string_view text) {
+  if (text == "0" || text == "OFF" || text == "off") return log_state::off;
+  if (text == "1" || text == "ON" || text == "on") return log_state::on;
+  if (text.size() > longest_state) return std::nullopt;
+  const std::string word = small(text);
+  if (is_one_of(on_words, word)) return log_state::on;
+  if (is_one_of(off_words, word)) return log_state::off;
+  if (is_one_of(unknown_words, word)) return log_state::unknown;
+  const auto number = number_of(word);
+  if (number == 0.0) return log_state::off;
+  if (number == 1.0) return log_state::on;
+  return std::nullopt;
+}
+
+std::optional<std::int32_t> read_count(std::string_view text) {
+  constexpr double most = 1e6;  // assumed: a stadium has fewer
+  if (text.size() > longest_state) return std::nullopt;
+  const std::string word = small(text);
+  if (is_one_of(unknown_words, word)) return log_state::unknown_count;
+  if (const auto number = number_of(word);
+      number && *number >= 0.0 && *number <= most && *number == std::floor(*number))
+    return static_cast<std::int32_t>(*number);
+  const auto state = read_state(word);
+  return state && *state != log_state::unknown ? state : std::nullopt;
+}
+
+std::vector<std::string> words_of_name(std::string_view name) {
+  std::vector<std::string> words;
+  std::string word;
+  for (const char c : small(name)) {
+    const bool is_part = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || static_cast<unsigned char>(c) >= 0x80U;
+    if (is_part) word += c;
+    if (!is_part && !word.empty()) words.push_back(std::exchange(word, {}));
+  }
+  if (!word.empty()) words.push_back(word);
+  return words;
+}
+
+NameSays what_name_says(std::string_view name) {
+  constexpr std::array times{
+      "time",      "timestamp",  "datetime", "date_time", "date",       "time_s",     "_time",        "ts",
+      "t",         "epoch",      "unix",     "unixtime",  "when",       "time stamp", "last_changed", "last_updated",
+      "unix_time", "created_at", "received", "utc",       "local_time", "time_ms",    "seconds",      "epoch_s"};
+  constexpr std::array sensors{"entity_id", "entity", "sensor", "sensor_id", "sensorid", "device", "sensor_name",
+                               "device_id", "name",   "id",     "object_id", "node",     "topic",  "friendly_name"};
+  constexpr std::array states{"state",   "value",     "message", "status", "event",
+                              "reading", "new_state", "_value",  "payload"};
+  constexpr std::array motions{"pir", "motion", "movement"};
+  constexpr std::array counts{"people", "persons", "occupants", "headcount"};
+  constexpr std::array presences{"occupancy", "occupied", "presence"};
+  constexpr std::array others{"light",  "lux",    "illumin", "temp", "sound", "noise",    "co2",
+                              "humid",  "slope",  "volt",    "batt", "power", "pressure", "door",
+                              "window", "switch", "hvac",    "rssi", "energy"};
+  const std::string word = small(name);
+  if (is_one_of(times, word)) return NameSays::time;
+  if (is_one_of(sensors, word)) return NameSays::sensor;
+  if (is_one_of(states, word)) return NameSays::state;
+  if (word == "count") return NameSays::count;
+  const std::vector<std::string> words = words_of_name(name);
+  const bool counts_something = std::ranges::find(words, "count") != words.end();
+  if (begins_with_one_of(words, counts) || (counts_something && begins_with_one_of(words, presences)))
+    return NameSays::count;
+  if (begins_with_one_of(words, motions)) return NameSays::motion;
+  if (begins_with_one_of(words, presences)) return NameSays::presence;
+  if (begins_with_one_of(words, others)) return NameSays::other_quantity;
+  return NameSays::nothing;
+}
+
+bool is_casas_motion(std::string_view name) {
+  if (!name.starts_with('M')) return false;
+  name.remove_prefix(1);
+  if (name.starts_with('A')) name.remove_prefix(1);  // one that sees a whole area
+  return !name.empty() && std::ranges::all_of(name, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+namespace {
+
+bool split_at_spaces(std::string_view line, std::vector<std::string_view>& fields) {
+  const std::string_view spaces = " \t";
+  while (true) {
+    const std::size_t begin = line.find_first_not_of(spaces);
+    if (begin == std::string_view::npos) return true;
+    const std::size_t end = std::min(line.find_first_of(spaces, begin), line.size());
+    fields.push_back(line.substr(begin, end - begin));
+    line.remove_prefix(end);
+  }
+}
+
+/// After a quote: what stands in quotes, and the line behind them; false if they aren't closed.
+bool take_quoted(std::string_view& line, std::string& text) {
+  text.clear();
+  while (!line.empty()) {
+    const char c = line.front();
+    line.remove_prefix(1);
+    if (c != '"') {
+      text += c;
+    } else if (line.starts_with('"')) {
+      text += '"';
+      line.remove_prefix(1);
+    } else {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields,
+                  std::vector<std::string>& unquoted) {
+  fields.clear();
+  if (separator == ' ') return split_at_spaces(line, fields);
+  std::size_t n_quoted = 0;
+  if (const auto quotes = static_cast<std::size_t>(std::ranges::count(line, '"')); unquoted.size() < quotes)
+    unquoted.resize(quotes);  // before any field points into it
+  while (true) {
+    if (line.starts_with('"')) {
+      line.remove_prefix(1);
+      std::string& text = unquoted[n_quoted++];
+      if (!take_quoted(line, text)) return false;
+      if (!line.empty() && line.front() != separator) return false;
+      fields.emplace_back(text);
+    } else {
+      const std::size_t end = std::min(line.find(separator), line.size());
+      fields.push_back(line.substr(0, end));
+      line.remove_prefix(end);
+    }
+    if (line.empty()) return true;
+    line.remove_prefix(1);
+  }
+}
+
+}  // namespace pirsim::io

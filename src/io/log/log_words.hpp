@@ -1,0 +1,32 @@
+// Words of logs: states, and what columns are called. Private to io.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pirsim::io {
+
+/// log_state of "1", "0.0", "on", "False", "motion", "unavailable", ""; none for what is no state.
+[[nodiscard]] std::optional<std::int32_t> read_state(std::string_view text);
+/// A whole number from 0, also as "3.0"; log_state::unknown_count for what says that nobody knows; none for any other
+/// text.
+[[nodiscard]] std::optional<std::int32_t> read_count(std::string_view text);
+
+/// A name in small letters, cut at what is neither letter nor digit: {"s6", "pir"}.
+[[nodiscard]] std::vector<std::string> words_of_name(std::string_view name);
+
+enum class NameSays { nothing, time, sensor, state, motion, count, presence, other_quantity };
+/// What a column or an entity is by its name. `time`, `sensor` and `state` are said only of whole names.
+[[nodiscard]] NameSays what_name_says(std::string_view name);
+/// "M003", "MA012": how CASAS calls motion sensors.
+[[nodiscard]] bool is_casas_motion(std::string_view name);
+
+/// The fields of a line. '"' quotes, doubled within quotes; ' ' separates at every run of spaces and tabs. They live as
+/// long as the line and `unquoted`. False if a quote isn't closed.
+[[nodiscard]] bool split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields,
+                                std::vector<std::string>& unquoted);
+
+}  // namespace pirsim::io

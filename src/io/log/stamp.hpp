@@ -1,0 +1,34 @@
+// What a text says about time. Private to io.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "pirsim/log.hpp"
+
+namespace pirsim::io {
+
+struct Stamp {
+  enum class Kind {
+    number,       ///< of seconds or parts of them, since something
+    time_of_day,  ///< microseconds since midnight
+    date,         ///< its midnight
+    local,        ///< date and time as clocks on the wall show them
+    absolute      ///< with an offset from UTC
+  };
+  Kind kind = Kind::number;
+  std::int64_t us = 0;        ///< since 1970-01-01T00:00: UTC if absolute, else of the local clock
+  std::int32_t offset_s = 0;  ///< of an absolute one: so much is local time ahead
+  double number = 0.0;
+};
+
+/// ISO 8601 and what spreadsheets make of it: "2025-04-06T18:00:01.5Z", "2025/04/06 18:00", "12/22/2017 10:49:41 AM",
+/// "0:00:34", "1743962401"; none for any other text. `order` counts where the year comes last; months come first if
+/// neither it nor the numbers say otherwise. Days that don't exist, as 2025-02-30, are none.
+[[nodiscard]] std::optional<Stamp> parse_stamp(std::string_view text, LogMap::Dates order);
+
+/// What a text with a date tells of the order of dates; found: nothing, none: it has no date that ends in a year.
+[[nodiscard]] std::optional<LogMap::Dates> order_of_date(std::string_view text);
+
+}  // namespace pirsim::io
