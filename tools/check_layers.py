@@ -41,7 +41,7 @@ ROOMS = {
 PUBLIC = {
     "error": "core", "input_file": "core", "interval": "core", "random": "core", "version": "core",
     "geometry": "geom", "shapes": "geom", "rays": "geom",
-    "sensor": "schema", "scene": "schema", "script": "schema", "schedule": "schema", "survey": "schema", "sample": "schema", "columns": "schema", "response": "schema",
+    "sensor": "schema", "scene": "schema", "script": "schema", "schedule": "schema", "occupancy": "schema", "survey": "schema", "sample": "schema", "columns": "schema", "response": "schema",
     "effects": "effects",
     "model": "sim", "state": "sim", "study": "sim", "recording": "sim",
     "coverage": "studies", "look": "studies", "walk_test": "studies",

@@ -32,6 +32,8 @@ enum class Purpose : std::uint32_t {
   uneven_arms = 21,        ///< uneven_arms: each swing's amplitude and period
   rough_surface = 22,      ///< wall_reflection: where each ray goes on
   swept_area = 23,         ///< soft_zone_edges: whether what swept a zone is noticed
+  occupancy = 24,          ///< who comes or goes between two readings of a count, when, and where to
+  occupancy_conduct = 25,  ///< what somebody does at a seat that a count gave them, and by which doors they go
   effect_prior = 11,       ///< parameters drawn from the catalogue's priors
   // Of statistics, from 100 on.
   tied_ranks = 100,    ///< order of equal values in a rank test

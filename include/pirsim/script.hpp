@@ -12,6 +12,7 @@
 #include "pirsim/error.hpp"
 #include "pirsim/geometry.hpp"
 #include "pirsim/input_file.hpp"
+#include "pirsim/occupancy.hpp"
 #include "pirsim/schedule.hpp"
 #include "pirsim/sensor.hpp"
 #include "pirsim/shapes.hpp"
@@ -152,17 +153,19 @@ struct PersonSpec {
 
 /// One choreography; a study runs every trial once per replicate.
 struct TrialSpec {
-  std::string id;                          ///< as the output names it, "S1"
-  std::vector<PersonSpec> people;          ///< the first one's actions name the rows' phase
-  std::optional<double> duration_s{};      ///< of a run; none: until all subjects have carried out all actions
-  std::optional<ScheduleSpec> schedule{};  ///< adds people whose actions are drawn anew for every run
+  std::string id;                            ///< as the output names it, "S1"
+  std::vector<PersonSpec> people;            ///< the first one's actions name the rows' phase
+  std::optional<double> duration_s{};        ///< of a run; none: until all subjects have carried out all actions
+  std::optional<ScheduleSpec> schedule{};    ///< adds people whose actions are drawn anew for every run
+  std::optional<OccupancySpec> occupancy{};  ///< adds people who are there as data say
 };
 
 struct ScriptSpec {
   std::string name;
   std::uint64_t seed = 1;
   int replicates = 1;
-  /// Local date and time at which every run begins, "2026-03-02T07:00"; empty: runs have no clock, or the schedule's.
+  /// Local date and time at which every run begins, "2026-03-02T07:00"; empty: runs have no clock, or the schedule's,
+  /// or that of the occupancy's data.
   std::string begin;
   SensingSpec sensing;
   SummarySpec summary;

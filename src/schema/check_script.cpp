@@ -9,6 +9,7 @@
 #include "schema/action_facts.hpp"
 #include "schema/body_part_names.hpp"
 #include "schema/clock.hpp"
+#include "schema/occupancy_runs.hpp"
 #include "schema/phase_names.hpp"
 #include "schema/spec_faults.hpp"
 
@@ -19,7 +20,7 @@ namespace {
 std::vector<std::string> phases_of(const ScriptSpec& script) {
   std::set<std::string> phases;
   for (const TrialSpec& trial : script.trials) {
-    if (trial.schedule) {
+    if (trial.schedule || trial.occupancy) {
       for (const std::string_view use : {phase_empty, phase_occupied, phase_meeting, phase_cleaning})
         phases.emplace(use);
       continue;
@@ -90,6 +91,7 @@ class ScriptCheck {
     Names people("person");
     for (std::size_t i = 0; i < trial.people.size(); ++i) check_person(trial.people[i], path.item("people", i), people);
     if (trial.schedule) check(*trial.schedule, path.field("schedule"), faults_);
+    if (trial.occupancy) check(*trial.occupancy, script_.begin, path.field("occupancy"), faults_);
   }
 
   void check_person(const PersonSpec& person, const SpecPath& path, Names& ids) {
@@ -177,6 +179,10 @@ void check_together(const TrialSpec& trial, const TellFault& tell) {
   if (trial.schedule && trial.duration_s) {
     tell("duration_s", "a run lasts from its `from` to its `to`: leave out duration_s");
   }
+  if (trial.occupancy && has_days(*trial.occupancy) && trial.duration_s)
+    tell("duration_s", "a run lasts from `from` to `to` of its occupancy: leave out duration_s");
+  if (trial.schedule && trial.occupancy)
+    tell("occupancy", "a schedule says who is there as well: leave out one of them");
 }
 
 void check_phases(const ScriptSpec& script, const std::function<void(std::size_t, const std::string&)>& tell) {

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/text.hpp"
+#include "schema/occupancy_runs.hpp"
 
 namespace pirsim {
 namespace {
@@ -134,6 +135,7 @@ std::optional<RunClock> clock_from(const std::string& begin) {
 }
 
 std::optional<RunClock> clock_of(const ScriptSpec& script, const TrialSpec& trial) {
+  if (trial.occupancy) return runs_of(*trial.occupancy, script.begin).clock;
   if (!trial.schedule) return clock_from(script.begin);
   const std::int64_t day = day_number(trial.schedule->first_day, trial.schedule->where);
   return RunClock{day_s * day + std::llround(3600.0 * trial.schedule->from_h)};  // times are whole minutes

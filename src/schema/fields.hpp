@@ -8,6 +8,7 @@
 #include <limits>
 #include <tuple>
 
+#include "pirsim/occupancy.hpp"
 #include "pirsim/scene.hpp"
 #include "pirsim/schedule.hpp"
 #include "pirsim/script.hpp"
@@ -41,6 +42,7 @@ inline constexpr NumberRange worked_s{.above = 0.0, .max = 1e6};
 inline constexpr NumberRange meeting_min{.min = 1.0, .max = 1440.0};
 inline constexpr IntegerRange meetings_a_day{.min = 0, .max = 100};
 inline constexpr IntegerRange people_at_once{.min = 1, .max = 200};
+inline constexpr IntegerRange people_of_counts{.min = 1, .max = 1000};
 inline constexpr IntegerRange seed{.min = 0, .max = std::numeric_limits<long long>::max()};
 
 }  // namespace accepted
@@ -429,6 +431,79 @@ struct Fields<ScheduleSpec> {
       LABEL(where)};
 };
 template <>
+struct Fields<CountsSpec> {
+  using S = CountsSpec;
+  static constexpr const char* name = "Counts";
+  static constexpr const char* about = "How many people were there, at moments.";
+  static constexpr std::tuple all{
+      FIELD(times_s, "ascending"),
+      FIELD(people, "at each of them"),
+      FIELD(begin, "local date and time of `times_s` 0; empty: they are seconds of the run"),
+      FIELD(file, "CSV, or empty; relative to `Script.directory`; `read_script()` reads it"),
+      FIELD(time, "its column of times; empty: found by its usual names"),
+      FIELD(column, "its column of people; empty: found by its usual names"),
+      LABEL(most)};
+};
+template <>
+struct Fields<StaySpec> {
+  using S = StaySpec;
+  static constexpr const char* name = "Stay";
+  static constexpr const char* about = "Somebody at one place for a while.";
+  static constexpr std::tuple all{FIELD(person),
+                                  FIELD(seat, "or empty: on foot"),
+                                  FIELD(from_s, accepted::at_s),
+                                  FIELD(to_s, accepted::at_s),
+                                  FIELD(points, "where they were at `from_s` and at `to_s`, if that is known"),
+                                  LABEL(where)};
+};
+template <>
+struct Fields<PlacesSpec> {
+  using S = PlacesSpec;
+  static constexpr const char* name = "Places";
+  static constexpr const char* about = "Who took which seat, and when.";
+  static constexpr std::tuple all{FIELD(stays, "of each person in order of time"),
+                                  FIELD(begin, "local date and time of second 0; empty: seconds of the run"),
+                                  FIELD(file, "CSV, or empty; relative to `Script.directory`")};
+};
+template <>
+struct Fields<TrackSpec> {
+  using S = TrackSpec;
+  static constexpr const char* name = "Track";
+  static constexpr const char* about = "Where one person was, from moment to moment.";
+  static constexpr std::tuple all{FIELD(person), FIELD(times_s, "ascending"), FIELD(points, "at each of them"),
+                                  FIELD(headings_deg, "at each of them; empty: facing where they go"), LABEL(where)};
+};
+template <>
+struct Fields<PositionsSpec> {
+  using S = PositionsSpec;
+  static constexpr const char* name = "Positions";
+  static constexpr const char* about = "Tracked people, who go where they went.";
+  static constexpr std::tuple all{FIELD(tracks),
+                                  FIELD(begin, "local date and time of second 0; empty: seconds of the run"),
+                                  FIELD(file, "CSV, or empty; relative to `Script.directory`")};
+};
+template <>
+struct Fields<OccupancySpec> {
+  using S = OccupancySpec;
+  static constexpr const char* name = "Occupancy";
+  static constexpr const char* about =
+      "Adds people who are there as data say: one of `counts`, `places` and `positions`.";
+  static constexpr std::tuple all{
+      FIELD(counts, "who comes, when within an interval, and where they sit is drawn anew for every run"),
+      FIELD(places),
+      FIELD(positions),
+      FIELD(from_h, accepted::hour_of_day, "with either, replicates are the days of the data, each from here"),
+      FIELD(to_h, accepted::hour_of_day, "to there"),
+      FIELD(changes_within_s, NumberRange{.min = 0.0, .max = 1e7},
+            "of counts: a change happened at most so long before its reading; none: since the reading before"),
+      FIELD(persons, accepted::people_of_counts,
+            "of counts: how many different ones come; none: as many as are ever there"),
+      FIELD(seats, "of counts: that may be taken; none: all of the scene"),
+      FIELD(entrances, "that people use; none: all of the scene"),
+      FIELD(style),
+      LABEL(where)};
+};
+template <>
 struct Fields<TrialSpec> {
   using S = TrialSpec;
   static constexpr const char* name = "Trial";
@@ -437,7 +512,7 @@ struct Fields<TrialSpec> {
                                   FIELD(people, "the first one's actions name the rows' phase"),
                                   FIELD(duration_s, NumberRange{.min = 1.0, .max = 1e7},
                                         "of a run; none: until everybody has carried out all actions"),
-                                  FIELD(schedule)};
+                                  FIELD(schedule), FIELD(occupancy)};
 };
 template <>
 struct Fields<SensingSpec> {
@@ -588,6 +663,7 @@ using SpecsOfPython =
                ComparatorSpec, DetectorSpec, ZoneSpec, ClusterSpec, SensorModelSpec, SceneSpec, action::Wait,
                action::Appear, action::Enter, action::Walk, action::Sit, action::Work, action::Rise, action::Leave,
                action::Turn, SeatScatterSpec, WarmthSpec, PersonSpec, ClockSpec, StaffSpec, HeldMeetingSpec,
-               MeetingsSpec, ProfileSpec, ScheduleSpec, TrialSpec, SensingSpec, SummarySpec, EffectSpec, ScriptSpec>;
+               MeetingsSpec, ProfileSpec, ScheduleSpec, CountsSpec, StaySpec, PlacesSpec, TrackSpec, PositionsSpec,
+               OccupancySpec, TrialSpec, SensingSpec, SummarySpec, EffectSpec, ScriptSpec>;
 
 }  // namespace pirsim

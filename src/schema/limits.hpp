@@ -18,6 +18,9 @@ inline constexpr std::size_t actions = 100'000;      ///< of a person
 inline constexpr std::size_t walk_points = 100'000;  ///< of an action
 inline constexpr std::size_t held_meetings = 100;    ///< of a day, as drawn ones
 
+// Of the data behind a script's `occupancy`.
+inline constexpr std::size_t occupancy_rows = 1'000'000;  ///< two years of counts, one a minute
+
 // Of recipes.
 inline constexpr std::size_t rooms = 100'000;
 

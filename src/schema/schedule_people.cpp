@@ -20,18 +20,6 @@ constexpr double mean_stature_m = 1.72, stature_sd_m = 0.09, least_stature_m = 1
 constexpr double mean_bmi = 24.5, bmi_sd = 3.0;  // kg/m2, assumed (22-27)
 constexpr double pace_m_s = 1.2;                 // indoors; Ref: [Weidmann1993] has 1.34 in the open
 
-PersonSpec body_of(const std::string& id, MotionStyle style, std::uint64_t seed, std::uint32_t entity) {
-  Stream stream({seed, 0, entity, Purpose::schedule_body});
-  PersonSpec person;
-  person.id = id;
-  person.style = style;
-  person.stature_m = std::clamp(mean_stature_m + stature_sd_m * stream.normal(), least_stature_m, most_stature_m);
-  person.mass_kg = std::clamp(mean_bmi + bmi_sd * stream.normal(), 18.0, 32.0) * person.stature_m * person.stature_m;
-  person.walking_speed_m_s = pace_m_s;
-  person.seat_scatter = {0.03, 4.0};
-  return person;
-}
-
 /// Who owns which desk: seats that are asked for, then those that nobody has.
 class Desks {
  public:
@@ -103,6 +91,18 @@ int guests_of(const ScheduleSpec& schedule, const SceneSpec& scene, Diagnostics&
 
 }  // namespace
 
+PersonSpec drawn_body(const std::string& id, MotionStyle style, std::uint64_t seed, std::uint32_t entity) {
+  Stream stream({seed, 0, entity, Purpose::schedule_body});
+  PersonSpec person;
+  person.id = id;
+  person.style = style;
+  person.stature_m = std::clamp(mean_stature_m + stature_sd_m * stream.normal(), least_stature_m, most_stature_m);
+  person.mass_kg = std::clamp(mean_bmi + bmi_sd * stream.normal(), 18.0, 32.0) * person.stature_m * person.stature_m;
+  person.walking_speed_m_s = pace_m_s;
+  person.seat_scatter = {0.03, 4.0};
+  return person;
+}
+
 std::vector<std::string> meeting_seats(const MeetingsSpec& meetings, const SceneSpec& scene,
                                        const ScheduleSpec& schedule) {
   if (!meetings.seats.empty()) return meetings.seats;
@@ -123,7 +123,7 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
   std::vector<ScheduledPerson> people;
   const auto add = [&](SchedulePart part, Role role, const std::string& name, const std::string& seat) {
     people.push_back(
-        {part, role, seat, body_of(name, schedule.style, seed, static_cast<std::uint32_t>(people.size()))});
+        {part, role, seat, drawn_body(name, schedule.style, seed, static_cast<std::uint32_t>(people.size()))});
   };
   std::map<Role, int> numbers;
   for (const StaffSpec& staff : schedule.staff) {

@@ -12,7 +12,8 @@
 namespace pirsim {
 
 /// What somebody of a schedule is there for.
-enum class SchedulePart { staff, guest, cleaner };
+/// occupant: of an occupancy, which has no roles
+enum class SchedulePart { staff, guest, cleaner, occupant };
 
 struct ScheduledPerson {
   SchedulePart part = SchedulePart::staff;
@@ -20,6 +21,9 @@ struct ScheduledPerson {
   std::string seat;         ///< own desk, of staff
   PersonSpec person;        ///< without actions
 };
+
+/// Somebody of no particular size, drawn from the study's seed; entity: which of the people so drawn.
+[[nodiscard]] PersonSpec drawn_body(const std::string& id, MotionStyle style, std::uint64_t seed, std::uint32_t entity);
 
 /// Staff in their order, then guests of meetings, then who cleans. Bodies are drawn from the study's seed and are the
 /// same on all days. Throws Error(input) for more staff than seats, and for seats and entrances that the scene lacks.

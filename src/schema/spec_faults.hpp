@@ -102,5 +102,7 @@ class SpecFaults {
 
 void check(const SensorModelSpec& model, const SpecPath& path, SpecFaults& faults);
 void check(const ScheduleSpec& schedule, const SpecPath& path, SpecFaults& faults);
+/// begin: the script's.
+void check(const OccupancySpec& occupancy, const std::string& begin, const SpecPath& path, SpecFaults& faults);
 
 }  // namespace pirsim

@@ -8,12 +8,30 @@
 
 namespace pirsim {
 
+namespace {
+
+void add_occupancy(const OccupancySpec& occupancy, const ScriptSpec& script, const StudyInForce& study,
+                   TrialInForce& trial) {
+  for (const ScheduledPerson& occupant : people_of(occupancy, study.scene, script.seed))
+    trial.people.push_back({occupant.person, {}, occupant});
+  OccupancyRuns runs = runs_of(occupancy, script.begin);
+  trial.clock = runs.clock;
+  trial.begins_s = std::move(runs.begins_s);
+  if (!trial.duration_s) trial.duration_s = runs.duration_s;
+  if (!occupancy.counts) return;
+  trial.occupancy = OccupancyInForce{*occupancy.counts, occupancy.changes_within_s, seats_of(occupancy, study.scene),
+                                     entrances_of(occupancy, study.scene), occupancy.where};
+}
+
+}  // namespace
+
 StudyInForce as_given(SceneSpec scene, const ScriptSpec& script) {
   StudyInForce study{std::move(scene), {script.sensing}, script.seed, {}};
   for (const TrialSpec& trial : script.trials) {
     TrialInForce& own = study.trials.emplace_back(
         TrialInForce{trial.id, {}, trial.duration_s, trial.schedule, clock_of(script, trial)});
     for (const PersonSpec& person : trial.people) own.people.push_back({person, {}, {}});
+    if (trial.occupancy) add_occupancy(*trial.occupancy, script, study, own);
     if (!trial.schedule) continue;
     for (const ScheduledPerson& scheduled : people_of(*trial.schedule, study.scene, script.seed)) {
       own.people.push_back({scheduled.person, {}, scheduled});

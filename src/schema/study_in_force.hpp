@@ -9,6 +9,7 @@
 #include "pirsim/scene.hpp"
 #include "pirsim/script.hpp"
 #include "schema/clock.hpp"
+#include "schema/occupancy_runs.hpp"
 #include "schema/schedule_people.hpp"
 
 namespace pirsim {
@@ -98,6 +99,16 @@ struct PersonInForce : PersonSpec {
   std::optional<ScheduledPerson> part{};  ///< in the trial's schedule; its actions are drawn for each run
 };
 
+/// An occupancy of counts, with what its runs and its room make of it.
+struct OccupancyInForce {
+  CountsSpec counts;
+  std::optional<double> changes_within_s;
+  std::vector<std::string> seats;      ///< that may be taken
+  std::vector<std::string> entrances;  ///< that people use
+  Where where;
+  std::vector<Vec2> standing{};  ///< where those stand who find no seat; once people are planned
+};
+
 /// people: those of the script, then whom effects added.
 template <typename Person>
 struct TrialOf {
@@ -106,6 +117,13 @@ struct TrialOf {
   std::optional<double> duration_s{};
   std::optional<ScheduleSpec> schedule{};
   std::optional<RunClock> clock{};  ///< of the first replicate
+  /// When each of the days of an occupancy begins, in the seconds of its data, which replicates take in turn; of an
+  /// occupancy without days one moment; empty: the trial has none.
+  std::vector<double> begins_s{};
+  std::optional<OccupancyInForce> occupancy{};  ///< of one that is drawn for each run
+
+  /// People come and go by data or draws, not by a story of which somebody is the first.
+  [[nodiscard]] bool is_populated() const noexcept { return schedule || !begins_s.empty(); }
 };
 using TrialInForce = TrialOf<PersonInForce>;
 

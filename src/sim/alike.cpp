@@ -62,10 +62,19 @@ bool same_size(const PersonSpec& a, const PersonSpec& b) {
 /// What people move by of it: of the rest only sensors know.
 auto clock(const SensingInForce& sensing) { return std::tie(sensing.tick_rate_hz, sensing.ticks_per_window); }
 
+/// Places to stand follow from the ground, which is compared by itself.
+bool same_counts(const std::optional<OccupancyInForce>& a, const std::optional<OccupancyInForce>& b) {
+  const auto fields_of = [](const OccupancyInForce& occupancy) {
+    const auto& [counts, changes_within_s, seats, entrances, where, standing] = occupancy;
+    return std::tie(changes_within_s, seats, entrances);
+  };
+  return a && b ? same(a->counts, b->counts) && fields_of(*a) == fields_of(*b) : a.has_value() == b.has_value();
+}
+
 bool same_trial(const TrialModel& planned, const TrialInForce& trial, double ambient_c) {
-  const auto& [id, people, duration_s, schedule, run_clock] = trial;
+  const auto& [id, people, duration_s, schedule, run_clock, begins_s, occupancy] = trial;
   return planned.id == id && planned.duration_s == duration_s && same(planned.schedule, schedule) &&
-         planned.clock == run_clock &&
+         planned.clock == run_clock && planned.begins_s == begins_s && same_counts(planned.occupancy, occupancy) &&
          std::ranges::equal(planned.people, people, [&](const PersonModel& a, const PersonInForce& b) {
            return same_person(a.spec, b) && a.radiance == radiance_of(b.warmth, ambient_c);
          });

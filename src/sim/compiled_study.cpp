@@ -1,5 +1,6 @@
 #include "sim/compiled_study.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "effects/catalogue.hpp"
@@ -23,7 +24,14 @@ std::optional<RunClock> CompiledStudy::clock_of(std::uint32_t run) const noexcep
   std::optional<RunClock> clock = trial_of(run).clock;
   constexpr std::int64_t day_s = 86400;
   if (trial_of(run).schedule) clock->begin_s += day_s * (replicate_of(run) - 1);
+  const std::vector<double>& begins_s = trial_of(run).begins_s;
+  if (clock && !begins_s.empty()) clock->begin_s += std::llround(data_second_of(run) - begins_s.front());
   return clock;
+}
+
+double CompiledStudy::data_second_of(std::uint32_t run) const noexcept {
+  const std::vector<double>& begins_s = trial_of(run).begins_s;
+  return begins_s[static_cast<std::size_t>(replicate_of(run) - 1) % begins_s.size()];
 }
 
 CompiledStudy::CompiledStudy(SceneSpec scene, ScriptSpec script, TracerKind tracer, const CompiledStudy* like)

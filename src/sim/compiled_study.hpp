@@ -73,7 +73,10 @@ class CompiledStudy {
   [[nodiscard]] int replicate_of(std::uint32_t run) const noexcept {
     return static_cast<int>(run / trials().size()) + 1;
   }
-  /// Replicates of a schedule are days that follow each other; all others begin at the same time.
+  /// Where a run of a trial with an occupancy begins, in the seconds of its data: replicates take the days in turn.
+  [[nodiscard]] double data_second_of(std::uint32_t run) const noexcept;
+  /// Replicates of a schedule are days that follow each other, those of an occupancy the days of its data; all others
+  /// begin at the same time.
   [[nodiscard]] std::optional<RunClock> clock_of(std::uint32_t run) const noexcept;
 
  private:

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "schema/phase_names.hpp"
+#include "sim/occupancy.hpp"
 
 namespace pirsim::sim {
 
@@ -25,6 +26,7 @@ Crowd::Crowd(const CompiledStudy& study, std::uint32_t run) : conversation_(stud
   std::shared_ptr<const DayPlan> plan;
   const TrialModel& trial = study.trial_of(run);
   if (trial.schedule) plan = std::make_shared<const DayPlan>(draw_day(study, run));
+  if (trial.occupancy) plan = std::make_shared<const DayPlan>(draw_occupancy(study, run));
   for (std::uint32_t person = 0; person < n_people; ++person) actors_.emplace_back(study, run, person, plan);
   presences_.resize(n_people);
   seated_.resize(n_people, 0);

@@ -227,6 +227,15 @@ Habits habits_of(Role role) {
 
 double exponential(Stream& stream, double mean) { return -mean * std::log(1.0 - stream.uniform()); }
 
+action::Work draw_desk_work(Stream& stream) {
+  constexpr double shortest_s = 2.0 * minute_s, further_s = 8.0 * minute_s;  // assumed: an activity (means of 5-20 min)
+  action::Work work;
+  work.duration_s = shortest_s + exponential(stream, further_s);
+  const double u = stream.uniform();  // assumed shares: typing 0.65 (0.5-0.8), reading 0.25, phone 0.1
+  work.activity = u < 0.65 ? Activity::typing : u < 0.90 ? Activity::reading : Activity::phone;
+  return work;
+}
+
 DayDraw draw_times(const DaySource& source) {
   DayDraw draw;
   draw.stays.resize(source.people.size());

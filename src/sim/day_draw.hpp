@@ -54,6 +54,9 @@ struct DaySource {
 
 [[nodiscard]] DayDraw draw_times(const DaySource& source);
 
+/// One thing that somebody does at a desk, and for how long.
+[[nodiscard]] action::Work draw_desk_work(Stream& stream);
+
 [[nodiscard]] double exponential(Stream& stream, double mean);
 
 /// Share of time in each Place and mean stay. Ref: [ChenHongLuo2018].

@@ -18,6 +18,7 @@
 #include "schema/action_facts.hpp"
 #include "schema/limits.hpp"
 #include "sim/alike.hpp"
+#include "sim/occupancy.hpp"
 
 namespace pirsim::sim {
 
@@ -73,9 +74,9 @@ class Rehearsal {
             Diagnostics& diagnostics)
       : scene_(scene), room_(room), person_(person), grounds_(grounds), diagnostics_(diagnostics) {}
 
-  /// schedule: of the trial, if it has one.
-  void run(const std::optional<ScheduleSpec>& schedule) {
-    if (person_.spec.part) rehearse_schedule(*schedule);
+  /// entrances: that people with a part in a schedule use; none: all of the scene.
+  void run(const std::vector<std::string>& entrances) {
+    if (person_.spec.part) rehearse_schedule(entrances);
     const std::vector<ScriptedAction>& actions = person_.spec.actions;
     for (std::size_t i = 0; i < actions.size(); ++i) {
       const auto& [what, at_s, phase, where] = actions[i];
@@ -97,10 +98,9 @@ class Rehearsal {
 
  private:
   /// Who follows a schedule may get to any seat that can be reached, and has to reach their own.
-  void rehearse_schedule(const ScheduleSpec& schedule) {
+  void rehearse_schedule(const std::vector<std::string>& used) {
     const ScheduledPerson& part = *person_.spec.part;
     for (const EntranceSpec& door : scene_.entrances) {
-      const std::vector<std::string>& used = schedule.entrances;
       if (!used.empty() && std::ranges::find(used, door.id) == used.end()) continue;
       if (is_shut(door.id)) return;
       if (!at_) start_at(outside_of(door), door.id);
@@ -360,6 +360,11 @@ void require_limit(const SceneSpec& scene, const std::vector<TrialInForce>& tria
                   "more than " + std::to_string(limits::way_squares) + " squares of 0.1 m: give fewer sizes");
 }
 
+std::vector<std::string> entrances_used(const TrialInForce& trial) {
+  if (trial.occupancy) return trial.occupancy->entrances;
+  return trial.schedule ? trial.schedule->entrances : std::vector<std::string>{};
+}
+
 std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std::vector<TrialInForce>& trials,
                                           const SceneSpec& scene, const rt::Room& room, Floors floors) {
   std::vector<TrialModel> planned_trials;
@@ -377,8 +382,8 @@ std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std:
   Diagnostics diagnostics;
   for (const TrialInForce& trial : trials) {
     const std::vector<PersonSpec>& written = study.script_given().trials[planned_trials.size()].people;
-    TrialModel& planned =
-        planned_trials.emplace_back(TrialModel{trial.id, {}, trial.duration_s, trial.schedule, trial.clock});
+    TrialModel& planned = planned_trials.emplace_back(
+        TrialModel{trial.id, {}, trial.duration_s, trial.schedule, trial.clock, trial.begins_s, trial.occupancy});
     for (const PersonInForce& spec : trial.people) {
       body::Humanoid humanoid(spec);
       double clearance_m = humanoid.clearance_radius_m();
@@ -390,7 +395,7 @@ std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std:
                            .humanoid = humanoid,
                            .floor = floor_with(keep_m),
                            .radiance = radiance_of(spec.warmth, study.sensing().ambient_c)};
-        Rehearsal(scene, room, person, grounds, found).run(trial.schedule);
+        Rehearsal(scene, room, person, grounds, found).run(entrances_used(trial));
         return person;
       };
       Diagnostics found;
@@ -406,6 +411,7 @@ std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std:
       }
       planned.people.push_back(std::move(person));
     }
+    if (planned.occupancy && !diagnostics.has_errors()) plan_occupancy(planned, scene, diagnostics);
   }
   diagnostics.throw_if_errors(ErrorCode::infeasible);
   return planned_trials;

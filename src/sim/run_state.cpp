@@ -26,7 +26,7 @@ void end_window(const CompiledStudy& study, RunState& state) {
   Sample& sample = state.sample;
   sample.time_s = static_cast<double>(state.tick) / study.sensing().tick_rate_hz;
   if (state.clock) sample.clock = state.clock->text(sample.time_s);
-  sample.phase = trial.schedule ? use_of(study, state.crowd) : state.crowd.phase();
+  sample.phase = trial.is_populated() ? use_of(study, state.crowd) : state.crowd.phase();
   sample.people = state.crowd.n_on_floor(study.scene().floor);
   state.finished = trial.duration_s ? sample.time_s >= *trial.duration_s : state.crowd.done();
 }

@@ -109,16 +109,11 @@ class Day {
   }
 
   void sit_and_work(Timeline& line, double for_s, std::size_t person, Stream& stream) const {
-    constexpr double shortest_s = 2.0 * minute_s,
-                     further_s = 8.0 * minute_s;  // assumed: an activity (means of 5-20 min)
     action::Sit sit{trial_.people[person].spec.part->seat};
     sit.if_taken = action::IfTaken::other_seat;
     line.then(sit);
     for (double left_s = for_s; left_s > 0.0;) {
-      action::Work work;
-      work.duration_s = shortest_s + exponential(stream, further_s);
-      const double u = stream.uniform();  // assumed shares: typing 0.65 (0.5-0.8), reading 0.25, phone 0.1
-      work.activity = u < 0.65 ? Activity::typing : u < 0.90 ? Activity::reading : Activity::phone;
+      action::Work work = draw_desk_work(stream);
       left_s -= work.duration_s;
       if (left_s <= 0.0) work.duration_s = until_next_s;
       line.then(work);

@@ -61,6 +61,18 @@ std::vector<Vec2> StandingPlaces::around(const Vec2& point, double radius_m, std
   return places;
 }
 
+std::vector<Vec2> StandingPlaces::all() const {
+  constexpr double apart_m = 0.9;  // assumed: two bodies with arms, and some room (0.8-1.2)
+  const Vec2 lower = scene_.floor.lower(), upper = scene_.floor.upper();
+  std::vector<Vec2> places;
+  for (double x = lower.x + 0.5 * apart_m; x < upper.x; x += apart_m) {
+    for (double z = lower.y + 0.5 * apart_m; z < upper.y; z += apart_m) {
+      if (is_out_of_the_way({x, z}) && can_be_reached({x, z})) places.emplace_back(x, z);
+    }
+  }
+  return places;
+}
+
 std::vector<Vec2> StandingPlaces::round(std::size_t most, Stream& stream) const {
   const Vec2 lower = scene_.floor.lower(), size = scene_.floor.upper() - lower;
   std::vector<Vec2> left, ordered;

@@ -19,6 +19,8 @@ class StandingPlaces {
   [[nodiscard]] std::optional<Vec2> beside(const std::string& seat, Stream& stream) const;
   /// Up to so many, at most so far from a point.
   [[nodiscard]] std::vector<Vec2> around(const Vec2& point, double radius_m, std::size_t most, Stream& stream) const;
+  /// As many as stand side by side, in rows; in nobody's way.
+  [[nodiscard]] std::vector<Vec2> all() const;
   /// Spread over the floor, in an order of short ways.
   [[nodiscard]] std::vector<Vec2> round(std::size_t most, Stream& stream) const;
   /// What those who sit on these seats see best, within 3 m of the nearest: where to speak from; or none.

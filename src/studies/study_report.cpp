@@ -205,7 +205,7 @@ std::string introduction(const Model& model, const std::vector<std::string>& sen
 /// Second by second nobody can read it. How long runs without a set duration are isn't known before they end.
 bool lasts_hours(const TrialSpec& trial) {
   constexpr double long_run_s = 7200.0;
-  return trial.schedule || (trial.duration_s && *trial.duration_s >= long_run_s);
+  return trial.schedule || trial.occupancy || (trial.duration_s && *trial.duration_s >= long_run_s);
 }
 
 }  // namespace

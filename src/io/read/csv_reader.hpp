@@ -39,6 +39,8 @@ class CsvTable {
 
   [[nodiscard]] std::size_t n_rows() const noexcept { return rows_.size(); }
   [[nodiscard]] std::vector<std::string> names() const;
+  /// Of the line with the names.
+  [[nodiscard]] Where header_place() const { return {file_, header_.front().line, header_.front().column}; }
   [[nodiscard]] std::optional<std::size_t> column(std::string_view name) const;
   /// A missing one is reported with the name that comes nearest.
   [[nodiscard]] std::optional<std::size_t> required_column(std::string_view name, Diagnostics& faults) const;

@@ -135,17 +135,17 @@ void check_version(YamlMap& map, const std::string& key);
 /// What `at` of an action refers to.
 struct ScriptTime {
   std::optional<RunClock> clock;     ///< none: the script doesn't say when a run begins
-  std::optional<double> day_s = {};  ///< of a schedule: how much of each day is simulated
+  std::optional<double> day_s = {};  ///< where every run is another day: how much of each is simulated
 };
 
 /// `- sit: S1`, with `at_s` or `at`, and `phase`, beside the action where wanted; `- rise` alone may be a plain word.
 [[nodiscard]] ScriptedAction read_action(const YamlNode& node, const ScriptTime& time, Diagnostics& faults);
 
-// When a script's people are there: its `schedule`, or its `begin`.
+// When a script's people are there: its `schedule`, its `occupancy`, or its `begin`.
 
 [[nodiscard]] std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, Diagnostics& faults);
-/// Reads `begin` as well; check_together() tells what is wrong with it.
-[[nodiscard]] ScriptTime read_time(YamlMap& script, const std::optional<ScheduleSpec>& schedule, ScriptSpec& spec);
+/// What `at` refers to. Without faults so far, by the trial that all others are like.
+[[nodiscard]] ScriptTime time_of(const ScriptSpec& script, const TrialSpec& trial, const Diagnostics& faults);
 
 }  // namespace pirsim::io
 
@@ -167,6 +167,27 @@ class BodyMeshReader {
  private:
   std::filesystem::path folder_;
   std::map<std::string, BodyMeshes> known_;
+  std::vector<InputFile> files_;
+};
+
+}  // namespace pirsim::io::detail
+
+namespace pirsim::io::detail {
+
+// Who is there by data.
+
+class OccupancyReader {
+ public:
+  /// folder: what file names are relative to.
+  explicit OccupancyReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// Faults of the data go to `faults` with their place in the file. begin: the script's.
+  [[nodiscard]] std::optional<OccupancySpec> read(const std::optional<YamlNode>& node, const std::string& begin,
+                                                  Diagnostics& faults);
+  [[nodiscard]] const std::vector<InputFile>& files() const noexcept { return files_; }  ///< all that was read
+
+ private:
+  std::filesystem::path folder_;
   std::vector<InputFile> files_;
 };
 

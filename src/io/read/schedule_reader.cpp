@@ -5,6 +5,7 @@
 
 #include "io/read/yaml_map.hpp"
 #include "schema/clock.hpp"
+#include "schema/occupancy_runs.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -84,18 +85,20 @@ std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, D
   return spec;
 }
 
-ScriptTime read_time(YamlMap& script, const std::optional<ScheduleSpec>& schedule, ScriptSpec& spec) {
+ScriptTime time_of(const ScriptSpec& script, const TrialSpec& trial, const Diagnostics& faults) {
   constexpr RunClock any{};  // where it isn't understood, so that no second fault follows
-  spec.begin = script.text("begin");
-  if (schedule) {
-    const double day_s = std::round(3600.0 * (schedule->to_h - schedule->from_h));
-    if (script.faults().has_errors()) return {any, day_s};
-    TrialSpec day;
-    day.schedule = schedule;
-    return {clock_of(spec, day), day_s};
+  const bool is_sound = !faults.has_errors();
+  if (trial.schedule) {
+    const double day_s = std::round(3600.0 * (trial.schedule->to_h - trial.schedule->from_h));
+    return {is_sound ? clock_of(script, trial) : any, day_s};
   }
-  if (!script.has("begin")) return {};
-  return {clock_from(spec.begin).value_or(any)};
+  if (trial.occupancy) {
+    if (!is_sound) return {any};
+    const OccupancyRuns runs = runs_of(*trial.occupancy, script.begin);
+    return {runs.clock, has_days(*trial.occupancy) ? std::optional(runs.duration_s) : std::nullopt};
+  }
+  if (script.begin.empty()) return {};
+  return {clock_from(script.begin).value_or(any)};
 }
 
 }  // namespace pirsim::io

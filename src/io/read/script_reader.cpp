@@ -177,7 +177,7 @@ void warn_of_days_off(const YamlNode& node, const ScheduleSpec& schedule, int n_
 /// Actions after the end of a run that lasts for a given time.
 void warn_of_what_never_begins(const ScriptSpec& script, const ScriptTime& time, Diagnostics& faults) {
   for (const TrialSpec& trial : script.trials) {
-    const auto end_s = trial.schedule ? time.day_s : trial.duration_s;
+    const auto end_s = time.day_s ? time.day_s : trial.duration_s;
     for (const PersonSpec& person : trial.people) {
       for (const ScriptedAction& action : person.actions) {
         if (!end_s || !action.at_s || *action.at_s < *end_s) continue;
@@ -186,6 +186,26 @@ void warn_of_what_never_begins(const ScriptSpec& script, const ScriptTime& time,
                                          moment_text(time.clock, *end_s) + ": it never happens");
       }
     }
+  }
+}
+
+/// The schedule or occupancy that stands beside the trials.
+void add_people_of_all(const TrialSpec& every_trial, std::vector<TrialSpec>& trials, Diagnostics& faults) {
+  if (!every_trial.schedule && !every_trial.occupancy) return;
+  const bool is_schedule = every_trial.schedule.has_value();
+  const Where& where = is_schedule ? every_trial.schedule->where : every_trial.occupancy->where;
+  if (const auto& occupancy = every_trial.occupancy;
+      occupancy && occupancy->counts && trials.size() * occupancy->counts->times_s.size() > limits::measured_rows) {
+    return faults.error(where, "occupancy: " + std::to_string(trials.size()) + " trials of " +
+                                   std::to_string(occupancy->counts->times_s.size()) + " readings each are " +
+                                   too_many(limits::measured_rows, "readings"));
+  }
+  for (TrialSpec& trial : trials) {
+    trial.schedule = every_trial.schedule;
+    trial.occupancy = every_trial.occupancy;
+    check_together(trial, [&](std::string_view, const std::string& message) {
+      faults.error(where, (is_schedule ? "schedule: " : "occupancy: ") + message);
+    });
   }
 }
 
@@ -200,23 +220,20 @@ ScriptSpec script_of(const YamlNode& root, const std::string& name, const std::f
   read_numbers(map, script);
   script.sensing = read_sensing(map.child("sensing"), faults);
   script.summary = read_summary(map);
-  const auto schedule = read_schedule(map.child("schedule"), faults);
-  Surroundings around{BodyMeshReader(folder), read_time(map, schedule, script)};
-  script.trials = read_trials(map.child("trials"), map.list("people", limits::people), around, faults);
+  script.begin = map.text("begin");
   TrialSpec every_trial;
+  every_trial.schedule = read_schedule(map.child("schedule"), faults);
+  detail::OccupancyReader occupancy(folder);
+  every_trial.occupancy = occupancy.read(map.child("occupancy"), script.begin, faults);
+  Surroundings around{BodyMeshReader(folder), time_of(script, every_trial, faults)};
+  script.trials = read_trials(map.child("trials"), map.list("people", limits::people), around, faults);
   read_numbers(map, every_trial);
   for (TrialSpec& trial : script.trials) {
     if (!trial.duration_s) trial.duration_s = every_trial.duration_s;
   }
-  if (schedule) {
-    warn_of_days_off(*map.child("schedule"), *schedule, script.replicates, faults);
-    for (TrialSpec& trial : script.trials) {
-      trial.schedule = schedule;
-      check_together(trial, [&](std::string_view, const std::string& message) {
-        faults.error(schedule->where, "schedule: " + message);
-      });
-    }
-  }
+  const auto& schedule = every_trial.schedule;
+  if (schedule) warn_of_days_off(*map.child("schedule"), *schedule, script.replicates, faults);
+  add_people_of_all(every_trial, script.trials, faults);
   warn_of_what_never_begins(script, around.time, faults);
   if (!faults.has_errors() && map.has("summary")) {
     const std::vector<YamlNode> phases = YamlMap(*map.child("summary"), faults, "summary").list("phases");
@@ -231,6 +248,7 @@ ScriptSpec script_of(const YamlNode& root, const std::string& name, const std::f
   map.finish();
   faults.throw_if_errors();
   script.files = around.body_meshes.files();
+  script.files.insert(script.files.end(), occupancy.files().begin(), occupancy.files().end());
   script.warnings = faults.warnings();
   return script;
 }

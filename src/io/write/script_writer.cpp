@@ -7,6 +7,7 @@
 #include "io/write/spec_writer.hpp"
 #include "pirsim/io.hpp"
 #include "schema/clock.hpp"
+#include "schema/occupancy_runs.hpp"
 
 namespace pirsim::io {
 namespace {
@@ -108,6 +109,22 @@ YAML::Node write(const EffectSpec& effect) {
   return node;
 }
 
+YAML::Node write(const OccupancySpec& occupancy) {
+  YAML::Node node;
+  const std::string& file = data_file(occupancy);
+  if (file.empty()) throw Error(ErrorCode::usage, "an occupancy that wasn't read from a file can't be written as YAML");
+  node[occupancy.counts ? "counts" : occupancy.places ? "places" : "positions"] = file;
+  if (occupancy.counts && !occupancy.counts->time.empty()) node["time"] = occupancy.counts->time;
+  if (occupancy.counts && !occupancy.counts->column.empty()) node["people"] = occupancy.counts->column;
+  if (occupancy.from_h) node["from"] = time_of_day(*occupancy.from_h);
+  if (occupancy.to_h) node["to"] = time_of_day(*occupancy.to_h);
+  write_numbers(occupancy, node);
+  if (!occupancy.seats.empty()) node["seats"] = occupancy.seats;
+  if (!occupancy.entrances.empty()) node["entrances"] = occupancy.entrances;
+  node["style"] = word_of(occupancy.style);
+  return node;
+}
+
 }  // namespace
 
 ScriptSpec moved(ScriptSpec script, const std::filesystem::path& folder) {
@@ -121,6 +138,7 @@ ScriptSpec moved(ScriptSpec script, const std::filesystem::path& folder) {
   };
   move(script.summary.reference_file);
   for (TrialSpec& trial : script.trials) {
+    if (trial.occupancy && !data_file(*trial.occupancy).empty()) move(data_file(*trial.occupancy));
     for (PersonSpec& person : trial.people) move(person.body_mesh_file);
   }
   script.directory = folder.string();
@@ -141,6 +159,8 @@ std::string to_yaml(const ScriptSpec& script) {
   if (!script.trials.empty() && script.trials.front().schedule) {
     root["schedule"] = written(*script.trials.front().schedule);
   }
+  if (!script.trials.empty() && script.trials.front().occupancy)
+    root["occupancy"] = write(*script.trials.front().occupancy);
   const std::optional<RunClock> clock = clock_from(script.begin);
   for (const TrialSpec& trial : script.trials) {
     YAML::Node node;

@@ -1,0 +1,108 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "schema/clock.hpp"
+#include "schema/check_specs.hpp"
+#include "schema/occupancy_runs.hpp"
+#include "schema/spec_faults.hpp"
+
+namespace pirsim {
+namespace {
+
+bool ascend(const std::vector<double>& times_s) {
+  return std::ranges::all_of(times_s, [](double t) { return std::isfinite(t); }) &&
+         std::ranges::adjacent_find(times_s, std::greater_equal()) == times_s.end();
+}
+
+void check_begin(const std::string& begin, const std::string& field, const TellFault& tell) {
+  if (begin.empty() || clock_from(begin)) return;
+  tell(field, "expected the date and time of second 0, e.g. 2026-03-02T07:00, got '" + begin + "'");
+}
+
+void check_counts(const CountsSpec& counts, const std::optional<int>& persons, const TellFault& tell) {
+  check_begin(counts.begin, "counts", tell);
+  if (counts.times_s.empty()) return tell("counts", "expected at least one reading");
+  if (counts.times_s.size() != counts.people.size()) return tell("counts", "expected as many numbers as times");
+  if (counts.times_s.size() > limits::occupancy_rows)
+    return tell("counts", "more than " + std::to_string(limits::occupancy_rows) + " readings");
+  if (!ascend(counts.times_s)) tell("counts", "expected times that ascend");
+  const auto [fewest, most] = std::ranges::minmax(counts.people);
+  if (fewest < 0) tell("counts", "a number of people is below 0");
+  const auto allowed = static_cast<int>(accepted::people_of_counts.max);
+  if (most > allowed) tell("counts", "more than " + std::to_string(allowed) + " people");
+  if (persons && *persons < most) {
+    tell("persons",
+         std::to_string(*persons) + " different people, but up to " + std::to_string(most) + " are there at once");
+  }
+}
+
+void check_places(const PlacesSpec& places, const TellFault& tell) {
+  check_begin(places.begin, "places", tell);
+  if (places.stays.empty()) return tell("places", "expected at least one stay");
+  if (places.stays.size() > limits::occupancy_rows)
+    return tell("places", "more than " + std::to_string(limits::occupancy_rows) + " stays");
+  const bool forward = std::ranges::all_of(places.stays, [](const StaySpec& stay) { return stay.from_s <= stay.to_s; });
+  if (!forward) tell("places", "a stay ends before it begins");
+}
+
+void check_positions(const PositionsSpec& positions, const TellFault& tell) {
+  check_begin(positions.begin, "positions", tell);
+  if (positions.tracks.empty()) return tell("positions", "expected at least one track");
+  for (const TrackSpec& track : positions.tracks) {
+    const std::size_t n = track.times_s.size();
+    if (n == 0 || track.points.size() != n || (!track.headings_deg.empty() && track.headings_deg.size() != n))
+      return tell("positions", "'" + track.person + "': expected as many points (and headings, if any) as times");
+    if (!ascend(track.times_s)) return tell("positions", "'" + track.person + "': expected times that ascend");
+  }
+}
+
+/// Do its data make runs?
+void check_runs(const OccupancySpec& occupancy, const std::string& begin, const TellFault& tell) {
+  const bool has_own_clock = clock_from(data_begin(occupancy)).has_value();
+  if (has_days(occupancy) && !has_own_clock && !clock_from(begin)) {
+    return tell("from_h",
+                "`from` and `to` are times of day, and the data have seconds alone: add `begin`, the date and time at "
+                "which they begin");
+  }
+  if (has_days(occupancy) && has_own_clock && !begin.empty()) {
+    return tell("from_h", "`from` and `to` and the data's own clock say when runs begin: leave out `begin`");
+  }
+  const OccupancyRuns runs = runs_of(occupancy, begin);
+  if (runs.begins_s.empty()) return tell("from_h", "the data have no reading between `from` and `to` of any day");
+  if (runs.duration_s <= 0.0) {
+    return tell("counts", "the data end at " + moment_text(runs.clock, runs.duration_s) + ", and the run begins at " +
+                              moment_text(runs.clock, 0.0));
+  }
+  if (runs.duration_s > accepted::at_s.max) {
+    tell("counts", "the data last for " + std::to_string(static_cast<long long>(runs.duration_s / 86400.0)) +
+                       " days, and a run at most 115: give `from` and `to`, times of day, and each replicate is a day");
+  }
+}
+
+}  // namespace
+
+void check_together(const OccupancySpec& occupancy, const std::string& begin, const TellFault& tell) {
+  bool is_sound = true;
+  const TellFault tell_and_note = [&](std::string_view field, const std::string& message) {
+    is_sound = false;
+    tell(field, message);
+  };
+  const int n = (occupancy.counts ? 1 : 0) + (occupancy.places ? 1 : 0) + (occupancy.positions ? 1 : 0);
+  if (n != 1) return tell("counts", "expected one of `counts`, `places` and `positions`");
+  if (occupancy.counts) check_counts(*occupancy.counts, occupancy.persons, tell_and_note);
+  if (occupancy.places) check_places(*occupancy.places, tell_and_note);
+  if (occupancy.positions) check_positions(*occupancy.positions, tell_and_note);
+  if (occupancy.from_h.value_or(0.0) >= occupancy.to_h.value_or(24.0))
+    tell_and_note("to_h", "`to` is not after `from`");
+  if (is_sound) check_runs(occupancy, begin, tell);
+}
+
+void check(const OccupancySpec& occupancy, const std::string& begin, const SpecPath& path, SpecFaults& faults) {
+  faults.numbers(occupancy, path);
+  check_together(occupancy, begin, [&](std::string_view field, const std::string& message) {
+    faults.error(path.field(field), message);
+  });
+}
+
+}  // namespace pirsim

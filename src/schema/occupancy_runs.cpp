@@ -1,0 +1,123 @@
+#include "schema/occupancy_runs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/text.hpp"
+
+namespace pirsim {
+namespace {
+
+constexpr double seconds_a_day = 86400.0;
+
+/// Moments of the data at which something is known, ascending where days are looked for.
+std::vector<double> moments_of(const OccupancySpec& occupancy) {
+  if (occupancy.counts) return occupancy.counts->times_s;
+  std::vector<double> moments;
+  if (occupancy.places) {
+    for (const StaySpec& stay : occupancy.places->stays) moments.insert(moments.end(), {stay.from_s, stay.to_s});
+  }
+  if (occupancy.positions) {
+    for (const TrackSpec& track : occupancy.positions->tracks)
+      moments.insert(moments.end(), track.times_s.begin(), track.times_s.end());
+  }
+  std::ranges::sort(moments);
+  return moments;
+}
+
+void require_names(const std::vector<std::string>& wanted, const std::vector<std::string>& known,
+                   const std::string& kind, const std::string& scene, const Where& where, Diagnostics& faults) {
+  for (const std::string& name : wanted) {
+    if (std::ranges::find(known, name) != known.end()) continue;
+    faults.error(where, "occupancy: " + kind + " '" + name + "' is not in " + scene + near_or_all(name, known));
+  }
+}
+
+template <typename Spec>
+std::vector<std::string> ids_of(const std::vector<Spec>& specs) {
+  std::vector<std::string> names;
+  for (const Spec& spec : specs) names.push_back(spec.id);
+  return names;
+}
+
+}  // namespace
+
+std::optional<DataSpan> data_span(const OccupancySpec& occupancy) {
+  const std::vector<double> moments = moments_of(occupancy);
+  if (moments.empty()) return std::nullopt;
+  return DataSpan{moments.front(), moments.back()};
+}
+
+const std::string& data_begin(const OccupancySpec& occupancy) noexcept {
+  static const std::string none;
+  return occupancy.counts      ? occupancy.counts->begin
+         : occupancy.places    ? occupancy.places->begin
+         : occupancy.positions ? occupancy.positions->begin
+                               : none;
+}
+
+const std::string& data_file(const OccupancySpec& occupancy) noexcept {
+  static const std::string none;
+  return occupancy.counts      ? occupancy.counts->file
+         : occupancy.places    ? occupancy.places->file
+         : occupancy.positions ? occupancy.positions->file
+                               : none;
+}
+std::string& data_file(OccupancySpec& occupancy) noexcept {
+  return const_cast<std::string&>(data_file(std::as_const(occupancy)));
+}
+
+OccupancyRuns runs_of(const OccupancySpec& occupancy, const std::string& begin) {
+  const std::optional<RunClock> own = clock_from(data_begin(occupancy)), given = clock_from(begin);
+  const std::optional<RunClock> data = own ? own : given;
+  const DataSpan span = data_span(occupancy).value_or(DataSpan{});
+  if (!has_days(occupancy)) {
+    // Seconds of the run begin with it; a clock's moments where the script says, or with the first of them.
+    const double from_s = own && given ? static_cast<double>(given->begin_s - own->begin_s) : own ? span.first_s : 0.0;
+    std::optional<RunClock> clock = data;
+    if (clock) clock->begin_s += std::llround(from_s);
+    return {clock, span.last_s - from_s, {from_s}};
+  }
+  const double from_s = 3600.0 * occupancy.from_h.value_or(0.0), to_s = 3600.0 * occupancy.to_h.value_or(24.0);
+  OccupancyRuns runs{data, std::round(to_s - from_s), {}};
+  const double midnight_s = data->begin_second();  // before second 0 of the data
+  double last_day = -1.0;
+  for (const double moment_s : moments_of(occupancy)) {
+    const double day = std::floor((moment_s + midnight_s) / seconds_a_day);
+    const double in_day_s = moment_s + midnight_s - day * seconds_a_day;
+    if (day == last_day || in_day_s < from_s || in_day_s > to_s) continue;
+    runs.begins_s.push_back(day * seconds_a_day - midnight_s + from_s);
+    last_day = day;
+  }
+  if (!runs.begins_s.empty()) runs.clock->begin_s += std::llround(runs.begins_s.front());
+  return runs;
+}
+
+std::vector<std::string> seats_of(const OccupancySpec& occupancy, const SceneSpec& scene) {
+  return occupancy.seats.empty() ? ids_of(scene.seats) : occupancy.seats;
+}
+std::vector<std::string> entrances_of(const OccupancySpec& occupancy, const SceneSpec& scene) {
+  return occupancy.entrances.empty() ? ids_of(scene.entrances) : occupancy.entrances;
+}
+
+std::vector<ScheduledPerson> people_of(const OccupancySpec& occupancy, const SceneSpec& scene, std::uint64_t seed) {
+  Diagnostics faults;
+  require_names(occupancy.seats, ids_of(scene.seats), "seat", scene.name, occupancy.where, faults);
+  require_names(occupancy.entrances, ids_of(scene.entrances), "entrance", scene.name, occupancy.where, faults);
+  if (scene.entrances.empty())
+    faults.error(occupancy.where, "occupancy: " + scene.name + " has no entrance to come in by");
+  faults.throw_if_errors();
+  std::vector<ScheduledPerson> people;
+  if (!occupancy.counts) return people;
+  const std::vector<int>& counts = occupancy.counts->people;
+  const int most = counts.empty() ? 0 : *std::ranges::max_element(counts);
+  for (int i = 0; i < occupancy.persons.value_or(most); ++i) {
+    people.push_back(
+        {SchedulePart::occupant, Role::staff, "",
+         drawn_body("occupant_" + std::to_string(i + 1), occupancy.style, seed, static_cast<std::uint32_t>(i))});
+  }
+  return people;
+}
+
+}  // namespace pirsim
