@@ -21,19 +21,19 @@ from ._surveys import CoverageMap, Grid, WalkTest, coverage, walk_test
 from ._wings import Candidate, Cell, FittedEffect, Reconciliation, dataset, reconcile, room
 from .errors import (Error, ErrorCode, FileError, IncompleteWarning, InfeasibleError, InputError, InputWarning,
                      InternalError, UsageError)
-from .specs import (Action, Amplifier, Appear, Clock, Cluster, Comparator, Detector, Diagnostic, Effect, Element,
-                    Enter, Entrance, Floor, Frame, HeldMeeting, InputFile, Leave, Meetings, Mesh, Optics, Person, Profile, Rise,
-                    Scene, Schedule, Script, Seat, SeatScatter, Sensing, Sensor, SensorModel, Sit, Staff, Summary, Trial,
+from .specs import (Action, Amplifier, Appear, Clock, Cluster, Comparator, Counts, Detector, Diagnostic, Effect, Element,
+                    Enter, Entrance, Floor, Frame, HeldMeeting, InputFile, Leave, Meetings, Mesh, Occupancy, Optics, Person, Places, Positions, Profile, Rise,
+                    Scene, Schedule, Script, Seat, SeatScatter, Sensing, Sensor, SensorModel, Sit, Staff, Stay, Summary, Track, Trial,
                     Turn, Wait, Walk, Warmth, Where, Work, Zone)
 
 __all__ = [
-    "Action", "Amplifier", "Appear", "Candidate", "Cell", "Clock", "Cluster", "Comparator", "CoverageMap",
+    "Action", "Amplifier", "Appear", "Candidate", "Cell", "Clock", "Cluster", "Comparator", "Counts", "CoverageMap",
     "Detector", "Diagnostic", "Effect", "EffectInfo", "EffectParameter", "Element", "Enter", "Entrance", "Error",
     "ErrorCode", "Fault", "FileError", "Findings", "FittedEffect", "Floor", "Frame", "Grid", "HeldMeeting",
     "Incident", "IncompleteWarning", "InfeasibleError", "InputError", "InputFile", "InputWarning", "InternalError", "Leave",
-    "Meetings", "Mesh", "Model", "Optics", "Page", "Person", "Picture", "PlacementScore", "Placements", "Poses",
+    "Meetings", "Mesh", "Model", "Occupancy", "Optics", "Page", "Person", "Picture", "PlacementScore", "Placements", "Places", "Poses", "Positions",
     "Profile", "Rays", "Reconciliation", "Result", "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter",
-    "Sensing", "Sensor", "SensorModel", "SensorSight", "Sit", "Staff", "Summary", "Trace", "Trial", "Turn",
+    "Sensing", "Sensor", "SensorModel", "SensorSight", "Sit", "Staff", "Stay", "Summary", "Trace", "Track", "Trial", "Turn",
     "UsageError", "Wait", "Walk", "WalkTest", "Warmth", "Where", "Work", "Zone", "__version__", "check", "compile",
     "coverage", "data_directory", "dataset", "effects", "errors", "export", "facing", "git_revision", "placements",
     "preview", "read_scene", "read_script", "reconcile", "room", "run", "sensor_model", "specs", "trace", "view",

@@ -128,6 +128,8 @@ def trial_text(trial: specs.Trial) -> str:
     who = counted([person.id for person in trial.people], "person", "people")
     if trial.schedule is not None:
         who += " and a schedule"
+    if trial.occupancy is not None:
+        who += " and an occupancy"
     lasts = "" if trial.duration_s is None else f", {trial.duration_s:g} s"
     return f"<pirsim.Trial {trial.id!r}: {who}{lasts}>"
 

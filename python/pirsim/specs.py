@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from ._core import MeshSolid
 
 __all__ = [
-    "Action", "Activity", "Amplifier", "Appear", "Clock", "Cluster", "Comparator", "Detector", "Diagnostic", "Effect",
-    "Element", "Enter", "Entrance", "Floor", "Frame", "HeldMeeting", "InputFile", "Leave", "Meetings", "Mesh", "Optics",
-    "Person", "Point2", "Point3", "Profile", "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter", "Sensing",
-    "Sensor", "SensorModel", "Sit", "Staff", "Summary", "Trial", "Turn", "Wait", "Walk", "Warmth", "Where", "Work",
-    "Zone",
+    "Action", "Activity", "Amplifier", "Appear", "Clock", "Cluster", "Comparator", "Counts", "Detector", "Diagnostic",
+    "Effect", "Element", "Enter", "Entrance", "Floor", "Frame", "HeldMeeting", "InputFile", "Leave", "Meetings", "Mesh",
+    "Occupancy", "Optics", "Person", "Places", "Point2", "Point3", "Positions", "Profile", "Rise", "Scene", "Schedule",
+    "Script", "Seat", "SeatScatter", "Sensing", "Sensor", "SensorModel", "Sit", "Staff", "Stay", "Summary", "Track",
+    "Trial", "Turn", "Wait", "Walk", "Warmth", "Where", "Work", "Zone",
 ]
 
 
@@ -451,6 +451,100 @@ class Schedule:
 
 
 @dataclass(slots=True)
+class Counts:
+    """How many people were there, at moments."""
+
+    times_s: list[float] = field(default_factory=list)
+    """Ascending."""
+    people: list[int] = field(default_factory=list)
+    """At each of them."""
+    begin: str = ""
+    """Local date and time of `times_s` 0; empty: they are seconds of the run."""
+    file: str = ""
+    """CSV, or empty; relative to `Script.directory`; `read_script()` reads it."""
+    time: str = ""
+    """Its column of times; empty: found by its usual names."""
+    column: str = ""
+    """Its column of people; empty: found by its usual names."""
+    most: Where = field(default_factory=Where)
+
+
+@dataclass(slots=True)
+class Stay:
+    """Somebody at one place for a while."""
+
+    person: str = ""
+    seat: str = ""
+    """Or empty: on foot."""
+    from_s: float = 0.0
+    to_s: float = 0.0
+    points: list[Point2] = field(default_factory=list)
+    """Where they were at `from_s` and at `to_s`, if that is known."""
+    where: Where = _where()
+
+
+@dataclass(slots=True)
+class Places:
+    """Who took which seat, and when."""
+
+    stays: list[Stay] = field(default_factory=list)
+    """Of each person in order of time."""
+    begin: str = ""
+    """Local date and time of second 0; empty: seconds of the run."""
+    file: str = ""
+    """CSV, or empty; relative to `Script.directory`."""
+
+
+@dataclass(slots=True)
+class Track:
+    """Where one person was, from moment to moment."""
+
+    person: str = ""
+    times_s: list[float] = field(default_factory=list)
+    """Ascending."""
+    points: list[Point2] = field(default_factory=list)
+    """At each of them."""
+    headings_deg: list[float] = field(default_factory=list)
+    """At each of them; empty: facing where they go."""
+    where: Where = _where()
+
+
+@dataclass(slots=True)
+class Positions:
+    """Tracked people, who go where they went."""
+
+    tracks: list[Track] = field(default_factory=list)
+    begin: str = ""
+    """Local date and time of second 0; empty: seconds of the run."""
+    file: str = ""
+    """CSV, or empty; relative to `Script.directory`."""
+
+
+@dataclass(slots=True)
+class Occupancy:
+    """Adds people who are there as data say: one of `counts`, `places` and `positions`."""
+
+    counts: Counts | None = None
+    """Who comes, when within an interval, and where they sit is drawn anew for every run."""
+    places: Places | None = None
+    positions: Positions | None = None
+    from_h: float | None = None
+    """With either, replicates are the days of the data, each from here."""
+    to_h: float | None = None
+    """To there."""
+    changes_within_s: float | None = None
+    """Of counts: a change happened at most so long before its reading; none: since the reading before."""
+    persons: int | None = None
+    """Of counts: how many different ones come; none: as many as are ever there."""
+    seats: list[str] = field(default_factory=list)
+    """Of counts: that may be taken; none: all of the scene."""
+    entrances: list[str] = field(default_factory=list)
+    """That people use; none: all of the scene."""
+    style: Literal["choreographed", "natural"] = "natural"
+    where: Where = _where()
+
+
+@dataclass(slots=True)
 class Trial:
     """One choreography; a study runs every trial once per replicate."""
 
@@ -461,6 +555,7 @@ class Trial:
     duration_s: float | None = None
     """Of a run; none: until everybody has carried out all actions."""
     schedule: Schedule | None = None
+    occupancy: Occupancy | None = None
 
     def __repr__(self) -> str:
         return _spec_parts.trial_text(self)

@@ -89,7 +89,7 @@ void check_together(const OccupancySpec& occupancy, const std::string& begin, co
     tell(field, message);
   };
   const int n = (occupancy.counts ? 1 : 0) + (occupancy.places ? 1 : 0) + (occupancy.positions ? 1 : 0);
-  if (n != 1) return tell("counts", "expected one of `counts`, `places` and `positions`");
+  if (n != 1 || !occupancy.counts) return tell("counts", "expected `counts`");
   if (occupancy.counts) check_counts(*occupancy.counts, occupancy.persons, tell_and_note);
   if (occupancy.places) check_places(*occupancy.places, tell_and_note);
   if (occupancy.positions) check_positions(*occupancy.positions, tell_and_note);

@@ -1,11 +1,13 @@
 // What `pirsim check` tells, for a reader.
 #include <algorithm>
+#include <cstdlib>
 #include <iomanip>
 #include <sstream>
 
 #include "core/text.hpp"
 #include "pirsim/look.hpp"
 #include "pirsim/response.hpp"
+#include "schema/occupancy_runs.hpp"
 #include "sim/compiled_study.hpp"
 #include "studies/room_plan.hpp"
 #include "studies/schedule_outlook.hpp"
@@ -111,6 +113,25 @@ void print_times(std::ostream& out, const sim::TrialModel& trial) {
   out << '\n';
 }
 
+/// What the data behind a script say, and how much of it a run is.
+void print_occupancy(std::ostream& out, const OccupancySpec& occupancy, const sim::TrialModel& trial) {
+  const std::string& file = data_file(occupancy);
+  out << "occupancy: ";
+  if (occupancy.counts) {
+    const CountsSpec& counts = *occupancy.counts;
+    const auto [fewest, most] = std::ranges::minmax(counts.people);
+    int changes = counts.people.front();
+    for (std::size_t i = 1; i < counts.people.size(); ++i) changes += std::abs(counts.people[i] - counts.people[i - 1]);
+    out << counted(counts.people.size(), "reading") << (file.empty() ? "" : " of " + file) << ", " << fewest << " to "
+        << most << " people, " << changes << " comings and goings";
+  } else {
+    out << counted(trial.people.size(), "person", "people") << (file.empty() ? "" : " of " + file);
+  }
+  const auto last = trial.begins_s.size() - 1;
+  if (has_days(occupancy)) out << "; " << counted(last + 1, "day") << " of data, which replicates take in turn";
+  out << "; a run lasts from " << span_text(trial.clock, 0.0, trial.duration_s.value_or(0.0)) << "\n\n";
+}
+
 /// Rows of 0.1 were those of zones: who runs an older script should know that its rows are others now.
 void print_response(std::ostream& out, const Model& model) {
   const SceneSpec& scene = model.scene();
@@ -142,6 +163,8 @@ void print_study(std::ostream& out, const Model& model, const CheckReport& repor
   if (!script.trials.empty() && script.trials.front().schedule) {
     studies::print(out, studies::outlook(model.compiled(), 0), model.compiled());
   }
+  if (!script.trials.empty() && script.trials.front().occupancy)
+    print_occupancy(out, *script.trials.front().occupancy, model.compiled().trials().front());
   if (!script.begin.empty() && !script.trials.empty()) print_times(out, model.compiled().trials().front());
   print(out, report.sight, scene);
   print(out, report.work, in_words(worker), model);

@@ -130,12 +130,11 @@ namespace detail {
 std::optional<OccupancySpec> OccupancyReader::read(const std::optional<YamlNode>& node, const std::string& begin,
                                                    Diagnostics& faults) {
   if (!node) return std::nullopt;
-  YamlMap map(*node, faults, "occupancy");
+  Diagnostics found;
+  YamlMap map(*node, found, "occupancy");
   OccupancySpec spec;
   spec.where = node->where();
   read_fields(map, spec);
-  const bool had_faults = faults.has_errors();
-  Diagnostics found;
   if (map.child("counts")) {
     CountsSpec& counts = spec.counts.emplace();
     counts.file = map.required_text("counts");
@@ -144,13 +143,14 @@ std::optional<OccupancySpec> OccupancyReader::read(const std::optional<YamlNode>
     if (const auto table = read_table(counts.file, folder_, map.where("counts"), files_, found))
       CountsReader(*table, counts, found).read();
   }
-  for (const Issue& issue : found.issues()) faults.error(issue.where, issue.message);
   map.finish();
-  if (had_faults || found.has_errors()) return spec;
-  check_together(spec, begin, [&](std::string_view field, const std::string& message) {
-    if (field.ends_with("_h")) field.remove_suffix(2);
-    faults.error(map.where(std::string(field)), "occupancy: " + message);
-  });
+  if (!found.has_errors()) {
+    check_together(spec, begin, [&](std::string_view field, const std::string& message) {
+      if (field.ends_with("_h")) field.remove_suffix(2);
+      found.error(map.where(std::string(field)), "occupancy: " + message);
+    });
+  }
+  for (const Issue& issue : found.issues()) faults.error(issue.where, issue.message);
   return spec;
 }
 
