@@ -13,12 +13,12 @@ namespace pirsim {
 
 /// How many people were there, at moments.
 struct CountsSpec {
-  std::string file;            ///< CSV, or empty; relative to the script
-  std::string time, column;    ///< columns of the file; empty: found by their usual names
-  std::string begin;           ///< local date and time of times_s 0; empty: seconds of the run
-  std::vector<double> times_s; ///< ascending
-  std::vector<int> people;     ///< (n_times)
-  Where most;                  ///< where the greatest number stands
+  std::string file;             ///< CSV, or empty; relative to the script
+  std::string time, column;     ///< columns of the file; empty: found by their usual names
+  std::string begin;            ///< local date and time of times_s 0; empty: seconds of the run
+  std::vector<double> times_s;  ///< ascending
+  std::vector<int> people;      ///< (n_times)
+  Where most;                   ///< where the greatest number stands
 };
 
 /// Somebody at one place for a while.

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <string>
 
-#include "schema/clock.hpp"
 #include "schema/check_specs.hpp"
+#include "schema/clock.hpp"
 #include "schema/occupancy_runs.hpp"
 #include "schema/spec_faults.hpp"
 
@@ -100,9 +100,8 @@ void check_together(const OccupancySpec& occupancy, const std::string& begin, co
 
 void check(const OccupancySpec& occupancy, const std::string& begin, const SpecPath& path, SpecFaults& faults) {
   faults.numbers(occupancy, path);
-  check_together(occupancy, begin, [&](std::string_view field, const std::string& message) {
-    faults.error(path.field(field), message);
-  });
+  check_together(occupancy, begin,
+                 [&](std::string_view field, const std::string& message) { faults.error(path.field(field), message); });
 }
 
 }  // namespace pirsim

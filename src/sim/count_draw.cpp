@@ -13,8 +13,8 @@ namespace {
 // enough (0-5 s tried); two people who wait for each other in a doorway are late by less.
 constexpr double after_s = 1.0, before_s = 5.0;
 constexpr double after_share = 0.1, before_share = 0.4;  // of a shorter interval
-constexpr double apart_s = 1.5;         // assumed: between two people in a doorway (1-3)
-constexpr double settled_s = 60.0;      // assumed: who has come or gone for less stays so, if another can do it
+constexpr double apart_s = 1.5;                          // assumed: between two people in a doorway (1-3)
+constexpr double settled_s = 60.0;  // assumed: who has come or gone for less stays so, if another can do it
 
 class Draw {
  public:
@@ -92,8 +92,7 @@ class Draw {
   /// One who has been so for long, or else the one who has been so for longest: the list is in that order.
   template <typename List>
   [[nodiscard]] static std::size_t pick(const List& list, double at_s, Stream& stream) {
-    const auto recent =
-        std::ranges::find_if(list, [&](const auto& one) { return one.since_s > at_s - settled_s; });
+    const auto recent = std::ranges::find_if(list, [&](const auto& one) { return one.since_s > at_s - settled_s; });
     const auto n = static_cast<std::uint32_t>(recent - list.begin());
     const std::uint32_t drawn = stream.index(std::max(1U, n));
     return drawn;

@@ -21,11 +21,11 @@ struct CountedVisit {
 
 /// What visits are drawn from.
 struct CountSource {
-  std::span<const double> times_s;  ///< of the data, ascending
-  std::span<const int> people;      ///< (n_times)
+  std::span<const double> times_s;    ///< of the data, ascending
+  std::span<const int> people;        ///< (n_times)
   double begin_s = 0.0, end_s = 0.0;  ///< of the run, in the seconds of the data
   double changes_within_s = std::numeric_limits<double>::infinity();
-  std::size_t n_people = 0;            ///< who may come; at least the greatest number
+  std::size_t n_people = 0;                 ///< who may come; at least the greatest number
   std::size_t n_seats = 0, n_standing = 0;  ///< places: seats first, which are taken before anybody stands
   std::uint64_t seed = 1;
   std::uint32_t run = 0;

@@ -28,8 +28,8 @@ bool is_occupant(const PersonModel& person) {
 std::vector<std::string> shared_seats(const TrialModel& trial) {
   std::vector<std::string> seats = trial.occupancy->seats;
   std::erase_if(seats, [&](const std::string& seat) {
-    return std::ranges::any_of(
-        trial.people, [&](const PersonModel& person) { return is_occupant(person) && !person.can_use(seat); });
+    return std::ranges::any_of(trial.people,
+                               [&](const PersonModel& person) { return is_occupant(person) && !person.can_use(seat); });
   });
   return seats;
 }
@@ -131,7 +131,8 @@ class Visits {
       constexpr double wait_s = 5.0;  // assumed: longer, and the count is off (2-20 s)
       return {action::Sit{places_.seats[place], wait_s, action::IfTaken::other_seat}};
     }
-    const Vec2 point = stand_of(place, person), middle = 0.5 * (study_.scene().floor.lower() + study_.scene().floor.upper());
+    const Vec2 point = stand_of(place, person),
+               middle = 0.5 * (study_.scene().floor.lower() + study_.scene().floor.upper());
     return {action::Walk{{point}}, action::Turn{degrees(heading_of(middle - point))}};
   }
 

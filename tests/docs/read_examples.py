@@ -3,6 +3,7 @@
 
   ```yaml                    is a whole file: a script, a recipe, a sensor, placements, nuisance
   ```json                    is a whole scene
+  ```csv file=NAME           lies where the scripts after it look for it
   ```yaml part of script     is put into a script, or `part of sensor` into a sensor file
   ```yaml not read: REASON   can't be read
 
@@ -148,7 +149,9 @@ def examples(page, reader):
     for block in blocks(page):
         if block.info.startswith("not read: "):
             continue
-        if block.language == "json":
+        if block.language == "csv" and block.info.startswith("file="):
+            reader.write(block.info.removeprefix("file="), block.text)
+        elif block.language == "json":
             yield block.line, lambda text=block.text: reader.scene(text)
         elif block.language == "yaml" and block.info.startswith("part of "):
             yield block.line, lambda block=block: reader.part(block.text, block.info.removeprefix("part of "))

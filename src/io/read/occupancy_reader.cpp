@@ -65,8 +65,10 @@ class CountsReader {
     }
     std::string names;
     for (const std::string& name : table_.names()) names += (names.empty() ? "" : ", ") + name;
-    faults_.error(table_.header_place(), "which column tells the number of people? Say `people: COLUMN` in the script; "
-                                         "there are " + names);
+    faults_.error(table_.header_place(),
+                  "which column tells the number of people? Say `people: COLUMN` in the script; "
+                  "there are " +
+                      names);
     return std::nullopt;
   }
 
@@ -85,8 +87,9 @@ class CountsReader {
     if (!counts_.times_s.empty()) {
       if (seconds == counts_.times_s.back() && people == counts_.people.back()) return;
       if (seconds == counts_.times_s.back()) {
-        return repeated_.add("twice", where, "another number for the same time: " + std::to_string(people) + " after " +
-                                                 std::to_string(counts_.people.back()));
+        return repeated_.add("twice", where,
+                             "another number for the same time: " + std::to_string(people) + " after " +
+                                 std::to_string(counts_.people.back()));
       }
       if (seconds < counts_.times_s.back())
         return repeated_.add("backwards", time, "time runs backwards: this row is earlier than the one before");

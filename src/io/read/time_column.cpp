@@ -19,8 +19,8 @@ TimeColumn::TimeColumn(const CsvTable& table, const std::string& wanted, Diagnos
     if (!column_) {
       std::string names;
       for (const std::string& name : table.names()) names += (names.empty() ? "" : ", ") + name;
-      faults.error(table.header_place(), "no column `time`, `time_s` or `t`, nor `Date` and `Time`; there are " + names +
-                                             ": say `time: COLUMN` in the script");
+      faults.error(table.header_place(), "no column `time`, `time_s` or `t`, nor `Date` and `Time`; there are " +
+                                             names + ": say `time: COLUMN` in the script");
     }
   }
   if (column_ && table.n_rows() > 0) is_clock_ = clock_from(text(0)).has_value();
@@ -39,7 +39,8 @@ std::optional<double> TimeColumn::seconds(std::size_t row, Diagnostics& faults) 
   Diagnostics found;
   const auto number = date_ ? std::nullopt : table_.number(row, *column_, found);
   if (number) return number;
-  faults.error(where(row), "expected seconds, or a local date and time, e.g. 2026-03-02T07:00:00, got '" + text(row) + "'");
+  faults.error(where(row),
+               "expected seconds, or a local date and time, e.g. 2026-03-02T07:00:00, got '" + text(row) + "'");
   return std::nullopt;
 }
 

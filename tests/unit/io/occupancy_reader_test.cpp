@@ -46,16 +46,16 @@ TEST_CASE("Counts are read from door counters, readings with date and time in tw
   CHECK(counter.begin == "2026-03-02T07:00:00");
   CHECK(counter.times_s == std::vector{0.0, 90.0});
   CHECK(counter.people == std::vector{0, 2});
-  const CountsSpec uci = *occupancy_of(
-      "Date,Time,S6_PIR,Room_Occupancy_Count\n2017-12-22,10:49:41,0,1\n2017-12-22,10:50:12,0,1\n").counts;
+  const CountsSpec uci =
+      *occupancy_of("Date,Time,S6_PIR,Room_Occupancy_Count\n2017-12-22,10:49:41,0,1\n2017-12-22,10:50:12,0,1\n").counts;
   CHECK(uci.begin == "2017-12-22T10:49:41");
   CHECK(uci.times_s == std::vector{0.0, 31.0});
-  const CountsSpec rows = *occupancy_of(
-      "replicate,trial,time_s,phase,people,PIR1\n1,1,1,working,0,0\n1,1,2,working,1,0\n").counts;
+  const CountsSpec rows =
+      *occupancy_of("replicate,trial,time_s,phase,people,PIR1\n1,1,1,working,0,0\n1,1,2,working,1,0\n").counts;
   CHECK(rows.begin.empty());
   CHECK(rows.times_s == std::vector{1.0, 2.0});
-  const CountsSpec named = *occupancy_of("when,A,n\n0,7,\n3600,7,3.0\n7200,7,1\n7200,7,1\n",
-                                         "counts: c.csv, time: when, people: n").counts;
+  const CountsSpec named =
+      *occupancy_of("when,A,n\n0,7,\n3600,7,3.0\n7200,7,1\n7200,7,1\n", "counts: c.csv, time: when, people: n").counts;
   CHECK(named.times_s == std::vector{3600.0, 7200.0});  // what isn't known is left out
   CHECK(named.people == std::vector{3, 1});
 }
@@ -82,8 +82,9 @@ TEST_CASE("What is wrong with counts is told with its line and column") {
   refused("time,people\n2026-03-02T07:00,0\n2026-03-02T06:59,1\n", "c.csv:3:1: error: time runs backwards");
   refused("time,people\n2026-03-02T07:00,0\n2026-03-02T07:00,1\n", "c.csv:3:18: error: another number for the same");
   refused("time,people\n2026-03-02T07:00,0\n34,1\n", "c.csv:3:1: error: expected a local date and time");
-  refused("time,people\n1,0\nnoon,1\nnight,1\n", "c.csv:3:1: error: expected seconds, or a local date and time, e.g. "
-                                                "2026-03-02T07:00:00, got 'noon'; 1 more like this");
+  refused("time,people\n1,0\nnoon,1\nnight,1\n",
+          "c.csv:3:1: error: expected seconds, or a local date and time, e.g. "
+          "2026-03-02T07:00:00, got 'noon'; 1 more like this");
   refused("time,people\n", "c.csv:1:1: error: expected at least one reading");
   refused("when,people\n1,0\n", "no column `time`, `time_s` or `t`, nor `Date` and `Time`; there are when, people");
   refused("time,n\n1,0\n", "which column tells the number of people? Say `people: COLUMN` in the script; there are");
@@ -110,7 +111,8 @@ TEST_CASE("What can't be in an occupancy is refused with its place") {
 }
 
 TEST_CASE("A run goes from the first reading to the last, from `begin`, or is one of the days that have readings") {
-  const std::string data = "time,people\n2026-03-02T07:00,0\n2026-03-02T08:00,2\n2026-03-04T12:00,1\n2026-03-05T06:00,1\n";
+  const std::string data =
+      "time,people\n2026-03-02T07:00,0\n2026-03-02T08:00,2\n2026-03-04T12:00,1\n2026-03-05T06:00,1\n";
   const OccupancyRuns all = runs_of(occupancy_of(data), "");
   CHECK(all.clock->text(0.0) == "2026-03-02T07:00:00");
   CHECK(all.duration_s == (2 * 24 + 23) * 3600.0);
@@ -131,7 +133,8 @@ TEST_CASE("A run goes from the first reading to the last, from `begin`, or is on
 
 TEST_CASE("Replicates are the days of the data in turn") {
   const Files files("time,people\n2026-03-02T07:00,0\n2026-03-04T07:10,1\n");
-  ScriptSpec script = files.script("counts: c.csv, from: '07:00', to: '07:15'", "replicates: 3\nsensing: {tick_rate_hz: 10}\n");
+  ScriptSpec script =
+      files.script("counts: c.csv, from: '07:00', to: '07:15'", "replicates: 3\nsensing: {tick_rate_hz: 10}\n");
   const Model model = compile(shipped_scene("meeting_room.gltf"), script);
   std::vector<std::string> first, phases;
   for (std::uint32_t run = 0; run < model.n_runs(); ++run) {

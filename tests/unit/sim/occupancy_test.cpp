@@ -149,8 +149,8 @@ TEST_CASE("Everybody who is counted walks in and out in time: rooms, seats, and 
     double every_s, changes;
     int most_wrong;  ///< of 239 readings: those at which somebody is still on the threshold
   };
-  // Counts jump to anything, so that up to `most` people cross the threshold between two readings. docs/formats/script.md
-  // has what eight seeds give.
+  // Counts jump to anything, so that up to `most` people cross the threshold between two readings.
+  // docs/formats/script.md has what eight seeds give.
   const auto [room, most, every_s, changes, most_wrong] =
       GENERATE(Case{"meeting_room.gltf", 4, 60, 0.5, 2}, Case{"meeting_room.gltf", 10, 60, 0.5, 3},
                Case{"meeting_room.gltf", 12, 60, 0.3, 6}, Case{"open_office.gltf", 8, 60, 0.5, 3},
