@@ -46,7 +46,7 @@ PUBLIC = {
     "model": "sim", "state": "sim", "study": "sim", "recording": "sim",
     "coverage": "studies", "look": "studies", "walk_test": "studies",
     "room": "dataset", "dataset": "dataset",
-    "csv": "io", "io": "io", "log": "io",
+    "csv": "io", "io": "io", "log": "io", "log_facts": "io",
     "reconcile": "reconcile", "reconcile_outcome": "reconcile",
 }
 # header prefix of a third-party library -> the only layers that may include it

@@ -5,6 +5,8 @@
 #include "pirsim/csv.hpp"
 #include "pirsim/error.hpp"
 #include "pirsim/io.hpp"
+#include "pirsim/log.hpp"
+#include "pirsim/log_facts.hpp"
 #include "pirsim/look.hpp"
 #include "pirsim/model.hpp"
 #include "pirsim/recording.hpp"

@@ -7,10 +7,9 @@
 #include "app/commands.hpp"
 #include "app/long_work.hpp"
 #include "app/session.hpp"
-#include "core/text.hpp"
-#include "io/files/posix_file.hpp"
+#include "io/pages/log_text.hpp"
 #include "io/write/log_rows_writer.hpp"
-#include "pirsim/log.hpp"
+#include "pirsim/log_facts.hpp"
 
 namespace pirsim::app {
 namespace {
@@ -54,30 +53,13 @@ void write_rows(const Log& log, const LogOptions& options) {
   file.commit();
 }
 
-/// To a millisecond, which is where the last event ends.
-std::string moment_text(const Log& log, std::int64_t us) {
-  constexpr std::int64_t ms = 1'000;
-  return to_text(log.moment((us + ms / 2) / ms * ms), log.clock);
-}
-
-/// What form it has, and from when to when.
-void tell_what_it_is(std::ostream& out, const Log& log) {
-  out << (log.map.form == LogMap::Form::events ? "events"
-          : log.has_readings()                 ? "readings"
-                                               : "rows of changes")
-      << ", " << counted(log.n_rows, "row") << ", from " << moment_text(log, log.begin_us) << " to "
-      << moment_text(log, log.end_us);
-  if (log.has_readings()) out << ", every " << shortest_number(static_cast<double>(log.interval_us) * 1e-6) << " s";
-  out << '\n';
-}
-
 void run_log(const LogOptions& options) {
   const Log log = read(options);
   tell(log.remarks, options.verbosity);
   if (options.prints_map) {
     std::cout << io::to_yaml(log.map);
   } else if (options.verbosity != Verbosity::quiet) {
-    tell_what_it_is(std::cout, log);
+    std::cout << io::to_text(log, facts_of(log));
   }
   require_written();
   if (!options.output.empty()) write_rows(log, options);

@@ -1,0 +1,27 @@
+// What a log tells, in words and tables.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "io/pages/report.hpp"
+#include "pirsim/log_facts.hpp"
+
+namespace pirsim::io {
+
+/// "readings every 30 s, 2017-12-22T10:49:11 to ..., 10129 rows; people: Room_Occupancy_Count, 0 to 3"
+[[nodiscard]] std::string log_in_words(const Log& log);
+
+/// A row a sensor: share of motion, pulses, pauses, false triggers.
+[[nodiscard]] Table sensor_table(const Log& log, const LogFacts& facts);
+/// A row a pair, of those most alike.
+[[nodiscard]] Table pair_table(const LogFacts& facts, std::size_t most);
+/// A row a gap.
+[[nodiscard]] Table gap_table(const Log& log, const LogFacts& facts);
+/// What the tables' columns mean, and what isn't in them.
+[[nodiscard]] std::vector<std::string> log_notes(const Log& log, const LogFacts& facts);
+
+/// Of all of it, for a terminal.
+[[nodiscard]] std::string to_text(const Log& log, const LogFacts& facts);
+
+}  // namespace pirsim::io
