@@ -14,10 +14,9 @@ namespace pirsim {
 /// How long motion, or pauses between motion, last. Seconds; of readings whole intervals.
 struct LogLengths {
   std::size_t n = 0;  ///< those whose begin and end are known
-  /// The shortest length that is common: the least one for which a fiftieth of all, and three at least, are at most a
-  /// tenth longer. A sensor's hold, or its dead time; longer ones are several in a row.
-  double floor_s = 0.0;
-  double floor_share = 0.0;  ///< of all, from there to a tenth longer
+  /// The length that one in a hundred doesn't reach, and how many of all are from there to a tenth longer. If many are,
+  /// it is the sensor's hold, or its dead time.
+  double floor_s = 0.0, floor_share = 0.0;
   double shortest_s = 0.0, q05_s = 0.0, q25_s = 0.0, median_s = 0.0, q75_s = 0.0, q95_s = 0.0, longest_s = 0.0;
 };
 
@@ -56,6 +55,10 @@ struct LogPair {
   /// if a leads. None if the log doesn't tell it: readings more than two seconds apart, or less than ten such.
   std::optional<double> b_after_a_s;
   std::size_t n_together = 0;  ///< of how many
+  double a_first_share = 0.5;  ///< of those, in how many it begins at a
+
+  /// Chance alone would give such a share once in a hundred.
+  [[nodiscard]] bool has_leader() const noexcept;
 };
 
 /// Nothing is known of these sensors.

@@ -33,18 +33,11 @@ LogLengths lengths_of(std::vector<double> lengths) {
   facts.q75_s = quantile(0.75);
   facts.q95_s = quantile(0.95);
   facts.longest_s = lengths.back();
-  // Single shorter ones are faults of a clock or of a radio, not what the sensor does.
-  constexpr double a_tenth_more = 1.1, a_fiftieth = 0.02;  // assumed
-  const std::size_t enough =
-      std::max<std::size_t>(3, static_cast<std::size_t>(std::ceil(a_fiftieth * static_cast<double>(lengths.size()))));
-  const auto n_from = [&](std::size_t i) {
-    return static_cast<std::size_t>(std::ranges::upper_bound(lengths, a_tenth_more * lengths[i]) - lengths.begin()) - i;
-  };
-  std::size_t first = 0;
-  while (first + enough < lengths.size() && n_from(first) < enough) ++first;
-  if (n_from(first) < enough) first = 0;
-  facts.floor_s = lengths[first];
-  facts.floor_share = static_cast<double>(n_from(first)) / static_cast<double>(lengths.size());
+  constexpr double a_hundredth = 0.01, a_tenth_more = 1.1;  // assumed: fewer are faults of a clock or of a radio
+  facts.floor_s = quantile(a_hundredth);
+  const auto until = [&](double length) { return std::ranges::upper_bound(lengths, length) - lengths.begin(); };
+  const auto below = std::ranges::lower_bound(lengths, facts.floor_s) - lengths.begin();
+  facts.floor_share = static_cast<double>(until(a_tenth_more * facts.floor_s) - below) / static_cast<double>(facts.n);
   return facts;
 }
 

@@ -28,6 +28,7 @@ LogFile::LogFile(const std::filesystem::path& path, LogReading& reading, const L
   shape_ = shape_of(head_, reading.map, path_);
   timer_ = LogTimer(shape_.time, reading.zone, reading.map.shift_s);
   if (shape_.header_line > 0) head_.erase(head_.begin());
+  n_read_fields_ = shape_.n_read_fields();
   values_.resize(shape_.sensors.size() + (shape_.people ? 1 : 0));
   if (shape_.form == LogMap::Form::wide) find_cadence();
 }
@@ -198,8 +199,7 @@ void LogFile::take(std::string_view line, int number) {
     return fault("quote", number, 0, [] { return "a quote that isn't closed, or text behind one that is"; });
   }
   const std::size_t wanted = shape_.n_fields();
-  const std::size_t least =
-      wanted > 0 ? wanted : std::max({shape_.time.first, shape_.time.second.value_or(0), shape_.state}) + 1;
+  const std::size_t least = wanted > 0 ? wanted : n_read_fields_;
   if (fields_.size() < least || (wanted > 0 && fields_.size() > wanted)) {
     return fault("fields", number, 0,
                  [&] { return "expected " + counted(least, "field") + ", got " + std::to_string(fields_.size()); });

@@ -75,6 +75,7 @@ class LogFile {
   LogShape shape_;
   LogTimer timer_;
   std::optional<ReadingTracks> readings_;
+  std::size_t n_read_fields_ = 0;
   std::vector<std::string_view> fields_;
   std::vector<std::string> unquoted_;
   std::vector<std::int32_t> values_, last_values_;  ///< of a wide row: sensors, then people

@@ -75,12 +75,25 @@ void set_lead(const std::vector<std::int64_t>& a, const std::vector<std::int64_t
   }
   pair.n_together = after.size();
   if (after.size() < fewest) return;
+  const auto n_first = std::ranges::count_if(after, [](std::int64_t us) { return us > 0; });
+  const auto n_same = std::ranges::count(after, 0);
+  pair.a_first_share =
+      (static_cast<double>(n_first) + 0.5 * static_cast<double>(n_same)) / static_cast<double>(after.size());
   const auto middle = after.begin() + static_cast<std::ptrdiff_t>(after.size() / 2);
   std::nth_element(after.begin(), middle, after.end());
   pair.b_after_a_s = static_cast<double>(*middle) / us_per_s;
 }
 
 }  // namespace
+
+}  // namespace pirsim::io
+
+bool pirsim::LogPair::has_leader() const noexcept {
+  constexpr double two_sided_99 = 2.576;
+  return b_after_a_s && std::abs(a_first_share - 0.5) > 0.5 * two_sided_99 / std::sqrt(static_cast<double>(n_together));
+}
+
+namespace pirsim::io {
 
 void add_pairs(const Log& log, LogFacts& facts) {
   constexpr std::size_t most_sensors = 100;

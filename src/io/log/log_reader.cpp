@@ -51,8 +51,8 @@ class ReadingParts {
   }
   /// What ends before the log does is unknown from there on.
   void finish() {
-    for (LogTrack& track : log_.sensors) end(track, log_.end_us + 1, log_state::unknown);
-    if (log_.people) end(*log_.people, log_.end_us + 1, log_state::unknown_count);
+    for (LogTrack& track : log_.sensors) end(track, log_.end_us + log_.interval_us, log_state::unknown);
+    if (log_.people) end(*log_.people, log_.end_us + log_.interval_us, log_state::unknown_count);
   }
 
  private:

@@ -343,6 +343,12 @@ class Finder {
 
 }  // namespace
 
+std::size_t LogShape::n_read_fields() const {
+  std::size_t last = std::max({time.first, time.second.value_or(0), sensor, state, people.value_or(0)});
+  for (const std::size_t column : sensors) last = std::max(last, column);
+  return last + 1;
+}
+
 LogShape shape_of(const std::vector<HeadLine>& head, const LogMap& map, const std::string& file) {
   LogShape shape;
   shape.separator = separator_of(head.front().text);

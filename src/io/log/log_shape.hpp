@@ -35,8 +35,11 @@ struct LogShape {
   // Of events.
   std::size_t sensor = 0, state = 0;
 
-  /// Every row has so many fields; 0: at least those that are read.
-  [[nodiscard]] std::size_t n_fields() const noexcept { return separator == ' ' ? 0 : names.size(); }
+  /// Every row has so many fields; 0: at least those that are read, since what follows them is text or nothing.
+  [[nodiscard]] std::size_t n_fields() const noexcept {
+    return separator == ' ' || header_line == 0 ? 0 : names.size();
+  }
+  [[nodiscard]] std::size_t n_read_fields() const;
 };
 
 /// head: the first lines that are neither empty nor comments; one at least. Throws Error(input).

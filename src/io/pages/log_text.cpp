@@ -97,7 +97,7 @@ Table pair_table(const LogFacts& facts, std::size_t most) {
     std::string lead;
     if (pair.b_after_a_s) {
       const double after = *pair.b_after_a_s;
-      lead = after == 0.0 ? "neither" : (after > 0.0 ? a : b) + " by " + time_in_words(std::abs(after));
+      lead = pair.has_leader() ? (after > 0.0 ? a : b) + " by " + time_in_words(std::abs(after)) : "neither";
     }
     table.rows.push_back({a + ", " + b, pair.phi ? fixed(*pair.phi, 2) : "", lead,
                           pair.n_together > 0 ? std::to_string(pair.n_together) : ""});
@@ -118,9 +118,9 @@ Table gap_table(const Log& log, const LogFacts& facts) {
 std::vector<std::string> log_notes(const Log& log, const LogFacts& facts) {
   std::vector<std::string> notes;
   notes.push_back(
-      "Shortest: the least length that is common, and how many are at most a tenth longer: of pulses the sensor's "
-      "hold, "
-      "of pauses its dead time" +
+      "Shortest: what one in a hundred doesn't reach, and how many of all are at most a tenth longer; if many are, it "
+      "is "
+      "the sensor's hold, of pauses its dead time" +
       std::string(log.has_readings() ? "; readings can't tell what is shorter than their interval." : "."));
   const auto told =
       std::ranges::find_if(facts.sensors, [](const auto& sensor) { return sensor.false_triggers.has_value(); });

@@ -1,0 +1,74 @@
+#include "io/log/stamp.hpp"
+
+#include "support/catch.hpp"
+
+using namespace pirsim;
+using io::parse_stamp, io::Stamp;
+
+namespace {
+
+constexpr std::int64_t s = 1'000'000;
+
+/// Of a text that says a moment or a time of day.
+std::int64_t us(std::string_view text, LogMap::Dates order = LogMap::Dates::found) {
+  const auto stamp = parse_stamp(text, order);
+  REQUIRE(stamp);
+  CHECK(stamp->kind != Stamp::Kind::number);
+  return stamp->us;
+}
+
+}  // namespace
+
+TEST_CASE("moments as loggers write them") {
+  // `date -u -d '2025-04-06T18:00:01Z' +%s` is 1743962401.
+  constexpr std::int64_t moment = 1743962401 * s;
+  CHECK(us("2025-04-06T18:00:01") == moment);
+  CHECK(us("2025-04-06 18:00:01.5") == moment + s / 2);
+  CHECK(us("2025-04-06 18:00:01,345678912") == moment + 345678);
+  CHECK(us("2025/04/06 18:00:01") == moment);
+  CHECK(us("2025-4-6 18:00:01") == moment);
+  CHECK(us("06.04.2025 18:00:01") == moment);
+  CHECK(us("04/06/2025 6:00:01 PM") == moment);
+  CHECK(us("04/06/25 18:00:01", LogMap::Dates::month_first) == moment);
+  CHECK(us("06/04/2025 18:00:01", LogMap::Dates::day_first) == moment);
+  CHECK(us(" 2025-04-06 18:00 ") == moment - s);
+  CHECK(us("2025-04-06T18:00:01.000Z") == moment);
+  CHECK(us("2025-04-06T20:00:01+02:00") == moment);
+  CHECK(us("2025-04-06T20:00:01 +0200") == moment);
+  CHECK(us("2025-04-06 12:30:01-05:30") == moment);
+  CHECK(us("2025-04-06 18:00:01 UTC") == moment);
+  CHECK(parse_stamp("2025-04-06T20:00:01+02:00", LogMap::Dates::found)->offset_s == 7200);
+  CHECK(us("2010-11-04 00:03:50.209589") == 1288829030 * s + 209589);
+}
+
+TEST_CASE("times of day, as spreadsheets leave them") {
+  CHECK(us("0:00:34") == 34 * s);
+  CHECK(us("10:49:41 AM") == (10 * 3600 + 49 * 60 + 41) * s);
+  CHECK(us("12:00:00 AM") == 0);
+  CHECK(us("12:30:00pm") == (12 * 3600 + 1800) * s);
+  CHECK(us("1:02") == 3720 * s);
+  CHECK(us("24:00:00") == 86400 * s);
+}
+
+TEST_CASE("numbers, also with a decimal comma") {
+  CHECK(parse_stamp("1743962401", LogMap::Dates::found)->number == 1743962401.0);
+  CHECK(parse_stamp("1,5", LogMap::Dates::found)->number == 1.5);
+  CHECK(parse_stamp("-3", LogMap::Dates::found)->kind == Stamp::Kind::number);
+}
+
+TEST_CASE("what is no time") {
+  for (const char* text :
+       {"", "on", "2025-02-30T10:00", "2025-13-01", "2025-04-06T25:00", "24:00:01", "10:60:00", "13:00 PM", "0:30 AM x",
+        "2025-04-06T18:00:01+15:00", "2025-04-06T18:00:01 Mars", "2025-04-06T", "1e999", "31/31/2025 10:00",
+        "99999-01-01T00:00", "inf", "nan", "2025-04-06T18:0:01"})
+    CHECK_FALSE(parse_stamp(text, LogMap::Dates::found));
+}
+
+TEST_CASE("the order of day and month, where the date tells it") {
+  using Dates = LogMap::Dates;
+  CHECK(io::order_of_date("12/22/2017 0:00") == Dates::month_first);
+  CHECK(io::order_of_date("22/12/2017") == Dates::day_first);
+  CHECK(io::order_of_date("01.02.2017") == Dates::day_first);
+  CHECK(io::order_of_date("01/02/2017") == Dates::found);
+  CHECK_FALSE(io::order_of_date("2017/01/02"));
+}
