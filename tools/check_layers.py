@@ -23,6 +23,8 @@ BELOW = {
     "studies": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
     "dataset": {"studies", "sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "core"},
     "reconcile": {"sim", "effects", "rt", "body", "pir", "io", "schema", "geom", "stats", "core"},
+    "counting": {"dataset", "io", "schema", "core"},
+    "calibrate": {"counting", "dataset", "studies", "effects", "io", "schema", "geom", "stats", "core"},
 }
 BELOW["app"] = set(BELOW)
 # rooms of a layer: who may include whom
@@ -47,6 +49,7 @@ PUBLIC = {
     "coverage": "studies", "look": "studies", "walk_test": "studies",
     "room": "dataset", "dataset": "dataset",
     "csv": "io", "io": "io", "log": "io", "log_facts": "io",
+    "counting": "counting", "calibrate": "calibrate",
     "reconcile": "reconcile", "reconcile_outcome": "reconcile",
 }
 # header prefix of a third-party library -> the only layers that may include it
@@ -54,7 +57,7 @@ THIRD_PARTY = {
     "embree": {"rt"},
     "tiny_gltf": {"io"},
     "yaml-cpp": {"io"},
-    "nlohmann": {"io", "reconcile", "dataset"},
+    "nlohmann": {"io", "reconcile", "dataset", "counting", "calibrate"},
     "stb": {"io"},
     "zlib": {"io"},
     "zstd": {"io"},

@@ -52,10 +52,19 @@ enum class Part { train, validation, test_days, test_rooms };
 
 enum class Export { uci864, casas, energyplus };
 
+/// Rooms drawn with replacement from those that a recipe's ranges give, as a calibration weighs them. A room that is
+/// drawn twice has the same furniture, sensors, people and effects, and other days.
+struct DrawBySpec {
+  int count = 1;
+  std::vector<double> weights;  ///< (rooms of the ranges) at least 0, their sum above 0
+  Where where;
+};
+
 struct RecipeSpec {
   std::string name;
   std::uint64_t seed = 1;
   std::vector<RoomGroupSpec> rooms;
+  std::optional<DrawBySpec> draw_by;
   int days = 5;  ///< of each room, one after the other
   SensingSpec sensing;
   std::vector<VariedEffectSpec> effects;
@@ -66,7 +75,10 @@ struct RecipeSpec {
   std::filesystem::path file;
   std::vector<std::string> overrides;  ///< "sensing.response=zones"
   std::string text;                    ///< the file's, and a comment for each override
+  std::vector<int> originals{};        ///< follows from draw_by
   [[nodiscard]] int n_rooms() const;
+  /// (n_rooms) which room of the ranges each one is, from 1; itself without draw_by.
+  [[nodiscard]] int original_of(int room) const;
   [[nodiscard]] std::uint32_t n_room_days() const { return static_cast<std::uint32_t>(n_rooms() * days); }
 };
 
@@ -110,5 +122,19 @@ bool make_room_days(const RecipeSpec& recipe, const std::filesystem::path& folde
 /// When all room-days are there: tables, datapackage.json, README.md, pictures, exports of the whole. Throws
 /// Error(input) if some are missing or aren't what was written. False if it was stopped.
 bool finish_dataset(const RecipeSpec& recipe, const std::filesystem::path& folder, const DatasetOptions& options);
+
+/// What a counter learns from: a dataset's day as numbers.
+struct RoomDayRows {
+  int room = 0, day = 0;
+  double window_s = 1.0;
+  std::vector<std::string> sensors;  ///< that this room has
+  std::vector<std::uint8_t> motion;  ///< (rows x sensors)
+  std::vector<int> people;           ///< (rows)
+};
+
+/// Days of one part of a finished dataset, room by room; those without rows are left out. Threads change no byte.
+/// Throws Error: io (no dataset there), input (what a dataset hasn't got, with file and line).
+[[nodiscard]] std::vector<RoomDayRows> read_room_days(const std::filesystem::path& folder, Part part,
+                                                      unsigned threads = 0);
 
 }  // namespace pirsim::dataset

@@ -50,13 +50,14 @@ enum class Purpose : std::uint32_t {
   detector_noise = 300,  ///< of one sensor's element and amplifier
   reader_phase = 301,    ///< when in its window each sensor is read
   // Of datasets, from 400 on.
-  room = 400,          ///< size, furniture and sensors of a parametric room; entity: which try
-  room_people = 401,   ///< how many people a room has, and of which role
-  room_effects = 402,  ///< effects and their parameters that belong to a room
-  day_effects = 403,   ///< the same of one of its days
-  dataset_part = 404,  ///< which rooms and days are for training, validation and test
-  dataset_seed = 405,  ///< seeds of the studies that a dataset is made of
-  test = 0xFFFF0000,   ///< reserved for tests
+  room = 400,            ///< size, furniture and sensors of a parametric room; entity: which try
+  room_people = 401,     ///< how many people a room has, and of which role
+  room_effects = 402,    ///< effects and their parameters that belong to a room
+  day_effects = 403,     ///< the same of one of its days
+  dataset_part = 404,    ///< which rooms and days are for training, validation and test
+  dataset_seed = 405,    ///< seeds of the studies that a dataset is made of
+  weighted_rooms = 406,  ///< where drawing rooms by weight begins
+  test = 0xFFFF0000,     ///< reserved for tests
 };
 
 struct StreamKey {

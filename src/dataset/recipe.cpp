@@ -56,7 +56,7 @@ ScheduleSpec schedule_of(const RecipeSpec& recipe, const SceneSpec& scene, int r
       if (i < staff.seats.size()) one.seats.push_back(staff.seats[i]);
     }
   }
-  Stream stream({recipe.seed, word(room), 0, Purpose::room_people});
+  Stream stream({recipe.seed, word(recipe.original_of(room)), 0, Purpose::room_people});
   const int most = static_cast<int>(std::min(pool.size(), scene.seats.size()));
   int n = most;
   if (group.people) {
@@ -112,7 +112,7 @@ void add_effects(const RecipeSpec& recipe, const SceneSpec& scene, int room, int
     constexpr std::uint32_t most_days = 4096;
     const auto which = static_cast<std::uint32_t>(i);
     Stream stream(varied.per == VariedEffectSpec::Per::room
-                      ? StreamKey{recipe.seed, word(room), which, Purpose::room_effects}
+                      ? StreamKey{recipe.seed, word(recipe.original_of(room)), which, Purpose::room_effects}
                       : StreamKey{recipe.seed, word(room), which * most_days + word(day), Purpose::day_effects});
     const auto sensor = varied.choices.find("sensor");
     const bool each = sensor != varied.choices.end() && sensor->second == "each";
@@ -128,20 +128,37 @@ void add_effects(const RecipeSpec& recipe, const SceneSpec& scene, int room, int
 
 }  // namespace
 
+std::vector<int> drawn_by_weight(const DrawBySpec& draw_by, std::uint64_t seed) {
+  Stream stream({seed, 0, 0, Purpose::weighted_rooms});
+  const double sum = std::accumulate(draw_by.weights.begin(), draw_by.weights.end(), 0.0);
+  const double step = sum / draw_by.count;
+  std::vector<int> rooms;
+  double reached = 0.0, wanted = stream.uniform() * step;
+  for (std::size_t i = 0; i < draw_by.weights.size(); ++i) {
+    reached += draw_by.weights[i];
+    for (; wanted < reached && static_cast<int>(rooms.size()) < draw_by.count; wanted += step)
+      rooms.push_back(static_cast<int>(i) + 1);
+  }
+  while (static_cast<int>(rooms.size()) < draw_by.count) rooms.push_back(rooms.back());  // rounding took the last step
+  return rooms;
+}
+
 const RoomGroupSpec& group_of(const RecipeSpec& recipe, int room) {
+  const int original = recipe.original_of(room);
   int first = 1;
   for (const RoomGroupSpec& group : recipe.rooms) {
-    if (room < first + group.count) return group;
+    if (original < first + group.count) return group;
     first += group.count;
   }
   throw Error(ErrorCode::usage, "the recipe has rooms 1 to " + std::to_string(recipe.n_rooms()));
 }
 
 std::filesystem::path own_scene(const RecipeSpec& recipe, int room) {
+  const int original = recipe.original_of(room);
   int first = 1;
   for (const RoomGroupSpec& group : recipe.rooms) {
-    if (room < first + group.count)
-      return group.scenes.empty() ? std::filesystem::path{} : group.scenes[static_cast<std::size_t>(room - first)];
+    if (original < first + group.count)
+      return group.scenes.empty() ? std::filesystem::path{} : group.scenes[static_cast<std::size_t>(original - first)];
     first += group.count;
   }
   return {};
@@ -150,7 +167,7 @@ std::filesystem::path own_scene(const RecipeSpec& recipe, int room) {
 SceneSpec room_of(const RecipeSpec& recipe, int number, const io::SceneOptions& options) {
   const RoomGroupSpec& group = group_of(recipe, number);
   if (const auto own = own_scene(recipe, number); !own.empty()) return io::read_scene(own, options);
-  return draw_room(group.rooms, recipe.seed, number, options).scene;
+  return draw_room(group.rooms, recipe.seed, recipe.original_of(number), options).scene;
 }
 
 std::vector<Part> parts_of(const RecipeSpec& recipe) {
@@ -194,7 +211,8 @@ std::string lack_of_people(const RecipeSpec& recipe, const SceneSpec& scene, int
 ScriptSpec script_of(const RecipeSpec& recipe, const SceneSpec& scene, int room, int day) {
   ScriptSpec script;
   script.name = recipe.name + ", room " + std::to_string(room);
-  Stream seeds({recipe.seed, word(room), 0, Purpose::dataset_seed});
+  // Days of rooms that are drawn by weight are others than those that the weights came from.
+  Stream seeds({recipe.seed, word(room), recipe.draw_by ? 1U : 0U, Purpose::dataset_seed});
   script.seed = seeds.next_u32();  // 32 bits: any reader of YAML or JSON holds them
   script.replicates = recipe.days;
   script.sensing = recipe.sensing;

@@ -5,6 +5,9 @@
 
 namespace pirsim::dataset {
 
+/// Room numbers in order, each about as often as its weight says (systematic resampling).
+[[nodiscard]] std::vector<int> drawn_by_weight(const DrawBySpec& draw_by, std::uint64_t seed);
+
 [[nodiscard]] const RoomGroupSpec& group_of(const RecipeSpec& recipe, int room);
 /// The user's own file, or empty for a drawn room.
 [[nodiscard]] std::filesystem::path own_scene(const RecipeSpec& recipe, int room);

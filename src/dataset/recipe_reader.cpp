@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 
 #include "dataset/exports.hpp"
+#include "dataset/recipe.hpp"
 #include "dataset/room_reader.hpp"
 #include "io/files/compression.hpp"
 #include "io/files/input.hpp"
@@ -148,11 +151,33 @@ RoomGroupSpec read_group(const YamlNode& node, const RecipeSpec& recipe, const s
   return group;
 }
 
+/// Of rooms as many as the recipe's ranges give.
+std::optional<DrawBySpec> read_draw_by(YamlMap& map, int n_rooms) {
+  const auto node = map.child("draw_by");
+  if (!node) return std::nullopt;
+  DrawBySpec draw_by;
+  YamlMap own(*node, map.faults(), "draw_by");
+  draw_by.where = node->where();
+  draw_by.count = own.required_integer("count", {.min = 1, .max = most_rooms});
+  own.require("weights");
+  draw_by.weights = own.numbers("weights", {}, {.min = 0.0});
+  own.finish();
+  const double sum = std::accumulate(draw_by.weights.begin(), draw_by.weights.end(), 0.0);
+  if (static_cast<int>(draw_by.weights.size()) != n_rooms) {
+    map.faults().error(own.where("weights"), "draw_by: " + std::to_string(draw_by.weights.size()) +
+                                                 " weights, but rooms has " + std::to_string(n_rooms) +
+                                                 ": give each its own");
+  } else if (!(sum > 0.0) || !std::isfinite(sum)) {
+    map.faults().error(own.where("weights"), "draw_by: no weight is above 0, or their sum is too large");
+  }
+  return draw_by;
+}
+
 SplitSpec read_split(YamlMap& map, const RecipeSpec& recipe) {
   SplitSpec split;
   const auto node = map.child("split");
   // What is too small to be divided isn't, unless a recipe says how.
-  if (recipe.n_rooms() < 3) split.validation_rooms = split.test_rooms = 0.0;
+  if (recipe.n_rooms() < 3 || recipe.draw_by) split.validation_rooms = split.test_rooms = 0.0;
   if (recipe.days < 2) split.test_days = 0.0;
   if (!node) return split;
   constexpr NumberRange share{.min = 0.0, .max = 1.0};
@@ -161,6 +186,11 @@ SplitSpec read_split(YamlMap& map, const RecipeSpec& recipe) {
   split.test_rooms = own.number("test_rooms", split.test_rooms, share);
   split.test_days = own.number("test_days", split.test_days, share);
   own.finish();
+  if (recipe.draw_by && (split.validation_rooms > 0.0 || split.test_rooms > 0.0)) {
+    map.faults().error(map.where("split"),
+                       "split: draw_by draws a room more than once, so that none can be held back: "
+                       "leave validation_rooms and test_rooms at 0");
+  }
   return split;
 }
 
@@ -188,7 +218,13 @@ void read_outputs(YamlMap& map, RecipeSpec& recipe) {
 
 }  // namespace
 
+int RecipeSpec::original_of(int room) const {
+  const bool is_known = room >= 1 && room <= static_cast<int>(originals.size());
+  return is_known ? originals[static_cast<std::size_t>(room - 1)] : room;
+}
+
 int RecipeSpec::n_rooms() const {
+  if (draw_by) return draw_by->count;
   std::int64_t n = 0;
   for (const RoomGroupSpec& group : rooms) n += group.count;
   return static_cast<int>(std::min<std::int64_t>(n, std::numeric_limits<int>::max()));
@@ -217,6 +253,8 @@ RecipeSpec read_recipe(const std::filesystem::path& file, std::span<const std::s
   const auto people = read_people(map, std::nullopt);
   for (const YamlNode& node : map.required_list("rooms"))
     recipe.rooms.push_back(read_group(node, recipe, schedule, people, faults));
+  recipe.draw_by = read_draw_by(map, recipe.n_rooms());
+  if (recipe.draw_by && !faults.has_errors()) recipe.originals = drawn_by_weight(*recipe.draw_by, recipe.seed);
   for (const YamlNode& node : map.list("effects")) recipe.effects.push_back(read_effect(node, faults));
   recipe.split = read_split(map, recipe);
   read_outputs(map, recipe);

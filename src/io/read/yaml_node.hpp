@@ -52,6 +52,9 @@ class YamlNode {
   [[nodiscard]] std::size_t n_values() const noexcept;
   [[nodiscard]] std::vector<YamlKey> keys() const;  ///< of a map, matching items(); else empty
 
+  /// As YAML that reads back the same, without comments: maps in block style, what lies below a list on one line.
+  [[nodiscard]] std::string to_yaml() const;
+
   // A scalar's value. A fault is reported as "<what>: expected ..." and gives a value within the range, or "".
   [[nodiscard]] double number(Diagnostics& faults, std::string_view what, NumberRange range = {}) const;
   [[nodiscard]] long long integer(Diagnostics& faults, std::string_view what, IntegerRange range = {}) const;

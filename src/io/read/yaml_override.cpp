@@ -52,9 +52,10 @@ Override parse_override(const std::string& text) {
 
 std::size_t list_index(const std::string& text, std::size_t size, const Where& where) {
   const std::optional<std::size_t> index = parse_number<std::size_t>(text);
-  if (!index || *index >= size) {
+  if (!index || *index > size) {
     throw Error(ErrorCode::usage, where,
-                "'" + text + "' is not an index of this list of " + std::to_string(size) + ", which count from 0");
+                "'" + text + "' is not an index of this list of " + std::to_string(size) + ", which count from 0 (" +
+                    std::to_string(size) + " adds one)");
   }
   return *index;
 }
@@ -72,7 +73,13 @@ YamlTreePtr replaced(const YamlTreePtr& tree, const Override& change, std::size_
     throw Error(ErrorCode::usage, change.where, "nothing can be set below the value '" + tree->scalar + "'");
   }
   if (tree->kind == YamlTree::Kind::list) {
-    YamlTreePtr& child = copy->children[list_index(name, tree->children.size(), change.where)];
+    const std::size_t index = list_index(name, tree->children.size(), change.where);
+    if (index == tree->children.size()) {
+      auto empty = std::make_shared<YamlTree>();
+      empty->place = change.value->place;
+      copy->children.push_back(std::move(empty));
+    }
+    YamlTreePtr& child = copy->children[index];
     child = replaced(child, change, depth + 1);
     count_values(*copy);
     return copy;

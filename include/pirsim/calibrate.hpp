@@ -1,0 +1,116 @@
+// Which simulated rooms are like the one that a log comes from? They are weighed by how well each explains it, without
+// anybody having counted. docs/howto/own_room.md
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pirsim/counting.hpp"
+#include "pirsim/dataset.hpp"
+#include "pirsim/interval.hpp"
+#include "pirsim/log.hpp"
+
+namespace pirsim::calibrate {
+
+/// A room of the recipe: its days, and what was drawn for it by name ("range_scale.scale").
+struct PoolRoom {
+  counting::LabelledRoom labelled;
+  std::map<std::string, double> parameters;
+};
+
+/// A number that a day's motion tells without counts, and how the log compares with the rooms.
+struct Statistic {
+  std::string name, unit;
+  double of_log = 0.0;
+  Interval of_rooms;    ///< 5 to 95 % of all rooms
+  Interval of_weighty;  ///< the same by weight
+  double p = 1.0;       ///< share of rooms, and the log, that are at least as far from the middle
+  /// What a range would have to be like for the statistic to reach the log's, if one of the recipe's moves it: "more
+  /// range_scale.scale". Empty: inside, or nothing moves it.
+  std::string advice;
+};
+
+/// What the log determined of a parameter.
+struct ParameterRange {
+  std::string name;
+  Interval before;  ///< 5 to 95 % of all rooms
+  Interval after;   ///< the same by weight
+  double mean_before = 0.0, mean_after = 0.0;
+  double narrowed = 0.0;  ///< 1 - ratio of standard deviations: 0 is left open, 1 is determined
+};
+
+struct WeighedRoom {
+  int number = 0;
+  double log_likelihood = 0.0, weight = 0.0;
+  /// Mean absolute error in people that a counter makes in this room, made from the others by this room's own
+  /// log; none: nobody was there. Of readings from half an hour before the first person to half an hour after the last.
+  std::optional<double> error;
+};
+
+enum class Verdict {
+  like_these,      ///< some of these rooms make such a log
+  none_like_it,    ///< no room of this recipe makes such a log: neither counts nor errors can be relied on
+  too_little_told  ///< too little happens in the log to tell
+};
+
+struct Calibration {
+  counting::Counter counter;  ///< of all rooms, weighed, with the error to expect
+  std::vector<WeighedRoom> rooms;
+  double effective_rooms = 0.0;  ///< that carry the weight: 1 / sum of squares
+  Verdict verdict = Verdict::too_little_told;
+  double p = 1.0;  ///< of the verdict: share of rooms, and the log, that are as unlike the others
+  std::vector<Statistic> statistics;
+  std::vector<ParameterRange> parameters;
+  double mean_error = 0.0;   ///< to expect; its interval is the counter's
+  double error_alike = 0.0;  ///< the same if all rooms weighed alike
+};
+
+/// At this p or below no room makes such a log.
+inline constexpr double verdict_level = 0.05;
+
+/// log: its stretches, with or without counts. Threads change no bit. Throws as counting::train() does, and
+/// Error(input) for fewer than ten rooms.
+[[nodiscard]] Calibration calibrate(std::span<const PoolRoom> pool, std::span<const counting::Stretch> log,
+                                    const counting::Settings& settings = {}, unsigned threads = 0);
+
+// From a recipe and a log to rooms and stretches.
+
+/// Overrides with which a recipe's dataset is a pool: a row a reading, and the hold that the log tells, if it does.
+[[nodiscard]] std::vector<std::string> pool_overrides(const dataset::RecipeSpec& recipe, double step_s,
+                                                      std::optional<double> hold_s);
+
+/// A finished dataset's rooms with as many sensors as the log has. Throws as dataset::read_room_days(), and
+/// Error(input) if no room has so many.
+[[nodiscard]] std::vector<PoolRoom> read_pool(const std::filesystem::path& folder, int n_sensors, double step_s,
+                                              unsigned threads = 0);
+
+/// Hours of the day that a recipe simulates.
+[[nodiscard]] Interval hours_of(const dataset::RecipeSpec& recipe);
+
+/// Those hours of each day of a log; of a log without times of day all of it, as one.
+[[nodiscard]] std::vector<counting::Stretch> day_parts(const LogRows& rows, const Interval& hours);
+/// All of it, as one.
+[[nodiscard]] counting::Stretch whole_log(const LogRows& rows);
+
+// What is written.
+
+struct About {
+  std::string recipe, log, made_by;
+  Interval hours;
+  std::size_t n_days = 0;  ///< of the log
+};
+
+/// weights.csv, counter.json, calibration.json and calibration.html. Throws Error(io).
+void write_calibration(const std::filesystem::path& folder, const Calibration& calibration, const About& about);
+/// The recipe with its rooms drawn by weight, as YAML; paths in it are relative to the folder. recipe: as of the pool.
+[[nodiscard]] std::string weighted_recipe(const dataset::RecipeSpec& recipe, const Calibration& calibration,
+                                          const std::filesystem::path& folder);
+
+/// What the calibration found, in a sentence or two.
+[[nodiscard]] std::string finding(const Calibration& calibration);
+
+}  // namespace pirsim::calibrate

@@ -1,0 +1,107 @@
+// Counting people from motion: hidden Markov models of many simulated rooms, mixed as a log of the real one weighs
+// them. docs/counting.md
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pirsim/interval.hpp"
+
+namespace pirsim::counting {
+
+inline constexpr std::uint8_t unknown_bit = 2;
+inline constexpr int unknown_count = -1;
+
+/// Readings of one room at equal steps, one after the other.
+struct Stretch {
+  int n_sensors = 0;
+  std::vector<std::uint8_t> motion;  ///< (readings x sensors) 0, 1 or unknown_bit
+  std::vector<int> people{};         ///< (readings), unknown_count where nobody counted; empty: nowhere
+  [[nodiscard]] std::size_t n_readings() const {
+    return n_sensors == 0 ? 0 : motion.size() / static_cast<std::size_t>(n_sensors);
+  }
+};
+
+/// A simulated room that a counter learns from, with the people of every reading.
+struct LabelledRoom {
+  int number = 0;
+  std::vector<Stretch> days;
+};
+
+/// Fitted on simulated rooms, each left out in turn; docs/counting.md tells how.
+struct Settings {
+  double step_s = 30.0;       ///< between readings
+  int modes = 4;              ///< of a number of people: from quiet to busy
+  double shrinkage = 60.0;    ///< pseudo-readings by which a room's emissions are drawn to those of all rooms
+  int iterations = 40;        ///< of the Baum-Welch algorithm
+  double weight_power = 0.4;  ///< of the log's likelihood in a room's weight
+};
+
+// A hidden Markov model. A state is a number of people in one mode: state = count * modes + mode. A symbol is how many
+// of the room's sensors report motion in a reading.
+
+struct RoomModel {
+  int number = 0;
+  double weight = 1.0;            ///< they add up to 1
+  std::vector<double> first;      ///< (states) probability at the first reading
+  std::vector<double> emissions;  ///< (states x symbols)
+};
+
+/// Plain and immutable once made.
+struct Counter {
+  Settings settings;
+  int n_sensors = 1;
+  int n_counts = 1;           ///< 0, 1, ..., n_counts - 1 people
+  std::vector<double> moves;  ///< (states x states) probability from one reading to the next, from row to column
+  std::vector<RoomModel> rooms;
+  std::optional<Interval> expected_error;  ///< 90 %, mean absolute error in people; docs/howto/own_room.md
+  [[nodiscard]] int n_states() const { return n_counts * settings.modes; }
+  [[nodiscard]] int n_symbols() const { return n_sensors + 1; }
+};
+
+/// Baum-Welch with known counts: emissions a room, moves of all. Threads change no bit. Throws Error(input) for no
+/// room, rooms without people, and rooms that don't have as many sensors.
+[[nodiscard]] Counter train(std::span<const LabelledRoom> rooms, const Settings& settings, unsigned threads = 0);
+
+/// (rooms) of the stretches, each begun anew. Readings that are unknown count nothing; counts that are known are held
+/// to.
+[[nodiscard]] std::vector<double> log_likelihoods(const Counter& counter, std::span<const Stretch> stretches);
+/// Rooms by how well they explain a log; a likelihood may be minus infinity.
+void weigh(Counter& counter, std::span<const double> log_likelihoods);
+
+enum class Pass {
+  forward,  ///< each reading by those before it: as it could have been told then
+  smoothed  ///< by those after it as well
+};
+
+/// Of each reading.
+struct Estimates {
+  int n_counts = 1;
+  std::vector<double> probabilities;  ///< (readings x counts)
+  /// The least count that as many people or fewer have at least even odds of: it makes the absolute error least.
+  [[nodiscard]] int count(std::size_t reading) const;
+};
+
+[[nodiscard]] Estimates estimate(const Counter& counter, const Stretch& stretch, Pass pass);
+
+/// Counts reading by reading, as they come; the same as Pass::forward. The counter outlives it.
+class LiveCount {
+ public:
+  explicit LiveCount(const Counter& counter);
+  /// (counts) after one more reading of (sensors) bits. Throws Error(usage) for another number of sensors.
+  std::vector<double> next(std::span<const std::uint8_t> bits);
+
+ private:
+  const Counter* counter_;
+  std::vector<double> belief_;  ///< (rooms x states), empty before the first reading
+};
+
+/// As JSON; docs/formats/counter.md. Throws Error: io, input (with what isn't as expected).
+void write_counter(const std::filesystem::path& file, const Counter& counter);
+[[nodiscard]] Counter read_counter(const std::filesystem::path& file);
+
+}  // namespace pirsim::counting

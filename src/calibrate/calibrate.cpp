@@ -1,0 +1,178 @@
+#include "pirsim/calibrate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "calibrate/errors.hpp"
+#include "calibrate/motion_statistics.hpp"
+#include "calibrate/room_check.hpp"
+#include "calibrate/weighted.hpp"
+#include "core/parallel.hpp"
+#include "pirsim/error.hpp"
+
+namespace pirsim::calibrate {
+namespace {
+
+using counting::Stretch;
+
+std::vector<double> weights_of(const counting::Counter& counter) {
+  std::vector<double> weights;
+  for (const counting::RoomModel& room : counter.rooms) weights.push_back(room.weight);
+  return weights;
+}
+
+// -- parameters ------------------------------------------------------------------------------------------------------
+
+/// Of the rooms that have the parameter; the others' weights are 0.
+struct ParameterValues {
+  std::vector<double> values, has;
+};
+
+ParameterValues values_of(std::span<const PoolRoom> pool, const std::string& name) {
+  ParameterValues all;
+  for (const PoolRoom& room : pool) {
+    const auto found = room.parameters.find(name);
+    all.values.push_back(found == room.parameters.end() ? 0.0 : found->second);
+    all.has.push_back(found == room.parameters.end() ? 0.0 : 1.0);
+  }
+  return all;
+}
+
+std::vector<std::string> names_of(std::span<const PoolRoom> pool) {
+  std::map<std::string, int> names;
+  for (const PoolRoom& room : pool) {
+    for (const auto& [name, value] : room.parameters) ++names[name];
+  }
+  constexpr int fewest = 5;  // rooms that have it: of fewer nothing can be said
+  std::vector<std::string> often;
+  for (const auto& [name, n] : names) {
+    if (n >= fewest) often.push_back(name);
+  }
+  return often;
+}
+
+std::vector<ParameterRange> parameter_ranges(std::span<const PoolRoom> pool, const std::vector<double>& weights) {
+  std::vector<ParameterRange> ranges;
+  for (const std::string& name : names_of(pool)) {
+    const ParameterValues all = values_of(pool, name);
+    std::vector<double> weighed = all.has;
+    for (std::size_t r = 0; r < pool.size(); ++r) weighed[r] *= weights[r];
+    if (std::ranges::none_of(weighed, [](double weight) { return weight > 0.0; })) continue;
+    const double spread = weighted_sd(all.values, all.has);
+    if (!(spread > 0.0)) continue;
+    ranges.push_back({name, weighted_interval(all.values, all.has), weighted_interval(all.values, weighed),
+                      weighted_mean(all.values, all.has), weighted_mean(all.values, weighed),
+                      std::max(0.0, 1.0 - weighted_sd(all.values, weighed) / spread)});
+  }
+  std::ranges::stable_sort(ranges, std::greater{}, &ParameterRange::narrowed);
+  return ranges;
+}
+
+// -- the check -------------------------------------------------------------------------------------------------------
+
+/// Rooms that have statistics, as rows, and which rooms they are.
+struct RoomStatistics {
+  stats::Matrix<double> rows;
+  std::vector<std::size_t> rooms;
+};
+
+RoomStatistics room_statistics(std::span<const PoolRoom> pool, double step_s, unsigned threads) {
+  std::vector<double> values;
+  std::vector<std::size_t> rooms;
+  std::size_t next = 0;
+  using Values = std::optional<std::vector<double>>;
+  ordered_parallel<Values>(
+      pool.size(), threads, [&](std::size_t r) { return motion_statistics(pool[r].labelled.days, step_s); },
+      [&](Values& one) {
+        const std::size_t r = next++;
+        if (!one) return;
+        values.insert(values.end(), one->begin(), one->end());
+        rooms.push_back(r);
+      });
+  stats::Matrix<double> rows(rooms.size(), rooms.empty() ? 0 : values.size() / rooms.size());
+  std::ranges::copy(values, rows.values().begin());
+  return {std::move(rows), std::move(rooms)};
+}
+
+/// Which parameter of the recipe moves a statistic the way that it would have to go, if one does.
+std::string advice_for(std::span<const PoolRoom> pool, const RoomStatistics& known, std::size_t statistic,
+                       double lack) {
+  constexpr double least_correlation = 0.3;  // of 60 rooms chance alone brings 0.25 in one of twenty; assumed
+  std::string best;
+  double most = least_correlation;
+  for (const std::string& name : names_of(pool)) {
+    const ParameterValues all = values_of(pool, name);
+    std::vector<double> x, y;
+    for (std::size_t i = 0; i < known.rooms.size(); ++i) {
+      if (all.has[known.rooms[i]] == 0.0) continue;
+      x.push_back(all.values[known.rooms[i]]);
+      y.push_back(known.rows(i, statistic));
+    }
+    const double correlation = rank_correlation(x, y);
+    if (std::abs(correlation) <= most) continue;
+    most = std::abs(correlation);
+    best = ((correlation > 0.0) == (lack > 0.0) ? "more " : "less ") + name;
+  }
+  return best;
+}
+
+std::vector<Statistic> compared(std::span<const PoolRoom> pool, const RoomStatistics& known,
+                                const std::vector<double>& of_log, const std::vector<double>& weights, int n_sensors) {
+  std::vector<double> own_weights;
+  for (const std::size_t r : known.rooms) own_weights.push_back(weights[r]);
+  const std::vector<double> alike(known.rooms.size(), 1.0);
+  const std::vector<StatisticInfo> infos = statistics_of(n_sensors);
+  std::vector<Statistic> all;
+  for (std::size_t s = 0; s < infos.size(); ++s) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < known.rooms.size(); ++i) values.push_back(known.rows(i, s));
+    Statistic& one = all.emplace_back(Statistic{infos[s].name,
+                                                infos[s].unit,
+                                                of_log[s],
+                                                weighted_interval(values, alike),
+                                                weighted_interval(values, own_weights),
+                                                unlike_share(values, of_log[s]),
+                                                {}});
+    if (one.p <= verdict_level) one.advice = advice_for(pool, known, s, of_log[s] - weighted_mean(values, alike));
+  }
+  return all;
+}
+
+void check(std::span<const PoolRoom> pool, std::span<const Stretch> log, double step_s, unsigned threads,
+           Calibration& made) {
+  const auto of_log = motion_statistics(log, step_s);
+  const RoomStatistics known = room_statistics(pool, step_s, threads);
+  constexpr std::size_t fewest_rooms = 10;
+  if (!of_log || known.rooms.size() < fewest_rooms) return;
+  made.p = unlike_share(known.rows, *of_log);
+  made.verdict = made.p <= verdict_level ? Verdict::none_like_it : Verdict::like_these;
+  made.statistics = compared(pool, known, *of_log, weights_of(made.counter), made.counter.n_sensors);
+}
+
+}  // namespace
+
+Calibration calibrate(std::span<const PoolRoom> pool, std::span<const Stretch> log, const counting::Settings& settings,
+                      unsigned threads) {
+  constexpr std::size_t fewest = 10;
+  if (pool.size() < fewest)
+    throw Error(ErrorCode::input, "a calibration needs " + std::to_string(fewest) +
+                                      " rooms at least, better 60; there are " + std::to_string(pool.size()));
+  std::vector<counting::LabelledRoom> rooms;
+  for (const PoolRoom& room : pool) rooms.push_back(room.labelled);
+  Calibration made{.counter = counting::train(rooms, settings, threads)};
+  const std::vector<double> scores = counting::log_likelihoods(made.counter, log);
+  counting::weigh(made.counter, scores);
+  const std::vector<double> weights = weights_of(made.counter);
+  made.effective_rooms = 1.0 / std::inner_product(weights.begin(), weights.end(), weights.begin(), 0.0);
+  const RoomErrors errors = errors_of_rooms(made.counter, rooms, threads);
+  for (std::size_t r = 0; r < pool.size(); ++r)
+    made.rooms.push_back({rooms[r].number, scores[r], weights[r], errors.weighed[r]});
+  expect_error(errors, weights, made);
+  made.parameters = parameter_ranges(pool, weights);
+  check(pool, log, settings.step_s, threads, made);
+  return made;
+}
+
+}  // namespace pirsim::calibrate

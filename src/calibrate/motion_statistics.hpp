@@ -1,0 +1,23 @@
+// What motion tells of a room without counts, in a few numbers.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pirsim/counting.hpp"
+
+namespace pirsim::calibrate {
+
+struct StatisticInfo {
+  std::string name, unit;
+};
+/// Of a room with so many sensors.
+[[nodiscard]] std::vector<StatisticInfo> statistics_of(int n_sensors);
+
+/// (statistics) means over the stretches that have enough motion to tell; none: none of them has.
+[[nodiscard]] std::optional<std::vector<double>> motion_statistics(std::span<const counting::Stretch> stretches,
+                                                                   double step_s);
+
+}  // namespace pirsim::calibrate

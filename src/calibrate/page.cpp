@@ -1,0 +1,171 @@
+#include "calibrate/page.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/text.hpp"
+
+namespace pirsim::calibrate {
+namespace {
+
+std::string range(const Interval& interval, int digits = 2) {
+  return fixed(interval.low, digits) + " to " + fixed(interval.high, digits);
+}
+
+/// With three digits that count.
+std::string plain(double value) {
+  if (value == 0.0) return "0";
+  const int before = static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1;
+  return fixed(value, std::clamp(3 - before, 0, 6));
+}
+std::string plain(const Interval& interval) { return plain(interval.low) + " to " + plain(interval.high); }
+
+/// Where a value lies if the rooms' range is from -1 to 1.
+double place_in(const Interval& interval, double value) {
+  const double half = 0.5 * (interval.high - interval.low), middle = 0.5 * (interval.low + interval.high);
+  constexpr double least = 1e-9;
+  return (value - middle) / std::max(half, least);
+}
+
+io::BandChart statistics_chart(const Calibration& calibration) {
+  io::BandChart chart;
+  chart.title = "What the log tells by itself, beside the recipe's rooms";
+  chart.note = "The band holds the middle 90 % of the rooms.";
+  chart.label = "place in the rooms' range";
+  chart.low = "less than the rooms";
+  chart.high = "more than the rooms";
+  for (const Statistic& one : calibration.statistics) {
+    using Mark = io::BandChart::Point::Mark;
+    const double place = place_in(one.of_rooms, one.of_log);
+    chart.rows.push_back({one.name,
+                          {{place, plain(one.of_log) + " " + one.unit + "; rooms " + plain(one.of_rooms),
+                            one.p <= verdict_level ? Mark::outside : Mark::inside}}});
+  }
+  return chart;
+}
+
+io::ReportSection statistics_section(const Calibration& calibration) {
+  io::ReportSection section;
+  section.heading = "Is your room like these?";
+  section.paragraphs = {calibration.verdict == Verdict::none_like_it
+                            ? "No. Of such rooms, taken as real ones in turn, " + fixed(100.0 * calibration.p, 0) +
+                                  " % are as unlike the others as your log is. What is outside of the range is told in "
+                                  "the last column: widen that range of the recipe, or ask what is in the room that "
+                                  "the recipe hasn't got (a pet, a fan, another kind of sensor, a sensor that died)."
+                            : "Nothing speaks against it: " + fixed(100.0 * calibration.p, 0) +
+                                  " % of the rooms are as unlike the others as your log is. That doesn't prove that "
+                                  "the room is among them."};
+  io::Table table{
+      {"of a day", "your log", "90 % of the rooms", "90 % by weight", "as far from the middle", "what would move it"},
+      {}};
+  for (const Statistic& one : calibration.statistics) {
+    table.rows.push_back({one.name + " (" + one.unit + ")", plain(one.of_log), plain(one.of_rooms),
+                          plain(one.of_weighty), fixed(100.0 * one.p, 0) + " %", one.advice});
+  }
+  section.tables.push_back(std::move(table));
+  section.charts.push_back(statistics_chart(calibration));
+  return section;
+}
+
+io::ReportSection parameters_section(const Calibration& calibration) {
+  io::ReportSection section;
+  section.heading = "What the log determined, and what it left open";
+  section.paragraphs = {
+      "Each parameter's range over the rooms, before and by weight. Narrowed: 0 % is left open, 100 % is determined. "
+      "Averages over a room's sensors."};
+  io::Table table{{"parameter", "90 % before", "90 % by weight", "mean before", "mean by weight", "narrowed"}, {}};
+  for (const ParameterRange& one : calibration.parameters) {
+    table.rows.push_back({one.name, plain(one.before), plain(one.after), plain(one.mean_before), plain(one.mean_after),
+                          fixed(100.0 * one.narrowed, 0) + " %"});
+  }
+  section.tables.push_back(std::move(table));
+  return section;
+}
+
+io::ReportSection rooms_section(const Calibration& calibration) {
+  io::ReportSection section;
+  section.heading = "Which rooms carry the weight";
+  section.paragraphs = {"The weight is that of " + fixed(calibration.effective_rooms, 1) + " of " +
+                        counted(calibration.rooms.size(), "room") +
+                        ". A room's error is that of a counter made from the others, if that room were yours."};
+  std::vector<WeighedRoom> rooms = calibration.rooms;
+  std::ranges::stable_sort(rooms, std::greater{}, &WeighedRoom::weight);
+  constexpr std::size_t most = 15;
+  io::BarChart chart;
+  chart.title = "The weightiest rooms";
+  chart.label = "weight";
+  for (std::size_t i = 0; i < std::min(most, rooms.size()); ++i) {
+    chart.bars.push_back({"room " + std::to_string(rooms[i].number), rooms[i].weight,
+                          rooms[i].error ? "error " + fixed(*rooms[i].error, 2) : std::string("nobody was there")});
+  }
+  section.charts.push_back(std::move(chart));
+  return section;
+}
+
+io::ReportSection error_section(const Calibration& calibration) {
+  io::ReportSection section;
+  section.heading = "How well will it count?";
+  const std::optional<Interval>& expected = calibration.counter.expected_error;
+  section.paragraphs = {
+      expected ? "In rooms like the weighty ones the counter is wrong by " + fixed(calibration.mean_error, 2) +
+                     " people on average, in nine of ten by " + range(*expected) +
+                     "; with all rooms weighed alike by " + fixed(calibration.error_alike, 2) + "."
+               : std::string("Nobody was in any of the rooms, so that no error can be told."),
+      "Mean absolute error, of readings from half an hour before the first person to half an hour after the last. It "
+      "holds if your room is like the recipe's. To be sure, count by hand for some hours, and compare."};
+  return section;
+}
+
+}  // namespace
+
+std::string word_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::like_these:
+      return "like-these";
+    case Verdict::none_like_it:
+      return "none-like-it";
+    case Verdict::too_little_told:
+      break;
+  }
+  return "too-little-told";
+}
+
+std::string finding(const Calibration& calibration) {
+  const std::optional<Interval>& expected = calibration.counter.expected_error;
+  const std::string error =
+      expected ? " Expect an error of " + fixed(calibration.mean_error, 2) + " people (" + range(*expected) + ")." : "";
+  switch (calibration.verdict) {
+    case Verdict::like_these:
+      return "Rooms of this recipe make such a log." + error;
+    case Verdict::none_like_it: {
+      std::string outside;
+      for (const Statistic& one : calibration.statistics) {
+        if (one.p <= verdict_level) outside += (outside.empty() ? "" : "; ") + one.name;
+      }
+      return "No room of this recipe makes such a log" +
+             (outside.empty() ? " (by its numbers together)" : ": " + outside) +
+             ". Neither counts nor errors can be relied on.";
+    }
+    case Verdict::too_little_told:
+      break;
+  }
+  return "Too little happens in this log to tell whether rooms of this recipe are like yours." + error;
+}
+
+io::Report page(const Calibration& calibration, const About& about) {
+  io::Report report;
+  report.title = "Calibration";
+  report.finding = finding(calibration);
+  report.paragraphs = {"Log: " + about.log + ", " + counted(about.n_days, "day") + ", from " + plain(about.hours.low) +
+                       " to " + plain(about.hours.high) + " o'clock. Recipe: " + about.recipe + ", " +
+                       counted(calibration.rooms.size(), "room") +
+                       ". Each room is weighed by how well its model explains the log; nobody counted people."};
+  report.sections = {error_section(calibration)};
+  if (!calibration.statistics.empty()) report.sections.push_back(statistics_section(calibration));
+  report.sections.push_back(parameters_section(calibration));
+  report.sections.push_back(rooms_section(calibration));
+  report.footer = about.made_by;
+  return report;
+}
+
+}  // namespace pirsim::calibrate

@@ -1,0 +1,178 @@
+// From a recipe's dataset to the rooms of a calibration.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/text.hpp"
+#include "io/read/csv_reader.hpp"
+#include "pirsim/calibrate.hpp"
+#include "pirsim/csv.hpp"
+
+namespace pirsim::calibrate {
+namespace {
+
+namespace fs = std::filesystem;
+using Parameters = std::map<int, std::map<std::string, double>>;  ///< of each room
+
+/// Numbers of a table whose lines belong to rooms; those of several sensors or days are averaged.
+class RoomMeans {
+ public:
+  void add(int room, const std::string& name, double value) {
+    Sum& sum = sums_[room][name];
+    sum.value += value;
+    sum.n += 1.0;
+  }
+  void tell(Parameters& parameters) const {
+    for (const auto& [room, own] : sums_) {
+      for (const auto& [name, sum] : own) parameters[room][name] = sum.value / sum.n;
+    }
+  }
+
+ private:
+  struct Sum {
+    double value = 0.0, n = 0.0;
+  };
+  std::map<int, std::map<std::string, Sum>> sums_;
+};
+
+void add_columns(const fs::path& file, const std::string& prefix, std::span<const char* const> columns,
+                 RoomMeans& means) {
+  const io::CsvTable table = io::CsvTable::read(file);
+  Diagnostics faults;
+  const auto room = table.required_column("room", faults);
+  std::vector<std::size_t> found;
+  for (const char* name : columns) found.push_back(table.required_column(name, faults).value_or(0));
+  faults.throw_if_errors();
+  for (std::size_t row = 0; row < table.n_rows(); ++row) {
+    const int number = table.integer(row, *room, faults).value_or(0);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (const auto value = table.number(row, found[i], faults)) means.add(number, prefix + columns[i], *value);
+    }
+  }
+  faults.throw_if_errors();
+}
+
+void add_effects(const fs::path& file, RoomMeans& means) {
+  const io::CsvTable table = io::CsvTable::read(file);
+  Diagnostics faults;
+  const auto room = table.required_column("room", faults), effect = table.required_column("effect", faults),
+             parameter = table.required_column("parameter", faults), value = table.required_column("value", faults);
+  faults.throw_if_errors();
+  for (std::size_t row = 0; row < table.n_rows(); ++row) {
+    const auto number = parse_number<double>(table.text(row, *value));  // words are no ranges
+    if (number)
+      means.add(table.integer(row, *room, faults).value_or(0),
+                table.text(row, *effect) + '.' + table.text(row, *parameter), *number);
+  }
+  faults.throw_if_errors();
+}
+
+Parameters parameters_of(const fs::path& folder) {
+  RoomMeans means;
+  constexpr std::array of_rooms{"floor_m2", "seats", "staff"};
+  constexpr std::array of_sensors{"y_m", "tilt_deg"};
+  add_columns(folder / "rooms.csv", "room.", of_rooms, means);
+  add_columns(folder / "sensors.csv", "sensor.", of_sensors, means);
+  add_effects(folder / "effects.csv", means);
+  Parameters parameters;
+  means.tell(parameters);
+  return parameters;
+}
+
+/// Rows joined to readings: any motion in them, and the people at their end.
+counting::Stretch stretch_of(const dataset::RoomDayRows& rows, double step_s) {
+  const auto per = static_cast<std::size_t>(std::max(1L, std::lround(step_s / rows.window_s)));
+  const std::size_t n_sensors = rows.sensors.size(), n = rows.people.size() / per;
+  counting::Stretch stretch{static_cast<int>(n_sensors), std::vector<std::uint8_t>(n * n_sensors, 0), {}};
+  for (std::size_t i = 0; i < n * per; ++i) {
+    for (std::size_t k = 0; k < n_sensors; ++k) {
+      std::uint8_t& bit = stretch.motion[i / per * n_sensors + k];
+      bit = std::max(bit, rows.motion[i * n_sensors + k]);
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) stretch.people.push_back(rows.people[i * per + per - 1]);
+  return stretch;
+}
+
+}  // namespace
+
+std::vector<std::string> pool_overrides(const dataset::RecipeSpec& recipe, double step_s,
+                                        std::optional<double> hold_s) {
+  std::vector<std::string> overrides{"sensing.window_s=" + io::csv_number(step_s), "exports=[]", "occupants=false"};
+  if (!hold_s) return overrides;
+  const auto known = std::ranges::find(recipe.effects, "pulse_stretching", &dataset::VariedEffectSpec::name);
+  const auto index = static_cast<std::size_t>(known - recipe.effects.begin());
+  const std::string effect = "{pulse_stretching: {hold_s: " + io::csv_number(*hold_s) + "}}";
+  overrides.push_back(recipe.effects.empty() ? "effects=[" + effect + "]"
+                                             : "effects." + std::to_string(index) + "=" + effect);
+  return overrides;
+}
+
+std::vector<PoolRoom> read_pool(const fs::path& folder, int n_sensors, double step_s, unsigned threads) {
+  using dataset::Part;
+  std::vector<dataset::RoomDayRows> days;
+  for (const Part part : {Part::train, Part::validation, Part::test_days, Part::test_rooms})
+    std::ranges::move(dataset::read_room_days(folder, part, threads), std::back_inserter(days));
+  std::ranges::sort(days, {}, [](const auto& day) { return std::pair(day.room, day.day); });
+  const Parameters parameters = parameters_of(folder);
+  std::vector<PoolRoom> pool;
+  for (const dataset::RoomDayRows& day : days) {
+    if (static_cast<int>(day.sensors.size()) != n_sensors) continue;
+    if (pool.empty() || pool.back().labelled.number != day.room) {
+      const auto own = parameters.find(day.room);
+      pool.push_back({{day.room, {}}, own == parameters.end() ? std::map<std::string, double>{} : own->second});
+    }
+    pool.back().labelled.days.push_back(stretch_of(day, step_s));
+  }
+  if (pool.empty() && !days.empty()) {
+    throw Error(ErrorCode::input, "the log has " + std::to_string(n_sensors) +
+                                      " sensors, and no room of the recipe has as many (the first has " +
+                                      std::to_string(days.front().sensors.size()) +
+                                      "): change the recipe's sensors, or name those of the room in a map (--map)");
+  }
+  return pool;
+}
+
+Interval hours_of(const dataset::RecipeSpec& recipe) {
+  Interval hours{24.0, 0.0};
+  for (const dataset::RoomGroupSpec& group : recipe.rooms) {
+    hours.low = std::min(hours.low, group.schedule.from_h);
+    hours.high = std::max(hours.high, group.schedule.to_h);
+  }
+  return hours;
+}
+
+namespace {
+
+void append(const LogRows& rows, std::size_t window, counting::Stretch& stretch) {
+  for (std::size_t k = 0; k < rows.sensors.size(); ++k) stretch.motion.push_back(rows.at(window, k));
+  if (!rows.people.empty()) stretch.people.push_back(rows.people[window]);
+}
+
+}  // namespace
+
+counting::Stretch whole_log(const LogRows& rows) {
+  counting::Stretch stretch{static_cast<int>(rows.sensors.size()), {}};
+  for (std::size_t i = 0; i < rows.n_windows(); ++i) append(rows, i, stretch);
+  return stretch;
+}
+
+std::vector<counting::Stretch> day_parts(const LogRows& rows, const Interval& hours) {
+  if (rows.clock == LogClock::elapsed) return {whole_log(rows)};
+  constexpr double hour_us = 3600e6;
+  constexpr std::int64_t day_us = 86'400'000'000;
+  std::vector<counting::Stretch> parts;
+  std::optional<std::int64_t> last_day;
+  for (std::size_t i = 0; i < rows.n_windows(); ++i) {
+    const std::int64_t local_us = rows.begin[i].local_us();
+    const std::int64_t day = local_us >= 0 ? local_us / day_us : (local_us + 1) / day_us - 1;
+    const double hour = static_cast<double>(local_us - day * day_us) / hour_us;
+    if (hour < hours.low || hour >= hours.high) continue;
+    if (day != last_day) parts.push_back({static_cast<int>(rows.sensors.size()), {}});
+    last_day = day;
+    append(rows, i, parts.back());
+  }
+  return parts;
+}
+
+}  // namespace pirsim::calibrate
