@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <ostream>
 #include <span>
 #include <string>
 #include <vector>
@@ -112,5 +113,28 @@ void write_calibration(const std::filesystem::path& folder, const Calibration& c
 
 /// What the calibration found, in a sentence or two.
 [[nodiscard]] std::string finding(const Calibration& calibration);
+
+// A log counted.
+
+struct LogCounts {
+  LogRows rows;  ///< windows of the counter's step
+  counting::Estimates estimates;
+  std::optional<Interval> expected_error;
+};
+/// Throws Error(input) if the log hasn't as many sensors as the counter is for.
+[[nodiscard]] LogCounts count_log(const counting::Counter& counter, LogRows rows, counting::Pass pass);
+
+struct CountError {
+  double mean = 0.0;  ///< absolute, people
+  std::size_t readings = 0;
+};
+/// Against the log's own counts, if it has any.
+[[nodiscard]] std::optional<CountError> error_of(const LogCounts& counts);
+
+/// CSV: time of a reading's end, people, their mean, and the probability of each count.
+void write_counts(std::ostream& out, const LogCounts& counts);
+/// Throws Error(io).
+void write_counts_page(const std::filesystem::path& file, const LogCounts& counts, const std::string& log,
+                       const std::string& made_by);
 
 }  // namespace pirsim::calibrate

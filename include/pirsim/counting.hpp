@@ -38,7 +38,7 @@ struct Settings {
   int modes = 4;              ///< of a number of people: from quiet to busy
   double shrinkage = 60.0;    ///< pseudo-readings by which a room's emissions are drawn to those of all rooms
   int iterations = 40;        ///< of the Baum-Welch algorithm
-  double weight_power = 0.4;  ///< of the log's likelihood in a room's weight
+  double weight_power = 0.2;  ///< of the log's likelihood in a room's weight
 };
 
 // A hidden Markov model. A state is a number of people in one mode: state = count * modes + mode. A symbol is how many

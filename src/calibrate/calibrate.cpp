@@ -161,7 +161,8 @@ Calibration calibrate(std::span<const PoolRoom> pool, std::span<const Stretch> l
                                       " rooms at least, better 60; there are " + std::to_string(pool.size()));
   std::vector<counting::LabelledRoom> rooms;
   for (const PoolRoom& room : pool) rooms.push_back(room.labelled);
-  Calibration made{.counter = counting::train(rooms, settings, threads)};
+  Calibration made;
+  made.counter = counting::train(rooms, settings, threads);
   const std::vector<double> scores = counting::log_likelihoods(made.counter, log);
   counting::weigh(made.counter, scores);
   const std::vector<double> weights = weights_of(made.counter);

@@ -96,17 +96,20 @@ RoomErrors errors_of_rooms(const Counter& counter, std::span<const LabelledRoom>
 }
 
 void expect_error(const RoomErrors& errors, std::span<const double> weights, Calibration& made) {
-  std::vector<double> weighed, alike, own_weights;
+  // Square roots of the weights: with the weights themselves, intervals were too narrow (83 of 100 rooms that were left
+  // out in turn; with their roots 90).
+  std::vector<double> weighed, alike, own_weights, roots;
   for (std::size_t r = 0; r < weights.size(); ++r) {
     if (!errors.weighed[r] || !errors.alike[r]) continue;
     weighed.push_back(*errors.weighed[r]);
     alike.push_back(*errors.alike[r]);
     own_weights.push_back(weights[r]);
+    roots.push_back(std::sqrt(weights[r]));
   }
   if (weighed.empty()) return;
   made.mean_error = weighted_mean(weighed, own_weights);
   made.error_alike = weighted_mean(alike, own_weights);
-  made.counter.expected_error = weighted_interval(weighed, own_weights);
+  made.counter.expected_error = weighted_interval(weighed, roots);
 }
 
 }  // namespace pirsim::calibrate

@@ -95,8 +95,10 @@ io::ReportSection rooms_section(const Calibration& calibration) {
   chart.title = "The weightiest rooms";
   chart.label = "weight";
   for (std::size_t i = 0; i < std::min(most, rooms.size()); ++i) {
-    chart.bars.push_back({"room " + std::to_string(rooms[i].number), rooms[i].weight,
-                          rooms[i].error ? "error " + fixed(*rooms[i].error, 2) : std::string("nobody was there")});
+    io::BarChart::Bar& bar = chart.bars.emplace_back();
+    bar.name = "room " + std::to_string(rooms[i].number);
+    bar.value = rooms[i].weight;
+    bar.text = rooms[i].error ? "error " + fixed(*rooms[i].error, 2) : "nobody was there";
   }
   section.charts.push_back(std::move(chart));
   return section;

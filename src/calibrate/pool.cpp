@@ -59,7 +59,7 @@ void add_effects(const fs::path& file, RoomMeans& means) {
              parameter = table.required_column("parameter", faults), value = table.required_column("value", faults);
   faults.throw_if_errors();
   for (std::size_t row = 0; row < table.n_rows(); ++row) {
-    const auto number = parse_number<double>(table.text(row, *value));  // words are no ranges
+    const auto number = io::parse_number<double>(table.text(row, *value));  // words are no ranges
     if (number)
       means.add(table.integer(row, *room, faults).value_or(0),
                 table.text(row, *effect) + '.' + table.text(row, *parameter), *number);

@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "app/commands.hpp"
+#include "app/dataset_work.hpp"
+#include "app/session.hpp"
+#include "core/text.hpp"
+#include "io/files/atomic_file.hpp"
+#include "pirsim/calibrate.hpp"
+#include "pirsim/version.hpp"
+
+namespace pirsim::app {
+namespace {
+
+struct CalibrateOptions {
+  std::filesystem::path recipe, folder, map;
+  std::vector<std::filesystem::path> logs;
+  std::optional<double> step_s;
+  std::shared_ptr<DatasetWork> pool = std::make_shared<DatasetWork>();
+};
+
+/// Between the readings that rooms and log are compared by: no shorter than the log's own.
+double step_of(const CalibrateOptions& options, const Log& log) {
+  constexpr double usual_s = 30.0;
+  const double interval_s = static_cast<double>(log.interval_us) * 1e-6;
+  const double step_s = options.step_s.value_or(std::max(usual_s, std::ceil(interval_s)));
+  if (step_s < interval_s) {
+    throw Error(ErrorCode::usage, "--step: the log has a reading every " + shortest_number(interval_s) +
+                                      " s, so that nothing shorter can be told apart");
+  }
+  return step_s;
+}
+
+Log read_log(const CalibrateOptions& options) {
+  const Progress progress({.what = "reading the log"}, options.pool->inputs.verbosity);
+  const StopRequest stop;
+  const LogMap map = options.map.empty() ? LogMap{} : io::read_log_map(options.map);
+  return io::read_log(options.logs, map, {[&](std::uint64_t) { stop.throw_if_made(); }});
+}
+
+void tell_finding(const calibrate::Calibration& calibration, const CalibrateOptions& options) {
+  if (options.pool->inputs.verbosity == Verbosity::quiet) return;
+  std::cout << calibrate::finding(calibration) << '\n'
+            << "The weight is that of " << fixed(calibration.effective_rooms, 1) << " of "
+            << counted(calibration.rooms.size(), "room") << ". See " << (options.folder / "calibration.html").string()
+            << ";\ncount with: pirsim count " << (options.folder / "counter.json").string() << " --log "
+            << options.logs.front().string() << " -o counts.csv\n";
+  require_written();
+}
+
+void run(const CalibrateOptions& options) {
+  if (options.folder.empty()) throw Error(ErrorCode::usage, "-o DIR is missing");
+  const Log log = read_log(options);
+  tell(log.remarks, options.pool->inputs.verbosity);
+  const double step_s = step_of(options, log);
+  const dataset::RecipeSpec given = read_recipe(options.recipe, *options.pool);
+  const std::vector<std::string> overrides = calibrate::pool_overrides(given, step_s, std::nullopt);
+  const dataset::RecipeSpec recipe = read_recipe(options.recipe, *options.pool, overrides);
+  const LogRows rows = LogWindows(log, step_s).rows();
+  const Interval hours = calibrate::hours_of(recipe);
+  const std::vector<counting::Stretch> days = calibrate::day_parts(rows, hours);
+  if (days.empty())
+    throw Error(ErrorCode::input, Where{options.logs.front().string()},
+                "nothing in it is of the hours that the recipe simulates (schedule: from, to)");
+  DatasetWork pool = *options.pool;
+  pool.folder = options.folder / "pool";
+  std::filesystem::create_directories(options.folder);
+  const StopRequest stop;
+  if (make_dataset(recipe, pool, stop) == Whole::no) return;
+  const Progress progress({.what = "weighing rooms"}, pool.inputs.verbosity);
+  const auto rooms = calibrate::read_pool(pool.folder, static_cast<int>(rows.sensors.size()), step_s, pool.threads);
+  counting::Settings settings;
+  settings.step_s = step_s;
+  const calibrate::Calibration made = calibrate::calibrate(rooms, days, settings, pool.threads);
+  calibrate::write_calibration(options.folder, made,
+                               {options.recipe.filename().string(), options.logs.front().filename().string(),
+                                "pirsim " + version() + " (" + git_revision() + ")", hours, days.size()});
+  io::write_text_file(options.folder / "recipe.yaml", calibrate::weighted_recipe(recipe, made, options.folder));
+  tell_finding(made, options);
+}
+
+}  // namespace
+
+void add_calibrate_command(CLI::App& app) {
+  CLI::App& command = add_command(app, "calibrate", "find simulated rooms that are like the one of a log, and count there", R"(
+  pirsim calibrate recipe.yaml --log week.csv -o DIR      a counter for that room, the error to expect, a verdict
+  pirsim calibrate recipe.yaml --log week.csv -o DIR --resume            with the rooms that are there already
+  pirsim calibrate recipe.yaml --log week.csv -o DIR --shard 3/100       a part of the rooms, in a job array ...
+  pirsim calibrate recipe.yaml --log week.csv -o DIR --finish            ... and when all are through
+  pirsim dataset DIR/recipe.yaml -o data                  a dataset of rooms drawn by their weight
+)");
+  const auto options = std::make_shared<CalibrateOptions>();
+  as_input(command.add_option("RECIPE", options->recipe, "what is known of the room: a recipe, as of pirsim dataset"))
+      ->required();
+  command.add_option("--log", options->logs, "the log; several are parts of one")->option_text("FILE")->required();
+  offer_input_file(command, "--map", options->map, "what the log's columns mean (pirsim log --print-map)");
+  offer_output(command, options->folder, "DIR", "folder of what is made");
+  command.add_option("--step", options->step_s, "seconds between readings (default: 30, or the log's interval if longer)")
+      ->option_text("SECONDS")
+      ->check(CLI::Range(1.0, 3600.0));
+  command.add_flag_callback(
+      "--finish", [pool = options->pool.get()] { pool->part = DatasetWork::Part::finish; },
+      "only weigh the rooms that are there");
+  offer_dataset_work(command, options->pool);
+  command.callback([options] { run(*options); });
+}
+
+}  // namespace pirsim::app

@@ -1,0 +1,73 @@
+#include <iostream>
+
+#include "app/commands.hpp"
+#include "app/long_work.hpp"
+#include "app/session.hpp"
+#include "core/text.hpp"
+#include "io/files/atomic_file.hpp"
+#include "pirsim/calibrate.hpp"
+#include "pirsim/version.hpp"
+
+namespace pirsim::app {
+namespace {
+
+struct CountOptions {
+  std::filesystem::path counter, map, output, report;
+  std::vector<std::filesystem::path> logs;
+  counting::Pass pass = counting::Pass::smoothed;
+  Verbosity verbosity = Verbosity::normal;
+};
+
+void write(const CountOptions& options, const calibrate::LogCounts& counts) {
+  if (options.output.empty()) {
+    if (options.report.empty()) calibrate::write_counts(std::cout, counts);
+    return require_written();
+  }
+  io::AtomicFile file(options.output);
+  calibrate::write_counts(file.stream(), counts);
+  file.commit();
+}
+
+void count(const CountOptions& options) {
+  const counting::Counter counter = counting::read_counter(options.counter);
+  const StopRequest stop;
+  const Log log = [&] {
+    const Progress progress({.what = "reading the log"}, options.verbosity);
+    const LogMap map = options.map.empty() ? LogMap{} : io::read_log_map(options.map);
+    return io::read_log(options.logs, map, {[&](std::uint64_t) { stop.throw_if_made(); }});
+  }();
+  tell(log.remarks, options.verbosity);
+  const calibrate::LogCounts counts =
+      calibrate::count_log(counter, LogWindows(log, counter.settings.step_s).rows(), options.pass);
+  write(options, counts);
+  const std::string made_by = "pirsim " + version() + " (" + git_revision() + ")";
+  if (!options.report.empty())
+    calibrate::write_counts_page(options.report, counts, options.logs.front().filename().string(), made_by);
+  const auto error = calibrate::error_of(counts);
+  if (error && options.verbosity != Verbosity::quiet) {
+    std::cerr << "beside the log's own counts: wrong by " << fixed(error->mean, 3) << " people on average, over "
+              << counted(error->readings, "reading") << '\n';
+  }
+}
+
+}  // namespace
+
+void add_count_command(CLI::App& app) {
+  CLI::App& command = add_command(app, "count", "count the people of a log, by a counter of pirsim calibrate", R"(
+  pirsim count DIR/counter.json --log week.csv -o counts.csv --report counts.html
+  pirsim count DIR/counter.json --log week.csv --forward      as it could have been told at each moment
+)");
+  const auto options = std::make_shared<CountOptions>();
+  as_input(command.add_option("COUNTER", options->counter, "counter.json of pirsim calibrate"))->required();
+  command.add_option("--log", options->logs, "the log; several are parts of one")->option_text("FILE")->required();
+  offer_input_file(command, "--map", options->map, "what the log's columns mean (pirsim log --print-map)");
+  offer_output(command, options->output, "FILE", "counts as CSV (default: standard output)");
+  command.add_option("--report", options->report, "a page with the log and the counts as time lines")->option_text("FILE");
+  command.add_flag_callback(
+      "--forward", [options] { options->pass = counting::Pass::forward; },
+      "each reading by those before it alone (default: by those after it as well)");
+  offer_quiet(command, options->verbosity);
+  command.callback([options] { count(*options); });
+}
+
+}  // namespace pirsim::app

@@ -1,0 +1,148 @@
+// A log counted: as a table, and as a page.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/text.hpp"
+#include "io/pages/report.hpp"
+#include "pirsim/calibrate.hpp"
+#include "pirsim/csv.hpp"
+
+namespace pirsim::calibrate {
+namespace {
+
+std::size_t n_counts(const LogCounts& counts) { return static_cast<std::size_t>(counts.estimates.n_counts); }
+
+std::span<const double> probabilities(const LogCounts& counts, std::size_t reading) {
+  return std::span(counts.estimates.probabilities).subspan(reading * n_counts(counts), n_counts(counts));
+}
+
+/// Of a reading's probabilities.
+double mean_count(std::span<const double> probabilities) {
+  double mean = 0.0;
+  for (std::size_t n = 0; n < probabilities.size(); ++n) mean += static_cast<double>(n) * probabilities[n];
+  return mean;
+}
+
+/// Readings of one date, or all of a log without dates.
+struct Day {
+  std::string name;
+  std::size_t begin = 0, end = 0;
+};
+
+std::vector<Day> days_of(const LogRows& rows) {
+  std::vector<Day> days;
+  for (std::size_t i = 0; i < rows.n_windows(); ++i) {
+    const std::string date = rows.clock == LogClock::elapsed ? "" : to_text(rows.begin[i], rows.clock).substr(0, 10);
+    if (days.empty() || days.back().name != date) days.push_back({date, i, i});
+    days.back().end = i + 1;
+  }
+  return days;
+}
+
+io::SeriesChart chart_of(const LogCounts& counts, const Day& day) {
+  const LogRows& rows = counts.rows;
+  io::SeriesChart chart;
+  chart.title = day.name.empty() ? "The log" : day.name;
+  chart.window_s = rows.window_s;
+  chart.end_s = static_cast<double>(day.end - day.begin) * rows.window_s;
+  for (std::size_t k = 0; k < rows.sensors.size(); ++k) {
+    io::SeriesChart::Row row{rows.sensors[k], {}};
+    for (std::size_t i = day.begin; i < day.end; ++i) {
+      if (rows.at(i, k) == 1) row.times_s.push_back(static_cast<double>(i + 1 - day.begin) * rows.window_s);
+    }
+    chart.rows.push_back(std::move(row));
+  }
+  int last = -1;
+  for (std::size_t i = day.begin; i < day.end; ++i) {
+    const int now = counts.estimates.count(i);
+    if (now != last) chart.people.push_back({static_cast<double>(i - day.begin) * rows.window_s, now});
+    last = now;
+  }
+  if (rows.clock != LogClock::elapsed && day.begin + 1 < rows.n_windows())
+    chart.first_clock = to_text(rows.begin[day.begin + 1], rows.clock).substr(0, 19);
+  return chart;
+}
+
+/// Hours with each count.
+io::Table hours_table(const LogCounts& counts, const std::vector<Day>& days) {
+  io::Table table{{"day"}, {}};
+  for (std::size_t n = 0; n < n_counts(counts); ++n) table.headings.push_back(counted(n, "person", "people") + ", h");
+  for (const Day& day : days) {
+    std::vector<double> hours(n_counts(counts), 0.0);
+    for (std::size_t i = day.begin; i < day.end; ++i)
+      hours[static_cast<std::size_t>(counts.estimates.count(i))] += counts.rows.window_s / 3600.0;
+    std::vector<std::string>& row = table.rows.emplace_back(std::vector<std::string>{day.name});
+    for (const double one : hours) row.push_back(fixed(one, 1));
+  }
+  return table;
+}
+
+}  // namespace
+
+LogCounts count_log(const counting::Counter& counter, LogRows rows, counting::Pass pass) {
+  if (static_cast<int>(rows.sensors.size()) != counter.n_sensors) {
+    throw Error(ErrorCode::input, "the counter is for " + counted(static_cast<std::size_t>(counter.n_sensors), "sensor") +
+                                      ", and the log has " + std::to_string(rows.sensors.size()) + ": " +
+                                      joined(rows.sensors, ", ") + "; a map (--map) chooses among them");
+  }
+  counting::Stretch stretch = whole_log(rows);
+  stretch.people.clear();  // a count is made without a look at the answer
+  counting::Estimates estimates = counting::estimate(counter, stretch, pass);
+  return {std::move(rows), std::move(estimates), counter.expected_error};
+}
+
+std::optional<CountError> error_of(const LogCounts& counts) {
+  double sum = 0.0, n = 0.0;
+  for (std::size_t i = 0; i < counts.rows.people.size(); ++i) {
+    if (counts.rows.people[i] == log_state::unknown_count) continue;
+    sum += std::abs(counts.estimates.count(i) - counts.rows.people[i]);
+    n += 1.0;
+  }
+  if (n == 0.0 || counts.rows.people_mean != LogMap::People::count) return std::nullopt;
+  return CountError{sum / n, static_cast<std::size_t>(n)};
+}
+
+void write_counts(std::ostream& out, const LogCounts& counts) {
+  const LogRows& rows = counts.rows;
+  const bool has_clock = rows.clock != LogClock::elapsed;
+  out << (has_clock ? "time" : "time_s") << ",people,mean";
+  for (std::size_t n = 0; n < n_counts(counts); ++n) out << ",p" << n;
+  out << '\n';
+  for (std::size_t i = 0; i < rows.n_windows(); ++i) {
+    LogMoment end = rows.begin[i];
+    end.us += std::llround(rows.window_s * 1e6);
+    if (i + 1 < rows.n_windows()) end.offset_s = rows.begin[i + 1].offset_s;
+    std::string line = has_clock ? to_text(end, rows.clock) : io::csv_number(end.seconds());
+    const auto of_reading = probabilities(counts, i);
+    line += ',' + std::to_string(counts.estimates.count(i)) + ',' + fixed(mean_count(of_reading), 2);
+    for (const double p : of_reading) line += ',' + fixed(p, 3);
+    out << line << '\n';
+  }
+}
+
+void write_counts_page(const std::filesystem::path& file, const LogCounts& counts, const std::string& log,
+                       const std::string& made_by) {
+  const std::vector<Day> days = days_of(counts.rows);
+  constexpr std::size_t most_days = 31;
+  io::Report report;
+  report.title = "How many people were there?";
+  report.footer = made_by;
+  std::string error;
+  if (const auto known = error_of(counts))
+    error = "Compared with the log's own counts it is wrong by " + fixed(known->mean, 2) + " people on average, over " +
+            counted(known->readings, "reading") + ".";
+  else if (counts.expected_error)
+    error = "In rooms like this one such counts are wrong by " + fixed(counts.expected_error->low, 2) + " to " +
+            fixed(counts.expected_error->high, 2) + " people on average while somebody is there.";
+  report.finding = error;
+  report.paragraphs = {"Log: " + log + ". Each day shows the estimated number of people above the readings with motion of each sensor."};
+  if (days.size() > most_days) report.paragraphs.push_back("The first " + std::to_string(most_days) + " days are drawn.");
+  report.sections.push_back({"Hours with so many people", {}, {hours_table(counts, days)}, {}});
+  io::ReportSection lines{"Day by day", {}, {}, {}};
+  for (std::size_t d = 0; d < std::min(days.size(), most_days); ++d) lines.charts.emplace_back(chart_of(counts, days[d]));
+  report.sections.push_back(std::move(lines));
+  io::write_report(file, report);
+}
+
+}  // namespace pirsim::calibrate
