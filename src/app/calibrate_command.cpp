@@ -8,6 +8,7 @@
 #include "core/text.hpp"
 #include "io/files/atomic_file.hpp"
 #include "pirsim/calibrate.hpp"
+#include "pirsim/log_facts.hpp"
 #include "pirsim/version.hpp"
 
 namespace pirsim::app {
@@ -39,6 +40,19 @@ Log read_log(const CalibrateOptions& options) {
   return io::read_log(options.logs, map, {[&](std::uint64_t) { stop.throw_if_made(); }});
 }
 
+/// How long the sensors hold motion, if the log tells: the pulses of an event log are hardly ever shorter.
+std::optional<double> hold_of(const Log& log) {
+  constexpr std::size_t fewest_pulses = 20;  // of a sensor; assumed
+  if (log.has_readings()) return std::nullopt;
+  double sum = 0.0, n = 0.0;
+  for (const LogSensorFacts& sensor : facts_of(log).sensors) {
+    if (sensor.pulses.n < fewest_pulses) continue;
+    sum += sensor.pulses.floor_s;
+    n += 1.0;
+  }
+  return n > 0.0 ? std::optional(sum / n) : std::nullopt;
+}
+
 void tell_finding(const calibrate::Calibration& calibration, const CalibrateOptions& options) {
   if (options.pool->inputs.verbosity == Verbosity::quiet) return;
   std::cout << calibrate::finding(calibration) << '\n'
@@ -54,8 +68,11 @@ void run(const CalibrateOptions& options) {
   const Log log = read_log(options);
   tell(log.remarks, options.pool->inputs.verbosity);
   const double step_s = step_of(options, log);
+  const std::optional<double> hold_s = hold_of(log);
+  if (hold_s && options.pool->inputs.verbosity != Verbosity::quiet)
+    std::cerr << "the log's sensors hold motion for " << fixed(*hold_s, 1) << " s, and so do the rooms'\n";
   const dataset::RecipeSpec given = read_recipe(options.recipe, *options.pool);
-  const std::vector<std::string> overrides = calibrate::pool_overrides(given, step_s, std::nullopt);
+  const std::vector<std::string> overrides = calibrate::pool_overrides(given, step_s, hold_s);
   const dataset::RecipeSpec recipe = read_recipe(options.recipe, *options.pool, overrides);
   const LogRows rows = LogWindows(log, step_s).rows();
   const Interval hours = calibrate::hours_of(recipe);
@@ -83,7 +100,8 @@ void run(const CalibrateOptions& options) {
 }  // namespace
 
 void add_calibrate_command(CLI::App& app) {
-  CLI::App& command = add_command(app, "calibrate", "find simulated rooms that are like the one of a log, and count there", R"(
+  CLI::App& command =
+      add_command(app, "calibrate", "find simulated rooms that are like the one of a log, and count there", R"(
   pirsim calibrate recipe.yaml --log week.csv -o DIR      a counter for that room, the error to expect, a verdict
   pirsim calibrate recipe.yaml --log week.csv -o DIR --resume            with the rooms that are there already
   pirsim calibrate recipe.yaml --log week.csv -o DIR --shard 3/100       a part of the rooms, in a job array ...
@@ -96,7 +114,8 @@ void add_calibrate_command(CLI::App& app) {
   command.add_option("--log", options->logs, "the log; several are parts of one")->option_text("FILE")->required();
   offer_input_file(command, "--map", options->map, "what the log's columns mean (pirsim log --print-map)");
   offer_output(command, options->folder, "DIR", "folder of what is made");
-  command.add_option("--step", options->step_s, "seconds between readings (default: 30, or the log's interval if longer)")
+  command
+      .add_option("--step", options->step_s, "seconds between readings (default: 30, or the log's interval if longer)")
       ->option_text("SECONDS")
       ->check(CLI::Range(1.0, 3600.0));
   command.add_flag_callback(

@@ -35,6 +35,6 @@ inline constexpr std::array all_commands{
     add_run_command,      add_day_command,        add_check_command,   add_preview_command, add_export_command,
     add_view_command,     add_room_command,       add_dataset_command, add_effects_command, add_coverage_command,
     add_walktest_command, add_placements_command, add_status_command,  add_merge_command,   add_reconcile_command,
-    add_log_command, add_calibrate_command, add_count_command,      add_help_command};
+    add_log_command,      add_calibrate_command,  add_count_command,   add_help_command};
 
 }  // namespace pirsim::app

@@ -62,7 +62,8 @@ void add_count_command(CLI::App& app) {
   command.add_option("--log", options->logs, "the log; several are parts of one")->option_text("FILE")->required();
   offer_input_file(command, "--map", options->map, "what the log's columns mean (pirsim log --print-map)");
   offer_output(command, options->output, "FILE", "counts as CSV (default: standard output)");
-  command.add_option("--report", options->report, "a page with the log and the counts as time lines")->option_text("FILE");
+  command.add_option("--report", options->report, "a page with the log and the counts as time lines")
+      ->option_text("FILE");
   command.add_flag_callback(
       "--forward", [options] { options->pass = counting::Pass::forward; },
       "each reading by those before it alone (default: by those after it as well)");

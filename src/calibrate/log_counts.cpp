@@ -82,7 +82,8 @@ io::Table hours_table(const LogCounts& counts, const std::vector<Day>& days) {
 
 LogCounts count_log(const counting::Counter& counter, LogRows rows, counting::Pass pass) {
   if (static_cast<int>(rows.sensors.size()) != counter.n_sensors) {
-    throw Error(ErrorCode::input, "the counter is for " + counted(static_cast<std::size_t>(counter.n_sensors), "sensor") +
+    throw Error(ErrorCode::input, "the counter is for " +
+                                      counted(static_cast<std::size_t>(counter.n_sensors), "sensor") +
                                       ", and the log has " + std::to_string(rows.sensors.size()) + ": " +
                                       joined(rows.sensors, ", ") + "; a map (--map) chooses among them");
   }
@@ -136,11 +137,14 @@ void write_counts_page(const std::filesystem::path& file, const LogCounts& count
     error = "In rooms like this one such counts are wrong by " + fixed(counts.expected_error->low, 2) + " to " +
             fixed(counts.expected_error->high, 2) + " people on average while somebody is there.";
   report.finding = error;
-  report.paragraphs = {"Log: " + log + ". Each day shows the estimated number of people above the readings with motion of each sensor."};
-  if (days.size() > most_days) report.paragraphs.push_back("The first " + std::to_string(most_days) + " days are drawn.");
+  report.paragraphs = {
+      "Log: " + log + ". Each day shows the estimated number of people above the readings with motion of each sensor."};
+  if (days.size() > most_days)
+    report.paragraphs.push_back("The first " + std::to_string(most_days) + " days are drawn.");
   report.sections.push_back({"Hours with so many people", {}, {hours_table(counts, days)}, {}});
   io::ReportSection lines{"Day by day", {}, {}, {}};
-  for (std::size_t d = 0; d < std::min(days.size(), most_days); ++d) lines.charts.emplace_back(chart_of(counts, days[d]));
+  for (std::size_t d = 0; d < std::min(days.size(), most_days); ++d)
+    lines.charts.emplace_back(chart_of(counts, days[d]));
   report.sections.push_back(std::move(lines));
   io::write_report(file, report);
 }

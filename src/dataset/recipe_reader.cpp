@@ -159,8 +159,8 @@ std::optional<DrawBySpec> read_draw_by(YamlMap& map, int n_rooms) {
   YamlMap own(*node, map.faults(), "draw_by");
   draw_by.where = node->where();
   draw_by.count = own.required_integer("count", {.min = 1, .max = most_rooms});
-  own.require("weights");
-  draw_by.weights = own.numbers("weights", {}, {.min = 0.0});
+  for (const YamlNode& weight : own.required_list("weights", limits::rooms))
+    draw_by.weights.push_back(weight.number(map.faults(), "draw_by: weights", {.min = 0.0}));
   own.finish();
   const double sum = std::accumulate(draw_by.weights.begin(), draw_by.weights.end(), 0.0);
   if (static_cast<int>(draw_by.weights.size()) != n_rooms) {

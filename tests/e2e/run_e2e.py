@@ -52,7 +52,8 @@ COMMANDS = {(): ("studyA.yaml", "-o", "rows.csv"), ("run",): ("studyA.yaml", "-o
 OTHERS = {("day",): ("--scene", "nowhere.gltf", "--staff", "2", "-o", "rows.csv"),
           ("reconcile", "open"): ("--answer", "a", "--commitment", "b", "--report", "c"), ("status",): ("shards",),
           ("merge",): ("shards", "-o", "rows.csv", "--script", "other.yaml"), ("effects",): (), ("help",): (),
-          ("log",): ("nowhere.csv",),
+          ("log",): ("nowhere.csv",), ("calibrate",): ("recipe.yaml", "--log", "nowhere.csv", "-o", "out"),
+          ("count",): ("counter.json", "--log", "nowhere.csv"),
           ("room",): ("-o", "room.gltf"), ("dataset",): ("recipe.yaml", "-o", "out")}
 ROOM_VALUES = {"--set": "cut_share=0.3", "--kind": "meeting", "--desks": "rows", "--width": "6", "--height": "3",
                "--depth": "5"}
