@@ -68,7 +68,7 @@ struct LogMoment {
   std::int64_t us = 0;
   std::int32_t offset_s = 0;  ///< local time is so much ahead of UTC
 
-  [[nodiscard]] double seconds() const noexcept { return static_cast<double>(us) * 1e-6; }
+  [[nodiscard]] double seconds() const noexcept { return static_cast<double>(us) / 1e6; }
   [[nodiscard]] std::int64_t local_us() const noexcept { return us + std::int64_t{offset_s} * 1'000'000; }
   bool operator==(const LogMoment&) const = default;
 };

@@ -7,16 +7,18 @@
 #include "app/commands.hpp"
 #include "app/long_work.hpp"
 #include "app/session.hpp"
+#include "io/pages/log_page.hpp"
 #include "io/pages/log_text.hpp"
 #include "io/write/log_rows_writer.hpp"
 #include "pirsim/log_facts.hpp"
+#include "pirsim/version.hpp"
 
 namespace pirsim::app {
 namespace {
 
 struct LogOptions {
   std::vector<std::filesystem::path> files;
-  std::filesystem::path map, output;
+  std::filesystem::path map, output, report;
   std::vector<std::string> changes;
   std::string from, to;
   double window_s = 30.0;
@@ -53,13 +55,37 @@ void write_rows(const Log& log, const LogOptions& options) {
   file.commit();
 }
 
+std::string title_of(const LogOptions& options) {
+  const std::string name = io::stem_of_input(options.files.front());
+  return options.files.size() == 1 ? name : name + " and " + std::to_string(options.files.size() - 1) + " more";
+}
+
+void write_report(const Log& log, const LogFacts& facts, const LogOptions& options) {
+  io::Report report = io::log_report(log, facts, title_of(options));
+  report.footer = "pirsim " + version() + " (" + git_revision() + ")";
+  for (const InputFile& file : log.files) report.footer += ", " + io::name_of_input(file.path);
+  io::write_report(options.report, report);
+}
+
+void check_files(const LogOptions& options) {
+  const std::vector<NamedOutput> outputs{{"-o", options.output, io::table_endings()},
+                                         {"--report", options.report, {".html"}}};
+  check_outputs(outputs, {});
+  std::vector<std::string> read{options.map.string()};
+  for (const std::filesystem::path& file : options.files) read.push_back(file.string());
+  keep_inputs(outputs, read);
+}
+
 void run_log(const LogOptions& options) {
+  check_files(options);
   const Log log = read(options);
   tell(log.remarks, options.verbosity);
   if (options.prints_map) {
     std::cout << io::to_yaml(log.map);
-  } else if (options.verbosity != Verbosity::quiet) {
-    std::cout << io::to_text(log, facts_of(log));
+  } else if (options.verbosity != Verbosity::quiet || !options.report.empty()) {
+    const LogFacts facts = facts_of(log);
+    if (options.verbosity != Verbosity::quiet) std::cout << io::to_text(log, facts);
+    if (!options.report.empty()) write_report(log, facts, options);
   }
   require_written();
   if (!options.output.empty()) write_rows(log, options);
@@ -72,6 +98,7 @@ void add_log_command(CLI::App& app) {
   pirsim log week.csv                                              form, sensors, times, and what they tell
   pirsim log week.csv --print-map > map.yaml                       a map to start from: which column is which sensor
   pirsim log week.csv --map map.yaml --window 30 -o rows.csv       rows of pirsim, empty where nothing is known
+  pirsim log week.csv --report week.html                           a page: the days as time lines
 )");
   const auto options = std::make_shared<LogOptions>();
   as_input(
@@ -82,6 +109,7 @@ void add_log_command(CLI::App& app) {
   command.add_option("--to", options->to, "local time until which it is read")->option_text("TIME");
   command.add_option("--window", options->window_s, "length of a row's window (default: 30)")->option_text("SECONDS");
   offer_output(command, options->output, "FILE", "rows, .csv, .csv.gz or .csv.zst");
+  command.add_option("--report", options->report, "a page with the days as time lines, .html")->option_text("FILE");
   command.add_flag("--print-map", options->prints_map, "print the map that it was read by, and nothing else");
   offer_quiet(command, options->verbosity);
   command.callback([&command, options] {

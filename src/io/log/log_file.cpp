@@ -50,6 +50,12 @@ void LogFile::read_head() {
     head_.push_back(std::move(*line));
   }
   if (head_.empty()) throw Error(ErrorCode::input, {path_, 1, 1}, "the log is empty");
+  const char first = head_.front().text.front();
+  if (first == '{' || first == '[' || first == '<') {
+    throw Error(
+        ErrorCode::input, {path_, head_.front().line, 1},
+        std::string("expected a table, got ") + (first == '<' ? "XML or a page" : "JSON") + ": save the log as CSV");
+  }
 }
 
 void LogReading::note_row(std::int64_t us) {
@@ -81,7 +87,29 @@ std::int64_t quantile(std::vector<std::int64_t>& values, double share) {
   return values[static_cast<std::size_t>(at)];
 }
 
+/// The mean of those that are about the median: of seconds apart by 30 and 31.
+std::int64_t usual_step(const std::vector<std::int64_t>& apart, std::int64_t median) {
+  std::int64_t sum = 0, n = 0;
+  for (const std::int64_t step : apart) {
+    if (2 * step < median || step > 3 * median / 2) continue;
+    sum += step;
+    ++n;
+  }
+  constexpr std::int64_t ms = 1'000;
+  const std::int64_t mean = n > 0 ? sum / n : median;
+  return mean < 10 * ms ? mean : (mean + ms / 2) / ms * ms;
+}
+
 }  // namespace
+
+/// No two rows have different times.
+void LogFile::refuse_head() {
+  readings_.emplace(ReadingTracks::Cadence{1, 1}, values_);
+  for (const HeadLine& line : head_) take(line.text, line.line);
+  if (reading_.faults.count() > 0) throw Error(ErrorCode::input, reading_.faults.issues(Severity::error));
+  throw Error(ErrorCode::input, {path_, head_.front().line, 1},
+              "one reading alone doesn't tell for how long it holds; say interval_s in a map");
+}
 
 /// Whether a row is a reading or a change, and how far readings are apart.
 void LogFile::find_cadence() {
@@ -112,10 +140,8 @@ void LogFile::find_cadence() {
                                             slow > 4 * median && 10 * n_changed >= 9 * n_rows);
   if (are_changes) return;
   ReadingTracks::Cadence cadence;
-  cadence.interval_us = map.interval_s ? std::llround(*map.interval_s * 1e6) : median;
-  if (cadence.interval_us <= 0)
-    throw Error(ErrorCode::input, {path_, head_.front().line, 1},
-                "one reading alone doesn't tell for how long it holds; say interval_s in a map");
+  cadence.interval_us = map.interval_s ? std::llround(*map.interval_s * 1e6) : usual_step(apart, median);
+  if (cadence.interval_us <= 0) refuse_head();
   // Stamps of whole seconds may be two intervals apart where none is lost.
   const std::int64_t usual = map.interval_s ? cadence.interval_us : std::clamp(slow, median, 5 * median / 3);
   cadence.longest_gap_us = map.longest_gap_s ? std::llround(*map.longest_gap_s * 1e6) : 3 * usual / 2;

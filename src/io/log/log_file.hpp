@@ -54,6 +54,7 @@ class LogFile {
   [[nodiscard]] std::optional<HeadLine> next_line();
   void read_head();
   void find_cadence();
+  [[noreturn]] void refuse_head();
   void take(std::string_view line, int number);
   [[nodiscard]] std::optional<std::int64_t> time_of_row(int line);
   void take_readings(std::int64_t us, int line);

@@ -1,4 +1,5 @@
 // What a log's columns mean, as YAML.
+#include <algorithm>
 #include <sstream>
 #include <utility>
 
@@ -87,6 +88,18 @@ std::vector<LogMap::Sensor> read_sensors(YamlMap& map) {
   return sensors;
 }
 
+/// Each column is one sensor's.
+void check_sensors(YamlMap& map, const std::vector<LogMap::Sensor>& sensors) {
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const auto before = sensors.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find_if(sensors.begin(), before, [&](const auto& other) { return other.in_log == sensors[i].in_log; }) ==
+        before)
+      continue;
+    const std::vector<YamlNode> items = map.child("sensors")->items();
+    map.faults().error(items[i].where(), "sensors: '" + sensors[i].in_log + "' is named twice");
+  }
+}
+
 /// `people: Room_Occupancy_Count`, or with what it means.
 void read_people(YamlMap& map, LogMap& log) {
   const auto node = map.child("people");
@@ -118,6 +131,7 @@ LogMap read_log_map(const std::filesystem::path& file, std::span<const std::stri
   log.dates = map.choice("dates", log.dates, orders());
   log.stamps = map.choice("stamps", log.stamps, stamps());
   log.sensors = read_sensors(map);
+  check_sensors(map, log.sensors);
   read_people(map, log);
   constexpr NumberRange length{.min = 1e-3, .max = 4e5};
   log.interval_s = map.optional_number("interval_s", length);

@@ -56,7 +56,7 @@ class ReadingParts {
   }
 
  private:
-  static std::string seconds(std::int64_t us) { return shortest_number(static_cast<double>(us) * 1e-6) + " s"; }
+  static std::string seconds(std::int64_t us) { return shortest_number(static_cast<double>(us) / 1e6) + " s"; }
 
   LogTrack& track(const std::string& in_log) {
     const auto found = std::ranges::find(log_.sensors, in_log, &LogTrack::in_log);
@@ -118,7 +118,7 @@ std::vector<std::size_t> motion_sensors(const std::vector<EventTracks::Track>& t
     const NameSays says = what_name_says(tracks[i].in_log);
     if (is_casas_motion(tracks[i].in_log)) casas.push_back(i);
     if (says == NameSays::motion || says == NameSays::presence) motion.push_back(i);
-    if (says != NameSays::other_quantity) all.push_back(i);
+    if (says != NameSays::other_quantity && says != NameSays::other_device) all.push_back(i);
   }
   std::vector<std::size_t>& chosen = !casas.empty() ? casas : !motion.empty() ? motion : all;
   std::ranges::sort(chosen, {}, [&](std::size_t i) { return tracks[i].in_log; });
@@ -231,7 +231,7 @@ void complete(LogMap& map, const LogFile& file, const Log& log) {
   } else {
     map.rows = log.has_readings() ? LogMap::Rows::readings : LogMap::Rows::changes;
   }
-  if (log.has_readings() && !map.interval_s) map.interval_s = static_cast<double>(log.interval_us) * 1e-6;
+  if (log.has_readings() && !map.interval_s) map.interval_s = static_cast<double>(log.interval_us) / 1e6;
   map.sensors.clear();
   for (const LogTrack& track : log.sensors) map.sensors.push_back({track.name, track.in_log});
   if (log.people) map.people = log.people->in_log;
@@ -298,6 +298,8 @@ Log read_log(std::span<const std::filesystem::path> files, const LogMap& map, co
     if (read.size() == 1) {
       reading.from_us = opened.limit("from", map.from);
       reading.to_us = opened.limit("to", map.to);
+      if (reading.from_us && reading.to_us && *reading.from_us >= *reading.to_us)
+        throw Error(ErrorCode::usage, "to: expected a time after from, " + map.from);
     } else {
       require_one_form(*read.front(), opened, *read.front());
     }

@@ -90,6 +90,13 @@ HeadTable table_of(const std::vector<HeadLine>& head, char separator, const std:
     if (name.empty()) name = "column " + std::to_string(i + 1);
   }
   check_names(table, file);
+  // What isn't a row of this table is told when it is read.
+  const auto is_other = [&](const auto& row) { return row.size() != n; };
+  if (table.header_line > 0 && !table.rows.empty() && std::ranges::all_of(table.rows, is_other)) {
+    throw Error(ErrorCode::input, {file, head[1].line, 1},
+                "expected " + counted(n, "field") + ", got " + std::to_string(table.rows.front().size()));
+  }
+  if (table.header_line > 0) std::erase_if(table.rows, is_other);
   for (auto& row : table.rows) row.resize(n);
   return table;
 }
@@ -274,10 +281,14 @@ class Finder {
 
   [[nodiscard]] bool looks_like_motion(std::size_t column) const {
     if (says(column) == NameSays::other_quantity) return false;
-    const auto is_state = [](const std::string& text) { return read_state(text).has_value(); };
-    if (table_.count(column, is_state) != table_.rows.size())
-      return says(column) == NameSays::motion && has_states(column);
-    return has_states(column) || says(column) == NameSays::motion;
+    const auto is_odd = [](const std::string& text) { return !read_state(text); };
+    const auto is_quantity = [](const std::string& text) { return !read_state(text) && is_number(text); };
+    const bool is_called_so = says(column) == NameSays::motion;
+    const std::size_t n_odd = table_.count(column, is_odd);
+    if (n_odd == 0) return has_states(column) || is_called_so;
+    // Some odd words, but no number, may be a logger's; assumed: one in twenty.
+    const bool is_rare = 20 * n_odd <= table_.rows.size() && table_.count(column, is_quantity) == 0;
+    return has_states(column) && (is_called_so || is_rare);
   }
   [[nodiscard]] bool is_count(std::size_t column) const {
     const auto is_number = [](const std::string& text) { return read_count(text).has_value(); };

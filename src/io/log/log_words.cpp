@@ -95,9 +95,9 @@ NameSays what_name_says(std::string_view name) {
   constexpr std::array motions{"pir", "motion", "movement"};
   constexpr std::array counts{"people", "persons", "occupants", "headcount"};
   constexpr std::array presences{"occupancy", "occupied", "presence"};
-  constexpr std::array others{"light",  "lux",    "illumin", "temp", "sound", "noise",    "co2",
-                              "humid",  "slope",  "volt",    "batt", "power", "pressure", "door",
-                              "window", "switch", "hvac",    "rssi", "energy"};
+  constexpr std::array quantities{"light", "lux",  "illumin", "temp",  "sound",    "noise", "co2",   "humid",
+                                  "slope", "volt", "batt",    "power", "pressure", "rssi",  "energy"};
+  constexpr std::array devices{"door", "window", "switch", "lock", "hvac"};
   const std::string word = small(name);
   if (is_one_of(times, word)) return NameSays::time;
   if (is_one_of(sensors, word)) return NameSays::sensor;
@@ -109,7 +109,8 @@ NameSays what_name_says(std::string_view name) {
     return NameSays::count;
   if (begins_with_one_of(words, motions)) return NameSays::motion;
   if (begins_with_one_of(words, presences)) return NameSays::presence;
-  if (begins_with_one_of(words, others)) return NameSays::other_quantity;
+  if (begins_with_one_of(words, quantities)) return NameSays::other_quantity;
+  if (begins_with_one_of(words, devices)) return NameSays::other_device;
   return NameSays::nothing;
 }
 

@@ -18,7 +18,7 @@ namespace pirsim::io {
 /// A name in small letters, cut at what is neither letter nor digit: {"s6", "pir"}.
 [[nodiscard]] std::vector<std::string> words_of_name(std::string_view name);
 
-enum class NameSays { nothing, time, sensor, state, motion, count, presence, other_quantity };
+enum class NameSays { nothing, time, sensor, state, motion, count, presence, other_quantity, other_device };
 /// What a column or an entity is by its name. `time`, `sensor` and `state` are said only of whole names.
 [[nodiscard]] NameSays what_name_says(std::string_view name);
 /// "M003", "MA012": how CASAS calls motion sensors.

@@ -160,6 +160,31 @@ Json to_json(const DotsChart& chart) {
           {"log", chart.scale == DotsChart::Scale::logarithmic}};
 }
 
+/// Runs as triples of numbers: a year has tens of thousands.
+Json to_json(const DaysChart& chart) {
+  Json json{{"kind", "days"},
+            {"from", chart.from_s},
+            {"bin", chart.bin_s},
+            {"n", chart.n_bins},
+            {"clock", chart.ticks == DaysChart::Ticks::clock}};
+  json["days"] = Json::array();
+  for (const DaysChart::Day& day : chart.days) {
+    Json lines = Json::array();
+    for (const DaysChart::Line& line : day.lines) {
+      Json runs = Json::array();
+      for (const DaysChart::Run& run : line.runs) {
+        runs.push_back(run.from);
+        runs.push_back(run.to);
+        runs.push_back(run.level);
+      }
+      lines.push_back(
+          {{"name", line.name}, {"people", line.shows == DaysChart::Shows::people}, {"runs", std::move(runs)}});
+    }
+    json["days"].push_back({{"name", day.name}, {"lines", std::move(lines)}});
+  }
+  return json;
+}
+
 Json to_json(const LineChart& chart) {
   Json json{{"kind", "lines"},
             {"x_label", chart.x_label},

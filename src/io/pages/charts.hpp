@@ -173,6 +173,34 @@ struct LineChart {
   Guide guide = Guide::none;
 };
 
-using Chart = std::variant<MapChart, HistogramChart, SeriesChart, GridChart, BandChart, BarChart, DotsChart, LineChart>;
+/// Days below each other, each with a line a sensor: when there was motion, and when nothing is known.
+struct DaysChart {
+  /// Stretches of a line, in bins from the left end of the day.
+  struct Run {
+    int from = 0, to = 0;
+    int level = 0;  ///< unknown, or 1 to 4: motion in up to 5, 20, 50, 100 % of the time; of people their number
+  };
+  static constexpr int unknown = -1;
+  enum class Shows { motion, people };
+  struct Line {
+    std::string name;
+    std::vector<Run> runs;  ///< what is left out is 0
+    Shows shows = Shows::motion;
+  };
+  struct Day {
+    std::string name;
+    std::vector<Line> lines;
+  };
+  enum class Ticks { clock, seconds };
+  std::string title, note;
+  double from_s = 0.0;  ///< of each day, the left end
+  double bin_s = 120.0;
+  int n_bins = 720;
+  Ticks ticks = Ticks::clock;
+  std::vector<Day> days;
+};
+
+using Chart = std::variant<MapChart, HistogramChart, SeriesChart, GridChart, BandChart, BarChart, DotsChart, LineChart,
+                           DaysChart>;
 
 }  // namespace pirsim::io

@@ -63,12 +63,12 @@ std::string names_in_words(const Log& log, const std::vector<std::size_t>& senso
 }  // namespace
 
 std::string log_in_words(const Log& log) {
-  const double interval_s = static_cast<double>(log.interval_us) * 1e-6;
+  const double interval_s = static_cast<double>(log.interval_us) / 1e6;
   const std::string form = log.map.form == LogMap::Form::events ? "events"
                            : log.has_readings()                 ? "readings every " + shortest_number(interval_s) + " s"
                                                                 : "rows of changes";
   return form + ", " + moment_in_words(log, log.begin_us) + " to " + moment_in_words(log, log.end_us) + " (" +
-         time_in_words(static_cast<double>(log.end_us - log.begin_us) * 1e-6) + "), " + counted(log.n_rows, "row") +
+         time_in_words(static_cast<double>(log.end_us - log.begin_us) / 1e6) + "), " + counted(log.n_rows, "row") +
          ", " + counted(log.sensors.size(), "sensor") + people_in_words(log);
 }
 
@@ -76,7 +76,7 @@ Table sensor_table(const Log& log, const LogFacts& facts) {
   Table table{{"sensor", "motion", "unknown", "pulses", "shortest", "median", "95 %", "shortest pause", "median pause",
                "false triggers"},
               {}};
-  const double whole_s = static_cast<double>(log.end_us - log.begin_us) * 1e-6;
+  const double whole_s = static_cast<double>(log.end_us - log.begin_us) / 1e6;
   for (const LogSensorFacts& sensor : facts.sensors) {
     const auto share = sensor.motion_share();
     table.rows.push_back({sensor.name, share ? percent(*share) : "", percent(sensor.unknown_s / whole_s),
@@ -109,7 +109,7 @@ Table gap_table(const Log& log, const LogFacts& facts) {
   Table table{{"unknown from", "to", "for", "sensors"}, {}};
   for (const LogGap& gap : facts.gaps) {
     table.rows.push_back({moment_in_words(log, gap.from.us), moment_in_words(log, gap.to.us),
-                          time_in_words(static_cast<double>(gap.to.us - gap.from.us) * 1e-6),
+                          time_in_words(static_cast<double>(gap.to.us - gap.from.us) / 1e6),
                           names_in_words(log, gap.sensors)});
   }
   return table;

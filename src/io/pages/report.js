@@ -425,6 +425,70 @@
     };
   }
 
+  // Days below each other. Light where there was some motion, dark where much; hatched where nothing is known.
+  function days(chart, width) {
+    const lines = chart.days.flatMap((day) => day.lines.map((line, i) => Object.assign({ day: i === 0 ? day.name : "", of: day.name }, line)));
+    const dates = longest(chart.days.map((day) => day.name + "  "), 0, 120);
+    const named = longest(lines.map((line) => line.name), 0, 150), left = dates + named + 14, inner = width - left - 24;
+    const many = lines.length > 120, high = many ? 7 : 14, gap = many || chart.days.every((day) => day.lines.length < 2) ? 1 : 9;
+    const most = Math.max(1, ...lines.filter((line) => line.people).flatMap((line) => line.runs.filter((v, i) => i % 3 === 2)));
+    const seen = [], hatches = [], labels = [], toX = (bin) => bin / chart.n * inner;
+    const two = (n) => String(n).padStart(2, "0");
+    const moment = (bin) => {
+      const s = chart.from + bin * chart.bin;
+      if (!chart.clock) return s + " s";
+      return two(Math.floor(s / 3600)) + ":" + two(Math.floor(s / 60) % 60) + (chart.bin < 60 ? ":" + two(Math.floor(s) % 60) : "");
+    };
+    const share = ["", "up to 5 %", "up to 20 %", "up to 50 %", "more than half"];
+    let y = 0;
+    lines.forEach((line) => {
+      if (line.day && y > 0) y += gap;
+      if (line.day) labels.push({ x: -left, y: y + high / 2, text: line.day, align: "left", bold: true });
+      if (!many) labels.push({ x: -6, y: y + high / 2, text: line.name, align: "right" });
+      for (let i = 0; i < line.runs.length; i += 3) {
+        const [from, to, level] = line.runs.slice(i, i + 3), x = toX(from), x2 = toX(to);
+        const what = level < 0 ? "unknown" : line.people ? level + (level === 1 ? " person" : " people") : "motion in " + share[level] + " of the time";
+        seen.push({ x, x2, y, y2: y + high, colour: level < 0 ? "--rule" : line.people ? "--mark" : "--text",
+          opacity: level < 0 ? 0.35 : line.people ? 0.2 + 0.8 * level / most : 0.25 + 0.1875 * level,
+          tip: line.name + ", " + line.of + ", " + moment(from) + " to " + moment(to) + ": " + what });
+        if (level < 0) hatches.push(hatched(x, x2, y, high));
+      }
+      y += high + 1;
+    });
+    const end = chart.from + chart.n * chart.bin, ticks = [];
+    const step = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 10800].find((one) => one / (end - chart.from) * inner >= 48) || 14400;
+    for (let s = Math.ceil(chart.from / step) * step; s <= end; s += step) ticks.push(s);
+    const clock = { values: ticks, encode: { labels: { update: { text: { signal:
+      `utcFormat(1000 * (datum.value % 86400), '${step < 60 ? "%H:%M:%S" : "%H:%M"}')` } } } } };
+    const label = (where) => ({ type: "text", interactive: false, from: { data: "labels" }, encode: { enter: {
+      x: { field: "x" }, y: { field: "y" }, text: { field: "text" }, align: { field: "align" }, baseline: { value: "middle" },
+      fontSize: { value: many ? 8 : 11 }, fontWeight: { signal: "datum.bold ? 'bold' : 'normal'" }, fill: { value: css(where) },
+      limit: { value: 150 } } } });
+    return {
+      width: inner, height: y, padding: { left: left + 4, right: 24, top: 4, bottom: 34 }, autosize: "none",
+      data: [{ name: "seen", values: seen.map((one) => Object.assign(one, { colour: css(one.colour) })) },
+        { name: "hatches", values: hatches.map((d) => ({ d })) }, { name: "labels", values: labels }],
+      scales: [{ name: "x", type: "linear", domain: [chart.from, end], range: "width", nice: false, zero: false }],
+      axes: [axis("x", "bottom", chart.clock ? null : "time, s", chart.clock ? clock : { tickCount: 8 })],
+      marks: [
+        { type: "rect", from: { data: "seen" }, encode: { enter: { x: { field: "x" }, x2: { field: "x2" }, y: { field: "y" },
+          y2: { field: "y2" }, fill: { field: "colour" }, fillOpacity: { field: "opacity" }, tooltip: { field: "tip" } } } },
+        { type: "path", interactive: false, from: { data: "hatches" }, encode: { enter: { path: { field: "d" },
+          stroke: { value: css("--faint") }, strokeWidth: { value: 0.6 }, strokeOpacity: { value: 0.6 } } } },
+        label("--text"),
+      ],
+    };
+  }
+  // Lines that rise through a box, as an SVG path.
+  function hatched(x, x2, y, high) {
+    let d = "";
+    for (let from = Math.ceil((x - high) / 7) * 7; from < x2; from += 7) {
+      const a = Math.max(from, x), b = Math.min(from + high, x2);
+      if (b > a) d += `M${a.toFixed(1)},${(y + high - (a - from)).toFixed(1)}L${b.toFixed(1)},${(y + high - (b - from)).toFixed(1)}`;
+    }
+    return d;
+  }
+
   function showTip(handler, event, item, value) {
     if (value === null || value === undefined || value === "") { tip.style.visibility = "hidden"; return; }
     tip.textContent = value;
@@ -434,7 +498,7 @@
     tip.style.top = Math.max(4, event.clientY - tip.offsetHeight - 10) + "px";
   }
 
-  const makers = { map, histogram, series, grid, band, bars, dots, lines }, views = new Map();
+  const makers = { map, histogram, series, grid, band, bars, dots, lines, days }, views = new Map();
   function draw(place) {
     const chart = charts[Number(place.dataset.chart)];
     const width = Math.floor(place.clientWidth) - 8;

@@ -38,7 +38,7 @@ void write_log_rows(const LogWindows& windows, const std::function<void(std::str
     const LogMoment after = windows.begin(first + rows.n_windows());
     for (std::size_t i = 0; i < rows.n_windows(); ++i) {
       const LogMoment end = end_of(rows, i, after);
-      text += csv_number(static_cast<double>(end.us) * 1e-6 - zero_s);
+      text += csv_number(static_cast<double>(end.us) / 1e6 - zero_s);
       if (has_clock) text += ',' + to_text(end, rows.clock);
       if (!rows.people.empty()) {
         text += ',';

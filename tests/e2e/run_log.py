@@ -1,0 +1,249 @@
+#!/usr/bin/env python3
+"""`pirsim log`: forms through pipes and encodings, summer time against Python's zoneinfo, what is refused by name and
+line, and a year of ten sensors in little memory.
+
+Usage: run_log.py PIRSIM DATA_DIR [unittest arguments]. Needs python3 only.
+"""
+import csv
+import datetime
+import gzip
+import heapq
+import io
+import os
+import pathlib
+import random
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+import zoneinfo
+
+PIRSIM = DATA = None
+UTC = datetime.timezone.utc
+
+WIDE = "time,A,B\n2025-04-06T18:00:01,0,0\n2025-04-06T18:00:02,1,\n2025-04-06T18:00:03,1,1\n2025-04-06T18:00:04,0,1\n"
+ROWS = ("time_s,time,A,B\n1,2025-04-06T18:00:01,0,0\n2,2025-04-06T18:00:02,1,\n3,2025-04-06T18:00:03,1,1\n"
+        "4,2025-04-06T18:00:04,0,1\n")
+
+
+def run(*args, code=0, **kwargs):
+    result = subprocess.run([PIRSIM, *map(str, args)], capture_output=True, timeout=300, **kwargs)
+    assert result.returncode == code, f"{args}: exit code {result.returncode}, expected {code}\n{result.stderr.decode()}"
+    return result.stdout.decode(), result.stderr.decode()
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = pathlib.Path(holder.name)
+
+    def write(self, name, content):
+        path = self.folder / name
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return path
+
+    def rows(self, *args, **kwargs):
+        """Of the log, as text."""
+        out = self.folder / "rows.csv"
+        run("log", *args, "-q", "-o", out, **kwargs)
+        return out.read_text()
+
+
+class Inputs(Case):
+    def test_encodings_and_compression(self):
+        for encoded in (WIDE.encode(), b"\xef\xbb\xbf" + WIDE.encode(), WIDE.encode("utf-16"), WIDE.encode("utf-16-le"),
+                        WIDE.encode("utf-16-be"), "\ufeff".encode("utf-16-be") + WIDE.encode("utf-16-be"),
+                        WIDE.replace("\n", "\r\n").encode(), gzip.compress(WIDE.encode("utf-16")), gzip.compress(WIDE.encode())):
+            self.assertEqual(self.rows(self.write("log", encoded), "--window", 1), ROWS)
+
+    def test_standard_input_and_pipes(self):
+        self.assertEqual(self.rows("-", "--window", 1, input=WIDE.encode()), ROWS)
+        pipe = self.folder / "pipe"
+        os.mkfifo(pipe)
+        with subprocess.Popen(["sh", "-c", f"cat '{self.write('log', WIDE)}' > '{pipe}'"]):
+            self.assertEqual(self.rows(pipe, "--window", 1), ROWS)
+
+    def test_the_map_that_is_printed_reads_the_log_again(self):
+        log = self.write("log.csv", WIDE.replace("time,A,B", '"when, exactly",S\\1,"S ""2"""'))
+        printed = run("log", log, "--print-map")[0]
+        self.assertTrue(printed.startswith("pirsim_log: 1\n"))
+        again = self.write("map.yaml", printed)
+        self.assertEqual(run("log", log, "--map", again, "--print-map")[0], printed)
+        self.assertEqual(self.rows(log, "--map", again), self.rows(log))
+
+    def test_names_of_the_scene_and_a_count_by_a_map(self):
+        log = self.write("log.csv", "t;left;right;n\n10;0;1;0\n20;1;1;2\n30;0;0;3\n")
+        chosen = self.write("map.yaml", "pirsim_log: 1\nsensors: {PIR2: right, PIR1: left}\npeople: n\n")
+        self.assertEqual(self.rows(log, "--map", chosen, "--window", 10),
+                         "time_s,people,PIR2,PIR1\n10,0,1,0\n20,2,1,1\n30,3,0,0\n")
+        for text, told in (("sensors: {P: lefd}", "there is no column 'lefd' (did you mean 'left'?)"),
+                           ("people: m", "there is no column 'm'"), ("time: [t, n, left]", "map.yaml:2:7: error: time: expected a column"),
+                           ("sensor: {A: left}", "map.yaml:2:9: error"), ("senors: [left]", "did you mean 'sensors'?"),
+                           ("time_zone: Europe/Berlim", "did you mean 'Europe/Berlin'?"), ("form: tall", "map.yaml:2:7"),
+                           ("interval_s: -1", "interval_s"), ("sensors: {A: left, B: left}", "map.yaml:2:23: error: sensors: 'left' is named twice")):
+            bad = self.write("map.yaml", f"pirsim_log: 1\n{text}\n")
+            self.assertIn(told, run("log", log, "--map", bad, "-q", code=3)[1])
+
+    def test_rows_of_a_run_come_back(self):
+        rows = self.folder / "run.csv"
+        study = ("--scene", DATA / "rooms" / "meeting_room.gltf", "--script", DATA / "studies" / "studyA.yaml")
+        run(*study, "--set", "replicates=1", "-o", rows, "-q")
+        lines = rows.read_text().splitlines()
+        first = [line for line in lines[1:] if line.split(",")[1] == lines[1].split(",")[1]]
+        log = self.write("one.csv", "\n".join([lines[0], *first]) + "\n")
+        got = list(csv.reader(io.StringIO(self.rows(log, "--window", 1))))
+        self.assertEqual(got[0], ["time_s", "people", *lines[0].split(",")[5:]])
+        self.assertEqual([row[1:] for row in got[1:]], [line.split(",")[4:] for line in first])
+        self.assertIn("another run begins here", run("log", rows, code=3)[1])
+
+
+class Time(Case):
+    def test_summer_time_is_as_python_s_zoneinfo_has_it(self):
+        draw = random.Random(5)
+        for name, days in (("Europe/Berlin", ("2025-03-29", "2025-10-25")), ("America/New_York", ("2024-03-09", "2024-11-02")),
+                           ("Australia/Lord_Howe", ("2025-04-05", "2025-10-04")), ("Asia/Kolkata", ("2025-06-01",)),
+                           ("Africa/Cairo", ("2024-04-25", "2024-10-31"))):
+            zone = zoneinfo.ZoneInfo(name)
+            for day in days:
+                begin = datetime.datetime.fromisoformat(day).replace(tzinfo=zone).astimezone(UTC)
+                moments = [begin] + sorted(begin + datetime.timedelta(seconds=draw.randrange(60, 3 * 86400)) for _ in range(200))
+                text = "entity_id,state,last_changed\n" + "".join(
+                    f"binary_sensor.a,{'on' if i % 2 else 'off'},{moment:%Y-%m-%dT%H:%M:%S}.000Z\n" for i, moment in enumerate(moments))
+                chosen = self.write("map.yaml", f"pirsim_log: 1\ntime_zone: {name}\n")
+                rows = list(csv.DictReader(io.StringIO(self.rows(self.write("log.csv", text), "--map", chosen, "--window", 300))))
+                for i, row in enumerate(rows):
+                    end = begin + datetime.timedelta(seconds=300 * (i + 1))
+                    self.assertEqual(row["time"], end.astimezone(zone).strftime("%Y-%m-%dT%H:%M:%S"))
+                    begun = [k for k, moment in enumerate(moments) if moment < end]
+                    on = any(k % 2 and (k + 1 == len(moments) or moments[k + 1] > end - datetime.timedelta(seconds=300)) for k in begun)
+                    if i + 1 < len(rows):
+                        self.assertEqual(row["binary_sensor.a"], "1" if on else "0", (name, day, i))
+
+    def test_local_times_of_a_zone_as_zoneinfo_has_them(self):
+        zone = zoneinfo.ZoneInfo("Europe/Berlin")
+        begin = datetime.datetime(2025, 10, 25, 22, tzinfo=UTC)
+        readings = [begin + datetime.timedelta(minutes=10 * (i + 1)) for i in range(150)]
+        text = "time,A\n" + "".join(f"{moment.astimezone(zone):%Y-%m-%d %H:%M},{int(i % 7 == 0)}\n" for i, moment in enumerate(readings))
+        chosen = self.write("map.yaml", "pirsim_log: 1\ntime_zone: Europe/Berlin\n")
+        log = self.write("log.csv", text)
+        rows = list(csv.DictReader(io.StringIO(self.rows(log, "--map", chosen, "--window", 600))))
+        self.assertEqual([row["A"] for row in rows], [str(int(i % 7 == 0)) for i in range(150)])
+        self.assertEqual([row["time"] for row in rows], [f"{moment.astimezone(zone):%Y-%m-%dT%H:%M:%S}" for moment in readings])
+        told = run("log", log, "--map", chosen)[1]
+        self.assertRegex(told, r"log.csv:13: warning: clocks were put back .*; 11 more like this")
+        self.assertIn("were clocks put back? Say time_zone in a map", run("log", log)[1])
+
+
+# What is refused: content, what is told, with its place.
+REFUSED = {
+    "nothing": (b"", "log:1:1: error: the log is empty"),
+    "blank lines": (b"\n\n ,\n", "log:1:1: error: the log is empty"),
+    "names alone": (b"time,A\n", "log:1:1: error: there are names of columns, but no row"),
+    "binary": (b"\x00\x01\x02\x03\x04", "log:1:1: error: a NUL character"),
+    "a zero byte": (b"time,A\n1,0\n2,\x001\n", "log:3:3: error: a NUL character"),
+    "not UTF-8": (b"time,A\n1,0\n2,\xff\n", "log:3:3: error: not UTF-8: byte 0xFF"),
+    "UTF-32": ("time,A\n".encode("utf-32"), "UTF-32 isn't read"),
+    "a workbook": (b"PK\x03\x04abcdefghijkl", "a workbook or another archive"),
+    "JSON": (b'[{"entity_id": "a"}]', "log:1:1: error: expected a table, got JSON"),
+    "a page": (b"<html>", "got XML or a page"),
+    "two columns of one name": (b"time,A,A\n1,0,0\n", "log:1:1: error: column 'A' appears twice"),
+    "too few fields": (b"time,A\n1,0\n2\n3,1\n4\n", "log:3:1: error: expected 2 fields, got 1; 1 more like this"),
+    "too many fields": (b"time,A\n1,0\n2,0,1\n", "log:3:1: error: expected 2 fields, got 3"),
+    "mixed separators": (b"time;A\n1;0\n2,1\n", "log:3:1: error: expected 2 fields, got 1"),
+    "mixed forms": (b"time,A\n1,0\n2,1\nentity_id,state,last_changed\n", "log:4:1: error: expected 2 fields, got 3"),
+    "an open quote": (b'time,A\n1,0\n"2,1\n', "log:3:1: error: a quote that isn't closed"),
+    "no time": (b"a,b,c\nx,y,z\n", "log:1:1: error: no column holds times"),
+    "a time that can't be read": (b"time,A\n2025-04-06 18:00:00,0\nyesterday,1\n2025-04-06 18:00:02,0\n",
+                                  "log:3:1: error: 'yesterday' is no time that can be read"),
+    "a day that isn't": (b"time,A\n2025-02-27 18:00:00,0\n2025-02-28 18:00:00,0\n2025-02-29 18:00:00,1\n", "log:4:1: error: '2025-02-29"),
+    "mixed times": (b"time,A\n2025-04-06 18:00:00,0\n1743962401,1\n", "log:3:1: error: '1743962401' is another kind of time"),
+    "an unset clock": (b"time,A\n1970-01-01T00:00:05,0\n1970-01-01T00:00:06,1\n", "log:2:1: error: '1970-01-01T00:00:05' is in the year 1970"),
+    "a far year": (b"time,A\n9999-12-31T00:00:00,0\n9999-12-31T00:00:01,1\n", "in the year 9999"),
+    "a number that is no time": (b"time,A\n1e300,0\n1e301,1\n", "log:2:1: error: 1e+300 is too large"),
+    "a date that may be two": (b"Date,Time,A\n01/02/2017,10:00:00,0\n01/02/2017,10:00:30,1\n", "say `dates: month_first`"),
+    "one reading": (b"time,A\n5,1\n", "one reading alone"),
+    "no sensor": (b"time,T\n1,21.5\n2,21.6\n", "T ('21.5')"),
+    "no sensor among events": (b"time,sensor,state\n1,A,open\n2,A,closed\n", "it has events of A"),
+    "an invisible name": (b"time,\x1b[31mA\n1,0\n2,1\n", "contains the control character U+001B"),
+    "an invisible sensor": (b"time,sensor,state\n1,A\x1b,on\n2,A\x1b,off\n", "U+001B"),
+    "an endless line": (b"time,A\n" + b"1" * 3_000_000, "log:2:1: error: a line longer than 1 MB"),
+    "many columns": (b"time" + b",".join(b"c%d" % i for i in range(20_000)) + b"\n1\n", "more than 10000 fields"),
+    "damaged gzip": (gzip.compress(WIDE.encode())[:-12], "is cut short"),
+}
+
+# What is read, and told: content, rows of windows of 1 s, remarks.
+TOLD = {
+    "duplicates and steps back": ("time,A\n1,0\n1,0\n2,1\n2,0\n1,1\n3,0\n", "0,1,0",
+                                  ["log:3: warning: a second reading of the same time is left out; 1 more like this",
+                                   "log:6: warning: the times step back here"]),
+    "states that nobody knows": ("time,A_pir\n1,0\n2,broken\n3,unavailable\n4,1\n5,err\n", "0,,,1,",
+                                 ["log:3: warning: 'broken' in column 'A_pir' is no state: it counts as unknown; 1 more like this"]),
+    "a sensor that never changes": ("time,A,B\n1,0,1\n2,1,1\n3,0,1\n", "0,1,0", ["sensor 'B' is never off"]),
+    "events out of order": ("time,sensor,state\n1,A,off\n5,A,on\n3,A,on\n4,A,off\n4,A,off\n6,A,off\n", "0,0,1,0,1,",
+                            ["log:4: warning: the times of 'A' step back here", "log:6: warning: an event of 'A' stands here a second time"]),
+    "a lost reading": ("time,A\n1,0\n2,1\n3,0\n4,0\n6,0\n7,1\n", "0,1,0,0,,0,1", []),
+}
+
+
+class Odd(Case):
+    def test_what_can_t_be_read_is_refused_by_name_and_line(self):
+        for kind, (content, told) in REFUSED.items():
+            log = self.write("log", content)
+            with self.subTest(kind):
+                self.assertIn(told, run("log", log, code=3)[1])
+        self.assertIn("no such file", run("log", self.folder / "none", code=4)[1])
+        self.assertIn("is a directory", run("log", self.folder, code=4)[1])
+        self.assertIn("FILE is missing", run("log", code=2)[1])
+
+    def test_oddities_are_told_a_kind_once(self):
+        for kind, (content, rows, remarks) in TOLD.items():
+            log = self.write("log", content)
+            with self.subTest(kind):
+                told = run("log", log)[1]
+                self.assertEqual(told.count("warning"), len(remarks), told)
+                for remark in remarks:
+                    self.assertIn(remark, told)
+                got = list(csv.reader(io.StringIO(self.rows(log, "--window", 1))))
+                self.assertEqual(",".join(row[1] for row in got[1:]), rows)
+
+    def test_options_that_don_t_fit(self):
+        log = self.write("log.csv", WIDE)
+        for args, told in ((("--window", 0), "a window lasts"), (("--window", 1e9), "a window lasts"), (("--from", "noon"), "from: 'noon' is no time"),
+                           (("--from", "2025-04-06T19:00"), "nothing of the log is between"), (("--from", "30"), "from: '30' is no time"),
+                           (("--from", "2025-04-06T18:00:03", "--to", "2025-04-06T18:00:02"), "expected a time after from"),
+                           (("-o", log), "it would be overwritten"), (("--report", "page.txt"), ".html")):
+            output = () if args[0] in ("-o", "--report") else ("-o", self.folder / "rows.csv")
+            self.assertIn(told, run("log", log, *args, *output, code=2)[1])
+        self.assertEqual(self.rows(log, "--window", 1, "--from", "2025-04-06T18:00:01", "--to", "2025-04-06T18:00:03"),
+                         ROWS.splitlines()[0] + "\n1,2025-04-06T18:00:02,1,\n2,2025-04-06T18:00:03,1,1\n")
+
+
+class Long(Case):
+    def test_a_million_events_in_little_memory_and_time(self):
+        def events(sensor):
+            draw, at = random.Random(sensor), datetime.datetime(2024, 1, 1)
+            for _ in range(50_000):
+                at += datetime.timedelta(seconds=round(60 + draw.expovariate(1 / 500), 3))
+                yield at, f"M{sensor:03} ON"
+                yield at + datetime.timedelta(seconds=2), f"M{sensor:03} OFF"
+
+        log = self.folder / "log.txt"
+        with log.open("w") as out:  # one after the other: a child's memory counts what its parent had
+            out.writelines(f"{at.isoformat(' ', 'microseconds')} {what}\n" for at, what in heapq.merge(*map(events, range(10))))
+        process = subprocess.Popen([PIRSIM, "log", log, "-q", "-o", self.folder / "rows.csv", "--report", self.folder / "year.html"])
+        _, status, used = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        self.assertEqual(process.returncode, 0)
+        if "PIRSIM_SANITIZED" not in os.environ:
+            self.assertLess(used.ru_maxrss, 150_000)  # kB; the file has 40 MB
+            self.assertLess(used.ru_utime, 60.0)
+        self.assertLess((self.folder / "year.html").stat().st_size, 3_000_000)
+        on = sum(row.count("1") for row in re.findall(r",([01,]+)$", (self.folder / "rows.csv").read_text(), re.M))
+        self.assertGreater(on, 490_000)
+
+
+if __name__ == "__main__":
+    PIRSIM, DATA = sys.argv[1], pathlib.Path(sys.argv[2])
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
