@@ -21,12 +21,18 @@ struct CountsSpec {
   Where most;                   ///< where the greatest number stands
 };
 
+enum class AfterStay {
+  goes_on,  ///< to the person's next stay
+  leaves    ///< and is outside until that begins
+};
+
 /// Somebody at one place for a while.
 struct StaySpec {
   std::string person;
   std::string seat;  ///< or empty: on foot
   double from_s = 0.0, to_s = 0.0;
   std::vector<Vec2> points;  ///< where they were at from_s and at to_s, if that is known
+  AfterStay then = AfterStay::goes_on;
   Where where;
 };
 /// Who took which seat, and when.

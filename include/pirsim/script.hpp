@@ -112,10 +112,17 @@ struct Leave {
 struct Turn {
   double heading_deg = 0.0;
 };
+/// Is at these points at these times, and straight between them, whatever is in the way: comes into being at the first
+/// and vanishes after the last.
+struct Follow {
+  std::vector<double> times_s;  ///< of the run, ascending
+  std::vector<Vec2> points;
+  std::vector<double> headings_deg;  ///< at each point, or none: facing where they go
+};
 }  // namespace action
 
 using Action = std::variant<action::Wait, action::Appear, action::Enter, action::Walk, action::Sit, action::Work,
-                            action::Rise, action::Leave, action::Turn>;
+                            action::Rise, action::Leave, action::Turn, action::Follow>;
 
 struct ScriptedAction {
   Action what;

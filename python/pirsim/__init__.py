@@ -22,14 +22,14 @@ from ._wings import Candidate, Cell, FittedEffect, Reconciliation, dataset, reco
 from .errors import (Error, ErrorCode, FileError, IncompleteWarning, InfeasibleError, InputError, InputWarning,
                      InternalError, UsageError)
 from .specs import (Action, Amplifier, Appear, Clock, Cluster, Comparator, Counts, Detector, Diagnostic, Effect, Element,
-                    Enter, Entrance, Floor, Frame, HeldMeeting, InputFile, Leave, Meetings, Mesh, Occupancy, Optics, Person, Places, Positions, Profile, Rise,
+                    Enter, Entrance, Floor, Follow, Frame, HeldMeeting, InputFile, Leave, Meetings, Mesh, Occupancy, Optics, Person, Places, Positions, Profile, Rise,
                     Scene, Schedule, Script, Seat, SeatScatter, Sensing, Sensor, SensorModel, Sit, Staff, Stay, Summary, Track, Trial,
                     Turn, Wait, Walk, Warmth, Where, Work, Zone)
 
 __all__ = [
     "Action", "Amplifier", "Appear", "Candidate", "Cell", "Clock", "Cluster", "Comparator", "Counts", "CoverageMap",
     "Detector", "Diagnostic", "Effect", "EffectInfo", "EffectParameter", "Element", "Enter", "Entrance", "Error",
-    "ErrorCode", "Fault", "FileError", "Findings", "FittedEffect", "Floor", "Frame", "Grid", "HeldMeeting",
+    "ErrorCode", "Fault", "FileError", "Findings", "FittedEffect", "Floor", "Follow", "Frame", "Grid", "HeldMeeting",
     "Incident", "IncompleteWarning", "InfeasibleError", "InputError", "InputFile", "InputWarning", "InternalError", "Leave",
     "Meetings", "Mesh", "Model", "Occupancy", "Optics", "Page", "Person", "Picture", "PlacementScore", "Placements", "Places", "Poses", "Positions",
     "Profile", "Rays", "Reconciliation", "Result", "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter",

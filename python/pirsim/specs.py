@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Action", "Activity", "Amplifier", "Appear", "Clock", "Cluster", "Comparator", "Counts", "Detector", "Diagnostic",
-    "Effect", "Element", "Enter", "Entrance", "Floor", "Frame", "HeldMeeting", "InputFile", "Leave", "Meetings", "Mesh",
-    "Occupancy", "Optics", "Person", "Places", "Point2", "Point3", "Positions", "Profile", "Rise", "Scene", "Schedule",
-    "Script", "Seat", "SeatScatter", "Sensing", "Sensor", "SensorModel", "Sit", "Staff", "Stay", "Summary", "Track",
-    "Trial", "Turn", "Wait", "Walk", "Warmth", "Where", "Work", "Zone",
+    "Effect", "Element", "Enter", "Entrance", "Floor", "Follow", "Frame", "HeldMeeting", "InputFile", "Leave",
+    "Meetings", "Mesh", "Occupancy", "Optics", "Person", "Places", "Point2", "Point3", "Positions", "Profile", "Rise",
+    "Scene", "Schedule", "Script", "Seat", "SeatScatter", "Sensing", "Sensor", "SensorModel", "Sit", "Staff", "Stay",
+    "Summary", "Track", "Trial", "Turn", "Wait", "Walk", "Warmth", "Where", "Work", "Zone",
 ]
 
 
@@ -311,7 +311,18 @@ class Turn(_Action):
     """0 facing -Z, positive turning left."""
 
 
-Action = Union[Wait, Appear, Enter, Walk, Sit, Work, Rise, Leave, Turn]
+@dataclass(slots=True)
+class Follow(_Action):
+    """Is at these points at these times, and straight between them: appears at the first, vanishes after the last."""
+
+    times_s: list[float] = field(default_factory=list)
+    """Of the run, ascending."""
+    points: list[Point2] = field(default_factory=list)
+    headings_deg: list[float] = field(default_factory=list)
+    """At each of them, or none: facing where they go."""
+
+
+Action = Union[Wait, Appear, Enter, Walk, Sit, Work, Rise, Leave, Turn, Follow]
 
 
 @dataclass(slots=True)
@@ -480,6 +491,8 @@ class Stay:
     to_s: float = 0.0
     points: list[Point2] = field(default_factory=list)
     """Where they were at `from_s` and at `to_s`, if that is known."""
+    then: Literal["goes_on", "leaves"] = "goes_on"
+    """To the person's next stay, or outside until that begins."""
     where: Where = _where()
 
 

@@ -50,6 +50,22 @@ Track::Track(const Route& route, double from_s, double to_s, const Placement& st
   }
 }
 
+void Track::face(std::span<const double> at, std::span<const double> headings) {
+  double heading = start_.heading;
+  std::size_t next = 1;
+  for (std::size_t i = 0; i < headings_.size(); ++i) {
+    const double s = static_cast<double>(i) * spacing_;
+    while (next + 1 < at.size() && at[next] < s) ++next;
+    const std::size_t before = std::min(next, at.size() - 1) - (at.size() > 1 ? 1 : 0),
+                      after = std::min(next, at.size() - 1);
+    const double length = at[after] - at[before];
+    const double share = length > 0.0 ? std::clamp((s - at[before]) / length, 0.0, 1.0) : 0.0;
+    const double wanted = headings[before] + share * wrapped(headings[after] - headings[before]);
+    heading += wrapped(wanted - heading);
+    headings_[i] = heading;
+  }
+}
+
 Track Track::turn(const Placement& start, double angle) {
   Track track;
   track.start_ = start;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "body/route.hpp"
@@ -28,6 +29,8 @@ class Track {
   /// the route is blended away within `step_m`. The heading is the route's, averaged over a step, since people turn
   /// into a corner before they reach it (so a bend in the last half step is not turned out fully).
   Track(const Route& route, double from_s, double to_s, const Placement& start, double step_m);
+  /// Of a walk: faces so instead, at these distances (ascending) and evenly between them.
+  void face(std::span<const double> at, std::span<const double> headings);
   static Track turn(const Placement& start, double angle);
   /// Stays there; the length only counts how far the feet are with their steps.
   static Track stay(const Placement& start, double length);

@@ -63,6 +63,7 @@ void Motion::come_to_stand(const Placement& place, const Feet& feet) noexcept {
   stand_ = {place.position, wrapped(place.heading)};
   stand_feet_ = feet;
   track_speed_ = 0.0;
+  followed_m_.reset();
 }
 
 void Motion::begin_track(Stage stage, const Track& track, const StepStyle& style) {
@@ -107,12 +108,27 @@ void Motion::walk_from(const Route& route, double from_s) {
     remainder_ = Remainder{route, from_s};
     return;
   }
-  const double scale = humanoid_.measures().stature_m / reference_stature_m;
-  const double step = longest_step_m * scale;
-  const double to_s = next_pivot(route, from_s, step);
-  begin_track(Stage::walking, Track(route, from_s, to_s, stand_, step),
-              {.step = step, .lift_m = walking_lift_m * scale, .pitch_per_lift = walking_pitch_per_lift / scale});
+  const StepStyle style = walking_style();
+  const double to_s = next_pivot(route, from_s, style.step);
+  begin_track(Stage::walking, Track(route, from_s, to_s, stand_, style.step), style);
   if (to_s < route.length_m()) remainder_ = Remainder{route, to_s};
+}
+
+StepStyle Motion::walking_style() const noexcept {
+  const double scale = humanoid_.measures().stature_m / reference_stature_m;
+  return {.step = longest_step_m * scale,
+          .lift_m = walking_lift_m * scale,
+          .pitch_per_lift = walking_pitch_per_lift / scale};
+}
+
+void Motion::follow(const Route& route, std::span<const double> at_m, std::span<const double> headings) {
+  if (stage_ != Stage::standing) refuse("following a way", stage_);
+  const StepStyle style = walking_style();
+  Track track(route, 0.0, route.length_m(), stand_, style.step);
+  if (!headings.empty()) track.face(at_m, headings);
+  begin_track(Stage::walking, track, style);
+  followed_m_ = 0.0;
+  update_stance();
 }
 
 void Motion::turn_to(double heading) {
@@ -233,7 +249,9 @@ void Motion::advance_on_track() {
   const double root = std::sqrt(tick_s_ * tick_s_ + 2.0 * remaining / acceleration);
   const double braking = acceleration * (root - tick_s_);
   track_speed_ = std::min(std::clamp(wanted, track_speed_ - change, track_speed_ + change), braking);
-  distance_ += track_speed_ * tick_s_;
+  if (followed_m_) track_speed_ = (*followed_m_ - distance_) / tick_s_;
+  distance_ = followed_m_.value_or(distance_ + track_speed_ * tick_s_);
+  followed_m_.reset();
   constexpr double arrived = 1e-7;  // metres or radians
   if (steps_.length() - distance_ > arrived) return;
 

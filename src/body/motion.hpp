@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "body/arms.hpp"
 #include "body/body_part.hpp"
@@ -72,6 +73,11 @@ class Motion {
   // sequences them; stop() and rise() lead back to standing from anywhere.
   /// From standing; the route starts here. Turns first where it leads off by more than 20 degrees, and at pivots.
   void walk(const Route& route);
+  /// From standing at its start: goes along as follow_to() says, corners and all.
+  /// headings: where the body faces, at these distances; none: where the route goes.
+  void follow(const Route& route, std::span<const double> at_m, std::span<const double> headings);
+  /// Where on that route it is with the next tick; stands at its end.
+  void follow_to(double distance_m) noexcept { followed_m_ = distance_m; }
   void turn_to(double heading);  ///< from standing, in place, with small steps
   /// From walking or turning: comes to stand within two steps. Who waits in mid-stride (limit_speed(0)) brings the
   /// feet together on the spot, which counts as turning.
@@ -133,6 +139,7 @@ class Motion {
   void turn_with_chair(Stance& stance) const noexcept;
   [[nodiscard]] double hand_offset_m() const noexcept;
   void begin_track(Stage stage, const Track& track, const StepStyle& style);
+  [[nodiscard]] StepStyle walking_style() const noexcept;
   void begin_turn(double angle);
   void walk_from(const Route& route, double from_s);
   void advance_on_track();
@@ -160,6 +167,7 @@ class Motion {
   double track_speed_ = 0.0;
   double hips_lowered_m_ = 0.0;  ///< below standing at the start of a turn, fading
   double pace_m_s_ = 1.0;
+  std::optional<double> followed_m_;  ///< of who follows a way: where on it with the next tick
   double speed_limit_m_s_ = std::numeric_limits<double>::infinity();
   /// What is left to walk after the present track: of a route with sharp turns.
   struct Remainder {

@@ -81,6 +81,11 @@ ActionFacts facts_of(const action::Turn& turn) noexcept {
           .heading_deg = turn.heading_deg};
 }
 
+ActionFacts facts_of(const action::Follow& follow) noexcept {
+  const double lasts_s = follow.times_s.empty() ? 0.0 : follow.times_s.back() - follow.times_s.front();
+  return {.name = "follow", .course = Course::passes, .pose = Pose::upright, .follows = &follow, .lasts_s = lasts_s};
+}
+
 ActionFacts facts_of(const Action& action) noexcept {
   return std::visit([](const auto& what) { return facts_of(what); }, action);
 }

@@ -14,9 +14,9 @@ namespace pirsim {
 
 /// Points into the action that it describes.
 struct ActionFacts {
-  enum class Course { comes, stays, moves, goes };  ///< what becomes of somebody's being in the room
-  enum class Needs { nothing, presence, seat };     ///< what has to be the case when it begins
-  enum class Pose { kept, upright, seated };        ///< how somebody is when it is done
+  enum class Course { comes, stays, moves, goes, passes };  ///< what becomes of somebody's being in the room
+  enum class Needs { nothing, presence, seat };             ///< what has to be the case when it begins
+  enum class Pose { kept, upright, seated };                ///< how somebody is when it is done
 
   std::string_view name{};  ///< as scripts have it
   Course course = Course::stays;
@@ -29,6 +29,8 @@ struct ActionFacts {
   std::span<const Vec2> walks_to{};
   const std::string* seat = nullptr;
   std::optional<double> heading_deg{};
+
+  const action::Follow* follows = nullptr;  ///< there and back out of the scene, by points and times
 
   double seat_wait_s = 0.0;  ///< for a seat that is taken
   action::IfTaken if_taken = action::IfTaken::next_action;
@@ -50,6 +52,7 @@ struct ActionFacts {
 [[nodiscard]] ActionFacts facts_of(const action::Rise& rise) noexcept;
 [[nodiscard]] ActionFacts facts_of(const action::Leave& leave) noexcept;
 [[nodiscard]] ActionFacts facts_of(const action::Turn& turn) noexcept;
+[[nodiscard]] ActionFacts facts_of(const action::Follow& follow) noexcept;
 [[nodiscard]] ActionFacts facts_of(const Action& action) noexcept;
 
 /// How long it takes at least: what time ends, and ways as the crow flies. at: moves on to where it leads.

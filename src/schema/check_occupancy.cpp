@@ -50,10 +50,10 @@ void check_positions(const PositionsSpec& positions, const TellFault& tell) {
   check_begin(positions.begin, "positions", tell);
   if (positions.tracks.empty()) return tell("positions", "expected at least one track");
   for (const TrackSpec& track : positions.tracks) {
-    const std::size_t n = track.times_s.size();
-    if (n == 0 || track.points.size() != n || (!track.headings_deg.empty() && track.headings_deg.size() != n))
-      return tell("positions", "'" + track.person + "': expected as many points (and headings, if any) as times");
-    if (!ascend(track.times_s)) return tell("positions", "'" + track.person + "': expected times that ascend");
+    const std::string fault = follow_fault(track.times_s, track.points, track.headings_deg);
+    if (!fault.empty()) return tell("positions", "'" + track.person + "': " + fault);
+    if (track.times_s.size() > limits::walk_points)
+      return tell("positions", "'" + track.person + "': more than " + std::to_string(limits::walk_points) + " points");
   }
 }
 
@@ -82,6 +82,17 @@ void check_runs(const OccupancySpec& occupancy, const std::string& begin, const 
 
 }  // namespace
 
+std::string follow_fault(const std::vector<double>& times_s, const std::vector<Vec2>& points,
+                         const std::vector<double>& headings_deg) {
+  const std::size_t n = times_s.size();
+  if (n == 0) return "expected a list that isn't empty";
+  if (points.size() != n || (!headings_deg.empty() && headings_deg.size() != n))
+    return "expected as many points (and headings, if there are any) as times";
+  if (!ascend(times_s) || times_s.front() < 0.0) return "expected times from 0 on that ascend";
+  const bool finite = std::ranges::all_of(headings_deg, [](double heading) { return std::isfinite(heading); });
+  return finite ? "" : "a heading isn't finite";
+}
+
 void check_together(const OccupancySpec& occupancy, const std::string& begin, const TellFault& tell) {
   bool is_sound = true;
   const TellFault tell_and_note = [&](std::string_view field, const std::string& message) {
@@ -89,7 +100,11 @@ void check_together(const OccupancySpec& occupancy, const std::string& begin, co
     tell(field, message);
   };
   const int n = (occupancy.counts ? 1 : 0) + (occupancy.places ? 1 : 0) + (occupancy.positions ? 1 : 0);
-  if (n != 1 || !occupancy.counts) return tell("counts", "expected `counts`");
+  if (n != 1) return tell("counts", "expected one of `counts`, `places` and `positions`");
+  if (!occupancy.counts &&
+      (has_days(occupancy) || occupancy.persons || occupancy.changes_within_s || !occupancy.seats.empty())) {
+    tell_and_note("counts", "`from`, `to`, `persons`, `changes_within_s` and `seats` go with `counts` alone");
+  }
   if (occupancy.counts) check_counts(*occupancy.counts, occupancy.persons, tell_and_note);
   if (occupancy.places) check_places(*occupancy.places, tell_and_note);
   if (occupancy.positions) check_positions(*occupancy.positions, tell_and_note);

@@ -119,11 +119,18 @@ class ScriptCheck {
     faults_.error_if(path.field("activity"), activity_fault(person, action));
     std::visit([&](const auto& what) { faults_.numbers(what, path); }, action.what);
     if (const auto* appear = std::get_if<action::Appear>(&action.what)) check_point(appear->point, path.field("point"));
+    if (const auto* follow = std::get_if<action::Follow>(&action.what)) check_follow(*follow, path);
     const auto* walk = std::get_if<action::Walk>(&action.what);
     if (walk == nullptr) return;
     if (walk->points.empty()) faults_.error(path.field("points"), "expected a list that isn't empty");
     if (!faults_.few(path.field("points"), walk->points.size(), limits::walk_points)) return;
     for (std::size_t i = 0; i < walk->points.size(); ++i) check_point(walk->points[i], path.item("points", i));
+  }
+
+  void check_follow(const action::Follow& follow, const SpecPath& path) {
+    faults_.error_if(path.field("points"), follow_fault(follow.times_s, follow.points, follow.headings_deg));
+    if (!faults_.few(path.field("points"), follow.points.size(), limits::walk_points)) return;
+    for (std::size_t i = 0; i < follow.points.size(); ++i) check_point(follow.points[i], path.item("points", i));
   }
 
   void check_point(const Vec2& point, const SpecPath& path) {

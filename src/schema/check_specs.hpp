@@ -61,6 +61,9 @@ void check_together(const DetectorSpec& detector, const TellFault& tell);
 
 /// The choreographed style would ignore an activity. A message or none.
 [[nodiscard]] std::string activity_fault(const PersonSpec& person, const ScriptedAction& action);
+/// Of points at times, and headings at them if there are any. A message or none.
+[[nodiscard]] std::string follow_fault(const std::vector<double>& times_s, const std::vector<Vec2>& points,
+                                       const std::vector<double>& headings_deg);
 void check_together(const WarmthSpec& warmth, const TellFault& tell);
 /// Of the name of a part of the body, a message or none.
 [[nodiscard]] std::string body_part_fault(const std::string& part);

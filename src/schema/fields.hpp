@@ -299,6 +299,15 @@ struct Fields<action::Turn> {
   static constexpr std::tuple all{FIELD(heading_deg, accepted::turned_deg, "0 facing -Z, positive turning left")};
 };
 template <>
+struct Fields<action::Follow> {
+  using S = action::Follow;
+  static constexpr const char* name = "Follow";
+  static constexpr const char* about =
+      "Is at these points at these times, and straight between them: appears at the first, vanishes after the last.";
+  static constexpr std::tuple all{FIELD(times_s, "of the run, ascending"), FIELD(points),
+                                  FIELD(headings_deg, "at each of them, or none: facing where they go")};
+};
+template <>
 struct Fields<ScriptedAction> {
   using S = ScriptedAction;
   static constexpr const char* name = "ScriptedAction";
@@ -454,6 +463,7 @@ struct Fields<StaySpec> {
                                   FIELD(from_s, accepted::at_s),
                                   FIELD(to_s, accepted::at_s),
                                   FIELD(points, "where they were at `from_s` and at `to_s`, if that is known"),
+                                  FIELD(then, "to the person's next stay, or outside until that begins"),
                                   LABEL(where)};
 };
 template <>
@@ -662,8 +672,8 @@ using SpecsOfPython =
     std::tuple<Where, InputFile, SensorSpec, SeatSpec, EntranceSpec, OpticsSpec, ElementSpec, AmplifierSpec,
                ComparatorSpec, DetectorSpec, ZoneSpec, ClusterSpec, SensorModelSpec, SceneSpec, action::Wait,
                action::Appear, action::Enter, action::Walk, action::Sit, action::Work, action::Rise, action::Leave,
-               action::Turn, SeatScatterSpec, WarmthSpec, PersonSpec, ClockSpec, StaffSpec, HeldMeetingSpec,
-               MeetingsSpec, ProfileSpec, ScheduleSpec, CountsSpec, StaySpec, PlacesSpec, TrackSpec, PositionsSpec,
-               OccupancySpec, TrialSpec, SensingSpec, SummarySpec, EffectSpec, ScriptSpec>;
+               action::Turn, action::Follow, SeatScatterSpec, WarmthSpec, PersonSpec, ClockSpec, StaffSpec,
+               HeldMeetingSpec, MeetingsSpec, ProfileSpec, ScheduleSpec, CountsSpec, StaySpec, PlacesSpec, TrackSpec,
+               PositionsSpec, OccupancySpec, TrialSpec, SensingSpec, SummarySpec, EffectSpec, ScriptSpec>;
 
 }  // namespace pirsim

@@ -105,7 +105,7 @@ std::vector<ScheduledPerson> people_of(const OccupancySpec& occupancy, const Sce
   Diagnostics faults;
   require_names(occupancy.seats, ids_of(scene.seats), "seat", scene.name, occupancy.where, faults);
   require_names(occupancy.entrances, ids_of(scene.entrances), "entrance", scene.name, occupancy.where, faults);
-  if (scene.entrances.empty())
+  if (scene.entrances.empty() && !occupancy.positions)
     faults.error(occupancy.where, "occupancy: " + scene.name + " has no entrance to come in by");
   faults.throw_if_errors();
   std::vector<ScheduledPerson> people;

@@ -5,6 +5,7 @@
 
 #include "pirsim/geometry.hpp"
 #include "pirsim/survey.hpp"
+#include "schema/occupancy_actions.hpp"
 
 namespace pirsim {
 
@@ -15,6 +16,9 @@ void add_occupancy(const OccupancySpec& occupancy, const ScriptSpec& script, con
   for (const ScheduledPerson& occupant : people_of(occupancy, study.scene, script.seed))
     trial.people.push_back({occupant.person, {}, occupant});
   OccupancyRuns runs = runs_of(occupancy, script.begin);
+  const double tick_s = 1.0 / script.sensing.tick_rate_hz;
+  for (PersonSpec& person : scripted_people(occupancy, study.scene, runs.begins_s.front(), tick_s, script.seed))
+    trial.people.push_back({std::move(person), {}, {}});
   trial.clock = runs.clock;
   trial.begins_s = std::move(runs.begins_s);
   if (!trial.duration_s) trial.duration_s = runs.duration_s;

@@ -50,6 +50,10 @@ struct Words<Reader> {
   static constexpr WordList<Reader, 2> all{{{"in_step", Reader::in_step}, {"free_running", Reader::free_running}}};
 };
 template <>
+struct Words<AfterStay> {
+  static constexpr WordList<AfterStay, 2> all{{{"goes_on", AfterStay::goes_on}, {"leaves", AfterStay::leaves}}};
+};
+template <>
 struct Words<MotionStyle> {
   static constexpr WordList<MotionStyle, 2> all{
       {{"choreographed", MotionStyle::choreographed}, {"natural", MotionStyle::natural}}};

@@ -102,7 +102,7 @@ void Actor::advance(const CompiledStudy& study, std::int64_t tick, std::span<con
     } else if (restlessness_.acts()) {
       restlessness_.tick(body_motion(), choreographed_work());
     }
-    body_->advance(others, n_before, tick - 1);
+    facts_.follows != nullptr ? body_motion().advance() : body_->advance(others, n_before, tick - 1);
     if (const auto incident = body_->take_incident()) incidents_.push_back(*incident);
   }
   phase_ = current_phase();
@@ -111,7 +111,7 @@ void Actor::advance(const CompiledStudy& study, std::int64_t tick, std::span<con
 
 void Actor::carry_on(const Scene& scene) {
   const auto sitter = sits_on_ && !done() ? Pedestrian::Sitter::may_get_up : Pedestrian::Sitter::stays;
-  const bool busy = body_ && body_->makes_way(scene.others, scene.now, sitter);
+  const bool busy = body_ && facts_.follows == nullptr && body_->makes_way(scene.others, scene.now, sitter);
   while (!done()) {
     if (!begun_) {
       if (action().at_s && scene.now < ticks(*action().at_s, scene.study)) return;
@@ -189,7 +189,13 @@ void Actor::plan(const Scene& scene) {
   if (facts_.course != Course::stays) sits_on_.reset();
   if (!present() && facts_.needs != Needs::nothing) return;  // called away before they came: nothing to do
   if (present() && facts_.course == Course::comes) return;   // called back before they had left
-  if (facts_.appears_at != nullptr) {
+  if (facts_.follows != nullptr) {
+    const action::Follow& follow = *facts_.follows;
+    std::vector<double> headings;
+    for (const double heading_deg : follow.headings_deg) headings.push_back(radians(heading_deg));
+    errands_.push_back(FollowPath{std::make_shared<const body::FollowedPath>(follow.times_s, follow.points, headings)});
+    errands_.push_back(Vanish{});
+  } else if (facts_.appears_at != nullptr) {
     errands_.push_back(ComeIn{*facts_.appears_at, radians(*facts_.heading_deg)});
   } else if (facts_.course == Course::comes) {
     plan_entering(entrance(*facts_.entrance));
@@ -300,7 +306,7 @@ void Actor::attend(Talk talk, const std::optional<Vec2>& speaker) {
 }
 
 Progress Actor::carry_out_first(const Scene& scene) {
-  return std::visit([&](const auto& errand) { return carry_out(errand, scene); }, errands_.front());
+  return std::visit([&](auto& errand) { return carry_out(errand, scene); }, errands_.front());
 }
 
 Progress Actor::carry_out(const ComeIn& come, const Scene& scene) {
@@ -418,6 +424,29 @@ Progress Actor::carry_out(const Vanish&, const Scene&) {
   seat_ = {};
   sits_on_.reset();
   return Progress::done;
+}
+
+/// From scene.now to the next tick, at which they are where the path says.
+Progress Actor::carry_out(FollowPath& follow, const Scene& scene) {
+  const body::FollowedPath& path = *follow.path;
+  const double time_s = static_cast<double>(scene.now + 1) * scene.study.tick_s();
+  constexpr double rounding_s = 1e-9;
+  if (time_s > path.last_s() + rounding_s) return Progress::done;
+  if (time_s < path.first_s() - rounding_s) return Progress::going_on;
+  if (!body_) body_.emplace(scene.study, person(), index_, path.start().position, path.start().heading);
+  const std::size_t n_begun = path.n_begun(time_s);
+  if (n_begun == 0) return Progress::going_on;
+  for (; follow.n_begun < n_begun; ++follow.n_begun) {
+    if (follow.n_begun > 0 &&
+        body_->motion().stage() == Stage::walking) {  // comes to stand at the end of the one before
+      body_motion().follow_to(path.legs()[follow.n_begun - 1].route.length_m());
+      body_motion().advance();
+    }
+    const body::FollowedPath::Leg& leg = path.legs()[follow.n_begun];
+    body_motion().follow(leg.route, leg.walked_m, leg.headings);
+  }
+  if (body_->motion().stage() == Stage::walking) body_motion().follow_to(path.legs()[n_begun - 1].walked_at(time_s));
+  return Progress::going_on;
 }
 
 bool Actor::somebody_near(const Vec2& point, std::span<const Presence> others) const {

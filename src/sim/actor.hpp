@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "body/followed_path.hpp"
 #include "pirsim/random.hpp"
 #include "schema/action_facts.hpp"
 #include "schema/phase_names.hpp"
@@ -97,8 +98,13 @@ class Actor {
     Vec2 behind_door;
   };
   struct Vanish {};
-  using Errand =
-      std::variant<ComeIn, WaitForDoor, WaitForSeat, TakeSeat, WalkTo, FaceTo, SitOn, StandUp, WalkOut, Vanish>;
+  /// Is where the path says at every tick.
+  struct FollowPath {
+    std::shared_ptr<const body::FollowedPath> path;
+    std::size_t n_begun = 0;  ///< of its legs
+  };
+  using Errand = std::variant<ComeIn, WaitForDoor, WaitForSeat, TakeSeat, WalkTo, FaceTo, SitOn, StandUp, WalkOut,
+                              Vanish, FollowPath>;
 
   /// What surrounds the person at this tick.
   struct Scene {
@@ -139,6 +145,7 @@ class Actor {
   Progress carry_out(const StandUp& errand, const Scene& scene);
   Progress carry_out(const WalkOut& errand, const Scene& scene);
   Progress carry_out(const Vanish& errand, const Scene& scene);
+  Progress carry_out(FollowPath& errand, const Scene& scene);
   void begin_work();
   /// The seat stayed taken: another one, or none.
   void do_without_seat(const Scene& scene);

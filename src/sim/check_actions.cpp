@@ -41,7 +41,7 @@ class Check {
       last_at_s_ = *action.at_s;
     }
     const ActionFacts facts = facts_of(action.what);
-    if (facts.course == Course::comes) arrive(action);
+    if (facts.course == Course::comes || facts.course == Course::passes) arrive(action);
     if (facts.needs != Needs::nothing) need_presence(action);
     if (facts.appears_at != nullptr && !scene_.floor.contains(*facts.appears_at)) {
       fault(action, "appears outside the floor area");
@@ -51,7 +51,7 @@ class Check {
     }
     if (facts.seat != nullptr) check_name(scene_.seats, *facts.seat, "seat", scene_, action.where, diagnostics_);
     if (facts.needs == Needs::seat && !seated_) fault(action, std::string(facts.name) + "s without having sat down");
-    if (facts.course == Course::goes) present_ = false;
+    if (facts.course == Course::goes || facts.course == Course::passes) present_ = false;
     if (facts.course != Course::comes && facts.pose != Pose::kept) seated_ = facts.pose == Pose::seated;
   }
 

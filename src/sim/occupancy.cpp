@@ -61,7 +61,8 @@ class Visits {
         run_(run),
         trial_(study.trial_of(run)),
         occupancy_(*trial_.occupancy),
-        places_{shared_seats(trial_), occupancy_.standing} {
+        places_{shared_seats(trial_), occupancy_.standing},
+        free_s_(trial_.people.size(), 0.0) {
     for (std::size_t i = 0; i < trial_.people.size(); ++i) {
       if (is_occupant(trial_.people[i])) occupants_.push_back(i);
     }
@@ -98,8 +99,7 @@ class Visits {
     const auto& doors = occupancy_.entrances;
     const auto any_door = [&] { return stream.index(static_cast<std::uint32_t>(doors.size())); };
     const std::uint32_t in_by = any_door(), out_by = any_door();
-    double free_s = 0.0;  // from when on the person has nothing else to do
-    for (const ScriptedAction& action : actions) free_s = std::max(free_s, action.at_s.value_or(0.0));
+    const double free_s = free_s_[person];
     if (visit.comes_s == CountedVisit::from_the_beginning) {
       actions.push_back(untimed(action::Appear{stand_of(visit.place, person), 0.0}));
     } else {
@@ -110,7 +110,8 @@ class Visits {
     if (visit.goes_s == CountedVisit::to_the_end) return;
     constexpr double turns_round_s = 1.0;  // assumed: of who is sent out again at once
     const double at_s = visit.goes_s - crossings(person, out_by, visit.place).out_s;
-    actions.push_back(timed(action::Leave{doors[out_by]}, std::max({at_s, visit.comes_s + turns_round_s, free_s})));
+    free_s_[person] = std::max({at_s, visit.comes_s + turns_round_s, free_s});
+    actions.push_back(timed(action::Leave{doors[out_by]}, free_s_[person]));
   }
 
   /// What they do until something else is called for.
@@ -187,6 +188,7 @@ class Visits {
   const OccupancyInForce& occupancy_;
   Places places_;
   std::vector<std::size_t> occupants_;  ///< indices into the trial's people
+  std::vector<double> free_s_;          ///< (n_people) when the last visit so far was called off
   std::map<std::tuple<std::size_t, std::uint32_t, std::size_t>, Crossings> crossings_;
 };
 

@@ -33,7 +33,7 @@ layout: square
 facets: [{x_m: 0, y_m: 0, zone_side_m: 0.3}]
 """
 # What an action needs before it.
-BEFORE = {"enter": (), "appear": (), "work": ("enter: door", "sit: S1"), "rise": ("enter: door", "sit: S1")}
+BEFORE = {"enter": (), "appear": (), "follow": (), "work": ("enter: door", "sit: S1"), "rise": ("enter: door", "sit: S1")}
 
 
 class Reader:

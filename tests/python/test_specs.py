@@ -8,7 +8,7 @@ import pytest
 import pirsim
 from pirsim import _core, specs
 
-ACTIONS = {"Wait", "Appear", "Enter", "Walk", "Sit", "Work", "Rise", "Leave", "Turn"}
+ACTIONS = {"Wait", "Appear", "Enter", "Walk", "Sit", "Work", "Rise", "Leave", "Turn", "Follow"}
 OF_ACTIONS = {"at_s", "phase", "where"}
 
 
@@ -228,3 +228,15 @@ def test_values_of_a_wrong_type_are_named_by_their_place():
         assert place + ": expected" in str(caught.value)
     with pytest.raises(AttributeError):
         own_script().trials[0].people[0].stature = 1.7  # not a field
+
+
+def test_an_occupancy_is_made_of_counts_and_of_tracks(room):
+    def people(occupancy):
+        trial = pirsim.Trial("1", occupancy=occupancy)
+        model = pirsim.compile(pirsim.read_scene(room), pirsim.Script("counted", [trial]))
+        return pirsim.run(model).people[0]
+
+    counted = people(pirsim.Occupancy(counts=pirsim.Counts(times_s=[0, 60, 120], people=[0, 3, 1])))
+    assert len(counted) == 120 and counted[59] == 3 and counted[119] == 1
+    track = pirsim.Track("a", times_s=[1, 5], points=[(6.3, -0.6), (2.3, -0.6)])
+    assert list(people(pirsim.Occupancy(positions=pirsim.Positions([track])))) == [1] * 5

@@ -79,11 +79,30 @@ Action read_turn(const YamlNode& node, Diagnostics& faults) {
 }
 Action read_leave(const YamlNode& node, Diagnostics& faults) { return action::Leave{node.text(faults, "leave")}; }
 
+Action read_follow(const YamlNode& node, Diagnostics& faults) {
+  YamlMap map(node, faults, "follow");
+  action::Follow follow;
+  for (const YamlNode& row : map.required_list("t_x_z", limits::walk_points)) {
+    const std::vector<double> numbers = read_numbers(row, faults, "t_x_z");
+    if (numbers.size() != 3 && numbers.size() != 4) {
+      if (row.is_list()) faults.error(row.where(), "t_x_z: expected three numbers, t, x and z, or four with a heading");
+      continue;
+    }
+    follow.times_s.push_back(numbers[0]);
+    follow.points.emplace_back(numbers[1], numbers[2]);
+    if (numbers.size() == 4) follow.headings_deg.push_back(numbers[3]);
+  }
+  const std::string fault = follow_fault(follow.times_s, follow.points, follow.headings_deg);
+  if (!fault.empty() && !faults.has_errors()) faults.error(map.where("t_x_z"), "t_x_z: " + fault);
+  map.finish();
+  return follow;
+}
+
 struct ActionKind {
   const char* key;
   Action (*read)(const YamlNode&, Diagnostics&);
 };
-constexpr std::array<ActionKind, 10> kinds{{{"wait_s", read_wait_s},
+constexpr std::array<ActionKind, 11> kinds{{{"wait_s", read_wait_s},
                                             {"wait", read_wait},
                                             {"appear", read_appear},
                                             {"enter", read_enter},
@@ -92,7 +111,8 @@ constexpr std::array<ActionKind, 10> kinds{{{"wait_s", read_wait_s},
                                             {"work", read_work},
                                             {"rise", read_rise},
                                             {"turn", read_turn},
-                                            {"leave", read_leave}}};
+                                            {"leave", read_leave},
+                                            {"follow", read_follow}}};
 
 std::vector<std::string> action_names() {
   std::vector<std::string> names;

@@ -47,6 +47,19 @@ struct ActionWriter {
   void operator()(const action::Work& work) { entry["work"] = written(work); }
   void operator()(const action::Rise&) { entry["rise"] = YAML::Node(YAML::NodeType::Null); }
   void operator()(const action::Turn& turn) { entry["turn"] = written(turn); }
+  void operator()(const action::Follow& follow) {
+    YAML::Node rows(YAML::NodeType::Sequence);
+    for (std::size_t i = 0; i < follow.times_s.size(); ++i) {
+      YAML::Node row = point(follow.points[i]);
+      YAML::Node whole;
+      whole.push_back(number(follow.times_s[i]));
+      for (const auto& entry : row) whole.push_back(entry);
+      if (!follow.headings_deg.empty()) whole.push_back(number(follow.headings_deg[i]));
+      whole.SetStyle(YAML::EmitterStyle::Flow);
+      rows.push_back(whole);
+    }
+    entry["follow"]["t_x_z"] = rows;
+  }
   void operator()(const action::Leave& leave) { entry["leave"] = leave.entrance; }
 };
 

@@ -1,0 +1,135 @@
+#include "io/read/occupancy_tables.hpp"
+
+#include <algorithm>
+
+#include "core/text.hpp"
+#include "io/read/yaml_map.hpp"
+#include "schema/fields.hpp"
+#include "schema/limits.hpp"
+
+namespace pirsim::io {
+
+void require_one_run(const CsvTable& table, RepeatedFaults& faults) {
+  for (const char* name : {"replicate", "trial"}) {
+    const auto column = table.column(name);
+    if (!column) continue;
+    for (std::size_t row = 1; row < table.n_rows(); ++row) {
+      if (table.text(row, *column) == table.text(0, *column)) continue;
+      faults.add("runs", table.where(row, *column),
+                 "rows of more than one run: keep those of one " + std::string(name));
+      return;
+    }
+  }
+}
+
+PersonColumns::PersonColumns(const CsvTable& table, Diagnostics& faults)
+    : id(table.column("person") ? table.column("person") : table.column("id")),
+      x(table.column("x_m") ? table.column("x_m") : table.column("x")),
+      z(table.column("z_m") ? table.column("z_m") : table.column("z")) {
+  if (!id) id = table.required_column("person", faults);
+}
+
+std::optional<Vec2> point_in(const CsvTable& table, std::size_t row, const PersonColumns& columns,
+                             Diagnostics& faults) {
+  if (!columns.x || !columns.z) return std::nullopt;
+  Vec2 point(0.0);
+  for (const int i : {0, 1}) {
+    const std::size_t column = i == 0 ? *columns.x : *columns.z;
+    const auto number = table.number(row, column, faults);
+    if (!number || !accepted::on_floor_m.holds(*number)) {
+      if (!faults.has_errors())
+        faults.error(table.where(row, column), "expected metres, " + accepted::on_floor_m.text() + ", got '" +
+                                                   table.text(row, column) + "'");
+      return std::nullopt;
+    }
+    point[i] = *number;
+  }
+  return point;
+}
+
+namespace {
+
+class CountsReader {
+ public:
+  CountsReader(const CsvTable& table, CountsSpec& counts, Diagnostics& faults)
+      : table_(table), counts_(counts), faults_(faults) {}
+
+  void read() {
+    const TimeColumn time(table_, counts_.time, faults_);
+    const auto column = find_people();
+    if (!time.is_found() || !column) return;
+    require_one_run(table_, repeated_);
+    for (std::size_t row = 0; row < table_.n_rows() && counts_.times_s.size() < limits::occupancy_rows; ++row) {
+      Diagnostics found;
+      const auto seconds = time.seconds(row, found);
+      const auto people = people_in(row, *column, found);
+      repeated_.add("time or number", found);
+      if (seconds && people) add(*seconds, *people, time.where(row), table_.where(row, *column));
+    }
+    if (table_.n_rows() > limits::occupancy_rows)
+      faults_.error(table_.header_place(), too_many(limits::occupancy_rows, "readings"));
+    repeated_.tell(faults_);
+    if (counts_.times_s.empty() && !faults_.has_errors())
+      faults_.error(table_.header_place(), "expected at least one reading");
+    if (!time.is_clock() || counts_.times_s.empty()) return;
+    const RunClock begin{std::llround(counts_.times_s.front())};
+    counts_.begin = begin.text(0.0);
+    for (double& seconds : counts_.times_s) seconds -= static_cast<double>(begin.begin_s);
+  }
+
+ private:
+  std::optional<std::size_t> find_people() const {
+    if (!counts_.column.empty()) return table_.required_column(counts_.column, faults_);
+    for (const char* name : {"people", "count", "occupancy", "Room_Occupancy_Count"}) {
+      if (const auto column = table_.column(name)) return column;
+    }
+    std::string names;
+    for (const std::string& name : table_.names()) names += (names.empty() ? "" : ", ") + name;
+    faults_.error(table_.header_place(),
+                  "which column tells the number of people? Say `people: COLUMN` in the script; "
+                  "there are " +
+                      names);
+    return std::nullopt;
+  }
+
+  /// None where it isn't known.
+  std::optional<int> people_in(std::size_t row, std::size_t column, Diagnostics& faults) const {
+    const auto number = table_.number(row, column, faults);
+    if (!number) return std::nullopt;
+    const auto most = static_cast<double>(accepted::people_of_counts.max);
+    if (*number == std::floor(*number) && *number >= 0.0 && *number <= most) return static_cast<int>(*number);
+    faults.error(table_.where(row, column), "expected a number of people, 0 to " + shortest_number(most) + ", got '" +
+                                                table_.text(row, column) + "'");
+    return std::nullopt;
+  }
+
+  void add(double seconds, int people, const Where& time, const Where& where) {
+    if (!counts_.times_s.empty()) {
+      if (seconds == counts_.times_s.back() && people == counts_.people.back()) return;
+      if (seconds == counts_.times_s.back()) {
+        return repeated_.add("twice", where,
+                             "another number for the same time: " + std::to_string(people) + " after " +
+                                 std::to_string(counts_.people.back()));
+      }
+      if (seconds < counts_.times_s.back())
+        return repeated_.add("backwards", time, "time runs backwards: this row is earlier than the one before");
+    }
+    if (counts_.people.empty() || people > most_) most_ = people, counts_.most = where;
+    counts_.times_s.push_back(seconds);
+    counts_.people.push_back(people);
+  }
+
+  const CsvTable& table_;
+  CountsSpec& counts_;
+  Diagnostics& faults_;
+  RepeatedFaults repeated_;
+  int most_ = 0;
+};
+
+}  // namespace
+
+void read_counts(const CsvTable& table, CountsSpec& counts, Diagnostics& faults) {
+  CountsReader(table, counts, faults).read();
+}
+
+}  // namespace pirsim::io
