@@ -60,8 +60,7 @@ FollowedPath::FollowedPath(std::span<const double> times_s, std::span<const Vec2
 }
 
 std::size_t FollowedPath::n_begun(double time_s) const noexcept {
-  const auto later =
-      std::ranges::lower_bound(legs_, time_s, {}, [](const Leg& leg) { return leg.times_s.front(); });
+  const auto later = std::ranges::lower_bound(legs_, time_s, {}, [](const Leg& leg) { return leg.times_s.front(); });
   return static_cast<std::size_t>(later - legs_.begin());
 }
 

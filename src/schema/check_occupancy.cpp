@@ -11,7 +11,8 @@ namespace pirsim {
 namespace {
 
 bool ascend(const std::vector<double>& times_s) {
-  return std::ranges::all_of(times_s, [](double t) { return std::isfinite(t); }) &&
+  constexpr double farthest_s = 1e10;  // 300 years
+  return std::ranges::all_of(times_s, [](double t) { return std::abs(t) <= farthest_s; }) &&
          std::ranges::adjacent_find(times_s, std::greater_equal()) == times_s.end();
 }
 

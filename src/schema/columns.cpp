@@ -53,7 +53,7 @@ constexpr Column<OccupantLine> occupants[]{
     {{"time", Holds::moment, "as in the row of the same window; empty without a [clock](script.md#a-clock)"}, clock},
     {{"person", Holds::text,
       "the name in the script; with a schedule by role: `staff_1`, ..., `manager_1`, ..., `administrator_1`, ..., "
-      "`guest_1`, ..., `cleaner`"},
+      "`guest_1`, ..., `cleaner`; with counts `occupant_1`, ..."},
      person},
     {{"where", Holds::text, "`inside` if the pelvis is over the floor area, otherwise `outside` (in a doorway)"},
      where},

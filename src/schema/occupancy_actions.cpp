@@ -94,7 +94,8 @@ std::vector<PersonSpec> replayed(const OccupancySpec& occupancy, const SceneSpec
   const auto& stays = occupancy.places->stays;
   for (std::size_t i = 0; i < stays.size(); ++i) {
     visit.push_back(&stays[i]);
-    const bool goes_on = i + 1 < stays.size() && stays[i + 1].person == stays[i].person && stays[i].then == AfterStay::goes_on;
+    const bool goes_on =
+        i + 1 < stays.size() && stays[i + 1].person == stays[i].person && stays[i].then == AfterStay::goes_on;
     if (goes_on) continue;
     auto known = std::ranges::find(people, stays[i].person, &PersonSpec::id);
     if (known == people.end()) {
@@ -114,8 +115,8 @@ std::vector<PersonSpec> replayed(const OccupancySpec& occupancy, const SceneSpec
 std::vector<PersonSpec> followed(const OccupancySpec& occupancy, double begin_s, double tick_s, std::uint64_t seed) {
   std::vector<PersonSpec> people;
   for (const TrackSpec& track : occupancy.positions->tracks) {
-    PersonSpec& person = people.emplace_back(
-        drawn_body(track.person, occupancy.style, seed, static_cast<std::uint32_t>(people.size())));
+    PersonSpec& person =
+        people.emplace_back(drawn_body(track.person, occupancy.style, seed, static_cast<std::uint32_t>(people.size())));
     action::Follow follow;
     for (std::size_t i = 0; i < track.times_s.size(); ++i) {
       if (track.times_s[i] < begin_s) continue;

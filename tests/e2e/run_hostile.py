@@ -115,6 +115,34 @@ class Hostile(unittest.TestCase):
                 self.assertIn("buffer file", told)
 
     # ------------------------------------------------------------------------------------------------------ scripts
+    def test_tables_of_people(self):
+        counted = self.write("s.yaml", "pirsim_script: 1\noccupancy: {counts: c.csv}\n")
+        for name, table, message, code in (
+                ("rows", "".join(f"{i},1\n" for i in range(1_200_000)), "more than 1000000 readings", 3),
+                ("bytes", "0,1\n" * 5_000_000, "larger than 16 MB", 3),
+                ("faults", "".join(f"{i},-1\n" for i in range(300_000)), "299999 more like this", 3),
+                ("backwards", "".join(f"{-i},1\n" for i in range(300_000)), "299998 more like this", 3),
+                ("crowd", "0,0\n60,1000\n", "1000 people, but meeting_room.gltf holds", 5),
+                ("times", "1e300,1\n", "expected", 3)):
+            with self.subTest(name):
+                self.write("c.csv", "time_s,people\n" + table)
+                self.assertIn(message, self.pirsim(script=counted, code=code))
+        tracked = self.write("t.yaml", "pirsim_script: 1\noccupancy: {positions: p.csv}\n")
+        for name, table, message in (
+                ("points", "".join(f"{i},a,0,0\n" for i in range(200_000)), "more than 100000 points"),
+                ("nowhere", "0,a,1e300,0\n", "expected metres"), ("nan", "0,a,nan,0\n", "expected a number")):
+            with self.subTest(name):
+                self.write("p.csv", "t,id,x,z\n" + table)
+                self.assertIn(message, self.pirsim(script=tracked, code=3))
+
+    def test_a_year_of_counts_a_minute_with_hundreds_of_comings_a_day(self):
+        rows = [f"2026-{1 + day // 28:02}-{1 + day % 28:02}T{minute // 60:02}:{minute % 60:02},"
+                f"{0 if minute < 480 else (minute * minute + day) % 7}\n" for day in range(336) for minute in range(1440)]
+        self.write("c.csv", "time,people\n" + "".join(rows))
+        year = self.write("s.yaml", "pirsim_script: 1\nreplicates: 336\n"
+                          "occupancy: {counts: c.csv, from: '07:00', to: '19:00'}\n")
+        self.pirsim(script=year, code=0, most_s=20.0)
+
     def test_yaml_of_many_levels_aliases_bytes_or_faults(self):
         for name, text, message in (
                 ("lists", "[" * 100_000 + "]" * 100_000, "nested more than 64"),

@@ -38,8 +38,8 @@ std::optional<Vec2> point_in(const CsvTable& table, std::size_t row, const Perso
     const auto number = table.number(row, column, faults);
     if (!number || !accepted::on_floor_m.holds(*number)) {
       if (!faults.has_errors())
-        faults.error(table.where(row, column), "expected metres, " + accepted::on_floor_m.text() + ", got '" +
-                                                   table.text(row, column) + "'");
+        faults.error(table.where(row, column),
+                     "expected metres, " + accepted::on_floor_m.text() + ", got '" + table.text(row, column) + "'");
       return std::nullopt;
     }
     point[i] = *number;

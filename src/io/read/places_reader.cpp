@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <map>
+#include <string_view>
 #include <vector>
 
 #include "io/read/occupancy_tables.hpp"
@@ -59,7 +61,11 @@ class PlacesReader {
   }
 
   [[nodiscard]] const std::string& seat_of(const Row& row) const { return table_.text(row.row, *seat_); }
-  [[nodiscard]] bool rises(const Row& row) const { return activity_ && table_.text(row.row, *activity_) == "rising"; }
+  /// Off the seat, or on the way off it.
+  [[nodiscard]] bool is_up(const Row& row) const {
+    constexpr std::array<std::string_view, 4> up{"rising", "turning", "standing", "walking"};
+    return activity_ && std::ranges::find(up, table_.text(row.row, *activity_)) != up.end();
+  }
 
   void add_stays(const std::string& person, const std::vector<Row>& rows) {
     for (std::size_t begin = 0; begin < rows.size();) {
@@ -74,7 +80,7 @@ class PlacesReader {
       stay.person = person;
       stay.seat = seat_of(rows[begin]);
       std::size_t last = end - 1;
-      while (!stay.seat.empty() && last > begin && rises(rows[last])) --last;
+      while (!stay.seat.empty() && last > begin && is_up(rows[last])) --last;
       // What a row tells has begun since the row before.
       stay.from_s = rows[begin].seconds - (std::isfinite(step_s_) ? step_s_ : 0.0);
       stay.to_s = rows[last].seconds;

@@ -58,8 +58,8 @@ class PositionsReader {
     }
     TrackSpec& track = positions_.tracks[known->second];
     if (!track.times_s.empty() && seconds <= track.times_s.back()) {
-      return repeated_.add("backwards", where, "time runs backwards: this row of '" + person +
-                                                   "' isn't later than the one before");
+      return repeated_.add("backwards", where,
+                           "time runs backwards: this row of '" + person + "' isn't later than the one before");
     }
     track.times_s.push_back(seconds);
     track.points.push_back(point);

@@ -1,5 +1,7 @@
 #include "io/read/time_column.hpp"
 
+#include <cmath>
+
 #include "core/text.hpp"
 #include "schema/clock.hpp"
 
@@ -36,9 +38,10 @@ std::optional<double> TimeColumn::seconds(std::size_t row, Diagnostics& faults) 
     faults.error(where(row), "expected a local date and time, e.g. 2026-03-02T07:00:00, got '" + text(row) + "'");
     return std::nullopt;
   }
+  constexpr double farthest_s = 1e10;  // 300 years
   Diagnostics found;
   const auto number = date_ ? std::nullopt : table_.number(row, *column_, found);
-  if (number) return number;
+  if (number && std::abs(*number) <= farthest_s) return number;
   faults.error(where(row),
                "expected seconds, or a local date and time, e.g. 2026-03-02T07:00:00, got '" + text(row) + "'");
   return std::nullopt;

@@ -97,7 +97,7 @@ TEST_CASE("What is wrong with counts is told with its line and column") {
 TEST_CASE("What can't be in an occupancy is refused with its place") {
   const std::string hour = "time,people\n2026-03-02T07:00,0\n2026-03-02T08:00,2\n";
   refused(hour, "s.yaml:2:13: error: occupancy: unknown key 'count' (did you mean 'counts'?)", "count: c.csv");
-  refused(hour, "s.yaml:2:12: error: occupancy: expected `counts`", "style: natural");
+  refused(hour, "s.yaml:2:12: error: occupancy: expected one of `counts`, `places` and `positions`", "style: natural");
   refused(hour, "occupancy: 1 different people, but up to 2 are there at once", "counts: c.csv, persons: 1");
   refused(hour, "`to` is not after `from`", "counts: c.csv, from: '09:00', to: '08:00'");
   refused(hour, "the data have no reading between `from` and `to` of any day", "counts: c.csv, from: '10:00'");

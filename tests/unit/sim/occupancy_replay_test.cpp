@@ -42,7 +42,8 @@ std::vector<TrackSpec> two_tracks() {
   TrackSpec one;
   one.person = "one";
   one.times_s = {0.5, 2.0, 3.0, 5.0, 9.0, 10.0, 11.5, 12.01, 14.0};
-  one.points = {{6.3, -0.6}, {4.8, -0.6}, {4.3, -1.4}, {4.3, -1.4}, {2.0, -3.5}, {2.0, -3.5}, {3.5, -2.0}, {3.5, -1.8}, {3.4, -1.8}};
+  one.points = {{6.3, -0.6}, {4.8, -0.6}, {4.3, -1.4}, {4.3, -1.4}, {2.0, -3.5},
+                {2.0, -3.5}, {3.5, -2.0}, {3.5, -1.8}, {3.4, -1.8}};
   TrackSpec other;
   other.person = "other";
   other.times_s = {1.0, 8.0};
@@ -144,7 +145,8 @@ TEST_CASE("A tracked person faces where they go, or as the data say") {
 TEST_CASE("What --occupants wrote is replayed: the same seats within seconds", "[seconds]") {
   const TemporaryFolder folder;
   const SceneSpec room = shipped_scene("meeting_room.gltf");
-  const ScriptSpec day = shipped_script("meeting_day.yaml", std::vector<std::string>{"sensing.tick_rate_hz=10", "sensing.response=zones"});
+  const ScriptSpec day =
+      shipped_script("meeting_day.yaml", std::vector<std::string>{"sensing.tick_rate_hz=10", "sensing.response=zones"});
   const auto seats_of = [](const RunResult& result) {
     Seats seats;
     for (const OccupantRow& row : result.occupants) {
@@ -176,9 +178,9 @@ TEST_CASE("What --occupants wrote is replayed: the same seats within seconds", "
       ++seconds;
     }
   }
-  const std::size_t differ = n_differ(were, are, 0.0);
+  const std::size_t differ = n_differ(were, are, 0.0) + n_differ(are, were, 0.0);
   INFO(differ << " of " << seconds << " person-seconds in a seat differ, " << changes << " seats taken");
   CHECK(changes > 20);
   CHECK(differ <= changes);
-  CHECK(n_differ(were, are, 3.0) >= 2 * changes);  // a twin that is three seconds late
+  CHECK(n_differ(were, are, 5.0) >= 3 * changes);  // a twin that is five seconds late
 }
