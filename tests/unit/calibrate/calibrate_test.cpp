@@ -1,0 +1,223 @@
+// Rooms weighed by a log: statistics by hand, the check's level, what moves, hours of days, the recipe that is made.
+#include <cmath>
+#include <random>
+
+#include "calibrate/errors.hpp"
+#include "calibrate/motion_statistics.hpp"
+#include "calibrate/room_check.hpp"
+#include "calibrate/weighted.hpp"
+#include "pirsim/calibrate.hpp"
+#include "pirsim/error.hpp"
+#include "support/catch.hpp"
+#include "support/temporary_folder.hpp"
+
+using namespace pirsim;
+using namespace pirsim::calibrate;
+using counting::Stretch;
+
+namespace {
+
+/// A room whose sensors report motion with so much probability per person; somebody comes and goes.
+PoolRoom room_of(std::mt19937& random, int number, double lively, int days = 2, int readings = 400) {
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  PoolRoom room{{number, {}}, {{"liveliness", lively}}};
+  for (int d = 0; d < days; ++d) {
+    Stretch day{2, {}};
+    int people = 0;
+    for (int i = 0; i < readings; ++i) {
+      if (uniform(random) < 0.03) people = static_cast<int>(random() % 3);
+      day.people.push_back(people);
+      for (int k = 0; k < 2; ++k) day.motion.push_back(uniform(random) < 1.0 - std::exp(-lively * people) ? 1 : 0);
+    }
+    room.labelled.days.push_back(std::move(day));
+  }
+  return room;
+}
+
+std::vector<PoolRoom> pool_of(std::mt19937& random, int n) {
+  std::uniform_real_distribution<double> uniform(0.1, 0.5);
+  std::vector<PoolRoom> pool;
+  for (int r = 1; r <= n; ++r) pool.push_back(room_of(random, r, uniform(random)));
+  return pool;
+}
+
+std::vector<Stretch> unlabelled(std::vector<Stretch> days) {
+  for (Stretch& day : days) day.people.clear();
+  return days;
+}
+
+double statistic(const std::vector<double>& values, const std::string& name) {
+  const auto infos = statistics_of(2);
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    if (infos[i].name == name) return values[i];
+  }
+  throw std::runtime_error("no statistic " + name);
+}
+
+}  // namespace
+
+TEST_CASE("Statistics of motion are what one counts by hand") {
+  // 30-s readings: 40 quiet ones, then ten times (two with motion at both, two at the first alone, four without).
+  Stretch day{2, std::vector<std::uint8_t>(80, 0)};
+  for (int i = 0; i < 10; ++i)
+    for (const int bit : {1, 1, 1, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0}) day.motion.push_back(static_cast<std::uint8_t>(bit));
+  const auto found = motion_statistics(std::vector{day}, 30.0);
+  REQUIRE(found);
+  const double active = 76.0;  // from the first to the last with motion: the last four are quiet
+  CHECK(statistic(*found, "readings with motion, busiest sensor") == Approx(40 / active));
+  CHECK(statistic(*found, "readings with motion, quietest sensor") == Approx(20 / active));
+  CHECK(statistic(*found, "readings with motion, any sensor") == Approx(40 / active));
+  CHECK(statistic(*found, "mean run with motion") == Approx(std::log(4.0)));
+  CHECK(statistic(*found, "mean run without") == Approx(std::log(4.0)));
+  CHECK(statistic(*found, "from first to last motion") == Approx(active * 30 / 3600));
+  CHECK(statistic(*found, "first motion after the day's part begins") == Approx(40 * 30 / 3600.0));
+  CHECK(statistic(*found, "pauses longer than 10 min") == 0.0);
+  CHECK(statistic(*found, "5 min without motion") == 0.0);
+  // phi of (n = 76; a = 40, b = 20, both = 20)
+  CHECK(statistic(*found, "likeness of first and last sensor") ==
+        Approx((76.0 * 20 - 40.0 * 20) / std::sqrt(40.0 * 36 * 20 * 56)));
+  Stretch quiet{2, std::vector<std::uint8_t>(200, 0)};
+  CHECK_FALSE(motion_statistics(std::vector{quiet}, 30.0));
+}
+
+TEST_CASE("The check calls one in twenty of its own rooms unlike, and finds one that isn't one of them") {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  constexpr int attempts = 400;
+  constexpr std::size_t rooms = 59;  // and the one that is asked for: p comes in steps of 1/60
+  int called = 0, found = 0;
+  for (int attempt = 0; attempt < attempts; ++attempt) {
+    stats::Matrix<double> rows(rooms, 3);
+    std::vector<double> one(3);
+    const auto fill = [&](std::span<double> row) {
+      row[0] = normal(random);
+      row[1] = row[0] + 0.5 * normal(random);
+      row[2] = std::exp(normal(random));
+    };
+    for (std::size_t r = 0; r < rooms; ++r) fill(rows.row(r));
+    fill(one);
+    if (unlike_share(rows, one) <= 0.05) ++called;
+    one[1] = one[0] + 3.0;  // each entry alone is nothing unusual
+    if (unlike_share(rows, one) <= 0.05) ++found;
+  }
+  // Exactly 3 of 60 on average: 20 of 400, with a standard error of 4.4.
+  CHECK(std::abs(called - 20) < 4 * 4.4);
+  CHECK(found > attempts / 2);  // the twin
+}
+
+TEST_CASE("Weighted means, quantiles and ranks") {
+  const std::vector<double> values{3, 1, 2, 5}, weights{1, 1, 2, 0};
+  CHECK(weighted_mean(values, weights) == Approx(2.0));
+  CHECK(weighted_sd(values, weights) == Approx(std::sqrt(0.5)));
+  CHECK(weighted_interval(values, weights) == Interval{1, 3});
+  CHECK(rank_correlation(std::vector<double>{1, 2, 3, 4}, std::vector<double>{1, 8, 27, 64}) == Approx(1.0));
+  CHECK(rank_correlation(std::vector<double>{1, 2, 3, 4}, std::vector<double>{4, 3, 2, 1}) == Approx(-1.0));
+  CHECK(rank_correlation(std::vector<double>{1, 1, 2, 2}, std::vector<double>{1, 2, 1, 2}) == Approx(0.0));
+}
+
+TEST_CASE("Readings that a score counts reach from half an hour before the first person to half an hour after the last") {
+  std::vector<int> people(300, 0);
+  people[100] = 1;
+  people[150] = 2;
+  const std::vector<bool> counts = in_use(people, 30.0);
+  CHECK_FALSE(counts[39]);
+  CHECK(counts[40]);
+  CHECK(counts[210]);
+  CHECK_FALSE(counts[211]);
+  CHECK(std::ranges::none_of(in_use(std::vector<int>(10, 0), 30.0), [](bool b) { return b; }));
+}
+
+TEST_CASE("A calibration finds the liveliness that the log comes from, and its error holds for rooms of the recipe") {
+  std::mt19937 random(2);
+  const std::vector<PoolRoom> pool = pool_of(random, 40);
+  const PoolRoom real = room_of(random, 99, 0.45);
+  counting::Settings settings;
+  settings.modes = 1;  // as these rooms are made
+  settings.shrinkage = 10.0;
+  const Calibration made = calibrate::calibrate(pool, unlabelled(real.labelled.days), settings);
+  CHECK(made.verdict == Verdict::like_these);
+  REQUIRE(made.parameters.size() == 1);
+  CHECK(made.parameters[0].mean_after > made.parameters[0].mean_before + 0.05);
+  CHECK(made.parameters[0].narrowed > 0.2);
+  CHECK(made.effective_rooms < 40.0);
+  REQUIRE(made.counter.expected_error);
+  CHECK(made.counter.expected_error->low < made.mean_error);
+  CHECK(made.mean_error < made.counter.expected_error->high);
+  // A quiet log moves the other way: the twin.
+  const PoolRoom other = room_of(random, 98, 0.12);
+  const Calibration quiet = calibrate::calibrate(pool, unlabelled(other.labelled.days), settings);
+  CHECK(quiet.parameters[0].mean_after < quiet.parameters[0].mean_before - 0.05);
+}
+
+TEST_CASE("A calibration doesn't depend on threads, nor on counts that the log hasn't got") {
+  std::mt19937 random(3);
+  const std::vector<PoolRoom> pool = pool_of(random, 12);
+  const std::vector<Stretch> log = unlabelled(room_of(random, 99, 0.3).labelled.days);
+  std::vector<Stretch> unknown = log;
+  for (Stretch& day : unknown) day.people.assign(day.n_readings(), counting::unknown_count);
+  const Calibration one = calibrate::calibrate(pool, log, {}, 1), more = calibrate::calibrate(pool, log, {}, 3),
+                    told = calibrate::calibrate(pool, unknown);
+  for (std::size_t r = 0; r < pool.size(); ++r) {
+    CHECK(one.rooms[r].weight == more.rooms[r].weight);
+    CHECK(one.rooms[r].error == more.rooms[r].error);
+    CHECK(one.rooms[r].weight == told.rooms[r].weight);
+  }
+}
+
+TEST_CASE("A log that no room makes is told, with what is outside, and a log without motion tells too little") {
+  std::mt19937 random(4);
+  const std::vector<PoolRoom> pool = pool_of(random, 40);
+  std::vector<Stretch> log = unlabelled(room_of(random, 99, 0.3).labelled.days);
+  for (Stretch& day : log) {
+    for (std::size_t i = 1; i < day.motion.size(); i += 2) day.motion[i] = 0;  // the second sensor died
+  }
+  const Calibration died = calibrate::calibrate(pool, log);
+  CHECK(died.verdict == Verdict::none_like_it);
+  CHECK_THAT(finding(died), contains("quietest sensor"));
+  for (Stretch& day : log) std::ranges::fill(day.motion, std::uint8_t{0});
+  CHECK(calibrate::calibrate(pool, log).verdict == Verdict::too_little_told);
+  CHECK_THROWS_AS(calibrate::calibrate(std::span(pool).first(9), log), Error);
+}
+
+TEST_CASE("Of a log the hours that the recipe simulates are compared, each day of its own") {
+  LogRows rows;
+  rows.sensors = {"a"};
+  rows.window_s = 3600.0;
+  rows.clock = LogClock::zoned;
+  for (int hour = 0; hour < 48; ++hour) {  // from 22:00 UTC on, two hours ahead: local midnight
+    rows.begin.push_back({(std::int64_t{22} + hour) * 3'600'000'000, 7200});
+    rows.motion.push_back(static_cast<std::uint8_t>(hour % 24 >= 7 && hour % 24 < 9 ? 1 : 0));
+  }
+  const std::vector<Stretch> parts = day_parts(rows, {7.0, 10.0});
+  REQUIRE(parts.size() == 2);
+  CHECK(parts[0].motion == std::vector<std::uint8_t>{1, 1, 0});
+  CHECK(parts[1].motion == std::vector<std::uint8_t>{1, 1, 0});
+  CHECK(whole_log(rows).n_readings() == 48);
+}
+
+TEST_CASE("A pool's rows are readings, and hold motion as long as the log's sensors do") {
+  const TemporaryFolder folder;
+  const auto file = folder.write("recipe.yaml",
+                                 "pirsim_recipe: 1\nrooms: [{count: 2}]\neffects:\n  - range_scale: {scale: [0.8, 1.2]}\n"
+                                 "  - {pulse_stretching: {hold_s: [0.5, 3]}, chance: 0.5}\n");
+  const dataset::RecipeSpec recipe = dataset::read_recipe(file);
+  const dataset::RecipeSpec pool = dataset::read_recipe(file, pool_overrides(recipe, 30.0, 12.5));
+  CHECK(pool.sensing.ticks_per_window == 30 * pool.sensing.tick_rate_hz);
+  REQUIRE(pool.effects.size() == 2);
+  CHECK(pool.effects[1].parameters.at("hold_s").least == 12.5);
+  CHECK(pool.effects[1].chance == 1.0);
+  const auto plain = folder.write("plain.yaml", "pirsim_recipe: 1\nrooms: [{count: 2}]\neffects: [range_scale]\n");
+  const dataset::RecipeSpec added = dataset::read_recipe(plain, pool_overrides(dataset::read_recipe(plain), 30.0, 2.0));
+  REQUIRE(added.effects.size() == 2);
+  CHECK(added.effects[1].name == "pulse_stretching");
+
+  // The recipe that draws by weight reads back, with the hold and without what only the pool needs.
+  Calibration calibration;
+  calibration.rooms = {{1, 0.0, 0.25, {}}, {2, 0.0, 0.75, {}}};
+  const auto weighted = folder.write("weighted.yaml", weighted_recipe(pool, calibration, folder.path()));
+  const dataset::RecipeSpec read = dataset::read_recipe(weighted);
+  REQUIRE(read.draw_by);
+  CHECK(read.draw_by->weights == std::vector<double>{0.25, 0.75});
+  CHECK(read.effects[1].parameters.at("hold_s").least == 12.5);
+  CHECK(read.sensing.ticks_per_window == read.sensing.tick_rate_hz);
+}
