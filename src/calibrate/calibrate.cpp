@@ -118,21 +118,28 @@ std::string advice_for(std::span<const PoolRoom> pool, const RoomStatistics& kno
   return best;
 }
 
+Interval told(const StatisticInfo& info, const Interval& values, double step_s) {
+  return {told(info, values.low, step_s), told(info, values.high, step_s)};
+}
+
 std::vector<Statistic> compared(std::span<const PoolRoom> pool, const RoomStatistics& known,
-                                const std::vector<double>& of_log, const std::vector<double>& weights, int n_sensors) {
+                                const std::vector<double>& of_log, const counting::Counter& counter) {
+  const std::vector<double> weights = weights_of(counter);
+  const double step_s = counter.settings.step_s;
   std::vector<double> own_weights;
   for (const std::size_t r : known.rooms) own_weights.push_back(weights[r]);
   const std::vector<double> alike(known.rooms.size(), 1.0);
-  const std::vector<StatisticInfo> infos = statistics_of(n_sensors);
+  const std::vector<StatisticInfo> infos = statistics_of(counter.n_sensors);
   std::vector<Statistic> all;
   for (std::size_t s = 0; s < infos.size(); ++s) {
     std::vector<double> values;
     for (std::size_t i = 0; i < known.rooms.size(); ++i) values.push_back(known.rows(i, s));
-    Statistic& one = all.emplace_back(Statistic{infos[s].name,
-                                                infos[s].unit,
-                                                of_log[s],
-                                                weighted_interval(values, alike),
-                                                weighted_interval(values, own_weights),
+    const StatisticInfo& info = infos[s];
+    Statistic& one = all.emplace_back(Statistic{info.name,
+                                                info.unit,
+                                                told(info, of_log[s], step_s),
+                                                told(info, weighted_interval(values, alike), step_s),
+                                                told(info, weighted_interval(values, own_weights), step_s),
                                                 unlike_share(values, of_log[s]),
                                                 {}});
     if (one.p <= verdict_level) one.advice = advice_for(pool, known, s, of_log[s] - weighted_mean(values, alike));
@@ -148,7 +155,7 @@ void check(std::span<const PoolRoom> pool, std::span<const Stretch> log, double 
   if (!of_log || known.rooms.size() < fewest_rooms) return;
   made.p = unlike_share(known.rows, *of_log);
   made.verdict = made.p <= verdict_level ? Verdict::none_like_it : Verdict::like_these;
-  made.statistics = compared(pool, known, *of_log, weights_of(made.counter), made.counter.n_sensors);
+  made.statistics = compared(pool, known, *of_log, made.counter);
 }
 
 }  // namespace

@@ -40,6 +40,28 @@ std::vector<Day> days_of(const LogRows& rows) {
   return days;
 }
 
+/// Stretches of ten minutes or more in which nothing is known.
+std::vector<io::SeriesChart::Phase> unknown_phases(const LogRows& rows, const Day& day) {
+  constexpr double shortest_s = 600.0;
+  const auto is_unknown = [&](std::size_t i) {
+    for (std::size_t k = 0; k < rows.sensors.size(); ++k) {
+      if (rows.at(i, k) != counting::unknown_bit) return false;
+    }
+    return true;
+  };
+  std::vector<io::SeriesChart::Phase> phases;
+  for (std::size_t i = day.begin; i < day.end;) {
+    std::size_t end = i;
+    while (end < day.end && is_unknown(end)) ++end;
+    if (static_cast<double>(end - i) * rows.window_s >= shortest_s) {
+      phases.push_back({"unknown", static_cast<double>(i - day.begin) * rows.window_s,
+                        static_cast<double>(end - day.begin) * rows.window_s});
+    }
+    i = std::max(end, i + 1);
+  }
+  return phases;
+}
+
 io::SeriesChart chart_of(const LogCounts& counts, const Day& day) {
   const LogRows& rows = counts.rows;
   io::SeriesChart chart;
@@ -53,6 +75,7 @@ io::SeriesChart chart_of(const LogCounts& counts, const Day& day) {
     }
     chart.rows.push_back(std::move(row));
   }
+  chart.phases = unknown_phases(rows, day);
   int last = -1;
   for (std::size_t i = day.begin; i < day.end; ++i) {
     const int now = counts.estimates.count(i);

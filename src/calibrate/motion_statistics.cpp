@@ -125,16 +125,21 @@ std::vector<double> of_stretch(const Stretch& stretch, const Active& active, dou
 
 }  // namespace
 
+double told(const StatisticInfo& info, double value, double step_s) {
+  return info.scale == StatisticInfo::Scale::plain ? value : std::exp(value) * step_s / minute_s;
+}
+
 std::vector<StatisticInfo> statistics_of(int n_sensors) {
+  using Scale = StatisticInfo::Scale;
   std::vector<StatisticInfo> all{{"readings with motion, busiest sensor", "share"},
                                  {"readings with motion, any sensor", "share"},
-                                 {"mean run with motion", "log of readings"},
-                                 {"mean run without", "log of readings"},
+                                 {"mean run with motion", "min", Scale::logarithm},
+                                 {"mean run without", "min", Scale::logarithm},
                                  {"5 min without motion", "share"},
                                  {"5 min with motion in more than 70 %", "share"},
                                  {"from first to last motion", "h"},
                                  {"pauses longer than 10 min", "1/h"},
-                                 {"first motion after the day's part begins", "h"}};
+                                 {"first motion after the hours begin", "h"}};
   if (n_sensors > 1) {
     all.push_back({"readings with motion, quietest sensor", "share"});
     all.push_back({"likeness of first and last sensor", "phi"});

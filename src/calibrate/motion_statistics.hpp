@@ -12,7 +12,13 @@ namespace pirsim::calibrate {
 
 struct StatisticInfo {
   std::string name, unit;
+  enum class Scale {
+    plain,
+    logarithm  ///< of a length in readings: told in minutes
+  } scale = Scale::plain;
 };
+/// A statistic in its unit.
+[[nodiscard]] double told(const StatisticInfo& info, double value, double step_s);
 /// Of a room with so many sensors.
 [[nodiscard]] std::vector<StatisticInfo> statistics_of(int n_sensors);
 

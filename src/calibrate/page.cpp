@@ -20,6 +20,12 @@ std::string plain(double value) {
 }
 std::string plain(const Interval& interval) { return plain(interval.low) + " to " + plain(interval.high); }
 
+/// "7:30"
+std::string clock_text(double hours) {
+  const auto minutes = static_cast<int>(std::lround(60.0 * hours));
+  return std::to_string(minutes / 60) + (minutes % 60 < 10 ? ":0" : ":") + std::to_string(minutes % 60);
+}
+
 /// Where a value lies if the rooms' range is from -1 to 1.
 double place_in(const Interval& interval, double value) {
   const double half = 0.5 * (interval.high - interval.low), middle = 0.5 * (interval.low + interval.high);
@@ -55,12 +61,15 @@ io::ReportSection statistics_section(const Calibration& calibration) {
                             : "Nothing speaks against it: " + fixed(100.0 * calibration.p, 0) +
                                   " % of the rooms are as unlike the others as your log is. That doesn't prove that "
                                   "the room is among them."};
-  io::Table table{
-      {"of a day", "your log", "90 % of the rooms", "90 % by weight", "as far from the middle", "what would move it"},
-      {}};
+  io::Table table{{"of a day", "your log", "90 % of the rooms", "90 % by weight", "rooms as far out"}, {}};
+  const bool has_advice =
+      std::ranges::any_of(calibration.statistics, [](const Statistic& s) { return !s.advice.empty(); });
+  if (has_advice) table.headings.emplace_back("what would move it");
   for (const Statistic& one : calibration.statistics) {
-    table.rows.push_back({one.name + " (" + one.unit + ")", plain(one.of_log), plain(one.of_rooms),
-                          plain(one.of_weighty), fixed(100.0 * one.p, 0) + " %", one.advice});
+    std::vector<std::string>& row = table.rows.emplace_back(
+        std::vector<std::string>{one.name + ", " + one.unit, plain(one.of_log), plain(one.of_rooms),
+                                 plain(one.of_weighty), fixed(100.0 * one.p, 0) + " %"});
+    if (has_advice) row.push_back(one.advice);
   }
   section.tables.push_back(std::move(table));
   section.charts.push_back(statistics_chart(calibration));
@@ -158,10 +167,10 @@ io::Report page(const Calibration& calibration, const About& about) {
   io::Report report;
   report.title = "Calibration";
   report.finding = finding(calibration);
-  report.paragraphs = {"Log: " + about.log + ", " + counted(about.n_days, "day") + ", from " + plain(about.hours.low) +
-                       " to " + plain(about.hours.high) + " o'clock. Recipe: " + about.recipe + ", " +
-                       counted(calibration.rooms.size(), "room") +
-                       ". Each room is weighed by how well its model explains the log; nobody counted people."};
+  report.paragraphs = {"Log: " + about.log + ", " + counted(about.n_days, "day") + ", from " +
+                       clock_text(about.hours.low) + " to " + clock_text(about.hours.high) +
+                       ". Recipe: " + about.recipe + ", " + counted(calibration.rooms.size(), "room") +
+                       ". Each room is weighed by how well its model explains the log."};
   report.sections = {error_section(calibration)};
   if (!calibration.statistics.empty()) report.sections.push_back(statistics_section(calibration));
   report.sections.push_back(parameters_section(calibration));

@@ -60,7 +60,8 @@ TEST_CASE("Statistics of motion are what one counts by hand") {
   // 30-s readings: 40 quiet ones, then ten times (two with motion at both, two at the first alone, four without).
   Stretch day{2, std::vector<std::uint8_t>(80, 0)};
   for (int i = 0; i < 10; ++i)
-    for (const int bit : {1, 1, 1, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0}) day.motion.push_back(static_cast<std::uint8_t>(bit));
+    for (const int bit : {1, 1, 1, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0})
+      day.motion.push_back(static_cast<std::uint8_t>(bit));
   const auto found = motion_statistics(std::vector{day}, 30.0);
   REQUIRE(found);
   const double active = 76.0;  // from the first to the last with motion: the last four are quiet
@@ -70,9 +71,10 @@ TEST_CASE("Statistics of motion are what one counts by hand") {
   CHECK(statistic(*found, "mean run with motion") == Approx(std::log(4.0)));
   CHECK(statistic(*found, "mean run without") == Approx(std::log(4.0)));
   CHECK(statistic(*found, "from first to last motion") == Approx(active * 30 / 3600));
-  CHECK(statistic(*found, "first motion after the day's part begins") == Approx(40 * 30 / 3600.0));
+  CHECK(statistic(*found, "first motion after the hours begin") == Approx(40 * 30 / 3600.0));
   CHECK(statistic(*found, "pauses longer than 10 min") == 0.0);
   CHECK(statistic(*found, "5 min without motion") == 0.0);
+  CHECK(told(statistics_of(2)[2], std::log(4.0), 30.0) == Approx(2.0));  // min
   // phi of (n = 76; a = 40, b = 20, both = 20)
   CHECK(statistic(*found, "likeness of first and last sensor") ==
         Approx((76.0 * 20 - 40.0 * 20) / std::sqrt(40.0 * 36 * 20 * 56)));
@@ -115,7 +117,8 @@ TEST_CASE("Weighted means, quantiles and ranks") {
   CHECK(rank_correlation(std::vector<double>{1, 1, 2, 2}, std::vector<double>{1, 2, 1, 2}) == Approx(0.0));
 }
 
-TEST_CASE("Readings that a score counts reach from half an hour before the first person to half an hour after the last") {
+TEST_CASE(
+    "Readings that a score counts reach from half an hour before the first person to half an hour after the last") {
   std::vector<int> people(300, 0);
   people[100] = 1;
   people[150] = 2;
@@ -197,9 +200,10 @@ TEST_CASE("Of a log the hours that the recipe simulates are compared, each day o
 
 TEST_CASE("A pool's rows are readings, and hold motion as long as the log's sensors do") {
   const TemporaryFolder folder;
-  const auto file = folder.write("recipe.yaml",
-                                 "pirsim_recipe: 1\nrooms: [{count: 2}]\neffects:\n  - range_scale: {scale: [0.8, 1.2]}\n"
-                                 "  - {pulse_stretching: {hold_s: [0.5, 3]}, chance: 0.5}\n");
+  const auto file =
+      folder.write("recipe.yaml",
+                   "pirsim_recipe: 1\nrooms: [{count: 2}]\neffects:\n  - range_scale: {scale: [0.8, 1.2]}\n"
+                   "  - {pulse_stretching: {hold_s: [0.5, 3]}, chance: 0.5}\n");
   const dataset::RecipeSpec recipe = dataset::read_recipe(file);
   const dataset::RecipeSpec pool = dataset::read_recipe(file, pool_overrides(recipe, 30.0, 12.5));
   CHECK(pool.sensing.ticks_per_window == 30 * pool.sensing.tick_rate_hz);

@@ -37,13 +37,15 @@ Counter random_counter(std::mt19937& random, int n_rooms, int n_sensors = 2) {
 
 Stretch random_stretch(std::mt19937& random, int readings, int sensors, int most_bit = 1) {
   Stretch stretch{sensors, {}};
-  for (int i = 0; i < readings * sensors; ++i) stretch.motion.push_back(static_cast<std::uint8_t>(random() % static_cast<unsigned>(most_bit + 1)));
+  for (int i = 0; i < readings * sensors; ++i)
+    stretch.motion.push_back(static_cast<std::uint8_t>(random() % static_cast<unsigned>(most_bit + 1)));
   return stretch;
 }
 
 /// Probability in a state of as many known sensors with motion as a reading has, by each way in which the unknown ones
 /// could have been.
-double seen(const Counter& counter, const RoomModel& room, const Stretch& stretch, std::size_t reading, std::size_t state) {
+double seen(const Counter& counter, const RoomModel& room, const Stretch& stretch, std::size_t reading,
+            std::size_t state) {
   const auto n = static_cast<std::size_t>(stretch.n_sensors);
   double sum = 0.0, like_it = 1.0;  // choices of known sensors that are as many
   int known = 0, told_active = 0;
@@ -64,7 +66,9 @@ double seen(const Counter& counter, const RoomModel& room, const Stretch& stretc
     }
     double ways = 1.0;
     for (int i = 1; i <= active; ++i) ways *= static_cast<double>(stretch.n_sensors - active + i) / i;
-    if (fits) sum += room.emissions[state * static_cast<std::size_t>(counter.n_symbols()) + static_cast<std::size_t>(active)] / ways;
+    if (fits)
+      sum += room.emissions[state * static_cast<std::size_t>(counter.n_symbols()) + static_cast<std::size_t>(active)] /
+             ways;
   }
   return like_it * sum;
 }
@@ -162,7 +166,8 @@ TEST_CASE("Counting live gives what counting forward gives, and rooms mix by wei
       Counter alone = counter;
       alone.rooms = {counter.rooms[static_cast<std::size_t>(r)]};
       alone.rooms[0].weight = 1.0;
-      mixed += counter.rooms[static_cast<std::size_t>(r)].weight * estimate(alone, stretch, Pass::forward).probabilities[2 * i];
+      mixed += counter.rooms[static_cast<std::size_t>(r)].weight *
+               estimate(alone, stretch, Pass::forward).probabilities[2 * i];
     }
     CHECK(now[0] == Approx(mixed).epsilon(1e-12));
     CHECK(now[1] == Approx(forward.probabilities[2 * i + 1]).epsilon(1e-12));

@@ -15,7 +15,8 @@ namespace {
 
 RecipeSpec recipe_of(const std::string& more) {
   const TemporaryFolder folder;
-  return read_recipe(folder.write("recipe.yaml", "pirsim_recipe: 1\nseed: 5\nrooms: [{count: 4, seats: 2}]\ndays: 2\n" + more));
+  return read_recipe(
+      folder.write("recipe.yaml", "pirsim_recipe: 1\nseed: 5\nrooms: [{count: 4, seats: 2}]\ndays: 2\n" + more));
 }
 
 }  // namespace
@@ -53,11 +54,12 @@ TEST_CASE("A room drawn by weight is the recipe's own, with other days") {
 }
 
 TEST_CASE("Weights that can't be drawn by are refused at their place") {
-  for (const char* text : {"draw_by: {count: 3, weights: [1, 2]}\n", "draw_by: {count: 3, weights: [0, 0, 0, 0]}\n",
-                           "draw_by: {count: 3, weights: [1, 1, -1, 1]}\n", "draw_by: {count: 0, weights: [1, 1, 1, 1]}\n",
-                           "draw_by: {count: 3}\n", "draw_by: {count: 3, weights: [1, 1, 1, .nan]}\n",
-                           "draw_by: {count: 3, weights: [1, 1, 1, 1], more: 1}\n",
-                           "draw_by: {count: 9, weights: [1, 1, 1, 1]}\nsplit: {test_rooms: 0.3}\n"}) {
+  for (const char* text :
+       {"draw_by: {count: 3, weights: [1, 2]}\n", "draw_by: {count: 3, weights: [0, 0, 0, 0]}\n",
+        "draw_by: {count: 3, weights: [1, 1, -1, 1]}\n", "draw_by: {count: 0, weights: [1, 1, 1, 1]}\n",
+        "draw_by: {count: 3}\n", "draw_by: {count: 3, weights: [1, 1, 1, .nan]}\n",
+        "draw_by: {count: 3, weights: [1, 1, 1, 1], more: 1}\n",
+        "draw_by: {count: 9, weights: [1, 1, 1, 1]}\nsplit: {test_rooms: 0.3}\n"}) {
     CHECK_THROWS_WITH(recipe_of(text), contains("recipe.yaml:5:") || contains("recipe.yaml:6:"));
   }
 }
