@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <ostream>
 #include <span>
@@ -73,10 +74,21 @@ struct Calibration {
 /// At this p or below no room makes such a log.
 inline constexpr double verdict_level = 0.05;
 
-/// log: its stretches, with or without counts. Threads change no bit. Throws as counting::train() does, and
-/// Error(input) for fewer than ten rooms.
-[[nodiscard]] Calibration calibrate(std::span<const PoolRoom> pool, std::span<const counting::Stretch> log,
-                                    const counting::Settings& settings = {}, unsigned threads = 0);
+/// Rooms, and all that doesn't depend on a log: their models, how well each is counted by the others', what their
+/// motion tells. One pool serves many logs. Immutable, and cheap to copy.
+class Pool {
+ public:
+  /// Threads change no bit. Throws as counting::train() does, and Error(input) for fewer than ten rooms.
+  explicit Pool(std::vector<PoolRoom> rooms, const counting::Settings& settings = {}, unsigned threads = 0);
+  [[nodiscard]] std::span<const PoolRoom> rooms() const noexcept;
+
+  /// log: its stretches, with or without counts.
+  [[nodiscard]] Calibration calibrate(std::span<const counting::Stretch> log) const;
+
+ private:
+  struct Parts;
+  std::shared_ptr<const Parts> parts_;
+};
 
 // From a recipe and a log to rooms and stretches.
 

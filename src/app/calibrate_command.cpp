@@ -86,10 +86,10 @@ void run(const CalibrateOptions& options) {
   const StopRequest stop;
   if (make_dataset(recipe, pool, stop) == Whole::no) return;
   const Progress progress({.what = "weighing rooms"}, pool.inputs.verbosity);
-  const auto rooms = calibrate::read_pool(pool.folder, static_cast<int>(rows.sensors.size()), step_s, pool.threads);
+  auto rooms = calibrate::read_pool(pool.folder, static_cast<int>(rows.sensors.size()), step_s, pool.threads);
   counting::Settings settings;
   settings.step_s = step_s;
-  const calibrate::Calibration made = calibrate::calibrate(rooms, days, settings, pool.threads);
+  const calibrate::Calibration made = calibrate::Pool(std::move(rooms), settings, pool.threads).calibrate(days);
   calibrate::write_calibration(options.folder, made,
                                {options.recipe.filename().string(), options.logs.front().filename().string(),
                                 "pirsim " + version() + " (" + git_revision() + ")", hours, days.size()});

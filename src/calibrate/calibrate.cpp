@@ -147,39 +147,50 @@ std::vector<Statistic> compared(std::span<const PoolRoom> pool, const RoomStatis
   return all;
 }
 
-void check(std::span<const PoolRoom> pool, std::span<const Stretch> log, double step_s, unsigned threads,
-           Calibration& made) {
-  const auto of_log = motion_statistics(log, step_s);
-  const RoomStatistics known = room_statistics(pool, step_s, threads);
-  constexpr std::size_t fewest_rooms = 10;
-  if (!of_log || known.rooms.size() < fewest_rooms) return;
-  made.p = unlike_share(known.rows, *of_log);
-  made.verdict = made.p <= verdict_level ? Verdict::none_like_it : Verdict::like_these;
-  made.statistics = compared(pool, known, *of_log, made.counter);
-}
-
 }  // namespace
 
-Calibration calibrate(std::span<const PoolRoom> pool, std::span<const Stretch> log, const counting::Settings& settings,
-                      unsigned threads) {
+struct Pool::Parts {
+  std::vector<PoolRoom> rooms;
+  counting::Counter counter;
+  RoomErrors errors;
+  RoomStatistics known;
+};
+
+Pool::Pool(std::vector<PoolRoom> rooms, const counting::Settings& settings, unsigned threads) {
   constexpr std::size_t fewest = 10;
-  if (pool.size() < fewest)
+  if (rooms.size() < fewest) {
     throw Error(ErrorCode::input, "a calibration needs " + std::to_string(fewest) +
-                                      " rooms at least, better 60; there are " + std::to_string(pool.size()));
-  std::vector<counting::LabelledRoom> rooms;
-  for (const PoolRoom& room : pool) rooms.push_back(room.labelled);
+                                      " rooms at least, better 60; there are " + std::to_string(rooms.size()));
+  }
+  std::vector<counting::LabelledRoom> labelled;
+  for (const PoolRoom& room : rooms) labelled.push_back(room.labelled);
+  counting::Counter counter = counting::train(labelled, settings, threads);
+  RoomErrors errors = errors_of_rooms(counter, labelled, threads);
+  RoomStatistics known = room_statistics(rooms, settings.step_s, threads);
+  parts_ =
+      std::make_shared<const Parts>(Parts{std::move(rooms), std::move(counter), std::move(errors), std::move(known)});
+}
+
+std::span<const PoolRoom> Pool::rooms() const noexcept { return parts_->rooms; }
+
+Calibration Pool::calibrate(std::span<const Stretch> log) const {
+  const auto& [rooms, counter, errors, known] = *parts_;
   Calibration made;
-  made.counter = counting::train(rooms, settings, threads);
-  const std::vector<double> scores = counting::log_likelihoods(made.counter, log);
+  made.counter = counter;
+  const std::vector<double> scores = counting::log_likelihoods(counter, log);
   counting::weigh(made.counter, scores);
   const std::vector<double> weights = weights_of(made.counter);
   made.effective_rooms = 1.0 / std::inner_product(weights.begin(), weights.end(), weights.begin(), 0.0);
-  const RoomErrors errors = errors_of_rooms(made.counter, rooms, threads);
-  for (std::size_t r = 0; r < pool.size(); ++r)
-    made.rooms.push_back({rooms[r].number, scores[r], weights[r], errors.weighed[r]});
+  for (std::size_t r = 0; r < rooms.size(); ++r)
+    made.rooms.push_back({rooms[r].labelled.number, scores[r], weights[r], errors.weighed[r]});
   expect_error(errors, weights, made);
-  made.parameters = parameter_ranges(pool, weights);
-  check(pool, log, settings.step_s, threads, made);
+  made.parameters = parameter_ranges(rooms, weights);
+  const auto of_log = motion_statistics(log, counter.settings.step_s);
+  constexpr std::size_t fewest_rooms = 10;
+  if (!of_log || known.rooms.size() < fewest_rooms) return made;
+  made.p = unlike_share(known.rows, *of_log);
+  made.verdict = made.p <= verdict_level ? Verdict::none_like_it : Verdict::like_these;
+  made.statistics = compared(rooms, known, *of_log, made.counter);
   return made;
 }
 

@@ -6,6 +6,7 @@
 
 #include "calibrate/weighted.hpp"
 #include "core/parallel.hpp"
+#include "counting/passes.hpp"
 
 namespace pirsim::calibrate {
 namespace {
@@ -14,15 +15,25 @@ using counting::Counter;
 using counting::Estimates;
 using counting::LabelledRoom;
 
-/// What each of the other rooms' models says of a day.
-std::vector<Estimates> estimates_of_each(const Counter& counter, const counting::Stretch& unlabelled) {
-  std::vector<Estimates> each;
+/// What each room's model says of a day.
+struct DayByRooms {
+  std::vector<Estimates> estimates;
+  std::vector<double> log_likelihoods;
+};
+
+DayByRooms by_each_room(const Counter& counter, counting::Stretch day) {
+  day.people.clear();
+  const auto readings = counting::readings_of(day);
+  const std::size_t modes = counting::size(counter.settings.modes);
+  DayByRooms by;
   for (const counting::RoomModel& room : counter.rooms) {
-    Counter alone{counter.settings, counter.n_sensors, counter.n_counts, counter.moves, {room}, {}};
-    alone.rooms.front().weight = 1.0;
-    each.push_back(counting::estimate(alone, unlabelled, counting::Pass::forward));
+    const counting::ForwardPass pass = counting::forward(counter, room, readings);
+    Estimates own{counter.n_counts, std::vector<double>(pass.beliefs.size() / modes, 0.0)};
+    for (std::size_t i = 0; i < pass.beliefs.size(); ++i) own.probabilities[i / modes] += pass.beliefs[i];
+    by.estimates.push_back(std::move(own));
+    by.log_likelihoods.push_back(pass.log_likelihood);
   }
-  return each;
+  return by;
 }
 
 struct AbsoluteError {
@@ -50,9 +61,12 @@ struct ErrorOfRoom {
 };
 
 ErrorOfRoom error_of_room(const Counter& counter, const LabelledRoom& room, std::size_t own) {
-  std::vector<counting::Stretch> log = room.days;
-  for (counting::Stretch& day : log) day.people.clear();
-  std::vector<double> scores = counting::log_likelihoods(counter, log);
+  std::vector<DayByRooms> days;
+  std::vector<double> scores(counter.rooms.size(), 0.0);
+  for (const counting::Stretch& day : room.days) {
+    days.push_back(by_each_room(counter, day));
+    for (std::size_t r = 0; r < scores.size(); ++r) scores[r] += days.back().log_likelihoods[r];
+  }
   scores[own] = -std::numeric_limits<double>::infinity();
   Counter others = counter;
   counting::weigh(others, scores);
@@ -60,10 +74,9 @@ ErrorOfRoom error_of_room(const Counter& counter, const LabelledRoom& room, std:
   for (const counting::RoomModel& model : others.rooms) weights.push_back(model.weight);
   alike[own] = 0.0;
   AbsoluteError weighed_error, alike_error;
-  for (std::size_t d = 0; d < log.size(); ++d) {
-    const std::vector<Estimates> each = estimates_of_each(counter, log[d]);
-    add_error(each, weights, room.days[d].people, counter.settings.step_s, weighed_error);
-    add_error(each, alike, room.days[d].people, counter.settings.step_s, alike_error);
+  for (std::size_t d = 0; d < days.size(); ++d) {
+    add_error(days[d].estimates, weights, room.days[d].people, counter.settings.step_s, weighed_error);
+    add_error(days[d].estimates, alike, room.days[d].people, counter.settings.step_s, alike_error);
   }
   return {weighed_error.mean(), alike_error.mean()};
 }

@@ -137,7 +137,7 @@ TEST_CASE("A calibration finds the liveliness that the log comes from, and its e
   counting::Settings settings;
   settings.modes = 1;  // as these rooms are made
   settings.shrinkage = 10.0;
-  const Calibration made = calibrate::calibrate(pool, unlabelled(real.labelled.days), settings);
+  const Calibration made = Pool(pool, settings).calibrate(unlabelled(real.labelled.days));
   CHECK(made.verdict == Verdict::like_these);
   REQUIRE(made.parameters.size() == 1);
   CHECK(made.parameters[0].mean_after > made.parameters[0].mean_before + 0.05);
@@ -148,7 +148,7 @@ TEST_CASE("A calibration finds the liveliness that the log comes from, and its e
   CHECK(made.mean_error < made.counter.expected_error->high);
   // A quiet log moves the other way: the twin.
   const PoolRoom other = room_of(random, 98, 0.12);
-  const Calibration quiet = calibrate::calibrate(pool, unlabelled(other.labelled.days), settings);
+  const Calibration quiet = Pool(pool, settings).calibrate(unlabelled(other.labelled.days));
   CHECK(quiet.parameters[0].mean_after < quiet.parameters[0].mean_before - 0.05);
 }
 
@@ -158,8 +158,8 @@ TEST_CASE("A calibration doesn't depend on threads, nor on counts that the log h
   const std::vector<Stretch> log = unlabelled(room_of(random, 99, 0.3).labelled.days);
   std::vector<Stretch> unknown = log;
   for (Stretch& day : unknown) day.people.assign(day.n_readings(), counting::unknown_count);
-  const Calibration one = calibrate::calibrate(pool, log, {}, 1), more = calibrate::calibrate(pool, log, {}, 3),
-                    told = calibrate::calibrate(pool, unknown);
+  const Calibration one = Pool(pool, {}, 1).calibrate(log), more = Pool(pool, {}, 3).calibrate(log),
+                    told = Pool(pool).calibrate(unknown);
   for (std::size_t r = 0; r < pool.size(); ++r) {
     CHECK(one.rooms[r].weight == more.rooms[r].weight);
     CHECK(one.rooms[r].error == more.rooms[r].error);
@@ -174,12 +174,12 @@ TEST_CASE("A log that no room makes is told, with what is outside, and a log wit
   for (Stretch& day : log) {
     for (std::size_t i = 1; i < day.motion.size(); i += 2) day.motion[i] = 0;  // the second sensor died
   }
-  const Calibration died = calibrate::calibrate(pool, log);
+  const Calibration died = Pool(pool).calibrate(log);
   CHECK(died.verdict == Verdict::none_like_it);
   CHECK_THAT(finding(died), contains("quietest sensor"));
   for (Stretch& day : log) std::ranges::fill(day.motion, std::uint8_t{0});
-  CHECK(calibrate::calibrate(pool, log).verdict == Verdict::too_little_told);
-  CHECK_THROWS_AS(calibrate::calibrate(std::span(pool).first(9), log), Error);
+  CHECK(Pool(pool).calibrate(log).verdict == Verdict::too_little_told);
+  CHECK_THROWS_AS(Pool({pool.begin(), pool.begin() + 9}), Error);
 }
 
 TEST_CASE("Of a log the hours that the recipe simulates are compared, each day of its own") {
