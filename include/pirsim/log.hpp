@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pirsim/error.hpp"
@@ -144,6 +145,8 @@ struct LogObserver {
 
 /// Throws Error (io, input, usage).
 [[nodiscard]] LogMap read_log_map(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+/// From memory; `name` stands in messages.
+[[nodiscard]] LogMap parse_log_map(std::string_view text, const std::string& name);
 /// As YAML that read_log_map() reads back.
 [[nodiscard]] std::string to_yaml(const LogMap& map);
 

@@ -13,6 +13,7 @@ from . import errors, specs
 from ._core import __version__, git_revision
 from ._inputs import (EffectInfo, EffectParameter, effects, facing, read_scene, read_script, sensor_model,
                       write_scene, write_script)
+from ._log import Log, LogLengths, LogPair, LogSensor, read_log
 from ._look import (Findings, Page, Picture, Placements, PlacementScore, SensorSight, check, export, placements, preview,
                     view)
 from ._result import Fault, Incident, Result
@@ -31,11 +32,11 @@ __all__ = [
     "Detector", "Diagnostic", "Effect", "EffectInfo", "EffectParameter", "Element", "Enter", "Entrance", "Error",
     "ErrorCode", "Fault", "FileError", "Findings", "FittedEffect", "Floor", "Follow", "Frame", "Grid", "HeldMeeting",
     "Incident", "IncompleteWarning", "InfeasibleError", "InputError", "InputFile", "InputWarning", "InternalError", "Leave",
-    "Meetings", "Mesh", "Model", "Occupancy", "Optics", "Page", "Person", "Picture", "PlacementScore", "Placements", "Places", "Poses", "Positions",
+    "Log", "LogLengths", "LogPair", "LogSensor", "Meetings", "Mesh", "Model", "Occupancy", "Optics", "Page", "Person", "Picture", "PlacementScore", "Placements", "Places", "Poses", "Positions",
     "Profile", "Rays", "Reconciliation", "Result", "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter",
     "Sensing", "Sensor", "SensorModel", "SensorSight", "Sit", "Staff", "Stay", "Summary", "Trace", "Track", "Trial", "Turn",
     "UsageError", "Wait", "Walk", "WalkTest", "Warmth", "Where", "Work", "Zone", "__version__", "check", "compile",
     "coverage", "data_directory", "dataset", "effects", "errors", "export", "facing", "git_revision", "placements",
-    "preview", "read_scene", "read_script", "reconcile", "room", "run", "sensor_model", "specs", "trace", "view",
+    "preview", "read_log", "read_scene", "read_script", "reconcile", "room", "run", "sensor_model", "specs", "trace", "view",
     "walk_test", "write_scene", "write_script",
 ]

@@ -14,6 +14,7 @@ void add_inputs(nanobind::module_& module);
 void add_study(nanobind::module_& module);
 void add_surveys(nanobind::module_& module);
 void add_look(nanobind::module_& module);
+void add_log(nanobind::module_& module);
 void add_dataset(nanobind::module_& module);
 void add_reconcile(nanobind::module_& module);
 

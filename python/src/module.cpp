@@ -11,6 +11,7 @@ NB_MODULE(_core, module) {
   add_study(module);
   add_surveys(module);
   add_look(module);
+  add_log(module);
   add_dataset(module);
   add_reconcile(module);
 }

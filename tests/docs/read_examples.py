@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Lets pirsim read every example of a file on the pages of docs/formats and docs/howto. What is shown can be copied.
 
-  ```yaml                    is a whole file: a script, a recipe, a sensor, placements, nuisance
+  ```yaml                    is a whole file: a script, a recipe, a sensor, placements, nuisance, a map of a log
   ```json                    is a whole scene
   ```csv file=NAME           lies where the scripts after it look for it
   ```yaml part of script     is put into a script, or `part of sensor` into a sensor file
@@ -85,9 +85,14 @@ class Reader:
         self.run("reconcile", "seal", "-q", "--scene", self.room, "--script", self.write("study.yaml", SCRIPT), "--nuisance",
                  self.write("nuisance.yaml", text), "--answer", "answer.json", "-o", "challenge")
 
+    def log_map(self, text):
+        times = "".join(f"2026-03-02T08:{i // 2:02}:{i % 2 * 30:02},0,1,2\n" for i in range(20))
+        self.write("log.csv", "timestamp,S6_PIR,S7_PIR,Room_Occupancy_Count\n" + times)
+        self.run("log", "-q", "log.csv", "--map", self.write("map.yaml", text), "-o", "rows.csv")
+
     def whole(self, text):
         kinds = {"pirsim_script:": self.script, "pirsim_recipe:": self.recipe, "pirsim_nuisance:": self.nuisance,
-                 "pirsim_placements:": self.placements, "id:": self.sensor}
+                 "pirsim_placements:": self.placements, "pirsim_log:": self.log_map, "id:": self.sensor}
         [kind] = [read for key, read in kinds.items() if text.startswith(key)]
         kind(text)
 

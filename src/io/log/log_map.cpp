@@ -114,10 +114,7 @@ void read_people(YamlMap& map, LogMap& log) {
   people.finish();
 }
 
-}  // namespace
-
-LogMap read_log_map(const std::filesystem::path& file, std::span<const std::string> overrides) {
-  const YamlNode root = YamlNode::load(read_input(file), overrides);
+LogMap map_from(const YamlNode& root) {
   Diagnostics faults;
   YamlMap map(root, faults, "map of a log");
   check_version(map, "pirsim_log");
@@ -144,6 +141,13 @@ LogMap read_log_map(const std::filesystem::path& file, std::span<const std::stri
   faults.throw_if_errors();
   return log;
 }
+
+}  // namespace
+
+LogMap read_log_map(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  return map_from(YamlNode::load(read_input(file), overrides));
+}
+LogMap parse_log_map(std::string_view text, const std::string& name) { return map_from(YamlNode::parse(text, name)); }
 
 namespace {
 

@@ -16,9 +16,24 @@ using std::chrono::seconds;
 /// Rounded down.
 seconds whole_seconds(std::int64_t us) { return std::chrono::floor<seconds>(std::chrono::microseconds(us)); }
 
+/// Some systems keep the rules of years to come in a form that the date library passes over: clocks would never be
+/// changed again, and nobody would know. Such a data base lacks what every other one has.
+void require_coming_years(const date::tzdb& known) {
+  constexpr seconds july_2036{2'098'656'000};
+  constexpr seconds ahead{7200};
+  for (const date::time_zone& zone : known.zones) {
+    if (zone.name() != "Europe/Berlin") continue;
+    if (zone.get_info(date::sys_seconds(july_2036)).offset == ahead) return;
+    throw Error(ErrorCode::io,
+                "the system's time zones don't list summer times of the years to come (made by zic -b slim); "
+                "time_zone needs those that do (zic -b fat)");
+  }
+}
+
 const date::time_zone* find_zone(const std::string& name, const Where& where) {
   try {
     const date::tzdb& known = date::get_tzdb();
+    require_coming_years(known);
     for (const date::time_zone& zone : known.zones) {
       if (zone.name() == name) return &zone;
     }

@@ -1,0 +1,150 @@
+"""Logs of real sensors, as arrays."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Iterable, Mapping, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._study import PathOr, as_path
+from .errors import InputWarning
+
+if TYPE_CHECKING:
+    import pandas
+
+
+class LogLengths(NamedTuple):
+    """How long motion, or pauses between motion, last; seconds."""
+
+    n: int
+    floor: float
+    """One in a hundred doesn't reach it. A sensor's hold, or its dead time, if `floor_share` is large."""
+    floor_share: float
+    """Of all, from there to a tenth longer."""
+    shortest: float
+    q05: float
+    q25: float
+    median: float
+    q75: float
+    q95: float
+    longest: float
+
+
+class LogSensor(NamedTuple):
+    """What a log tells of one sensor."""
+
+    name: str
+    motion_share: float | None
+    """Of the known time."""
+    known_s: float
+    unknown_s: float
+    pulses: LogLengths
+    pauses: LogLengths
+    motion_by_hour: tuple[float | None, ...]
+    """[hour] share of the known time, by local hour of the day."""
+    false_triggers: int | None
+    """Motion that begins where there should be none (docs/formats/log.md); None if the log doesn't tell."""
+    false_trigger_hours: float
+
+
+class LogPair(NamedTuple):
+    """How much alike two sensors are."""
+
+    a: str
+    b: str
+    phi: float | None
+    b_after_a_s: float | None
+    n_together: int
+    has_leader: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Log:
+    """Windows of a log of real sensors, one after the other, also those in which nothing is known. All arrays are
+    read-only."""
+
+    sensors: tuple[str, ...]
+    """Names, in the order of the last axis of `motion`."""
+    motion: npt.NDArray[np.uint8]
+    """[window, sensor] 1 if any motion is in the window, 0 if it is known throughout and none is, 2 if unknown."""
+    people: npt.NDArray[np.int32] | None
+    """[window] at the window's end, -1 if unknown; None if the log has no count."""
+    time: npt.NDArray[np.datetime64]
+    """[window] local wall-clock time at its end; of a log of elapsed seconds since 1970."""
+    utc: npt.NDArray[np.datetime64] | None
+    """[window] the same in UTC; None if the log tells no time zone."""
+    time_s: npt.NDArray[np.float64]
+    """[window] its end, seconds since the first window began; of a log of elapsed seconds its own."""
+    window_s: float
+    interval_s: float
+    """Between readings; 0 if the log has events."""
+    map: str
+    """YAML: the map by which it was read, with what was found."""
+    facts: tuple[LogSensor, ...] = field(repr=False)
+    """[sensor] what the log tells of it."""
+    pairs: tuple[LogPair, ...] = field(repr=False)
+    """The most alike first."""
+
+    def __repr__(self) -> str:
+        shares = ", ".join(f"{one.name} {100 * (one.motion_share or 0):.1f} %" for one in self.facts[:8])
+        more = ", ..." if len(self.facts) > 8 else ""
+        unknown = 100 * float((self.motion == 2).mean()) if self.motion.size else 0.0
+        return (f"<pirsim.Log: {len(self.motion)} windows of {self.window_s:g} s, {self.time[0]} to {self.time[-1]}\n"
+                f"  motion {list(self.motion.shape)}: {shares}{more}; {unknown:.1f} % unknown"
+                + ("" if self.people is None else f"\n  people 0 to {int(self.people.max(initial=0))}") + ">")
+
+    @cached_property
+    def masked(self) -> np.ma.MaskedArray[Any, Any]:
+        """[window, sensor] `motion` with what is unknown masked: `log.masked.mean(axis=0)` is the share of motion."""
+        return np.ma.masked_equal(self.motion, 2)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A row a window, with the columns of the command line's CSV; what is unknown is missing (pandas.NA)."""
+        import pandas as pd
+
+        columns: dict[str, Any] = {"time_s": self.time_s}
+        if not self.is_elapsed:
+            columns["time"] = self.time
+        if self.people is not None:
+            columns["people"] = pd.arrays.IntegerArray(self.people.copy(), self.people < 0)
+        for i, name in enumerate(self.sensors):
+            columns[name] = pd.arrays.IntegerArray(self.motion[:, i].copy(), self.motion[:, i] == 2)
+        return pd.DataFrame(columns)
+
+    is_elapsed: bool = field(default=False, repr=False)
+    """The log tells seconds since something began, and no clock."""
+
+
+def read_log(file: PathOr | Iterable[PathOr], map: PathOr | Mapping[str, Any] | None = None, *,
+             window_s: float = 30.0) -> Log:
+    """Reads a log of real motion sensors, as `pirsim log`: docs/formats/log.md.
+
+    file: one, or several that are parts of one log. map: what its columns mean, a YAML file or a dict with the same keys,
+    {"time_zone": "Europe/Berlin", "sensors": {"PIR1": "binary_sensor.hall_motion"}}; without one what is found is taken.
+    window_s: length of the windows. Raises FileError and InputError; what is odd is an InputWarning.
+    """
+    files = [file] if isinstance(file, (str, bytes)) or hasattr(file, "__fspath__") else list(file)  # type: ignore[arg-type]
+    is_dict = isinstance(map, Mapping)
+    found = _core.read_log([as_path(one) for one in files], "" if map is None or is_dict else as_path(map),  # type: ignore[arg-type]
+                           json.dumps({"pirsim_log": 1, **map}) if is_dict else "", float(window_s))  # type: ignore[dict-item]
+    for diagnostic in found["remarks"]:
+        warnings.warn(str(diagnostic), InputWarning, stacklevel=2)
+    utc_us, is_elapsed = found["utc_us"], found["clock"] == "elapsed"
+    zero_us = 0 if is_elapsed or not len(utc_us) else int(utc_us[0]) - round(1e6 * found["window_s"])
+    arrays = {"time": found["local_us"].view("datetime64[us]"), "time_s": (utc_us - zero_us) / 1e6}
+    if found["clock"] == "zoned":
+        arrays["utc"] = utc_us.view("datetime64[us]")
+    for array in arrays.values():
+        array.flags.writeable = False
+    facts = tuple(LogSensor(name, share, known, unknown, LogLengths(*pulses), LogLengths(*pauses), hours, n, n_hours)
+                  for name, share, known, unknown, pulses, pauses, hours, n, n_hours in found["facts"])
+    return Log(sensors=found["sensors"], motion=found["motion"], people=found["people"], time=arrays["time"],
+               utc=arrays.get("utc"), time_s=arrays["time_s"], window_s=found["window_s"], interval_s=found["interval_s"],
+               map=found["map"], facts=facts, pairs=tuple(LogPair(*pair) for pair in found["pairs"]),
+               is_elapsed=is_elapsed)
