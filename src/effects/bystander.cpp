@@ -24,6 +24,7 @@ double longest_s(const TrialInForce& trial, const SceneSpec& scene) {
       constexpr double any_s = 60.0;  // turning, sitting down: more than enough
       const ActionFacts facts = facts_of(action.what);
       sum += any_s + way_s + action.at_s.value_or(0.0);
+      if (facts.follows != nullptr && !facts.follows->times_s.empty()) sum += facts.follows->times_s.back();
       sum += facts.lasts_s + way_s * static_cast<double>(facts.walks_to.size());
     }
     longest = std::max(longest, sum);

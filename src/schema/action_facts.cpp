@@ -82,8 +82,7 @@ ActionFacts facts_of(const action::Turn& turn) noexcept {
 }
 
 ActionFacts facts_of(const action::Follow& follow) noexcept {
-  const double lasts_s = follow.times_s.empty() ? 0.0 : follow.times_s.back() - follow.times_s.front();
-  return {.name = "follow", .course = Course::passes, .pose = Pose::upright, .follows = &follow, .lasts_s = lasts_s};
+  return {.name = "follow", .course = Course::passes, .pose = Pose::upright, .follows = &follow};
 }
 
 ActionFacts facts_of(const Action& action) noexcept {

@@ -57,7 +57,8 @@ std::vector<Outcome> outcomes(const std::vector<ScriptedAction>& actions) {
 }  // namespace
 
 TEST_CASE("an action ends where, how and no sooner than its facts say") {
-  const std::vector<ScriptedAction> actions{act(action::Wait{2.0}),
+  const std::vector<ScriptedAction> actions{act(action::Follow{{0.5, 2.5}, {{5.0, -0.6}, {3.0, -0.6}}, {}}),
+                                            act(action::Wait{2.0}),
                                             act(action::Enter{"door"}),
                                             act(action::Sit{"S4"}),
                                             act(action::Work{20.0}),
@@ -103,7 +104,7 @@ TEST_CASE("whoever isn't there yet can wait or come, and do nothing else") {
                                 action::Enter{"door"}, action::Walk{{{1.0, -1.0}}},
                                 action::Sit{"S4"},     action::Work{},
                                 action::Rise{},        action::Leave{"door"},
-                                action::Turn{10.0}};
+                                action::Turn{10.0},    action::Follow{{0.0, 1.0}, {{1.0, -1.0}, {2.0, -1.0}}, {}}};
   REQUIRE(all.size() == std::variant_size_v<Action>);
   for (const Action& what : all) {
     const ActionFacts facts = facts_of(what);
