@@ -17,6 +17,7 @@ void add_look(nanobind::module_& module);
 void add_log(nanobind::module_& module);
 void add_dataset(nanobind::module_& module);
 void add_reconcile(nanobind::module_& module);
+void add_counting(nanobind::module_& module);
 
 /// Where sensor models of a scene are looked for.
 struct Folders {

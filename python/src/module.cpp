@@ -14,4 +14,5 @@ NB_MODULE(_core, module) {
   add_log(module);
   add_dataset(module);
   add_reconcile(module);
+  add_counting(module);
 }

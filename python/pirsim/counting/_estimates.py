@@ -1,0 +1,67 @@
+"""What a counter makes of a log."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _core
+from .._study import PathOr
+
+if TYPE_CHECKING:
+    import pandas
+
+
+def middle_count(probabilities: npt.NDArray[np.float64]) -> npt.NDArray[np.int64]:
+    """[...] of [..., count]: the least count that as many people or fewer have at least even odds of. It makes the
+    absolute error least."""
+    return np.argmax(np.cumsum(probabilities, axis=-1) >= 0.5 - 1e-9, axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class Estimates:
+    """How many people were there, reading by reading."""
+
+    people: npt.NDArray[np.int64]
+    """[reading] the middle of the distribution, which makes the absolute error least."""
+    probabilities: npt.NDArray[np.float64]
+    """[reading, count]"""
+    time: npt.NDArray[Any]
+    """[reading] its end: local time (datetime64[ms]), or seconds for a log that tells no time of day."""
+    expected_error: tuple[float, float] | None
+    """Of the counter."""
+    _readings: _core.Readings = field(repr=False)
+
+    def __repr__(self) -> str:
+        n, n_counts = self.probabilities.shape
+        return (f"<pirsim.counting.Estimates: {n} readings, 0 to {n_counts - 1} people, "
+                f"{self.people.mean() if n else 0:.2f} on average>")
+
+    @property
+    def mean(self) -> npt.NDArray[np.float64]:
+        """[reading] mean of the distribution."""
+        return self.probabilities @ np.arange(self.probabilities.shape[1])
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A row a reading, with the columns of write_csv()."""
+        import pandas as pd
+
+        time = "time" if self.time.dtype.kind == "M" else "time_s"
+        columns: dict[str, Any] = {time: self.time, "people": self.people, "mean": self.mean}
+        columns.update((f"p{n}", column) for n, column in enumerate(self.probabilities.T))
+        return pd.DataFrame(columns)
+
+    def write_csv(self, file: PathOr) -> None:
+        """As `pirsim count` writes it: time of a reading's end, people, their mean, the probability of each count."""
+        with open(file, "w", encoding="utf-8", newline="") as out:
+            out.write(_core.counts_csv(self._readings, np.ascontiguousarray(self.probabilities)))
+
+
+def estimates_of(readings: _core.Readings, probabilities: npt.NDArray[np.float64],
+                 expected_error: tuple[float, float] | None) -> Estimates:
+    time: npt.NDArray[Any] = readings.end_us
+    time = time.astype("datetime64[us]").astype("datetime64[ms]") if readings.has_clock else time * 1e-6
+    return Estimates(middle_count(probabilities), probabilities, time, expected_error, readings)

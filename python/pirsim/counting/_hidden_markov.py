@@ -1,0 +1,165 @@
+"""Hidden Markov counters. What they compute is the library's: docs/formats/counter.md tells it exactly."""
+
+from __future__ import annotations
+
+from typing import Any, Iterable, NamedTuple, NoReturn
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _core
+from .._study import PathOr, as_count, as_path, as_threads
+from ._estimates import Estimates, estimates_of, middle_count
+from ._readings import Day, Log, as_day, as_motion, readings_of
+
+
+class Room(NamedTuple):
+    """The model of one simulated room. A state is a number of people in one mode, count * modes + mode; a symbol is how
+    many sensors report motion."""
+
+    number: int
+    """In its dataset."""
+    weight: float
+    """How much it has to say; all rooms' add up to 1."""
+    first: npt.NDArray[np.float64]
+    """[state] probability at the first reading."""
+    emissions: npt.NDArray[np.float64]
+    """[state, symbol] probability of each symbol."""
+
+
+class LiveCount:
+    """Counts reading by reading: see live()."""
+
+    __slots__ = ("_core", "_people")
+
+    def __init__(self, core: Any) -> None:
+        self._core = core
+        self._people: int | None = None
+
+    def next(self, bits: npt.ArrayLike) -> npt.NDArray[np.float64]:
+        """[count] probabilities after one more reading. bits: [sensor] 0, 1, or 2 or NaN for unknown. Raises UsageError
+        for another number of sensors."""
+        probabilities: npt.NDArray[np.float64] = self._core.next(as_motion(np.atleast_2d(np.asarray(bits)))[0])
+        self._people = int(middle_count(probabilities))
+        return probabilities
+
+    @property
+    def people(self) -> int | None:
+        """The estimate for the last reading; None before the first."""
+        return self._people
+
+
+class HiddenMarkovCounter:
+    """A mixture of hidden Markov models, one a simulated room. Immutable; load(), train() and calibrate() make one."""
+
+    __slots__ = ("_handle",)
+    _handle: _core.Counter
+    model = "hidden_markov"
+
+    def __init__(self) -> None:
+        raise TypeError("pirsim.counting.train(), load() and calibrate() make a counter")
+
+    @classmethod
+    def _of(cls, core: _core.Counter) -> HiddenMarkovCounter:
+        counter = object.__new__(cls)
+        counter._handle = core
+        return counter
+
+    @property
+    def step_s(self) -> float:
+        """Seconds between readings."""
+        return self._handle.step_s
+
+    @property
+    def modes(self) -> int:
+        """Of each number of people, from quiet to busy."""
+        return self._handle.modes
+
+    @property
+    def n_sensors(self) -> int:
+        """That a log must have."""
+        return self._handle.n_sensors
+
+    @property
+    def n_counts(self) -> int:
+        """It counts 0, 1, ..., n_counts - 1 people."""
+        return self._handle.n_counts
+
+    @property
+    def expected_error(self) -> tuple[float, float] | None:
+        """Mean absolute error in people to expect, a 90 % interval; None if it wasn't calibrated by a log."""
+        return self._handle.expected_error
+
+    @property
+    def moves(self) -> npt.NDArray[np.float64]:
+        """[state, state] probability from one reading to the next, from row to column."""
+        return self._handle.moves
+
+    @property
+    def weights(self) -> npt.NDArray[np.float64]:
+        """[room]"""
+        return self._handle.weights
+
+    @property
+    def rooms(self) -> list[Room]:
+        """The model of each room."""
+        core = self._handle
+        return [Room(int(number), float(weight), first, emissions) for number, weight, first, emissions in
+                zip(core.rooms, core.weights, core.first, core.emissions)]
+
+    def __repr__(self) -> str:
+        weights = self.weights
+        return (f"<pirsim.counting.HiddenMarkovCounter: 0 to {self.n_counts - 1} people in {self.modes} modes by "
+                f"{self.n_sensors} sensors, a reading every {self.step_s:g} s; {len(weights)} rooms, the weight is that "
+                f"of {1 / (weights ** 2).sum():.1f}>")
+
+    def estimate(self, log: Log, smoothed: bool = True, *, map: PathOr | None = None) -> Estimates:
+        """How many people were there.
+
+        log: a file as `pirsim log` reads it, a list of files that are parts of one, or an array [reading, sensor] of
+        the counter's step with 0, 1, and 2 or NaN for unknown. smoothed: each reading by those after it as well; False:
+        by those before it alone, as it could have been told then. map: a file that says what a log's columns mean.
+        Raises InputError if the log hasn't as many sensors as the counter.
+        """
+        readings = readings_of(log, self.step_s, map)
+        return estimates_of(readings, _core.estimate(self._handle, readings, smoothed), self.expected_error)
+
+    def live(self) -> LiveCount:
+        """Counts reading by reading, as they come: what estimate(..., smoothed=False) gives."""
+        return LiveCount(_core.LiveCount(self._handle))
+
+    def save(self, file: PathOr) -> None:
+        """As JSON that load(), `pirsim count` and, by docs/formats/counter.md, any program can count with."""
+        self._handle.write(as_path(file))
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("a counter can't be pickled: save() it")
+
+
+def as_number(value: float, name: str, least: float) -> float:
+    number = float(value)
+    if not least <= number < float("inf"):
+        raise ValueError(f"{name}: expected a number from {least:g} up, got {value}")
+    return number
+
+
+def settings_of(step_s: float, modes: int = 4, shrinkage: float = 60.0, iterations: int = 40,
+                weight_power: float = 0.2) -> _core.CountingSettings:
+    settings = _core.CountingSettings()
+    settings.step_s = as_number(step_s, "step_s", 1e-3)
+    settings.modes = as_count(modes, "modes", 1, 100)
+    settings.shrinkage = as_number(shrinkage, "shrinkage", 0.0)
+    settings.iterations = as_count(iterations, "iterations", 1, 10_000)
+    settings.weight_power = as_number(weight_power, "weight_power", 0.0)
+    return settings
+
+
+def train_hidden_markov(days: Iterable[Day], step_s: float, threads: int, *, modes: int = 4, shrinkage: float = 60.0,
+                        iterations: int = 40) -> HiddenMarkovCounter:
+    settings = settings_of(step_s, modes, shrinkage, iterations)
+    by_room = sorted(map(as_day, days), key=lambda day: day.room)  # stable: a room's days stay in order
+    numbers = sorted({day.motion.shape[1] for day in by_room})
+    if len(numbers) > 1:
+        raise ValueError(f"the rooms have {', '.join(map(str, numbers[:-1]))} or {numbers[-1]} sensors, and a hidden "
+                         f"Markov counter is for one number of them: say which, sensors={numbers[-1]}")
+    return HiddenMarkovCounter._of(_core.train_counter([tuple(day) for day in by_room], settings, as_threads(threads)))

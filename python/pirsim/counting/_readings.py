@@ -1,0 +1,95 @@
+"""What counters learn and count from: readings of motion, half a minute each."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from typing import Any, Iterable, NamedTuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _core
+from .._study import PathOr, as_count, as_path, as_threads
+from ..errors import InputWarning
+
+UNKNOWN = 2
+"""In place of a bit."""
+MOST_PEOPLE = 999
+MOST_SENSORS = 1000
+
+Motion = npt.NDArray[np.uint8]
+Log = Union[PathOr, "list[PathOr]", npt.ArrayLike]
+"""A log's file, files that are parts of one log, or an array [reading, sensor] of 0, 1 and 2 or NaN for unknown."""
+
+
+class Day(NamedTuple):
+    """Readings of one room at equal steps, one after the other, with the people who were there."""
+
+    room: int
+    """Its number: a room's days are learnt from together."""
+    motion: Motion
+    """[reading, sensor] 1 if any motion is in the reading, 0 if none, 2 if that isn't known."""
+    people: npt.NDArray[np.int32]
+    """[reading] at its end; -1 where nobody counted."""
+
+
+def as_motion(bits: npt.ArrayLike) -> Motion:
+    """[reading, sensor]; a list of numbers is that of one sensor. Raises ValueError."""
+    values = np.asarray(bits)
+    if values.dtype.kind not in "bui":
+        values = values.astype(float)  # raises ValueError for what isn't a number
+        values = np.where(np.isnan(values), UNKNOWN, values)
+    if values.ndim == 1:
+        values = values[:, np.newaxis]
+    if values.ndim != 2 or not 1 <= values.shape[1] <= MOST_SENSORS:
+        raise ValueError(f"expected bits as an array [reading, sensor], got one of shape {list(values.shape)}")
+    wrong = np.argwhere((values != 0) & (values != 1) & (values != UNKNOWN))
+    if len(wrong):
+        reading, sensor = wrong[0]
+        raise ValueError(f"expected 0, 1, or 2 or NaN for unknown, got {values[reading, sensor]} in reading {reading} of "
+                         f"sensor {sensor}")
+    return np.ascontiguousarray(values, dtype=np.uint8)
+
+
+def as_day(day: Day) -> Day:
+    """With arrays as the module takes them. Raises ValueError."""
+    motion, people = as_motion(day.motion), np.asarray(day.people)
+    if people.dtype.kind == "b" or people.shape != (len(motion),) or not np.array_equal(people, np.floor(people)):
+        raise ValueError(f"room {day.room}: expected a whole number of people for each of {len(motion)} readings")
+    if len(people) and not (-1 <= people.min() and people.max() <= MOST_PEOPLE):
+        raise ValueError(f"room {day.room}: expected 0 to {MOST_PEOPLE} people, or -1 where nobody counted")
+    return Day(as_count(day.room, "room", -2**31, 2**31 - 1), motion, np.ascontiguousarray(people, dtype=np.int32))
+
+
+def read_dataset(folder: PathOr, part: str = "train", *, step_s: float = 30.0, threads: int = 0) -> list[Day]:
+    """The days of one part of a finished dataset (train, validation, test_days or test_rooms), room by room, as
+    readings of `step_s` seconds: any motion in them, and the people at their end. Raises FileError and InputError, and
+    ValueError if a reading isn't a whole number of the dataset's rows."""
+    days = []
+    for room, _, row_s, _, motion, people in _core.read_room_days(as_path(folder), part, as_threads(threads)):
+        n_rows = round(step_s / row_s)
+        if n_rows < 1 or abs(n_rows * row_s - step_s) > 1e-6:
+            raise ValueError(f"step_s: a reading of {step_s:g} s isn't a whole number of the dataset's rows of {row_s:g} s")
+        n = len(people) // n_rows
+        joined = motion[:n * n_rows].reshape(n, n_rows, -1).max(axis=1)
+        days.append(Day(room, joined, people[n_rows - 1:n * n_rows:n_rows].copy()))
+    return days
+
+
+def is_files(log: Any) -> bool:
+    return isinstance(log, (str, os.PathLike)) or (
+        isinstance(log, (list, tuple)) and len(log) > 0 and all(isinstance(one, (str, os.PathLike)) for one in log))
+
+
+def readings_of(log: Log, step_s: float, map: PathOr | None) -> _core.Readings:
+    """Of a log in any form. map: what the file's columns mean."""
+    if not is_files(log):
+        if map is not None:
+            raise TypeError("map tells what a file's columns mean; the log is no file")
+        return _core.bit_readings(as_motion(log), step_s)  # type: ignore[arg-type]
+    files: Iterable[Any] = [log] if isinstance(log, (str, os.PathLike)) else log  # type: ignore[assignment]
+    readings = _core.log_readings([as_path(file) for file in files], as_path(map or ""), step_s)
+    for remark in readings.remarks:
+        warnings.warn(str(remark), InputWarning, stacklevel=4)
+    return readings
