@@ -1,4 +1,5 @@
 // A counter as JSON.
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -16,6 +17,8 @@ constexpr int format_version = 1;
 
 /// Probabilities in rows that add up to 1.
 std::vector<double> probabilities(const Json& json, std::size_t n_rows, std::size_t n_columns) {
+  const bool all_numbers = std::ranges::all_of(json, [](const Json& value) { return value.is_number(); });
+  if (!json.is_array() || !all_numbers) throw std::domain_error("a table isn't a list of numbers");
   const auto values = json.get<std::vector<double>>();
   if (values.size() != n_rows * n_columns) throw std::domain_error("a table has another size than its counts ask for");
   for (std::size_t row = 0; row < n_rows; ++row) {
@@ -37,33 +40,49 @@ double positive(const Json& json, const char* what) {
 }
 
 int whole(const Json& json, const char* what, int least, int most) {
-  const int value = json.get<int>();
+  const double value = json.is_number_integer() ? json.get<double>() : least - 1.0;
   if (value < least || value > most) {
-    throw std::domain_error(std::string(what) + " isn't from " + std::to_string(least) + " to " + std::to_string(most));
+    throw std::domain_error(std::string(what) + " isn't a whole number from " + std::to_string(least) + " to " +
+                            std::to_string(most));
   }
-  return value;
+  return json.get<int>();
+}
+
+/// No reading is impossible, whoever is there: else there may be nobody left to believe in.
+std::vector<double> emissions(const Json& json, std::size_t n_states, std::size_t n_symbols) {
+  std::vector<double> values = probabilities(json, n_states, n_symbols);
+  if (std::ranges::find(values, 0.0) != values.end()) throw std::domain_error("an emission isn't above 0");
+  return values;
+}
+
+const Json& member(const Json& json, const char* key) {
+  if (!json.is_object() || !json.contains(key)) throw std::domain_error(std::string(key) + " is missing");
+  return json.at(key);
 }
 
 Counter counter_from(const Json& json) {
-  if (json.at("pirsim_counter") != format_version)
+  if (member(json, "pirsim_counter") != format_version)
     throw std::domain_error("pirsim_counter: this pirsim reads version " + std::to_string(format_version));
+  if (const auto model = json.find("model"); model != json.end())
+    throw std::domain_error("it counts by another model than hidden Markov; pirsim.counting of Python counts with it");
   constexpr int most_modes = 100, most_sensors = 1000, most_counts = 1000;
   Counter counter;
-  counter.settings.step_s = positive(json.at("step_s"), "step_s");
-  counter.settings.modes = whole(json.at("modes"), "modes", 1, most_modes);
-  counter.n_sensors = whole(json.at("sensors"), "sensors", 1, most_sensors);
-  counter.n_counts = whole(json.at("counts"), "counts", 2, most_counts);
+  counter.settings.step_s = positive(member(json, "step_s"), "step_s");
+  counter.settings.modes = whole(member(json, "modes"), "modes", 1, most_modes);
+  counter.n_sensors = whole(member(json, "sensors"), "sensors", 1, most_sensors);
+  counter.n_counts = whole(member(json, "counts"), "counts", 2, most_counts);
   const std::size_t n = size(counter.n_states());
-  counter.moves = probabilities(json.at("moves"), n, n);
+  counter.moves = probabilities(member(json, "moves"), n, n);
   double weights = 0.0;
-  for (const Json& room : json.at("rooms")) {
+  for (const Json& room : member(json, "rooms")) {
     RoomModel& model = counter.rooms.emplace_back();
-    model.number = room.at("room").get<int>();
-    model.weight = room.at("weight").get<double>();
+    constexpr int most_rooms = 1'000'000'000;
+    model.number = whole(member(room, "room"), "room", 0, most_rooms);
+    model.weight = member(room, "weight").get<double>();
     if (!(model.weight >= 0.0)) throw std::domain_error("a weight is below 0");
     weights += model.weight;
-    model.first = probabilities(room.at("first"), 1, n);
-    model.emissions = probabilities(room.at("emissions"), n, size(counter.n_symbols()));
+    model.first = probabilities(member(room, "first"), 1, n);
+    model.emissions = emissions(member(room, "emissions"), n, size(counter.n_symbols()));
   }
   if (!(std::abs(weights - 1.0) < 1e-6)) throw std::domain_error("the rooms' weights don't add up to 1");
   if (const auto error = json.find("expected_error"); error != json.end())

@@ -182,11 +182,13 @@ def train_logistic(days: Iterable[Day], step_s: float, threads: int, *, C: float
 def train_trees(days: Iterable[Day], step_s: float, threads: int, **settings: Any) -> TreesCounter:
     _require_scikit_learn()
     from sklearn.ensemble import HistGradientBoostingClassifier
+    from threadpoolctl import threadpool_limits  # scikit-learn brings it
 
     step_s = as_number(step_s, "step_s", 1e-3)
     rows, people = _learnt_from(days, step_s)
     usual = {"max_iter": 60, "max_leaf_nodes": 8, "min_samples_leaf": 50, "random_state": 1}
-    classifier = HistGradientBoostingClassifier(**{**usual, **settings}).fit(rows, people)
+    with threadpool_limits(max(1, threads)):  # the trees are small: on a busy machine a second thread costs minutes
+        classifier = HistGradientBoostingClassifier(**{**usual, **settings}).fit(rows, people)
     return TreesCounter(step_s, np.bincount(people) / len(people), classifier)
 
 

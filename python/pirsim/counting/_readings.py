@@ -59,7 +59,7 @@ def as_day(day: Day) -> Day:
         raise ValueError(f"room {day.room}: expected a whole number of people for each of {len(motion)} readings")
     if len(people) and not (-1 <= people.min() and people.max() <= MOST_PEOPLE):
         raise ValueError(f"room {day.room}: expected 0 to {MOST_PEOPLE} people, or -1 where nobody counted")
-    return Day(as_count(day.room, "room", -2**31, 2**31 - 1), motion, np.ascontiguousarray(people, dtype=np.int32))
+    return Day(as_count(day.room, "room", 0, 10**9), motion, np.ascontiguousarray(people, dtype=np.int32))
 
 
 def read_dataset(folder: PathOr, part: str = "train", *, step_s: float = 30.0, threads: int = 0) -> list[Day]:

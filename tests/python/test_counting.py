@@ -1,0 +1,234 @@
+"""Counters compute what docs/formats/counter.md says, by every path of a short chain and by the page's own program."""
+
+import itertools
+import json
+import math
+import re
+
+import numpy as np
+import pytest
+
+import pirsim
+from pirsim import counting
+
+SHAPES = [(1, 2, 1), (2, 3, 2), (3, 2, 2), (4, 2, 3)]  # sensors, counts, modes
+
+
+def random_counter(shape, seed=0, n_rooms=3):
+    n_sensors, n_counts, modes = shape
+    rng, n = np.random.default_rng([seed, *shape]), n_counts * modes
+    rooms = [{"room": r + 1, "weight": float(weight), "first": rng.dirichlet(np.ones(n)).tolist(),
+              "emissions": rng.dirichlet(np.ones(n_sensors + 1), n).ravel().tolist()}
+             for r, weight in enumerate(rng.dirichlet(np.ones(n_rooms)))]
+    return {"pirsim_counter": 1, "step_s": 30.0, "modes": modes, "sensors": n_sensors, "counts": n_counts,
+            "moves": rng.dirichlet(np.ones(n), n).ravel().tolist(), "rooms": rooms, "expected_error": [0.25, 0.5]}
+
+
+def random_bits(n, n_sensors, seed=0, unknown=0.2):
+    rng = np.random.default_rng([seed, n, n_sensors])
+    bits = (rng.random((n, n_sensors)) < 0.4).astype(np.uint8)
+    bits[rng.random(bits.shape) < unknown] = 2
+    return bits
+
+
+@pytest.fixture
+def load(tmp_path):
+    def loaded(saved):
+        file = tmp_path / "counter.json"
+        file.write_text(saved if isinstance(saved, str) else json.dumps(saved))
+        return counting.load(file)
+
+    return loaded
+
+
+def likelihood_of(emission, bits):
+    """Of a state. A symbol's sensors are any of its size, all sets alike: those that agree with the known bits."""
+    total = 0.0
+    for active, probability in enumerate(emission):
+        sets = list(itertools.combinations(range(len(bits)), active))
+        agree = sum(all(bit == 2 or bit == (sensor in one) for sensor, bit in enumerate(bits)) for one in sets)
+        total += probability * agree / len(sets)
+    return total
+
+
+def by_all_paths(saved, bits):
+    """Smoothed and, of the last reading, forward probabilities: each is a share of all paths through the states."""
+    n, modes = saved["counts"] * saved["modes"], saved["modes"]
+    moves = np.reshape(saved["moves"], (n, n))
+    smoothed, last = np.zeros((len(bits), saved["counts"])), np.zeros(saved["counts"])
+    for room in saved["rooms"]:
+        emissions = np.reshape(room["emissions"], (n, -1))
+        seen = np.array([[likelihood_of(row, reading) for row in emissions] for reading in bits])
+        own = np.zeros_like(smoothed)
+        for path in itertools.product(range(n), repeat=len(bits)):
+            p = room["first"][path[0]] * math.prod(moves[a, b] for a, b in zip(path, path[1:]))
+            p *= math.prod(seen[i, state] for i, state in enumerate(path))
+            for i, state in enumerate(path):
+                own[i, state // modes] += p
+        own /= own.sum(axis=1, keepdims=True)
+        smoothed += room["weight"] * own
+        last += room["weight"] * own[-1]
+    return smoothed, last
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_every_path_of_a_short_chain(shape, load):
+    saved = random_counter(shape)
+    bits = random_bits(4, shape[0])
+    bits[1] = 2  # nothing is known
+    counter = load(saved)
+    smoothed = counter.estimate(bits).probabilities
+    forward = counter.estimate(bits, smoothed=False).probabilities
+    np.testing.assert_allclose(smoothed, by_all_paths(saved, bits)[0], rtol=0, atol=1e-12)
+    for i in range(len(bits)):
+        np.testing.assert_allclose(forward[i], by_all_paths(saved, bits[:i + 1])[1], rtol=0, atol=1e-12)
+    assert np.abs(smoothed - forward)[:-1].max() > 1e-3  # they are not the same thing
+
+
+@pytest.fixture(scope="module")
+def page_count(source):
+    page = (source / "docs" / "formats" / "counter.md").read_text(encoding="utf-8")
+    names = {}
+    exec(re.search(r"```python\n(.*?)```", page, re.DOTALL)[1], names)
+    return names["count"]
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_the_pages_program_counts_the_same(shape, load, page_count):
+    saved, bits = random_counter(shape, seed=1), random_bits(700, shape[0])
+    counter = load(saved)
+    for smoothed in (True, False):
+        estimates = counter.estimate(bits, smoothed=smoothed)
+        expected = page_count(saved, bits, smoothed)
+        np.testing.assert_allclose(estimates.probabilities, expected, rtol=0, atol=1e-12)
+        assert estimates.people.tolist() == [next(n for n in range(shape[1]) if row[:n + 1].sum() >= 0.5 - 1e-9)
+                                             for row in expected]
+    other = random_counter(shape, seed=2)  # the comparison tells counters apart
+    assert np.abs(counter.estimate(bits).probabilities - page_count(other, bits)).max() > 1e-3
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_live_counts_are_forward_counts(shape, load):
+    counter, bits = load(random_counter(shape)), random_bits(60, shape[0])
+    live = counter.live()
+    assert live.people is None
+    forward = counter.estimate(bits, smoothed=False)
+    for i, reading in enumerate(bits):
+        np.testing.assert_allclose(live.next(reading), forward.probabilities[i], rtol=0, atol=1e-12)
+        assert live.people == forward.people[i]
+    with pytest.raises(pirsim.UsageError, match=f"expected {shape[0]} bits"):
+        live.next([0] * (shape[0] + 1))
+
+
+def test_what_is_saved_is_read_back(load, tmp_path):
+    saved = random_counter((2, 3, 2))
+    counter = load(saved)
+    counter.save(tmp_path / "again.json")
+    assert json.loads((tmp_path / "again.json").read_text()) == saved
+    assert (counter.step_s, counter.modes, counter.n_sensors, counter.n_counts) == (30.0, 2, 2, 3)
+    assert counter.expected_error == (0.25, 0.5) and counter.moves.ravel().tolist() == saved["moves"]
+    for room, own in zip(counter.rooms, saved["rooms"]):
+        assert (room.number, room.weight) == (own["room"], own["weight"])
+        assert room.first.tolist() == own["first"] and room.emissions.ravel().tolist() == own["emissions"]
+    assert counter.weights.tolist() == [room.weight for room in counter.rooms]
+    live = counter.live()  # outlives who made it
+    del counter
+    assert live.next([1, 0]).sum() == pytest.approx(1.0)
+
+
+def changed(**changes):
+    return {**random_counter((2, 3, 2)), **changes}
+
+
+def changed_room(**changes):
+    saved = random_counter((2, 3, 2))
+    saved["rooms"][0].update(changes)
+    return saved
+
+
+def without(key):
+    return {name: value for name, value in random_counter((2, 3, 2)).items() if name != key}
+
+
+HOSTILE = [
+    ("not JSON", "isn't a counter: "), ("", "isn't a counter: "), ("[]", "pirsim_counter is missing"),
+    ("[" * 100_000, "isn't a counter"), ("7", "pirsim_counter is missing"),
+    (changed(pirsim_counter=2), "this pirsim reads version 1"), (changed(model="forest"), "by another model"),
+    (without("moves"), "moves is missing"), (without("rooms"), "rooms is missing"),
+    (changed(sensors=3), "another size"), (changed(counts=4), "another size"), (changed(modes=1), "another size"),
+    (changed(modes=2.5), "modes isn't a whole number"), (changed(counts=10**30), "counts isn't a whole number"),
+    (changed(sensors=0), "sensors isn't a whole number"), (changed(modes="two"), "modes isn't a whole number"),
+    (changed(step_s=0), "step_s isn't above 0"), (changed(step_s="30"), "isn't a counter as it should be"),
+    (changed(moves="none"), "isn't a list of numbers"), (changed(moves=[True] * 36), "isn't a list of numbers"),
+    (changed(moves=[0.2] * 36), "don't add up to 1"), (changed(moves=[2.0, -1.0, 0, 0, 0, 0] * 6), "between 0 and 1"),
+    (changed(rooms=[]), "weights don't add up to 1"), (changed(rooms=[5]), "room is missing"),
+    (changed_room(weight=-0.5), "a weight is below 0"), (changed_room(weight=0.9), "weights don't add up to 1"),
+    (changed_room(first=[0.5] * 6), "don't add up to 1"), (changed_room(emissions=[1.0, 0.0, 0.0] * 6), "isn't above 0"),
+    (changed(expected_error=3), "isn't a counter as it should be"),
+    (json.dumps(changed()).replace("30.0", "NaN"), "isn't a counter"),
+    (json.dumps(changed()).replace("30.0", "1e999"), "isn't a counter"),
+]
+
+
+@pytest.mark.parametrize("saved, why", HOSTILE, ids=range(len(HOSTILE)))
+def test_a_file_that_is_no_counter_is_refused_in_a_line(saved, why, load):
+    with pytest.raises(pirsim.InputError, match=re.escape(why)) as refused:
+        load(saved)
+    assert len(str(refused.value).splitlines()) == 1 and "counter.json: error: " in str(refused.value)
+
+
+def test_files_that_cant_be_read(tmp_path):
+    with pytest.raises(pirsim.FileError):
+        counting.load(tmp_path / "nowhere.json")
+    (tmp_path / "bytes.json").write_bytes(bytes(range(128, 256)))
+    with pytest.raises(pirsim.InputError):
+        counting.load(tmp_path / "bytes.json")
+
+
+@pytest.mark.parametrize("bits", [[[0, 3]], [[0, -1]], [[0, 0.5]], np.zeros((2, 2, 2)), [["on", "off"]], [[]]])
+def test_what_is_no_bit_is_refused(bits, load):
+    with pytest.raises(ValueError):
+        load(random_counter((2, 3, 2))).estimate(bits)
+
+
+def test_bits_in_any_form(load):
+    counter, bits = load(random_counter((2, 3, 2))), random_bits(50, 2)
+    expected = counter.estimate(bits).probabilities
+    as_floats = np.where(bits == 2, np.nan, bits.astype(float))
+    for given in (as_floats, bits.astype(int), np.asfortranarray(bits), bits.tolist()):
+        assert np.array_equal(counter.estimate(given).probabilities, expected)
+    assert counter.estimate(np.empty((0, 2))).people.shape == (0,)
+    with pytest.raises(pirsim.InputError, match="for 2 sensors, and the log has 3"):
+        counter.estimate(random_bits(5, 3))
+    one = load(random_counter((1, 2, 1)))
+    assert np.array_equal(one.estimate([0, 1, 1]).probabilities, one.estimate([[0], [1], [1]]).probabilities)
+    assert one.estimate([0, 1, 1]).time.tolist() == [30.0, 60.0, 90.0]
+
+
+def write_log(file, n=240, seed=3):
+    """A spreadsheet's: local times, a reading every half minute, some empty."""
+    rng = np.random.default_rng(seed)
+    begin = np.datetime64("2026-03-02T08:00:00")
+    lines = ["time,left,right"]
+    for i in range(n):
+        bits = ["" if rng.random() < 0.05 else str(int(rng.random() < 0.3 * (60 < i < 200))) for _ in range(2)]
+        lines.append(f"{begin + np.timedelta64(30 * (i + 1), 's')},{bits[0]},{bits[1]}")
+    file.write_text("\n".join(lines) + "\n")
+
+
+@pytest.mark.parametrize("forward", [[], ["--forward"]])
+def test_a_log_is_counted_as_on_the_command_line(forward, load, command, tmp_path):
+    counter = load(random_counter((2, 3, 2)))
+    write_log(tmp_path / "log.csv")
+    printed = command("count", tmp_path / "counter.json", "--log", tmp_path / "log.csv", "-q", *forward)
+    estimates = counter.estimate(tmp_path / "log.csv", smoothed=not forward)
+    estimates.write_csv(tmp_path / "counts.csv")
+    assert (tmp_path / "counts.csv").read_bytes().decode() == printed and printed.count("\n") == 241
+    rows = [line.split(",") for line in printed.splitlines()]
+    frame = estimates.to_pandas()
+    assert list(frame.columns) == rows[0] == ["time", "people", "mean", "p0", "p1", "p2"]
+    assert [str(time.astype("datetime64[s]")) for time in estimates.time] == [row[0] for row in rows[1:]]
+    assert frame["people"].tolist() == [int(row[1]) for row in rows[1:]]
+    np.testing.assert_allclose(frame[["mean"]].to_numpy()[:, 0], [float(row[2]) for row in rows[1:]], atol=0.00501)
+    np.testing.assert_allclose(frame[["p0", "p1", "p2"]].to_numpy(), [[float(p) for p in row[3:]] for row in rows[1:]],
+                               atol=0.000501)

@@ -1,0 +1,207 @@
+"""Counters learn what their data were made with, from datasets and arrays, and are calibrated as on the command line."""
+
+import csv
+import gzip
+import json
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from test_counting import write_log
+
+import pirsim
+from pirsim import counting
+
+COUNT_MOVES = np.array([[0.98, 0.02, 0.0], [0.02, 0.96, 0.02], [0.0, 0.03, 0.97]])
+EMISSIONS = np.array([[0.95, 0.04, 0.01], [0.3, 0.5, 0.2], [0.9, 0.05, 0.05], [0.2, 0.3, 0.5], [0.7, 0.25, 0.05],
+                      [0.05, 0.25, 0.7]])  # [count * 2 + mode, sensors with motion]
+
+
+def state_moves(stays):
+    """Between counts as above; a mode stays, and is drawn anew when the count changes."""
+    same = np.kron(np.eye(3), np.array([[stays, 1 - stays], [1 - stays, stays]]))
+    return np.kron(COUNT_MOVES, np.ones((2, 2))) * np.where(same > 0, same, 0.5)
+
+
+def simulated(rng, room, n=1500):
+    """A day of two sensors, of which a lone one is either."""
+    moves, states = np.cumsum(state_moves(0.95), axis=1), np.zeros(n, int)
+    for i in range(1, n):
+        states[i] = np.searchsorted(moves[states[i - 1]], rng.random() * moves[states[i - 1], -1])
+    symbols = (rng.random(n)[:, None] > np.cumsum(EMISSIONS, axis=1)[states, :2]).sum(axis=1)
+    lone = rng.integers(2, size=n)
+    bits = np.column_stack([(symbols == 2) | (symbols == 1) & (lone == sensor) for sensor in range(2)])
+    return counting.Day(room, bits.astype(np.uint8), states // 2)
+
+
+@pytest.fixture(scope="module")
+def trainings():
+    """Emissions [training, state, symbol] and moves [training, state, state]. The rooms are alike, and shrinkage makes
+    one model of them."""
+    counters = [counting.train([simulated(rng, room) for room in range(8)], modes=2, shrinkage=1e9, iterations=200)
+                for rng in (np.random.default_rng([5, repeat]) for repeat in range(8))]
+    return np.array([c.rooms[0].emissions for c in counters]), np.array([c.moves for c in counters])
+
+
+def most_errors(estimates, truth):
+    """How many standard errors the mean of the trainings is from the truth, where that is above 0. Standard errors are
+    those of the trainings: 0.0005 (of rare moves) to 0.005."""
+    standard = estimates.std(axis=0, ddof=1) / np.sqrt(len(estimates))
+    assert standard.max() < 0.006
+    possible = truth > 0
+    return (np.abs(estimates.mean(axis=0) - truth)[possible] / standard[possible]).max()
+
+
+def test_training_recovers_a_known_model(trainings):
+    emissions, moves = trainings
+    assert most_errors(emissions, EMISSIONS) < 5
+    assert most_errors(moves, state_moves(0.95)) < 5
+    assert moves[:, state_moves(0.95) == 0].max() < 1e-3  # two people at once come and go in none of them
+
+
+def test_twins_of_that_model_arent_recovered(trainings):
+    emissions, moves = trainings
+    assert most_errors(moves, state_moves(0.93)) > 5
+    assert most_errors(emissions, 0.97 * EMISSIONS + 0.03 * EMISSIONS[:, ::-1]) > 5
+    rng = np.random.default_rng(7)
+    shuffled = [day._replace(people=rng.permutation(day.people)) for day in (simulated(rng, room) for room in range(8))]
+    wrong = counting.train(shuffled, modes=2, shrinkage=1e9, iterations=50)
+    assert np.abs(wrong.rooms[0].emissions - EMISSIONS).max() > 0.1
+
+
+def test_threads_and_the_order_of_rooms_change_no_bit():
+    days = [simulated(np.random.default_rng(room), room, n=200) for room in range(5)]
+    one = counting.train(days, threads=1)
+    other = counting.train(days[::-1], threads=3)
+    assert [room.number for room in other.rooms] == list(range(5))
+    for a, b in zip(one.rooms, other.rooms):
+        assert np.array_equal(a.emissions, b.emissions) and np.array_equal(a.first, b.first)
+    assert np.array_equal(one.moves, other.moves) and one.weights.tolist() == [0.2] * 5
+
+
+def test_what_cant_be_learnt_from_is_refused():
+    day = simulated(np.random.default_rng(1), 1, n=50)
+    with pytest.raises(ValueError, match="hidden_markov, logistic, trees, got 'forest'"):
+        counting.train([day], model="forest")
+    with pytest.raises(TypeError, match="mode"):
+        counting.train([day], mode=3)
+    for setting, value in (("modes", 0), ("modes", 101), ("iterations", 0), ("shrinkage", -1), ("shrinkage", float("nan"))):
+        with pytest.raises(ValueError, match=setting):
+            counting.train([day], **{setting: value})
+    with pytest.raises(ValueError, match="1 or 2 sensors"):
+        counting.train([day, day._replace(room=2, motion=day.motion[:, :1])])
+    assert counting.train([day, day._replace(room=2, motion=day.motion[:, :1])], sensors=1).n_sensors == 1
+    with pytest.raises(ValueError, match="no room has 3"):
+        counting.train([day], sensors=3)
+    for people in (day.people[:-1], day.people + 0.5, day.people - 2, day.people + 1000, day.people > 0):
+        with pytest.raises(ValueError, match="room 1: expected"):
+            counting.train([day._replace(people=people)])
+    with pytest.raises(pirsim.InputError, match="nobody is in any of the rooms"):
+        counting.train([day._replace(people=day.people * 0)])
+    with pytest.raises(pirsim.InputError, match="no room"):
+        counting.train([])
+    with pytest.raises(pirsim.FileError, match="no datapackage.json"):
+        counting.train("nowhere")
+
+
+# -- datasets --------------------------------------------------------------------------------------------------------
+
+@pytest.fixture(scope="module")
+def dataset(data, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("data") / "tiny"
+    pirsim.dataset(data / "recipes" / "tiny.yaml", folder)
+    return folder
+
+
+def rows_of(file):
+    with gzip.open(file, "rt", newline="") as text:
+        return list(csv.DictReader(text))
+
+
+def test_a_datasets_days_are_its_rows_joined(dataset):
+    package = json.loads((dataset / "datapackage.json").read_text())
+    for part in ("train", "validation", "test_days", "test_rooms"):
+        [resource] = [one for one in package["resources"] if one["name"] == part]
+        days = counting.read_dataset(dataset, part)
+        assert len(days) == len(resource["path"]) > 0
+        for day, path in zip(days, resource["path"]):
+            rows = rows_of(dataset / path)
+            assert day.room == int(rows[0]["room"]) and len(day.people) == len(rows) // 30
+            sensors = [name for name in rows[0] if re.fullmatch(r"PIR\d+", name) and rows[0][name]]
+            for i in range(len(day.people)):
+                own = rows[30 * i:30 * (i + 1)]
+                assert day.motion[i].tolist() == [int(any(row[name] == "1" for row in own)) for name in sensors]
+                assert day.people[i] == int(own[-1]["people"])
+    with pytest.raises(pirsim.UsageError, match="got 'training'"):
+        counting.read_dataset(dataset, "training")
+    with pytest.raises(ValueError, match="whole number of the dataset's rows"):
+        counting.read_dataset(dataset, step_s=2.5)
+
+
+def shell(*arguments, code=0):
+    done = subprocess.run([sys.executable, "-m", "pirsim.counting", *map(str, arguments)], capture_output=True, text=True)
+    assert done.returncode == code, done.stderr
+    return done.stderr
+
+
+def test_the_shell_trains_and_counts_as_python_does(dataset, tmp_path):
+    shell("train", dataset, "-o", tmp_path / "shell.json")
+    counter = counting.train(dataset)
+    counter.save(tmp_path / "python.json")
+    assert (tmp_path / "shell.json").read_bytes() == (tmp_path / "python.json").read_bytes()
+    write_log(tmp_path / "log.csv")
+    shell("estimate", tmp_path / "shell.json", "--log", tmp_path / "log.csv", "--forward", "-o", tmp_path / "shell.csv")
+    counter.estimate(tmp_path / "log.csv", smoothed=False).write_csv(tmp_path / "python.csv")
+    assert (tmp_path / "shell.csv").read_bytes() == (tmp_path / "python.csv").read_bytes()
+    assert "no datapackage.json" in shell("train", tmp_path, "-o", tmp_path / "none.json", code=4)
+    assert "isn't a counter" in shell("estimate", tmp_path / "log.csv", "--log", tmp_path / "log.csv", "-o", "x", code=3)
+    assert "sensors: no room has 7" in shell("train", dataset, "--sensors", "7", "-o", tmp_path / "none.json", code=2)
+    assert not (tmp_path / "none.json").exists()
+
+
+POOL = """
+pirsim_recipe: 1
+name: Pool
+seed: 5
+rooms:
+  - count: 12
+    width_m: [3.5, 5]
+    depth_m: 4
+    seats: 2
+    sensors: [{mount: corner, count: 2, height_m: 2.4, tilt_deg: [15, 55], model: EKMC1601111}]
+people: [1, 2]
+days: 1
+sensing: {tick_rate_hz: 10, response: zones}
+schedule: {first_day: "2026-03-02", from: "08:00", to: "09:00", staff: [{count: 2}], arrival: {mean: "08:15", sd_min: 10}}
+exports: []
+"""
+
+
+def test_a_calibration_equals_the_command_lines(command, tmp_path):
+    (tmp_path / "pool.yaml").write_text(POOL)
+    write_log(tmp_path / "log.csv")
+    made = tmp_path / "made"
+    command("calibrate", tmp_path / "pool.yaml", "--log", tmp_path / "log.csv", "-q", "-o", made)
+    found = counting.calibrate(made / "pool", tmp_path / "log.csv")
+    found.counter.save(tmp_path / "counter.json")
+    assert (tmp_path / "counter.json").read_bytes() == (made / "counter.json").read_bytes()
+    told = json.loads((made / "calibration.json").read_text())
+    assert (found.finding, found.p, found.effective_rooms) == (told["finding"], told["p"], told["effective_rooms"])
+    assert list(found.counter.expected_error) == told["expected_error"]
+    assert [one.name for one in found.parameters] == [one["name"] for one in told["parameters"]]
+    assert [one.of_log for one in found.statistics] == [one["log"] for one in told["statistics"]]
+    assert [room.weight for room in found.rooms] == found.counter.weights.tolist()
+    # A log that tells no time of day is taken whole; hours choose of one that does.
+    early = counting.calibrate(made / "pool", tmp_path / "log.csv", hours=(8.0, 8.25))
+    assert early.counter.weights.tolist() != found.counter.weights.tolist()
+    bits = np.array([[2 if bit == "" else int(bit) for bit in line.split(",")[1:]]
+                     for line in (tmp_path / "log.csv").read_text().splitlines()[1:]])
+    whole = counting.calibrate(made / "pool", bits)
+    assert np.array_equal(whole.counter.weights,
+                          counting.calibrate(made / "pool", tmp_path / "log.csv", hours=(0.0, 24.0)).counter.weights)
+    with pytest.raises(pirsim.InputError, match="nothing in the log is of the hours"):
+        counting.calibrate(made / "pool", tmp_path / "log.csv", hours=(22.0, 23.0))
+    with pytest.raises(pirsim.InputError, match="the log has 3 sensors"):
+        counting.calibrate(made / "pool", np.zeros((50, 3)))
