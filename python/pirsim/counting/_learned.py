@@ -182,7 +182,7 @@ def train_logistic(days: Iterable[Day], step_s: float, threads: int, *, C: float
 def train_trees(days: Iterable[Day], step_s: float, threads: int, **settings: Any) -> TreesCounter:
     _require_scikit_learn()
     from sklearn.ensemble import HistGradientBoostingClassifier
-    from threadpoolctl import threadpool_limits  # scikit-learn brings it
+    from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # scikit-learn brings it
 
     step_s = as_number(step_s, "step_s", 1e-3)
     rows, people = _learnt_from(days, step_s)

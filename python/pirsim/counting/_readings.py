@@ -82,12 +82,12 @@ def is_files(log: Any) -> bool:
         isinstance(log, (list, tuple)) and len(log) > 0 and all(isinstance(one, (str, os.PathLike)) for one in log))
 
 
-def readings_of(log: Log, step_s: float, map: PathOr | None) -> _core.Readings:
-    """Of a log in any form. map: what the file's columns mean."""
+def readings_of(log: Log, step_s: float, map: PathOr | None) -> Any:
+    """A _core.Readings of a log in any form. map: what the file's columns mean."""
     if not is_files(log):
         if map is not None:
             raise TypeError("map tells what a file's columns mean; the log is no file")
-        return _core.bit_readings(as_motion(log), step_s)  # type: ignore[arg-type]
+        return _core.bit_readings(as_motion(log), step_s)
     files: Iterable[Any] = [log] if isinstance(log, (str, os.PathLike)) else log  # type: ignore[assignment]
     readings = _core.log_readings([as_path(file) for file in files], as_path(map or ""), step_s)
     for remark in readings.remarks:
