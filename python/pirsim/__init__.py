@@ -9,7 +9,7 @@
 Scenes and scripts are files, or objects of `pirsim.specs`.
 """
 
-from . import errors, specs
+from . import counting, errors, specs
 from ._core import __version__, git_revision
 from ._inputs import (EffectInfo, EffectParameter, effects, facing, read_scene, read_script, sensor_model,
                       write_scene, write_script)
@@ -36,7 +36,7 @@ __all__ = [
     "Profile", "Rays", "Reconciliation", "Result", "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter",
     "Sensing", "Sensor", "SensorModel", "SensorSight", "Sit", "Staff", "Stay", "Summary", "Trace", "Track", "Trial", "Turn",
     "UsageError", "Wait", "Walk", "WalkTest", "Warmth", "Where", "Work", "Zone", "__version__", "check", "compile",
-    "coverage", "data_directory", "dataset", "effects", "errors", "export", "facing", "git_revision", "placements",
+    "counting", "coverage", "data_directory", "dataset", "effects", "errors", "export", "facing", "git_revision", "placements",
     "preview", "read_log", "read_scene", "read_script", "reconcile", "room", "run", "sensor_model", "specs", "trace", "view",
     "walk_test", "write_scene", "write_script",
 ]

@@ -28,13 +28,8 @@ using counting::Settings;
 using Bits = nb::ndarray<const std::uint8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 using Row = nb::ndarray<const std::uint8_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using People = nb::ndarray<const std::int32_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Times = nb::ndarray<const std::int64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
 using Probabilities = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-
-/// A log in readings of a counter's step.
-struct Readings {
-  LogRows rows;
-  std::vector<Issue> remarks{};
-};
 
 nb::object pair_of(const std::optional<Interval>& interval) {
   return interval ? nb::object(nb::make_tuple(interval->low, interval->high)) : nb::none();
@@ -58,13 +53,13 @@ nb::object of_rooms(const Counter& counter, const Of& of, std::initializer_list<
 }
 
 nb::object numbers_of(const Counter& counter) {
-  return of_rooms<std::int32_t>(
-      counter, [](const auto& room, auto& all) { all.push_back(room.number); }, {counter.rooms.size()});
+  return of_rooms<std::int32_t>(counter, [](const auto& room, auto& all) { all.push_back(room.number); },
+                                {counter.rooms.size()});
 }
 
 nb::object weights_of(const Counter& counter) {
-  return of_rooms<double>(
-      counter, [](const auto& room, auto& all) { all.push_back(room.weight); }, {counter.rooms.size()});
+  return of_rooms<double>(counter, [](const auto& room, auto& all) { all.push_back(room.weight); },
+                          {counter.rooms.size()});
 }
 
 nb::object first_of(const Counter& counter) {
@@ -106,63 +101,32 @@ Counter train(const std::vector<nb::tuple>& days, const Settings& settings, unsi
 
 // -- readings --------------------------------------------------------------------------------------------------------
 
-Readings read_log(const std::vector<std::string>& files, const std::string& map, double step_s) {
-  Readings readings;
-  attend(nb::none(), [&](Job& job) {
-    const LogMap means = map.empty() ? LogMap{} : io::read_log_map(map);
-    Log log = io::read_log(std::vector<std::filesystem::path>(files.begin(), files.end()), means,
-                           {[&](std::uint64_t) { job.step_or_stop(); }});
-    readings.rows = LogWindows(log, step_s).rows();
-    readings.remarks = std::move(log.remarks);
-  });
-  return readings;
-}
-
-/// Bits without times of day: the first reading begins at 0.
-Readings readings_of(const Bits& bits, double step_s) {
-  Readings readings;
-  LogRows& rows = readings.rows;
+/// end_us: local time at each reading's end, or since the log's zero.
+LogRows readings_of(const Bits& bits, const std::optional<People>& people, std::vector<std::string> sensors,
+                    double step_s, const Times& end_us, bool has_clock) {
+  LogRows rows;
+  rows.sensors = std::move(sensors);
   rows.window_s = step_s;
-  rows.clock = LogClock::elapsed;
-  for (std::size_t k = 0; k < bits.shape(1); ++k) rows.sensors.push_back("PIR" + std::to_string(k + 1));
-  for (std::size_t i = 0; i < bits.shape(0); ++i)
-    rows.begin.push_back({std::llround(static_cast<double>(i) * step_s * 1e6), 0});
+  rows.clock = has_clock ? LogClock::local : LogClock::elapsed;
+  for (std::size_t i = 0; i < bits.shape(0); ++i) rows.begin.push_back({end_us(i) - std::llround(step_s * 1e6), 0});
   rows.motion.assign(bits.data(), bits.data() + bits.size());
-  return readings;
+  if (people) rows.people.assign(people->data(), people->data() + people->size());
+  return rows;
 }
 
-/// Local time at each reading's end, microseconds.
-nb::object end_us(const Readings& readings) {
-  const LogRows& rows = readings.rows;
-  std::vector<std::int64_t> all;
-  for (std::size_t i = 0; i < rows.n_windows(); ++i) {
-    LogMoment end = rows.begin[std::min(i + 1, rows.n_windows() - 1)];
-    end.us = rows.begin[i].us + std::llround(rows.window_s * 1e6);
-    all.push_back(end.local_us());
-  }
-  const std::size_t n = all.size();
-  return to_numpy(std::move(all), {n});
-}
-
-nb::object motion_of(const Readings& readings) {
-  return to_numpy(std::vector<std::uint8_t>(readings.rows.motion),
-                  {readings.rows.n_windows(), readings.rows.sensors.size()});
-}
-
-nb::object estimate(const Counter& counter, const Readings& readings, bool smoothed) {
+nb::object estimate(const Counter& counter, const LogRows& readings, bool smoothed) {
   counting::Estimates estimates;
   attend(nb::none(), [&](Job&) {
-    estimates = calibrate::count_log(counter, readings.rows,
-                                     smoothed ? counting::Pass::smoothed : counting::Pass::forward)
+    estimates = calibrate::count_log(counter, readings, smoothed ? counting::Pass::smoothed : counting::Pass::forward)
                     .estimates;
   });
   return to_numpy(std::move(estimates.probabilities),
-                  {readings.rows.n_windows(), static_cast<std::size_t>(counter.n_counts)});
+                  {readings.n_windows(), static_cast<std::size_t>(counter.n_counts)});
 }
 
-std::string counts_csv(const Readings& readings, const Probabilities& probabilities) {
+std::string counts_csv(const LogRows& readings, const Probabilities& probabilities) {
   std::ostringstream text;
-  calibrate::write_counts(text, {readings.rows,
+  calibrate::write_counts(text, {readings,
                                  {static_cast<int>(probabilities.shape(1)),
                                   {probabilities.data(), probabilities.data() + probabilities.size()}},
                                  std::nullopt});
@@ -225,18 +189,18 @@ nb::dict told(calibrate::Calibration&& made) {
   return result;
 }
 
-nb::dict calibrated(const std::string& pool, const Readings& log, const Settings& settings,
+nb::dict calibrated(const std::string& pool, const LogRows& log, const Settings& settings,
                     std::optional<std::pair<double, double>> hours, unsigned threads) {
   calibrate::Calibration made;
   attend(nb::none(), [&](Job&) {
     const std::filesystem::path folder = pool;
     const Interval of_day = hours ? Interval{hours->first, hours->second}
                                   : calibrate::hours_of(dataset::read_recipe(folder / "recipe.yaml"));
-    const std::vector<counting::Stretch> days = calibrate::day_parts(log.rows, of_day);
-    if (days.empty()) throw Error(ErrorCode::input, "nothing in the log is of the hours that the pool's rooms simulate");
-    const auto rooms =
-        calibrate::read_pool(folder, static_cast<int>(log.rows.sensors.size()), settings.step_s, threads);
-    made = calibrate::calibrate(rooms, days, settings, threads);
+    const std::vector<counting::Stretch> days = calibrate::day_parts(log, of_day);
+    if (days.empty())
+      throw Error(ErrorCode::input, "nothing in the log is of the hours that the pool's rooms simulate");
+    auto rooms = calibrate::read_pool(folder, static_cast<int>(log.sensors.size()), settings.step_s, threads);
+    made = calibrate::Pool(std::move(rooms), settings, threads).calibrate(days);
   });
   return told(std::move(made));
 }
@@ -262,8 +226,9 @@ void add_counters(nb::module_& module) {
       .def_prop_ro("first", &first_of)
       .def_prop_ro("moves", &moves_of)
       .def_prop_ro("emissions", &emissions_of)
-      .def("write", [](const Counter& counter, const std::string& file) { counting::write_counter(file, counter); },
-           nb::arg("file"));
+      .def(
+          "write", [](const Counter& counter, const std::string& file) { counting::write_counter(file, counter); },
+          nb::arg("file"));
   nb::class_<counting::LiveCount>(module, "LiveCount", "What pirsim.counting.LiveCount holds.")
       .def(nb::init<const Counter&>(), nb::arg("counter"), nb::keep_alive<1, 2>())
       .def(
@@ -275,26 +240,21 @@ void add_counters(nb::module_& module) {
           },
           nb::arg("bits"));
   module.def("train_counter", &train, nb::arg("days"), nb::arg("settings"), nb::arg("threads"), "A Counter.");
-  module.def("read_counter", [](const std::string& file) { return counting::read_counter(file); }, nb::arg("file"),
-             "A Counter.");
+  module.def(
+      "read_counter", [](const std::string& file) { return counting::read_counter(file); }, nb::arg("file"),
+      "A Counter.");
 }
 
 }  // namespace
 
 void add_counting(nb::module_& module) {
   add_counters(module);
-  nb::class_<Readings>(module, "Readings", "A log in readings of one length.")
-      .def_prop_ro("sensors", [](const Readings& readings) { return nb::tuple(to_python(readings.rows.sensors)); })
-      .def_prop_ro("motion", &motion_of)
-      .def_prop_ro("end_us", &end_us)
-      .def_prop_ro("has_clock", [](const Readings& readings) { return readings.rows.clock != LogClock::elapsed; })
-      .def_prop_ro("remarks", [](const Readings& readings) { return to_python(readings.remarks); });
-  module.def("log_readings", &read_log, nb::arg("files"), nb::arg("map"), nb::arg("step_s"), "Readings of a log.");
-  module.def("bit_readings", &readings_of, nb::arg("bits"), nb::arg("step_s"), "Readings of an array.");
+  nb::class_<LogRows>(module, "Readings", "A log in readings of one length.");
+  module.def("readings", &readings_of, nb::arg("bits"), nb::arg("people").none(), nb::arg("sensors"), nb::arg("step_s"),
+             nb::arg("end_us"), nb::arg("has_clock"), "Readings of arrays.");
   module.def("estimate", &estimate, nb::arg("counter"), nb::arg("readings"), nb::arg("smoothed"),
              "Probabilities of counts, an array.");
-  module.def("counts_csv", &counts_csv, nb::arg("readings"), nb::arg("probabilities"),
-             "As pirsim count writes them.");
+  module.def("counts_csv", &counts_csv, nb::arg("readings"), nb::arg("probabilities"), "As pirsim count writes them.");
   module.def("read_room_days", &read_room_days, nb::arg("folder"), nb::arg("part"), nb::arg("threads"),
              "Days of a dataset, as tuples.");
   module.def("calibrate", &calibrated, nb::arg("pool"), nb::arg("log"), nb::arg("settings"), nb::arg("hours").none(),

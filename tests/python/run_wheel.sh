@@ -20,7 +20,7 @@ PATH=$bin:$PATH "$python" -m auditwheel repair --wheel-dir "$wheels" "$scratch"/
 }
 wheel=$(ls "$wheels"/pirsim-*.whl)
 "$python" -m zipfile -l "$wheel" >"$scratch/content"
-for file in pirsim/_core.pyi pirsim/py.typed pirsim/specs.py pirsim/data/sensors/EKMC1604111.yaml libembree libtbb; do
+for file in pirsim/_core.pyi pirsim/py.typed pirsim/specs.py pirsim/counting/__main__.py pirsim/data/sensors/EKMC1604111.yaml libembree libtbb; do
   grep -q "$file" "$scratch/content" || { echo "wheel: no $file in $wheel" >&2; exit 1; }
 done
 ! grep -qE '\.(a|hpp|cmake)|share/|__pycache__' "$scratch/content" || { echo "wheel: more than a package in $wheel" >&2; exit 1; }

@@ -216,6 +216,27 @@ def write_log(file, n=240, seed=3):
     file.write_text("\n".join(lines) + "\n")
 
 
+def test_logs_in_any_form(load, tmp_path):
+    counter = load(random_counter((2, 3, 2)))
+    write_log(tmp_path / "log.csv")
+    expected = counter.estimate(tmp_path / "log.csv")
+    log = pirsim.read_log(tmp_path / "log.csv")
+    assert (log.motion == 2).any() and np.array_equal(expected.time, log.time)
+    for given in (log, log.motion, str(tmp_path / "log.csv"), [tmp_path / "log.csv"]):
+        assert np.array_equal(counter.estimate(given).probabilities, expected.probabilities)
+    swapped = {"sensors": {"PIR1": "right", "PIR2": "left"}}
+    assert np.array_equal(counter.estimate(tmp_path / "log.csv", map=swapped).probabilities, expected.probabilities)
+    left = {"sensors": {"PIR1": "left"}}
+    with pytest.raises(pirsim.InputError, match="for 2 sensors, and the log has 1"):
+        counter.estimate(tmp_path / "log.csv", map=left)
+    with pytest.raises(ValueError, match="windows of 60 s and the counter readings of 30 s"):
+        counter.estimate(pirsim.read_log(tmp_path / "log.csv", window_s=60))
+    with pytest.raises(TypeError, match="the log is no file"):
+        counter.estimate(log, map=left)
+    with pytest.raises(pirsim.FileError):
+        counter.estimate(tmp_path / "nowhere.csv")
+
+
 @pytest.mark.parametrize("forward", [[], ["--forward"]])
 def test_a_log_is_counted_as_on_the_command_line(forward, load, command, tmp_path):
     counter = load(random_counter((2, 3, 2)))

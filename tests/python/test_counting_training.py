@@ -85,6 +85,9 @@ def test_what_cant_be_learnt_from_is_refused():
     day = simulated(np.random.default_rng(1), 1, n=50)
     with pytest.raises(ValueError, match="hidden_markov, logistic, trees, got 'forest'"):
         counting.train([day], model="forest")
+    for wrong in (day, [day.motion], [tuple(day)]):
+        with pytest.raises(TypeError, match="a list of pirsim.counting.Day"):
+            counting.train(wrong)
     with pytest.raises(TypeError, match="mode"):
         counting.train([day], mode=3)
     for setting, value in (("modes", 0), ("modes", 101), ("iterations", 0), ("shrinkage", -1), ("shrinkage", float("nan"))):
@@ -193,6 +196,15 @@ def test_a_calibration_equals_the_command_lines(command, tmp_path):
     assert [one.name for one in found.parameters] == [one["name"] for one in told["parameters"]]
     assert [one.of_log for one in found.statistics] == [one["log"] for one in told["statistics"]]
     assert [room.weight for room in found.rooms] == found.counter.weights.tolist()
+    # Weighed by a log's counts, too.
+    lines = (tmp_path / "log.csv").read_text().splitlines()
+    counted = [lines[0] + ",people", *(line + f",{int(i > 60)}" for i, line in enumerate(lines[1:]))]
+    (tmp_path / "counted.csv").write_text("\n".join(counted) + "\n")
+    command("calibrate", tmp_path / "pool.yaml", "--log", tmp_path / "counted.csv", "-q", "--resume", "-o", made)
+    labelled = counting.calibrate(made / "pool", tmp_path / "counted.csv").counter
+    labelled.save(tmp_path / "counter.json")
+    assert (tmp_path / "counter.json").read_bytes() == (made / "counter.json").read_bytes()
+    assert labelled.weights.tolist() != found.counter.weights.tolist()
     # A log that tells no time of day is taken whole; hours choose of one that does.
     early = counting.calibrate(made / "pool", tmp_path / "log.csv", hours=(8.0, 8.25))
     assert early.counter.weights.tolist() != found.counter.weights.tolist()

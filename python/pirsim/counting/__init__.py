@@ -51,6 +51,8 @@ def train(dataset: PathOr | Iterable[Day], step_s: float = 30.0, model: str = "h
         raise ValueError(f"model: expected {', '.join(_TRAINERS)}, got {model!r}")
     if isinstance(dataset, Iterable) and not isinstance(dataset, (str, bytes)):
         days = list(dataset)
+        if isinstance(dataset, Day) or not all(isinstance(day, Day) for day in days):
+            raise TypeError("dataset: expected a folder, or a list of pirsim.counting.Day")
     else:
         days = read_dataset(dataset, part, step_s=step_s, threads=threads)
     if sensors is not None:

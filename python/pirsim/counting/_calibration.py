@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from .. import _core
 from .._study import PathOr, as_path, as_threads
 from ._hidden_markov import HiddenMarkovCounter, settings_of
-from ._readings import Log, readings_of
+from ._readings import LogLike, MapLike, readings_of
 
 Interval = tuple[float, float]
 
@@ -75,9 +75,10 @@ class Calibration:
     parameters: list[ParameterRange] = field(repr=False)
 
 
-def calibrate(pool: PathOr, log: Log, *, step_s: float = 30.0, hours: Interval | None = None, map: PathOr | None = None,
+def calibrate(pool: PathOr, log: LogLike, *, step_s: float = 30.0, hours: Interval | None = None, map: MapLike | None = None,
               threads: int = 0, **settings: Any) -> Calibration:
-    """Weighs the rooms of a finished dataset by how well each explains a log, without anybody having counted.
+    """Weighs the rooms of a finished dataset by how well each explains a log, without anybody having counted. If the log
+    has a count, rooms must explain that, too.
 
     pool: the dataset's folder, of at least ten rooms with as many sensors as the log; docs/howto/own_room.md tells what
     it should be made like (`pirsim calibrate` makes it by itself). log, map: as of HiddenMarkovCounter.estimate(); an
@@ -88,7 +89,7 @@ def calibrate(pool: PathOr, log: Log, *, step_s: float = 30.0, hours: Interval |
     chosen = settings_of(step_s, **settings)
     if hours is not None:
         hours = float(hours[0]), float(hours[1])
-    parts = _core.calibrate(as_path(pool), readings_of(log, step_s, map), chosen, hours, as_threads(threads))
+    parts = _core.calibrate(as_path(pool), readings_of(log, step_s, map).core, chosen, hours, as_threads(threads))
     parts["counter"] = HiddenMarkovCounter._of(parts["counter"])
     parts["rooms"] = [WeighedRoom(*room) for room in parts["rooms"]]
     parts["statistics"] = [Statistic(*one) for one in parts["statistics"]]

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from .. import _core
 from .._study import PathOr
+from ._readings import Readings
 
 if TYPE_CHECKING:
     import pandas
@@ -30,10 +31,10 @@ class Estimates:
     probabilities: npt.NDArray[np.float64]
     """[reading, count]"""
     time: npt.NDArray[Any]
-    """[reading] its end: local time (datetime64[ms]), or seconds for a log that tells no time of day."""
+    """[reading] its end: local time (datetime64[us]), or seconds for a log that tells no time of day."""
     expected_error: tuple[float, float] | None
     """Of the counter."""
-    _readings: _core.Readings = field(repr=False)
+    _readings: Readings = field(repr=False)
 
     def __repr__(self) -> str:
         n, n_counts = self.probabilities.shape
@@ -57,11 +58,9 @@ class Estimates:
     def write_csv(self, file: PathOr) -> None:
         """As `pirsim count` writes it: time of a reading's end, people, their mean, the probability of each count."""
         with open(file, "w", encoding="utf-8", newline="") as out:
-            out.write(_core.counts_csv(self._readings, np.ascontiguousarray(self.probabilities)))
+            out.write(_core.counts_csv(self._readings.core, np.ascontiguousarray(self.probabilities)))
 
 
-def estimates_of(readings: _core.Readings, probabilities: npt.NDArray[np.float64],
-                 expected_error: tuple[float, float] | None) -> Estimates:
-    time: npt.NDArray[Any] = readings.end_us
-    time = time.astype("datetime64[us]").astype("datetime64[ms]") if readings.has_clock else time * 1e-6
+def estimates_of(readings: Readings, probabilities: Any, expected_error: tuple[float, float] | None) -> Estimates:
+    time = readings.end_us.view("datetime64[us]") if readings.has_clock else readings.end_us * 1e-6
     return Estimates(middle_count(probabilities), probabilities, time, expected_error, readings)

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from .. import _core
 from .._study import PathOr, as_count, as_path, as_threads
 from ._estimates import Estimates, estimates_of, middle_count
-from ._readings import Day, Log, as_day, as_motion, readings_of
+from ._readings import Day, LogLike, MapLike, as_day, as_motion, readings_of
 
 
 class Room(NamedTuple):
@@ -113,16 +113,16 @@ class HiddenMarkovCounter:
                 f"{self.n_sensors} sensors, a reading every {self.step_s:g} s; {len(weights)} rooms, the weight is that "
                 f"of {1 / (weights ** 2).sum():.1f}>")
 
-    def estimate(self, log: Log, smoothed: bool = True, *, map: PathOr | None = None) -> Estimates:
+    def estimate(self, log: LogLike, smoothed: bool = True, *, map: MapLike | None = None) -> Estimates:
         """How many people were there.
 
-        log: a file as `pirsim log` reads it, a list of files that are parts of one, or an array [reading, sensor] of
-        the counter's step with 0, 1, and 2 or NaN for unknown. smoothed: each reading by those after it as well; False:
-        by those before it alone, as it could have been told then. map: a file that says what a log's columns mean.
-        Raises InputError if the log hasn't as many sensors as the counter.
+        log: a file as `pirsim log` reads it, several that are parts of one, a pirsim.Log with windows of `step_s`, or an
+        array [reading, sensor] of 0, 1, and 2 or NaN for unknown. smoothed: each reading by those after it as well;
+        False: by those before it alone, as it could have been told then. map: what a file's columns mean, as of
+        read_log(). Raises InputError if the log hasn't as many sensors as the counter.
         """
         readings = readings_of(log, self.step_s, map)
-        return estimates_of(readings, _core.estimate(self._handle, readings, smoothed), self.expected_error)
+        return estimates_of(readings, _core.estimate(self._handle, readings.core, smoothed), self.expected_error)
 
     def live(self) -> LiveCount:
         """Counts reading by reading, as they come: what estimate(..., smoothed=False) gives."""

@@ -16,7 +16,7 @@ from ..specs import Diagnostic
 from ._estimates import Estimates, estimates_of, middle_count
 from ._features import features, windows_of
 from ._hidden_markov import as_number
-from ._readings import MOST_PEOPLE, UNKNOWN, Day, Log, as_day, as_motion, readings_of
+from ._readings import MOST_PEOPLE, UNKNOWN, Day, LogLike, MapLike, as_day, as_motion, readings_of
 
 Array = npt.NDArray[np.float64]
 
@@ -52,7 +52,7 @@ class LearnedCounter:
             out[known] = self._of_features(rows[known])
         return out
 
-    def estimate(self, log: Log, smoothed: bool = True, *, map: PathOr | None = None) -> Estimates:
+    def estimate(self, log: LogLike, smoothed: bool = True, *, map: MapLike | None = None) -> Estimates:
         """How many people were there. Arguments as of HiddenMarkovCounter.estimate(); smoothed changes nothing, since
         these counters look back only."""
         readings = readings_of(log, self.step_s, map)

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import os
-import warnings
-from typing import Any, Iterable, NamedTuple, Union
+from typing import Any, Mapping, NamedTuple, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import _core
+from .._log import Log, read_log
 from .._study import PathOr, as_count, as_path, as_threads
-from ..errors import InputWarning
 
 UNKNOWN = 2
 """In place of a bit."""
@@ -19,8 +18,11 @@ MOST_PEOPLE = 999
 MOST_SENSORS = 1000
 
 Motion = npt.NDArray[np.uint8]
-Log = Union[PathOr, "list[PathOr]", npt.ArrayLike]
-"""A log's file, files that are parts of one log, or an array [reading, sensor] of 0, 1 and 2 or NaN for unknown."""
+LogLike = Union[PathOr, "list[PathOr]", Log, npt.ArrayLike]
+"""A log's file, files that are parts of one log, what read_log() gave, or an array [reading, sensor] of 0, 1, and 2 or
+NaN for unknown."""
+MapLike = Union[PathOr, Mapping[str, Any]]
+"""What a file's columns mean, as of read_log()."""
 
 
 class Day(NamedTuple):
@@ -77,19 +79,35 @@ def read_dataset(folder: PathOr, part: str = "train", *, step_s: float = 30.0, t
     return days
 
 
-def is_files(log: Any) -> bool:
+class Readings(NamedTuple):
+    """A log in readings of a counter's step."""
+
+    core: _core.Readings
+    motion: Motion
+    end_us: npt.NDArray[np.int64]
+    """[reading] local time, or since the log's zero."""
+    has_clock: bool
+
+
+def _is_files(log: Any) -> bool:
     return isinstance(log, (str, os.PathLike)) or (
         isinstance(log, (list, tuple)) and len(log) > 0 and all(isinstance(one, (str, os.PathLike)) for one in log))
 
 
-def readings_of(log: Log, step_s: float, map: PathOr | None) -> Any:
-    """A _core.Readings of a log in any form. map: what the file's columns mean."""
-    if not is_files(log):
-        if map is not None:
-            raise TypeError("map tells what a file's columns mean; the log is no file")
-        return _core.bit_readings(as_motion(log), step_s)
-    files: Iterable[Any] = [log] if isinstance(log, (str, os.PathLike)) else log  # type: ignore[assignment]
-    readings = _core.log_readings([as_path(file) for file in files], as_path(map or ""), step_s)
-    for remark in readings.remarks:
-        warnings.warn(str(remark), InputWarning, stacklevel=4)
-    return readings
+def readings_of(log: LogLike, step_s: float, map: MapLike | None) -> Readings:
+    """Of a log in any form. Raises ValueError for a Log with windows of another length."""
+    if _is_files(log):
+        log = read_log(log, map, window_s=step_s)  # type: ignore[arg-type]
+    elif map is not None:
+        raise TypeError("map tells what a file's columns mean; the log is no file")
+    if not isinstance(log, Log):
+        motion = as_motion(log)  # type: ignore[arg-type]
+        end_us = np.round(np.arange(1, len(motion) + 1) * step_s * 1e6).astype(np.int64)
+        names, people, has_clock = [f"PIR{k + 1}" for k in range(motion.shape[1])], None, False
+    elif abs(log.window_s - step_s) > 1e-6:
+        raise ValueError(f"the log has windows of {log.window_s:g} s and the counter readings of {step_s:g} s: "
+                         f"read_log(..., window_s={step_s:g})")
+    else:
+        motion, end_us = as_motion(log.motion), log.time.astype("datetime64[us]").astype(np.int64)
+        names, people, has_clock = list(log.sensors), log.people, not log.is_elapsed
+    return Readings(_core.readings(motion, people, names, step_s, end_us, has_clock), motion, end_us, has_clock)
