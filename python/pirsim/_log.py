@@ -6,7 +6,7 @@ import json
 import warnings
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Iterable, Mapping, NamedTuple
+from typing import TYPE_CHECKING, Any, Iterable, Literal, Mapping, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -117,6 +117,8 @@ class Log:
             columns[name] = pd.arrays.IntegerArray(self.motion[:, i].copy(), self.motion[:, i] == 2)
         return pd.DataFrame(columns)
 
+    people_means: Literal["count", "presence"] = field(default="count", repr=False)
+    """What `people` tells: how many are there, or 1 if anybody is."""
     is_elapsed: bool = field(default=False, repr=False)
     """The log tells seconds since something began, and no clock."""
 
@@ -147,4 +149,4 @@ def read_log(file: PathOr | Iterable[PathOr], map: PathOr | Mapping[str, Any] | 
     return Log(sensors=found["sensors"], motion=found["motion"], people=found["people"], time=arrays["time"],
                utc=arrays.get("utc"), time_s=arrays["time_s"], window_s=found["window_s"], interval_s=found["interval_s"],
                map=found["map"], facts=facts, pairs=tuple(LogPair(*pair) for pair in found["pairs"]),
-               is_elapsed=is_elapsed)
+               people_means=found["people_means"], is_elapsed=is_elapsed)

@@ -1,7 +1,6 @@
 // Counting people: counters, what they count from, calibration by a log.
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -189,18 +188,23 @@ nb::dict told(calibrate::Calibration&& made) {
   return result;
 }
 
-nb::dict calibrated(const std::string& pool, const LogRows& log, const Settings& settings,
-                    std::optional<std::pair<double, double>> hours, unsigned threads) {
+template <typename Stretches>
+calibrate::Calibration weighed(const auto& pool, const Stretches& log, const Stretches& days) {
+  if constexpr (requires { pool.calibrate(log, days); }) {
+    return pool.calibrate(log, days);
+  } else {
+    return pool.calibrate(log);
+  }
+}
+
+nb::dict calibrated(const std::string& pool, const LogRows& log, const Settings& settings, unsigned threads) {
   calibrate::Calibration made;
   attend(nb::none(), [&](Job&) {
     const std::filesystem::path folder = pool;
-    const Interval of_day = hours ? Interval{hours->first, hours->second}
-                                  : calibrate::hours_of(dataset::read_recipe(folder / "recipe.yaml"));
-    const std::vector<counting::Stretch> days = calibrate::day_parts(log, of_day);
-    if (days.empty())
-      throw Error(ErrorCode::input, "nothing in the log is of the hours that the pool's rooms simulate");
+    const Interval hours = calibrate::hours_of(dataset::read_recipe(folder / "recipe.yaml"));
     auto rooms = calibrate::read_pool(folder, static_cast<int>(log.sensors.size()), settings.step_s, threads);
-    made = calibrate::Pool(std::move(rooms), settings, threads).calibrate(days);
+    made = weighed(calibrate::Pool(std::move(rooms), settings, threads), std::vector{calibrate::whole_log(log)},
+                   calibrate::day_parts(log, hours));
   });
   return told(std::move(made));
 }
@@ -257,8 +261,8 @@ void add_counting(nb::module_& module) {
   module.def("counts_csv", &counts_csv, nb::arg("readings"), nb::arg("probabilities"), "As pirsim count writes them.");
   module.def("read_room_days", &read_room_days, nb::arg("folder"), nb::arg("part"), nb::arg("threads"),
              "Days of a dataset, as tuples.");
-  module.def("calibrate", &calibrated, nb::arg("pool"), nb::arg("log"), nb::arg("settings"), nb::arg("hours").none(),
-             nb::arg("threads"), "Parts of pirsim.counting.Calibration, by name.");
+  module.def("calibrate", &calibrated, nb::arg("pool"), nb::arg("log"), nb::arg("settings"), nb::arg("threads"),
+             "Parts of pirsim.counting.Calibration, by name.");
 }
 
 }  // namespace pirsim::python

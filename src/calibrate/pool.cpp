@@ -146,7 +146,8 @@ namespace {
 
 void append(const LogRows& rows, std::size_t window, counting::Stretch& stretch) {
   for (std::size_t k = 0; k < rows.sensors.size(); ++k) stretch.motion.push_back(rows.at(window, k));
-  if (!rows.people.empty()) stretch.people.push_back(rows.people[window]);
+  const bool is_counted = !rows.people.empty() && rows.people_mean == LogMap::People::count;  // presence: 1 or more
+  if (is_counted) stretch.people.push_back(rows.people[window]);
 }
 
 }  // namespace

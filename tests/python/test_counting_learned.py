@@ -2,6 +2,7 @@
 
 import builtins
 import json
+import pickle
 
 import numpy as np
 import pytest
@@ -123,8 +124,15 @@ def test_the_command_line_says_whose_counter_it_is(days, command, tmp_path):
     command("count", tmp_path / "logistic.json", "--log", tmp_path / "log.csv", code=3)
 
 
-@pytest.mark.parametrize("model", ["logistic", "trees"])
-def test_without_scikit_learn_its_extra_is_named(model, days, monkeypatch):
+def test_trees_can_be_pickled(days):
+    pytest.importorskip("sklearn")
+    counter = counting.train(days, model="trees")
+    again = pickle.loads(pickle.dumps(counter))
+    assert np.array_equal(again.estimate(days[1].motion).probabilities, counter.estimate(days[1].motion).probabilities)
+
+
+@pytest.fixture
+def without_scikit_learn(monkeypatch):
     imported = builtins.__import__
 
     def without(name, *rest, **more):
@@ -132,6 +140,20 @@ def test_without_scikit_learn_its_extra_is_named(model, days, monkeypatch):
             raise ImportError(name)
         return imported(name, *rest, **more)
 
-    monkeypatch.setattr(builtins, "__import__", without)
+    return lambda: monkeypatch.setattr(builtins, "__import__", without)
+
+
+def test_a_saved_logistic_counter_needs_no_scikit_learn(days, tmp_path, without_scikit_learn):
+    pytest.importorskip("sklearn")
+    counter = counting.train(days, model="logistic")
+    counter.save(tmp_path / "logistic.json")
+    without_scikit_learn()
+    assert np.array_equal(counting.load(tmp_path / "logistic.json").estimate(days[1].motion).people,
+                          counter.estimate(days[1].motion).people)
+
+
+@pytest.mark.parametrize("model", ["logistic", "trees"])
+def test_without_scikit_learn_its_extra_is_named(model, days, without_scikit_learn):
+    without_scikit_learn()
     with pytest.raises(ImportError, match=r"pip install 'pirsim\[count\]'"):
         counting.train(days, model=model)

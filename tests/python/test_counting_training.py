@@ -184,7 +184,7 @@ exports: []
 
 def test_a_calibration_equals_the_command_lines(command, tmp_path):
     (tmp_path / "pool.yaml").write_text(POOL)
-    write_log(tmp_path / "log.csv")
+    write_log(tmp_path / "log.csv", n=120)  # all of it in the hours of the recipe
     made = tmp_path / "made"
     command("calibrate", tmp_path / "pool.yaml", "--log", tmp_path / "log.csv", "-q", "-o", made)
     found = counting.calibrate(made / "pool", tmp_path / "log.csv")
@@ -205,15 +205,11 @@ def test_a_calibration_equals_the_command_lines(command, tmp_path):
     labelled.save(tmp_path / "counter.json")
     assert (tmp_path / "counter.json").read_bytes() == (made / "counter.json").read_bytes()
     assert labelled.weights.tolist() != found.counter.weights.tolist()
-    # A log that tells no time of day is taken whole; hours choose of one that does.
-    early = counting.calibrate(made / "pool", tmp_path / "log.csv", hours=(8.0, 8.25))
-    assert early.counter.weights.tolist() != found.counter.weights.tolist()
-    bits = np.array([[2 if bit == "" else int(bit) for bit in line.split(",")[1:]]
-                     for line in (tmp_path / "log.csv").read_text().splitlines()[1:]])
-    whole = counting.calibrate(made / "pool", bits)
-    assert np.array_equal(whole.counter.weights,
-                          counting.calibrate(made / "pool", tmp_path / "log.csv", hours=(0.0, 24.0)).counter.weights)
-    with pytest.raises(pirsim.InputError, match="nothing in the log is of the hours"):
-        counting.calibrate(made / "pool", tmp_path / "log.csv", hours=(22.0, 23.0))
+    # Presence is no count, and an array is a log, too.
+    (tmp_path / "map.yaml").write_text("pirsim_log: 1\npeople: {column: people, means: presence}\n")
+    for given in (counting.calibrate(made / "pool", tmp_path / "counted.csv", map=tmp_path / "map.yaml"),
+                  counting.calibrate(made / "pool", pirsim.read_log(tmp_path / "log.csv")),
+                  counting.calibrate(made / "pool", pirsim.read_log(tmp_path / "log.csv").motion)):
+        assert np.array_equal(given.counter.weights, found.counter.weights)
     with pytest.raises(pirsim.InputError, match="the log has 3 sensors"):
         counting.calibrate(made / "pool", np.zeros((50, 3)))

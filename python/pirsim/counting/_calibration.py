@@ -75,21 +75,17 @@ class Calibration:
     parameters: list[ParameterRange] = field(repr=False)
 
 
-def calibrate(pool: PathOr, log: LogLike, *, step_s: float = 30.0, hours: Interval | None = None, map: MapLike | None = None,
+def calibrate(pool: PathOr, log: LogLike, *, step_s: float = 30.0, map: MapLike | None = None,
               threads: int = 0, **settings: Any) -> Calibration:
     """Weighs the rooms of a finished dataset by how well each explains a log, without anybody having counted. If the log
     has a count, rooms must explain that, too.
 
     pool: the dataset's folder, of at least ten rooms with as many sensors as the log; docs/howto/own_room.md tells what
-    it should be made like (`pirsim calibrate` makes it by itself). log, map: as of HiddenMarkovCounter.estimate(); an
-    array is taken whole, of a log with times of day the hours (from, to) that count, by default those that the pool's
-    recipe simulates. step_s: seconds of a reading. settings: modes, shrinkage, iterations and weight_power of
-    train(). Raises InputError and FileError.
+    it should be made like (`pirsim calibrate` makes it by itself). log, map: as of HiddenMarkovCounter.estimate().
+    step_s: seconds of a reading. settings: modes, shrinkage, iterations and weight_power. Raises InputError and FileError.
     """
     chosen = settings_of(step_s, **settings)
-    if hours is not None:
-        hours = float(hours[0]), float(hours[1])
-    parts = _core.calibrate(as_path(pool), readings_of(log, step_s, map).core, chosen, hours, as_threads(threads))
+    parts = _core.calibrate(as_path(pool), readings_of(log, step_s, map).core, chosen, as_threads(threads))
     parts["counter"] = HiddenMarkovCounter._of(parts["counter"])
     parts["rooms"] = [WeighedRoom(*room) for room in parts["rooms"]]
     parts["statistics"] = [Statistic(*one) for one in parts["statistics"]]

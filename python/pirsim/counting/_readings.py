@@ -109,5 +109,6 @@ def readings_of(log: LogLike, step_s: float, map: MapLike | None) -> Readings:
                          f"read_log(..., window_s={step_s:g})")
     else:
         motion, end_us = as_motion(log.motion), log.time.astype("datetime64[us]").astype(np.int64)
-        names, people, has_clock = list(log.sensors), log.people, not log.is_elapsed
+        names, has_clock = list(log.sensors), not log.is_elapsed
+        people = log.people if log.people_means == "count" else None
     return Readings(_core.readings(motion, people, names, step_s, end_us, has_clock), motion, end_us, has_clock)
