@@ -131,7 +131,7 @@ def read_log(file: PathOr | Iterable[PathOr], map: PathOr | Mapping[str, Any] | 
     {"time_zone": "Europe/Berlin", "sensors": {"PIR1": "binary_sensor.hall_motion"}}; without one what is found is taken.
     window_s: length of the windows. Raises FileError and InputError; what is odd is an InputWarning.
     """
-    files = [file] if isinstance(file, (str, bytes)) or hasattr(file, "__fspath__") else list(file)  # type: ignore[arg-type]
+    files = [file] if isinstance(file, (str, bytes)) or hasattr(file, "__fspath__") else list(file)
     is_dict = isinstance(map, Mapping)
     found = _core.read_log([as_path(one) for one in files], "" if map is None or is_dict else as_path(map),  # type: ignore[arg-type]
                            json.dumps({"pirsim_log": 1, **map}) if is_dict else "", float(window_s))  # type: ignore[dict-item]

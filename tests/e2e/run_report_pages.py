@@ -63,6 +63,18 @@ def check_page(chromium, page, expected, folder, widths=(1400, 500), least_names
         assert names >= least_names, f"{page.name}, {width} wide: {names} names"
 
 
+def write_log(file):
+    """Ten days of two sensors and a count, with a gap."""
+    lines = ["time,A,B,people"]
+    for i in range(10 * 480):
+        of_day, day = i % 480, 1 + i // 480
+        n = 2 if 160 < of_day < 360 else 0
+        if not (day == 4 and 200 < of_day < 240):
+            lines.append(f"2025-03-{day:02}T{of_day // 20:02}:{of_day % 20 * 3:02}:00,{int(n > 0 and i % 3 == 0)},"
+                         f"{int(n > 0 and i % 4 != 0)},{n}")
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
 def main():
     pirsim, data = sys.argv[1], pathlib.Path(sys.argv[2])
     chromium = chromium_or_skip()
@@ -81,6 +93,9 @@ def main():
                         "trials.for_each.seat=[S1, S7]", "--set", "people.0.actions.3.work.duration_s=30", "-o",
                         str(folder / "rows.csv"), "--report", str(folder / "study.html")], check=True)
         check_page(chromium, folder / "study.html", 12, folder)
+        write_log(folder / "log.csv")
+        subprocess.run([pirsim, "log", "-q", str(folder / "log.csv"), "--report", str(folder / "log.html")], check=True)
+        check_page(chromium, folder / "log.html", 3, folder)
     print("reports: all pages are whole, and no name lies on another")
 
 

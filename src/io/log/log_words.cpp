@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "io/files/atomic_file.hpp"
 #include "pirsim/log.hpp"
