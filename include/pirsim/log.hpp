@@ -180,7 +180,7 @@ class LogWindows {
   LogWindows(const Log& log, double window_s);
 
   [[nodiscard]] std::size_t size() const noexcept { return n_; }
-  /// Windows first, first + 1, ... first + n - 1; fewer at the end.
+  /// Windows first, first + 1, ... first + n - 1; fewer at the end. Throws Error(usage) for more than 2 GB of them.
   [[nodiscard]] LogRows rows(std::size_t first, std::size_t n) const;
   [[nodiscard]] LogRows rows() const { return rows(0, n_); }
   [[nodiscard]] LogMoment begin(std::size_t window) const;  ///< also of the one after the last

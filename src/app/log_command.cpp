@@ -7,6 +7,7 @@
 #include "app/commands.hpp"
 #include "app/long_work.hpp"
 #include "app/session.hpp"
+#include "core/text.hpp"
 #include "io/pages/log_page.hpp"
 #include "io/pages/log_text.hpp"
 #include "io/write/log_rows_writer.hpp"
@@ -82,6 +83,7 @@ void run_log(const LogOptions& options) {
   tell(log.remarks, options.verbosity);
   if (options.prints_map) {
     std::cout << io::to_yaml(log.map);
+    if (!log.others.empty()) std::cout << "# not read: " << tellable(joined(log.others, ", ")) << '\n';
   } else if (options.verbosity != Verbosity::quiet || !options.report.empty()) {
     const LogFacts facts = facts_of(log);
     if (options.verbosity != Verbosity::quiet) std::cout << io::to_text(log, facts);

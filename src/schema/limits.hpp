@@ -46,5 +46,6 @@ inline constexpr std::size_t measured_replicates = 10'000;  ///< of a trial: 27 
 inline constexpr std::size_t log_columns = 10'000;
 inline constexpr std::size_t log_changes = 20'000'000;  ///< of all sensors; 24 bytes each
 inline constexpr std::size_t log_windows = 1'000'000'000;
+inline constexpr std::size_t log_cells = 2'000'000'000;  ///< windows x sensors that are asked for at once
 
 }  // namespace pirsim::limits

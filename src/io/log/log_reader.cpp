@@ -187,7 +187,7 @@ LogTrack event_track(EventTracks::Track& track, const LogReading& reading, const
 void finish_events(Log& log, LogReading& reading) {
   std::vector<EventTracks::Track>& tracks = reading.events.tracks();
   const Where where{log.files.front().path};
-  const std::vector<std::size_t> chosen = chosen_sensors(tracks, reading.map, where);
+  const std::vector<std::size_t> chosen = chosen_sensors(tracks, log.map, where);
   log.begin_us = std::max(*reading.first_us, reading.from_us.value_or(*reading.first_us));
   const std::int64_t after_last = *reading.last_us + 1;  // which belongs to it
   log.end_us = std::min(after_last, reading.to_us.value_or(after_last));
@@ -236,6 +236,16 @@ void complete(LogMap& map, const LogFile& file, const Log& log) {
   for (const LogTrack& track : log.sensors) map.sensors.push_back({track.name, track.in_log});
   if (log.people) map.people = log.people->in_log;
   map.people_mean = shape.people_mean;
+}
+
+/// Rows of changes become events of columns, which are known.
+void take_columns(LogMap& map, const LogShape& shape) {
+  if (shape.form != LogMap::Form::wide) return;
+  std::vector<LogMap::Sensor> sensors;
+  for (const std::size_t column : shape.sensors)
+    sensors.push_back({name_of(map, shape.names[column]), shape.names[column]});
+  map.sensors = std::move(sensors);
+  if (shape.people) map.people = shape.names[*shape.people];
 }
 
 void remark_constant_sensors(const Log& log, LogReading& reading) {
@@ -329,6 +339,7 @@ Log read_log(std::span<const std::filesystem::path> files, const LogMap& map, co
     if (reading.from_us.value_or(*reading.first_us) > *reading.last_us ||
         reading.to_us.value_or(*reading.last_us) < *reading.first_us)
       refuse_part();
+    take_columns(log.map, first.shape());
     finish_events(log, reading);
   }
   if (zone) {

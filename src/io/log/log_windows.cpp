@@ -125,6 +125,10 @@ LogMoment LogWindows::begin(std::size_t window) const {
 LogRows LogWindows::rows(std::size_t first, std::size_t n) const {
   first = std::min(first, n_);
   n = std::min(n, n_ - first);
+  if (n * (log_->sensors.size() + sizeof(LogMoment)) > limits::log_cells) {
+    throw Error(ErrorCode::usage, std::to_string(n) + " windows of " + std::to_string(log_->sensors.size()) +
+                                      " sensors at once take more than 2 GB: ask for longer windows");
+  }
   LogRows rows;
   for (const LogTrack& track : log_->sensors) rows.sensors.push_back(track.name);
   rows.window_s = static_cast<double>(window_us_) / us_per_s;

@@ -136,6 +136,17 @@ TEST_CASE("a wide log that has a row whenever something changes") {
   CHECK(windows_of(log, 30.0) == Texts{"100010.", "110001."});
 }
 
+TEST_CASE("rows of changes with a count") {
+  LogMap map;
+  map.rows = LogMap::Rows::changes;
+  const Log log = read_log_text("time_s,door,note,people\n0,0,a,0\n5,1,b,0\n7,1,c,2\n9,0,d,2\n20,0,e,1\n", map);
+  CHECK(sensors_of(log) == Texts{"door"});
+  CHECK(log.others == Texts{"note"});
+  const LogRows rows = LogWindows(log, 5.0).rows();
+  CHECK(windows_of(log, 5.0) == Texts{"0100."});
+  CHECK(rows.people == std::vector<std::int32_t>{0, 2, 2, 2, -1});
+}
+
 TEST_CASE("a map says which column is which sensor, and an entity that counts") {
   LogMap map;
   map.sensors = {{"PIR2", "hall"}, {"PIR1", "corner"}};
