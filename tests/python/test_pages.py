@@ -1,5 +1,7 @@
 """The Python of the pages runs as it stands there, on the files that it names, with fewer runs where many take long."""
 
+import datetime
+import random
 import re
 import shutil
 import warnings
@@ -49,6 +51,16 @@ def test_the_readmes(source, folder):
     assert names["result"].bits.shape[0] == 200 and names["result"].bits.any()
 
 
+def write_week(file):
+    """A log of two sensors: some hours of motion with pauses between them."""
+    begin, rng = datetime.datetime(2026, 3, 2, 8), random.Random(1)
+    lines = ["time,left,right"]
+    for i in range(1, 1000):
+        lines.append(f"{(begin + datetime.timedelta(seconds=30 * i)).isoformat()},{int(rng.random() < 0.3)},"
+                     f"{int(rng.random() < 0.2)}")
+    file.write_text("\n".join(lines) + "\n")
+
+
 def test_those_of_the_page_on_python(source, data, room, study_a, folder):
     """In order, with the files that the page speaks of, and with measurements in which an effect is hidden."""
     pytest.importorskip("matplotlib").use("Agg")
@@ -57,6 +69,7 @@ def test_those_of_the_page_on_python(source, data, room, study_a, folder):
     for file in (room, data / "studies/studyB.yaml", data / "studies/walk_test.yaml", data / "studies/placements.yaml",
                  data / "recipes/tiny.yaml"):
         shutil.copy(file, {room.name: "room.gltf", "tiny.yaml": "recipe.yaml"}.get(file.name, file.name))
+    write_week(folder / "week.csv")
     script = pirsim.read_script(study_a, set={"replicates": 1, "trials.for_each.seat": ["S3", "S8"]})
     pirsim.write_script(script, "study.yaml")
     script.effects = [pirsim.Effect("missed_triggers", {"probability": 0.6})]
@@ -74,6 +87,8 @@ def test_those_of_the_page_on_python(source, data, room, study_a, folder):
     assert not left, "the page no longer says this"
     assert names["coverage"].share.shape[2] == 5 and names["test"].major_made.sum() > 0
     assert names["found"].sentence and (folder / "report/report.html").exists()
+    assert names["log"].motion.any() and len(names["estimates"].people) == 999
+    assert (folder / "counter.json").exists() and (folder / "counts.csv").exists()
     for picture in ("study_a.png", "coverage.png"):
         assert (folder / picture).stat().st_size > 10_000
 
