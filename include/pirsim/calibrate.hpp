@@ -82,8 +82,10 @@ class Pool {
   explicit Pool(std::vector<PoolRoom> rooms, const counting::Settings& settings = {}, unsigned threads = 0);
   [[nodiscard]] std::span<const PoolRoom> rooms() const noexcept;
 
-  /// log: its stretches, with or without counts.
-  [[nodiscard]] Calibration calibrate(std::span<const counting::Stretch> log) const;
+  /// log: its stretches, with or without counts, which weigh the rooms. days: those parts of it that are as the rooms'
+  /// days are, which the verdict compares; none: too little is told.
+  [[nodiscard]] Calibration calibrate(std::span<const counting::Stretch> log,
+                                      std::span<const counting::Stretch> days) const;
 
  private:
   struct Parts;
@@ -104,7 +106,8 @@ class Pool {
 /// Hours of the day that a recipe simulates.
 [[nodiscard]] Interval hours_of(const dataset::RecipeSpec& recipe);
 
-/// Those hours of each day of a log; of a log without times of day all of it, as one.
+/// Those hours of each day of a log that has nine tenths of them at least; of a log without times of day all of it, as
+/// one.
 [[nodiscard]] std::vector<counting::Stretch> day_parts(const LogRows& rows, const Interval& hours);
 /// All of it, as one.
 [[nodiscard]] counting::Stretch whole_log(const LogRows& rows);

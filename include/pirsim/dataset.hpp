@@ -33,7 +33,7 @@ struct VariedEffectSpec {
 struct RoomGroupSpec {
   int count = 1;
   RoomSpec rooms;
-  std::vector<std::filesystem::path> scenes;  ///< if not empty: these, in order, instead
+  std::vector<std::filesystem::path> scenes;  ///< if not empty: these, in turn, instead
   ScheduleSpec schedule;
   /// How many of the schedule's staff a room has, at most one a seat; none: all of them.
   std::optional<CountRange> people;

@@ -4,6 +4,7 @@
 
 #include "app/commands.hpp"
 #include "app/dataset_work.hpp"
+#include "app/log_inputs.hpp"
 #include "app/session.hpp"
 #include "core/text.hpp"
 #include "io/files/atomic_file.hpp"
@@ -15,8 +16,8 @@ namespace pirsim::app {
 namespace {
 
 struct CalibrateOptions {
-  std::filesystem::path recipe, folder, map;
-  std::vector<std::filesystem::path> logs;
+  std::filesystem::path recipe, folder;
+  LogInputs log;
   std::optional<double> step_s;
   std::shared_ptr<DatasetWork> pool = std::make_shared<DatasetWork>();
 };
@@ -31,13 +32,6 @@ double step_of(const CalibrateOptions& options, const Log& log) {
                                       " s, so that nothing shorter can be told apart");
   }
   return step_s;
-}
-
-Log read_log(const CalibrateOptions& options) {
-  const Progress progress({.what = "reading the log"}, options.pool->inputs.verbosity);
-  const StopRequest stop;
-  const LogMap map = options.map.empty() ? LogMap{} : io::read_log_map(options.map);
-  return io::read_log(options.logs, map, {[&](std::uint64_t) { stop.throw_if_made(); }});
 }
 
 /// How long the sensors hold motion, if the log tells: the pulses of an event log are hardly ever shorter.
@@ -59,14 +53,13 @@ void tell_finding(const calibrate::Calibration& calibration, const CalibrateOpti
             << "The weight is that of " << fixed(calibration.effective_rooms, 1) << " of "
             << counted(calibration.rooms.size(), "room") << ". See " << (options.folder / "calibration.html").string()
             << ";\ncount with: pirsim count " << (options.folder / "counter.json").string() << " --log "
-            << options.logs.front().string() << " -o counts.csv\n";
+            << options.log.files.front().string() << " -o counts.csv\n";
   require_written();
 }
 
 void run(const CalibrateOptions& options) {
   if (options.folder.empty()) throw Error(ErrorCode::usage, "-o DIR is missing");
-  const Log log = read_log(options);
-  tell(log.remarks, options.pool->inputs.verbosity);
+  const Log log = read_log(options.log, options.pool->inputs.verbosity);
   const double step_s = step_of(options, log);
   const std::optional<double> hold_s = hold_of(log);
   if (hold_s && options.pool->inputs.verbosity != Verbosity::quiet)
@@ -77,9 +70,6 @@ void run(const CalibrateOptions& options) {
   const LogRows rows = LogWindows(log, step_s).rows();
   const Interval hours = calibrate::hours_of(recipe);
   const std::vector<counting::Stretch> days = calibrate::day_parts(rows, hours);
-  if (days.empty())
-    throw Error(ErrorCode::input, Where{options.logs.front().string()},
-                "nothing in it is of the hours that the recipe simulates (schedule: from, to)");
   DatasetWork pool = *options.pool;
   pool.folder = options.folder / "pool";
   std::filesystem::create_directories(options.folder);
@@ -89,9 +79,10 @@ void run(const CalibrateOptions& options) {
   auto rooms = calibrate::read_pool(pool.folder, static_cast<int>(rows.sensors.size()), step_s, pool.threads);
   counting::Settings settings;
   settings.step_s = step_s;
-  const calibrate::Calibration made = calibrate::Pool(std::move(rooms), settings, pool.threads).calibrate(days);
+  const calibrate::Calibration made = calibrate::Pool(std::move(rooms), settings, pool.threads)
+                                          .calibrate(std::vector{calibrate::whole_log(rows)}, days);
   calibrate::write_calibration(options.folder, made,
-                               {options.recipe.filename().string(), options.logs.front().filename().string(),
+                               {options.recipe.filename().string(), options.log.files.front().filename().string(),
                                 "pirsim " + version() + " (" + git_revision() + ")", hours, days.size()});
   io::write_text_file(options.folder / "recipe.yaml", calibrate::weighted_recipe(recipe, made, options.folder));
   tell_finding(made, options);
@@ -111,8 +102,7 @@ void add_calibrate_command(CLI::App& app) {
   const auto options = std::make_shared<CalibrateOptions>();
   as_input(command.add_option("RECIPE", options->recipe, "what is known of the room: a recipe, as of pirsim dataset"))
       ->required();
-  command.add_option("--log", options->logs, "the log; several are parts of one")->option_text("FILE")->required();
-  offer_input_file(command, "--map", options->map, "what the log's columns mean (pirsim log --print-map)");
+  offer_log(command, options->log);
   offer_output(command, options->folder, "DIR", "folder of what is made");
   command
       .add_option("--step", options->step_s, "seconds between readings (default: 30, or the log's interval if longer)")

@@ -1,7 +1,7 @@
 #include <iostream>
 
 #include "app/commands.hpp"
-#include "app/long_work.hpp"
+#include "app/log_inputs.hpp"
 #include "app/session.hpp"
 #include "core/text.hpp"
 #include "io/files/atomic_file.hpp"
@@ -12,8 +12,8 @@ namespace pirsim::app {
 namespace {
 
 struct CountOptions {
-  std::filesystem::path counter, map, output, report;
-  std::vector<std::filesystem::path> logs;
+  std::filesystem::path counter, output, report;
+  LogInputs log;
   counting::Pass pass = counting::Pass::smoothed;
   Verbosity verbosity = Verbosity::normal;
 };
@@ -30,19 +30,13 @@ void write(const CountOptions& options, const calibrate::LogCounts& counts) {
 
 void count(const CountOptions& options) {
   const counting::Counter counter = counting::read_counter(options.counter);
-  const StopRequest stop;
-  const Log log = [&] {
-    const Progress progress({.what = "reading the log"}, options.verbosity);
-    const LogMap map = options.map.empty() ? LogMap{} : io::read_log_map(options.map);
-    return io::read_log(options.logs, map, {[&](std::uint64_t) { stop.throw_if_made(); }});
-  }();
-  tell(log.remarks, options.verbosity);
+  const Log log = read_log(options.log, options.verbosity);
   const calibrate::LogCounts counts =
       calibrate::count_log(counter, LogWindows(log, counter.settings.step_s).rows(), options.pass);
   write(options, counts);
   const std::string made_by = "pirsim " + version() + " (" + git_revision() + ")";
   if (!options.report.empty())
-    calibrate::write_counts_page(options.report, counts, options.logs.front().filename().string(), made_by);
+    calibrate::write_counts_page(options.report, counts, options.log.files.front().filename().string(), made_by);
   const auto error = calibrate::error_of(counts);
   if (error && options.verbosity != Verbosity::quiet) {
     std::cerr << "beside the log's own counts: wrong by " << fixed(error->mean, 3) << " people on average, over "
@@ -59,8 +53,7 @@ void add_count_command(CLI::App& app) {
 )");
   const auto options = std::make_shared<CountOptions>();
   as_input(command.add_option("COUNTER", options->counter, "counter.json of pirsim calibrate"))->required();
-  command.add_option("--log", options->logs, "the log; several are parts of one")->option_text("FILE")->required();
-  offer_input_file(command, "--map", options->map, "what the log's columns mean (pirsim log --print-map)");
+  offer_log(command, options->log);
   offer_output(command, options->output, "FILE", "counts as CSV (default: standard output)");
   command.add_option("--report", options->report, "a page with the log and the counts as time lines")
       ->option_text("FILE");

@@ -63,7 +63,8 @@ dataset::DrawnRoom draw(const RoomOptions& options) {
     throw Error(ErrorCode::usage, "--number: room " + std::to_string(options.number) + " is a file already: '" +
                                       dataset::own_scene(recipe, options.number).string() + "'");
   }
-  return dataset::draw_room(group.rooms, options.seed.value_or(recipe.seed), options.number, scenes);
+  return dataset::draw_room(group.rooms, options.seed.value_or(recipe.seed), recipe.original_of(options.number),
+                            scenes);
 }
 
 std::string listed(const std::vector<std::string>& ids) {

@@ -78,19 +78,35 @@ struct RoomStatistics {
   std::vector<std::size_t> rooms;
 };
 
-RoomStatistics room_statistics(std::span<const PoolRoom> pool, double step_s, unsigned threads) {
+/// Of each day of a room that tells enough.
+using DayStatistics = std::vector<std::vector<double>>;
+
+std::vector<DayStatistics> day_statistics(std::span<const PoolRoom> pool, double step_s, unsigned threads) {
+  std::vector<DayStatistics> all;
+  ordered_parallel<DayStatistics>(
+      pool.size(), threads, [&](std::size_t r) { return motion_statistics(pool[r].labelled.days, step_s); },
+      [&](DayStatistics& one) { all.push_back(std::move(one)); });
+  return all;
+}
+
+std::vector<double> mean_of_first(const DayStatistics& days, std::size_t n_days) {
+  const std::size_t n = std::min(n_days, days.size());
+  std::vector<double> means(days.front().size(), 0.0);
+  for (std::size_t d = 0; d < n; ++d) {
+    for (std::size_t s = 0; s < means.size(); ++s) means[s] += days[d][s] / static_cast<double>(n);
+  }
+  return means;
+}
+
+/// Of as many days as the log has: one day scatters more than the mean of three.
+RoomStatistics room_statistics(const std::vector<DayStatistics>& days, std::size_t n_days) {
   std::vector<double> values;
   std::vector<std::size_t> rooms;
-  std::size_t next = 0;
-  using Values = std::optional<std::vector<double>>;
-  ordered_parallel<Values>(
-      pool.size(), threads, [&](std::size_t r) { return motion_statistics(pool[r].labelled.days, step_s); },
-      [&](Values& one) {
-        const std::size_t r = next++;
-        if (!one) return;
-        values.insert(values.end(), one->begin(), one->end());
-        rooms.push_back(r);
-      });
+  for (std::size_t r = 0; r < days.size(); ++r) {
+    if (days[r].empty()) continue;
+    std::ranges::copy(mean_of_first(days[r], n_days), std::back_inserter(values));
+    rooms.push_back(r);
+  }
   stats::Matrix<double> rows(rooms.size(), rooms.empty() ? 0 : values.size() / rooms.size());
   std::ranges::copy(values, rows.values().begin());
   return {std::move(rows), std::move(rooms)};
@@ -153,7 +169,7 @@ struct Pool::Parts {
   std::vector<PoolRoom> rooms;
   counting::Counter counter;
   RoomErrors errors;
-  RoomStatistics known;
+  std::vector<DayStatistics> days;
 };
 
 Pool::Pool(std::vector<PoolRoom> rooms, const counting::Settings& settings, unsigned threads) {
@@ -166,15 +182,15 @@ Pool::Pool(std::vector<PoolRoom> rooms, const counting::Settings& settings, unsi
   for (const PoolRoom& room : rooms) labelled.push_back(room.labelled);
   counting::Counter counter = counting::train(labelled, settings, threads);
   RoomErrors errors = errors_of_rooms(counter, labelled, threads);
-  RoomStatistics known = room_statistics(rooms, settings.step_s, threads);
+  std::vector<DayStatistics> days = day_statistics(rooms, settings.step_s, threads);
   parts_ =
-      std::make_shared<const Parts>(Parts{std::move(rooms), std::move(counter), std::move(errors), std::move(known)});
+      std::make_shared<const Parts>(Parts{std::move(rooms), std::move(counter), std::move(errors), std::move(days)});
 }
 
 std::span<const PoolRoom> Pool::rooms() const noexcept { return parts_->rooms; }
 
-Calibration Pool::calibrate(std::span<const Stretch> log) const {
-  const auto& [rooms, counter, errors, known] = *parts_;
+Calibration Pool::calibrate(std::span<const Stretch> log, std::span<const Stretch> days) const {
+  const auto& [rooms, counter, errors, room_days] = *parts_;
   Calibration made;
   made.counter = counter;
   const std::vector<double> scores = counting::log_likelihoods(counter, log);
@@ -185,12 +201,15 @@ Calibration Pool::calibrate(std::span<const Stretch> log) const {
     made.rooms.push_back({rooms[r].labelled.number, scores[r], weights[r], errors.weighed[r]});
   expect_error(errors, weights, made);
   made.parameters = parameter_ranges(rooms, weights);
-  const auto of_log = motion_statistics(log, counter.settings.step_s);
+  const DayStatistics log_days = motion_statistics(days, counter.settings.step_s);
+  if (log_days.empty()) return made;
+  const RoomStatistics known = room_statistics(room_days, log_days.size());
   constexpr std::size_t fewest_rooms = 10;
-  if (!of_log || known.rooms.size() < fewest_rooms) return made;
-  made.p = unlike_share(known.rows, *of_log);
+  if (known.rooms.size() < fewest_rooms) return made;
+  const std::vector<double> of_log = mean_of_first(log_days, log_days.size());
+  made.p = unlike_share(known.rows, of_log);
   made.verdict = made.p <= verdict_level ? Verdict::none_like_it : Verdict::like_these;
-  made.statistics = compared(rooms, known, *of_log, made.counter);
+  made.statistics = compared(rooms, known, of_log, made.counter);
   return made;
 }
 

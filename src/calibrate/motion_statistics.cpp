@@ -147,20 +147,13 @@ std::vector<StatisticInfo> statistics_of(int n_sensors) {
   return all;
 }
 
-std::optional<std::vector<double>> motion_statistics(std::span<const Stretch> stretches, double step_s) {
-  std::vector<double> sums;
-  double n = 0.0;
+std::vector<std::vector<double>> motion_statistics(std::span<const Stretch> stretches, double step_s) {
+  std::vector<std::vector<double>> all;
   for (const Stretch& stretch : stretches) {
     const Active active = active_part(stretch);
-    if (active.with_motion < least_readings_with_motion) continue;
-    const std::vector<double> values = of_stretch(stretch, active, step_s);
-    sums.resize(values.size(), 0.0);
-    for (std::size_t i = 0; i < values.size(); ++i) sums[i] += values[i];
-    n += 1.0;
+    if (active.with_motion >= least_readings_with_motion) all.push_back(of_stretch(stretch, active, step_s));
   }
-  if (n == 0.0) return std::nullopt;
-  for (double& sum : sums) sum /= n;
-  return sums;
+  return all;
 }
 
 }  // namespace pirsim::calibrate

@@ -1,7 +1,6 @@
 // What motion tells of a room without counts, in a few numbers.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,8 +21,8 @@ struct StatisticInfo {
 /// Of a room with so many sensors.
 [[nodiscard]] std::vector<StatisticInfo> statistics_of(int n_sensors);
 
-/// (statistics) means over the stretches that have enough motion to tell; none: none of them has.
-[[nodiscard]] std::optional<std::vector<double>> motion_statistics(std::span<const counting::Stretch> stretches,
-                                                                   double step_s);
+/// (statistics) of each stretch that has enough motion to tell.
+[[nodiscard]] std::vector<std::vector<double>> motion_statistics(std::span<const counting::Stretch> stretches,
+                                                                 double step_s);
 
 }  // namespace pirsim::calibrate

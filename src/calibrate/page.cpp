@@ -160,7 +160,7 @@ std::string finding(const Calibration& calibration) {
     case Verdict::too_little_told:
       break;
   }
-  return "Too little happens in this log to tell whether rooms of this recipe are like yours." + error;
+  return "Too little is told in the hours that the recipe simulates to say whether its rooms are like yours." + error;
 }
 
 io::Report page(const Calibration& calibration, const About& about) {

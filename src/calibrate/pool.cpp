@@ -173,6 +173,11 @@ std::vector<counting::Stretch> day_parts(const LogRows& rows, const Interval& ho
     last_day = day;
     append(rows, i, parts.back());
   }
+  constexpr double least_share = 0.9;  // assumed: half a day has other statistics than a day
+  const double whole = (hours.high - hours.low) * 3600.0 / rows.window_s;
+  std::erase_if(parts, [&](const counting::Stretch& part) {
+    return static_cast<double>(part.n_readings()) < least_share * whole;
+  });
   return parts;
 }
 

@@ -158,7 +158,8 @@ std::filesystem::path own_scene(const RecipeSpec& recipe, int room) {
   int first = 1;
   for (const RoomGroupSpec& group : recipe.rooms) {
     if (original < first + group.count)
-      return group.scenes.empty() ? std::filesystem::path{} : group.scenes[static_cast<std::size_t>(original - first)];
+      return group.scenes.empty() ? std::filesystem::path{}
+                                  : group.scenes[static_cast<std::size_t>(original - first) % group.scenes.size()];
     first += group.count;
   }
   return {};

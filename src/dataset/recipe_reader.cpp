@@ -137,7 +137,7 @@ RoomGroupSpec read_group(const YamlNode& node, const RecipeSpec& recipe, const s
                      "scenes: " + name + " isn't a regular file: it is read again for each part of the work");
       }
     }
-    group.count = static_cast<int>(group.scenes.size());
+    group.count = map.integer("count", static_cast<int>(group.scenes.size()), {.min = 1, .max = most_rooms});
   } else {
     static_cast<void>(map.list("scenes", limits::rooms));
     group.count = map.integer("count", group.count, {.min = 1, .max = most_rooms});

@@ -62,8 +62,9 @@ TEST_CASE("Statistics of motion are what one counts by hand") {
   for (int i = 0; i < 10; ++i)
     for (const int bit : {1, 1, 1, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0})
       day.motion.push_back(static_cast<std::uint8_t>(bit));
-  const auto found = motion_statistics(std::vector{day}, 30.0);
-  REQUIRE(found);
+  const auto days = motion_statistics(std::vector{day}, 30.0);
+  REQUIRE(days.size() == 1);
+  const auto* found = days.data();
   const double active = 76.0;  // from the first to the last with motion: the last four are quiet
   CHECK(statistic(*found, "readings with motion, busiest sensor") == Approx(40 / active));
   CHECK(statistic(*found, "readings with motion, quietest sensor") == Approx(20 / active));
@@ -79,7 +80,7 @@ TEST_CASE("Statistics of motion are what one counts by hand") {
   CHECK(statistic(*found, "likeness of first and last sensor") ==
         Approx((76.0 * 20 - 40.0 * 20) / std::sqrt(40.0 * 36 * 20 * 56)));
   Stretch quiet{2, std::vector<std::uint8_t>(200, 0)};
-  CHECK_FALSE(motion_statistics(std::vector{quiet}, 30.0));
+  CHECK(motion_statistics(std::vector{quiet}, 30.0).empty());
 }
 
 TEST_CASE("The check calls one in twenty of its own rooms unlike, and finds one that isn't one of them") {
@@ -137,7 +138,8 @@ TEST_CASE("A calibration finds the liveliness that the log comes from, and its e
   counting::Settings settings;
   settings.modes = 1;  // as these rooms are made
   settings.shrinkage = 10.0;
-  const Calibration made = Pool(pool, settings).calibrate(unlabelled(real.labelled.days));
+  const Calibration made =
+      Pool(pool, settings).calibrate(unlabelled(real.labelled.days), unlabelled(real.labelled.days));
   CHECK(made.verdict == Verdict::like_these);
   REQUIRE(made.parameters.size() == 1);
   CHECK(made.parameters[0].mean_after > made.parameters[0].mean_before + 0.05);
@@ -148,7 +150,8 @@ TEST_CASE("A calibration finds the liveliness that the log comes from, and its e
   CHECK(made.mean_error < made.counter.expected_error->high);
   // A quiet log moves the other way: the twin.
   const PoolRoom other = room_of(random, 98, 0.12);
-  const Calibration quiet = Pool(pool, settings).calibrate(unlabelled(other.labelled.days));
+  const Calibration quiet =
+      Pool(pool, settings).calibrate(unlabelled(other.labelled.days), unlabelled(other.labelled.days));
   CHECK(quiet.parameters[0].mean_after < quiet.parameters[0].mean_before - 0.05);
 }
 
@@ -158,8 +161,8 @@ TEST_CASE("A calibration doesn't depend on threads, nor on counts that the log h
   const std::vector<Stretch> log = unlabelled(room_of(random, 99, 0.3).labelled.days);
   std::vector<Stretch> unknown = log;
   for (Stretch& day : unknown) day.people.assign(day.n_readings(), counting::unknown_count);
-  const Calibration one = Pool(pool, {}, 1).calibrate(log), more = Pool(pool, {}, 3).calibrate(log),
-                    told = Pool(pool).calibrate(unknown);
+  const Calibration one = Pool(pool, {}, 1).calibrate(log, log), more = Pool(pool, {}, 3).calibrate(log, log),
+                    told = Pool(pool).calibrate(unknown, unknown);
   for (std::size_t r = 0; r < pool.size(); ++r) {
     CHECK(one.rooms[r].weight == more.rooms[r].weight);
     CHECK(one.rooms[r].error == more.rooms[r].error);
@@ -174,11 +177,11 @@ TEST_CASE("A log that no room makes is told, with what is outside, and a log wit
   for (Stretch& day : log) {
     for (std::size_t i = 1; i < day.motion.size(); i += 2) day.motion[i] = 0;  // the second sensor died
   }
-  const Calibration died = Pool(pool).calibrate(log);
+  const Calibration died = Pool(pool).calibrate(log, log);
   CHECK(died.verdict == Verdict::none_like_it);
   CHECK_THAT(finding(died), contains("quietest sensor"));
   for (Stretch& day : log) std::ranges::fill(day.motion, std::uint8_t{0});
-  CHECK(Pool(pool).calibrate(log).verdict == Verdict::too_little_told);
+  CHECK(Pool(pool).calibrate(log, log).verdict == Verdict::too_little_told);
   CHECK_THROWS_AS(Pool({pool.begin(), pool.begin() + 9}), Error);
 }
 
@@ -196,6 +199,8 @@ TEST_CASE("Of a log the hours that the recipe simulates are compared, each day o
   CHECK(parts[0].motion == std::vector<std::uint8_t>{1, 1, 0});
   CHECK(parts[1].motion == std::vector<std::uint8_t>{1, 1, 0});
   CHECK(whole_log(rows).n_readings() == 48);
+  // Of a day that has only some of the hours nothing is compared.
+  CHECK(day_parts(rows, {-4.0, 10.0}).size() == 0);
 }
 
 TEST_CASE("A pool's rows are readings, and hold motion as long as the log's sensors do") {

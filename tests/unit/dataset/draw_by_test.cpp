@@ -53,6 +53,18 @@ TEST_CASE("A room drawn by weight is the recipe's own, with other days") {
   CHECK(seeds.size() == 3);
 }
 
+TEST_CASE("Rooms take a recipe's own scenes in turn") {
+  const TemporaryFolder folder;
+  folder.write("a.gltf", "{}");
+  folder.write("b.gltf", "{}");
+  const RecipeSpec recipe = read_recipe(folder.write(
+      "recipe.yaml", "pirsim_recipe: 1\nrooms:\n  - {scenes: [a.gltf, b.gltf], count: 5}\n  - {count: 1}\n"));
+  REQUIRE(recipe.n_rooms() == 6);
+  std::string names;
+  for (int room = 1; room <= 6; ++room) names += own_scene(recipe, room).stem().string() + ",";
+  CHECK(names == "a,b,a,b,a,,");
+}
+
 TEST_CASE("Weights that can't be drawn by are refused at their place") {
   for (const char* text :
        {"draw_by: {count: 3, weights: [1, 2]}\n", "draw_by: {count: 3, weights: [0, 0, 0, 0]}\n",

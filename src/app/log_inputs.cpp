@@ -1,0 +1,32 @@
+#include "app/log_inputs.hpp"
+
+#include "app/long_work.hpp"
+#include "app/session.hpp"
+
+namespace pirsim::app {
+
+void offer_log(CLI::App& command, LogInputs& log) {
+  command.add_option("--log", log.files, "the log; several files are parts of one")->option_text("FILE")->required();
+  offer_input_file(command, "--map", log.map, "what the log's columns mean (pirsim log --print-map)");
+  command.add_option("--time-zone", log.time_zone, "where the room is, as Europe/Berlin: for times of day")
+      ->option_text("ZONE");
+}
+
+Log read_log(const LogInputs& inputs, Verbosity verbosity) {
+  LogMap map = inputs.map.empty() ? LogMap{} : io::read_log_map(inputs.map);
+  if (!inputs.time_zone.empty()) map.time_zone = inputs.time_zone;
+  Log log = [&] {
+    const Progress progress({.what = "reading the log"}, verbosity);
+    const StopRequest stop;
+    return io::read_log(inputs.files, map, {[&](std::uint64_t) { stop.throw_if_made(); }});
+  }();
+  if (log.clock == LogClock::zoned && map.time_zone.empty()) {
+    log.remarks.push_back({Severity::warning, Where{inputs.files.front().string()},
+                           "its times tell an offset, and no zone is named: hours of the day are taken as they are "
+                           "written; name the room's zone (--time-zone Europe/Berlin)"});
+  }
+  tell(log.remarks, verbosity);
+  return log;
+}
+
+}  // namespace pirsim::app
