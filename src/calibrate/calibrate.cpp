@@ -61,7 +61,8 @@ std::vector<ParameterRange> parameter_ranges(std::span<const PoolRoom> pool, con
     for (std::size_t r = 0; r < pool.size(); ++r) weighed[r] *= weights[r];
     if (std::ranges::none_of(weighed, [](double weight) { return weight > 0.0; })) continue;
     const double spread = weighted_sd(all.values, all.has);
-    if (!(spread > 0.0)) continue;
+    constexpr double least_share = 1e-9;  // of the mean: what all rooms share differs in its last digits
+    if (!(spread > least_share * std::abs(weighted_mean(all.values, all.has)))) continue;
     ranges.push_back({name, weighted_interval(all.values, all.has), weighted_interval(all.values, weighed),
                       weighted_mean(all.values, all.has), weighted_mean(all.values, weighed),
                       std::max(0.0, 1.0 - weighted_sd(all.values, weighed) / spread)});
