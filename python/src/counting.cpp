@@ -188,23 +188,14 @@ nb::dict told(calibrate::Calibration&& made) {
   return result;
 }
 
-template <typename Stretches>
-calibrate::Calibration weighed(const auto& pool, const Stretches& log, const Stretches& days) {
-  if constexpr (requires { pool.calibrate(log, days); }) {
-    return pool.calibrate(log, days);
-  } else {
-    return pool.calibrate(log);
-  }
-}
-
 nb::dict calibrated(const std::string& pool, const LogRows& log, const Settings& settings, unsigned threads) {
   calibrate::Calibration made;
   attend(nb::none(), [&](Job&) {
     const std::filesystem::path folder = pool;
     const Interval hours = calibrate::hours_of(dataset::read_recipe(folder / "recipe.yaml"));
     auto rooms = calibrate::read_pool(folder, static_cast<int>(log.sensors.size()), settings.step_s, threads);
-    made = weighed(calibrate::Pool(std::move(rooms), settings, threads), std::vector{calibrate::whole_log(log)},
-                   calibrate::day_parts(log, hours));
+    made = calibrate::Pool(std::move(rooms), settings, threads)
+               .calibrate(std::vector{calibrate::whole_log(log)}, calibrate::day_parts(log, hours));
   });
   return told(std::move(made));
 }
