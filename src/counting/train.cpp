@@ -9,7 +9,7 @@
 namespace pirsim::counting {
 namespace {
 
-constexpr double least_move = 1e-3;  ///< pseudo-moves, shared as the moves are: none becomes impossible
+constexpr double least_move = 1e-3;  ///< pseudo-moves, shared as the first ones are: none becomes impossible
 
 int counts_of(std::span<const LabelledRoom> rooms) {
   int most = 0;
@@ -119,14 +119,15 @@ void add(std::vector<double>& sum, const std::vector<double>& more) {
 }
 
 /// One iteration: what is expected of all rooms, then what explains it best.
-std::vector<double> improve(Counter& counter, std::span<const LabelledRoom> rooms, unsigned threads) {
+std::vector<double> improve(Counter& counter, std::span<const LabelledRoom> rooms,
+                            const std::vector<double>& moves_at_first, unsigned threads) {
   const std::size_t n = size(counter.n_states()), n_symbols = size(counter.n_symbols());
   std::vector<Expected> each;
   ordered_parallel<Expected>(
       rooms.size(), threads, [&](std::size_t r) { return expected_of(counter, rooms[r], counter.rooms[r]); },
       [&](Expected& one) { each.push_back(std::move(one)); });
   constexpr double pseudo_count = 0.5;
-  std::vector<double> been(n, 1e-6), seen(n * n_symbols, pseudo_count), moved = counter.moves;
+  std::vector<double> been(n, 1e-6), seen(n * n_symbols, pseudo_count), moved = moves_at_first;
   for (double& move : moved) move *= least_move;
   for (const Expected& one : each) {
     add(been, one.been);
@@ -184,13 +185,14 @@ void require_alike(std::span<const LabelledRoom> rooms) {
 Counter train(std::span<const LabelledRoom> rooms, const Settings& settings, unsigned threads) {
   require_alike(rooms);
   Counter counter{settings, rooms.front().days.front().n_sensors, counts_of(rooms), {}, {}, {}};
-  counter.moves = first_moves(counter, rooms);
+  const std::vector<double> moves_at_first = first_moves(counter, rooms);
+  counter.moves = moves_at_first;
   const std::vector<double> emissions = first_emissions(counter, rooms);
   const std::vector<double> anywhere(size(counter.n_states()), 1.0 / counter.n_states());
   for (const LabelledRoom& room : rooms)
     counter.rooms.push_back({room.number, 1.0 / static_cast<double>(rooms.size()), anywhere, emissions});
   std::vector<double> been = anywhere;
-  for (int i = 0; i < settings.iterations; ++i) been = improve(counter, rooms, threads);
+  for (int i = 0; i < settings.iterations; ++i) been = improve(counter, rooms, moves_at_first, threads);
   for (std::size_t r = 0; r < rooms.size(); ++r) counter.rooms[r].first = first_of(counter, rooms[r], been);
   return counter;
 }

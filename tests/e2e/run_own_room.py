@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+"""`pirsim calibrate` and `pirsim count`: the same bytes in one go, in shards and resumed; the hold is read off the log;
+what is refused; counts against the log's own.
+
+Usage: run_own_room.py PIRSIM DATA_DIR [unittest arguments]. Needs python3 only.
+"""
+import csv
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PIRSIM = DATA = None
+MADE = ("weights.csv", "counter.json", "calibration.json", "calibration.html", "recipe.yaml")
+
+
+def run(*args, code=0):
+    result = subprocess.run([PIRSIM, *map(str, args)], capture_output=True, text=True, timeout=600)
+    assert result.returncode == code, f"{args}: exit code {result.returncode}, expected {code}\n{result.stderr}"
+    return result.stdout, result.stderr
+
+
+def table(path):
+    return csv.DictReader(path.read_text().splitlines())
+
+
+class OwnRoom(unittest.TestCase):
+    """One pool serves all tests: twelve rooms of an hour and a half, and two days of another room as a log."""
+
+    @classmethod
+    def setUpClass(cls):
+        holder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(holder.cleanup)
+        cls.folder = pathlib.Path(holder.name)
+        cls.recipe = DATA / "recipes" / "own_room_small.yaml"
+        cls.exports = cls.folder / "unseen" / "exports"
+        run("dataset", cls.recipe, "-o", cls.folder / "unseen", "-q", "--set", "rooms.0.count=1", "--set", "days=2",
+            "--set", "seed=99", "--set", "exports=[casas, uci864]")
+        cls.labelled = sorted((cls.exports / "uci864").rglob("*.csv"))
+        cls.log = []
+        for number, file in enumerate(cls.labelled):
+            lines = file.read_text().splitlines()
+            cls.log.append(cls.write(f"log_{number}.csv", "".join(line.rpartition(",")[0] + "\n" for line in lines)))
+        cls.made = cls.folder / "made"
+        cls.told, _ = cls.calibrate(cls.made)
+
+    @classmethod
+    def write(cls, name, text):
+        (cls.folder / name).write_text(text)
+        return cls.folder / name
+
+    @classmethod
+    def calibrate(cls, out, *more, log=None, recipe=None, code=0):
+        return run("calibrate", recipe or cls.recipe, "--log", *(log or cls.log), "-o", out, *more, code=code)
+
+    def same(self, folder):
+        for name in MADE:
+            self.assertEqual((folder / name).read_bytes(), (self.made / name).read_bytes(), name)
+
+    def test_shards_threads_and_a_resumed_one_make_the_same_bytes(self):
+        shards = self.folder / "shards"
+        self.calibrate(shards, "--shard", "1/3", "--threads", "1", "-q")
+        self.assertFalse((shards / "counter.json").exists())
+        self.calibrate(shards, "--shard", "2/3", "-q")
+        _, told = self.calibrate(shards, "--finish", "-q", code=3)
+        self.assertIn("4 of 12 room-days aren't there yet", told)
+        self.calibrate(shards, "--shard", "3/3", "-q")
+        self.calibrate(shards, "--finish", "-q", "--threads", "1")
+        self.same(shards)
+        gone = next((shards / "pool" / "rows").rglob("*.csv.gz"))
+        gone.unlink()
+        self.calibrate(shards, "--resume", "-q")
+        self.same(shards)
+
+    def test_the_verdict_is_told_and_weights_add_up(self):
+        numbers = json.loads((self.made / "calibration.json").read_text())
+        self.assertIn(numbers["finding"], self.told)
+        weights = [float(row["weight"]) for row in table(self.made / "weights.csv")]
+        self.assertEqual(len(weights), 12)
+        self.assertAlmostEqual(sum(weights), 1.0)
+        self.assertAlmostEqual(1 / sum(w * w for w in weights), numbers["effective_rooms"])
+
+    def test_the_weighted_recipe_makes_a_dataset_of_weighty_rooms(self):
+        out = self.folder / "weighted"
+        run("dataset", self.made / "recipe.yaml", "-o", out, "-q", "--set", "draw_by.count=2")
+        rooms = {path.read_bytes() for path in (self.made / "pool" / "rooms").iterdir()}
+        for path in (out / "rooms").iterdir():
+            self.assertIn(path.read_bytes(), rooms)
+        first = next((out / "rows").rglob("*.csv.gz")).read_bytes()
+        self.assertNotIn(first, [path.read_bytes() for path in (self.made / "pool" / "rows").rglob("*.csv.gz")])
+
+    def test_the_hold_of_an_event_log_is_that_of_the_rooms(self):
+        events = ["time,sensor,state"]
+        for minute in range(60):  # each pulse lasts 12 s
+            for sensor, second in (("a", 0), ("b", 20)):
+                events.append(f"2026-03-02T08:{minute:02d}:{second:02d},{sensor},on")
+                events.append(f"2026-03-02T08:{minute:02d}:{second + 12:02d},{sensor},off")
+        held = self.folder / "held"
+        _, told = self.calibrate(held, log=[self.write("events.csv", "\n".join(events) + "\n")])
+        self.assertIn("hold motion for 12.0 s", told)
+        holds = {row["value"] for row in table(held / "pool" / "effects.csv")
+                 if row["parameter"] == "hold_s"}
+        self.assertEqual(holds, {"12"})
+
+    def test_counts_are_told_beside_the_logs_own_and_make_a_page(self):
+        out, page = self.folder / "counts.csv", self.folder / "counts.html"
+        _, told = run("count", self.made / "counter.json", "--log", *self.labelled, "-o", out, "--report", page)
+        counts = {row["time"]: row for row in table(out)}
+        errors = []
+        for file in self.labelled:
+            for row in table(file):
+                time = row["Date"].replace("/", "-") + "T" + row["Time"]
+                errors.append(abs(int(counts[time]["people"]) - int(row["Room_Occupancy_Count"])))
+        self.assertIn(f"wrong by {sum(errors) / len(errors):.3f} people on average, over {len(errors)} readings", told)
+        for row in counts.values():
+            p = [float(value) for name, value in row.items() if name[0] == "p" and name[1:].isdigit()]
+            self.assertAlmostEqual(sum(p), 1.0, delta=0.0005 * len(p) + 1e-9)
+            self.assertAlmostEqual(sum(n * q for n, q in enumerate(p)), float(row["mean"]), delta=0.02)
+        self.assertIn("How many people were there?", page.read_text())
+
+    def test_counting_doesnt_look_at_the_logs_own_counts(self):
+        with_counts, _ = run("count", self.made / "counter.json", "--log", *self.labelled, "-q")
+        without, _ = run("count", self.made / "counter.json", "--log", *self.log, "-q")
+        self.assertEqual(with_counts, without)
+
+    def test_what_cant_be_calibrated_or_counted_is_refused_in_words(self):
+        three = self.write("three.csv", "time,A,B,C\n2026-03-02T08:00:30,0,1,0\n2026-03-02T08:01:00,1,0,0\n"
+                                        "2026-03-02T08:01:30,1,1,1\n")
+        out = self.folder / "refused"
+        for words, log, more, code in (
+                ("no room of the recipe has as many", [three], (), 3),
+                ("no such file", [self.folder / "nowhere.csv"], (), 4),
+                ("a calibration needs 10 rooms at least", self.log, ("--set", "rooms.0.count=4"), 3),
+                ("nothing shorter can be told apart", self.log, ("--step", "10"), 2)):
+            _, told = self.calibrate(out, "-q", *more, log=log, code=code)
+            self.assertIn(words, told)
+            subprocess.run(["rm", "-rf", out], check=True)
+        _, told = run("count", self.made / "counter.json", "--log", three, code=3)
+        self.assertIn("the counter is for 2 sensors, and the log has 3: A, B, C", told)
+        for text in ("", "{}", "[1]", '{"pirsim_counter": 2}', (self.made / "counter.json").read_text()[:-50]):
+            _, told = run("count", self.write("spoilt.json", text), "--log", self.log[0], code=3)
+            self.assertIn("isn't a counter", told)
+
+    def test_a_log_in_utc_asks_for_the_zone(self):
+        log = self.write("utc.csv", "time,A,B\n" + "".join(
+            f"2026-03-02T07:{i // 2:02d}:{i % 2 * 30:02d}Z,{i % 3 == 0:d},{i % 5 == 0:d}\n" for i in range(120)))
+        _, told = run("count", self.made / "counter.json", "--log", log)
+        self.assertIn("--time-zone", told)
+        out, told = run("count", self.made / "counter.json", "--log", log, "--time-zone", "Europe/Berlin")
+        self.assertNotIn("--time-zone", told)
+        self.assertTrue(out.splitlines()[1].startswith("2026-03-02T08:00"), out.splitlines()[1])
+
+
+if __name__ == "__main__":
+    PIRSIM, DATA = sys.argv[1], pathlib.Path(sys.argv[2])
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
