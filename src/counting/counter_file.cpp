@@ -101,6 +101,7 @@ void write_counter(const std::filesystem::path& file, const Counter& counter) {
   Json json{{"pirsim_counter", format_version}, {"step_s", counter.settings.step_s}, {"modes", counter.settings.modes},
             {"sensors", counter.n_sensors},     {"counts", counter.n_counts},        {"moves", counter.moves},
             {"rooms", std::move(rooms)}};
+  if (!counter.warning.empty()) json["warning"] = counter.warning;
   if (counter.expected_error) json["expected_error"] = {counter.expected_error->low, counter.expected_error->high};
   io::write_text_file(file, json.dump() + '\n');
 }
