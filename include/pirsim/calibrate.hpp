@@ -71,6 +71,8 @@ struct Calibration {
   double error_alike = 0.0;  ///< the same if all rooms weighed alike
 };
 
+inline constexpr int fewest_rooms = 10;  ///< that can be weighed
+
 /// At this p or below no room makes such a log.
 inline constexpr double verdict_level = 0.05;
 
@@ -103,6 +105,9 @@ class Pool {
 [[nodiscard]] std::vector<PoolRoom> read_pool(const std::filesystem::path& folder, int n_sensors, double step_s,
                                               unsigned threads = 0);
 
+/// Whether rooms of a recipe may have so many sensors; of the user's own scenes nobody knows before they are read.
+[[nodiscard]] bool may_have(const dataset::RecipeSpec& recipe, int n_sensors);
+
 /// Hours of the day that a recipe simulates.
 [[nodiscard]] Interval hours_of(const dataset::RecipeSpec& recipe);
 
@@ -117,7 +122,8 @@ class Pool {
 struct About {
   std::string recipe, log, made_by;
   Interval hours;
-  std::size_t n_days = 0;  ///< of the log
+  std::size_t n_days = 0;     ///< of the log, that were compared
+  std::size_t n_counted = 0;  ///< its readings with counts
 };
 
 /// weights.csv, counter.json, calibration.json and calibration.html. Throws Error(io).
@@ -126,6 +132,8 @@ void write_calibration(const std::filesystem::path& folder, const Calibration& c
 [[nodiscard]] std::string weighted_recipe(const dataset::RecipeSpec& recipe, const Calibration& calibration,
                                           const std::filesystem::path& folder);
 
+/// How many rooms carry the weight, in a sentence.
+[[nodiscard]] std::string how_much_it_told(const Calibration& calibration);
 /// What the calibration found, in a sentence or two.
 [[nodiscard]] std::string finding(const Calibration& calibration);
 
@@ -135,6 +143,7 @@ struct LogCounts {
   LogRows rows;  ///< windows of the counter's step
   counting::Estimates estimates;
   std::optional<Interval> expected_error;
+  std::string warning{};  ///< the counter's
 };
 /// Throws Error(input) if the log hasn't as many sensors as the counter is for.
 [[nodiscard]] LogCounts count_log(const counting::Counter& counter, LogRows rows, counting::Pass pass);

@@ -59,7 +59,7 @@ struct Counter {
   std::vector<double> moves;  ///< (states x states) probability from one reading to the next, from row to column
   std::vector<RoomModel> rooms;
   std::optional<Interval> expected_error;  ///< 90 %, mean absolute error in people; docs/howto/own_room.md
-  std::string warning{};  ///< why its counts can't be relied on; empty: nothing is known against them
+  std::string warning{};                   ///< why its counts can't be relied on; empty: nothing is known against them
   [[nodiscard]] int n_states() const { return n_counts * settings.modes; }
   [[nodiscard]] int n_symbols() const { return n_sensors + 1; }
 };

@@ -50,11 +50,33 @@ std::optional<double> hold_of(const Log& log) {
 void tell_finding(const calibrate::Calibration& calibration, const CalibrateOptions& options) {
   if (options.pool->inputs.verbosity == Verbosity::quiet) return;
   std::cout << calibrate::finding(calibration) << '\n'
-            << "The weight is that of " << fixed(calibration.effective_rooms, 1) << " of "
-            << counted(calibration.rooms.size(), "room") << ". See " << (options.folder / "calibration.html").string()
-            << ";\ncount with: pirsim count " << (options.folder / "counter.json").string() << " --log "
-            << options.log.files.front().string() << " -o counts.csv\n";
+            << calibrate::how_much_it_told(calibration) << " See " << (options.folder / "calibration.html").string()
+            << '\n';
+  if (calibration.verdict != calibrate::Verdict::none_like_it) {
+    std::cout << "count with: pirsim count " << (options.folder / "counter.json").string();
+    for (const std::string& word : words_of(options.log)) std::cout << ' ' << word;
+    std::cout << " -o counts.csv\n";
+  }
   require_written();
+}
+
+/// Before hours of work on rooms that can't be weighed.
+void require_rooms(const dataset::RecipeSpec& recipe, int n_sensors) {
+  if (recipe.n_rooms() < calibrate::fewest_rooms) {
+    throw Error(ErrorCode::input, Where{recipe.file.string()},
+                "a calibration needs " + std::to_string(calibrate::fewest_rooms) +
+                    " rooms at least, better 60; it has " + std::to_string(recipe.n_rooms()));
+  }
+  if (!calibrate::may_have(recipe, n_sensors)) {
+    throw Error(ErrorCode::input, Where{recipe.file.string()},
+                "the log has " + counted(static_cast<std::size_t>(n_sensors), "sensor") +
+                    ", and no room has as many: change its sensors, or name those of the room in a map (--map)");
+  }
+}
+
+std::size_t counted_readings(const LogRows& rows) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(rows.people, [](int n) { return n != log_state::unknown_count; }));
 }
 
 void run(const CalibrateOptions& options) {
@@ -70,6 +92,7 @@ void run(const CalibrateOptions& options) {
   const LogRows rows = LogWindows(log, step_s).rows();
   const Interval hours = calibrate::hours_of(recipe);
   const std::vector<counting::Stretch> days = calibrate::day_parts(rows, hours);
+  require_rooms(recipe, static_cast<int>(rows.sensors.size()));
   DatasetWork pool = *options.pool;
   pool.folder = options.folder / "pool";
   std::filesystem::create_directories(options.folder);
@@ -81,9 +104,10 @@ void run(const CalibrateOptions& options) {
   settings.step_s = step_s;
   const calibrate::Calibration made = calibrate::Pool(std::move(rooms), settings, pool.threads)
                                           .calibrate(std::vector{calibrate::whole_log(rows)}, days);
-  calibrate::write_calibration(options.folder, made,
-                               {options.recipe.filename().string(), options.log.files.front().filename().string(),
-                                "pirsim " + version() + " (" + git_revision() + ")", hours, days.size()});
+  calibrate::write_calibration(
+      options.folder, made,
+      {options.recipe.filename().string(), options.log.files.front().filename().string(),
+       "pirsim " + version() + " (" + git_revision() + ")", hours, days.size(), counted_readings(rows)});
   io::write_text_file(options.folder / "recipe.yaml", calibrate::weighted_recipe(recipe, made, options.folder));
   tell_finding(made, options);
 }
@@ -94,12 +118,13 @@ void add_calibrate_command(CLI::App& app) {
   CLI::App& command =
       add_command(app, "calibrate", "find simulated rooms that are like the one of a log, and count there", R"(
   pirsim calibrate recipe.yaml --log week.csv -o DIR      a counter for that room, the error to expect, a verdict
-  pirsim calibrate recipe.yaml --log week.csv -o DIR --resume            with the rooms that are there already
+  pirsim calibrate recipe.yaml --log month.csv -o DIR     the same rooms, as they are there, and another log
   pirsim calibrate recipe.yaml --log week.csv -o DIR --shard 3/100       a part of the rooms, in a job array ...
   pirsim calibrate recipe.yaml --log week.csv -o DIR --finish            ... and when all are through
   pirsim dataset DIR/recipe.yaml -o data                  a dataset of rooms drawn by their weight
 )");
   const auto options = std::make_shared<CalibrateOptions>();
+  options->pool->start = dataset::DatasetOptions::Start::resume;  // rooms are the same, whatever the log
   as_input(command.add_option("RECIPE", options->recipe, "what is known of the room: a recipe, as of pirsim dataset"))
       ->required();
   offer_log(command, options->log);

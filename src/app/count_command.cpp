@@ -37,6 +37,8 @@ void count(const CountOptions& options) {
   const std::string made_by = "pirsim " + version() + " (" + git_revision() + ")";
   if (!options.report.empty())
     calibrate::write_counts_page(options.report, counts, options.log.files.front().filename().string(), made_by);
+  if (!counts.warning.empty())
+    tell({{Severity::warning, Where{options.counter.string()}, counts.warning}}, options.verbosity);
   const auto error = calibrate::error_of(counts);
   if (error && options.verbosity != Verbosity::quiet) {
     std::cerr << "beside the log's own counts: wrong by " << fixed(error->mean, 3) << " people on average, over "

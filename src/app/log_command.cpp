@@ -21,7 +21,7 @@ struct LogOptions {
   std::vector<std::filesystem::path> files;
   std::filesystem::path map, output, report;
   std::vector<std::string> changes;
-  std::string from, to;
+  std::string from, to, time_zone;
   double window_s = 30.0;
   bool prints_map = false;
   Verbosity verbosity = Verbosity::normal;
@@ -30,6 +30,7 @@ struct LogOptions {
 LogMap map_of(const LogOptions& options) {
   LogMap map;
   if (!options.map.empty()) map = io::read_log_map(options.map, options.changes);
+  if (!options.time_zone.empty()) map.time_zone = options.time_zone;
   if (!options.from.empty()) map.from = options.from;
   if (!options.to.empty()) map.to = options.to;
   return map;
@@ -107,6 +108,8 @@ void add_log_command(CLI::App& app) {
       command.add_option("files", options->files, "the log: CSV, or events as Home Assistant and CASAS write them"))
       ->option_text("FILE...");
   offer_input_file(command, "--map", options->map, "what its columns mean, YAML");
+  command.add_option("--time-zone", options->time_zone, "in which local time it is told, as Europe/Berlin")
+      ->option_text("ZONE");
   command.add_option("--from", options->from, "local time from which it is read")->option_text("TIME");
   command.add_option("--to", options->to, "local time until which it is read")->option_text("TIME");
   command.add_option("--window", options->window_s, "length of a row's window (default: 30)")->option_text("SECONDS");

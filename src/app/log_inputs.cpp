@@ -12,6 +12,14 @@ void offer_log(CLI::App& command, LogInputs& log) {
       ->option_text("ZONE");
 }
 
+std::vector<std::string> words_of(const LogInputs& log) {
+  std::vector<std::string> words{"--log"};
+  for (const std::filesystem::path& file : log.files) words.push_back(file.string());
+  if (!log.map.empty()) words.insert(words.end(), {"--map", log.map.string()});
+  if (!log.time_zone.empty()) words.insert(words.end(), {"--time-zone", log.time_zone});
+  return words;
+}
+
 Log read_log(const LogInputs& inputs, Verbosity verbosity) {
   LogMap map = inputs.map.empty() ? LogMap{} : io::read_log_map(inputs.map);
   if (!inputs.time_zone.empty()) map.time_zone = inputs.time_zone;

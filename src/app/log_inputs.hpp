@@ -18,6 +18,8 @@ struct LogInputs {
 
 /// --log, --map and --time-zone.
 void offer_log(CLI::App& command, LogInputs& log);
+/// As the user typed it: a command with these words reads the same.
+[[nodiscard]] std::vector<std::string> words_of(const LogInputs& log);
 /// Tells what is odd about it.
 [[nodiscard]] Log read_log(const LogInputs& log, Verbosity verbosity);
 

@@ -116,7 +116,8 @@ RoomStatistics room_statistics(const std::vector<DayStatistics>& days, std::size
 /// Which parameter of the recipe moves a statistic the way that it would have to go, if one does.
 std::string advice_for(std::span<const PoolRoom> pool, const RoomStatistics& known, std::size_t statistic,
                        double lack) {
-  constexpr double least_correlation = 0.3;  // of 60 rooms chance alone brings 0.25 in one of twenty; assumed
+  // Chance alone brings that in one of a hundred.
+  const double least_correlation = 2.6 / std::sqrt(static_cast<double>(std::max<std::size_t>(1, known.rooms.size())));
   std::string best;
   double most = least_correlation;
   for (const std::string& name : names_of(pool)) {
@@ -174,7 +175,7 @@ struct Pool::Parts {
 };
 
 Pool::Pool(std::vector<PoolRoom> rooms, const counting::Settings& settings, unsigned threads) {
-  constexpr std::size_t fewest = 10;
+  constexpr std::size_t fewest = fewest_rooms;
   if (rooms.size() < fewest) {
     throw Error(ErrorCode::input, "a calibration needs " + std::to_string(fewest) +
                                       " rooms at least, better 60; there are " + std::to_string(rooms.size()));
@@ -205,11 +206,12 @@ Calibration Pool::calibrate(std::span<const Stretch> log, std::span<const Stretc
   const DayStatistics log_days = motion_statistics(days, counter.settings.step_s);
   if (log_days.empty()) return made;
   const RoomStatistics known = room_statistics(room_days, log_days.size());
-  constexpr std::size_t fewest_rooms = 10;
   if (known.rooms.size() < fewest_rooms) return made;
   const std::vector<double> of_log = mean_of_first(log_days, log_days.size());
   made.p = unlike_share(known.rows, of_log);
   made.verdict = made.p <= verdict_level ? Verdict::none_like_it : Verdict::like_these;
+  if (made.verdict == Verdict::none_like_it)
+    made.counter.warning = "No room that this counter comes from makes such a log: don't rely on its counts.";
   made.statistics = compared(rooms, known, of_log, made.counter);
   return made;
 }

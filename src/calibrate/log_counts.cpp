@@ -113,7 +113,7 @@ LogCounts count_log(const counting::Counter& counter, LogRows rows, counting::Pa
   counting::Stretch stretch = whole_log(rows);
   stretch.people.clear();  // a count is made without a look at the answer
   counting::Estimates estimates = counting::estimate(counter, stretch, pass);
-  return {std::move(rows), std::move(estimates), counter.expected_error};
+  return {std::move(rows), std::move(estimates), counter.expected_error, counter.warning};
 }
 
 std::optional<CountError> error_of(const LogCounts& counts) {
@@ -156,10 +156,11 @@ void write_counts_page(const std::filesystem::path& file, const LogCounts& count
   if (const auto known = error_of(counts))
     error = "Compared with the log's own counts it is wrong by " + fixed(known->mean, 2) + " people on average, over " +
             counted(known->readings, "reading") + ".";
-  else if (counts.expected_error)
+  else if (counts.expected_error && counts.warning.empty())
     error = "In rooms like this one such counts are wrong by " + fixed(counts.expected_error->low, 2) + " to " +
-            fixed(counts.expected_error->high, 2) + " people on average while somebody is there.";
-  report.finding = error;
+            fixed(counts.expected_error->high, 2) +
+            " people on average, from half an hour before the first person to half an hour after the last.";
+  report.finding = counts.warning + (counts.warning.empty() || error.empty() ? "" : " ") + error;
   report.paragraphs = {
       "Log: " + log + ". Each day shows the estimated number of people above the readings with motion of each sensor."};
   if (days.size() > most_days)

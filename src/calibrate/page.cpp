@@ -53,24 +53,25 @@ io::BandChart statistics_chart(const Calibration& calibration) {
 io::ReportSection statistics_section(const Calibration& calibration) {
   io::ReportSection section;
   section.heading = "Is your room like these?";
-  section.paragraphs = {calibration.verdict == Verdict::none_like_it
-                            ? "No. Of such rooms, taken as real ones in turn, " + fixed(100.0 * calibration.p, 0) +
-                                  " % are as unlike the others as your log is. What is outside of the range is told in "
-                                  "the last column: widen that range of the recipe, or ask what is in the room that "
-                                  "the recipe hasn't got (a pet, a fan, another kind of sensor, a sensor that died)."
-                            : "Nothing speaks against it: " + fixed(100.0 * calibration.p, 0) +
-                                  " % of the rooms are as unlike the others as your log is. That doesn't prove that "
-                                  "the room is among them."};
-  io::Table table{{"of a day", "your log", "90 % of the rooms", "90 % by weight", "rooms as far out"}, {}};
-  const bool has_advice =
-      std::ranges::any_of(calibration.statistics, [](const Statistic& s) { return !s.advice.empty(); });
-  if (has_advice) table.headings.emplace_back("what would move it");
+  section.paragraphs = {
+      calibration.verdict == Verdict::none_like_it
+          ? "No: only " + fixed(100.0 * calibration.p, 0) +
+                " % of the rooms differ as much from the others as your log does. Widen the range of what is outside, "
+                "or ask what is in the room that the recipe hasn't got: a pet, a fan, another kind of sensor, a sensor "
+                "that died."
+          : "Nothing speaks against it: " + fixed(100.0 * calibration.p, 0) +
+                " % of the rooms differ as much from the others as your log does. That doesn't prove that the room is "
+                "among them."};
+  io::Table table{{"of a day", "your log", "90 % of rooms", "by weight", "as far out"}, {}};
   for (const Statistic& one : calibration.statistics) {
-    std::vector<std::string>& row = table.rows.emplace_back(
-        std::vector<std::string>{one.name + ", " + one.unit, plain(one.of_log), plain(one.of_rooms),
-                                 plain(one.of_weighty), fixed(100.0 * one.p, 0) + " %"});
-    if (has_advice) row.push_back(one.advice);
+    table.rows.push_back({one.name + ", " + one.unit, plain(one.of_log), plain(one.of_rooms), plain(one.of_weighty),
+                          fixed(100.0 * one.p, 0) + " %"});
+    if (!one.advice.empty())
+      section.paragraphs.push_back("In these rooms, " + one.advice + " brings \"" + one.name +
+                                   "\" nearer to your log.");
   }
+  section.paragraphs.emplace_back(
+      "As far out: the share of rooms that are at least as far from the middle as your log.");
   section.tables.push_back(std::move(table));
   section.charts.push_back(statistics_chart(calibration));
   return section;
@@ -82,7 +83,7 @@ io::ReportSection parameters_section(const Calibration& calibration) {
   section.paragraphs = {
       "Each parameter's range over the rooms, before and by weight. Narrowed: 0 % is left open, 100 % is determined. "
       "Averages over a room's sensors."};
-  io::Table table{{"parameter", "90 % before", "90 % by weight", "mean before", "mean by weight", "narrowed"}, {}};
+  io::Table table{{"parameter", "90 % of rooms", "by weight", "mean", "by weight", "narrowed"}, {}};
   for (const ParameterRange& one : calibration.parameters) {
     table.rows.push_back({one.name, plain(one.before), plain(one.after), plain(one.mean_before), plain(one.mean_after),
                           fixed(100.0 * one.narrowed, 0) + " %"});
@@ -94,9 +95,8 @@ io::ReportSection parameters_section(const Calibration& calibration) {
 io::ReportSection rooms_section(const Calibration& calibration) {
   io::ReportSection section;
   section.heading = "Which rooms carry the weight";
-  section.paragraphs = {"The weight is that of " + fixed(calibration.effective_rooms, 1) + " of " +
-                        counted(calibration.rooms.size(), "room") +
-                        ". A room's error is that of a counter made from the others, if that room were yours."};
+  section.paragraphs = {how_much_it_told(calibration) +
+                        " A room's error is that of a counter made from the others, if that room were yours."};
   std::vector<WeighedRoom> rooms = calibration.rooms;
   std::ranges::stable_sort(rooms, std::greater{}, &WeighedRoom::weight);
   constexpr std::size_t most = 15;
@@ -116,6 +116,10 @@ io::ReportSection rooms_section(const Calibration& calibration) {
 io::ReportSection error_section(const Calibration& calibration) {
   io::ReportSection section;
   section.heading = "How well will it count?";
+  if (calibration.verdict == Verdict::none_like_it) {
+    section.paragraphs = {"Nobody knows: your room isn't like those in which the error is known."};
+    return section;
+  }
   const std::optional<Interval>& expected = calibration.counter.expected_error;
   section.paragraphs = {
       expected ? "In rooms like the weighty ones the counter is wrong by " + fixed(calibration.mean_error, 2) +
@@ -141,6 +145,15 @@ std::string word_of(Verdict verdict) {
   return "too-little-told";
 }
 
+std::string how_much_it_told(const Calibration& calibration) {
+  constexpr double hardly = 0.8;  // of the rooms
+  const std::string all = counted(calibration.rooms.size(), "room");
+  return "The weight is that of " + fixed(calibration.effective_rooms, 1) + " of " + all +
+         (calibration.effective_rooms > hardly * static_cast<double>(calibration.rooms.size())
+              ? ": the log hardly tells them apart."
+              : ".");
+}
+
 std::string finding(const Calibration& calibration) {
   const std::optional<Interval>& expected = calibration.counter.expected_error;
   const std::string error =
@@ -160,17 +173,22 @@ std::string finding(const Calibration& calibration) {
     case Verdict::too_little_told:
       break;
   }
-  return "Too little is told in the hours that the recipe simulates to say whether its rooms are like yours." + error;
+  return "Too little is told in the hours that the recipe simulates to say whether its rooms are like yours: a day "
+         "counts "
+         "if the log has nine tenths of them, with some motion." +
+         error;
 }
 
 io::Report page(const Calibration& calibration, const About& about) {
   io::Report report;
   report.title = "Calibration";
   report.finding = finding(calibration);
-  report.paragraphs = {"Log: " + about.log + ", " + counted(about.n_days, "day") + ", from " +
-                       clock_text(about.hours.low) + " to " + clock_text(about.hours.high) +
-                       ". Recipe: " + about.recipe + ", " + counted(calibration.rooms.size(), "room") +
-                       ". Each room is weighed by how well its model explains the log."};
+  report.paragraphs = {
+      "Log: " + about.log + ", " + counted(about.n_days, "day") + ", from " + clock_text(about.hours.low) + " to " +
+      clock_text(about.hours.high) + ". Recipe: " + about.recipe + ", " + counted(calibration.rooms.size(), "room") +
+      ". Each room is weighed by how well its model explains the log" +
+      (about.n_counted == 0 ? std::string(".")
+                            : ", and the counts of " + counted(about.n_counted, "reading") + " in it.")};
   report.sections = {error_section(calibration)};
   if (!calibration.statistics.empty()) report.sections.push_back(statistics_section(calibration));
   report.sections.push_back(parameters_section(calibration));

@@ -71,7 +71,7 @@ Parameters parameters_of(const fs::path& folder) {
   RoomMeans means;
   constexpr std::array of_rooms{"floor_m2", "seats", "staff"};
   constexpr std::array of_sensors{"y_m", "tilt_deg"};
-  add_columns(folder / "rooms.csv", "room.", of_rooms, means);
+  add_columns(folder / "rooms.csv", "", of_rooms, means);
   add_columns(folder / "sensors.csv", "sensor.", of_sensors, means);
   add_effects(folder / "effects.csv", means);
   Parameters parameters;
@@ -131,6 +131,17 @@ std::vector<PoolRoom> read_pool(const fs::path& folder, int n_sensors, double st
                                       "): change the recipe's sensors, or name those of the room in a map (--map)");
   }
   return pool;
+}
+
+bool may_have(const dataset::RecipeSpec& recipe, int n_sensors) {
+  return std::ranges::any_of(recipe.rooms, [&](const dataset::RoomGroupSpec& group) {
+    int least = 0, most = 0;
+    for (const dataset::SensorGroupSpec& sensors : group.rooms.sensors) {
+      least += sensors.count.least;
+      most += sensors.count.most;
+    }
+    return !group.scenes.empty() || (least <= n_sensors && n_sensors <= most);
+  });
 }
 
 Interval hours_of(const dataset::RecipeSpec& recipe) {

@@ -87,6 +87,7 @@ Counter counter_from(const Json& json) {
   if (!(std::abs(weights - 1.0) < 1e-6)) throw std::domain_error("the rooms' weights don't add up to 1");
   if (const auto error = json.find("expected_error"); error != json.end())
     counter.expected_error = Interval{error->at(0).get<double>(), error->at(1).get<double>()};
+  if (const auto warning = json.find("warning"); warning != json.end()) counter.warning = warning->get<std::string>();
   return counter;
 }
 

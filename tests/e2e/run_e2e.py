@@ -64,7 +64,7 @@ VALUES = {"--set": "name=other", "--response": "zones", "--sensors": ".", "--tra
           "--height": "64", "--measured": "m.csv", "--holdout": "0.3", "--table": "table", "--nuisance": "none",
           "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "effects", "--hide": "one",
           "--script": "other.yaml", "--first-day": "2026-03-03", "--from": "09:00", "--to": "10:00",
-          "--cleaning": "none"}
+          "--cleaning": "none", "--time-zone": "Europe/Berlin"}
 OUTPUTS = {"preview": "room.png", "export": "run.glb", "view": "run.html", "coverage": "maps", "walktest": "points.csv"}
 
 

@@ -131,9 +131,9 @@ class OwnRoom(unittest.TestCase):
                                         "2026-03-02T08:01:30,1,1,1\n")
         out = self.folder / "refused"
         for words, log, more, code in (
-                ("no room of the recipe has as many", [three], (), 3),
+                ("the log has 3 sensors, and no room has as many", [three], (), 3),
                 ("no such file", [self.folder / "nowhere.csv"], (), 4),
-                ("a calibration needs 10 rooms at least", self.log, ("--set", "rooms.0.count=4"), 3),
+                ("a calibration needs 10 rooms at least, better 60; it has 4", self.log, ("--set", "rooms.0.count=4"), 3),
                 ("nothing shorter can be told apart", self.log, ("--step", "10"), 2)):
             _, told = self.calibrate(out, "-q", *more, log=log, code=code)
             self.assertIn(words, told)

@@ -79,7 +79,7 @@ Table sensor_table(const Log& log, const LogFacts& facts) {
   const double whole_s = static_cast<double>(log.end_us - log.begin_us) / 1e6;
   for (const LogSensorFacts& sensor : facts.sensors) {
     const auto share = sensor.motion_share();
-    table.rows.push_back({sensor.name, share ? percent(*share) : "", percent(sensor.unknown_s / whole_s),
+    table.rows.push_back({sensor.name, share ? percent(*share) : "", percent(std::max(0.0, sensor.unknown_s) / whole_s),
                           std::to_string(sensor.pulses.n), floor_in_words(sensor.pulses),
                           quantile_in_words(sensor.pulses, sensor.pulses.median_s),
                           quantile_in_words(sensor.pulses, sensor.pulses.q95_s), floor_in_words(sensor.pauses),

@@ -142,9 +142,40 @@ TEST_CASE("overrides that can't be applied are usage errors", "[yaml]") {
   CHECK(refusal_of(text, {"=1"}).find("2 --set =1: error:") == 0);
   CHECK(refusal_of(text, {"a..b=1"}).find("a key is empty") != std::string::npos);
   CHECK(refusal_of(text, {"a.b=1"}).find("nothing can be set below the value '1'") != std::string::npos);
-  CHECK(refusal_of(text, {"b.2=1"}).find("'2' is not an index") != std::string::npos);
+  CHECK(refusal_of(text, {"b.3=1"}).find("'3' is not an index") != std::string::npos);
   CHECK(refusal_of(text, {"b.x=1"}).find("'x' is not an index") != std::string::npos);
   CHECK(refusal_of(text, {"a=[1"}).find("2 --set a=[1: error: expected a name as key") == 0);
+}
+
+TEST_CASE("a list gets one item more under the number after its last", "[yaml]") {
+  Diagnostics faults;
+  const YamlNode node = YamlNode::parse("b: [1, 2]\n", "f.yaml", std::vector<std::string>{"b.2={c: 3}", "b.2.d=4"});
+  const std::vector<YamlNode> items = node.value_of("b")->items();
+  REQUIRE(items.size() == 3);
+  CHECK(items[2].value_of("c")->integer(faults, "c") == 3);
+  CHECK(items[2].value_of("d")->integer(faults, "d") == 4);
+  CHECK(items[0].integer(faults, "b") == 1);
+  CHECK_FALSE(faults.has_errors());
+}
+
+TEST_CASE("a tree as YAML reads back the same", "[yaml]") {
+  const std::string text =
+      "# a comment\na: 1\ntime: \"07:30\"\nnothing:\nword: 'null'\nlist:\n  - {count: [2, 3], name: 'a: b # c'}\n  - "
+      "~\n"
+      "map: {x: {y: [1, [2, 3]]}}\nempty: []\nnone: {}\n\"odd key: \": \"line\\nbreak\"\n";
+  const YamlNode node = YamlNode::parse(text, "f.yaml");
+  const std::string once = node.to_yaml();
+  CHECK(YamlNode::parse(once, "g.yaml").to_yaml() == once);
+  const YamlNode again = YamlNode::parse(once, "g.yaml");
+  CHECK(again.n_values() == node.n_values());
+  CHECK(again.value_of("nothing")->is_null());
+  CHECK(again.value_of("word")->is_scalar());
+  CHECK(again.value_of("empty")->is_list());
+  CHECK(again.value_of("none")->is_map());
+  Diagnostics faults;
+  CHECK(again.value_of("odd key: ")->prose(faults, "odd") == "line\nbreak");
+  CHECK(again.value_of("list")->items()[0].value_of("name")->text(faults, "name") == "a: b # c");
+  CHECK_FALSE(faults.has_errors());
 }
 
 TEST_CASE("variables are replaced in scalars and unknown ones told once", "[yaml]") {
