@@ -35,18 +35,22 @@ class RoomMeans {
   std::map<int, std::map<std::string, Sum>> sums_;
 };
 
-void add_columns(const fs::path& file, const std::string& prefix, std::span<const char* const> columns,
-                 RoomMeans& means) {
+/// A column of a table, and what a recipe calls it.
+struct NamedColumn {
+  const char *column, *name;
+};
+
+void add_columns(const fs::path& file, std::span<const NamedColumn> columns, RoomMeans& means) {
   const io::CsvTable table = io::CsvTable::read(file);
   Diagnostics faults;
   const auto room = table.required_column("room", faults);
   std::vector<std::size_t> found;
-  for (const char* name : columns) found.push_back(table.required_column(name, faults).value_or(0));
+  for (const NamedColumn& one : columns) found.push_back(table.required_column(one.column, faults).value_or(0));
   faults.throw_if_errors();
   for (std::size_t row = 0; row < table.n_rows(); ++row) {
     const int number = table.integer(row, *room, faults).value_or(0);
     for (std::size_t i = 0; i < found.size(); ++i) {
-      if (const auto value = table.number(row, found[i], faults)) means.add(number, prefix + columns[i], *value);
+      if (const auto value = table.number(row, found[i], faults)) means.add(number, columns[i].name, *value);
     }
   }
   faults.throw_if_errors();
@@ -69,10 +73,11 @@ void add_effects(const fs::path& file, RoomMeans& means) {
 
 Parameters parameters_of(const fs::path& folder) {
   RoomMeans means;
-  constexpr std::array of_rooms{"floor_m2", "seats", "staff"};
-  constexpr std::array of_sensors{"y_m", "tilt_deg"};
-  add_columns(folder / "rooms.csv", "", of_rooms, means);
-  add_columns(folder / "sensors.csv", "sensor.", of_sensors, means);
+  constexpr std::array of_rooms{NamedColumn{"floor_m2", "floor_m2"}, NamedColumn{"seats", "seats"},
+                                NamedColumn{"staff", "people"}};
+  constexpr std::array of_sensors{NamedColumn{"y_m", "sensors.height_m"}, NamedColumn{"tilt_deg", "sensors.tilt_deg"}};
+  add_columns(folder / "rooms.csv", of_rooms, means);
+  add_columns(folder / "sensors.csv", of_sensors, means);
   add_effects(folder / "effects.csv", means);
   Parameters parameters;
   means.tell(parameters);
