@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/text.hpp"
+#include "io/files/atomic_file.hpp"
 #include "io/read/csv_reader.hpp"
 #include "pirsim/calibrate.hpp"
 #include "pirsim/csv.hpp"
