@@ -74,6 +74,7 @@ struct RecipeSpec {
   std::string ending = ".csv.gz";  ///< of rows: .csv, .csv.gz or .csv.zst
   std::filesystem::path file;
   std::vector<std::string> overrides;  ///< "sensing.response=zones"
+  std::string given;                   ///< the file's content
   std::string text;                    ///< the file's, and a comment for each override
   std::vector<int> originals{};        ///< follows from draw_by
   [[nodiscard]] int n_rooms() const;
@@ -84,6 +85,9 @@ struct RecipeSpec {
 
 /// Overrides are as of scripts. Throws Error (io; input: all faults with file:line:column; usage: an override).
 [[nodiscard]] RecipeSpec read_recipe(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+
+/// The same recipe with more overrides, without its file being read again. Throws as read_recipe().
+[[nodiscard]] RecipeSpec with_overrides(const RecipeSpec& recipe, std::span<const std::string> more);
 
 /// A room of a recipe by its number, from 1 on: drawn, or read. Throws as draw_room() and io::read_scene() do.
 [[nodiscard]] SceneSpec room_of(const RecipeSpec& recipe, int number, const io::SceneOptions& options);

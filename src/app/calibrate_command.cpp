@@ -18,7 +18,7 @@ namespace {
 struct CalibrateOptions {
   std::filesystem::path recipe, folder;
   LogInputs log;
-  std::optional<double> step_s;
+  std::optional<double> step_s, hold_s;
   std::shared_ptr<DatasetWork> pool = std::make_shared<DatasetWork>();
 };
 
@@ -34,7 +34,8 @@ double step_of(const CalibrateOptions& options, const Log& log) {
   return step_s;
 }
 
-/// How long the sensors hold motion, if the log tells: the pulses of an event log are hardly ever shorter.
+/// How long the sensors hold motion, if the log tells: the pulses of an event log are hardly ever shorter. In tenths of
+/// a second, since no log tells more.
 std::optional<double> hold_of(const Log& log) {
   constexpr std::size_t fewest_pulses = 20;  // of a sensor; assumed
   if (log.has_readings()) return std::nullopt;
@@ -44,7 +45,8 @@ std::optional<double> hold_of(const Log& log) {
     sum += sensor.pulses.floor_s;
     n += 1.0;
   }
-  return n > 0.0 ? std::optional(sum / n) : std::nullopt;
+  constexpr double per_s = 10.0;
+  return n > 0.0 ? std::optional(std::round(per_s * sum / n) / per_s) : std::nullopt;
 }
 
 void tell_finding(const calibrate::Calibration& calibration, const CalibrateOptions& options) {
@@ -83,12 +85,12 @@ void run(const CalibrateOptions& options) {
   if (options.folder.empty()) throw Error(ErrorCode::usage, "-o DIR is missing");
   const Log log = read_log(options.log, options.pool->inputs.verbosity);
   const double step_s = step_of(options, log);
-  const std::optional<double> hold_s = hold_of(log);
-  if (hold_s && options.pool->inputs.verbosity != Verbosity::quiet)
-    std::cerr << "the log's sensors hold motion for " << fixed(*hold_s, 1) << " s, and so do the rooms'\n";
+  const std::optional<double> hold_s = options.hold_s ? options.hold_s : hold_of(log);
+  if (hold_s && !options.hold_s && options.pool->inputs.verbosity != Verbosity::quiet)
+    std::cerr << "the log's sensors hold motion for " << fixed(*hold_s, 1) << " s, and so do the rooms' (--hold)\n";
   const dataset::RecipeSpec given = read_recipe(options.recipe, *options.pool);
   const std::vector<std::string> overrides = calibrate::pool_overrides(given, step_s, hold_s);
-  const dataset::RecipeSpec recipe = read_recipe(options.recipe, *options.pool, overrides);
+  const dataset::RecipeSpec recipe = dataset::with_overrides(given, overrides);
   const LogRows rows = LogWindows(log, step_s).rows();
   const Interval hours = calibrate::hours_of(recipe);
   const std::vector<counting::Stretch> days = calibrate::day_parts(rows, hours);
@@ -118,7 +120,7 @@ void add_calibrate_command(CLI::App& app) {
   CLI::App& command =
       add_command(app, "calibrate", "find simulated rooms that are like the one of a log, and count there", R"(
   pirsim calibrate recipe.yaml --log week.csv -o DIR      a counter for that room, the error to expect, a verdict
-  pirsim calibrate recipe.yaml --log month.csv -o DIR     the same rooms, as they are there, and another log
+  pirsim calibrate recipe.yaml --log month.csv --hold 12 -o DIR          the same rooms, as they are there, and another log
   pirsim calibrate recipe.yaml --log week.csv -o DIR --shard 3/100       a part of the rooms, in a job array ...
   pirsim calibrate recipe.yaml --log week.csv -o DIR --finish            ... and when all are through
   pirsim dataset DIR/recipe.yaml -o data                  a dataset of rooms drawn by their weight
@@ -133,6 +135,11 @@ void add_calibrate_command(CLI::App& app) {
       .add_option("--step", options->step_s, "seconds between readings (default: 30, or the log's interval if longer)")
       ->option_text("SECONDS")
       ->check(CLI::Range(1.0, 3600.0));
+  command
+      .add_option("--hold", options->hold_s,
+                  "seconds for which the sensors hold motion (default: what an event log tells)")
+      ->option_text("SECONDS")
+      ->check(CLI::Range(0.0, 600.0));
   command.add_flag_callback(
       "--finish", [pool = options->pool.get()] { pool->part = DatasetWork::Part::finish; },
       "only weigh the rooms that are there");

@@ -70,12 +70,9 @@ void tell_what_is_missing(const DatasetWork& work, const dataset::RecipeSpec& re
 
 }  // namespace
 
-dataset::RecipeSpec read_recipe(const std::filesystem::path& file, const DatasetWork& work,
-                                std::span<const std::string> more_overrides) {
-  std::vector<std::string> overrides = work.inputs.overrides;
-  overrides.insert(overrides.end(), more_overrides.begin(), more_overrides.end());
+dataset::RecipeSpec read_recipe(const std::filesystem::path& file, const DatasetWork& work) {
   const Progress progress({.what = "reading " + file.filename().string()}, work.inputs.verbosity);
-  return dataset::read_recipe(file, overrides);
+  return dataset::read_recipe(file, work.inputs.overrides);
 }
 
 Whole make_dataset(const dataset::RecipeSpec& recipe, const DatasetWork& work, const StopRequest& stop) {

@@ -23,8 +23,7 @@ struct DatasetWork {
 /// --shard, --resume, --finish, --threads, --set, --response, --sensors and --quiet.
 void offer_dataset_work(CLI::App& command, const std::shared_ptr<DatasetWork>& work);
 
-[[nodiscard]] dataset::RecipeSpec read_recipe(const std::filesystem::path& file, const DatasetWork& work,
-                                              std::span<const std::string> more_overrides = {});
+[[nodiscard]] dataset::RecipeSpec read_recipe(const std::filesystem::path& file, const DatasetWork& work);
 
 enum class Whole { yes, no };
 /// Makes what is asked for, and describes the dataset if that is all. Throws Error(stopped) when it was stopped.

@@ -93,7 +93,7 @@ std::string weighted_recipe(const dataset::RecipeSpec& recipe, const Calibration
   overrides.push_back("draw_by={count: " + std::to_string(recipe.n_rooms()) + ", weights: [" + listed + "]}");
   overrides.emplace_back("split={validation_rooms: 0, test_rooms: 0, test_days: 0}");
   return "# Rooms drawn as a log weighs them, by pirsim calibrate; of the recipe " + recipe.file.filename().string() +
-         ".\n" + io::YamlNode::parse(recipe.text, recipe.file.string(), overrides).to_yaml();
+         ".\n" + io::YamlNode::parse(recipe.given, recipe.file.string(), overrides).to_yaml();
 }
 
 void write_calibration(const fs::path& folder, const Calibration& calibration, const About& about) {

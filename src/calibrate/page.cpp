@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/text.hpp"
+#include "schema/clock.hpp"
 
 namespace pirsim::calibrate {
 namespace {
@@ -19,12 +20,6 @@ std::string plain(double value) {
   return fixed(value, std::clamp(3 - before, 0, 6));
 }
 std::string plain(const Interval& interval) { return plain(interval.low) + " to " + plain(interval.high); }
-
-/// "7:30"
-std::string clock_text(double hours) {
-  const auto minutes = static_cast<int>(std::lround(60.0 * hours));
-  return std::to_string(minutes / 60) + (minutes % 60 < 10 ? ":0" : ":") + std::to_string(minutes % 60);
-}
 
 /// Where a value lies if the rooms' range is from -1 to 1.
 double place_in(const Interval& interval, double value) {
@@ -184,8 +179,8 @@ io::Report page(const Calibration& calibration, const About& about) {
   report.title = "Calibration";
   report.finding = finding(calibration);
   report.paragraphs = {
-      "Log: " + about.log + ", " + counted(about.n_days, "day") + ", from " + clock_text(about.hours.low) + " to " +
-      clock_text(about.hours.high) + ". Recipe: " + about.recipe + ", " + counted(calibration.rooms.size(), "room") +
+      "Log: " + about.log + ", " + counted(about.n_days, "day") + ", from " + hours_text(about.hours.low) + " to " +
+      hours_text(about.hours.high) + ". Recipe: " + about.recipe + ", " + counted(calibration.rooms.size(), "room") +
       ". Each room is weighed by how well its model explains the log" +
       (about.n_counted == 0 ? std::string(".")
                             : ", and the counts of " + counted(about.n_counted, "reading") + " in it.")};

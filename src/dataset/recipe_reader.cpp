@@ -230,8 +230,10 @@ int RecipeSpec::n_rooms() const {
   return static_cast<int>(std::min<std::int64_t>(n, std::numeric_limits<int>::max()));
 }
 
-RecipeSpec read_recipe(const std::filesystem::path& file, std::span<const std::string> overrides) {
-  const io::Input input = io::read_input(file);
+namespace {
+
+RecipeSpec recipe_from(const io::Input& input, const std::filesystem::path& file,
+                       std::span<const std::string> overrides) {
   const YamlNode root = YamlNode::load(input, overrides);
   Diagnostics faults;
   YamlMap map(root, faults, "recipe");
@@ -239,7 +241,7 @@ RecipeSpec read_recipe(const std::filesystem::path& file, std::span<const std::s
   RecipeSpec recipe;
   recipe.file = file;
   recipe.overrides.assign(overrides.begin(), overrides.end());
-  recipe.text = input.bytes;
+  recipe.text = recipe.given = input.bytes;
   for (const std::string& change : overrides) {
     // A dataset's own recipe has it already.
     const std::string told = "\n# --set " + change + '\n';
@@ -271,6 +273,18 @@ RecipeSpec read_recipe(const std::filesystem::path& file, std::span<const std::s
   }
   faults.throw_if_errors();
   return recipe;
+}
+
+}  // namespace
+
+RecipeSpec read_recipe(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  return recipe_from(io::read_input(file), file, overrides);
+}
+
+RecipeSpec with_overrides(const RecipeSpec& recipe, std::span<const std::string> more) {
+  std::vector<std::string> overrides = recipe.overrides;
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return recipe_from({recipe.file, recipe.given}, recipe.file, overrides);
 }
 
 }  // namespace pirsim::dataset

@@ -91,6 +91,12 @@ std::optional<double> clock_hours(const std::string& text) {
   return time->hours + time->minutes / 60.0 + time->seconds.value_or(0) / 3600.0;
 }
 
+std::string hours_text(double hours) {
+  constexpr long day = 24L * 60L;
+  const long minutes = std::lround(60.0 * hours), of_day = minutes > day ? minutes % day : minutes;
+  return std::to_string(of_day / 60) + (of_day % 60 < 10 ? ":0" : ":") + std::to_string(of_day % 60);
+}
+
 std::optional<double> elapsed_seconds(const std::string& text) {
   const auto time = hours_and_minutes(text);
   return time && time->seconds ? std::optional<double>(time->in_seconds()) : std::nullopt;

@@ -15,6 +15,8 @@ namespace pirsim {
 [[nodiscard]] bool is_working_day(std::int64_t day) noexcept;  ///< Monday to Friday
 /// Hours of "08:30" or "08:30:15", up to "24:00"; none for any other text.
 [[nodiscard]] std::optional<double> clock_hours(const std::string& text);
+/// "8:30" of hours, up to "24:00"; after midnight it is the clock of the next day.
+[[nodiscard]] std::string hours_text(double hours);
 /// Seconds of "0:10:05", hours, minutes and seconds since something began; none for any other text.
 [[nodiscard]] std::optional<double> elapsed_seconds(const std::string& text);
 /// "2026-03-02T08:30:00" of a day and seconds into it.

@@ -7,6 +7,7 @@
 
 #include "core/text.hpp"
 #include "pirsim/geometry.hpp"
+#include "schema/clock.hpp"
 #include "sim/compiled_study.hpp"
 #include "studies/room_plan.hpp"
 
@@ -19,12 +20,6 @@ constexpr double bin_s = 600.0, hour_s = 3600.0, square_m = 0.25;
 double hours_of(const std::string& clock) {
   const auto two = [&](std::size_t at) { return std::stod(clock.substr(at, 2)); };
   return two(11) + two(14) / 60.0 + two(17) / hour_s;
-}
-
-/// "8:30"; after midnight it is the clock of the next day.
-std::string clock_of(double hours) {
-  const auto minutes = static_cast<int>(std::lround(60.0 * hours)) % (24 * 60);
-  return std::to_string(minutes / 60) + (minutes % 60 < 10 ? ":0" : ":") + std::to_string(minutes % 60);
 }
 
 std::string count_of(int n, const std::string& what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); }
@@ -44,7 +39,7 @@ double DayReport::hour_of(std::size_t bin) const { return from_h_ + (static_cast
 
 double DayReport::to_h() const { return from_h_ + longest_s_ / hour_s; }
 
-std::string DayReport::time_of(double hours) const { return has_clock_ ? clock_of(hours) : fixed(hours, 2) + " h"; }
+std::string DayReport::time_of(double hours) const { return has_clock_ ? hours_text(hours) : fixed(hours, 2) + " h"; }
 
 DayReport::Bin& DayReport::bin_at(double time_s) {
   const auto k = static_cast<std::size_t>(std::max(0.0, time_s - 1e-6) / bin_s);

@@ -105,6 +105,16 @@ class OwnRoom(unittest.TestCase):
                  if row["parameter"] == "hold_s"}
         self.assertEqual(holds, {"12"})
 
+    def test_a_recipe_comes_through_a_pipe_and_another_log_finds_the_same_rooms(self):
+        piped = self.folder / "piped"
+        words = [PIRSIM, "calibrate", "-", "--log", self.log[0], "-o", piped, "-q", "--hold", "3"]
+        subprocess.run(words, input=self.recipe.read_bytes(), check=True, timeout=600)
+        rows = {path: path.stat().st_mtime_ns for path in (piped / "pool" / "rows").rglob("*.csv.gz")}
+        words[4] = self.log[1]
+        subprocess.run(words, input=self.recipe.read_bytes(), check=True, timeout=600)
+        self.assertEqual(rows, {path: path.stat().st_mtime_ns for path in rows})
+        self.assertIn("hold_s: 3", (piped / "recipe.yaml").read_text())
+
     def test_counts_are_told_beside_the_logs_own_and_make_a_page(self):
         out, page = self.folder / "counts.csv", self.folder / "counts.html"
         _, told = run("count", self.made / "counter.json", "--log", *self.labelled, "-o", out, "--report", page)

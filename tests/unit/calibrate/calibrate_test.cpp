@@ -155,6 +155,62 @@ TEST_CASE("A calibration finds the liveliness that the log comes from, and its e
   CHECK(quiet.parameters[0].mean_after < quiet.parameters[0].mean_before - 0.05);
 }
 
+TEST_CASE("The error to expect of a room is that of a counter of the others, weighed by its own log") {
+  std::mt19937 random(5);
+  const std::vector<PoolRoom> pool = pool_of(random, 12);
+  std::vector<counting::LabelledRoom> rooms;
+  for (const PoolRoom& room : pool) rooms.push_back(room.labelled);
+  const counting::Counter counter = counting::train(rooms, {});
+  const RoomErrors errors = errors_of_rooms(counter, rooms, 2);
+  for (std::size_t own = 0; own < rooms.size(); ++own) {
+    counting::Counter others = counter;
+    others.rooms.erase(others.rooms.begin() + static_cast<std::ptrdiff_t>(own));
+    const std::vector<Stretch> log = unlabelled(rooms[own].days);
+    const auto error = [&] {
+      double sum = 0.0, n = 0.0;
+      for (std::size_t d = 0; d < log.size(); ++d) {
+        const counting::Estimates estimates = counting::estimate(others, log[d], counting::Pass::forward);
+        const std::vector<int>& people = rooms[own].days[d].people;
+        const std::vector<bool> counts = in_use(people, 30.0);
+        for (std::size_t i = 0; i < people.size(); ++i) {
+          if (!counts[i]) continue;
+          sum += std::abs(estimates.count(i) - people[i]);
+          n += 1.0;
+        }
+      }
+      return sum / n;
+    };
+    for (counting::RoomModel& room : others.rooms) room.weight = 1.0 / static_cast<double>(others.rooms.size());
+    CHECK(errors.alike[own].value() == Approx(error()).epsilon(1e-9));
+    counting::weigh(others, counting::log_likelihoods(others, log));
+    CHECK(errors.weighed[own].value() == Approx(error()).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("A log of one day is compared with one day of each room, not with the mean of more") {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> uniform(0.1, 0.5);
+  std::vector<PoolRoom> pool;
+  for (int r = 1; r <= 15; ++r) pool.push_back(room_of(random, r, uniform(random), 4));
+  const std::vector<Stretch> log = unlabelled(room_of(random, 99, 0.3, 4).labelled.days);
+  const std::size_t n_statistics = statistics_of(2).size();
+  for (const std::size_t n_days : {std::size_t{1}, std::size_t{2}}) {
+    const auto mean = [&](const std::vector<Stretch>& days) {
+      const auto each = motion_statistics(std::span(days).first(n_days), 30.0);
+      REQUIRE(each.size() == n_days);
+      std::vector<double> sum(n_statistics, 0.0);
+      for (const auto& day : each) {
+        for (std::size_t s = 0; s < n_statistics; ++s) sum[s] += day[s] / static_cast<double>(n_days);
+      }
+      return sum;
+    };
+    stats::Matrix<double> rows(pool.size(), n_statistics);
+    for (std::size_t r = 0; r < pool.size(); ++r) std::ranges::copy(mean(pool[r].labelled.days), rows.row(r).begin());
+    const auto part = std::span(log).first(n_days);
+    CHECK(Pool(pool).calibrate(part, part).p == Approx(unlike_share(rows, mean(log))).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("A calibration doesn't depend on threads, nor on counts that the log hasn't got") {
   std::mt19937 random(3);
   const std::vector<PoolRoom> pool = pool_of(random, 12);
@@ -210,7 +266,7 @@ TEST_CASE("A pool's rows are readings, and hold motion as long as the log's sens
                    "pirsim_recipe: 1\nrooms: [{count: 2}]\neffects:\n  - range_scale: {scale: [0.8, 1.2]}\n"
                    "  - {pulse_stretching: {hold_s: [0.5, 3]}, chance: 0.5}\n");
   const dataset::RecipeSpec recipe = dataset::read_recipe(file);
-  const dataset::RecipeSpec pool = dataset::read_recipe(file, pool_overrides(recipe, 30.0, 12.5));
+  const dataset::RecipeSpec pool = dataset::with_overrides(recipe, pool_overrides(recipe, 30.0, 12.5));
   CHECK(pool.sensing.ticks_per_window == 30 * pool.sensing.tick_rate_hz);
   REQUIRE(pool.effects.size() == 2);
   CHECK(pool.effects[1].parameters.at("hold_s").least == 12.5);
