@@ -1,4 +1,4 @@
-// Realizations: what is uncertain about a room is drawn; people and rays are followed once, effects are put on top.
+// Datasets of one realization: people and rays are followed once, effects are put on top.
 #pragma once
 
 #include <cstdint>
@@ -7,35 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "pirsim/scene.hpp"
-#include "pirsim/script.hpp"
 #include "reconcile/data/measured.hpp"
+#include "reconcile/ensemble/realization.hpp"
 
 namespace pirsim::reconcile {
-
-/// Scene and script of one dataset: one room, one set of people, one sequence of random choices.
-struct Realization {
-  SceneSpec scene;
-  ScriptSpec script;
-};
-
-/// Draws realization `index` of the stream `seed`: seats, sensors, bodies and arms moved as the nuisance says, and a
-/// seed of its own for everything random in the simulation. A realization is a pure function of the arguments, so that
-/// two effects can be compared in the same realization. A realization that people can't get about in is no room that
-/// the data may come from: take the next attempt.
-[[nodiscard]] Realization draw_realization(const SceneSpec& scene, const ScriptSpec& script,
-                                           const NuisanceSpec& nuisance, std::uint64_t seed, std::uint32_t index,
-                                           std::uint32_t attempt = 0);
-
-// Datasets of one realization: people and rays are followed once, effects are put on top.
-
-/// What realizations are drawn from.
-struct RealizationSource {
-  SceneSpec scene;
-  ScriptSpec script;  ///< with the effects that the model already has
-  NuisanceSpec nuisance;
-  std::uint64_t seed = 0;
-};
 
 inline constexpr std::uint32_t most_attempts = 12;  ///< at an effect with which people can get about
 /// At a room that people can get about in: if 93 of 100 aren't, one analysis of 1,000 lacks one of 1,500 and fails.
