@@ -21,12 +21,22 @@ import second_simulator as second
 from faults import FAULTS, hung
 
 DATA = pathlib.Path(__file__).parents[2] / "data"
-COLUMNS = ("fault", "seed", "what", "truth", "score", "verdict", "effects", "p", "closed")
+COLUMNS = ("fault", "seed", "what", "truth", "expects", "score", "verdict", "effects", "data", "p", "closed")
 
 
-def score(truth, report):
-    """How a verdict compares with what was hidden. "in the set": one of several that can't be told apart."""
+def found_in_file(report):
+    """What the look at the file tells: the kinds of its findings."""
+    return [finding["kind"] for finding in report.get("data_findings", [])]
+
+
+def score(truth, report, expects=()):
+    """How a verdict compares with what was hidden. "in the set": one of several that can't be told apart. Of the file:
+    "told", "other fault of the file" or "file accused" (there is nothing wrong with it)."""
     verdict, effects = report["verdict"], report["effects"]
+    if verdict == "faulty-data":
+        if not expects:
+            return "file accused"
+        return "told" if set(expects) & set(found_in_file(report)) else "other fault of the file"
     if verdict == "no-disagreement":
         return "nothing seen"
     if verdict == "none-in-catalogue":
@@ -104,8 +114,9 @@ class Challenger:
                 stdout=subprocess.DEVNULL)
         report = json.loads((folder / "report.json").read_text())
         verification = report["verification"] or {}
-        return dict(zip(COLUMNS, (name, seed, fault.what, " ".join(fault.truth), score(fault.truth, report),
-                                  report["verdict"], " ".join(report["effects"]), report["where"]["p"],
+        return dict(zip(COLUMNS, (name, seed, fault.what, " ".join(fault.truth), " ".join(fault.expects),
+                                  score(fault.truth, report, fault.expects), report["verdict"],
+                                  " ".join(report["effects"]), " ".join(found_in_file(report)), report["where"]["p"],
                                   int(verification.get("closed", False)))))
 
 
@@ -115,7 +126,8 @@ def table_of(rows):
         mine = [row for row in rows if row["fault"] == name]
         answers = [row["score"] + (f" ({row['effects'].replace(' ', ', ')})" if row["effects"] else "") for row in mine]
         told = [f"{answers.count(a)} x {a}" if answers.count(a) > 1 else a for a in dict.fromkeys(answers)]
-        lines.append(f"| {mine[0]['what']} | {mine[0]['truth'].replace(' ', ', ') or 'none'} | {'; '.join(told)} |")
+        name = mine[0]["truth"] or (f"of the file: {mine[0]['expects']}" if mine[0]["expects"] else "none")
+        lines.append(f"| {mine[0]['what']} | {name.replace(' ', ', ') if mine[0]['truth'] else name} | {'; '.join(told)} |")
     return "\n".join(lines)
 
 

@@ -2,7 +2,8 @@
 
 A fault is drawn once a dataset: FAULTS[name](generator) gives its strength, its sensor and its place. Strengths are
 assumed: what somebody who has put up a few such sensors would meet and mind. `truth` holds the catalogue's names that
-describe the cause, and is empty for an unknown, which the catalogue lacks.
+describe the cause, and is empty for an unknown, which the catalogue lacks. `expects` holds what a look at the file should
+tell, if the file itself is faulty.
 """
 import copy
 import dataclasses
@@ -46,9 +47,14 @@ class Fault:
     detect: object = sharp  # rays, shares (ticks, clusters), rate_hz, random -> triggers (ticks, sensors)
     electronics: object = same  # triggers, rate_hz, random -> triggers
     books: object = same  # windows (rows, sensors), random, share of the runs that are done -> windows
+    in_run: object = None  # share of the runs that are done -> the Fault of that run, which counts instead of all above
+    file: object = same  # windows of every run, random -> the same, as the file has them
+    expects: tuple = ()  # kinds of findings in report.json's data_findings
 
     def is_behind_the_optics(self):
         """Room, rays and people are the plain ones."""
+        if self.in_run is not None:
+            return all(self.in_run(done).is_behind_the_optics() for done in (0.0, 0.5, 1.0))
         plain = (same, None, 1.0, same, own_motion, ())
         return (self.furnish, self.mount, self.range_scale, self.optics, self.people, self.settings) == plain
 
@@ -600,3 +606,188 @@ def polled(draw):
         return windows[np.arange(len(windows)) // every * every]
 
     return Fault("the logger asks only every few seconds and repeats the answer", books=books)
+
+
+# ---------------------------------------------------------------------------------------------- changes through a session
+def half_way(what, before, after):
+    """Everything is as `before` says in the first half of the session's runs, and then as `after` says."""
+    return Fault(what, in_run=lambda done: before if done < 0.5 else after)
+
+
+@fault
+def warming_room(draw):
+    """The room warms up towards the people's surface. A small target is seen as far as the root of its contrast."""
+    left = draw.uniform(0.15, 0.35)
+
+    def in_run(done):
+        return Fault("", range_scale=np.sqrt(1 - (1 - left) * done))
+
+    return Fault("the room warms up from trial to trial, so that people stand out less", in_run=in_run)
+
+
+@fault
+def coat(draw):
+    return half_way("half way through the session the person puts on a coat", Fault(""),
+                    Fault("", range_scale=np.sqrt(draw.uniform(0.2, 0.4))))
+
+
+@fault
+def knocked(draw):
+    which, change = draw.integers(N_SENSORS), rotation([0, 1, 0], either_side(draw, 12, 20))
+    return half_way("half way through the session a sensor is knocked and turned by 12 to 20 degrees", Fault(""),
+                    Fault("", mount=lambda number, world: world @ change if number == which else world))
+
+
+@fault
+def longer_hold(draw):
+    return half_way("half way through the session the hold of the outputs is turned up", Fault(""),
+                    Fault("", electronics=held_on(draw.uniform(2, 4))))
+
+
+@fault
+def growing_noise(draw):
+    most = draw.uniform(0.06, 0.12)
+    return Fault("noise trips each sensor more and more often from trial to trial",
+                 in_run=lambda done: Fault("", electronics=noisy(most * done)))
+
+
+# ------------------------------------------------------------------------------------------------ all sensors at once
+@fault
+def jammed_radio(draw):
+    """Another sender takes the channel for some seconds, again and again."""
+    chance = draw.uniform(0.25, 0.4)
+
+    def books(windows, random, done):
+        jammed = np.zeros(len(windows), bool)
+        while jammed.mean() < chance:
+            first = random.integers(len(windows))
+            jammed[first : first + random.integers(1, 4)] = True
+        return windows & ~jammed[:, None]
+
+    return Fault("the radio is jammed now and then, and all sensors lose the same seconds", books=books)
+
+
+@fault
+def mains_pulse(draw):
+    every_s = draw.uniform(15, 40)
+
+    def electronics(triggers, rate_hz, random):
+        first = random.uniform(0, every_s)
+        triggers = triggers.copy()
+        triggers[np.arange(first * rate_hz, len(triggers), every_s * rate_hz).astype(int)] = True
+        return triggers
+
+    return Fault("a compressor switches, and its pulse on the mains trips all sensors", ("false_triggers", "trigger_bursts"),
+                 electronics=electronics)
+
+
+@fault
+def clouds(draw):
+    """The patch of sun on the floor goes and comes: all sensors see the room flicker for some seconds."""
+    every_s, lasts_s = draw.uniform(25, 50), draw.uniform(3, 8)
+
+    def electronics(triggers, rate_hz, random):
+        triggers = triggers.copy()
+        at = random.exponential(every_s)
+        while at * rate_hz < len(triggers):
+            n = len(triggers[int(at * rate_hz) : int((at + lasts_s) * rate_hz)])
+            triggers[int(at * rate_hz) : int(at * rate_hz) + n] |= random.random((n, 1)) < 1.5 / rate_hz
+            at += random.exponential(every_s)
+        return triggers
+
+    return Fault("sun and clouds trip all sensors together for some seconds", ("trigger_bursts", "false_triggers"),
+                 electronics=electronics)
+
+
+# ------------------------------------------------------------------------------------------------------------ the file
+@fault
+def twin_columns(draw):
+    """Two sensors on one input."""
+    one, other = draw.choice(N_SENSORS, 2, replace=False)
+
+    def file(runs, random):
+        return [np.where(np.arange(N_SENSORS) == other, run[:, [one]], run) for run in runs]
+
+    return Fault("a sensor's column holds another's rows", file=file, expects=("equal_columns",))
+
+
+@fault
+def heartbeat(draw):
+    """The gateway polls the sensor, and writes its sign of life as motion."""
+    which, every = draw.integers(N_SENSORS), 5
+
+    def file(runs, random):
+        return [run | ((np.arange(len(run)) % every == 0)[:, None] & (np.arange(N_SENSORS) == which)) for run in runs]
+
+    return Fault("a sensor's sign of life every 5 s is logged as motion", file=file, expects=("beats",))
+
+
+@fault
+def pasted_rows(draw):
+    """A download that overlaps: a part of one run stands in another, too."""
+    lasts, share = draw.integers(40, 70), draw.uniform(size=2)
+
+    def file(runs, random):
+        runs = [run.copy() for run in runs]
+        source = int(share[0] * len(runs))
+        target = (source + 1 + int(share[1] * (len(runs) - 1))) % len(runs)
+        n = min(lasts, len(runs[source]) // 2, len(runs[target]) // 2)
+        busy = np.convolve(runs[source].any(1), np.ones(n), "valid").argmax()
+        first = random.integers(len(runs[target]) - n)
+        runs[target][first : first + n] = runs[source][busy : busy + n]
+        return runs
+
+    return Fault("a minute of one run stands in another as well", file=file, expects=("repeated_rows",))
+
+
+@fault
+def trial_copied(draw):
+    """Somebody saved a trial under the next one's name."""
+    share = draw.random()
+
+    def file(runs, random):
+        runs = [run.copy() for run in runs]
+        source = int(share * len(runs))
+        target = (source + 1) % len(runs)
+        n = min(len(runs[source]), len(runs[target]))
+        runs[target][:n] = runs[source][:n]
+        return runs
+
+    return Fault("a trial's rows are those of the trial before", file=file, expects=("repeated_rows",))
+
+
+@fault
+def gap_of_zeros(draw):
+    """The gateway starts anew; what it didn't hear is filled with zeros."""
+    lasts, share = draw.integers(40, 80), draw.random()
+
+    def file(runs, random):
+        runs = [run.copy() for run in runs]
+        target = runs[int(share * len(runs))]
+        first = random.integers(max(1, len(target) - lasts))
+        target[first : first + lasts] = False
+        return runs
+
+    return Fault("for a minute nothing was recorded, and zeros stand there", file=file, expects=("all_silent",))
+
+
+@fault
+def sorted_as_text(draw):
+    """A spreadsheet puts second 10 before second 2, and the seconds are numbered anew."""
+
+    def file(runs, random):
+        return [run[sorted(range(len(run)), key=lambda row: str(row + 1))] for run in runs]
+
+    return Fault("rows are sorted by their time as text", file=file)
+
+
+@fault
+def other_order(draw):
+    """Recorded in another order than the list of trials says."""
+
+    def file(runs, random):
+        longest = max(len(run) for run in runs)
+        moved = [np.concatenate([run, np.zeros((longest - len(run), N_SENSORS), bool)]) for run in runs]
+        return [moved[number - 1][: len(run)] for number, run in enumerate(runs)]
+
+    return Fault("every trial has the rows of the one before", ("labels_swapped",), file=file)

@@ -120,7 +120,10 @@ class SecondSimulator(unittest.TestCase):
         """But for one that comes from run to run."""
         names = [name for name, make in faults.FAULTS.items() if make(np.random.default_rng(1)).is_behind_the_optics()]
         self.assertGreaterEqual(len(names), 15)
-        for name in sorted(set(names) - {"nothing", "fading_battery"}):
+        over_the_session = {name for name, make in faults.FAULTS.items() if make(np.random.default_rng(1)).in_run}
+        of_several_runs = {name for name, make in faults.FAULTS.items()
+                           if make(np.random.default_rng(1)).file is not faults.same}
+        for name in sorted(set(names) - over_the_session - of_several_runs - {"nothing", "fading_battery"}):
             with self.subTest(name):
                 changed = max((self.bits_with(name, seed) != self.bits).sum() for seed in (1, 2))
                 self.assertGreater(changed, 0)
@@ -139,6 +142,53 @@ class SecondSimulator(unittest.TestCase):
             self.assertGreaterEqual(np.diff(np.flatnonzero(column)).min(initial=2), 2)
         self.assertEqual(self.bits_with("broken_sensor").any(0).sum(), self.bits.any(0).sum() - 1)
         self.assertTrue((self.bits | ~self.bits_with("dazzled")).all(), "who is dazzled sees nothing more")
+
+    def file_with(self, name, n_runs=4, seed=1):
+        """[(rows, sensors)] of so many times the recorded run, from which a column each is left out, so that they
+        differ."""
+        fault = faults.FAULTS[name](np.random.default_rng([seed, 0]))
+        return fault.file(self.several(n_runs), np.random.default_rng(seed))
+
+    def several(self, n_runs):
+        return [np.roll(self.bits, 3 * number, axis=0) & (np.arange(5) != number % 5) for number in range(n_runs)]
+
+    def test_faults_of_the_file_do_what_they_are_called(self):
+        plain, all_of = self.several(4), np.concatenate
+        self.assertTrue((all_of(self.file_with("nothing")) == all_of(plain)).all())
+        columns = all_of(self.file_with("twin_columns")).T
+        self.assertEqual(sum((one == other).all() for i, one in enumerate(columns) for other in columns[:i]), 1)
+        self.assertEqual(sum(run[::5].all(0).sum() for run in self.file_with("heartbeat")), 4)
+        changed = [(one != other).any() for one, other in zip(self.file_with("trial_copied"), plain)]
+        self.assertEqual(sum(changed), 1)
+        self.assertLess(all_of(self.file_with("gap_of_zeros")).sum(), all_of(plain).sum())
+        text = self.file_with("sorted_as_text")[0]
+        np.testing.assert_array_equal(text[:3], plain[0][[0, 9, 10]])
+        np.testing.assert_array_equal(self.file_with("other_order")[1], plain[0])
+
+    def test_a_session_changes_in_the_order_of_its_runs(self):
+        """The same run three times."""
+        three = [self.recorded] * 3
+        for name in ("longer_hold", "growing_noise"):
+            fault = faults.FAULTS[name](np.random.default_rng([1, 0]))
+            first, _, last = second.Measurement(self.room, DATA / "sensors", fault, 1, self.plain_three()).all_bits(three)
+            with self.subTest(name):
+                np.testing.assert_array_equal(first, self.bits)
+                self.assertTrue((last | ~self.bits).all())
+                self.assertGreater(last.sum(), self.bits.sum())
+        ranges = [faults.FAULTS["warming_room"](np.random.default_rng(1)).in_run(done).range_scale for done in (0, 0.5, 1)]
+        self.assertEqual(ranges[0], 1)
+        self.assertTrue(1 > ranges[1] > ranges[2] > 0.3)
+
+    def plain_three(self):
+        plain = second.Measurement(self.room, DATA / "sensors", faults.FAULTS["nothing"](None), 1, self.plain)
+        plain.shares = {number: self.plain.shares[0] for number in range(3)}
+        return plain
+
+    def test_what_strikes_all_sensors_strikes_them_at_once(self):
+        added = self.bits_with("mains_pulse") & ~self.bits
+        self.assertTrue((self.bits_with("mains_pulse")[added.any(1)]).all())
+        lost = self.bits & ~self.bits_with("jammed_radio")
+        self.assertFalse(self.bits_with("jammed_radio")[lost.any(1)].any())
 
     def test_the_program_writes_the_rows_of_a_fault(self):
         with tempfile.TemporaryDirectory() as name:
@@ -178,6 +228,11 @@ class SecondSimulator(unittest.TestCase):
         self.assertEqual(challenge.score((), told("none-in-catalogue")), "unknown")
         self.assertEqual(challenge.score(("a",), told("none-in-catalogue")), "unknown")
         self.assertEqual(challenge.score(("a",), told("no-disagreement")), "nothing seen")
+        faulty = told("faulty-data") | {"data_findings": [{"kind": "equal_columns"}]}
+        self.assertEqual(challenge.score((), faulty, ("equal_columns",)), "told")
+        self.assertEqual(challenge.score((), faulty, ("beats",)), "other fault of the file")
+        self.assertEqual(challenge.score(("a",), faulty), "file accused")
+        self.assertEqual(challenge.score((), told("none-in-catalogue"), ("beats",)), "unknown")
 
 
 class OwnRooms(unittest.TestCase):

@@ -352,6 +352,7 @@ class Measurement:
         """plain: the measurement with nothing wrong of the same runs, whose rays are not traced again if that is what
         the fault's rays would hit. hang: as `mount` of Rays, how every sensor of the room hangs, fault or not."""
         self.scene, self.fault, self.seed, self.shares = scene, fault, seed, {}
+        self.inputs, self.parts = (sensor_folder, seed, plain, hang), {}
         if plain is not None and fault.is_behind_the_optics():
             self.rays, self.shares = plain.rays, plain.shares
         else:
@@ -362,17 +363,31 @@ class Measurement:
 
     def bits(self, runs, number):
         """(rows, sensors) of runs[number]."""
+        done = number / max(1, len(runs) - 1)
+        if self.fault.in_run is not None:
+            return self.with_fault(self.fault.in_run(done)).bits(runs, number)
         random = np.random.default_rng([self.seed, 2, number])
         if number not in self.shares:
             self.shares[number] = covered_shares(self.rays, self.fault.people(runs, number, self.scene, random))
-        return rows_of(self.fault, self.rays, self.shares[number], runs[number], random, number / max(1, len(runs) - 1))
+        return rows_of(self.fault, self.rays, self.shares[number], runs[number], random, done)
+
+    def with_fault(self, fault):
+        """This measurement with another fault. One that comes again is not traced again."""
+        if id(fault) not in self.parts:
+            folder, seed, plain, hang = self.inputs
+            self.parts[id(fault)] = Measurement(self.scene, folder, fault, seed, plain, hang)
+        return self.parts[id(fault)]
+
+    def all_bits(self, runs):
+        """[(rows, sensors) of every run], as the file has them."""
+        return self.fault.file([self.bits(runs, number) for number in range(len(runs))],
+                               np.random.default_rng([self.seed, 4]))
 
     def write(self, path, runs):
         with open(path, "w", newline="") as file:
             out = csv.writer(file, lineterminator="\n")
             out.writerow(["replicate", "trial", "time_s", "phase", *self.rays.sensors])
-            for number, run in enumerate(runs):
-                bits = self.bits(runs, number)
+            for run, bits in zip(runs, self.all_bits(runs)):
                 assert len(bits) == len(run.rows), (len(bits), len(run.rows))
                 for row, sensed in zip(run.rows, bits):
                     out.writerow([run.replicate, run.trial, row["time_s"], row["phase"], *sensed.astype(int)])
