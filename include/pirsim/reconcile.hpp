@@ -144,8 +144,10 @@ struct Context {
 [[nodiscard]] Outcome reconcile(const SceneSpec& scene, const ScriptSpec& script, const Measured& measured,
                                 const Settings& settings = {}, const Context& context = {});
 
-/// The verdict for a reader.
+/// The verdict for a reader, in one sentence.
 [[nodiscard]] std::string sentence(const Outcome& outcome, double alpha = 0.05);
+/// What else a reader must know of the verdict, a sentence or two each.
+[[nodiscard]] std::vector<std::string> details(const Outcome& outcome);
 /// Why an effect was kept or dropped.
 [[nodiscard]] std::string in_words(const Candidate& candidate);
 [[nodiscard]] std::string in_words(const FeatureName& feature);

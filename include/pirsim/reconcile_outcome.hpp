@@ -20,11 +20,12 @@ enum class Verdict {
   named,             ///< one effect explains the data, or one of several is far likelier than the others
   one_of,            ///< several can have made the data, which can't tell them apart
   several,           ///< effects applied one after the other made the data together
+  nearest,           ///< one is far likelier than all others and does when applied, but the data are strange for it
   none_in_catalogue  ///< nothing known makes such data, or only what is improbable or merely resembles it
 };
 /// In the order of the enumeration.
-inline constexpr std::array<std::string_view, 5> verdict_names{"no-disagreement", "named", "one-of", "several",
-                                                               "none-in-catalogue"};
+inline constexpr std::array<std::string_view, 6> verdict_names{"no-disagreement", "named",   "one-of",
+                                                               "several",         "nearest", "none-in-catalogue"};
 [[nodiscard]] constexpr std::string_view name(Verdict verdict) noexcept {
   return verdict_names[static_cast<std::size_t>(verdict)];
 }
@@ -179,6 +180,16 @@ struct FittedEffect {
   std::vector<FittedChoice> choices{};
 };
 
+/// A parameter that was fitted at an end of the range that was looked for. What lies beyond is tried if the effect as
+/// fitted doesn't do.
+struct RangeEnd {
+  std::string effect, parameter, unit;
+  Interval looked_for;               ///< the prior
+  double end = 0.0;                  ///< of the two, the one reached
+  double tried_to = 0.0;             ///< beyond it; `end` if nothing was tried
+  std::optional<double> found = {};  ///< the value beyond the end with which the model passes
+};
+
 /// A look at the measured data with some effects applied to the model.
 struct Look {
   std::vector<std::string> applied;
@@ -293,6 +304,9 @@ struct NotRuledOut {
 struct IncludesOff {
   std::string effect;
 };
+struct AtRangeEnd {
+  RangeEnd end;
+};
 struct LookedForMore {
   Verdict verdict = Verdict::no_disagreement;
 };
@@ -315,7 +329,7 @@ enum class Remark {
 };
 }  // namespace trail
 using TrailEvent = std::variant<trail::Begun, DataNote, trail::HeldOut, trail::Table, trail::Tested, trail::NotRuledOut,
-                                trail::IncludesOff, Look, trail::LookedForMore, trail::Explained,
+                                trail::IncludesOff, trail::AtRangeEnd, Look, trail::LookedForMore, trail::Explained,
                                 trail::JudgedOnHeldOut, trail::Remark>;
 
 struct Outcome {
@@ -323,12 +337,13 @@ struct Outcome {
   Location location;
   /// Most probable first; without `nothing` and effects that are the same change. None without a disagreement.
   std::vector<Candidate> candidates;
-  HypothesisScore nothing;         ///< how well the plain model fits
-  FamilyScore family;              ///< whose effects are likeliest together
-  std::vector<std::string> named;  ///< effects applied to the model, or those that can't be told apart; of `one_of`
-                                   ///< the plain model is one more if nothing.p exceeds the level
-  std::vector<FittedEffect> fits;  ///< of the effects that were applied
-  std::vector<Look> looks;         ///< with the effects applied, one after the other
+  HypothesisScore nothing;            ///< how well the plain model fits
+  FamilyScore family;                 ///< whose effects are likeliest together
+  std::vector<std::string> named;     ///< effects applied to the model, or those that can't be told apart; of `one_of`
+                                      ///< the plain model is one more if nothing.p exceeds the level
+  std::vector<FittedEffect> fits;     ///< of the effects that were applied
+  std::vector<Look> looks;            ///< with the effects applied, one after the other
+  std::optional<RangeEnd> range_end;  ///< of the first effect applied
   std::optional<Verification> verification;
   std::optional<Residuals> residuals;  ///< if nothing fits and the data are series
   std::vector<FeatureName> telling_features;

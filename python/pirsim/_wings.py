@@ -73,9 +73,11 @@ class Reconciliation:
     """Where model and measurement differ, and what the model lacks."""
 
     verdict: str
-    """no-disagreement, named, one-of, several or none-in-catalogue."""
+    """no-disagreement, named, one-of, several, nearest or none-in-catalogue."""
     sentence: str
     """The verdict for a reader."""
+    details: list[str]
+    """What else a reader must know of it."""
     p: float
     """Of the model as it is: that it makes such data."""
     named: list[str]

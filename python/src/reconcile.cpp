@@ -52,6 +52,7 @@ nb::dict to_dict(const reconcile::Outcome& outcome, const ScriptSpec& script, do
   nb::dict result;
   result["verdict"] = to_python(std::string(name(outcome.verdict)));
   result["sentence"] = to_python(reconcile::sentence(outcome, alpha));
+  result["details"] = to_python(reconcile::details(outcome));
   result["p"] = outcome.location.p;
   result["named"] = to_python(outcome.named);
   nb::list fits, candidates, cells;

@@ -185,6 +185,7 @@ void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const
   teller.finish();
   tell_notes(outcome.notes, inputs.verbosity);
   std::cout << reconcile::sentence(outcome, settings.alpha) << '\n';
+  for (const std::string& detail : reconcile::details(outcome)) std::cout << detail << '\n';
   require_written();
   reconcile::write_report(
       options.output, outcome, measured, script, settings, context,

@@ -8,6 +8,7 @@
 #include "pirsim/io.hpp"
 #include "reconcile/inference/locate.hpp"
 #include "reconcile/inference/model_check.hpp"
+#include "reconcile/inference/range_end.hpp"
 #include "reconcile/inference/residuals.hpp"
 #include "reconcile/inference/superposition.hpp"
 #include "reconcile/inference/verify.hpp"
@@ -17,6 +18,7 @@ namespace {
 
 /// Beside one effect: more of them would take more than a minute to simulate (assumed).
 constexpr std::size_t most_partners = 8;
+constexpr double least_probability_of_nearest = 0.85;  ///< as of a name among several
 
 }  // namespace
 
@@ -28,6 +30,7 @@ Outcome Loop::run() {
   const bool worth_a_try = outcome_.verdict == Verdict::none_in_catalogue && settings_.max_effects > 1;
   if (named || worth_a_try) {
     applied_.push_back(named ? outcome_.fits.front() : first.best);
+    apply_first();
     apply_more();
     conclude();
   }
@@ -120,24 +123,45 @@ std::optional<std::vector<std::string>> Loop::worth_a_table(double level) const 
   return likeliest;
 }
 
+void Loop::apply_first() {
+  take_look();
+  auto end = range_end_of(applied_.front());
+  if (!end) return;
+  if (!passes_) {
+    const Step& plain = steps_.front();
+    auto beyond = fitted_beyond(applied_.front(), *end, plain.reference, plain.reference.map(training_trials()),
+                                plain.observed, outcome_.looks.back().level, context_);
+    if (beyond) {
+      applied_.front() = std::move(*beyond);
+      if (!outcome_.fits.empty()) outcome_.fits.front() = applied_.front();
+    }
+  }
+  tell(trail::AtRangeEnd{*end});
+  outcome_.range_end = std::move(end);
+  if (outcome_.range_end->found) take_look();
+}
+
+void Loop::take_look() {
+  const double level = level_with(applied_.size(), settings_.alpha);
+  outcome_.looks.push_back({names(), level, p_with_all(level)});
+  passes_ = outcome_.looks.back().passes();
+  tell(outcome_.looks.back());
+}
+
 void Loop::apply_more() {
   for (;;) {
-    const double level = level_with(applied_.size(), settings_.alpha);
-    const double p = p_with_all(level);
-    outcome_.looks.push_back({names(), level, p});
-    passes_ = outcome_.looks.back().passes();
-    tell(outcome_.looks.back());
     if (passes_ || static_cast<int>(applied_.size()) >= settings_.max_effects) return;
     const std::size_t n_asked = settings_.table.effects.size();  // 0: the whole catalogue
     if (n_asked != 0 && applied_.size() >= n_asked) return;
     context_.begin({Stage::What::looking_for_more, names()});
-    const Step* more = look_for_more(level);
+    const Step* more = look_for_more(outcome_.looks.back().level);
     if (more == nullptr) return;
     rest_ = more->outcome.verdict;
     tell(trail::LookedForMore{*rest_});
     if (more->outcome.verdict == Verdict::one_of) outcome_.looks.back().one_of = more->outcome.named;
     if (more->outcome.verdict != Verdict::named) return;
     applied_.push_back(more->outcome.fits.front());
+    take_look();
   }
 }
 
@@ -177,9 +201,20 @@ void Loop::conclude() {
       candidate.kept = true;
       candidate.named_together = true;
     }
+  } else if (outcome_.verdict == Verdict::none_in_catalogue && is_nearest()) {
+    outcome_.verdict = Verdict::nearest;
+    outcome_.named = names();
+    outcome_.fits = applied_;
   } else if (outcome_.verdict == Verdict::none_in_catalogue) {
     applied_.clear();
   }
+}
+
+bool Loop::is_nearest() const {
+  if (applied_.size() != 1 || !passes_) return false;
+  const auto candidate = std::ranges::find(outcome_.candidates, applied_.front().effect.name,
+                                           [](const Candidate& c) { return c.score.hypothesis; });
+  return candidate != outcome_.candidates.end() && candidate->score.probability >= least_probability_of_nearest;
 }
 
 void Loop::take_back() {
@@ -221,7 +256,7 @@ void Loop::verify_effects() {
   outcome_.verification = std::move(v);
 }
 
-double Loop::p_with_all(double level) {
+double Loop::p_with_all(double level) const {
   context_.begin({Stage::What::checking_model, names()});
   const Step& plain = steps_.front();
   const PatchedModel model{applied_, plain.observed};

@@ -34,6 +34,8 @@ class Loop {
     FittedEffect best;          ///< of that hypothesis
   };
   const Step& look(const Settings& settings, double level);
+  void apply_first();  ///< stronger than was looked for if only that does
+  void take_look();    ///< with all that has been applied
   void apply_more();
   /// With all that was applied; none if no effect may explain the rest, or people can hardly get about in that model.
   const Step* look_for_more(double level);
@@ -43,11 +45,12 @@ class Loop {
   void tell_first(const Step& first);
   void tell(TrailEvent event) { outcome_.trail.push_back(std::move(event)); }
   void conclude();
-  void take_back();  ///< the one name that was given
+  [[nodiscard]] bool is_nearest() const;  ///< the one effect applied comes near enough to be told as such
+  void take_back();                       ///< the one name that was given
   void explain();
   void verify_effects();
   /// p of the global test of the model with all that has been applied, its data simulated anew.
-  [[nodiscard]] double p_with_all(double level);
+  [[nodiscard]] double p_with_all(double level) const;
   [[nodiscard]] Settings with_all(double level, std::vector<std::string> effects) const;
   [[nodiscard]] std::vector<std::string> names() const;
   [[nodiscard]] std::vector<EffectSpec> patch() const;

@@ -105,7 +105,17 @@ Json to_json(const Verification& v) {
           {"closed", v.closed}};
 }
 
-Json to_json(const Residuals& residuals, const FamilyScore& family) {
+Json to_json(const RangeEnd& end) {
+  return {{"effect", end.effect},
+          {"parameter", end.parameter},
+          {"unit", end.unit},
+          {"looked_for", {end.looked_for.low, end.looked_for.high}},
+          {"end", end.end},
+          {"tried_to", end.tried_to},
+          {"found", end.found ? Json(*end.found) : Json()}};
+}
+
+Json to_json(const Residuals& residuals) {
   Json drivers = Json::array();
   for (const ResidualDriver& driver : residuals.drivers) {
     drivers.push_back({{"who", who_of(driver)},
@@ -116,7 +126,7 @@ Json to_json(const Residuals& residuals, const FamilyScore& family) {
                        {"z", driver.z},
                        {"p", driver.p}});
   }
-  return {{"sentence", sentence(residuals, family)}, {"drivers", drivers}};
+  return {{"sentence", sentence(residuals)}, {"drivers", drivers}};
 }
 
 }  // namespace
@@ -131,6 +141,7 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
   Json json = {{"pirsim_reconcile_report", report_schema},
                {"verdict", name(outcome.verdict)},
                {"sentence", sentence(outcome, settings.alpha)},
+               {"details", details(outcome)},
                {"effects", outcome.named},
                {"program", provenance.program},
                {"scene", provenance.scene},
@@ -157,8 +168,9 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
   for (const Look& look : outcome.looks)
     looks.push_back({{"applied", look.applied}, {"level", look.level}, {"p", look.p}, {"one_of", look.one_of}});
   json["looks"] = looks;
+  json["range_end"] = outcome.range_end ? to_json(*outcome.range_end) : Json();
   json["verification"] = outcome.verification ? to_json(*outcome.verification) : Json();
-  json["residuals"] = outcome.residuals ? to_json(*outcome.residuals, outcome.family) : Json();
+  json["residuals"] = outcome.residuals ? to_json(*outcome.residuals) : Json();
   json["telling_features"] = Json::array();
   for (const FeatureName& feature : outcome.telling_features) json["telling_features"].push_back(in_words(feature));
   json["calibration_error"] = outcome.calibration_error;
@@ -221,7 +233,7 @@ void write_report(const std::filesystem::path& folder, const Outcome& outcome, c
   io::write_text_file(folder / "where.csv", where_csv(outcome));
   io::write_text_file(folder / "candidates.csv", candidates_csv(outcome));
   const std::filesystem::path patch = folder / "script_patched.yaml";
-  if (outcome.verdict == Verdict::named || outcome.verdict == Verdict::several) {
+  if (!outcome.fits.empty()) {
     io::write_text_file(patch, io::to_yaml(io::moved(patched(script, outcome), folder)));
   } else {
     std::filesystem::remove(patch, fault);  // of an earlier analysis

@@ -189,14 +189,14 @@ std::vector<io::DotsChart> posterior_charts(const FittedEffect& fitted) {
     chart.high = p.interval.high;
     chart.axis_low = info->low;
     chart.axis_high = info->high;
+    chart.axis_low = std::min(chart.axis_low, chart.low);
+    chart.axis_high = std::max(chart.axis_high, chart.high);
     if (info->scale == effects::Scale::logarithmic) {
       chart.scale = io::DotsChart::Scale::logarithmic;
-    } else {
-      chart.axis_low = std::min({chart.axis_low, chart.low, p.is_strength ? p.off : chart.low});
-      chart.axis_high = std::max({chart.axis_high, chart.high, p.is_strength ? p.off : chart.high});
+    } else if (p.is_strength) {
+      chart.axis_low = std::min(chart.axis_low, p.off);
+      chart.axis_high = std::max(chart.axis_high, p.off);
     }
-    chart.low = std::clamp(chart.low, chart.axis_low, chart.axis_high);
-    chart.high = std::clamp(chart.high, chart.axis_low, chart.axis_high);
     if (p.is_strength) {
       chart.reference = p.off;
       chart.reference_label = "no effect";

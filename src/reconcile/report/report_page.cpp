@@ -176,11 +176,12 @@ io::Report report_page(const Outcome& outcome, double alpha, const Watched& watc
   io::Report report;
   report.title = "Model and measurement";
   report.finding = sentence(outcome, alpha);
-  report.paragraphs = {next_step(outcome)};
+  report.paragraphs = details(outcome);
+  report.paragraphs.push_back(next_step(outcome));
   report.sections = {where(outcome, alpha, watched), envelope(outcome.location, alpha), candidates(outcome)};
   if (!outcome.fits.empty()) report.sections.push_back(strength(outcome.fits));
   if (outcome.verification) {
-    const bool undecided = outcome.verdict == Verdict::one_of;
+    const bool undecided = outcome.fits.empty();
     const std::string applied = undecided ? "the likeliest of each fold" : enumerated(outcome.named, "and");
     report.sections.push_back(held_out(*outcome.verification, applied));
   }

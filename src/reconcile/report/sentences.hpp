@@ -13,11 +13,12 @@
 
 namespace pirsim::reconcile {
 
-/// The verdict alone, without what was found on the way to it.
-[[nodiscard]] std::string verdict_sentence(const Outcome& outcome, double alpha);
+/// What was applied helps on no trial set aside, and the folds don't agree on an effect of the verdict's: what is
+/// missing may well be none of them.
+[[nodiscard]] bool is_unsupported(const Outcome& outcome);
 [[nodiscard]] std::string sentence(const PlanResult& result);
 [[nodiscard]] std::string sentence(const Score& score);
-[[nodiscard]] std::string sentence(const Residuals& residuals, const FamilyScore& family);
+[[nodiscard]] std::string sentence(const Residuals& residuals);
 
 [[nodiscard]] std::string in_words(const Reason& reason);
 /// Without the word that says whether it was kept.

@@ -226,13 +226,20 @@ std::string in_words(const TrailEvent& event) {
                    return "hypotheses that can have made the data: " +
                           (e.hypotheses.empty() ? "none" : joined(e.hypotheses, " "));
                  },
+                 [](const trail::AtRangeEnd& e) {
+                   const std::string end =
+                       e.end.effect + "'s " + e.end.parameter + " at the end of its range, " + short_number(e.end.end);
+                   if (e.end.tried_to == e.end.end) return end;
+                   return end + ", tried to " + short_number(e.end.tried_to) + ": " +
+                          (e.end.found ? short_number(*e.end.found) : "none") + " passes";
+                 },
                  [](const trail::IncludesOff& e) { return "the interval of " + e.effect + " includes off"; },
                  [](const Look& e) {
                    return "with " + sum(e.applied) + " applied, at level " + short_number(e.level) + ": p " +
                           short_number(e.p);
                  },
                  [](const trail::LookedForMore& e) { return "looked for more: " + std::string(name(e.verdict)); },
-                 [](const trail::Explained& e) { return "residuals: " + sentence(e.residuals, e.family); },
+                 [](const trail::Explained& e) { return "residuals: " + sentence(e.residuals); },
                  [](const trail::JudgedOnHeldOut& e) { return in_words(e); },
                  [](trail::Remark e) { return std::string(in_words(e)); }},
       event);
@@ -371,12 +378,11 @@ std::string what_of(const ResidualDriver& driver) {
   return up ? "motion whenever " + driver.beside + " sees some" : "silence whenever " + driver.beside + " sees motion";
 }
 
-std::string sentence(const Residuals& residuals, const FamilyScore& family) {
+std::string sentence(const Residuals& residuals) {
   std::string text;
   for (const ResidualDriver& driver : residuals.drivers) text += (text.empty() ? "" : "; ") + in_words(driver);
-  text = text.empty() ? "What is left follows no sensor, seat, time or neighbour that was tried."
+  return text.empty() ? "What is left follows no sensor, seat, time or neighbour that was tried."
                       : "What is left: " + text + ".";
-  return text + " The nearest family of effects is " + std::string(name(family.family)) + ".";
 }
 
 }  // namespace pirsim::reconcile

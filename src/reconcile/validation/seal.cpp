@@ -224,7 +224,7 @@ Mark mark_of_effects(const Truth& hidden, const Finding& finding) {
   const std::set<std::string> truth = as_judged(hidden.effects), named = as_judged(finding.effects);
   if (named.empty()) return Mark::none;
   const auto is_named = [&](const std::string& effect) { return named.contains(effect); };
-  if (finding.verdict == Verdict::one_of) {
+  if (finding.verdict == Verdict::one_of || finding.verdict == Verdict::nearest) {
     if (std::ranges::any_of(truth, is_named)) return Mark::one_of;
   } else {
     if (named == truth) return Mark::exact;

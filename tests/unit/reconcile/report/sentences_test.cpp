@@ -26,7 +26,7 @@ Outcome outcome_of(Verdict verdict, const std::vector<std::pair<std::string, dou
 }
 
 std::string sentence_of(Verdict verdict, const std::vector<std::pair<std::string, double>>& kept) {
-  return verdict_sentence(outcome_of(verdict, kept), 0.05);
+  return sentence(outcome_of(verdict, kept), 0.05);
 }
 
 }  // namespace
@@ -47,10 +47,10 @@ TEST_CASE("where no cell stands out but all together do, both are said at once",
   outcome.location.cells.resize(3);
   for (auto& cell : outcome.location.cells) cell.adjusted_p = 0.2;
   CHECK_THAT(
-      verdict_sentence(outcome, 0.05),
+      sentence(outcome, 0.05),
       contains("none of the 3 cells (trial x sensor) differs by itself, but everything together does, p = 0.0132"));
   outcome.location.cells.front().adjusted_p = 0.01;
-  CHECK_THAT(verdict_sentence(outcome, 0.05),
+  CHECK_THAT(sentence(outcome, 0.05),
              contains("1 of 3 cells (trial x sensor) differ by themselves, everything together with p = 0.0132"));
 }
 
@@ -77,7 +77,7 @@ TEST_CASE("a name that doesn't do when it is applied is taken back with that rea
   outcome.candidates.front().reason = reason::RefusedWhenApplied{0.005};
   const std::string told = sentence(outcome, 0.05);
   CHECK_THAT(told, contains("The model lacks something that is not in the catalogue"));
-  CHECK_THAT(told, contains("What resembles it most, trigger_bursts, doesn't explain it") && contains("(p = 0.005)"));
+  CHECK_THAT(told, contains("what resembles it most, trigger_bursts, doesn't explain it") && contains("(p = 0.005)"));
   CHECK_THAT(in_words(outcome.candidates.front()), contains("Dropped: with it applied") && contains("(p 0.005)"));
 }
 
@@ -94,32 +94,33 @@ TEST_CASE("of an effect that does when it is applied and was dropped all the sam
   Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"labels_swapped", 0.99}});
   outcome.candidates.front().reason = reason::RuledOut{{}, 0.01};
   outcome.looks.push_back({{"labels_swapped"}, 0.025, 0.524, {}});
-  CHECK_THAT(sentence(outcome, 0.05),
-             contains(". labels_swapped comes nearest: with it applied, the test of everything together sees no "
-                      "difference (p = 0.524). It was dropped all the same: data of its own hardly ever look like "
-                      "these (p 0.01)."));
+  CHECK(details(outcome) ==
+        std::vector<std::string>{"labels_swapped comes nearest: with it applied, the test of everything together sees "
+                                 "no difference (p = 0.524). It was dropped all the same: data of its own hardly ever "
+                                 "look like these (p 0.01)."});
 }
 
 TEST_CASE("where no name is given the sentence says why", "[reconcile]") {
-  CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}}), contains("can't tell apart"));
-  CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.9}}), contains("its strength may as well be none"));
+  CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}}),
+             contains("these data can't tell which"));
+  CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.9}}), contains("whose strength may as well be none"));
   Outcome weak = outcome_of(Verdict::one_of, {{"seat_shift", 0.9}, {"body_size", 0.05}});
   weak.nothing.p = 0.2;
-  CHECK_THAT(verdict_sentence(weak, 0.05), contains("or nothing: the disagreement is weak"));
+  CHECK_THAT(sentence(weak, 0.05), contains("so little that it may be chance"));
 }
 
 TEST_CASE("improbable effects that might have made the data are told with their probability", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"seat_shift", 0.1}, {"body_size", 0.03}});
   CHECK_THAT(
-      verdict_sentence(outcome, 0.05),
+      sentence(outcome, 0.05),
       contains("of the catalogue's effects only seat_shift and body_size aren't ruled out, but their probability "
                "together is only 0.13"));
   outcome.candidates.push_back({{"dead_time", 0.6, 0.0, 0.0, 0.01}, effects::Family::electronics, false, {}});
-  CHECK_THAT(verdict_sentence(outcome, 0.05),
+  CHECK_THAT(sentence(outcome, 0.05),
              contains("the likelier ones of the catalogue's effects are ruled out; seat_shift and body_size"));
   CHECK_THAT(in_words(reason::Improbable{0.6}), contains("Dropped: by itself it might have made these data (p 0.6)"));
   for (Candidate& candidate : outcome.candidates) candidate.score.p = 0.01;
-  CHECK_THAT(verdict_sentence(outcome, 0.05), contains("no effect of the catalogue is likely"));
+  CHECK_THAT(sentence(outcome, 0.05), contains("no effect of the catalogue is likely"));
 }
 
 TEST_CASE("where no name is given the family is said if it is clear", "[reconcile]") {
@@ -128,9 +129,9 @@ TEST_CASE("where no name is given the family is said if it is clear", "[reconcil
       std::vector<HypothesisScore>{{"nothing", 0.05}, {"dead_time", 0.05}, {"seat_shift", 0.5}, {"body_size", 0.4}});
   CHECK(outcome.family.family == effects::Family::person);
   CHECK(outcome.family.probability == Approx(0.9));
-  CHECK_THAT(verdict_sentence(outcome, 0.05), contains("with probability 0.9 something of the family person"));
+  CHECK_THAT(sentence(outcome, 0.05), contains("with probability 0.9 something of the family person"));
   outcome.family.probability = 0.7;
-  CHECK_THAT(verdict_sentence(outcome, 0.05), !contains("family"));
+  CHECK_THAT(sentence(outcome, 0.05), !contains("family"));
 }
 
 TEST_CASE("what to do next names a plan only for effects that are to be told apart", "[reconcile]") {
@@ -152,11 +153,11 @@ TEST_CASE("of a rest that the model still differs by, and of a catalogue cut dow
   Outcome outcome = outcome_of(Verdict::named, {{"seat_shift", 0.9}});
   outcome.looks.push_back({{"seat_shift"}, 0.025, 0.01, {}});
   outcome.looked_for = {"seat_shift", "body_size"};
-  CHECK_THAT(sentence(outcome, 0.05),
-             contains("The catalogue was cut down to seat_shift and body_size. The model lacks"));
-  CHECK_THAT(sentence(outcome, 0.05), contains("That is not all. With seat_shift applied, the model still differs"));
+  REQUIRE(details(outcome).size() == 2);
+  CHECK(details(outcome)[0] == "The catalogue was cut down to seat_shift and body_size.");
+  CHECK_THAT(details(outcome)[1], contains("That is not all. With seat_shift applied, the model still differs"));
   outcome.looks.back().p = 0.5;
-  CHECK_THAT(sentence(outcome, 0.05), !contains("That is not all"));
+  CHECK(details(outcome).size() == 1);
 }
 
 TEST_CASE("of a catalogue cut down nothing is said about the effects that weren't looked for", "[reconcile]") {
@@ -175,7 +176,7 @@ TEST_CASE("of a catalogue cut down nothing is said about the effects that weren'
   CHECK_THAT(sentence(none, 0.05), contains("no effect of those looked for is likely"));
   none.candidates.front().reason = reason::RefusedWhenApplied{0.005};
   none.looks.push_back({{"seat_shift"}, 0.025, 0.005, {}});
-  CHECK_THAT(sentence(none, 0.05), contains("none of the others that were tried beside it explains what is left"));
+  CHECK(details(none).back() == "None of the others that were tried beside it explains what is left.");
   const std::string page = to_html(report_page(none, 0.05));
   CHECK_THAT(page, contains("Every effect looked for was simulated") && !contains("ffect of the catalogue"));
 }
@@ -184,4 +185,54 @@ TEST_CASE("a fitted effect names its twin and others name none", "[reconcile]") 
   CHECK_THAT(in_words(FittedEffect{{"range_scale", {}, {}, {}}, {}, false}),
              contains("or thermal_contrast, the same in the model"));
   CHECK(in_words(FittedEffect{{"seat_shift", {}, {}, {}}, {}, false}) == "seat_shift");
+}
+
+TEST_CASE("a set of effects leaves a door open and shows its first three", "[reconcile]") {
+  Outcome outcome = outcome_of(
+      Verdict::one_of,
+      {{"seat_scatter", 0.3}, {"warm_chair", 0.2}, {"missing_occluder", 0.1}, {"dead_time", 0.1}, {"body_size", 0.1}});
+  CHECK_THAT(sentence(outcome, 0.05),
+             contains("The model lacks seat_scatter, warm_chair, missing_occluder, one of 2 others, or something that "
+                      "is not in the catalogue, and these data can't tell which: "));
+  for (const Verdict verdict : {Verdict::one_of, Verdict::several}) {
+    outcome.verdict = verdict;
+    outcome.verification.emplace();
+    outcome.verification->names = {"dead_time", "nothing", "clock_lag", "seat_shift"};
+    CHECK_THAT(sentence(outcome, 0.05), contains("something that is not in the catalogue"));
+  }
+  outcome.verdict = Verdict::one_of;
+  CHECK_THAT(sentence(outcome, 0.05), contains("quite possibly something that is not in the catalogue: "));
+  outcome.verification->names = {"warm_chair", "warm_chair", "warm_chair", "dead_time"};
+  CHECK_THAT(sentence(outcome, 0.05), !contains("quite possibly"));
+  outcome.verification->names.front() = "nothing";
+  outcome.verification->shrunk = true;
+  CHECK_THAT(sentence(outcome, 0.05), !contains("quite possibly"));
+}
+
+TEST_CASE("what comes nearest is told with its doubt, and applied", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::nearest, {{"labels_swapped", 0.98}});
+  outcome.fits.push_back({{"labels_swapped", {}, {}, {}}, {}, false});
+  CHECK_THAT(sentence(outcome, 0.05), contains("comes nearest to labels_swapped: ") && contains("(probability 0.98)") &&
+                                          contains("it may be something that is not in the catalogue."));
+  CHECK_THAT(next_step(outcome), contains("look at the real thing for labels_swapped"));
+}
+
+TEST_CASE("a strength at the end of what was looked for is told, and what lies beyond", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::named, {{"pulse_stretching", 0.98}});
+  outcome.range_end = RangeEnd{"pulse_stretching", "hold_s", "s", {0.2, 4.0}, 4.0, 4.0};
+  CHECK_THAT(details(outcome).back(), contains("looked for with hold_s from 0.2 to 4 s, and the data want the end") &&
+                                          contains("under effects:"));
+  outcome.range_end->tried_to = 80.0;
+  CHECK_THAT(details(outcome).back(), contains("Up to 80 s was tried beyond it; no such model passes."));
+  outcome.range_end->found = 60.0;
+  CHECK_THAT(details(outcome).back(), contains("Beyond that, up to 80 s, the model with 60 s passes."));
+}
+
+TEST_CASE("what to do where nothing fits is the data, then the model, then a new cause", "[reconcile]") {
+  const std::string step = next_step(outcome_of(Verdict::none_in_catalogue, {{"dead_time", 0.02}}));
+  const auto data = step.find("first look at the data"), model = step.find("Second, the model"),
+             cause = step.find("add_an_effect");
+  CHECK(data < model);
+  CHECK(model < cause);
+  CHECK(cause != std::string::npos);
 }
