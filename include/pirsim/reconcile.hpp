@@ -152,10 +152,11 @@ struct Context {
 [[nodiscard]] std::string in_words(const Candidate& candidate);
 [[nodiscard]] std::string in_words(const FeatureName& feature);
 [[nodiscard]] std::string in_words(const DataNote& note);
+[[nodiscard]] std::string in_words(const DataFinding& finding);
 [[nodiscard]] std::string in_words(const TrailEvent& event);
 [[nodiscard]] std::string in_words(const Stage& stage);
 
-/// The script with the named effects added, which plain `pirsim` runs.
+/// The script with the named effects added, which plain `pirsim` runs. Nothing is added if the data are faulty.
 [[nodiscard]] ScriptSpec patched(const ScriptSpec& script, const Outcome& outcome);
 
 /// What made the results, for the report: file names as given.

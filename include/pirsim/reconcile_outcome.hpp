@@ -16,16 +16,17 @@
 namespace pirsim::reconcile {
 
 enum class Verdict {
-  no_disagreement,   ///< the model without any effect isn't refused
-  named,             ///< one effect explains the data, or one of several is far likelier than the others
-  one_of,            ///< several can have made the data, which can't tell them apart
-  several,           ///< effects applied one after the other made the data together
-  nearest,           ///< one is far likelier than all others and does when applied, but the data are strange for it
-  none_in_catalogue  ///< nothing known makes such data, or only what is improbable or merely resembles it
+  no_disagreement,    ///< the model without any effect isn't refused
+  named,              ///< one effect explains the data, or one of several is far likelier than the others
+  one_of,             ///< several can have made the data, which can't tell them apart
+  several,            ///< effects applied one after the other made the data together
+  nearest,            ///< one is far likelier than all others and does when applied, but the data are strange for it
+  none_in_catalogue,  ///< nothing known makes such data, or only what is improbable or merely resembles it
+  faulty_data         ///< sensors can't have said these rows: look at the file first
 };
 /// In the order of the enumeration.
-inline constexpr std::array<std::string_view, 6> verdict_names{"no-disagreement", "named",   "one-of",
-                                                               "several",         "nearest", "none-in-catalogue"};
+inline constexpr std::array<std::string_view, 7> verdict_names{
+    "no-disagreement", "named", "one-of", "several", "nearest", "none-in-catalogue", "faulty-data"};
 [[nodiscard]] constexpr std::string_view name(Verdict verdict) noexcept {
   return verdict_names[static_cast<std::size_t>(verdict)];
 }
@@ -282,6 +283,42 @@ struct DataNote {
   std::vector<std::string> names = {};
 };
 
+/// What is wrong or odd with the measured rows themselves. It is found by what chance, and the model's own runs, can
+/// do.
+struct DataFinding {
+  enum class What {
+    equal_columns,     ///< sensors: two, whose columns are equal, or nearly
+    opposite_columns,  ///< sensors: two, of which one is 1 where the other is 0
+    constant_column,   ///< sensors: one, 1 in all rows
+    beats,             ///< sensors: one, 1 every `every_s`, whatever happens
+    polled,            ///< no sensor changes but every `every_s`
+    repeated_rows,     ///< places: two, with the same rows
+    all_silent,        ///< places: one, in which all sensors are silent
+    silent_column      ///< sensors: one, without any 1
+  };
+  /// Rows from 1 on, gaps counted, both ends included.
+  struct Place {
+    std::string trial = {};
+    int replicate = 1;
+    std::size_t from_row = 0, to_row = 0;
+    bool operator==(const Place&) const = default;
+  };
+  What what = What::equal_columns;
+  std::vector<std::string> sensors = {};
+  std::vector<Place> places = {};
+  std::size_t n_rows = 0;        ///< of the file, or of each place
+  std::size_t n_exceptions = 0;  ///< of columns: rows in which only one of them changes
+  double every_s = 0.0;
+  double chance = 0.0;        ///< that it comes about so: as of independent rows, so only small ones count
+  bool is_impossible = true;  ///< sensors can't have said this; else it is odd
+};
+inline constexpr std::array<std::string_view, 8> data_finding_names{
+    "equal_columns", "opposite_columns", "constant_column", "beats",
+    "polled",        "repeated_rows",    "all_silent",      "silent_column"};
+[[nodiscard]] constexpr std::string_view name(DataFinding::What what) noexcept {
+  return data_finding_names[static_cast<std::size_t>(what)];
+}
+
 /// The decisions of an analysis, in order.
 namespace trail {
 struct Begun {
@@ -328,12 +365,16 @@ enum class Remark {
   held_out_too_weak        ///< the held-out trials alone don't refuse the plain model
 };
 }  // namespace trail
-using TrailEvent = std::variant<trail::Begun, DataNote, trail::HeldOut, trail::Table, trail::Tested, trail::NotRuledOut,
-                                trail::IncludesOff, trail::AtRangeEnd, Look, trail::LookedForMore, trail::Explained,
-                                trail::JudgedOnHeldOut, trail::Remark>;
+using TrailEvent = std::variant<trail::Begun, DataNote, DataFinding, trail::HeldOut, trail::Table, trail::Tested,
+                                trail::NotRuledOut, trail::IncludesOff, trail::AtRangeEnd, Look, trail::LookedForMore,
+                                trail::Explained, trail::JudgedOnHeldOut, trail::Remark>;
 
 struct Outcome {
   Verdict verdict = Verdict::no_disagreement;
+  /// What the comparison says with the rows as they are: the verdict, unless that is faulty_data.
+  Verdict verdict_of_rows = Verdict::no_disagreement;
+  double alpha = 0.05;                     ///< level of the tests
+  std::vector<DataFinding> data_findings;  ///< strongest kind first
   Location location;
   /// Most probable first; without `nothing` and effects that are the same change. None without a disagreement.
   std::vector<Candidate> candidates;

@@ -73,11 +73,13 @@ class Reconciliation:
     """Where model and measurement differ, and what the model lacks."""
 
     verdict: str
-    """no-disagreement, named, one-of, several, nearest or none-in-catalogue."""
+    """no-disagreement, named, one-of, several, nearest, none-in-catalogue or faulty-data."""
     sentence: str
     """The verdict for a reader."""
     details: list[str]
     """What else a reader must know of it."""
+    data_findings: list[str]
+    """What is wrong or odd with the measured rows themselves."""
     p: float
     """Of the model as it is: that it makes such data."""
     named: list[str]

@@ -52,6 +52,9 @@ nb::dict to_dict(const reconcile::Outcome& outcome, const ScriptSpec& script, do
   nb::dict result;
   result["verdict"] = to_python(std::string(name(outcome.verdict)));
   result["sentence"] = to_python(reconcile::sentence(outcome, alpha));
+  std::vector<std::string> findings;
+  for (const reconcile::DataFinding& finding : outcome.data_findings) findings.push_back(reconcile::in_words(finding));
+  result["data_findings"] = to_python(findings);
   result["details"] = to_python(reconcile::details(outcome));
   result["p"] = outcome.location.p;
   result["named"] = to_python(outcome.named);

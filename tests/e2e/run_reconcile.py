@@ -90,6 +90,32 @@ def check_clocks(pirsim, source, folder):
         assert abs(lag_s - by_s) < 1.5, (by_s, report["sentence"])
         before, after = report["verification"]["before"], report["verification"]["after"]
         assert after["energy_score"] < 0.6 * before["energy_score"], report["verification"]
+    check_faulty_file(pirsim, study, rows, folder)
+
+
+def check_faulty_file(pirsim, study, rows, folder):
+    """A column that holds another's rows is told first, whatever the comparison says, and nothing is patched. The table
+    of the check of clocks serves."""
+    header, *lines = stamped(rows, 0).splitlines()
+    names = header.split(",")
+    one, other = names.index("PIR1"), names.index("PIR2")
+    table = [line.split(",") for line in lines]
+    for row in table:
+        row[other] = row[one]
+    measured, out = folder / "twins.csv", folder / "twins"
+    measured.write_text("\n".join([header, *(",".join(row) for row in table)]) + "\n")
+    result = subprocess.run([pirsim, "reconcile", *study, "--measured", measured, "--effects", "clock_lag,trunk_tilt",
+                             "--budget", "1", "--table", folder / "clock_-3/table", "--max-effects", "1", "--out", out],
+                            capture_output=True, text=True, check=True)
+    report = json.loads((out / "report.json").read_text())
+    assert result.stdout.startswith("Look at the file first: PIR1 and PIR2 are equal in all"), result.stdout
+    assert report["verdict"] == "faulty-data" and report["verdict_of_rows"] != "faulty-data", report["sentence"]
+    [finding] = [finding for finding in report["data_findings"] if finding["impossible"]]
+    assert finding["kind"] == "equal_columns" and finding["sensors"] == ["PIR1", "PIR2"], finding
+    assert finding["chance"] < 1e-9 and finding["rows"] == len(table), finding
+    assert "A look at the file" in (out / "report.html").read_text()
+    assert "file: PIR1 and PIR2 are equal" in (out / "trail.log").read_text()
+    assert not (out / "script_patched.yaml").exists()
 
 
 def main():

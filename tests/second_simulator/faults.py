@@ -605,7 +605,7 @@ def polled(draw):
     def books(windows, random, done):
         return windows[np.arange(len(windows)) // every * every]
 
-    return Fault("the logger asks only every few seconds and repeats the answer", books=books)
+    return Fault("the logger asks only every few seconds and repeats the answer", books=books, expects=("polled",))
 
 
 # ---------------------------------------------------------------------------------------------- changes through a session

@@ -6,6 +6,7 @@
 #include "core/digest.hpp"
 #include "effects/catalogue.hpp"
 #include "pirsim/io.hpp"
+#include "reconcile/data/data_check.hpp"
 #include "reconcile/inference/locate.hpp"
 #include "reconcile/inference/model_check.hpp"
 #include "reconcile/inference/range_end.hpp"
@@ -37,6 +38,9 @@ Outcome Loop::run() {
   if (outcome_.verdict == Verdict::none_in_catalogue) explain();
   outcome_.looked_for = settings_.table.effects;
   verify_effects();
+  outcome_.alpha = settings_.alpha;
+  outcome_.verdict_of_rows = outcome_.verdict;
+  if (any_impossible(outcome_.data_findings)) outcome_.verdict = Verdict::faulty_data;
   return std::move(outcome_);
 }
 
@@ -59,6 +63,7 @@ const Loop::Step& Loop::look(const Settings& settings, double level) {
       [&](const StudyFrame& frame, std::span<const Series> pilot) {
         DataShape shape = shape_of(frame, measured_, pilot);
         step.notes = notes_on(frame, shape, measured_, pilot);
+        if (applied_.empty()) step.findings = check_data(frame, measured_, pilot);
         return shape;
       },
       context_);
@@ -81,8 +86,10 @@ void Loop::tell_first(const Step& first) {
   const ReferenceStudy& reference = first.reference;
   std::vector<TrailEvent> trail{trail::Begun{measured_.digest, context_.seed}};
   outcome_.notes = first.notes;
+  outcome_.data_findings = first.findings;
   trail.insert(trail.end(), measured_.notes.begin(), measured_.notes.end());
   trail.insert(trail.end(), outcome_.notes.begin(), outcome_.notes.end());
+  trail.insert(trail.end(), outcome_.data_findings.begin(), outcome_.data_findings.end());
   trail::HeldOut held_out;
   for (const std::size_t trial : settings_.holdout) held_out.trials.push_back(reference.frame.trials[trial]);
   if (!held_out.trials.empty()) trail.emplace_back(std::move(held_out));

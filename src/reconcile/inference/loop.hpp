@@ -27,6 +27,7 @@ class Loop {
     ReferenceStudy reference;
     std::shared_ptr<const TableView> view;  ///< of the reference's table, in the trials that are looked at
     std::vector<DataNote> notes;            ///< what was done with which measured rows
+    std::vector<DataFinding> findings;      ///< what is wrong with them; of the first look
     std::vector<float> observed;            ///< statistics of the measured data
     Outcome outcome;
     SeenRows seen;

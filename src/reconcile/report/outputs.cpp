@@ -129,6 +129,21 @@ Json to_json(const Residuals& residuals) {
   return {{"sentence", sentence(residuals)}, {"drivers", drivers}};
 }
 
+Json to_json(const DataFinding& finding) {
+  Json places = Json::array();
+  for (const DataFinding::Place& place : finding.places)
+    places.push_back({{"trial", place.trial}, {"run", place.replicate}, {"rows", {place.from_row, place.to_row}}});
+  return {{"kind", name(finding.what)},
+          {"impossible", finding.is_impossible},
+          {"sensors", finding.sensors},
+          {"places", places},
+          {"rows", finding.n_rows},
+          {"exceptions", finding.n_exceptions},
+          {"every_s", finding.every_s > 0.0 ? Json(finding.every_s) : Json()},
+          {"chance", finding.chance},
+          {"sentence", in_words(finding)}};
+}
+
 }  // namespace
 
 std::string to_json(const Outcome& outcome, const Measured& measured, const Settings& settings, const Context& context,
@@ -156,6 +171,9 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
                {"seed", context.seed},
                {"table", outcome.table_key},
                {"nuisance", nuisance}};
+  json["verdict_of_rows"] = name(outcome.verdict_of_rows);
+  json["data_findings"] = Json::array();
+  for (const DataFinding& finding : outcome.data_findings) json["data_findings"].push_back(to_json(finding));
   json["where"] = to_json(outcome.location);
   Json candidates = Json::array(), fits = Json::array();
   for (const Candidate& candidate : with_twins(outcome.candidates)) candidates.push_back(to_json(candidate));
@@ -221,6 +239,7 @@ std::size_t times_analysed(const std::string& trail, const std::string& digest) 
 
 ScriptSpec patched(const ScriptSpec& script, const Outcome& outcome) {
   ScriptSpec with = script;
+  if (outcome.verdict == Verdict::faulty_data) return with;
   for (const FittedEffect& fitted : outcome.fits) with.effects.push_back(fitted.effect);
   return with;
 }

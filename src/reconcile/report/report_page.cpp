@@ -4,6 +4,7 @@
 #include <cctype>
 #include <string_view>
 
+#include "reconcile/report/data_sentences.hpp"
 #include "reconcile/report/sentences.hpp"
 
 namespace pirsim::reconcile {
@@ -173,6 +174,16 @@ io::ReportSection held_out(const Verification& v, const std::string& named) {
 }  // namespace
 
 io::Report report_page(const Outcome& outcome, double alpha, const Watched& watched) {
+  if (!outcome.data_findings.empty()) {
+    Outcome rows = as_compared(outcome);
+    rows.data_findings.clear();
+    io::Report report = report_page(rows, alpha, watched);
+    report.finding = sentence(outcome, alpha);
+    report.paragraphs = details(outcome);
+    report.paragraphs.push_back(next_step(outcome));
+    report.sections.insert(report.sections.begin(), file_section(outcome.data_findings));
+    return report;
+  }
   io::Report report;
   report.title = "Model and measurement";
   report.finding = sentence(outcome, alpha);

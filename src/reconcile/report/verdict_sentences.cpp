@@ -4,6 +4,7 @@
 
 #include "core/text.hpp"
 #include "effects/catalogue.hpp"
+#include "reconcile/report/data_sentences.hpp"
 #include "reconcile/report/sentences.hpp"
 
 namespace pirsim::reconcile {
@@ -238,6 +239,8 @@ std::string next_step(const Outcome& outcome) {
              "at the model of the room.";
     case Verdict::one_of:
       return step_of_set(outcome);
+    case Verdict::faulty_data:
+      return next_step_of_faulty(outcome);
     case Verdict::none_in_catalogue:
       break;
   }
@@ -263,6 +266,8 @@ std::string sentence(const Outcome& outcome, double alpha) {
              (is_unsupported(outcome) ? ", or " + something_else(outcome) : "") + ": " + where(outcome, alpha) + ".";
     case Verdict::nearest:
       return sentence_of_nearest(outcome, alpha);
+    case Verdict::faulty_data:
+      return sentence_of_file(outcome);
     case Verdict::none_in_catalogue:
       break;
   }
@@ -270,6 +275,7 @@ std::string sentence(const Outcome& outcome, double alpha) {
 }
 
 std::vector<std::string> details(const Outcome& outcome) {
+  if (outcome.verdict == Verdict::faulty_data) return details_of_faulty(outcome);
   std::vector<std::string> texts;
   if (!outcome.looked_for.empty())
     texts.push_back("The catalogue was cut down to " + enumerated(outcome.looked_for, "and") + ".");

@@ -216,6 +216,7 @@ std::string in_words(const TrailEvent& event) {
   return std::visit(
       Overloaded{[](const trail::Begun& e) { return "data " + e.digest + ", analysis seed " + std::to_string(e.seed); },
                  [](const DataNote& e) { return "data: " + in_words(e); },
+                 [](const DataFinding& e) { return "file: " + in_words(e); },
                  [](const trail::HeldOut& e) { return "held out from naming and fitting: " + joined(e.trials, " "); },
                  [](const trail::Table& e) {
                    return "table " + e.key + ": " + std::to_string(e.n_datasets) + " datasets, " +

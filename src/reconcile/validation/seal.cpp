@@ -235,6 +235,7 @@ Mark mark_of_effects(const Truth& hidden, const Finding& finding) {
 
 Mark mark_of(const Truth& hidden, const Finding& finding) {
   const bool sees_nothing = finding.verdict == Verdict::no_disagreement;
+  if (finding.verdict == Verdict::faulty_data) return Mark::wrong;  // the rows of a challenge are sound
   if (hidden.kind == Hidden::nothing) return sees_nothing ? Mark::exact : Mark::wrong;
   if (hidden.kind != Hidden::out_of_catalogue) return mark_of_effects(hidden, finding);
   if (finding.verdict == Verdict::none_in_catalogue) return Mark::exact;

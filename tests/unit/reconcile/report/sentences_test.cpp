@@ -236,3 +236,28 @@ TEST_CASE("what to do where nothing fits is the data, then the model, then a new
   CHECK(model < cause);
   CHECK(cause != std::string::npos);
 }
+
+TEST_CASE("a faulty file is told first, and then what the comparison says of its rows", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::named, {{"seat_shift", 0.9}});
+  outcome.verdict_of_rows = outcome.verdict;
+  const std::string of_rows = sentence(outcome, 0.05);
+  outcome.verdict = Verdict::faulty_data;
+  outcome.data_findings = {
+      {.what = DataFinding::What::equal_columns, .sensors = {"PIR3", "PIR4"}, .n_rows = 1800, .chance = 1e-40},
+      {.what = DataFinding::What::repeated_rows,
+       .places = {{"S3", 1, 31, 90}, {"S4", 2, 12, 71}},
+       .n_rows = 60,
+       .chance = 1e-12},
+      {.what = DataFinding::What::silent_column, .sensors = {"PIR1"}, .n_rows = 1800, .is_impossible = false}};
+  CHECK(sentence(outcome, 0.05) ==
+        "Look at the file first: PIR3 and PIR4 are equal in all 1,800 rows; rows 31 to 90 of S3 (run 1) stand again as "
+        "rows 12 to 71 of S4 (run 2), which sensors can't have said.");
+  CHECK(details(outcome).front() == "With the rows taken as they are: " + of_rows);
+  CHECK_THAT(next_step(outcome), contains("which input each of the two columns was read from"));
+  const io::Report page = report_page(outcome, 0.05, {});
+  CHECK(page.sections.front().heading == "A look at the file");
+  CHECK(page.sections.front().tables.front().rows.size() == 3);
+  CHECK(page.finding == sentence(outcome, 0.05));
+  outcome.fits = {{{"seat_shift", {}, {}, {}}, {}, false}};
+  CHECK(patched(ScriptSpec{}, outcome).effects.empty());
+}

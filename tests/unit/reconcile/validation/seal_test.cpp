@@ -146,7 +146,8 @@ TEST_CASE("a report or an answer that isn't understood is refused by its name", 
   for (const auto& [old, now, message] : std::vector<Fault>{
            {"range_scale", "range_scall", "'range_scall' is not an effect (did you mean 'range_scale'?)"},
            {R"("named")", R"("nonsense")",
-            "'/verdict' is 'nonsense', not one of no-disagreement, named, one-of, several, nearest, none-in-catalogue"},
+            "'/verdict' is 'nonsense', not one of no-disagreement, named, one-of, several, nearest, none-in-catalogue, "
+            "faulty-data"},
            {R"("named")", "3", "'/verdict' isn't there, or isn't what it should be"},
            {R"("named")", R"("no-disagreement")", "'/effects' isn't empty, though the verdict is no-disagreement"},
            {R"("named")", R"("none-in-catalogue")", "'/effects' isn't empty, though the verdict is none-in-catalogue"},
