@@ -732,7 +732,8 @@ def pasted_rows(draw):
         source = int(share[0] * len(runs))
         target = (source + 1 + int(share[1] * (len(runs) - 1))) % len(runs)
         n = min(lasts, len(runs[source]) // 2, len(runs[target]) // 2)
-        busy = np.convolve(runs[source].any(1), np.ones(n), "valid").argmax()
+        changes = (runs[source][1:] != runs[source][:-1]).any(1)  # a minute without any could be from anywhere
+        busy = np.convolve(changes, np.ones(n), "valid").argmax()
         first = random.integers(len(runs[target]) - n)
         runs[target][first : first + n] = runs[source][busy : busy + n]
         return runs

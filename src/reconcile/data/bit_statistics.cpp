@@ -15,8 +15,8 @@ namespace {
 constexpr float silent_below = 0.02F;  ///< expected share of rows with motion
 constexpr std::size_t block_rows = 10;
 constexpr std::size_t shortest_period_rows = 8;
-constexpr std::ptrdiff_t farthest_shift_rows = 20;  ///< beyond the prior of clock_lag at a row a second
-constexpr double least_likeness = 0.3;              ///< assumed (0.2-0.45): correlation from which a shift is told
+constexpr double farthest_shift_s = 20.0;  ///< beyond the prior of clock_lag; and so many rows, where they are longer
+constexpr double least_likeness = 0.3;     ///< assumed (0.2-0.45): correlation from which a shift is told
 
 void add_counts(const BitSeries& series, double window_s, CellValues& values) {
   const std::size_t n = series.bits.size();
@@ -134,7 +134,7 @@ double agreement(const BitSeries& series) {
 }
 
 /// Rows by which the motion has to be earlier to be most like what is expected, with a parabola between rows.
-double shift_rows(const BitSeries& series) {
+double shift_rows(const BitSeries& series, double window_s) {
   const auto n = static_cast<std::ptrdiff_t>(series.bits.size());
   double n_known = 0.0, mean_bit = 0.0, mean_expected = 0.0;
   for (std::ptrdiff_t i = 0; i < n; ++i) {
@@ -155,7 +155,8 @@ double shift_rows(const BitSeries& series) {
     bit_squares += bits.back() * bits.back();
     expected_squares += expected.back() * expected.back();
   }
-  const std::ptrdiff_t farthest = std::min(farthest_shift_rows, n / 2);
+  const double farthest_rows = std::ceil(farthest_shift_s / std::min(window_s, 1.0));
+  const std::ptrdiff_t farthest = std::min(static_cast<std::ptrdiff_t>(farthest_rows), n / 2);
   std::vector<double> likeness;
   for (std::ptrdiff_t shift = -farthest; shift <= farthest; ++shift) {
     double sum = 0.0;
@@ -187,7 +188,7 @@ void add_main_statistics(const BitSeries& series, double window_s, CellValues& v
   values[CellStatistic::period_power] += period_power(series.bits);
   values[CellStatistic::cycle_strength] += cycle_strength(series.bits, series.cycle_rows);
   values[CellStatistic::agreement] += agreement(series);
-  values[CellStatistic::shift_s] += shift_rows(series) * window_s;
+  values[CellStatistic::shift_s] += shift_rows(series, window_s) * window_s;
 }
 
 }  // namespace pirsim::reconcile

@@ -49,8 +49,8 @@ struct Repeat {
   double information = 0.0;
 };
 /// Those with most information first, one of a pair of runs and a shift. Rows that go on as their own repeat don't
-/// count, as a fan's to and fro, nor do parts of runs that stand at the same time in both: what goes by the clock does
-/// that. A whole run that stands in another trial counts.
+/// count, as a fan's to and fro, nor do two runs of one trial, whose choreography comes again, nor parts that stand at
+/// the same time in both runs: what goes by the clock does that. A whole run that stands in another trial counts.
 struct Repeats {
   static constexpr std::size_t most = 3;
   std::vector<Repeat> between_runs, in_a_run;  ///< at most so many

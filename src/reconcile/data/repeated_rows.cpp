@@ -103,14 +103,12 @@ class RepeatFinder {
   }
 
   /// Runs of one trial repeat their choreography, and what goes by the clock is the same in all runs that begin alike.
-  [[nodiscard]] bool are_aligned(const Place& there, const Place& here) const {
+  [[nodiscard]] bool may_repeat(const Place& there, const Place& here, std::size_t n) const {
+    if (there.run == here.run) return there.row + n < here.row;  // or it goes on as its own repeat: a beat
+    if (data_.runs[there.run].trial == data_.runs[here.run].trial) return false;
     const std::size_t apart = std::max(there.row, here.row) - std::min(there.row, here.row);
-    return there.run != here.run && apart <= aligned_within;
-  }
-  [[nodiscard]] bool is_whole_run(const Place& there, const Place& here, std::size_t n) const {
     const std::size_t shorter = std::min(symbols_[there.run].size(), symbols_[here.run].size());
-    return data_.runs[there.run].trial != data_.runs[here.run].trial &&
-           static_cast<double>(n) >= whole_run * static_cast<double>(shorter);
+    return apart > aligned_within || static_cast<double>(n) >= whole_run * static_cast<double>(shorter);
   }
 
   void compare(const Place& there, const Place& here) {
@@ -124,9 +122,7 @@ class RepeatFinder {
     std::size_t n = 0;
     while (n < most && one[there.row + n] == other[here.row + n]) ++n;
     reached = here.row + n;
-    if (n < window_rows || (are_aligned(there, here) && !is_whole_run(there, here, n))) return;
-    const bool is_a_beat = there.run == here.run && there.row + n >= here.row;
-    if (is_a_beat) return;
+    if (n < window_rows || !may_repeat(there, here, n)) return;
     const double information = information_of(std::span(other).subspan(here.row, n));
     if (information < least_information) return;
     (there.run == here.run ? found_.in_a_run : found_.between_runs)

@@ -5,6 +5,7 @@
 
 #include "pirsim/geometry.hpp"
 #include "pirsim/random.hpp"
+#include "reconcile/data/bit_statistics.hpp"
 
 #include "support/catch.hpp"
 
@@ -125,6 +126,19 @@ TEST_CASE("motion that comes early shows at its lag", "[statistics]") {
   CHECK(of(statistics(early, early), CellStatistic::shift_s) == Approx(0.0));
   CHECK(of(statistics(early, std::string(90, '0') + std::string(90, '1')), CellStatistic::shift_s) == 0.0F);
   CHECK(lag(TrialStatistic::lag_0) < 0.0F);
+}
+
+TEST_CASE("a clock that is off by 15 s is seen in rows of a quarter of a second too", "[statistics]") {
+  std::vector<std::uint8_t> bits(400, 0);
+  std::vector<float> expected(400, 0.0F);
+  const std::vector<std::uint8_t> busy(400, 0);
+  for (const std::size_t at : {100U, 137U, 210U, 241U}) {
+    expected[at] = 1.0F;
+    bits[at - 60] = 1;
+  }
+  CellValues values;
+  add_main_statistics({bits, expected, busy, 12.0}, 0.25, values);
+  CHECK(values[CellStatistic::shift_s] == Approx(-15.0).margin(0.01));
 }
 
 TEST_CASE("motion that comes late shows at its lag", "[statistics]") {
