@@ -260,7 +260,10 @@ AnalogCircuit::State AnalogCircuit::start(double power_w, StreamKey noise) const
 }
 
 void AnalogCircuit::advance(State& state, double power_w) const noexcept {
-  const double white = filter_.noisy() ? state.noise.normal() : 0.0;
+  advance(state, power_w, filter_.noisy() ? state.noise.normal() : 0.0);
+}
+
+void AnalogCircuit::advance(State& state, double power_w, double white) const noexcept {
   filter_.advance(state.sections, state.power_w, power_w, white);
   state.power_w = power_w;
   state.volts = std::clamp(filter_.output(state.sections), lowest_v_, highest_v_);

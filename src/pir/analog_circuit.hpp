@@ -106,6 +106,9 @@ class AnalogCircuit {
   [[nodiscard]] State start(double power_w, StreamKey noise) const noexcept;
   /// One tick on, at whose end the power is `power_w` (signed by the zones' polarities; watts).
   void advance(State& state, double power_w) const noexcept;
+  /// The same with the standard normal number that the state's stream would give, which it keeps; any if not noisy().
+  void advance(State& state, double power_w, double white) const noexcept;
+  [[nodiscard]] bool noisy() const noexcept { return filter_.noisy(); }
   /// The comparator's output.
   [[nodiscard]] static bool on(const State& state) noexcept { return state.comparator.on; }
 

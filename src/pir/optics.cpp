@@ -225,16 +225,32 @@ double aperture_m2(const OpticsSpec& optics) noexcept {
   return optics.aperture_mm2 * m2_per_mm2;
 }
 
-void append(PowerRays& rays, const SensorSpec& sensor, const SensorModelSpec& model, int rays_per_zone) {
-  const Frame& frame = sensor.world_from_sensor;
-  RayBundle& bundle = rays.bundle;
+std::vector<WeightedDirection> lens_quadrature(const SensorModelSpec& model, int rays_per_zone) {
+  std::vector<WeightedDirection> directions;
   for (const ClusterSpec& cluster : model.clusters) {
     for (const ZoneSpec& zone : cluster.zones) {
-      for (const WeightedDirection& each : zone_quadrature(model, zone, rays_per_zone)) {
+      const std::vector<WeightedDirection> more = zone_quadrature(model, zone, rays_per_zone);
+      directions.insert(directions.end(), more.begin(), more.end());
+    }
+  }
+  return directions;
+}
+
+void append(PowerRays& rays, const SensorSpec& sensor, const SensorModelSpec& model,
+            std::span<const WeightedDirection> quadrature) {
+  const Frame& frame = sensor.world_from_sensor;
+  RayBundle& bundle = rays.bundle;
+  std::size_t n_zones = 0;
+  for (const ClusterSpec& cluster : model.clusters) n_zones += cluster.zones.size();
+  const std::size_t rays_per_zone = n_zones == 0 ? 0 : quadrature.size() / n_zones;
+  for (const ClusterSpec& cluster : model.clusters) {
+    for (const ZoneSpec& zone : cluster.zones) {
+      for (const WeightedDirection& each : quadrature.first(rays_per_zone)) {
         bundle.rays.push_back({Vec3f(frame.origin), Vec3f(glm::normalize(frame.rotation * each.direction))});
         bundle.range.push_back(out_of_sight_m);
         rays.weights.push_back(zone.polarity * aperture_m2(model.optics) * each.solid_angle_sr);
       }
+      quadrature = quadrature.subspan(rays_per_zone);
       bundle.zone_rays_begin.push_back(static_cast<std::uint32_t>(bundle.rays.size()));
     }
     bundle.cluster_zones_begin.push_back(static_cast<std::uint32_t>(bundle.n_zones()));
@@ -244,6 +260,24 @@ void append(PowerRays& rays, const SensorSpec& sensor, const SensorModelSpec& mo
 
 void append_blind(PowerRays& rays) {
   rays.bundle.sensor_clusters_begin.push_back(static_cast<std::uint32_t>(rays.bundle.n_clusters()));
+}
+
+void blind(RayBundle& bundle, const SceneSpec& scene, const BlindFieldSpec& field) {
+  constexpr float blind_m = 0.01F;  // range of a ray that sees nothing
+  const double side = radians(field.side_deg);
+  for (const std::uint32_t sensor : field.sensors) {
+    const auto zone_begin = bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor]];
+    const auto zone_end = bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor + 1]];
+    const Quat sensor_from_world = glm::conjugate(scene.sensors[sensor].world_from_sensor.rotation);
+    std::vector<std::pair<double, std::size_t>> towards_side;  // (n_rays) how far, and which
+    for (std::size_t i = bundle.zone_rays_begin[zone_begin]; i < bundle.zone_rays_begin[zone_end]; ++i) {
+      const Vec3 d = sensor_from_world * Vec3(bundle.rays[i].direction);
+      towards_side.emplace_back(std::cos(side) * d.x + std::sin(side) * d.y, i);
+    }
+    const auto n = static_cast<std::size_t>(std::llround(field.share * static_cast<double>(towards_side.size())));
+    std::ranges::sort(towards_side, std::greater{});
+    for (std::size_t i = 0; i < n; ++i) bundle.range[towards_side[i].second] = blind_m;
+  }
 }
 
 }  // namespace pirsim::pir

@@ -9,6 +9,7 @@
 #include "pirsim/scene.hpp"
 #include "pirsim/script.hpp"
 #include "pirsim/sensor.hpp"
+#include "schema/study_in_force.hpp"
 
 namespace pirsim::pir {
 
@@ -59,9 +60,16 @@ struct PowerRays {
   std::vector<double> weights;
 };
 
-/// Appends a sensor's rays.
-void append(PowerRays& rays, const SensorSpec& sensor, const SensorModelSpec& model, int rays_per_zone);
+/// zone_quadrature() of every zone of a lens, in order: the same for all sensors of one make.
+[[nodiscard]] std::vector<WeightedDirection> lens_quadrature(const SensorModelSpec& model, int rays_per_zone);
+/// Appends a sensor's rays. quadrature: of its lens, as lens_quadrature() gives it.
+void append(PowerRays& rays, const SensorSpec& sensor, const SensorModelSpec& model,
+            std::span<const WeightedDirection> quadrature);
 /// Appends a sensor without any.
 void append_blind(PowerRays& rays);
+
+/// Cuts off the rays through a side of each of these sensors' lenses, as many as the share says. bundle: of the scene's
+/// sensors.
+void blind(RayBundle& bundle, const SceneSpec& scene, const BlindFieldSpec& field);
 
 }  // namespace pirsim::pir

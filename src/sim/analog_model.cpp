@@ -1,13 +1,15 @@
 #include "sim/analog_model.hpp"
 
 #include <algorithm>
-#include <map>
+#include <cmath>
 #include <set>
+#include <utility>
 
 #include "body/body_part.hpp"
 #include "pir/calibration.hpp"
 #include "pir/planck.hpp"
 #include "pirsim/response.hpp"
+#include "schema/fields.hpp"
 
 namespace pirsim::sim {
 
@@ -22,7 +24,26 @@ std::vector<int> lens_steps(const SensorModelSpec& model) {
 
 }  // namespace
 
-PowerModel::PowerModel(const SceneSpec& scene, const SensingSpec& sensing, const rt::Room& room)
+const PowerModel::Lens& PowerModel::lens(const SensorModelSpec& model, const SensingInForce& sensing,
+                                         const PowerModel* like) {
+  std::shared_ptr<const Lens>& known = lenses_[model.id];
+  if (known) return *known;
+  Lens lens{model, sensing.analog_rays_per_zone, {}};
+  // Two blurs in a row are one of their root sum of squares.
+  lens.model.optics.blur_deg = std::hypot(model.optics.blur_deg, sensing.soft_edges.sigma_deg);
+  if (like != nullptr) {
+    const auto other = like->lenses_.find(model.id);
+    if (other != like->lenses_.end() && other->second->rays_per_zone == lens.rays_per_zone &&
+        same(other->second->model, lens.model)) {
+      return *(known = other->second);
+    }
+  }
+  lens.quadrature = pir::lens_quadrature(lens.model, lens.rays_per_zone);
+  return *(known = std::make_shared<const Lens>(std::move(lens)));
+}
+
+PowerModel::PowerModel(const SceneSpec& scene, const SensingInForce& sensing, const rt::Room& room,
+                       const PowerModel* like)
     : rays_(std::make_unique<pir::PowerRays>()) {
   const RayBundle& bundle = rays_->bundle;
   for (const SensorSpec& sensor : scene.sensors) {
@@ -33,7 +54,7 @@ PowerModel::PowerModel(const SceneSpec& scene, const SensingSpec& sensing, const
     }
     const SensorModelSpec& model = scene.sensor_models.at(sensor.model);
     const std::size_t first_cluster = bundle.n_clusters();
-    pir::append(*rays_, sensor, model, sensing.analog_rays_per_zone);
+    pir::append(*rays_, sensor, model, lens(model, sensing, like).quadrature);
     const std::vector<int> steps = lens_steps(model);
     for (std::size_t c = 0; c < model.clusters.size(); ++c) {
       const auto step = std::ranges::lower_bound(steps, model.clusters[c].lens_step) - steps.begin();
@@ -42,6 +63,7 @@ PowerModel::PowerModel(const SceneSpec& scene, const SensingSpec& sensing, const
     }
     receivers_begin_.push_back(receivers_begin_.back() + static_cast<std::uint32_t>(steps.size()));
   }
+  for (const BlindFieldSpec& field : sensing.blind_fields) pir::blind(rays_->bundle, scene, field);
   clipped_ = std::make_unique<RayBundle>(rays_->bundle);
   const double ambient = pir::band_radiance(pir::kelvin(sensing.ambient_c));
   std::vector<double> mesh_radiances;
@@ -69,7 +91,15 @@ DetectorSpec without_noise(DetectorSpec spec) {
   return spec;
 }
 
-CalibratedSensor calibrated(const SensorModelSpec& model, double tick_s) {
+std::shared_ptr<const CalibratedSensor> calibrated(const SensorModelSpec& model, double tick_s,
+                                                   const AnalogModel* like) {
+  const auto is_it = [&](const auto& known) {
+    return known != nullptr && known->tick_s == tick_s && same(known->model, model);
+  };
+  if (like != nullptr) {
+    const auto known = std::ranges::find_if(like->sensors(), is_it);
+    if (known != like->sensors().end()) return *known;
+  }
   const pir::Calibration calibration = pir::calibrate(model);
   const double gain = calibration.volts_per_watt;
   std::map<int, double> by_step;
@@ -77,9 +107,10 @@ CalibratedSensor calibrated(const SensorModelSpec& model, double tick_s) {
     by_step[model.clusters[i].lens_step] =
         calibration.apertures_m2[i] / pir::aperture_m2(model.optics) * watts_per_step;
   }
-  CalibratedSensor sensor{{model.detector, gain, tick_s}, {without_noise(model.detector), gain, tick_s}, {}};
+  CalibratedSensor sensor{
+      model, tick_s, {model.detector, gain, tick_s}, {without_noise(model.detector), gain, tick_s}, {}};
   for (const auto& [step, watts] : by_step) sensor.watts_per_step.push_back(watts);
-  return sensor;
+  return std::make_shared<const CalibratedSensor>(std::move(sensor));
 }
 
 }  // namespace
@@ -89,17 +120,18 @@ bool AnalogModel::is_needed(const SceneSpec& scene, const SensingSpec& sensing) 
       scene.sensors, [&](const SensorSpec& sensor) { return response_of(scene, sensing, sensor) == Response::analog; });
 }
 
-AnalogModel::AnalogModel(const SceneSpec& scene, const SensingSpec& sensing, const rt::Room& room) {
-  std::map<std::string, CalibratedSensor> known;
+AnalogModel::AnalogModel(const SceneSpec& scene, const SensingInForce& sensing, const rt::Room& room,
+                         const AnalogModel* like) {
+  std::map<std::string, std::shared_ptr<const CalibratedSensor>> known;
   for (const SensorSpec& sensor : scene.sensors) {
     sensors_.emplace_back();
     if (response_of(scene, sensing, sensor) != Response::analog) continue;
     const SensorModelSpec& model = scene.sensor_models.at(sensor.model);
-    auto found = known.find(model.id);
-    if (found == known.end()) found = known.emplace(model.id, calibrated(model, 1.0 / sensing.tick_rate_hz)).first;
-    sensors_.back() = found->second;
+    std::shared_ptr<const CalibratedSensor>& found = known[model.id];
+    if (!found) found = calibrated(model, 1.0 / sensing.tick_rate_hz, like);
+    sensors_.back() = found;
   }
-  power_ = std::make_unique<PowerModel>(scene, sensing, room);
+  power_ = std::make_unique<PowerModel>(scene, sensing, room, like != nullptr ? &like->power() : nullptr);
 }
 
 }  // namespace pirsim::sim

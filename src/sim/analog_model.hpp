@@ -3,16 +3,17 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
-#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "body/body_part.hpp"
 #include "pir/analog_circuit.hpp"
 #include "pir/optics.hpp"
-#include "pirsim/script.hpp"
 #include "rt/tracer.hpp"
+#include "schema/study_in_force.hpp"
 
 namespace pirsim::sim {
 
@@ -32,7 +33,8 @@ using BodyRadiance = std::array<double, body::n_parts>;
 /// differ follows from the electronics, and powers that were measured once serve any of them.
 class PowerModel {
  public:
-  PowerModel(const SceneSpec& scene, const SensingSpec& sensing, const rt::Room& room);
+  /// like: a model whose lenses are shared where they are the same, or null.
+  PowerModel(const SceneSpec& scene, const SensingInForce& sensing, const rt::Room& room, const PowerModel* like);
 
   [[nodiscard]] const pir::PowerRays& rays() const noexcept { return *rays_; }
   /// The rays cut at the room.
@@ -49,6 +51,16 @@ class PowerModel {
   }
 
  private:
+  /// One make's rays, and what they follow from.
+  struct Lens {
+    SensorModelSpec model;  ///< as blurred as effects make it
+    int rays_per_zone = 0;
+    std::vector<pir::WeightedDirection> quadrature;
+  };
+  using Lenses = std::map<std::string, std::shared_ptr<const Lens>, std::less<>>;  ///< by the model's id
+  [[nodiscard]] const Lens& lens(const SensorModelSpec& model, const SensingInForce& sensing, const PowerModel* like);
+
+  Lenses lenses_;
   std::unique_ptr<pir::PowerRays> rays_;
   std::unique_ptr<RayBundle> clipped_;
   std::vector<std::uint32_t> receivers_begin_{0};  ///< (n_sensors + 1)
@@ -58,16 +70,28 @@ class PowerModel {
 
 [[nodiscard]] BodyRadiance radiance_of(const WarmthSpec& warmth, double ambient_c);
 
-/// One make of sensor, calibrated by its rated distances (pir::calibrate).
+/// One make of sensor, calibrated by its rated distances (pir::calibrate) through the lens as it was made: what blurs
+/// it later leaves the gain as it is.
 struct CalibratedSensor {
+  SensorModelSpec model;
+  double tick_s;
   pir::AnalogCircuit detector;
   pir::AnalogFilter silent_filter;     ///< the detector's element and amplifier, without noise
   std::vector<double> watts_per_step;  ///< (n_lens_steps) of power through facets with the step's own aperture
+
+  /// powers: (n_lens_steps)
+  [[nodiscard]] double watts(std::span<const PowerSteps> powers) const noexcept {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < powers.size(); ++i) sum += static_cast<double>(powers[i]) * watts_per_step[i];
+    return sum;
+  }
 };
 
 class AnalogModel {
  public:
-  AnalogModel(const SceneSpec& scene, const SensingSpec& sensing, const rt::Room& room);
+  /// like: a model whose lenses and calibrated sensors are shared where they are the same, or null.
+  AnalogModel(const SceneSpec& scene, const SensingInForce& sensing, const rt::Room& room,
+              const AnalogModel* like = nullptr);
 
   /// Is there any analog sensor?
   [[nodiscard]] static bool is_needed(const SceneSpec& scene, const SensingSpec& sensing);
@@ -79,17 +103,16 @@ class AnalogModel {
   }
   /// All that an analog sensor receives. powers: (n_receivers)
   [[nodiscard]] double watts(std::size_t sensor, std::span<const PowerSteps> powers) const noexcept {
-    double sum = 0.0;
-    for (std::size_t i = power_->receivers_begin()[sensor]; i < power_->receivers_begin()[sensor + 1]; ++i) {
-      sum += static_cast<double>(powers[i]) * watts_per_step(sensor, i);
-    }
-    return sum;
+    const std::vector<std::uint32_t>& begin = power_->receivers_begin();
+    return sensors_[sensor]->watts(powers.subspan(begin[sensor], begin[sensor + 1] - begin[sensor]));
   }
-  /// (n_sensors) nothing for a sensor that answers by its zones.
-  [[nodiscard]] const std::vector<std::optional<CalibratedSensor>>& sensors() const noexcept { return sensors_; }
+  /// (n_sensors) null for a sensor that answers by its zones; of one make the same, of models made alike too.
+  [[nodiscard]] const std::vector<std::shared_ptr<const CalibratedSensor>>& sensors() const noexcept {
+    return sensors_;
+  }
 
  private:
-  std::vector<std::optional<CalibratedSensor>> sensors_;
+  std::vector<std::shared_ptr<const CalibratedSensor>> sensors_;
   std::unique_ptr<PowerModel> power_;
 };
 

@@ -48,7 +48,7 @@ CompiledStudy::CompiledStudy(SceneSpec scene, ScriptSpec script, StudyInForce st
   const auto room = like != nullptr && same_meshes(like->scene(), scene_)
                         ? like->array().shared_room()
                         : std::make_shared<const rt::Room>(scene_.meshes);
-  array_ = std::make_unique<const SensorArray>(scene_, sensing_, room);
+  array_ = std::make_unique<const SensorArray>(scene_, sensing_, room, like != nullptr ? &like->array() : nullptr);
   stages_ = effects::Pipeline(script_given_.effects, {scene_, sensing_, array_->clipped()});
   trials_ = like != nullptr && same_people(*like, *this, study.trials)
                 ? like->trials_

@@ -26,6 +26,16 @@ void Detector::begin_run(std::uint64_t seed, std::uint32_t run, const Exposure& 
 }
 
 void Detector::tick(const Exposure& before, const Exposure& after, std::span<std::uint8_t> triggers) noexcept {
+  tick_zones(before, after, triggers);
+  advance_analog(after, triggers);
+}
+
+void Detector::tick_unchanged(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept {
+  tick_zones_unchanged(exposure, triggers);
+  advance_analog(exposure, triggers);
+}
+
+void Detector::tick_zones(const Exposure& before, const Exposure& after, std::span<std::uint8_t> triggers) noexcept {
   std::ranges::fill(triggers, std::uint8_t{0});
   if (polarity_) {
     polarity_->tick(after.sums, triggers);
@@ -33,10 +43,9 @@ void Detector::tick(const Exposure& before, const Exposure& after, std::span<std
     edges_.tick(before.channels, after.channels, triggers);
   }
   switch_outputs(triggers);
-  advance_analog(after, triggers);
 }
 
-void Detector::tick_unchanged(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept {
+void Detector::tick_zones_unchanged(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept {
   std::ranges::fill(triggers, std::uint8_t{0});
   if (polarity_) {
     polarity_->tick(exposure.sums, triggers);
@@ -44,7 +53,6 @@ void Detector::tick_unchanged(const Exposure& exposure, std::span<std::uint8_t> 
     edges_.tick_unchanged(exposure.channels, triggers);
   }
   switch_outputs(triggers);
-  advance_analog(exposure, triggers);
 }
 
 void Detector::switch_outputs(std::span<std::uint8_t> triggers) noexcept {

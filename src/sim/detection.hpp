@@ -33,6 +33,9 @@ class Detector {
   void tick(const Exposure& before, const Exposure& after, std::span<std::uint8_t> triggers) noexcept;
   /// tick() with the same exposure before and after, without comparing it.
   void tick_unchanged(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept;
+  /// tick() of sensors that answer by their zones alone; triggers of the others are set to 0.
+  void tick_zones(const Exposure& before, const Exposure& after, std::span<std::uint8_t> triggers) noexcept;
+  void tick_zones_unchanged(const Exposure& exposure, std::span<std::uint8_t> triggers) noexcept;
   /// True if tick_unchanged() would change nothing and trigger nothing.
   [[nodiscard]] bool is_at_rest(const Exposure& exposure) const;
   /// Whether a tick's triggers follow from its two exposures alone, in any run.

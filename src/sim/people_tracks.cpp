@@ -12,11 +12,11 @@ PeopleTrack Postures::follow(const CompiledStudy& study, std::uint32_t run) {
   const std::vector<Actor>& actors = state.crowd.actors();
   PeopleTrack track{
       {{run, study.replicate_of(run), study.trial_of(run).id, {}, {}, {}}, 0, {}, {}}, 0, actors.size(), {}};
-  std::vector<std::uint64_t> bodies;
-  for (const Actor& actor : actors) bodies.push_back(number_of(actor.person().humanoid));
+  std::vector<std::uint64_t> figures;
+  for (const Actor& actor : actors) figures.push_back(number_of(actor.person()));
   index_.make_room_for(actors.size());
   const auto note_postures = [&] {
-    for (std::uint32_t i = 0; i < actors.size(); ++i) track.postures.push_back(number_of(i, bodies[i], actors[i]));
+    for (std::uint32_t i = 0; i < actors.size(); ++i) track.postures.push_back(number_of(i, figures[i], actors[i]));
   };
   note_postures();
   for (std::optional<std::int64_t> end; !end || state.tick < *end;) {
@@ -34,16 +34,18 @@ void Postures::shrink(std::size_t n) noexcept {
   people_.resize(std::min(n, people_.size()));
 }
 
-std::uint64_t Postures::number_of(const body::Humanoid& humanoid) {
-  const auto known = std::ranges::find(humanoids_, humanoid);
-  if (known != humanoids_.end()) return static_cast<std::uint64_t>(known - humanoids_.begin());
-  humanoids_.push_back(humanoid);
-  return humanoids_.size() - 1;
+std::uint64_t Postures::number_of(const PersonModel& person) {
+  const auto known = std::ranges::find_if(figures_, [&](const Figure& figure) {
+    return figure.humanoid == person.humanoid && figure.radiance == person.radiance;
+  });
+  if (known != figures_.end()) return static_cast<std::uint64_t>(known - figures_.begin());
+  figures_.push_back({person.humanoid, person.radiance});
+  return figures_.size() - 1;
 }
 
-PostureIndex::Number Postures::number_of(std::uint32_t person, std::uint64_t body, const Actor& actor) {
+PostureIndex::Number Postures::number_of(std::uint32_t person, std::uint64_t figure, const Actor& actor) {
   if (!actor.present()) return 0;
-  const PostureIndex::Number known = index_.find(person, body, actor.motion().outline());
+  const PostureIndex::Number known = index_.find(person, figure, actor.motion().outline());
   if (known != 0) return known;
   people_.push_back(person);
   return index_.remember(person);

@@ -30,17 +30,26 @@ class Postures {
   [[nodiscard]] std::uint32_t person(PostureIndex::Number number) const noexcept { return people_[number - 1]; }
   /// Lives as long as this.
   [[nodiscard]] const body::Humanoid& humanoid(PostureIndex::Number number) const {
-    return humanoids_[index_.body(number)];
+    return figures_[figure(number)].humanoid;
+  }
+  /// Whose measures and warmth: a number.
+  [[nodiscard]] std::uint64_t figure(PostureIndex::Number number) const noexcept { return index_.body(number); }
+  [[nodiscard]] const BodyRadiance& radiance(PostureIndex::Number number) const {
+    return figures_[figure(number)].radiance;
   }
   [[nodiscard]] body::Outline outline(PostureIndex::Number number) const noexcept { return index_.outline(number); }
 
  private:
-  [[nodiscard]] std::uint64_t number_of(const body::Humanoid& humanoid);
-  [[nodiscard]] PostureIndex::Number number_of(std::uint32_t person, std::uint64_t body, const Actor& actor);
+  struct Figure {
+    body::Humanoid humanoid;
+    BodyRadiance radiance;
+  };
+  [[nodiscard]] std::uint64_t number_of(const PersonModel& person);
+  [[nodiscard]] PostureIndex::Number number_of(std::uint32_t person, std::uint64_t figure, const Actor& actor);
 
   PostureIndex index_;
   std::vector<std::uint32_t> people_;  ///< (n_postures)
-  std::deque<body::Humanoid> humanoids_;
+  std::deque<Figure> figures_;
 };
 
 }  // namespace pirsim::sim

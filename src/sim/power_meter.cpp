@@ -19,7 +19,7 @@ PowerMeter::PowerMeter(const SensorArray& array, TracerKind kind)
       powers_(power_.n_receivers(), 0),
       row_(power_.n_receivers()) {}
 
-std::array<std::uint8_t, body::n_parts> PowerMeter::surfaces_of(const BodyRadiance& radiance) noexcept {
+std::array<std::uint8_t, body::n_parts> surfaces_of(const BodyRadiance& radiance) noexcept {
   std::array<std::uint8_t, body::n_parts> surfaces{};
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     surfaces[i] = static_cast<std::uint8_t>(std::ranges::find(radiance, radiance[i]) - radiance.begin());

@@ -22,6 +22,9 @@ struct PowerShare {
   PowerSteps power = 0;
 };
 
+/// (n_parts) those of equal radiance have the same number: which of them a ray hits makes no difference.
+[[nodiscard]] std::array<std::uint8_t, body::n_parts> surfaces_of(const BodyRadiance& radiance) noexcept;
+
 /// The power that each analog sensor receives. Belongs to one thread at a time and to one array, which has analog();
 /// what it has measured before changes no result.
 class PowerMeter {
@@ -49,7 +52,6 @@ class PowerMeter {
   /// Takes the tracer to where people are now.
   void follow(const std::vector<Actor>& actors);
   void follow(std::span<const rt::Moved> moved);
-  [[nodiscard]] static std::array<std::uint8_t, body::n_parts> surfaces_of(const BodyRadiance& radiance) noexcept;
   [[nodiscard]] PowerSteps power(std::uint32_t ray, rt::SolidId solid) const noexcept {
     return solid == rt::no_solid ? 0 : power_.power(ray, figures_[solid.person].radiance[solid.solid]);
   }

@@ -75,26 +75,6 @@ void add_reflections(RayBundle& bundle, const rt::Room& room, std::span<const Tr
   bundle = std::move(result);
 }
 
-constexpr float blind_m = 0.01F;  ///< range of a ray that sees nothing
-
-/// Cuts off the rays through a side of each lens, as many as the share says.
-void blind(RayBundle& bundle, const SceneSpec& scene, const BlindFieldSpec& field) {
-  const double side = radians(field.side_deg);
-  for (const std::uint32_t sensor : field.sensors) {
-    const auto zone_begin = bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor]];
-    const auto zone_end = bundle.cluster_zones_begin[bundle.sensor_clusters_begin[sensor + 1]];
-    const Quat sensor_from_world = glm::conjugate(scene.sensors[sensor].world_from_sensor.rotation);
-    std::vector<std::pair<double, std::size_t>> towards_side;  // (n_rays) how far, and which
-    for (std::size_t i = bundle.zone_rays_begin[zone_begin]; i < bundle.zone_rays_begin[zone_end]; ++i) {
-      const Vec3 d = sensor_from_world * Vec3(bundle.rays[i].direction);
-      towards_side.emplace_back(std::cos(side) * d.x + std::sin(side) * d.y, i);
-    }
-    const auto n = static_cast<std::size_t>(std::llround(field.share * static_cast<double>(towards_side.size())));
-    std::ranges::sort(towards_side, std::greater{});
-    for (std::size_t i = 0; i < n; ++i) bundle.range[towards_side[i].second] = blind_m;
-  }
-}
-
 /// Sensors times zones times rays, before any is made.
 void require_limit(const SceneSpec& scene, const SensingInForce& sensing) {
   std::size_t n_rays = 0;
@@ -119,14 +99,15 @@ RayBundle rated_rays(const SceneSpec& scene, const SensingInForce& sensing, cons
   for (const SensorSpec& sensor : scene.sensors) {
     pir::append(rays, sensor, scene.sensor_models.at(sensor.model), sensing.rays_per_zone, levels);
   }
-  for (const BlindFieldSpec& field : sensing.blind_fields) blind(rays, scene, field);
+  for (const BlindFieldSpec& field : sensing.blind_fields) pir::blind(rays, scene, field);
   add_reflections(rays, room, scene.meshes, sensing.reflections);
   return rays;
 }
 
 }  // namespace
 
-SensorArray::SensorArray(const SceneSpec& scene, const SensingInForce& sensing, std::shared_ptr<const rt::Room> room)
+SensorArray::SensorArray(const SceneSpec& scene, const SensingInForce& sensing, std::shared_ptr<const rt::Room> room,
+                         const SensorArray* like)
     : room_(std::move(room)),
       soft_edges_(sensing.soft_edges),
       tick_s_(1.0 / sensing.tick_rate_hz),
@@ -145,7 +126,7 @@ SensorArray::SensorArray(const SceneSpec& scene, const SensingInForce& sensing, 
     zone_outputs_.push_back(by_zones ? pir::zone_output(comparator, tick_s_) : std::nullopt);
   }
   if (!AnalogModel::is_needed(scene, sensing)) return;
-  analog_.emplace(scene, sensing, *room_);
+  analog_.emplace(scene, sensing, *room_, like != nullptr ? like->analog() : nullptr);
   ZoneSet unheard(clipped_.n_zones());
   for (std::size_t i = 0; i < n_sensors(); ++i) {
     if (!is_analog(i)) continue;
@@ -154,7 +135,7 @@ SensorArray::SensorArray(const SceneSpec& scene, const SensingInForce& sensing, 
       unheard.insert(zone);
     }
   }
-  if (std::ranges::all_of(analog_->sensors(), [](const auto& sensor) { return sensor.has_value(); })) return;
+  if (std::ranges::all_of(analog_->sensors(), [](const auto& sensor) { return sensor != nullptr; })) return;
   of_zone_sensors_.emplace(without(rated_, unheard), without(clipped_, unheard));
 }
 

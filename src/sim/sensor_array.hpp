@@ -31,7 +31,9 @@ enum class ZonesOf { all_sensors, zone_sensors };
 /// Immutable, shared by threads. Runs, recordings, coverage studies and walk tests trace these rays.
 class SensorArray {
  public:
-  SensorArray(const SceneSpec& scene, const SensingInForce& sensing, std::shared_ptr<const rt::Room> room);
+  /// like: an array of which what is the same in analog sensors is shared, or null.
+  SensorArray(const SceneSpec& scene, const SensingInForce& sensing, std::shared_ptr<const rt::Room> room,
+              const SensorArray* like = nullptr);
   SensorArray(const SensorArray&) = delete;
   SensorArray& operator=(const SensorArray&) = delete;
 
@@ -56,7 +58,7 @@ class SensorArray {
   }
   /// The sensors that answer physically, or null if none does.
   [[nodiscard]] const AnalogModel* analog() const noexcept { return analog_ ? &*analog_ : nullptr; }
-  [[nodiscard]] bool is_analog(std::size_t sensor) const noexcept { return analog_ && analog_->sensors()[sensor]; }
+  [[nodiscard]] bool is_analog(std::size_t sensor) const noexcept { return analog_ && analog_->sensors()[sensor] != nullptr; }
 
   /// Sees no zones at all, and is null, if none are to be looked at.
   [[nodiscard]] std::unique_ptr<rt::Tracer> make_tracer(TracerKind kind, ZonesOf whose) const;

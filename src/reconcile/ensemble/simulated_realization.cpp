@@ -4,6 +4,7 @@
 
 #include "effects/catalogue.hpp"
 #include "sim/recording_family.hpp"
+#include "sim/remembered_triggers.hpp"
 
 namespace pirsim::reconcile {
 namespace {
@@ -36,11 +37,14 @@ std::vector<EffectSpec> together(std::vector<EffectSpec> own, std::span<const Ef
 }  // namespace
 
 struct SimulatedRealization::Traced {
-  /// Zones as a Model's detector takes them.
+  /// A recording as its Model's detectors take it.
   struct Emitter {
-    Emitter(const Model& of, const Recording& from) : model(of), tracks(from), logic(sim::make_logic(of)) {
-      logic->prepare(tracks);
-    }
+    /// like: of a Model with the same seed, or null.
+    Emitter(const Model& of, const Recording& from, sim::NoiseMemory& noise, const Emitter* like)
+        : model(of),
+          tracks(from),
+          logic(std::make_unique<sim::RememberedTriggers>(of.compiled(), from, noise,
+                                                          like != nullptr ? like->logic.get() : nullptr)) {}
     [[nodiscard]] std::vector<Series> emit(const StudyFrame& frame, const effects::Pipeline& pipeline, int first,
                                            int n) const {
       std::vector<Series> data;
@@ -54,16 +58,17 @@ struct SimulatedRealization::Traced {
 
     const Model& model;
     const Recording& tracks;
-    std::unique_ptr<DetectorLogic> logic;
+    std::unique_ptr<sim::RememberedTriggers> logic;
   };
 
   explicit Traced(const Realization& realization)
       : model(compile(realization.scene, realization.script)),
         family(model, runs_of(model, {})),
-        emitter(model, family.first()) {}
+        emitter(model, family.first(), noise, nullptr) {}
 
   Model model;
   sim::RecordingFamily family;
+  sim::NoiseMemory noise;
   Emitter emitter;
 };
 
@@ -104,7 +109,8 @@ std::vector<Series> SimulatedRealization::anew(std::span<const EffectSpec> more,
   altered.script.replicates = n;
   const Model model = compile(altered.scene, altered.script, {.like = &traced_->model});
   const Recording tracks = traced_->family.record(model, runs_of(model, trials));
-  return Traced::Emitter(model, tracks).emit(*frame_, model.compiled().stages(), 0, n);
+  return Traced::Emitter(model, tracks, traced_->noise, &traced_->emitter)
+      .emit(*frame_, model.compiled().stages(), 0, n);
 }
 
 std::optional<std::vector<Series>> SimulatedRealization::with_effects(std::span<const EffectSpec> more, int first,

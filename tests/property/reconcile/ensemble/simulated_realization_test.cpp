@@ -73,6 +73,30 @@ TEST_CASE("the same on top of a model that has effects already: soft edges and t
   }
 }
 
+TEST_CASE("the same with analog sensors", "[seconds]") {
+  ScriptSpec script = short_study_a();
+  script.sensing.response = Response::analog;
+  check_every_effect({shipped_scene("meeting_room.gltf"), script, {}, 15}, 2);
+}
+
+TEST_CASE("the same with analog sensors and several people, who hide one another", "[seconds]") {
+  ScriptSpec script = short_office();
+  script.sensing.response = Response::analog;
+  check_every_effect({shipped_scene("open_office.gltf"), script, {}, 16}, 1);
+}
+
+TEST_CASE("the same where sensors that answer by zones hang beside analog ones", "[seconds]") {
+  SceneSpec scene = shipped_scene("meeting_room.gltf");
+  SensorModelSpec by_zones = scene.sensor_models.begin()->second;
+  by_zones.id = "BY_ZONES";
+  by_zones.response = Response::zones;
+  scene.sensor_models.emplace(by_zones.id, by_zones);
+  scene.sensors[0].model = scene.sensors[3].model = by_zones.id;
+  ScriptSpec script = short_study_a();
+  script.sensing.response.reset();
+  check_every_effect({scene, script, {}, 17}, 1);
+}
+
 TEST_CASE("who tried the same few steps round somebody for ever gets past them in the end") {
   // Found in a reference table: a bystander so near a bend of the way that every try ended after 5 cm.
   const RealizationSource source{
