@@ -44,6 +44,7 @@ class ZoneSet {
     return ((words_[i / bits_per_word] >> (i % bits_per_word)) & 1U) != 0;
   }
   void insert(std::size_t i) noexcept { words_[i / bits_per_word] |= Word{1} << (i % bits_per_word); }
+  void erase(std::size_t i) noexcept { words_[i / bits_per_word] &= ~(Word{1} << (i % bits_per_word)); }
   void clear() noexcept { std::ranges::fill(words_, Word{0}); }
   /// Adds the members of a set of the same size, given as words.
   void add(std::span<const Word> words) noexcept {

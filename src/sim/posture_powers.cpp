@@ -21,13 +21,19 @@ ZoneSet zones_of(const RayBundle& bundle, std::span<const std::uint8_t> sensors)
 }  // namespace
 
 PosturePowers::PosturePowers(const CompiledStudy& study, std::span<const std::uint8_t> left_out)
-    : power_(study.array().analog()->power()), powers_(power_.n_receivers(), 0) {
+    : power_(study.array().analog()->power()),
+      powers_(power_.n_receivers(), 0),
+      n_hit_(power_.clipped().n_zones(), 0),
+      touched_(power_.clipped().n_zones()) {
   const ZoneSet unasked = zones_of(power_.clipped(), left_out);
   rated_ = without(power_.rays().bundle, unasked);
   clipped_ = without(power_.clipped(), unasked);
   const std::vector<std::uint32_t>& begin = power_.clipped().zone_rays_begin;
   for (std::size_t zone = 0; zone < power_.clipped().n_zones(); ++zone) {
-    for (std::uint32_t ray = begin[zone]; ray < begin[zone + 1] && !unasked.test(zone); ++ray) rays_.push_back(ray);
+    for (std::uint32_t ray = begin[zone]; ray < begin[zone + 1] && !unasked.test(zone); ++ray) {
+      rays_.push_back(ray);
+      zone_of_.push_back(static_cast<std::uint32_t>(zone));
+    }
   }
   tracer_ = rt::make_tracer(study.tracer(), {&study.array().room(), &rated_, &clipped_});
 }
@@ -71,6 +77,9 @@ void PosturePowers::follow() {
   for (const auto& [ray, before, after] : changes_) {
     const std::uint32_t of_study = rays_[ray];
     powers_[power_.receiver_of(of_study)] += power(of_study, after) - power(of_study, before);
+    std::uint32_t& n = n_hit_[zone_of_[ray]];
+    if (before == rt::no_solid && n++ == 0) touched_.insert(zone_of_[ray]);
+    if (after == rt::no_solid && --n == 0) touched_.erase(zone_of_[ray]);
   }
 }
 

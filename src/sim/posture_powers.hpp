@@ -22,6 +22,8 @@ class PosturePowers {
   /// Of these people together, who hide one another. people: (n_people) 0: not there. powers: (n_receivers)
   /// overwritten; of sensors that are left out nothing.
   void measure(const Postures& postures, std::span<const PostureIndex::Number> people, std::span<PowerSteps> powers);
+  /// Zones of the power's rays that somebody was in then.
+  [[nodiscard]] const ZoneSet& touched() const noexcept { return touched_; }
   /// The postures from n + 1 on have been forgotten: their numbers will stand for others.
   void shrink(std::size_t n) noexcept;
 
@@ -45,8 +47,11 @@ class PosturePowers {
   RayBundle rated_, clipped_;        ///< of the sensors that aren't left out
   std::vector<std::uint32_t> rays_;  ///< (n of their rays) each one's number in the study
   std::unique_ptr<rt::Tracer> tracer_;
-  std::vector<Figure> figures_;     ///< (n_people)
-  std::vector<PowerSteps> powers_;  ///< (n_receivers) of figures_
+  std::vector<Figure> figures_;         ///< (n_people)
+  std::vector<PowerSteps> powers_;      ///< (n_receivers) of figures_
+  std::vector<std::uint32_t> zone_of_;  ///< (n of rays_)
+  std::vector<std::uint32_t> n_hit_;    ///< (n_zones) rays that end at somebody
+  ZoneSet touched_;
   // Scratch.
   std::vector<rt::Moved> moved_;
   std::vector<rt::FirstHitChange> changes_;

@@ -106,10 +106,10 @@ ZoneSet unasked(const SensorArray& array, const ZoneSet& in_common) {
 }  // namespace
 
 PostureSight::PostureSight(const CompiledStudy& study)
-    : PostureSight(study,
-                   {ZoneSet(study.array().clipped().n_zones()),
-                    std::vector<std::uint8_t>(study.array().n_sensors(), 0), false},
-                   nullptr) {}
+    : PostureSight(
+          study,
+          {ZoneSet(study.array().clipped().n_zones()), std::vector<std::uint8_t>(study.array().n_sensors(), 0), false},
+          nullptr) {}
 
 PostureSight::PostureSight(const CompiledStudy& study, const InCommon& common, PostureSight* other)
     : study_(study),
@@ -125,9 +125,18 @@ PostureSight::PostureSight(const CompiledStudy& study, const InCommon& common, P
   clipped_ = without(array.clipped(), others);
   if (!clipped_.rays.empty()) tracer_ = rt::make_tracer(study.tracer(), {&array.room(), &rated_, &clipped_});
   if (array.analog() != nullptr) {
-    meter_.emplace(study, common.sensors);
-    powers_.resize(array.analog()->power().n_receivers());
-    n_words_ += powers_.size();
+    const PowerModel& power = array.analog()->power();
+    for (std::size_t sensor = 0; sensor < array.n_sensors(); ++sensor) {
+      const auto [first, last] = zones_of(power.clipped(), sensor);
+      Analog analog{power.receivers_begin()[sensor], power.receivers_begin()[sensor + 1],
+                    ZoneSet(power.clipped().n_zones())};
+      for (std::size_t zone = first; zone < last; ++zone) analog.zones.insert(zone);
+      analog_.push_back(std::move(analog));
+    }
+    n_touched_words_ = ZoneSet(power.clipped().n_zones()).words().size();
+    powers_.resize(power.n_receivers());
+    together_.resize(power.n_receivers());
+    n_words_ += n_touched_words_ + powers_.size();
   }
   rows_.resize(n_words_, 0);
 }
@@ -143,48 +152,100 @@ std::span<PostureSight::Word> PostureSight::row(const Postures& postures, Postur
   return row;
 }
 
+PosturePowers& PostureSight::meter_of(std::uint32_t person) {
+  if (meters_.size() <= person) meters_.resize(person + 1);
+  if (!meters_[person]) meters_[person] = std::make_unique<PosturePowers>(study_, common_.sensors);
+  return *meters_[person];
+}
+
 void PostureSight::look(const Postures& postures, PostureSolids& solids, Number number, std::span<Word> row) {
   zones_.clear();
   if (tracer_) tracer_->add(postures.person(number), solids.of(postures, number), zones_);
   std::ranges::copy(zones_.words(), row.begin());
-  const std::span<Word> power_words = row.subspan(n_zone_words_);
-  if (meter_) {
-    meter_->measure(postures, {&number, 1}, powers_);
-    std::ranges::transform(powers_, power_words.begin(), [](PowerSteps power) { return std::bit_cast<Word>(power); });
+  const std::span<Word> touched = row.subspan(n_zone_words_, n_touched_words_);
+  const std::span<Word> powers = row.subspan(n_zone_words_ + n_touched_words_);
+  if (!analog_.empty()) {
+    PosturePowers& meter = meter_of(postures.person(number));
+    meter.measure(postures, {&number, 1}, powers_);
+    std::ranges::copy(meter.touched().words(), touched.begin());
+    std::ranges::transform(powers_, powers.begin(), [](PowerSteps power) { return std::bit_cast<Word>(power); });
   }
   if (other_ == nullptr) return;
   const std::span<const Word> seen = other_->row(postures, solids, number);
   for (std::size_t i = 0; i < n_zone_words_; ++i) row[i] |= common_.zones.words()[i] & seen[i];
-  for (std::size_t sensor = 0; sensor < common_.sensors.size(); ++sensor) {
+  for (std::size_t sensor = 0; sensor < analog_.size(); ++sensor) {
     if (common_.sensors[sensor] == 0) continue;
-    const std::vector<std::uint32_t>& begin = study_.array().analog()->power().receivers_begin();
-    for (std::uint32_t i = begin[sensor]; i < begin[sensor + 1]; ++i) power_words[i] = seen[n_zone_words_ + i];
+    const auto& [begin, end, zones, crowd] = analog_[sensor];
+    for (std::size_t i = 0; i < n_touched_words_; ++i) touched[i] |= zones.words()[i] & seen[n_zone_words_ + i];
+    for (std::uint32_t i = begin; i < end; ++i) powers[i] = seen[n_zone_words_ + n_touched_words_ + i];
   }
 }
 
 std::span<const PowerSteps> PostureSight::powers(const Postures& postures, PostureSolids& solids, Number number) {
-  if (!meter_) return {};
-  const std::span<const Word> words = row(postures, solids, number).subspan(n_zone_words_);
+  if (analog_.empty()) return {};
+  const std::span<const Word> words = row(postures, solids, number).subspan(n_zone_words_ + n_touched_words_);
   std::ranges::transform(words, powers_.begin(), [](Word word) { return std::bit_cast<PowerSteps>(word); });
   return powers_;
 }
 
-std::span<const PowerSteps> PostureSight::powers(const Postures& postures, std::span<const Number> people,
-                                                 std::span<const PowerSteps> there) {
-  if (!meter_) return {};
-  meter_->measure(postures, people, powers_);
-  if (other_ == nullptr || std::ranges::find(common_.sensors, 1) == common_.sensors.end()) return powers_;
-  const std::span<const PowerSteps> known = there.empty() ? other_->powers(postures, people, {}) : there;
-  const std::vector<std::uint32_t>& begin = study_.array().analog()->power().receivers_begin();
-  for (std::size_t sensor = 0; sensor < common_.sensors.size(); ++sensor) {
-    for (std::uint32_t i = begin[sensor]; i < begin[sensor + 1] && common_.sensors[sensor] != 0; ++i)
-      powers_[i] = known[i];
+bool PostureSight::apart(const Postures& postures, PostureSolids& solids, std::span<const Number> people,
+                         const ZoneSet& zones) {
+  occupied_.assign(n_touched_words_, 0);
+  for (const Number number : people) {
+    const std::span<const Word> touched = row(postures, solids, number).subspan(n_zone_words_, n_touched_words_);
+    for (std::size_t i = 0; i < n_touched_words_; ++i) {
+      const Word here = touched[i] & zones.words()[i];
+      if ((occupied_[i] & here) != 0) return false;
+      occupied_[i] |= here;
+    }
+  }
+  return true;
+}
+
+void PostureSight::measure_together(const Postures& postures, std::span<const Number> people, std::size_t sensor,
+                                    std::span<PowerSteps> powers) {
+  if (other_ != nullptr && common_.sensors[sensor] != 0)
+    return other_->measure_together(postures, people, sensor, powers);
+  auto& [begin, end, zones, crowd] = analog_[sensor];
+  if (!crowd) {
+    std::vector<std::uint8_t> others(analog_.size(), 1);
+    others[sensor] = 0;
+    crowd.emplace(study_, others);
+  }
+  crowd->measure(postures, people, together_);
+  for (std::uint32_t i = begin; i < end; ++i) powers[i] = together_[i];
+}
+
+std::span<const PowerSteps> PostureSight::powers(const Postures& postures, PostureSolids& solids,
+                                                 std::span<const Number> people, std::span<const PowerSteps> there) {
+  if (analog_.empty()) return {};
+  for (const Number number : people) (void)row(postures, solids, number);  // uses powers_
+  std::ranges::fill(powers_, 0);
+  const std::size_t first_power = n_zone_words_ + n_touched_words_;
+  for (std::size_t sensor = 0; sensor < analog_.size(); ++sensor) {
+    const Analog& analog = analog_[sensor];
+    if (analog.begin == analog.end) continue;
+    if (common_.sensors[sensor] != 0 && !there.empty()) {
+      for (std::uint32_t i = analog.begin; i < analog.end; ++i) powers_[i] = there[i];
+    } else if (!apart(postures, solids, people, analog.zones)) {
+      measure_together(postures, people, sensor, powers_);
+    } else {
+      for (const Number number : people) {
+        const std::span<const Word> words = row(postures, solids, number).subspan(first_power);
+        for (std::uint32_t i = analog.begin; i < analog.end; ++i) powers_[i] += std::bit_cast<PowerSteps>(words[i]);
+      }
+    }
   }
   return powers_;
 }
 
 void PostureSight::shrink(std::size_t n_postures) {
-  if (meter_) meter_->shrink(n_postures);
+  for (const auto& meter : meters_) {
+    if (meter) meter->shrink(n_postures);
+  }
+  for (Analog& analog : analog_) {
+    if (analog.crowd) analog.crowd->shrink(n_postures);
+  }
   if (known_.size() <= n_postures + 1) return;
   known_.resize(n_postures + 1);
   rows_.resize(known_.size() * n_words_);

@@ -60,27 +60,43 @@ class PostureSight {
   [[nodiscard]] std::span<const PowerSteps> powers(const Postures& postures, PostureSolids& solids, Number number);
   /// Of several people, who hide one another; nothing without analog sensors. Where the other study's people are the
   /// same at that moment, `there` has what its sensors received.
-  [[nodiscard]] std::span<const PowerSteps> powers(const Postures& postures, std::span<const Number> people,
-                                                   std::span<const PowerSteps> there);
+  [[nodiscard]] std::span<const PowerSteps> powers(const Postures& postures, PostureSolids& solids,
+                                                   std::span<const Number> people, std::span<const PowerSteps> there);
   [[nodiscard]] std::size_t n_zones() const noexcept { return zones_.size(); }
   void shrink(std::size_t n_postures);
 
  private:
   using Word = ZoneSet::Word;
+  /// Of one analog sensor.
+  struct Analog {
+    std::uint32_t begin = 0, end = 0;      ///< receivers
+    ZoneSet zones;                         ///< of its power's rays
+    std::optional<PosturePowers> crowd{};  ///< measures people together, once somebody asked
+  };
+
   std::span<Word> row(const Postures& postures, PostureSolids& solids, Number number);
   void look(const Postures& postures, PostureSolids& solids, Number number, std::span<Word> row);
+  [[nodiscard]] PosturePowers& meter_of(std::uint32_t person);
+  /// True if no two of them are in one of the sensor's zones: then none hides another, and their powers add up.
+  [[nodiscard]] bool apart(const Postures& postures, PostureSolids& solids, std::span<const Number> people,
+                           const ZoneSet& zones);
+  /// What one sensor receives of people together; powers: (n_receivers) only that sensor's are set.
+  void measure_together(const Postures& postures, std::span<const Number> people, std::size_t sensor,
+                        std::span<PowerSteps> powers);
 
   const CompiledStudy& study_;
   InCommon common_;
   PostureSight* other_ = nullptr;
-  RayBundle rated_, clipped_;           ///< of zones that nobody else looks at
-  std::unique_ptr<rt::Tracer> tracer_;  ///< null: no zones are to be looked at
-  std::optional<PosturePowers> meter_;  ///< where there are analog sensors
-  ZoneSet zones_;                       ///< scratch
-  std::size_t n_zone_words_, n_words_;
-  std::vector<Word> rows_;           ///< (1 + n_postures x n_words) zones, then powers; 0: nobody
-  std::vector<std::uint8_t> known_;  ///< (1 + n_postures) 1 where somebody asked
-  std::vector<PowerSteps> powers_;   ///< (n_receivers) scratch
+  RayBundle rated_, clipped_;                           ///< of zones that nobody else looks at
+  std::unique_ptr<rt::Tracer> tracer_;                  ///< null: no zones are to be looked at
+  std::vector<std::unique_ptr<PosturePowers>> meters_;  ///< (n_people) of each alone, of sensors that aren't in common
+  std::vector<Analog> analog_;                          ///< (n_sensors) or empty: none is analog
+  ZoneSet zones_;                                       ///< scratch
+  std::size_t n_zone_words_, n_touched_words_ = 0, n_words_;
+  std::vector<Word> rows_;                     ///< (1 + n_postures x n_words) zones, zones touched, powers; 0: nobody
+  std::vector<std::uint8_t> known_;            ///< (1 + n_postures) 1 where somebody asked
+  std::vector<PowerSteps> powers_, together_;  ///< (n_receivers) scratch
+  std::vector<Word> occupied_;                 ///< scratch
 };
 
 }  // namespace pirsim::sim

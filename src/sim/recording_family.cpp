@@ -63,7 +63,7 @@ class Painter {
     const auto n_there = std::ranges::count_if(people, is_there);
     if (n_there > 1) {
       add_zones(people);
-      return numbering_.number(all_.words(), sight_.powers(postures_, people, same.powers(there, there_)));
+      return numbering_.number(all_.words(), sight_.powers(postures_, solids_, people, same.powers(there, there_)));
     }
     const Number alone = n_there == 0 ? 0 : *std::ranges::find_if(people, is_there);
     std::uint32_t& moment = moments_[alone];
@@ -102,8 +102,7 @@ struct RecordingFamily::Impl {
   [[nodiscard]] std::optional<std::size_t> known(const CompiledStudy& other, std::uint32_t run) const {
     const auto known = std::ranges::find(people, run, [](const PeopleTrack& track) { return track.rows.rows.run; });
     if (known == people.end() || !other.moves_people_as(first)) return std::nullopt;
-    const auto last_row =
-        static_cast<std::int64_t>(known->rows.rows.samples.size()) * other.sensing().ticks_per_window;
+    const auto last_row = static_cast<std::int64_t>(known->rows.rows.samples.size()) * other.sensing().ticks_per_window;
     if (static_cast<std::int64_t>(known->n_ticks) < other.stages().heard_by(last_row)) return std::nullopt;
     return static_cast<std::size_t>(known - people.begin());
   }

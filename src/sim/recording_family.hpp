@@ -10,8 +10,8 @@
 namespace pirsim::sim {
 
 /// Who moves as the first study's people do (CompiledStudy::moves_people_as) isn't moved again; what rays that are the
-/// same saw of a posture, or brought of it, isn't traced again. Belongs to one thread at a time. Remembers every posture of the first
-/// study.
+/// same saw of a posture, or brought of it, isn't traced again. Belongs to one thread at a time. Remembers every
+/// posture of the first study.
 class RecordingFamily {
  public:
   /// Follows these runs of `first`, which must outlive the family.

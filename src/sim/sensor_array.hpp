@@ -58,7 +58,9 @@ class SensorArray {
   }
   /// The sensors that answer physically, or null if none does.
   [[nodiscard]] const AnalogModel* analog() const noexcept { return analog_ ? &*analog_ : nullptr; }
-  [[nodiscard]] bool is_analog(std::size_t sensor) const noexcept { return analog_ && analog_->sensors()[sensor] != nullptr; }
+  [[nodiscard]] bool is_analog(std::size_t sensor) const noexcept {
+    return analog_ && analog_->sensors()[sensor] != nullptr;
+  }
 
   /// Sees no zones at all, and is null, if none are to be looked at.
   [[nodiscard]] std::unique_ptr<rt::Tracer> make_tracer(TracerKind kind, ZonesOf whose) const;

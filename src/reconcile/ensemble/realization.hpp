@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
+#include "pirsim/model.hpp"
 #include "pirsim/scene.hpp"
 #include "pirsim/script.hpp"
 
@@ -14,7 +16,12 @@ struct RealizationSource {
   ScriptSpec script;  ///< with the effects that the model already has
   NuisanceSpec nuisance;
   std::uint64_t seed = 0;
+  /// The plain model, of which realizations share what is the same in them: lenses, calibrations, the room. It changes
+  /// nothing but the time they take; may be null.
+  std::shared_ptr<const Model> like{};
 };
+/// Compiles the plain model for a source; null if people can't get about in it as it is drawn.
+[[nodiscard]] std::shared_ptr<const Model> model_to_share(const SceneSpec& scene, const ScriptSpec& script);
 
 /// Scene and script of one dataset: one room, one set of people, one sequence of random choices.
 struct Realization {

@@ -36,6 +36,15 @@ std::vector<EffectSpec> together(std::vector<EffectSpec> own, std::span<const Ef
 
 }  // namespace
 
+std::shared_ptr<const Model> model_to_share(const SceneSpec& scene, const ScriptSpec& script) {
+  try {
+    return std::make_shared<const Model>(compile(scene, script));
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::infeasible) throw;
+    return nullptr;
+  }
+}
+
 struct SimulatedRealization::Traced {
   /// A recording as its Model's detectors take it.
   struct Emitter {
@@ -61,8 +70,8 @@ struct SimulatedRealization::Traced {
     std::unique_ptr<sim::RememberedTriggers> logic;
   };
 
-  explicit Traced(const Realization& realization)
-      : model(compile(realization.scene, realization.script)),
+  Traced(const Realization& realization, const Model* like)
+      : model(compile(realization.scene, realization.script, {.like = like})),
         family(model, runs_of(model, {})),
         emitter(model, family.first(), noise, nullptr) {}
 
@@ -79,7 +88,7 @@ SimulatedRealization::SimulatedRealization(const RealizationSource& source, cons
     realization_ = draw_realization(source.scene, source.script, source.nuisance, source.seed, index, attempt);
     realization_.script.replicates = n_runs;
     try {
-      traced_ = std::make_unique<Traced>(realization_);
+      traced_ = std::make_unique<Traced>(realization_, source.like.get());
       return;
     } catch (const Error& error) {
       if (error.code() != ErrorCode::infeasible || attempt + 1 == most_rooms) throw;

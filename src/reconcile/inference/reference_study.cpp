@@ -60,7 +60,7 @@ ReferenceStudy make_reference_study(
     const SceneSpec& scene, const ScriptSpec& script, const Settings& settings,
     const std::function<DataShape(const StudyFrame&, std::span<const Series>)>& shape_of_data, const Context& context) {
   require_hard_zones(scene, script);
-  ReferenceStudy reference{{scene, script, settings.nuisance, context.seed},
+  ReferenceStudy reference{{scene, script, settings.nuisance, context.seed, model_to_share(scene, script)},
                            frame_of(scene, script),
                            cell_knowledge(scene, script),
                            {},
