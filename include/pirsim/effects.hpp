@@ -80,6 +80,7 @@ struct EffectInfo {
   Reach reach = Reach::geometry;
   /// Sensors of which response it acts on: of zones, or of both.
   ActsOn acts_on = ActsOn::all_sensors;
+  std::string in_analog{};  ///< what it is with the analog response, as the end of a sentence; empty: just the same
   std::vector<Survey> idle_in{};  ///< those that it changes nothing in: they lack the people or the rows it acts on
 };
 

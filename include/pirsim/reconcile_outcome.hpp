@@ -276,7 +276,8 @@ struct DataNote {
     runs_begin_late,  ///< n runs begin in a counted phase
     runs_end_early,   ///< n runs end before any simulated one
     runs_go_on,       ///< n runs go on after any simulated one
-    people_unused     ///< a column `people`
+    people_unused,    ///< a column `people`
+    effects_idle      ///< names: effects that mean nothing to any sensor of the study, and aren't looked for
   };
   What what = What::rows_missing;
   std::size_t n = 0;

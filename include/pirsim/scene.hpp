@@ -17,6 +17,7 @@ struct SensorSpec {
   std::string id;
   std::string model;  ///< key into SceneSpec::sensor_models
   Frame world_from_sensor;
+  double gain = 1.0;  ///< of its signal, relative to what its make's rated distances say; for the analog response
 };
 
 /// The sitter's pelvis rests at the origin of the seat's frame and faces its -Z; +Y is up.

@@ -201,6 +201,9 @@ struct NuisanceSpec {
   /// somebody who works by the metronome, as in Study A, has none of it.
   double uneven_arms = 0.0;     ///< spread of `uneven_arms`; people at their own work: assumed 0.2
   double trunk_sway_deg = 0.0;  ///< amplitude of `trunk_sway`; people at their own work: assumed 1
+  // Of sensors with the analog response alone.
+  double sensor_gain = 0.1;  ///< of each, relative; a threshold off by as much looks the same; assumed (tried 0-0.2)
+  double ambient_c = 1.0;    ///< of the room's temperature; assumed (tried 0-2)
   bool operator==(const NuisanceSpec&) const = default;
 };
 

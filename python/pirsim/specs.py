@@ -60,6 +60,8 @@ class Sensor:
     model: str = ""
     """Key into `Scene.sensor_models`."""
     world_from_sensor: Frame = field(default_factory=Frame)
+    gain: float = 1.0
+    """Of its signal, relative to what its make's rated distances say; for the analog response."""
 
 
 @dataclass(slots=True)

@@ -45,6 +45,11 @@ struct Effect {
 /// what check() finds.
 [[nodiscard]] StudyInForce in_force(SceneSpec scene, const ScriptSpec& script);
 
+/// Does any sensor answer by its zones?
+[[nodiscard]] bool any_of_zones(const SceneSpec& scene, const SensingSpec& sensing);
+/// Whether an effect can change anything there: it acts on a response that some sensor has.
+[[nodiscard]] bool means_anything(const EffectInfo& info, const SceneSpec& scene, const SensingSpec& sensing);
+
 /// Whether a parameter of that effect means anything with its choices.
 [[nodiscard]] bool applies(const ParameterInfo& parameter, const EffectSpec& effect);
 /// The first of an effect's strengths that applies.

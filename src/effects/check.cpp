@@ -146,14 +146,19 @@ void check(std::span<const EffectSpec> effects, const SceneSpec& scene, Diagnost
   check_all(effects, &scene, diagnostics);
 }
 
+bool any_of_zones(const SceneSpec& scene, const SensingSpec& sensing) {
+  return std::ranges::any_of(
+      scene.sensors, [&](const SensorSpec& sensor) { return response_of(scene, sensing, sensor) == Response::zones; });
+}
+
+bool means_anything(const EffectInfo& info, const SceneSpec& scene, const SensingSpec& sensing) {
+  return info.acts_on == ActsOn::all_sensors || any_of_zones(scene, sensing);
+}
+
 std::vector<Issue> idle(std::span<const EffectSpec> effects, const SceneSpec& scene, const SensingSpec& sensing) {
-  const auto by_zones = [&](const SensorSpec& sensor) {
-    return response_of(scene, sensing, sensor) == Response::zones;
-  };
   Diagnostics remarks;
   for (const EffectSpec& spec : effects) {
-    if (find(spec.name).info.acts_on != ActsOn::zone_sensors || is_off(spec)) continue;
-    if (std::ranges::any_of(scene.sensors, by_zones)) continue;
+    if (is_off(spec) || means_anything(find(spec.name).info, scene, sensing)) continue;
     remarks.warning(spec.where, spec.name + " does nothing here: it acts on sensors with response: zones, and " +
                                     "every sensor's response is analog");
   }

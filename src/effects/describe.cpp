@@ -70,6 +70,7 @@ void add_markdown(std::ostream& out, const Effect& effect) {
   out << "Fingerprint: " << info.fingerprint << ".\n";
   if (!info.confused_with.empty()) out << "Easily taken for: " << joined(info.confused_with, ", ") << ".\n";
   if (!info.same_as.empty()) out << same_as_sentence(info) << "\n";
+  if (!info.in_analog.empty()) out << "With analog sensors: " << info.in_analog << ".\n";
   out << "Stage: " << info.stage << "; reach: " << name(info.reach) << ".\n\n";
   out << "| parameter | off | typical | prior | accepted | source |\n|---|---|---|---|---|---|\n";
   for (const ParameterInfo& parameter : info.parameters) {
@@ -105,6 +106,7 @@ std::string to_text(const Effect& effect) {
   out << "fingerprint:      " << info.fingerprint << '\n';
   out << "easily taken for: " << joined(info.confused_with, ", ") << '\n';
   if (!info.same_as.empty()) out << "in data:          " << same_as_sentence(info) << '\n';
+  if (!info.in_analog.empty()) out << "analog sensors:   " << info.in_analog << '\n';
   out << "acts in:          " << info.stage << " (" << name(info.reach) << ")\n\nparameters:\n";
   for (const ParameterInfo& parameter : info.parameters) {
     out << "  " << std::left << std::setw(16) << parameter.name << "off " << std::setw(8) << off_of(parameter)

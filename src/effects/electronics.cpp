@@ -98,7 +98,9 @@ Effect missed_triggers() {
                                    .source = "assumed",
                                    .only_if = {"unit", "trigger"}}},
                    .choices = {{"unit", ChoiceKind::variant, {"window", "trigger"}, "windows"}, sensor_choice()},
-                   .reach = Reach::triggers},
+                   .reach = Reach::triggers,
+                   .in_analog = "the same; a trigger is a tick at which the comparator's output is on, so short pulses "
+                                "suffer most. A threshold set too high is range_scale below 1"},
           .make_stage = make_missed_triggers};
 }
 

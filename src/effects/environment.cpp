@@ -110,6 +110,7 @@ Effect warm_chair() {
                                    .source = "assumed: to 1/e"}},
                    .choices = {sensor_choice()},
                    .reach = Reach::triggers,
+                   .in_analog = "the same, behind the comparator: the seat's own heat isn't traced",
                    .idle_in = {Survey::coverage, Survey::walk_test}},
           .make_stage = make_warm_chair};
 }

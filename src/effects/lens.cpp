@@ -46,7 +46,9 @@ Effect thermal_contrast() {
                                    "Panasonic data sheet EKMC: rated at 4 K; range assumed: warm clothes in a warm "
                                    "room to bare skin in a cool one; only its size counts: surroundings warmer by as "
                                    "much change zones alike"}},
-               .reach = Reach::geometry},
+               .reach = Reach::geometry,
+               .in_analog = "as range_scale: another gain. Temperatures are the scene's and people's: `ambient_c`, "
+                            "`warmth`"},
       .alter = alter_thermal_contrast};
 }
 
@@ -60,16 +62,19 @@ void alter_range_scale(StudyInForce& study, const EffectSpec& effect) {
 }
 
 Effect range_scale() {
-  return {.info = {.name = "range_scale",
-                   .family = Family::optics,
-                   .stage = "optics",
-                   .summary = "All rated detection distances are wrong by one factor.",
-                   .fingerprint = "only seats near the end of a range change",
-                   .confused_with = {"thermal_contrast", "body_size"},
-                   .parameters = {factor("scale", 0.5, 1.8, 0.8,
-                                         "assumed: a data sheet promises a least distance, a lens ages")},
-                   .reach = Reach::geometry},
-          .alter = alter_range_scale};
+  return {
+      .info = {.name = "range_scale",
+               .family = Family::optics,
+               .stage = "optics",
+               .summary = "All rated detection distances are wrong by one factor.",
+               .fingerprint = "only seats near the end of a range change",
+               .confused_with = {"thermal_contrast", "body_size"},
+               .parameters = {factor("scale", 0.5, 1.8, 0.8,
+                                     "assumed: a data sheet promises a least distance, a lens ages")},
+               .reach = Reach::geometry,
+               .in_analog = "another gain: such that the rated target is just detected at that many times the rated "
+                            "distance. A threshold that is set otherwise looks the same"},
+      .alter = alter_range_scale};
 }
 
 // soft_zone_edges: a lens throws a blurred image of its element: whether somebody at a zone's edge is seen is a matter
@@ -84,6 +89,12 @@ void alter_soft_zone_edges(StudyInForce& study, const EffectSpec& effect) {
                : rule == "swept_area" ? EdgeRule::swept_area
                                       : EdgeRule::drawn_edge;
   if (edges.rule == EdgeRule::covered_area) edges.threshold = effect.parameters.at("threshold");
+}
+
+/// Analog sensors have no rule to draw.
+void draw_soft_zone_edges(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec& script, Stream&) {
+  if (any_of_zones(scene, script.sensing)) return;
+  effect.choices.erase("rule");
 }
 
 Effect soft_zone_edges() {
@@ -120,8 +131,11 @@ Effect soft_zone_edges() {
                                .only_if = {"rule", "covered_area"}}},
                .choices = {{"rule", ChoiceKind::variant, {"drawn_edge", "covered_area", "swept_area"}, "drawn edges"}},
                .reach = Reach::geometry,
-               .acts_on = ActsOn::zone_sensors},
-      .alter = alter_soft_zone_edges};
+               .in_analog =
+                   "more blur of the lens, beside its own `blur_deg` (root sum of squares); the gain stays. It "
+                   "follows the physics, so `rule` and `threshold` mean nothing"},
+      .alter = alter_soft_zone_edges,
+      .draw = draw_soft_zone_edges};
 }
 
 // blind_field: dirt, a cable or a shelf close by makes a part of a lens blind.
@@ -152,8 +166,7 @@ Effect blind_field() {
                           detail("side_deg", "deg", 0.0, -180.0, 180.0, -360.0, 360.0,
                                  "any: where the blind part begins, from the lens's right (0) to its upper side (90)")},
            .choices = {sensor_choice()},
-           .reach = Reach::geometry,
-           .acts_on = ActsOn::zone_sensors},
+           .reach = Reach::geometry},
       .alter = alter_blind_field};
 }
 
@@ -231,7 +244,8 @@ Effect wall_reflection() {
                .choices = {{"finish", ChoiceKind::variant, {"smooth", "rough"}, "smooth"},
                            {"wall", ChoiceKind::mesh, {}, "the mesh with the largest upright faces"}},
                .reach = Reach::geometry,
-               .acts_on = ActsOn::zone_sensors},
+               .acts_on = ActsOn::zone_sensors,
+               .in_analog = "nothing: the power that comes by a mirror isn't followed"},
       .alter = alter_wall_reflection,
       .draw = draw_wall_reflection};
 }
@@ -289,7 +303,8 @@ Effect dual_polarity() {
                                .scale = Scale::logarithmic,
                                .source = "assumed: and end at 5-10 Hz"}},
                .reach = Reach::geometry,
-               .acts_on = ActsOn::zone_sensors},
+               .acts_on = ActsOn::zone_sensors,
+               .in_analog = "nothing: an analog sensor has two elements, a band and a threshold as it is"},
       .alter = alter_dual_polarity};
 }
 

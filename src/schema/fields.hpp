@@ -182,7 +182,10 @@ struct Fields<SensorSpec> {
   using S = SensorSpec;
   static constexpr const char* name = "Sensor";
   static constexpr const char* about = "A sensor looks along its frame's -Z.";
-  static constexpr std::tuple all{FIELD(id), FIELD(model, "key into `Scene.sensor_models`"), FIELD(world_from_sensor)};
+  static constexpr std::tuple all{FIELD(id), FIELD(model, "key into `Scene.sensor_models`"), FIELD(world_from_sensor),
+                                  FIELD(gain, NumberRange{.above = 0.0, .max = 100.0},
+                                        "of its signal, relative to what its make's rated distances say; for the "
+                                        "analog response")};
 };
 template <>
 struct Fields<SeatSpec> {
@@ -661,7 +664,9 @@ struct Fields<NuisanceSpec> {
       FIELD(body_size, NumberRange{.min = 0.0, .max = 0.2}, "of stature, relative; mass follows with its cube"),
       FIELD(arm_amplitude, NumberRange{.min = 0.0, .max = 0.5}, "of desk work, relative"),
       FIELD(uneven_arms, NumberRange{.min = 0.0, .max = 1.0}, "upper end of the spread of `uneven_arms`"),
-      FIELD(trunk_sway_deg, NumberRange{.min = 0.0, .max = 12.0}, "upper end of the amplitude of `trunk_sway`")};
+      FIELD(trunk_sway_deg, NumberRange{.min = 0.0, .max = 12.0}, "upper end of the amplitude of `trunk_sway`"),
+      FIELD(sensor_gain, NumberRange{.min = 0.0, .max = 0.9}, "of each analog sensor's signal, relative"),
+      FIELD(ambient_c, NumberRange{.min = 0.0, .max = 15.0}, "of the room's temperature, where any sensor is analog")};
 };
 
 #undef FIELD

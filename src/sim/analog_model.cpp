@@ -91,15 +91,7 @@ DetectorSpec without_noise(DetectorSpec spec) {
   return spec;
 }
 
-std::shared_ptr<const CalibratedSensor> calibrated(const SensorModelSpec& model, double tick_s,
-                                                   const AnalogModel* like) {
-  const auto is_it = [&](const auto& known) {
-    return known != nullptr && known->tick_s == tick_s && same(known->model, model);
-  };
-  if (like != nullptr) {
-    const auto known = std::ranges::find_if(like->sensors(), is_it);
-    if (known != like->sensors().end()) return *known;
-  }
+CalibratedSensor calibrated(const SensorModelSpec& model, double tick_s) {
   const pir::Calibration calibration = pir::calibrate(model);
   const double gain = calibration.volts_per_watt;
   std::map<int, double> by_step;
@@ -108,8 +100,31 @@ std::shared_ptr<const CalibratedSensor> calibrated(const SensorModelSpec& model,
         calibration.apertures_m2[i] / pir::aperture_m2(model.optics) * watts_per_step;
   }
   CalibratedSensor sensor{
-      model, tick_s, {model.detector, gain, tick_s}, {without_noise(model.detector), gain, tick_s}, {}};
-  for (const auto& [step, watts] : by_step) sensor.watts_per_step.push_back(watts);
+      model, tick_s, 1.0, {model.detector, gain, tick_s}, {without_noise(model.detector), gain, tick_s}, {}, {}};
+  for (const auto& [step, watts] : by_step) sensor.rated_watts_per_step.push_back(watts);
+  return sensor;
+}
+
+using Sensors = std::vector<std::shared_ptr<const CalibratedSensor>>;
+
+/// As one of these, or as a sensor of the other model, if there is one of the make.
+std::shared_ptr<const CalibratedSensor> with_gain(const SensorModelSpec& model, double tick_s, double gain,
+                                                  const Sensors& own, const AnalogModel* like) {
+  std::shared_ptr<const CalibratedSensor> of_make;
+  const auto look_in = [&](const Sensors& sensors) {
+    for (const auto& known : sensors) {
+      if (known == nullptr || known->tick_s != tick_s || !same(known->model, model)) continue;
+      if (of_make == nullptr || known->gain == gain) of_make = known;
+      if (known->gain == gain) return;
+    }
+  };
+  if (like != nullptr) look_in(like->sensors());
+  if (of_make == nullptr || of_make->gain != gain) look_in(own);
+  if (of_make != nullptr && of_make->gain == gain) return of_make;
+  CalibratedSensor sensor = of_make != nullptr ? *of_make : calibrated(model, tick_s);
+  sensor.gain = gain;
+  sensor.watts_per_step.clear();
+  for (const double watts : sensor.rated_watts_per_step) sensor.watts_per_step.push_back(watts * gain);
   return std::make_shared<const CalibratedSensor>(std::move(sensor));
 }
 
@@ -122,14 +137,10 @@ bool AnalogModel::is_needed(const SceneSpec& scene, const SensingSpec& sensing) 
 
 AnalogModel::AnalogModel(const SceneSpec& scene, const SensingInForce& sensing, const rt::Room& room,
                          const AnalogModel* like) {
-  std::map<std::string, std::shared_ptr<const CalibratedSensor>> known;
   for (const SensorSpec& sensor : scene.sensors) {
-    sensors_.emplace_back();
-    if (response_of(scene, sensing, sensor) != Response::analog) continue;
+    const bool is_analog = response_of(scene, sensing, sensor) == Response::analog;
     const SensorModelSpec& model = scene.sensor_models.at(sensor.model);
-    std::shared_ptr<const CalibratedSensor>& found = known[model.id];
-    if (!found) found = calibrated(model, 1.0 / sensing.tick_rate_hz, like);
-    sensors_.back() = found;
+    sensors_.push_back(is_analog ? with_gain(model, 1.0 / sensing.tick_rate_hz, sensor.gain, sensors_, like) : nullptr);
   }
   power_ = std::make_unique<PowerModel>(scene, sensing, room, like != nullptr ? &like->power() : nullptr);
 }

@@ -74,10 +74,11 @@ class PowerModel {
 /// it later leaves the gain as it is.
 struct CalibratedSensor {
   SensorModelSpec model;
-  double tick_s;
+  double tick_s, gain;
   pir::AnalogCircuit detector;
-  pir::AnalogFilter silent_filter;     ///< the detector's element and amplifier, without noise
-  std::vector<double> watts_per_step;  ///< (n_lens_steps) of power through facets with the step's own aperture
+  pir::AnalogFilter silent_filter;           ///< the detector's element and amplifier, without noise
+  std::vector<double> rated_watts_per_step;  ///< (n_lens_steps) of power through facets with the step's own aperture
+  std::vector<double> watts_per_step;        ///< the same times the gain
 
   /// powers: (n_lens_steps)
   [[nodiscard]] double watts(std::span<const PowerSteps> powers) const noexcept {

@@ -506,11 +506,11 @@ class CommandLine(unittest.TestCase):
                              "".join(f"S1,PIR{i},{5000 if i == 1 else 3}\n" for i in range(1, 6)))
             call = ("reconcile", "--scene", DATA / "rooms/meeting_room.gltf", "--script", script, "--measured", measured,
                     "-o", f"{folder}/found", "-q")
-            self.assertIn("has 5000 s with motion, but a run lasts at most",
-                          pirsim(*call, "--response", "zones", code=3).stderr)
-            refused = pirsim(*call, code=3).stderr
-            self.assertIn("hard zones only", refused)
-            self.assertIn("analyse with --response zones", refused)
+            for response in ("zones", "analog"):
+                self.assertIn("has 5000 s with motion, but a run lasts at most",
+                              pirsim(*call, "--response", response, code=3).stderr)
+            self.assertIn("dual_polarity can't be looked for: it acts on sensors with response: zones",
+                          pirsim(*call, "--effects", "dual_polarity", code=2).stderr)
 
     def test_outputs_of_like_names_do_not_meet(self):
         with tempfile.TemporaryDirectory() as name:

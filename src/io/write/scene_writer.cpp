@@ -73,6 +73,9 @@ void add_mark(GltfBuilder& document, const char* type, const Spec& spec, const F
     using FieldValue = std::remove_cvref_t<decltype(spec.*field.member)>;
     if constexpr (!std::same_as<FieldValue, Frame>) members[field.name] = Value(spec.*field.member);
   });
+  if constexpr (std::same_as<Spec, SensorSpec>) {
+    if (spec.gain == SensorSpec{}.gain) members.erase("gain");  // hardly a sensor has another
+  }
   document.add_node(placed_node(spec.id, frame, pirsim_extras(type, std::move(members))));
 }
 

@@ -1,11 +1,13 @@
 #include "reconcile/ensemble/realization.hpp"
 
 #include <algorithm>
+#include <concepts>
 #include <map>
 
 #include "effects/catalogue.hpp"
 #include "pirsim/geometry.hpp"
 #include "pirsim/random.hpp"
+#include "pirsim/response.hpp"
 #include "schema/action_facts.hpp"
 #include "schema/fields.hpp"
 
@@ -22,6 +24,8 @@ enum Entity : std::uint32_t {
   seats = 1U << 16U,
   people = 1U << 17U,
   motion = 1U << 18U,
+  gains = 1U << 19U,
+  room = (1U << 19U) + (1U << 18U),
   attempts = 1U << 20U
 };
 
@@ -106,6 +110,24 @@ void move_otherwise(ScriptSpec& script, const Draw& draw) {
   add("trunk_sway", "amplitude_deg", draw.nuisance.trunk_sway_deg);
 }
 
+/// Draws nothing where no sensor is analog.
+void change_electronics(Realization& realization, const Draw& draw) {
+  bool any = false;
+  for (std::uint32_t i = 0; i < realization.scene.sensors.size(); ++i) {
+    SensorSpec& sensor = realization.scene.sensors[i];
+    if (response_of(realization.scene, realization.script.sensing, sensor) != Response::analog) continue;
+    any = true;
+    Stream stream = draw.stream(Entity::gains + i, Purpose::nuisance);
+    sensor.gain *= 1.0 + between(stream, draw.nuisance.sensor_gain);
+  }
+  if (!any) return;
+  Stream stream = draw.stream(Entity::room, Purpose::nuisance);
+  realization.script.sensing.ambient_c += between(stream, draw.nuisance.ambient_c);
+  each_number(realization.script.sensing, [](const char*, auto& value, const auto& accepted) {
+    if constexpr (std::same_as<decltype(value), double&>) value = std::clamp(value, accepted.min, accepted.max);
+  });
+}
+
 }  // namespace
 
 Realization draw_realization(const SceneSpec& scene, const ScriptSpec& script, const NuisanceSpec& nuisance,
@@ -116,6 +138,7 @@ Realization draw_realization(const SceneSpec& scene, const ScriptSpec& script, c
   move_seats(realization.scene, draw);
   change_people(realization.script, draw);
   move_otherwise(realization.script, draw);
+  change_electronics(realization, draw);
   realization.script.seed = seed_of(draw);
   return realization;
 }

@@ -109,6 +109,10 @@ ReferenceTable make_reference_table(const RealizationSource& source, const Study
   std::erase_if(settings.effects, [&](const std::string& hypothesis) {
     return std::ranges::find(source.script.effects, hypothesis, &EffectSpec::name) != source.script.effects.end();
   });
+  // Nor what means nothing to any sensor.
+  std::erase_if(settings.effects, [&](const std::string& hypothesis) {
+    return !effects::means_anything(effects::find(hypothesis).info, source.scene, source.script.sensing);
+  });
   if (settings.effects.empty())
     throw Error(ErrorCode::usage, "nothing is left to be looked for: the script has every effect that is asked for");
   ReferenceTable table;

@@ -87,6 +87,8 @@ void Loop::tell_first(const Step& first) {
   std::vector<TrailEvent> trail{trail::Begun{measured_.digest, context_.seed}};
   outcome_.notes = first.notes;
   outcome_.data_findings = first.findings;
+  const std::vector<std::string> idle = idle_effects(scene_, script_);
+  if (!idle.empty()) outcome_.notes.push_back({DataNote::What::effects_idle, idle.size(), idle});
   trail.insert(trail.end(), measured_.notes.begin(), measured_.notes.end());
   trail.insert(trail.end(), outcome_.notes.begin(), outcome_.notes.end());
   trail.insert(trail.end(), outcome_.data_findings.begin(), outcome_.data_findings.end());

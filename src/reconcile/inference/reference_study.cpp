@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "core/parallel.hpp"
-#include "pirsim/response.hpp"
+#include "effects/catalogue.hpp"
 #include "reconcile/inference/locate.hpp"
 
 namespace pirsim::reconcile {
@@ -44,13 +44,14 @@ namespace {
 
 constexpr std::uint32_t n_pilot_realizations = 40;
 
-/// Realizations share recordings by RecordingFamily, which knows zones only.
-void require_hard_zones(const SceneSpec& scene, const ScriptSpec& script) {
-  for (const SensorSpec& sensor : scene.sensors) {
-    if (response_of(scene, script.sensing, sensor) != Response::analog) continue;
-    throw Error(ErrorCode::input, Where{script.name},
-                "reconcile compares hard zones only, and sensor '" + sensor.id +
-                    "' has an analog response: analyse with --response zones (sensing.response=zones)");
+/// Of those that were asked for by name.
+void require_meaning(const SceneSpec& scene, const ScriptSpec& script, const std::vector<std::string>& asked) {
+  for (const std::string& name : asked) {
+    const effects::EffectInfo& info = effects::find(name).info;
+    if (effects::means_anything(info, scene, script.sensing)) continue;
+    throw Error(ErrorCode::usage, "effects: " + name +
+                                      " can't be looked for: it acts on sensors with response: zones, "
+                                      "and every sensor's response is analog");
   }
 }
 
@@ -59,7 +60,7 @@ void require_hard_zones(const SceneSpec& scene, const ScriptSpec& script) {
 ReferenceStudy make_reference_study(
     const SceneSpec& scene, const ScriptSpec& script, const Settings& settings,
     const std::function<DataShape(const StudyFrame&, std::span<const Series>)>& shape_of_data, const Context& context) {
-  require_hard_zones(scene, script);
+  require_meaning(scene, script, settings.table.effects);
   ReferenceStudy reference{{scene, script, settings.nuisance, context.seed, model_to_share(scene, script)},
                            frame_of(scene, script),
                            cell_knowledge(scene, script),
@@ -79,6 +80,14 @@ ReferenceStudy make_reference_study(
 
 FeatureMap ReferenceStudy::map(std::vector<std::size_t> trials) const {
   return {frame, knowledge, table.statistics.select_rows(rows_of(table, 0, Part::training)), std::move(trials)};
+}
+
+std::vector<std::string> idle_effects(const SceneSpec& scene, const ScriptSpec& script) {
+  std::vector<std::string> names;
+  for (const effects::Effect* effect : effects::catalogue()) {
+    if (!effects::means_anything(effect->info, scene, script.sensing)) names.push_back(effect->info.name);
+  }
+  return names;
 }
 
 std::shared_ptr<const TableView> ReferenceStudy::view(std::vector<std::size_t> trials, unsigned threads) const {

@@ -76,4 +76,7 @@ struct ReferenceStudy {
     const std::function<DataShape(const StudyFrame&, std::span<const Series> pilot)>& shape_of_data,
     const Context& context = {});
 
+/// Names of the catalogue's effects that mean nothing to any sensor of the study.
+[[nodiscard]] std::vector<std::string> idle_effects(const SceneSpec& scene, const ScriptSpec& script);
+
 }  // namespace pirsim::reconcile

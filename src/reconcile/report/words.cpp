@@ -205,6 +205,9 @@ std::string in_words(const DataNote& note) {
              " of the file ends before any simulated one, by a twentieth or more: compared as far as it goes.";
     case What::people_unused:
       return "The column 'people' is left out of every comparison: it is the script that says who is there.";
+    case What::effects_idle:
+      return list(note.names) + (note.n == 1 ? " isn't" : " aren't") + " looked for: to an analog sensor " +
+             (note.n == 1 ? "it means" : "they mean") + " nothing.";
     case What::runs_go_on:
       break;
   }

@@ -401,13 +401,13 @@ TEST_CASE("the user's own scenes are rooms like others", "[dataset][seconds]") {
   const Made made("pirsim_recipe: 1\nrooms: [{scenes: [" + own + "], people: 2}, {count: 1}]\ndays: 1\n" +
                   "sensing: {tick_rate_hz: 10}\n" +
                   "schedule: {from: '09:00', to: '09:02', arrival: {mean: '09:00', sd_min: 1}, staff: [{count: 2}]}\n" +
-                  "effects: [soft_zone_edges, missed_triggers]\n");
+                  "effects: [dual_polarity, missed_triggers]\n");
   std::vector<Issue> told;
   DatasetOptions options = made.options(2);
   options.tell = [&](const Issue& issue) { told.push_back(issue); };
   made.make(options);
   REQUIRE(told.size() == 1);  // the sensors are analog
-  CHECK_THAT(to_string(told.front()), contains("recipe.yaml:6:") && contains("soft_zone_edges does nothing here"));
+  CHECK_THAT(to_string(told.front()), contains("recipe.yaml:6:") && contains("dual_polarity does nothing here"));
   made.finish();
   CHECK_THAT(raw(made.out() / "sensors.csv"), contains("1,PIR1,EKMC1604111,analog,"));
   const auto rows = table(content(made.day("rows", 1, 1, ".csv.gz")));
