@@ -80,13 +80,18 @@ struct RuledOut {           ///< dropped by one test or both
 struct RefusedWhenApplied {  ///< dropped: with it applied the model still differs, and nothing explains the rest
   double p = 0.0;
 };
+struct DoesBetter {  ///< kept: a relative of the effect that would have been named, applied to the model
+  double p = 0.0;
+  std::string named;
+  double p_of_named = 0.0;
+};
 struct SameAs {  ///< judged as that effect, which changes the model in the same way
   std::string effect;
 };
 }  // namespace reason
 using Reason = std::variant<reason::NotRuledOut, reason::Sure, reason::MayBeNone, reason::LessLikely,
                             reason::Improbable, reason::LikeImpostors, reason::HardlySimulated, reason::RuledOut,
-                            reason::RefusedWhenApplied, reason::SameAs>;
+                            reason::RefusedWhenApplied, reason::DoesBetter, reason::SameAs>;
 
 /// What became of one effect of the catalogue.
 struct Candidate {
@@ -356,6 +361,7 @@ struct JudgedOnHeldOut {
   Verification verification;
 };
 enum class Remark {
+  relative_does_better,    ///< the name is taken back: applied in its place, a relative makes such data oftener
   may_be_none,             ///< the name is taken back
   refused_when_applied,    ///< the name is taken back: the model with it can't have made the data
   no_partner,              ///< no effect may explain the rest beside the one applied: nothing more is simulated
@@ -385,6 +391,7 @@ struct Outcome {
                                       ///< the plain model is one more if nothing.p exceeds the level
   std::vector<FittedEffect> fits;     ///< of the effects that were applied
   std::vector<Look> looks;            ///< with the effects applied, one after the other
+  std::vector<Look> relatives;        ///< of the effect that was to be named, each applied in its place
   std::optional<RangeEnd> range_end;  ///< of the first effect applied
   std::optional<Verification> verification;
   std::optional<Residuals> residuals;  ///< if nothing fits and the data are series

@@ -31,12 +31,15 @@ class Loop {
     std::vector<float> observed;            ///< statistics of the measured data
     Outcome outcome;
     SeenRows seen;
-    std::size_t likeliest = 0;  ///< hypothesis
-    FittedEffect best;          ///< of that hypothesis
+    std::size_t likeliest = 0;            ///< hypothesis
+    FittedEffect best;                    ///< of that hypothesis
+    std::vector<FittedEffect> relatives;  ///< of the effect named: what it may be taken for
   };
   const Step& look(const Settings& settings, double level);
   void apply_first();  ///< stronger than was looked for if only that does
-  void take_look();    ///< with all that has been applied
+  /// A name that a relative would do twice as well without is one of the two.
+  void compare_relatives();
+  void take_look();  ///< with all that has been applied
   void apply_more();
   /// With all that was applied; none if no effect may explain the rest, or people can hardly get about in that model.
   const Step* look_for_more(double level);

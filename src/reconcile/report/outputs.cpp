@@ -186,6 +186,10 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
   for (const Look& look : outcome.looks)
     looks.push_back({{"applied", look.applied}, {"level", look.level}, {"p", look.p}, {"one_of", look.one_of}});
   json["looks"] = looks;
+  Json relatives = Json::array();
+  for (const Look& look : outcome.relatives)
+    relatives.push_back({{"applied", look.applied}, {"level", look.level}, {"p", look.p}});
+  json["relatives"] = relatives;
   json["range_end"] = outcome.range_end ? to_json(*outcome.range_end) : Json();
   json["verification"] = outcome.verification ? to_json(*outcome.verification) : Json();
   json["residuals"] = outcome.residuals ? to_json(*outcome.residuals) : Json();

@@ -72,6 +72,10 @@ Worded worded(const Reason& of) {
                    return Worded{"Dropped", "with it applied, the model still differs from the data " + p(r.p) +
                                                 ", and none of the others that were tried explains what is left."};
                  },
+                 [&](const reason::DoesBetter& r) {
+                   return Worded{"Kept", "applied to the model, it makes such data oftener than " + r.named + " does " +
+                                             p(r.p) + ", against " + short_number(r.p_of_named) + "."};
+                 },
                  [](const reason::SameAs& r) {
                    return Worded{"", "Judged as " + r.effect + ", which changes the model in the same way."};
                  }},
@@ -87,7 +91,8 @@ std::string in_words(const trail::JudgedOnHeldOut& event) {
 }
 
 std::string_view in_words(trail::Remark remark) noexcept {
-  constexpr std::array<std::string_view, 8> texts{
+  constexpr std::array<std::string_view, 9> texts{
+      "the name is taken back: a relative applied in its place does better",
       "the name is taken back",
       "the name is taken back: the model with it can't have made the data",
       "added to it, no other effect comes near these data: nothing more is looked for",
