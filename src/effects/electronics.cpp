@@ -1,5 +1,5 @@
 // What a sensor's circuit and the logger's clock make of what the element saw.
-// Assumed: each sensor by itself, alike at all times.
+// Assumed: each sensor by itself, alike at all times unless an effect has a trend.
 // Method: stages that drop, hold or move triggers tick by tick.
 // Sources: hold and lock-out times of common PIR modules; else assumed.
 #include <algorithm>
@@ -9,31 +9,35 @@
 namespace pirsim::effects {
 namespace {
 
-// missed_triggers: what the zones saw and nobody was told: a poll that came to nothing, a threshold set too high.
+// missed_triggers: what the zones saw and nobody was told: a poll that came to nothing, a threshold set too high, a
+// battery that runs down.
 
 /// Loses whole windows, so that the chance of a 1 is scaled whatever went on within the second.
 class MissedWindows final : public CloneableTriggerStage<MissedWindows> {
  public:
-  MissedWindows(std::vector<std::uint32_t> sensors, double probability, int ticks_per_window)
-      : sensors_(std::move(sensors)), probability_(probability), ticks_per_window_(ticks_per_window) {}
+  MissedWindows(std::vector<std::uint32_t> sensors, double mean, const Trend& trend, int ticks_per_window)
+      : sensors_(std::move(sensors)), mean_(mean), trend_(trend), ticks_per_window_(ticks_per_window) {}
 
   void begin_run(std::uint64_t seed, std::uint32_t run) override {
     streams_ = streams_of(sensors_, seed, run, Purpose::missed_trigger);
+    chance_ = trend_.chance(mean_, run);
     lost_.assign(sensors_.size(), 0);
   }
 
   void tick(std::int64_t tick, std::span<std::uint8_t> triggers) noexcept override {
     const bool window_begins = (tick - 1) % ticks_per_window_ == 0;
     for (std::size_t i = 0; i < sensors_.size(); ++i) {
-      if (window_begins) lost_[i] = streams_[i].uniform() < probability_ ? 1 : 0;
+      if (window_begins) lost_[i] = streams_[i].uniform() < chance_ ? 1 : 0;
       if (lost_[i] != 0) triggers[sensors_[i]] = 0;
     }
   }
 
  private:
   std::vector<std::uint32_t> sensors_;
-  double probability_;
+  double mean_;  ///< over the runs
+  Trend trend_;
   int ticks_per_window_;
+  double chance_ = 0.0;  ///< in this run
   std::vector<Stream> streams_;
   std::vector<std::uint8_t> lost_;  ///< (n_sensors) 1: nothing of this window comes through
 };
@@ -41,9 +45,11 @@ class MissedWindows final : public CloneableTriggerStage<MissedWindows> {
 /// Loses each trigger by itself, so that a window with many of them hardly ever stays without a 1: weak signals suffer.
 class MissedSingly final : public CloneableTriggerStage<MissedSingly> {
  public:
-  MissedSingly(std::vector<std::uint32_t> sensors, double chance) : sensors_(std::move(sensors)), chance_(chance) {}
+  MissedSingly(std::vector<std::uint32_t> sensors, double mean, const Trend& trend)
+      : sensors_(std::move(sensors)), mean_(mean), trend_(trend) {}
 
   void begin_run(std::uint64_t seed, std::uint32_t run) override {
+    chance_ = trend_.chance(mean_, run);
     streams_ = streams_of(sensors_, seed, run, Purpose::missed_trigger);
   }
 
@@ -56,15 +62,17 @@ class MissedSingly final : public CloneableTriggerStage<MissedSingly> {
 
  private:
   std::vector<std::uint32_t> sensors_;
-  double chance_;
+  double mean_;  ///< over the runs
+  Trend trend_;
+  double chance_ = 0.0;  ///< in this run
   std::vector<Stream> streams_;
 };
 
 std::unique_ptr<TriggerStage> make_missed_triggers(const EffectSpec& effect, const StageContext& context) {
   const std::vector<std::uint32_t> sensors = sensors_of(effect, context.scene);
   if (word(effect, "unit") == "trigger")
-    return std::make_unique<MissedSingly>(sensors, effect.parameters.at("trigger_probability"));
-  return std::make_unique<MissedWindows>(sensors, effect.parameters.at("probability"),
+    return std::make_unique<MissedSingly>(sensors, effect.parameters.at("trigger_probability"), Trend(effect, context));
+  return std::make_unique<MissedWindows>(sensors, effect.parameters.at("probability"), Trend(effect, context),
                                          context.sensing.ticks_per_window);
 }
 
@@ -74,8 +82,9 @@ Effect missed_triggers() {
                    .stage = "electronics",
                    .summary =
                        "Triggers are lost with one probability, independently: those of a window altogether, or each "
-                       "by itself, which weak signals suffer from.",
-                   .fingerprint = "all cells scaled by the same factor; isolated zeros",
+                       "by itself, which weak signals suffer from. It stays, or grows from run to run (a battery runs "
+                       "down) and is the mean over the study's runs.",
+                   .fingerprint = "all cells scaled by the same factor, or later ones more; isolated zeros",
                    .confused_with = {"dead_time", "thermal_contrast", "dead_sensor"},
                    .parameters = {{.name = "probability",
                                    .unit = "",
@@ -97,7 +106,9 @@ Effect missed_triggers() {
                                    .most = 1.0,
                                    .source = "assumed",
                                    .only_if = {"unit", "trigger"}}},
-                   .choices = {{"unit", ChoiceKind::variant, {"window", "trigger"}, "windows"}, sensor_choice()},
+                   .choices = {{"unit", ChoiceKind::variant, {"window", "trigger"}, "windows"},
+                               trend_choice(),
+                               sensor_choice()},
                    .reach = Reach::triggers,
                    .in_analog = "the same; a trigger is a tick at which the comparator's output is on, so short pulses "
                                 "suffer most. A threshold set too high is range_scale below 1"},

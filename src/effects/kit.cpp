@@ -13,6 +13,16 @@ namespace pirsim::effects {
 
 ChoiceInfo sensor_choice() { return {"sensor", ChoiceKind::sensor, {}, "all sensors"}; }
 
+ChoiceInfo trend_choice() { return {"trend", ChoiceKind::variant, {"steady", "growing"}, "the same in all runs"}; }
+
+Trend::Trend(const EffectSpec& effect, const StageContext& context)
+    : kind_(word(effect, "trend") == "growing" ? Kind::growing : Kind::steady), n_runs_(context.n_runs) {}
+
+double Trend::chance(double mean, std::uint32_t run) const noexcept {
+  if (kind_ == Kind::steady) return mean;
+  return std::min(1.0, mean * 2.0 * (1.0 + run) / (1.0 + n_runs_));
+}
+
 std::string word(const EffectSpec& effect, std::string_view choice) {
   if (const auto made = effect.choices.find(choice); made != effect.choices.end()) return made->second;
   return std::ranges::find(find(effect.name).info.choices, choice, &ChoiceInfo::name)->words.front();

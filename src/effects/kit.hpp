@@ -94,6 +94,22 @@ namespace pirsim::effects {
 /// One of the scene's sensors, or all.
 [[nodiscard]] ChoiceInfo sensor_choice();
 
+/// Whether a chance stays, or grows in the course of the study.
+[[nodiscard]] ChoiceInfo trend_choice();
+
+/// What a chance is in each run of a study.
+class Trend {
+ public:
+  Trend(const EffectSpec& effect, const StageContext& context);
+  /// Steady: `mean`. Growing: from run to run in equal steps, so that `mean` is the mean over all runs; a chance that
+  /// would exceed 1 is 1.
+  [[nodiscard]] double chance(double mean, std::uint32_t run) const noexcept;
+
+ private:
+  enum class Kind { steady, growing } kind_;
+  std::uint32_t n_runs_;
+};
+
 /// Indices of the sensors that an effect is for: the one named, or all.
 [[nodiscard]] std::vector<std::uint32_t> sensors_of(const EffectSpec& effect, const SceneSpec& scene);
 

@@ -21,6 +21,7 @@ struct StageContext {
   const SceneSpec& scene;
   const SensingSpec& sensing;
   const RayBundle& clipped_rays;  ///< world frame, cut at the room
+  std::uint32_t n_runs = 1;       ///< of the study, whichever of them are simulated; they follow each other in time
 };
 
 /// Changes which sensors trigger at a tick. A value behind a pointer: clone() goes on by itself from the same moment.

@@ -49,10 +49,10 @@ CompiledStudy::CompiledStudy(SceneSpec scene, ScriptSpec script, StudyInForce st
                         ? like->array().shared_room()
                         : std::make_shared<const rt::Room>(scene_.meshes);
   array_ = std::make_unique<const SensorArray>(scene_, sensing_, room, like != nullptr ? &like->array() : nullptr);
-  stages_ = effects::Pipeline(script_given_.effects, {scene_, sensing_, array_->clipped()});
   trials_ = like != nullptr && same_people(*like, *this, study.trials)
                 ? like->trials_
                 : std::make_shared<const std::vector<TrialModel>>(plan_people(*this, study.trials, like));
+  stages_ = effects::Pipeline(script_given_.effects, {scene_, sensing_, array_->clipped(), n_runs()});
 }
 
 }  // namespace pirsim::sim

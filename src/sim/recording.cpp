@@ -239,7 +239,7 @@ effects::Pipeline make_stages(const Model& model, std::span<const EffectSpec> ef
   Diagnostics diagnostics;
   effects::check(effects, study.scene(), diagnostics);
   diagnostics.throw_if_errors();
-  return {effects, {study.scene(), study.sensing(), study.array().clipped()}};
+  return {effects, {study.scene(), study.sensing(), study.array().clipped(), study.n_runs()}};
 }
 
 bool goes_as_far_as(const RecordedRun& track, const SensingSpec& sensing, const effects::Pipeline& stages) {

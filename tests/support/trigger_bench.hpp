@@ -21,13 +21,14 @@ struct Bench {
   SceneSpec scene;
   SensingSpec sensing;
   RayBundle rays;
+  std::uint32_t n_runs = 1;
 
   Bench() {
     scene.name = "bench";
     scene.sensors = {{"A", "none", {}}, {"B", "none", {}}};
   }
   [[nodiscard]] effects::Pipeline pipeline(const std::vector<EffectSpec>& effects, std::uint32_t run = 0) const {
-    effects::Pipeline pipeline(effects, {scene, sensing, rays});
+    effects::Pipeline pipeline(effects, {scene, sensing, rays, n_runs});
     pipeline.begin_run(1, run);
     return pipeline;
   }

@@ -126,6 +126,28 @@ TEST_CASE("missed triggers thin the windows by their probability and nothing wit
   }
 }
 
+TEST_CASE("what is missed grows from run to run in equal steps about its mean") {
+  constexpr std::uint32_t n_runs = 4;
+  Bench bench;
+  bench.n_runs = n_runs;
+  const Series before = random_triggers(500'000, 0.02);
+  const double n = windows(before);
+  const auto lost = [&](double mean, const std::string& trend, std::uint32_t run) {
+    const EffectSpec missed = effect("missed_triggers", {{"probability", mean}}, {{"trend", trend}});
+    return 1.0 - windows(through(bench.pipeline({missed}, run), before)[0]) / n;
+  };
+  for (std::uint32_t run = 0; run < n_runs; ++run) {
+    CAPTURE(run);
+    const double chance = 0.1 * (run + 1.0);  // mean 0.25
+    const double standard_error = std::sqrt(chance * (1.0 - chance) / n);
+    CHECK(std::abs(lost(0.25, "growing", run) - chance) < 4.0 * standard_error);
+    CHECK_FALSE(std::abs(lost(0.25, "steady", run) - chance) < 4.0 * standard_error);  // must fail
+  }
+  CHECK(lost(0.9, "growing", 2) == 1.0);  // 1.08 would be more than all
+  bench.n_runs = 1;                       // of one run the mean is its own
+  CHECK(std::abs(lost(0.25, "growing", 0) - 0.25) < 4.0 * std::sqrt(0.25 * 0.75 / n));
+}
+
 TEST_CASE("after a trigger a dead time lets nothing through and the next trigger after it at once") {
   const Series before = with_ones(500, {10, 11, 109, 110, 111, 300});
   const auto after = through(Bench().pipeline({effect("dead_time", {{"dead_s", 2.0}})}), before)[0];
