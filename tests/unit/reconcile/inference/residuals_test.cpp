@@ -63,7 +63,7 @@ Change fault(const std::string& name, std::size_t sensor) {
 TEST_CASE("residuals name the sensor that says the opposite for a while", "[reconcile][seconds]") {
   for (const std::size_t sensor : {std::size_t{0}, std::size_t{3}}) {
     const Residuals found = explained(injected(1, fault("inverted_for_a_while", sensor)));
-    INFO(sentence(found, {}));
+    INFO(sentence(found));
     REQUIRE_FALSE(found.drivers.empty());
     CHECK(who_of(found.drivers.front()) == reference_study().frame.sensors[sensor]);
     CHECK_THAT(when_of(found.drivers.front()), contains("middle third"));
@@ -78,7 +78,7 @@ TEST_CASE("residuals tell the seconds of each minute in which a sensor is trigge
       if ((i - begin) % 60 < 6 && stream.uniform() < 0.8) rows[i].bits[2] = 1;
     }
   }));
-  INFO(sentence(found, {}));
+  INFO(sentence(found));
   REQUIRE_FALSE(found.drivers.empty());
   CHECK(who_of(found.drivers.front()) == reference_study().frame.sensors[2]);
   CHECK_THAT(when_of(found.drivers.front()), contains("first 6 s of each minute") && contains("whatever the seat"));
@@ -99,7 +99,7 @@ TEST_CASE("sensors that are dead or stuck are explained as well", "[reconcile][s
       for (Sample& row : rows) std::ranges::fill(row.bits, bit);
     });
     const Residuals found = explain_residuals(known, measured, 0.05, {});
-    INFO(sentence(found, {}));
+    INFO(sentence(found));
     REQUIRE_FALSE(found.drivers.empty());
     CHECK_THAT(what_of(found.drivers.front()),
                contains(bit == 1 ? "motion where hardly any is expected" : "less motion"));
