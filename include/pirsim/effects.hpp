@@ -63,6 +63,8 @@ enum class ActsOn {
   all_sensors,
   zone_sensors  ///< does nothing to sensors whose response is analog
 };
+/// What a script must have for the effect to change anything.
+enum class Needs { nothing, counts };
 /// Studies that move a target of their own instead of a script's people.
 enum class Survey { coverage, walk_test };
 [[nodiscard]] std::string_view name(Survey survey) noexcept;  ///< "coverage study", "walk test"
@@ -81,6 +83,7 @@ struct EffectInfo {
   /// Sensors of which response it acts on: of zones, or of both.
   ActsOn acts_on = ActsOn::all_sensors;
   std::string in_analog{};  ///< what it is with the analog response, as the end of a sentence; empty: just the same
+  Needs needs = Needs::nothing;
   std::vector<Survey> idle_in{};  ///< those that it changes nothing in: they lack the people or the rows it acts on
 };
 

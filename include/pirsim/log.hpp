@@ -178,6 +178,8 @@ class LogWindows {
   /// The log outlives it. Throws Error(usage) for a length that isn't a whole number of milliseconds, or so short that
   /// there would be more than a billion windows.
   LogWindows(const Log& log, double window_s);
+  /// Aligned to a moment instead, before or after which they lie.
+  LogWindows(const Log& log, double window_s, std::int64_t aligned_to_us);
 
   [[nodiscard]] std::size_t size() const noexcept { return n_; }
   /// Windows first, first + 1, ... first + n - 1; fewer at the end. Throws Error(usage) for more than 2 GB of them.

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pirsim/log.hpp"
 #include "pirsim/reconcile_outcome.hpp"
 #include "pirsim/scene.hpp"
 #include "pirsim/script.hpp"
@@ -48,16 +49,22 @@ struct Measured {
   std::string file;             ///< its name, for messages
   std::string digest;           ///< SHA-256 of the file
   bool tells_phases = true;     ///< or all rows are taken for the counted ones
+  std::vector<double> holds_s;  ///< (n_sensors) how long motion is held, as a log tells; 0: it doesn't. Or empty
 
   [[nodiscard]] int n_replicates() const noexcept;        ///< the greatest number of runs of a trial
   [[nodiscard]] std::vector<std::size_t> trials() const;  ///< ascending; of which anything was measured
 };
 /// Reads pirsim's own rows (docs/formats/rows.md), compressed or not, or sums with the columns trial (or seat), sensor,
-/// seconds (or real) and, if it is there, replicate. Empty fields are missing values. Throws Error: io (no such file),
-/// input (all faults with file:line:column: unknown names, other values than 0 and 1, rows that aren't a window apart,
-/// too little data).
+/// seconds (or real) and, if it is there, replicate; or a log (docs/formats/log.md), whose columns and times `map` may
+/// explain. Empty fields are missing values. Throws Error: io (no such file), input (all faults with file:line:column:
+/// unknown names, other values than 0 and 1, rows that aren't a window apart, too little data; a script that draws who
+/// is there, which no data can be compared with).
 [[nodiscard]] Measured read_measured(const std::filesystem::path& file, const SceneSpec& scene,
-                                     const ScriptSpec& script);
+                                     const ScriptSpec& script, const LogMap& map = {});
+/// What a log says of the script's runs. Throws as read_measured() does.
+[[nodiscard]] Measured measured_of(const Log& log, const SceneSpec& scene, const ScriptSpec& script);
+/// The script with sensors that hold motion for as long as their log told, unless the script has such holds already.
+[[nodiscard]] ScriptSpec with_holds(const SceneSpec& scene, const ScriptSpec& script, const Measured& measured);
 /// Reads measured data from a text, as read_measured does from a file; file: its name in messages.
 [[nodiscard]] Measured parse_measured(std::string_view text, const std::string& file, const SceneSpec& scene,
                                       const ScriptSpec& script);

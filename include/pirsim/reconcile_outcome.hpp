@@ -282,7 +282,11 @@ struct DataNote {
     runs_end_early,   ///< n runs end before any simulated one
     runs_go_on,       ///< n runs go on after any simulated one
     people_unused,    ///< a column `people`
-    effects_idle      ///< names: effects that mean nothing to any sensor of the study, and aren't looked for
+    effects_idle,     ///< names: effects that mean nothing to any sensor of the study, and aren't looked for
+    log_read,         ///< n lines; names: seconds between readings (empty: events), those of the script's windows
+    hold_told,        ///< n pulses; names: the sensor, seconds
+    people_differ,    ///< in n windows; names: of how many, the first one's time, the data's count, the script's
+    days_absent       ///< n rows outside of the script's runs
   };
   What what = What::rows_missing;
   std::size_t n = 0;

@@ -204,6 +204,9 @@ struct NuisanceSpec {
   // Of sensors with the analog response alone.
   double sensor_gain = 0.1;  ///< of each, relative; a threshold off by as much looks the same; assumed (tried 0-0.2)
   double ambient_c = 1.0;    ///< of the room's temperature; assumed (tried 0-2)
+  // Of an occupancy's counts, which nothing else uses.
+  double time_s = 60.0;    ///< of each coming and going: a diary is right to about a minute; assumed (tried 0-120)
+  double own_seats = 1.0;  ///< most share of the seats that aren't needed which nobody takes; assumed (tried 0-1)
   bool operator==(const NuisanceSpec&) const = default;
 };
 

@@ -87,11 +87,12 @@ nb::dict reconcile_study(nb::handle scene, nb::handle script, const std::string&
                          const std::vector<std::string>& overrides, std::vector<std::string> sensors,
                          std::vector<std::string> data, const Question& question, std::uint64_t seed, unsigned threads,
                          nb::handle progress) {
-  const ScriptSpec script_spec = script_of(script, overrides);
+  const ScriptSpec given = script_of(script, overrides);
   const SceneSpec scene_spec = scene_of(scene, {std::move(sensors), std::move(data)});
-  const reconcile::Settings settings = settings_of(question, script_spec);
-  const reconcile::Measured rows = text.empty() ? reconcile::read_measured(measured, scene_spec, script_spec)
-                                                : reconcile::parse_measured(text, measured, scene_spec, script_spec);
+  const reconcile::Measured rows = text.empty() ? reconcile::read_measured(measured, scene_spec, given)
+                                                : reconcile::parse_measured(text, measured, scene_spec, given);
+  const ScriptSpec script_spec = reconcile::with_holds(scene_spec, given, rows);
+  const reconcile::Settings settings = settings_of(question, given);
   reconcile::Outcome outcome;
   attend(progress, [&](Job& job) {
     reconcile::Context context{seed, threads};

@@ -34,6 +34,8 @@ struct AnalysisOptions {
 struct ReconcileOptions {
   std::filesystem::path measured;
   std::filesystem::path output = "reconcile";  ///< folder
+  std::filesystem::path map;                   ///< of a log; or empty
+  std::string time_zone;                       ///< of a log; or empty
   std::string holdout;                         ///< share or names of trials to be judged on; empty: folds
   int max_effects = 3;
 };
@@ -156,26 +158,33 @@ void reconcile_plan(const Inputs& inputs, const AnalysisOptions& analysis, const
   reconcile::write_plan(options.output, result, made_by(inputs));
 }
 
+LogMap map_of(const ReconcileOptions& options) {
+  LogMap map = options.map.empty() ? LogMap{} : io::read_log_map(options.map);
+  if (!options.time_zone.empty()) map.time_zone = options.time_zone;
+  return map;
+}
+
 void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const ReconcileOptions& options) {
   if (options.measured.empty())
     throw Error(ErrorCode::usage, "--measured FILE is missing; see pirsim reconcile --help");
   if (options.measured == inputs.scene || options.measured == inputs.script)
     throw Error(ErrorCode::usage, "--measured can't be the same file or stream as --scene or --script");
-  const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
+  const ScriptSpec given = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);
-  tell(script.warnings, inputs.verbosity);
-  tell(idle_sensor_keys(scene, script.sensing), inputs.verbosity);
-  std::vector<std::string> read = files_read(script, scene);
-  read.insert(read.end(), {options.measured.string(), analysis.nuisance});
+  tell(given.warnings, inputs.verbosity);
+  tell(idle_sensor_keys(scene, given.sensing), inputs.verbosity);
+  std::vector<std::string> read = files_read(given, scene);
+  read.insert(read.end(), {options.measured.string(), options.map.string(), analysis.nuisance});
   std::vector<NamedOutput> written;
   for (const char* name : reconcile::report_files) written.push_back({"-o", options.output / name});
   keep_inputs(written, read);
+  const reconcile::Measured measured = reconcile::read_measured(options.measured, scene, given, map_of(options));
+  const ScriptSpec script = reconcile::with_holds(scene, given, measured);
   const reconcile::StudyFrame frame = reconcile::frame_of(scene, script);
-  const reconcile::Measured measured = reconcile::read_measured(options.measured, frame);
   tell_notes(measured.notes, inputs.verbosity);
   require_writable(options.output);
-  reconcile::Settings settings = settings_of(analysis, options.output, script);
+  reconcile::Settings settings = settings_of(analysis, options.output, given);
   settings.max_effects = options.max_effects;
   settings.holdout = reconcile::holdout_of(options.holdout, frame, measured);
 
@@ -296,7 +305,9 @@ void add_reconcile_command(CLI::App& app) {
   const auto analysis = std::make_shared<AnalysisOptions>();
   const auto options = std::make_shared<ReconcileOptions>();
   offer_study(command, *inputs);
-  offer_input_file(command, "--measured", options->measured, "rows or sums from the real room, CSV");
+  offer_input_file(command, "--measured", options->measured, "rows, sums or a log from the real room");
+  offer_input_file(command, "--map", options->map, "what a log's columns mean (pirsim log --print-map)");
+  command.add_option("--time-zone", options->time_zone, "where a log's room is, as Europe/Berlin")->option_text("ZONE");
   command.add_option("-o,--out", options->output, "folder for report and patched script (default: reconcile)")
       ->option_text("DIR");
   command

@@ -1,7 +1,10 @@
-// What happens to rows after they were logged.
-// Assumed: whole rows or columns, whatever they hold.
-// Method: stages that change finished rows. Sources: no measurement.
+// What happens to rows after they were logged, and to counts of people before a study.
+// Assumed: whole rows or columns, whatever they hold; counts that are off by one.
+// Method: stages that change finished rows; counts of the study in force. Sources: no measurement.
 #include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
 
 #include "effects/kit.hpp"
 
@@ -134,8 +137,98 @@ Effect labels_swapped() {
           .fault = fault_labels_swapped};
 }
 
+// people_miscounted: for a while one person more, or one fewer, was there than an occupancy's counts say.
+
+/// Whoever comes in addition is a person of their own.
+void add_occupants(const StudyInForce& study, TrialInForce& trial) {
+  const std::vector<int>& people = trial.occupancy->counts.people;
+  const auto is_occupant = [](const PersonInForce& person) {
+    return person.part && person.part->part == SchedulePart::occupant;
+  };
+  const auto most = people.empty() ? 0 : *std::ranges::max_element(people);
+  auto n = std::ranges::count_if(trial.people, is_occupant);
+  const auto known = std::ranges::find_if(trial.people, is_occupant);
+  const MotionStyle style = known == trial.people.end() ? MotionStyle::natural : known->style;
+  for (; n < most; ++n) {
+    const PersonSpec body =
+        drawn_body("occupant_" + std::to_string(n + 1), style, study.seed, static_cast<std::uint32_t>(n));
+    trial.people.push_back({body, {}, ScheduledPerson{SchedulePart::occupant, pirsim::Role::staff, "", body}});
+  }
+}
+
+/// A moment of the data: so much of all runs' time has gone by then.
+double moment_of(const TrialInForce& trial, double share) {
+  const double duration_s = trial.duration_s.value_or(0.0), n = static_cast<double>(trial.begins_s.size());
+  const double run = std::min(std::floor(share * n), n - 1.0);
+  return trial.begins_s[static_cast<std::size_t>(run)] + (share * n - run) * duration_s;
+}
+
+/// Counts with `by` more people from one moment to another. That it begins and ends there is a reading of its own.
+void miscount(CountsSpec& counts, double from_s, double to_s, int by) {
+  constexpr double apart_s = 1.0;
+  CountsSpec changed = counts;
+  changed.times_s.clear();
+  changed.people.clear();
+  int before = counts.people.front();
+  const auto add = [&](double at_s, int people) {
+    if (!changed.times_s.empty() && at_s <= changed.times_s.back()) return;
+    changed.times_s.push_back(at_s);
+    changed.people.push_back(std::max(0, people));
+  };
+  const auto add_edge = [&](double at_s, int off_before, int off_after) {
+    add(at_s - apart_s, before + off_before);
+    add(at_s, before + off_after);
+  };
+  bool begun = false, ended = false;
+  for (std::size_t i = 0; i < counts.people.size(); ++i) {
+    const double at_s = counts.times_s[i];
+    if (!begun && at_s > from_s) begun = (add_edge(from_s, 0, by), true);
+    if (begun && !ended && at_s > to_s) ended = (add_edge(to_s, by, 0), true);
+    add(at_s, counts.people[i] + (begun && !ended ? by : 0));
+    before = counts.people[i];
+  }
+  counts = std::move(changed);
+}
+
+void alter_people_miscounted(StudyInForce& study, const EffectSpec& effect) {
+  const double share = effect.parameters.at("share"), begin = effect.parameters.at("begin") * (1.0 - share);
+  if (share <= 0.0) return;
+  for (TrialInForce& trial : study.trials) {
+    if (!trial.occupancy || trial.occupancy->counts.times_s.empty()) continue;
+    miscount(trial.occupancy->counts, moment_of(trial, begin), moment_of(trial, begin + share),
+             word(effect, "there_was") == "one_fewer" ? -1 : 1);
+    add_occupants(study, trial);
+  }
+}
+
+Effect people_miscounted() {
+  return {.info = {.name = "people_miscounted",
+                   .family = Family::data,
+                   .stage = "books",
+                   .summary = "For a part of the time one person more, or one fewer, was there than the counts of an "
+                              "occupancy say. Nothing else changes; a script without counts stays as it is.",
+                   .fingerprint = "all sensors have more motion, or less, in stretches of one number of people",
+                   .confused_with = {"second_person", "missed_triggers", "range_scale"},
+                   .parameters = {{.name = "share",
+                                   .unit = "",
+                                   .off = 0.0,
+                                   .typical = 0.3,
+                                   .low = 0.05,
+                                   .high = 1.0,
+                                   .least = 0.0,
+                                   .most = 1.0,
+                                   .source = "assumed: of the time of all runs, in one stretch"},
+                                  detail("begin", "", 0.5, 0.0, 1.0, 0.0, 1.0,
+                                         "any: 0 at the beginning, 1 as late as it can be")},
+                   .choices = {{"there_was", ChoiceKind::variant, {"one_more", "one_fewer"}, "one_more"}},
+                   .reach = Reach::geometry,
+                   .needs = Needs::counts,
+                   .idle_in = {Survey::coverage, Survey::walk_test}},
+          .alter = alter_people_miscounted};
+}
+
 }  // namespace
 
-std::vector<Effect> books_effects() { return {dead_sensor(), labels_swapped()}; }
+std::vector<Effect> books_effects() { return {dead_sensor(), labels_swapped(), people_miscounted()}; }
 
 }  // namespace pirsim::effects

@@ -75,6 +75,14 @@ std::string judged_as(std::string_view name) {
   return info.same_as.empty() ? info.name : info.same_as;
 }
 
+std::vector<const Effect*> catalogue_for(const ScriptSpec& script) {
+  const bool counts = std::ranges::any_of(
+      script.trials, [](const TrialSpec& trial) { return trial.occupancy && trial.occupancy->counts; });
+  std::vector<const Effect*> all = catalogue();
+  std::erase_if(all, [&](const Effect* effect) { return effect->info.needs == Needs::counts && !counts; });
+  return all;
+}
+
 std::vector<std::string> twins_of(std::string_view name) {
   std::vector<std::string> twins;
   for (const Effect* effect : catalogue()) {

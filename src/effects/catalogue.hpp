@@ -38,6 +38,8 @@ struct Effect {
 /// The entry that stands for it where data are judged: no data tell entries apart that are the same change of the
 /// model.
 [[nodiscard]] std::string judged_as(std::string_view name);
+/// Those that a script has what they need for, as counts of people.
+[[nodiscard]] std::vector<const Effect*> catalogue_for(const ScriptSpec& script);
 /// Names of the others that it stands for.
 [[nodiscard]] std::vector<std::string> twins_of(std::string_view name);
 

@@ -666,7 +666,10 @@ struct Fields<NuisanceSpec> {
       FIELD(uneven_arms, NumberRange{.min = 0.0, .max = 1.0}, "upper end of the spread of `uneven_arms`"),
       FIELD(trunk_sway_deg, NumberRange{.min = 0.0, .max = 12.0}, "upper end of the amplitude of `trunk_sway`"),
       FIELD(sensor_gain, NumberRange{.min = 0.0, .max = 0.9}, "of each analog sensor's signal, relative"),
-      FIELD(ambient_c, NumberRange{.min = 0.0, .max = 15.0}, "of the room's temperature, where any sensor is analog")};
+      FIELD(ambient_c, NumberRange{.min = 0.0, .max = 15.0}, "of the room's temperature, where any sensor is analog"),
+      FIELD(time_s, NumberRange{.min = 0.0, .max = 600.0}, "of each coming and going that an occupancy's counts tell"),
+      FIELD(own_seats, NumberRange{.min = 0.0, .max = 1.0},
+            "upper end of the share of an occupancy's spare seats that nobody takes")};
 };
 
 #undef FIELD

@@ -23,6 +23,14 @@ std::int64_t microseconds(double window_s) {
   return us_per_ms * std::llround(ms);
 }
 
+/// The first day's midnight, or second 0.
+std::int64_t midnight_of(const Log& log) {
+  const LogMoment begin = log.moment(log.begin_us);
+  return log.clock == LogClock::elapsed
+             ? 0
+             : us_per_day * divided_down(begin.local_us(), us_per_day) - us_per_s * begin.offset_s;
+}
+
 }  // namespace
 
 /// From one change to the next.
@@ -33,11 +41,10 @@ struct LogWindows::Run {
   std::int32_t value;
 };
 
-LogWindows::LogWindows(const Log& log, double window_s) : log_(&log), window_us_(microseconds(window_s)) {
-  const LogMoment begin = log.moment(log.begin_us);
-  origin_us_ = log.clock == LogClock::elapsed
-                   ? 0
-                   : us_per_day * divided_down(begin.local_us(), us_per_day) - us_per_s * begin.offset_s;
+LogWindows::LogWindows(const Log& log, double window_s) : LogWindows(log, window_s, midnight_of(log)) {}
+
+LogWindows::LogWindows(const Log& log, double window_s, std::int64_t aligned_to_us)
+    : log_(&log), window_us_(microseconds(window_s)), origin_us_(aligned_to_us) {
   // The first reading's own window, not that in which the time begins for which it holds.
   first_ = holding(log.has_readings() ? log.begin_us + log.interval_us : log.begin_us);
   const std::int64_t last = holding(log.has_readings() ? log.end_us : std::max(log.end_us - 1, log.begin_us));

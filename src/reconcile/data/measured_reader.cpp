@@ -8,6 +8,7 @@
 #include "core/digest.hpp"
 #include "core/text.hpp"
 #include "pirsim/csv.hpp"
+#include "reconcile/data/measured_log.hpp"
 #include "schema/columns.hpp"
 #include "schema/limits.hpp"
 
@@ -37,7 +38,7 @@ std::vector<ColumnInfo> row_columns() {
 }  // namespace
 
 MeasuredReader::MeasuredReader(std::string_view text, const std::string& file, const StudyFrame& frame)
-    : frame_(frame), file_(file), table_(io::CsvTable::parse(text, file)) {
+    : frame_(frame.of_whole_runs()), asked_(frame), file_(file), table_(io::CsvTable::parse(text, file)) {
   measured_.file = file;
   measured_.digest = sha256(text);
 }
@@ -61,9 +62,9 @@ Measured MeasuredReader::read() {
   }
   repeated_.tell(faults_);
   faults_.throw_if_errors();
-  number_runs();
+  if (asked_.units.empty()) number_runs();
   refuse_too_little();
-  note_missing_trials();
+  measured_.runs = in_units(asked_, std::move(measured_.runs));
   return std::move(measured_);
 }
 
@@ -196,21 +197,23 @@ void MeasuredReader::read_rows() {
   if (!faults_.has_errors()) refuse_unknown_columns(frame_.sensors);
   faults_.throw_if_errors();
 
+  local_time_ = table_.column("time");
+  people_ = table_.column("people");
+  counted_.assign(asked_.units.of_row.size(), -1);
   std::map<RunKey, std::vector<Row>> runs;
   for (std::size_t row = 0; row < table_.n_rows(); ++row) {
-    const auto trial = trial_of(row);
-    const auto time = number(row, *time_);
-    if (!time && table_.text(row, *time_).empty())
-      repeated_.add("no time", table_.where(row, *time_), "time_s: expected a number");
-    if (!trial || !time) continue;
-    const RunKey run{*trial, replicate_of(row)};
+    const auto place = asked_.units.empty() ? place_of(row) : place_in_days(row);
+    if (!place) continue;
+    const auto& [run, time_s] = *place;
     refuse_too_many(run, row);
-    runs[run].push_back({row, *time});
+    runs[run].push_back({row, time_s});
+    note_people(row, run, time_s);
   }
   repeated_.tell(faults_);
   faults_.throw_if_errors();
   for (auto& [key, rows] : runs) add_run(key, std::move(rows), columns);
-  if (table_.column("people")) measured_.notes.push_back({DataNote::What::people_unused});
+  if (people_) reconcile::note_people(asked_, counted_, LogMap::People::count, measured_.notes);
+  if (outside_ > 0) measured_.notes.push_back({DataNote::What::days_absent, outside_});
   measured_.tells_phases = phase_.has_value();
   if (!phase_ && !frame_.counted_phases.empty()) {
     measured_.notes.push_back({DataNote::What::phases_unknown, frame_.counted_phases.size(), frame_.counted_phases});
@@ -224,6 +227,65 @@ void MeasuredReader::read_rows() {
   if (unread_runs_ > 0) {
     measured_.notes.push_back({DataNote::What::runs_unread, unread_runs_, frame_.counted_phases});
   }
+}
+
+std::optional<std::pair<MeasuredReader::RunKey, double>> MeasuredReader::place_of(std::size_t row) {
+  const auto trial = trial_of(row);
+  const auto time = number(row, *time_);
+  if (!time && table_.text(row, *time_).empty())
+    repeated_.add("no time", table_.where(row, *time_), "time_s: expected a number");
+  if (!trial || !time) return std::nullopt;
+  return std::pair{RunKey{*trial, replicate_of(row)}, *time};
+}
+
+/// By its local time if it has one, or else by its number and second.
+std::optional<std::pair<MeasuredReader::RunKey, double>> MeasuredReader::place_in_days(std::size_t row) {
+  const Units& units = asked_.units;
+  const auto lasts_s = static_cast<double>(units.n_rows) * frame_.window_s;
+  if (!local_time_ || units.begins_s.empty()) {
+    auto place = place_of(row);
+    if (!place) return std::nullopt;
+    const int day = place->first.second;
+    if (day < 1 || day > asked_.n_days()) {
+      repeated_.add("day", replicate_ ? table_.where(row, *replicate_) : Where{file_, 1, 1},
+                    "run " + std::to_string(day) + ", but the script's occupancy has " +
+                        plural(units.n_days, "day", "days") + ": a column 'time' tells which day a row is of");
+      return std::nullopt;
+    }
+    if (place->second > lasts_s + 0.5 * frame_.window_s) return ++outside_, std::nullopt;
+    return place;
+  }
+  const std::optional<RunClock> clock = clock_from(table_.text(row, *local_time_));
+  if (!clock) {
+    repeated_.add("local time", table_.where(row, *local_time_), "time: expected a local time, 2026-03-02T07:00:30");
+    return std::nullopt;
+  }
+  for (std::size_t day = 0; day < units.n_days; ++day) {
+    const auto time_s = static_cast<double>(clock->begin_s - units.begins_s[day]);
+    if (time_s <= 0.0 || time_s > lasts_s) continue;
+    const double windows = time_s / frame_.window_s;
+    if (std::abs(windows - std::round(windows)) > 1e-3) {
+      repeated_.add("grid", table_.where(row, *local_time_),
+                    "this row ends within a window of the script, whose run begins at " +
+                        RunClock{units.begins_s[day]}.text(0.0) +
+                        ": give the log itself, or a script whose from or "
+                        "begin lies on the rows' grid");
+      return std::nullopt;
+    }
+    return std::pair{RunKey{0, static_cast<int>(day) + 1}, time_s};
+  }
+  ++outside_;
+  return std::nullopt;
+}
+
+void MeasuredReader::note_people(std::size_t row, const RunKey& run, double time_s) {
+  if (!people_ || asked_.units.empty()) return;
+  Diagnostics found;
+  const std::optional<int> people = table_.integer(row, *people_, found);
+  repeated_.add("people", found);
+  const std::size_t place = first_place(time_s);
+  if (people && place < asked_.units.n_rows)
+    counted_[static_cast<std::size_t>(run.second - 1) * asked_.units.n_rows + place] = *people;
 }
 
 bool MeasuredReader::check_times(const std::vector<Row>& rows) {
@@ -390,17 +452,6 @@ void MeasuredReader::refuse_too_little() {
   throw Error(
       ErrorCode::input, {file_, 0, 0},
       "too little data: " + plural(known, "row", "rows") + " to compare, needed are " + std::to_string(fewest_rows));
-}
-
-void MeasuredReader::note_missing_trials() {
-  std::vector<std::string> absent;
-  for (std::size_t trial = 0; trial < frame_.trials.size(); ++trial) {
-    const bool seen = std::ranges::any_of(measured_.runs, [&](const Series& run) { return run.trial == trial; }) ||
-                      std::ranges::any_of(measured_.sums, [&](const Measured::Sum& sum) { return sum.trial == trial; });
-    if (!seen) absent.push_back(frame_.trials[trial]);
-  }
-  if (absent.empty()) return;
-  measured_.notes.push_back({DataNote::What::trials_absent, absent.size(), absent});
 }
 
 }  // namespace pirsim::reconcile

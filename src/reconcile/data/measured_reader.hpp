@@ -1,7 +1,9 @@
 // Reads measured rows or sums, and says what is wrong or odd about them. Private to reconcile.
 #pragma once
 
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -47,9 +49,14 @@ class MeasuredReader {
   void mark_main(Series& series, const std::vector<Row>& rows, const std::vector<std::size_t>& places);
   void number_runs();
   void refuse_too_little();
-  void note_missing_trials();
 
-  const StudyFrame& frame_;
+  /// Of a row: its run, and its second there; none for one that no run has.
+  [[nodiscard]] std::optional<std::pair<RunKey, double>> place_of(std::size_t row);
+  [[nodiscard]] std::optional<std::pair<RunKey, double>> place_in_days(std::size_t row);
+  void note_people(std::size_t row, const RunKey& run, double time_s);
+
+  StudyFrame frame_;  ///< of whole runs
+  const StudyFrame& asked_;
   std::string file_;
   io::CsvTable table_;
   std::vector<ColumnInfo> columns_;  ///< that the table may have, beside the sensors'
@@ -59,6 +66,9 @@ class MeasuredReader {
   std::optional<std::size_t> trial_, replicate_, phase_, time_;
   std::set<std::string> unknown_names_;
   std::map<std::size_t, std::set<int>> replicates_;  ///< of a trial
+  std::optional<std::size_t> local_time_, people_;   ///< columns that say something of days
+  std::vector<std::int32_t> counted_;                ///< (n_days x n_rows) people in the data, or -1
+  std::size_t outside_ = 0;                          ///< rows
   std::size_t inserted_rows_ = 0, unknown_bits_ = 0, unread_runs_ = 0, filled_rows_ = 0;
 };
 

@@ -284,7 +284,7 @@ Profile profile_of(const StudyFrame& frame, const ScriptSpec& script, std::span<
       trial.busy.push_back(!sorted.empty() && m > 0.0F && m >= sorted[last_busy] ? 1 : 0);
       m -= mean;
     }
-    trial.cycle_rows = arm_period_s(script.trials[t]) / frame.window_s;
+    trial.cycle_rows = arm_period_s(frame.units.empty() ? script.trials[t] : script.trials.front()) / frame.window_s;
   }
   return profile;
 }

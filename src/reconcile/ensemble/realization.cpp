@@ -8,6 +8,7 @@
 #include "pirsim/geometry.hpp"
 #include "pirsim/random.hpp"
 #include "pirsim/response.hpp"
+#include "reconcile/ensemble/presence_draw.hpp"
 #include "schema/action_facts.hpp"
 #include "schema/fields.hpp"
 
@@ -26,6 +27,7 @@ enum Entity : std::uint32_t {
   motion = 1U << 18U,
   gains = 1U << 19U,
   room = (1U << 19U) + (1U << 18U),
+  presence = (1U << 19U) + (1U << 18U) + (1U << 17U),
   attempts = 1U << 20U
 };
 
@@ -128,6 +130,15 @@ void change_electronics(Realization& realization, const Draw& draw) {
   });
 }
 
+/// Who is there is known, when exactly they come and where they sit is not.
+void change_presence(const SceneSpec& scene, ScriptSpec& script, const Draw& draw) {
+  for (std::uint32_t i = 0; i < script.trials.size(); ++i) {
+    if (!script.trials[i].occupancy) continue;
+    Stream stream = draw.stream(Entity::presence + i, Purpose::nuisance);
+    draw_presence(scene, draw.nuisance, stream, *script.trials[i].occupancy);
+  }
+}
+
 }  // namespace
 
 Realization draw_realization(const SceneSpec& scene, const ScriptSpec& script, const NuisanceSpec& nuisance,
@@ -139,6 +150,7 @@ Realization draw_realization(const SceneSpec& scene, const ScriptSpec& script, c
   change_people(realization.script, draw);
   move_otherwise(realization.script, draw);
   change_electronics(realization, draw);
+  change_presence(scene, realization.script, draw);
   realization.script.seed = seed_of(draw);
   return realization;
 }

@@ -54,8 +54,8 @@ class RealizationJob {
         effect.info.reach == effects::Reach::geometry ? settings_.n_traced : settings_.n_remembered;
     if (!is_for_calibration(realization)) return realization < wanted;
     const std::uint32_t n = n_for_calibration(settings_.n_realizations);
-    const auto first =
-        static_cast<std::uint32_t>(std::size_t{place_in_catalogue(effect)} * n / effects::catalogue().size());
+    const auto first = static_cast<std::uint32_t>(std::size_t{place_in_catalogue(effect)} * n /
+                                                  effects::catalogue_for(source_.script).size());
     return (n_for_calibration(realization) + n - first) % n < n_for_calibration(wanted);
   }
   void add_effect(TableChunk& chunk, const SimulatedRealization& realization, std::uint32_t index,
@@ -101,7 +101,7 @@ ReferenceTable make_reference_table(const RealizationSource& source, const Study
                                     const std::filesystem::path& folder, const Context& context) {
   TableSettings settings = asked;
   if (settings.effects.empty()) {
-    for (const effects::Effect* effect : effects::catalogue()) {
+    for (const effects::Effect* effect : effects::catalogue_for(source.script)) {
       if (effect->info.same_as.empty()) settings.effects.push_back(effect->info.name);
     }
   }

@@ -56,13 +56,15 @@ struct SimulatedRealization::Traced {
                                                           like != nullptr ? like->logic.get() : nullptr)) {}
     [[nodiscard]] std::vector<Series> emit(const StudyFrame& frame, const effects::Pipeline& pipeline, int first,
                                            int n) const {
+      first *= frame.n_days();
+      n *= frame.n_days();
       std::vector<Series> data;
       for (std::size_t i = 0; i < tracks.runs.size(); ++i) {
         const int replicate = tracks.runs[i].rows.replicate;
         if (replicate <= first || replicate > first + n) continue;
         add_series(frame, sim::replay(tracks, i, *logic, model.script().seed, pipeline), first, data);
       }
-      return data;
+      return in_units(frame, std::move(data));
     }
 
     const Model& model;
@@ -86,7 +88,7 @@ SimulatedRealization::SimulatedRealization(const RealizationSource& source, cons
     : frame_(&frame) {
   for (std::uint32_t attempt = 0;; ++attempt) {
     realization_ = draw_realization(source.scene, source.script, source.nuisance, source.seed, index, attempt);
-    realization_.script.replicates = n_runs;
+    realization_.script.replicates = n_runs * frame.n_days();
     try {
       traced_ = std::make_unique<Traced>(realization_, source.like.get());
       return;
@@ -115,9 +117,10 @@ std::vector<Series> SimulatedRealization::anew(std::span<const EffectSpec> more,
                                                std::span<const std::size_t> trials) const {
   Realization altered = realization_;
   altered.script.effects = together(std::move(altered.script.effects), more);
-  altered.script.replicates = n;
+  altered.script.replicates = n * frame_->n_days();
   const Model model = compile(altered.scene, altered.script, {.like = &traced_->model});
-  const Recording tracks = traced_->family.record(model, runs_of(model, trials));
+  const Recording tracks =
+      traced_->family.record(model, runs_of(model, frame_->units.empty() ? trials : std::span<const std::size_t>{}));
   return Traced::Emitter(model, tracks, traced_->noise, &traced_->emitter)
       .emit(*frame_, model.compiled().stages(), 0, n);
 }

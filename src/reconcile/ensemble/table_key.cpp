@@ -8,9 +8,15 @@ namespace {
 
 // Structured bindings name every field, so that a new one doesn't compile until it stands here.
 
+void add(Fingerprint& print, const Units& units) {
+  const auto& [trial, n_days, n_rows, of_row, people, names, begins_s] = units;
+  print.add_each(trial, n_days, n_rows, of_row, people, names, begins_s);
+}
+
 void add(Fingerprint& print, const StudyFrame& frame) {
-  const auto& [trials, sensors, counted_phases, window_s] = frame;
+  const auto& [trials, sensors, counted_phases, window_s, units] = frame;
   print.add_each(trials, sensors, counted_phases, window_s);
+  add(print, units);
 }
 
 void add(Fingerprint& print, const TableSettings& settings) {

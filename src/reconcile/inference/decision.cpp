@@ -31,6 +31,18 @@ bool find_name(std::span<const HypothesisScore> scores, std::vector<std::size_t>
   return true;
 }
 
+/// Whether wrong counts of people can have made the data, while something else is to be named: who was there comes
+/// first, since a sensor is easily blamed for somebody who came unnoticed.
+bool may_be_miscounted(std::span<const HypothesisScore> scores, const std::vector<std::size_t>& kept) {
+  const auto counts = std::ranges::find_if(kept, [&](std::size_t i) {
+    const auto& all = effects::catalogue();
+    const auto effect =
+        std::ranges::find_if(all, [&](const effects::Effect* e) { return e->info.name == scores[i].hypothesis; });
+    return effect != all.end() && (*effect)->info.needs == effects::Needs::counts;
+  });
+  return counts != kept.end() && effects::find(scores[kept.front()].hypothesis).info.family != effects::Family::data;
+}
+
 }  // namespace
 
 Decision decide(double null_p, std::span<const HypothesisScore> scores, const DecisionLevels& levels) {
@@ -43,6 +55,7 @@ Decision decide(double null_p, std::span<const HypothesisScore> scores, const De
   if (!find_name(scores, kept, levels.sure)) return {Verdict::one_of, std::move(kept)};
   if (scores[kept.front()].p_own <= levels.entitled * levels.alpha)
     return {Verdict::none_in_catalogue, {}, kept.front()};
+  if (may_be_miscounted(scores, kept)) return {Verdict::one_of, std::move(kept)};
   return {Verdict::named, std::move(kept)};
 }
 

@@ -44,7 +44,8 @@ struct Decision {
 };
 
 /// null_p: of the global test of the model as it is. scores: (n_hypotheses) nothing first. While the model as it is
-/// survives too, no effect is named: the disagreement is too weak (one_of). Never `several`, which takes a second look.
+/// survives too, no effect is named: the disagreement is too weak (one_of). Nor is one, but of the books, while wrong
+/// counts of people survive. Never `several`, which takes a second look.
 [[nodiscard]] Decision decide(double null_p, std::span<const HypothesisScore> scores, const DecisionLevels& levels);
 
 /// Why a hypothesis is kept or dropped, looked at by itself.

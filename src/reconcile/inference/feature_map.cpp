@@ -40,6 +40,8 @@ void for_each_cell(const StudyFrame& frame, const Visit& visit) {
 
 std::vector<CellKnowledge> cell_knowledge(const SceneSpec& scene, const ScriptSpec& script) {
   std::vector<CellKnowledge> cells;
+  const StudyFrame frame = frame_of(scene, script);
+  if (!frame.units.empty()) return std::vector<CellKnowledge>(frame.n_cells());  // nobody knows who sits where
   for (const TrialSpec& trial : script.trials) {
     const action::Sit* sit = first<action::Sit>(trial);
     const auto seat = sit == nullptr ? scene.seats.end() : std::ranges::find(scene.seats, sit->seat, &SeatSpec::id);

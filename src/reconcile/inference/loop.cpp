@@ -307,8 +307,9 @@ void Loop::verify_effects() {
   context_.begin({Stage::What::verifying});
   const Folds folds = settings_.holdout.empty() ? usual_folds(measured_.digest, trials, reference.shape.kind)
                                                 : Folds{settings_.holdout};
-  Verification v =
-      verify(std::span(&claim, 1), folds, {settings_.alpha, settings_.verify_realizations}, context_).front();
+  // Days are simulated as a whole for every fold, whatever it holds out.
+  const std::uint32_t n_realizations = settings_.verify_realizations / (reference.frame.units.empty() ? 1 : 3);
+  Verification v = verify(std::span(&claim, 1), folds, {settings_.alpha, n_realizations}, context_).front();
   if (v.n_trials == 0) {
     tell(trail::Remark::patched_impassable);
     return;
@@ -364,7 +365,9 @@ Settings settings_of(const ScriptSpec& script, double alpha, double budget, cons
 
 Outcome reconcile(const SceneSpec& scene, const ScriptSpec& script, const Measured& measured, const Settings& settings,
                   const Context& context) {
-  return Loop(scene, script, measured, settings, context).run();
+  require_known_presence(script);
+  const ScriptSpec held = with_holds(scene, script, measured);
+  return Loop(scene, held, measured, settings, context).run();
 }
 
 }  // namespace pirsim::reconcile

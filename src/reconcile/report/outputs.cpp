@@ -1,3 +1,4 @@
+#include "reconcile/data/units.hpp"
 #include "reconcile/report/pages.hpp"
 
 #include <algorithm>
@@ -269,7 +270,7 @@ void write_report(const std::filesystem::path& folder, const Outcome& outcome, c
   io::write_text_file(folder / "trail.log", trail);
   const std::vector<std::string>& phases = script.summary.phases;
   const std::vector<std::string> names{"--scene", provenance.scene, "--script", provenance.script};
-  const Watched watched{provenance.model_options.empty() ? names : provenance.model_options,
+  const Watched watched{provenance.model_options.empty() ? names : provenance.model_options, units_of(script).empty(),
                         phases.empty() ? "" : phases.front()};
   io::Report page = report_page(outcome, settings.alpha, watched);
   if (const TableSettings usual; settings.table.n_realizations != usual.n_realizations) {

@@ -35,6 +35,7 @@ std::string file_word(std::string text) {
 io::Table pages_to_watch(const Location& location, double alpha, const Watched& watched) {
   constexpr std::size_t most = 3;
   io::Table table{{"trial", "sensor", "command", "then open"}, {}};
+  if (!watched.whole_trials) return table;
   std::string study;
   for (const std::string& word : watched.model_options) study += ' ' + shell_word(word);
   for (const LocatedCell& cell : location.cells) {

@@ -213,6 +213,19 @@ std::string in_words(const DataNote& note) {
     case What::effects_idle:
       return list(note.names) + (note.n == 1 ? " isn't" : " aren't") + " looked for: to an analog sensor " +
              (note.n == 1 ? "it means" : "they mean") + " nothing.";
+    case What::log_read:
+      return "Read as a log of " + plural(note.n, "line", "lines") +
+             (note.names[0].empty() ? ", an event each" : ", a reading every " + note.names[0] + " s") +
+             ": a window of " + note.names[1] + " s has motion if there is any in it.";
+    case What::hold_told:
+      return note.names[0] + " holds motion for " + note.names[1] + " s: its " + std::to_string(note.n) +
+             " pulses are hardly ever shorter. The simulated sensor does so too.";
+    case What::people_differ:
+      return "The data count other people than the script in " + std::to_string(note.n) + " of " + note.names[0] +
+             " windows, first " + note.names[2] + " instead of " + note.names[3] + " at " + note.names[1] +
+             ". Who is there in the simulation is what the script says.";
+    case What::days_absent:
+      return plural(note.n, "row lies", "rows lie") + " outside of the script's days: left out.";
     case What::runs_go_on:
       break;
   }

@@ -44,7 +44,7 @@ bool has(const std::vector<EffectSpec>& effects, const effects::Effect& effect) 
 
 void require_effects_left(const ScriptSpec& script, Hidden wanted) {
   const auto left = static_cast<std::size_t>(std::ranges::count_if(
-      effects::catalogue(), [&](const effects::Effect* effect) { return !has(script.effects, *effect); }));
+      effects::catalogue_for(script), [&](const effects::Effect* effect) { return !has(script.effects, *effect); }));
   if (left >= most_effects(wanted)) return;
   throw Error(ErrorCode::usage, "'" + std::string(name(wanted)) +
                                     "' can't be hidden: effects that the script doesn't have: " + std::to_string(left) +
@@ -54,7 +54,7 @@ void require_effects_left(const ScriptSpec& script, Hidden wanted) {
 Answer draw_answer(const SceneSpec& scene, const ScriptSpec& script, Hidden wanted, Stream& stream) {
   Answer answer;
   answer.kind = wanted == Hidden::any ? draw_kind(stream) : wanted;
-  const auto& catalogue = effects::catalogue();
+  const std::vector<const effects::Effect*> catalogue = effects::catalogue_for(script);
   if (answer.kind == Hidden::out_of_catalogue) {
     answer.fault =
         &out_of_catalogue_faults()[stream.index(static_cast<std::uint32_t>(out_of_catalogue_faults().size()))];

@@ -12,10 +12,17 @@ using namespace pirsim::reconcile;
 namespace pirsim {
 
 template <>
+struct Fields<Units> {
+  static constexpr std::tuple all{field("trial", &Units::trial),      field("n_days", &Units::n_days),
+                                  field("n_rows", &Units::n_rows),    field("of_row", &Units::of_row),
+                                  field("people", &Units::people),    field("names", &Units::names),
+                                  field("begins_s", &Units::begins_s)};
+};
+template <>
 struct Fields<StudyFrame> {
   static constexpr std::tuple all{field("trials", &StudyFrame::trials), field("sensors", &StudyFrame::sensors),
                                   field("counted_phases", &StudyFrame::counted_phases),
-                                  field("window_s", &StudyFrame::window_s)};
+                                  field("window_s", &StudyFrame::window_s), field("units", &StudyFrame::units)};
 };
 template <>
 struct Fields<TableSettings> {

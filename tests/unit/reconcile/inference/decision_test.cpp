@@ -25,6 +25,21 @@ TEST_CASE("one surviving effect is named", "[reconcile]") {
   CHECK(decide(0.001, scores(0.0, 0.01, 0.4, 0.05), {0.05}) == Decision{Verdict::named, {2}});
 }
 
+TEST_CASE("while people may have been miscounted, no sensor is blamed", "[reconcile]") {
+  std::vector<HypothesisScore> all = scores(0.0, 0.01, 0.4, 0.2);
+  all[1].hypothesis = "range_scale";
+  all[2].hypothesis = "missed_triggers";
+  all[3].hypothesis = "people_miscounted";
+  all[2].probability = 0.95;
+  all[3].probability = 0.04;
+  CHECK(decide(0.001, all, {0.05}) == Decision{Verdict::one_of, {2, 3}});
+  all[2].hypothesis = "labels_swapped";  // of the books, as the counts are
+  CHECK(decide(0.001, all, {0.05}) == Decision{Verdict::named, {2, 3}});
+  all[2].hypothesis = "missed_triggers";
+  all[3].p = 0.01;
+  CHECK(decide(0.001, all, {0.05}) == Decision{Verdict::named, {2}});
+}
+
 TEST_CASE("effects that survive while likelier ones are ruled out are none of the catalogue", "[reconcile]") {
   std::vector<HypothesisScore> unlikely = scores(0.0, 0.01, 0.4, 0.05);
   unlikely[2].probability = 0.2;

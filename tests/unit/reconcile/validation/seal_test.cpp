@@ -33,7 +33,7 @@ std::string rows_of(const Realization& realization) {
 /// Which has every effect but these, all switched off.
 ScriptSpec with_all_but(const std::set<std::string>& left_out) {
   ScriptSpec script = one_seat();
-  for (const effects::Effect* effect : effects::catalogue()) {
+  for (const effects::Effect* effect : effects::catalogue_for(one_seat())) {
     if (!left_out.contains(effect->info.name)) script.effects.push_back(effects::off(*effect));
   }
   return script;
@@ -91,7 +91,7 @@ TEST_CASE("only the sensors tell what was hidden", "[reconcile][seal]") {
   const std::string plain = seal(scene, one_seat(), {none, Hidden::nothing, 1, 1, {}}).rows;
   CHECK(plain.starts_with("replicate,trial,time_s,phase,PIR1,"));
   std::size_t seen = 0;
-  for (const effects::Effect* effect : effects::catalogue()) {
+  for (const effects::Effect* effect : effects::catalogue_for(one_seat())) {
     const std::string& name = effect->info.name;
     INFO(name);
     const Challenge challenge = seal(scene, with_all_but({name}), {none, Hidden::one, 1, 1, {}});
