@@ -63,7 +63,7 @@ def check_refusals(pirsim, folder):
     (folder / "late.csv").write_text(lines.replace("2026-03-02", "2026-04-02"))
     told = reconcile(pirsim, folder, *STUDY, "--measured", "late.csv", code=3)
     assert "nothing of the log lies in the script's runs" in told, told
-    (folder / "map.yaml").write_text("pirsim_log: 1\n")
+    (folder / "map.yaml").write_text("pirsim_log: 1\nsensors: {PIR1: S6_PIR}\n")
     told = reconcile(pirsim, folder, *STUDY, "--measured", "real.csv", "--map", "map.yaml", code=2)
     assert "is no log" in told, told
 
