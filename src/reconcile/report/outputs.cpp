@@ -270,8 +270,8 @@ void write_report(const std::filesystem::path& folder, const Outcome& outcome, c
   io::write_text_file(folder / "trail.log", trail);
   const std::vector<std::string>& phases = script.summary.phases;
   const std::vector<std::string> names{"--scene", provenance.scene, "--script", provenance.script};
-  const Watched watched{provenance.model_options.empty() ? names : provenance.model_options, units_of(script).empty(),
-                        phases.empty() ? "" : phases.front()};
+  const Watched watched{provenance.model_options.empty() ? names : provenance.model_options,
+                        phases.empty() ? "" : phases.front(), units_of(script).empty()};
   io::Report page = report_page(outcome, settings.alpha, watched);
   if (const TableSettings usual; settings.table.n_realizations != usual.n_realizations) {
     page.paragraphs.push_back("For this analysis the plain model was simulated " +

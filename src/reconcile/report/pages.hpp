@@ -57,8 +57,8 @@ namespace pirsim::reconcile {
 /// How a reader gets at the runs in which a cell was counted.
 struct Watched {
   std::vector<std::string> model_options;  ///< words of a command: "--scene", "rooms/a.gltf", ...
-  bool whole_trials = true;                ///< or parts of days, which have no page of their own
   std::string phase;                       ///< in which seconds with motion are counted; empty: all the time
+  bool whole_trials = true;                ///< or parts of days, which have no page of their own
 };
 
 /// The verdict first; then where model and measurement differ, which effects were looked at and why each was kept or
