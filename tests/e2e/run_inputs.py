@@ -309,13 +309,11 @@ class Measured(Case):
         bomb = gzip.compress(b"0" * 300_000_000)
         self.assertIn("holds more than 16 MB, decompressed", self.measured(bomb, 3, memory=LIMIT))
 
-    def test_own_rows_of_a_schedule_have_a_time(self):
+    def test_own_rows_of_a_schedule_are_refused_since_nobody_knows_who_was_there(self):
         schedule = self.write("day.yaml", 'pirsim_script: 1\nschedule: {from: "09:00", to: "09:02", staff: [{count: 1}]}\n')
         rows = run("--scene", self.scene, "--script", schedule, "-q")[0]
         self.assertIn(b",time,", rows.splitlines()[0])
-        told = self.measured(rows, 2, script=schedule)
-        self.assertIn("NOBODY", told)
-        self.assertIn("The column 'people' is left out of every comparison", told)
+        self.assertIn("a schedule draws who is there", self.measured(rows, 3, script=schedule))
 
     def test_other_separators_are_named(self):
         text = "\n".join(self.rows()) + "\n"

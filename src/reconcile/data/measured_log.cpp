@@ -181,13 +181,23 @@ class LogRuns {
   std::size_t known_ = 0, unknown_ = 0;  ///< bits
 };
 
+/// None of an empty file, and of one that can't be read so far: whoever reads rows says why.
+std::optional<std::string> first_line(const std::filesystem::path& file) {
+  try {
+    io::LineReader lines(file);
+    const auto line = lines.next();
+    return line ? std::optional(std::string(*line)) : std::nullopt;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 bool is_log(const std::filesystem::path& file) {
   std::error_code told_later;
   if (!std::filesystem::is_regular_file(file, told_later)) return false;
-  io::LineReader lines(file);
-  const auto line = lines.next();
+  const std::optional<std::string> line = first_line(file);
   if (!line) return false;
   const std::vector<std::string> fields = fields_of(*line);
   const auto has = [&](std::string_view name) { return std::ranges::find(fields, name) != fields.end(); };
