@@ -57,28 +57,16 @@ struct Repeats {
 };
 [[nodiscard]] Repeats greatest_repeats(const DatasetRows& data);
 
-// Each adds what it finds. pilot: datasets of the model, whose runs have one replicate.
+/// Adds what it finds. pilot: datasets of the model, whose runs have one replicate.
+using DataCheck = void(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
+                       std::vector<DataFinding>& findings);
 
-/// Two columns that are equal, nearly, or opposite.
-void compare_columns(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
-                     std::vector<DataFinding>& findings);
-/// A column of ones.
-void find_constant(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
-                   std::vector<DataFinding>& findings);
-/// A column without any.
-void find_silent(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
-                 std::vector<DataFinding>& findings);
-/// A column with ones on a grid.
-void find_beats(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
-                std::vector<DataFinding>& findings);
-/// Columns that change on a grid only.
-void find_polls(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
-                std::vector<DataFinding>& findings);
-/// Rows that stand twice.
-void find_repeat(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
-                 std::vector<DataFinding>& findings);
-/// Rows without any motion.
-void find_silence(const StudyFrame& frame, const DatasetRows& data, std::span<const DatasetRows> pilot,
-                  std::vector<DataFinding>& findings);
+DataCheck compare_columns;  ///< two that are equal, nearly, or opposite
+DataCheck find_constant;    ///< a column of ones
+DataCheck find_silent;      ///< a column without any
+DataCheck find_beats;       ///< a column with ones on a grid
+DataCheck find_polls;       ///< columns that change on a grid only
+DataCheck find_repeat;      ///< rows that stand twice
+DataCheck find_silence;     ///< rows without any motion
 
 }  // namespace pirsim::reconcile

@@ -31,16 +31,17 @@ bool find_name(std::span<const HypothesisScore> scores, std::vector<std::size_t>
   return true;
 }
 
+bool is_about_counts(const std::string& hypothesis) {
+  const auto& all = effects::catalogue();
+  const auto effect = std::ranges::find_if(all, [&](const effects::Effect* e) { return e->info.name == hypothesis; });
+  return effect != all.end() && (*effect)->info.needs == effects::Needs::counts;
+}
+
 /// Whether wrong counts of people can have made the data, while something else is to be named: who was there comes
 /// first, since a sensor is easily blamed for somebody who came unnoticed.
 bool may_be_miscounted(std::span<const HypothesisScore> scores, const std::vector<std::size_t>& kept) {
-  const auto counts = std::ranges::find_if(kept, [&](std::size_t i) {
-    const auto& all = effects::catalogue();
-    const auto effect =
-        std::ranges::find_if(all, [&](const effects::Effect* e) { return e->info.name == scores[i].hypothesis; });
-    return effect != all.end() && (*effect)->info.needs == effects::Needs::counts;
-  });
-  return counts != kept.end() && effects::find(scores[kept.front()].hypothesis).info.family != effects::Family::data;
+  const bool counts = std::ranges::any_of(kept, [&](std::size_t i) { return is_about_counts(scores[i].hypothesis); });
+  return counts && effects::find(scores[kept.front()].hypothesis).info.family != effects::Family::data;
 }
 
 }  // namespace
@@ -57,6 +58,21 @@ Decision decide(double null_p, std::span<const HypothesisScore> scores, const De
     return {Verdict::none_in_catalogue, {}, kept.front()};
   if (may_be_miscounted(scores, kept)) return {Verdict::one_of, std::move(kept)};
   return {Verdict::named, std::move(kept)};
+}
+
+const Look* better_relative(std::span<const Look> relatives, const Look& named) {
+  constexpr double much_better = 2.0;
+  const auto best = std::ranges::max_element(relatives, {}, &Look::p);
+  return best != relatives.end() && best->passes() && best->p >= much_better * named.p ? &*best : nullptr;
+}
+
+bool comes_nearest(const HypothesisScore& dropped, const Look& applied) {
+  return applied.passes() && dropped.probability >= DecisionLevels().sure;
+}
+
+bool counts_in_doubt(std::span<const Candidate> candidates, double alpha) {
+  return std::ranges::any_of(
+      candidates, [&](const Candidate& c) { return c.score.p > alpha && is_about_counts(c.score.hypothesis); });
 }
 
 Reason reason_of(const HypothesisScore& score, bool kept, double alpha) {

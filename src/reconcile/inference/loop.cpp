@@ -19,10 +19,6 @@ namespace {
 
 /// Beside one effect: more of them would take more than a minute to simulate (assumed).
 constexpr std::size_t most_partners = 8;
-constexpr double least_probability_of_nearest = 0.85;  ///< as of a name among several
-/// Times the p of the model with the name: a relative that does so much better may be the cause. Of 56 names (Study A,
-/// one run) this takes back none of 33 right ones and 6 of 23 wrong ones; a relative that merely passes 11 and 12.
-constexpr double much_better = 2.0;
 
 /// The likeliest other effect of the same family, and, beside optics and the environment, of people's motion: a
 /// swinging sitter passes for blurred zones, a fan for a draught.
@@ -49,7 +45,8 @@ Outcome Loop::run() {
   outcome_ = first.outcome;
   tell_first(first);
   const bool named = outcome_.verdict == Verdict::named;
-  const bool worth_a_try = outcome_.verdict == Verdict::none_in_catalogue && settings_.max_effects > 1;
+  const bool worth_a_try = outcome_.verdict == Verdict::none_in_catalogue && settings_.max_effects > 1 &&
+                           !counts_in_doubt(outcome_.candidates, settings_.alpha);
   if (named || worth_a_try) {
     applied_.push_back(named ? outcome_.fits.front() : first.best);
     apply_first();
@@ -182,23 +179,23 @@ void Loop::compare_relatives() {
   if (plain.relatives.empty()) return;
   std::vector<PatchedModel> models;
   for (const FittedEffect& relative : plain.relatives) models.push_back({std::span(&relative, 1), plain.observed});
-  const double level = outcome_.looks.back().level, p_of_name = outcome_.looks.back().p;
+  const Look named = outcome_.looks.back();
   const std::vector<double> p =
-      p_with(models, plain.reference, plain.reference.map(training_trials()), level, context_);
+      p_with(models, plain.reference, plain.reference.map(training_trials()), named.level, context_);
   for (std::size_t i = 0; i < p.size(); ++i) {
-    outcome_.relatives.push_back({{plain.relatives[i].effect.name}, level, p[i]});
+    outcome_.relatives.push_back({{plain.relatives[i].effect.name}, named.level, p[i]});
     tell(outcome_.relatives.back());
   }
-  const auto best = std::ranges::max_element(outcome_.relatives, {}, &Look::p);
-  if (!best->passes() || best->p < much_better * p_of_name) return;
-  const std::string& relative = best->applied.front();
+  const Look* better = better_relative(outcome_.relatives, named);
+  if (better == nullptr) return;
+  const std::string& relative = better->applied.front();
   outcome_.verdict = Verdict::one_of;
   outcome_.named = {applied_.front().effect.name, relative};
   outcome_.fits.clear();
   for (Candidate& candidate : outcome_.candidates) {
     if (candidate.score.hypothesis != relative) continue;
     candidate.kept = true;
-    candidate.reason = reason::DoesBetter{best->p, outcome_.named.front(), p_of_name};
+    candidate.reason = reason::DoesBetter{better->p, outcome_.named.front(), named.p};
   }
   tell(trail::Remark::relative_does_better);
 }
@@ -273,10 +270,10 @@ void Loop::conclude() {
 }
 
 bool Loop::is_nearest() const {
-  if (applied_.size() != 1 || !passes_) return false;
+  if (applied_.size() != 1) return false;
   const auto candidate = std::ranges::find(outcome_.candidates, applied_.front().effect.name,
                                            [](const Candidate& c) { return c.score.hypothesis; });
-  return candidate != outcome_.candidates.end() && candidate->score.probability >= least_probability_of_nearest;
+  return candidate != outcome_.candidates.end() && comes_nearest(candidate->score, outcome_.looks.back());
 }
 
 void Loop::take_back() {

@@ -107,3 +107,35 @@ TEST_CASE("an effect that is far likelier than the other survivors is named with
   unequal[2].p = 0.01;  // nor if the likeliest is refused itself
   CHECK(decide(0.01, unequal, {0.05, 0.85}).verdict == Verdict::one_of);
 }
+
+TEST_CASE("a relative that does twice as well in a name's place takes it back, one that merely passes doesn't",
+          "[reconcile]") {
+  const Look named{{"sensor_tilt"}, 0.025, 0.3, {}};
+  const std::vector<Look> passing{{{"sensor_yaw"}, 0.025, 0.2, {}}, {{"sensor_height"}, 0.025, 0.59, {}}};
+  CHECK(better_relative(passing, named) == nullptr);
+  CHECK(better_relative({}, named) == nullptr);
+  const std::vector<Look> better{{{"sensor_yaw"}, 0.025, 0.2, {}}, {{"sensor_height"}, 0.025, 0.6, {}}};
+  REQUIRE(better_relative(better, named) != nullptr);
+  CHECK(better_relative(better, named)->applied.front() == "sensor_height");
+  const std::vector<Look> both_fail{{{"sensor_yaw"}, 0.025, 0.02, {}}};
+  CHECK(better_relative(both_fail, {{"sensor_tilt"}, 0.025, 0.005, {}}) == nullptr);
+}
+
+TEST_CASE("what comes nearest is likely and passes when it is applied", "[reconcile]") {
+  HypothesisScore dropped{"labels_swapped", 0.98};
+  CHECK(comes_nearest(dropped, {{"labels_swapped"}, 0.025, 0.3, {}}));
+  CHECK_FALSE(comes_nearest(dropped, {{"labels_swapped"}, 0.025, 0.02, {}}));
+  dropped.probability = 0.8;
+  CHECK_FALSE(comes_nearest(dropped, {{"labels_swapped"}, 0.025, 0.3, {}}));
+}
+
+TEST_CASE("while the counts may be wrong nothing else is tried", "[reconcile]") {
+  Candidate counts;
+  counts.score = {"people_miscounted", 0.1, 0.2, 0.2, 0.3};
+  Candidate other;
+  other.score = {"blind_field", 0.9, 0.0, 0.0, 0.3};
+  CHECK(counts_in_doubt(std::vector{other, counts}, 0.05));
+  CHECK_FALSE(counts_in_doubt(std::vector{other}, 0.05));
+  counts.score.p = 0.01;
+  CHECK_FALSE(counts_in_doubt(std::vector{other, counts}, 0.05));
+}
