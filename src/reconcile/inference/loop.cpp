@@ -158,19 +158,25 @@ std::optional<std::vector<std::string>> Loop::worth_a_table(double level) const 
 void Loop::apply_first() {
   take_look();
   auto end = range_end_of(applied_.front());
-  if (!end) return;
+  if (passes_ && !end) return;
   if (!passes_) {
-    const Step& plain = steps_.front();
-    auto beyond = fitted_beyond(applied_.front(), *end, plain.reference, plain.reference.map(training_trials()),
-                                plain.observed, outcome_.looks.back().level, context_);
-    if (beyond) {
-      applied_.front() = std::move(*beyond);
-      if (!outcome_.fits.empty()) outcome_.fits.front() = applied_.front();
-    }
+    auto tried = end ? end : strong_end_of(applied_.front());
+    if (tried && (look_beyond(*tried) || end)) end = tried;
   }
+  if (!end) return;
   tell(trail::AtRangeEnd{*end});
   outcome_.range_end = std::move(end);
   if (outcome_.range_end->found) take_look();
+}
+
+bool Loop::look_beyond(RangeEnd& end) {
+  const Step& plain = steps_.front();
+  auto beyond = fitted_beyond(applied_.front(), end, plain.reference, plain.reference.map(training_trials()),
+                              plain.observed, outcome_.looks.back().level, context_);
+  if (!beyond) return false;
+  applied_.front() = std::move(*beyond);
+  if (!outcome_.fits.empty()) outcome_.fits.front() = applied_.front();
+  return true;
 }
 
 void Loop::compare_relatives() {

@@ -36,7 +36,8 @@ class Loop {
     std::vector<FittedEffect> relatives;  ///< of the effect named: what it may be taken for
   };
   const Step& look(const Settings& settings, double level);
-  void apply_first();  ///< stronger than was looked for if only that does
+  bool look_beyond(RangeEnd& end);  ///< true if a strength there passes: it is applied
+  void apply_first();               ///< stronger than was looked for if only that does
   /// A name that a relative would do twice as well without is one of the two.
   void compare_relatives();
   void take_look();  ///< with all that has been applied

@@ -67,6 +67,14 @@ std::optional<RangeEnd> range_end_of(const FittedEffect& fitted) {
   return std::nullopt;
 }
 
+std::optional<RangeEnd> strong_end_of(const FittedEffect& fitted) {
+  const auto strength = std::ranges::find_if(fitted.parameters, &FittedParameter::is_strength);
+  if (strength == fitted.parameters.end()) return std::nullopt;
+  const effects::ParameterInfo& info = info_of(fitted.effect.name, strength->name);
+  const double end = strength->value < info.off ? info.low : info.high;
+  return RangeEnd{fitted.effect.name, strength->name, strength->unit, {info.low, info.high}, end, end};
+}
+
 std::optional<FittedEffect> fitted_beyond(const FittedEffect& fitted, RangeEnd& end, const ReferenceStudy& reference,
                                           const FeatureMap& map, std::span<const float> measured, double level,
                                           const Context& context) {

@@ -46,6 +46,15 @@ TEST_CASE("of a range about nothing either end counts", "[reconcile]") {
   CHECK(range_end_of(fitted("sensor_yaw", yaw.name, 0.99 * yaw.high))->end == yaw.high);
 }
 
+TEST_CASE("the strong end lies on the fitted side of none", "[reconcile]") {
+  const effects::ParameterInfo& yaw = strength("sensor_yaw");
+  CHECK(strong_end_of(fitted("sensor_yaw", yaw.name, 0.1 * yaw.low))->end == yaw.low);
+  CHECK(strong_end_of(fitted("sensor_yaw", yaw.name, 0.1 * yaw.high))->end == yaw.high);
+  const effects::ParameterInfo& hold = strength("pulse_stretching");
+  CHECK(strong_end_of(fitted("pulse_stretching", "hold_s", hold.low))->end == hold.high);
+  CHECK_FALSE(strong_end_of(FittedEffect{{"mirrored_room", {}, {}, {}}, {}, false}));
+}
+
 TEST_CASE("a hold of ten seconds is found beyond those that were looked for, other causes are not",
           "[reconcile][seconds]") {
   Settings settings;
