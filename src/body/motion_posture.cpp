@@ -100,7 +100,7 @@ Outline Motion::outline() const noexcept {
   outline.spine_lean = channel(Channel::trunk_lean).value();
   outline.hand_to_head = {std::clamp(channel(Channel::left_hand_to_head).value(), 0.0, 1.0),
                           std::clamp(channel(Channel::right_hand_to_head).value(), 0.0, 1.0)};
-  if (outline.fall > 0.0) outline.thigh_angle = seating_.thigh_angle(1.0);
+  if (outline.fall > 0.0) outline.thigh_angle = seating_.seated_thigh_angle();
   if (outline.reach > 0.0) {
     const double thighs = outline.hip_height_m + humanoid_.radius_m(Part::left_thigh);
     outline.table_height_m = seating_.seat().table_height_m.value_or(thighs);

@@ -1,6 +1,7 @@
 #include "body/seating.hpp"
 
 #include "body/seat_height.hpp"
+#include "body/skeleton.hpp"
 
 #include <algorithm>
 #include <array>
@@ -101,7 +102,21 @@ Seating::Seating(const Humanoid& humanoid, const SeatPlace& seat, const Placemen
   const double before_m = fall_back_m(humanoid, seat) - slide;
   before_ = {seat_point + before_m * forward, standing.heading + off_heading};
   sliding_ = Track::slide(before_, before_.heading, slide);
-  shuffling_ = FootPlan(feet, sliding_.length(), shuffle, 0.5 * m.hip_width_m);
+  double feet_slide_m = sliding_.length();
+  resting_angle_ = thigh_angle(1.0);
+  if (slide < 0.0 && seat.feet_ahead_m > before_m + slide) {
+    feet_slide_m = std::max(0.0, before_m - seat.feet_ahead_m);
+    feet_share_ = feet_slide_m / sliding_.length();
+    resting_angle_ = angle_with_feet_ahead(m, before_m - feet_slide_m);
+  }
+  shuffling_ = FootPlan(feet, feet_slide_m, shuffle, 0.5 * m.hip_width_m);
+}
+
+/// The knees are where thighs and shanks meet.
+double Seating::angle_with_feet_ahead(const Measures& m, double ahead_m) const noexcept {
+  const Vec3 hip(0.0, hip_height_m(1.0), 0.0), ankle(0.0, m.ankle_height_m, -ahead_m);
+  const Vec3 knee = two_bone_joint(hip, ankle, m.thigh_m, m.shank_m, Vec3(0, 0, -1));
+  return std::acos(std::clamp((hip.y - knee.y) / m.thigh_m, -1.0, 1.0));
 }
 
 double Seating::thigh_angle(double fall) const noexcept {

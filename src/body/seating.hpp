@@ -16,6 +16,8 @@ struct SeatPlace {
   std::optional<double> table_height_m;  ///< y of what the forearms rest on; none: hands on the thighs
   /// How far to the left the chair is turned while somebody sits down or rises, where there is no room behind it.
   double approach_turn = 0.0;
+  /// How far before the seat's point the ankles stay at least: what one sits on reaches so far that they have to.
+  double feet_ahead_m = 0.0;
   bool operator==(const SeatPlace&) const = default;
 };
 
@@ -33,14 +35,18 @@ class Seating {
   Seating(const Humanoid& humanoid, const SeatPlace& seat, const Placement& standing, const Feet& feet);
 
   [[nodiscard]] const SeatPlace& seat() const noexcept { return seat_; }
-  [[nodiscard]] double slide_length_m() const noexcept { return shuffling_.length(); }
+  [[nodiscard]] double slide_length_m() const noexcept { return sliding_.length(); }
   [[nodiscard]] Placement pelvis(double fall, double slide_m) const noexcept;
   [[nodiscard]] double hip_height_m(double fall) const noexcept;  ///< above the floor
-  [[nodiscard]] Feet feet(double slide_m) const noexcept { return shuffling_.feet(sliding_, slide_m); }
-  [[nodiscard]] double thigh_angle(double fall) const noexcept;  ///< radians from the vertical
+  [[nodiscard]] Feet feet(double slide_m) const noexcept { return shuffling_.feet(sliding_, feet_share_ * slide_m); }
+  /// Of who sits, radians from the vertical.
+  [[nodiscard]] double seated_thigh_angle() const noexcept { return resting_angle_; }
   bool operator==(const Seating&) const = default;
 
  private:
+  [[nodiscard]] double thigh_angle(double fall) const noexcept;  ///< radians from the vertical, in the fall
+  [[nodiscard]] double angle_with_feet_ahead(const Measures& measures, double ahead_m) const noexcept;
+
   SeatPlace seat_;
   Placement from_;    ///< where the person stands
   Placement before_;  ///< the same, put right: on the seat's axis and facing as it does
@@ -49,6 +55,8 @@ class Seating {
   double knee_height_m_ = 0.0;
   double standing_angle_ = 0.0;
   double seated_angle_ = 0.0;
+  double resting_angle_ = 0.0;
+  double feet_share_ = 1.0;  ///< of the slide, by which the feet follow
   Track sliding_;
   FootPlan shuffling_;
 };

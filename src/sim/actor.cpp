@@ -263,16 +263,16 @@ void Actor::plan_sitting(std::string_view id) {
   errands_.push_back(SitOn{place, stand, heading});
 }
 
-/// A scattered seat may need a little more room behind it than the seat as it stands in the scene.
+/// A scattered seat may need a little more room before or behind it than the seat as it stands in the scene.
 Vec2 Actor::standing_place(const body::SeatPlace& place, const SeatPlan& seat) const {
   constexpr double step_m = 0.02, farthest_m = 0.4;
-  const Vec2 pelvis = floor_point(place.world_from_seat.origin);
   const Vec2 facing = direction_of(heading_of(place.world_from_seat) + place.approach_turn);
+  const double away = place.feet_ahead_m > 0.0 ? -1.0 : 1.0;
   for (double more = 0.0; more <= farthest_m; more += step_m) {
-    const Vec2 stand = pelvis - (seat.stand_back_m + more) * facing;
+    const Vec2 stand = seat.stand(place.world_from_seat, away * more);
     if (person().can_stand(stand, facing, seat.half_depth_m)) return stand;
   }
-  return pelvis - seat.stand_back_m * facing;
+  return seat.stand(place.world_from_seat);
 }
 
 void Actor::tilt_at_work(std::int64_t now) {

@@ -21,9 +21,17 @@ namespace pirsim::sim {
 /// A seat as one person uses it.
 struct SeatPlan {
   body::SeatPlace place;
-  double stand_back_m =
-      0.0;  ///< where to stand before sitting down: so far behind the pelvis point, along the seat's axis
+  // Where to stand before sitting down: so far behind the pelvis point, along the seat's axis, and to its right.
+  double stand_back_m = 0.0;
+  double stand_aside_m = 0.0;
   double half_depth_m = 0.0;  ///< what one who stands there keeps clear of, before and behind
+
+  /// world_from_seat: where the seat is now.
+  [[nodiscard]] Vec2 stand(const Frame& world_from_seat, double more_back_m = 0.0) const {
+    const Vec2 facing = direction_of(heading_of(world_from_seat) + place.approach_turn);
+    const Vec2 stand = floor_point(world_from_seat.origin) - (stand_back_m + more_back_m) * facing;
+    return stand_aside_m == 0.0 ? stand : stand + stand_aside_m * Vec2(-facing.y, facing.x);
+  }
 };
 
 /// One person of one trial.

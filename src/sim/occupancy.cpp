@@ -140,8 +140,7 @@ class Visits {
   [[nodiscard]] Vec2 stand_of(std::size_t place, std::size_t person) const {
     if (!places_.is_seat(place)) return places_.standing[place - places_.seats.size()];
     const SeatPlan& plan = trial_.people[person].seat_plan(places_.seats[place]);
-    const Frame& seat = plan.place.world_from_seat;
-    return floor_point(seat.origin) - plan.stand_back_m * direction_of(heading_of(seat) + plan.place.approach_turn);
+    return plan.stand(plan.place.world_from_seat);
   }
 
   /// How long somebody alone takes from setting out to crossing the floor's edge.

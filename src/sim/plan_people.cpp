@@ -3,68 +3,25 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
 #include <utility>
 
-#include "body/footprint.hpp"
 #include "body/seat_height.hpp"
 #include "core/text.hpp"
 #include "schema/action_facts.hpp"
 #include "schema/limits.hpp"
 #include "sim/alike.hpp"
+#include "sim/grounds.hpp"
 #include "sim/occupancy.hpp"
+#include "sim/place_access.hpp"
 
 namespace pirsim::sim {
 
-std::optional<double> table_height(const SeatSpec& seat, double floor_y, const rt::Room& room) {
-  constexpr double ahead_m = 0.45;  // assumed: between the elbows and the hands (tried 0.3-0.6)
-  constexpr double from_m = 1.3, lowest_m = 0.5, highest_m = 1.1;  // what counts as a table, above the floor
-  const Vec3 above = seat.world_from_seat * Vec3(0, 0, -ahead_m);
-  const Ray down{Vec3f(static_cast<float>(above.x), static_cast<float>(floor_y + from_m), static_cast<float>(above.z)),
-                 Vec3f(0, -1, 0)};
-  const auto hit = room.first_hit(down, static_cast<float>(from_m));
-  if (!hit) return std::nullopt;
-  const double height = from_m - static_cast<double>(hit->distance);
-  if (height < lowest_m || height > highest_m) return std::nullopt;
-  return floor_y + height;
-}
-
 namespace {
-
-/// What is the same for all who rehearse among the same solids.
-class Grounds {
- public:
-  explicit Grounds(const SceneSpec& scene) : scene_(scene) {}
-
-  std::map<std::pair<double, std::string>, bool> open_doors;  ///< does one lead to the floor? By clearance and name
-  std::map<std::array<double, 3>, bool> open_places;          ///< can one get there? By clearance and place
-
-  struct Near {
-    double away_m = std::numeric_limits<double>::infinity();
-    std::uint32_t mesh = 0;
-  };
-  /// The solid thing that is nearest to the place, of those that walkers go round.
-  [[nodiscard]] Near nearest_solid(const Vec2& place) {
-    const double floor_y = scene_.floor.height_m();
-    if (!solids_) solids_ = body::footprints(scene_.meshes, floor_y + body::solid_from_m, floor_y + body::solid_to_m);
-    Near nearest;
-    for (const body::Footprint& solid : *solids_) {
-      if (body::distance_bound(place, place, solid) >= nearest.away_m) continue;
-      if (const double away_m = body::distance(place, solid); away_m < nearest.away_m) nearest = {away_m, solid.mesh};
-    }
-    return nearest;
-  }
-
- private:
-  const SceneSpec& scene_;
-  std::optional<std::vector<body::Footprint>> solids_;
-};
 
 /// Walks through one person's actions in thought: where are they, where must they get to? Where that can't be done
 /// nobody knows where they go on, and what they do until they come in anew isn't judged.
@@ -230,9 +187,9 @@ class Rehearsal {
 
   void sit_down(const std::string& id, const Where& where) {
     const SeatSpec& seat = seat_of(id);
-    if (const auto plan = plan_of(seat)) {
+    if (const auto plan = access().plan_of(seat)) {
       person_.seats.emplace(id, *plan);
-      return start_at(place_to_stand(seat, *plan), {});
+      return start_at(plan->stand(seat.world_from_seat), {});
     }
     if (!is_shut(behind_)) tell_of_seat(seat, where);
     at_.reset();
@@ -246,85 +203,25 @@ class Rehearsal {
       return diagnostics_.error(where, name + ": " + *unfit);
     }
     if (!scene_.floor.contains(floor_point(seat.world_from_seat.origin))) {
-      return diagnostics_.error(where, name + " can't be reached" + who + "it lies off the floor, and " + no_place);
+      return diagnostics_.error(
+          where, name + " can't be reached" + who + "it lies off the floor, and " + PlaceAccess::no_place);
     }
-    diagnostics_.error(where, name + " can't be reached" + who + why_no_place(seat));
-  }
-  std::string why_no_place(const SeatSpec& seat) const {
-    constexpr double step_m = 0.01, farthest_m = 1.5;
-    const Vec2 pelvis = floor_point(seat.world_from_seat.origin);
-    const Vec2 facing = direction_of(heading_of(seat.world_from_seat));
-    const double before_m = body::fall_back_m(person_.humanoid, {seat.world_from_seat, scene_.floor.height_m(), {}});
-    const auto can_stand = [&](double ahead_m) {
-      return person_.can_stand(pelvis + ahead_m * facing, facing, person_.humanoid.half_depth_m());
-    };
-    for (double ahead_m = before_m; ahead_m < farthest_m; ahead_m += step_m) {
-      if (!can_stand(ahead_m) || !can_go_to(pelvis + ahead_m * facing)) continue;
-      return "who sits down stands " + fixed(before_m, 2) + " m before the seat's point, too near to '" +
-             scene_.meshes[grounds_.nearest_solid(pelvis + before_m * facing).mesh].name +
-             "', and there is no place behind or beside it either; move the " + "point " +
-             fixed(std::max(0.01, ahead_m - before_m), 2) + " m forward, where one sits nearer to the edge";
-    }
-    return no_place;
+    diagnostics_.error(where, name + " can't be reached" + who + access().why_no_place(seat));
   }
   /// Any that can be reached may do if the seat asked for is taken.
   void note_other_seats() {
     for (const SeatSpec& seat : scene_.seats) {
       if (person_.can_use(seat.id)) continue;
-      if (const auto plan = plan_of(seat)) person_.seats.emplace(seat.id, *plan);
+      if (const auto plan = access().plan_of(seat)) person_.seats.emplace(seat.id, *plan);
     }
   }
 
-  static Vec2 place_to_stand(const SeatSpec& seat, const SeatPlan& plan) {
-    return floor_point(seat.world_from_seat.origin) -
-           plan.stand_back_m * direction_of(heading_of(seat.world_from_seat) + plan.place.approach_turn);
-  }
-
-  /// Stands as near to the free fall into the seat as the furniture allows, at most a metre farther back.
-  std::optional<SeatPlan> plan_of(const SeatSpec& seat) const {
-    const double floor_y = scene_.floor.height_m();
-    if (body::unfit_height(person_.humanoid, {seat.world_from_seat, floor_y, {}})) return std::nullopt;
-    SeatPlan plan{{seat.world_from_seat, floor_y, table_height(seat, floor_y, room_), 0.0}, 0.0, 0.0};
-    // Where a table is near a wall nobody has the room of a walker: they squeeze in.
-    // Where a wall is right behind the chair they turn it and sit down from the side.
-    for (const double turn : {0.0, 0.5 * pi, -0.5 * pi}) {
-      plan.place.approach_turn = turn;
-      for (const double half_depth_m : {person_.humanoid.clearance_radius_m(), person_.humanoid.half_depth_m()}) {
-        plan.half_depth_m = half_depth_m;
-        if (find_place_to_stand(seat, plan)) return plan;
-      }
-    }
-    return std::nullopt;
-  }
-
-  bool find_place_to_stand(const SeatSpec& seat, SeatPlan& plan) const {
-    const double fall_back = body::fall_back_m(person_.humanoid, plan.place);
-    const Vec2 pelvis = floor_point(seat.world_from_seat.origin);
-    const Vec2 facing = direction_of(heading_of(seat.world_from_seat) + plan.place.approach_turn);
-    constexpr double step_m = 0.02, farthest_m = 1.0;
-    for (double back = -fall_back; back <= farthest_m; back += step_m) {
-      const Vec2 stand = pelvis - back * facing;
-      if (!person_.can_stand(stand, facing, plan.half_depth_m)) continue;
-      if (!room_behind(seat, facing, back + fall_back, plan.half_depth_m)) continue;
-      if (!can_go_to(stand)) continue;
-      plan.stand_back_m = back;
-      return true;
-    }
-    return false;
-  }
-
-  /// Can the pelvis go so far back from the seat, on a chair that is drawn back from the table, before a wall?
-  bool room_behind(const SeatSpec& seat, const Vec2& facing, double back_m, double half_depth_m) const {
-    constexpr double body_and_chair_m = 0.15;  // assumed, half a body and a chair's back (tried 0.1-0.25)
-    const double keep_m = std::min(body_and_chair_m, half_depth_m);
-    const Ray behind{Vec3f(seat.world_from_seat.origin),
-                     -Vec3f(static_cast<float>(facing.x), 0.0F, static_cast<float>(facing.y))};
-    return back_m <= 0.0 || !room_.first_hit(behind, static_cast<float>(back_m + keep_m));
+  /// From where they are.
+  PlaceAccess access() const {
+    return {scene_, room_, person_, grounds_, [this](const Vec2& place) { return can_go_to(place); }};
   }
 
   static constexpr const char* inside_of_solid = "it is inside of something solid";
-  static constexpr const char* no_place =
-      "no path leads to a free place to stand right before it, or up to a metre behind or beside it";
 
   const SceneSpec& scene_;
   const rt::Room& room_;

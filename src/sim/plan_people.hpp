@@ -2,12 +2,10 @@
 // their actions in thought, one after the other, each as if alone in the room.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "body/humanoid.hpp"
 #include "pirsim/scene.hpp"
-#include "rt/room.hpp"
 #include "schema/study_in_force.hpp"
 #include "sim/compiled_study.hpp"
 
@@ -19,9 +17,6 @@ namespace pirsim::sim {
 /// need be. like: a study whose floors are shared where they are the same, or null.
 [[nodiscard]] std::vector<TrialModel> plan_people(const CompiledStudy& study, const std::vector<TrialInForce>& trials,
                                                   const CompiledStudy* like);
-
-/// Height of the table top in front of a seat, or none: what lies under a point half an arm's length ahead.
-[[nodiscard]] std::optional<double> table_height(const SeatSpec& seat, double floor_y, const rt::Room& room);
 
 // Where people stand who come in through an entrance.
 

@@ -29,10 +29,8 @@ bool StandingPlaces::is_out_of_the_way(const Vec2& place) const {
   return !in_doorway && std::ranges::none_of(person_.seats, [&](const auto& entry) {
     const SeatPlan& plan = entry.second;
     const Frame& seat = plan.place.world_from_seat;
-    const Vec2 stand =
-        floor_point(seat.origin) - plan.stand_back_m * direction_of(heading_of(seat) + plan.place.approach_turn);
     return glm::distance(place, floor_point(seat.origin)) < from_seat_m ||
-           glm::distance(place, stand) < from_standing_place_m;
+           glm::distance(place, plan.stand(seat)) < from_standing_place_m;
   });
 }
 

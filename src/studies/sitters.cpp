@@ -13,7 +13,7 @@
 #include "sim/detection.hpp"
 #include "sim/natural_motion.hpp"
 #include "sim/observer.hpp"
-#include "sim/plan_people.hpp"
+#include "sim/place_access.hpp"
 #include "sim/restlessness.hpp"
 #include "sim/solids.hpp"
 
