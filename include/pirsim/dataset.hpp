@@ -29,11 +29,18 @@ struct VariedEffectSpec {
   Where where;
 };
 
+/// A scene of the user's own.
+struct OwnScene {
+  std::filesystem::path file;
+  std::filesystem::path marks = {};  ///< beside it (docs/formats/marks.md); empty: none
+  auto operator<=>(const OwnScene&) const = default;
+};
+
 /// Rooms that are alike: drawn from ranges, or scenes of the user's own.
 struct RoomGroupSpec {
   int count = 1;
   RoomSpec rooms;
-  std::vector<std::filesystem::path> scenes;  ///< if not empty: these, in turn, instead
+  std::vector<OwnScene> scenes;  ///< if not empty: these, in turn, instead
   ScheduleSpec schedule;
   /// How many of the schedule's staff a room has, at most one a seat; none: all of them.
   std::optional<CountRange> people;

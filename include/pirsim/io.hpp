@@ -22,6 +22,8 @@ struct SceneOptions {
   /// models.
   std::vector<std::filesystem::path> sensor_directories;
   std::vector<std::filesystem::path> data_directories{};
+  /// Marks for a scene that is left as it is, as YAML (docs/formats/marks.md); beside it are sensors looked for, too.
+  std::filesystem::path marks{};
 };
 
 /// Reads a .gltf or .glb file with everything it refers to. Meshes are in world coordinates and cleaned.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Iterable, Literal, NamedTuple
 
 from . import _core
-from ._study import Overrides, PathOr, as_overrides, as_path, folders
+from ._study import Overrides, PathOr, as_overrides, as_path, as_scene, folders
 from .specs import Frame, Point3, Scene, Script, SensorModel
 
 
@@ -37,9 +37,10 @@ class EffectInfo(NamedTuple):
         return f"<pirsim.EffectInfo {self.name!r} ({self.family}, reaches {self.reach}): {settings}>"
 
 
-def read_scene(file: PathOr, *, sensors: PathOr | Iterable[PathOr] | None = None) -> Scene:
-    """Reads a glTF file. Raises FileError and InputError. sensors: as in compile()."""
-    return _core.read_scene(as_path(file), *folders(sensors))
+def read_scene(file: PathOr, *, sensors: PathOr | Iterable[PathOr] | None = None,
+               marks: PathOr | None = None) -> Scene:
+    """Reads a glTF file. Raises FileError and InputError. sensors, marks: as in compile()."""
+    return _core.read_scene(as_scene(as_path(file), marks), *folders(sensors))
 
 
 def read_script(file: PathOr, *, set: Overrides | None = None) -> Script:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any, Iterable, Literal, NamedTuple, Sequence, Union
 
 from . import _core
-from ._study import (Overrides, PathOr, Progress, _handle_of, Model, as_count, as_input, as_overrides, as_path,
+from ._study import (Overrides, PathOr, Progress, _handle_of, Model, as_count, as_input, as_overrides, as_path, as_scene,
                      as_threads, folders)
 from .errors import Error, InputWarning
 from .specs import Diagnostic, Point3, Scene, Script, Sensor
@@ -154,13 +154,13 @@ class Findings:
 
 
 def check(scene: PathOr | Scene, script: PathOr | Script, *, set: Overrides | None = None,
-          sensors: PathOr | Iterable[PathOr] | None = None) -> Findings:
+          sensors: PathOr | Iterable[PathOr] | None = None, marks: PathOr | None = None) -> Findings:
     """Validates a scene and a script without running them and tells what each sensor can see, as `pirsim check` does.
 
     Arguments as of compile(). What is wrong is in the Findings; only an argument of a wrong type raises.
     """
     try:
-        core = _core.compile(as_input(scene, Scene), as_input(script, Script, set), as_overrides(set), *folders(sensors))
+        core = _core.compile(as_scene(scene, marks), as_input(script, Script, set), as_overrides(set), *folders(sensors))
     except Error as error:
         return Findings(error.diagnostics, [])
     parts: dict[str, Any] = _core.check(core)

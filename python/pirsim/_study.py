@@ -118,6 +118,15 @@ def as_input(value: Any, kind: type, set: Overrides | None = None) -> Any:
     return as_path(value)
 
 
+def as_scene(scene: Any, marks: PathOr | None) -> Any:
+    """A file's name, one with that of its marks, or the Scene itself."""
+    if marks is None:
+        return as_input(scene, Scene)
+    if isinstance(scene, Scene):
+        raise TypeError("marks: a pirsim.Scene has its own; read_scene(file, marks=...) adds those of a file")
+    return as_input(scene, Scene), as_path(marks)
+
+
 def folders(sensors: PathOr | Iterable[PathOr] | None) -> tuple[list[str], list[str]]:
     """Where sensor models are looked for first, and last."""
     if sensors is None:
@@ -219,17 +228,17 @@ class Model:
 
 
 def compile(scene: PathOr | Scene, script: PathOr | Script, *, set: Overrides | None = None,
-            sensors: PathOr | Iterable[PathOr] | None = None) -> Model:
+            sensors: PathOr | Iterable[PathOr] | None = None, marks: PathOr | None = None) -> Model:
     """Validates a scene and a script and makes a Model of them.
 
-    scene: a glTF file, or a Scene. script: a YAML file, or a Script. set: values to replace in the script's file
+    scene: a glTF file, or a Scene. marks: a YAML file with marks for a scene's file that is left as it is. script: a YAML file, or a Script. set: values to replace in the script's file
     before it is read, by their place in it: {"people.0.stature_m": 1.7, "sensing.response": "analog"}. sensors:
     folders in which sensor models of a scene's file are looked for first; the shipped ones are always found.
 
     Raises InputError, with every fault and its place; InfeasibleError for a seat or point that can't be reached;
     FileError. What was repaired or ignored is an InputWarning.
     """
-    core = _core.compile(as_input(scene, Scene), as_input(script, Script, set), as_overrides(set), *folders(sensors))
+    core = _core.compile(as_scene(scene, marks), as_input(script, Script, set), as_overrides(set), *folders(sensors))
     for diagnostic in core.warnings:
         warnings.warn(str(diagnostic), InputWarning, stacklevel=2)
     return Model._of(core)

@@ -51,10 +51,13 @@ io::SceneOptions options_of(const Folders& folders) {
 }
 
 SceneSpec scene_of(nb::handle scene, const Folders& folders) {
-  if (!nb::isinstance<nb::str>(scene)) return checked_scene(scene);
-  const auto file = nb::cast<std::string>(scene);
+  const bool has_marks = nb::isinstance<nb::tuple>(scene);
+  if (!has_marks && !nb::isinstance<nb::str>(scene)) return checked_scene(scene);
+  const auto file = nb::cast<std::string>(has_marks ? nb::object(scene[0]) : nb::borrow(scene));
+  io::SceneOptions options = options_of(folders);
+  if (has_marks) options.marks = nb::cast<std::string>(scene[1]);
   nb::gil_scoped_release release;
-  return io::read_scene(file, options_of(folders));
+  return io::read_scene(file, options);
 }
 
 ScriptSpec script_of(nb::handle script, const std::vector<std::string>& overrides) {
@@ -68,8 +71,8 @@ void add_inputs(nb::module_& module) {
   nb::class_<MeshSolid>(module, "MeshSolid", "A body part's mesh, as read_script() read it.");
   module.def(
       "read_scene",
-      [](const std::string& file, std::vector<std::string> sensors, std::vector<std::string> data) {
-        return to_python(scene_of(nb::cast(file), {std::move(sensors), std::move(data)}));
+      [](nb::handle file, std::vector<std::string> sensors, std::vector<std::string> data) {
+        return to_python(scene_of(file, {std::move(sensors), std::move(data)}));
       },
       nb::arg("file"), nb::arg("sensors"), nb::arg("data"), "A pirsim.Scene.");
   module.def(

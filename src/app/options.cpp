@@ -143,6 +143,7 @@ const std::string& response(const std::string& word) {
 
 void offer_scene_file(CLI::App& command, Inputs& inputs) {
   offer_input_file(command, "--scene", inputs.scene, "room: a glTF 2.0 file (.gltf or .glb)");
+  offer_input_file(command, "--marks", inputs.marks, "marks for a scene without: a YAML file");
 }
 
 }  // namespace
@@ -192,7 +193,9 @@ void offer_study(CLI::App& command, Inputs& inputs) {
 
 std::vector<std::string> model_options(const Inputs& inputs) {
   const auto typed = [](const std::filesystem::path& file) { return file == io::standard_input ? "-" : file.string(); };
-  std::vector<std::string> words{"--scene", typed(inputs.scene), "--script", typed(inputs.script)};
+  std::vector<std::string> words{"--scene", typed(inputs.scene)};
+  if (!inputs.marks.empty()) words.insert(words.end(), {"--marks", typed(inputs.marks)});
+  words.insert(words.end(), {"--script", typed(inputs.script)});
   for (const std::string& change : inputs.overrides) words.insert(words.end(), {"--set", change});
   for (const std::filesystem::path& folder : inputs.sensor_directories)
     words.insert(words.end(), {"--sensors", folder.string()});

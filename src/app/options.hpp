@@ -18,6 +18,7 @@ enum class Verbosity { quiet, normal, verbose };
 /// A room, a script, and what changes how they are read. A command offers as much of it as it uses.
 struct Inputs {
   std::filesystem::path scene;
+  std::filesystem::path marks;  ///< beside the scene; empty: none
   std::filesystem::path script;
   std::vector<std::string> overrides;  ///< "sensing.rays_per_zone=9"
   std::vector<std::filesystem::path> sensor_directories;
@@ -40,7 +41,7 @@ CLI::Option* offer_input_file(CLI::App& command, const std::string& name, std::f
                               const std::string& what);
 /// --set, --response, --sensors and --quiet. `what` is changed: a script or a recipe.
 void offer_changes(CLI::App& command, Inputs& inputs, const std::string& what);
-/// --scene and the options of offer_changes(): for commands that make the script themselves.
+/// --scene, --marks and the options of offer_changes(): for commands that make the script themselves.
 void offer_scene(CLI::App& command, Inputs& inputs);
 /// The options of offer_scene() and --script: every other command that reads a room uses them.
 void offer_study(CLI::App& command, Inputs& inputs);

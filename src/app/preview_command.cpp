@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <iostream>
 #include <optional>
@@ -21,7 +22,16 @@ struct PreviewOptions {
   PictureRequest picture;
 };
 
+/// `--marks seats,doors` was the option before scenes had marks beside them.
+void refuse_words(const std::filesystem::path& marks) {
+  const std::string given = marks.string(), first = given.substr(0, given.find(','));
+  const auto is_word = [&](studies::Mark mark) { return name(mark) == first; };
+  if (first == "all" || first == "none" || std::ranges::any_of(studies::all_marks, is_word))
+    throw Error(ErrorCode::usage, "--marks: takes a file of marks; what a picture names is --labels " + given);
+}
+
 void preview(const Inputs& inputs, const PreviewOptions& options) {
+  refuse_words(inputs.marks);
   check_outputs({{"-o", options.output, {".png"}}}, inputs);
   const Model model = load(inputs);
   keep_inputs({{"-o", options.output}}, files_read(model.script(), model.scene()));
@@ -65,7 +75,7 @@ void add_preview_command(CLI::App& app) {
   pirsim preview --scene room.gltf --script study.yaml -o room.png  a picture of room, people and beams
   pirsim preview --scene room.gltf --script study.yaml --trial S8 --time 20 --beams PIR4,PIR5
   pirsim preview --scene room.gltf --script study.yaml --camera 0,6,0 --look-at 2,0,2
-  pirsim preview --scene room.gltf --script study.yaml --marks seats,doors   their ids, and nothing else's
+  pirsim preview --scene room.gltf --script study.yaml --labels seats,doors  their ids, and nothing else's
 )");
   const auto inputs = std::make_shared<Inputs>();
   const auto options = std::make_shared<PreviewOptions>();
@@ -83,7 +93,7 @@ void add_preview_command(CLI::App& app) {
   std::vector<std::string> words{"all", "none"};
   for (const studies::Mark mark : studies::all_marks) words.emplace_back(name(mark));
   command
-      .add_option("--marks", options->picture.marks,
+      .add_option("--labels", options->picture.marks,
                   "what is marked and named: seats, doors, sensors, people, scale, key, or all or none (default: all)")
       ->option_text("WORD,...")
       ->delimiter(',')

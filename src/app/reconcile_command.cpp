@@ -167,8 +167,8 @@ LogMap map_of(const ReconcileOptions& options) {
 void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const ReconcileOptions& options) {
   if (options.measured.empty())
     throw Error(ErrorCode::usage, "--measured FILE is missing; see pirsim reconcile --help");
-  if (options.measured == inputs.scene || options.measured == inputs.script)
-    throw Error(ErrorCode::usage, "--measured can't be the same file or stream as --scene or --script");
+  if (options.measured == inputs.scene || options.measured == inputs.marks || options.measured == inputs.script)
+    throw Error(ErrorCode::usage, "--measured can't be the same file or stream as --scene, --marks or --script");
   const ScriptSpec given = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
   tell(scene.warnings, inputs.verbosity);

@@ -45,7 +45,10 @@ dataset::RoomSpec room_by_settings(const RoomOptions& options) {
 std::vector<std::string> scenes_of(const dataset::RecipeSpec& recipe) {
   std::vector<std::string> files;
   for (const dataset::RoomGroupSpec& group : recipe.rooms) {
-    for (const std::filesystem::path& scene : group.scenes) files.push_back(scene.string());
+    for (const dataset::OwnScene& scene : group.scenes) {
+      files.push_back(scene.file.string());
+      if (!scene.marks.empty()) files.push_back(scene.marks.string());
+    }
   }
   return files;
 }
@@ -61,7 +64,7 @@ dataset::DrawnRoom draw(const RoomOptions& options) {
   const dataset::RoomGroupSpec& group = dataset::group_of(recipe, options.number);
   if (!group.scenes.empty()) {
     throw Error(ErrorCode::usage, "--number: room " + std::to_string(options.number) + " is a file already: '" +
-                                      dataset::own_scene(recipe, options.number).string() + "'");
+                                      dataset::own_scene(recipe, options.number)->file.string() + "'");
   }
   return dataset::draw_room(group.rooms, options.seed.value_or(recipe.seed), recipe.original_of(options.number),
                             scenes);

@@ -63,7 +63,8 @@ io::SceneOptions scene_options(const Inputs& inputs) {
   }
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path();
   // Installed (bin beside share), or in a build folder of the source tree (build/<preset>).
-  return {inputs.sensor_directories, {program / ".." / "share" / "pirsim", program / ".." / ".." / "data"}};
+  return {
+      inputs.sensor_directories, {program / ".." / "share" / "pirsim", program / ".." / ".." / "data"}, inputs.marks};
 }
 
 namespace {
@@ -159,7 +160,8 @@ const std::vector<std::string>& summary_endings() {
 
 void check_outputs(const std::vector<NamedOutput>& outputs, const Inputs& inputs) {
   std::map<std::string, std::string> taken;
-  for (const auto& [option, file] : {std::pair("--scene", inputs.scene), std::pair("--script", inputs.script)}) {
+  for (const auto& [option, file] :
+       {std::pair("--scene", inputs.scene), std::pair("--marks", inputs.marks), std::pair("--script", inputs.script)}) {
     if (!file.empty()) taken.emplace(identity(file), option);
   }
   for (const NamedOutput& output : outputs) {
@@ -224,6 +226,7 @@ void write_summary(const studies::Summary& summary, io::AtomicFile& file, const 
 
 void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs) {
   report.footer = "pirsim " + version() + " (" + git_revision() + "), " + io::name_of_input(inputs.scene);
+  if (!inputs.marks.empty()) report.footer += ", " + io::name_of_input(inputs.marks);
   if (!inputs.script.empty()) report.footer += ", " + io::name_of_input(inputs.script);
   file.stream() << io::to_html(report);
   file.commit();

@@ -67,10 +67,18 @@ std::vector<std::string> scene_overrides(const dataset::RecipeSpec& recipe, cons
   std::vector<std::string> overrides;
   for (std::size_t g = 0; g < recipe.rooms.size(); ++g) {
     if (recipe.rooms[g].scenes.empty()) continue;
-    Json paths = Json::array();
-    for (const fs::path& scene : recipe.rooms[g].scenes)
-      paths.push_back(fs::absolute(scene).lexically_relative(fs::absolute(folder).lexically_normal()).string());
-    overrides.push_back("rooms." + std::to_string(g) + ".scenes=" + paths.dump());
+    const auto from_folder = [&](const fs::path& file) {
+      return fs::absolute(file).lexically_relative(fs::absolute(folder).lexically_normal()).string();
+    };
+    Json scenes = Json::array();
+    for (const auto& [file, marks] : recipe.rooms[g].scenes) {
+      if (marks.empty()) {
+        scenes.push_back(from_folder(file));
+      } else {
+        scenes.push_back({{"scene", from_folder(file)}, {"marks", from_folder(marks)}});
+      }
+    }
+    overrides.push_back("rooms." + std::to_string(g) + ".scenes=" + scenes.dump());
   }
   return overrides;
 }

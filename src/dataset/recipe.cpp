@@ -153,21 +153,26 @@ const RoomGroupSpec& group_of(const RecipeSpec& recipe, int room) {
   throw Error(ErrorCode::usage, "the recipe has rooms 1 to " + std::to_string(recipe.n_rooms()));
 }
 
-std::filesystem::path own_scene(const RecipeSpec& recipe, int room) {
+const OwnScene* own_scene(const RecipeSpec& recipe, int room) {
   const int original = recipe.original_of(room);
   int first = 1;
   for (const RoomGroupSpec& group : recipe.rooms) {
     if (original < first + group.count)
-      return group.scenes.empty() ? std::filesystem::path{}
-                                  : group.scenes[static_cast<std::size_t>(original - first) % group.scenes.size()];
+      return group.scenes.empty() ? nullptr
+                                  : &group.scenes[static_cast<std::size_t>(original - first) % group.scenes.size()];
     first += group.count;
   }
-  return {};
+  return nullptr;
+}
+
+SceneSpec read_own(const OwnScene& own, io::SceneOptions options) {
+  options.marks = own.marks;
+  return io::read_scene(own.file, options);
 }
 
 SceneSpec room_of(const RecipeSpec& recipe, int number, const io::SceneOptions& options) {
   const RoomGroupSpec& group = group_of(recipe, number);
-  if (const auto own = own_scene(recipe, number); !own.empty()) return io::read_scene(own, options);
+  if (const OwnScene* own = own_scene(recipe, number)) return read_own(*own, options);
   return draw_room(group.rooms, recipe.seed, recipe.original_of(number), options).scene;
 }
 

@@ -10,7 +10,8 @@ namespace pirsim::dataset {
 
 [[nodiscard]] const RoomGroupSpec& group_of(const RecipeSpec& recipe, int room);
 /// The user's own file, or empty for a drawn room.
-[[nodiscard]] std::filesystem::path own_scene(const RecipeSpec& recipe, int room);
+[[nodiscard]] const OwnScene* own_scene(const RecipeSpec& recipe, int room);
+[[nodiscard]] SceneSpec read_own(const OwnScene& own, io::SceneOptions options);
 /// The study of one room on one of its days (from 1): replicate `day` of it is that day. Throws Error(input) for what
 /// doesn't fit the scene.
 [[nodiscard]] ScriptSpec script_of(const RecipeSpec& recipe, const SceneSpec& scene, int room, int day);

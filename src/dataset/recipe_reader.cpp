@@ -119,24 +119,37 @@ std::optional<CountRange> read_people(YamlMap& map, std::optional<CountRange> ot
   return read_count(map, "people", {}, {.min = 0, .max = 200});
 }
 
+/// A file's name, or `{scene: flat.glb, marks: flat.yaml}`.
+OwnScene read_own_scene(const YamlNode& node, const RecipeSpec& recipe, Diagnostics& faults) {
+  const auto file_of = [&](const YamlNode& named, const std::string& what) {
+    std::filesystem::path file = io::folder_of_input(recipe.file) / named.text(faults, what);
+    std::error_code unreadable;
+    const auto status = std::filesystem::status(file, unreadable);
+    const std::string name = "'" + file.string() + "'";
+    if (!std::filesystem::exists(status)) {
+      faults.error(named.where(), what + ": there is no file " + name);
+    } else if (!std::filesystem::is_regular_file(status)) {
+      faults.error(named.where(),
+                   what + ": " + name + " isn't a regular file: it is read again for each part of the work");
+    }
+    return file;
+  };
+  if (!node.is_map()) return {file_of(node, "scenes")};
+  YamlMap map(node, faults, "scenes");
+  OwnScene own{file_of(map.required_child("scene"), map.label("scene"))};
+  if (const auto marks = map.child("marks")) own.marks = file_of(*marks, map.label("marks"));
+  map.finish();
+  return own;
+}
+
 RoomGroupSpec read_group(const YamlNode& node, const RecipeSpec& recipe, const std::optional<ScheduleSpec>& schedule,
                          const std::optional<CountRange>& people, Diagnostics& faults) {
   YamlMap map(node, faults, "rooms");
   RoomGroupSpec group;
   group.where = node.where();
   if (map.has("scenes")) {
-    for (const YamlNode& scene : map.required_list("scenes", limits::rooms)) {
-      group.scenes.push_back(io::folder_of_input(recipe.file) / scene.text(faults, "scenes"));
-      std::error_code unreadable;
-      const auto status = std::filesystem::status(group.scenes.back(), unreadable);
-      const std::string name = "'" + group.scenes.back().string() + "'";
-      if (!std::filesystem::exists(status)) {
-        faults.error(scene.where(), "scenes: there is no file " + name);
-      } else if (!std::filesystem::is_regular_file(status)) {
-        faults.error(scene.where(),
-                     "scenes: " + name + " isn't a regular file: it is read again for each part of the work");
-      }
-    }
+    for (const YamlNode& scene : map.required_list("scenes", limits::rooms))
+      group.scenes.push_back(read_own_scene(scene, recipe, faults));
     group.count = map.integer("count", static_cast<int>(group.scenes.size()), {.min = 1, .max = most_rooms});
   } else {
     static_cast<void>(map.list("scenes", limits::rooms));

@@ -31,14 +31,21 @@ void add_sensors(Fingerprint& print, const RoomGroupSpec& group, const io::Scene
   }
 }
 
-std::string provenance_of(const RecipeSpec& recipe, const std::map<fs::path, SceneSpec>& own_scenes,
+/// "room.gltf 9f86d0...", of a file that the scene was read from.
+std::string hash_told(const fs::path& file, const SceneSpec& scene) {
+  const auto read = std::ranges::find(scene.files, file.string(), &InputFile::path);
+  return file.filename().string() + ' ' + read->sha256;
+}
+
+std::string provenance_of(const RecipeSpec& recipe, const std::map<OwnScene, SceneSpec>& own_scenes,
                           const io::SceneOptions& options) {
   std::string text = "recipe " + sha256(recipe.text);
   Fingerprint print;
   for (const RoomGroupSpec& group : recipe.rooms) {
-    for (const fs::path& file : group.scenes) {
-      const SceneSpec& scene = own_scenes.at(file);
-      text += ", " + file.filename().string() + ' ' + scene.files.front().sha256;
+    for (const OwnScene& own : group.scenes) {
+      const SceneSpec& scene = own_scenes.at(own);
+      text += ", " + hash_told(own.file, scene);
+      if (!own.marks.empty()) text += ", " + hash_told(own.marks, scene);
       print.add(scene);
     }
     if (group.scenes.empty()) add_sensors(print, group, options);
@@ -47,7 +54,7 @@ std::string provenance_of(const RecipeSpec& recipe, const std::map<fs::path, Sce
          compiler();
 }
 
-std::vector<std::string> sensor_columns_of(const RecipeSpec& recipe, const std::map<fs::path, SceneSpec>& own_scenes) {
+std::vector<std::string> sensor_columns_of(const RecipeSpec& recipe, const std::map<OwnScene, SceneSpec>& own_scenes) {
   int most = 0;
   for (const RoomGroupSpec& group : recipe.rooms) {
     int sensors = 0;
@@ -57,8 +64,8 @@ std::vector<std::string> sensor_columns_of(const RecipeSpec& recipe, const std::
   std::vector<std::string> columns;
   for (int i = 1; i <= most; ++i) columns.push_back("PIR" + std::to_string(i));
   for (const RoomGroupSpec& group : recipe.rooms) {
-    for (const fs::path& file : group.scenes) {
-      for (const SensorSpec& sensor : own_scenes.at(file).sensors) {
+    for (const OwnScene& own : group.scenes) {
+      for (const SensorSpec& sensor : own_scenes.at(own).sensors) {
         if (std::ranges::find(columns, sensor.id) == columns.end()) columns.push_back(sensor.id);
       }
     }
@@ -78,8 +85,8 @@ std::string journal_name(const std::optional<Shard>& shard) {
 Store::Store(const RecipeSpec& recipe, fs::path folder, const io::SceneOptions& scenes)
     : recipe_(recipe), folder_(std::move(folder)), scenes_(scenes) {
   for (const RoomGroupSpec& group : recipe.rooms) {
-    for (const fs::path& file : group.scenes) {
-      if (!own_scenes_.contains(file)) own_scenes_.emplace(file, io::read_scene(file, scenes_));
+    for (const OwnScene& own : group.scenes) {
+      if (!own_scenes_.contains(own)) own_scenes_.emplace(own, read_own(own, scenes_));
     }
   }
   provenance_ = provenance_of(recipe_, own_scenes_, scenes_);
@@ -87,8 +94,8 @@ Store::Store(const RecipeSpec& recipe, fs::path folder, const io::SceneOptions& 
 }
 
 const SceneSpec* Store::own_scene(int room) const {
-  const fs::path file = dataset::own_scene(recipe_, room);
-  return file.empty() ? nullptr : &own_scenes_.at(file);
+  const OwnScene* own = dataset::own_scene(recipe_, room);
+  return own == nullptr ? nullptr : &own_scenes_.at(*own);
 }
 
 bool Store::is_whole(const WrittenFile& written, Look look) const {

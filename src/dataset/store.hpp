@@ -53,7 +53,7 @@ class Store {
   const RecipeSpec& recipe_;
   std::filesystem::path folder_;
   io::SceneOptions scenes_;
-  std::map<std::filesystem::path, SceneSpec> own_scenes_;  ///< by the file that the recipe names
+  std::map<OwnScene, SceneSpec> own_scenes_;
   std::string provenance_;
   std::vector<std::string> sensor_columns_;
 };

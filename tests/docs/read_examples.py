@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Lets pirsim read every example of a file on the pages of docs/formats and docs/howto. What is shown can be copied.
 
-  ```yaml                    is a whole file: a script, a recipe, a sensor, placements, nuisance, a map of a log
+  ```yaml                    is a whole file: a script, a recipe, a sensor, placements, nuisance, marks, a map of a log
   ```json                    is a whole scene
   ```csv file=NAME           lies where the scripts after it look for it
   ```yaml part of script     is put into a script, or `part of sensor` into a sensor file
@@ -85,6 +85,15 @@ class Reader:
         self.run("reconcile", "seal", "-q", "--scene", self.room, "--script", self.write("study.yaml", SCRIPT), "--nuisance",
                  self.write("nuisance.yaml", text), "--answer", "answer.json", "-o", "challenge")
 
+    def marks(self, text):
+        names = ("front_glass", "Lamp_1", "Radiator.001")
+        nodes = [{"name": name, "mesh": 0} for name in names] + [{"name": "Slab", "mesh": 0, "rotation": [0.5**0.5, 0, 0, 0.5**0.5]}]
+        if "up: z" not in text:
+            del nodes[-1]["rotation"]
+        model = self.write("model.gltf", json.dumps(triangle_scene(nodes)))
+        self.run("check", "-q", "--scene", model, "--marks", self.write("marks.yaml", text), "--script",
+                 self.write("look.yaml", LOOK))
+
     def log_map(self, text):
         times = "".join(f"2026-03-02T08:{i // 2:02}:{i % 2 * 30:02},0,1,2\n" for i in range(20))
         self.write("log.csv", "timestamp,S6_PIR,S7_PIR,Room_Occupancy_Count\n" + times)
@@ -92,7 +101,7 @@ class Reader:
 
     def whole(self, text):
         kinds = {"pirsim_script:": self.script, "pirsim_recipe:": self.recipe, "pirsim_nuisance:": self.nuisance,
-                 "pirsim_placements:": self.placements, "pirsim_log:": self.log_map, "id:": self.sensor}
+                 "pirsim_placements:": self.placements, "pirsim_marks:": self.marks, "pirsim_log:": self.log_map, "id:": self.sensor}
         [kind] = [read for key, read in kinds.items() if text.startswith(key)]
         kind(text)
 

@@ -57,10 +57,10 @@ OTHERS = {("day",): ("--scene", "nowhere.gltf", "--staff", "2", "-o", "rows.csv"
           ("room",): ("-o", "room.gltf"), ("dataset",): ("recipe.yaml", "-o", "out")}
 ROOM_VALUES = {"--set": "cut_share=0.3", "--kind": "meeting", "--desks": "rows", "--width": "6", "--height": "3",
                "--depth": "5"}
-VALUES = {"--set": "name=other", "--response": "zones", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--format": ".csv",
+VALUES = {"--set": "name=other", "--response": "zones", "--marks": "marks.yaml", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--format": ".csv",
           "--summary": "sums.csv", "--zones": "zones.csv", "--trace": "trace.csv",
           "--occupants": "occupants.csv", "--shard": "1/2", "--max-time": "5m",
-          "--trial": "S1", "--beams": "all", "--marks": "seats", "--camera": "0,5,0", "--look-at": "1,0,1", "--width": "64",
+          "--trial": "S1", "--beams": "all", "--labels": "seats", "--camera": "0,5,0", "--look-at": "1,0,1", "--width": "64",
           "--height": "64", "--measured": "m.csv", "--holdout": "0.3", "--table": "table", "--nuisance": "none",
           "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "effects", "--hide": "one",
           "--script": "other.yaml", "--first-day": "2026-03-03", "--from": "09:00", "--to": "10:00",
@@ -179,7 +179,7 @@ class Options(unittest.TestCase):
         study("--set", "seed=1", "--set", "replicates=2", "--print-config")
 
     def test_every_refusal_begins_as_one(self):
-        for args in (("--seed", "x"), ("preview", "--marks", "chairs"), ("preview", "--width", 5), ("check", "--scene"),
+        for args in (("--seed", "x"), ("preview", "--labels", "chairs"), ("preview", "--width", 5), ("check", "--scene"),
                      ("merge",), ("reconcile", "plan", "--runs", "many")):
             refused = pirsim(*args, code=2).stderr
             self.assertTrue(refused.startswith("error: "), refused)
@@ -698,10 +698,10 @@ class Looking(unittest.TestCase):
             pictures = {}
             for marks in ("none", "seats", "doors", "sensors", "people", "scale", "key", "all"):
                 out = pathlib.Path(folder) / f"{marks}.png"
-                pirsim("preview", *study_files(), "-o", out, "--marks", marks, "--width", 320, "--height", 180)
+                pirsim("preview", *study_files(), "-o", out, "--labels", marks, "--width", 320, "--height", 180)
                 pictures[marks] = out.read_bytes()
             self.assertEqual(len(set(pictures.values())), len(pictures))
-            refused = pirsim("preview", *study_files(), "-o", out, "--marks", "chairs", code=2).stderr
+            refused = pirsim("preview", *study_files(), "-o", out, "--labels", "chairs", code=2).stderr
             self.assertIn("seats", refused)
 
     def test_the_scale_has_its_label_only_where_all_of_its_bar_is_seen(self):
@@ -710,7 +710,7 @@ class Looking(unittest.TestCase):
             with tempfile.TemporaryDirectory() as folder:
                 out = pathlib.Path(folder) / "p.png"
                 pirsim("preview", "--scene", DATA / "rooms" / "meeting_room.gltf", "--script",
-                       DATA / "studies" / "studyA.yaml", "-o", out, "--marks", marks, "--camera=" + camera,
+                       DATA / "studies" / "studyA.yaml", "-o", out, "--labels", marks, "--camera=" + camera,
                        "--look-at=" + look_at, "--width", 320, "--height", 180)
                 return out.read_bytes()
         for camera, look_at in (("9,4,2", "3,1,-4"), ("4,3,-1", "6,0,-1")):

@@ -619,7 +619,7 @@ class BareRoom(unittest.TestCase):
         pictures = []
         for width in (4, 5):
             path = self.write(width)
-            pirsim("preview", *self.files(path), "--marks", "none", "--beams", "none", "--time", 0, "--camera", "2,9,-1.5",
+            pirsim("preview", *self.files(path), "--labels", "none", "--beams", "none", "--time", 0, "--camera", "2,9,-1.5",
                    "--look-at", "2,0,-1.6", "-q", "-o", path / "room.png")
             pictures.append((path / "room.png").read_bytes())
         self.assertNotEqual(*pictures)

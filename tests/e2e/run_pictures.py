@@ -43,13 +43,13 @@ def check_room_fills_the_picture(pictures):
     for name, files in (("long office", pictures.long), ("meeting room", pictures.meeting)):
         for size in ((640, 360), (360, 640)):
             sized = [*files, "--beams", "none", "--width", size[0], "--height", size[1]]
-            bare = pictures.preview(*sized, "--marks", "none")
+            bare = pictures.preview(*sized, "--labels", "none")
             left, top, right, bottom = box(bare.places(lambda colour: colour != BACKGROUND))
             share = max((right - left) / size[0], (bottom - top) / size[1])
             assert share > 0.9, f"the {name} takes {share:.0%} of a picture of {size}"
             assert min(left, top, size[0] - 1 - right, size[1] - 1 - bottom) > 0, f"the {name} is cut in a picture of {size}"
             # With its names and its key the room is a little smaller, and the key stands beside it.
-            keyed = pictures.preview(*sized, "--marks", "key,seats,sensors,doors,people")
+            keyed = pictures.preview(*sized, "--labels", "key,seats,sensors,doors,people")
             left, top, right, bottom = box(keyed.places(lambda colour: colour != BACKGROUND))
             cut = min(left, top, size[0] - 1 - right, size[1] - 1 - bottom) <= 0
             assert not cut, f"the {name} or its key is cut in a picture of {size}"
@@ -66,7 +66,7 @@ def check_lettering_is_smooth(pictures):
 
 def check_leader(pictures):
     files = [*pictures.long, "--beams", "none"]
-    named = pictures.preview(*files, "--marks", "people").differs(pictures.preview(*files, "--marks", "none"))
+    named = pictures.preview(*files, "--labels", "people").differs(pictures.preview(*files, "--labels", "none"))
     left, _, right, bottom = box(named)
     lowest = [x for x, y in named if y > bottom - 6]
     assert max(lowest) - min(lowest) < 8 < right - left, "no line leads from the name to the person"

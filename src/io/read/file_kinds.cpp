@@ -10,13 +10,14 @@ namespace {
 struct FileKind {
   std::string_view version_key, told;
 };
-constexpr std::array<FileKind, 8> file_kinds{
+constexpr std::array<FileKind, 9> file_kinds{
     {{"pirsim_script", "a script: `--script` of run, check, preview and others takes it"},
      {"pirsim_walk_test", "a walk test: `pirsim walktest --script` takes it"},
      {"pirsim_coverage", "a coverage study: `pirsim coverage --script` takes it"},
      {"pirsim_placements", "a placement study: `pirsim placements --script` takes it"},
      {"pirsim_nuisance", "a nuisance file: `pirsim reconcile --nuisance` takes it"},
      {"pirsim_recipe", "a recipe: `pirsim dataset` and `pirsim room` take it"},
+     {"pirsim_marks", "marks for a scene: `--marks` takes them beside `--scene`"},
      {"pirsim_log", "a map of a log: `pirsim log --map` takes it"},
      {"asset", "a glTF scene: `--scene` takes it"}}};
 

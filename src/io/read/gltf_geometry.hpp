@@ -93,8 +93,9 @@ struct PlacedNodes {
 };
 
 /// Nodes of the default scene. Faults: no scene, a node below itself or below two parents, transforms that are
-/// singular, not finite or out of the world.
-[[nodiscard]] PlacedNodes place_nodes(const GltfDocument& document, Diagnostics& remarks);
+/// singular, not finite or out of the world. world_from_file: what the whole file is turned, scaled and moved by.
+[[nodiscard]] PlacedNodes place_nodes(const GltfDocument& document, Diagnostics& remarks,
+                                      const glm::dmat4& world_from_file = glm::dmat4(1.0));
 
 /// The rigid part of a transform: looks along its -Z exactly, +Y as near as it can be; scale and mirroring drop out.
 [[nodiscard]] Frame rigid_frame(const glm::dmat4& world_from_node);

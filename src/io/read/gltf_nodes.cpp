@@ -23,7 +23,7 @@ class Placement {
   Placement(const GltfDocument& document, Diagnostics& remarks)
       : document_(document), remarks_(remarks), seen_(document.model.nodes.size(), false) {}
 
-  PlacedNodes run() {
+  PlacedNodes run(const glm::dmat4& world_from_file) {
     const tinygltf::Model& model = document_.model;
     if (model.scenes.empty()) {
       remarks_.error(document_.text.where(""), "the file has no 'scenes'");
@@ -32,7 +32,7 @@ class Placement {
     const int scene = std::max(model.defaultScene, 0);
     const std::string pointer = "/scenes/" + std::to_string(scene) + "/nodes";
     pending_.clear();
-    push(model.scenes[static_cast<std::size_t>(scene)].nodes, glm::dmat4(1.0), pointer);
+    push(model.scenes[static_cast<std::size_t>(scene)].nodes, world_from_file, pointer);
     while (!pending_.empty() && n_faults_ < max_faults) {
       const Pending next = std::move(pending_.back());
       pending_.pop_back();
@@ -171,8 +171,8 @@ class Placement {
 
 }  // namespace
 
-PlacedNodes place_nodes(const GltfDocument& document, Diagnostics& remarks) {
-  return Placement(document, remarks).run();
+PlacedNodes place_nodes(const GltfDocument& document, Diagnostics& remarks, const glm::dmat4& world_from_file) {
+  return Placement(document, remarks).run(world_from_file);
 }
 
 Frame rigid_frame(const glm::dmat4& world_from_node) {

@@ -63,9 +63,8 @@ using nlohmann::json;
 
 class MarkupReader {
  public:
-  MarkupReader(const GltfDocument& document, int node, const json& value, Diagnostics& faults,
-               GroupedWarnings& warnings)
-      : document_(document), node_(node), value_(value), faults_(faults), warnings_(warnings) {}
+  MarkupReader(const GivenMark& given, Diagnostics& faults, GroupedWarnings& warnings)
+      : given_(given), value_(given.value), faults_(faults), warnings_(warnings) {}
 
   std::optional<NodeMark> read() {
     if (!value_.is_object()) return error("", "'pirsim' must be an object with a 'type'"), std::nullopt;
@@ -81,12 +80,11 @@ class MarkupReader {
     if (type == "ignore") result = ignore();
     if (value_.contains("as_meant") && !value_["as_meant"].is_boolean())
       error("/as_meant", "'as_meant' must be true or false");
-    if (!result) error("/type", "unknown type '" + type + "'" + did_you_mean(type, types()) + "; " + types_told());
+    if (!result) error("/type", "unknown type '" + type + "'" + did_you_mean(type, mark_types()) + "; " + types_told());
     if (faulty_) return std::nullopt;
-    return NodeMark{*std::move(result), value_.value("as_meant", false) ? Doubts::not_told : Doubts::told};
+    return NodeMark{*std::move(result), given_.place,
+                    value_.value("as_meant", false) ? Doubts::not_told : Doubts::told};
   }
-
-  static std::vector<std::string> types() { return {"sensor", "seat", "entrance", "floor", "surface", "ignore"}; }
 
  private:
   static std::string types_told() { return "known are sensor, seat, entrance, floor, surface and ignore"; }
@@ -118,11 +116,10 @@ class MarkupReader {
       if (value_["occludes"] == false) result.occludes = mark::Occludes::no;
     }
     if (value_.contains("polygon_xz_m")) result.polygon = polygon();
-    const bool has_mesh = document_.model.nodes[static_cast<std::size_t>(node_)].mesh >= 0;
-    if (!result.polygon && !has_mesh) error("", "a floor needs a mesh at its node, or 'polygon_xz_m'");
-    if (value_.contains("occludes") && !has_mesh) {
-      const std::string name = node_label(document_.model, node_);
-      warnings_.add("occludes", document_.text.where(markup_pointer(node_) + "/occludes"), name,
+    if (!result.polygon && !has_mesh()) error("", "a floor needs a mesh at its node, or 'polygon_xz_m'");
+    if (value_.contains("occludes") && !has_mesh()) {
+      const std::string& name = given_.place.label;
+      warnings_.add("occludes", given_.place.where("/occludes"), name,
                     name + ": 'occludes' has no effect without a mesh at the node: no ray ends at a polygon");
     }
     return result;
@@ -131,8 +128,7 @@ class MarkupReader {
     only({"type", "temperature_c"});
     if (!value_.contains("temperature_c") && !value_.contains("as_meant"))
       error("", "surface without 'temperature_c' or 'as_meant'");
-    if (document_.model.nodes[static_cast<std::size_t>(node_)].mesh < 0)
-      error("", "a surface needs a mesh at its node");
+    if (!has_mesh()) error("", "a surface needs a mesh at its node");
     if (!value_.contains("temperature_c")) return {};
     return {number("temperature_c", 0.0, accepted::surface_c, "degrees Celsius")};
   }
@@ -143,10 +139,10 @@ class MarkupReader {
 
   void only(std::vector<std::string> keys) {
     keys.emplace_back("as_meant");
+    keys.insert(keys.end(), given_.other_keys.begin(), given_.other_keys.end());
     for (const auto& [key, unused] : value_.items()) {
       if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
-      error_at(document_.text.where_key(markup_pointer(node_) + '/' + key),
-               "unknown key '" + key + "'" + did_you_mean(key, keys));
+      error_at(given_.place.where_key('/' + key), "unknown key '" + key + "'" + did_you_mean(key, keys));
     }
   }
 
@@ -187,16 +183,14 @@ class MarkupReader {
     return result;
   }
 
-  void error(const std::string& member, const std::string& message) {
-    error_at(document_.text.where(markup_pointer(node_) + member), message);
-  }
+  [[nodiscard]] bool has_mesh() const { return given_.bearer == GivenMark::Bearer::with_mesh; }
+  void error(const std::string& member, const std::string& message) { error_at(given_.place.where(member), message); }
   void error_at(Where where, const std::string& message) {
     faulty_ = true;
-    faults_.error(std::move(where), node_label(document_.model, node_) + ": " + message);
+    faults_.error(std::move(where), given_.place.label + ": " + message);
   }
 
-  const GltfDocument& document_;
-  int node_;
+  const GivenMark& given_;
   const json& value_;
   Diagnostics& faults_;
   GroupedWarnings& warnings_;
@@ -205,25 +199,37 @@ class MarkupReader {
 
 }  // namespace
 
-std::string markup_pointer(int node) { return "/nodes/" + std::to_string(node) + "/extras/pirsim"; }
+std::vector<std::string> mark_types() { return {"sensor", "seat", "entrance", "floor", "surface", "ignore"}; }
+
+std::optional<NodeMark> read_mark(const GivenMark& given, Diagnostics& faults, GroupedWarnings& warnings) {
+  return MarkupReader(given, faults, warnings).read();
+}
 
 std::optional<NodeMark> read_markup(const GltfDocument& document, int node, Diagnostics& faults,
                                     GroupedWarnings& warnings) {
-  const json& given = document.text.root()["nodes"][static_cast<std::size_t>(node)];
-  const auto extras = given.find("extras");
-  if (extras == given.end() || !extras->is_object() || !extras->contains("pirsim")) return std::nullopt;
-  const json& value = (*extras)["pirsim"];
-  if (!value.is_string()) return MarkupReader(document, node, value, faults, warnings).read();
+  const auto index = static_cast<std::size_t>(node);
+  const json& bearer = document.text.root()["nodes"][index];
+  const auto extras = bearer.find("extras");
+  if (extras == bearer.end() || !extras->is_object() || !extras->contains("pirsim")) return std::nullopt;
+  const std::string pointer = "/nodes/" + std::to_string(node) + "/extras/pirsim";
+  GivenMark given{(*extras)["pirsim"],
+                  {node_label(document.model, node),
+                   [&document, pointer](const std::string& member) { return document.text.where(pointer + member); },
+                   [&document, pointer](const std::string& key) { return document.text.where_key(pointer + key); }},
+                  document.model.nodes[index].mesh < 0 ? GivenMark::Bearer::plain : GivenMark::Bearer::with_mesh};
+  if (!given.value.is_string()) return read_mark(given, faults, warnings);
   // Editors such as Blender offer texts as custom properties, so the object may come as one.
-  const auto parsed = parse_json(value.get<std::string>());
+  const auto text = given.value.get<std::string>();
+  auto parsed = parse_json(text);
   if (const auto* fault = std::get_if<JsonFault>(&parsed)) {
-    const bool single = value.get<std::string>().find('\'') != std::string::npos;
-    faults.error(document.text.where(markup_pointer(node)),
-                 node_label(document.model, node) + ": the text at 'pirsim' is " + fault->message +
+    const bool single = text.find('\'') != std::string::npos;
+    faults.error(given.place.where(""),
+                 given.place.label + ": the text at 'pirsim' is " + fault->message +
                      (single ? "; JSON's quotes are double: {\"type\": \"seat\", \"id\": \"S1\"}" : ""));
     return std::nullopt;
   }
-  return MarkupReader(document, node, std::get<json>(parsed), faults, warnings).read();
+  given.value = std::get<json>(std::move(parsed));
+  return read_mark(given, faults, warnings);
 }
 
 void warn_of_near_marks(const GltfDocument& document, int node, GroupedWarnings& warnings) {
@@ -243,7 +249,7 @@ void warn_of_near_marks(const GltfDocument& document, int node, GroupedWarnings&
   }
   const auto type = extras->find("type");
   if (type == extras->end() || !type->is_string()) return;
-  const auto types = MarkupReader::types();
+  const auto types = mark_types();
   if (std::ranges::find(types, type->get<std::string>()) == types.end()) return;
   warn("/extras/type", "'type' is not read here: a mark's keys must be in extras.pirsim, {\"pirsim\": {\"type\": " +
                            shortened(type->dump()) + ", ...}}");

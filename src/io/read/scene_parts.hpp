@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
@@ -40,14 +41,33 @@ struct Ignore {};
 /// Sensors, seats and entrances without their place, which is the node's.
 using Markup = std::variant<SensorSpec, SeatSpec, EntranceSpec, mark::Floor, mark::Surface, mark::Ignore>;
 
+/// Where a mark stands, for messages.
+struct MarkPlace {
+  std::string label;                                   ///< of what bears it: "node 'PIR1'"
+  std::function<Where(const std::string&)> where;      ///< of a part of the mark by its JSON pointer: "/id"
+  std::function<Where(const std::string&)> where_key;  ///< of the key that names the part
+};
+
+/// A mark as a file gives it, at a node or for one.
+struct GivenMark {
+  enum class Bearer { plain, with_mesh };
+  nlohmann::json value;
+  MarkPlace place;
+  Bearer bearer = Bearer::plain;
+  std::vector<std::string> other_keys = {};  ///< that aren't the mark's, and are read elsewhere
+};
+
 enum class Doubts { told, not_told };
 struct NodeMark {
   Markup what;
+  MarkPlace place;
   Doubts doubts = Doubts::told;  ///< not_told: `as_meant`, the node is as it should be
 };
 
-/// JSON pointer of a node's markup.
-[[nodiscard]] std::string markup_pointer(int node);
+/// The words that `type` may be.
+[[nodiscard]] std::vector<std::string> mark_types();
+/// Nothing for a faulty mark (the faults are added).
+[[nodiscard]] std::optional<NodeMark> read_mark(const GivenMark& given, Diagnostics& faults, GroupedWarnings& warnings);
 
 /// Nothing for a node without markup, or with a faulty one (the faults are added).
 [[nodiscard]] std::optional<NodeMark> read_markup(const GltfDocument& document, int node, Diagnostics& faults,
@@ -58,7 +78,8 @@ void warn_of_near_marks(const GltfDocument& document, int node, GroupedWarnings&
 
 // What a scene may say, but hardly means.
 
-/// Indices of nodes: seats, entrances and meshes as in the scene.
+/// Numbers of what bears the marks: nodes by their index, then what a marks file places. Seats, entrances and meshes
+/// as in the scene.
 struct MarkedNodes {
   std::vector<int> seats, entrances, meshes;
   int floor = 0;

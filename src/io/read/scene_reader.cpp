@@ -7,7 +7,9 @@
 #include <set>
 #include <utility>
 
+#include "core/text.hpp"
 #include "io/read/gltf_geometry.hpp"
+#include "io/read/marks_file.hpp"
 #include "io/read/reader_parts.hpp"
 #include "io/read/scene_parts.hpp"
 #include "schema/check_specs.hpp"
@@ -22,12 +24,15 @@ class SceneBuilder {
   SceneBuilder(const std::filesystem::path& file, const SceneOptions& options)
       : file_(file), options_(options), document_(load_gltf(file, remarks_)), floor_(remarks_) {
     spec_.name = name_of_input(file);
+    if (!options.marks.empty()) marks_file_ = read_marks_file(options.marks, warnings_);
   }
 
   SceneSpec build() {
     warn_of_what_is_left_out();
     temperatures_c_ = material_temperatures_c(document_, remarks_);
-    const PlacedNodes nodes = place_nodes(document_, remarks_);
+    const PlacedNodes nodes =
+        place_nodes(document_, remarks_, marks_file_ ? marks_file_->room_from_model : glm::dmat4(1.0));
+    if (marks_file_) marks_of_nodes_ = marks_of_nodes(*marks_file_, document_, nodes, remarks_, warnings_);
     for (const HiddenNode& hidden : nodes.hidden) tell_of_hidden(hidden);
     for (const PlacedNode& placed : nodes.shown) {
       read_mark(placed.node);
@@ -37,7 +42,9 @@ class SceneBuilder {
       add_node(placed);
       if (too_many_faults()) break;
     }
+    add_placed();
     spec_.files = document_.files;
+    if (marks_file_) spec_.files.push_back(marks_file_->file);
     spec_.floor = floor_.build();
     require_floor();
     if (!remarks_.has_errors()) warn_of_doubts();
@@ -65,7 +72,7 @@ class SceneBuilder {
       for (std::size_t i = 0; array != root.end() && i < array->size(); ++i) {
         const auto extras = (*array)[i].find("extras");
         if (extras == (*array)[i].end() || !extras->is_object() || !extras->contains("pirsim")) continue;
-        const std::string name = label_of(collection, i);
+        const std::string name = label_in(collection, i);
         warnings_.add(
             "off nodes",
             document_.text.where("/" + std::string(collection) + '/' + std::to_string(i) + "/extras/pirsim"), name,
@@ -74,25 +81,23 @@ class SceneBuilder {
       }
     }
   }
-  [[nodiscard]] std::string label_of(const std::string& collection, std::size_t i) const {
+  [[nodiscard]] std::string label_in(const std::string& collection, std::size_t i) const {
     return collection == "meshes" ? mesh_label(document_.model, static_cast<int>(i)) : "a scene";
   }
   void warn_of_doubts() {
     doubt(spec_, nodes_, [&](const Doubt& doubt) {
-      warnings_.add(doubt.kind, place_of(doubt.node), doubt.name,
-                    node_label(document_.model, doubt.node) + ": " + doubt.message);
+      warnings_.add(doubt.kind, place_of(doubt.node), doubt.name, label_of(doubt.node) + ": " + doubt.message);
     });
   }
 
   /// One warning for all; another for those whose marks go with them.
   void tell_of_hidden(const HiddenNode& hidden) {
-    Diagnostics unread;
-    GroupedWarnings untold;
-    const auto own = read_markup(document_, hidden.node, unread, untold);
+    if (marks_of_nodes_.ignored.contains(hidden.node)) return;
+    const auto own = hidden_mark(hidden.node);
     if (own && (own->doubts == Doubts::not_told || std::holds_alternative<mark::Ignore>(own->what))) return;
     std::string marks;
     const auto note_mark = [&](int node) {
-      const auto mark = read_markup(document_, node, unread, untold);
+      const auto mark = hidden_mark(node);
       if (!mark) return;
       if (std::holds_alternative<mark::Floor>(mark->what)) hidden_floor_ = node_label(document_.model, node);
       const std::string name = name_of_mark(mark->what);
@@ -106,6 +111,13 @@ class SceneBuilder {
     if (marks.empty()) return warnings_.add("hidden", place_of(hidden.node), label, what + with);
     warnings_.add("hidden mark", place_of(hidden.node), marks, what + with + ": " + marks);
   }
+  [[nodiscard]] std::optional<NodeMark> hidden_mark(int node) const {
+    if (const auto beside = marks_of_nodes_.marks.find(node); beside != marks_of_nodes_.marks.end())
+      return beside->second;
+    Diagnostics unread;
+    GroupedWarnings untold;
+    return read_markup(document_, node, unread, untold);
+  }
   static std::string name_of_mark(const Markup& markup) {
     const auto name = [](const char* type, const std::string& id) { return std::string(type) + " '" + id + "'"; };
     if (const auto* sensor = std::get_if<SensorSpec>(&markup)) return name("sensor", sensor->id);
@@ -115,31 +127,62 @@ class SceneBuilder {
   }
 
   void read_mark(int node) {
-    auto mark = read_markup(document_, node, remarks_, warnings_);
-    if (!mark) return warn_of_near_marks(document_, node, warnings_);
-    if (mark->doubts == Doubts::not_told) {
-      nodes_.as_meant.insert(node);
-      meshes_as_meant_.insert(document_.model.nodes[static_cast<std::size_t>(node)].mesh);
+    std::optional<NodeMark> mark = read_markup(document_, node, remarks_, warnings_);
+    if (!mark) warn_of_near_marks(document_, node, warnings_);
+    if (const auto beside = marks_of_nodes_.marks.find(node); beside != marks_of_nodes_.marks.end()) {
+      if (mark) {
+        remarks_.error(beside->second.place.where(""), beside->second.place.label + ": " + mark->place.label +
+                                                           " has a mark of its own" + in_place(mark->place.where("")));
+      }
+      mark = beside->second;
+      mark->place.label = node_label(document_.model, node);
     }
-    marks_.emplace(node, std::move(mark->what));
+    if (mark) keep(node, *std::move(mark));
+  }
+  void keep(int bearer, NodeMark mark) {
+    if (mark.doubts == Doubts::not_told) {
+      nodes_.as_meant.insert(bearer);
+      if (is_node(bearer)) meshes_as_meant_.insert(mesh_of(bearer));
+    }
+    marks_.emplace(bearer, std::move(mark));
   }
 
   void add_node(const PlacedNode& placed) {
     const auto known = marks_.find(placed.node);
-    const Markup* markup = known == marks_.end() ? nullptr : &known->second;
-    if (markup && std::holds_alternative<mark::Floor>(*markup)) {
-      if (!has_room(n_floors_++, limits::floors, "floors")) return;
-      nodes_.floor = placed.node;
-    }
+    const Markup* markup = known == marks_.end() ? nullptr : &known->second.what;
     if (markup && std::holds_alternative<mark::Ignore>(*markup)) return;
-    if (const int mesh = document_.model.nodes[static_cast<std::size_t>(placed.node)].mesh; mesh >= 0) {
+    const int mesh = mesh_of(placed.node);
+    if (const auto ignored = marks_of_nodes_.ignored.find(placed.node); ignored != marks_of_nodes_.ignored.end()) {
+      if (markup && is_about_mesh(*markup)) tell_of_both(known->second, ignored->second);
+    } else if (mesh >= 0) {
       add_mesh(placed, mesh, markup);
     }
-    if (!markup) return;
-    if (const auto* sensor = std::get_if<SensorSpec>(&*markup)) add_sensor(placed, *sensor);
-    if (const auto* seat = std::get_if<SeatSpec>(&*markup)) add_seat(placed, *seat);
-    if (const auto* entrance = std::get_if<EntranceSpec>(&*markup)) add_entrance(placed, *entrance);
-    if (const auto* floor = std::get_if<mark::Floor>(&*markup); floor && floor->polygon) add_polygon(placed, *floor);
+    if (markup) add_mark(placed, *markup);
+  }
+  static bool is_about_mesh(const Markup& markup) {
+    const auto* floor = std::get_if<mark::Floor>(&markup);
+    return (floor && !floor->polygon) || std::holds_alternative<mark::Surface>(markup);
+  }
+  void tell_of_both(const NodeMark& mark, const NodePattern& ignored) {
+    remarks_.error(ignored.where, "ignore: '" + shortened(ignored.text) + "': " + mark.place.label +
+                                      " has a mark that needs its mesh" + in_place(mark.place.where("")));
+  }
+  void add_mark(const PlacedNode& placed, const Markup& markup) {
+    if (const auto* sensor = std::get_if<SensorSpec>(&markup)) add_sensor(placed, *sensor);
+    if (const auto* seat = std::get_if<SeatSpec>(&markup)) add_seat(placed, *seat);
+    if (const auto* entrance = std::get_if<EntranceSpec>(&markup)) add_entrance(placed, *entrance);
+    if (const auto* floor = std::get_if<mark::Floor>(&markup)) add_floor(placed, *floor);
+  }
+  /// What the marks file places in the room.
+  void add_placed() {
+    if (!marks_file_) return;
+    int bearer = static_cast<int>(document_.model.nodes.size());
+    for (MarksFile::Placed& placed : marks_file_->placed) {
+      const Markup markup = placed.mark.what;
+      keep(bearer, std::move(placed.mark));
+      add_mark({bearer++, placed.world_from_mark}, markup);
+      if (too_many_faults()) break;
+    }
   }
 
   void add_mesh(const PlacedNode& placed, int mesh, const Markup* markup) {
@@ -155,14 +198,13 @@ class SceneBuilder {
     if (!budget_.take(whole.positions.size() + whole.triangles.size())) {
       return node_error(placed.node, "/mesh", "the copies of its mesh make the scene too large");
     }
-    const TriMesh world = transformed(whole, placed.world_from_node, name_of(placed.node, mesh));
+    const TriMesh world = transformed(whole, placed.world_from_node, node_name(document_.model, placed.node));
     if (!std::ranges::all_of(world.positions, is_in_world)) {
       return node_error(placed.node, "/mesh", "its mesh reaches more than 100 km from the origin");
     }
     CleanMesh cleaned = clean(world);
     if (is_first) warn_of_audit(cleaned.audit, placed.node, mesh, warnings);
-    if (floor && !floor->polygon)
-      floor_.add_mesh(cleaned.mesh, markup_place(placed.node), node_label(document_.model, placed.node));
+    if (floor && !floor->polygon) floor_.add_mesh(cleaned.mesh, mark_of(placed).where(""), mark_of(placed).label);
     if (floor && floor->occludes == mark::Occludes::no) return;
     if (temperature_c) cleaned.mesh.temperature_c = temperature_c;
     nodes_.meshes.resize(spec_.meshes.size() + (temperature_c ? 1 : known->second.size()), placed.node);
@@ -173,13 +215,6 @@ class SceneBuilder {
         spec_.meshes.push_back(clean(transformed(part, placed.world_from_node, world.name)).mesh);
       }
     }
-  }
-
-  std::string name_of(int node_index, int mesh) const {
-    const auto& node = document_.model.nodes[static_cast<std::size_t>(node_index)];
-    if (!node.name.empty()) return node.name;
-    const auto& given = document_.model.meshes[static_cast<std::size_t>(mesh)];
-    return !given.name.empty() ? given.name : "mesh " + std::to_string(mesh);
   }
 
   void warn_of_audit(const MeshAudit& audit, int node, int mesh, GroupedWarnings& warnings) {
@@ -199,8 +234,8 @@ class SceneBuilder {
     if (!has_room(spec_.sensors.size(), limits::sensors, "sensors")) return;
     check_unique("sensor", sensor.id, placed.node);
     const std::string fault = column_fault(sensor.id);
-    if (!fault.empty()) node_error(placed.node, "/extras/pirsim/id", fault);
-    model_places_.try_emplace(sensor.model, document_.text.where(markup_pointer(placed.node) + "/model"));
+    if (!fault.empty()) mark_error(placed.node, "/id", fault);
+    model_places_.try_emplace(sensor.model, mark_of(placed).where("/model"));
     sensor.world_from_sensor = rigid_frame(placed.world_from_node);
     spec_.sensors.push_back(std::move(sensor));
   }
@@ -218,11 +253,13 @@ class SceneBuilder {
     entrance.world_from_entrance = upright_frame(placed);
     spec_.entrances.push_back(std::move(entrance));
   }
-  void add_polygon(const PlacedNode& placed, const mark::Floor& floor) {
+  void add_floor(const PlacedNode& placed, const mark::Floor& floor) {
+    if (!has_room(n_floors_++, limits::floors, "floors")) return;
+    nodes_.floor = placed.node;
+    if (!floor.polygon) return;
     std::vector<Vec3> corners;
     for (const Vec2& p : *floor.polygon) corners.emplace_back(placed.world_from_node * glm::dvec4(p.x, 0.0, p.y, 1.0));
-    floor_.add_polygon(corners, document_.text.where(markup_pointer(placed.node) + "/polygon_xz_m"),
-                       node_label(document_.model, placed.node));
+    floor_.add_polygon(corners, mark_of(placed).where("/polygon_xz_m"), mark_of(placed).label);
   }
 
   /// So many are there already. A fault if the scene can't have one more.
@@ -236,18 +273,20 @@ class SceneBuilder {
     const Frame frame = rigid_frame(placed.world_from_node);
     if (!is_upright(frame)) {
       constexpr double flat = 0.0038;  // of the upward axis: within a quarter of a degree of level
-      remarks_.error(markup_place(placed.node),
-                     node_label(document_.model, placed.node) + ": must stand upright (its +Y up)" +
+      remarks_.error(mark_of(placed).where(""),
+                     mark_of(placed).label + ": must stand upright (its +Y up)" +
                          (std::abs(frame.up().y) < flat ? "; it lies: is the file Z-up?" : ""));
     }
     return frame;
   }
 
-  void check_unique(const std::string& type, const std::string& id, int node) {
-    const auto [first, is_new] = ids_.try_emplace({type, id}, node);
+  void check_unique(const std::string& type, const std::string& id, int bearer) {
+    const auto [first, is_new] = ids_.try_emplace({type, id}, bearer);
     if (is_new) return;
-    node_error(node, "/extras/pirsim/id",
-               type + " id '" + id + "' is taken by " + node_label(document_.model, first->second));
+    const MarkPlace& other = marks_.at(first->second).place;
+    mark_error(
+        bearer, "/id",
+        type + " id '" + id + "' is taken by " + other.label + (marks_file_ ? in_place(other.where("/id")) : ""));
   }
 
   void require_floor() {
@@ -285,8 +324,20 @@ class SceneBuilder {
     return remarks_.has_errors() && std::count_if(remarks_.issues().begin(), remarks_.issues().end(), is_error) >= 20;
   }
 
-  [[nodiscard]] Where place_of(int node) const { return document_.text.where("/nodes/" + std::to_string(node)); }
-  [[nodiscard]] Where markup_place(int node) const { return document_.text.where(markup_pointer(node)); }
+  [[nodiscard]] bool is_node(int bearer) const { return bearer < static_cast<int>(document_.model.nodes.size()); }
+  [[nodiscard]] int mesh_of(int node) const { return document_.model.nodes[static_cast<std::size_t>(node)].mesh; }
+  [[nodiscard]] Where place_of(int bearer) const {
+    return is_node(bearer) ? document_.text.where("/nodes/" + std::to_string(bearer))
+                           : marks_.at(bearer).place.where("");
+  }
+  [[nodiscard]] std::string label_of(int bearer) const {
+    return is_node(bearer) ? node_label(document_.model, bearer) : marks_.at(bearer).place.label;
+  }
+  [[nodiscard]] const MarkPlace& mark_of(const PlacedNode& placed) const { return marks_.at(placed.node).place; }
+  void mark_error(int bearer, const std::string& member, const std::string& message) {
+    const MarkPlace& mark = marks_.at(bearer).place;
+    remarks_.error(mark.where(member), mark.label + ": " + message);
+  }
   void node_error(int node, const std::string& member, const std::string& message) {
     remarks_.error(document_.text.where("/nodes/" + std::to_string(node) + member),
                    node_label(document_.model, node) + ": " + message);
@@ -301,14 +352,16 @@ class SceneBuilder {
   FloorBuilder floor_;
   SceneSpec spec_;
   MarkedNodes nodes_;
-  std::map<int, Markup> marks_;    ///< by node
+  std::optional<MarksFile> marks_file_;
+  MarksOfNodes marks_of_nodes_;    ///< of the marks file
+  std::map<int, NodeMark> marks_;  ///< by bearer: nodes by their index, then what the marks file places
   std::set<int> meshes_as_meant_;  ///< of a node that says so
   std::string hidden_floor_;       ///< its node, as messages name it
   std::size_t n_floors_ = 0;
   std::vector<std::optional<double>> temperatures_c_;       ///< (n_materials)
   std::map<int, std::vector<TriMesh>> meshes_;              ///< in their own frames, by index, in equally warm parts
   std::map<std::string, Where> model_places_;               ///< where each sensor model is first named
-  std::map<std::pair<std::string, std::string>, int> ids_;  ///< (type, id) to node
+  std::map<std::pair<std::string, std::string>, int> ids_;  ///< (type, id) to bearer
 };
 
 }  // namespace

@@ -332,6 +332,7 @@ SensorSearch::SensorSearch(const SceneOptions& options, const fs::path& scene_fo
     : folders_(options.sensor_directories) {
   folders_.push_back(scene_folder / "sensors");
   folders_.push_back(scene_folder / ".." / "sensors");
+  if (!options.marks.empty()) folders_.push_back(folder_of_input(options.marks) / "sensors");
   if (const char* data = std::getenv("PIRSIM_DATA_DIR"); data != nullptr && *data != '\0') {
     folders_.push_back(fs::path(data) / "sensors");
   }

@@ -66,6 +66,8 @@ class YamlMap {
   /// Reports the key if it isn't there.
   void require(const std::string& key);
 
+  /// The keys that were asked for so far, present or not.
+  [[nodiscard]] const std::vector<std::string>& asked() const noexcept { return asked_; }
   /// Call when every known key was asked for, present or not: reports the others.
   void finish() const;
 

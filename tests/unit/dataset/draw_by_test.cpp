@@ -57,12 +57,17 @@ TEST_CASE("Rooms take a recipe's own scenes in turn") {
   const TemporaryFolder folder;
   folder.write("a.gltf", "{}");
   folder.write("b.gltf", "{}");
+  folder.write("b.yaml", "");
   const RecipeSpec recipe = read_recipe(folder.write(
-      "recipe.yaml", "pirsim_recipe: 1\nrooms:\n  - {scenes: [a.gltf, b.gltf], count: 5}\n  - {count: 1}\n"));
+      "recipe.yaml",
+      "pirsim_recipe: 1\nrooms:\n  - {scenes: [a.gltf, {scene: b.gltf, marks: b.yaml}], count: 5}\n  - {count: 1}\n"));
   REQUIRE(recipe.n_rooms() == 6);
   std::string names;
-  for (int room = 1; room <= 6; ++room) names += own_scene(recipe, room).stem().string() + ",";
-  CHECK(names == "a,b,a,b,a,,");
+  for (int room = 1; room <= 6; ++room) {
+    const OwnScene* own = own_scene(recipe, room);
+    names += (own == nullptr ? "" : own->file.stem().string() + own->marks.extension().string()) + ",";
+  }
+  CHECK(names == "a,b.yaml,a,b.yaml,a,,");
 }
 
 TEST_CASE("Weights that can't be drawn by are refused at their place") {
