@@ -1,14 +1,55 @@
 #include <iostream>
+#include <optional>
 
 #include "app/commands.hpp"
 #include "app/long_work.hpp"
 #include "app/session.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/input.hpp"
+#include "io/read/model_parts.hpp"
 #include "pirsim/look.hpp"
+#include "studies/suggestion.hpp"
 
 namespace pirsim::app {
 namespace {
 
-void check(const Inputs& inputs) {
+struct CheckOptions {
+  bool suggests = false;
+  std::optional<double> floor_m;
+  std::filesystem::path output;  ///< empty: standard output
+};
+
+/// Marks that somebody edited are worth more than new ones.
+void refuse_to_overwrite(const std::filesystem::path& file) {
+  std::error_code unknown;
+  if (!file.empty() && !io::is_written_directly(file) && std::filesystem::exists(file, unknown))
+    throw Error(ErrorCode::usage, "-o: '" + file.string() + "' is there already and isn't overwritten");
+}
+
+void suggest(const Inputs& inputs, const CheckOptions& options) {
+  if (!inputs.marks.empty()) throw Error(ErrorCode::usage, "--suggest makes marks; it doesn't go with --marks");
+  check_outputs({{"-o", options.output, {".yaml", ".yml"}}}, inputs);
+  refuse_to_overwrite(options.output);
+  const std::string name = io::name_of_input(inputs.scene);
+  const std::string text = [&] {
+    const Progress progress({.what = "looking for floors and rooms in " + name}, inputs.verbosity);
+    io::ModelParts model = io::read_model_parts(inputs.scene);
+    tell(model.warnings, inputs.verbosity);
+    return studies::to_yaml(studies::suggest(std::move(model), options.floor_m, name), name);
+  }();
+  if (options.output.empty()) {
+    std::cout << text;
+    return require_written();
+  }
+  io::write_text_file(options.output, text);
+  if (inputs.verbosity != Verbosity::quiet) std::cerr << "wrote " << options.output.string() << '\n';
+}
+
+void check(const Inputs& inputs, const CheckOptions& options) {
+  if (options.suggests) return suggest(inputs, options);
+  if (options.floor_m || !options.output.empty())
+    throw Error(ErrorCode::usage, std::string(options.floor_m ? "--floor" : "-o") + " goes with --suggest");
+  if (inputs.script.empty()) throw Error(ErrorCode::usage, "--script FILE is missing; see pirsim check --help");
   // Warnings are what a check is made for: --quiet leaves out only the report.
   Inputs with_warnings = inputs;
   with_warnings.verbosity = Verbosity::normal;
@@ -28,12 +69,20 @@ void add_check_command(CLI::App& app) {
   CLI::App& command = add_command(app, "check", "validate scene and script without running them", R"(
   pirsim check --scene room.gltf --script study.yaml               validate, and report what each sensor can see
   pirsim check --scene room.gltf --script study.yaml -q            only faults and warnings
+  pirsim check --scene flat.glb --suggest -o marks.yaml            propose marks for a model that has none
 )");
   const auto inputs = std::make_shared<Inputs>();
+  const auto options = std::make_shared<CheckOptions>();
   offer_study(command, *inputs);
   offer_tracer(command, *inputs);
   offer_replicates(command, *inputs);
-  on_call(command, inputs, check);
+  command.add_flag("--suggest", options->suggests,
+                   "propose a file of marks for the scene, to be edited; no script is needed");
+  command.add_option("--floor", options->floor_m, "of --suggest: the floor's height (default: the lowest large one's)")
+      ->option_text("M");
+  offer_output(command, options->output, "FILE", "of --suggest: marks, .yaml (default: standard output)");
+  on_call(
+      command, inputs, [options](const Inputs& given) { check(given, *options); }, Needs::scene);
 }
 
 }  // namespace pirsim::app

@@ -65,7 +65,7 @@ VALUES = {"--set": "name=other", "--response": "zones", "--marks": "marks.yaml",
           "--alpha": "0.05", "--effects": "dead_time", "--data": "sums", "--leave-out": "effects", "--hide": "one",
           "--script": "other.yaml", "--first-day": "2026-03-03", "--from": "09:00", "--to": "10:00",
           "--cleaning": "none", "--time-zone": "Europe/Berlin"}
-OUTPUTS = {"preview": "room.png", "export": "run.glb", "view": "run.html", "coverage": "maps", "walktest": "points.csv"}
+OUTPUTS = {"check": "marks.yaml", "preview": "room.png", "export": "run.glb", "view": "run.html", "coverage": "maps", "walktest": "points.csv"}
 
 
 def options_of(command):
@@ -114,6 +114,8 @@ class Options(unittest.TestCase):
                     value = () if takes is None else (value_of(command, option),)
                     if option == "--format":
                         value += "--shard", "1/2"
+                    if command == ("check",) and option in ("--floor", "--output"):
+                        value += "--suggest",
                     needed = with_folder(option, rest)
                     result = pirsim(*command, "--scene", "nowhere.gltf", "--script", DATA / "studies" / script, *needed,
                                     option, *value, code=4, cwd=folder)

@@ -1,0 +1,201 @@
+#include "studies/suggestion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "core/text.hpp"
+#include "studies/suggested_parts.hpp"
+
+namespace pirsim::studies {
+namespace {
+
+constexpr std::array<std::string_view, 6> door_words{"door", "tür", "tuer", "puerta", "deur", "porte"};
+constexpr std::array<std::string_view, 7> no_door_words{"indoor",   "outdoor", "cabinet", "cupboard",
+                                                        "wardrobe", "fridge",  "closet"};
+constexpr std::array<std::string_view, 2> space_words{"ifcspace", "ifc_space"};
+constexpr std::array<std::string_view, 14> room_words{"bedroom",      "kitchen", "bathroom", "living",     "hallway",
+                                                      "corridor",     "office",  "dining",   "wohnzimmer", "küche",
+                                                      "schlafzimmer", "flur",    "foyer",    "toilet"};
+
+/// Leaves and frames of doors that stand in openings; assumed sizes.
+bool is_door_sized(const Extent& extent) {
+  const Vec3 size = extent.size();
+  const double wide = std::max(size.x, size.z);
+  return size.y >= 1.6 && size.y <= 3.2 && wide >= 0.5 && wide <= 2.6;
+}
+
+bool is_door_shaped(const Extent& extent) {
+  const Vec3 size = extent.size();
+  const double wide = std::max(size.x, size.z), thick = std::min(size.x, size.z);
+  return size.y >= 1.85 && size.y <= 2.4 && wide >= 0.55 && wide <= 2.0 && thick <= 0.25;
+}
+
+/// Of nodes' names, each once.
+std::vector<std::string> names_of(const io::ModelParts& model, const std::vector<Thing>& things) {
+  std::set<std::string> names;
+  for (const Thing& thing : things) names.insert(model.nodes[static_cast<std::size_t>(thing.node)].name);
+  return {names.begin(), names.end()};
+}
+
+/// What isn't below one of the things.
+std::vector<const TriMesh*> meshes_without(const io::ModelParts& model, const std::vector<Thing>& things) {
+  std::set<const TriMesh*> left_out;
+  for (const Thing& thing : things) left_out.insert(thing.meshes.begin(), thing.meshes.end());
+  std::vector<const TriMesh*> meshes;
+  for (const io::ModelPart& part : model.parts) {
+    if (!left_out.contains(&part.mesh)) meshes.push_back(&part.mesh);
+  }
+  return meshes;
+}
+
+Leaf leaf_of(const Thing& thing) {
+  const Vec3 size = thing.extent.size();
+  const bool is_along_x = size.x >= size.z;
+  return {floor_point(thing.extent.middle()), is_along_x ? Vec2(0, 1) : Vec2(1, 0), std::max(size.x, size.z),
+          std::min(size.x, size.z)};
+}
+
+/// Doors by their names, or by their shape alone: thin, as high as one, and standing on a floor.
+std::vector<Thing> doors_of(const io::ModelParts& model) {
+  std::vector<Thing> doors = things_named(model, door_words, is_door_sized);
+  constexpr std::array<std::string_view, 1> any{""};
+  std::set<const TriMesh*> known;
+  for (const Thing& door : doors) known.insert(door.meshes.begin(), door.meshes.end());
+  for (Thing& thing : things_named(model, any, is_door_shaped)) {
+    if (!known.contains(thing.meshes.front())) doors.push_back(std::move(thing));
+  }
+  std::erase_if(doors, [&](const Thing& door) {
+    return has_word(model.nodes[static_cast<std::size_t>(door.node)].name, no_door_words);
+  });
+  return doors;
+}
+
+/// The lowest height with at least half as much room as the best, under a ceiling if there are any.
+struct ChosenFloor {
+  double height_m = 0.0;
+  std::vector<double> others_m;
+};
+std::optional<ChosenFloor> choose_floor(std::span<const TriMesh* const> meshes, std::span<const Leaf> leaves) {
+  constexpr double coarse_m = 0.1, least_m2 = 2.0, least_part = 0.5;
+  struct Floor {
+    double height_m, standing_m2, covered_m2;
+  };
+  std::vector<Floor> floors;
+  double most = 0.0, most_covered = 0.0;
+  for (const double height_m : level_heights_m(meshes)) {
+    const FloorPlan plan = floor_plan_at(meshes, leaves, height_m, coarse_m);
+    if (plan.standing_m2 >= least_m2) floors.push_back({height_m, plan.standing_m2, plan.covered_m2});
+    most = std::max(most, plan.standing_m2);
+    most_covered = std::max(most_covered, plan.covered_m2);
+  }
+  const bool has_ceilings = most_covered >= least_part * most;  // then what has none is a roof, or a garden
+  ChosenFloor chosen;
+  bool is_chosen = false;
+  for (const Floor& floor : floors) {
+    if (has_ceilings ? floor.covered_m2 < least_part * most_covered : floor.standing_m2 < least_part * most) continue;
+    (is_chosen ? chosen.others_m.emplace_back() : chosen.height_m) = floor.height_m;
+    is_chosen = true;
+  }
+  if (!is_chosen) return std::nullopt;
+  return chosen;
+}
+
+/// A name that an id can be.
+std::string id_from(const std::string& name) {
+  std::string id;
+  for (const char c : name) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 && static_cast<unsigned char>(c) < 128) {
+      id += c;
+    } else if (!id.empty() && id.back() != '_') {
+      id += '_';
+    }
+  }
+  while (!id.empty() && id.back() == '_') id.pop_back();
+  return id.substr(0, 40);
+}
+
+/// By the volumes of spaces, then by what stands in them: "Kitchen_bottom" makes a kitchen.
+std::map<int, std::string> room_names(const io::ModelParts& model, const std::vector<Thing>& spaces,
+                                      const FloorPlan& plan) {
+  std::map<int, std::string> names;
+  const auto name = [&](const Thing& thing) {
+    const int room = plan.room_at(floor_point(thing.extent.middle()));
+    if (room >= 0) names.try_emplace(room, model.nodes[static_cast<std::size_t>(thing.node)].name);
+  };
+  std::ranges::for_each(spaces, name);
+  const auto fits = [](const Extent&) { return true; };
+  for (const Thing& thing : things_named(model, room_words, fits)) name(thing);
+  return names;
+}
+
+void add_areas(const io::ModelParts& model, const std::vector<Thing>& spaces, const FloorPlan& plan,
+               Suggestion& result) {
+  const std::map<int, std::string> names = room_names(model, spaces, plan);
+  std::set<std::string> taken;
+  std::vector<std::string> ids;
+  for (int room = 0; room < plan.n_rooms; ++room) {
+    SuggestedArea area;
+    if (const auto named = names.find(room); named != names.end() && !id_from(named->second).empty()) {
+      area.id = id_from(named->second);
+      area.named_by = named->second;
+    }
+    const std::string base = area.id.empty() ? "area" : area.id;
+    for (int n = area.id.empty() ? 1 : 2; area.id.empty() || taken.contains(area.id); ++n)
+      area.id = base + '_' + std::to_string(n);
+    taken.insert(area.id);
+    ids.push_back(area.id);
+    area.outline = room_outline(plan, room);
+    if (area.outline.empty()) continue;
+    area.square_metres = FloorArea({area.outline}, 0.0).area_m2();
+    result.areas.push_back(std::move(area));
+  }
+  for (const FloorGap& gap : plan.gaps) {
+    const auto id = [&](int room) { return room < 0 ? std::string() : ids[static_cast<std::size_t>(room)]; };
+    (gap.to < 0 ? result.entrances : result.doors)
+        .push_back({id(gap.from), id(gap.to), gap.at, gap.inwards, gap.width_m});
+  }
+}
+
+}  // namespace
+
+Suggestion suggest(io::ModelParts model, std::optional<double> floor_m, const std::string& name) {
+  Suggestion result;
+  if (model.parts.empty()) throw Error(ErrorCode::input, {name}, "the model has no meshes");
+  result.frame = frame_of(model);
+  to_room(model, result.frame);
+  const std::vector<Thing> doors = doors_of(model);
+  std::vector<Leaf> leaves;
+  for (const Thing& door : doors) leaves.push_back(leaf_of(door));
+  const std::vector<Thing> spaces = things_named(model, space_words, [](const Extent&) { return true; });
+  const std::vector<const TriMesh*> meshes = meshes_without(model, spaces);
+  const std::optional<ChosenFloor> floor = floor_m ? ChosenFloor{*floor_m, {}} : choose_floor(meshes, leaves);
+  if (!floor)
+    throw Error(ErrorCode::input, {name}, "nothing in the model looks like a floor: level, with room to stand");
+  constexpr double fine_m = 0.05;
+  const FloorPlan plan = floor_plan_at(meshes, leaves, floor->height_m, fine_m);
+  if (plan.n_rooms == 0) {
+    throw Error(ErrorCode::input, {name},
+                "at a height of " + fixed(floor->height_m, 2) + " m nothing looks like a floor");
+  }
+  result.floor_m = floor->height_m;
+  result.other_floors_m = floor->others_m;
+  result.floors = floor_outlines(plan);
+  result.is_open = plan.is_open;
+  std::vector<Thing> shutting;
+  for (const FloorGap& gap : plan.gaps) {
+    if (gap.leaf >= 0) shutting.push_back(doors[static_cast<std::size_t>(gap.leaf)]);
+  }
+  result.door_leaves = names_of(model, shutting);
+  result.spaces = names_of(model, spaces);
+  add_areas(model, spaces, plan, result);
+  result.seats = seats_of(model, plan);
+  result.beds = beds_of(model, plan);
+  return result;
+}
+
+}  // namespace pirsim::studies
