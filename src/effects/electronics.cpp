@@ -112,6 +112,7 @@ Effect missed_triggers() {
                    .reach = Reach::triggers,
                    .in_analog = "the same; a trigger is a tick at which the comparator's output is on, so short pulses "
                                 "suffer most. A threshold set too high is range_scale below 1"},
+          .draw = draw_trend,
           .make_stage = make_missed_triggers};
 }
 

@@ -15,6 +15,11 @@ ChoiceInfo sensor_choice() { return {"sensor", ChoiceKind::sensor, {}, "all sens
 
 ChoiceInfo trend_choice() { return {"trend", ChoiceKind::variant, {"steady", "growing"}, "the same in all runs"}; }
 
+void draw_trend(EffectSpec& effect, const SceneSpec&, const ScriptSpec& script, Stream&) {
+  const std::size_t n_runs = script.trials.size() * static_cast<std::size_t>(script.replicates);
+  if (n_runs < fewest_runs_of_a_trend) effect.choices["trend"] = trend_choice().words.front();
+}
+
 Trend::Trend(const EffectSpec& effect, const StageContext& context)
     : kind_(word(effect, "trend") == "growing" ? Kind::growing : Kind::steady), n_runs_(context.n_runs) {}
 

@@ -82,8 +82,8 @@ def test_overrides_and_files_that_are_not_there(room, study_a, tmp_path):
 
 
 def test_effects_that_do_nothing_here_are_warned_of(room, study_a):
-    with pytest.warns(pirsim.InputWarning, match="soft_zone_edges"):
-        pirsim.compile(room, study_a, set={"sensing.response": "analog", "effects": ["soft_zone_edges"],
+    with pytest.warns(pirsim.InputWarning, match="dual_polarity"):
+        pirsim.compile(room, study_a, set={"sensing.response": "analog", "effects": ["dual_polarity"],
                                            "replicates": 1})
 
 

@@ -143,6 +143,16 @@ void apply_some(const ReferenceStudy& reference, const FeatureMap& map, const st
   for (std::size_t k = 0; k < chosen.size(); ++k) cases[chosen[k]].applied = Look{cases[chosen[k]].named, level, p[k]};
 }
 
+/// Whether the table has the effect both in the variant left out and in others.
+bool leaves_others(const Omission& left_out, const ReferenceTable& table) {
+  bool covered = false, others = false;
+  for (const TableRow& row : table.rows) {
+    for (const EffectSpec& effect : row.effects)
+      if (effect.name == left_out.effect) (left_out.covers(effect) ? covered : others) = true;
+  }
+  return covered && others;
+}
+
 /// What the catalogue is made to lack, one after the other.
 std::vector<std::pair<CaseKind, Omission>> omissions_of(const ReferenceTable& table, LeaveOut leave_out) {
   std::vector<std::pair<CaseKind, Omission>> omissions;
@@ -152,8 +162,10 @@ std::vector<std::pair<CaseKind, Omission>> omissions_of(const ReferenceTable& ta
   for (const std::string& effect : table.effects) {
     for (const effects::ChoiceInfo& choice : effects::find(effect).info.choices) {
       if (choice.kind != effects::ChoiceKind::variant) continue;
-      for (const std::string& word : choice.words)
-        omissions.push_back({CaseKind::left_out_variant, {effect, {choice.name, word}}});
+      for (const std::string& word : choice.words) {
+        const Omission variant{effect, {choice.name, word}};
+        if (leaves_others(variant, table)) omissions.push_back({CaseKind::left_out_variant, variant});
+      }
     }
   }
   return omissions;
