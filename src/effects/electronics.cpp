@@ -112,8 +112,8 @@ Effect missed_triggers() {
                    .reach = Reach::triggers,
                    .in_analog = "the same; a trigger is a tick at which the comparator's output is on, so short pulses "
                                 "suffer most. A threshold set too high is range_scale below 1"},
-          .draw = draw_trend,
-          .make_stage = make_missed_triggers};
+          .make_stage = make_missed_triggers,
+          .draw = draw_trend};
 }
 
 // dead_time: after a pulse the circuit is blind for a while.
