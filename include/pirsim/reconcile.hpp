@@ -152,7 +152,7 @@ struct Context {
                                 const Settings& settings = {}, const Context& context = {});
 
 /// The verdict for a reader, in one sentence.
-[[nodiscard]] std::string sentence(const Outcome& outcome, double alpha = 0.05);
+[[nodiscard]] std::string sentence(const Outcome& outcome);
 /// What else a reader must know of the verdict, a sentence or two each.
 [[nodiscard]] std::vector<std::string> details(const Outcome& outcome);
 /// Why an effect was kept or dropped.

@@ -48,10 +48,10 @@ nb::list warnings(const SceneSpec& scene, const ScriptSpec& script, const std::v
   return told;
 }
 
-nb::dict to_dict(const reconcile::Outcome& outcome, const ScriptSpec& script, double alpha) {
+nb::dict to_dict(const reconcile::Outcome& outcome, const ScriptSpec& script) {
   nb::dict result;
   result["verdict"] = to_python(std::string(name(outcome.verdict)));
-  result["sentence"] = to_python(reconcile::sentence(outcome, alpha));
+  result["sentence"] = to_python(reconcile::sentence(outcome));
   std::vector<std::string> findings;
   for (const reconcile::DataFinding& finding : outcome.data_findings) findings.push_back(reconcile::in_words(finding));
   result["data_findings"] = to_python(findings);
@@ -111,7 +111,7 @@ nb::dict reconcile_study(nb::handle scene, nb::handle script, const std::string&
         question.folder, outcome, rows, script_spec, settings, context,
         {"pirsim " + version() + " " + git_revision(), scene_spec.name, script_spec.name, measured, {}});
   });
-  nb::dict result = to_dict(outcome, script_spec, question.alpha);
+  nb::dict result = to_dict(outcome, script_spec);
   result["warnings"] = warnings(scene_spec, script_spec, rows.notes, outcome.notes);
   return result;
 }

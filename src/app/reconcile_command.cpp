@@ -193,7 +193,7 @@ void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const
   const reconcile::Outcome outcome = reconcile::reconcile(scene, script, measured, settings, context);
   teller.finish();
   tell_notes(outcome.notes, inputs.verbosity);
-  std::cout << reconcile::sentence(outcome, settings.alpha) << '\n';
+  std::cout << reconcile::sentence(outcome) << '\n';
   for (const std::string& detail : reconcile::details(outcome)) std::cout << detail << '\n';
   require_written();
   reconcile::write_report(

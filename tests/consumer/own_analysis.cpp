@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
     rec::Context context;
     context.observer.stage = [&](const rec::Stage&) { ++stages; };
     const rec::Outcome outcome = rec::reconcile(scene, script, measured, settings, context);
-    std::cout << rec::sentence(outcome, settings.alpha) << '\n';
+    std::cout << rec::sentence(outcome) << '\n';
     // A reason is a type with its numbers.
     for (const rec::Candidate& candidate : outcome.candidates) {
       if (const auto* out = std::get_if<rec::reason::RuledOut>(&candidate.reason))

@@ -98,7 +98,7 @@ std::string sentence_of_file(const Outcome& outcome) {
 std::vector<std::string> details_of_faulty(const Outcome& outcome) {
   const Outcome rows = as_compared(outcome);
   std::vector<std::string> texts = details(rows);
-  texts.insert(texts.begin(), "With the rows taken as they are: " + sentence(rows, outcome.alpha));
+  texts.insert(texts.begin(), "With the rows taken as they are: " + sentence(rows));
   return texts;
 }
 

@@ -156,7 +156,7 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
   each_number(settings.nuisance, [&](const char* key, double width, const auto&) { nuisance[key] = width; });
   Json json = {{"pirsim_reconcile_report", report_schema},
                {"verdict", name(outcome.verdict)},
-               {"sentence", sentence(outcome, settings.alpha)},
+               {"sentence", sentence(outcome)},
                {"details", details(outcome)},
                {"effects", outcome.named},
                {"program", provenance.program},
@@ -272,7 +272,7 @@ void write_report(const std::filesystem::path& folder, const Outcome& outcome, c
   const std::vector<std::string> names{"--scene", provenance.scene, "--script", provenance.script};
   const Watched watched{provenance.model_options.empty() ? names : provenance.model_options,
                         phases.empty() ? "" : phases.front(), units_of(script).empty()};
-  io::Report page = report_page(outcome, settings.alpha, watched);
+  io::Report page = report_page(outcome, watched);
   if (const TableSettings usual; settings.table.n_realizations != usual.n_realizations) {
     page.paragraphs.push_back("For this analysis the plain model was simulated " +
                               std::to_string(settings.table.n_realizations) + " times, not the usual " +

@@ -23,7 +23,8 @@ namespace pirsim::reconcile {
 /// All hypotheses of the catalogue by probability; those kept stand out.
 [[nodiscard]] io::BarChart ranking_chart(const Outcome& outcome);
 /// One a parameter: twenty equally likely values within the range looked at.
-[[nodiscard]] std::vector<io::DotsChart> posterior_charts(const FittedEffect& fitted);
+[[nodiscard]] std::vector<io::DotsChart> posterior_charts(const FittedEffect& fitted,
+                                                          const std::optional<RangeEnd>& end = {});
 /// Distance of model and trials set aside: before, after, with another effect instead, and at best.
 [[nodiscard]] io::BarChart held_out_chart(const Verification& verification, const std::string& named);
 
@@ -63,7 +64,7 @@ struct Watched {
 
 /// The verdict first; then where model and measurement differ, which effects were looked at and why each was kept or
 /// dropped, how strong the named ones are, and whether held-out trials are predicted better with them.
-[[nodiscard]] io::Report report_page(const Outcome& outcome, double alpha, const Watched& watched = {});
+[[nodiscard]] io::Report report_page(const Outcome& outcome, const Watched& watched = {});
 
 [[nodiscard]] io::Report plan_page(const PlanResult& result);
 [[nodiscard]] std::string to_json(const PlanResult& result);

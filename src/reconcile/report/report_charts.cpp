@@ -172,7 +172,7 @@ io::BarChart ranking_chart(const Outcome& outcome) {
   return chart;
 }
 
-std::vector<io::DotsChart> posterior_charts(const FittedEffect& fitted) {
+std::vector<io::DotsChart> posterior_charts(const FittedEffect& fitted, const std::optional<RangeEnd>& end) {
   std::vector<io::DotsChart> charts;
   for (const FittedParameter& p : fitted.parameters) {
     const auto& infos = effects::find(fitted.effect.name).info.parameters;
@@ -180,9 +180,12 @@ std::vector<io::DotsChart> posterior_charts(const FittedEffect& fitted) {
     if (info == infos.end() || p.equally_likely.empty()) continue;
     io::DotsChart chart;
     chart.title = fitted.effect.name + ": " + p.name;
-    chart.note =
-        "Each dot is as likely as any other to be the truth; in about nine cases of ten the truth lies in the "
-        "shaded range. The axis spans what was thought possible.";
+    const bool stepped = end && end->found && end->effect == fitted.effect.name && end->parameter == p.name;
+    chart.note = stepped
+                     ? "Each dot is a strength that was tried beyond the range looked for and with which the model can "
+                       "have made the data. The shaded range spans them."
+                     : "Each dot is as likely as any other to be the truth; in about nine cases of ten the truth lies "
+                       "in the shaded range. The axis spans what was thought possible.";
     chart.label = p.unit;
     chart.values = p.equally_likely;
     chart.low = p.interval.low;

@@ -48,7 +48,8 @@ io::Table pages_to_watch(const Location& location, double alpha, const Watched& 
   return table;
 }
 
-io::ReportSection where(const Outcome& outcome, double alpha, const Watched& watched) {
+io::ReportSection where(const Outcome& outcome, const Watched& watched) {
+  const double alpha = outcome.alpha;
   const Location& location = outcome.location;
   const auto differing = std::ranges::count_if(location.cells, [&](const auto& c) { return c.adjusted_p <= alpha; });
   io::ReportSection section{"Where they differ", {}, {}, {}};
@@ -99,12 +100,12 @@ io::ReportSection candidates(const Outcome& outcome) {
   return section;
 }
 
-io::ReportSection reasons(const Outcome& outcome, double alpha) {
+io::ReportSection reasons(const Outcome& outcome) {
   io::ReportSection section{"Every candidate, and why it was kept or dropped", {}, {}, {}};
   section.paragraphs = {
       "p: twice the smaller p of two tests. One asks whether the effect's own data look like these, the other whether "
       "another effect explains these better. At most " +
-      short_number(alpha) + " speaks against the effect."};
+      short_number(outcome.alpha) + " speaks against the effect."};
   io::Table table{{"effect", "family", "probability", "p", "why"}, {}};
   for (const Candidate& candidate : with_twins(outcome.candidates)) {
     table.rows.push_back({candidate.score.hypothesis, std::string(name(candidate.family)),
@@ -115,10 +116,10 @@ io::ReportSection reasons(const Outcome& outcome, double alpha) {
   return section;
 }
 
-io::ReportSection strength(const std::vector<FittedEffect>& fits) {
+io::ReportSection strength(const Outcome& outcome) {
   io::ReportSection section{"How strong it is", {}, {}, {}};
   io::Table table{{"effect", "parameter", "fitted", "from", "to", "unit", "without the effect"}, {}};
-  for (const FittedEffect& fit : fits) {
+  for (const FittedEffect& fit : outcome.fits) {
     for (const FittedParameter& p : fit.parameters) {
       table.rows.push_back({fit.effect.name, p.name, short_number(p.value), short_number(p.interval.low),
                             short_number(p.interval.high), p.unit, p.is_strength ? short_number(p.off) : ""});
@@ -126,7 +127,7 @@ io::ReportSection strength(const std::vector<FittedEffect>& fits) {
     for (const auto& [choice, value] : fit.effect.choices) {
       table.rows.push_back({fit.effect.name, choice, value + rivals_in_words(fit, choice, value), "", "", "", ""});
     }
-    for (io::DotsChart& chart : posterior_charts(fit)) section.charts.emplace_back(std::move(chart));
+    for (io::DotsChart& chart : posterior_charts(fit, outcome.range_end)) section.charts.emplace_back(std::move(chart));
   }
   section.paragraphs.push_back(table.rows.empty() ? "The effect is there or not: nothing about it can be stronger."
                                                   : "Fitted to these data, with the room's uncertainty included.");
@@ -174,12 +175,12 @@ io::ReportSection held_out(const Verification& v, const std::string& named) {
 
 }  // namespace
 
-io::Report report_page(const Outcome& outcome, double alpha, const Watched& watched) {
+io::Report report_page(const Outcome& outcome, const Watched& watched) {
   if (!outcome.data_findings.empty()) {
     Outcome rows = as_compared(outcome);
     rows.data_findings.clear();
-    io::Report report = report_page(rows, alpha, watched);
-    report.finding = sentence(outcome, alpha);
+    io::Report report = report_page(rows, watched);
+    report.finding = sentence(outcome);
     report.paragraphs = details(outcome);
     report.paragraphs.push_back(next_step(outcome));
     report.sections.insert(report.sections.begin(), file_section(outcome.data_findings));
@@ -187,17 +188,17 @@ io::Report report_page(const Outcome& outcome, double alpha, const Watched& watc
   }
   io::Report report;
   report.title = "Model and measurement";
-  report.finding = sentence(outcome, alpha);
+  report.finding = sentence(outcome);
   report.paragraphs = details(outcome);
   report.paragraphs.push_back(next_step(outcome));
-  report.sections = {where(outcome, alpha, watched), envelope(outcome.location, alpha), candidates(outcome)};
-  if (!outcome.fits.empty()) report.sections.push_back(strength(outcome.fits));
+  report.sections = {where(outcome, watched), envelope(outcome.location, outcome.alpha), candidates(outcome)};
+  if (!outcome.fits.empty()) report.sections.push_back(strength(outcome));
   if (outcome.verification) {
     const bool undecided = outcome.fits.empty();
     const std::string applied = undecided ? "the likeliest of each fold" : enumerated(outcome.named, "and");
     report.sections.push_back(held_out(*outcome.verification, applied));
   }
-  if (outcome.verdict != Verdict::no_disagreement) report.sections.push_back(reasons(outcome, alpha));
+  if (outcome.verdict != Verdict::no_disagreement) report.sections.push_back(reasons(outcome));
   return report;
 }
 

@@ -17,9 +17,9 @@ std::string kind_of(const Outcome& outcome) {
          std::string(name(outcome.family.family)) + ")";
 }
 
-std::string where(const Outcome& outcome, double alpha) {
+std::string where(const Outcome& outcome) {
   const auto differing =
-      std::ranges::count_if(outcome.location.cells, [&](const auto& c) { return c.adjusted_p <= alpha; });
+      std::ranges::count_if(outcome.location.cells, [&](const auto& c) { return c.adjusted_p <= outcome.alpha; });
   const std::string p = short_number(outcome.location.p);
   if (differing == 0)
     return "none of the " + std::to_string(outcome.location.cells.size()) +
@@ -45,7 +45,7 @@ std::string first_ones(const std::vector<std::string>& names) {
 }
 
 /// Why nothing of the catalogue is taken for what is missing.
-std::string no_effect(const Outcome& outcome, double alpha) {
+std::string no_effect(const Outcome& outcome) {
   for (const Candidate& candidate : outcome.candidates) {
     if (const auto* likeness = std::get_if<reason::LikeImpostors>(&candidate.reason))
       return "what resembles it most, " + candidate.score.hypothesis +
@@ -55,7 +55,7 @@ std::string no_effect(const Outcome& outcome, double alpha) {
   std::vector<std::string> possible;
   double together = 0.0;
   for (const Candidate& candidate : outcome.candidates) {
-    if (candidate.score.p <= alpha) continue;
+    if (candidate.score.p <= outcome.alpha) continue;
     possible.push_back(candidate.score.hypothesis);
     together += candidate.score.probability;
   }
@@ -94,12 +94,12 @@ std::string rivals(const Outcome& outcome) {
          enumerated(names, "and") + " can't be ruled out.";
 }
 
-std::string sentence_of_set(const Outcome& outcome, double alpha) {
-  const std::string places = where(outcome, alpha);
+std::string sentence_of_set(const Outcome& outcome) {
+  const std::string places = where(outcome);
   if (outcome.named.empty())
     return "Model and measurement differ, but so little that nothing can be named: " + places + ".";
   const std::string set = first_ones(outcome.named);
-  if (outcome.nothing.p > alpha)
+  if (outcome.nothing.p > outcome.alpha)
     return "Model and measurement differ so little that it may be chance: " + places +
            "; if it isn't, the model lacks " + set + kind_of(outcome) + ", or " + something_else(outcome) + ".";
   if (is_unsupported(outcome))
@@ -125,23 +125,23 @@ const Candidate& candidate_of(const Outcome& outcome, const std::string& effect)
                             [](const Candidate& candidate) { return candidate.score.hypothesis; });
 }
 
-std::string sentence_of_nearest(const Outcome& outcome, double alpha) {
+std::string sentence_of_nearest(const Outcome& outcome) {
   const Candidate& nearest = candidate_of(outcome, outcome.named.front());
-  return "The model lacks something that comes nearest to " + in_words(outcome.fits.front()) + ": " +
-         where(outcome, alpha) + "; with that applied it can have made the data, and no other effect is as likely " +
-         "(probability " + short_number(nearest.score.probability) +
-         "), but its own data seldom look like these, so it may be " + something_else(outcome) + ".";
+  return "The model lacks something that comes nearest to " + in_words(outcome.fits.front()) + ": " + where(outcome) +
+         "; with that applied it can have made the data, and no other effect is as likely " + "(probability " +
+         short_number(nearest.score.probability) + "), but its own data seldom look like these, so it may be " +
+         something_else(outcome) + ".";
 }
 
-std::string sentence_of_none(const Outcome& outcome, double alpha) {
-  const std::string lacks = "The model lacks " + something_else(outcome) + ": " + where(outcome, alpha);
+std::string sentence_of_none(const Outcome& outcome) {
+  const std::string lacks = "The model lacks " + something_else(outcome) + ": " + where(outcome);
   if (!outcome.looks.empty() && !outcome.looks.back().passes() && was_refused(outcome)) {
     const Look& look = outcome.looks.back();
     return lacks + "; what resembles it most, " + enumerated(look.applied, "and") +
            ", doesn't explain it, since with that applied the model still differs from the data (p = " +
            short_number(look.p) + ").";
   }
-  return lacks + ", and " + no_effect(outcome, alpha) + ".";
+  return lacks + ", and " + no_effect(outcome) + ".";
 }
 
 /// Of the likeliest effect if it was dropped, though the model with it passes.
@@ -251,27 +251,27 @@ std::string next_step(const Outcome& outcome) {
          " Only then think of a cause that the catalogue lacks (docs/howto/add_an_effect.md).";
 }
 
-std::string sentence(const Outcome& outcome, double alpha) {
+std::string sentence(const Outcome& outcome) {
   switch (outcome.verdict) {
     case Verdict::no_disagreement:
       return "No disagreement: model and measurement agree as well as the model agrees with itself (p = " +
              short_number(outcome.location.p) + "); this experiment would hardly see differences below " +
              short_number(outcome.location.band_s) + " s a cell.";
     case Verdict::named:
-      return "The model lacks " + in_words(outcome.fits.back()) + ": " + where(outcome, alpha) + rivals(outcome);
+      return "The model lacks " + in_words(outcome.fits.back()) + ": " + where(outcome) + rivals(outcome);
     case Verdict::one_of:
-      return sentence_of_set(outcome, alpha);
+      return sentence_of_set(outcome);
     case Verdict::several:
       return "The model lacks " + enumerated(outcome.named, "and") + " together" +
-             (is_unsupported(outcome) ? ", or " + something_else(outcome) : "") + ": " + where(outcome, alpha) + ".";
+             (is_unsupported(outcome) ? ", or " + something_else(outcome) : "") + ": " + where(outcome) + ".";
     case Verdict::nearest:
-      return sentence_of_nearest(outcome, alpha);
+      return sentence_of_nearest(outcome);
     case Verdict::faulty_data:
       return sentence_of_file(outcome);
     case Verdict::none_in_catalogue:
       break;
   }
-  return sentence_of_none(outcome, alpha);
+  return sentence_of_none(outcome);
 }
 
 std::vector<std::string> details(const Outcome& outcome) {

@@ -133,11 +133,19 @@ TEST_CASE("a posterior shows its values on the scale of its prior", "[report]") 
   CHECK(charts[0].axis_low == Approx(0.2));
   CHECK(charts[0].axis_high == Approx(2.0));
   CHECK(charts[0].values.size() == 5);
+  CHECK_THAT(charts[0].note, contains("nine cases of ten"));
+  const FittedEffect& fit = fitted();
+  RangeEnd end;
+  end.effect = fit.effect.name;
+  end.parameter = fit.parameters.front().name;
+  CHECK_THAT(posterior_charts(fit, end).front().note, contains("nine cases of ten"));  // nothing lies beyond
+  end.found = 3.0;
+  CHECK_THAT(posterior_charts(fit, end).front().note, contains("beyond the range looked for"));
 }
 
 TEST_CASE("the page says the verdict first and shows what each verdict has", "[report]") {
   Outcome outcome = named();
-  const std::string page = to_html(report_page(outcome, 0.05));
+  const std::string page = to_html(report_page(outcome));
   const auto at = [&](const char* what) { return page.find(what); };
   CHECK(at("The model lacks soft_zone_edges with sigma_deg 0.9") < at("Where they differ</h2>"));
   for (const char* kind : {"grid", "band", "bars", "dots"}) {
@@ -146,7 +154,7 @@ TEST_CASE("the page says the verdict first and shows what each verdict has", "[r
   CHECK(says(page, "placebo: with fidgeting instead"));
   outcome = {};
   outcome.location = two_cells();
-  const std::string nothing = to_html(report_page(outcome, 0.05));
+  const std::string nothing = to_html(report_page(outcome));
   CHECK_FALSE(says(nothing, "<div class=\"charts dots\">"));
   CHECK(says(nothing, "Nothing was looked for"));
 }
@@ -157,7 +165,8 @@ TEST_CASE("the page names the commands that show the model where a cell is frame
   outcome.location.cells[0].trial = "it's S 8";
   const std::string& sensor = outcome.location.cells[0].sensor;
   const auto page = [&](double alpha, const Watched& watched) {
-    return io::to_html(report_page(outcome, alpha, watched));
+    outcome.alpha = alpha;
+    return io::to_html(report_page(outcome, watched));
   };
   const std::string told =
       page(0.05, {{"--scene", "my room.gltf", "--script", "in/study.yaml", "--set", "people.0.id=a b"}, "working"});
@@ -170,7 +179,7 @@ TEST_CASE("the page names the commands that show the model where a cell is frame
 
 TEST_CASE("the page says what held-out trials show and no more", "[report]") {
   Outcome outcome = named();
-  const auto page = [&] { return to_html(report_page(outcome, 0.05)); };
+  const auto page = [&] { return to_html(report_page(outcome)); };
   CHECK(says(page(), "these trials alone are too few to tell even the model as it is"));
   outcome.verification->refused = true;
   outcome.verification->after.p = 0.049;
@@ -197,7 +206,7 @@ TEST_CASE("an effect that changes the model as another does stands beside it whe
   REQUIRE(all.size() == 3);
   CHECK(all[2].score.hypothesis == "thermal_contrast");
   CHECK_THAT(in_words(all[2]), contains("Judged as range_scale"));
-  CHECK(says(to_html(report_page(outcome, 0.05)), "thermal_contrast"));
+  CHECK(says(to_html(report_page(outcome)), "thermal_contrast"));
   outcome.candidates[0].score.hypothesis = "thermal_contrast";  // asked for by itself
   CHECK(with_twins(outcome.candidates).size() == 2);
 }

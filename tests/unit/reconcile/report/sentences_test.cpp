@@ -26,7 +26,7 @@ Outcome outcome_of(Verdict verdict, const std::vector<std::pair<std::string, dou
 }
 
 std::string sentence_of(Verdict verdict, const std::vector<std::pair<std::string, double>>& kept) {
-  return sentence(outcome_of(verdict, kept), 0.05);
+  return sentence(outcome_of(verdict, kept));
 }
 
 }  // namespace
@@ -47,10 +47,10 @@ TEST_CASE("where no cell stands out but all together do, both are said at once",
   outcome.location.cells.resize(3);
   for (auto& cell : outcome.location.cells) cell.adjusted_p = 0.2;
   CHECK_THAT(
-      sentence(outcome, 0.05),
+      sentence(outcome),
       contains("none of the 3 cells (trial x sensor) differs by itself, but everything together does, p = 0.0132"));
   outcome.location.cells.front().adjusted_p = 0.01;
-  CHECK_THAT(sentence(outcome, 0.05),
+  CHECK_THAT(sentence(outcome),
              contains("1 of 3 cells (trial x sensor) differ by themselves, everything together with p = 0.0132"));
 }
 
@@ -75,7 +75,7 @@ TEST_CASE("a name that doesn't do when it is applied is taken back with that rea
   outcome.looks.push_back({{"trigger_bursts"}, 0.025, 0.005, {}});
   outcome.candidates.front().kept = false;
   outcome.candidates.front().reason = reason::RefusedWhenApplied{0.005};
-  const std::string told = sentence(outcome, 0.05);
+  const std::string told = sentence(outcome);
   CHECK_THAT(told, contains("The model lacks something that is not in the catalogue"));
   CHECK_THAT(told, contains("what resembles it most, trigger_bursts, doesn't explain it") && contains("(p = 0.005)"));
   CHECK_THAT(in_words(outcome.candidates.front()), contains("Dropped: with it applied") && contains("(p 0.005)"));
@@ -85,8 +85,8 @@ TEST_CASE("a likeness that got no name is told with its p", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"seat_scatter", 0.9}});
   outcome.candidates.front().kept = false;
   outcome.candidates.front().reason = reason::LikeImpostors{0.02};
-  CHECK_THAT(sentence(outcome, 0.05), contains("what resembles it most, seat_scatter, is hardly it") &&
-                                          contains("make such data more often (p = 0.02)"));
+  CHECK_THAT(sentence(outcome), contains("what resembles it most, seat_scatter, is hardly it") &&
+                                    contains("make such data more often (p = 0.02)"));
   CHECK_THAT(in_words(outcome.candidates.front()), contains("Dropped: other things that are taken for it"));
 }
 
@@ -106,21 +106,21 @@ TEST_CASE("where no name is given the sentence says why", "[reconcile]") {
   CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.9}}), contains("whose strength may as well be none"));
   Outcome weak = outcome_of(Verdict::one_of, {{"seat_shift", 0.9}, {"body_size", 0.05}});
   weak.nothing.p = 0.2;
-  CHECK_THAT(sentence(weak, 0.05), contains("so little that it may be chance"));
+  CHECK_THAT(sentence(weak), contains("so little that it may be chance"));
 }
 
 TEST_CASE("improbable effects that might have made the data are told with their probability", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"seat_shift", 0.1}, {"body_size", 0.03}});
   CHECK_THAT(
-      sentence(outcome, 0.05),
+      sentence(outcome),
       contains("of the catalogue's effects only seat_shift and body_size aren't ruled out, but their probability "
                "together is only 0.13"));
   outcome.candidates.push_back({{"dead_time", 0.6, 0.0, 0.0, 0.01}, effects::Family::electronics, false, {}});
-  CHECK_THAT(sentence(outcome, 0.05),
+  CHECK_THAT(sentence(outcome),
              contains("the likelier ones of the catalogue's effects are ruled out; seat_shift and body_size"));
   CHECK_THAT(in_words(reason::Improbable{0.6}), contains("Dropped: by itself it might have made these data (p 0.6)"));
   for (Candidate& candidate : outcome.candidates) candidate.score.p = 0.01;
-  CHECK_THAT(sentence(outcome, 0.05), contains("no effect of the catalogue is likely"));
+  CHECK_THAT(sentence(outcome), contains("no effect of the catalogue is likely"));
 }
 
 TEST_CASE("where no name is given the family is said if it is clear", "[reconcile]") {
@@ -129,9 +129,9 @@ TEST_CASE("where no name is given the family is said if it is clear", "[reconcil
       std::vector<HypothesisScore>{{"nothing", 0.05}, {"dead_time", 0.05}, {"seat_shift", 0.5}, {"body_size", 0.4}});
   CHECK(outcome.family.family == effects::Family::person);
   CHECK(outcome.family.probability == Approx(0.9));
-  CHECK_THAT(sentence(outcome, 0.05), contains("with probability 0.9 something of the family person"));
+  CHECK_THAT(sentence(outcome), contains("with probability 0.9 something of the family person"));
   outcome.family.probability = 0.7;
-  CHECK_THAT(sentence(outcome, 0.05), !contains("family"));
+  CHECK_THAT(sentence(outcome), !contains("family"));
 }
 
 TEST_CASE("what to do next names a plan only for effects that are to be told apart", "[reconcile]") {
@@ -165,19 +165,19 @@ TEST_CASE("of a catalogue cut down nothing is said about the effects that weren'
     outcome.looked_for = {"seat_shift", "body_size"};
     return outcome;
   };
-  CHECK_THAT(sentence(cut_down(outcome_of(Verdict::named, {{"seat_shift", 0.6}})), 0.05),
+  CHECK_THAT(sentence(cut_down(outcome_of(Verdict::named, {{"seat_shift", 0.6}}))),
              contains("no other effect of those looked for explains the data"));
   Outcome none = cut_down(outcome_of(Verdict::none_in_catalogue, {{"seat_shift", 0.1}}));
   CHECK_THAT(
-      sentence(none, 0.05),
+      sentence(none),
       contains("something that is not among the effects looked for: ") &&
           contains("of the effects looked for only seat_shift isn't ruled out, but its probability is only 0.1"));
   none.candidates.front().score.p = 0.01;
-  CHECK_THAT(sentence(none, 0.05), contains("no effect of those looked for is likely"));
+  CHECK_THAT(sentence(none), contains("no effect of those looked for is likely"));
   none.candidates.front().reason = reason::RefusedWhenApplied{0.005};
   none.looks.push_back({{"seat_shift"}, 0.025, 0.005, {}});
   CHECK(details(none).back() == "None of the others that were tried beside it explains what is left.");
-  const std::string page = to_html(report_page(none, 0.05));
+  const std::string page = to_html(report_page(none));
   CHECK_THAT(page, contains("Every effect looked for was simulated") && !contains("ffect of the catalogue"));
 }
 
@@ -191,29 +191,29 @@ TEST_CASE("a set of effects leaves a door open and shows its first three", "[rec
   Outcome outcome = outcome_of(
       Verdict::one_of,
       {{"seat_scatter", 0.3}, {"warm_chair", 0.2}, {"missing_occluder", 0.1}, {"dead_time", 0.1}, {"body_size", 0.1}});
-  CHECK_THAT(sentence(outcome, 0.05),
+  CHECK_THAT(sentence(outcome),
              contains("The model lacks seat_scatter, warm_chair, missing_occluder, one of 2 others, or something that "
                       "is not in the catalogue, and these data can't tell which: "));
   for (const Verdict verdict : {Verdict::one_of, Verdict::several}) {
     outcome.verdict = verdict;
     outcome.verification.emplace();
     outcome.verification->names = {"dead_time", "nothing", "clock_lag", "seat_shift"};
-    CHECK_THAT(sentence(outcome, 0.05), contains("something that is not in the catalogue"));
+    CHECK_THAT(sentence(outcome), contains("something that is not in the catalogue"));
   }
   outcome.verdict = Verdict::one_of;
-  CHECK_THAT(sentence(outcome, 0.05), contains("quite possibly something that is not in the catalogue: "));
+  CHECK_THAT(sentence(outcome), contains("quite possibly something that is not in the catalogue: "));
   outcome.verification->names = {"warm_chair", "warm_chair", "warm_chair", "dead_time"};
-  CHECK_THAT(sentence(outcome, 0.05), !contains("quite possibly"));
+  CHECK_THAT(sentence(outcome), !contains("quite possibly"));
   outcome.verification->names.front() = "nothing";
   outcome.verification->shrunk = true;
-  CHECK_THAT(sentence(outcome, 0.05), !contains("quite possibly"));
+  CHECK_THAT(sentence(outcome), !contains("quite possibly"));
 }
 
 TEST_CASE("what comes nearest is told with its doubt, and applied", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::nearest, {{"labels_swapped", 0.98}});
   outcome.fits.push_back({{"labels_swapped", {}, {}, {}}, {}, false});
-  CHECK_THAT(sentence(outcome, 0.05), contains("comes nearest to labels_swapped: ") && contains("(probability 0.98)") &&
-                                          contains("it may be something that is not in the catalogue."));
+  CHECK_THAT(sentence(outcome), contains("comes nearest to labels_swapped: ") && contains("(probability 0.98)") &&
+                                    contains("it may be something that is not in the catalogue."));
   CHECK_THAT(next_step(outcome), contains("look at the real thing for labels_swapped"));
 }
 
@@ -240,7 +240,7 @@ TEST_CASE("what to do where nothing fits is the data, then the model, then a new
 TEST_CASE("a faulty file is told first, and then what the comparison says of its rows", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::named, {{"seat_shift", 0.9}});
   outcome.verdict_of_rows = outcome.verdict;
-  const std::string of_rows = sentence(outcome, 0.05);
+  const std::string of_rows = sentence(outcome);
   outcome.verdict = Verdict::faulty_data;
   outcome.data_findings = {
       {.what = DataFinding::What::equal_columns, .sensors = {"PIR3", "PIR4"}, .n_rows = 1800, .chance = 1e-40},
@@ -249,15 +249,15 @@ TEST_CASE("a faulty file is told first, and then what the comparison says of its
        .n_rows = 60,
        .chance = 1e-12},
       {.what = DataFinding::What::silent_column, .sensors = {"PIR1"}, .n_rows = 1800, .is_impossible = false}};
-  CHECK(sentence(outcome, 0.05) ==
+  CHECK(sentence(outcome) ==
         "Look at the file first: PIR3 and PIR4 are equal in all 1,800 rows; rows 31 to 90 of S3 (run 1) stand again as "
         "rows 12 to 71 of S4 (run 2), which sensors can't have said.");
   CHECK(details(outcome).front() == "With the rows taken as they are: " + of_rows);
   CHECK_THAT(next_step(outcome), contains("which input each of the two columns was read from"));
-  const io::Report page = report_page(outcome, 0.05, {});
+  const io::Report page = report_page(outcome, {});
   CHECK(page.sections.front().heading == "A look at the file");
   CHECK(page.sections.front().tables.front().rows.size() == 3);
-  CHECK(page.finding == sentence(outcome, 0.05));
+  CHECK(page.finding == sentence(outcome));
   outcome.fits = {{{"seat_shift", {}, {}, {}}, {}, false}};
   CHECK(patched(ScriptSpec{}, outcome).effects.empty());
 }
