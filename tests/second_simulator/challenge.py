@@ -30,8 +30,9 @@ def found_in_file(report):
 
 
 def score(truth, report, expects=()):
-    """How a verdict compares with what was hidden. "in the set": one of several that can't be told apart. Of the file:
-    "told", "other fault of the file" or "file accused" (there is nothing wrong with it)."""
+    """How a verdict compares with what was hidden. "in the set": one of several that can't be told apart. "nearest": told
+    as what comes nearest, which isn't a name. Of the file: "told", "other fault of the file" or "file accused" (there is
+    nothing wrong with it)."""
     verdict, effects = report["verdict"], report["effects"]
     if verdict == "faulty-data":
         if not expects:
@@ -42,8 +43,10 @@ def score(truth, report, expects=()):
     if verdict == "none-in-catalogue":
         return "unknown"
     if not truth:
-        return "set" if verdict == "one-of" else "misnamed"
+        return {"one-of": "set", "nearest": "nearest"}.get(verdict, "misnamed")
     right = set(truth) & set(effects)
+    if verdict == "nearest":
+        return "nearest, right" if right else "nearest, wrong"
     if verdict == "one-of":
         return "in the set" if right else "not in the set"
     return "right" if right else "misnamed"
