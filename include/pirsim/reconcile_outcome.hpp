@@ -242,13 +242,23 @@ struct ResidualDriver {
     first_third,
     middle_third,
     last_third,
-    of_minute,       ///< from, to: seconds of each minute
-    after_posture,   ///< from, to: seconds after each change of posture
-    before_posture,  ///< to - from: seconds before each change of posture
-    of_arm_cycle,    ///< from, to: shares of the arm's cycle in percent
-    wave             ///< from: the period in seconds; to: the second of its top
+    of_minute,            ///< from, to: seconds of each minute
+    after_posture,        ///< from, to: seconds after each change of posture
+    before_posture,       ///< to - from: seconds before each change of posture
+    of_arm_cycle,         ///< from, to: shares of the arm's cycle in percent
+    wave,                 ///< from: the period in seconds; to: the second of its top
+    from_trial,           ///< `since` and all runs after it, in the order of the session: the script's, again and again
+    from_trial_to_trial,  ///< more and more
   };
-  enum class How { more, more_where_little, more_where_much, opposite, beside };
+  enum class How {
+    more,
+    more_where_little,
+    more_where_much,
+    opposite,
+    beside,
+    with_gaps,       ///< motion has more gaps of some seconds than expected, whatever motion there is
+    silent_together  ///< all sensors at the same moments, oftener than by chance
+  };
   Who who = Who::all_sensors;
   std::string name;  ///< of the sensor or the trial
   When when = When::always;
@@ -258,8 +268,9 @@ struct ResidualDriver {
   std::string beside;     ///< of How::beside: the other sensor
   double log_odds = 0.0;  ///< of a logistic regression of the bits on this driver and those before it
   double standard_error = 0.0;
-  double z = 0.0;  ///< the score against that of simulated datasets, in their standard deviations
-  double p = 1.0;  ///< that the strongest of all drivers tried is so strong in a dataset of the model
+  double z = 0.0;          ///< the score against that of simulated datasets, in their standard deviations
+  double p = 1.0;          ///< that the strongest of all drivers tried is so strong in a dataset of the model
+  std::string since = {};  ///< of When::from_trial: the trial, with the run's number if there are several
 };
 struct Residuals {
   std::vector<ResidualDriver> drivers;  ///< strongest first; none: the residuals follow nothing that was tried
@@ -361,6 +372,9 @@ struct Explained {
   Residuals residuals;
   FamilyScore family;
 };
+struct LeftOver {
+  Residuals residuals;
+};
 struct JudgedOnHeldOut {
   Verification verification;
 };
@@ -378,7 +392,7 @@ enum class Remark {
 }  // namespace trail
 using TrailEvent = std::variant<trail::Begun, DataNote, DataFinding, trail::HeldOut, trail::Table, trail::Tested,
                                 trail::NotRuledOut, trail::IncludesOff, trail::AtRangeEnd, Look, trail::LookedForMore,
-                                trail::Explained, trail::JudgedOnHeldOut, trail::Remark>;
+                                trail::Explained, trail::LeftOver, trail::JudgedOnHeldOut, trail::Remark>;
 
 struct Outcome {
   Verdict verdict = Verdict::no_disagreement;
@@ -399,6 +413,9 @@ struct Outcome {
   std::optional<RangeEnd> range_end;  ///< of the first effect applied
   std::optional<Verification> verification;
   std::optional<Residuals> residuals;  ///< if nothing fits and the data are series
+  /// What changes in the course of the session, or strikes all sensors at once, and isn't explained by the effects
+  /// applied: if there is a disagreement and the data are series.
+  std::optional<Residuals> left_over;
   std::vector<FeatureName> telling_features;
   double calibration_error = 0.0;
   std::string table_key;

@@ -57,6 +57,7 @@ Outcome Loop::run() {
     }
   }
   if (outcome_.verdict == Verdict::none_in_catalogue) explain();
+  explain_rest();
   outcome_.looked_for = settings_.table.effects;
   verify_effects();
   outcome_.alpha = settings_.alpha;
@@ -73,6 +74,19 @@ void Loop::explain() {
   context_.begin({Stage::What::explaining_residuals});
   outcome_.residuals = explain_residuals(steps_.front().reference, measured_, settings_.alpha, context_);
   tell(trail::Explained{*outcome_.residuals, outcome_.family});
+}
+
+/// Whatever is named: something may change from trial to trial or strike all sensors at once.
+void Loop::explain_rest() {
+  if (outcome_.verdict == Verdict::no_disagreement || measured_.kind != Measured::Kind::series) return;
+  context_.begin({Stage::What::explaining_residuals});
+  try {
+    outcome_.left_over =
+        reconcile::explain_rest(steps_.front().reference, applied_, measured_, settings_.alpha, context_);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::infeasible) throw;
+  }
+  if (outcome_.left_over) tell(trail::LeftOver{*outcome_.left_over});
 }
 
 const Loop::Step& Loop::look(const Settings& settings, double level) {

@@ -53,6 +53,7 @@ class Loop {
   [[nodiscard]] bool is_nearest() const;  ///< the one effect applied comes near enough to be told as such
   void take_back();                       ///< the one name that was given
   void explain();
+  void explain_rest();
   void verify_effects();
   /// p of the global test of the model with all that has been applied, its data simulated anew.
   [[nodiscard]] double p_with_all(double level) const;

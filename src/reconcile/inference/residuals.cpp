@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "reconcile/inference/residual_contrasts.hpp"
 #include "reconcile/inference/residual_drivers.hpp"
 #include "stats/intervals.hpp"
 #include "stats/logistic.hpp"
@@ -141,6 +142,8 @@ class Scores {
       case How::opposite:
         return -bits_.odds[place];
       case How::beside:
+      case How::with_gaps:  // no drivers of single bits
+      case How::silent_together:
         break;
     }
     const std::size_t sensor = bits_.places[place].sensor;
@@ -353,6 +356,26 @@ Residuals explain_residuals(const ReferenceStudy& reference, const Measured& mea
                               z, p});
   }
   return result;
+}
+
+Residuals explain_rest(const ReferenceStudy& plain, std::span<const FittedEffect> applied, const Measured& measured,
+                       double alpha, const Context& context) {
+  RealizationSource source = plain.source;
+  for (const FittedEffect& effect : applied) source.script.effects.push_back(effect.effect);
+  const int n_replicates = plain.shape.n_replicates;
+  constexpr double as_strong = 3.0;  // datasets that may be as strong, the data among them: fewer datasets see less
+  const auto n = static_cast<std::uint32_t>(std::ceil(as_strong * n_contrast_kinds / alpha));
+  std::vector<ContrastData> simulated;
+  ordered_parallel<ContrastData>(
+      n, context.threads,
+      [&](std::size_t i) {
+        const SimulatedRealization one(source, plain.frame, first_residual_realization + static_cast<std::uint32_t>(i),
+                                       n_replicates);
+        return contrast_data(plain.frame, plain.shape, one.plain(0, n_replicates));
+      },
+      [&](ContrastData& one) { simulated.push_back(std::move(one)); });
+  return {telling_contrasts(plain.frame, plain.shape, contrast_data(plain.frame, plain.shape, measured.runs), simulated,
+                            alpha)};
 }
 
 }  // namespace pirsim::reconcile

@@ -1,5 +1,7 @@
-// When no effect of the catalogue fits: which bits differ from what the model expects, and when.
+// What no effect of the catalogue explains: which bits differ from what the model expects, and when.
 #pragma once
+
+#include <span>
 
 #include "pirsim/reconcile.hpp"
 
@@ -15,5 +17,12 @@ struct ReferenceStudy;
 /// makes one up. measured: series only.
 [[nodiscard]] Residuals explain_residuals(const ReferenceStudy& reference, const Measured& measured, double alpha,
                                           const Context& context);
+
+/// What the model with these effects leaves over and hardly any effect makes: what changes in the course of the
+/// session, from a trial on or from trial to trial, of all sensors or one; and whether all sensors are silent at the
+/// same moments, oftener than in datasets of that model. plain: the study without the effects. measured: series only.
+/// Throws Error(infeasible) if people can hardly get about with the effects.
+[[nodiscard]] Residuals explain_rest(const ReferenceStudy& plain, std::span<const FittedEffect> applied,
+                                     const Measured& measured, double alpha, const Context& context);
 
 }  // namespace pirsim::reconcile

@@ -116,7 +116,7 @@ Json to_json(const RangeEnd& end) {
           {"found", end.found ? Json(*end.found) : Json()}};
 }
 
-Json to_json(const Residuals& residuals) {
+Json to_json(const Residuals& residuals, const std::string& sentence) {
   Json drivers = Json::array();
   for (const ResidualDriver& driver : residuals.drivers) {
     drivers.push_back({{"who", who_of(driver)},
@@ -127,7 +127,7 @@ Json to_json(const Residuals& residuals) {
                        {"z", driver.z},
                        {"p", driver.p}});
   }
-  return {{"sentence", sentence(residuals)}, {"drivers", drivers}};
+  return {{"sentence", sentence}, {"drivers", drivers}};
 }
 
 Json to_json(const DataFinding& finding) {
@@ -193,7 +193,8 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
   json["relatives"] = relatives;
   json["range_end"] = outcome.range_end ? to_json(*outcome.range_end) : Json();
   json["verification"] = outcome.verification ? to_json(*outcome.verification) : Json();
-  json["residuals"] = outcome.residuals ? to_json(*outcome.residuals) : Json();
+  json["residuals"] = outcome.residuals ? to_json(*outcome.residuals, sentence(*outcome.residuals)) : Json();
+  json["left_over"] = outcome.left_over ? to_json(*outcome.left_over, sentence_of_rest(*outcome.left_over)) : Json();
   json["telling_features"] = Json::array();
   for (const FeatureName& feature : outcome.telling_features) json["telling_features"].push_back(in_words(feature));
   json["calibration_error"] = outcome.calibration_error;

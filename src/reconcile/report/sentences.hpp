@@ -19,6 +19,8 @@ namespace pirsim::reconcile {
 [[nodiscard]] std::string sentence(const PlanResult& result);
 [[nodiscard]] std::string sentence(const Score& score);
 [[nodiscard]] std::string sentence(const Residuals& residuals);
+/// Beside the effects of a verdict; empty if nothing is left over.
+[[nodiscard]] std::string sentence_of_rest(const Residuals& rest);
 
 [[nodiscard]] std::string in_words(const Reason& reason);
 /// Without the word that says whether it was kept.

@@ -291,6 +291,7 @@ std::vector<std::string> details(const Outcome& outcome) {
   if (outcome.range_end) texts.push_back(told_of_end(*outcome.range_end));
   if (outcome.verification) texts.push_back(seen_on_held_out(*outcome.verification));
   if (outcome.residuals) texts.push_back(sentence(*outcome.residuals));
+  if (outcome.left_over && !outcome.left_over->drivers.empty()) texts.push_back(sentence_of_rest(*outcome.left_over));
   return texts;
 }
 

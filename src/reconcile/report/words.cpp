@@ -262,6 +262,11 @@ std::string in_words(const TrailEvent& event) {
                  },
                  [](const trail::LookedForMore& e) { return "looked for more: " + std::string(name(e.verdict)); },
                  [](const trail::Explained& e) { return "residuals: " + sentence(e.residuals); },
+                 [](const trail::LeftOver& e) {
+                   const std::string text = sentence_of_rest(e.residuals);
+                   return text.empty() ? "nothing more changes from trial to trial or strikes all sensors at once"
+                                       : text;
+                 },
                  [](const trail::JudgedOnHeldOut& e) { return in_words(e); },
                  [](trail::Remark e) { return std::string(in_words(e)); }},
       event);
@@ -366,16 +371,27 @@ std::string time_of(const ResidualDriver& driver) {
       return "in the last " + whole(driver.to - driver.from) + " s before each change of posture";
     case of_arm_cycle:
       return "from " + from + " to " + to + " % of the arm's cycle";
+    case from_trial:
+      return "from about trial " + driver.since + " on";
+    case from_trial_to_trial:
+      return "from trial to trial";
     case wave:
       break;
   }
   return "rising and falling every " + from + " s, most around second " + to;
 }
 
+bool is_of_session(const ResidualDriver& driver) noexcept {
+  return driver.when == ResidualDriver::When::from_trial || driver.when == ResidualDriver::When::from_trial_to_trial;
+}
+
+bool is_joint(const ResidualDriver& driver) noexcept { return driver.how == ResidualDriver::How::silent_together; }
+
 }  // namespace
 
 std::string when_of(const ResidualDriver& driver) {
   std::string when = time_of(driver);
+  if (is_of_session(driver) || is_joint(driver)) return when;
   if (driver.who != ResidualDriver::Who::trial) when += (when.empty() ? "" : ", ") + std::string("whatever the seat");
   return when;
 }
@@ -394,10 +410,22 @@ std::string what_of(const ResidualDriver& driver) {
       return up ? "the opposite of what is expected"
                 : "what is expected, with less chance in it: likely motion comes nearly always, unlikely motion nearly "
                   "never";
+    case with_gaps:
+      if (driver.when == ResidualDriver::When::from_trial_to_trial)
+        return up ? "motion has more and more gaps" : "motion has fewer and fewer gaps";
+      return up ? "motion has more gaps than before" : "motion has fewer gaps than before";
+    case silent_together:
+      return "silent at the same moments oftener than by chance";
     case beside:
       break;
   }
   return up ? "motion whenever " + driver.beside + " sees some" : "silence whenever " + driver.beside + " sees motion";
+}
+
+std::string sentence_of_rest(const Residuals& rest) {
+  std::string text;
+  for (const ResidualDriver& driver : rest.drivers) text += (text.empty() ? "" : "; ") + in_words(driver);
+  return text.empty() ? "" : "Something else shows: " + text + ".";
 }
 
 std::string sentence(const Residuals& residuals) {

@@ -17,9 +17,10 @@ namespace {
 constexpr double work_s = 180.0;
 
 /// Without a table: the plain model's profile is all that is needed.
-ReferenceStudy make_reference_study(const NuisanceSpec& nuisance) {
+ReferenceStudy make_reference_study(const NuisanceSpec& nuisance,
+                                    const ScriptSpec& script = test::short_study({"S2", "S5", "S9"}, work_s)) {
   ReferenceStudy one;
-  one.source = {test::shipped_scene("meeting_room.gltf"), test::short_study({"S2", "S5", "S9"}, work_s), nuisance, 4};
+  one.source = {test::shipped_scene("meeting_room.gltf"), script, nuisance, 4};
   one.frame = frame_of(one.source.scene, one.source.script);
   one.knowledge = cell_knowledge(one.source.scene, one.source.script);
   const std::vector<Series> pilot = pilot_runs(one.source, one.frame, 30);
@@ -30,6 +31,13 @@ ReferenceStudy make_reference_study(const NuisanceSpec& nuisance) {
 
 const ReferenceStudy& reference_study() {
   static const ReferenceStudy reference = make_reference_study({});
+  return reference;
+}
+
+/// Eight trials, one after the other.
+const ReferenceStudy& session() {
+  static const ReferenceStudy reference =
+      make_reference_study({}, test::short_study({"S1", "S2", "S3", "S4", "S6", "S7", "S8", "S9"}, 90.0));
   return reference;
 }
 
@@ -90,6 +98,37 @@ TEST_CASE("residuals of the model itself follow nothing", "[reconcile][seconds]"
   for (std::uint32_t realization = 0; realization < 5; ++realization)
     with_driver += explained(injected(100 + realization, [](auto&, auto&) {})).drivers.empty() ? 0 : 1;
   CHECK(with_driver <= 2);
+}
+
+TEST_CASE("what is left over tells from which trial on outputs are held longer, and nothing where nothing changes",
+          "[reconcile][seconds]") {
+  const SimulatedRealization one(session().source, session().frame, 302, 1);
+  const EffectSpec hold{"pulse_stretching", {{"hold_s", 2.0}, {"spread", 0.0}}, {}, {}};
+  const std::vector<Series> held = *one.with_effects(std::span(&hold, 1), 0, 1);
+  Measured measured;
+  measured.runs = one.plain(0, 1);
+  const Residuals nothing = explain_rest(session(), {}, measured, 0.05, {});
+  INFO(sentence_of_rest(nothing));
+  CHECK(nothing.drivers.empty());
+  for (std::size_t i = 0; i < measured.runs.size(); ++i) {
+    if (measured.runs[i].trial >= 4) measured.runs[i] = held[i];
+  }
+  const Residuals found = explain_rest(session(), {}, measured, 0.05, {});
+  INFO(sentence_of_rest(found));
+  REQUIRE_FALSE(found.drivers.empty());
+  const ResidualDriver& strongest = found.drivers.front();
+  CHECK(strongest.when == ResidualDriver::When::from_trial);
+  CHECK_THAT("S4 S6 S7", contains(strongest.since));  // the true one or a neighbour
+  CHECK(when_of(strongest) == "from about trial " + strongest.since + " on");
+  CHECK(what_of(strongest) == "motion has fewer gaps than before");
+  // With that effect applied, motion has more gaps than expected up to there.
+  FittedEffect applied;
+  applied.effect = hold;
+  const Residuals beside = explain_rest(session(), std::span(&applied, 1), measured, 0.05, {});
+  INFO(sentence_of_rest(beside));
+  CHECK(std::ranges::any_of(beside.drivers, [](const ResidualDriver& driver) {
+    return driver.how == ResidualDriver::How::with_gaps && !driver.up;
+  }));
 }
 
 TEST_CASE("sensors that are dead or stuck are explained as well", "[reconcile][seconds]") {

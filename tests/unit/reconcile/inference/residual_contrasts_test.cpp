@@ -1,0 +1,116 @@
+// Contrasts of a session made by hand: binomial gaps, of which a share changes.
+#include "reconcile/inference/residual_contrasts.hpp"
+
+#include <algorithm>
+#include <functional>
+
+#include "pirsim/random.hpp"
+#include "support/catch.hpp"
+
+using namespace pirsim;
+using namespace pirsim::reconcile;
+
+namespace {
+
+const StudyFrame frame{{"1", "2", "3", "4", "5", "6", "7", "8", "9", "10"}, {"A", "B"}, {}, 1.0};
+constexpr std::size_t n_sensors = 2;
+
+DataShape shape_with(int n_replicates) {
+  DataShape shape;
+  shape.n_replicates = n_replicates;
+  for (std::size_t trial = 0; trial < frame.trials.size(); ++trial) {
+    for (int replicate = 1; replicate <= n_replicates; ++replicate)
+      shape.runs.push_back({trial, replicate, 100, {}, {}, {}});
+  }
+  return shape;
+}
+
+/// Chance that an awaited row is silent, by the run's place in the session and the sensor.
+using Chance = std::function<double(std::size_t place, std::size_t sensor)>;
+double usual(std::size_t, std::size_t) { return 0.3; }
+
+ContrastData drawn(const DataShape& shape, std::uint32_t number, const Chance& chance, double joint_silence = 0.0) {
+  Stream stream({1, number, 0, Purpose::test});
+  ContrastData data;
+  for (const DataShape::Run& run : shape.runs) {
+    const std::size_t place = static_cast<std::size_t>(run.replicate - 1) * frame.trials.size() + run.trial;
+    std::vector<Gaps>& gaps = data.gaps.emplace_back(1 + n_sensors);
+    for (std::size_t s = 0; s < n_sensors; ++s) {
+      Gaps& own = gaps[1 + s];
+      own.awaited = 60.0;
+      for (int row = 0; row < 60; ++row) own.silent += stream.uniform() < chance(place, s) ? 1.0 : 0.0;
+      gaps[0].awaited += own.awaited;
+      gaps[0].silent += own.silent;
+    }
+  }
+  data.joint_silence = joint_silence + 0.2 * stream.normal();
+  return data;
+}
+
+std::vector<ResidualDriver> told(const DataShape& shape, const ContrastData& measured) {
+  std::vector<ContrastData> simulated;
+  for (std::uint32_t i = 0; i < 180; ++i) simulated.push_back(drawn(shape, 100 + i, usual));
+  return telling_contrasts(frame, shape, measured, simulated, 0.05);
+}
+
+using When = ResidualDriver::When;
+
+}  // namespace
+
+TEST_CASE("a step of the session is told with its trial and its side", "[reconcile]") {
+  const DataShape shape = shape_with(1);
+  for (const double later : {0.5, 0.12}) {
+    CAPTURE(later);
+    const auto found = told(shape, drawn(shape, 1, [&](std::size_t place, auto) { return place < 6 ? 0.3 : later; }));
+    REQUIRE_FALSE(found.empty());
+    CHECK(found.front().who == ResidualDriver::Who::all_sensors);
+    CHECK(found.front().when == When::from_trial);
+    CHECK_THAT("6 7 8", contains(found.front().since));  // the true one or a neighbour
+    CHECK(found.front().up == (later > 0.3));
+  }
+}
+
+TEST_CASE("a step of one sensor is its own, and a trend is told", "[reconcile]") {
+  const DataShape shape = shape_with(1);
+  const auto of_one =
+      told(shape, drawn(shape, 2, [](std::size_t place, std::size_t s) { return s == 1 && place >= 4 ? 0.6 : 0.3; }));
+  const auto own = std::ranges::find(of_one, ResidualDriver::Who::sensor, &ResidualDriver::who);
+  REQUIRE(own != of_one.end());
+  CHECK(own->name == "B");
+  CHECK_THAT("4 5 6", contains(own->since));
+  const auto trend =
+      told(shape, drawn(shape, 3, [](std::size_t place, auto) { return 0.1 + 0.06 * static_cast<double>(place); }));
+  REQUIRE_FALSE(trend.empty());
+  CHECK(trend.front().when != When::always);
+  CHECK(trend.front().up);
+}
+
+TEST_CASE("one repetition follows the other, and of three runs no session is told", "[reconcile]") {
+  const DataShape shape = shape_with(2);
+  const auto found = told(shape, drawn(shape, 4, [](std::size_t place, auto) { return place < 12 ? 0.3 : 0.5; }));
+  REQUIRE_FALSE(found.empty());
+  CHECK_THAT("2 of run 2, 3 of run 2, 4 of run 2", contains(found.front().since));
+  DataShape three = shape_with(1);
+  three.runs.resize(3);
+  CHECK(told(three, drawn(three, 5, [](std::size_t place, auto) { return place < 1 ? 0.1 : 0.9; })).empty());
+}
+
+TEST_CASE("silence at the same moments is told if it is oftener, not if it is less often", "[reconcile]") {
+  const DataShape shape = shape_with(1);
+  const auto more = told(shape, drawn(shape, 6, usual, 1.2));
+  REQUIRE(more.size() == 1);
+  CHECK(more.front().how == ResidualDriver::How::silent_together);
+  CHECK(told(shape, drawn(shape, 6, usual, -1.2)).empty());
+}
+
+TEST_CASE("contrasts are told of one session in twenty in which nothing changes", "[reconcile]") {
+  const DataShape shape = shape_with(1);
+  std::vector<ContrastData> simulated;
+  for (std::uint32_t i = 0; i < 180; ++i) simulated.push_back(drawn(shape, 100 + i, usual));
+  int with_any = 0;
+  constexpr int n = 200;  // standard error of the share 0.0154; more than one of three kinds may be told
+  for (std::uint32_t i = 0; i < n; ++i)
+    with_any += telling_contrasts(frame, shape, drawn(shape, 1000 + i, usual), simulated, 0.05).empty() ? 0 : 1;
+  CHECK(with_any <= 0.05 * n + 3 * 0.0154 * n);
+  CHECK(with_any > 0);
+}
