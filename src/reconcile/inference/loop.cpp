@@ -7,6 +7,7 @@
 #include "effects/catalogue.hpp"
 #include "pirsim/io.hpp"
 #include "reconcile/data/data_check.hpp"
+#include "reconcile/data/units.hpp"
 #include "reconcile/inference/locate.hpp"
 #include "reconcile/inference/model_check.hpp"
 #include "reconcile/inference/range_end.hpp"
@@ -76,9 +77,11 @@ void Loop::explain() {
   tell(trail::Explained{*outcome_.residuals, outcome_.family});
 }
 
-/// Whatever is named: something may change from trial to trial or strike all sensors at once.
+/// Whatever is named: something may change from trial to trial or strike all sensors at once. Days by their counts have
+/// no trials.
 void Loop::explain_rest() {
   if (outcome_.verdict == Verdict::no_disagreement || measured_.kind != Measured::Kind::series) return;
+  if (!units_of(script_).empty()) return;
   context_.begin({Stage::What::explaining_residuals});
   try {
     outcome_.left_over =

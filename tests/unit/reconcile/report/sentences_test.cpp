@@ -100,6 +100,31 @@ TEST_CASE("of an effect that does when it is applied and was dropped all the sam
                                  "look like these (p 0.01)."});
 }
 
+TEST_CASE("what a name leaves over is told beside it, and nothing if there is nothing", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::named, {{"missed_triggers", 0.99}});
+  outcome.left_over.emplace();
+  const std::vector<std::string> without = details(outcome);
+  ResidualDriver later;
+  later.who = ResidualDriver::Who::sensor;
+  later.name = "PIR2";
+  later.when = ResidualDriver::When::from_trial;
+  later.since = "S6";
+  later.how = ResidualDriver::How::with_gaps;
+  later.log_odds = 1.5;
+  ResidualDriver together;
+  together.how = ResidualDriver::How::silent_together;
+  together.log_odds = 0.7;
+  outcome.left_over->drivers = {later, together};
+  std::vector<std::string> with = details(outcome);
+  REQUIRE(with.size() == without.size() + 1);
+  CHECK_THAT(with.back(), contains("Something else shows:") && contains("PIR2") && contains("from about trial S6 on") &&
+                              contains("motion has more gaps than before") &&
+                              contains("silent at the same moments oftener than by chance"));
+  outcome.left_over->drivers.front().when = ResidualDriver::When::from_trial_to_trial;
+  outcome.left_over->drivers.front().log_odds = -1.5;
+  CHECK_THAT(details(outcome).back(), contains("from trial to trial") && contains("motion has fewer and fewer gaps"));
+}
+
 TEST_CASE("where no name is given the sentence says why", "[reconcile]") {
   CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}}),
              contains("these data can't tell which"));
