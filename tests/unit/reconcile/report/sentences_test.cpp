@@ -110,10 +110,8 @@ TEST_CASE("what a name leaves over is told beside it, and nothing if there is no
   later.when = ResidualDriver::When::from_trial;
   later.since = "S6";
   later.how = ResidualDriver::How::with_gaps;
-  later.log_odds = 1.5;
   ResidualDriver together;
   together.how = ResidualDriver::How::silent_together;
-  together.log_odds = 0.7;
   outcome.left_over->drivers = {later, together};
   std::vector<std::string> with = details(outcome);
   REQUIRE(with.size() == without.size() + 1);
@@ -121,7 +119,7 @@ TEST_CASE("what a name leaves over is told beside it, and nothing if there is no
                               contains("motion has more gaps than before") &&
                               contains("silent at the same moments oftener than by chance"));
   outcome.left_over->drivers.front().when = ResidualDriver::When::from_trial_to_trial;
-  outcome.left_over->drivers.front().log_odds = -1.5;
+  outcome.left_over->drivers.front().up = false;
   CHECK_THAT(details(outcome).back(), contains("from trial to trial") && contains("motion has fewer and fewer gaps"));
 }
 
