@@ -47,6 +47,6 @@ struct FloorPlan {
 /// Outlines of the whole floor, inner walls included.
 [[nodiscard]] std::vector<std::vector<Vec2>> floor_outlines(const FloorPlan& plan);
 /// The outline of one room; none overlap. Empty for a room that is too narrow to have one.
-[[nodiscard]] std::vector<Vec2> room_outline(const FloorPlan& plan, int room);
+[[nodiscard]] std::vector<Vec2> room_outline(const FloorPlan& whole, int room);
 
 }  // namespace pirsim::studies

@@ -23,6 +23,30 @@ void open_holes(const FloorPlan& plan, int room, Cells& cells) {
   }
 }
 
+/// The part of a plan round one room: the rest needs no time.
+FloorPlan part_round(const FloorPlan& plan, int room) {
+  constexpr std::size_t margin = 4;
+  const CellGrid& grid = plan.grid;
+  std::size_t left = grid.n_columns, right = 0, top = grid.n_rows, bottom = 0;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (plan.room_of_cell[i] != room) continue;
+    left = std::min(left, i % grid.n_columns), right = std::max(right, i % grid.n_columns);
+    top = std::min(top, i / grid.n_columns), bottom = std::max(bottom, i / grid.n_columns);
+  }
+  left -= std::min(left, margin), top -= std::min(top, margin);
+  right = std::min(right + margin, grid.n_columns - 1), bottom = std::min(bottom + margin, grid.n_rows - 1);
+  FloorPlan part = plan;
+  part.grid.corner = grid.corner + grid.side_m * Vec2(static_cast<double>(left), static_cast<double>(top));
+  part.grid.n_columns = right + 1 - left, part.grid.n_rows = bottom + 1 - top;
+  part.room_of_cell.clear();
+  for (std::size_t row = top; row <= bottom; ++row) {
+    const auto first = plan.room_of_cell.begin() + static_cast<std::ptrdiff_t>(row * grid.n_columns);
+    part.room_of_cell.insert(part.room_of_cell.end(), first + static_cast<std::ptrdiff_t>(left),
+                             first + static_cast<std::ptrdiff_t>(right + 1));
+  }
+  return part;
+}
+
 }  // namespace
 
 std::vector<std::vector<Vec2>> floor_outlines(const FloorPlan& plan) {
@@ -35,7 +59,8 @@ std::vector<std::vector<Vec2>> floor_outlines(const FloorPlan& plan) {
   return outlines_of(plan.grid, whole, 1.2 * plan.grid.side_m);
 }
 
-std::vector<Vec2> room_outline(const FloorPlan& plan, int room) {
+std::vector<Vec2> room_outline(const FloorPlan& whole, int room) {
+  const FloorPlan plan = part_round(whole, room);
   const double side_m = plan.grid.side_m;
   Cells cells(plan.grid.size());
   for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = plan.room_of_cell[i] == room ? 1 : 0;

@@ -75,7 +75,7 @@ GivenMark given_mark(const YamlNode& node, std::string label) {
 
 // From the model to the room.
 
-constexpr NumberRange scale_range{.above = 0.0, .max = 1e6};
+constexpr NumberRange scale_range{.min = 1e-6, .max = 1e6};
 constexpr NumberRange origin_range = accepted::in_world_m;
 
 double read_scale(YamlMap& map) {
