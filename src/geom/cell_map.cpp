@@ -221,21 +221,20 @@ class Flood {
       result.of_cell[i] = numbers.try_emplace(root(of_cell_[i]), next).first->second;
     }
     result.count = static_cast<int>(numbers.size());
+    std::map<std::pair<int, int>, std::vector<RegionGap>> gaps;
     for (RegionGap gap : meetings_) {
-      const int a = numbers.at(root(gap.a)), b = numbers.at(root(gap.b));
-      std::tie(gap.a, gap.b) = std::minmax(a, b);
-      if (a != b && is_new(result.gaps, gap)) result.gaps.push_back(gap);
+      std::tie(gap.a, gap.b) = std::minmax({numbers.at(root(gap.a)), numbers.at(root(gap.b))});
+      if (gap.a == gap.b) continue;
+      std::vector<RegionGap>& known = gaps[{gap.a, gap.b}];
+      if (is_new(known, gap)) known.push_back(gap);
     }
-    std::ranges::stable_sort(result.gaps, [](const RegionGap& x, const RegionGap& y) {
-      return std::tie(x.a, x.b, x.cell) < std::tie(y.a, y.b, y.cell);
-    });
+    for (const auto& [regions, between] : gaps) result.gaps.insert(result.gaps.end(), between.begin(), between.end());
     return result;
   }
   /// Regions meet along the whole of a gap, its middle first.
   [[nodiscard]] bool is_new(const std::vector<RegionGap>& gaps, const RegionGap& gap) const {
     return std::ranges::none_of(gaps, [&](const RegionGap& known) {
-      return known.a == gap.a && known.b == gap.b &&
-             glm::distance(grid_.centre(known.cell), grid_.centre(gap.cell)) < known.width_m + 2.0 * grid_.side_m;
+      return glm::distance(grid_.centre(known.cell), grid_.centre(gap.cell)) < known.width_m + 2.0 * grid_.side_m;
     });
   }
 

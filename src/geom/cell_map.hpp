@@ -65,7 +65,7 @@ struct RegionGap {
 struct Regions {
   std::vector<int> of_cell;  ///< (n_cells) number of its region; -1 for taken squares
   int count = 0;
-  std::vector<RegionGap> gaps;  ///< by region and place
+  std::vector<RegionGap> gaps;  ///< by regions, the widest first
 };
 struct RegionLimits {
   double widest_gap_m = 1.25;     ///< what is wider doesn't part regions

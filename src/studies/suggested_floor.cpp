@@ -1,8 +1,6 @@
 #include "studies/suggested_floor.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -14,97 +12,10 @@ namespace pirsim::studies {
 namespace {
 
 // All assumed, for rooms that people live and work in; tried on the models of docs/validation/foreign_models.md.
-constexpr double level_part = 0.98;    ///< least upward part of a level surface's normal (tried 0.9-0.99)
-constexpr double same_floor_m = 0.08;  ///< thresholds and carpets (0.05-0.1)
-constexpr double head_m = 1.7;         ///< where walls are cut: above furniture, below lintels (1.5-1.9)
-constexpr double knee_m = 0.3;         ///< where a sill is (0.2-0.5)
-constexpr double least_ceiling_m = 1.9, most_ceiling_m = 8.0;
 constexpr double narrowest_way_m = 0.55;  ///< regions that are narrower everywhere are insides of walls (0.5-0.6)
 constexpr double least_room_m2 = 1.2;     ///< smaller ones belong to their neighbour (0.8-2)
-constexpr double filled_hole_m2 = 3.0;    ///< of a floor, where furniture stands (1-5)
 constexpr double narrowest_door_m = 0.55, widest_door_m = 2.2;  ///< to the outside, double doors included
 constexpr double indoors = 0.3;  ///< least part below a ceiling, if there are ceilings at all (0.2-0.5)
-
-using Meshes = std::span<const TriMesh* const>;
-using Corners = std::array<Vec3, 3>;
-
-void each_triangle(Meshes meshes, const auto& visit) {
-  for (const TriMesh* mesh : meshes) {
-    for (const auto& [a, b, c] : mesh->triangles)
-      visit(Corners{mesh->positions[a], mesh->positions[b], mesh->positions[c]});
-  }
-}
-Vec3 area_vector(const Corners& t) { return 0.5 * glm::cross(t[1] - t[0], t[2] - t[0]); }
-bool is_level(const Corners& t) {
-  const Vec3 area = area_vector(t);
-  return std::abs(area.y) >= level_part * glm::length(area);
-}
-double lowest(const Corners& t) { return std::min({t[0].y, t[1].y, t[2].y}); }
-double highest(const Corners& t) { return std::max({t[0].y, t[1].y, t[2].y}); }
-
-/// Where triangles cross a height.
-void take_section(Cells& cells, const CellGrid& grid, Meshes meshes, double height_m) {
-  each_triangle(meshes, [&](const Corners& t) {
-    if (lowest(t) > height_m || highest(t) <= height_m) return;
-    std::vector<Vec2> ends;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vec3 &p = t[i], &q = t[(i + 1) % 3];
-      if ((p.y <= height_m) == (q.y <= height_m)) continue;
-      ends.push_back(floor_point(p + (height_m - p.y) / (q.y - p.y) * (q - p)));
-    }
-    if (ends.size() == 2) take_line(cells, grid, ends[0], ends[1]);
-  });
-}
-
-void take_seen_from_above(Cells& cells, const CellGrid& grid, Meshes meshes, double from_m, double to_m) {
-  each_triangle(meshes, [&](const Corners& t) {
-    if (lowest(t) >= from_m && highest(t) <= to_m && is_level(t))
-      take_triangle(cells, grid, floor_point(t[0]), floor_point(t[1]), floor_point(t[2]));
-  });
-}
-
-/// What the plan is made from.
-struct Maps {
-  CellGrid grid;
-  Cells floor, walls, sills, ceiling;
-  Cells low;      ///< where something is above the floor, too low to stand below
-  Cells blocked;  ///< walls, and where there is no floor
-};
-
-CellGrid grid_of(Meshes meshes, double height_m, double side_m) {
-  constexpr double margin_m = 0.5;
-  constexpr std::size_t most_cells = 3'000'000;
-  Vec2 lower(std::numeric_limits<double>::max()), upper(std::numeric_limits<double>::lowest());
-  each_triangle(meshes, [&](const Corners& t) {
-    if (std::abs(lowest(t) - height_m) > same_floor_m || !is_level(t)) return;
-    for (const Vec3& p : t) lower = glm::min(lower, floor_point(p)), upper = glm::max(upper, floor_point(p));
-  });
-  if (lower.x > upper.x) lower = upper = Vec2(0.0);
-  return {lower, upper, margin_m, side_m, most_cells};
-}
-
-Maps maps_of(Meshes meshes, double height_m, double side_m) {
-  Maps maps{grid_of(meshes, height_m, side_m), {}, {}, {}, {}, {}, {}};
-  for (Cells* cells : {&maps.floor, &maps.walls, &maps.sills, &maps.ceiling, &maps.low})
-    cells->assign(maps.grid.size(), 0);
-  double top_m = height_m;
-  each_triangle(meshes, [&](const Corners& t) { top_m = std::max(top_m, highest(t)); });
-  const double cut_m = height_m + std::min(head_m, 0.85 * (top_m - height_m));  // walls of some models are cut lower
-  take_seen_from_above(maps.floor, maps.grid, meshes, height_m - same_floor_m, height_m + same_floor_m);
-  take_seen_from_above(maps.ceiling, maps.grid, meshes, height_m + least_ceiling_m, height_m + most_ceiling_m);
-  take_seen_from_above(maps.low, maps.grid, meshes, height_m + same_floor_m, height_m + head_m);
-  take_section(maps.walls, maps.grid, meshes, cut_m);
-  take_section(maps.sills, maps.grid, meshes, height_m + knee_m);
-  Cells floor_and_walls = maps.floor;
-  for (std::size_t i = 0; i < floor_and_walls.size(); ++i) floor_and_walls[i] |= maps.walls[i];
-  fill_holes(maps.grid, floor_and_walls, filled_hole_m2);
-  maps.blocked.assign(maps.grid.size(), 0);
-  for (std::size_t i = 0; i < maps.blocked.size(); ++i) {
-    if (floor_and_walls[i] != 0) maps.floor[i] = 1;
-    maps.blocked[i] = maps.walls[i] != 0 || floor_and_walls[i] == 0 ? 1 : 0;
-  }
-  return maps;
-}
 
 /// What is told of a region.
 struct Region {
@@ -116,7 +27,7 @@ struct Region {
 /// Regions become rooms, or the outside.
 class Planner {
  public:
-  Planner(Maps maps, std::span<const Leaf> leaves, double height_m)
+  Planner(FloorMaps maps, std::span<const Leaf> leaves, double height_m)
       : maps_(std::move(maps)), grid_(maps_.grid), leaves_(leaves), height_m_(height_m) {}
 
   FloorPlan run() {
@@ -156,13 +67,16 @@ class Planner {
   void join_small() {
     std::vector<int> joined(measured_.size());
     std::iota(joined.begin(), joined.end(), 0);
+    std::vector<const RegionGap*> widest_of(measured_.size(), nullptr);
+    for (const RegionGap& gap : regions_.gaps) {
+      for (const int own : {gap.a, gap.b}) {
+        const RegionGap*& widest = widest_of[static_cast<std::size_t>(own)];
+        if (widest == nullptr || gap.width_m > widest->width_m) widest = &gap;
+      }
+    }
     for (std::size_t i = 0; i < measured_.size(); ++i) {
       if (square_metres(measured_[i].n_cells) >= least_room_m2 && measured_[i].widest_m >= narrowest_way_m) continue;
-      const RegionGap* widest = nullptr;
-      for (const RegionGap& gap : regions_.gaps) {
-        const bool is_own = gap.a == static_cast<int>(i) || gap.b == static_cast<int>(i);
-        if (is_own && (widest == nullptr || gap.width_m > widest->width_m)) widest = &gap;
-      }
+      const RegionGap* widest = widest_of[i];
       const int other = widest == nullptr ? -1 : widest->a == static_cast<int>(i) ? widest->b : widest->a;
       const bool is_larger = other >= 0 && region(other).n_cells > measured_[i].n_cells;
       joined[i] = is_larger ? other : -1;
@@ -182,17 +96,21 @@ class Planner {
     measure();
   }
 
-  /// Has it a way in or out, or is it larger than any cupboard or shaft?
-  [[nodiscard]] bool may_be_room(int number) const {
+  /// Regions with a way in or out, or larger than any cupboard or shaft.
+  [[nodiscard]] Cells possible_rooms() const {
     constexpr double most_m2 = 4.0;  // assumed, of what has no way in (2-6)
-    const auto is_own = [&](const RegionGap& gap) { return gap.a == number || gap.b == number; };
-    const auto is_beside = [&](const Leaf& leaf) {
-      return beside(regions_.of_cell, leaf, leaf.across) == number ||
-             beside(regions_.of_cell, leaf, -leaf.across) == number;
+    Cells may_be(measured_.size(), 0);
+    const auto take = [&](int number) {
+      if (number >= 0) may_be[static_cast<std::size_t>(number)] = 1;
     };
-    const Region& own = measured_[static_cast<std::size_t>(number)];
-    return square_metres(own.n_cells) > most_m2 || own.n_at_void > 0 || std::ranges::any_of(regions_.gaps, is_own) ||
-           std::ranges::any_of(leaves_, is_beside);
+    for (const RegionGap& gap : regions_.gaps) take(gap.a), take(gap.b);
+    for (const Leaf& leaf : leaves_) {
+      for (const Vec2& aside : {leaf.across, -leaf.across}) take(beside(regions_.of_cell, leaf, aside));
+    }
+    for (std::size_t i = 0; i < measured_.size(); ++i) {
+      if (square_metres(measured_[i].n_cells) > most_m2 || measured_[i].n_at_void > 0) may_be[i] = 1;
+    }
+    return may_be;
   }
 
   /// Without a ceiling where others have one, or with more edge than wall. A model of one room that is open stays.
@@ -201,12 +119,13 @@ class Planner {
     for (const Region& own : measured_) n_cells += own.n_cells, n_covered += own.n_covered;
     const bool has_ceilings = static_cast<double>(n_covered) >= indoors * static_cast<double>(n_cells);
     is_outside_.assign(measured_.size(), 0);
+    const Cells may_be_room = possible_rooms();
     std::size_t n_inside = 0;
     for (std::size_t i = 0; i < measured_.size(); ++i) {
       const Region& own = measured_[i];
       const bool is_bare = static_cast<double>(own.n_covered) < indoors * static_cast<double>(own.n_cells);
       const bool is_garden = has_ceilings ? is_bare : own.n_at_void > own.n_at_walls;
-      is_outside_[i] = own.n_cells == 0 || is_garden || !may_be_room(static_cast<int>(i)) ? 1 : 0;
+      is_outside_[i] = own.n_cells == 0 || is_garden || may_be_room[i] == 0 ? 1 : 0;
       n_inside += is_outside_[i] == 0 ? 1 : 0;
     }
     if (n_inside > 0) return;
@@ -356,7 +275,7 @@ class Planner {
     return gap;
   }
 
-  Maps maps_;
+  FloorMaps maps_;
   const CellGrid& grid_;
   std::span<const Leaf> leaves_;
   double height_m_;
@@ -368,28 +287,8 @@ class Planner {
 
 }  // namespace
 
-std::vector<double> level_heights_m(Meshes meshes) {
-  constexpr double bin_m = 0.02, least_m2 = 1.0, least_part = 0.1;
-  constexpr std::size_t most = 12;
-  std::map<long, double> areas;  // by bin
-  each_triangle(meshes, [&](const Corners& t) {
-    if (is_level(t)) areas[std::lround((t[0].y + t[1].y + t[2].y) / 3.0 / bin_m)] += std::abs(area_vector(t).y);
-  });
-  std::vector<std::pair<double, long>> levels;
-  for (const auto& [bin, area] : areas) levels.emplace_back(-area, bin);
-  std::ranges::sort(levels);
-  std::vector<double> heights;
-  for (const auto& [area, bin] : levels) {
-    const double height_m = static_cast<double>(bin) * bin_m;
-    const auto is_near = [&](double known) { return std::abs(known - height_m) <= 1.5 * same_floor_m; };
-    if (-area < std::max(least_m2, -least_part * levels.front().first) || heights.size() == most) break;
-    if (std::ranges::none_of(heights, is_near)) heights.push_back(height_m);
-  }
-  std::ranges::sort(heights);
-  return heights;
-}
-
-FloorPlan floor_plan_at(Meshes meshes, std::span<const Leaf> leaves, double height_m, double side_m) {
+FloorPlan floor_plan_at(std::span<const TriMesh* const> meshes, std::span<const Leaf> leaves, double height_m,
+                        double side_m) {
   return Planner(maps_of(meshes, height_m, side_m), leaves, height_m).run();
 }
 

@@ -37,6 +37,15 @@ struct FloorPlan {
   [[nodiscard]] int room_at(const Vec2& place) const { return room_of_cell[grid.at(place)]; }
 };
 
+/// What a plan is made from.
+struct FloorMaps {
+  CellGrid grid;
+  Cells floor, walls, sills, ceiling;
+  Cells low;      ///< where something is above the floor, too low to stand below
+  Cells blocked;  ///< walls, and where there is no floor
+};
+[[nodiscard]] FloorMaps maps_of(std::span<const TriMesh* const> meshes, double height_m, double side_m);
+
 /// Heights of large level surfaces, from below.
 [[nodiscard]] std::vector<double> level_heights_m(std::span<const TriMesh* const> meshes);
 

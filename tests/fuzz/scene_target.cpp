@@ -1,8 +1,10 @@
-// Rooms: glTF as JSON and as .glb, with markup. What is accepted is finite, in range, and closed in itself.
+// Rooms: glTF as JSON and as .glb, with markup. What is accepted is finite, in range, and closed in itself. Of any
+// model marks may be proposed.
 #include <cmath>
 
 #include "fuzz_target.hpp"
 #include "pirsim/io.hpp"
+#include "studies/suggestion.hpp"
 
 namespace {
 
@@ -23,10 +25,19 @@ void check(const pirsim::SceneSpec& scene) {
   if (scene.floor.empty()) std::abort();
 }
 
+void propose(const std::filesystem::path& file) {
+  try {
+    const auto proposed = pirsim::studies::suggest(pirsim::io::read_model_parts(file), {}, "model");
+    if (proposed.floors.empty() || pirsim::studies::to_yaml(proposed, "model").empty()) std::abort();
+  } catch (const pirsim::Error&) {
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return pirsim::test::read_as_file(data, size, ".gltf", [](const std::filesystem::path& file) {
-    check(pirsim::io::read_scene(file, {{}, {PIRSIM_DATA_DIR}}));
+    propose(file);
+    check(pirsim::io::read_scene(file, {{}, {PIRSIM_DATA_DIR}, {}}));
   });
 }

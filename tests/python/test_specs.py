@@ -240,3 +240,18 @@ def test_an_occupancy_is_made_of_counts_and_of_tracks(room):
     assert len(counted) == 120 and counted[59] == 3 and counted[119] == 1
     track = pirsim.Track("a", times_s=[1, 5], points=[(6.3, -0.6), (2.3, -0.6)])
     assert list(people(pirsim.Occupancy(positions=pirsim.Positions([track])))) == [1] * 5
+
+
+def test_marks_beside_a_model(tmp_path, room, study_a):
+    """As by --marks: a Scene of a file has both, and a model made of both names has them too."""
+    marks = tmp_path / "marks.yaml"
+    marks.write_text("pirsim_marks: 1\nseats: [{id: extra, position_m: [6.3, 0.53, -0.6]}]\n")
+    plain, marked = pirsim.read_scene(room), pirsim.read_scene(room, marks=marks)
+    assert [seat.id for seat in marked.seats] == [seat.id for seat in plain.seats] + ["extra"]
+    assert pirsim.compile(room, study_a, marks=marks).scene == marked
+    assert "none.yaml" in str(pirsim.check(room, study_a, marks=tmp_path / "none.yaml").errors[0])
+    marks.write_text("pirsim_marks: 1\nignore: [nothing_like_it]\n")
+    with pytest.raises(pirsim.InputError, match="no node of the scene"):
+        pirsim.read_scene(room, marks=str(marks))
+    with pytest.raises(TypeError, match="marks"):
+        pirsim.compile(plain, study_a, marks=marks)
