@@ -15,8 +15,8 @@ namespace pirsim::studies {
 namespace {
 
 constexpr std::array<std::string_view, 6> door_words{"door", "tür", "tuer", "puerta", "deur", "porte"};
-constexpr std::array<std::string_view, 7> no_door_words{"indoor",   "outdoor", "cabinet", "cupboard",
-                                                        "wardrobe", "fridge",  "closet"};
+constexpr std::array<std::string_view, 9> no_door_words{"wall",     "wand",     "indoor", "outdoor", "cabinet",
+                                                        "cupboard", "wardrobe", "fridge", "closet"};
 constexpr std::array<std::string_view, 2> space_words{"ifcspace", "ifc_space"};
 constexpr std::array<std::string_view, 14> room_words{"bedroom",      "kitchen", "bathroom", "living",     "hallway",
                                                       "corridor",     "office",  "dining",   "wohnzimmer", "küche",

@@ -168,6 +168,7 @@ TEST_CASE("leaves of doors shut nothing, and go to what is ignored", "[suggestio
   b.add("Door_bath", {6.6, 0, 3.03}, {7.4, 2.0, 3.07});
   b.add("Front door", {-0.12, 0, 2.5}, {-0.08, 2.1, 3.5});
   b.add("cupboard door", {1, 0, 0.1}, {1.3, 0.6, 0.12});
+  b.add("wall left of the door", {-0.2, 0, 2.0}, {-0.1, 2.5, 2.5});
   const studies::Suggestion found = studies::suggest(b.model, {}, "flat");
   CHECK(found.door_leaves == std::vector<std::string>{"Door_bath", "Front door"});
   CHECK(found.doors.size() == 2);
