@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the shipped rooms as glTF: data/rooms/{meeting_room,open_office,open_hall}.gltf.
+"""Writes the shipped rooms as glTF: data/rooms/{meeting_room,open_office,open_hall,two_rooms}.gltf.
 
 The meeting room follows data/rooms/room_layouts.json; `--alternative N` (1-8, or `all`) writes
 meeting_room_altN.gltf from one of the other layouts that the paper's data allow. The output depends on nothing but
@@ -296,6 +296,40 @@ def open_hall():
     return scene
 
 
+# -- two rooms: invented, the least scene with areas ------------------------------------------------------------------
+
+def two_rooms():
+    """8 x 4 m with a wall across, in whose middle the two areas meet, and a gap of 0.9 m in the wall."""
+    scene = Scene("two rooms")
+    stock = Stock(scene)
+    height, depth, middle = 2.5, 4.0, 4.5
+    plaster = stock.box("plaster")
+    structure = scene.node("structure")
+    floor = scene.geometry([(0, 0, 0), (8, 0, 0), (8, 0, -depth), (0, 0, -depth)], [(0, 1, 2), (0, 2, 3)])
+    scene.node("floor", structure, mesh=scene.mesh("floor", floor, stock.material("carpet")), mark={"type": "floor"})
+    for name, low, high in (("living_room", 0, middle), ("bedroom", middle, 8)):
+        corners = [[low, 0], [high, 0], [high, -depth], [low, -depth]]
+        scene.node(name, structure, mark={"type": "area", "id": name, "polygon_xz_m": corners})
+    for name, low, high in (
+            ("ceiling", (-WALL, height, -depth - WALL), (8 + WALL, height + WALL, WALL)),
+            ("front wall left of the door", (-WALL, 0, 0), (0.5, height, WALL)),
+            ("front wall right of the door", (1.4, 0, 0), (8 + WALL, height, WALL)),
+            ("front wall above the door", (0.5, DOOR_HEIGHT, 0), (1.4, height, WALL)),
+            ("back wall", (-WALL, 0, -depth - WALL), (8 + WALL, height, -depth)),
+            ("left wall", (-WALL, 0, -depth), (0, height, 0)), ("right wall", (8, 0, -depth), (8 + WALL, height, 0)),
+            ("inner wall near the front", (middle - 0.05, 0, -1.5), (middle + 0.05, height, 0)),
+            ("inner wall near the back", (middle - 0.05, 0, -depth), (middle + 0.05, height, -2.4)),
+            ("inner wall above the gap", (middle - 0.05, DOOR_HEIGHT, -2.4), (middle + 0.05, height, -1.5))):
+        scene.box(name, structure, plaster, low, high)
+    scene.node("door", structure, at=[0.95, 0, 0],
+               mark={"type": "entrance", "id": "door", "width_m": DOOR_WIDTH, "outside_m": 1.5})
+    scene.box("table top", None, stock.box("wood"), (2.2, 0.71, -3.7), (3.4, 0.74, -2.9))
+    add_seat(scene, None, "S1", [2.8, 0.53, -2.65], 0)
+    add_sensor(scene, None, "PIR1", "EKMC1604111", [0.01, 2.2, -3.0], -90, 20)
+    add_sensor(scene, None, "PIR2", "EKMC1604111", [7.99, 2.2, -3.0], 90, 20)
+    return scene
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--alternative", metavar="N",
@@ -308,7 +342,7 @@ def main():
 
     if arguments.alternative is None:
         rooms = {"meeting_room": meeting_room(layouts["meeting_room"], "meeting room"),
-                 "open_office": open_office(), "open_hall": open_hall()}
+                 "open_office": open_office(), "open_hall": open_hall(), "two_rooms": two_rooms()}
     else:
         names = [str(n) for n in range(1, len(alternatives) + 1)]
         wanted = names if arguments.alternative == "all" else [arguments.alternative]

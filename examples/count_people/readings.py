@@ -89,7 +89,8 @@ def _read_day(folder, path):
         rows = list(csv.reader(file))
     columns = {name: i for i, name in enumerate(rows[0])}
     last = columns["departures"]
-    sensors = [i for name, i in columns.items() if i > last and rows[1][i] != ""]
+    sensors = [i for name, i in columns.items()
+               if i > last and not name.startswith("people_") and rows[1][i] != ""]  # people_: of areas
     motion = np.array([[row[i] == "1" for i in sensors] for row in rows[1:]], dtype=bool)
     people = np.array([int(row[columns["people"]]) for row in rows[1:]])
     per = round(SECONDS / float(rows[1][columns["time_s"]]))

@@ -21,8 +21,17 @@ enum class Holds { whole, count, bit, bits, number, text, date, moment };
 enum class When {
   always,
   with_clock,  ///< if the script has a clock
+  with_areas,  ///< if the scene has areas
   simulated    ///< not in measured rows: nobody knows it there
 };
+
+/// Of what a table has as many columns as there are.
+enum class Each { sensor, area };
+
+/// Begins the names of columns that hold the people of an area, and no sensor's.
+inline constexpr std::string_view area_prefix = "people_";
+[[nodiscard]] inline std::string column_of_area(std::string_view area) { return std::string(area_prefix).append(area); }
+[[nodiscard]] inline bool is_column_of_area(std::string_view column) { return column.starts_with(area_prefix); }
 
 struct ColumnInfo {
   std::string_view name;
@@ -34,14 +43,21 @@ struct ColumnInfo {
   int decimals = -1;         ///< to which tables round; -1: they don't
 };
 
+/// Who has columns in a table. areas: ids, then the name of the rest if there is one.
+struct ColumnOwners {
+  std::vector<std::string> sensors{}, areas{};
+};
+
 /// One field. Text and bits belong to the row.
 using Cell = std::variant<std::monostate, std::int64_t, double, std::string_view, std::span<const std::uint8_t>>;
 
-/// A column that a table has once has a `value`. One that it has for each sensor has `each`, and no name of its own.
+/// A column that a table has once has a `value`. One that it has for each sensor or area has `each`, and no name of its
+/// own.
 template <typename Row>
 struct Column : ColumnInfo {
   Cell (*value)(const Row& row) = nullptr;
   Cell (*each)(const Row& row, std::size_t item) = nullptr;
+  Each of = Each::sensor;
 };
 
 /// The list of the table that has such rows.
@@ -79,6 +95,7 @@ struct DayLine {
   const Sample& row;
   int arrivals, departures;
   std::span<const int> sensor_of_column;  ///< index of the room's sensor; -1: the room has none of that name
+  std::span<const int> area_of_column{};  ///< the same of its areas
 };
 
 struct DayOccupantLine {
@@ -99,24 +116,26 @@ template <>
 template <>
 [[nodiscard]] std::span<const Column<DayOccupantLine>> columns_of();
 
-/// What a table is called by in its first line: the columns for which `is_there` holds, and one for each of `sensors`.
+/// What a table is called by in its first line: the columns for which `is_there` holds, and one for each owner.
 template <typename Row, typename IsThere>
-[[nodiscard]] std::vector<std::string> column_names(const std::vector<std::string>& sensors, IsThere is_there) {
+[[nodiscard]] std::vector<std::string> column_names(const ColumnOwners& owners, IsThere is_there) {
   std::vector<std::string> names;
   for (const Column<Row>& column : columns_of<Row>()) {
     if (!is_there(column.when)) continue;
-    if (column.each != nullptr) {
-      names.insert(names.end(), sensors.begin(), sensors.end());
-    } else {
+    if (column.each == nullptr) {
       names.emplace_back(column.name);
+    } else if (column.of == Each::sensor) {
+      names.insert(names.end(), owners.sensors.begin(), owners.sensors.end());
+    } else {
+      for (const std::string& area : owners.areas) names.push_back(column_of_area(area));
     }
   }
   return names;
 }
-/// All of them.
+/// All of them, but those of areas if there are none.
 template <typename Row>
-[[nodiscard]] std::vector<std::string> column_names(const std::vector<std::string>& sensors = {}) {
-  return column_names<Row>(sensors, [](When) { return true; });
+[[nodiscard]] std::vector<std::string> column_names(const ColumnOwners& owners = {}) {
+  return column_names<Row>(owners, [&](When when) { return when != When::with_areas || !owners.areas.empty(); });
 }
 
 }  // namespace pirsim

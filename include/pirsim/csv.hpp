@@ -30,19 +30,21 @@ class TableWriter {
     for (const Column<Row>& column : columns) add(column, 0, column.name);
     end_line();
   }
-  /// The columns of columns_of<Row>() that are called so. A name that none of them has belongs to a sensor: the first
-  /// such to the first sensor.
+  /// The columns of columns_of<Row>() that are called so. A name that none of them has belongs to an area, by how it
+  /// begins, or to a sensor: the first such to the first sensor.
   explicit TableWriter(std::ostream& out, const std::vector<std::string>& names = column_names<Row>()) : out_(out) {
     const std::span<const Column<Row>> columns = columns_of<Row>();
-    const auto repeated = std::ranges::find_if(columns, [](const auto& column) { return column.each != nullptr; });
-    std::size_t n_sensors = 0;
+    std::size_t n_sensors = 0, n_areas = 0;
     for (const std::string& name : names) {
       const auto single = std::ranges::find_if(
           columns, [&](const auto& column) { return column.each == nullptr && column.name == name; });
+      const Each of = is_column_of_area(name) ? Each::area : Each::sensor;
+      const auto repeated =
+          std::ranges::find_if(columns, [&](const auto& column) { return column.each != nullptr && column.of == of; });
       if (single != columns.end()) {
         add(*single, 0, name);
       } else if (repeated != columns.end()) {
-        add(*repeated, n_sensors++, name);
+        add(*repeated, of == Each::area ? n_areas++ : n_sensors++, name);
       } else {
         throw Error(ErrorCode::internal, "the table has no column '" + name + "'");
       }
@@ -54,7 +56,7 @@ class TableWriter {
     line_.clear();
     for (const Field& field : fields_) {
       const Column<Row>& column = *field.column;
-      add_csv(line_, column.each == nullptr ? column.value(row) : column.each(row, field.sensor), column.decimals);
+      add_csv(line_, column.each == nullptr ? column.value(row) : column.each(row, field.item), column.decimals);
       line_ += ',';
     }
     end_line();
@@ -63,11 +65,11 @@ class TableWriter {
  private:
   struct Field {
     const Column<Row>* column;
-    std::size_t sensor;
+    std::size_t item;
   };
 
-  void add(const Column<Row>& column, std::size_t sensor, std::string_view name) {
-    fields_.push_back({&column, sensor});
+  void add(const Column<Row>& column, std::size_t item, std::string_view name) {
+    fields_.push_back({&column, item});
     line_ += csv_field(name);
     line_ += ',';
   }

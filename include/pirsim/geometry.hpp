@@ -75,6 +75,7 @@ class FloorArea {
   [[nodiscard]] Vec2 upper() const noexcept { return upper_; }
   [[nodiscard]] const std::vector<std::vector<Vec2>>& loops() const noexcept { return loops_; }
   [[nodiscard]] bool empty() const noexcept { return loops_.empty(); }
+  bool operator==(const FloorArea&) const = default;
 
  private:
   std::vector<std::vector<Vec2>> loops_;

@@ -36,8 +36,12 @@ class Model {
   [[nodiscard]] const std::string& trial_of(std::uint32_t run) const noexcept;
   [[nodiscard]] int replicate_of(std::uint32_t run) const noexcept;  ///< counts from 1
   [[nodiscard]] double tick_s() const noexcept;
-  /// Of the rows: replicate, trial, time_s, `time` if runs have a clock, phase, people, then one a sensor.
+  /// Of the rows: replicate, trial, time_s, `time` if runs have a clock, phase, people, then one an area and one a
+  /// sensor.
   [[nodiscard]] std::vector<std::string> columns() const;
+  /// Whose people are counted by themselves: the ids of the scene's areas, then "elsewhere" if some of the floor is in
+  /// none. Empty without areas.
+  [[nodiscard]] const std::vector<std::string>& areas() const noexcept;
   /// Of all sensors with every effect applied, world frame, cut at the room.
   [[nodiscard]] const RayBundle& rays() const noexcept;
 

@@ -19,10 +19,11 @@ struct Sample {
   int replicate = 0;  ///< counts from 1
   std::string trial;
   double time_s = 0.0;
-  std::string phase;               ///< what the first person does; with a schedule what the room is used for
-  int people = 0;                  ///< people whose pelvis stands over the floor area
-  std::vector<std::uint8_t> bits;  ///< (n_sensors) 1 where the sensor saw motion
-  std::string clock{};             ///< "2026-03-02T08:30:00" of time_s; empty without a clock
+  std::string phase;                   ///< what the first person does; with a schedule what the room is used for
+  int people = 0;                      ///< people whose pelvis stands over the floor area
+  std::vector<std::uint8_t> bits;      ///< (n_sensors) 1 where the sensor saw motion
+  std::string clock{};                 ///< "2026-03-02T08:30:00" of time_s; empty without a clock
+  std::vector<int> people_of_areas{};  ///< (n_areas, and the rest of the floor if there is one) they sum to people
   bool operator==(const Sample&) const = default;
 };
 
@@ -54,6 +55,7 @@ struct OccupantRow {
   std::string seat;      ///< taken, from setting out for it to walking away from it; or empty
   Vec2 place_m{0.0};     ///< x and z of the pelvis
   enum class Where { inside, outside } where = Where::inside;  ///< over the floor area, or in a doorway
+  std::string area{};                                          ///< of somebody inside, if the scene has areas
 };
 
 /// Between people, or a person and a seat; nothing of it ends a run.

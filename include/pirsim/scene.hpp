@@ -1,7 +1,8 @@
-// A room as plain data: what occludes, where the sensors hang, where people sit, enter and walk.
+// A room as plain data: what occludes, where the sensors hang, where people sit, enter, walk and are counted.
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct SensorSpec {
   std::string model;  ///< key into SceneSpec::sensor_models
   Frame world_from_sensor;
   double gain = 1.0;  ///< of its signal, relative to what its make's rated distances say; for the analog response
+  std::optional<std::string> area{};  ///< id of the area that it watches; none: the one below it
 };
 
 /// The sitter's pelvis rests at the origin of the seat's frame and faces its -Z; +Y is up.
@@ -35,6 +37,12 @@ struct EntranceSpec {
   double outside_m = 1.5;
 };
 
+/// A named part of the floor: people are counted in each.
+struct AreaSpec {
+  std::string id;
+  FloorArea outline;
+};
+
 struct SceneSpec {
   std::string name;                 ///< file name, for messages
   std::vector<TriMesh> meshes;      ///< everything that occludes, world frame, cleaned
@@ -42,6 +50,7 @@ struct SceneSpec {
   std::vector<SeatSpec> seats;
   std::vector<EntranceSpec> entrances;
   FloorArea floor;
+  std::vector<AreaSpec> areas{};                         ///< apart from each other; in file order, as the columns
   std::map<std::string, SensorModelSpec> sensor_models;  ///< every model that a sensor names
   std::vector<InputFile> files;                          ///< all that was read: scene, its buffers, sensors
   std::vector<Issue> warnings;                           ///< what the reader noticed and repaired or ignored

@@ -22,13 +22,13 @@ from ._surveys import CoverageMap, Grid, WalkTest, coverage, walk_test
 from ._wings import Candidate, Cell, FittedEffect, Reconciliation, dataset, reconcile, room
 from .errors import (Error, ErrorCode, FileError, IncompleteWarning, InfeasibleError, InputError, InputWarning,
                      InternalError, UsageError)
-from .specs import (Action, Amplifier, Appear, Clock, Cluster, Comparator, Counts, Detector, Diagnostic, Effect, Element,
+from .specs import (Action, Amplifier, Appear, Area, Clock, Cluster, Comparator, Counts, Detector, Diagnostic, Effect, Element,
                     Enter, Entrance, Floor, Follow, Frame, HeldMeeting, InputFile, Leave, Meetings, Mesh, Occupancy, Optics, Person, Places, Positions, Profile, Rise,
                     Scene, Schedule, Script, Seat, SeatScatter, Sensing, Sensor, SensorModel, Sit, Staff, Stay, Summary, Track, Trial,
                     Turn, Wait, Walk, Warmth, Where, Work, Zone)
 
 __all__ = [
-    "Action", "Amplifier", "Appear", "Candidate", "Cell", "Clock", "Cluster", "Comparator", "Counts", "CoverageMap",
+    "Action", "Amplifier", "Appear", "Area", "Candidate", "Cell", "Clock", "Cluster", "Comparator", "Counts", "CoverageMap",
     "Detector", "Diagnostic", "Effect", "EffectInfo", "EffectParameter", "Element", "Enter", "Entrance", "Error",
     "ErrorCode", "Fault", "FileError", "Findings", "FittedEffect", "Floor", "Follow", "Frame", "Grid", "HeldMeeting",
     "Incident", "IncompleteWarning", "InfeasibleError", "InputError", "InputFile", "InputWarning", "InternalError", "Leave",

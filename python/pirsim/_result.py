@@ -54,6 +54,10 @@ class Result:
     """[run, second, sensor] 1 where the sensor saw motion in that second."""
     people: npt.NDArray[np.uint16]
     """[run, second] people in the room at the end of that second."""
+    areas: tuple[str, ...]
+    """Ids of the scene's areas, then `elsewhere` if some of the floor is in none; empty without areas."""
+    people_of_areas: npt.NDArray[np.uint16]
+    """[run, second, area] how many of `people` are in each of `areas`; they sum to `people`."""
     valid: npt.NDArray[np.bool_]
     """[run, second] False behind the end of a run."""
     time: npt.NDArray[np.float64]
@@ -76,7 +80,7 @@ class Result:
     """A [tick, zone] array for each run, 1 where the zone sees somebody; empty ones unless `run(zones=True)`."""
     occupants: dict[str, npt.NDArray[Any]] = field(default_factory=dict, repr=False)
     """Columns of who is where, one entry a second and person who is there: run, time_s, person, activity, seat, x_m,
-    z_m, inside; empty ones unless `run(occupants=True)`."""
+    z_m, inside, and with areas area; empty ones unless `run(occupants=True)`."""
     signals: dict[str, npt.NDArray[Any]] = field(default_factory=dict, repr=False)
     """Columns of what analog sensors received, one entry a tick and sensor: run, tick, sensor (index), power_w,
     signal_v, output, and the zone (index), person, part and share_v of the largest share; empty ones unless
@@ -102,6 +106,14 @@ class Result:
                  f"  people 0 to {int(self.people.max(initial=0))}; phases: {', '.join(filter(None, self.phases))}",
                  f"  {len(self.faults)} faults, {len(self.incidents)} incidents"]
         return "\n".join(lines + [f"  {text}" for text in extra]) + ">"
+
+    def people_in(self, area: str) -> npt.NDArray[np.uint16]:
+        """[run, second] people in the area of this id, or `elsewhere`. Raises KeyError for one that `areas` lacks."""
+        if area not in self.areas:
+            near = difflib.get_close_matches(area, self.areas, n=1)
+            known = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(self.areas) or 'none'}"
+            raise KeyError(f"no area {area!r} ({known})")
+        return self.people_of_areas[:, :, self.areas.index(area)]
 
     @cached_property
     def phase(self) -> npt.NDArray[np.str_]:
@@ -133,6 +145,8 @@ class Result:
             columns["time"] = self.clock[run, second]
         columns["phase"] = self.phase_code[run, second]
         columns["people"] = self.people[run, second]
+        for area, name in enumerate(self.areas):
+            columns["people_" + name] = self.people_of_areas[run, second, area]
         for sensor, name in enumerate(self.sensors):
             columns[name] = self.bits[run, second, sensor]
         return columns
@@ -159,7 +173,8 @@ class Result:
         return pl.DataFrame(columns)
 
     def to_xarray(self) -> xarray.Dataset:
-        """bits (run, time, sensor), people, valid and phase (run, time), with trial and replicate of each run."""
+        """bits (run, time, sensor), people, valid and phase (run, time), with trial and replicate of each run; with areas
+        people_of_areas (run, time, area)."""
         import xarray as xr
 
         rows = ("run", "time")
@@ -167,7 +182,11 @@ class Result:
                 "valid": (rows, self.valid), "phase": (rows, self.phase)}
         if self.clock is not None:
             data["clock"] = (rows, self.clock.astype("datetime64[ns]"))
-        return xr.Dataset(data, coords={
+        names: dict[str, Any] = {}
+        if self.areas:
+            data["people_of_areas"] = (("run", "time", "area"), self.people_of_areas)
+            names["area"] = list(self.areas)
+        return xr.Dataset(data, coords=names | {
             "run": self.run, "time": ("time", self.time, {"units": "s"}), "sensor": list(self.sensors),
             "trial": ("run", self.trial), "replicate": ("run", self.replicate)})
 
@@ -176,7 +195,7 @@ def _texts(column: npt.NDArray[np.uint16], texts: tuple[str, ...]) -> npt.NDArra
     return np.array(texts)[column]
 
 
-def make_result(arrays: dict[str, Any], sensors: tuple[str, ...], seed: int) -> Result:
+def make_result(arrays: dict[str, Any], sensors: tuple[str, ...], areas: tuple[str, ...], seed: int) -> Result:
     """Of what the module gives."""
     texts = arrays.pop("texts")
     occupants, signals = arrays["occupants"], arrays["signals"]
@@ -192,4 +211,4 @@ def make_result(arrays: dict[str, Any], sensors: tuple[str, ...], seed: int) -> 
     arrays["trial"].flags.writeable = False
     if "clock" in arrays:
         arrays["clock"] = arrays["clock"].view("datetime64[s]")
-    return Result(sensors=sensors, seed=seed, **arrays)
+    return Result(sensors=sensors, areas=areas, seed=seed, **arrays)

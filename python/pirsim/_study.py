@@ -190,6 +190,11 @@ class Model:
         return self._handle.trials
 
     @property
+    def areas(self) -> tuple[str, ...]:
+        """Ids of the scene's areas, then `elsewhere` if some of the floor is in none."""
+        return self._handle.areas
+
+    @property
     def sensors(self) -> Poses:
         """Of the scene as given, in the order of the last axis of `Result.bits`."""
         return Poses(*self._handle.sensors)
@@ -286,7 +291,7 @@ def run(model: Model, runs: int | Iterable[int] | None = None, *, threads: int =
     """
     arrays = _core.run(_handle_of(model), _run_numbers(model, runs), as_threads(threads), zones, signals, occupants,
                        progress)
-    result = make_result(arrays, model.sensors.names, model.seed)
+    result = make_result(arrays, model.sensors.names, model.areas, model.seed)
     if result.faults:
         first = result.faults[0]
         warnings.warn(f"{len(result.faults)} runs could not go on and have no rows; run {first.run} at second "
@@ -333,7 +338,7 @@ class Trace:
         listed = None if effects is None else [as_effect(effect) for effect in effects]
         own = None if seed is None else as_seed(seed)
         return make_result(_core.emit(_handle_of(model), self._handle, listed, own, progress),
-                           model.sensors.names, model.seed if own is None else own)
+                           model.sensors.names, model.areas, model.seed if own is None else own)
 
     def __repr__(self) -> str:
         return f"<pirsim.Trace of {self.n_runs} runs>"

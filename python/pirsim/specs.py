@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from ._core import MeshSolid
 
 __all__ = [
-    "Action", "Activity", "Amplifier", "Appear", "Clock", "Cluster", "Comparator", "Counts", "Detector", "Diagnostic",
-    "Effect", "Element", "Enter", "Entrance", "Floor", "Follow", "Frame", "HeldMeeting", "InputFile", "Leave",
-    "Meetings", "Mesh", "Occupancy", "Optics", "Person", "Places", "Point2", "Point3", "Positions", "Profile", "Rise",
-    "Scene", "Schedule", "Script", "Seat", "SeatScatter", "Sensing", "Sensor", "SensorModel", "Sit", "Staff", "Stay",
-    "Summary", "Track", "Trial", "Turn", "Wait", "Walk", "Warmth", "Where", "Work", "Zone",
+    "Action", "Activity", "Amplifier", "Appear", "Area", "Clock", "Cluster", "Comparator", "Counts", "Detector",
+    "Diagnostic", "Effect", "Element", "Enter", "Entrance", "Floor", "Follow", "Frame", "HeldMeeting", "InputFile",
+    "Leave", "Meetings", "Mesh", "Occupancy", "Optics", "Person", "Places", "Point2", "Point3", "Positions", "Profile",
+    "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter", "Sensing", "Sensor", "SensorModel", "Sit", "Staff",
+    "Stay", "Summary", "Track", "Trial", "Turn", "Wait", "Walk", "Warmth", "Where", "Work", "Zone",
 ]
 
 
@@ -62,6 +62,8 @@ class Sensor:
     world_from_sensor: Frame = field(default_factory=Frame)
     gain: float = 1.0
     """Of its signal, relative to what its make's rated distances say; for the analog response."""
+    area: str | None = None
+    """Id of the area that it watches; none: the one below it."""
 
 
 @dataclass(slots=True)
@@ -202,6 +204,14 @@ class SensorModel:
 
 
 @dataclass(slots=True)
+class Area:
+    """A named part of the floor: people are counted in each."""
+
+    id: str = ""
+    outline: Floor = field(default_factory=Floor)
+
+
+@dataclass(slots=True)
 class Scene:
     """A room: what hides, where the sensors hang, where people sit, enter and walk."""
 
@@ -212,6 +222,8 @@ class Scene:
     seats: list[Seat] = field(default_factory=list)
     entrances: list[Entrance] = field(default_factory=list)
     floor: Floor = field(default_factory=Floor)
+    areas: list[Area] = field(default_factory=list)
+    """Apart from each other, in the order of the output's columns."""
     sensor_models: dict[str, SensorModel] = field(default_factory=dict)
     """Every model that a sensor names."""
     files: list[InputFile] = field(default_factory=list)

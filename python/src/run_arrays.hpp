@@ -15,7 +15,8 @@ namespace pirsim::python {
 /// Takes results in order, without the GIL; to_dict() gives the arrays, with it.
 class RunArrays {
  public:
-  explicit RunArrays(std::size_t n_sensors);
+  /// n_areas: of Model::areas().
+  RunArrays(std::size_t n_sensors, std::size_t n_areas);
 
   void add(const RunResult& result);
   /// Runs differ in length: arrays are as long as the longest, zeros behind the end of a run, where `valid` is false.
@@ -25,7 +26,8 @@ class RunArrays {
   struct Rows {
     std::vector<std::uint8_t> bits;  ///< (n_windows x n_sensors)
     std::vector<std::uint16_t> people, phase;
-    std::vector<std::int64_t> clock;  ///< seconds since 1970; empty without a clock
+    std::vector<std::uint16_t> people_of_areas;  ///< (n_windows x n_areas)
+    std::vector<std::int64_t> clock;             ///< seconds since 1970; empty without a clock
   };
   struct Fault {
     std::uint32_t run = 0;
@@ -67,7 +69,7 @@ class RunArrays {
   [[nodiscard]] nanobind::list zones();
   void add_rows(nanobind::dict& arrays);
 
-  std::size_t n_sensors_;
+  std::size_t n_sensors_, n_areas_;
   std::size_t n_windows_ = 0;  ///< of the longest run
   bool has_clock_ = false;
   std::vector<double> time_s_;

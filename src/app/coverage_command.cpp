@@ -65,7 +65,7 @@ void coverage(const Inputs& inputs, const CoverageOptions& options) {
   draw_maps(study, map, options.output, stop);
   if (report_file) write_page(*report_file, studies::coverage_report(study, map, figures), inputs);
   if (inputs.verbosity == Verbosity::quiet) return;
-  std::cout << studies::to_text(map, figures);
+  std::cout << studies::to_text(map, figures, studies::area_figures_of(map, study.scene()));
   require_written();
   std::cerr << "wrote " << (options.output / "coverage.csv").string() << " and a map of every sensor beside it"
             << (map.sensors.size() > 1 ? ", room.png is of all of them\n" : "\n");

@@ -93,8 +93,10 @@ void add_preview_command(CLI::App& app) {
   std::vector<std::string> words{"all", "none"};
   for (const studies::Mark mark : studies::all_marks) words.emplace_back(name(mark));
   command
-      .add_option("--labels", options->picture.marks,
-                  "what is marked and named: seats, doors, sensors, people, scale, key, or all or none (default: all)")
+      .add_option(
+          "--labels", options->picture.marks,
+          "what is marked and named: seats, doors, areas, sensors, people, scale, key, or all or none (default: "
+          "all)")
       ->option_text("WORD,...")
       ->delimiter(',')
       ->check(CLI::IsMember(words));

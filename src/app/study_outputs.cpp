@@ -74,7 +74,8 @@ class RowLines {
 /// Who is where, as lines.
 class OccupantLines {
  public:
-  OccupantLines(std::ostream& out, const Model& /*model*/) : csv_(out) {}
+  OccupantLines(std::ostream& out, const Model& model)
+      : csv_(out, column_names<OccupantLine>({.areas = model.areas()})) {}
   std::size_t write(const RunResult& result) {
     for (const OccupantRow& row : result.occupants) csv_.write({result.replicate, result.trial, row});
     return result.occupants.size();
@@ -395,9 +396,9 @@ void WholeStudyOutputs::add(const RunResult& result) {
   add(files.trace, "--trace");
   if (files.report_file) files.report.add_run(result);
   if (!files.summary_file && !files.report_file) return;
-  studies::RunCounts counts(files.model.scene().sensors.size(), files.model.script().summary);
+  studies::RunCounts counts(files.model.scene().sensors.size(), files.model.script().summary, files.model.areas());
   for (const Sample& sample : result.samples) counts.add(sample);
-  files.summary.add_run(result.trial, counts.counts());
+  files.summary.add_run(result.trial, counts.counts(), counts.areas());
 }
 
 void WholeStudyOutputs::commit(const io::RunNotes& notes) {

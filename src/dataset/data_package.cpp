@@ -40,16 +40,17 @@ Json field(const ColumnInfo& column, std::string_view name) {
   return one;
 }
 
-/// sensors: names of the columns that the table has for each.
 template <typename Row>
-Json fields_of(const std::vector<std::string>& sensors = {}) {
+Json fields_of(const ColumnOwners& owners) {
   Json fields = Json::array();
   for (const Column<Row>& column : columns_of<Row>()) {
-    if (column.each == nullptr) {
+    if (column.each != nullptr && column.of == Each::sensor) {
+      for (const std::string& sensor : owners.sensors) fields.push_back(field(column, sensor));
+    } else if (column.each != nullptr) {
+      for (const std::string& area : owners.areas) fields.push_back(field(column, column_of_area(area)));
+    } else if (column.when != When::with_areas || !owners.areas.empty()) {
       fields.push_back(field(column, column.name));
-      continue;
     }
-    for (const std::string& sensor : sensors) fields.push_back(field(column, sensor));
   }
   return fields;
 }
@@ -90,9 +91,9 @@ Json resource_of_part(const Description& described, Part part, const std::string
   }
   if (paths.empty()) return {};
   const bool is_rows = folder == "rows";
-  Json one =
-      resource((is_rows ? "" : folder + "_") + name_of(part), (is_rows ? "Rows: " : "Who is where: ") + name_of(part),
-               std::move(paths), is_rows ? fields_of<DayLine>(described.sensor_columns) : fields_of<DayOccupantLine>());
+  Json one = resource((is_rows ? "" : folder + "_") + name_of(part),
+                      (is_rows ? "Rows: " : "Who is where: ") + name_of(part), std::move(paths),
+                      is_rows ? fields_of<DayLine>(described.columns) : fields_of<DayOccupantLine>(described.columns));
   // Neither `bytes` nor `hash` of the whole: readers take them of what is unpacked and joined.
   one["files"] = std::move(files);
   return one;

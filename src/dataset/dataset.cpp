@@ -65,7 +65,7 @@ void write(const RoomDay& made, const fs::path& folder) {
 /// What lies where a dataset's files would be written; empty: nothing. The recipe itself may.
 fs::path first_in_the_way(const RecipeSpec& recipe, const fs::path& folder) {
   for (const char* name : {"README.md", "datapackage.json", "rooms.csv", "sensors.csv", "days.csv", "effects.csv",
-                           "pictures", "rooms", "scripts", "rows", "occupants", "exports"}) {
+                           "areas.csv", "pictures", "rooms", "scripts", "rows", "occupants", "exports"}) {
     if (fs::exists(folder / name)) return folder / name;
   }
   const fs::path there = folder / "recipe.yaml";
@@ -191,7 +191,7 @@ bool make_room_days(const RecipeSpec& recipe, const fs::path& folder, const Data
       [&](std::size_t i) {
         const auto [room, day] = room_and_day(recipe, wanted[i]);
         const auto in = rooms.room(room);
-        const RoomDay made = simulate(recipe, *in, day, store.sensor_columns());
+        const RoomDay made = simulate(recipe, *in, day, store.columns());
         write(made, folder);
         const std::lock_guard lock(of_journal);
         journal.add(to_json(made.record));  // last: what the journal names is whole

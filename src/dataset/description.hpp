@@ -24,7 +24,7 @@ struct DescribedRoom {
 struct Description {
   const RecipeSpec& recipe;
   std::string provenance;
-  std::vector<std::string> sensor_columns;
+  ColumnOwners columns;  ///< of the rows
   std::vector<DescribedRoom> rooms;
   std::vector<RoomDayRecord> days;    ///< room by room
   std::vector<Part> parts;            ///< (n_days)
@@ -35,7 +35,7 @@ struct Table {
   std::string text;
   std::vector<ColumnInfo> columns;
 };
-/// By file name: rooms.csv, sensors.csv, days.csv, effects.csv.
+/// By file name: rooms.csv, sensors.csv, days.csv, effects.csv; areas.csv if there are areas.
 [[nodiscard]] std::map<std::string, Table> tables(const Description& described);
 [[nodiscard]] std::string data_package(const Description& described, const std::map<std::string, Table>& tables);
 [[nodiscard]] std::string readme(const Description& described);

@@ -84,14 +84,21 @@ DescribedRoom described_room(const Store& store, int number) {
 }
 
 void write_energyplus(const Description& described, const fs::path& folder) {
-  std::vector<RoomProfile> rooms;
+  std::vector<RoomProfile> rooms;  // each followed by its areas
+  std::size_t first = 0;           // of the room at hand
   int year = 0;
   for (const RoomDayRecord& day : described.days) {
-    if (rooms.empty() || rooms.back().room != room_name(day.room)) rooms.push_back({room_name(day.room), {}});
     if (year == 0) year = std::stoi(day.date.substr(0, 4));
-    if (!day.fault.empty()) continue;
     const std::chrono::weekday weekday{std::chrono::sys_days(std::chrono::days(day_number(day.date, {})))};
-    rooms.back().weekdays[(weekday.iso_encoding() - 1) % 7].push_back({day.presence, day.people});
+    if (!rooms.empty() && rooms[first].room != room_name(day.room)) first = rooms.size();
+    const auto add = [&](const std::string& name, const DayProfile& profile) {
+      auto known = std::find_if(rooms.begin() + static_cast<std::ptrdiff_t>(first), rooms.end(),
+                                [&](const RoomProfile& room) { return room.room == name; });
+      if (known == rooms.end()) known = rooms.insert(rooms.end(), {name, {}});
+      if (day.fault.empty()) known->weekdays[(weekday.iso_encoding() - 1) % 7].push_back(profile);
+    };
+    add(room_name(day.room), {day.presence, day.people});
+    for (const auto& [area, profile] : day.areas) add(room_name(day.room) + '_' + area, profile);
   }
   make_folders(folder / "exports/energyplus");
   io::write_text_file(folder / "exports/energyplus/presence.csv", to_energyplus(rooms, year));
@@ -102,7 +109,7 @@ void write_energyplus(const Description& described, const fs::path& folder) {
 bool finish_dataset(const RecipeSpec& recipe, const fs::path& folder, const DatasetOptions& options) {
   const auto is_stopped = [&] { return options.goes_on && !options.goes_on(); };
   const Store store(recipe, folder, options.scenes);
-  Description described{recipe, store.provenance(), store.sensor_columns(), {}, {}, parts_of(recipe), {}};
+  Description described{recipe, store.provenance(), store.columns(), {}, {}, parts_of(recipe), {}};
   described.days = whole_records(store, options);
   begin(options.observer, DatasetObserver::Stage::describing_rooms, static_cast<std::size_t>(recipe.n_rooms()));
   for (int number = 1; number <= recipe.n_rooms(); ++number) {

@@ -166,6 +166,8 @@ std::string readme(const Description& described) {
       "- `rooms.csv`, `sensors.csv`, `days.csv`, `effects.csv`: what each room, sensor and day is, which part it "
       "belongs "
       "to, and which effects were drawn for it.\n";
+  if (!described.columns.areas.empty())
+    text += "- `areas.csv`: the named parts of each room's floor; rows count the people of each.\n";
   text += rooms_and_scripts(described);
   if (recipe.occupants == Occupants::told)
     text += "- `occupants/`: who is where and does what, a line a window and person.\n";

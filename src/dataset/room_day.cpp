@@ -6,10 +6,10 @@
 #include <sstream>
 
 #include "core/digest.hpp"
-#include "dataset/exports.hpp"
 #include "io/files/compression.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/io.hpp"
+#include "schema/areas.hpp"
 #include "schema/clock.hpp"
 
 namespace pirsim::dataset {
@@ -50,13 +50,12 @@ Movements movements(const RunResult& result) {
 
 class DayWriter {
  public:
-  DayWriter(const RecipeSpec& recipe, const SceneSpec& scene, const std::vector<std::string>& columns, RoomDay& made)
+  DayWriter(const RecipeSpec& recipe, const SceneSpec& scene, const ColumnOwners& columns, RoomDay& made)
       : recipe_(recipe), columns_(columns), made_(made), room_(made.record.room), day_(made.record.day) {
     for (const SensorSpec& sensor : scene.sensors) sensors_.push_back(sensor.id);
-    for (const std::string& column : columns) {
-      const auto found = std::ranges::find(sensors_, column);
-      sensor_of_column_.push_back(found == sensors_.end() ? -1 : static_cast<int>(found - sensors_.begin()));
-    }
+    sensor_of_column_ = places(columns.sensors, sensors_);
+    areas_ = Areas(scene).names();
+    area_of_column_ = places(columns.areas, areas_);
   }
 
   void write(const RunResult& result) {
@@ -80,6 +79,16 @@ class DayWriter {
   }
 
  private:
+  /// Of each name among those of the room; -1: the room has none of that name.
+  static std::vector<int> places(const std::vector<std::string>& names, const std::vector<std::string>& of_room) {
+    std::vector<int> found;
+    for (const std::string& name : names) {
+      const auto at = std::ranges::find(of_room, name);
+      found.push_back(at == of_room.end() ? -1 : static_cast<int>(at - of_room.begin()));
+    }
+    return found;
+  }
+
   [[nodiscard]] std::string path(const std::string& folder, const std::string& ending) const {
     return day_path(folder, room_, day_, ending);
   }
@@ -92,13 +101,13 @@ class DayWriter {
     std::ostringstream text;
     io::TableWriter<DayLine> csv(text, column_names<DayLine>(columns_));
     for (std::size_t i = 0; i < samples.size(); ++i)
-      csv.write({room_, day_, samples[i], moved.arrivals[i], moved.departures[i], sensor_of_column_});
+      csv.write({room_, day_, samples[i], moved.arrivals[i], moved.departures[i], sensor_of_column_, area_of_column_});
     return text.str();
   }
 
   [[nodiscard]] std::string occupants(const std::vector<OccupantRow>& rows) const {
     std::ostringstream text;
-    io::TableWriter<DayOccupantLine> csv(text);
+    io::TableWriter<DayOccupantLine> csv(text, column_names<DayOccupantLine>(columns_));
     for (const OccupantRow& row : rows) csv.write({room_, day_, row});
     return text.str();
   }
@@ -120,12 +129,20 @@ class DayWriter {
       rows_in_hour[hour] += 1.0;
       record.presence[hour] += row.people > 0 ? 1.0 : 0.0;
       record.people[hour] += row.people;
+      for (std::size_t area = 0; area < areas_.size(); ++area) {
+        DayProfile& profile = record.areas[areas_[area]];
+        profile.presence[hour] += row.people_of_areas[area] > 0 ? 1.0 : 0.0;
+        profile.people[hour] += row.people_of_areas[area];
+      }
     }
-    for (std::size_t hour = 0; hour < 24; ++hour) {
-      if (rows_in_hour[hour] == 0.0) continue;
-      record.presence[hour] /= rows_in_hour[hour];
-      record.people[hour] /= rows_in_hour[hour];
-    }
+    const auto per_row = [&](std::array<double, 24>& sums) {
+      for (std::size_t hour = 0; hour < 24; ++hour) {
+        if (rows_in_hour[hour] != 0.0) sums[hour] /= rows_in_hour[hour];
+      }
+    };
+    per_row(record.presence);
+    per_row(record.people);
+    for (auto& [area, profile] : record.areas) per_row(profile.presence), per_row(profile.people);
     if (const auto n_rows = rows_per_reading(recipe_.sensing)) {
       for (const Reading& reading : readings(result.samples, *n_rows)) {
         MotionCount& count = record.readings_by_people[reading.people];
@@ -145,11 +162,11 @@ class DayWriter {
   }
 
   const RecipeSpec& recipe_;
-  const std::vector<std::string>& columns_;  ///< of the dataset's sensors
+  const ColumnOwners& columns_;  ///< of the dataset
   RoomDay& made_;
   int room_, day_;
-  std::vector<std::string> sensors_;
-  std::vector<int> sensor_of_column_;  ///< -1: the room has no such sensor
+  std::vector<std::string> sensors_, areas_;
+  std::vector<int> sensor_of_column_, area_of_column_;
 };
 
 }  // namespace
@@ -161,7 +178,7 @@ Model Room::model(ScriptSpec script) const {
   return compile(scene_, std::move(script), {.like = &*first_});
 }
 
-RoomDay simulate(const RecipeSpec& recipe, const Room& room, int day, const std::vector<std::string>& sensor_columns) {
+RoomDay simulate(const RecipeSpec& recipe, const Room& room, int day, const ColumnOwners& columns) {
   RoomDay made;
   RoomDayRecord& record = made.record;
   record.room = room.number();
@@ -172,7 +189,7 @@ RoomDay simulate(const RecipeSpec& recipe, const Room& room, int day, const std:
   record.date = clock_text(day_number(schedule.first_day, schedule.where) + day - 1, 0.0).substr(0, 10);
   for (const StaffSpec& staff : schedule.staff) record.staff += staff.count;
   record.effects = script.effects;
-  DayWriter writer(recipe, room.scene(), sensor_columns, made);
+  DayWriter writer(recipe, room.scene(), columns, made);
   const std::string script_text = io::to_yaml(script);
   try {
     const Model model = room.model(std::move(script));
@@ -239,6 +256,7 @@ std::string to_json(const RoomDayRecord& r) {
                 {"effects", effects},
                 {"files", files},
                 {"fault", r.fault}};
+  for (const auto& [area, profile] : r.areas) document["areas"][area] = {profile.presence, profile.people};
   if (r.scene) document["scene"] = file_to_json(*r.scene);
   return document.dump();
 }
@@ -268,6 +286,10 @@ RoomDayRecord record_from_json(const std::string& text, const std::string& name)
       for (const auto& [key, value] : e.at("choices").items()) effect.choices[key] = value;
     }
     for (const json& f : d.at("files")) r.files.push_back(file_from_json(f));
+    if (d.contains("areas")) {
+      for (const auto& [area, profile] : d.at("areas").items())
+        r.areas[area] = {profile.at(0).get<std::array<double, 24>>(), profile.at(1).get<std::array<double, 24>>()};
+    }
     if (d.contains("scene")) r.scene = file_from_json(d.at("scene"));
     r.fault = d.at("fault");
     return r;

@@ -10,7 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "dataset/exports.hpp"
 #include "dataset/recipe.hpp"
+#include "pirsim/columns.hpp"
 #include "pirsim/model.hpp"
 #include "pirsim/study.hpp"
 
@@ -38,6 +40,7 @@ struct RoomDayRecord {
   std::uint64_t arrivals = 0, departures = 0, passes_through = 0;
   std::map<int, MotionCount> rows_by_people, readings_by_people;
   std::array<double, 24> presence{}, people{};  ///< share of the hour with anybody there; people on average
+  std::map<std::string, DayProfile> areas{};    ///< the same of each
   std::vector<EffectSpec> effects;
   std::vector<WrittenFile> files;    ///< the first is that of the rows; none if the day failed
   std::optional<WrittenFile> scene;  ///< a drawn room's file, of which the day was made
@@ -71,8 +74,7 @@ class Room {
 };
 
 /// Simulates it and writes nothing. What makes a day impossible (a place that can't be reached) is the record's fault.
-[[nodiscard]] RoomDay simulate(const RecipeSpec& recipe, const Room& room, int day,
-                               const std::vector<std::string>& sensor_columns);
+[[nodiscard]] RoomDay simulate(const RecipeSpec& recipe, const Room& room, int day, const ColumnOwners& columns);
 
 /// In one line.
 [[nodiscard]] std::string to_json(const RoomDayRecord& record);

@@ -6,6 +6,7 @@
 #include "core/digest.hpp"
 #include "dataset/furnish.hpp"
 #include "pirsim/version.hpp"
+#include "schema/areas.hpp"
 #include "schema/fingerprint.hpp"
 #include "studies/campaign.hpp"
 
@@ -54,20 +55,24 @@ std::string provenance_of(const RecipeSpec& recipe, const std::map<OwnScene, Sce
          compiler();
 }
 
-std::vector<std::string> sensor_columns_of(const RecipeSpec& recipe, const std::map<OwnScene, SceneSpec>& own_scenes) {
+ColumnOwners columns_of(const RecipeSpec& recipe, const std::map<OwnScene, SceneSpec>& own_scenes) {
   int most = 0;
   for (const RoomGroupSpec& group : recipe.rooms) {
     int sensors = 0;
     for (const SensorGroupSpec& sensor : group.rooms.sensors) sensors += sensor.count.most;
     if (group.scenes.empty()) most = std::max(most, sensors);
   }
-  std::vector<std::string> columns;
-  for (int i = 1; i <= most; ++i) columns.push_back("PIR" + std::to_string(i));
+  ColumnOwners columns;
+  const auto add = [](std::vector<std::string>& names, const std::string& name) {
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  };
+  for (int i = 1; i <= most; ++i) columns.sensors.push_back("PIR" + std::to_string(i));
   for (const RoomGroupSpec& group : recipe.rooms) {
     for (const OwnScene& own : group.scenes) {
-      for (const SensorSpec& sensor : own_scenes.at(own).sensors) {
-        if (std::ranges::find(columns, sensor.id) == columns.end()) columns.push_back(sensor.id);
-      }
+      const SceneSpec& scene = own_scenes.at(own);
+      for (const SensorSpec& sensor : scene.sensors) add(columns.sensors, sensor.id);
+      const Areas areas(scene);
+      for (const std::string& area : areas.names()) add(columns.areas, area);
     }
   }
   return columns;
@@ -90,7 +95,7 @@ Store::Store(const RecipeSpec& recipe, fs::path folder, const io::SceneOptions& 
     }
   }
   provenance_ = provenance_of(recipe_, own_scenes_, scenes_);
-  sensor_columns_ = sensor_columns_of(recipe_, own_scenes_);
+  columns_ = columns_of(recipe_, own_scenes_);
 }
 
 const SceneSpec* Store::own_scene(int room) const {

@@ -29,9 +29,9 @@ class Store {
   /// In one line: the recipe's hash, those of the user's own scenes, a digest of sensor models and own scenes as read,
   /// program, revision, compiler. Equal provenance: equal bytes.
   [[nodiscard]] const std::string& provenance() const noexcept { return provenance_; }
-  /// Of sensors in all rows: PIR1, PIR2, ... as many as a drawn room may have, and the ids of the user's own scenes
-  /// that aren't among them.
-  [[nodiscard]] const std::vector<std::string>& sensor_columns() const noexcept { return sensor_columns_; }
+  /// In all rows. Sensors: PIR1, PIR2, ... as many as a drawn room may have, and the ids of the user's own scenes that
+  /// aren't among them. Areas: those of the user's own scenes.
+  [[nodiscard]] const ColumnOwners& columns() const noexcept { return columns_; }
   /// As it was read; null for a drawn room.
   [[nodiscard]] const SceneSpec* own_scene(int room) const;
   [[nodiscard]] std::filesystem::path room_file(int room) const { return folder_ / room_path(room); }
@@ -55,7 +55,7 @@ class Store {
   io::SceneOptions scenes_;
   std::map<OwnScene, SceneSpec> own_scenes_;
   std::string provenance_;
-  std::vector<std::string> sensor_columns_;
+  ColumnOwners columns_;
 };
 
 // Of an observer that may be empty.

@@ -6,6 +6,7 @@
 #include "dataset/description.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/response.hpp"
+#include "schema/areas.hpp"
 #include "schema/columns.hpp"
 #include "schema/words.hpp"
 
@@ -52,6 +53,7 @@ struct SensorLine {
   int room;
   const SensorSpec& sensor;
   Response response;
+  std::string_view area;
 
   [[nodiscard]] Vec3 place() const { return sensor.world_from_sensor.origin; }
   [[nodiscard]] double tilt_deg() const {
@@ -90,6 +92,22 @@ constexpr Column<SensorLine> sensors[]{
      [](const SensorLine& line) -> Cell { return line.heading_deg(); }},
     {{"tilt_deg", Holds::number, "Of its axis below the horizon.", "deg", When::always, {}, decimals},
      [](const SensorLine& line) -> Cell { return line.tilt_deg(); }},
+    {{"area", Holds::text, "Of the room, that it watches, or elsewhere; empty without areas.", {}, When::with_areas},
+     [](const SensorLine& line) -> Cell { return line.area; }},
+};
+
+struct AreaLine {
+  int room;
+  std::string_view area;
+  double floor_m2;
+};
+
+constexpr Column<AreaLine> areas[]{
+    {room_column, room},
+    {{"area", Holds::text, "Its people are in the rows' column people_ and this; elsewhere: of no area."},
+     [](const AreaLine& line) -> Cell { return line.area; }},
+    {{"floor_m2", Holds::number, "Of the floor.", "m2", When::always, {}, decimals},
+     [](const AreaLine& line) -> Cell { return line.floor_m2; }},
 };
 
 struct RecordLine {
@@ -145,14 +163,25 @@ constexpr Column<EffectLine> effects[]{
     {{"value", Holds::text, "A number or a word."}, [](const EffectLine& line) { return line.value; }},
 };
 
-/// fill: writes the lines.
-template <typename Row, std::size_t n>
-Table table_of(const Column<Row> (&columns)[n], auto fill) {
-  std::ostringstream text;
-  io::TableWriter<Row> csv(text, columns);
-  fill(csv);
-  return {text.str(), {std::begin(columns), std::end(columns)}};
-}
+/// Makes tables of a dataset that has areas or none.
+class TableMaker {
+ public:
+  explicit TableMaker(const ColumnOwners& owners) : has_areas_(!owners.areas.empty()) {}
+
+  /// fill: writes the lines.
+  template <typename Row, std::size_t n>
+  Table operator()(const Column<Row> (&all)[n], auto fill) const {
+    std::vector<Column<Row>> columns(std::begin(all), std::end(all));
+    std::erase_if(columns, [&](const ColumnInfo& column) { return column.when == When::with_areas && !has_areas_; });
+    std::ostringstream text;
+    io::TableWriter<Row> csv(text, std::span<const Column<Row>>(columns));
+    fill(csv);
+    return {text.str(), {columns.begin(), columns.end()}};
+  }
+
+ private:
+  bool has_areas_;
+};
 
 }  // namespace
 
@@ -163,8 +192,17 @@ std::map<std::string, Table> tables(const Description& described) {
   };
   const auto add_sensors = [&](auto& csv) {
     for (const DescribedRoom& one : described.rooms) {
-      for (const SensorSpec& sensor : one.scene.sensors)
-        csv.write({one.number, sensor, response_of(one.scene, described.recipe.sensing, sensor)});
+      const Areas areas(one.scene);
+      const std::vector<SensorSpec>& all = one.scene.sensors;
+      for (std::size_t i = 0; i < all.size(); ++i)
+        csv.write(
+            {one.number, all[i], response_of(one.scene, described.recipe.sensing, all[i]), areas.name_of_sensor(i)});
+    }
+  };
+  const auto add_areas = [&](auto& csv) {
+    for (const DescribedRoom& one : described.rooms) {
+      const Areas areas(one.scene);
+      for (std::size_t i = 0; i < areas.size(); ++i) csv.write({one.number, areas.names()[i], areas.areas_m2()[i]});
     }
   };
   const auto add_days = [&](auto& csv) {
@@ -188,10 +226,13 @@ std::map<std::string, Table> tables(const Description& described) {
       }
     }
   };
-  return {{"rooms.csv", table_of(rooms, add_rooms)},
-          {"sensors.csv", table_of(sensors, add_sensors)},
-          {"days.csv", table_of(days, add_days)},
-          {"effects.csv", table_of(effects, add_effects)}};
+  const TableMaker table_of(described.columns);
+  std::map<std::string, Table> made{{"rooms.csv", table_of(rooms, add_rooms)},
+                                    {"sensors.csv", table_of(sensors, add_sensors)},
+                                    {"days.csv", table_of(days, add_days)},
+                                    {"effects.csv", table_of(effects, add_effects)}};
+  if (!described.columns.areas.empty()) made.emplace("areas.csv", table_of(areas, add_areas));
+  return made;
 }
 
 }  // namespace pirsim::dataset

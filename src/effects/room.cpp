@@ -115,6 +115,7 @@ void alter_mirrored_room(StudyInForce& study, const EffectSpec& effect) {
   for (SeatSpec& seat : scene.seats) seat.world_from_seat = mirror.frame(seat.world_from_seat);
   for (EntranceSpec& door : scene.entrances) door.world_from_entrance = mirror.frame(door.world_from_entrance);
   scene.floor = mirrored(scene.floor, mirror);
+  for (AreaSpec& area : scene.areas) area.outline = mirrored(area.outline, mirror);
   for (TrialInForce& trial : study.trials) {
     for (PersonInForce& person : trial.people) mirror_actions(person.actions, mirror);
   }

@@ -20,4 +20,20 @@ double distance_to_edge_m(const FloorArea& floor, const Vec2& place) {
   return nearest_m;
 }
 
+Vec2 roomiest_point(const FloorArea& area) {
+  constexpr int n_steps = 24;  // along either side; near enough for a name
+  const Vec2 size = area.upper() - area.lower();
+  Vec2 best = 0.5 * (area.lower() + area.upper());
+  double most_m = area.contains(best) ? distance_to_edge_m(area, best) : 0.0;
+  for (int i = 0; i < n_steps * n_steps; ++i) {
+    const Vec2 place = area.lower() + size * (Vec2(i % n_steps, i / n_steps) + 0.5) / static_cast<double>(n_steps);
+    if (!area.contains(place)) continue;
+    const double away_m = distance_to_edge_m(area, place);
+    if (away_m <= most_m + 1e-9) continue;  // of equals the middle, or the first
+    best = place;
+    most_m = away_m;
+  }
+  return best;
+}
+
 }  // namespace pirsim

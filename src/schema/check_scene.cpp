@@ -29,7 +29,8 @@ class SceneCheck {
     const SpecPath path("scene");
     if (!faults_.few(path.field("sensors"), scene_.sensors.size(), limits::sensors) ||
         !faults_.few(path.field("seats"), scene_.seats.size(), limits::seats) ||
-        !faults_.few(path.field("entrances"), scene_.entrances.size(), limits::entrances)) {
+        !faults_.few(path.field("entrances"), scene_.entrances.size(), limits::entrances) ||
+        !faults_.few(path.field("areas"), scene_.areas.size(), limits::areas)) {
       return;
     }
     check_meshes(path);
@@ -53,6 +54,7 @@ class SceneCheck {
       check(model, path.field(key), faults_);
     }
     check_floor(path.field("floor"));
+    check_areas(path);
   }
 
  private:
@@ -98,6 +100,7 @@ class SceneCheck {
     faults_.error_if(path.field("id"), column_fault(sensor.id));
     static_cast<void>(check_frame(sensor.world_from_sensor, path.field("world_from_sensor")));
     faults_.numbers(sensor, path);
+    faults_.error_if(path.field("area"), area_fault(sensor, scene_.areas));
     if (scene_.sensor_models.contains(sensor.model)) return;
     std::vector<std::string> names;
     for (const auto& [name, model] : scene_.sensor_models) names.push_back(name);
@@ -120,6 +123,25 @@ class SceneCheck {
     if (scene_.floor.empty()) return faults_.error(path, "no floor");
     faults_.number(path.field("height_m"), scene_.floor.height_m(), accepted::in_world_m);
     faults_.error_if(path.field("loops"), outline_fault(scene_.floor));
+  }
+
+  void check_areas(const SpecPath& path) {
+    if (scene_.areas.empty()) return;
+    Names ids("area");
+    bool are_outlined = !scene_.floor.empty() && outline_fault(scene_.floor).empty();
+    for (std::size_t i = 0; i < scene_.areas.size(); ++i) {
+      const AreaSpec& area = scene_.areas[i];
+      const SpecPath here = path.item("areas", i);
+      check_id(area.id, here, ids);
+      faults_.error_if(here.field("id"), area_id_fault(area.id, scene_.sensors));
+      const std::string fault = area.outline.empty() ? "the area has no outline" : outline_fault(area.outline, "area");
+      faults_.error_if(here.field("outline"), fault);
+      are_outlined = are_outlined && fault.empty();
+    }
+    if (!are_outlined) return;
+    check_together(scene_.areas, scene_.floor, [&](std::size_t i, const std::string& message) {
+      faults_.error(path.item("areas", i).field("outline"), message);
+    });
   }
 
   const SceneSpec& scene_;
@@ -151,9 +173,10 @@ std::string name_fault(std::string_view name) {
   return "it needs letters, digits, '_', '-' or '.'";
 }
 
-std::string column_fault(std::string_view sensor_id) {
-  if (!is_column_name(sensor_id)) return {};
-  return "sensor id '" + std::string(sensor_id) + "' is the name of a column of rows";
+std::string column_fault(std::string_view id, const std::string& type) {
+  const std::string named = type + " id '" + std::string(id) + "' ";
+  if (is_column_of_area(id)) return named + "begins as the columns of areas do: '" + std::string(area_prefix) + "'";
+  return is_column_name(id) ? named + "is the name of a column of rows" : "";
 }
 
 std::string Names::fault_of_adding(const std::string& name) {
@@ -176,28 +199,29 @@ bool outlines_cross(const std::vector<Vec2>& first, const std::vector<Vec2>& sec
   return false;
 }
 
-std::string too_many_floor_corners() {
-  return "the floor's outline has more than " + std::to_string(limits::floor_corners) + " corners";
+std::string too_many_corners(const std::string& what) {
+  return "the outline of " + what + "s has more than " + std::to_string(limits::floor_corners) + " corners";
 }
 
-std::string outline_fault(const FloorArea& floor) {
+std::string outline_fault(const FloorArea& floor, const std::string& what) {
   const auto& loops = floor.loops();
+  const std::string the = "the " + what;
   std::size_t n_corners = 0;
   for (const auto& loop : loops) {
-    if (loop.size() < 3) return "the floor has an outline of fewer than three corners";
+    if (loop.size() < 3) return the + " has an outline of fewer than three corners";
     n_corners += loop.size();
     for (const Vec2& p : loop) {
       if (!accepted::in_world_m.holds(p.x) || !accepted::in_world_m.holds(p.y))
-        return "the floor reaches more than 100 km from the origin";
+        return the + " reaches more than 100 km from the origin";
     }
   }
-  if (n_corners > limits::floor_corners) return too_many_floor_corners();
+  if (n_corners > limits::floor_corners) return too_many_corners(what);
   for (std::size_t i = 0; i < loops.size(); ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
-      if (outlines_cross(loops[i], loops[j])) return "the outline of the floor crosses itself";
+      if (outlines_cross(loops[i], loops[j])) return "the outline of " + the + " crosses itself";
     }
   }
-  return floor.area_m2() < 1e-6 ? "the floor has no area" : "";
+  return floor.area_m2() < 1e-6 ? the + " has no area" : "";
 }
 
 void check(const SceneSpec& scene, Diagnostics& diagnostics) { SceneCheck(scene, diagnostics).run(); }

@@ -24,8 +24,8 @@ using TellFault = std::function<void(std::string_view field, const std::string& 
 
 /// Ids of what is in a room become names of columns, models names of files.
 [[nodiscard]] std::string name_fault(std::string_view name);
-/// Of a sensor's id, which must not be another column's.
-[[nodiscard]] std::string column_fault(std::string_view sensor_id);
+/// Of the id of what has a column of its own ("sensor", "area"), which must not be another column's.
+[[nodiscard]] std::string column_fault(std::string_view id, const std::string& type = "sensor");
 
 /// Names that must differ.
 class Names {
@@ -45,8 +45,16 @@ class Names {
 [[nodiscard]] bool is_upright(const Frame& frame) noexcept;  ///< of seats and doorways: +Y is up, within 5 degrees
 
 /// Outlines of one floor, or of a part of it. A message or none: too many corners, out of the world, crossing, no area.
-[[nodiscard]] std::string outline_fault(const FloorArea& floor);
-[[nodiscard]] std::string too_many_floor_corners();
+/// what: "floor" or "area", for the message.
+[[nodiscard]] std::string outline_fault(const FloorArea& floor, const std::string& what = "floor");
+[[nodiscard]] std::string too_many_corners(const std::string& what);  ///< of all together
+/// Of an area's id, which must not be a column's, a sensor's or what those in no area are said to be in.
+[[nodiscard]] std::string area_id_fault(const std::string& id, const std::vector<SensorSpec>& sensors);
+/// Of areas whose outlines are right, beside each other and on the floor: each fault with the index of its area.
+void check_together(const std::vector<AreaSpec>& areas, const FloorArea& floor,
+                    const std::function<void(std::size_t area, const std::string& message)>& tell);
+/// That a sensor names an area of the scene. A message or none.
+[[nodiscard]] std::string area_fault(const SensorSpec& sensor, const std::vector<AreaSpec>& areas);
 /// Do their edges cross? Touching is allowed.
 [[nodiscard]] bool outlines_cross(const std::vector<Vec2>& first, const std::vector<Vec2>& second) noexcept;
 

@@ -16,6 +16,7 @@ constexpr auto person = [](const auto& line) -> Cell { return line.row.person; }
 constexpr auto where = [](const auto& line) -> Cell {
   return std::string_view(line.row.where == OccupantRow::Where::inside ? "inside" : "outside");
 };
+constexpr auto area = [](const auto& line) -> Cell { return line.row.area; };
 constexpr auto activity = [](const auto& line) -> Cell { return line.row.activity; };
 constexpr auto seat = [](const auto& line) -> Cell { return line.row.seat; };
 constexpr auto x_m = [](const auto& line) -> Cell { return line.row.place_m.x; };
@@ -41,6 +42,13 @@ constexpr Column<Sample> rows[]{
       "number of people whose pelvis is over the floor area at `time_s`, by their positions and not by the script", "1",
       When::simulated},
      [](const Sample& row) -> Cell { return row.people; }},
+    {{"one per area", Holds::count,
+      "only with [areas](scene.md#areas): `people_` and the area's id; how many of `people` are in it. "
+      "`people_elsewhere`, if some of the floor is in no area: how many are there. They sum to `people`",
+      "1", When::simulated},
+     nullptr,
+     [](const Sample& row, std::size_t area) -> Cell { return row.people_of_areas[area]; },
+     Each::area},
     {{"one per sensor", Holds::bit, "1 if the sensor saw motion in (time_s - window, time_s]"},
      nullptr,
      [](const Sample& row, std::size_t sensor) -> Cell { return row.bits[sensor]; }},
@@ -57,6 +65,14 @@ constexpr Column<OccupantLine> occupants[]{
      person},
     {{"where", Holds::text, "`inside` if the pelvis is over the floor area, otherwise `outside` (in a doorway)"},
      where},
+    {{"area",
+      Holds::text,
+      "only with [areas](scene.md#areas): the id of the area that somebody `inside` is in, or `elsewhere`; empty for "
+      "who "
+      "is `outside`",
+      {},
+      When::with_areas},
+     area},
     {{"activity", Holds::text,
       "the action's `phase` or, without one, `working`, `walking`, `turning`, `standing`, `sitting_down`, `seated`, "
       "`rising`; schedules add `visiting`, `phone_call`, `presenting` and `cleaning`"},
@@ -121,6 +137,16 @@ constexpr Column<DayLine> day_rows[]{
     {{"departures", Holds::count, "People who were over the floor at the end of the window before and aren't now.",
       "1"},
      [](const DayLine& line) -> Cell { return line.departures; }},
+    {{"one per area", Holds::count,
+      "People in this area at the end of the window; the areas' people sum to all. Empty: this room has no such area.",
+      "1"},
+     nullptr,
+     [](const DayLine& line, std::size_t column) -> Cell {
+       const int area = line.area_of_column[column];
+       if (area < 0) return {};
+       return line.row.people_of_areas[static_cast<std::size_t>(area)];
+     },
+     Each::area},
     {{"one per sensor", Holds::bit,
       "1 if this sensor saw motion in the window. A motion sensor (Brick: Motion_Sensor), not an occupancy sensor: "
       "nobody who keeps still is seen. Empty: this room has no such sensor; see the resource sensors."},
@@ -139,6 +165,12 @@ constexpr Column<DayOccupantLine> day_occupants[]{
     {time_s_info, time_s},
     {{"person", Holds::text, "Who it is, on all days of this room."}, person},
     {{"where", Holds::text, "inside: over the floor area; outside: in or behind a doorway."}, where},
+    {{"area",
+      Holds::text,
+      "Of somebody inside: the area of the room, or elsewhere; empty without areas.",
+      {},
+      When::with_areas},
+     area},
     {{"activity", Holds::text, "What the person does."}, activity},
     {{"seat", Holds::text, "The seat that is theirs at the moment, or empty."}, seat},
     {{"x_m", Holds::number, "Of the pelvis in the room's scene.", "m", When::always, {}, millimetres}, x_m},
@@ -192,6 +224,8 @@ std::span<const Column<DayOccupantLine>> columns_of() {
 
 std::span<const ColumnInfo> sum_columns() { return sums; }
 
-bool is_column_name(std::string_view name) { return has<Sample>(name) || has<DayLine>(name); }
+bool is_column_name(std::string_view name) {
+  return has<Sample>(name) || has<DayLine>(name) || is_column_of_area(name);
+}
 
 }  // namespace pirsim

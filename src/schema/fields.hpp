@@ -185,7 +185,8 @@ struct Fields<SensorSpec> {
   static constexpr std::tuple all{FIELD(id), FIELD(model, "key into `Scene.sensor_models`"), FIELD(world_from_sensor),
                                   FIELD(gain, NumberRange{.above = 0.0, .max = 100.0},
                                         "of its signal, relative to what its make's rated distances say; for the "
-                                        "analog response")};
+                                        "analog response"),
+                                  FIELD(area, "id of the area that it watches; none: the one below it")};
 };
 template <>
 struct Fields<SeatSpec> {
@@ -206,6 +207,13 @@ struct Fields<EntranceSpec> {
       FIELD(outside_m, NumberRange{.min = 0.3, .max = 50.0}, "how far behind it people wait")};
 };
 template <>
+struct Fields<AreaSpec> {
+  using S = AreaSpec;
+  static constexpr const char* name = "Area";
+  static constexpr const char* about = "A named part of the floor: people are counted in each.";
+  static constexpr std::tuple all{FIELD(id), FIELD(outline)};
+};
+template <>
 struct Fields<SceneSpec> {
   using S = SceneSpec;
   static constexpr const char* name = "Scene";
@@ -216,6 +224,7 @@ struct Fields<SceneSpec> {
                                   FIELD(seats),
                                   FIELD(entrances),
                                   FIELD(floor),
+                                  FIELD(areas, "apart from each other, in the order of the output's columns"),
                                   FIELD(sensor_models, "every model that a sensor names"),
                                   LABEL(files, "all that was read"),
                                   LABEL(warnings)};
@@ -678,7 +687,7 @@ struct Fields<NuisanceSpec> {
 /// Specs that Python has classes of, each before those that it is a part of.
 using SpecsOfPython =
     std::tuple<Where, InputFile, SensorSpec, SeatSpec, EntranceSpec, OpticsSpec, ElementSpec, AmplifierSpec,
-               ComparatorSpec, DetectorSpec, ZoneSpec, ClusterSpec, SensorModelSpec, SceneSpec, action::Wait,
+               ComparatorSpec, DetectorSpec, ZoneSpec, ClusterSpec, SensorModelSpec, AreaSpec, SceneSpec, action::Wait,
                action::Appear, action::Enter, action::Walk, action::Sit, action::Work, action::Rise, action::Leave,
                action::Turn, action::Follow, SeatScatterSpec, WarmthSpec, PersonSpec, ClockSpec, StaffSpec,
                HeldMeetingSpec, MeetingsSpec, ProfileSpec, ScheduleSpec, CountsSpec, StaySpec, PlacesSpec, TrackSpec,

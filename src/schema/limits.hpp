@@ -29,7 +29,8 @@ inline constexpr std::size_t sensors = 2'000;
 inline constexpr std::size_t seats = 5'000;
 inline constexpr std::size_t entrances = 1'000;
 inline constexpr std::size_t floors = 1'000;
-inline constexpr std::size_t floor_corners = 10'000;  ///< of all floors; every pair is compared
+inline constexpr std::size_t areas = 1'000;           ///< each is a column of rows
+inline constexpr std::size_t floor_corners = 10'000;  ///< of all floors, or all areas; every pair is compared
 inline constexpr std::size_t scene_elements =
     20'000'000;                                 ///< vertices and triangles; a scanned office has a few million
 inline constexpr std::size_t rays = 2'000'000;  ///< of all sensors together

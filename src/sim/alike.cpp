@@ -50,10 +50,6 @@ std::vector<const TriMesh*> solids(const SceneSpec& scene) {
   return meshes;
 }
 
-bool same_floor(const FloorArea& a, const FloorArea& b) {
-  return a.loops() == b.loops() && a.height_m() == b.height_m();
-}
-
 /// Clearances are kept as the script is written.
 bool same_size(const PersonSpec& a, const PersonSpec& b) {
   return a.stature_m == b.stature_m && a.mass_kg == b.mass_kg;
@@ -87,7 +83,7 @@ bool same_meshes(const SceneSpec& a, const SceneSpec& b) {
 }
 
 bool same_ground(const SceneSpec& a, const SceneSpec& b) {
-  return same_floor(a.floor, b.floor) && std::ranges::equal(a.entrances, b.entrances, same<EntranceSpec>) &&
+  return a.floor == b.floor && std::ranges::equal(a.entrances, b.entrances, same<EntranceSpec>) &&
          std::ranges::equal(solids(a), solids(b), [](const TriMesh* x, const TriMesh* y) { return same(*x, *y); });
 }
 

@@ -42,6 +42,7 @@ CompiledStudy::CompiledStudy(SceneSpec scene, ScriptSpec script, StudyInForce st
     : scene_given_(std::move(scene)),
       script_given_(std::move(script)),
       scene_(std::move(study.scene)),
+      areas_(scene_),
       sensing_(std::move(study.sensing)),
       seed_(study.seed),
       tracer_(tracer) {

@@ -12,6 +12,7 @@
 #include "body/seating.hpp"
 #include "body/walkable_floor.hpp"
 #include "effects/pipeline.hpp"
+#include "schema/areas.hpp"
 #include "schema/study_in_force.hpp"
 #include "sim/analog_model.hpp"
 #include "sim/sensor_array.hpp"
@@ -64,6 +65,7 @@ class CompiledStudy {
 
   // As the effects left it: in force for everything that runs.
   [[nodiscard]] const SceneSpec& scene() const noexcept { return scene_; }
+  [[nodiscard]] const Areas& areas() const noexcept { return areas_; }
   [[nodiscard]] const SensingInForce& sensing() const noexcept { return sensing_; }
   [[nodiscard]] std::uint64_t seed() const noexcept { return seed_; }
   [[nodiscard]] double tick_s() const noexcept { return 1.0 / sensing_.tick_rate_hz; }
@@ -93,6 +95,7 @@ class CompiledStudy {
   SceneSpec scene_given_;
   ScriptSpec script_given_;
   SceneSpec scene_;
+  Areas areas_;
   SensingInForce sensing_;
   std::uint64_t seed_;
   TracerKind tracer_;

@@ -112,10 +112,6 @@ std::int64_t Crowd::away_until(const CompiledStudy& study, std::int64_t tick) co
   return until;
 }
 
-int Crowd::n_on_floor(const FloorArea& floor) const {
-  return static_cast<int>(std::ranges::count_if(actors_, [&](const Actor& actor) { return actor.counts_on(floor); }));
-}
-
 std::string_view Crowd::phase() const noexcept { return actors_.empty() ? phase_outside : actors_.front().phase(); }
 
 bool Crowd::done() const noexcept {

@@ -42,7 +42,6 @@ class Crowd {
   [[nodiscard]] const std::vector<std::size_t>& seats_left() const noexcept { return seats_left_; }
   /// Up to this tick nobody comes, and nothing of anybody changes; the present one (`tick`) if somebody is there.
   [[nodiscard]] std::int64_t away_until(const CompiledStudy& study, std::int64_t tick) const;
-  [[nodiscard]] int n_on_floor(const FloorArea& floor) const;
   /// What the first person does: the rows' phase.
   [[nodiscard]] std::string_view phase() const noexcept;
   /// Every subject has carried out all actions.

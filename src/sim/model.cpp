@@ -19,10 +19,12 @@ const RayBundle& Model::rays() const noexcept { return compiled_->array().clippe
 std::vector<std::string> Model::columns() const {
   const bool has_clock =
       std::ranges::any_of(compiled_->trials(), [](const sim::TrialModel& trial) { return trial.clock.has_value(); });
-  std::vector<std::string> sensors;
-  for (const SensorSpec& sensor : scene().sensors) sensors.push_back(sensor.id);
-  return column_names<Sample>(sensors, [&](When when) { return when != When::with_clock || has_clock; });
+  ColumnOwners owners{.areas = areas()};
+  for (const SensorSpec& sensor : scene().sensors) owners.sensors.push_back(sensor.id);
+  return column_names<Sample>(owners, [&](When when) { return when != When::with_clock || has_clock; });
 }
+
+const std::vector<std::string>& Model::areas() const noexcept { return compiled_->areas().names(); }
 
 Model compile(SceneSpec scene, ScriptSpec script, const CompileOptions& options) {
   const sim::CompiledStudy* like = options.like != nullptr ? &options.like->compiled() : nullptr;

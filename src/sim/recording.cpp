@@ -81,6 +81,7 @@ std::string optics_of(const CompiledStudy& study) {
   digest.add(std::to_string(study.sensing().tick_rate_hz) + ' ' + std::to_string(array.ticks_per_window()));
   // Who left which seat is recorded by the seat's index.
   for (const SeatSpec& seat : study.scene().seats) digest.add(seat.id + '\n');
+  for (const std::string& area : study.areas().names()) digest.add("area " + area + '\n');  // recorded rows count them
   digest.add(bytes(zones.cluster_zones_begin));
   digest.add(bytes(zones.sensor_clusters_begin));
   static_assert(sizeof(Ray) == 6 * sizeof(float));  // nothing but numbers: equal bytes are equal rays

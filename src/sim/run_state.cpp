@@ -21,13 +21,25 @@ std::string_view use_of(const CompiledStudy& study, const Crowd& crowd) {
   return in_meeting > 1 ? phase_meeting : cleaners == n ? phase_cleaning : phase_occupied;
 }
 
+/// All on the floor, and those of each area.
+void count_people(const CompiledStudy& study, const Crowd& crowd, Sample& sample) {
+  const Areas& areas = study.areas();
+  sample.people = 0;
+  sample.people_of_areas.assign(areas.size(), 0);
+  for (const Actor& actor : crowd.actors()) {
+    if (!actor.counts_on(study.scene().floor)) continue;
+    ++sample.people;
+    if (!areas.empty()) ++sample.people_of_areas[areas.at(actor.motion().position())];
+  }
+}
+
 void end_window(const CompiledStudy& study, RunState& state) {
   const TrialModel& trial = study.trial_of(state.run);
   Sample& sample = state.sample;
   sample.time_s = static_cast<double>(state.tick) / study.sensing().tick_rate_hz;
   if (state.clock) sample.clock = state.clock->text(sample.time_s);
   sample.phase = trial.is_populated() ? use_of(study, state.crowd) : state.crowd.phase();
-  sample.people = state.crowd.n_on_floor(study.scene().floor);
+  count_people(study, state.crowd, sample);
   state.finished = trial.duration_s ? sample.time_s >= *trial.duration_s : state.crowd.done();
 }
 

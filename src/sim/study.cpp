@@ -25,9 +25,10 @@ void add_occupants(const sim::CompiledStudy& study, const sim::RunState& state, 
     if (actor.person().spec.changes.role == PersonRole::object) continue;
     if (!actor.present()) continue;
     const Vec2 place = actor.motion().position();
+    const bool inside = study.scene().floor.contains(place);
     rows.push_back({state.sample.time_s, state.sample.clock, actor.person().spec.id, std::string(actor.phase()),
-                    std::string(actor.seat()), place,
-                    study.scene().floor.contains(place) ? OccupantRow::Where::inside : OccupantRow::Where::outside});
+                    std::string(actor.seat()), place, inside ? OccupantRow::Where::inside : OccupantRow::Where::outside,
+                    std::string(inside ? study.areas().name_at(place) : std::string_view())});
   }
 }
 

@@ -55,7 +55,7 @@ class RowTally {
   std::vector<MeasuredCell> measured_;
   std::optional<Summary> summary_;  ///< once the header is known
   std::optional<RunCounts> counts_;
-  std::size_t phase_ = 0, first_sensor_ = 0;  ///< columns
+  std::size_t phase_ = 0, first_area_ = 0, first_sensor_ = 0;  ///< columns
   Sample row_;
   std::string replicate_;  ///< of the run whose rows come in; empty before the first
   std::string trial_;

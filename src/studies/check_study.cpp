@@ -5,8 +5,10 @@
 #include <sstream>
 
 #include "core/text.hpp"
+#include "pirsim/columns.hpp"
 #include "pirsim/look.hpp"
 #include "pirsim/response.hpp"
+#include "schema/areas.hpp"
 #include "schema/occupancy_runs.hpp"
 #include "sim/compiled_study.hpp"
 #include "studies/room_plan.hpp"
@@ -132,6 +134,29 @@ void print_occupancy(std::ostream& out, const OccupancySpec& occupancy, const si
   out << "; a run lasts from " << span_text(trial.clock, 0.0, trial.duration_s.value_or(0.0)) << "\n\n";
 }
 
+/// Whose people are counted by themselves, which sensors watch each, and what of the floor is in none.
+void print_areas(std::ostream& out, const SceneSpec& scene) {
+  const Areas areas(scene);
+  for (std::size_t i = 0; i < scene.areas.size(); ++i) {
+    out << (i == 0 ? "areas: " : "       ") << areas.names()[i] << ' ' << fixed(areas.areas_m2()[i], 2) << " m2, ";
+    std::vector<std::string> sensors;
+    for (const std::size_t sensor : areas.sensors_of(i)) sensors.push_back(scene.sensors[sensor].id);
+    out << (sensors.empty() ? "no sensor" : (sensors.size() == 1 ? "sensor " : "sensors ") + named(sensors, 0)) << '\n';
+  }
+  if (areas.empty()) return;
+  if (areas.size() > scene.areas.size()) {
+    out << "       " << fixed(areas.areas_m2().back(), 2) << " m2 of the floor ("
+        << fixed(100.0 * areas.areas_m2().back() / scene.floor.area_m2(), 1) << " %) in no area: people there are in "
+        << column_of_area(elsewhere) << '\n';
+  }
+  std::vector<std::string> astray;
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+    if (!areas.of_sensors()[i]) astray.push_back(scene.sensors[i].id);
+  }
+  if (!astray.empty())
+    out << "       of no area: " << (astray.size() == 1 ? "sensor " : "sensors ") << named(astray, 0) << '\n';
+}
+
 /// Rows of 0.1 were those of zones: who runs an older script should know that its rows are others now.
 void print_response(std::ostream& out, const Model& model) {
   const SceneSpec& scene = model.scene();
@@ -158,6 +183,7 @@ void print_study(std::ostream& out, const Model& model, const CheckReport& repor
   out << script.name << ": " << counted(script.trials.size(), "trial") << " x "
       << counted(static_cast<std::size_t>(script.replicates), "replicate") << " = " << counted(model.n_runs(), "run")
       << '\n';
+  print_areas(out, model.scene());
   print_response(out, model);
   out << '\n';
   if (!script.trials.empty() && script.trials.front().schedule) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -76,9 +77,20 @@ struct CoverageFigures {
 
 [[nodiscard]] CoverageFigures figures_of(const CoverageMap& map);
 
+/// Of the squares whose centres are in one area.
+struct AreaCoverage {
+  std::string area;  ///< with its sensors in brackets
+  std::size_t squares = 0;
+  double blind_fraction = 0.0;               ///< to all sensors
+  std::optional<double> blind_to_its_own{};  ///< to the sensors that watch it; none: it has none
+};
+/// Empty for a scene without areas.
+[[nodiscard]] std::vector<AreaCoverage> area_figures_of(const CoverageMap& map, const SceneSpec& scene);
+
 /// x_m, z_m and one column a sensor; a line a square on the floor.
 [[nodiscard]] std::string to_csv(const CoverageMap& map);
 /// Aligned, for a terminal.
-[[nodiscard]] std::string to_text(const CoverageMap& map, const CoverageFigures& figures);
+[[nodiscard]] std::string to_text(const CoverageMap& map, const CoverageFigures& figures,
+                                  const std::vector<AreaCoverage>& areas = {});
 
 }  // namespace pirsim::studies

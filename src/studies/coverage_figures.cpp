@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iomanip>
+#include <numeric>
 #include <sstream>
 
+#include "core/text.hpp"
 #include "pirsim/csv.hpp"
+#include "studies/area_tally.hpp"
 
 namespace pirsim::studies {
 namespace {
@@ -90,6 +93,32 @@ CoverageFigures figures_of(const CoverageMap& map) {
   return result;
 }
 
+std::vector<AreaCoverage> area_figures_of(const CoverageMap& map, const SceneSpec& scene) {
+  const Areas areas(scene);
+  std::vector<AreaCoverage> figures;
+  for (std::size_t area = 0; area < areas.size(); ++area) {
+    const auto is_here = [&](std::size_t column, std::size_t row) {
+      return areas.at(map.grid.centre(column, row)) == area;
+    };
+    const std::vector<std::size_t> its_own = areas.sensors_of(area);
+    std::vector<std::size_t> all(map.sensors.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    const auto blind_to = [&](const std::vector<std::size_t>& sensors) {
+      return count_squares(map.grid, [&](std::size_t column, std::size_t row) {
+        const auto sees = [&](std::size_t sensor) { return map.count(column, row, sensor) > 0; };
+        return is_here(column, row) && std::ranges::none_of(sensors, sees);
+      });
+    };
+    AreaCoverage& one = figures.emplace_back(AreaCoverage{with_sensors(scene, areas, area)});
+    one.squares = count_squares(map.grid, is_here);
+    if (one.squares == 0) continue;
+    const auto n = static_cast<double>(one.squares);
+    one.blind_fraction = static_cast<double>(blind_to(all)) / n;
+    if (!its_own.empty()) one.blind_to_its_own = static_cast<double>(blind_to(its_own)) / n;
+  }
+  return figures;
+}
+
 std::string to_csv(const CoverageMap& map) {
   std::ostringstream out;
   out << "x_m,z_m";
@@ -107,7 +136,7 @@ std::string to_csv(const CoverageMap& map) {
   return out.str();
 }
 
-std::string to_text(const CoverageMap& map, const CoverageFigures& figures) {
+std::string to_text(const CoverageMap& map, const CoverageFigures& figures, const std::vector<AreaCoverage>& areas) {
   std::ostringstream out;
   const auto line = [&](const std::string& name, const MapFigures& f) {
     out << "  " << std::left << std::setw(10) << name << std::right << std::fixed << std::setprecision(2)
@@ -118,6 +147,11 @@ std::string to_text(const CoverageMap& map, const CoverageFigures& figures) {
       << " windows in each\n  sensor    mean step  greatest  blind, %   seen, m2\n";
   for (std::size_t i = 0; i < map.sensors.size(); ++i) line(map.sensors[i], figures.sensors[i]);
   line("all", figures.all);
+  if (!areas.empty()) out << "  blind share of each area to all sensors, and to its own:\n";
+  for (const AreaCoverage& area : areas) {
+    out << "    " << area.area << ": " << fixed(100.0 * area.blind_fraction, 1) << " %, "
+        << (area.blind_to_its_own ? fixed(100.0 * *area.blind_to_its_own, 1) + " %" : "no sensor") << '\n';
+  }
   return out.str();
 }
 

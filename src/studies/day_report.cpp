@@ -29,7 +29,7 @@ std::string percent(double share) { return fixed(100.0 * share, share < 0.0995 ?
 }  // namespace
 
 DayReport::DayReport(const Model& model)
-    : model_(&model), window_s_(model.tick_s() * model.compiled().sensing().ticks_per_window) {
+    : model_(&model), window_s_(model.tick_s() * model.compiled().sensing().ticks_per_window), areas_(model) {
   const Vec2 size = model.compiled().scene().floor.upper() - model.compiled().scene().floor.lower();
   columns_ = static_cast<std::size_t>(std::ceil(size.x / square_m));
   squares_.assign(columns_ * static_cast<std::size_t>(std::ceil(size.y / square_m)), 0.0);
@@ -44,7 +44,8 @@ std::string DayReport::time_of(double hours) const { return has_clock_ ? hours_t
 DayReport::Bin& DayReport::bin_at(double time_s) {
   const auto k = static_cast<std::size_t>(std::max(0.0, time_s - 1e-6) / bin_s);
   if (bins_.size() <= k)
-    bins_.resize(k + 1, {0.0, 0.0, 0, 0, std::vector<double>(model_->scene().sensors.size(), 0.0)});
+    bins_.resize(k + 1, {0.0, 0.0, 0, 0, std::vector<double>(model_->scene().sensors.size(), 0.0),
+                         std::vector<double>(model_->areas().size(), 0.0)});
   return bins_[k];
 }
 
@@ -69,6 +70,7 @@ void DayReport::add_run(const RunResult& result) {
     bin.most = std::max(bin.most, sample.people);
     bin.windows += 1.0;
     bin.people += sample.people;
+    for (std::size_t i = 0; i < sample.people_of_areas.size(); ++i) bin.people_of_areas[i] += sample.people_of_areas[i];
   }
   const Vec2 lower = model_->compiled().scene().floor.lower();
   for (const OccupantRow& row : result.occupants) {
@@ -78,6 +80,7 @@ void DayReport::add_run(const RunResult& result) {
         static_cast<std::size_t>(at.y) * columns_ + std::min(columns_ - 1, static_cast<std::size_t>(at.x));
     if (i < squares_.size()) squares_[i] += window_s_;
   }
+  areas_.add_run(result);
   note_moment(result);
 }
 
@@ -132,6 +135,26 @@ io::LineChart DayReport::people_chart() const {
   }
   chart.y_high = most;
   chart.lines.push_back(std::move(line));
+  return chart;
+}
+
+io::LineChart DayReport::area_chart() const {
+  io::LineChart chart;
+  chart.title = "People in each area";
+  chart.note = "mean of every ten minutes" + over_runs();
+  set_time_axis(chart);
+  chart.y_label = "people";
+  chart.y_high = 0.1;
+  for (std::size_t area = 0; area < model_->areas().size(); ++area) {
+    io::LineChart::Line& line = chart.lines.emplace_back();
+    line.name = model_->areas()[area];
+    for (std::size_t k = 0; k < bins_.size(); ++k) {
+      if (bins_[k].windows == 0.0) continue;
+      const double mean = bins_[k].people_of_areas[area] / bins_[k].windows;
+      chart.y_high = std::max(chart.y_high, mean);
+      line.points.push_back({hour_of(k), mean, {}, {}, time_of(hour_of(k)) + ", " + line.name + ": " + fixed(mean, 2)});
+    }
+  }
   return chart;
 }
 
@@ -213,14 +236,19 @@ io::ReportSection DayReport::section(const std::string& heading) const {
     section.paragraphs.push_back("Nobody came.");
     return section;
   }
+  constexpr std::size_t most_lines = 8;  // more can't be told apart
+  const bool charts_areas = !areas_.empty() && model_->areas().size() <= most_lines;
   section.paragraphs.push_back(
       (has_clock_
            ? count_of(days_, "day") + " on which somebody came. The first chart tells how many people were in the "
                                       "room at each time of day, "
            : count_of(days_, "run") + " in which somebody came. The first chart tells how many people were in the "
                                       "room as time went on, ") +
+      (charts_areas ? "the second one how many of them were in each area, " : "") +
       "the next ones how much motion each sensor reported then.");
   section.charts.emplace_back(people_chart());
+  if (charts_areas) section.charts.emplace_back(area_chart());
+  if (!areas_.empty()) section.tables.push_back(areas_.table());
   std::vector<io::LineChart> sensors;
   double most = 0.05;
   for (std::size_t i = 0; i < model_->scene().sensors.size(); ++i) {
@@ -236,7 +264,9 @@ io::ReportSection DayReport::section(const std::string& heading) const {
   section.paragraphs.push_back(
       "In the map of the floor white triangles are seats, pointing the way who sits there faces; a green line is a "
       "door, "
-      "dotted lines are furniture, black areas are walls. Point at anything for its name or value.");
+      "dotted lines are furniture, black areas are walls" +
+      std::string(areas_.empty() ? "" : ", violet dashes the borders of named areas") +
+      ". Point at anything for its name or value.");
   return section;
 }
 
@@ -247,6 +277,10 @@ io::ReportSection DayReport::moment_section(const std::string& heading) const {
                                "This is what each of them did. Blue dots in the map above show where.");
   io::Table table{{"who", "does", "seat"}, {}};
   for (const OccupantRow& row : busiest_.people) table.rows.push_back({row.person, row.activity, row.seat});
+  if (!areas_.empty()) {
+    table.headings.emplace_back("area");
+    for (std::size_t i = 0; i < busiest_.people.size(); ++i) table.rows[i].push_back(busiest_.people[i].area);
+  }
   section.tables.push_back(std::move(table));
   return section;
 }

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "geom/floor_distance.hpp"
 #include "io/pages/run_page.hpp"
 #include "pirsim/coverage.hpp"
 #include "pirsim/look.hpp"
@@ -158,6 +159,12 @@ io::RunPage run_page(const Model& model, const PageRequest& request, const Stret
     page.seats.push_back({seat.id, seat.world_from_seat.origin});
   for (const EntranceSpec& door : model.compiled().scene().entrances)
     page.doors.push_back({door.id, door.world_from_entrance.origin});
+  for (const AreaSpec& area : model.compiled().scene().areas) {
+    const Vec2 middle = roomiest_point(area.outline);
+    const double floor_y = model.compiled().scene().floor.height_m();
+    page.areas.push_back({area.id, Vec3(middle.x, floor_y, middle.y), area.outline.loops()});
+  }
+  page.counted = model.areas();
   return page;
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "geom/floor_distance.hpp"
 #include "io/pages/canvas.hpp"
 #include "io/pages/lettering.hpp"
 #include "io/write/gltf_writer.hpp"
@@ -138,7 +139,7 @@ void require_usable(const rt::Camera& camera) {
 
 constexpr rt::Colour idle_beam{0.10F, 0.45F, 0.75F}, seeing_beam{0.90F, 0.02F, 0.02F};
 constexpr rt::Colour seat_colour{0.55F, 0.10F, 0.55F}, door_colour{0.05F, 0.45F, 0.12F},
-    scale_colour{0.05F, 0.05F, 0.06F};
+    area_colour{0.02F, 0.38F, 0.42F}, scale_colour{0.05F, 0.05F, 0.06F};
 
 /// A text beside a point of the room.
 struct Label {
@@ -171,6 +172,22 @@ void mark_doors(const SceneSpec& scene, Marks& marks) {
     marks.lines.push_back({at(-0.5 * door.width_m, 0.0), at(0.5 * door.width_m, 0.0), door_colour});
     marks.lines.push_back({at(0.0, 0.0), at(0.0, -way_m), door_colour});
     marks.labels.push_back({at(0.0, 0.0), door.id, door_colour});
+  }
+}
+
+/// The border, and the name in the middle.
+void mark_areas(const SceneSpec& scene, Marks& marks) {
+  constexpr double above_m = 0.015;
+  const double y = scene.floor.height_m() + above_m;
+  for (const AreaSpec& area : scene.areas) {
+    for (const std::vector<Vec2>& loop : area.outline.loops()) {
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Vec2 from = loop[i], to = loop[(i + 1) % loop.size()];
+        marks.lines.push_back({Vec3(from.x, y, from.y), Vec3(to.x, y, to.y), area_colour});
+      }
+    }
+    const Vec2 middle = roomiest_point(area.outline);
+    marks.labels.push_back({Vec3(middle.x, y, middle.y), area.id, area_colour});
   }
 }
 
@@ -244,6 +261,7 @@ Marks marks_of(const Model& model, const State& state, const std::vector<Mark>& 
   for (const Mark mark : wanted) {
     if (mark == Mark::seats) mark_seats(scene, marks);
     if (mark == Mark::doors) mark_doors(scene, marks);
+    if (mark == Mark::areas) mark_areas(scene, marks);
     if (mark == Mark::sensors) mark_sensors(scene, marks);
     if (mark == Mark::people) mark_people(state, marks);
     if (mark == Mark::scale) mark_scale(scene, marks);
@@ -273,7 +291,7 @@ struct Key {
   [[nodiscard]] double sign_px() const { return 1.6 * size_px; }
 };
 
-Key key_of(const PictureSpec& spec, const Marks& marks, double size_px) {
+Key key_of(const PictureSpec& spec, const SceneSpec& scene, const Marks& marks, double size_px) {
   constexpr std::size_t most_people = 8;  // whose colours differ
   const auto wanted = [&](Mark mark) { return std::ranges::find(spec.marks, mark) != spec.marks.end(); };
   const double height = spec.height;
@@ -286,6 +304,7 @@ Key key_of(const PictureSpec& spec, const Marks& marks, double size_px) {
   if (wanted(Mark::sensors)) key.entries.emplace_back("sensor", scale_colour);
   if (wanted(Mark::seats)) key.entries.emplace_back("seat", seat_colour);
   if (wanted(Mark::doors)) key.entries.emplace_back("door", door_colour);
+  if (wanted(Mark::areas) && !scene.areas.empty()) key.entries.emplace_back("area", area_colour);
   if (marks.people.size() <= most_people) {
     for (const Label& person : marks.people) key.entries.emplace_back("person " + person.text, person.colour);
   } else {
@@ -373,7 +392,7 @@ rt::Camera dolls_house_camera(const SceneSpec& scene, const Marks& marks, const 
 }  // namespace
 
 std::string_view name(Mark mark) noexcept {
-  static constexpr std::array<std::string_view, all_marks.size()> names{"seats",  "doors", "sensors",
+  static constexpr std::array<std::string_view, all_marks.size()> names{"seats",  "doors", "areas", "sensors",
                                                                         "people", "scale", "key"};
   return names[static_cast<std::size_t>(mark)];
 }
@@ -407,7 +426,7 @@ io::Pixels picture(const Model& model, const State& state, const PictureSpec& sp
                         [](const rt::Beam& beam) { return beam.colour == idle_beam; });
   const Marks marks = marks_of(model, state, spec.marks);
   beams.insert(beams.end(), marks.lines.begin(), marks.lines.end());
-  const Key key = key_of(spec, marks, text_size(spec));
+  const Key key = key_of(spec, scene, marks, text_size(spec));
   rt::Camera camera = dolls_house_camera(scene, marks, key, spec);
   if (spec.camera) camera.position = *spec.camera;
   if (spec.look_at) camera.target = *spec.look_at;

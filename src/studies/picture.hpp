@@ -12,8 +12,9 @@
 namespace pirsim::studies {
 
 /// What a picture explains beside the room itself: where they are, and their ids; what its colours mean.
-enum class Mark { seats, doors, sensors, people, scale, key };
-inline constexpr std::array all_marks{Mark::seats, Mark::doors, Mark::sensors, Mark::people, Mark::scale, Mark::key};
+enum class Mark { seats, doors, areas, sensors, people, scale, key };
+inline constexpr std::array all_marks{Mark::seats,  Mark::doors, Mark::areas, Mark::sensors,
+                                      Mark::people, Mark::scale, Mark::key};
 [[nodiscard]] std::string_view name(Mark mark) noexcept;
 
 struct PictureSpec {

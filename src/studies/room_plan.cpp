@@ -7,6 +7,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "geom/floor_distance.hpp"
 #include "geom/mesh_section.hpp"
 #include "pirsim/geometry.hpp"
 
@@ -120,7 +121,17 @@ io::RoomPlan plan_of(const SceneSpec& scene) {
     };
     plan.doors.push_back({door.id, jamb(-1.0), jamb(1.0)});
   }
+  for (const AreaSpec& area : scene.areas)
+    plan.areas.push_back({area.id, roomiest_point(area.outline), area.outline.loops()});
   return plan;
+}
+
+std::string signs_of_maps(const SceneSpec& scene) {
+  const std::string signs =
+      "Red triangles are sensors and white ones seats, both pointing the way they face; a name is left out where there "
+      "is no room for it, then point at the seat. A green line is a door, dotted lines are furniture, black areas are "
+      "walls, the solid line is the floor's edge.";
+  return scene.areas.empty() ? signs : signs + " Violet dashes are the borders of named areas.";
 }
 
 }  // namespace pirsim::studies

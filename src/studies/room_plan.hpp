@@ -1,6 +1,8 @@
 // What a room looks like: what its meshes are, and its plan seen from above.
 #pragma once
 
+#include <string>
+
 #include "io/pages/charts.hpp"
 #include "pirsim/scene.hpp"
 
@@ -15,11 +17,6 @@ enum class MeshRole { ceiling, wall, floor, furniture };
 [[nodiscard]] io::RoomPlan plan_of(const SceneSpec& scene);
 
 /// What the signs of a report's maps mean, where their markers are sensors.
-inline constexpr const char* signs_of_maps =
-    "Red triangles are sensors and white ones seats, both pointing the way they face; a name is left out where there "
-    "is "
-    "no room for it, then point at the seat. A green line is a door, dotted lines are furniture, black areas are "
-    "walls, "
-    "the solid line is the floor's edge.";
+[[nodiscard]] std::string signs_of_maps(const SceneSpec& scene);
 
 }  // namespace pirsim::studies

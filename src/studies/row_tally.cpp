@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/files/atomic_file.hpp"
 #include "pirsim/columns.hpp"
 #include "pirsim/error.hpp"
 
@@ -49,6 +50,8 @@ void RowTally::end_line() {
     }
     row_.phase = fields_[phase_];
     for (std::size_t i = 0; i < row_.bits.size(); ++i) row_.bits[i] = fields_[first_sensor_ + i] == "1" ? 1 : 0;
+    for (std::size_t i = 0; i < row_.people_of_areas.size(); ++i)
+      row_.people_of_areas[i] = io::parse_number<int>(fields_[first_area_ + i]).value_or(0);
     counts_->add(row_);
   }
   fields_.assign(1, {});
@@ -58,19 +61,25 @@ void RowTally::take_header() {
   const auto begins_with = [&](const std::vector<std::string>& columns) {
     return fields_.size() >= columns.size() && std::equal(columns.begin(), columns.end(), fields_.begin());
   };
-  std::vector<std::string> columns = column_names<Sample>();  // of days
-  if (!begins_with(columns)) columns = column_names<Sample>({}, [](When when) { return when != When::with_clock; });
+  ColumnOwners owners;
+  for (const std::string& field : fields_) {
+    if (is_column_of_area(field)) owners.areas.push_back(field.substr(area_prefix.size()));
+  }
+  std::vector<std::string> columns = column_names<Sample>(owners);  // of days
+  if (!begins_with(columns)) columns = column_names<Sample>(owners, [](When when) { return when != When::with_clock; });
   if (!begins_with(columns)) throw Error(ErrorCode::input, "the rows don't begin with the header of a study's rows");
   first_sensor_ = columns.size();
+  first_area_ = first_sensor_ - owners.areas.size();
+  row_.people_of_areas.resize(owners.areas.size());
   phase_ = static_cast<std::size_t>(std::ranges::find(columns, "phase") - columns.begin());
   const std::vector<std::string> sensors(fields_.begin() + static_cast<std::ptrdiff_t>(first_sensor_), fields_.end());
   summary_.emplace(trials_, sensors, std::move(measured_));
-  counts_.emplace(sensors.size(), spec_);
+  counts_.emplace(sensors.size(), spec_, owners.areas);
   row_.bits.resize(sensors.size());
 }
 
 void RowTally::end_run() {
-  if (!replicate_.empty()) summary_->add_run(trial_, counts_->counts());
+  if (!replicate_.empty()) summary_->add_run(trial_, counts_->counts(), counts_->areas());
   counts_->reset();
 }
 

@@ -60,6 +60,16 @@ std::vector<std::string> row_of(const std::string& name, const MapFigures& f) {
           fixed(f.seen_area_m2, 2)};
 }
 
+io::ReportSection areas_section(const std::vector<AreaCoverage>& areas) {
+  const auto percent = [](double share) { return fixed(100.0 * share, 1) + " %"; };
+  io::Table table{{"area (its sensors)", "squares", "blind to all sensors", "blind to its own"}, {}};
+  for (const AreaCoverage& area : areas) {
+    table.rows.push_back({area.area, std::to_string(area.squares), percent(area.blind_fraction),
+                          area.blind_to_its_own ? percent(*area.blind_to_its_own) : "no sensor"});
+  }
+  return {"By area", {}, {std::move(table)}, {}};
+}
+
 /// A map without title and sensors.
 template <typename Count>
 io::MapChart map_with(const CoverageStudy& study, const CoverageMap& map, Count count) {
@@ -118,7 +128,7 @@ io::Report coverage_report(const CoverageStudy& study, const CoverageMap& map, c
                        "The target is " + std::to_string(study.target().crosses().size()) +
                            " crosses of two bars, turning on the spot. The sensors' response is " +
                            responses_in_words(study.scene(), study.spec().sensing) + ".",
-                       std::string(signs_of_maps) +
+                       signs_of_maps(study.scene()) +
                            (study.taken_out().empty() ? "" : " Dashed lines are what was taken out of the room.")};
 
   io::Table table{{"sensor", "mean step", "greatest step", "blind", "area seen, m²"}, {}};
@@ -131,6 +141,8 @@ io::Report coverage_report(const CoverageStudy& study, const CoverageMap& map, c
         "the steps of all sensors, and the area seen by at least one."},
        {std::move(table)},
        {}});
+  const std::vector<AreaCoverage> areas = area_figures_of(map, study.scene());
+  if (!areas.empty()) report.sections.push_back(areas_section(areas));
   io::ReportSection maps{"Maps", {}, {}, {}};
   if (map.sensors.size() > 1) {
     io::MapChart chart = map_of_all(study, map);
@@ -213,7 +225,7 @@ bool lasts_hours(const TrialSpec& trial) {
 StudyReport::StudyReport(const Model& model) : model_(&model) {
   for (const SensorSpec& sensor : model.scene().sensors) sensors_.push_back(sensor.id);
   for (const TrialSpec& trial : model.script().trials) {
-    trials_.push_back({trial.id, {}, {}});
+    trials_.push_back({trial.id, {}, AreaTally(model), {}});
     if (lasts_hours(trial)) trials_.back().days.emplace(model);
   }
 }
@@ -225,6 +237,7 @@ bool StudyReport::needs_occupants() const noexcept {
 void StudyReport::add_run(const RunResult& result) {
   Trial& trial = trials_[result.run % trials_.size()];
   if (trial.days) return trial.days->add_run(result);
+  trial.areas.add_run(result);
   if (result.replicate == 1) trial.samples = result.samples;
 }
 
@@ -302,6 +315,7 @@ io::Report StudyReport::finish(const Summary& summary) const {
       section.charts.emplace_back(io::HistogramChart{"trial " + trials_[t].id + ", " + sensors_[s], note_of(cell),
                                                      "windows with motion", "windows", cell.counts, real});
     }
+    if (!trials_[t].areas.empty() && !trials_[t].days) section.tables.push_back(trials_[t].areas.table());
     io::SeriesChart series = series_of(trials_[t]);
     series.title += ", first run";
     if (!trials_[t].samples.empty()) section.charts.emplace_back(std::move(series));

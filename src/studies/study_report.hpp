@@ -8,6 +8,7 @@
 
 #include "io/pages/report.hpp"
 #include "pirsim/study.hpp"
+#include "studies/area_tally.hpp"
 #include "studies/coverage.hpp"
 #include "studies/summary.hpp"
 
@@ -39,7 +40,8 @@ class DayReport {
   struct Bin {
     double windows = 0.0, people = 0.0;
     int fewest = 0, most = 0;
-    std::vector<double> motion;  ///< (n_sensors) windows
+    std::vector<double> motion;           ///< (n_sensors) windows
+    std::vector<double> people_of_areas;  ///< (n_areas)
   };
   struct Count {
     double windows = 0.0;
@@ -51,6 +53,7 @@ class DayReport {
   };
   void note_moment(const RunResult& result);
   [[nodiscard]] io::LineChart people_chart() const;
+  [[nodiscard]] io::LineChart area_chart() const;
   [[nodiscard]] io::LineChart sensor_chart(std::size_t sensor) const;
   [[nodiscard]] io::GridChart count_chart() const;
   [[nodiscard]] io::MapChart floor_chart() const;
@@ -71,6 +74,7 @@ class DayReport {
   std::size_t columns_ = 0;       ///< of the floor's squares
   std::vector<double> squares_;   ///< person-seconds
   Moment busiest_;
+  AreaTally areas_;
   int days_ = 0;
 };
 
@@ -91,6 +95,7 @@ class StudyReport {
   struct Trial {
     std::string id;
     std::vector<Sample> samples;    ///< of the first replicate
+    AreaTally areas;                ///< of short runs; days have their own
     std::optional<DayReport> days;  ///< of a schedule, or of runs that last for hours
   };
   [[nodiscard]] io::SeriesChart series_of(const Trial& trial) const;

@@ -81,7 +81,21 @@ Summary::Summary(std::vector<std::string> trials, std::vector<std::string> senso
   }
 }
 
-void Summary::add_run(std::string_view trial, std::span<const int> counts) {
+void AreaSums::add(int people) {
+  ++rows;
+  occupied += people > 0 ? 1 : 0;
+  person_rows += people;
+  most = std::max(most, people);
+}
+
+void AreaSums::add(const AreaSums& other) {
+  rows += other.rows;
+  occupied += other.occupied;
+  person_rows += other.person_rows;
+  most = std::max(most, other.most);
+}
+
+void Summary::add_run(std::string_view trial, std::span<const int> counts, std::span<const AreaSums> areas) {
   const auto index = index_of(trials_, trial);
   if (!index) {
     throw Error(ErrorCode::usage, "summary: no trial '" + std::string(trial) + "'" + did_you_mean(trial, trials_));
@@ -89,6 +103,12 @@ void Summary::add_run(std::string_view trial, std::span<const int> counts) {
   if (counts.size() != sensors_.size()) throw Error(ErrorCode::usage, "summary: expected one count a sensor");
   for (std::size_t sensor = 0; sensor < counts.size(); ++sensor) {
     ++counts_[*index * sensors_.size() + sensor][counts[sensor]];
+  }
+  ++runs_;
+  if (areas_.empty()) {
+    areas_.assign(areas.begin(), areas.end());
+  } else {
+    for (std::size_t i = 0; i < areas_.size(); ++i) areas_[i].add(areas[i]);
   }
 }
 
@@ -140,10 +160,21 @@ std::optional<OverallSummary> Summary::published() const {
   return overall_of(compared);
 }
 
+RunCounts::RunCounts(std::size_t n_sensors, SummarySpec spec, const std::vector<std::string>& areas)
+    : spec_(std::move(spec)), counts_(n_sensors, 0) {
+  for (const std::string& area : areas) areas_.push_back({.area = area});
+}
+
+void RunCounts::reset() {
+  std::ranges::fill(counts_, 0);
+  for (AreaSums& sums : areas_) sums = {.area = sums.area};
+}
+
 void RunCounts::add(const Sample& row) {
   const auto& phases = spec_.phases;
   if (!phases.empty() && std::find(phases.begin(), phases.end(), row.phase) == phases.end()) return;
   for (std::size_t sensor = 0; sensor < counts_.size(); ++sensor) counts_[sensor] += row.bits[sensor] != 0 ? 1 : 0;
+  for (std::size_t area = 0; area < areas_.size(); ++area) areas_[area].add(row.people_of_areas[area]);
 }
 
 InsideCount count_inside(std::span<const RangedValue> cells) {

@@ -48,6 +48,17 @@ struct OverallSummary {
   std::optional<double> mean_crps;   ///< none where only ranges are known
 };
 
+/// People of one area, over the counted rows of some runs.
+struct AreaSums {
+  std::string area;
+  std::int64_t rows = 0, occupied = 0;  ///< occupied: with somebody there
+  std::int64_t person_rows = 0;         ///< of all people
+  int most = 0;                         ///< at once
+
+  void add(int people);
+  void add(const AreaSums& other);
+};
+
 /// Collects the runs' counts, in memory that doesn't grow with their number. Cells are in the order of trials, then
 /// sensors.
 class Summary {
@@ -55,8 +66,9 @@ class Summary {
   /// measured: cells of other trials or sensors are left out; see unmatched().
   Summary(std::vector<std::string> trials, std::vector<std::string> sensors, std::vector<MeasuredCell> measured = {});
 
-  /// counts: (n_sensors) windows with motion of one run. Throws Error(usage) for a trial that isn't in the study.
-  void add_run(std::string_view trial, std::span<const int> counts);
+  /// counts: (n_sensors) windows with motion of one run. areas: the same for all runs. Throws Error(usage) for a trial
+  /// that isn't in the study.
+  void add_run(std::string_view trial, std::span<const int> counts, std::span<const AreaSums> areas = {});
 
   [[nodiscard]] std::vector<CellSummary> cells() const;
   [[nodiscard]] OverallSummary overall() const;
@@ -64,6 +76,9 @@ class Summary {
   [[nodiscard]] std::optional<OverallSummary> published() const;
   /// Measured cells whose trial or sensor the study doesn't have.
   [[nodiscard]] const std::vector<MeasuredCell>& unmatched() const noexcept { return unmatched_; }
+  /// Over all trials; empty without areas.
+  [[nodiscard]] const std::vector<AreaSums>& areas() const noexcept { return areas_; }
+  [[nodiscard]] std::int64_t runs() const noexcept { return runs_; }
   [[nodiscard]] const std::vector<std::string>& trials() const noexcept { return trials_; }
   [[nodiscard]] const std::vector<std::string>& sensors() const noexcept { return sensors_; }
 
@@ -72,20 +87,24 @@ class Summary {
   std::vector<Tally> counts_;                          ///< (n_cells)
   std::vector<std::optional<MeasuredCell>> measured_;  ///< (n_cells)
   std::vector<MeasuredCell> unmatched_;
+  std::vector<AreaSums> areas_;
+  std::int64_t runs_ = 0;
 };
 
-/// Per sensor, how many rows of one run report motion, over the rows whose phase the summary counts (all rows if it
-/// names none). Add each row, then read and start again.
+/// Per sensor, how many rows of one run report motion, and per area how many people they have, over the rows whose
+/// phase the summary counts (all rows if it names none). Add each row, then read and start again.
 class RunCounts {
  public:
-  RunCounts(std::size_t n_sensors, SummarySpec spec) : spec_(std::move(spec)), counts_(n_sensors, 0) {}
+  RunCounts(std::size_t n_sensors, SummarySpec spec, const std::vector<std::string>& areas = {});
   void add(const Sample& row);
   [[nodiscard]] std::span<const int> counts() const noexcept { return counts_; }
-  void reset() { counts_.assign(counts_.size(), 0); }
+  [[nodiscard]] std::span<const AreaSums> areas() const noexcept { return areas_; }
+  void reset();
 
  private:
   SummarySpec spec_;
   std::vector<int> counts_;
+  std::vector<AreaSums> areas_;
 };
 
 /// A range and a value per cell: how many values lie in their range, and the expectation and standard deviation of

@@ -106,6 +106,19 @@ std::vector<Row> overall_table(const Summary& summary) {
   return table;
 }
 
+/// Nothing without areas.
+std::vector<Row> area_table(const Summary& summary) {
+  if (summary.areas().empty()) return {};
+  std::vector<Row> table{{"people in areas", "person-windows a run", "windows with people, %", "most at once"}};
+  for (const AreaSums& sums : summary.areas()) {
+    const auto runs = static_cast<double>(summary.runs()),
+               rows = static_cast<double>(std::max<std::int64_t>(1, sums.rows));
+    table.push_back({sums.area, fixed(static_cast<double>(sums.person_rows) / runs, 1),
+                     fixed(100.0 * static_cast<double>(sums.occupied) / rows, 1), std::to_string(sums.most)});
+  }
+  return table;
+}
+
 /// The first `left` columns to the left, the others to the right.
 std::string aligned(const std::vector<Row>& table, std::size_t left) {
   std::vector<std::size_t> widths;
@@ -166,13 +179,19 @@ std::string to_csv(const Summary& summary) {
 }
 
 std::string to_text(const Summary& summary) {
-  const std::string overall = aligned(overall_table(summary), 1);
-  return aligned(cell_table(summary), 2) + (overall.empty() ? "" : "\n" + overall);
+  std::string text = aligned(cell_table(summary), 2);
+  for (const auto& table : {overall_table(summary), area_table(summary)}) {
+    if (!table.empty()) text += "\n" + aligned(table, 1);
+  }
+  return text;
 }
 
 std::string to_markdown(const Summary& summary) {
-  const std::string overall = markdown(overall_table(summary), 1);
-  return markdown(cell_table(summary), 2) + (overall.empty() ? "" : "\n" + overall);
+  std::string text = markdown(cell_table(summary), 2);
+  for (const auto& table : {overall_table(summary), area_table(summary)}) {
+    if (!table.empty()) text += "\n" + markdown(table, 1);
+  }
+  return text;
 }
 
 }  // namespace pirsim::studies

@@ -3,6 +3,7 @@
 
 #include "core/text.hpp"
 #include "pirsim/response.hpp"
+#include "studies/area_tally.hpp"
 #include "studies/room_plan.hpp"
 #include "studies/walk_test.hpp"
 
@@ -25,6 +26,34 @@ PassCount count_passes(const WalkTestResult& result, Tries PointResult::*motion,
     count.passed += passes(point.*motion, requirement) ? 1 : 0;
   }
   return count;
+}
+
+/// Of the points of each area. A line each; none without areas.
+std::vector<std::string> passes_by_area(const WalkTest& test, const WalkTestResult& result) {
+  const Areas areas(test.scene());
+  const FloorGrid& grid = test.grid();
+  std::vector<PassCount> major(areas.size()), minor(areas.size());
+  const auto note = [](const Tries& tries, const WalkRequirement& requirement, PassCount& count) {
+    if (tries.made == 0) return;
+    ++count.tried;
+    count.passed += passes(tries, requirement) ? 1 : 0;
+  };
+  for (std::size_t i = 0; i < result.points.size() && !areas.empty(); ++i) {
+    const std::size_t column = i % grid.n_columns(), row = i / grid.n_columns();
+    if (!grid.on_floor(column, row)) continue;
+    const std::size_t area = areas.at(grid.centre(column, row));
+    note(result.points[i].major, test.spec().major, major[area]);
+    note(result.points[i].minor, test.spec().minor, minor[area]);
+  }
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    const auto told = [](const PassCount& count) {
+      return std::to_string(count.passed) + " of " + std::to_string(count.tried);
+    };
+    lines.push_back(with_sensors(test.scene(), areas, i) + ": walker " + told(major[i]) + " points pass, arms " +
+                    told(minor[i]));
+  }
+  return lines;
 }
 
 std::string percent(double share) { return fixed(100.0 * share, 0) + " %"; }
@@ -121,9 +150,12 @@ std::string to_csv(const WalkTest& test, const WalkTestResult& result) {
 }
 
 std::string to_text(const WalkTest& test, const WalkTestResult& result) {
+  std::string by_area;
+  for (const std::string& line : passes_by_area(test, result)) by_area += "  " + line + "\n";
   return sentence("walker", count_passes(result, &PointResult::major, test.spec().major), test.spec().major) + "\n" +
          sentence("sitter's arms", count_passes(result, &PointResult::minor, test.spec().minor), test.spec().minor) +
-         "; " + deafness_in_words(result) + "\n" + (result.seats.empty() ? "" : seats_in_words(result) + "\n");
+         "; " + deafness_in_words(result) + "\n" + (result.seats.empty() ? "" : seats_in_words(result) + "\n") +
+         by_area;
 }
 
 io::Report walk_test_report(const WalkTest& test, const WalkTestResult& result) {
@@ -137,7 +169,10 @@ io::Report walk_test_report(const WalkTest& test, const WalkTestResult& result) 
       "reports motion in time; the sensors' response is " +
           responses_in_words(test.scene(), spec.sensing) +
           ". In the manner of NEMA WD 7 and EN 50131-2-2; not a conformity test.",
-      signs_of_maps};
+      signs_of_maps(test.scene())};
+  const std::vector<std::string> by_area = passes_by_area(test, result);
+  if (!by_area.empty())
+    report.paragraphs.push_back("By area (its sensors in brackets): " + joined(by_area, "; ") + ".");
   io::ReportSection major{"Major motion: walking", {}, {}, {}}, minor{"Minor motion: arms of a sitter", {}, {}, {}};
   major.paragraphs = {sentence("Walker", count_passes(result, &PointResult::major, spec.major), spec.major) + "."};
   minor.paragraphs = {sentence("Arms", count_passes(result, &PointResult::minor, spec.minor), spec.minor) + "; " +

@@ -100,6 +100,23 @@ class Hostile(unittest.TestCase):
                       self.pirsim(scene=outline([[0, 0], [9e4, 0], [9e4, 9e4], [0, 9e4]]), code=5))
         self.assertIn("more than 100 km", self.pirsim(scene=outline([[0, 0], [1e300, 0], [0, 1e300]]), code=3))
 
+    def test_areas_without_end(self):
+        def scene(n, corners):
+            floor = {"extras": {"pirsim": {"type": "floor", "polygon_xz_m": [[0, 0], [900, 0], [900, -9], [0, -9]]}}}
+            areas = [{"extras": {"pirsim": {"type": "area", "id": f"a{i}", "polygon_xz_m": corners(i)}}} for i in range(n)]
+            return self.write("areas.gltf", {"asset": {"version": "2.0"}, "nodes": [floor, *areas],
+                                             "scenes": [{"nodes": list(range(n + 1))}]})
+        def square(i):
+            x = 0.1 * i
+            return [[x, 0], [x + 0.1, 0], [x + 0.1, -9], [x, -9]]
+        told = self.pirsim(scene=scene(5_000, square), code=3)
+        self.assertEqual(told.count("the scene has more than 1000 areas"), 1, told)
+        told = self.pirsim(scene=scene(900, lambda i: [[0, 0], [900, 0], [900, -9], [0, -9]]), code=3)
+        self.assertIn("area 'a1' overlaps area 'a0' by 8100.00 m2", told)
+        comb = [[0.02 * k, -(k % 2)] for k in range(9_000)] + [[180, -9], [0, -9]]
+        self.assertIn("the outline of areas has more than 10000 corners",
+                      self.pirsim(scene=scene(2, lambda i: comb), code=3))
+
     def test_buffers_stay_in_the_scenes_folder(self):
         secret = self.write("secret.bin", "x" * 10_000)
         inside = self.folder / "inside"

@@ -41,6 +41,8 @@ def columns_of(result):
                "phase": result.phase[run, second], "people": result.people[run, second]}
     if result.clock is not None:
         columns["time"] = result.clock[run, second]
+    for i, area in enumerate(result.areas):
+        columns["people_" + area] = result.people_of_areas[run, second, i]
     for i, sensor in enumerate(result.sensors):
         columns[sensor] = result.bits[run, second, i]
     return {name: [as_text(value) for value in column] for name, column in columns.items()}
@@ -68,10 +70,11 @@ def cases(tmp_path_factory, data):
         "analog": (rooms / "meeting_room.gltf", studies / "studyA.yaml",
                    {"replicates": 1, "sensing.response": "analog", "trials.for_each.seat": ["S1"]}),
         "days": (rooms / "open_office.gltf", schedule, {}),
+        "areas": (rooms / "two_rooms.gltf", studies / "two_rooms.yaml", {"sensing.response": "zones"}),
     }
 
 
-CASES = ["study A", "several people, runs of different length", "other windows", "analog", "days"]
+CASES = ["study A", "several people, runs of different length", "other windows", "analog", "days", "areas"]
 
 
 def options(changes):
@@ -88,7 +91,7 @@ def test_arrays_equal_the_command_lines_rows(case, cases, command):
 
 def test_frames_equal_the_command_lines_rows(cases, command):
     pytest.importorskip("pandas"), pytest.importorskip("polars"), pytest.importorskip("xarray")
-    for case in ("several people, runs of different length", "days"):
+    for case in ("several people, runs of different length", "days", "areas"):
         scene, script, changes = cases[case]
         header, rows = rows_of(command("--scene", scene, "--script", script, "-q", *options(changes)))
         result = pirsim.run(pirsim.compile(scene, script, set=changes))
@@ -99,7 +102,8 @@ def test_frames_equal_the_command_lines_rows(cases, command):
         assert polars.columns == header
         assert_same({name: [as_text(v) for v in polars[name].to_numpy()] for name in header}, header, rows)
         xarray = result.to_xarray()
-        assert dict(xarray.sizes) == dict(zip(("run", "time", "sensor"), result.bits.shape))
+        areas = {"area": len(result.areas)} if result.areas else {}
+        assert dict(xarray.sizes) == dict(zip(("run", "time", "sensor"), result.bits.shape)) | areas
         assert xarray["people"].isel(run=1).sum() == result.people[1].sum()
 
 
@@ -134,6 +138,33 @@ def test_zones_occupants_and_signals_equal_the_command_lines(data, room, study_a
     assert [row[header.index("part")] for row in rows] == signals["part"].tolist()
     assert [float(row[header.index("signal_v")]) for row in rows] == pytest.approx(signals["signal_v"], abs=1e-5)
     assert [row[header.index("output")] == "1" for row in rows] == signals["output"].tolist()
+
+
+def test_areas_count_the_people_in_them(data, cases):
+    scene, script, changes = cases["areas"]
+    model = pirsim.compile(scene, script, set=changes)
+    result = pirsim.run(model, occupants=True)
+    assert model.areas == result.areas == ("living_room", "bedroom")
+    assert np.array_equal(result.people_of_areas.sum(axis=2), result.people)
+    there = result.occupants
+    for area in result.areas:
+        assert result.people_in(area).sum() == (there["area"] == area).sum() > 0
+    with pytest.raises(KeyError, match="did you mean 'bedroom'"):
+        result.people_in("bedrom")
+    assert np.array_equal(pirsim.trace(model, runs=[0]).emit().people_of_areas[0], result.people_of_areas[0])
+
+    made = pirsim.read_scene(scene)
+    assert [area.id for area in made.areas] == ["living_room", "bedroom"] and "2 areas" in repr(made)
+    made.areas[1] = pirsim.Area("den", pirsim.Floor.rectangle(6, -4, 8, 0))
+    made.sensors[0].area = "den"
+    other = pirsim.run(pirsim.compile(made, script, set=changes))
+    assert other.areas == ("living_room", "den", "elsewhere")
+    assert np.array_equal(other.people_of_areas.sum(axis=2), result.people)
+    made.sensors[0].area = "dn"
+    with pytest.raises(pirsim.InputError, match=r"there is no area 'dn' \(did you mean 'den'"):
+        pirsim.compile(made, script)
+    plain = pirsim.run(pirsim.compile(*cases["days"][:2]), [0], occupants=True)
+    assert plain.areas == () and plain.people_of_areas.shape[2] == 0 and "area" not in plain.occupants
 
 
 def test_any_runs_in_any_order_are_the_studys(room, study_a):

@@ -297,7 +297,11 @@ class Finder {
   /// The bookkeeping of pirsim's own rows, which tells nothing of sensors.
   [[nodiscard]] bool is_bookkeeping(std::size_t column) const {
     const bool is_ours = std::ranges::find(table_.names, "time_s") != table_.names.end();
-    return is_ours && is_column_name(table_.names[column]);
+    return is_of_area(column) || (is_ours && is_column_name(table_.names[column]));
+  }
+  /// Counts the people of a part of the room, not all of them.
+  [[nodiscard]] bool is_of_area(std::size_t column) const {
+    return is_column_of_area(table_.names[column]) && is_count(column);
   }
   void find_people(LogShape& shape) const {
     shape.people_mean = map_.people_mean;
@@ -307,7 +311,7 @@ class Finder {
     }
     for (const NameSays wanted : {NameSays::count, NameSays::presence}) {
       for (std::size_t i = 0; i < table_.n_columns() && !shape.people; ++i) {
-        if (is_of(shape.time, i) || says(i) != wanted || !is_count(i)) continue;
+        if (is_of(shape.time, i) || says(i) != wanted || !is_count(i) || is_of_area(i)) continue;
         shape.people = i;
         if (wanted == NameSays::presence) shape.people_mean = LogMap::People::presence;
       }

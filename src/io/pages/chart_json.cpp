@@ -68,6 +68,11 @@ Json to_json(const MapChart& chart) {
   json["people"] = chart.signs == MapChart::Signs::people;
   json["markers"] = markers(chart.markers);
   json["seats"] = markers(chart.plan.seats);
+  json["areas"] = Json::array();
+  for (const RoomPlan::Area& area : chart.plan.areas) {
+    json["areas"].push_back(
+        {{"label", area.label}, {"x", area.middle.x}, {"z", area.middle.y}, {"loops", polygons(area.loops)}});
+  }
   json["doors"] = Json::array();
   for (const RoomPlan::Door& door : chart.plan.doors) {
     json["doors"].push_back(

@@ -22,6 +22,11 @@ struct RoomPlan {
     std::string label;
     Vec2 from{0.0}, to{0.0};  ///< its jambs
   };
+  struct Area {
+    std::string label;
+    Vec2 middle{0.0};  ///< where its name has room
+    std::vector<std::vector<Vec2>> loops;
+  };
   std::vector<std::vector<Vec2>> outline;    ///< closed polygons: edges of the floor
   std::vector<std::vector<Vec2>> furniture;  ///< closed polygons
   /// Cut through: of each its closed polygons, inside by the even-odd rule.
@@ -29,6 +34,7 @@ struct RoomPlan {
   std::vector<std::vector<Vec2>> wall_lines;  ///< of walls without thickness
   std::vector<Marker> seats;
   std::vector<Door> doors;
+  std::vector<Area> areas;
 };
 
 /// Squares of a floor seen from above, coloured by a value.

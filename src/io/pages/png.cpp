@@ -55,7 +55,7 @@ constexpr int line_px = 30;       ///< of the key below the map
 constexpr double text_px = 17.0;  ///< in the key
 constexpr double sign_px = 34.0;  ///< width of a sign in the key, beside its name
 constexpr Vec3 black(0.0), white(255.0), marker_red(255.0, 77.0, 109.0), door_green(45.0, 164.0, 78.0),
-    pass_blue(127.0, 184.0, 230.0), fail_orange(224.0, 164.0, 88.0);
+    area_purple(130.0, 60.0, 170.0), pass_blue(127.0, 184.0, 230.0), fail_orange(224.0, 164.0, 88.0);
 
 /// Viridis by nine of its colours (Smith and van der Walt, CC0); `share` is from 0 to 1.
 Vec3 viridis(double share) {
@@ -81,6 +81,12 @@ class MapPicture {
   Pixels draw() {
     for (int row = 0; row < chart_.rows; ++row) {
       for (int column = 0; column < chart_.columns; ++column) square(column, row);
+    }
+    for (const RoomPlan::Area& area : chart_.plan.areas) {
+      for (const auto& loop : area.loops) {
+        polygon(loop, white, no_dashes);
+        polygon(loop, area_purple, long_dashes);
+      }
     }
     for (const auto& loop : chart_.plan.furniture) {
       polygon(loop, black, no_dashes);
@@ -137,6 +143,10 @@ class MapPicture {
     add(!chart_.plan.seats.empty(), "seat", [this](const Vec2& at) { seat(at + Vec2(12.0, 0.0), -0.5 * pi); });
     add(!chart_.plan.doors.empty(), "door", [=, this](const Vec2& at) {
       for (const double aside : {-1.5, 1.5}) line(at + aside, at + along + aside, door_green, no_dashes);
+    });
+    add(!chart_.plan.areas.empty(), "area", [=, this](const Vec2& at) {
+      line(at, at + along, white, no_dashes);
+      line(at, at + along, area_purple, long_dashes);
     });
     add(!chart_.plan.furniture.empty(), "furniture", [=, this](const Vec2& at) {
       line(at, at + along, black, no_dashes);
@@ -278,8 +288,25 @@ class MapPicture {
         return;
       }
     };
+    write_area_names(taken);
     for (const MapChart::Marker& marker : chart_.markers) write(marker, 10.0, 15.0);
     for (const MapChart::Marker& marker : chart_.plan.seats) write(marker, 9.0, 13.0);
+  }
+
+  /// In the middle of each, or a little above or below it.
+  void write_area_names(std::vector<PixelBox>& taken) {
+    constexpr double size_px = 18.0;
+    for (const RoomPlan::Area& area : chart_.plan.areas) {
+      const Vec2 extent = text_extent(area.label, size_px);
+      for (const double lines : {0.0, -1.2, 1.2, -2.4, 2.4, -3.6, 3.6}) {
+        const Vec2 bottom = glm::round(pixel_of(area.middle) + Vec2(0.0, 0.5 * extent.y + lines * size_px));
+        const PixelBox box = box_of({bottom, area.label, area_purple}, size_px);
+        if (std::ranges::any_of(taken, [&](const PixelBox& other) { return overlap(box, other); })) continue;
+        write_text(pixels_, bottom, area.label, size_px, area_purple);
+        taken.push_back(box);
+        break;
+      }
+    }
   }
 
   void polygon(const std::vector<Vec2>& loop, const Vec3& colour, double dash_px) {

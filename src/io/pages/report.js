@@ -58,6 +58,7 @@
     }
     chart.markers.forEach(({ x, z }) => taken.push(boxAt(...toPixels([x, z]), 12, 12)));
     chart.seats.forEach(({ x, z }) => taken.push(boxAt(...toPixels([x, z]), 6, 6)));
+    chart.areas.forEach((area) => place(area, 13, () => [0, -16, 16, -32, 32, -48, 48].map((down) => [0, down])));
     chart.markers.forEach((marker) => place(marker, 11, (wide) => [[0, -14], [0, 15], [wide / 2 + 9, 0], [-wide / 2 - 9, 0],
       [0, -26], [0, 27], [wide / 2, -20], [-wide / 2, -20], [wide / 2, 20], [-wide / 2, 20]]));
     // Where a seat's name has room: behind the back of whoever sits there.
@@ -102,6 +103,7 @@
     return {
       width: inner, height, padding: 4,
       data: [{ name: "squares", values: squares }, { name: "outline", values: points(chart.outline) },
+        { name: "areas", values: points(chart.areas.flatMap(({ loops }) => loops)) },
         { name: "furniture", values: points(chart.furniture) }, { name: "dashed", values: points(chart.dashed) },
         { name: "markers", values: chart.markers }, { name: "seats", values: chart.seats },
         { name: "placed", values: names(chart, toPixels, inner, height) }, { name: "doors", values: chart.doors }, ...wall.data],
@@ -120,6 +122,7 @@
           y: { scale: "z", field: "z" }, y2: { scale: "z", signal: "datum.z + " + s },
           fill: { scale: "colour", field: "colour" }, stroke: { scale: "colour", field: "colour" }, strokeWidth: { value: 0.9 },
           tooltip: { signal: text } } } },
+        outline("areas", "#ffffff", [1, 0]), outline("areas", "#823caa", [6, 4]),
         outline("furniture", "#000000", [1, 0]), outline("furniture", "#ffffff", [3, 3]), ...wall.marks,
         outline("outline", css("--text"), [1, 0]), outline("dashed", "#ffffff", [6, 4]),
         { type: "rule", from: { data: "doors" }, encode: { enter: Object.assign({ x2: { scale: "x", field: "x2" },

@@ -20,6 +20,7 @@ class Room {
     this.furnish(gltf.scene);
     this.hangSensors();
     this.makeLitBeams();
+    this.drawAreas();
     if (this.run.map) this.layMap();
     this.makeLabels();
     this.animate(gltf);
@@ -113,6 +114,18 @@ class Room {
     this.scene.add(this.lit);
   }
 
+  /// The borders of areas on the floor.
+  drawAreas() {
+    const ends = this.run.areas.flatMap(({ loops, position: [, y] }) => loops.flatMap((loop) => loop.flatMap(
+      ([x, z], i) => { const [x2, z2] = loop[(i + 1) % loop.length]; return [x, y + 0.012, z, x2, y + 0.012, z2]; })));
+    const geometry = new three.BufferGeometry();
+    geometry.setAttribute("position", new three.BufferAttribute(new Float32Array(ends), 3));
+    const material = new three.LineBasicMaterial();
+    this.painted.push([material, "area"]);
+    this.scene.add(new three.LineSegments(geometry, material));
+    byId("bordered").hidden = this.run.areas.length === 0;
+  }
+
   /// A coverage map as squares on the floor; showSensors() gives them their colours.
   layMap() {
     const { x, z, height_m: y, spacing_m: side, n_columns: columns, percent } = this.run.map;
@@ -168,7 +181,8 @@ class Room {
       element.addEventListener("click", () => this.choose(i));
       this.buttons.push(element);
     });
-    const { seats, doors } = this.run;
+    const { areas, seats, doors } = this.run;
+    for (const area of areas) add("area", area.name, area.position);
     for (const seat of seats) add("seat", seat.name, seat.position);
     for (const door of doors) add("door", /door/.test(door.name) ? door.name : "door " + door.name, door.position);
     for (const head of this.heads) {
@@ -296,7 +310,7 @@ class Room {
       const above = element.className.startsWith("sensor") ? 1.5 : 0.5;  // times its height
       const wanted = y - above * label.high, top = freeTop(placed, x, wanted, label);
       // Far from its seat a name would tell of another one; who comes nearer sees it again.
-      if (/seat|door/.test(element.className) && Math.abs(top - wanted) > 2.2 * label.high) {
+      if (/area|seat|door/.test(element.className) && Math.abs(top - wanted) > 2.2 * label.high) {
         element.style.display = "none";
         continue;
       }

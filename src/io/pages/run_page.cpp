@@ -61,6 +61,20 @@ Json json(const std::vector<PagePlace>& places) {
   return all;
 }
 
+Json json(const std::vector<PageArea>& areas) {
+  Json all = Json::array();
+  for (const PageArea& area : areas) {
+    Json loops = Json::array();
+    for (const std::vector<Vec2>& loop : area.loops) {
+      Json points = Json::array();
+      for (const Vec2& p : loop) points.push_back({on_grid(p.x), on_grid(p.y)});
+      loops.push_back(std::move(points));
+    }
+    all.push_back({{"name", area.name}, {"position", json(area.position)}, {"loops", std::move(loops)}});
+  }
+  return all;
+}
+
 Json json(const PageSensor& sensor) {
   Json signal = Json::array();
   for (const double volts : sensor.signal_v) signal.push_back(std::round(volts * 1000.0) / 1000.0);
@@ -77,9 +91,11 @@ Json json(const PageSensor& sensor) {
 
 Json json(const std::vector<Sample>& rows) {
   Json times = Json::array(), people = Json::array(), phases = Json::array(), bits = Json::array();
+  Json people_of_areas = Json::array();
   for (const Sample& row : rows) {
     times.push_back(row.time_s);
     people.push_back(row.people);
+    if (!row.people_of_areas.empty()) people_of_areas.push_back(row.people_of_areas);
     phases.push_back(row.phase);
     std::string text;
     for (const std::uint8_t bit : row.bits) text += bit != 0 ? '1' : '0';
@@ -87,6 +103,7 @@ Json json(const std::vector<Sample>& rows) {
   }
   return {{"time_s", std::move(times)},
           {"people", std::move(people)},
+          {"people_of_areas", std::move(people_of_areas)},
           {"phase", std::move(phases)},
           {"bits", std::move(bits)},
           {"first_clock", rows.empty() ? "" : rows.front().clock}};
@@ -107,16 +124,10 @@ Json json(const PageMap& map) {
 }
 
 std::string json_text(const RunPage& page) {
-  Json all{{"title", page.title},
-           {"first_person", page.first_person},
-           {"run_s", page.run_s},
-           {"window_s", page.window_s},
-           {"keys_s", page.run.key_times_s},
-           {"sensors", Json::array()},
-           {"seats", json(page.seats)},
-           {"doors", json(page.doors)},
-           {"people", Json::array()},
-           {"active_zones", page.active_zones},
+  Json all{{"title", page.title},       {"first_person", page.first_person}, {"run_s", page.run_s},
+           {"window_s", page.window_s}, {"keys_s", page.run.key_times_s},    {"sensors", Json::array()},
+           {"seats", json(page.seats)}, {"doors", json(page.doors)},         {"areas", json(page.areas)},
+           {"counted", page.counted},   {"people", Json::array()},           {"active_zones", page.active_zones},
            {"rows", json(page.rows)}};
   for (const PageSensor& sensor : page.sensors) all["sensors"].push_back(json(sensor));
   for (const ExportedPerson& person : page.run.people) all["people"].push_back(person.id);

@@ -18,6 +18,12 @@ struct PagePlace {
   Vec3 position{0.0};
 };
 
+struct PageArea {
+  std::string name;
+  Vec3 position{0.0};  ///< of the name
+  std::vector<std::vector<Vec2>> loops;
+};
+
 struct PageSensor {
   std::string id;
   std::string model;
@@ -50,6 +56,8 @@ struct RunPage {
   std::vector<PageSensor> sensors;
   std::vector<PagePlace> seats;
   std::vector<PagePlace> doors;
+  std::vector<PageArea> areas;
+  std::vector<std::string> counted;                      ///< whose people the rows count: areas, and the rest
   std::vector<std::vector<std::uint32_t>> active_zones;  ///< (n_keys)
   std::vector<Sample> rows;                              ///< from the first key to the last
   std::optional<PageMap> map;                            ///< of the same sensors

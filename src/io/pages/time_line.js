@@ -2,7 +2,7 @@
 "use strict";
 
 class TimeLine {
-  static heights = { people: 46, bits: 20, signal: 34, axis: 18 };
+  static heights = { people: 46, area: 18, bits: 20, signal: 34, axis: 18 };
 
   /// choose: is told the index of the sensor whose button is clicked.
   constructor(run, choose) {
@@ -17,6 +17,13 @@ class TimeLine {
     people.textContent = "people";
     people.style.height = TimeLine.heights.people + "px";
     byId("gutter").append(people);
+    for (const name of this.run.counted) {
+      const area = document.createElement("div");
+      area.className = "area";
+      area.textContent = area.title = name;
+      area.style.height = TimeLine.heights.area + "px";
+      byId("gutter").append(area);
+    }
     this.run.sensors.forEach((sensor, i) => {
       const button = document.createElement("button");
       button.type = "button";
@@ -35,8 +42,9 @@ class TimeLine {
 
   draw() {
     const canvas = byId("rows"), width = canvas.parentElement.clientWidth, scale = window.devicePixelRatio || 1;
-    const { sensors, from_s: from, to_s: to } = this.run, { heights } = TimeLine;
-    const height = sensors.reduce((sum, sensor) => sum + this.heightOf(sensor), heights.people + heights.axis);
+    const { sensors, counted, from_s: from, to_s: to } = this.run, { heights } = TimeLine;
+    const height = sensors.reduce((sum, sensor) => sum + this.heightOf(sensor),
+                                  heights.people + heights.area * counted.length + heights.axis);
     canvas.width = width * scale;
     canvas.height = height * scale;
     canvas.style.height = height + "px";
@@ -46,6 +54,10 @@ class TimeLine {
     const x = (time) => ((time - from) / (to - from)) * width;
     this.drawPeople(pen, x);
     let top = heights.people;
+    counted.forEach((_, i) => {
+      this.drawArea(pen, x, i, top);
+      top += heights.area;
+    });
     sensors.forEach((sensor, i) => {
       this.drawBits(pen, x, i, top, width);
       top += heights.bits;
@@ -79,6 +91,23 @@ class TimeLine {
       const n = rows.people[i], left = x(rows.time_s[i]);
       for (end = i + 1; rows.people[end] === n;) ++end;
       if (x(rows.time_s[end - 1]) - left > 14) pen.fillText(n, left + 2, base - n * unit - 3);
+    }
+  }
+
+  /// How many people are in it: a number and a bar, none where nobody is.
+  drawArea(pen, x, area, top) {
+    const { rows, window_s: span } = this.run, high = TimeLine.heights.area - 4;
+    const count = (row) => rows.people_of_areas[row][area];
+    for (let i = 0, end; i < rows.time_s.length; i = end) {
+      const n = count(i), left = x(rows.time_s[i] - span);
+      for (end = i + 1; end < rows.time_s.length && count(end) === n;) ++end;
+      if (n === 0) continue;
+      const wide = Math.max(1, x(rows.time_s[end - 1]) - left);
+      pen.fillStyle = colour("area");
+      pen.globalAlpha = 0.25;
+      pen.fillRect(left, top + 2, wide, high);
+      pen.globalAlpha = 1;
+      if (wide > 12) pen.fillText(n, left + 3, top + high - 1);
     }
   }
 

@@ -61,7 +61,9 @@
     const n = rows.people[row];
     const who = run.first_person ? run.first_person + ": " : "";
     const end = run.momentText(rows.time_s[row]);
-    byId("now").textContent = `row ${end}: ${who}${rows.phase[row]}, ${n} ${n === 1 ? "person" : "people"}`;
+    const where = run.counted.flatMap((area, i) => rows.people_of_areas[row][i] ? [`${area} ${rows.people_of_areas[row][i]}`] : []);
+    byId("now").textContent = `row ${end}: ${who}${rows.phase[row]}, ${n} ${n === 1 ? "person" : "people"}` +
+      (where.length ? ` (${where.join(", ")})` : "");
     buttons().forEach((all, i) => all.forEach((button) => button.classList.toggle("on", run.bit(row, i))));
     document.body.dataset.row = [rows.time_s[row], rows.phase[row], n, ...rows.bits[row]].join(",");
     if (room) room.showSensors();

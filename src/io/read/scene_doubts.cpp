@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "geom/floor_distance.hpp"
+#include "geom/floor_overlap.hpp"
 #include "io/read/scene_parts.hpp"
 #include "schema/scene_unit.hpp"
 
@@ -58,6 +59,7 @@ class SceneDoubts {
     const auto unit = nodes_.as_meant.contains(nodes_.floor) ? std::nullopt : doubt_of_unit(scene_);
     if (unit) return tell("unit", nodes_.floor, "the floor", *unit);
     sizes();
+    for (std::size_t i = 0; i < scene_.areas.size(); ++i) area(scene_.areas[i], nodes_.areas[i]);
     for (std::size_t i = 0; i < scene_.entrances.size(); ++i) entrance(scene_.entrances[i], nodes_.entrances[i]);
     for (std::size_t i = 0; i < scene_.seats.size(); ++i) seat(scene_.seats[i], nodes_.seats[i]);
     neighbours();
@@ -81,6 +83,17 @@ class SceneDoubts {
            "its mesh spans " + extent(size.x, size.z) + " and is " + std::to_string(std::llround(size.y)) +
                " m high, beside a floor of " + extent(floor.x, floor.y) + ": " + unit_of(longest));
     }
+  }
+
+  void area(const AreaSpec& area, int node) {
+    constexpr double worth_telling_m2 = 0.01;  // assumed: less is rounding along the walls (0.001-0.05)
+    const double whole_m2 = area.outline.area_m2();
+    const double off_m2 = whole_m2 - common_m2(area.outline, scene_.floor);
+    if (off_m2 < worth_telling_m2) return;
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(2) << off_m2 << " m2 of area '" << area.id << "' (" << std::setprecision(0)
+         << std::max(1.0, 100.0 * off_m2 / whole_m2) << " %) lie off the floor, where nobody counts";
+    tell("off the floor", node, "area '" + area.id + "'", text.str());
   }
 
   void entrance(const EntranceSpec& entrance, int node) {

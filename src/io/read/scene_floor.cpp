@@ -46,7 +46,7 @@ bool overlap(const FloorArea& first, const FloorArea& second) {
 
 }  // namespace
 
-bool FloorBuilder::flat(const std::vector<Vec3>& points, const Where& where, const std::string& label) {
+bool OutlineReader::flat(const std::vector<Vec3>& points, const Where& where, const std::string& label) {
   const auto [lowest, highest] =
       std::minmax_element(points.begin(), points.end(), [](const Vec3& a, const Vec3& b) { return a.y < b.y; });
   if (highest->y - lowest->y <= flatness_m) return true;
@@ -56,35 +56,44 @@ bool FloorBuilder::flat(const std::vector<Vec3>& points, const Where& where, con
     return (*most).*member - (*least).*member;
   };
   const bool upright = std::min(spans(&Vec3::x), spans(&Vec3::z)) <= flatness_m;
-  faults_.error(where, label + ": a floor must be flat and level; this one " +
+  faults_.error(where, label + (what_ == "area" ? ": an area" : ": a floor") + " must be flat and level; this one " +
                            (upright ? "stands upright, as in files that are Z-up (glTF's +Y is up), and " : "") +
                            "rises by " + std::to_string(highest->y - lowest->y) + " m");
   return false;
 }
 
-void FloorBuilder::add_mesh(const TriMesh& mesh, const Where& where, const std::string& label) {
-  if (mesh.positions.empty())
-    return faults_.error(where, label + ": its mesh has no triangles, so it has no floor area");
-  if (!flat(mesh.positions, where, label)) return;
+std::optional<FloorArea> OutlineReader::of_mesh(const TriMesh& mesh, const Where& where, const std::string& label) {
+  if (mesh.positions.empty()) {
+    faults_.error(where, label + ": its mesh has no triangles, so it has no floor area");
+    return std::nullopt;
+  }
+  if (!flat(mesh.positions, where, label)) return std::nullopt;
   try {
-    add({{boundary_loops_xz(mesh), mesh.positions.front().y}, where, label});
+    return checked({boundary_loops_xz(mesh), mesh.positions.front().y}, where, label);
   } catch (const Error& fault) {
     faults_.error(where, label + ": " + fault.issues().front().message);
+    return std::nullopt;
   }
 }
 
-void FloorBuilder::add_polygon(const std::vector<Vec3>& corners, const Where& where, const std::string& label) {
-  if (!flat(corners, where, label)) return;
+std::optional<FloorArea> OutlineReader::of_polygon(const std::vector<Vec3>& corners, const Where& where,
+                                                   const std::string& label) {
+  if (!flat(corners, where, label)) return std::nullopt;
   Loop loop;
   for (const Vec3& corner : corners) loop.push_back(floor_point(corner));
-  add({{{std::move(loop)}, corners.front().y}, where, label});
+  return checked({{std::move(loop)}, corners.front().y}, where, label);
 }
 
-void FloorBuilder::add(Part part) {
-  for (const Loop& loop : part.area.loops()) n_corners_ += loop.size();
-  const std::string fault = n_corners_ > limits::floor_corners ? too_many_floor_corners() : outline_fault(part.area);
-  if (!fault.empty()) return faults_.error(part.where, part.label + ": " + fault);
-  parts_.push_back(std::move(part));
+std::optional<FloorArea> OutlineReader::checked(FloorArea area, const Where& where, const std::string& label) {
+  for (const Loop& loop : area.loops()) n_corners_ += loop.size();
+  const std::string fault = n_corners_ > limits::floor_corners ? too_many_corners(what_) : outline_fault(area, what_);
+  if (fault.empty()) return area;
+  faults_.error(where, label + ": " + fault);
+  return std::nullopt;
+}
+
+void FloorBuilder::add(FloorArea part, const Where& where, const std::string& label) {
+  parts_.push_back({std::move(part), where, label});
 }
 
 FloorArea FloorBuilder::build() {

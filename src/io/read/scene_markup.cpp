@@ -76,6 +76,7 @@ class MarkupReader {
     if (type == "seat") result = placed<SeatSpec>();
     if (type == "entrance") result = placed<EntranceSpec>();
     if (type == "floor") result = floor();
+    if (type == "area") result = area();
     if (type == "surface") result = surface();
     if (type == "ignore") result = ignore();
     if (value_.contains("as_meant") && !value_["as_meant"].is_boolean())
@@ -87,7 +88,7 @@ class MarkupReader {
   }
 
  private:
-  static std::string types_told() { return "known are sensor, seat, entrance, floor, surface and ignore"; }
+  static std::string types_told() { return "known are sensor, seat, entrance, floor, area, surface and ignore"; }
 
   /// Names and numbers of what has a place in the room.
   template <typename Spec>
@@ -104,19 +105,29 @@ class MarkupReader {
       auto& value = spec.*field.member;
       using Value = std::remove_reference_t<decltype(value)>;
       if constexpr (std::same_as<Value, std::string>) value = name(field.name);
+      if constexpr (std::same_as<Value, std::optional<std::string>>) {
+        if (value_.contains(field.name)) value = name(field.name);
+      }
       if constexpr (std::same_as<Value, double>) value = number(field.name, value, field.range);
     });
     return spec;
   }
   mark::Floor floor() {
     only({"type", "polygon_xz_m", "occludes"});
-    mark::Floor result;
+    return {outline("a floor", mark::Occludes::yes)};
+  }
+  mark::Area area() {
+    only({"type", "id", "polygon_xz_m", "occludes"});
+    return {outline("an area", mark::Occludes::no), name("id")};
+  }
+  mark::Outlined outline(const std::string& what, mark::Occludes otherwise) {
+    mark::Outlined result{std::nullopt, otherwise};
     if (value_.contains("occludes")) {
       if (!value_["occludes"].is_boolean()) error("/occludes", "'occludes' must be true or false");
-      if (value_["occludes"] == false) result.occludes = mark::Occludes::no;
+      result.occludes = value_["occludes"] == false ? mark::Occludes::no : mark::Occludes::yes;
     }
     if (value_.contains("polygon_xz_m")) result.polygon = polygon();
-    if (!result.polygon && !has_mesh()) error("", "a floor needs a mesh at its node, or 'polygon_xz_m'");
+    if (!result.polygon && !has_mesh()) error("", what + " needs a mesh at its node, or 'polygon_xz_m'");
     if (value_.contains("occludes") && !has_mesh()) {
       const std::string& name = given_.place.label;
       warnings_.add("occludes", given_.place.where("/occludes"), name,
@@ -199,10 +210,15 @@ class MarkupReader {
 
 }  // namespace
 
-std::vector<std::string> mark_types() { return {"sensor", "seat", "entrance", "floor", "surface", "ignore"}; }
+std::vector<std::string> mark_types() { return {"sensor", "seat", "entrance", "floor", "area", "surface", "ignore"}; }
 
 std::optional<NodeMark> read_mark(const GivenMark& given, Diagnostics& faults, GroupedWarnings& warnings) {
   return MarkupReader(given, faults, warnings).read();
+}
+
+const mark::Outlined* outlined(const Markup* markup) {
+  if (const auto* floor = std::get_if<mark::Floor>(markup)) return floor;
+  return std::get_if<mark::Area>(markup);
 }
 
 std::optional<NodeMark> read_markup(const GltfDocument& document, int node, Diagnostics& faults,

@@ -27,9 +27,14 @@ namespace pirsim::io::detail {
 
 namespace mark {
 enum class Occludes { yes, no };
-struct Floor {
-  std::optional<std::vector<Vec2>> polygon;  ///< in the node's local XZ; otherwise the outline of the node's mesh
-  Occludes occludes = Occludes::yes;
+/// What is flat: by its polygon in the node's local XZ, otherwise by the outline of the node's mesh.
+struct Outlined {
+  std::optional<std::vector<Vec2>> polygon;
+  Occludes occludes;
+};
+struct Floor : Outlined {};
+struct Area : Outlined {
+  std::string id;
 };
 /// Says something of the node's mesh.
 struct Surface {
@@ -39,7 +44,9 @@ struct Ignore {};
 }  // namespace mark
 
 /// Sensors, seats and entrances without their place, which is the node's.
-using Markup = std::variant<SensorSpec, SeatSpec, EntranceSpec, mark::Floor, mark::Surface, mark::Ignore>;
+using Markup = std::variant<SensorSpec, SeatSpec, EntranceSpec, mark::Floor, mark::Area, mark::Surface, mark::Ignore>;
+/// The outline that a mark gives, or null.
+[[nodiscard]] const mark::Outlined* outlined(const Markup* markup);
 
 /// Where a mark stands, for messages.
 struct MarkPlace {
@@ -81,7 +88,7 @@ void warn_of_near_marks(const GltfDocument& document, int node, GroupedWarnings&
 /// Numbers of what bears the marks: nodes by their index, then what a marks file places. Seats, entrances and meshes
 /// as in the scene.
 struct MarkedNodes {
-  std::vector<int> seats, entrances, meshes;
+  std::vector<int> sensors, seats, entrances, meshes, areas;
   int floor = 0;
   std::set<int> as_meant = {};  ///< nothing about them is in doubt
 };
@@ -93,21 +100,38 @@ struct Doubt {
 };
 using DoubtSink = std::function<void(const Doubt&)>;
 
-/// An entrance turned round, off the floor's edge or blocked; a seat off the floor, at another's place, inside a desk
-/// or with its back to one; sizes of another unit than metres, beside which nothing else is in doubt.
+/// An area that sticks out of the floor, an entrance turned round, off the floor's edge or blocked; a seat off the
+/// floor, at another's place, inside a desk or with its back to one; sizes of another unit than metres, beside which
+/// nothing else is in doubt.
 void doubt(const SceneSpec& scene, const MarkedNodes& nodes, const DoubtSink& tell);
 
-// The floor area of a scene, joined from all nodes that are marked as floor.
+// Outlines on the floor: of its own parts, and of areas.
 
+class OutlineReader {
+ public:
+  /// what: "floor" or "area", for messages.
+  OutlineReader(std::string what, Diagnostics& faults) : what_(std::move(what)), faults_(faults) {}
+
+  /// Of a flat horizontal mesh, world frame. None: the fault is added, as below.
+  [[nodiscard]] std::optional<FloorArea> of_mesh(const TriMesh& mesh, const Where& where, const std::string& label);
+  /// corners: in the world.
+  [[nodiscard]] std::optional<FloorArea> of_polygon(const std::vector<Vec3>& corners, const Where& where,
+                                                    const std::string& label);
+
+ private:
+  [[nodiscard]] bool flat(const std::vector<Vec3>& points, const Where& where, const std::string& label);
+  [[nodiscard]] std::optional<FloorArea> checked(FloorArea area, const Where& where, const std::string& label);
+
+  std::string what_;
+  Diagnostics& faults_;
+  std::size_t n_corners_ = 0;
+};
+
+/// The floor area of a scene, joined from all nodes that are marked as floor.
 class FloorBuilder {
  public:
   explicit FloorBuilder(Diagnostics& faults) : faults_(faults) {}
-
-  /// Outline of a flat horizontal mesh, world frame.
-  void add_mesh(const TriMesh& mesh, const Where& where, const std::string& label);
-  /// Corners in the world.
-  void add_polygon(const std::vector<Vec3>& corners, const Where& where, const std::string& label);
-
+  void add(FloorArea part, const Where& where, const std::string& label);
   /// Adds a fault if parts overlap or differ in height.
   [[nodiscard]] FloorArea build();
 
@@ -117,12 +141,8 @@ class FloorBuilder {
     Where where;
     std::string label;
   };
-  void add(Part part);
-  [[nodiscard]] bool flat(const std::vector<Vec3>& points, const Where& where, const std::string& label);
-
   Diagnostics& faults_;
   std::vector<Part> parts_;
-  std::size_t n_corners_ = 0;
 };
 
 }  // namespace pirsim::io::detail

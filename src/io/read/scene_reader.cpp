@@ -22,7 +22,7 @@ using namespace detail;
 class SceneBuilder {
  public:
   SceneBuilder(const std::filesystem::path& file, const SceneOptions& options)
-      : file_(file), options_(options), document_(load_gltf(file, remarks_)), floor_(remarks_) {
+      : file_(file), options_(options), document_(load_gltf(file, remarks_)) {
     spec_.name = name_of_input(file);
     if (!options.marks.empty()) marks_file_ = read_marks_file(options.marks, warnings_);
   }
@@ -47,6 +47,7 @@ class SceneBuilder {
     if (marks_file_) spec_.files.push_back(marks_file_->file);
     spec_.floor = floor_.build();
     require_floor();
+    if (!remarks_.has_errors()) check_areas();
     if (!remarks_.has_errors()) warn_of_doubts();
     if (spec_.sensors.empty() && !remarks_.has_errors()) {
       remarks_.warning(document_.text.where(""), "the scene has no sensors");
@@ -123,6 +124,7 @@ class SceneBuilder {
     if (const auto* sensor = std::get_if<SensorSpec>(&markup)) return name("sensor", sensor->id);
     if (const auto* seat = std::get_if<SeatSpec>(&markup)) return name("seat", seat->id);
     if (const auto* entrance = std::get_if<EntranceSpec>(&markup)) return name("entrance", entrance->id);
+    if (const auto* area = std::get_if<mark::Area>(&markup)) return name("area", area->id);
     return std::holds_alternative<mark::Floor>(markup) ? "a floor" : "";
   }
 
@@ -160,8 +162,8 @@ class SceneBuilder {
     if (markup) add_mark(placed, *markup);
   }
   static bool is_about_mesh(const Markup& markup) {
-    const auto* floor = std::get_if<mark::Floor>(&markup);
-    return (floor && !floor->polygon) || std::holds_alternative<mark::Surface>(markup);
+    const auto* outline = outlined(&markup);
+    return (outline && !outline->polygon) || std::holds_alternative<mark::Surface>(markup);
   }
   void tell_of_both(const NodeMark& mark, const NodePattern& ignored) {
     remarks_.error(ignored.where, "ignore: '" + shortened(ignored.text) + "': " + mark.place.label +
@@ -171,7 +173,7 @@ class SceneBuilder {
     if (const auto* sensor = std::get_if<SensorSpec>(&markup)) add_sensor(placed, *sensor);
     if (const auto* seat = std::get_if<SeatSpec>(&markup)) add_seat(placed, *seat);
     if (const auto* entrance = std::get_if<EntranceSpec>(&markup)) add_entrance(placed, *entrance);
-    if (const auto* floor = std::get_if<mark::Floor>(&markup)) add_floor(placed, *floor);
+    if (const auto* outline = outlined(&markup)) add_outlined(placed, *outline, markup);
   }
   /// What the marks file places in the room.
   void add_placed() {
@@ -186,7 +188,7 @@ class SceneBuilder {
   }
 
   void add_mesh(const PlacedNode& placed, int mesh, const Markup* markup) {
-    const auto* floor = std::get_if<mark::Floor>(markup);
+    const mark::Outlined* outline = outlined(markup);
     const auto* surface = std::get_if<mark::Surface>(markup);
     const auto temperature_c = surface ? surface->temperature_c : std::nullopt;
     const auto [known, is_first] = meshes_.try_emplace(mesh);
@@ -194,7 +196,11 @@ class SceneBuilder {
     GroupedWarnings& warnings = meshes_as_meant_.contains(mesh) ? untold : warnings_;
     if (is_first) known->second = read_mesh_parts(document_, mesh, temperatures_c_, budget_, remarks_, warnings);
     const TriMesh whole = joined(known->second);
-    if (whole.triangles.empty()) return;
+    if (whole.triangles.empty()) {
+      if (outline && !outline->polygon && std::holds_alternative<mark::Area>(*markup))
+        node_error(placed.node, "/mesh", "its mesh has no triangles, so the area has no outline");
+      return;
+    }
     if (!budget_.take(whole.positions.size() + whole.triangles.size())) {
       return node_error(placed.node, "/mesh", "the copies of its mesh make the scene too large");
     }
@@ -204,8 +210,11 @@ class SceneBuilder {
     }
     CleanMesh cleaned = clean(world);
     if (is_first) warn_of_audit(cleaned.audit, placed.node, mesh, warnings);
-    if (floor && !floor->polygon) floor_.add_mesh(cleaned.mesh, mark_of(placed).where(""), mark_of(placed).label);
-    if (floor && floor->occludes == mark::Occludes::no) return;
+    if (outline && !outline->polygon) {
+      const MarkPlace& place = mark_of(placed);
+      add_outline(outlines_of(*markup).of_mesh(cleaned.mesh, place.where(""), place.label), *markup, placed.node);
+    }
+    if (outline && outline->occludes == mark::Occludes::no) return;
     if (temperature_c) cleaned.mesh.temperature_c = temperature_c;
     nodes_.meshes.resize(spec_.meshes.size() + (temperature_c ? 1 : known->second.size()), placed.node);
     if (temperature_c || known->second.size() == 1) {
@@ -236,6 +245,7 @@ class SceneBuilder {
     const std::string fault = column_fault(sensor.id);
     if (!fault.empty()) mark_error(placed.node, "/id", fault);
     model_places_.try_emplace(sensor.model, mark_of(placed).where("/model"));
+    nodes_.sensors.push_back(placed.node);
     sensor.world_from_sensor = rigid_frame(placed.world_from_node);
     spec_.sensors.push_back(std::move(sensor));
   }
@@ -253,13 +263,46 @@ class SceneBuilder {
     entrance.world_from_entrance = upright_frame(placed);
     spec_.entrances.push_back(std::move(entrance));
   }
-  void add_floor(const PlacedNode& placed, const mark::Floor& floor) {
-    if (!has_room(n_floors_++, limits::floors, "floors")) return;
-    nodes_.floor = placed.node;
-    if (!floor.polygon) return;
+  /// Counts it; its mesh, if it has no polygon, is added with the others.
+  void add_outlined(const PlacedNode& placed, const mark::Outlined& outline, const Markup& markup) {
+    const bool is_floor = std::holds_alternative<mark::Floor>(markup);
+    if (is_floor ? !has_room(n_floors_++, limits::floors, "floors") : !has_room(n_areas_++, limits::areas, "areas"))
+      return;
+    if (is_floor) nodes_.floor = placed.node;
+    if (!outline.polygon) return;
     std::vector<Vec3> corners;
-    for (const Vec2& p : *floor.polygon) corners.emplace_back(placed.world_from_node * glm::dvec4(p.x, 0.0, p.y, 1.0));
-    floor_.add_polygon(corners, mark_of(placed).where("/polygon_xz_m"), mark_of(placed).label);
+    for (const Vec2& p : *outline.polygon)
+      corners.emplace_back(placed.world_from_node * glm::dvec4(p.x, 0.0, p.y, 1.0));
+    const MarkPlace& place = mark_of(placed);
+    add_outline(outlines_of(markup).of_polygon(corners, place.where("/polygon_xz_m"), place.label), markup,
+                placed.node);
+  }
+  OutlineReader& outlines_of(const Markup& markup) {
+    return std::holds_alternative<mark::Floor>(markup) ? floor_outlines_ : area_outlines_;
+  }
+  /// outline: none if it is faulty, which is told.
+  void add_outline(std::optional<FloorArea> outline, const Markup& markup, int bearer) {
+    if (const auto* area = std::get_if<mark::Area>(&markup)) check_unique("area", area->id, bearer);
+    if (!outline) return;
+    const MarkPlace& place = marks_.at(bearer).place;
+    if (std::holds_alternative<mark::Floor>(markup))
+      return floor_.add(*std::move(outline), place.where(outlined(&markup)->polygon ? "/polygon_xz_m" : ""),
+                        place.label);
+    spec_.areas.push_back({std::get<mark::Area>(markup).id, *std::move(outline)});
+    nodes_.areas.push_back(bearer);
+  }
+  /// Once all sensors are known.
+  void check_areas() {
+    for (std::size_t i = 0; i < spec_.areas.size(); ++i) {
+      const std::string fault = area_id_fault(spec_.areas[i].id, spec_.sensors);
+      if (!fault.empty()) mark_error(nodes_.areas[i], "/id", fault);
+    }
+    check_together(spec_.areas, spec_.floor,
+                   [&](std::size_t area, const std::string& message) { mark_error(nodes_.areas[area], "", message); });
+    for (std::size_t i = 0; i < spec_.sensors.size(); ++i) {
+      const std::string fault = area_fault(spec_.sensors[i], spec_.areas);
+      if (!fault.empty()) mark_error(nodes_.sensors[i], "/area", fault);
+    }
   }
 
   /// So many are there already. A fault if the scene can't have one more.
@@ -349,7 +392,8 @@ class SceneBuilder {
   GroupedWarnings warnings_;
   GltfDocument document_;
   GeometryBudget budget_;
-  FloorBuilder floor_;
+  OutlineReader floor_outlines_{"floor", remarks_}, area_outlines_{"area", remarks_};
+  FloorBuilder floor_{remarks_};
   SceneSpec spec_;
   MarkedNodes nodes_;
   std::optional<MarksFile> marks_file_;
@@ -357,7 +401,7 @@ class SceneBuilder {
   std::map<int, NodeMark> marks_;  ///< by bearer: nodes by their index, then what the marks file places
   std::set<int> meshes_as_meant_;  ///< of a node that says so
   std::string hidden_floor_;       ///< its node, as messages name it
-  std::size_t n_floors_ = 0;
+  std::size_t n_floors_ = 0, n_areas_ = 0;
   std::vector<std::optional<double>> temperatures_c_;       ///< (n_materials)
   std::map<int, std::vector<TriMesh>> meshes_;              ///< in their own frames, by index, in equally warm parts
   std::map<std::string, Where> model_places_;               ///< where each sensor model is first named

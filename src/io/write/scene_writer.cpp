@@ -47,14 +47,18 @@ class Materials {
   std::array<int, 3> known_{-1, -1, -1};
 };
 
-void add_floor(GltfBuilder& document, const FloorArea& floor, const Where& where) {
-  if (floor.loops().size() != 1) {
-    throw Error(ErrorCode::usage, where, "only a floor of one polygon without holes can be written");
+void add_outline(GltfBuilder& document, const std::string& name, const std::string& type, const FloorArea& outline,
+                 Value::Object mark, const Where& where) {
+  if (outline.loops().size() != 1) {
+    throw Error(
+        ErrorCode::usage, where,
+        "only " + std::string(type == "area" ? "an area" : "a floor") + " of one polygon without holes can be written");
   }
   Value::Array corners;
-  for (const Vec2& p : floor.loops().front()) corners.emplace_back(Value::Array{Value(p.x), Value(p.y)});
-  document.add_node(placed_node("floor area", {Quat(1, 0, 0, 0), Vec3(0.0, floor.height_m(), 0.0)},
-                                pirsim_extras("floor", {{"polygon_xz_m", Value(std::move(corners))}})));
+  for (const Vec2& p : outline.loops().front()) corners.emplace_back(Value::Array{Value(p.x), Value(p.y)});
+  mark.emplace("polygon_xz_m", Value(std::move(corners)));
+  document.add_node(
+      placed_node(name, {Quat(1, 0, 0, 0), Vec3(0.0, outline.height_m(), 0.0)}, pirsim_extras(type, std::move(mark))));
 }
 
 void add_mesh(GltfBuilder& document, const TriMesh& mesh, int material) {
@@ -71,7 +75,11 @@ void add_mark(GltfBuilder& document, const char* type, const Spec& spec, const F
   Value::Object members;
   each_field<Spec>([&](const auto& field) {
     using FieldValue = std::remove_cvref_t<decltype(spec.*field.member)>;
-    if constexpr (!std::same_as<FieldValue, Frame>) members[field.name] = Value(spec.*field.member);
+    if constexpr (std::same_as<FieldValue, std::optional<std::string>>) {
+      if (spec.*field.member) members[field.name] = Value(*(spec.*field.member));
+    } else if constexpr (!std::same_as<FieldValue, Frame>) {
+      members[field.name] = Value(spec.*field.member);
+    }
   });
   if constexpr (std::same_as<Spec, SensorSpec>) {
     if (spec.gain == SensorSpec{}.gain) members.erase("gain");  // hardly a sensor has another
@@ -82,7 +90,9 @@ void add_mark(GltfBuilder& document, const char* type, const Spec& spec, const F
 GltfBuilder document_of(const SceneSpec& scene, const Where& where) {
   GltfBuilder document(scene.name);
   Materials materials(document);
-  add_floor(document, scene.floor, where);
+  add_outline(document, "floor area", "floor", scene.floor, {}, where);
+  for (const AreaSpec& area : scene.areas)
+    add_outline(document, area.id, "area", area.outline, {{"id", Value(area.id)}}, where);
   for (const TriMesh& mesh : scene.meshes) add_mesh(document, mesh, materials.of(mesh, scene.floor.height_m()));
   for (const EntranceSpec& door : scene.entrances) add_mark(document, "entrance", door, door.world_from_entrance);
   for (const SensorSpec& sensor : scene.sensors) add_mark(document, "sensor", sensor, sensor.world_from_sensor);

@@ -74,7 +74,7 @@ std::vector<Series> in_units(const StudyFrame& frame, std::vector<Series> runs) 
 }
 
 std::vector<std::string> measured_columns(const StudyFrame& frame) {
-  return column_names<Sample>(frame.sensors, [](When when) { return when == When::always; });
+  return column_names<Sample>({.sensors = frame.sensors}, [](When when) { return when == When::always; });
 }
 
 std::vector<std::size_t> all_trials(const StudyFrame& frame) {

@@ -27,11 +27,25 @@ TEST_CASE("names with commas, quotes and line breaks come back from the reader a
 TEST_CASE("a table has the columns that it was asked for, sensors in their order") {
   std::ostringstream out, measured;
   const Sample row{2, "S,1", 0.5, "at, work", 3, {1, 0}};
-  io::CsvWriter(out, column_names<Sample>({"A,1", "B"})).write(row);
+  io::CsvWriter(out, column_names<Sample>({.sensors = {"A,1", "B"}})).write(row);
   io::CsvWriter(measured, {"B", "phase", "A,1"}).write(row);
   CHECK(out.str() == "replicate,trial,time_s,time,phase,people,\"A,1\",B\n2,\"S,1\",0.5,,\"at, work\",3,1,0\n");
   CHECK(measured.str() == "B,phase,\"A,1\"\n1,\"at, work\",0\n");
   CHECK_THROWS_WITH(io::TableWriter<ZoneLine>(out, {"tick", "x"}), contains("no column 'x'"));
+}
+
+TEST_CASE("people of areas stand before the sensors, by whatever names these have") {
+  Sample row{2, "S1", 0.5, "working", 3, {1, 0}};
+  row.people_of_areas = {1, 2};
+  const std::vector<std::string> names = column_names<Sample>({.sensors = {"A", "B"}, .areas = {"hall", "elsewhere"}},
+                                                              [](When when) { return when != When::with_clock; });
+  std::ostringstream out, some;
+  io::CsvWriter(out, names).write(row);
+  CHECK(out.str() ==
+        "replicate,trial,time_s,phase,people,people_hall,people_elsewhere,A,B\n2,S1,0.5,working,3,1,2,1,0\n");
+  io::CsvWriter(some, {"B", "people_hall", "A"}).write(row);  // the first of each kind to the first of the row's
+  CHECK(some.str() == "B,people_hall,A\n1,1,0\n");
+  CHECK(column_names<OccupantLine>({.areas = {"hall"}}).size() == column_names<OccupantLine>().size() + 1);
 }
 
 TEST_CASE("a row has as many fields as its header, whether it knows the time of day or not") {

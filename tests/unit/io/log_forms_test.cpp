@@ -41,6 +41,18 @@ TEST_CASE("wide logs: times, bits and separators as loggers, spreadsheets and pa
   }
 }
 
+TEST_CASE("columns of areas are neither sensors nor the count of all people") {
+  for (const char* text : {"time,people_hall,people,people_den,A\n2025-04-06T18:00:01,0,1,1,0\n"
+                           "2025-04-06T18:00:02,1,2,1,1\n2025-04-06T18:00:03,0,0,0,0\n",
+                           "time_s,people,people_hall,people_den,A\n1,1,0,1,0\n2,2,1,1,1\n3,0,0,0,0\n"}) {
+    const Log log = read_log_text(text);
+    CAPTURE(text);
+    CHECK(sensors_of(log) == Texts{"A"});
+    CHECK(LogWindows(log, 1.0).rows().people == std::vector<std::int32_t>{1, 2, 0});
+  }
+  CHECK_FALSE(read_log_text("time_s,people_hall,A\n1,1,0\n2,2,1\n").people);
+}
+
 TEST_CASE("the published occupancy readings, and as a spreadsheet saves them again") {
   const Log published = read_log_text(
       "Date,Time,S1_Temp,S1_Light,S5_CO2_Slope,S6_PIR,S7_PIR,Room_Occupancy_Count\n"

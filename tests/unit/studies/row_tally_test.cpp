@@ -45,6 +45,25 @@ TEST_CASE("a tally of rows counts each run whatever the pieces they come in", "[
   }
 }
 
+TEST_CASE("a tally of rows with areas counts people in them and no area as a sensor", "[summary]") {
+  RowTally tally({"S1"}, {{"working"}, {}}, {});
+  tally.add(
+      "replicate,trial,time_s,phase,people,people_hall,people_elsewhere,PIR1\n"
+      "1,S1,1,walking,9,9,0,1\n1,S1,2,working,3,1,2,1\n1,S1,3,working,2,0,2,0\n2,S1,1,working,0,0,0,1\n");
+  const Summary& summary = tally.finish();
+  REQUIRE(summary.cells().size() == 1);
+  CHECK(summary.cells()[0].sensor == "PIR1");
+  CHECK(summary.cells()[0].mean == 1.0);
+  REQUIRE(summary.areas().size() == 2);
+  const AreaSums& rest = summary.areas()[1];
+  CHECK(rest.area == "elsewhere");
+  CHECK(rest.rows == 3);
+  CHECK(rest.occupied == 2);
+  CHECK(rest.person_rows == 4);
+  CHECK(rest.most == 2);
+  CHECK_THAT(to_markdown(summary), contains("| elsewhere | 2.0 | 66.7 | 2 |"));
+}
+
 TEST_CASE("a tally refuses what are not rows of the study", "[summary]") {
   CHECK_THROWS_AS(tally_of("a,b\n1,2\n", 64), Error);
   CHECK_THROWS_AS(tally_of(rows + "3,S1,1,working,1,1\n", 64), Error);

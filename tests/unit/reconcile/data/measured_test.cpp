@@ -52,15 +52,16 @@ TEST_CASE("measured rows in pirsim's own format keep their bits and their main p
 
 TEST_CASE("every table of rows that pirsim writes is read, a dataset's days as runs", "[measured]") {
   const StudyFrame frame{{"S1"}, {"PIR1", "PIR2"}, {}, 1.0};
+  const ColumnOwners owners{.sensors = frame.sensors, .areas = {"hall", "elsewhere"}};  // no sensors, though bits
   std::ostringstream study, dataset;
-  io::CsvWriter rows(study, column_names<Sample>(frame.sensors));
-  io::TableWriter<DayLine> days(dataset, column_names<DayLine>(frame.sensors));
-  const std::vector<int> sensors{0, 1};
+  io::CsvWriter rows(study, column_names<Sample>(owners));
+  io::TableWriter<DayLine> days(dataset, column_names<DayLine>(owners));
+  const std::vector<int> sensors{0, 1}, areas{0, 1};
   for (const int day : {4, 7}) {
     for (int i = 1; i <= 40; ++i) {
-      const Sample row{day, "S1", double(i), "empty", 1, {1, 0}, "2026-03-02T07:00:00"};
+      const Sample row{day, "S1", double(i), "empty", 1, {1, 0}, "2026-03-02T07:00:00", {0, 1}};
       rows.write(row);
-      days.write({1, day, row, 0, 0, sensors});
+      days.write({1, day, row, 0, 0, sensors, areas});
     }
   }
   const Measured one = parse_measured(study.str(), "m.csv", frame),
