@@ -529,7 +529,7 @@ def late_telegrams(draw):
 @fault
 def fading_battery(draw):
     worst = draw.uniform(0.6, 0.9)
-    return Fault("more and more is missed from trial to trial",
+    return Fault("more and more is missed from trial to trial", ("missed_triggers",),
                  books=lambda windows, random, done: windows & (random.random(windows.shape) >= worst * done))
 
 
