@@ -118,12 +118,12 @@ std::string PlaceAccess::why_no_place(const SeatSpec& seat) const {
   for (double ahead_m = before_m; ahead_m < farthest_m; ahead_m += fine_m) {
     const Vec2 stand = pelvis + ahead_m * facing;
     if (!person_.can_stand(stand, facing, who.half_depth_m()) || !can_go_to_(stand)) continue;
-    const double too_far_m = ahead_m - deepest_m(who);
+    const double too_far_m = ahead_m + fine_m - deepest_m(who);  // to be sure of it, whatever the steps of the search
     if (too_far_m <= 0.0 || !is_open_before(seat.world_from_seat, ahead_m)) break;
     return "its point lies " + fixed(ahead_m - who.half_depth_m(), 2) + " m behind the edge of '" +
            scene_.meshes[grounds_.nearest_solid(pelvis + before_m * facing).mesh].name +
            "', farther than thighs reach, and there is no place behind or beside it either; move the point " +
-           fixed(std::max(fine_m, too_far_m), 2) + " m forward, where one sits nearer to the edge";
+           fixed(std::ceil(too_far_m / fine_m) * fine_m, 2) + " m forward, where one sits nearer to the edge";
   }
   return no_place;
 }

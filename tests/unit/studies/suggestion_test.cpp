@@ -175,7 +175,7 @@ TEST_CASE("leaves of doors shut nothing, and go to what is ignored", "[suggestio
   CHECK(found.entrances.size() == 1);
 }
 
-TEST_CASE("volumes of spaces name areas and are ignored; the upper of two storeys is asked for", "[suggestion]") {
+TEST_CASE("volumes of spaces name areas and are ignored, and the upper of two storeys is asked for", "[suggestion]") {
   ModelBuilder b = flat();
   b.add("IfcSpace/Bath", {5.1, 0, 3.1}, {8, 2.5, 6});
   const studies::Suggestion named = studies::suggest(b.model, {}, "flat");
