@@ -44,6 +44,7 @@ def check_chapter(pirsim, source, folder):
     assert report["sentence"] in result.stdout, result.stdout
     assert report["verdict"] in ("named", "one-of"), report["sentence"]
     assert "false_triggers" in report["effects"], report["sentence"]
+    assert report["left_over"] is None, "days by their counts have no trials that follow each other"
     trials = {cell["trial"] for cell in report["where"]["cells"]}
     assert any(trial.startswith("2 people from") for trial in trials), trials
 

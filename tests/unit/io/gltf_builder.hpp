@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -132,6 +133,11 @@ std::string fault_of(Read read) {
     return error.what();
   }
   return "accepted";
+}
+
+inline void check_vector(const Vec3& given, const Vec3& expected) {
+  INFO(given.x << ' ' << given.y << ' ' << given.z);
+  CHECK(glm::distance(given, expected) < 1e-9);
 }
 
 }  // namespace pirsim::test

@@ -1,7 +1,5 @@
 // Marks beside a scene: the same room as with marks in its nodes, the model's unit, axes and origin, and every fault
 // with its place.
-#include <glm/geometric.hpp>
-
 #include "gltf_builder.hpp"
 #include "schema/fingerprint.hpp"
 #include "support/catch.hpp"
@@ -12,11 +10,6 @@ using pirsim::Vec3;
 using namespace pirsim::test;
 
 namespace {
-
-void check_vector(const Vec3& given, const Vec3& expected) {
-  INFO(given.x << ' ' << given.y << ' ' << given.z);
-  CHECK(glm::distance(given, expected) < 1e-9);
-}
 
 const std::vector<float> box_corners{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 2, 1, 0, 2, 1, 1, 2, 0, 1, 2};
 const std::vector<std::uint16_t> box_triangles{0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,

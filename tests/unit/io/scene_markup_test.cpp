@@ -11,11 +11,6 @@ using namespace pirsim::test;
 
 namespace {
 
-void check_vector(const Vec3& given, const Vec3& expected) {
-  INFO(given.x << ' ' << given.y << ' ' << given.z);
-  CHECK(glm::distance(given, expected) < 1e-9);
-}
-
 json sensor(const std::string& id, const std::string& model = "EKMC1604111") {
   return {{"type", "sensor"}, {"id", id}, {"model", model}};
 }
