@@ -99,7 +99,7 @@ namespace pirsim::effects {
 
 /// For Effect::draw: a trend is told from chance over fewest_runs_of_a_trend runs or more. In a shorter study the
 /// effect is drawn steady.
-inline constexpr std::size_t fewest_runs_of_a_trend = 5;  // assumed; with 3 a third of the wrong names were trends
+inline constexpr std::size_t fewest_runs_of_a_trend = 5;  // assumed; of 3 runs, trends were 6 of 26 wrong names
 void draw_trend(EffectSpec& effect, const SceneSpec& scene, const ScriptSpec& script, Stream& stream);
 
 /// What a chance is in each run of a study.
