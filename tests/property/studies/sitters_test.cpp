@@ -6,6 +6,7 @@
 
 #include "body/motion.hpp"
 #include "rt/tracer.hpp"
+#include "sim/place_access.hpp"
 #include "sim/plan_people.hpp"
 #include "sim/solids.hpp"
 #include "support/catch.hpp"
