@@ -23,6 +23,8 @@ struct Condition {
 struct ParameterInfo {
   std::string name;  ///< with unit suffix
   std::string unit;  ///< "" for a pure number
+  /// For a reader, where the name without its unit doesn't say it: "probability of a miss".
+  std::string phrase{};
   Role role = Role::strength;
   double off = 0.0;
   double typical = 0.0;            ///< what a script gets that doesn't say
@@ -75,6 +77,8 @@ struct EffectInfo {
   std::string stage;        ///< where it acts: placement, body, optics, detector, environment, electronics, books
   std::string summary;      ///< one sentence
   std::string fingerprint;  ///< what it does to the data
+  /// Of a fault of the data, and of no other effect: "The data look as if " and this.
+  std::string as_if{};
   std::vector<std::string> confused_with{};  ///< other entries with a like fingerprint
   std::string same_as{};                     ///< another entry that changes the model in the same way; empty: none
   std::vector<ParameterInfo> parameters{};   ///< the first is the one that names its strength

@@ -151,7 +151,7 @@ struct Context {
 [[nodiscard]] Outcome reconcile(const SceneSpec& scene, const ScriptSpec& script, const Measured& measured,
                                 const Settings& settings = {}, const Context& context = {});
 
-/// The verdict for a reader, in one sentence.
+/// The verdict for a reader, in a few short sentences on one line.
 [[nodiscard]] std::string sentence(const Outcome& outcome);
 /// What else a reader must know of the verdict, a sentence or two each.
 [[nodiscard]] std::vector<std::string> details(const Outcome& outcome);

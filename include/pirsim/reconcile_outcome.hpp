@@ -76,9 +76,10 @@ struct LikeImpostors {  ///< dropped: what only resembles it makes such data mor
 struct HardlySimulated {};  ///< dropped: people can hardly get about with it in this room
 struct RuledOut {           ///< dropped by one test or both
   std::optional<double> p_relative, p_absolute;
+  double least_p = 0.0;  ///< that either test can give
 };
 struct RefusedWhenApplied {  ///< dropped: with it applied the model still differs, and nothing explains the rest
-  double p = 0.0;
+  double p = 0.0, least_p = 0.0;
 };
 struct DoesBetter {  ///< kept: a relative of the effect that would have been named, applied to the model
   double p = 0.0;
@@ -160,6 +161,10 @@ struct Location {
   std::vector<EnvelopeFeature> envelope;
   double band_s = 0.0;  ///< half the width of the mean cell's 95 % band: what this experiment can't see
   std::size_t n_simulated = 0;
+  /// No data give a smaller p.
+  [[nodiscard]] double least_p() const noexcept {
+    return n_simulated == 0 ? 0.0 : 1.0 / (static_cast<double>(n_simulated) + 1.0);
+  }
 };
 
 struct FittedParameter {
@@ -202,6 +207,7 @@ struct Look {
   double level = 0.05;                   ///< of the global test; halved with every effect
   double p = 1.0;                        ///< of the global test
   std::vector<std::string> one_of = {};  ///< effects, one of which may be missing beside these and can't be told
+  double least_p = 0.0;                  ///< no data give a smaller p: so few datasets were simulated
   [[nodiscard]] bool passes() const noexcept { return p > level; }
 };
 
@@ -211,7 +217,8 @@ struct Gap {
   double area_s = 0.0;            ///< mean absolute difference of measured and simulated seconds, mean over cells
   std::size_t cells_outside = 0;  ///< of the model's 95 % band
   std::size_t n_cells = 0;
-  double p = 1.0;  ///< of the global test on the held-out trials together
+  double p = 1.0;        ///< of the global test on the held-out trials together
+  double least_p = 0.0;  ///< no data give a smaller p
 };
 /// Whether the model with the effects predicts trials that it was not fitted on better than the model without.
 struct Verification {
@@ -271,6 +278,7 @@ struct ResidualDriver {
   double z = 0.0;          ///< the score against that of simulated datasets, in their standard deviations
   double p = 1.0;          ///< that the strongest of all drivers tried is so strong in a dataset of the model
   std::string since = {};  ///< of When::from_trial: the trial, with the run's number if there are several
+  double least_p = 0.0;    ///< no data give a smaller p
 };
 struct Residuals {
   std::vector<ResidualDriver> drivers;  ///< strongest first; none: the residuals follow nothing that was tried

@@ -37,7 +37,7 @@ def room(recipe: PathOr, number: int, *, sensors: PathOr | Iterable[PathOr] | No
 
 
 class FittedEffect(NamedTuple):
-    """An effect that the model lacks, with its strength."""
+    """An effect that the measurement shows, with its strength."""
 
     effect: Effect
     """As a script takes it."""
@@ -70,7 +70,7 @@ class Cell(NamedTuple):
 
 @dataclass(frozen=True)
 class Reconciliation:
-    """Where model and measurement differ, and what the model lacks."""
+    """Where model and measurement differ, and what makes the difference."""
 
     verdict: str
     """no-disagreement, named, one-of, several, nearest, none-in-catalogue or faulty-data."""

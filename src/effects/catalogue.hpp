@@ -71,6 +71,10 @@ struct Effect {
 
 // The catalogue in words.
 
+/// A parameter for a reader, its unit left out: "probability of a miss", "hold".
+[[nodiscard]] std::string phrase_of(const ParameterInfo& parameter);
+/// What was chosen, for a reader: "trend growing", "sensor PIR3".
+[[nodiscard]] std::string phrase_of(const ChoiceInfo& choice, const std::string& value);
 /// A line an effect: name, family, the parameters that are its strength with their range, what it does.
 [[nodiscard]] std::string list_text();
 /// All that is known of one effect, for a terminal.

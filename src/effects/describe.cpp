@@ -1,9 +1,11 @@
 #include "core/text.hpp"
 #include "effects/catalogue.hpp"
 
+#include <algorithm>
 #include <array>
 #include <iomanip>
 #include <sstream>
+#include <utility>
 
 namespace pirsim::effects {
 namespace {
@@ -64,6 +66,25 @@ std::string same_as_sentence(const EffectInfo& info) {
   return "The same change of the model as " + info.same_as + ": reconcile judges both as one, by that name.";
 }
 
+/// With which the name of a parameter in that unit ends.
+std::string_view suffix_of(const std::string& unit) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> suffixes{{{"m", "_m"},
+                                                                                   {"s", "_s"},
+                                                                                   {"deg", "_deg"},
+                                                                                   {"K", "_k"},
+                                                                                   {"Hz", "_hz"},
+                                                                                   {"%", "_percent"},
+                                                                                   {"1/s", "_per_s"},
+                                                                                   {"m/s", "_m_s"}}};
+  const auto* found = std::ranges::find(suffixes, unit, [](const auto& entry) { return entry.first; });
+  return found == suffixes.end() ? std::string_view() : found->second;
+}
+
+std::string spaced(std::string text) {
+  std::ranges::replace(text, '_', ' ');
+  return text;
+}
+
 void add_markdown(std::ostream& out, const Effect& effect) {
   const EffectInfo& info = effect.info;
   out << "### " << info.name << '\n' << info.summary << "\n\n";
@@ -85,6 +106,18 @@ void add_markdown(std::ostream& out, const Effect& effect) {
 }
 
 }  // namespace
+
+std::string phrase_of(const ParameterInfo& parameter) {
+  if (!parameter.phrase.empty()) return parameter.phrase;
+  std::string_view name = parameter.name;
+  const std::string_view suffix = suffix_of(parameter.unit);
+  if (name.ends_with(suffix)) name.remove_suffix(suffix.size());
+  return spaced(std::string(name));
+}
+
+std::string phrase_of(const ChoiceInfo& choice, const std::string& value) {
+  return spaced(choice.name) + " " + (is_word(choice.kind) ? spaced(value) : value);
+}
 
 std::string list_text() {
   std::ostringstream out;

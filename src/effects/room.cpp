@@ -35,6 +35,7 @@ Effect seats_shifted() {
                    .stage = "books",
                    .summary = "Seat names are shifted: each names the seat so many places further.",
                    .fingerprint = "rows of the table of sums are permuted",
+                   .as_if = "trials were noted under the names of other seats",
                    .confused_with = {"mirrored_room"},
                    .parameters = {{.name = "places",
                                    .unit = "",
@@ -129,6 +130,7 @@ Effect mirrored_room() {
                .summary =
                    "The room was drawn mirrored, seats, doors and furniture; the sensors hang where they are drawn.",
                .fingerprint = "seats have changed places with those on the other side",
+               .as_if = "left and right of the room were mixed up",
                .confused_with = {"seats_shifted", "labels_swapped"},
                .parameters = {whether("mirrored", "assumed")},
                .choices = {{"across", ChoiceKind::word, {"x", "z"}, "x runs backwards, about the middle of the floor"}},

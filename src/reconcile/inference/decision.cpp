@@ -81,6 +81,7 @@ Reason reason_of(const HypothesisScore& score, bool kept, double alpha) {
   if (score.p > alpha) return reason::Improbable{score.p};
   if (score.p == 0.0) return reason::HardlySimulated{};
   reason::RuledOut by;
+  by.least_p = 0.5 * score.least_p;
   if (2.0 * score.p_relative <= alpha) by.p_relative = score.p_relative;
   if (2.0 * score.p_absolute <= alpha) by.p_absolute = score.p_absolute;
   return by;

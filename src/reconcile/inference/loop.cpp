@@ -203,10 +203,10 @@ void Loop::compare_relatives() {
   std::vector<PatchedModel> models;
   for (const FittedEffect& relative : plain.relatives) models.push_back({std::span(&relative, 1), plain.observed});
   const Look named = outcome_.looks.back();
-  const std::vector<double> p =
+  const std::vector<GlobalP> p =
       p_with(models, plain.reference, plain.reference.map(training_trials()), named.level, context_);
   for (std::size_t i = 0; i < p.size(); ++i) {
-    outcome_.relatives.push_back({{plain.relatives[i].effect.name}, named.level, p[i]});
+    outcome_.relatives.push_back({{plain.relatives[i].effect.name}, named.level, p[i].p, {}, p[i].least});
     tell(outcome_.relatives.back());
   }
   const Look* better = better_relative(outcome_.relatives, named);
@@ -225,7 +225,8 @@ void Loop::compare_relatives() {
 
 void Loop::take_look() {
   const double level = level_with(applied_.size(), settings_.alpha);
-  outcome_.looks.push_back({names(), level, p_with_all(level)});
+  const GlobalP p = p_with_all(level);
+  outcome_.looks.push_back({names(), level, p.p, {}, p.least});
   passes_ = outcome_.looks.back().passes();
   tell(outcome_.looks.back());
 }
@@ -302,7 +303,7 @@ bool Loop::is_nearest() const {
 void Loop::take_back() {
   const auto refused = std::ranges::find(outcome_.candidates, true, &Candidate::kept);
   refused->kept = false;
-  refused->reason = reason::RefusedWhenApplied{outcome_.looks.back().p};
+  refused->reason = reason::RefusedWhenApplied{outcome_.looks.back().p, outcome_.looks.back().least_p};
   outcome_.verdict = Verdict::none_in_catalogue;
   outcome_.named.clear();
   outcome_.fits.clear();
@@ -339,7 +340,7 @@ void Loop::verify_effects() {
   outcome_.verification = std::move(v);
 }
 
-double Loop::p_with_all(double level) const {
+GlobalP Loop::p_with_all(double level) const {
   context_.begin({Stage::What::checking_model, names()});
   const Step& plain = steps_.front();
   const PatchedModel model{applied_, plain.observed};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "reconcile/inference/analyst.hpp"
+#include "reconcile/inference/model_check.hpp"
 #include "reconcile/inference/reference_study.hpp"
 
 namespace pirsim::reconcile {
@@ -56,7 +57,7 @@ class Loop {
   void explain_rest();
   void verify_effects();
   /// p of the global test of the model with all that has been applied, its data simulated anew.
-  [[nodiscard]] double p_with_all(double level) const;
+  [[nodiscard]] GlobalP p_with_all(double level) const;
   [[nodiscard]] Settings with_all(double level, std::vector<std::string> effects) const;
   [[nodiscard]] std::vector<std::string> names() const;
   [[nodiscard]] std::vector<EffectSpec> patch() const;

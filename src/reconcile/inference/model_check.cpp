@@ -100,11 +100,11 @@ class Ensembles {
 
 double level_with(std::size_t n_applied, double alpha) { return alpha * std::pow(0.5, static_cast<double>(n_applied)); }
 
-std::vector<double> p_with(std::span<const PatchedModel> models, const ReferenceStudy& reference, const FeatureMap& map,
-                           double level, const Context& context,
-                           const std::function<void(std::size_t, std::uint32_t)>& on_look) {
+std::vector<GlobalP> p_with(std::span<const PatchedModel> models, const ReferenceStudy& reference,
+                            const FeatureMap& map, double level, const Context& context,
+                            const std::function<void(std::size_t, std::uint32_t)>& on_look) {
   Ensembles ensembles(models, reference, context);
-  std::vector<double> p(models.size());
+  std::vector<GlobalP> p(models.size());
   std::vector<std::size_t> in_doubt(models.size());
   std::iota(in_doubt.begin(), in_doubt.end(), std::size_t{0});
   const auto n_to_refuse = static_cast<std::uint32_t>(std::ceil(realizations_to_refuse / level));
@@ -115,8 +115,11 @@ std::vector<double> p_with(std::span<const PatchedModel> models, const Reference
     std::vector<std::size_t> still;
     for (const std::size_t k : in_doubt) {
       const stats::Matrix<float>& datasets = ensembles.of(k);
-      if (datasets.rows() > 1) p[k] = locate(reference.frame, map, datasets, models[k].observed, level, context).p;
-      if (surely_passes(p[k], datasets.rows()))
+      if (datasets.rows() > 1) {
+        const Location seen = locate(reference.frame, map, datasets, models[k].observed, level, context);
+        p[k] = {seen.p, seen.least_p()};
+      }
+      if (surely_passes(p[k].p, datasets.rows()))
         ensembles.forget(k);
       else
         still.push_back(k);
@@ -124,7 +127,7 @@ std::vector<double> p_with(std::span<const PatchedModel> models, const Reference
     in_doubt = std::move(still);
   }
   for (const std::size_t k : in_doubt) {
-    if (!can_refuse(ensembles.of(k).rows(), level)) p[k] = 0.0;
+    if (!can_refuse(ensembles.of(k).rows(), level)) p[k] = {};
   }
   return p;
 }

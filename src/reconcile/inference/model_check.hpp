@@ -20,7 +20,13 @@ struct PatchedModel {
   std::span<const float> observed;  ///< statistics of the data
 };
 
-/// p of the global test of each model: (n_models) values, 0 for a model in which people can hardly get about.
+/// Of the global test.
+struct GlobalP {
+  double p = 0.0;      ///< 0 for a model in which people can hardly get about
+  double least = 0.0;  ///< no data give a smaller one: so few datasets were simulated
+};
+
+/// The global test of each model: (n_models).
 ///
 /// The datasets come from realizations that no table has seen. Each realization draws the fitted parameters anew, since
 /// they are known only up to their posterior. A model is simulated until its datasets surely don't refuse it; a model
@@ -29,8 +35,8 @@ struct PatchedModel {
 ///
 /// map: features of the plain model, for the trials to be looked at. level: of the global test. on_look: is told how
 /// many models are still simulated, and in how many realizations.
-[[nodiscard]] std::vector<double> p_with(std::span<const PatchedModel> models, const ReferenceStudy& reference,
-                                         const FeatureMap& map, double level, const Context& context,
-                                         const std::function<void(std::size_t, std::uint32_t)>& on_look = {});
+[[nodiscard]] std::vector<GlobalP> p_with(std::span<const PatchedModel> models, const ReferenceStudy& reference,
+                                          const FeatureMap& map, double level, const Context& context,
+                                          const std::function<void(std::size_t, std::uint32_t)>& on_look = {});
 
 }  // namespace pirsim::reconcile

@@ -85,11 +85,11 @@ std::optional<FittedEffect> fitted_beyond(const FittedEffect& fitted, RangeEnd& 
   for (const double value : values) effects.push_back(with_value(fitted, end.parameter, value));
   std::vector<PatchedModel> models;
   for (const FittedEffect& effect : effects) models.push_back({std::span(&effect, 1), measured});
-  const std::vector<double> p = p_with(models, reference, map, level, context);
-  const auto best = static_cast<std::size_t>(std::ranges::max_element(p) - p.begin());
-  if (p[best] <= level) return std::nullopt;
+  const std::vector<GlobalP> p = p_with(models, reference, map, level, context);
+  const auto best = static_cast<std::size_t>(std::ranges::max_element(p, {}, &GlobalP::p) - p.begin());
+  if (p[best].p <= level) return std::nullopt;
 
-  const auto passes = [level](double of) { return of > level; };
+  const auto passes = [level](const GlobalP& of) { return of.p > level; };
   const auto first = static_cast<std::size_t>(std::ranges::find_if(p, passes) - p.begin());
   const auto last = static_cast<std::size_t>(std::find_if(p.rbegin(), p.rend(), passes).base() - p.begin()) - 1;
   FittedEffect found = std::move(effects[best]);

@@ -170,6 +170,7 @@ std::optional<ResidualDriver> strongest(std::span<const ResidualDriver> drivers,
   driver.z = z(measured, best);
   driver.up = driver.z > 0.0;
   driver.p = std::min(1.0, n_contrast_kinds * (1.0 + static_cast<double>(beyond)) / (1.0 + n));
+  driver.least_p = n_contrast_kinds / (1.0 + n);
   return driver;
 }
 

@@ -219,6 +219,10 @@ class Usual {
     const double own = (1.0 + static_cast<double>(beyond)) / (1.0 + static_cast<double>(greatest.size()));
     return std::min(1.0, own * static_cast<double>(n_kinds));
   }
+  /// No data give a smaller p.
+  [[nodiscard]] double least_p(std::size_t driver) const {
+    return static_cast<double>(n_kinds) / (1.0 + static_cast<double>(greatest_[kinds_[driver]].size()));
+  }
 
  private:
   /// z of a simulated dataset among the others.
@@ -351,9 +355,20 @@ Residuals explain_residuals(const ReferenceStudy& reference, const Measured& mea
     regression.add(driver);
     const Who& who = scores.who(driver);
     const When& when = scores.when(driver);
-    result.drivers.push_back({who.who, who.name, when.when, when.from, when.to, driver.how, z > 0.0,
-                              reference.frame.sensors[driver.other], regression.log_odds(), regression.standard_error(),
-                              z, p});
+    result.drivers.push_back({who.who,
+                              who.name,
+                              when.when,
+                              when.from,
+                              when.to,
+                              driver.how,
+                              z > 0.0,
+                              reference.frame.sensors[driver.other],
+                              regression.log_odds(),
+                              regression.standard_error(),
+                              z,
+                              p,
+                              {},
+                              usual.least_p(best)});
   }
   return result;
 }

@@ -236,11 +236,13 @@ class Judge {
     for (Gap* gap : {&result.before, &result.after})
       gap->area_s /= static_cast<double>(std::max<std::size_t>(1, gap->n_cells));
     const FeatureMap map(reference_.frame, reference_.knowledge, scales_, held_out);
-    const auto p = [&](const stats::Matrix<float>& ensemble) {
-      return locate(reference_.frame, map, ensemble, measured_, alpha_, context_).p;
+    const auto test = [&](const stats::Matrix<float>& ensemble, Gap& gap) {
+      const Location seen = locate(reference_.frame, map, ensemble, measured_, alpha_, context_);
+      gap.p = seen.p;
+      gap.least_p = seen.least_p();
     };
-    result.before.p = p(ensembles_.before);
-    result.after.p = p(ensembles_.after);
+    test(ensembles_.before, result.before);
+    test(ensembles_.after, result.after);
     result.n_trials = drops_.size();
     result.n_better = static_cast<std::size_t>(std::ranges::count_if(drops_, [](double d) { return d > 0.0; }));
     const auto worse = std::ranges::count_if(drops_, [](double d) { return d < 0.0; });

@@ -78,8 +78,8 @@ io::ReportSection envelope(const Location& location, double alpha) {
   section.paragraphs = {
       "The global test, and its picture: if the model were right, any red dot would appear in only " +
       short_number(100.0 * alpha) + " % of cases. Here, " +
-      count_of(static_cast<std::size_t>(outside), location.envelope.size()) +
-      " lie outside (p = " + short_number(location.p) +
+      count_of(static_cast<std::size_t>(outside), location.envelope.size()) + " lie outside (" +
+      p_in_words(location.p, location.least_p()) +
       "). Each number is counted in units of its own scatter in the model, not in seconds; large deviations are "
       "compressed."};
   section.charts.emplace_back(envelope_chart(location, alpha));
@@ -136,12 +136,12 @@ io::ReportSection strength(const Outcome& outcome) {
 }
 
 std::string what_is_shown(const Verification& v) {
-  if (v.closed) return "With what was applied, the model agrees with trials that it was not fitted on.";
-  const std::string closer = "With what was applied, the model is closer to trials that it was not fitted on, ";
-  if (v.shrunk && v.refused)
-    return closer + "but the test of everything still finds a difference there (p = " + short_number(v.after.p) + ").";
-  if (v.shrunk) return closer + "but these trials alone are too few to tell even the model as it is from the data.";
-  return "That the model is closer with what was applied is not shown.";
+  const std::string seen = seen_on_held_out(v);
+  if (v.closed || !v.shrunk) return seen;
+  if (v.refused)
+    return seen + " But the test of everything still finds a difference there (" +
+           p_in_words(v.after.p, v.after.least_p) + ").";
+  return seen + " But these trials alone are too few to tell even the model as it is from the data.";
 }
 
 /// Chance carries a share beyond all that can be closed.
@@ -165,10 +165,11 @@ io::ReportSection held_out(const Verification& v, const std::string& named) {
           short_number(v.gain.high) + " on average (95 % interval); " + what_is_closed(v)};
   section.charts.emplace_back(held_out_chart(v, named));
   io::Table table{{"on trials set aside", "before", "after"}, {}};
-  table.rows = {{"seconds between model and data, mean", fixed(v.before.area_s, 1), fixed(v.after.area_s, 1)},
-                {"cells outside the model's range", count_of(v.before.cells_outside, v.before.n_cells),
-                 count_of(v.after.cells_outside, v.after.n_cells)},
-                {"p of the test of everything", short_number(v.before.p), short_number(v.after.p)}};
+  table.rows = {
+      {"seconds between model and data, mean", fixed(v.before.area_s, 1), fixed(v.after.area_s, 1)},
+      {"cells outside the model's range", count_of(v.before.cells_outside, v.before.n_cells),
+       count_of(v.after.cells_outside, v.after.n_cells)},
+      {"test of everything", p_in_words(v.before.p, v.before.least_p), p_in_words(v.after.p, v.after.least_p)}};
   section.tables.push_back(std::move(table));
   return section;
 }

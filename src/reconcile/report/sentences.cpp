@@ -5,6 +5,7 @@
 #include <iomanip>
 #include <sstream>
 
+#include "core/text.hpp"
 #include "effects/catalogue.hpp"
 
 namespace pirsim::reconcile {
@@ -23,6 +24,16 @@ std::string short_number(double value) {
   return out.str();
 }
 
+std::string p_in_words(double p, double least_p) {
+  return (least_p > 0.0 && p <= least_p ? "p <= " : "p = ") + short_number(p);
+}
+
+std::string with_unit(double value, const std::string& unit) {
+  const std::string number = short_number(value);
+  if (unit.empty()) return number;
+  return number + (unit.starts_with("1/") ? " per " + unit.substr(2) : " " + unit);
+}
+
 std::string fixed(double value, int digits) {
   std::ostringstream out;
   out << std::fixed << std::setprecision(digits) << value;
@@ -33,38 +44,49 @@ std::string percent(double share) { return fixed(100.0 * share, 0) + " %"; }
 
 std::string rivals_in_words(const FittedEffect& fitted, const std::string& choice, const std::string& value) {
   constexpr double as_likely = 0.2;  // assumed: what is less probable isn't worth telling
-  std::string rivals;
+  std::vector<std::string> rivals;
   for (const FittedChoice& fit : fitted.choices) {
     if (fit.name != choice) continue;
     for (const auto& [word, probability] : fit.words) {
       if (word == value || probability < as_likely) continue;
-      rivals += (rivals.empty() ? "" : " or ") + (word.empty() ? "all" : word) + " " + fixed(probability, 2);
+      rivals.push_back((word.empty() ? "all" : word) + ", probability " + fixed(probability, 2));
     }
   }
-  return rivals.empty() ? "" : " (hardly told from " + rivals + ")";
+  return rivals.empty() ? "" : " (or " + joined(rivals, "; or ") + ")";
 }
 
-std::string in_words(const FittedEffect& fitted) {
+std::string name_in_words(const FittedEffect& fitted) {
   std::string text = fitted.effect.name;
-  std::string details;
-  for (const FittedParameter& p : fitted.parameters) {
-    details += (details.empty() ? "" : ", ") + p.name + " " + short_number(p.value) + " (" +
-               short_number(p.interval.low) + " to " + short_number(p.interval.high) + ")";
-  }
-  for (const auto& [choice, value] : fitted.effect.choices) {
-    details += (details.empty() ? "" : ", ") + choice + " " + value + rivals_in_words(fitted, choice, value);
-  }
-  if (!details.empty()) text += " with " + details;
-  if (fitted.includes_off) text += ", a strength that these data can hardly distinguish from zero";
   for (const std::string& twin : effects::twins_of(fitted.effect.name))
     text += " (or " + twin + ", the same in the model)";
   return text;
 }
 
+std::string strength_in_words(const FittedEffect& fitted) {
+  const effects::EffectInfo& info = effects::find(fitted.effect.name).info;
+  std::vector<std::string> told;
+  for (const FittedParameter& p : fitted.parameters) {
+    const auto parameter = std::ranges::find(info.parameters, p.name, &effects::ParameterInfo::name);
+    told.push_back(effects::phrase_of(*parameter) + " " + with_unit(p.value, p.unit) +
+                   (told.empty() ? " (90 % interval " : " (") + short_number(p.interval.low) + " to " +
+                   short_number(p.interval.high) + ")");
+  }
+  for (const auto& [name, value] : fitted.effect.choices) {
+    const auto choice = std::ranges::find(info.choices, name, &effects::ChoiceInfo::name);
+    told.push_back(effects::phrase_of(*choice, value) + rivals_in_words(fitted, name, value));
+  }
+  return joined(told, ", ") + (fitted.includes_off ? ", which these data hardly tell from no effect" : "");
+}
+
+std::string in_words(const FittedEffect& fitted) {
+  const std::string strength = strength_in_words(fitted);
+  return name_in_words(fitted) + (strength.empty() ? "" : ": " + strength);
+}
+
 std::string in_words(const Look& look) {
   std::string text = "With " + enumerated(look.applied, "and") + " applied, the model " +
-                     (look.passes() ? "can have made these data" : "still differs from the data") +
-                     " (p = " + short_number(look.p) + ").";
+                     (look.passes() ? "can have made these data" : "still differs from the data") + " (" +
+                     p_in_words(look.p, look.least_p) + ").";
   if (look.one_of.size() == 1) text += " What is missing beside it may be " + look.one_of.front() + ".";
   if (look.one_of.size() > 1)
     text += " What is missing beside it may be " + enumerated(look.one_of, "or") + ": these data can't tell.";

@@ -25,7 +25,14 @@ namespace pirsim::reconcile {
 [[nodiscard]] std::string in_words(const Reason& reason);
 /// Without the word that says whether it was kept.
 [[nodiscard]] std::string why(const Reason& reason);
+/// With its twins.
+[[nodiscard]] std::string name_in_words(const FittedEffect& fitted);
+/// Its parameters and choices; empty for an effect that is there or not.
+[[nodiscard]] std::string strength_in_words(const FittedEffect& fitted);
+/// Both.
 [[nodiscard]] std::string in_words(const FittedEffect& fitted);
+/// On trials that it was not fitted on, whether the model with what was applied is nearer to the data.
+[[nodiscard]] std::string seen_on_held_out(const Verification& verification);
 /// What else a choice may be, in brackets; empty if the data tell.
 [[nodiscard]] std::string rivals_in_words(const FittedEffect& fitted, const std::string& choice,
                                           const std::string& value);
@@ -50,6 +57,10 @@ namespace pirsim::reconcile {
 [[nodiscard]] std::string enumerated(const std::vector<std::string>& names, const std::string& last);
 /// Three significant digits.
 [[nodiscard]] std::string short_number(double value);
+/// "p = 0.013"; "p <= 0.0099" if no data give a smaller one than `least_p`.
+[[nodiscard]] std::string p_in_words(double p, double least_p = 0.0);
+/// "3 deg", "0.1 per s".
+[[nodiscard]] std::string with_unit(double value, const std::string& unit);
 /// So many digits after the point; never "-0".
 [[nodiscard]] std::string fixed(double value, int digits);
 /// Of a share: "12 %".

@@ -4,113 +4,140 @@
 
 #include "core/text.hpp"
 #include "effects/catalogue.hpp"
+#include "reconcile/inference/decision.hpp"
 #include "reconcile/report/data_sentences.hpp"
 #include "reconcile/report/sentences.hpp"
 
 namespace pirsim::reconcile {
 namespace {
 
+using Names = std::vector<std::string>;
+
 /// Which kind of effect it is, if that is clear though its name isn't.
 std::string kind_of(const Outcome& outcome) {
   if (!outcome.family.is_sure()) return {};
-  return " (with probability " + short_number(outcome.family.probability) + " something of the family " +
-         std::string(name(outcome.family.family)) + ")";
+  return " With probability " + short_number(outcome.family.probability) + " it is one of the family " +
+         std::string(name(outcome.family.family)) + ".";
 }
 
 std::string where(const Outcome& outcome) {
-  const auto differing =
-      std::ranges::count_if(outcome.location.cells, [&](const auto& c) { return c.adjusted_p <= outcome.alpha; });
-  const std::string p = short_number(outcome.location.p);
+  const auto& cells = outcome.location.cells;
+  const auto differing = std::ranges::count_if(cells, [&](const auto& c) { return c.adjusted_p <= outcome.alpha; });
+  const std::string of = std::to_string(cells.size()) + " cells (one trial at one sensor) ";
+  const std::string p = p_in_words(outcome.location.p, outcome.location.least_p());
   if (differing == 0)
-    return "none of the " + std::to_string(outcome.location.cells.size()) +
-           " cells (trial x sensor) differs by itself, but everything together does, p = " + p;
-  return std::to_string(differing) + " of " + std::to_string(outcome.location.cells.size()) +
-         " cells (trial x sensor) differ by themselves, everything together with p = " + p;
+    return " None of the " + of + "differs by more than chance, but everything together does (" + p + ").";
+  return " " + std::to_string(differing) + " of " + of + (differing == 1 ? "differs" : "differ") +
+         " by more than chance (everything together: " + p + ").";
 }
 
 /// Of which effects a sentence speaks.
 std::string all_of(const Outcome& outcome) { return outcome.looked_for.empty() ? "the catalogue" : "those looked for"; }
 
-std::string something_else(const Outcome& outcome) {
-  return std::string("something that is not ") +
-         (outcome.looked_for.empty() ? "in the catalogue" : "among the effects looked for");
+std::string among_known(const Outcome& outcome) {
+  return outcome.looked_for.empty() ? "in the catalogue" : "among the effects looked for";
 }
 
+std::string something_else(const Outcome& outcome) { return "something that isn't " + among_known(outcome); }
+
 /// The likeliest of several, and how many are left.
-std::string first_ones(const std::vector<std::string>& names) {
+Names first_ones(const Names& names) {
   constexpr std::size_t most = 3;
-  if (names.size() <= most + 1) return enumerated(names, "or");
-  const std::vector<std::string> first(names.begin(), names.begin() + most);
-  return joined(first, ", ") + ", one of " + std::to_string(names.size() - most) + " others";
+  if (names.size() <= most + 1) return names;
+  Names first(names.begin(), names.begin() + most);
+  first.push_back(std::to_string(names.size() - most) + " other effects");
+  return first;
 }
 
 /// Why nothing of the catalogue is taken for what is missing.
 std::string no_effect(const Outcome& outcome) {
   for (const Candidate& candidate : outcome.candidates) {
     if (const auto* likeness = std::get_if<reason::LikeImpostors>(&candidate.reason))
-      return "what resembles it most, " + candidate.score.hypothesis +
-             ", is hardly it: other things that are taken for it make such data more often (p = " +
-             short_number(likeness->p_own) + ")";
+      return " It looks most like " + candidate.score.hypothesis +
+             ", but causes that only look like it make such data " +
+             "more often than it does itself (p = " + short_number(likeness->p_own) + ").";
   }
-  std::vector<std::string> possible;
+  Names possible;
   double together = 0.0;
   for (const Candidate& candidate : outcome.candidates) {
     if (candidate.score.p <= outcome.alpha) continue;
     possible.push_back(candidate.score.hypothesis);
     together += candidate.score.probability;
   }
-  if (possible.empty()) return "no effect of " + all_of(outcome) + " is likely to have made the data";
+  if (possible.empty()) return " No effect of " + all_of(outcome) + " is likely to have made the data.";
   const std::string& likeliest = std::ranges::max_element(outcome.candidates, {}, [](const Candidate& c) {
                                    return c.score.probability;
                                  })->score.hypothesis;
-  const bool likeliest_is_possible = std::ranges::find(possible, likeliest) != possible.end();
   const bool one = possible.size() == 1;
-  return (likeliest_is_possible ? std::string("of ") : "the likelier ones of ") +
-         (outcome.looked_for.empty() ? "the catalogue's effects" : "the effects looked for") +
-         (likeliest_is_possible ? " only " : " are ruled out; ") + enumerated(possible, "and") +
-         (one && likeliest_is_possible ? " isn't ruled out"
-          : one                        ? " isn't"
-                                       : " aren't ruled out") +
-         ", but " + (one ? "its probability" : "their probability together") + " is only " + short_number(together);
+  const std::string effects = outcome.looked_for.empty() ? "the catalogue's effects" : "the effects looked for";
+  const std::string told =
+      std::ranges::find(possible, likeliest) != possible.end()
+          ? " Of " + effects + " only " + enumerated(possible, "and") + (one ? " isn't ruled out" : " aren't ruled out")
+          : " The likelier ones of " + effects + " are ruled out. " + enumerated(possible, "and") +
+                (one ? " isn't" : " aren't");
+  return told + ", but " + (one ? "its probability" : "their probability together") + " is only " +
+         short_number(together) + ".";
 }
 
 /// What else may have made the data beside the effect that is named.
 std::string rivals(const Outcome& outcome) {
-  std::vector<std::string> names;
+  Names names, unknown;
   for (const Candidate& candidate : outcome.candidates) {
     if (candidate.kept && candidate.score.hypothesis != outcome.named.front())
       names.push_back(candidate.score.hypothesis);
+    if (std::holds_alternative<reason::HardlySimulated>(candidate.reason))
+      unknown.push_back(candidate.score.hypothesis);
   }
-  if (names.empty()) {
-    std::vector<std::string> unknown;
-    for (const Candidate& candidate : outcome.candidates) {
-      if (std::holds_alternative<reason::HardlySimulated>(candidate.reason))
-        unknown.push_back(candidate.score.hypothesis);
-    }
-    return ", and no other effect of " + all_of(outcome) + " explains the data" +
-           (unknown.empty() ? "." : "; " + enumerated(unknown, "and") + " could hardly be simulated in this room.");
-  }
-  return "; with probability " + short_number(outcome.candidates.front().score.probability) + " it is this one, " +
-         enumerated(names, "and") + " can't be ruled out.";
+  if (!names.empty())
+    return " " + enumerated(names, "and") + " can't be ruled out, but " + outcome.named.front() +
+           " is the likeliest cause (probability " + short_number(outcome.candidates.front().score.probability) + ").";
+  return " No other effect of " + all_of(outcome) + " explains the data." +
+         (unknown.empty() ? "" : " " + enumerated(unknown, "and") + " could hardly be simulated in this room.");
+}
+
+/// What people wrote down, and not what the simulation leaves out.
+bool is_of_data(const FittedEffect& fitted) { return !effects::find(fitted.effect.name).info.as_if.empty(); }
+
+std::string as_if(const FittedEffect& fitted) {
+  return "as if " + effects::find(fitted.effect.name).info.as_if + " (" + in_words(fitted) + ")";
+}
+
+std::string sentence_of_named(const Outcome& outcome) {
+  const FittedEffect& fitted = outcome.fits.back();
+  const std::string rest = where(outcome) + rivals(outcome);
+  if (is_of_data(fitted)) return "The data look " + as_if(fitted) + "." + rest;
+  const std::string strength = strength_in_words(fitted);
+  return "The measurement shows " + name_in_words(fitted) + ", which the simulation doesn't include" +
+         (strength.empty() ? "." : ": " + strength + ".") + rest;
+}
+
+/// While they may be wrong, nothing else is applied.
+std::string counts_first(const Outcome& outcome) {
+  if (!counts_in_doubt(outcome.candidates, outcome.alpha)) return {};
+  return "Check the people counts first: while they may be wrong, what else is missing can't be told. ";
 }
 
 std::string sentence_of_set(const Outcome& outcome) {
-  const std::string places = where(outcome);
-  if (outcome.named.empty())
-    return "Model and measurement differ, but so little that nothing can be named: " + places + ".";
-  const std::string set = first_ones(outcome.named);
-  if (outcome.nothing.p > outcome.alpha)
-    return "Model and measurement differ so little that it may be chance: " + places +
-           "; if it isn't, the model lacks " + set + kind_of(outcome) + ", or " + something_else(outcome) + ".";
+  const std::string places = where(outcome), differ = "Measurement and simulation differ so little that ";
+  if (outcome.named.empty()) return differ + "no cause can be named." + places;
+  Names causes = first_ones(outcome.named);
+  const bool one = outcome.named.size() == 1;
+  if (outcome.nothing.p > outcome.alpha) {
+    causes.push_back(something_else(outcome));
+    return differ + "it may be chance." + places + " If it isn't chance, the cause is " + enumerated(causes, "or") +
+           "." + kind_of(outcome);
+  }
+  const std::string first = counts_first(outcome) + "The measurement ";
   if (is_unsupported(outcome))
-    return "The model lacks something, quite possibly " + something_else(outcome) + ": " + places + "; " + set +
-           (outcome.named.size() > 1 ? " can't be ruled out" : " can't be ruled out either") +
-           ", but the likeliest of them brings the model no closer to trials that it was not fitted on.";
-  if (outcome.named.size() == 1)
-    return "The model may lack " + set + ", whose strength may as well be none, or " + something_else(outcome) + ": " +
-           places + ".";
-  return "The model lacks " + set + kind_of(outcome) + ", or " + something_else(outcome) +
-         ", and these data can't tell which: " + places + ".";
+    return first + "shows something that the simulation doesn't include, quite possibly " + something_else(outcome) +
+           "." + places + " " + enumerated(causes, "and") + " can't be ruled out, but " +
+           (one ? "it" : "the likeliest of them") + " improves nothing on trials not used for fitting.";
+  if (one)
+    return first + "may show " + causes.front() + ", but so weakly that it may as well be absent. Or it shows " +
+           something_else(outcome) + "." + places;
+  causes.push_back(something_else(outcome));
+  return first + "shows one of these, and the data can't tell which: " + enumerated(causes, "or") + "." + places +
+         kind_of(outcome);
 }
 
 /// The one effect that would have been named was dropped since the model with it can't have made the data.
@@ -126,35 +153,30 @@ const Candidate& candidate_of(const Outcome& outcome, const std::string& effect)
 }
 
 std::string sentence_of_nearest(const Outcome& outcome) {
-  const Candidate& nearest = candidate_of(outcome, outcome.named.front());
-  return "The model lacks something that comes nearest to " + in_words(outcome.fits.front()) + ": " + where(outcome) +
-         "; with that applied it can have made the data, and no other effect is as likely " + "(probability " +
-         short_number(nearest.score.probability) + "), but its own data seldom look like these, so it may be " +
-         something_else(outcome) + ".";
+  const FittedEffect& fitted = outcome.fits.front();
+  return (is_of_data(fitted) ? "The closest known cause is a fault of the data: they look " + as_if(fitted)
+                             : "The closest known cause is " + in_words(fitted)) +
+         ". It fits only roughly: simulations with it rarely look quite like your data. So the true cause may not be " +
+         among_known(outcome) + "." + where(outcome);
 }
 
 std::string sentence_of_none(const Outcome& outcome) {
-  const std::string lacks = "The model lacks " + something_else(outcome) + ": " + where(outcome);
+  const std::string shows =
+      counts_first(outcome) + "The measurement shows " + something_else(outcome) + "." + where(outcome);
   if (!outcome.looks.empty() && !outcome.looks.back().passes() && was_refused(outcome)) {
     const Look& look = outcome.looks.back();
-    return lacks + "; what resembles it most, " + enumerated(look.applied, "and") +
-           ", doesn't explain it, since with that applied the model still differs from the data (p = " +
-           short_number(look.p) + ").";
+    return shows + " It looks most like " + enumerated(look.applied, "and") +
+           ", but a simulation with that still differs from the data (" + p_in_words(look.p, look.least_p) + ").";
   }
-  return lacks + ", and " + no_effect(outcome) + ".";
+  return shows + no_effect(outcome);
 }
 
 /// Of the likeliest effect if it was dropped, though the model with it passes.
 std::string told_of_likeness(const Outcome& outcome) {
   const Look& look = outcome.looks.back();
-  return look.applied.front() +
-         " comes nearest: with it applied, the test of everything together sees no difference (p = " +
-         short_number(look.p) +
+  return "The closest known cause is " + look.applied.front() +
+         ": with it applied, the test of everything together sees no difference (" + p_in_words(look.p, look.least_p) +
          "). It was dropped all the same: " + why(candidate_of(outcome, look.applied.front()).reason);
-}
-
-std::string with_unit(double value, const std::string& unit) {
-  return short_number(value) + (unit.empty() ? "" : " " + unit);
 }
 
 std::string told_of_end(const RangeEnd& end) {
@@ -169,12 +191,6 @@ std::string told_of_end(const RangeEnd& end) {
   return text +
          ", and the data want the end of that range. It may be stronger: write it with other values under effects: of "
          "the script, and reconcile again.";
-}
-
-std::string seen_on_held_out(const Verification& v) {
-  if (v.closed) return "With what was applied, the model agrees with trials that it was not fitted on.";
-  if (v.shrunk) return "With what was applied, the model is closer to trials that it was not fitted on.";
-  return "That the model is closer to trials that it was not fitted on is not shown.";
 }
 
 /// Which strengths were looked for of the likeliest effects, and how to try others: a fault outside a prior has no
@@ -207,13 +223,23 @@ std::string step_of_set(const Outcome& outcome) {
   for (const std::string& effect : outcome.named) {
     if (texts.size() < most_told) texts.push_back(effect + ": " + effects::find(effect).info.fingerprint);
   }
-  return "What to do next: measure more before one of them is applied. pirsim reconcile plan --effects " +
-         joined(outcome.named, ",") + " finds the measurement that separates them best. What " +
+  const bool counts = counts_in_doubt(outcome.candidates, outcome.alpha);
+  return std::string("What to do next: ") +
+         (counts ? "check the people counts, mend them, and analyse again. If they are right, " : "") +
+         "measure more before one of them is applied. pirsim reconcile plan --effects " + joined(outcome.named, ",") +
+         " finds the measurement that separates them best. What " +
          (outcome.named.size() > most_told ? "the likeliest do" : "each does") +
          " to the data: " + joined(texts, ". ") + ".";
 }
 
 }  // namespace
+
+std::string seen_on_held_out(const Verification& v) {
+  const std::string there = "On trials not used for fitting, ";
+  if (v.closed) return there + "the simulation with what was applied agrees with the data.";
+  if (v.shrunk) return there + "the simulation with what was applied comes closer to the data.";
+  return there + "no improvement could be demonstrated.";
+}
 
 bool is_unsupported(const Outcome& outcome) {
   if (!outcome.verification || outcome.verification->shrunk) return false;
@@ -229,14 +255,18 @@ std::string next_step(const Outcome& outcome) {
     case Verdict::no_disagreement:
       return "What to do next: nothing, unless smaller differences matter; more runs make the experiment sharper.";
     case Verdict::named:
+      if (is_of_data(outcome.fits.back()))
+        return "What to do next: check the data for it, mend them, and analyse them again. script_patched.yaml "
+               "simulates the fault as it was found.";
+      [[fallthrough]];
     case Verdict::several:
       return "What to do next: run script_patched.yaml, the same script with what was found applied, and see below "
              "whether it comes closer to trials that it was not fitted on.";
     case Verdict::nearest:
-      return "What to do next: look at the real thing for " + outcome.named.front() +
+      return "What to do next: look for " + outcome.named.front() +
+             (is_of_data(outcome.fits.front()) ? " in the data" : " at the real thing") +
              " before anything is changed; script_patched.yaml has it applied. If it isn't that, look at the data, "
-             "then "
-             "at the model of the room.";
+             "then at the model of the room.";
     case Verdict::one_of:
       return step_of_set(outcome);
     case Verdict::faulty_data:
@@ -254,16 +284,16 @@ std::string next_step(const Outcome& outcome) {
 std::string sentence(const Outcome& outcome) {
   switch (outcome.verdict) {
     case Verdict::no_disagreement:
-      return "No disagreement: model and measurement agree as well as the model agrees with itself (p = " +
-             short_number(outcome.location.p) + "); this experiment would hardly see differences below " +
-             short_number(outcome.location.band_s) + " s a cell.";
+      return "No difference detected: the measurement looks like the simulation's own runs (p = " +
+             short_number(outcome.location.p) + "). A difference below " + short_number(outcome.location.band_s) +
+             " s in a cell (one trial at one sensor) would hardly have been seen.";
     case Verdict::named:
-      return "The model lacks " + in_words(outcome.fits.back()) + ": " + where(outcome) + rivals(outcome);
+      return sentence_of_named(outcome);
     case Verdict::one_of:
       return sentence_of_set(outcome);
     case Verdict::several:
-      return "The model lacks " + enumerated(outcome.named, "and") + " together" +
-             (is_unsupported(outcome) ? ", or " + something_else(outcome) : "") + ": " + where(outcome) + ".";
+      return "The measurement shows " + enumerated(outcome.named, "and") + " together." +
+             (is_unsupported(outcome) ? " Or it shows " + something_else(outcome) + "." : "") + where(outcome);
     case Verdict::nearest:
       return sentence_of_nearest(outcome);
     case Verdict::faulty_data:

@@ -27,58 +27,59 @@ struct Worded {
 };
 
 Worded worded(const Reason& of) {
-  const auto p = [](double value) { return "(p " + short_number(value) + ")"; };
+  const auto p = [](double value, double least = 0.0) { return "(" + p_in_words(value, least) + ")"; };
   return std::visit(
-      Overloaded{[&](const reason::NotRuledOut& r) {
-                   return Worded{"Kept",
-                                 "it can have made these data " + p(r.p) +
-                                     ", and no other effect explains them so much better that it can be ruled out."};
-                 },
-                 [&](const reason::Sure& r) {
-                   return Worded{"Kept, though data of its own seldom look like these " + p(r.p),
-                                 "with probability " + short_number(r.probability) +
-                                     " it is this one of those looked for, if any."};
-                 },
-                 [](const reason::MayBeNone&) {
-                   return Worded{"Kept, but not named", "its strength may as well be none."};
-                 },
-                 [&](const reason::LessLikely& r) {
-                   return Worded{"", "Not ruled out " + p(r.p) + ", but much less likely than " + r.named + " (" +
-                                         short_number(r.probability) + " against " +
-                                         short_number(r.probability_of_named) + ")."};
-                 },
-                 [&](const reason::Improbable& r) {
-                   return Worded{"Dropped", "by itself it might have made these data " + p(r.p) +
-                                                ", but all that isn't ruled out is improbable together."};
-                 },
-                 [&](const reason::LikeImpostors& r) {
-                   return Worded{"Dropped",
-                                 "other things that are taken for it make such data more often than it does "
-                                 "itself " +
-                                     p(r.p_own) + "."};
-                 },
-                 [](const reason::HardlySimulated&) {
-                   return Worded{"Dropped", "it could hardly be simulated in this room."};
-                 },
-                 [&](const reason::RuledOut& r) {
-                   std::string text;
-                   if (r.p_relative)
-                     text += "another explains the data better than is usual for its own " + p(*r.p_relative);
-                   if (r.p_relative && r.p_absolute) text += "; and ";
-                   if (r.p_absolute) text += "data of its own hardly ever look like these " + p(*r.p_absolute);
-                   return Worded{"Dropped", text + "."};
-                 },
-                 [&](const reason::RefusedWhenApplied& r) {
-                   return Worded{"Dropped", "with it applied, the model still differs from the data " + p(r.p) +
-                                                ", and none of the others that were tried explains what is left."};
-                 },
-                 [&](const reason::DoesBetter& r) {
-                   return Worded{"Kept", "applied to the model, it makes such data oftener than " + r.named + " does " +
-                                             p(r.p) + ", against " + short_number(r.p_of_named) + "."};
-                 },
-                 [](const reason::SameAs& r) {
-                   return Worded{"", "Judged as " + r.effect + ", which changes the model in the same way."};
-                 }},
+      Overloaded{
+          [&](const reason::NotRuledOut& r) {
+            return Worded{"Kept", "it can have made these data " + p(r.p) +
+                                      ", and no other effect explains them so much better that it can be ruled out."};
+          },
+          [&](const reason::Sure& r) {
+            return Worded{
+                "Kept, though simulations with it seldom look like these data " + p(r.p),
+                "with probability " + short_number(r.probability) + " it is this one of those looked for, if any."};
+          },
+          [](const reason::MayBeNone&) {
+            return Worded{"Kept, but not named", "its strength may as well be none."};
+          },
+          [&](const reason::LessLikely& r) {
+            return Worded{"", "Not ruled out " + p(r.p) + ", but much less likely than " + r.named + " (" +
+                                  short_number(r.probability) + " against " + short_number(r.probability_of_named) +
+                                  ")."};
+          },
+          [&](const reason::Improbable& r) {
+            return Worded{"Dropped", "by itself it might have made these data " + p(r.p) +
+                                         ", but all that isn't ruled out is improbable together."};
+          },
+          [&](const reason::LikeImpostors& r) {
+            return Worded{"Dropped",
+                          "other things that are taken for it make such data more often than it does "
+                          "itself " +
+                              p(r.p_own) + "."};
+          },
+          [](const reason::HardlySimulated&) {
+            return Worded{"Dropped", "it could hardly be simulated in this room."};
+          },
+          [&](const reason::RuledOut& r) {
+            std::string text;
+            if (r.p_relative)
+              text += "another explains the data better than is usual for its own " + p(*r.p_relative, r.least_p);
+            if (r.p_relative && r.p_absolute) text += "; and ";
+            if (r.p_absolute)
+              text += "simulations with it hardly ever look like these data " + p(*r.p_absolute, r.least_p);
+            return Worded{"Dropped", text + "."};
+          },
+          [&](const reason::RefusedWhenApplied& r) {
+            return Worded{"Dropped", "with it applied, the model still differs from the data " + p(r.p, r.least_p) +
+                                         ", and none of the others that were tried explains what is left."};
+          },
+          [&](const reason::DoesBetter& r) {
+            return Worded{"Kept", "applied to the model, it makes such data oftener than " + r.named + " does " +
+                                      p(r.p) + ", against " + short_number(r.p_of_named) + "."};
+          },
+          [](const reason::SameAs& r) {
+            return Worded{"", "Judged as " + r.effect + ", which changes the model in the same way."};
+          }},
       of);
 }
 
@@ -111,8 +112,8 @@ std::string left_out_of(std::size_t n, const std::string& which, const std::stri
 
 std::string in_words(const ResidualDriver& driver) {
   const std::string when = when_of(driver);
-  return who_of(driver) + (when.empty() ? "" : ", " + when) + ": " + what_of(driver) + " (p " + short_number(driver.p) +
-         ")";
+  return who_of(driver) + (when.empty() ? "" : ", " + when) + ": " + what_of(driver) + " (" +
+         p_in_words(driver.p, driver.least_p) + ")";
 }
 
 }  // namespace
@@ -257,8 +258,8 @@ std::string in_words(const TrailEvent& event) {
                  },
                  [](const trail::IncludesOff& e) { return "the interval of " + e.effect + " includes off"; },
                  [](const Look& e) {
-                   return "with " + sum(e.applied) + " applied, at level " + short_number(e.level) + ": p " +
-                          short_number(e.p);
+                   return "with " + sum(e.applied) + " applied, at level " + short_number(e.level) + ": " +
+                          p_in_words(e.p, e.least_p);
                  },
                  [](const trail::LookedForMore& e) { return "looked for more: " + std::string(name(e.verdict)); },
                  [](const trail::Explained& e) { return "residuals: " + sentence(e.residuals); },

@@ -136,11 +136,12 @@ void apply_some(const ReferenceStudy& reference, const FeatureMap& map, const st
   std::vector<PatchedModel> models;
   for (const std::size_t i : chosen)
     models.push_back({std::span(&*cases[i].fitted, 1), injected[cases[i].injected].statistics});
-  const std::vector<double> p = p_with(models, reference, map, level, context, [&](std::size_t n, std::uint32_t in) {
+  const std::vector<GlobalP> p = p_with(models, reference, map, level, context, [&](std::size_t n, std::uint32_t in) {
     context.begin({Stage::What::checking_models, {}, n, models.size(), in});
   });
 
-  for (std::size_t k = 0; k < chosen.size(); ++k) cases[chosen[k]].applied = Look{cases[chosen[k]].named, level, p[k]};
+  for (std::size_t k = 0; k < chosen.size(); ++k)
+    cases[chosen[k]].applied = Look{cases[chosen[k]].named, level, p[k].p};
 }
 
 /// Whether the table has the effect both in the variant left out and in others.

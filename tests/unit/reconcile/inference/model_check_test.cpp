@@ -45,7 +45,10 @@ FittedEffect false_triggers(double rate_per_s, std::vector<double> equally_likel
 
 std::vector<double> p_of(std::span<const PatchedModel> models, unsigned threads = 0) {
   const ReferenceStudy& reference = reference_study();
-  return p_with(models, reference, reference.map(all_trials(reference.frame)), level, {1, threads});
+  std::vector<double> p;
+  for (const GlobalP& one : p_with(models, reference, reference.map(all_trials(reference.frame)), level, {1, threads}))
+    p.push_back(one.p);
+  return p;
 }
 
 double p_of(const std::vector<FittedEffect>& applied, std::span<const float> observed, unsigned threads = 0) {
@@ -78,7 +81,7 @@ TEST_CASE("right models fail as often as the level says, and oftener if their ro
   for (const std::vector<float>& one : observed) models.push_back({std::span(&right, 1), one});
   const auto n_refused = [&](const ReferenceStudy& reference) {
     return std::ranges::count_if(p_with(models, reference, reference.map(all_trials(reference.frame)), level, {}),
-                                 [](double p) { return p <= level; });
+                                 [](const GlobalP& of) { return of.p <= level; });
   };
   // 4 expected, standard error 1.9: more than 9 once in 200 seeds.
   CHECK(n_refused(reference_study()) <= 9);

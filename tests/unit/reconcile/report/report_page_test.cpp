@@ -123,7 +123,7 @@ TEST_CASE("candidates that were kept stand out from the merely probable", "[repo
   REQUIRE(chart.bars.size() == 2);
   CHECK(chart.bars[0].weight == io::BarChart::Weight::strong);
   CHECK(chart.bars[1].weight == io::BarChart::Weight::faint);
-  CHECK(chart.bars[1].hint == "Dropped: another explains the data better than is usual for its own (p 0.01).");
+  CHECK(chart.bars[1].hint == "Dropped: another explains the data better than is usual for its own (p = 0.01).");
 }
 
 TEST_CASE("a posterior shows its values on the scale of its prior", "[report]") {
@@ -147,7 +147,7 @@ TEST_CASE("the page says the verdict first and shows what each verdict has", "[r
   Outcome outcome = named();
   const std::string page = to_html(report_page(outcome));
   const auto at = [&](const char* what) { return page.find(what); };
-  CHECK(at("The model lacks soft_zone_edges with sigma_deg 0.9") < at("Where they differ</h2>"));
+  CHECK(at("The measurement shows soft_zone_edges, which the simulation") < at("Where they differ</h2>"));
   for (const char* kind : {"grid", "band", "bars", "dots"}) {
     CHECK(says(page, "<div class=\"charts " + std::string(kind) + "\">"));
   }
@@ -193,7 +193,7 @@ TEST_CASE("the page says what held-out trials show and no more", "[report]") {
   CHECK_FALSE(says(page(), "of what can be closed"));
   CHECK(says(page(), "as near to the model as two of its own runs"));
   outcome.verification->closed = true;
-  CHECK(says(page(), "the model agrees with trials that it was not fitted on"));
+  CHECK(says(page(), "the simulation with what was applied agrees with the data."));
   outcome.verification->noise_floor = outcome.verification->before.energy_score + 1.0;
   CHECK(says(page(), "was as near to these trials already"));
 }

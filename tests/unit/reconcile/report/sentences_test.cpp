@@ -32,13 +32,13 @@ std::string sentence_of(Verdict verdict, const std::vector<std::pair<std::string
 }  // namespace
 
 TEST_CASE("a name says whether it has rivals and how probable it is", "[reconcile]") {
-  CHECK_THAT(sentence_of(Verdict::named, {{"seat_shift", 0.6}}), contains("no other effect of the catalogue explains"));
+  CHECK_THAT(sentence_of(Verdict::named, {{"seat_shift", 0.6}}), contains("No other effect of the catalogue explains"));
   const std::string rivals =
       sentence_of(Verdict::named, {{"seat_shift", 0.9}, {"body_size", 0.06}, {"dead_time", 0.01}});
-  CHECK_THAT(rivals, contains("The model lacks seat_shift"));
-  CHECK_THAT(rivals, contains("with probability 0.9"));
-  CHECK_THAT(rivals, contains("body_size and dead_time can't be ruled out"));
-  CHECK_THAT(rivals, !contains("no other effect"));
+  CHECK_THAT(rivals, contains("The measurement shows seat_shift, which the simulation doesn't include."));
+  CHECK_THAT(rivals, contains("body_size and dead_time can't be ruled out, but seat_shift is the likeliest cause "
+                              "(probability 0.9)."));
+  CHECK_THAT(rivals, !contains("No other effect"));
 }
 
 TEST_CASE("where no cell stands out but all together do, both are said at once", "[reconcile]") {
@@ -48,10 +48,13 @@ TEST_CASE("where no cell stands out but all together do, both are said at once",
   for (auto& cell : outcome.location.cells) cell.adjusted_p = 0.2;
   CHECK_THAT(
       sentence(outcome),
-      contains("none of the 3 cells (trial x sensor) differs by itself, but everything together does, p = 0.0132"));
+      contains("None of the 3 cells (one trial at one sensor) differs by more than chance, but everything together "
+               "does (p = 0.0132)."));
   outcome.location.cells.front().adjusted_p = 0.01;
-  CHECK_THAT(sentence(outcome),
-             contains("1 of 3 cells (trial x sensor) differ by themselves, everything together with p = 0.0132"));
+  CHECK_THAT(
+      sentence(outcome),
+      contains(
+          "1 of 3 cells (one trial at one sensor) differs by more than chance (everything together: p = 0.0132)."));
 }
 
 TEST_CASE("the reason of a rival compares it with the one that is named", "[reconcile]") {
@@ -76,17 +79,18 @@ TEST_CASE("a name that doesn't do when it is applied is taken back with that rea
   outcome.candidates.front().kept = false;
   outcome.candidates.front().reason = reason::RefusedWhenApplied{0.005};
   const std::string told = sentence(outcome);
-  CHECK_THAT(told, contains("The model lacks something that is not in the catalogue"));
-  CHECK_THAT(told, contains("what resembles it most, trigger_bursts, doesn't explain it") && contains("(p = 0.005)"));
-  CHECK_THAT(in_words(outcome.candidates.front()), contains("Dropped: with it applied") && contains("(p 0.005)"));
+  CHECK_THAT(told, contains("The measurement shows something that isn't in the catalogue."));
+  CHECK_THAT(told, contains("It looks most like trigger_bursts, but a simulation with that still differs from the data "
+                            "(p = 0.005)."));
+  CHECK_THAT(in_words(outcome.candidates.front()), contains("Dropped: with it applied") && contains("(p = 0.005)"));
 }
 
 TEST_CASE("a likeness that got no name is told with its p", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"seat_scatter", 0.9}});
   outcome.candidates.front().kept = false;
   outcome.candidates.front().reason = reason::LikeImpostors{0.02};
-  CHECK_THAT(sentence(outcome), contains("what resembles it most, seat_scatter, is hardly it") &&
-                                    contains("make such data more often (p = 0.02)"));
+  CHECK_THAT(sentence(outcome), contains("It looks most like seat_scatter, but causes that only look like it make "
+                                         "such data more often than it does itself (p = 0.02)."));
   CHECK_THAT(in_words(outcome.candidates.front()), contains("Dropped: other things that are taken for it"));
 }
 
@@ -95,9 +99,9 @@ TEST_CASE("of an effect that does when it is applied and was dropped all the sam
   outcome.candidates.front().reason = reason::RuledOut{{}, 0.01};
   outcome.looks.push_back({{"labels_swapped"}, 0.025, 0.524, {}});
   CHECK(details(outcome) ==
-        std::vector<std::string>{"labels_swapped comes nearest: with it applied, the test of everything together sees "
-                                 "no difference (p = 0.524). It was dropped all the same: data of its own hardly ever "
-                                 "look like these (p 0.01)."});
+        std::vector<std::string>{"The closest known cause is labels_swapped: with it applied, the test of everything "
+                                 "together sees no difference (p = 0.524). It was dropped all the same: simulations "
+                                 "with it hardly ever look like these data (p = 0.01)."});
 }
 
 TEST_CASE("what a name leaves over is told beside it, and nothing if there is nothing", "[reconcile]") {
@@ -125,8 +129,10 @@ TEST_CASE("what a name leaves over is told beside it, and nothing if there is no
 
 TEST_CASE("where no name is given the sentence says why", "[reconcile]") {
   CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.5}, {"body_size", 0.4}}),
-             contains("these data can't tell which"));
-  CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.9}}), contains("whose strength may as well be none"));
+             contains("The measurement shows one of these, and the data can't tell which: seat_shift, body_size or "
+                      "something that isn't in the catalogue."));
+  CHECK_THAT(sentence_of(Verdict::one_of, {{"seat_shift", 0.9}}),
+             contains("may show seat_shift, but so weakly that it may as well be absent."));
   Outcome weak = outcome_of(Verdict::one_of, {{"seat_shift", 0.9}, {"body_size", 0.05}});
   weak.nothing.p = 0.2;
   CHECK_THAT(sentence(weak), contains("so little that it may be chance"));
@@ -136,14 +142,14 @@ TEST_CASE("improbable effects that might have made the data are told with their 
   Outcome outcome = outcome_of(Verdict::none_in_catalogue, {{"seat_shift", 0.1}, {"body_size", 0.03}});
   CHECK_THAT(
       sentence(outcome),
-      contains("of the catalogue's effects only seat_shift and body_size aren't ruled out, but their probability "
+      contains("Of the catalogue's effects only seat_shift and body_size aren't ruled out, but their probability "
                "together is only 0.13"));
   outcome.candidates.push_back({{"dead_time", 0.6, 0.0, 0.0, 0.01}, effects::Family::electronics, false, {}});
   CHECK_THAT(sentence(outcome),
-             contains("the likelier ones of the catalogue's effects are ruled out; seat_shift and body_size"));
-  CHECK_THAT(in_words(reason::Improbable{0.6}), contains("Dropped: by itself it might have made these data (p 0.6)"));
+             contains("The likelier ones of the catalogue's effects are ruled out. seat_shift and body_size"));
+  CHECK_THAT(in_words(reason::Improbable{0.6}), contains("Dropped: by itself it might have made these data (p = 0.6)"));
   for (Candidate& candidate : outcome.candidates) candidate.score.p = 0.01;
-  CHECK_THAT(sentence(outcome), contains("no effect of the catalogue is likely"));
+  CHECK_THAT(sentence(outcome), contains("No effect of the catalogue is likely"));
 }
 
 TEST_CASE("where no name is given the family is said if it is clear", "[reconcile]") {
@@ -152,7 +158,7 @@ TEST_CASE("where no name is given the family is said if it is clear", "[reconcil
       std::vector<HypothesisScore>{{"nothing", 0.05}, {"dead_time", 0.05}, {"seat_shift", 0.5}, {"body_size", 0.4}});
   CHECK(outcome.family.family == effects::Family::person);
   CHECK(outcome.family.probability == Approx(0.9));
-  CHECK_THAT(sentence(outcome), contains("with probability 0.9 something of the family person"));
+  CHECK_THAT(sentence(outcome), contains("With probability 0.9 it is one of the family person."));
   outcome.family.probability = 0.7;
   CHECK_THAT(sentence(outcome), !contains("family"));
 }
@@ -189,14 +195,14 @@ TEST_CASE("of a catalogue cut down nothing is said about the effects that weren'
     return outcome;
   };
   CHECK_THAT(sentence(cut_down(outcome_of(Verdict::named, {{"seat_shift", 0.6}}))),
-             contains("no other effect of those looked for explains the data"));
+             contains("No other effect of those looked for explains the data"));
   Outcome none = cut_down(outcome_of(Verdict::none_in_catalogue, {{"seat_shift", 0.1}}));
   CHECK_THAT(
       sentence(none),
-      contains("something that is not among the effects looked for: ") &&
-          contains("of the effects looked for only seat_shift isn't ruled out, but its probability is only 0.1"));
+      contains("something that isn't among the effects looked for. ") &&
+          contains("Of the effects looked for only seat_shift isn't ruled out, but its probability is only 0.1"));
   none.candidates.front().score.p = 0.01;
-  CHECK_THAT(sentence(none), contains("no effect of those looked for is likely"));
+  CHECK_THAT(sentence(none), contains("No effect of those looked for is likely"));
   none.candidates.front().reason = reason::RefusedWhenApplied{0.005};
   none.looks.push_back({{"seat_shift"}, 0.025, 0.005, {}});
   CHECK(details(none).back() == "None of the others that were tried beside it explains what is left.");
@@ -215,16 +221,16 @@ TEST_CASE("a set of effects leaves a door open and shows its first three", "[rec
       Verdict::one_of,
       {{"seat_scatter", 0.3}, {"warm_chair", 0.2}, {"missing_occluder", 0.1}, {"dead_time", 0.1}, {"body_size", 0.1}});
   CHECK_THAT(sentence(outcome),
-             contains("The model lacks seat_scatter, warm_chair, missing_occluder, one of 2 others, or something that "
-                      "is not in the catalogue, and these data can't tell which: "));
+             contains("the data can't tell which: seat_scatter, warm_chair, missing_occluder, 2 other effects or "
+                      "something that isn't in the catalogue."));
   for (const Verdict verdict : {Verdict::one_of, Verdict::several}) {
     outcome.verdict = verdict;
     outcome.verification.emplace();
     outcome.verification->names = {"dead_time", "nothing", "clock_lag", "seat_shift"};
-    CHECK_THAT(sentence(outcome), contains("something that is not in the catalogue"));
+    CHECK_THAT(sentence(outcome), contains("something that isn't in the catalogue."));
   }
   outcome.verdict = Verdict::one_of;
-  CHECK_THAT(sentence(outcome), contains("quite possibly something that is not in the catalogue: "));
+  CHECK_THAT(sentence(outcome), contains("quite possibly something that isn't in the catalogue."));
   outcome.verification->names = {"warm_chair", "warm_chair", "warm_chair", "dead_time"};
   CHECK_THAT(sentence(outcome), !contains("quite possibly"));
   outcome.verification->names.front() = "nothing";
@@ -233,11 +239,81 @@ TEST_CASE("a set of effects leaves a door open and shows its first three", "[rec
 }
 
 TEST_CASE("what comes nearest is told with its doubt, and applied", "[reconcile]") {
-  Outcome outcome = outcome_of(Verdict::nearest, {{"labels_swapped", 0.98}});
-  outcome.fits.push_back({{"labels_swapped", {}, {}, {}}, {}, false});
-  CHECK_THAT(sentence(outcome), contains("comes nearest to labels_swapped: ") && contains("(probability 0.98)") &&
-                                    contains("it may be something that is not in the catalogue."));
-  CHECK_THAT(next_step(outcome), contains("look at the real thing for labels_swapped"));
+  Outcome outcome = outcome_of(Verdict::nearest, {{"pulse_stretching", 0.98}});
+  outcome.fits.push_back({{"pulse_stretching", {}, {}, {}}, {{"hold_s", "s", 2.0, {1.5, 2.5}, 0.0, true, {}}}, false});
+  CHECK_THAT(sentence(outcome),
+             contains("The closest known cause is pulse_stretching: hold 2 s (90 % interval 1.5 to 2.5). It fits only "
+                      "roughly: simulations with it rarely look quite like your data. So the true cause may not be in "
+                      "the catalogue. "));
+  CHECK_THAT(sentence(outcome), !contains("0.98"));
+  CHECK_THAT(next_step(outcome), contains("look for pulse_stretching at the real thing"));
+}
+
+TEST_CASE("a fault of the data is told as one, by a name and as the nearest", "[reconcile]") {
+  const FittedEffect swapped{{"labels_swapped", {}, {{"sensor", "PIR_1"}, {"other", "PIR2"}}, {}}, {}, false};
+  Outcome outcome = outcome_of(Verdict::named, {{"labels_swapped", 0.98}});
+  outcome.fits = {swapped};
+  const std::string told = "as if two sensors' labels were swapped (labels_swapped: other PIR2, sensor PIR_1).";
+  CHECK_THAT(sentence(outcome), contains("The data look " + told) && !contains("simulation doesn't include"));
+  CHECK_THAT(next_step(outcome), contains("check the data for it"));
+  outcome.verdict = Verdict::nearest;
+  CHECK_THAT(sentence(outcome), contains("The closest known cause is a fault of the data: they look " + told));
+  CHECK_THAT(next_step(outcome), contains("look for labels_swapped in the data"));
+}
+
+TEST_CASE("a strength is told in the reader's words, and no probability beside it is the analysis's own",
+          "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::named, {{"missed_triggers", 0.99}});
+  outcome.fits = {{{"missed_triggers", {}, {{"trend", "growing"}}, {}},
+                   {{"probability", "", 0.517, {0.45, 0.58}, 0.0, true, {}}},
+                   false,
+                   {{"trend", {{"growing", 0.7}, {"steady", 0.3}}}}}};
+  CHECK_THAT(sentence(outcome),
+             contains("The measurement shows missed_triggers, which the simulation doesn't include: probability of a "
+                      "miss 0.517 (90 % interval 0.45 to 0.58), trend growing (or steady, probability 0.30). "));
+  const FittedEffect two{
+      {"false_triggers", {}, {}, {}}, {{"rate_per_s", "1/s", 0.01, {0.005, 0.02}, 0.0, true, {}}}, true};
+  CHECK(in_words(two) ==
+        "false_triggers: rate 0.01 per s (90 % interval 0.005 to 0.02), which these data hardly tell "
+        "from no effect");
+}
+
+TEST_CASE("as long as people may be miscounted the counts come first", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::one_of, {{"missed_triggers", 0.9}, {"people_miscounted", 0.05}});
+  CHECK_THAT(sentence(outcome), contains("Check the people counts first: "));
+  CHECK_THAT(next_step(outcome), contains("check the people counts, mend them, and analyse again"));
+  outcome.candidates.back().score.p = 0.01;
+  CHECK_THAT(sentence(outcome), !contains("counts"));
+}
+
+TEST_CASE("a p that can't be smaller is told as a bound", "[reconcile]") {
+  CHECK(p_in_words(0.02, 0.0099) == "p = 0.02");
+  CHECK(p_in_words(1.0 / 101.0, 1.0 / 101.0) == "p <= 0.0099");
+  Outcome outcome = outcome_of(Verdict::named, {{"seat_shift", 0.9}});
+  outcome.location.n_simulated = 100;
+  outcome.location.p = 1.0 / 101.0;
+  CHECK_THAT(sentence(outcome), contains("(p <= 0.0099)"));
+  CHECK_THAT(in_words(Look{{"clock_lag"}, 0.025, 0.005, {}, 0.005}),
+             contains("still differs from the data (p <= 0.005)."));
+}
+
+TEST_CASE("where nothing differs it is said how little would have been seen", "[reconcile]") {
+  Outcome outcome;
+  outcome.location.p = 0.4;
+  outcome.location.band_s = 12.0;
+  CHECK(
+      sentence(outcome) ==
+      "No difference detected: the measurement looks like the simulation's own runs (p = 0.4). A difference below 12 s "
+      "in a cell (one trial at one sensor) would hardly have been seen.");
+}
+
+TEST_CASE("held-out trials agree, come closer, or show no improvement", "[reconcile]") {
+  Verification v;
+  CHECK(seen_on_held_out(v) == "On trials not used for fitting, no improvement could be demonstrated.");
+  v.shrunk = true;
+  CHECK_THAT(seen_on_held_out(v), contains("comes closer to the data."));
+  v.closed = true;
+  CHECK_THAT(seen_on_held_out(v), contains("agrees with the data."));
 }
 
 TEST_CASE("a strength at the end of what was looked for is told, and what lies beyond", "[reconcile]") {
