@@ -164,6 +164,7 @@ Effect dead_time() {
                    .confused_with = {"missed_triggers", "pulse_stretching"},
                    .parameters = {{.name = "dead_s",
                                    .unit = "s",
+                                   .phrase = "dead time",
                                    .off = 0.0,
                                    .typical = 2.0,
                                    .low = 0.5,

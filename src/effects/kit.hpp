@@ -69,6 +69,12 @@ namespace pirsim::effects {
           .only_if = std::move(only_if)};
 }
 
+/// The same, with words for a reader.
+[[nodiscard]] inline ParameterInfo told_as(std::string phrase, ParameterInfo parameter) {
+  parameter.phrase = std::move(phrase);
+  return parameter;
+}
+
 /// Of a place that is given, x_m or z_m.
 [[nodiscard]] inline ParameterInfo floor_coordinate(std::string name, Condition only_if) {
   return detail(std::move(name), "m", 0.0, -50.0, 50.0, -1e4, 1e4, "assumed: a free place", std::move(only_if));

@@ -103,6 +103,7 @@ Effect uneven_arms() {
            .confused_with = {"arm_motion", "missed_triggers", "natural_motion"},
            .parameters = {{.name = "spread",
                            .unit = "",
+                           .phrase = "spread of the swings",
                            .off = 0.0,
                            .typical = 0.2,
                            .low = 0.05,
@@ -164,28 +165,28 @@ void alter_chair_swing(StudyInForce& study, const EffectSpec& effect) {
 }
 
 Effect chair_swing() {
-  return {
-      .info = {.name = "chair_swing",
-               .family = Family::motion,
-               .stage = "body",
-               .summary = "A seated person turns to and fro on the swivel chair, in bouts.",
-               .fingerprint = "bouts in which every sensor that sees the sitter is active",
-               .confused_with = {"fidgeting", "natural_motion", "soft_zone_edges"},
-               .parameters = {{.name = "amplitude_deg",
-                               .unit = "deg",
-                               .off = 0.0,
-                               .typical = 10.0,
-                               .low = 3.0,
-                               .high = 25.0,
-                               .least = 0.0,
-                               .most = 60.0,
-                               .scale = Scale::logarithmic,
-                               .source = "assumed: to either side"},
-                              detail("period_s", "s", 3.0, 1.5, 6.0, 0.4, 60.0, "assumed"),
-                              detail("share", "", 0.5, 0.1, 1.0, 0.0, 1.0, "assumed: of the time, in bouts of 20 s")},
-               .reach = Reach::geometry,
-               .idle_in = {Survey::coverage, Survey::walk_test}},
-      .alter = alter_chair_swing};
+  return {.info = {.name = "chair_swing",
+                   .family = Family::motion,
+                   .stage = "body",
+                   .summary = "A seated person turns to and fro on the swivel chair, in bouts.",
+                   .fingerprint = "bouts in which every sensor that sees the sitter is active",
+                   .confused_with = {"fidgeting", "natural_motion", "soft_zone_edges"},
+                   .parameters = {{.name = "amplitude_deg",
+                                   .unit = "deg",
+                                   .off = 0.0,
+                                   .typical = 10.0,
+                                   .low = 3.0,
+                                   .high = 25.0,
+                                   .least = 0.0,
+                                   .most = 60.0,
+                                   .scale = Scale::logarithmic,
+                                   .source = "assumed: to either side"},
+                                  detail("period_s", "s", 3.0, 1.5, 6.0, 0.4, 60.0, "assumed"),
+                                  told_as("share of the time", detail("share", "", 0.5, 0.1, 1.0, 0.0, 1.0,
+                                                                      "assumed: of the time, in bouts of 20 s"))},
+                   .reach = Reach::geometry,
+                   .idle_in = {Survey::coverage, Survey::walk_test}},
+          .alter = alter_chair_swing};
 }
 
 // fidgeting: people move though the script says nothing of it.

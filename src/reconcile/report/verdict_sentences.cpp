@@ -16,8 +16,8 @@ using Names = std::vector<std::string>;
 /// Which kind of effect it is, if that is clear though its name isn't.
 std::string kind_of(const Outcome& outcome) {
   if (!outcome.family.is_sure()) return {};
-  return " With probability " + short_number(outcome.family.probability) + " it is one of the family " +
-         std::string(name(outcome.family.family)) + ".";
+  return " The cause belongs to the family " + std::string(name(outcome.family.family)) + " with probability " +
+         short_number(outcome.family.probability) + ".";
 }
 
 std::string where(const Outcome& outcome) {
@@ -180,7 +180,9 @@ std::string told_of_likeness(const Outcome& outcome) {
 }
 
 std::string told_of_end(const RangeEnd& end) {
-  const std::string text = end.effect + " was looked for with " + end.parameter + " from " +
+  const std::vector<effects::ParameterInfo>& parameters = effects::find(end.effect).info.parameters;
+  const auto parameter = std::ranges::find(parameters, end.parameter, &effects::ParameterInfo::name);
+  const std::string text = end.effect + " was looked for with " + effects::phrase_of(*parameter) + " from " +
                            short_number(end.looked_for.low) + " to " + with_unit(end.looked_for.high, end.unit);
   if (end.found)
     return text + ". Beyond that, up to " + with_unit(end.tried_to, end.unit) + ", the model with " +
@@ -204,14 +206,38 @@ std::string ranges_looked_for(const Outcome& outcome) {
     const auto& parameters = effects::find(candidate.score.hypothesis).info.parameters;
     if (parameters.empty() || ranges.size() == most_told) continue;
     const effects::ParameterInfo& strength = parameters.front();
-    ranges.push_back(candidate.score.hypothesis + " with " + strength.name + " from " + short_number(strength.low) +
-                     " to " + short_number(strength.high));
+    ranges.push_back(candidate.score.hypothesis + " (" + effects::phrase_of(strength) + " from " +
+                     short_number(strength.low) + " to " + with_unit(strength.high, strength.unit) + ")");
   }
   if (ranges.empty()) return {};
   return " Third, the strength: each effect was looked for in a range only, " + enumerated(ranges, "and") +
-         " (pirsim effects lists all). Yours may lie outside: write it with its value under effects: of the script, "
+         ". pirsim effects lists all ranges. Yours may lie outside: write it with its value under effects: of the "
+         "script, "
          "and "
          "reconcile again.";
+}
+
+/// Before it is believed.
+std::string step_of_nearest(const Outcome& outcome) {
+  const std::string& effect = outcome.named.front();
+  return "What to do next: look for " + effect +
+         (is_of_data(outcome.fits.front()) ? " in the data" : " at the real thing") +
+         " before anything is changed. pirsim effects " + effect +
+         " tells what it does, and script_patched.yaml has it applied. If it isn't that, look at the data, then at the "
+         "model of the room.";
+}
+
+std::string step_of_applied(const Outcome& outcome) {
+  return std::string("What to do next: run script_patched.yaml, the same script with what was found applied") +
+         (outcome.verification ? ", and see below whether it comes closer to trials not used for fitting." : ".");
+}
+
+std::string step_of_named(const Outcome& outcome) {
+  if (is_of_data(outcome.fits.back()))
+    return "What to do next: see whether that is so. If it is, mend the data and analyse them again. "
+           "script_patched.yaml simulates the fault as it was found.";
+  if (outcome.verification && !outcome.verification->shrunk) return step_of_nearest(outcome);
+  return step_of_applied(outcome) + " pirsim effects " + outcome.named.front() + " tells what the effect does.";
 }
 
 std::string step_of_set(const Outcome& outcome) {
@@ -255,18 +281,11 @@ std::string next_step(const Outcome& outcome) {
     case Verdict::no_disagreement:
       return "What to do next: nothing, unless smaller differences matter; more runs make the experiment sharper.";
     case Verdict::named:
-      if (is_of_data(outcome.fits.back()))
-        return "What to do next: check the data for it, mend them, and analyse them again. script_patched.yaml "
-               "simulates the fault as it was found.";
-      [[fallthrough]];
+      return step_of_named(outcome);
     case Verdict::several:
-      return "What to do next: run script_patched.yaml, the same script with what was found applied, and see below "
-             "whether it comes closer to trials that it was not fitted on.";
+      return step_of_applied(outcome);
     case Verdict::nearest:
-      return "What to do next: look for " + outcome.named.front() +
-             (is_of_data(outcome.fits.front()) ? " in the data" : " at the real thing") +
-             " before anything is changed; script_patched.yaml has it applied. If it isn't that, look at the data, "
-             "then at the model of the room.";
+      return step_of_nearest(outcome);
     case Verdict::one_of:
       return step_of_set(outcome);
     case Verdict::faulty_data:

@@ -214,6 +214,24 @@ TEST_CASE("entries are complete and refer to one another by name") {
   }
 }
 
+TEST_CASE("faults of the data say what the data look like, and parameters have words for a reader") {
+  for (const effects::EffectInfo& info : effects::list()) {
+    INFO(info.name);
+    CHECK(info.as_if.empty() == (info.family != effects::Family::data));
+  }
+  const auto phrase = [](const char* effect, std::size_t i) {
+    return effects::phrase_of(effects::info(effect).parameters.at(i));
+  };
+  CHECK(phrase("missed_triggers", 0) == "probability of a miss");
+  CHECK(phrase("pulse_stretching", 0) == "hold");
+  CHECK(phrase("false_triggers", 0) == "rate");
+  CHECK(phrase("warm_object", 4) == "speed");
+  CHECK(phrase("clock_lag", 1) == "drift");
+  CHECK(phrase("arm_motion", 0) == "amplitude scale");
+  CHECK(effects::phrase_of({"there_was", effects::ChoiceKind::variant, {}, {}}, "one_more") == "there was one more");
+  CHECK(effects::phrase_of({"sensor", effects::ChoiceKind::sensor, {}, {}}, "PIR_1") == "sensor PIR_1");
+}
+
 TEST_CASE("a contrast of temperature is a factor of all ranges, its square root") {
   CHECK(effects::judged_as("thermal_contrast") == "range_scale");
   CHECK(effects::judged_as("range_scale") == "range_scale");

@@ -158,7 +158,7 @@ TEST_CASE("where no name is given the family is said if it is clear", "[reconcil
       std::vector<HypothesisScore>{{"nothing", 0.05}, {"dead_time", 0.05}, {"seat_shift", 0.5}, {"body_size", 0.4}});
   CHECK(outcome.family.family == effects::Family::person);
   CHECK(outcome.family.probability == Approx(0.9));
-  CHECK_THAT(sentence(outcome), contains("With probability 0.9 it is one of the family person."));
+  CHECK_THAT(sentence(outcome), contains("The cause belongs to the family person with probability 0.9."));
   outcome.family.probability = 0.7;
   CHECK_THAT(sentence(outcome), !contains("family"));
 }
@@ -174,7 +174,7 @@ TEST_CASE("where no effect is named, the ranges looked for and the way beyond th
       next_step(outcome_of(Verdict::none_in_catalogue, {{"dead_time", 0.02}, {"pulse_stretching", 0.1}}));
   const auto& hold = effects::info("pulse_stretching").parameters.front();
   std::ostringstream range;
-  range << "pulse_stretching with hold_s from " << hold.low << " to " << hold.high << " and dead_time with ";
+  range << "pulse_stretching (hold from " << hold.low << " to " << hold.high << " s) and dead_time (dead time from ";
   CHECK_THAT(step, contains(range.str()) && contains("under effects: of the script"));
 }
 
@@ -255,7 +255,7 @@ TEST_CASE("a fault of the data is told as one, by a name and as the nearest", "[
   outcome.fits = {swapped};
   const std::string told = "as if two sensors' labels were swapped (labels_swapped: other PIR2, sensor PIR_1).";
   CHECK_THAT(sentence(outcome), contains("The data look " + told) && !contains("simulation doesn't include"));
-  CHECK_THAT(next_step(outcome), contains("check the data for it"));
+  CHECK_THAT(next_step(outcome), contains("mend the data and analyse them again"));
   outcome.verdict = Verdict::nearest;
   CHECK_THAT(sentence(outcome), contains("The closest known cause is a fault of the data: they look " + told));
   CHECK_THAT(next_step(outcome), contains("look for labels_swapped in the data"));
@@ -276,6 +276,15 @@ TEST_CASE("a strength is told in the reader's words, and no probability beside i
   CHECK(in_words(two) ==
         "false_triggers: rate 0.01 per s (90 % interval 0.005 to 0.02), which these data hardly tell "
         "from no effect");
+}
+
+TEST_CASE("a name that improves nothing on held-out trials is to be looked for first", "[reconcile]") {
+  Outcome outcome = outcome_of(Verdict::named, {{"pulse_stretching", 0.98}});
+  CHECK_THAT(next_step(outcome), contains("run script_patched.yaml") && !contains("see below"));
+  outcome.verification.emplace();
+  CHECK_THAT(next_step(outcome), contains("look for pulse_stretching at the real thing before anything is changed"));
+  outcome.verification->shrunk = true;
+  CHECK_THAT(next_step(outcome), contains("run script_patched.yaml") && contains("see below"));
 }
 
 TEST_CASE("as long as people may be miscounted the counts come first", "[reconcile]") {
@@ -319,8 +328,8 @@ TEST_CASE("held-out trials agree, come closer, or show no improvement", "[reconc
 TEST_CASE("a strength at the end of what was looked for is told, and what lies beyond", "[reconcile]") {
   Outcome outcome = outcome_of(Verdict::named, {{"pulse_stretching", 0.98}});
   outcome.range_end = RangeEnd{"pulse_stretching", "hold_s", "s", {0.2, 4.0}, 4.0, 4.0};
-  CHECK_THAT(details(outcome).back(), contains("looked for with hold_s from 0.2 to 4 s, and the data want the end") &&
-                                          contains("under effects:"));
+  CHECK_THAT(details(outcome).back(),
+             contains("looked for with hold from 0.2 to 4 s, and the data want the end") && contains("under effects:"));
   outcome.range_end->tried_to = 80.0;
   CHECK_THAT(details(outcome).back(), contains("Up to 80 s was tried beyond it; no such model passes."));
   outcome.range_end->found = 60.0;
