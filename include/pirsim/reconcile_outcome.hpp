@@ -362,7 +362,8 @@ struct Table {
   std::size_t n_datasets = 0, n_left_out = 0;
 };
 struct Tested {
-  double p = 1.0;  ///< of the global test
+  double p = 1.0;        ///< of the global test
+  double least_p = 0.0;  ///< no data give a smaller one
 };
 struct NotRuledOut {
   std::vector<std::string> hypotheses;  ///< `nothing` among them, first

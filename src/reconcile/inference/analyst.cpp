@@ -34,7 +34,7 @@ Judgement Analyst::judge(std::span<const float> measured) const {
 Outcome agreement(const TableView& view, std::span<const float> measured, double alpha, const Context& context) {
   Outcome outcome;
   outcome.location = locate(view.frame(), view.map(), view.plain(), measured, alpha, context);
-  outcome.trail.emplace_back(trail::Tested{outcome.location.p});
+  outcome.trail.emplace_back(trail::Tested{outcome.location.p, outcome.location.least_p()});
   return outcome;
 }
 

@@ -87,8 +87,8 @@ std::string in_words(const trail::JudgedOnHeldOut& event) {
   const Verification& v = event.verification;
   return "held-out trials: energy score " + short_number(v.before.energy_score) + " before, " +
          short_number(v.after.energy_score) + " after, " + std::to_string(v.n_better) + " of " +
-         std::to_string(v.n_trials) + " trials better; global test p " + short_number(v.before.p) + " before, " +
-         short_number(v.after.p) + " after";
+         std::to_string(v.n_trials) + " trials better; global test " + p_in_words(v.before.p, v.before.least_p) +
+         " before, " + p_in_words(v.after.p, v.after.least_p) + " after";
 }
 
 std::string_view in_words(trail::Remark remark) noexcept {
@@ -244,7 +244,7 @@ std::string in_words(const TrailEvent& event) {
                    return "table " + e.key + ": " + std::to_string(e.n_datasets) + " datasets, " +
                           std::to_string(e.n_left_out) + " left out because people couldn't get about";
                  },
-                 [](const trail::Tested& e) { return "global test: p " + short_number(e.p); },
+                 [](const trail::Tested& e) { return "global test: " + p_in_words(e.p, e.least_p); },
                  [](const trail::NotRuledOut& e) {
                    return "hypotheses that can have made the data: " +
                           (e.hypotheses.empty() ? "none" : joined(e.hypotheses, " "));
