@@ -75,7 +75,7 @@ std::string strength_in_words(const FittedEffect& fitted) {
     const auto choice = std::ranges::find(info.choices, name, &effects::ChoiceInfo::name);
     told.push_back(effects::phrase_of(*choice, value) + rivals_in_words(fitted, name, value));
   }
-  return joined(told, ", ") + (fitted.includes_off ? ", which these data hardly tell from no effect" : "");
+  return joined(told, ", ") + (fitted.includes_off ? ", so uncertain that the interval includes no effect" : "");
 }
 
 std::string in_words(const FittedEffect& fitted) {

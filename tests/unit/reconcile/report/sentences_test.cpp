@@ -274,8 +274,8 @@ TEST_CASE("a strength is told in the reader's words, and no probability beside i
   const FittedEffect two{
       {"false_triggers", {}, {}, {}}, {{"rate_per_s", "1/s", 0.01, {0.005, 0.02}, 0.0, true, {}}}, true};
   CHECK(in_words(two) ==
-        "false_triggers: rate 0.01 per s (90 % interval 0.005 to 0.02), which these data hardly tell "
-        "from no effect");
+        "false_triggers: rate 0.01 per s (90 % interval 0.005 to 0.02), so uncertain that the interval "
+        "includes no effect");
 }
 
 TEST_CASE("a name that improves nothing on held-out trials is to be looked for first", "[reconcile]") {
