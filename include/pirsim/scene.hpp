@@ -1,6 +1,7 @@
 // A room as plain data: what occludes, where the sensors hang, where people sit, enter, walk and are counted.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -22,10 +23,27 @@ struct SensorSpec {
   std::optional<std::string> area{};  ///< id of the area that it watches; none: the one below it
 };
 
-/// The sitter's pelvis rests at the origin of the seat's frame and faces its -Z; +Y is up.
+/// What people do at a place, as marks say in `for`. Nothing is simulated by it; who sends people there goes by it.
+inline constexpr std::array<const char*, 15> place_uses{"sleep",  "rest",   "tv",    "read",   "work",
+                                                        "meet",   "phone",  "eat",   "cook",   "wash",
+                                                        "toilet", "shower", "dress", "chores", "play"};
+
+/// The sitter's pelvis rests at the origin of the seat's frame and faces its -Z; +Y is up. A seat is a place to sit.
 struct SeatSpec {
   std::string id;
   Frame world_from_seat;
+  std::vector<std::string> uses{};  ///< of place_uses; none: for anything
+};
+
+enum class PlacePosture { lie, stand };
+
+/// A place to lie: the origin is on the surface, under the middle of the pelvis, the head lies towards +Z and the feet
+/// towards -Z. A place to stand: the origin is on the floor, and who stands there faces -Z. +Y is up.
+struct PlaceSpec {
+  std::string id;
+  PlacePosture posture = PlacePosture::lie;
+  Frame world_from_place;
+  std::vector<std::string> uses{};  ///< of place_uses; none: for anything
 };
 
 /// A doorway. The origin is the middle of the threshold on the floor, -Z points into the room. People wait
@@ -48,6 +66,7 @@ struct SceneSpec {
   std::vector<TriMesh> meshes;      ///< everything that occludes, world frame, cleaned
   std::vector<SensorSpec> sensors;  ///< in file order: the order of the output columns
   std::vector<SeatSpec> seats;
+  std::vector<PlaceSpec> places;  ///< to lie and to stand; those to sit are seats
   std::vector<EntranceSpec> entrances;
   FloorArea floor;
   std::vector<AreaSpec> areas{};                         ///< apart from each other; in file order, as the columns

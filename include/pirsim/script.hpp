@@ -62,8 +62,11 @@ struct SeatScatterSpec {
 };
 
 /// What people of natural style are busy with, beside their choreography.
-enum class Activity { typing, reading, meeting, phone, whiteboard };
-inline constexpr std::array<const char*, 5> activity_names{"typing", "reading", "meeting", "phone", "whiteboard"};
+enum class Activity { typing, reading, meeting, phone, whiteboard, sleeping, watching_tv, cooking, washing, eating };
+inline constexpr std::array<const char*, 10> activity_names{
+    "typing", "reading", "meeting", "phone", "whiteboard", "sleeping", "watching_tv", "cooking", "washing", "eating"};
+
+enum class LyingPosture { back, left_side, right_side, half_lying };  ///< half_lying: on the back, the trunk raised
 
 // Actions, carried out one after the other. Names are resolved against the scene when a Model is compiled.
 namespace action {
@@ -71,10 +74,12 @@ struct Wait {
   double duration_s = 0.0;
   std::optional<Activity> activity{};  ///< of natural style, as in other actions
 };
-/// Stands on the floor from now on, without having entered.
+/// Is there from now on, without having entered: stands on the floor, or is at a place as its posture says.
 struct Appear {
   Vec2 point{0.0};
-  double heading_deg = 0.0;  ///< 0 facing -Z, positive turning left
+  double heading_deg = 0.0;                   ///< 0 facing -Z, positive turning left
+  std::string place{};                        ///< or seat, instead of a point; empty: at the point
+  LyingPosture posture = LyingPosture::back;  ///< at a place to lie
 };
 /// Appears outside the entrance and walks to just inside it, or straight on if the next action leads elsewhere.
 struct Enter {
@@ -93,6 +98,17 @@ struct Sit {
   double wait_s = 120.0;  ///< assumed (tried 0 to 600); no longer if all others have carried out their scripts
   IfTaken if_taken = IfTaken::next_action;
 };
+/// Walks to the place, sits down on its edge and swings the legs in. Waits for it as for a seat.
+struct Lie {
+  std::string place;
+  LyingPosture posture = LyingPosture::back;
+  double wait_s = 120.0;  ///< assumed, as of seats
+};
+/// Walks to the place and faces as it does. Waits for it as for a seat.
+struct Stand {
+  std::string place;
+  double wait_s = 120.0;  ///< assumed, as of seats
+};
 /// Desk work while seated: both forearms slide on the table in opposite phase, the spine changes its tilt.
 struct Work {
   double duration_s = 180.0;
@@ -102,7 +118,7 @@ struct Work {
   double tilt_every_s = 30.0;
   std::optional<Activity> activity{};  ///< of natural style, which has no use for swing and tilts; none: typing
 };
-/// Rises from the seat and stays standing behind it.
+/// Rises from the seat, or from where one lies, and stays standing beside it.
 struct Rise {};
 /// Walks out through the entrance (rising first if seated) and disappears.
 struct Leave {
@@ -122,7 +138,7 @@ struct Follow {
 }  // namespace action
 
 using Action = std::variant<action::Wait, action::Appear, action::Enter, action::Walk, action::Sit, action::Work,
-                            action::Rise, action::Leave, action::Turn, action::Follow>;
+                            action::Rise, action::Leave, action::Turn, action::Follow, action::Lie, action::Stand>;
 
 struct ScriptedAction {
   Action what;

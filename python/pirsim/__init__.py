@@ -23,8 +23,8 @@ from ._wings import Candidate, Cell, FittedEffect, Reconciliation, dataset, reco
 from .errors import (Error, ErrorCode, FileError, IncompleteWarning, InfeasibleError, InputError, InputWarning,
                      InternalError, UsageError)
 from .specs import (Action, Amplifier, Appear, Area, Clock, Cluster, Comparator, Counts, Detector, Diagnostic, Effect, Element,
-                    Enter, Entrance, Floor, Follow, Frame, HeldMeeting, InputFile, Leave, Meetings, Mesh, Occupancy, Optics, Person, Places, Positions, Profile, Rise,
-                    Scene, Schedule, Script, Seat, SeatScatter, Sensing, Sensor, SensorModel, Sit, Staff, Stay, Summary, Track, Trial,
+                    Enter, Entrance, Floor, Follow, Frame, HeldMeeting, InputFile, Leave, Lie, Meetings, Mesh, Occupancy, Optics, Person, Place, Places, Positions, Profile, Rise,
+                    Scene, Schedule, Script, Seat, SeatScatter, Sensing, Sensor, SensorModel, Sit, Staff, Stand, Stay, Summary, Track, Trial,
                     Turn, Wait, Walk, Warmth, Where, Work, Zone)
 
 __all__ = [
@@ -32,9 +32,9 @@ __all__ = [
     "Detector", "Diagnostic", "Effect", "EffectInfo", "EffectParameter", "Element", "Enter", "Entrance", "Error",
     "ErrorCode", "Fault", "FileError", "Findings", "FittedEffect", "Floor", "Follow", "Frame", "Grid", "HeldMeeting",
     "Incident", "IncompleteWarning", "InfeasibleError", "InputError", "InputFile", "InputWarning", "InternalError", "Leave",
-    "Log", "LogLengths", "LogPair", "LogSensor", "Meetings", "Mesh", "Model", "Occupancy", "Optics", "Page", "Person", "Picture", "PlacementScore", "Placements", "Places", "Poses", "Positions",
+    "Lie", "Log", "LogLengths", "LogPair", "LogSensor", "Meetings", "Mesh", "Model", "Occupancy", "Optics", "Page", "Person", "Picture", "Place", "PlacementScore", "Placements", "Places", "Poses", "Positions",
     "Profile", "Rays", "Reconciliation", "Result", "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter",
-    "Sensing", "Sensor", "SensorModel", "SensorSight", "Sit", "Staff", "Stay", "Summary", "Trace", "Track", "Trial", "Turn",
+    "Sensing", "Sensor", "SensorModel", "SensorSight", "Sit", "Staff", "Stand", "Stay", "Summary", "Trace", "Track", "Trial", "Turn",
     "UsageError", "Wait", "Walk", "WalkTest", "Warmth", "Where", "Work", "Zone", "__version__", "check", "compile",
     "counting", "coverage", "data_directory", "dataset", "effects", "errors", "export", "facing", "git_revision", "placements",
     "preview", "read_log", "read_scene", "read_script", "reconcile", "room", "run", "sensor_model", "specs", "trace", "view",

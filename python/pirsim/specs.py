@@ -21,9 +21,10 @@ if TYPE_CHECKING:
 __all__ = [
     "Action", "Activity", "Amplifier", "Appear", "Area", "Clock", "Cluster", "Comparator", "Counts", "Detector",
     "Diagnostic", "Effect", "Element", "Enter", "Entrance", "Floor", "Follow", "Frame", "HeldMeeting", "InputFile",
-    "Leave", "Meetings", "Mesh", "Occupancy", "Optics", "Person", "Places", "Point2", "Point3", "Positions", "Profile",
-    "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter", "Sensing", "Sensor", "SensorModel", "Sit", "Staff",
-    "Stay", "Summary", "Track", "Trial", "Turn", "Wait", "Walk", "Warmth", "Where", "Work", "Zone",
+    "Leave", "Lie", "Meetings", "Mesh", "Occupancy", "Optics", "Person", "Place", "Places", "Point2", "Point3",
+    "Positions", "Profile", "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter", "Sensing", "Sensor",
+    "SensorModel", "Sit", "Staff", "Stand", "Stay", "Summary", "Track", "Trial", "Turn", "Wait", "Walk", "Warmth",
+    "Where", "Work", "Zone",
 ]
 
 
@@ -31,7 +32,7 @@ def _where() -> Any:
     return field(default_factory=Where, repr=False, compare=False, kw_only=True)
 
 
-Activity = Literal["typing", "reading", "meeting", "phone", "whiteboard"]
+Activity = Literal["typing", "reading", "meeting", "phone", "whiteboard", "sleeping", "watching_tv", "cooking", "washing", "eating"]
 """What people of natural style are busy with; each action knows some of them."""
 
 
@@ -72,6 +73,20 @@ class Seat:
 
     id: str = ""
     world_from_seat: Frame = field(default_factory=Frame)
+    uses: list[str] = field(default_factory=list)
+    """`for` of a mark; none: for anything."""
+
+
+@dataclass(slots=True)
+class Place:
+    """A place to lie (the pelvis on the origin, the head towards +Z) or to stand (facing -Z). One to sit is a
+    `Seat`."""
+
+    id: str = ""
+    posture: Literal["lie", "stand"] = "lie"
+    world_from_place: Frame = field(default_factory=Frame)
+    uses: list[str] = field(default_factory=list)
+    """`for` of a mark; none: for anything."""
 
 
 @dataclass(slots=True)
@@ -220,6 +235,8 @@ class Scene:
     sensors: list[Sensor] = field(default_factory=list)
     """In the order of the output's columns."""
     seats: list[Seat] = field(default_factory=list)
+    places: list[Place] = field(default_factory=list)
+    """To lie and to stand."""
     entrances: list[Entrance] = field(default_factory=list)
     floor: Floor = field(default_factory=Floor)
     areas: list[Area] = field(default_factory=list)
@@ -247,20 +264,24 @@ class _Action:
 
 @dataclass(slots=True)
 class Wait(_Action):
-    """Goes on standing or sitting."""
+    """Goes on standing, sitting or lying."""
 
     duration_s: float = 0.0
     activity: Activity | None = None
-    """One of meeting, phone, whiteboard; of natural style."""
+    """One of meeting, phone, whiteboard, reading, sleeping, watching_tv, cooking, washing, eating; of natural style."""
 
 
 @dataclass(slots=True)
 class Appear(_Action):
-    """Stands on the floor from now on, without having entered."""
+    """Is there from now on, without having entered: stands at the point, or is at the place as its posture says."""
 
     point: Point2 = (0.0, 0.0)
     heading_deg: float = 0.0
     """0 facing -Z, positive turning left."""
+    place: str = ""
+    """Or seat, instead of a point."""
+    posture: Literal["back", "left_side", "right_side", "half_lying"] = "back"
+    """At a place to lie."""
 
 
 @dataclass(slots=True)
@@ -307,7 +328,7 @@ class Work(_Action):
 
 @dataclass(slots=True)
 class Rise(_Action):
-    """Rises from the seat and stays standing behind it."""
+    """Rises from where one sits or lies, and stays standing beside it."""
 
 
 @dataclass(slots=True)
@@ -336,7 +357,26 @@ class Follow(_Action):
     """At each of them, or none: facing where they go."""
 
 
-Action = Union[Wait, Appear, Enter, Walk, Sit, Work, Rise, Leave, Turn, Follow]
+@dataclass(slots=True)
+class Lie(_Action):
+    """Walks to a place to lie, sits down on its edge and swings the legs in."""
+
+    place: str = ""
+    posture: Literal["back", "left_side", "right_side", "half_lying"] = "back"
+    wait_s: float = 120.0
+    """For a taken place."""
+
+
+@dataclass(slots=True)
+class Stand(_Action):
+    """Walks to a place to stand at, and faces as it does."""
+
+    place: str = ""
+    wait_s: float = 120.0
+    """For a taken place."""
+
+
+Action = Union[Wait, Appear, Enter, Walk, Sit, Work, Rise, Leave, Turn, Follow, Lie, Stand]
 
 
 @dataclass(slots=True)

@@ -33,6 +33,9 @@ constexpr double reach_s = 1.0;                 // assumed (0.6-1.5): hands betw
 constexpr double tilt_s = 1.0;                  // assumed (0.5-2): for 15 degrees of spine tilt
 constexpr double shortest_tilt_s = 0.4;         // assumed
 constexpr double chair_turn_s = 1.5;            // assumed (1-3): a quarter turn
+constexpr double lying_down_s = 3.5;            // assumed (2-6): from the edge, legs and all
+constexpr double lying_speed_m_s = 0.4;         // assumed (0.2-0.6): a wide bed takes longer
+constexpr double turning_over_s = 2.0;          // assumed (1.5-4): onto the back, or down from half-lying
 constexpr double backmost_tilt = radians(-20);  // within the spine's limits, with room for a passing overshoot
 constexpr double foremost_tilt = radians(50);
 
@@ -162,19 +165,26 @@ void Motion::sit_down(const SeatPlace& seat) {
   update_stance();
 }
 
+void Motion::lie_down(const LyingPlace& bed) {
+  if (stage_ != Stage::seated) refuse("lying down", stage_);
+  rest();
+  bed_ = bed;
+  stage_ = Stage::lying_down;
+}
+
 void Motion::rise() {
-  if (stage_ == Stage::rising) return;
+  if (stage_ == Stage::rising || stage_ == Stage::getting_up) return;
   if (!on_seat()) refuse("rising", stage_);
   rest();
   for (MinJerk& motion : channels_) {
-    if (!rests_at(motion, 0.0)) motion.move_to(0.0, ticks(fidget_s));
+    if (!rests_at(motion, 0.0)) motion.move_to(0.0, ticks(in_bed() ? turning_over_s : fidget_s));
   }
   if (seating_.seat().approach_turn != 0.0) {
     MinJerk& chair = channels_[static_cast<std::size_t>(Channel::chair_turn)];
     chair.move_to(0.0, ticks(chair_turn_s));
   }
   breath_ = 0.0;
-  stage_ = Stage::rising;
+  stage_ = in_bed() ? Stage::getting_up : Stage::rising;
 }
 
 void Motion::work(const DeskWork& work) {
@@ -201,7 +211,9 @@ void Motion::tilt_spine(double target_rad) {
 }
 
 void Motion::adjust(Channel channel, double target, double seconds) {
-  if (stage_ == Stage::rising || stage_ == Stage::sitting_down) refuse("a small movement", stage_);
+  const bool on_the_way = stage_ == Stage::rising || stage_ == Stage::sitting_down || stage_ == Stage::lying_down ||
+                          stage_ == Stage::getting_up;
+  if (on_the_way) refuse("a small movement", stage_);
   channels_[static_cast<std::size_t>(channel)].move_to(target, ticks(seconds));
 }
 
@@ -229,6 +241,7 @@ void Motion::advance() {
   }
   if (on_track()) advance_on_track();
   if (on_seat()) advance_on_seat();
+  if (in_bed()) advance_in_bed();
   if (was_moving || stage_ != before) update_stance();
 }
 
@@ -282,6 +295,19 @@ void Motion::advance_on_seat() noexcept {
   }
 }
 
+void Motion::advance_in_bed() noexcept {
+  lying_.advance();
+  const Vec2 way = floor_point(bed_.world_from_place.origin) - stance_.pelvis.position;
+  const double seconds = std::max(lying_down_s, 1.875 * glm::length(way) / lying_speed_m_s);  // minimum jerk's peak
+  if (stage_ == Stage::lying_down) {
+    lying_.move_to(1.0, ticks(seconds));
+    if (rests_at(lying_, 1.0)) stage_ = Stage::lying;
+  } else if (stage_ == Stage::getting_up && channels_rest()) {
+    lying_.move_to(0.0, ticks(seconds));
+    if (rests_at(lying_, 0.0)) stage_ = Stage::rising;
+  }
+}
+
 /// A chair that was sat on turned away from the table turns back.
 void Motion::turn_to_table() noexcept {
   const double wanted = -seating_.seat().approach_turn;
@@ -295,7 +321,8 @@ void Motion::turn_to_table() noexcept {
 
 bool Motion::settled() const noexcept {
   if (stage_ == Stage::standing) return true;
-  return stage_ == Stage::seated && tilt_.settled() && reach_.settled() && hand_offset_left_over_m_.settled();
+  return (stage_ == Stage::seated || stage_ == Stage::lying) && tilt_.settled() && reach_.settled() &&
+         hand_offset_left_over_m_.settled();
 }
 
 }  // namespace pirsim::body

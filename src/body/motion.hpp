@@ -1,4 +1,5 @@
-// How one person moves: the state machine of standing, walking, turning, sitting down, sitting and rising.
+// How one person moves: the state machine of standing, walking, turning, sitting down, sitting and rising, and of lying
+// down from the edge of a bed, lying and getting up.
 #pragma once
 
 #include <array>
@@ -11,6 +12,7 @@
 #include "body/body_part.hpp"
 #include "body/foot_plan.hpp"
 #include "body/humanoid.hpp"
+#include "body/lying.hpp"
 #include "body/min_jerk.hpp"
 #include "body/route.hpp"
 #include "body/seating.hpp"
@@ -19,7 +21,7 @@
 
 namespace pirsim::body {
 
-enum class Stage { standing, walking, turning, sitting_down, seated, rising };
+enum class Stage { standing, walking, turning, sitting_down, seated, rising, lying_down, lying, getting_up };
 [[nodiscard]] std::string_view name(Stage stage) noexcept;
 
 /// Small movements on top of what a stage does. Each goes to a target and stays there until it gets another.
@@ -36,8 +38,12 @@ enum class Channel : std::size_t {
   right_hand_up,       ///< metres above the table
   left_hand_to_head,   ///< 0: the hand is where the posture puts it; 1: it is beside mouth and ear, sitting or standing
   right_hand_to_head,  ///< 0: the hand is where the posture puts it; 1: it is beside mouth and ear, sitting or standing
+  // While lying.
+  roll,   ///< radians, 0 on the back, positive towards the left side
+  raise,  ///< radians of the trunk above the level
+  curl,   ///< 0: legs stretched, 1: drawn up
 };
-inline constexpr std::size_t n_channels = 10;
+inline constexpr std::size_t n_channels = 13;
 inline constexpr double fidget_s = 0.6;  ///< assumed (0.4-1): a small move of trunk or head
 
 /// What a person's posture depends on beside their measures. Equal outlines give equal postures, bit for bit, and a
@@ -58,6 +64,7 @@ struct Outline {
   std::array<double, 2> hand_ahead_m{};  ///< left, right; beyond hand_offset_m; 0 while reach is 0
   std::array<double, 2> hand_up_m{};
   std::array<double, 2> hand_to_head{};  ///< left, right; 0 to 1
+  LyingOutline lying{};                  ///< all else is of the sitter on the edge while somebody lies
   bool operator==(const Outline&) const = default;
 };
 [[nodiscard]] Posture posture_of(const Humanoid& humanoid, const Outline& outline) noexcept;
@@ -83,11 +90,13 @@ class Motion {
   /// feet together on the spot, which counts as turning.
   void stop();
   void sit_down(const SeatPlace& seat);  ///< from standing, facing as the seat does; also reverses rising from it
-  void rise();                           ///< from seated or sitting_down: back to where sitting down began
-  void work(const DeskWork& work);       ///< from seated: forearms to the table, then oscillating
-  void rest();                           ///< ends desk work: arms and spine come to rest
-  void tilt_spine(double radians);       ///< target of the spine's tilt, positive forward; only while seated
-  /// Anywhere but on the way onto or off a seat; rising brings all channels back to 0.
+  void lie_down(const LyingPlace& bed);  ///< from seated on its edge
+  /// From seated, lying or on the way there: back to where sitting down began.
+  void rise();
+  void work(const DeskWork& work);  ///< from seated: forearms to the table, then oscillating
+  void rest();                      ///< ends desk work: arms and spine come to rest
+  void tilt_spine(double radians);  ///< target of the spine's tilt, positive forward; only while seated
+  /// Anywhere but on the way onto or off a seat or a bed; rising brings all channels back to 0.
   void adjust(Channel channel, double target, double seconds);
   /// From now on small movements go on at every n-th tick alone, by n ticks. One that is asked for in between begins
   /// with the last of these: up to n - 1 ticks early.
@@ -108,9 +117,11 @@ class Motion {
   [[nodiscard]] Stage stage() const noexcept { return stage_; }
   /// Nothing of the last command is left to do (desk work and sitting go on while settled).
   [[nodiscard]] bool settled() const noexcept;
-  [[nodiscard]] Vec2 position() const noexcept { return stance_.pelvis.position; }  ///< of the pelvis over the floor
+  [[nodiscard]] Vec2 position() const noexcept;  ///< of the pelvis over the floor
   /// How far back the pelvis gets on the way onto the seat or off it; elsewhere the position.
   [[nodiscard]] Vec2 drawn_back() const noexcept { return on_seat() ? seating_.pelvis(1.0, 0.0).position : position(); }
+  /// On the way from the edge of a bed, on it, or on the way back.
+  [[nodiscard]] bool in_bed() const noexcept { return stage_ >= Stage::lying_down; }
   [[nodiscard]] double heading() const noexcept;
   [[nodiscard]] double speed_m_s() const noexcept;
   [[nodiscard]] double spine_tilt() const noexcept;  ///< positive forward
@@ -144,6 +155,8 @@ class Motion {
   void walk_from(const Route& route, double from_s);
   void advance_on_track();
   void advance_on_seat() noexcept;
+  void advance_in_bed() noexcept;
+  [[nodiscard]] LyingOutline lying_outline() const noexcept;
   void turn_to_table() noexcept;
   void bring_feet_together();
   void come_to_stand(const Placement& place, const Feet& feet) noexcept;
@@ -190,6 +203,10 @@ class Motion {
   DeskWork work_;
   std::int64_t work_tick_ = 0;
   MinJerk hand_offset_left_over_m_;  ///< from desk work that was replaced by another, fading
+
+  // Lying.
+  LyingPlace bed_;
+  MinJerk lying_;  ///< 0 on the edge, 1 lying
 };
 
 }  // namespace pirsim::body

@@ -87,6 +87,22 @@ double Motion::hand_offset_m() const noexcept {
   return work_.arm_amplitude_m * std::sin(2.0 * pi * phase) + hand_offset_left_over_m_.value();
 }
 
+Vec2 Motion::position() const noexcept {
+  const Vec2& here = stance_.pelvis.position;
+  if (!in_bed()) return here;
+  return here + moved_over(lying_.value()) * (floor_point(bed_.world_from_place.origin) - here);
+}
+
+LyingOutline Motion::lying_outline() const noexcept {
+  const Frame& place = bed_.world_from_place;
+  return {std::clamp(lying_.value(), 0.0, 1.0),
+          place.origin.y,
+          {floor_point(place.origin), heading_of(place)},
+          channel(Channel::roll).value(),
+          channel(Channel::raise).value(),
+          channel(Channel::curl).value()};
+}
+
 Outline Motion::outline() const noexcept {
   Outline outline;
   outline.pelvis = stance_.pelvis;
@@ -96,6 +112,7 @@ Outline Motion::outline() const noexcept {
   outline.spine_tilt = spine_tilt();
   outline.fall = std::clamp(fall_.value(), 0.0, 1.0);
   outline.reach = std::clamp(reach_.value(), 0.0, 1.0);
+  if (in_bed() && lying_.value() > 0.0) outline.lying = lying_outline();
   outline.head_turn = channel(Channel::head_turn).value();
   outline.spine_lean = channel(Channel::trunk_lean).value();
   outline.hand_to_head = {std::clamp(channel(Channel::left_hand_to_head).value(), 0.0, 1.0),
@@ -135,11 +152,13 @@ std::array<ArmPose, 2> arms_of(const Humanoid& humanoid, const Outline& outline,
     const auto working = arms_on_table(humanoid, torso_rotation(pose), table_above_hips_m, hands);
     for (std::size_t side : {0U, 1U}) arms[side] = reach_over(arms[side], working[side], outline.reach);
   }
-  if (outline.hand_to_head != std::array<double, 2>{}) {
-    const auto raised = arms_at_head(humanoid);
-    for (std::size_t side : {0U, 1U}) arms[side] = blend(arms[side], raised[side], outline.hand_to_head[side]);
-  }
   return arms;
+}
+
+void raise_hands(std::array<ArmPose, 2>& arms, const Humanoid& humanoid, const Outline& outline) noexcept {
+  if (outline.hand_to_head == std::array<double, 2>{}) return;
+  const auto raised = arms_at_head(humanoid);
+  for (std::size_t side : {0U, 1U}) arms[side] = blend(arms[side], raised[side], outline.hand_to_head[side]);
 }
 
 }  // namespace
@@ -161,6 +180,8 @@ void update(Pose& pose, const Humanoid& humanoid, const Outline& outline, const 
         Vec3(foot.print.position.x, ankle_height + foot.lift_m, foot.print.position.y)};
   }
   if (changed.arms) pose.arms = arms_of(humanoid, outline, pose);
+  if (outline.lying.progress > 0.0 && changed.hips) lie_down(pose, humanoid, outline.lying);
+  if (changed.arms) raise_hands(pose.arms, humanoid, outline);
 }
 
 Posture posture_of(const Humanoid& humanoid, const Outline& outline) noexcept {

@@ -14,6 +14,10 @@ bool differ(const Value& a, const Value& b) noexcept {
 
 Limbs changes(const Outline& a, const Outline& b) noexcept {
   Limbs changed;
+  if (a.lying.progress > 0.0 || b.lying.progress > 0.0) {  // what hangs on the surface hangs together
+    const bool any = differ(a, b);
+    return {any, any, any, any, {any, any}};
+  }
   changed.hips = differ(a.pelvis, b.pelvis) || differ(a.hip_height_m, b.hip_height_m);
   changed.spine = differ(a.spine_tilt, b.spine_tilt) || differ(a.spine_lean, b.spine_lean);
   changed.head = differ(a.head_turn, b.head_turn);

@@ -57,8 +57,8 @@ void put_arm(const Measures& m, const Frame& torso, const ArmPose& arm, std::siz
 void put_leg(const Measures& m, const Frame& hips, const Frame& ankle, std::size_t side, Posture& posture) {
   const Vec3 hip = hips * Vec3(0.5 * sign_of(side) * m.hip_width_m, 0, 0);
   // The knee points between where the pelvis and where the foot does; hip and ankle share the turn as their limits do.
-  const Vec3 toes = ankle.rotation * Vec3(0, 0, -1);
-  const Vec3 pole = 35.0 * hips.forward() + 45.0 * glm::normalize(Vec3(toes.x, 0.0, toes.z));
+  const Vec3 toes = ankle.rotation * Vec3(0, 0, -1), up = hips.up();
+  const Vec3 pole = 35.0 * hips.forward() + 45.0 * glm::normalize(toes - glm::dot(toes, up) * up);
   const Vec3 knee = two_bone_joint(hip, ankle.origin, m.thigh_m, m.shank_m, pole);
   const Vec3 thigh_up = (hip - knee) / m.thigh_m;
   const Vec3 shank_up = glm::normalize(knee - ankle.origin);

@@ -43,7 +43,7 @@ struct ArmPose {
 
 /// Arrays are left, right.
 struct Pose {
-  Frame world_from_hips;                  ///< upright; origin midway between the hip joints
+  Frame world_from_hips;                  ///< upright unless one lies; origin midway between the hip joints
   double spine_tilt = 0.0;                ///< radians about the hips' axis, positive forward
   double spine_lean = 0.0;                ///< radians, positive to the right
   double head_turn = 0.0;                 ///< radians about the neck, positive to the left

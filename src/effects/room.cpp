@@ -114,6 +114,7 @@ void alter_mirrored_room(StudyInForce& study, const EffectSpec& effect) {
   const Mirror mirror(scene, across != effect.choices.end() && across->second == "z" ? Across::z : Across::x);
   mirror_meshes(scene.meshes, mirror);
   for (SeatSpec& seat : scene.seats) seat.world_from_seat = mirror.frame(seat.world_from_seat);
+  for (PlaceSpec& place : scene.places) place.world_from_place = mirror.frame(place.world_from_place);
   for (EntranceSpec& door : scene.entrances) door.world_from_entrance = mirror.frame(door.world_from_entrance);
   scene.floor = mirrored(scene.floor, mirror);
   for (AreaSpec& area : scene.areas) area.outline = mirrored(area.outline, mirror);

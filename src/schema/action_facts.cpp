@@ -19,6 +19,13 @@ ActionFacts facts_of(const action::Wait& wait) noexcept {
 }
 
 ActionFacts facts_of(const action::Appear& appear) noexcept {
+  if (!appear.place.empty()) {
+    return {.name = "appear",
+            .course = Course::comes,
+            .pose = Pose::of_place,
+            .place = &appear.place,
+            .lying = appear.posture};
+  }
   return {.name = "appear",
           .course = Course::comes,
           .pose = Pose::upright,
@@ -62,7 +69,7 @@ ActionFacts facts_of(const action::Work& work) noexcept {
 }
 
 ActionFacts facts_of(const action::Rise&) noexcept {
-  return {.name = "rise", .course = Course::moves, .needs = Needs::seat, .pose = Pose::upright};
+  return {.name = "rise", .course = Course::moves, .needs = Needs::rest, .pose = Pose::upright};
 }
 
 ActionFacts facts_of(const action::Leave& leave) noexcept {
@@ -79,6 +86,25 @@ ActionFacts facts_of(const action::Turn& turn) noexcept {
           .needs = Needs::presence,
           .pose = Pose::upright,
           .heading_deg = turn.heading_deg};
+}
+
+ActionFacts facts_of(const action::Lie& lie) noexcept {
+  return {.name = "lie",
+          .course = Course::moves,
+          .needs = Needs::presence,
+          .pose = Pose::lying,
+          .place = &lie.place,
+          .lying = lie.posture,
+          .seat_wait_s = lie.wait_s};
+}
+
+ActionFacts facts_of(const action::Stand& stand) noexcept {
+  return {.name = "stand",
+          .course = Course::moves,
+          .needs = Needs::presence,
+          .pose = Pose::upright,
+          .place = &stand.place,
+          .seat_wait_s = stand.wait_s};
 }
 
 ActionFacts facts_of(const action::Follow& follow) noexcept {
@@ -100,7 +126,7 @@ double shortest_s(const ActionFacts& facts, double speed_m_s, Vec2& at) noexcept
 
 bool leads_on(const ScriptedAction& next) noexcept {
   const ActionFacts facts = facts_of(next.what);
-  return !next.at_s && (facts.walks() || facts.seat != nullptr);
+  return !next.at_s && (facts.walks() || facts.takes() != nullptr);
 }
 
 }  // namespace pirsim

@@ -15,8 +15,9 @@ namespace pirsim {
 /// Points into the action that it describes.
 struct ActionFacts {
   enum class Course { comes, stays, moves, goes, passes };  ///< what becomes of somebody's being in the room
-  enum class Needs { nothing, presence, seat };             ///< what has to be the case when it begins
-  enum class Pose { kept, upright, seated };                ///< how somebody is when it is done
+  enum class Needs { nothing, presence, seat, rest };  ///< what has to be the case when it begins; rest: off the feet
+  /// How somebody is when it is done; of_place: as the place's posture says.
+  enum class Pose { kept, upright, seated, lying, of_place };
 
   std::string_view name{};  ///< as scripts have it
   Course course = Course::stays;
@@ -28,11 +29,13 @@ struct ActionFacts {
   const std::string* entrance = nullptr;
   std::span<const Vec2> walks_to{};
   const std::string* seat = nullptr;
+  const std::string* place = nullptr;  ///< to lie or to stand; of who is there at once, to sit as well
+  LyingPosture lying = LyingPosture::back;
   std::optional<double> heading_deg{};
 
   const action::Follow* follows = nullptr;  ///< there and back out of the scene, by points and times
 
-  double seat_wait_s = 0.0;  ///< for a seat that is taken
+  double seat_wait_s = 0.0;  ///< for a seat or a place that is taken
   action::IfTaken if_taken = action::IfTaken::next_action;
 
   double lasts_s = 0.0;                      ///< of what time ends; the way there isn't in it
@@ -41,6 +44,8 @@ struct ActionFacts {
   std::span<const Activity> may_be_asked{};  ///< activities that a script may ask for
 
   [[nodiscard]] bool walks() const noexcept { return !walks_to.empty(); }
+  /// The seat or the place that it takes, or null.
+  [[nodiscard]] const std::string* takes() const noexcept { return seat != nullptr ? seat : place; }
 };
 
 [[nodiscard]] ActionFacts facts_of(const action::Wait& wait) noexcept;
@@ -53,6 +58,8 @@ struct ActionFacts {
 [[nodiscard]] ActionFacts facts_of(const action::Leave& leave) noexcept;
 [[nodiscard]] ActionFacts facts_of(const action::Turn& turn) noexcept;
 [[nodiscard]] ActionFacts facts_of(const action::Follow& follow) noexcept;
+[[nodiscard]] ActionFacts facts_of(const action::Lie& lie) noexcept;
+[[nodiscard]] ActionFacts facts_of(const action::Stand& stand) noexcept;
 [[nodiscard]] ActionFacts facts_of(const Action& action) noexcept;
 
 /// How long it takes at least: what time ends, and ways as the crow flies. at: moves on to where it leads.

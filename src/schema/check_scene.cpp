@@ -29,6 +29,7 @@ class SceneCheck {
     const SpecPath path("scene");
     if (!faults_.few(path.field("sensors"), scene_.sensors.size(), limits::sensors) ||
         !faults_.few(path.field("seats"), scene_.seats.size(), limits::seats) ||
+        !faults_.few(path.field("places"), scene_.places.size(), limits::places) ||
         !faults_.few(path.field("entrances"), scene_.entrances.size(), limits::entrances) ||
         !faults_.few(path.field("areas"), scene_.areas.size(), limits::areas)) {
       return;
@@ -41,6 +42,13 @@ class SceneCheck {
       check_id(scene_.seats[i].id, seat, seats);
       check_upright(scene_.seats[i].world_from_seat, seat.field("world_from_seat"));
       faults_.numbers(scene_.seats[i], seat);
+      check_uses(scene_.seats[i].uses, seat);
+    }
+    for (std::size_t i = 0; i < scene_.places.size(); ++i) {
+      const SpecPath place = path.item("places", i);
+      check_id(scene_.places[i].id, place, seats);  // names are those of places, to sit or otherwise
+      check_upright(scene_.places[i].world_from_place, place.field("world_from_place"));
+      check_uses(scene_.places[i].uses, place);
     }
     for (std::size_t i = 0; i < scene_.entrances.size(); ++i) {
       const SpecPath entrance = path.item("entrances", i);
@@ -92,6 +100,10 @@ class SceneCheck {
     const std::string fault = name_fault(id);
     if (!fault.empty()) faults_.error(path.field("id"), "'" + id + "': " + fault);
     faults_.error_if(path.field("id"), ids.fault_of_adding(id));
+  }
+
+  void check_uses(const std::vector<std::string>& uses, const SpecPath& path) {
+    for (std::size_t i = 0; i < uses.size(); ++i) faults_.error_if(path.item("uses", i), use_fault(uses[i]));
   }
 
   void check_sensor(const SpecPath& path, std::size_t index, Names& ids) {
@@ -171,6 +183,12 @@ std::string name_fault(std::string_view name) {
   };
   if (!name.empty() && name.front() != '.' && std::ranges::all_of(name, fits)) return {};
   return "it needs letters, digits, '_', '-' or '.'";
+}
+
+std::string use_fault(const std::string& use) {
+  const std::vector<std::string> known(place_uses.begin(), place_uses.end());
+  if (std::ranges::find(known, use) != known.end()) return {};
+  return "'" + use + "' isn't a use of a place" + near_or_all(use, known);
 }
 
 std::string column_fault(std::string_view id, const std::string& type) {

@@ -27,6 +27,9 @@ using TellFault = std::function<void(std::string_view field, const std::string& 
 /// Of the id of what has a column of its own ("sensor", "area"), which must not be another column's.
 [[nodiscard]] std::string column_fault(std::string_view id, const std::string& type = "sensor");
 
+/// Of what a place is for. A message or none.
+[[nodiscard]] std::string use_fault(const std::string& use);
+
 /// Names that must differ.
 class Names {
  public:

@@ -193,7 +193,17 @@ struct Fields<SeatSpec> {
   using S = SeatSpec;
   static constexpr const char* name = "Seat";
   static constexpr const char* about = "The sitter's pelvis rests at the origin and faces -Z.";
-  static constexpr std::tuple all{FIELD(id), FIELD(world_from_seat)};
+  static constexpr std::tuple all{FIELD(id), FIELD(world_from_seat),
+                                  FIELD(uses, "`for` of a mark; none: for anything")};
+};
+template <>
+struct Fields<PlaceSpec> {
+  using S = PlaceSpec;
+  static constexpr const char* name = "Place";
+  static constexpr const char* about =
+      "A place to lie (the pelvis on the origin, the head towards +Z) or to stand (facing -Z). One to sit is a `Seat`.";
+  static constexpr std::tuple all{FIELD(id), FIELD(posture), FIELD(world_from_place),
+                                  FIELD(uses, "`for` of a mark; none: for anything")};
 };
 template <>
 struct Fields<EntranceSpec> {
@@ -222,6 +232,7 @@ struct Fields<SceneSpec> {
                                   FIELD(meshes),
                                   FIELD(sensors, "in the order of the output's columns"),
                                   FIELD(seats),
+                                  FIELD(places, "to lie and to stand"),
                                   FIELD(entrances),
                                   FIELD(floor),
                                   FIELD(areas, "apart from each other, in the order of the output's columns"),
@@ -236,18 +247,22 @@ template <>
 struct Fields<action::Wait> {
   using S = action::Wait;
   static constexpr const char* name = "Wait";
-  static constexpr const char* about = "Goes on standing or sitting.";
+  static constexpr const char* about = "Goes on standing, sitting or lying.";
   static constexpr std::tuple all{
       FIELD(duration_s, accepted::waited_s),
-      FIELD(activity, std::array{Activity::meeting, Activity::phone, Activity::whiteboard}, "of natural style")};
+      FIELD(activity,
+            std::array{Activity::meeting, Activity::phone, Activity::whiteboard, Activity::reading, Activity::sleeping,
+                       Activity::watching_tv, Activity::cooking, Activity::washing, Activity::eating},
+            "of natural style")};
 };
 template <>
 struct Fields<action::Appear> {
   using S = action::Appear;
   static constexpr const char* name = "Appear";
-  static constexpr const char* about = "Stands on the floor from now on, without having entered.";
-  static constexpr std::tuple all{FIELD(point),
-                                  FIELD(heading_deg, NumberRange{}, "0 facing -Z, positive turning left")};
+  static constexpr const char* about =
+      "Is there from now on, without having entered: stands at the point, or is at the place as its posture says.";
+  static constexpr std::tuple all{FIELD(point), FIELD(heading_deg, NumberRange{}, "0 facing -Z, positive turning left"),
+                                  FIELD(place, "or seat, instead of a point"), FIELD(posture, "at a place to lie")};
 };
 template <>
 struct Fields<action::Enter> {
@@ -275,6 +290,20 @@ struct Fields<action::Sit> {
       FIELD(if_taken, "what somebody does whose seat stays taken")};
 };
 template <>
+struct Fields<action::Lie> {
+  using S = action::Lie;
+  static constexpr const char* name = "Lie";
+  static constexpr const char* about = "Walks to a place to lie, sits down on its edge and swings the legs in.";
+  static constexpr std::tuple all{FIELD(place), FIELD(posture), FIELD(wait_s, accepted::waited_s, "for a taken place")};
+};
+template <>
+struct Fields<action::Stand> {
+  using S = action::Stand;
+  static constexpr const char* name = "Stand";
+  static constexpr const char* about = "Walks to a place to stand at, and faces as it does.";
+  static constexpr std::tuple all{FIELD(place), FIELD(wait_s, accepted::waited_s, "for a taken place")};
+};
+template <>
 struct Fields<action::Work> {
   using S = action::Work;
   static constexpr const char* name = "Work";
@@ -293,7 +322,7 @@ template <>
 struct Fields<action::Rise> {
   using S = action::Rise;
   static constexpr const char* name = "Rise";
-  static constexpr const char* about = "Rises from the seat and stays standing behind it.";
+  static constexpr const char* about = "Rises from where one sits or lies, and stays standing beside it.";
   static constexpr std::tuple<> all{};
 };
 template <>
@@ -686,11 +715,12 @@ struct Fields<NuisanceSpec> {
 
 /// Specs that Python has classes of, each before those that it is a part of.
 using SpecsOfPython =
-    std::tuple<Where, InputFile, SensorSpec, SeatSpec, EntranceSpec, OpticsSpec, ElementSpec, AmplifierSpec,
+    std::tuple<Where, InputFile, SensorSpec, SeatSpec, PlaceSpec, EntranceSpec, OpticsSpec, ElementSpec, AmplifierSpec,
                ComparatorSpec, DetectorSpec, ZoneSpec, ClusterSpec, SensorModelSpec, AreaSpec, SceneSpec, action::Wait,
                action::Appear, action::Enter, action::Walk, action::Sit, action::Work, action::Rise, action::Leave,
-               action::Turn, action::Follow, SeatScatterSpec, WarmthSpec, PersonSpec, ClockSpec, StaffSpec,
-               HeldMeetingSpec, MeetingsSpec, ProfileSpec, ScheduleSpec, CountsSpec, StaySpec, PlacesSpec, TrackSpec,
-               PositionsSpec, OccupancySpec, TrialSpec, SensingSpec, SummarySpec, EffectSpec, ScriptSpec>;
+               action::Turn, action::Follow, action::Lie, action::Stand, SeatScatterSpec, WarmthSpec, PersonSpec,
+               ClockSpec, StaffSpec, HeldMeetingSpec, MeetingsSpec, ProfileSpec, ScheduleSpec, CountsSpec, StaySpec,
+               PlacesSpec, TrackSpec, PositionsSpec, OccupancySpec, TrialSpec, SensingSpec, SummarySpec, EffectSpec,
+               ScriptSpec>;
 
 }  // namespace pirsim

@@ -11,8 +11,8 @@ inline constexpr std::string_view phase_outside = "outside";
 /// Of a person who carries out `work`.
 inline constexpr std::string_view phase_working = "working";
 /// Of a person otherwise; in the order of body::Stage.
-inline constexpr std::array<std::string_view, 6> phases_of_body{"standing",     "walking", "turning",
-                                                                "sitting_down", "seated",  "rising"};
+inline constexpr std::array<std::string_view, 9> phases_of_body{
+    "standing", "walking", "turning", "sitting_down", "seated", "rising", "lying_down", "lying", "getting_up"};
 /// Of a room by a schedule.
 inline constexpr std::string_view phase_empty = "empty", phase_occupied = "occupied", phase_meeting = "meeting",
                                   phase_cleaning = "cleaning";

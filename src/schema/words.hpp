@@ -7,6 +7,7 @@
 
 #include "pirsim/error.hpp"
 #include "pirsim/geometry.hpp"
+#include "pirsim/scene.hpp"
 #include "pirsim/script.hpp"
 
 namespace pirsim {
@@ -65,6 +66,17 @@ struct Words<Activity> {
     for (std::size_t i = 0; i < words.size(); ++i) words[i] = {activity_names[i], static_cast<Activity>(i)};
     return words;
   }();
+};
+template <>
+struct Words<PlacePosture> {
+  static constexpr WordList<PlacePosture, 2> all{{{"lie", PlacePosture::lie}, {"stand", PlacePosture::stand}}};
+};
+template <>
+struct Words<LyingPosture> {
+  static constexpr WordList<LyingPosture, 4> all{{{"back", LyingPosture::back},
+                                                  {"left_side", LyingPosture::left_side},
+                                                  {"right_side", LyingPosture::right_side},
+                                                  {"half_lying", LyingPosture::half_lying}}};
 };
 template <>
 struct Words<action::IfTaken> {

@@ -22,7 +22,10 @@ constexpr double gap_m = 0.1;          ///< assumed: kept between two people bes
 constexpr double doorway_m = 2.5;      ///< assumed: who comes in is through the door at that distance (tried 2-3)
 constexpr double door_wait_s = 60.0;   ///< assumed: then one goes through the door whoever comes (tried 20-120)
 constexpr double told_after_s = 10.0;  ///< assumed, of messages only: who waits for less is a little late
-constexpr double room_wait_s = 20.0;   ///< then one comes in where somebody stands, and passes through them
+constexpr double adopts_s = 2.5;       ///< assumed (2-4): from lying flat onto a side, or up to half-lying
+constexpr double half_drawn_up = 0.5;  ///< assumed (0.2-0.8): the legs of who lies on a side
+constexpr double half_lying_rad = radians(40);  ///< assumed (25-55)
+constexpr double room_wait_s = 20.0;            ///< then one comes in where somebody stands, and passes through them
 
 std::int64_t ticks(double seconds, const CompiledStudy& study) {
   return std::llround(seconds * study.sensing().tick_rate_hz);
@@ -66,11 +69,12 @@ void Actor::note(IncidentKind kind, std::int64_t tick) {
 
 void Actor::begin(const CompiledStudy& study, std::span<const Presence> others) {
   if (done() || action().at_s.value_or(0.0) > 0.0) return;
-  const Vec2* place = facts_of(action().what).appears_at;
-  if (place == nullptr || somebody_near(*place, others)) return;
+  const ActionFacts facts = facts_of(action().what);
+  if (facts.course != Course::comes || facts.entrance != nullptr) return;
+  if (facts.appears_at != nullptr && somebody_near(*facts.appears_at, others)) return;
   const Scene scene{study, others, 0};
   start_action(scene);
-  carry_out_first(scene);
+  if (carry_out_first(scene) == Progress::going_on) return;
   errands_.pop_front();
   if (natural_) natural_->settle(body_motion(), activity_at_first());
 }
@@ -197,12 +201,16 @@ void Actor::plan(const Scene& scene) {
     errands_.push_back(Vanish{});
   } else if (facts_.appears_at != nullptr) {
     errands_.push_back(ComeIn{*facts_.appears_at, radians(*facts_.heading_deg)});
+  } else if (facts_.course == Course::comes && facts_.place != nullptr) {
+    plan_being_there(scene, *facts_.place);
   } else if (facts_.course == Course::comes) {
     plan_entering(entrance(*facts_.entrance));
   } else if (facts_.course == Course::goes) {
     plan_leaving(entrance(*facts_.entrance));
   } else if (facts_.seat != nullptr) {
     plan_sitting(*facts_.seat);
+  } else if (facts_.place != nullptr) {
+    plan_place(scene, *facts_.place);
   } else if (facts_.walks()) {
     for (const Vec2& point : facts_.walks_to) errands_.push_back(WalkTo{point});
   } else if (facts_.heading_deg) {
@@ -225,7 +233,7 @@ void Actor::begin_work() {
 
 void Actor::plan_entering(const EntranceSpec& door) {
   const ScriptedAction* next = action_ + 1 < actions().size() ? &actions()[action_ + 1] : nullptr;
-  const std::string* seat_next = next != nullptr ? facts_of(next->what).seat : nullptr;
+  const std::string* seat_next = next != nullptr ? facts_of(next->what).takes() : nullptr;
   if (seat_next != nullptr) errands_.push_back(WaitForSeat{*seat_next});  // better outside than in the doorway
   errands_.push_back(WaitForDoor{outside_of(door), Through::in});
   errands_.push_back(ComeIn{outside_of(door), heading_of(door.world_from_entrance)});
@@ -240,7 +248,7 @@ void Actor::plan_leaving(const EntranceSpec& door) {
   errands_.push_back(Vanish{});
 }
 
-void Actor::plan_sitting(std::string_view id) {
+Actor::SitOn Actor::way_to_sit(std::string_view id) {
   const SeatPlan& seat = person().seat_plan(id);
   const SeatScatterSpec& scatter = person().spec.seat_scatter;
   body::SeatPlace place = seat.place;
@@ -255,12 +263,51 @@ void Actor::plan_sitting(std::string_view id) {
         rotation_from_heading(radians(scatter.heading_sd_deg * turn)) * place.world_from_seat.rotation;
   }
   const double heading = heading_of(place.world_from_seat) + place.approach_turn;
+  return {place, standing_place(place, seat), heading};
+}
+
+void Actor::plan_sitting(std::string_view id) {
+  const SitOn seat = way_to_sit(id);
   errands_.push_back(WaitForSeat{id});
   errands_.push_back(TakeSeat{id});
-  const Vec2 stand = standing_place(place, seat);
-  errands_.push_back(WalkTo{stand});
-  errands_.push_back(FaceTo{heading});
-  errands_.push_back(SitOn{place, stand, heading});
+  errands_.push_back(WalkTo{seat.stand});
+  errands_.push_back(FaceTo{seat.heading});
+  errands_.push_back(seat);
+}
+
+Actor::LieOn Actor::way_to_lie(std::string_view id) const {
+  const LyingPlan& plan = person().beds.find(id)->second;
+  const Frame& edge = plan.bed.edge.world_from_seat;
+  return {{plan.bed.edge, plan.edge.stand(edge), heading_of(edge)}, plan.bed, facts_.lying};
+}
+
+void Actor::plan_place(const Scene& scene, std::string_view id) {
+  const PlaceSpec& place = *std::ranges::find(scene.study.scene().places, id, &PlaceSpec::id);
+  errands_.push_back(WaitForSeat{id});
+  errands_.push_back(TakeSeat{id});
+  if (place.posture == PlacePosture::lie) {
+    const LieOn bed = way_to_lie(id);
+    errands_.push_back(WalkTo{bed.edge.stand});
+    errands_.push_back(FaceTo{bed.edge.heading});
+    errands_.push_back(bed);
+  } else {
+    errands_.push_back(WalkTo{floor_point(place.world_from_place.origin)});
+    errands_.push_back(FaceTo{heading_of(place.world_from_place)});
+  }
+}
+
+void Actor::plan_being_there(const Scene& scene, std::string_view id) {
+  const auto& places = scene.study.scene().places;
+  const auto place = std::ranges::find(places, id, &PlaceSpec::id);
+  if (place == places.end()) {
+    errands_.push_back(BeThere{way_to_sit(id), {}, Stage::seated});
+  } else if (place->posture == PlacePosture::lie) {
+    const LieOn bed = way_to_lie(id);
+    errands_.push_back(BeThere{bed.edge, bed, Stage::lying});
+  } else {
+    const Frame& frame = place->world_from_place;
+    errands_.push_back(BeThere{{{}, floor_point(frame.origin), heading_of(frame)}, {}, Stage::standing});
+  }
 }
 
 /// A scattered seat may need a little more room before or behind it than the seat as it stands in the scene.
@@ -325,7 +372,7 @@ Progress Actor::carry_out(const WaitForDoor& door, const Scene& scene) {
 
 Progress Actor::carry_out(const WaitForSeat& wait, const Scene& scene) {
   if (std::ranges::find(scene.others, wait.seat, &Presence::seat) == scene.others.end()) return Progress::done;
-  const bool before_coming_in = facts_.seat == nullptr;
+  const bool before_coming_in = facts_.takes() == nullptr;
   const double wait_s = (before_coming_in ? facts_of(actions()[action_ + 1].what) : facts_).seat_wait_s;
   const bool for_good = std::ranges::none_of(
       scene.others, [](const Presence& other) { return other.script == Presence::Script::going_on; });
@@ -378,7 +425,7 @@ Progress Actor::carry_out(const WalkTo& walk, const Scene& scene) {
   }
   const Progress progress = body_->go_to(walk.target, scene.others, scene.now);
   // A seat is left where the walk away from it begins, unless they are about to come back to it.
-  const bool keeps_seat = facts_.seat != nullptr || sits_on_;
+  const bool keeps_seat = facts_.takes() != nullptr || sits_on_;
   if (!keeps_seat && body_->motion().stage() == Stage::walking) seat_ = {};
   return progress;
 }
@@ -397,13 +444,16 @@ Progress Actor::carry_out(const FaceTo& face, const Scene& scene) {
 }
 
 Progress Actor::carry_out(const SitOn& seat, const Scene& scene) {
-  if (body_->motion().stage() == Stage::seated && body_->motion().settled()) {
-    sits_on_ = seat;
-    // Who got up for somebody goes on with what they were at.
-    if (facts_.desk_work != nullptr) begin_work();
-    return Progress::done;
-  }
-  if (body_->motion().stage() != Stage::standing || !body_->motion().settled()) return Progress::going_on;
+  if (!sits_down(seat, scene)) return Progress::going_on;
+  sits_on_ = seat;
+  // Who got up for somebody goes on with what they were at.
+  if (facts_.desk_work != nullptr) begin_work();
+  return Progress::done;
+}
+
+bool Actor::sits_down(const SitOn& seat, const Scene& scene) {
+  if (body_->motion().stage() == Stage::seated && body_->motion().settled()) return true;
+  if (body_->motion().stage() != Stage::standing || !body_->motion().settled()) return false;
   constexpr double there_m = 0.05, facing_rad = 0.02;
   const bool there = glm::distance(body_->motion().position(), seat.stand) < there_m &&
                      std::abs(std::remainder(seat.heading - body_->motion().heading(), 2.0 * pi)) < facing_rad;
@@ -414,7 +464,53 @@ Progress Actor::carry_out(const SitOn& seat, const Scene& scene) {
     errands_.push_front(FaceTo{again.heading});
     errands_.push_front(WalkTo{again.stand});
   }
+  return false;
+}
+
+Progress Actor::carry_out(const LieOn& lie, const Scene& scene) {
+  const Stage stage = body_->motion().stage();
+  if (stage == Stage::lying) {
+    adopt(lie.posture);
+    return Progress::done;
+  }
+  if (stage == Stage::lying_down) return Progress::going_on;
+  const body::LyingPlace bed = lie.bed;
+  if (sits_down(lie.edge, scene)) body_motion().lie_down(bed);
   return Progress::going_on;
+}
+
+/// What a body goes through on its way there is passed over.
+Progress Actor::carry_out(const BeThere& there, const Scene& scene) {
+  const bool taken = somebody_near(there.before.stand, scene.others) ||
+                     std::ranges::find(scene.others, *facts_.place, &Presence::seat) != scene.others.end();
+  if (taken && ++waited_ticks_ < ticks(room_wait_s, scene.study)) return Progress::going_on;
+  body_.emplace(scene.study, person(), index_, there.before.stand, there.before.heading);
+  if (natural_) body_motion().set_pace(natural_->pace(person().spec.walking_speed_m_s));
+  if (taken) body_->pass_through(scene.now);
+  seat_ = *facts_.place;
+  const auto until = [this](Stage stage) {
+    while (body_->motion().stage() != stage || !body_->motion().settled()) body_motion().advance();
+  };
+  if (there.stage == Stage::standing) return Progress::done;
+  body_motion().sit_down(there.before.place);
+  until(Stage::seated);
+  if (!there.lies) {
+    sits_on_ = there.before;
+    return Progress::done;
+  }
+  body_motion().lie_down(there.lies->bed);
+  until(Stage::lying);
+  adopt(there.lies->posture);
+  for (int tick = 0; tick < ticks(adopts_s, scene.study); ++tick) body_motion().advance();
+  return Progress::done;
+}
+
+void Actor::adopt(LyingPosture posture) {
+  using body::Channel;
+  const double side = posture == LyingPosture::left_side ? 1.0 : posture == LyingPosture::right_side ? -1.0 : 0.0;
+  body_motion().adjust(Channel::roll, side * 0.5 * pi, adopts_s);
+  body_motion().adjust(Channel::curl, side == 0.0 ? 0.0 : half_drawn_up, adopts_s);
+  body_motion().adjust(Channel::raise, posture == LyingPosture::half_lying ? half_lying_rad : 0.0, adopts_s);
 }
 
 Progress Actor::carry_out(const StandUp&, const Scene& scene) { return body_->stand_up(scene.others, scene.now); }

@@ -91,6 +91,18 @@ class Actor {
     Vec2 stand;
     double heading;
   };
+  /// From the edge, as SitOn gets there.
+  struct LieOn {
+    SitOn edge;
+    body::LyingPlace bed;
+    LyingPosture posture;
+  };
+  /// Has been there all along; comes in once nobody has the place or stands before it.
+  struct BeThere {
+    SitOn before;  ///< of who sits or lies; of who stands, its place isn't used
+    std::optional<LieOn> lies{};
+    body::Stage stage = body::Stage::standing;
+  };
   struct StandUp {};
   /// Walks to the first point, or to the second if somebody stands there.
   struct WalkOut {
@@ -103,8 +115,8 @@ class Actor {
     std::shared_ptr<const body::FollowedPath> path;
     std::size_t n_begun = 0;  ///< of its legs
   };
-  using Errand = std::variant<ComeIn, WaitForDoor, WaitForSeat, TakeSeat, WalkTo, FaceTo, SitOn, StandUp, WalkOut,
-                              Vanish, FollowPath>;
+  using Errand = std::variant<ComeIn, WaitForDoor, WaitForSeat, TakeSeat, WalkTo, FaceTo, SitOn, LieOn, BeThere,
+                              StandUp, WalkOut, Vanish, FollowPath>;
 
   /// What surrounds the person at this tick.
   struct Scene {
@@ -120,6 +132,11 @@ class Actor {
   void plan_entering(const EntranceSpec& door);
   void plan_leaving(const EntranceSpec& door);
   void plan_sitting(std::string_view seat);
+  void plan_place(const Scene& scene, std::string_view place);
+  void plan_being_there(const Scene& scene, std::string_view place);
+  /// Scattered, as whoever sits down does each time.
+  [[nodiscard]] SitOn way_to_sit(std::string_view seat);
+  [[nodiscard]] LieOn way_to_lie(std::string_view place) const;
   void tilt_at_work(std::int64_t now);
   /// What a person of the paper's style is at, at a seat; null: nothing.
   [[nodiscard]] const action::Work* choreographed_work() const;
@@ -142,7 +159,12 @@ class Actor {
   Progress carry_out(const WalkTo& errand, const Scene& scene);
   Progress carry_out(const FaceTo& errand, const Scene& scene);
   Progress carry_out(const SitOn& errand, const Scene& scene);
+  Progress carry_out(const LieOn& errand, const Scene& scene);
+  Progress carry_out(const BeThere& errand, const Scene& scene);
   Progress carry_out(const StandUp& errand, const Scene& scene);
+  /// False until they stand before the seat or the edge, and sit down.
+  bool sits_down(const SitOn& seat, const Scene& scene);
+  void adopt(LyingPosture posture);
   Progress carry_out(const WalkOut& errand, const Scene& scene);
   Progress carry_out(const Vanish& errand, const Scene& scene);
   Progress carry_out(FollowPath& errand, const Scene& scene);

@@ -94,6 +94,7 @@ bool same_people(const CompiledStudy& like, const CompiledStudy& study, const st
   const SensingInForce &a = like.sensing(), &b = study.sensing();
   return like.seed() == study.seed() && clock(a) == clock(b) && same_ground(like.scene(), study.scene()) &&
          std::ranges::equal(like.scene().seats, study.scene().seats, same<SeatSpec>) &&
+         std::ranges::equal(like.scene().places, study.scene().places, same<PlaceSpec>) &&
          std::ranges::equal(like.script_given().trials, study.script_given().trials, same_sizes) &&
          std::ranges::equal(like.trials(), trials, [&](const TrialModel& planned, const TrialInForce& trial) {
            return same_trial(planned, trial, b.ambient_c);

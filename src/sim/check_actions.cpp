@@ -49,13 +49,46 @@ class Check {
     if (facts.entrance != nullptr) {
       check_name(scene_.entrances, *facts.entrance, "entrance", scene_, action.where, diagnostics_);
     }
-    if (facts.seat != nullptr) check_name(scene_.seats, *facts.seat, "seat", scene_, action.where, diagnostics_);
-    if (facts.needs == Needs::seat && !seated_) fault(action, std::string(facts.name) + "s without having sat down");
+    if (const std::string* place = facts.takes()) check_place(action, facts, *place);
+    if (facts.needs == Needs::seat && pose_ != Pose::seated)
+      fault(action, std::string(facts.name) + "s without having sat down");
+    if (facts.needs == Needs::rest && pose_ == Pose::upright)
+      fault(action, std::string(facts.name) + "s without having sat down");
     if (facts.course == Course::goes || facts.course == Course::passes) present_ = false;
-    if (facts.course != Course::comes && facts.pose != Pose::kept) seated_ = facts.pose == Pose::seated;
+    const bool comes_in_on_foot = facts.course == Course::comes && facts.place == nullptr;
+    if (!comes_in_on_foot && facts.pose != Pose::kept) pose_ = pose_after(facts);
   }
 
  private:
+  [[nodiscard]] const PlaceSpec* place_of(const std::string& id) const {
+    const auto place = std::ranges::find(scene_.places, id, &PlaceSpec::id);
+    return place == scene_.places.end() ? nullptr : &*place;
+  }
+  [[nodiscard]] bool is_seat(const std::string& id) const {
+    return std::ranges::find(scene_.seats, id, &SeatSpec::id) != scene_.seats.end();
+  }
+  [[nodiscard]] Pose pose_after(const ActionFacts& facts) const {
+    if (facts.pose != Pose::of_place) return facts.pose;
+    const PlaceSpec* place = place_of(*facts.place);
+    if (place == nullptr) return Pose::seated;
+    return place->posture == PlacePosture::lie ? Pose::lying : Pose::upright;
+  }
+  /// Is there such a place, and is it one for this action?
+  void check_place(const ScriptedAction& action, const ActionFacts& facts, const std::string& id) {
+    const PlaceSpec* place = place_of(id);
+    const bool seat = is_seat(id);
+    if (place == nullptr && !seat) {
+      if (facts.seat != nullptr) return check_name(scene_.seats, id, "seat", scene_, action.where, diagnostics_);
+      std::vector<std::string> known;
+      for (const PlaceSpec& other : scene_.places) known.push_back(other.id);
+      for (const SeatSpec& other : scene_.seats) known.push_back(other.id);
+      return diagnostics_.error(action.where, "place '" + id + "' is not in " + scene_.name + near_or_all(id, known));
+    }
+    const char* verb = seat ? "sit" : place->posture == PlacePosture::lie ? "lie" : "stand";
+    if (facts.pose != Pose::of_place && facts.name != verb) {
+      diagnostics_.error(action.where, "'" + id + "' is a place to " + verb + ": `" + verb + ": " + id + "`");
+    }
+  }
   void fault(const ScriptedAction& action, const std::string& what) {
     diagnostics_.error(action.where, "'" + person_.id + "' " + what);
   }
@@ -74,7 +107,7 @@ class Check {
   Diagnostics& diagnostics_;
   double last_at_s_ = 0.0;
   bool present_ = false;
-  bool seated_ = false;
+  Pose pose_ = Pose::upright;
 };
 
 }  // namespace

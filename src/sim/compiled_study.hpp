@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "body/humanoid.hpp"
+#include "body/lying.hpp"
 #include "body/seating.hpp"
 #include "body/walkable_floor.hpp"
 #include "effects/pipeline.hpp"
@@ -35,6 +36,12 @@ struct SeatPlan {
   }
 };
 
+/// A place to lie as one person uses it.
+struct LyingPlan {
+  body::LyingPlace bed;
+  SeatPlan edge;  ///< its place is that of the bed
+};
+
 /// One person of one trial.
 struct PersonModel {
   PersonInForce spec;
@@ -46,6 +53,7 @@ struct PersonModel {
   [[nodiscard]] bool can_stand(const Vec2& place, const Vec2& facing, double half_depth_m) const noexcept;
   /// By seat, of those that the script asks for; of all that can be reached if any seat may do.
   std::map<std::string, SeatPlan, std::less<>> seats{};
+  std::map<std::string, LyingPlan, std::less<>> beds{};  ///< by place, of those that the script asks for
   [[nodiscard]] bool can_use(std::string_view seat) const { return seats.contains(seat); }
   [[nodiscard]] const SeatPlan& seat_plan(std::string_view seat) const { return seats.find(seat)->second; }
   BodyRadiance radiance{};

@@ -56,18 +56,23 @@ struct StillPeriods {
   [[nodiscard]] double rest_s(double u, double v) const noexcept;
 };
 
+/// Posture shifts and fidgets of seated office workers, a second. Ref: [ApplErgon2024]: 9 and 13 in 15 minutes.
+inline constexpr double shift_rate_per_s = 9.0 / 900.0;
+inline constexpr double fidget_rate_per_s = 13.0 / 900.0;
+
 /// All that somebody does in one situation. Shifts and fidgets may be empty, tasks not.
 struct Repertoire {
   std::span<const Act> shifts, fidgets, tasks;
   std::span<const Hold> holds;
   StillPeriods still;
+  double shifts_per_s = shift_rate_per_s, fidgets_per_s = fidget_rate_per_s;  ///< of the mean person
 
   [[nodiscard]] std::span<const Act> acts(ActKind kind) const noexcept {
     return kind == ActKind::shift ? shifts : kind == ActKind::fidget ? fidgets : tasks;
   }
 };
 
-enum class Bearing { seated, standing, walking };
+enum class Bearing { seated, standing, walking, lying };
 enum class Talk { none, listens, speaks };
 [[nodiscard]] const Repertoire& repertoire(Bearing bearing, std::optional<Activity> activity, Talk talk) noexcept;
 

@@ -48,6 +48,12 @@ constexpr Bounds bounds_of(Channel channel) noexcept {
     case Channel::left_hand_to_head:
     case Channel::right_hand_to_head:
       return {0.0, 1.0};
+    case Channel::roll:
+      return {radians(-100), radians(100)};
+    case Channel::raise:
+      return {0.0, radians(60)};
+    case Channel::curl:
+      return {0.0, 1.0};
     case Channel::chair_turn:
       break;
   }
@@ -56,6 +62,7 @@ constexpr Bounds bounds_of(Channel channel) noexcept {
 
 Bearing bearing_of(Stage stage) noexcept {
   if (stage == Stage::seated) return Bearing::seated;
+  if (stage == Stage::lying) return Bearing::lying;
   return stage == Stage::standing ? Bearing::standing : Bearing::walking;
 }
 
@@ -102,8 +109,14 @@ void NaturalMotion::enter(body::Motion& motion, const Situation& situation) {
   if (situation.bearing == Bearing::seated) {
     home_[static_cast<std::size_t>(Channel::chair_turn)] = motion.target(Channel::chair_turn);
   }
+  if (situation.bearing == Bearing::lying) {
+    home_[static_cast<std::size_t>(Channel::raise)] = motion.target(Channel::raise);
+  }
   for (const Hold& hold : repertoire().holds) home_[static_cast<std::size_t>(hold.channel)] = hold.value;
   rest_ = home_;
+  if (situation.bearing == Bearing::lying) {
+    for (const Channel channel : {Channel::roll, Channel::curl}) rest_of(channel) = motion.target(channel);
+  }
   motion.move_in_steps_of(std::max(1, tick_rate_hz_ / small_movements_hz));
   for (std::size_t i = 0; i < body::n_channels; ++i) motion.adjust(static_cast<Channel>(i), rest_[i], settles_s);
   act_ = nullptr;
@@ -127,8 +140,8 @@ void NaturalMotion::attend(const Attention& attention) {
 /// person's liveliness; tasks fill what is left.
 ActKind NaturalMotion::draw_kind() {
   const Repertoire& all = repertoire();
-  const double shifts = all.shifts.empty() ? 0.0 : shift_rate_per_s * liveliness_;
-  const double fidgets = all.fidgets.empty() ? 0.0 : fidget_rate_per_s * liveliness_;
+  const double shifts = all.shifts.empty() ? 0.0 : all.shifts_per_s * liveliness_;
+  const double fidgets = all.fidgets.empty() ? 0.0 : all.fidgets_per_s * liveliness_;
   const double task_s = mean_s(all.tasks);
   const double still_s = (1.0 - goes_on) * all.still.mean_s() / liveliness_;
   const double cycle_s =
@@ -198,7 +211,9 @@ void NaturalMotion::settle(body::Motion& motion, std::optional<Activity> activit
 void NaturalMotion::tick(body::Motion& motion, std::optional<Activity> activity, const Attention& attention) {
   ++tick_;
   const Stage stage = motion.stage();
-  if (stage == Stage::sitting_down || stage == Stage::rising) {
+  const bool on_the_way = stage == Stage::sitting_down || stage == Stage::rising || stage == Stage::lying_down ||
+                          stage == Stage::getting_up;
+  if (on_the_way) {
     situation_.reset();
     act_ = nullptr;
     return;

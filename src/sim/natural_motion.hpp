@@ -17,10 +17,6 @@ struct Attention {
   double towards = 0.0;  ///< of a listener: the turn of the head that looks at who speaks, radians to the left
 };
 
-/// Posture shifts and fidgets of seated office workers, a second. Ref: [ApplErgon2024]: 9 and 13 in 15 minutes.
-inline constexpr double shift_rate_per_s = 9.0 / 900.0;
-inline constexpr double fidget_rate_per_s = 13.0 / 900.0;
-
 /// A value; draws from a stream of its own.
 class NaturalMotion {
  public:

@@ -79,6 +79,9 @@ Presence Pedestrian::presence() const {
     const Vec2 middle = mine.position - 0.5 * back_m(motion_.spine_tilt()) * ahead;
     mine.trunk = {middle - beside_m * right, middle + beside_m * right,
                   body.half_depth_m() + 0.5 * back_m(motion_.spine_tilt())};
+  } else if (motion_.stage() == Stage::lying) {
+    mine.gap_m = sitter_gap_m;
+    mine.room = mine.trunk = {mine.position, mine.position, body.trunk_radius_m()};
   } else {
     mine.gap_m = sitter_gap_m;
     mine.room = {mine.position, motion_.drawn_back(), clearance_m};
@@ -150,13 +153,15 @@ void Pedestrian::end_passing(std::span<const Presence> others) noexcept {
     return distance(motion_.position(), other.trunk) < person_->humanoid.trunk_radius_m();
   });
   const bool done = on_feet() ? !target_ || glm::distance(motion_.position(), held_up_at_) > passed_m
-                              : motion_.stage() == Stage::seated;
+                              : motion_.stage() == Stage::seated || motion_.stage() == Stage::lying;
   if (clear && done) solidity_ = PersonSolidity::solid;
 }
 
 Progress Pedestrian::stand_up(std::span<const Presence> others, std::int64_t now) {
   if (motion_.stage() == Stage::standing) return motion_.settled() ? Progress::done : Progress::going_on;
-  const bool on_seat = motion_.stage() == Stage::seated || motion_.stage() == Stage::sitting_down;
+  const Stage stage = motion_.stage();
+  const bool on_seat =
+      stage == Stage::seated || stage == Stage::sitting_down || stage == Stage::lying || stage == Stage::lying_down;
   if (on_seat && (solidity_ != PersonSolidity::solid || free_to_draw_back(motion_.drawn_back(), others))) {
     motion_.rise();
     wished_way_.reset();
@@ -331,7 +336,8 @@ void Pedestrian::keep_distance(std::span<const Presence> others, std::size_t n_b
 /// Would this tick's step bring my trunk into somebody's, or deeper into it?
 bool Pedestrian::bumps_into(std::span<const Presence> others) const {
   constexpr double near_m = 0.05;  // more than any step
-  const bool moves = motion_.stage() != Stage::seated && motion_.stage() != Stage::standing;
+  const bool moves =
+      motion_.stage() != Stage::seated && motion_.stage() != Stage::standing && motion_.stage() != Stage::lying;
   if (!moves || solidity_ != PersonSolidity::solid) return false;
   const double radius_m = person_->humanoid.trunk_radius_m();
   const Vec2 here = motion_.position();

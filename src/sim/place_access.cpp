@@ -4,6 +4,7 @@
 #include <array>
 #include <glm/geometric.hpp>
 
+#include "body/lying.hpp"
 #include "body/seat_height.hpp"
 #include "core/text.hpp"
 
@@ -126,6 +127,43 @@ std::string PlaceAccess::why_no_place(const SeatSpec& seat) const {
            fixed(std::ceil(too_far_m / fine_m) * fine_m, 2) + " m forward, where one sits nearer to the edge";
   }
   return no_place;
+}
+
+/// out_m: from the place's point, the way one faces who sits there.
+body::SeatPlace PlaceAccess::edge_of(const PlaceSpec& place, double heading, double out_m) const {
+  const Vec2 out = out_m * direction_of(heading);
+  const Vec3 up(out.x, body::edge_height_m(person_.humanoid), out.y);
+  return {{rotation_from_heading(heading), place.world_from_place.origin + up}, scene_.floor.height_m(), {}};
+}
+
+std::optional<LyingPlan> PlaceAccess::plan_to_lie(const PlaceSpec& place) const {
+  constexpr double farthest_m = 1.6;  // assumed: the far half of a wide bed, and room to stand
+  const double facing_feet = heading_of(place.world_from_place);
+  const body::SeatPlace middle = edge_of(place, facing_feet, 0.0);
+  if (body::unfit_height(person_.humanoid, middle)) return std::nullopt;
+  const double fall_back_m = body::fall_back_m(person_.humanoid, middle), keep_m = person_.humanoid.half_depth_m();
+  for (const std::array sides{std::array{0.5 * pi, -0.5 * pi}, std::array{0.0, 0.0}}; const auto& turns : sides) {
+    for (double ahead_m = fall_back_m; ahead_m <= farthest_m; ahead_m += step_m) {
+      for (const double turn : turns) {
+        LyingPlan plan;
+        plan.edge.place = edge_of(place, facing_feet + turn, ahead_m - fall_back_m);
+        plan.edge.stand_back_m = -fall_back_m;
+        plan.edge.half_depth_m = keep_m;
+        const Frame& edge = plan.edge.place.world_from_seat;
+        const Vec2 stand = plan.edge.stand(edge);
+        if (!person_.can_stand(stand, direction_of(heading_of(edge)), keep_m)) continue;
+        if (!is_open_before(edge, fall_back_m) || !can_go_to_(stand)) continue;
+        plan.bed = {place.world_from_place, plan.edge.place};
+        return plan;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::string PlaceAccess::why_no_edge(const PlaceSpec& place) const {
+  if (const auto unfit = body::unfit_height(person_.humanoid, edge_of(place, 0.0, 0.0))) return *unfit;
+  return "no path leads to a free place to stand at either side of it or at its foot";
 }
 
 }  // namespace pirsim::sim

@@ -1,4 +1,4 @@
-// From where one person gets onto what there is to sit on.
+// From where one person gets onto what there is to sit or lie on.
 #pragma once
 
 #include <functional>
@@ -32,7 +32,13 @@ class PlaceAccess {
   static constexpr const char* no_place =
       "no path leads to a free place to stand right before it, or up to a metre behind or beside it";
 
+  /// From the side whose edge is nearer, or from the foot, if somebody stands there whose calves touch the edge.
+  [[nodiscard]] std::optional<LyingPlan> plan_to_lie(const PlaceSpec& place) const;
+  /// Of a place to lie without a plan.
+  [[nodiscard]] std::string why_no_edge(const PlaceSpec& place) const;
+
  private:
+  [[nodiscard]] body::SeatPlace edge_of(const PlaceSpec& place, double heading, double out_m) const;
   [[nodiscard]] bool find_place_before(const Frame& seat, SeatPlan& plan) const;
   [[nodiscard]] bool find_place_behind(const Frame& seat, SeatPlan& plan, double farthest_m) const;
   [[nodiscard]] bool is_open_before(const Frame& seat, double ahead_m) const;

@@ -40,6 +40,7 @@ class Rehearsal {
       const ActionFacts facts = facts_of(what);
       const bool comes_in = facts.course == ActionFacts::Course::comes && facts.entrance != nullptr;
       if (facts.appears_at != nullptr) come_into_being(*facts.appears_at, where);
+      if (facts.course == ActionFacts::Course::comes && facts.place != nullptr) be_at(*facts.place, where);
       if (comes_in) come_in_by(*facts.entrance);
       if (comes_in && !(i + 1 < actions.size() && leads_on(actions[i + 1]))) {
         go_to(inside_of(door_of(*facts.entrance), person_.humanoid),
@@ -48,6 +49,7 @@ class Rehearsal {
       if (!at_) continue;
       for (const Vec2& point : facts.walks_to) go_to(point, "point " + text(point), where);
       if (facts.seat != nullptr) sit_down(*facts.seat, where);
+      if (facts.place != nullptr && facts.course != ActionFacts::Course::comes) take_place(*facts.place, where);
       if (at_ && facts.if_taken == action::IfTaken::other_seat) note_other_seats();
       if (facts.course == ActionFacts::Course::goes) go_out_by(*facts.entrance, where);
     }
@@ -97,10 +99,7 @@ class Rehearsal {
     const double keep_m = person_.humanoid.half_depth_m(), away_m = grounds_.nearest_solid(place).away_m;
     const std::string who = "'" + person_.spec.id + "' can't appear at " + text(place) + ": ";
     if (away_m <= 0.0) return fail(where, who + inside_of_solid);
-    if (away_m < keep_m) {
-      return fail(where, who + "something solid is " + fixed(away_m, 2) + " m away, and nobody stands nearer than " +
-                             fixed(keep_m, 2) + " m");
-    }
+    if (away_m < keep_m) return fail(where, who + too_near(away_m, keep_m));
     const auto [known, is_new] = grounds_.open_places.try_emplace({person_.floor->clearance_m(), place.x, place.y});
     if (is_new) known->second = is_open(place);
     if (!known->second) fail(where, who + "nobody can get there, for " + no_clear_path());
@@ -123,6 +122,53 @@ class Rehearsal {
       if (reached_m2 >= wanted_m2) return true;
     }
     return places.empty();
+  }
+
+  /// Somebody is at a place who didn't go there, but has to be able to have done so.
+  void be_at(const std::string& id, const Where& where) {
+    const auto place = std::ranges::find(scene_.places, id, &PlaceSpec::id);
+    if (place != scene_.places.end() && place->posture == PlacePosture::stand)
+      return come_into_being(floor_point(place->world_from_place.origin), where);
+    std::vector<Vec2> from;  // an entrance that leads there, or anywhere that one can walk
+    for (const EntranceSpec& door : scene_.entrances) from.push_back(outside_of(door));
+    if (std::ranges::none_of(scene_.entrances, [&](const EntranceSpec& door) { return leads_in(door.id); }))
+      from = places_to_walk();
+    Diagnostics first;
+    for (const Vec2& here : from) {
+      Diagnostics found;
+      Rehearsal from_here(scene_, room_, person_, grounds_, found);
+      from_here.start_at(here, {});
+      from_here.take_place(id, where);
+      if (!found.has_errors()) return start_at(*from_here.at_, {});
+      if (!first.has_errors()) first = found;
+    }
+    for (const Issue& issue : first.issues()) diagnostics_.error(issue.where, issue.message);
+    at_.reset();
+  }
+  void take_place(const std::string& id, const Where& where) {
+    const auto place = std::ranges::find(scene_.places, id, &PlaceSpec::id);
+    if (place == scene_.places.end()) return sit_down(id, where);
+    place->posture == PlacePosture::lie ? lie_down(*place, where) : stand_at(*place, where);
+  }
+  void lie_down(const PlaceSpec& place, const Where& where) {
+    if (const auto plan = access().plan_to_lie(place)) {
+      person_.beds.emplace(place.id, *plan);
+      return start_at(plan->edge.stand(plan->edge.place.world_from_seat), {});
+    }
+    if (!is_shut(behind_)) fail(where, name_of(place) + " can't be reached" + by_whom() + access().why_no_edge(place));
+    at_.reset();
+  }
+  void stand_at(const PlaceSpec& place, const Where& where) {
+    const Vec2 target = floor_point(place.world_from_place.origin);
+    const double keep_m = person_.humanoid.half_depth_m(), away_m = grounds_.nearest_solid(target).away_m;
+    if (away_m >= keep_m || away_m <= 0.0) return go_to(target, name_of(place), where);
+    fail(where, name_of(place) + " can't be stood at" + by_whom() + too_near(away_m, keep_m));
+  }
+  std::string name_of(const PlaceSpec& place) const { return "place '" + place.id + "' of " + scene_.name; }
+  std::string by_whom() const { return " by '" + person_.spec.id + "' from " + text(*at_) + ": "; }
+  static std::string too_near(double away_m, double keep_m) {
+    return "something solid is " + fixed(away_m, 2) + " m away, and nobody stands nearer than " + fixed(keep_m, 2) +
+           " m";
   }
 
   void come_in_by(const std::string& entrance) {
@@ -198,7 +244,7 @@ class Rehearsal {
   /// Why nobody sits down there.
   void tell_of_seat(const SeatSpec& seat, const Where& where) const {
     const std::string name = "seat '" + seat.id + "' of " + scene_.name;
-    const std::string who = " by '" + person_.spec.id + "' from " + text(*at_) + ": ";
+    const std::string who = by_whom();
     if (const auto unfit = body::unfit_height(person_.humanoid, {seat.world_from_seat, scene_.floor.height_m(), {}})) {
       return diagnostics_.error(where, name + ": " + *unfit);
     }

@@ -179,6 +179,7 @@ void print_study(std::ostream& out, const Model& model, const CheckReport& repor
   const ScriptSpec& script = model.script();
   out << scene.name << ": " << counted(scene.meshes.size(), "mesh", "meshes") << ", "
       << counted(scene.sensors.size(), "sensor") << ", " << counted(scene.seats.size(), "seat") << ", "
+      << (scene.places.empty() ? "" : counted(scene.places.size(), "place") + ", ")
       << counted(scene.entrances.size(), "entrance") << ", floor " << fixed(scene.floor.area_m2(), 2) << " m2\n";
   out << script.name << ": " << counted(script.trials.size(), "trial") << " x "
       << counted(static_cast<std::size_t>(script.replicates), "replicate") << " = " << counted(model.n_runs(), "run")

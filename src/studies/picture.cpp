@@ -162,6 +162,11 @@ void mark_seats(const SceneSpec& scene, Marks& marks) {
     marks.lines.push_back({seat.world_from_seat * Vec3(0.0, 0.0, -nose_m), at, seat_colour});
     marks.labels.push_back({at + Vec3(0.0, above_m, 0.0), seat.id, seat_colour});
   }
+  for (const PlaceSpec& place : scene.places) {
+    const Vec3 at = place.world_from_place.origin;
+    marks.lines.push_back({place.world_from_place * Vec3(0.0, 0.0, -nose_m), at, seat_colour});
+    marks.labels.push_back({at + Vec3(0.0, above_m, 0.0), place.id, seat_colour});
+  }
 }
 
 /// The threshold, and the way in.

@@ -8,7 +8,7 @@ import pytest
 import pirsim
 from pirsim import _core, specs
 
-ACTIONS = {"Wait", "Appear", "Enter", "Walk", "Sit", "Work", "Rise", "Leave", "Turn", "Follow"}
+ACTIONS = {"Wait", "Appear", "Enter", "Walk", "Sit", "Work", "Rise", "Leave", "Turn", "Follow", "Lie", "Stand"}
 OF_ACTIONS = {"at_s", "phase", "where"}
 
 

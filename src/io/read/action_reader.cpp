@@ -33,9 +33,20 @@ Action read_wait(const YamlNode& node, Diagnostics& faults) {
   return wait;
 }
 Action read_appear(const YamlNode& node, Diagnostics& faults) {
+  action::Appear appear;
+  if (!node.is_map()) {
+    appear.place = node.text(faults, "appear");
+    return appear;
+  }
   YamlMap map(node, faults, "appear");
-  action::Appear appear{read_point(map.required_child("at_xz_m"), faults, "at_xz_m")};
-  read_numbers(map, appear);
+  if (map.has("place")) {
+    appear.place = map.required_text("place");
+    appear.posture = map.choice("posture", appear.posture,
+                                words_of<LyingPosture, LyingPosture>(field_of<&action::Appear::posture>()));
+  } else {
+    appear.point = read_point(map.required_child("at_xz_m"), faults, "at_xz_m");
+    read_numbers(map, appear);
+  }
   map.finish();
   return appear;
 }
@@ -57,6 +68,24 @@ Action read_sit(const YamlNode& node, Diagnostics& faults) {
   read_fields(map, sit);
   map.finish();
   return sit;
+}
+/// Of who goes to a place: its name, or a map with more.
+template <typename What>
+Action read_place(const YamlNode& node, Diagnostics& faults, const char* name) {
+  What what;
+  if (!node.is_map()) {
+    what.place = node.text(faults, name);
+    return what;
+  }
+  YamlMap map(node, faults, name);
+  what.place = map.required_text("place");
+  read_fields(map, what);
+  map.finish();
+  return what;
+}
+Action read_lie(const YamlNode& node, Diagnostics& faults) { return read_place<action::Lie>(node, faults, "lie"); }
+Action read_stand(const YamlNode& node, Diagnostics& faults) {
+  return read_place<action::Stand>(node, faults, "stand");
 }
 Action read_work(const YamlNode& node, Diagnostics& faults) {
   YamlMap map(node, faults, "work");
@@ -102,12 +131,14 @@ struct ActionKind {
   const char* key;
   Action (*read)(const YamlNode&, Diagnostics&);
 };
-constexpr std::array<ActionKind, 11> kinds{{{"wait_s", read_wait_s},
+constexpr std::array<ActionKind, 13> kinds{{{"wait_s", read_wait_s},
                                             {"wait", read_wait},
                                             {"appear", read_appear},
                                             {"enter", read_enter},
                                             {"walk", read_walk},
                                             {"sit", read_sit},
+                                            {"lie", read_lie},
+                                            {"stand", read_stand},
                                             {"work", read_work},
                                             {"rise", read_rise},
                                             {"turn", read_turn},

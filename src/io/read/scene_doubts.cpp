@@ -13,6 +13,7 @@
 
 #include "geom/floor_distance.hpp"
 #include "geom/floor_overlap.hpp"
+#include "geom/triangle_surface.hpp"
 #include "io/read/scene_parts.hpp"
 #include "schema/scene_unit.hpp"
 
@@ -62,6 +63,7 @@ class SceneDoubts {
     for (std::size_t i = 0; i < scene_.areas.size(); ++i) area(scene_.areas[i], nodes_.areas[i]);
     for (std::size_t i = 0; i < scene_.entrances.size(); ++i) entrance(scene_.entrances[i], nodes_.entrances[i]);
     for (std::size_t i = 0; i < scene_.seats.size(); ++i) seat(scene_.seats[i], nodes_.seats[i]);
+    for (std::size_t i = 0; i < scene_.places.size(); ++i) place(scene_.places[i], nodes_.places[i]);
     neighbours();
   }
 
@@ -177,25 +179,81 @@ class SceneDoubts {
     }
   }
 
-  /// Seats as near as this are one that was copied, or two for one sitter; assumed: less than any chair is wide.
+  struct Spot {
+    std::string name;
+    Vec3 at{0.0};
+    int node = 0;
+  };
   void neighbours() {
+    std::vector<Spot> seats, beds, stands;
+    for (std::size_t i = 0; i < scene_.seats.size(); ++i)
+      seats.push_back({"seat '" + scene_.seats[i].id + "'", scene_.seats[i].world_from_seat.origin, nodes_.seats[i]});
+    for (std::size_t i = 0; i < scene_.places.size(); ++i) {
+      const PlaceSpec& place = scene_.places[i];
+      (place.posture == PlacePosture::lie ? beds : stands)
+          .push_back({"place '" + place.id + "'", place.world_from_place.origin, nodes_.places[i]});
+    }
+    neighbours(seats, "two sitters would sit in each other");
+    neighbours(beds, "two would lie in each other");
+    neighbours(stands, "two would stand in each other");
+  }
+  /// Spots as near as this are one that was copied, or two for one person; assumed: less than any chair is wide.
+  void neighbours(const std::vector<Spot>& spots, const std::string& so) {
     constexpr double least_apart_m = 0.4;
-    const auto place = [&](std::size_t i) -> const Vec3& { return scene_.seats[i].world_from_seat.origin; };
-    std::vector<std::size_t> along_x(scene_.seats.size());
+    std::vector<std::size_t> along_x(spots.size());
     std::iota(along_x.begin(), along_x.end(), std::size_t{0});
-    std::ranges::stable_sort(along_x, {}, [&](std::size_t i) { return place(i).x; });
+    std::ranges::stable_sort(along_x, {}, [&](std::size_t i) { return spots[i].at.x; });
     for (auto i = along_x.begin(); i != along_x.end(); ++i) {
-      for (auto k = i; k != along_x.begin() && place(*i).x - place(*(k - 1)).x < least_apart_m; --k) {
-        const double apart_m = glm::distance(place(*i), place(*(k - 1)));
+      for (auto k = i; k != along_x.begin() && spots[*i].at.x - spots[*(k - 1)].at.x < least_apart_m; --k) {
+        const double apart_m = glm::distance(spots[*i].at, spots[*(k - 1)].at);
         if (apart_m >= least_apart_m) continue;
         const auto [first, second] = std::minmax(*i, *(k - 1));
-        const std::string name = "seat '" + scene_.seats[second].id + "'";
-        tell("neighbours", nodes_.seats[second], name,
-             name + " is " + in_metres(apart_m) + " from seat '" + scene_.seats[first].id +
-                 "': two sitters would sit in each other");
+        tell("neighbours", spots[second].node, spots[second].name,
+             spots[second].name + " is " + in_metres(apart_m) + " from " + spots[first].name + ": " + so);
         break;
       }
     }
+  }
+
+  void place(const PlaceSpec& place, int node) {
+    const std::string name = "place '" + place.id + "'";
+    const auto doubt = [&](const char* kind, const std::string& message) { tell(kind, node, name, name + message); };
+    if (!scene_.floor.contains(floor_point(place.world_from_place.origin))) {
+      return doubt("off the floor", " lies off the floor: who is there isn't counted in the column `people`");
+    }
+    if (place.posture == PlacePosture::lie) return bed(place, doubt);
+    constexpr double most_above_m = 0.1;  // assumed, as of entrances
+    const double above_m = place.world_from_place.origin.y - scene_.floor.height_m();
+    if (std::abs(above_m) <= most_above_m) return;
+    doubt("height",
+          " isn't on the floor, but " + in_metres(std::abs(above_m)) + (above_m > 0.0 ? " above it" : " below it"));
+  }
+  /// There must be something to lie on, from head to feet, and nothing in the way of the body.
+  template <typename Tell>
+  void bed(const PlaceSpec& place, const Tell& doubt) const {
+    constexpr double head_m = 0.7, feet_m = 0.8, chest_m = 0.15;  // assumed: of somebody 1.6 m tall
+    const auto at = [&](double z, double up) { return place.world_from_place * Vec3(0, up, z); };
+    const auto lies_on = [&](double z) { return crossed(at(z, 0.0), at(z, -0.15).y, at(z, 0.1).y) >= 0; };
+    if (!lies_on(0.0)) return doubt("in the air", " is in the air: there is nothing to lie on up to 0.15 m below it");
+    if (const int wall = pierced(at(head_m, chest_m), at(-feet_m, chest_m)); wall >= 0)
+      return doubt("inside",
+                   ": '" + this->name(wall) + "' goes through whoever lies there, from the head (+Z) to the feet");
+    const std::string end = " of its point: too short, or the point isn't under the pelvis (the head lies towards +Z)";
+    if (!lies_on(head_m))
+      return doubt("too short", ": nothing is under the head, " + in_metres(head_m) + " to the +Z" + end);
+    if (!lies_on(-feet_m))
+      return doubt("too short", ": nothing is under the feet, " + in_metres(feet_m) + " to the -Z" + end);
+  }
+  /// The first mesh that the way from a to b goes through, or -1.
+  [[nodiscard]] int pierced(const Vec3& a, const Vec3& b) const {
+    for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
+      const TriMesh& mesh = scene_.meshes[i];
+      for (const auto& [p, q, r] : mesh.triangles) {
+        const double share = distance_to_triangle(a, b - a, mesh.positions[p], mesh.positions[q], mesh.positions[r]);
+        if (share >= 0.0 && share <= 1.0) return static_cast<int>(i);
+      }
+    }
+    return -1;
   }
 
   void seat(const SeatSpec& seat, int node) {

@@ -73,7 +73,8 @@ class MarkupReader {
     const auto type = value_["type"].get<std::string>();
     std::optional<Markup> result;
     if (type == "sensor") result = placed<SensorSpec>();
-    if (type == "seat") result = placed<SeatSpec>();
+    if (type == "seat") result = seat();
+    if (type == "place") result = place();
     if (type == "entrance") result = placed<EntranceSpec>();
     if (type == "floor") result = floor();
     if (type == "area") result = area();
@@ -88,7 +89,7 @@ class MarkupReader {
   }
 
  private:
-  static std::string types_told() { return "known are sensor, seat, entrance, floor, area, surface and ignore"; }
+  static std::string types_told() { return "known are sensor, seat, place, entrance, floor, area, surface and ignore"; }
 
   /// Names and numbers of what has a place in the room.
   template <typename Spec>
@@ -111,6 +112,40 @@ class MarkupReader {
       if constexpr (std::same_as<Value, double>) value = number(field.name, value, field.range);
     });
     return spec;
+  }
+  SeatSpec seat() {
+    only({"type", "id", "for"});
+    return {name("id"), {}, uses()};
+  }
+  /// One to sit is a seat.
+  Markup place() {
+    only({"type", "id", "posture", "for"});
+    const std::string id = name("id"), posture = value_.contains("posture") ? name("posture") : "";
+    const std::vector<std::string> postures{"sit", "lie", "stand"};
+    if (posture == "sit") return SeatSpec{id, {}, uses()};
+    for (const auto& [word, meaning] : Words<PlacePosture>::all) {
+      if (posture == word) return PlaceSpec{id, meaning, {}, uses()};
+    }
+    if (posture.empty()) {
+      error("", "place without 'posture'; known are sit, lie and stand");
+    } else {
+      error("/posture", "'posture' can't be '" + posture + "'" + near_or_all(posture, postures));
+    }
+    return PlaceSpec{};
+  }
+  /// A word, or a list of them.
+  std::vector<std::string> uses() {
+    std::vector<std::string> found;
+    if (!value_.contains("for")) return found;
+    const json& given = value_["for"];
+    const json list = given.is_array() ? given : json::array({given});
+    for (const json& word : list) {
+      if (!word.is_string()) return error("/for", "'for' must be a word or a list of words"), found;
+      found.push_back(word.get<std::string>());
+      const std::string fault = use_fault(found.back());
+      if (!fault.empty()) error("/for", "'for': " + fault);
+    }
+    return found;
   }
   mark::Floor floor() {
     only({"type", "polygon_xz_m", "occludes"});
@@ -210,7 +245,9 @@ class MarkupReader {
 
 }  // namespace
 
-std::vector<std::string> mark_types() { return {"sensor", "seat", "entrance", "floor", "area", "surface", "ignore"}; }
+std::vector<std::string> mark_types() {
+  return {"sensor", "seat", "place", "entrance", "floor", "area", "surface", "ignore"};
+}
 
 std::optional<NodeMark> read_mark(const GivenMark& given, Diagnostics& faults, GroupedWarnings& warnings) {
   return MarkupReader(given, faults, warnings).read();

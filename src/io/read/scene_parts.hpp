@@ -44,7 +44,8 @@ struct Ignore {};
 }  // namespace mark
 
 /// Sensors, seats and entrances without their place, which is the node's.
-using Markup = std::variant<SensorSpec, SeatSpec, EntranceSpec, mark::Floor, mark::Area, mark::Surface, mark::Ignore>;
+using Markup =
+    std::variant<SensorSpec, SeatSpec, PlaceSpec, EntranceSpec, mark::Floor, mark::Area, mark::Surface, mark::Ignore>;
 /// The outline that a mark gives, or null.
 [[nodiscard]] const mark::Outlined* outlined(const Markup* markup);
 
@@ -85,10 +86,10 @@ void warn_of_near_marks(const GltfDocument& document, int node, GroupedWarnings&
 
 // What a scene may say, but hardly means.
 
-/// Numbers of what bears the marks: nodes by their index, then what a marks file places. Seats, entrances and meshes
-/// as in the scene.
+/// Numbers of what bears the marks: nodes by their index, then what a marks file places. Seats, places, entrances
+/// and meshes as in the scene.
 struct MarkedNodes {
-  std::vector<int> sensors, seats, entrances, meshes, areas;
+  std::vector<int> sensors, seats, places, entrances, meshes, areas;
   int floor = 0;
   std::set<int> as_meant = {};  ///< nothing about them is in doubt
 };

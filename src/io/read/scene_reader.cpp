@@ -123,6 +123,7 @@ class SceneBuilder {
     const auto name = [](const char* type, const std::string& id) { return std::string(type) + " '" + id + "'"; };
     if (const auto* sensor = std::get_if<SensorSpec>(&markup)) return name("sensor", sensor->id);
     if (const auto* seat = std::get_if<SeatSpec>(&markup)) return name("seat", seat->id);
+    if (const auto* place = std::get_if<PlaceSpec>(&markup)) return name("place", place->id);
     if (const auto* entrance = std::get_if<EntranceSpec>(&markup)) return name("entrance", entrance->id);
     if (const auto* area = std::get_if<mark::Area>(&markup)) return name("area", area->id);
     return std::holds_alternative<mark::Floor>(markup) ? "a floor" : "";
@@ -172,6 +173,7 @@ class SceneBuilder {
   void add_mark(const PlacedNode& placed, const Markup& markup) {
     if (const auto* sensor = std::get_if<SensorSpec>(&markup)) add_sensor(placed, *sensor);
     if (const auto* seat = std::get_if<SeatSpec>(&markup)) add_seat(placed, *seat);
+    if (const auto* place = std::get_if<PlaceSpec>(&markup)) add_place(placed, *place);
     if (const auto* entrance = std::get_if<EntranceSpec>(&markup)) add_entrance(placed, *entrance);
     if (const auto* outline = outlined(&markup)) add_outlined(placed, *outline, markup);
   }
@@ -255,6 +257,13 @@ class SceneBuilder {
     nodes_.seats.push_back(placed.node);
     seat.world_from_seat = upright_frame(placed);
     spec_.seats.push_back(std::move(seat));
+  }
+  void add_place(const PlacedNode& placed, PlaceSpec place) {
+    if (!has_room(spec_.places.size(), limits::places, "places")) return;
+    check_unique("seat", place.id, placed.node);  // a seat is a place, and scripts name either
+    nodes_.places.push_back(placed.node);
+    place.world_from_place = upright_frame(placed);
+    spec_.places.push_back(std::move(place));
   }
   void add_entrance(const PlacedNode& placed, EntranceSpec entrance) {
     if (!has_room(spec_.entrances.size(), limits::entrances, "entrances")) return;

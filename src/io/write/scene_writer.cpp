@@ -77,6 +77,11 @@ void add_mark(GltfBuilder& document, const char* type, const Spec& spec, const F
     using FieldValue = std::remove_cvref_t<decltype(spec.*field.member)>;
     if constexpr (std::same_as<FieldValue, std::optional<std::string>>) {
       if (spec.*field.member) members[field.name] = Value(*(spec.*field.member));
+    } else if constexpr (std::same_as<FieldValue, std::vector<std::string>>) {
+      Value::Array words(spec.uses.begin(), spec.uses.end());
+      if (!words.empty()) members["for"] = Value(std::move(words));
+    } else if constexpr (Worded<FieldValue>) {
+      members[field.name] = Value(std::string(word_of(spec.*field.member)));
     } else if constexpr (!std::same_as<FieldValue, Frame>) {
       members[field.name] = Value(spec.*field.member);
     }
@@ -97,6 +102,7 @@ GltfBuilder document_of(const SceneSpec& scene, const Where& where) {
   for (const EntranceSpec& door : scene.entrances) add_mark(document, "entrance", door, door.world_from_entrance);
   for (const SensorSpec& sensor : scene.sensors) add_mark(document, "sensor", sensor, sensor.world_from_sensor);
   for (const SeatSpec& seat : scene.seats) add_mark(document, "seat", seat, seat.world_from_seat);
+  for (const PlaceSpec& place : scene.places) add_mark(document, "place", place, place.world_from_place);
   return document;
 }
 

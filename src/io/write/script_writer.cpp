@@ -32,6 +32,11 @@ struct ActionWriter {
     }
   }
   void operator()(const action::Appear& appear) {
+    if (!appear.place.empty()) {
+      entry["appear"]["place"] = appear.place;
+      entry["appear"]["posture"] = word_of(appear.posture);
+      return;
+    }
     entry["appear"]["at_xz_m"] = point(appear.point);
     entry["appear"]["heading_deg"] = number(appear.heading_deg);
   }
@@ -44,6 +49,8 @@ struct ActionWriter {
   void operator()(const action::Sit& sit) {
     entry["sit"] = same(sit, action::Sit{sit.seat}) ? YAML::Node(sit.seat) : written(sit);
   }
+  void operator()(const action::Lie& lie) { entry["lie"] = written(lie); }
+  void operator()(const action::Stand& stand) { entry["stand"] = written(stand); }
   void operator()(const action::Work& work) { entry["work"] = written(work); }
   void operator()(const action::Rise&) { entry["rise"] = YAML::Node(YAML::NodeType::Null); }
   void operator()(const action::Turn& turn) { entry["turn"] = written(turn); }

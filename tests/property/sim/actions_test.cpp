@@ -104,7 +104,8 @@ TEST_CASE("whoever isn't there yet can wait or come, and do nothing else") {
                                 action::Enter{"door"}, action::Walk{{{1.0, -1.0}}},
                                 action::Sit{"S4"},     action::Work{},
                                 action::Rise{},        action::Leave{"door"},
-                                action::Turn{10.0},    action::Follow{{0.0, 1.0}, {{1.0, -1.0}, {2.0, -1.0}}, {}}};
+                                action::Turn{10.0},    action::Follow{{0.0, 1.0}, {{1.0, -1.0}, {2.0, -1.0}}, {}},
+                                action::Lie{"bed"},    action::Stand{"stove"}};
   REQUIRE(all.size() == std::variant_size_v<Action>);
   for (const Action& what : all) {
     const ActionFacts facts = facts_of(what);
