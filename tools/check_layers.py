@@ -152,8 +152,17 @@ def violations(root: pathlib.Path):
     yield from cycles(graph)
     yield from listed_again(root)
     yield from second_lists(root)
+    yield from split_names(root)
     for folder in OUTSIDE:
         yield from private_includes(root, folder)
+
+
+def split_names(root: pathlib.Path):
+    """CMake's lists split a test's name at a ';': two tests that don't exist, and none that runs."""
+    for file in sorted(root.glob("tests/**/*_test.cpp")):
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            if re.match(r'TEST_CASE\("[^"]*;', line):
+                yield f"{file.relative_to(root)}:{number}: a test's name has a ';', at which CTest splits it"
 
 
 def private_includes(root: pathlib.Path, folder: str):

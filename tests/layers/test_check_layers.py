@@ -19,6 +19,16 @@ DESCRIPTION = ("struct Fields<DoorSpec> {\n  static constexpr std::tuple all{\n"
                + ",\n".join(f"      FIELD({name})" for name in NAMES) + ",\n      LABEL(where)};\n};\n")
 
 
+class SplitNames(unittest.TestCase):
+    def test_a_semicolon_in_a_name_and_none_elsewhere(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "tests/unit/door_test.cpp"
+            file.parent.mkdir(parents=True)
+            file.write_text('TEST_CASE("opens, shuts") { run("a;b"); }\nTEST_CASE("opens; shuts") {}\n')
+            self.assertEqual([text.split(" ")[0] for text in check_layers.split_names(pathlib.Path(folder))],
+                             ["tests/unit/door_test.cpp:2:"])
+
+
 class ListedAgain(unittest.TestCase):
     def found_in(self, text):
         with tempfile.TemporaryDirectory() as folder:

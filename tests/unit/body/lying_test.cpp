@@ -158,7 +158,7 @@ TEST_CASE("whoever lies down, turns over and gets up keeps together, above the m
   }
 }
 
-TEST_CASE("on the back the face looks up and the head lies towards +Z; on a side it looks to that side", "[lying]") {
+TEST_CASE("on the back the face looks up and the head lies towards +Z, on a side it looks to that side", "[lying]") {
   const Bed bed{0.45, 1.0, 0.0};
   Motion motion = bed.before(man());
   motion.sit_down(bed.place(man()).edge);

@@ -81,6 +81,7 @@ TEST_CASE("an action refuses the activities of others, and lists its own") {
              contains("s.yaml:11:") && contains("activity: expected one of typing, reading, meeting, phone, got"));
   CHECK_THAT(told("activity: reading", "activity: readin"), contains("(did you mean 'reading'?)"));
   CHECK_THAT(told("activity: whiteboard", "activity: typing"),
-             contains("activity: expected one of meeting, phone, whiteboard, got"));
+             contains("activity: expected one of meeting, phone, whiteboard, reading, sleeping, watching_tv, cooking, "
+                      "washing, eating, got"));
   CHECK_THAT(told("activity: phone", "activity: meeting"), contains("activity: expected phone, got"));
 }
