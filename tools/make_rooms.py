@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the shipped rooms as glTF: data/rooms/{meeting_room,open_office,open_hall,two_rooms}.gltf.
+"""Writes the shipped rooms as glTF: data/rooms/{meeting_room,open_office,open_hall,two_rooms,flat}.gltf.
 
 The meeting room follows data/rooms/room_layouts.json; `--alternative N` (1-8, or `all`) writes
 meeting_room_altN.gltf from one of the other layouts that the paper's data allow. The output depends on nothing but
@@ -330,6 +330,84 @@ def two_rooms():
     return scene
 
 
+# -- a flat: invented, for two who live there -------------------------------------------------------------------------
+
+def add_place(scene, name, posture, uses, at, yaw_deg):
+    mark = {"type": "place", "id": name, "posture": posture, "for": uses}
+    scene.node(name, at=at, turned=rotation(yaw_deg), mark=mark)
+
+
+def wall_along_x(z, low, high, gaps, height):
+    """Boxes of an inner wall with doorways, each (from, to)."""
+    near, far = z + WALL / 2, z - WALL / 2
+    starts, ends = [low, *(b for _, b in gaps)], [*(a for a, _ in gaps), high]
+    walls = [((a, 0, far), (b, height, near)) for a, b in zip(starts, ends)]
+    return walls + [((a, DOOR_HEIGHT, far), (b, height, near)) for a, b in gaps]
+
+
+def flat():
+    """9 x 8 m: a corridor along the middle; living room and kitchen in front, bedroom, bath and study at the back."""
+    scene = Scene("flat")
+    stock = Stock(scene)
+    height, width, depth, front, back = 2.5, 9.0, 8.0, 3.4, 4.6
+    plaster, wood, fabric = stock.box("plaster"), stock.box("wood"), stock.box("fabric")
+    structure = scene.node("structure")
+    floor = scene.geometry([(0, 0, 0), (width, 0, 0), (width, 0, -depth), (0, 0, -depth)], [(0, 1, 2), (0, 2, 3)])
+    scene.node("floor", structure, mesh=scene.mesh("floor", floor, stock.material("carpet")), mark={"type": "floor"})
+    rooms = {"living_room": (0, 5.5, 0, front), "kitchen": (5.5, width, 0, front), "corridor": (0, width, front, back),
+             "bedroom": (0, 4.0, back, depth), "bath": (4.0, 6.4, back, depth), "study": (6.4, width, back, depth)}
+    for name, (x0, x1, z0, z1) in rooms.items():
+        corners = [[x0, -z0], [x1, -z0], [x1, -z1], [x0, -z1]]
+        scene.node(name, structure, mark={"type": "area", "id": name, "polygon_xz_m": corners})
+    outer = [((-WALL, height, -depth - WALL), (width + WALL, height + WALL, WALL)),
+             ((-WALL, 0, 0), (width + WALL, height, WALL)), ((-WALL, 0, -depth - WALL), (width + WALL, height, -depth)),
+             ((width, 0, -depth), (width + WALL, height, 0)), ((-WALL, 0, -3.55), (0, height, 0)),
+             ((-WALL, 0, -depth), (0, height, -4.45)), ((-WALL, DOOR_HEIGHT, -4.45), (0, height, -3.55))]
+    inner = (wall_along_x(-front, 0, width, [(2.0, 2.9), (6.6, 7.5)], height)
+             + wall_along_x(-back, 0, width, [(1.5, 2.4), (4.8, 5.7), (7.2, 8.1)], height)
+             + [((x - WALL / 2, 0, -z1), (x + WALL / 2, height, -z0))
+                for x, z0, z1 in ((5.5, 0, front), (4.0, back, depth), (6.4, back, depth))])
+    for number, (low, high) in enumerate(outer + inner, 1):
+        scene.box("wall %d" % number, structure, plaster, low, high)
+    scene.node("door", structure, at=[0, 0, -4.0], turned=rotation(-90),
+               mark={"type": "entrance", "id": "door", "width_m": DOOR_WIDTH, "outside_m": 1.5})
+    for name, kind, low, high in (
+            ("sofa", fabric, (1.2, 0, -0.9), (3.2, 0.42, -0.02)),
+            ("sofa back", fabric, (1.2, 0.42, -0.22), (3.2, 0.85, -0.02)),
+            ("television", stock.box("screen"), (1.4, 0.6, -3.33), (1.9, 1.1, -3.29)),
+            ("dining table", wood, (3.7, 0.71, -2.2), (5.1, 0.74, -1.4)),
+            ("counter", wood, (5.7, 0, -0.6), (8.98, 0.9, -0.02)),
+            ("fridge", plaster, (8.3, 0, -3.3), (8.9, 1.8, -2.7)),
+            ("bed", fabric, (0.05, 0, -7.2), (2.05, 0.5, -5.6)), ("wardrobe", wood, (2.9, 0, -7.98), (3.9, 2.1, -7.4)),
+            ("toilet", plaster, (4.25, 0, -7.98), (4.65, 0.42, -7.3)),
+            ("basin", plaster, (5.95, 0.7, -6.3), (6.33, 0.85, -5.7)),
+            ("shower tray", plaster, (5.5, 0, -7.98), (6.33, 0.04, -7.15)),
+            ("desk", wood, (6.9, 0.71, -7.95), (8.5, 0.74, -7.25)),
+            ("shelf", wood, (8.65, 0, -6.6), (8.97, 2.0, -5.2))):
+        scene.box(name, None, kind, low, high)
+    for name, uses, at, yaw in (
+            ("sofa_left", ["tv", "rest", "read"], [1.7, 0.51, -0.55], 0),
+            ("sofa_right", ["tv", "rest", "read"], [2.7, 0.51, -0.55], 0),
+            ("table_1", ["eat", "work", "play"], [4.05, 0.53, -1.15], 0),
+            ("table_2", ["eat", "play"], [4.75, 0.53, -1.15], 0),
+            ("table_3", ["eat", "play"], [4.05, 0.53, -2.45], 180),
+            ("table_4", ["eat", "play"], [4.75, 0.53, -2.45], 180),
+            ("wc", ["toilet"], [4.45, 0.51, -7.5], 180), ("desk_chair", ["work"], [7.7, 0.53, -6.95], 0)):
+        add_place(scene, name, "sit", uses, at, yaw)
+    for name, uses, at, yaw in (("stove", ["cook"], [6.6, 0, -0.95], 180),
+                                ("sink", ["chores", "cook"], [7.8, 0, -0.95], 180),
+                                ("washbasin", ["wash", "dress"], [5.6, 0, -6.0], -90),
+                                ("shower", ["shower"], [5.1, 0, -7.0], 0)):
+        add_place(scene, name, "stand", uses, at, yaw)
+    for name, z in (("bed_left", -6.0), ("bed_right", -6.8)):
+        add_place(scene, name, "lie", ["sleep"], [1.05, 0.5, z], -90)
+    for name, at, yaw in (("PIR_living", [5.43, 2.2, -1.8], 90), ("PIR_kitchen", [8.98, 2.2, -1.7], 90),
+                          ("PIR_corridor", [8.98, 2.2, -4.0], 90), ("PIR_bedroom", [3.93, 2.2, -6.3], 90),
+                          ("PIR_bath", [5.2, 2.2, -7.98], 180), ("PIR_study", [6.47, 2.2, -6.0], -90)):
+        add_sensor(scene, None, name, "EKMC1604111", at, yaw, 20)
+    return scene
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--alternative", metavar="N",
@@ -342,7 +420,7 @@ def main():
 
     if arguments.alternative is None:
         rooms = {"meeting_room": meeting_room(layouts["meeting_room"], "meeting room"),
-                 "open_office": open_office(), "open_hall": open_hall(), "two_rooms": two_rooms()}
+                 "open_office": open_office(), "open_hall": open_hall(), "two_rooms": two_rooms(), "flat": flat()}
     else:
         names = [str(n) for n in range(1, len(alternatives) + 1)]
         wanted = names if arguments.alternative == "all" else [arguments.alternative]

@@ -65,13 +65,43 @@ struct ProfileSpec {
   bool operator==(const ProfileSpec&) const = default;
 };
 
+/// Where a resident is on working days.
+enum class Occupation {
+  works,   ///< away from `leaves` to `comes_home`
+  at_home  ///< retired, on leave, or works at home
+};
+
+struct ResidentSpec {
+  std::string id;
+  Occupation occupation = Occupation::at_home;
+  double age_years = 45.0;  ///< how often somebody gets up at night goes by it
+  std::string bed;          ///< a place to lie; empty: one of the scene's for sleep that nobody has, in order
+  Where where;
+  bool operator==(const ResidentSpec&) const = default;
+};
+
+/// Who lives in a home, and when their days begin and end. A day goes from 04:00 to 04:00, when nearly everybody
+/// sleeps, as a diary's in surveys of time use. `assumed`, unless said: clocks, to sleep 8:39 h and to work 7:24 h with
+/// the ways there. Ref: [Idescat2011].
+struct HouseholdSpec {
+  std::vector<ResidentSpec> residents;  ///< one to five
+  double visits_a_week = 1.0;           ///< evenings on which somebody comes (`assumed`; 0 to 3 tried)
+  ClockSpec wakes{7.0, 30.0}, wakes_on_free_days{8.5, 45.0}, goes_to_bed{23.0, 30.0};
+  ClockSpec leaves{8.25, 20.0}, comes_home{17.25, 40.0};
+  ClockSpec lunch{13.0, 20.0}, dinner{19.5, 30.0};
+  bool operator==(const HouseholdSpec&) const = default;
+};
+
+inline constexpr double home_from_h = 4.0, home_to_h = 28.0;  ///< of a household's day
+
 /// What the replicates of a trial are: days that follow each other.
 struct ScheduleSpec {
   std::string first_day = "2026-03-02";  ///< ISO 8601; a Monday
   double from_h = 0.0, to_h = 24.0;      ///< the part of the day that a run simulates
   std::vector<StaffSpec> staff;
   std::optional<MeetingsSpec> meetings;
-  std::optional<ProfileSpec> profile;  ///< instead of the agents' times and moves
+  std::optional<ProfileSpec> profile;      ///< instead of the agents' times and moves
+  std::optional<HouseholdSpec> household;  ///< instead of staff, meetings and cleaning
   ClockSpec arrival{8.5, 30.0}, departure{17.5, 30.0}, lunch{12.0, 30.0};
   double lunch_min = 60.0, lunch_sd_min = 15.0;
   std::optional<double> cleaning_h;    ///< somebody cleans then, on working days

@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Action", "Activity", "Amplifier", "Appear", "Area", "Clock", "Cluster", "Comparator", "Counts", "Detector",
-    "Diagnostic", "Effect", "Element", "Enter", "Entrance", "Floor", "Follow", "Frame", "HeldMeeting", "InputFile",
-    "Leave", "Lie", "Meetings", "Mesh", "Occupancy", "Optics", "Person", "Place", "Places", "Point2", "Point3",
-    "Positions", "Profile", "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter", "Sensing", "Sensor",
-    "SensorModel", "Sit", "Staff", "Stand", "Stay", "Summary", "Track", "Trial", "Turn", "Wait", "Walk", "Warmth",
-    "Where", "Work", "Zone",
+    "Diagnostic", "Effect", "Element", "Enter", "Entrance", "Floor", "Follow", "Frame", "HeldMeeting", "Household",
+    "InputFile", "Leave", "Lie", "Meetings", "Mesh", "Occupancy", "Optics", "Person", "Place", "Places", "Point2",
+    "Point3", "Positions", "Profile", "Resident", "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter",
+    "Sensing", "Sensor", "SensorModel", "Sit", "Staff", "Stand", "Stay", "Summary", "Track", "Trial", "Turn", "Wait",
+    "Walk", "Warmth", "Where", "Work", "Zone",
 ]
 
 
@@ -488,6 +488,39 @@ class Profile:
 
 
 @dataclass(slots=True)
+class Resident:
+    """Somebody who lives in a home."""
+
+    id: str = ""
+    """As `--occupants` names them."""
+    occupation: Literal["works", "at_home"] = "at_home"
+    age_years: float = 45.0
+    """How often they get up at night goes by it."""
+    bed: str = ""
+    """A place to lie; empty: one of the scene's for sleep that nobody has, in order."""
+    where: Where = _where()
+
+
+@dataclass(slots=True)
+class Household:
+    """Who lives in a home; their days go from 04:00 to 04:00."""
+
+    residents: list[Resident] = field(default_factory=list)
+    """One to five."""
+    visits_a_week: float = 1.0
+    """Evenings on which somebody comes."""
+    wakes: Clock = field(default_factory=lambda: Clock(mean_h=7.0))
+    """On working days."""
+    wakes_on_free_days: Clock = field(default_factory=lambda: Clock(mean_h=8.5, sd_min=45.0))
+    goes_to_bed: Clock = field(default_factory=lambda: Clock(mean_h=23.0))
+    leaves: Clock = field(default_factory=lambda: Clock(mean_h=8.25, sd_min=20.0))
+    """Who works, on working days."""
+    comes_home: Clock = field(default_factory=lambda: Clock(mean_h=17.25, sd_min=40.0))
+    lunch: Clock = field(default_factory=lambda: Clock(mean_h=13.0, sd_min=20.0))
+    dinner: Clock = field(default_factory=lambda: Clock(mean_h=19.5))
+
+
+@dataclass(slots=True)
 class Schedule:
     """Adds people whose actions are drawn anew for every run; replicates are days that follow each other."""
 
@@ -496,11 +529,13 @@ class Schedule:
     from_h: float = 0.0
     """The part of the day that a run simulates begins."""
     to_h: float = 24.0
-    """And ends."""
+    """And ends; with a household 28, four o'clock of the next day."""
     staff: list[Staff] = field(default_factory=list)
     meetings: Meetings | None = None
     profile: Profile | None = None
     """Instead of the agents' times and moves."""
+    household: Household | None = None
+    """Instead of staff, meetings and cleaning."""
     arrival: Clock = field(default_factory=lambda: Clock(mean_h=8.5))
     departure: Clock = field(default_factory=lambda: Clock(mean_h=17.5))
     lunch: Clock = field(default_factory=lambda: Clock(mean_h=12.0))

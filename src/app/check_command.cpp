@@ -49,7 +49,6 @@ void check(const Inputs& inputs, const CheckOptions& options) {
   if (options.suggests) return suggest(inputs, options);
   if (options.floor_m || !options.output.empty())
     throw Error(ErrorCode::usage, std::string(options.floor_m ? "--floor" : "-o") + " goes with --suggest");
-  if (inputs.script.empty()) throw Error(ErrorCode::usage, "--script FILE is missing; see pirsim check --help");
   // Warnings are what a check is made for: --quiet leaves out only the report.
   Inputs with_warnings = inputs;
   with_warnings.verbosity = Verbosity::normal;
@@ -68,6 +67,7 @@ void check(const Inputs& inputs, const CheckOptions& options) {
 void add_check_command(CLI::App& app) {
   CLI::App& command = add_command(app, "check", "validate scene and script without running them", R"(
   pirsim check --scene room.gltf --script study.yaml               validate, and report what each sensor can see
+  pirsim check --scene room.gltf                                   the same of a room alone
   pirsim check --scene room.gltf --script study.yaml -q            only faults and warnings
   pirsim check --scene flat.glb --suggest -o marks.yaml            propose marks for a model that has none
 )");

@@ -13,10 +13,10 @@ namespace {
 struct DayOptions {
   RunOptions run;
   int staff = 0;
+  int residents = 0;
   int days = 5;
   std::string first_day = "2026-03-02";
-  std::string from = "00:00", to = "24:00";
-  std::string cleaning = "19:00";
+  std::string from, to, cleaning;  ///< empty: 00:00, 24:00 and 19:00; a home has none of them
   enum class Meetings { none, held } meetings = Meetings::none;
   enum class Action { run, print_script } action = Action::run;
 };
@@ -41,6 +41,16 @@ constexpr const char* meeting_lines = R"(  meetings:
     lateness_min: 2
 )";
 
+constexpr const char* home_lines = R"(    visits_a_week: 1                   # evenings on which somebody comes
+    wakes: {mean: 07:00, sd_min: 30}
+    wakes_on_free_days: {mean: 08:30, sd_min: 45}
+    goes_to_bed: {mean: 23:00, sd_min: 30}
+    leaves: {mean: 08:15, sd_min: 20}  # who works
+    comes_home: {mean: 17:15, sd_min: 40}
+    lunch: {mean: 13:00, sd_min: 20}
+    dinner: {mean: 19:30, sd_min: 30}
+)";
+
 std::string replaced(std::string text, const std::string& what, const std::string& by) {
   for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
     text.replace(at, what.size(), by);
@@ -48,20 +58,42 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-std::string script_text(const DayOptions& options) {
+std::string given_or(const std::string& text, const char* otherwise) { return text.empty() ? otherwise : text; }
+
+std::string office_lines(const DayOptions& options) {
   std::ostringstream text;
-  text << "# Ordinary days. Each replicate is a day, from first_day on; nobody comes on Saturdays and Sundays.\n"
-       << "pirsim_script: 1\n"
-       << "name: " << (options.staff > 0 ? "office days" : "meeting days") << '\n'
+  text << "  from: " << given_or(options.from, "00:00") << "                          # the part of each day that is simulated\n"
+       << "  to: " << given_or(options.to, "24:00") << '\n';
+  if (options.staff > 0) text << replaced(staff_lines, "@staff@", std::to_string(options.staff));
+  if (options.meetings == DayOptions::Meetings::held) text << meeting_lines;
+  if (options.cleaning != "none") text << "  cleaning: " << given_or(options.cleaning, "19:00") << '\n';
+  return text.str();
+}
+
+/// Every other one works.
+std::string household_lines(const DayOptions& options) {
+  std::ostringstream text;
+  text << "  household:                           # each day goes from 04:00 to 04:00\n    residents:\n";
+  for (int i = 1; i <= options.residents; ++i) {
+    const bool works = i % 2 == 1;
+    text << "      - {id: resident_" << i << ", occupation: " << (works ? "works" : "at_home")
+         << ", age_years: " << (works ? 40 : 68) << "}\n";
+  }
+  text << home_lines;
+  return text.str();
+}
+
+std::string script_text(const DayOptions& options) {
+  const bool is_home = options.residents > 0;
+  std::ostringstream text;
+  text << "# Ordinary days. Each replicate is a day, from first_day on"
+       << (is_home ? ".\n" : "; nobody comes on Saturdays and Sundays.\n") << "pirsim_script: 1\n"
+       << "name: " << (is_home ? "days at home" : options.staff > 0 ? "office days" : "meeting days") << '\n'
        << "seed: 1\n"
        << "replicates: " << options.days << '\n'
        << "schedule:\n"
        << "  first_day: " << options.first_day << '\n'
-       << "  from: " << options.from << "                          # the part of each day that is simulated\n"
-       << "  to: " << options.to << '\n';
-  if (options.staff > 0) text << replaced(staff_lines, "@staff@", std::to_string(options.staff));
-  if (options.meetings == DayOptions::Meetings::held) text << meeting_lines;
-  if (options.cleaning != "none") text << "  cleaning: " << options.cleaning << '\n';
+       << (is_home ? household_lines(options) : office_lines(options));
   return text.str();
 }
 
@@ -88,9 +120,12 @@ void check_made_script(const std::string& text, const std::string& first_day) {
 }
 
 void day(const Inputs& inputs, const DayOptions& options) {
-  if (options.staff == 0 && options.meetings == DayOptions::Meetings::none) {
-    throw Error(ErrorCode::usage, "say who comes: --staff N, --meetings or both");
-  }
+  const bool is_office = options.staff > 0 || options.meetings == DayOptions::Meetings::held;
+  if (!is_office && options.residents == 0)
+    throw Error(ErrorCode::usage, "say who comes: --staff N, --meetings or both; or --home N, who lives there");
+  const bool has_office_times = !options.from.empty() || !options.to.empty() || !options.cleaning.empty();
+  if (options.residents > 0 && (is_office || has_office_times))
+    throw Error(ErrorCode::usage, "--home goes without --staff, --meetings, --from, --to and --cleaning");
   require_plain("--first-day", options.first_day);
   require_plain("--from", options.from);
   require_plain("--to", options.to);
@@ -110,6 +145,7 @@ void day(const Inputs& inputs, const DayOptions& options) {
 constexpr const char* examples = R"(
   pirsim day --scene office.gltf --staff 8 -o week.csv --report week.html     a working week of an office
   pirsim day --scene meeting_room.gltf --meetings --days 1 -o day.csv         a day of meetings
+  pirsim day --scene flat.gltf --home 2 --days 7 -o week.csv                  a week of two people at home
   pirsim day --scene office.gltf --staff 8 --days 1000 --shard 3/100 -o out   a block of a thousand days
   pirsim day --scene office.gltf --staff 8 --print-script > week.yaml         to be edited; then pirsim run
 )";
@@ -117,7 +153,7 @@ constexpr const char* examples = R"(
 }  // namespace
 
 void add_day_command(CLI::App& app) {
-  CLI::App& command = add_command(app, "day", "run ordinary days of an office or a meeting room", examples);
+  CLI::App& command = add_command(app, "day", "run ordinary days of an office, a meeting room or a home", examples);
   const auto inputs = std::make_shared<Inputs>();
   const auto options = std::make_shared<DayOptions>();
   offer_scene(command, *inputs);
@@ -130,6 +166,9 @@ void add_day_command(CLI::App& app) {
   command.add_flag_callback(
       "--meetings", [options] { options->meetings = DayOptions::Meetings::held; },
       "people from elsewhere meet in the room, on the seats that are nobody's desk");
+  command.add_option("--home", options->residents, "how many people live there; every other one goes to work")
+      ->option_text("N")
+      ->check(CLI::Range(1, 5));
   command.add_option("--days", options->days, "how many days follow each other (default: 5)")
       ->option_text("N")
       ->check(CLI::Range(1, 10000000));

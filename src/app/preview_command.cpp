@@ -73,6 +73,7 @@ void add_point(CLI::App& command, const std::string& name, std::optional<Vec3>& 
 void add_preview_command(CLI::App& app) {
   CLI::App& command = add_command(app, "preview", "render room, people and beams as PNG", R"(
   pirsim preview --scene room.gltf --script study.yaml -o room.png  a picture of room, people and beams
+  pirsim preview --scene room.gltf                                  of the room alone
   pirsim preview --scene room.gltf --script study.yaml --trial S8 --time 20 --beams PIR4,PIR5
   pirsim preview --scene room.gltf --script study.yaml --camera 0,6,0 --look-at 2,0,2
   pirsim preview --scene room.gltf --script study.yaml --labels seats,doors  their ids, and nothing else's
@@ -111,7 +112,8 @@ void add_preview_command(CLI::App& app) {
   command.add_option("--height", options->picture.height, "pixels (default: 720)")
       ->option_text("N")
       ->check(CLI::Range(16, 4320));
-  on_call(command, inputs, [options](const Inputs& given) { preview(given, *options); });
+  on_call(command, inputs, [options](const Inputs& given) { preview(given, *options); },
+          Needs::scene);
 }
 
 }  // namespace pirsim::app

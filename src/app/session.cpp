@@ -88,6 +88,9 @@ Model load(const Inputs& inputs) { return load(inputs, inputs.verbosity); }
 
 Model load(const Inputs& inputs, Verbosity of_progress) {
   static_cast<void>(tracer_kind(inputs.tracer));  // before any file
+  // Of commands that look at a scene alone.
+  constexpr const char* nobody = "pirsim_script: 1\nname: no script\nduration_s: 1\n";
+  if (inputs.script.empty()) return compiled(inputs, of_progress, io::parse_script(nobody, "", inputs.overrides));
   ScriptSpec script = [&] {
     const Progress progress({.what = "reading " + inputs.script.filename().string()}, of_progress);
     return io::read_script(inputs.script, inputs.overrides);

@@ -10,6 +10,7 @@
 #include "app/session.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/files/compression.hpp"
+#include "io/write/casas_writer.hpp"
 #include "io/write/row_file.hpp"
 #include "pirsim/csv.hpp"
 #include "pirsim/io.hpp"
@@ -262,6 +263,16 @@ studies::Summary make_summary(const Model& model, const RunOptions& options) {
   return {trials, sensor_ids(model), measured};
 }
 
+/// A log is of days that follow each other.
+void require_one_clock(const Model& model) {
+  const std::vector<TrialSpec>& trials = model.script().trials;
+  if (trials.size() == 1 && (trials.front().schedule || model.n_runs() == 1) &&
+      model.compiled().trials().front().clock)
+    return;
+  throw Error(ErrorCode::usage,
+              "--casas: a log has a date and a time on each line: it takes days of a schedule, or one run with `begin`");
+}
+
 /// What is recorded at every tick is in memory until its run ends.
 void require_memory(const std::string& option, double bytes_a_tick, const Model& model) {
   const SensingInForce& sensing = model.compiled().sensing();
@@ -311,6 +322,27 @@ class ZoneOutput {
   io::TableWriter<ZoneLine> csv_;
 };
 
+/// All runs as the log of a smart home.
+class CasasOutput {
+ public:
+  CasasOutput(const std::filesystem::path& file, const Model& model)
+      : output_(file), log_(output_.lines(), sensor_ids(model)) {}
+
+  /// Bytes before compression.
+  std::size_t add(const RunResult& result) {
+    log_.add(result.samples, result.occupants);
+    return output_.pass_on();
+  }
+  void commit() {
+    log_.finish();
+    output_.commit();
+  }
+
+ private:
+  LineOutput output_;
+  io::CasasWriter log_;
+};
+
 /// Signals of all runs and what is behind them.
 class TraceOutput {
  public:
@@ -351,7 +383,8 @@ void announce(const std::string& option, std::size_t first_bytes, const Model& m
 }
 
 bool has_whole_study_outputs(const RunOptions& options) {
-  return !options.summary.empty() || !options.zones.empty() || !options.trace.empty() || !options.report.empty();
+  return !options.summary.empty() || !options.zones.empty() || !options.trace.empty() || !options.report.empty() ||
+         !options.casas.empty();
 }
 
 struct WholeStudyOutputs::Files {
@@ -363,6 +396,7 @@ struct WholeStudyOutputs::Files {
   std::optional<ZoneOutput> zones{};
   bool unannounced = true;
   std::optional<TraceOutput> trace{};
+  std::optional<CasasOutput> casas{};
   std::optional<io::AtomicFile> summary_file{}, report_file{};
 };
 
@@ -371,7 +405,9 @@ WholeStudyOutputs::WholeStudyOutputs(const Model& model, const Inputs& inputs, c
   if (!options.trace.empty() && model.compiled().array().analog() == nullptr)
     throw Error(ErrorCode::usage, "--trace: no sensor has an analog response");
   require_memory(model, options);
+  if (!options.casas.empty()) require_one_clock(model);
   if (!options.zones.empty()) files_->zones.emplace(options.zones, model);
+  if (!options.casas.empty()) files_->casas.emplace(options.casas, model);
   if (!options.trace.empty()) files_->trace.emplace(options.trace, model);
   if (!options.summary.empty()) files_->summary_file.emplace(options.summary);
   if (!options.report.empty()) files_->report_file.emplace(options.report);
@@ -380,7 +416,7 @@ WholeStudyOutputs::WholeStudyOutputs(const Model& model, const Inputs& inputs, c
 WholeStudyOutputs::~WholeStudyOutputs() = default;
 
 bool WholeStudyOutputs::need_occupants() const noexcept {
-  return files_->report_file && files_->report.needs_occupants();
+  return files_->casas || (files_->report_file && files_->report.needs_occupants());
 }
 
 void WholeStudyOutputs::add(const RunResult& result) {
@@ -394,6 +430,7 @@ void WholeStudyOutputs::add(const RunResult& result) {
   };
   add(files.zones, "--zones");
   add(files.trace, "--trace");
+  add(files.casas, "--casas");
   if (files.report_file) files.report.add_run(result);
   if (!files.summary_file && !files.report_file) return;
   studies::RunCounts counts(files.model.scene().sensors.size(), files.model.script().summary, files.model.areas());
@@ -405,6 +442,7 @@ void WholeStudyOutputs::commit(const io::RunNotes& notes) {
   Files& files = *files_;
   if (files.zones) files.zones->commit();
   if (files.trace) files.trace->commit();
+  if (files.casas) files.casas->commit();
   if (files.summary_file) {
     write_summary(files.summary, *files.summary_file, files.options.summary, files.model.script().name, notes.remarks(),
                   files.inputs.verbosity);

@@ -115,7 +115,8 @@ void tell_what_is_written(const RunOptions& options, const TableOutput& rows, st
     add(options.rows.output);
     text += ": " + std::to_string(rows.rows()) + " rows";
   }
-  for (const auto& file : {options.summary, options.report, options.zones, options.trace, options.occupants}) add(file);
+  for (const auto& file : {options.summary, options.report, options.zones, options.trace, options.occupants, options.casas})
+    add(file);
   if (!text.empty()) std::cerr << text << '\n';
 }
 
@@ -152,6 +153,7 @@ std::vector<NamedOutput> outputs_of(const RunOptions& options) {
                                    {"--zones", options.zones, io::table_endings()},
                                    {"--trace", options.trace, io::table_endings()},
                                    {"--occupants", occupants, io::table_endings()},
+                                   {"--casas", options.casas, {".txt", ".txt.gz", ".txt.zst"}},
                                    {"--report", options.report, {".html"}}};
   if (!rows.empty()) outputs.push_back({"the manifest of -o", io::manifest_path(rows), {".json"}});
   if (!occupants.empty()) outputs.push_back({"the manifest of --occupants", io::manifest_path(occupants), {".json"}});
@@ -193,7 +195,7 @@ void check_options(const Inputs& inputs, const RunOptions& options) {
   if (has_whole_study_outputs(options)) {
     throw Error(ErrorCode::usage,
                 std::string(partial) +
-                    " goes with none of --summary, --zones, --trace and --report: they need all runs at once");
+                    " goes with none of --summary, --zones, --trace, --casas and --report: they need all runs at once");
   }
 }
 
@@ -278,6 +280,10 @@ void offer_run_options(CLI::App& command, const std::shared_ptr<RunOptions>& opt
   command
       .add_option("--occupants", options->occupants,
                   "where everybody is and what they do, a row a window and person, " + tables + "; of a shard a folder")
+      ->option_text("FILE");
+  command
+      .add_option("--casas", options->casas,
+                  "a log of sensors and what people do, as CASAS' homes have it, .txt, .txt.gz or .txt.zst")
       ->option_text("FILE");
   offer_threads(command, options->threads);
   CLI::Option* shard =

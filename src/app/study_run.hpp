@@ -26,6 +26,7 @@ struct RunOptions {
   std::filesystem::path zones;      ///< .csv, .csv.gz or .csv.zst
   std::filesystem::path trace;      ///< the same
   std::filesystem::path occupants;  ///< as zones
+  std::filesystem::path casas;      ///< text, compressed as zones are
   std::filesystem::path report;     ///< .html
   std::optional<double> max_time_s;
   unsigned threads = 0;

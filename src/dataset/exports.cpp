@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <sstream>
 
+#include "io/write/casas_writer.hpp"
 #include "pirsim/csv.hpp"
 
 namespace pirsim::dataset {
@@ -67,21 +69,12 @@ std::string to_uci864(std::span<const Reading> readings, const std::vector<std::
   return text;
 }
 
-std::string to_casas(std::span<const Sample> rows, const std::vector<std::string>& sensors) {
-  std::string text;
-  std::vector<std::uint8_t> on(sensors.size(), 0);
-  for (const Sample& row : rows) {
-    for (std::size_t i = 0; i < sensors.size(); ++i) {
-      const std::uint8_t now = row.bits[i] != 0 ? 1 : 0;
-      if (now == on[i]) continue;
-      on[i] = now;
-      text += date_of(row.clock) + ' ' + time_of(row.clock) + ' ' + sensors[i] + (now != 0 ? " ON\n" : " OFF\n");
-    }
-  }
-  for (std::size_t i = 0; i < sensors.size(); ++i) {
-    if (on[i] != 0) text += date_of(rows.back().clock) + ' ' + time_of(rows.back().clock) + ' ' + sensors[i] + " OFF\n";
-  }
-  return text;
+std::string to_casas(const RunResult& run, const std::vector<std::string>& sensors) {
+  std::ostringstream text;
+  io::CasasWriter log(text, sensors);
+  log.add(run.samples, run.occupants);
+  log.finish();
+  return std::move(text).str();
 }
 
 std::string to_energyplus(std::span<const RoomProfile> rooms, int year) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/sample.hpp"
+#include "pirsim/study.hpp"
 #include "pirsim/script.hpp"
 
 namespace pirsim::dataset {
@@ -25,8 +25,8 @@ struct Reading {
 
 /// Shaped like UCI's Room Occupancy Estimation (864): Date,Time,<sensor>_PIR,...,Room_Occupancy_Count.
 [[nodiscard]] std::string to_uci864(std::span<const Reading> readings, const std::vector<std::string>& sensors);
-/// Shaped like CASAS: `date time sensor ON|OFF`, a line a change.
-[[nodiscard]] std::string to_casas(std::span<const Sample> rows, const std::vector<std::string>& sensors);
+/// As io::CasasWriter has it.
+[[nodiscard]] std::string to_casas(const RunResult& run, const std::vector<std::string>& sensors);
 
 /// Hours of a day: share of the hour with anybody there, people on average.
 struct DayProfile {

@@ -68,7 +68,7 @@ class DayWriter {
         const int n_rows = rows_per_reading(recipe_.sensing).value();
         add(path("exports/uci864", ".csv"), to_uci864(readings(result.samples, n_rows), sensors_));
       }
-      if (shape == Export::casas) add(path("exports/casas", ".txt"), to_casas(result.samples, sensors_));
+      if (shape == Export::casas) add(path("exports/casas", ".txt"), to_casas(result, sensors_));
     }
   }
 

@@ -57,9 +57,42 @@ void check_together(const ScheduleSpec& schedule, const TellFault& tell) {
   }
   if (schedule.from_h >= schedule.to_h) tell("to_h", "`to` is not after `from`");
   if (schedule.departure.mean_h <= schedule.arrival.mean_h) tell("departure", "departure must be after arrival");
-  if (schedule.staff.empty() && !schedule.meetings && !schedule.cleaning_h) {
-    tell("staff", "nobody comes: give `staff`, `meetings` or `cleaning`");
+  const bool is_office = !schedule.staff.empty() || schedule.meetings || schedule.cleaning_h || schedule.profile;
+  if (!is_office && !schedule.household)
+    tell("staff", "nobody comes: give `staff`, `meetings`, `cleaning` or `household`");
+  if (is_office && schedule.household)
+    tell("household", "goes without `staff`, `meetings`, `profile` and `cleaning`, which are of an office");
+  if (!schedule.household && schedule.to_h > 24.0) tell("to_h", "`to` is beyond 24:00");
+  if (schedule.household && (schedule.from_h != home_from_h || schedule.to_h != home_to_h))
+    tell("to_h", "a household's day goes from 04:00 to 04:00: leave out `from` and `to`");
+}
+
+void check_together(const HouseholdSpec& household, const TellFault& tell) {
+  constexpr std::size_t most_residents = 5;
+  if (household.residents.empty()) return tell("residents", "nobody lives there");
+  if (household.residents.size() > most_residents) return tell("residents", "more than five");
+  Names ids("resident");
+  for (const ResidentSpec& resident : household.residents) {
+    const std::string bad = name_fault(resident.id);
+    const std::string fault = bad.empty() ? ids.fault_of_adding(resident.id) : "id '" + resident.id + "': " + bad;
+    if (!fault.empty()) tell("residents", fault);
   }
+  const double wakes_h = std::max(household.wakes.mean_h, household.wakes_on_free_days.mean_h);
+  if (household.goes_to_bed.mean_h <= wakes_h) tell("goes_to_bed", "is not after `wakes`; up to 24:00");
+  if (household.comes_home.mean_h <= household.leaves.mean_h) tell("comes_home", "is not after `leaves`");
+}
+
+void check(const HouseholdSpec& household, const SpecPath& path, SpecFaults& faults) {
+  faults.numbers(household, path);
+  faults.together(household, path);
+  for (std::size_t i = 0; i < household.residents.size(); ++i)
+    faults.numbers(household.residents[i], path.item("residents", i));
+  for (const auto& [name, clock] :
+       {std::pair("wakes", &household.wakes), std::pair("wakes_on_free_days", &household.wakes_on_free_days),
+        std::pair("goes_to_bed", &household.goes_to_bed), std::pair("leaves", &household.leaves),
+        std::pair("comes_home", &household.comes_home), std::pair("lunch", &household.lunch),
+        std::pair("dinner", &household.dinner)})
+    faults.numbers(*clock, path.field(name));
 }
 
 void check(const ScheduleSpec& schedule, const SpecPath& path, SpecFaults& faults) {
@@ -72,6 +105,7 @@ void check(const ScheduleSpec& schedule, const SpecPath& path, SpecFaults& fault
     faults.numbers(*schedule.profile, path.field("profile"));
     faults.together(*schedule.profile, path.field("profile"));
   }
+  if (schedule.household) check(*schedule.household, path.field("household"), faults);
   faults.numbers(schedule.arrival, path.field("arrival"));
   faults.numbers(schedule.departure, path.field("departure"));
   faults.numbers(schedule.lunch, path.field("lunch"));

@@ -87,6 +87,7 @@ void check_together(std::span<const HeldMeetingSpec> held, const std::function<v
 void check_together(const MeetingsSpec& meetings, const TellFault& tell);
 void check_together(const ProfileSpec& profile, const TellFault& tell);
 void check_together(const ScheduleSpec& schedule, const TellFault& tell);
+void check_together(const HouseholdSpec& household, const TellFault& tell);
 /// begin: the script's; its own faults are told elsewhere.
 void check_together(const OccupancySpec& occupancy, const std::string& begin, const TellFault& tell);
 void check_together(const TrialSpec& trial, const TellFault& tell);

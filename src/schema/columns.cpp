@@ -61,7 +61,7 @@ constexpr Column<OccupantLine> occupants[]{
     {{"time", Holds::moment, "as in the row of the same window; empty without a [clock](script.md#a-clock)"}, clock},
     {{"person", Holds::text,
       "the name in the script; with a schedule by role: `staff_1`, ..., `manager_1`, ..., `administrator_1`, ..., "
-      "`guest_1`, ..., `cleaner`; with counts `occupant_1`, ..."},
+      "`guest_1`, ..., `cleaner`; with a household its residents' ids and `visitor`; with counts `occupant_1`, ..."},
      person},
     {{"where", Holds::text, "`inside` if the pelvis is over the floor area, otherwise `outside` (in a doorway)"},
      where},
@@ -75,7 +75,8 @@ constexpr Column<OccupantLine> occupants[]{
      area},
     {{"activity", Holds::text,
       "the action's `phase` or, without one, `working`, `walking`, `turning`, `standing`, `sitting_down`, `seated`, "
-      "`rising`; schedules add `visiting`, `phone_call`, `presenting` and `cleaning`"},
+      "`rising`; schedules add `visiting`, `phone_call`, `presenting` and `cleaning`, "
+      "[households](script.md#households) what people do at home"},
      activity},
     {{"seat", Holds::text,
       "the seat that the person has taken, from setting out for it until walking away from it; otherwise empty"},

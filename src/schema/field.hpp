@@ -85,6 +85,7 @@ constexpr bool has_fields() {
     else if constexpr (n == 13) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = spec; (void)a; }
     else if constexpr (n == 14) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o] = spec; (void)a; }
     else if constexpr (n == 15) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p] = spec; (void)a; }
+    else if constexpr (n == 16) { auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q] = spec; (void)a; }
     else static_assert(n == 0 && std::is_empty_v<Spec>);
     // clang-format on
   };

@@ -21,6 +21,7 @@ namespace pirsim {
 namespace accepted {
 
 inline constexpr TimeOfDay hour_of_day{{.min = 0.0, .max = 24.0}};
+inline constexpr TimeOfDay hour_or_next_days{{.min = 0.0, .max = 28.0}};
 inline constexpr NumberRange at_s{.min = 0.0, .max = 1e7};
 inline constexpr NumberRange on_floor_m{.min = -1e4, .max = 1e4};  ///< where people go
 /// assumed: far beyond any building, yet 1e-5 of it is still exact in float
@@ -458,6 +459,34 @@ struct Fields<ProfileSpec> {
       FIELD(step_min, NumberRange{.min = 1.0, .max = 120.0})};
 };
 template <>
+struct Fields<ResidentSpec> {
+  using S = ResidentSpec;
+  static constexpr const char* name = "Resident";
+  static constexpr const char* about = "Somebody who lives in a home.";
+  static constexpr std::tuple all{
+      FIELD(id, "as `--occupants` names them"),
+      FIELD(occupation),
+      FIELD(age_years, NumberRange{.min = 16.0, .max = 110.0}, "how often they get up at night goes by it"),
+      FIELD(bed, "a place to lie; empty: one of the scene's for sleep that nobody has, in order"),
+      LABEL(where)};
+};
+template <>
+struct Fields<HouseholdSpec> {
+  using S = HouseholdSpec;
+  static constexpr const char* name = "Household";
+  static constexpr const char* about = "Who lives in a home; their days go from 04:00 to 04:00.";
+  static constexpr std::tuple all{
+      FIELD(residents, "one to five"),
+      FIELD(visits_a_week, NumberRange{.min = 0.0, .max = 7.0}, "evenings on which somebody comes"),
+      FIELD(wakes, "on working days"),
+      FIELD(wakes_on_free_days),
+      FIELD(goes_to_bed),
+      FIELD(leaves, "who works, on working days"),
+      FIELD(comes_home),
+      FIELD(lunch),
+      FIELD(dinner)};
+};
+template <>
 struct Fields<ScheduleSpec> {
   using S = ScheduleSpec;
   static constexpr const char* name = "Schedule";
@@ -466,10 +495,11 @@ struct Fields<ScheduleSpec> {
   static constexpr std::tuple all{
       FIELD(first_day, "ISO 8601"),
       FIELD(from_h, accepted::hour_of_day, "the part of the day that a run simulates begins"),
-      FIELD(to_h, accepted::hour_of_day, "and ends"),
+      FIELD(to_h, accepted::hour_or_next_days, "and ends; with a household 28, four o'clock of the next day"),
       FIELD(staff),
       FIELD(meetings),
       FIELD(profile, "instead of the agents' times and moves"),
+      FIELD(household, "instead of staff, meetings and cleaning"),
       FIELD(arrival),
       FIELD(departure),
       FIELD(lunch),
@@ -719,7 +749,7 @@ using SpecsOfPython =
                ComparatorSpec, DetectorSpec, ZoneSpec, ClusterSpec, SensorModelSpec, AreaSpec, SceneSpec, action::Wait,
                action::Appear, action::Enter, action::Walk, action::Sit, action::Work, action::Rise, action::Leave,
                action::Turn, action::Follow, action::Lie, action::Stand, SeatScatterSpec, WarmthSpec, PersonSpec,
-               ClockSpec, StaffSpec, HeldMeetingSpec, MeetingsSpec, ProfileSpec, ScheduleSpec, CountsSpec, StaySpec,
+               ClockSpec, StaffSpec, HeldMeetingSpec, MeetingsSpec, ProfileSpec, ResidentSpec, HouseholdSpec, ScheduleSpec, CountsSpec, StaySpec,
                PlacesSpec, TrackSpec, PositionsSpec, OccupancySpec, TrialSpec, SensingSpec, SummarySpec, EffectSpec,
                ScriptSpec>;
 

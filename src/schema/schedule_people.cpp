@@ -89,6 +89,40 @@ int guests_of(const ScheduleSpec& schedule, const SceneSpec& scene, Diagnostics&
   return most;
 }
 
+/// Who sleeps where: beds that are asked for, then those that nobody has.
+std::vector<std::string> beds_of(const HouseholdSpec& household, const SceneSpec& scene, Diagnostics& diagnostics) {
+  std::vector<std::string> names, beds;
+  std::set<std::string> taken;
+  for (const PlaceSpec& place : scene.places) {
+    const bool is_for_sleep = std::ranges::find(place.uses, "sleep") != place.uses.end();
+    if (place.posture == PlacePosture::lie && (is_for_sleep || place.uses.empty())) names.push_back(place.id);
+  }
+  for (const ResidentSpec& resident : household.residents) {
+    if (resident.bed.empty()) continue;
+    if (std::ranges::find(names, resident.bed) == names.end()) {
+      diagnostics.error(resident.where, "household: bed '" + resident.bed + "' is no place for sleep in " + scene.name +
+                                            did_you_mean(resident.bed, names));
+    } else if (!taken.insert(resident.bed).second) {
+      diagnostics.error(resident.where, "household: bed '" + resident.bed + "' is the own bed of two people");
+    }
+  }
+  for (const ResidentSpec& resident : household.residents) {
+    std::string bed = resident.bed;
+    if (bed.empty()) {
+      const auto free = std::ranges::find_if(names, [&](const std::string& name) { return !taken.contains(name); });
+      if (free == names.end()) {
+        diagnostics.error(resident.where, "household: '" + resident.id + "' has no bed: " + scene.name + " has " +
+                                              std::to_string(names.size()) + " places to lie and sleep");
+      } else {
+        bed = *free;
+        taken.insert(bed);
+      }
+    }
+    beds.push_back(bed);
+  }
+  return beds;
+}
+
 }  // namespace
 
 PersonSpec drawn_body(const std::string& id, MotionStyle style, std::uint64_t seed, std::uint32_t entity) {
@@ -125,6 +159,14 @@ std::vector<ScheduledPerson> people_of(const ScheduleSpec& schedule, const Scene
     people.push_back(
         {part, role, seat, drawn_body(name, schedule.style, seed, static_cast<std::uint32_t>(people.size()))});
   };
+  if (schedule.household) {
+    const std::vector<std::string> beds = beds_of(*schedule.household, scene, diagnostics);
+    diagnostics.throw_if_errors();
+    for (std::size_t i = 0; i < beds.size(); ++i)
+      add(SchedulePart::resident, Role::staff, schedule.household->residents[i].id, beds[i]);
+    if (schedule.household->visits_a_week > 0.0) add(SchedulePart::visitor, Role::staff, "visitor", "");
+    return people;
+  }
   std::map<Role, int> numbers;
   for (const StaffSpec& staff : schedule.staff) {
     for (int i = 0; i < staff.count; ++i) {

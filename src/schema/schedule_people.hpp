@@ -13,12 +13,12 @@ namespace pirsim {
 
 /// What somebody of a schedule is there for.
 /// occupant: of an occupancy, which has no roles
-enum class SchedulePart { staff, guest, cleaner, occupant };
+enum class SchedulePart { staff, guest, cleaner, occupant, resident, visitor };
 
 struct ScheduledPerson {
   SchedulePart part = SchedulePart::staff;
   Role role = Role::staff;  ///< of staff
-  std::string seat;         ///< own desk, of staff
+  std::string seat;         ///< own desk, of staff; own bed, of residents
   PersonSpec person;        ///< without actions
 };
 

@@ -89,6 +89,10 @@ struct Words<Role> {
       {{"staff", Role::staff}, {"manager", Role::manager}, {"administrator", Role::administrator}}};
 };
 template <>
+struct Words<Occupation> {
+  static constexpr WordList<Occupation, 2> all{{{"works", Occupation::works}, {"at_home", Occupation::at_home}}};
+};
+template <>
 struct Words<Severity> {
   static constexpr WordList<Severity, 2> all{{{"warning", Severity::warning}, {"error", Severity::error}}};
 };

@@ -9,12 +9,7 @@
 namespace pirsim::sim {
 namespace {
 
-constexpr double hour_s = 3600.0, minute_s = 60.0, day_s = 24.0 * hour_s;
-
-double cut_normal(Stream& stream) { return std::clamp(stream.normal(), -3.0, 3.0); }
-double around(Stream& stream, const ClockSpec& clock) {
-  return clock.mean_h * hour_s + clock.sd_min * minute_s * cut_normal(stream);
-}
+constexpr double day_s = 24.0 * hour_s;
 
 /// Index drawn with these weights.
 std::size_t pick(Stream& stream, std::span<const double> weights) {
@@ -223,6 +218,12 @@ Habits habits_of(Role role) {
       return {{0.70, 0.15, 0.05, 0.10}, stays_min};
   }
   return {};
+}
+
+double cut_normal(Stream& stream) { return std::clamp(stream.normal(), -3.0, 3.0); }
+
+double around(Stream& stream, const ClockSpec& clock) {
+  return clock.mean_h * hour_s + clock.sd_min * minute_s * cut_normal(stream);
 }
 
 double exponential(Stream& stream, double mean) { return -mean * std::log(1.0 - stream.uniform()); }

@@ -12,6 +12,12 @@
 
 namespace pirsim::sim {
 
+inline constexpr double minute_s = 60.0, hour_s = 3600.0;
+
+[[nodiscard]] double cut_normal(Stream& stream);                          ///< standard, cut at three
+[[nodiscard]] double around(Stream& stream, const ClockSpec& clock);      ///< seconds of the day
+[[nodiscard]] double exponential(Stream& stream, double mean);
+
 /// The first four are those of the chain; lunch comes beside it.
 enum class Place { desk, others_desk, meeting, outside, lunch };
 inline constexpr std::size_t n_places = 4;
@@ -56,8 +62,6 @@ struct DaySource {
 
 /// One thing that somebody does at a desk, and for how long.
 [[nodiscard]] action::Work draw_desk_work(Stream& stream);
-
-[[nodiscard]] double exponential(Stream& stream, double mean);
 
 /// Share of time in each Place and mean stay. Ref: [ChenHongLuo2018].
 struct Habits {

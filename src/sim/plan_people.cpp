@@ -65,6 +65,11 @@ class Rehearsal {
       if (!at_) start_at(outside_of(door), door.id);
     }
     note_other_seats();
+    if (part.part == SchedulePart::resident || part.part == SchedulePart::visitor) {
+      for (const PlaceSpec& place : scene_.places)
+        if (at_) take_place(place.id, {scene_.name});
+      return;
+    }
     const bool lacks_seat =
         part.part == SchedulePart::guest ? person_.seats.empty() : !part.seat.empty() && !person_.can_use(part.seat);
     if (!lacks_seat || is_shut(behind_)) return;

@@ -5,44 +5,13 @@
 #include <glm/geometric.hpp>
 
 #include "pirsim/geometry.hpp"
+#include "sim/action_line.hpp"
 #include "sim/day_draw.hpp"
+#include "sim/home_plan.hpp"
 #include "sim/standing_places.hpp"
 
 namespace pirsim::sim {
 namespace {
-
-constexpr double hour_s = 3600.0, minute_s = 60.0;
-constexpr double until_next_s = 24.0 * hour_s;  ///< of an action that only the next one ends
-
-/// Actions of one person, timed in seconds of the run, and never two that begin at once.
-class Timeline {
- public:
-  explicit Timeline(const ScheduleSpec& schedule) : schedule_(schedule) {}
-
-  /// At a moment of the day, whatever goes on then.
-  void at(double day_s, Action what, const char* phase = "") {
-    // In whole ticks of any rate, and later than what was timed before.
-    const double run_s = std::max(std::ceil(day_s - schedule_.from_h * hour_s), last_s_ + 1.0);
-    last_s_ = run_s;
-    add(std::move(what), phase).at_s = run_s;
-  }
-  /// After what was added before.
-  void then(Action what, const char* phase = "") { add(std::move(what), phase); }
-  [[nodiscard]] std::vector<ScriptedAction> take() { return std::move(actions_); }
-
- private:
-  ScriptedAction& add(Action what, const char* phase) {
-    ScriptedAction& action = actions_.emplace_back();
-    action.what = std::move(what);
-    action.phase = phase;
-    action.where = schedule_.where;
-    return action;
-  }
-
-  const ScheduleSpec& schedule_;
-  double last_s_ = -1.0;
-  std::vector<ScriptedAction> actions_;
-};
 
 /// Puts a day's draw into a room.
 class Day {
@@ -81,8 +50,8 @@ class Day {
   }
 
   /// Nothing if they are there already.
-  void come(Timeline& line, double at_s, std::size_t person) const { line.at(at_s, action::Enter{door_of(person)}); }
-  void go(Timeline& line, double at_s, std::size_t person) const { line.at(at_s, action::Leave{door_of(person)}); }
+  void come(ActionLine& line, double at_s, std::size_t person) const { line.at(at_s, action::Enter{door_of(person)}); }
+  void go(ActionLine& line, double at_s, std::size_t person) const { line.at(at_s, action::Leave{door_of(person)}); }
 
   /// The first moment that counts of somebody who is there before the run begins: they come in one after the other.
   [[nodiscard]] double first_s(Stream& stream) const {
@@ -92,7 +61,7 @@ class Day {
   std::vector<ScriptedAction> attend_work(std::size_t person, const std::vector<Stay>& stays) const {
     Stream stream = stream_of(person);
     const double begin_s = first_s(stream);
-    Timeline line(schedule_);
+    ActionLine line(schedule_);
     for (const Stay& stay : stays) {
       const double from_s = std::max(stay.from_s, begin_s);
       if (stay.to_s <= from_s) continue;
@@ -108,7 +77,7 @@ class Day {
     return line.take();
   }
 
-  void sit_and_work(Timeline& line, double for_s, std::size_t person, Stream& stream) const {
+  void sit_and_work(ActionLine& line, double for_s, std::size_t person, Stream& stream) const {
     action::Sit sit{trial_.people[person].spec.part->seat};
     sit.if_taken = action::IfTaken::other_seat;
     line.then(sit);
@@ -121,7 +90,7 @@ class Day {
   }
 
   /// Now and then they get up for a call.
-  void be_at_desk(Timeline& line, double from_s, double to_s, std::size_t person, Stream& stream) const {
+  void be_at_desk(ActionLine& line, double from_s, double to_s, std::size_t person, Stream& stream) const {
     constexpr double between_calls_s = 2.0 * hour_s;  // assumed (1-4 h) at the desk between calls on foot
     constexpr double shortest_s = minute_s, further_s = 3.0 * minute_s;  // assumed: of a call
     come(line, from_s, person);
@@ -137,7 +106,7 @@ class Day {
     }
   }
 
-  void walk_about(Timeline& line, double at_s, std::size_t person, Stream& stream) const {
+  void walk_about(ActionLine& line, double at_s, std::size_t person, Stream& stream) const {
     constexpr double within_m = 3.0, pause_s = 6.0;  // assumed: how far one wanders, and how long one stops (means)
     const SeatPlan& desk = trial_.people[person].seat_plan(trial_.people[person].spec.part->seat);
     const auto places = places_of(person).around(floor_point(desk.place.world_from_seat.origin), within_m, 8, stream);
@@ -153,7 +122,7 @@ class Day {
   }
 
   /// Where nobody can stand beside the host they stay where they are, or away.
-  void visit(Timeline& line, double at_s, std::size_t person, std::size_t host, Stream& stream) const {
+  void visit(ActionLine& line, double at_s, std::size_t person, std::size_t host, Stream& stream) const {
     const std::string& seat = trial_.people[host].spec.part->seat;
     const auto place = places_of(person).beside(seat, stream);
     if (!place) return;
@@ -168,7 +137,7 @@ class Day {
     constexpr double area_m2 = 4.0, pause_s = 8.0;  // assumed: a stop for so much floor, and how long it takes
     if (at_s < schedule_.from_h * hour_s) return {};
     Stream stream = stream_of(person);
-    Timeline line(schedule_);
+    ActionLine line(schedule_);
     come(line, at_s, person);
     const auto stops = static_cast<std::size_t>(std::clamp(study_.scene().floor.area_m2() / area_m2, 4.0, 200.0));
     for (const Vec2& place : places_of(person).round(stops, stream)) {
@@ -182,7 +151,7 @@ class Day {
   void hold(const std::vector<Meeting>& meetings, DayPlan& plan) const {
     if (meetings.empty()) return;
     const std::vector<std::string> seats = meeting_seats(*schedule_.meetings, study_.scene(), *trial_.schedule);
-    std::vector<Timeline> lines(plan.size(), Timeline(schedule_));
+    std::vector<ActionLine> lines(plan.size(), ActionLine(schedule_));
     Stream stream = stream_of(n_scheduled_);
     const double begin_s = first_s(stream);
     for (const Meeting& meeting : meetings) {
@@ -199,7 +168,7 @@ class Day {
     }
   }
 
-  void take_part(Timeline& line, const Meeting& meeting, const Attendance& who, const std::string& seat, double begin_s,
+  void take_part(ActionLine& line, const Meeting& meeting, const Attendance& who, const std::string& seat, double begin_s,
                  const std::vector<std::string>& seats) const {
     const PersonModel& person = trial_.people[who.person];
     action::Work listen;
@@ -218,7 +187,7 @@ class Day {
     go(line, who.goes_s, who.person);
   }
 
-  void present(Timeline& line, double at_s, std::size_t person, const std::vector<std::string>& seats) const {
+  void present(ActionLine& line, double at_s, std::size_t person, const std::vector<std::string>& seats) const {
     const auto place = places_of(person).before(seats);
     if (!place) return;
     Vec2 middle(0.0);
@@ -255,6 +224,8 @@ DayDraw draw_times(const CompiledStudy& study, std::uint32_t run) {
   return draw_times(DaySource{*trial.schedule, parts, roles, study.seed(), run, day_of(study, run)});
 }
 
-DayPlan draw_day(const CompiledStudy& study, std::uint32_t run) { return Day(study, run).plan(); }
+DayPlan draw_day(const CompiledStudy& study, std::uint32_t run) {
+  return study.trial_of(run).schedule->household ? plan_home_day(study, run) : Day(study, run).plan();
+}
 
 }  // namespace pirsim::sim

@@ -11,6 +11,7 @@
 #include "schema/areas.hpp"
 #include "schema/occupancy_runs.hpp"
 #include "sim/compiled_study.hpp"
+#include "studies/home_outlook.hpp"
 #include "studies/room_plan.hpp"
 #include "studies/schedule_outlook.hpp"
 #include "studies/sight.hpp"
@@ -34,8 +35,10 @@ void print(std::ostream& out, const SightReport& report, const SceneSpec& scene)
   const auto percent = [&](std::size_t places) {
     return report.places == 0 ? 0.0 : 100.0 * static_cast<double>(places) / static_cast<double>(report.places);
   };
+  std::size_t width = std::string_view("any sensor").size();
+  for (const SensorSight& sight : report.sensors) width = std::max(width, sight.sensor.size());
   const auto line = [&](const auto& sensor, const auto& rays, const auto& cut, const auto& longest, const auto& floor) {
-    out << "  " << std::left << std::setw(11) << sensor << std::right << std::setw(5) << rays << std::setw(14) << cut
+    out << "  " << std::left << std::setw(static_cast<int>(width)) << sensor << std::right << std::setw(6) << rays << std::setw(14) << cut
         << std::setw(13) << longest << std::setw(10) << floor;
   };
   out << "what each sensor sees of a person who stands on one of " << counted(report.places, "place") << " (every "
@@ -188,7 +191,11 @@ void print_study(std::ostream& out, const Model& model, const CheckReport& repor
   print_response(out, model);
   out << '\n';
   if (!script.trials.empty() && script.trials.front().schedule) {
-    studies::print(out, studies::outlook(model.compiled(), 0), model.compiled());
+    if (script.trials.front().schedule->household) {
+      print(out, home_outlook(model.compiled(), 0));
+    } else {
+      print(out, outlook(model.compiled(), 0), model.compiled());
+    }
   }
   if (!script.trials.empty() && script.trials.front().occupancy)
     print_occupancy(out, *script.trials.front().occupancy, model.compiled().trials().front());
@@ -211,6 +218,7 @@ CheckReport check_study(const Model& model) {
   studies::print_study(text, model, report, worker);
   report.text = std::move(text).str();
   report.warnings = studies::warnings(report.sight, model.scene());
+  for (Issue& warning : studies::warnings_of_home(study)) report.warnings.push_back(std::move(warning));
   return report;
 }
 

@@ -8,7 +8,7 @@
   ```yaml not read: REASON   can't be read
 
 Marks of a scene in a line of `code`, {"type": ...} or {"pirsim": ...}, are put on a node or a material, and the actions
-in the tables of script.md are done in the meeting room.
+in the tables of script.md are done in the meeting room, or in the flat if they are at a place of it.
 
 Usage: read_examples.py PIRSIM SOURCE_DIRECTORY [PAGE...]
 """
@@ -34,6 +34,8 @@ facets: [{x_m: 0, y_m: 0, zone_side_m: 0.3}]
 """
 # What an action needs before it.
 BEFORE = {"enter": (), "appear": (), "follow": (), "work": ("enter: door", "sit: S1"), "rise": ("enter: door", "sit: S1")}
+
+PLACES = re.compile(r"\b(bed_left|sofa_left|stove)\b")
 
 
 class Reader:
@@ -64,7 +66,8 @@ class Reader:
         assert done.returncode == 0, done.stderr
 
     def script(self, text):
-        self.run("check", "-q", "--scene", self.room, "--script", self.write("study.yaml", text))
+        room = self.data / "rooms/flat.gltf" if PLACES.search(text) else self.room
+        self.run("check", "-q", "--scene", room, "--script", self.write("study.yaml", text))
 
     def scene(self, text):
         self.run("check", "-q", "--scene", self.write("scene.gltf", text), "--script", self.write("look.yaml", LOOK))

@@ -153,11 +153,16 @@ class Suggestions(Case):
         self.assertIn("must end in .yaml or .yml", self.suggest(self.flat, "-o", "own.txt", code=2)[1])
         self.assertIn("one file", self.suggest(self.write("model.yaml", model(FLAT)), "-o", "model.yaml", code=2)[1])
 
+    def test_a_marked_model_is_looked_at_without_a_script(self):
+        self.assertIn("wrote own.yaml", self.suggest(self.flat, "-o", "own.yaml")[1])
+        self.assertIn("no script: 1 trial", self.run_pirsim("check", "--scene", self.flat, "--marks", "own.yaml")[0])
+        self.run_pirsim("preview", "--scene", self.flat, "--marks", "own.yaml", "--width", 64, "--height", 48, "-o", "own.png")
+
     def test_options_that_go_together(self):
         self.assertIn("it doesn't go with --marks", self.suggest(self.flat, "--marks", "m.yaml", code=2)[1])
         for option in (("--floor", 1), ("-o", "m.yaml")):
             self.assertIn("goes with --suggest", self.run_pirsim("check", "--scene", self.flat, "--script", self.walk, *option, code=2)[1])
-        self.assertIn("--script FILE is missing", self.run_pirsim("check", "--scene", self.flat, code=2)[1])
+        self.assertIn("--script FILE is missing", self.run_pirsim("view", "--scene", self.flat, code=2)[1])
         self.assertIn("at a height of 1.20 m nothing", self.suggest(self.flat, "--floor", 1.2, code=3)[1])
 
     def test_models_of_nothing_of_a_point_or_a_world(self):

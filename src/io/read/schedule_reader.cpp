@@ -59,6 +59,32 @@ MeetingsSpec read_meetings(const YamlNode& node, Diagnostics& faults) {
   return spec;
 }
 
+HouseholdSpec read_household(const YamlNode& node, Diagnostics& faults) {
+  YamlMap map(node, faults, "household");
+  HouseholdSpec household;
+  for (const YamlNode& entry : map.list("residents")) {
+    YamlMap own(entry, faults, "residents");
+    ResidentSpec& resident = household.residents.emplace_back();
+    resident.where = entry.where();
+    resident.id = own.text("id");
+    resident.bed = own.text("bed");
+    read_fields(own, resident);
+    own.finish();
+  }
+  read_fields(map, household);
+  for (const auto& [key, clock] :
+       {std::pair("wakes", &household.wakes), std::pair("wakes_on_free_days", &household.wakes_on_free_days),
+        std::pair("goes_to_bed", &household.goes_to_bed), std::pair("leaves", &household.leaves),
+        std::pair("comes_home", &household.comes_home), std::pair("lunch", &household.lunch),
+        std::pair("dinner", &household.dinner)})
+    read_part(map, key, *clock);
+  check_together(household, [&](std::string_view field, const std::string& message) {
+    faults.error(map.where(std::string(field)), "household: " + std::string(field) + ": " + message);
+  });
+  map.finish();
+  return household;
+}
+
 }  // namespace
 
 std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, Diagnostics& faults) {
@@ -73,6 +99,11 @@ std::optional<ScheduleSpec> read_schedule(const std::optional<YamlNode>& node, D
   if (map.child("profile")) {
     ProfileSpec& profile = spec.profile.emplace();
     read_part(map, "profile", profile, [&](YamlMap& own) { check_together(profile, faults_by_key(own)); });
+  }
+  if (const auto child = map.child("household")) {
+    spec.household = read_household(*child, faults);
+    if (!map.has("from")) spec.from_h = home_from_h;
+    if (!map.has("to")) spec.to_h = home_to_h;
   }
   read_part(map, "arrival", spec.arrival);
   read_part(map, "departure", spec.departure);

@@ -164,7 +164,7 @@ std::vector<TrialSpec> read_trials(const std::optional<YamlNode>& node, const st
 }
 
 void warn_of_days_off(const YamlNode& node, const ScheduleSpec& schedule, int n_days, Diagnostics& faults) {
-  if (faults.has_errors()) return;
+  if (faults.has_errors() || schedule.household) return;
   const std::int64_t first = day_number(schedule.first_day, schedule.where);
   for (std::int64_t day = first; day < first + std::min(n_days, 7); ++day) {
     if (is_working_day(day)) return;

@@ -178,6 +178,10 @@ std::string to_yaml(const ScriptSpec& script) {
   // Read scripts have one schedule for all trials.
   if (!script.trials.empty() && script.trials.front().schedule) {
     root["schedule"] = written(*script.trials.front().schedule);
+    if (script.trials.front().schedule->household) {  // whose days are always as long
+      root["schedule"].remove("from");
+      root["schedule"].remove("to");
+    }
   }
   if (!script.trials.empty() && script.trials.front().occupancy)
     root["occupancy"] = write(*script.trials.front().occupancy);

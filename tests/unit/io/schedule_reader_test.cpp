@@ -50,7 +50,7 @@ TEST_CASE("A schedule is read, written and read again to the same") {
 
 TEST_CASE("What can't be in a schedule is refused with its place") {
   refused("  staf: [{count: 2}]\n", "s.yaml:3:3: error: schedule: unknown key 'staf'");
-  refused("  staff: [{count: 2}]\n  to: 25:00\n", "s.yaml:4:7: error: to: expected a time of day from 00:00 to 24:00");
+  refused("  staff: [{count: 2}]\n  to: 25:00\n", "s.yaml:4:7: error: schedule: `to` is beyond 24:00");
   refused("  staff: [{count: 2}]\n  from: 18:00\n  to: 9:00\n",
           "s.yaml:5:7: error: schedule: `to` is not after `from`");
   refused("  staff: [{count: 2}]\n  arrival: {mean: 18:00}\n  departure: {mean: 09:00}\n",
@@ -90,4 +90,66 @@ TEST_CASE("Meetings take the seats that are nobody's desk") {
   CHECK(people[0].seat == "S2");
   CHECK(people[2].seat == "S3");
   CHECK(people[5].part == SchedulePart::guest);
+}
+
+namespace {
+
+constexpr const char* couple =
+    "  household:\n    residents:\n      - {id: ann, occupation: works, age_years: 38}\n      - {id: bob, bed: B2}\n";
+
+SceneSpec flat_with_beds(int beds) {
+  SceneSpec scene = scene_with(1);
+  for (int i = 1; i <= beds; ++i) {
+    PlaceSpec& bed = scene.places.emplace_back();
+    bed.id = "B" + std::to_string(i);
+    bed.posture = PlacePosture::lie;
+    bed.uses = {"sleep"};
+  }
+  return scene;
+}
+
+void no_home(const std::string& schedule, int beds, const std::string& message) {
+  INFO(schedule);
+  const ScriptSpec script = script_with(schedule);
+  CHECK_THROWS_WITH(people_of(*script.trials.front().schedule, flat_with_beds(beds), 1), contains(message));
+}
+
+}  // namespace
+
+TEST_CASE("A household is read, written and read again to the same; its days go from four to four") {
+  const ScriptSpec script = script_with(std::string(couple) + "    visits_a_week: 2\n    wakes: {mean: 06:30, sd_min: 10}\n");
+  const ScheduleSpec& schedule = *script.trials.front().schedule;
+  REQUIRE(schedule.household);
+  CHECK(schedule.from_h == 4.0);
+  CHECK(schedule.to_h == 28.0);
+  CHECK(schedule.household->residents[0].occupation == Occupation::works);
+  CHECK(schedule.household->residents[1].bed == "B2");
+  CHECK(schedule.household->wakes.mean_h == 6.5);
+  CHECK(schedule.household->visits_a_week == 2.0);
+  const std::string text = io::to_yaml(script);
+  CHECK(io::to_yaml(io::parse_script(text, "again.yaml")) == text);
+}
+
+TEST_CASE("What can't be a household is refused with its place") {
+  refused("  household: {}\n", "s.yaml:3:14: error: household: residents: nobody lives there");
+  refused("  household: {residents: [{id: a}, {id: b}, {id: c}, {id: d}, {id: e}, {id: f}]}\n", "more than five");
+  refused("  household: {residents: [{id: a}, {id: a}]}\n", "'a'");
+  refused("  household: {residents: [{name: a}]}\n", "unknown key 'name'");
+  refused("  household: {residents: [{id: a, occupation: work}]}\n", "did you mean 'works'?");
+  refused("  household: {residents: [{id: a, age_years: 3}]}\n", "age_years: expected");
+  refused("  household: {residents: [{id: a}], goes_to_bed: {mean: 06:00}}\n", "goes_to_bed: is not after `wakes`");
+  refused(std::string(couple) + "  cleaning: 19:00\n", "household: goes without `staff`, `meetings`");
+  refused(std::string(couple) + "  from: 06:00\n", "leave out `from` and `to`");
+}
+
+TEST_CASE("Residents take their own beds, then those that nobody has; one without is an error") {
+  const ScriptSpec script = script_with(couple);
+  const auto people = people_of(*script.trials.front().schedule, flat_with_beds(2), 1);
+  REQUIRE(people.size() == 3);
+  CHECK(people[0].seat == "B1");
+  CHECK(people[1].seat == "B2");
+  CHECK(people[2].part == SchedulePart::visitor);
+  no_home(couple, 0, "bed 'B2' is no place for sleep in room");
+  no_home("  household: {residents: [{id: a}, {id: b}]}\n", 1, "household: 'b' has no bed: room has 1 place");
+  no_home("  household: {residents: [{id: a, bed: B1}, {id: b, bed: B1}]}\n", 2, "'B1' is the own bed of two people");
 }
