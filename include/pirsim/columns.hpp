@@ -26,12 +26,22 @@ enum class When {
 };
 
 /// Of what a table has as many columns as there are.
-enum class Each { sensor, area };
+enum class Each { sensor, area, door };
 
 /// Begins the names of columns that hold the people of an area, and no sensor's.
 inline constexpr std::string_view area_prefix = "people_";
 [[nodiscard]] inline std::string column_of_area(std::string_view area) { return std::string(area_prefix).append(area); }
 [[nodiscard]] inline bool is_column_of_area(std::string_view column) { return column.starts_with(area_prefix); }
+
+/// The same of doors: 1 while one isn't shut.
+inline constexpr std::string_view door_prefix = "door_";
+[[nodiscard]] inline std::string column_of_door(std::string_view door) { return std::string(door_prefix).append(door); }
+[[nodiscard]] inline bool is_column_of_door(std::string_view column) { return column.starts_with(door_prefix); }
+
+/// Whose column it is by how its name begins; a sensor's if by nothing.
+[[nodiscard]] inline Each owner_of(std::string_view column) {
+  return is_column_of_area(column) ? Each::area : is_column_of_door(column) ? Each::door : Each::sensor;
+}
 
 struct ColumnInfo {
   std::string_view name;
@@ -45,14 +55,14 @@ struct ColumnInfo {
 
 /// Who has columns in a table. areas: ids, then the name of the rest if there is one.
 struct ColumnOwners {
-  std::vector<std::string> sensors{}, areas{};
+  std::vector<std::string> sensors{}, areas{}, doors{};
 };
 
 /// One field. Text and bits belong to the row.
 using Cell = std::variant<std::monostate, std::int64_t, double, std::string_view, std::span<const std::uint8_t>>;
 
-/// A column that a table has once has a `value`. One that it has for each sensor or area has `each`, and no name of its
-/// own.
+/// A column that a table has once has a `value`. One that it has for each sensor, area or door has `each`, and no name
+/// of its own.
 template <typename Row>
 struct Column : ColumnInfo {
   Cell (*value)(const Row& row) = nullptr;
@@ -96,6 +106,7 @@ struct DayLine {
   int arrivals, departures;
   std::span<const int> sensor_of_column;  ///< index of the room's sensor; -1: the room has none of that name
   std::span<const int> area_of_column{};  ///< the same of its areas
+  std::span<const int> door_of_column{};  ///< and of its doors
 };
 
 struct DayOccupantLine {
@@ -126,8 +137,10 @@ template <typename Row, typename IsThere>
       names.emplace_back(column.name);
     } else if (column.of == Each::sensor) {
       names.insert(names.end(), owners.sensors.begin(), owners.sensors.end());
-    } else {
+    } else if (column.of == Each::area) {
       for (const std::string& area : owners.areas) names.push_back(column_of_area(area));
+    } else {
+      for (const std::string& door : owners.doors) names.push_back(column_of_door(door));
     }
   }
   return names;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <ostream>
 #include <span>
 #include <string>
@@ -30,21 +31,21 @@ class TableWriter {
     for (const Column<Row>& column : columns) add(column, 0, column.name);
     end_line();
   }
-  /// The columns of columns_of<Row>() that are called so. A name that none of them has belongs to an area, by how it
-  /// begins, or to a sensor: the first such to the first sensor.
+  /// The columns of columns_of<Row>() that are called so. A name that none of them has belongs to an area or a door, by
+  /// how it begins, or to a sensor: the first such to the first sensor.
   explicit TableWriter(std::ostream& out, const std::vector<std::string>& names = column_names<Row>()) : out_(out) {
     const std::span<const Column<Row>> columns = columns_of<Row>();
-    std::size_t n_sensors = 0, n_areas = 0;
+    std::array<std::size_t, 3> n_of{};  // by owner
     for (const std::string& name : names) {
       const auto single = std::ranges::find_if(
           columns, [&](const auto& column) { return column.each == nullptr && column.name == name; });
-      const Each of = is_column_of_area(name) ? Each::area : Each::sensor;
+      const Each of = owner_of(name);
       const auto repeated =
           std::ranges::find_if(columns, [&](const auto& column) { return column.each != nullptr && column.of == of; });
       if (single != columns.end()) {
         add(*single, 0, name);
       } else if (repeated != columns.end()) {
-        add(*repeated, of == Each::area ? n_areas++ : n_sensors++, name);
+        add(*repeated, n_of[static_cast<std::size_t>(of)]++, name);
       } else {
         throw Error(ErrorCode::internal, "the table has no column '" + name + "'");
       }

@@ -36,6 +36,7 @@ enum class Purpose : std::uint32_t {
   occupancy_conduct = 25,  ///< what somebody does at a seat that a count gave them, and by which doors they go
   home_day = 26,           ///< when a resident gets up, what they do and how long
   home_meals = 27,         ///< when a household eats, who cooks, when a visitor comes
+  door_habit = 28,         ///< after which passes a door is shut at once
   effect_prior = 11,       ///< parameters drawn from the catalogue's priors
   // Of statistics, from 100 on.
   tied_ranks = 100,    ///< order of equal values in a rank test

@@ -24,6 +24,7 @@ struct Sample {
   std::vector<std::uint8_t> bits;      ///< (n_sensors) 1 where the sensor saw motion
   std::string clock{};                 ///< "2026-03-02T08:30:00" of time_s; empty without a clock
   std::vector<int> people_of_areas{};  ///< (n_areas, and the rest of the floor if there is one) they sum to people
+  std::vector<std::uint8_t> doors{};   ///< (n_doors) 1 where one isn't shut, at time_s
   bool operator==(const Sample&) const = default;
 };
 

@@ -61,6 +61,28 @@ struct AreaSpec {
   FloorArea outline;
 };
 
+/// From which side a leaf's hinge is at the left, and to which side it opens: as whoever goes through along -Z sees it.
+enum class DoorHinge { left, right };
+enum class DoorOpens { inward, outward };  ///< inward: to where -Z points
+/// open, shut: what people leave it as whenever nobody goes through; habit: by who goes through.
+enum class DoorState { open, shut, habit };
+
+/// A door with a leaf. The origin is the middle of the threshold on the floor, -Z leads through the opening.
+struct DoorSpec {
+  std::string id;
+  Frame world_from_door;
+  double width_m = 0.8;  ///< of the leaf, as the next two
+  double height_m = 2.0;
+  double thickness_m = 0.04;
+  DoorHinge hinge = DoorHinge::left;
+  DoorOpens opens = DoorOpens::inward;
+  double open_deg = 90.0;  ///< how far the leaf turns
+  double turn_s = 1.0;     ///< how long that takes
+  DoorState state = DoorState::habit;
+  double shut_share = 0.8;       ///< of passes after which a door by habit is shut at once
+  double stands_open_s = 300.0;  ///< how long it stands open after the others
+};
+
 struct SceneSpec {
   std::string name;                 ///< file name, for messages
   std::vector<TriMesh> meshes;      ///< everything that occludes, world frame, cleaned
@@ -68,6 +90,7 @@ struct SceneSpec {
   std::vector<SeatSpec> seats;
   std::vector<PlaceSpec> places;  ///< to lie and to stand; those to sit are seats
   std::vector<EntranceSpec> entrances;
+  std::vector<DoorSpec> doors{};  ///< in file order, as the columns
   FloorArea floor;
   std::vector<AreaSpec> areas{};                         ///< apart from each other; in file order, as the columns
   std::map<std::string, SensorModelSpec> sensor_models;  ///< every model that a sensor names

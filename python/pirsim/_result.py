@@ -58,6 +58,10 @@ class Result:
     """Ids of the scene's areas, then `elsewhere` if some of the floor is in none; empty without areas."""
     people_of_areas: npt.NDArray[np.uint16]
     """[run, second, area] how many of `people` are in each of `areas`; they sum to `people`."""
+    doors: tuple[str, ...]
+    """Ids of the scene's doors."""
+    door_open: npt.NDArray[np.uint8]
+    """[run, second, door] 1 while the door isn't shut, at the end of that second."""
     valid: npt.NDArray[np.bool_]
     """[run, second] False behind the end of a run."""
     time: npt.NDArray[np.float64]
@@ -147,6 +151,8 @@ class Result:
         columns["people"] = self.people[run, second]
         for area, name in enumerate(self.areas):
             columns["people_" + name] = self.people_of_areas[run, second, area]
+        for door, name in enumerate(self.doors):
+            columns["door_" + name] = self.door_open[run, second, door]
         for sensor, name in enumerate(self.sensors):
             columns[name] = self.bits[run, second, sensor]
         return columns
@@ -174,7 +180,7 @@ class Result:
 
     def to_xarray(self) -> xarray.Dataset:
         """bits (run, time, sensor), people, valid and phase (run, time), with trial and replicate of each run; with areas
-        people_of_areas (run, time, area)."""
+        people_of_areas (run, time, area), with doors door_open (run, time, door)."""
         import xarray as xr
 
         rows = ("run", "time")
@@ -186,6 +192,9 @@ class Result:
         if self.areas:
             data["people_of_areas"] = (("run", "time", "area"), self.people_of_areas)
             names["area"] = list(self.areas)
+        if self.doors:
+            data["door_open"] = (("run", "time", "door"), self.door_open)
+            names["door"] = list(self.doors)
         return xr.Dataset(data, coords=names | {
             "run": self.run, "time": ("time", self.time, {"units": "s"}), "sensor": list(self.sensors),
             "trial": ("run", self.trial), "replicate": ("run", self.replicate)})
@@ -195,7 +204,8 @@ def _texts(column: npt.NDArray[np.uint16], texts: tuple[str, ...]) -> npt.NDArra
     return np.array(texts)[column]
 
 
-def make_result(arrays: dict[str, Any], sensors: tuple[str, ...], areas: tuple[str, ...], seed: int) -> Result:
+def make_result(arrays: dict[str, Any], sensors: tuple[str, ...], areas: tuple[str, ...],
+                doors: tuple[str, ...], seed: int) -> Result:
     """Of what the module gives."""
     texts = arrays.pop("texts")
     occupants, signals = arrays["occupants"], arrays["signals"]
@@ -211,4 +221,4 @@ def make_result(arrays: dict[str, Any], sensors: tuple[str, ...], areas: tuple[s
     arrays["trial"].flags.writeable = False
     if "clock" in arrays:
         arrays["clock"] = arrays["clock"].view("datetime64[s]")
-    return Result(sensors=sensors, areas=areas, seed=seed, **arrays)
+    return Result(sensors=sensors, areas=areas, doors=doors, seed=seed, **arrays)

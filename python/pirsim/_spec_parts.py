@@ -113,6 +113,7 @@ def scene_text(scene: specs.Scene) -> str:
     parts = [counted([sensor.id for sensor in scene.sensors], "sensor", "sensors"),
              counted([seat.id for seat in scene.seats], "seat", "seats"),
              counted([entrance.id for entrance in scene.entrances], "entrance", "entrances"),
+             *([counted([door.id for door in scene.doors], "door", "doors")] if scene.doors else []),
              *([counted([area.id for area in scene.areas], "area", "areas")] if scene.areas else []),
              counted([mesh.name for mesh in scene.meshes], "mesh", "meshes"),
              counted(list(scene.sensor_models), "sensor model", "sensor models")]

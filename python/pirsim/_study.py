@@ -195,6 +195,11 @@ class Model:
         return self._handle.areas
 
     @property
+    def doors(self) -> tuple[str, ...]:
+        """Ids of the scene's doors."""
+        return self._handle.doors
+
+    @property
     def sensors(self) -> Poses:
         """Of the scene as given, in the order of the last axis of `Result.bits`."""
         return Poses(*self._handle.sensors)
@@ -291,7 +296,7 @@ def run(model: Model, runs: int | Iterable[int] | None = None, *, threads: int =
     """
     arrays = _core.run(_handle_of(model), _run_numbers(model, runs), as_threads(threads), zones, signals, occupants,
                        progress)
-    result = make_result(arrays, model.sensors.names, model.areas, model.seed)
+    result = make_result(arrays, model.sensors.names, model.areas, model.doors, model.seed)
     if result.faults:
         first = result.faults[0]
         warnings.warn(f"{len(result.faults)} runs could not go on and have no rows; run {first.run} at second "

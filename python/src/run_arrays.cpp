@@ -67,7 +67,8 @@ std::uint16_t RunArrays::Words::number(std::string_view text) {
 
 nb::tuple RunArrays::Words::all() const { return nb::tuple(to_python(texts_)); }
 
-RunArrays::RunArrays(std::size_t n_sensors, std::size_t n_areas) : n_sensors_(n_sensors), n_areas_(n_areas) {
+RunArrays::RunArrays(std::size_t n_sensors, std::size_t n_areas, std::size_t n_doors)
+    : n_sensors_(n_sensors), n_areas_(n_areas), n_doors_(n_doors) {
   for (const Column<OccupantLine>& one : columns_of<OccupantLine>()) {
     const bool told_by_run = one.name == "replicate" || one.name == "trial" || one.holds == Holds::moment;
     if (one.when == When::with_areas && n_areas == 0) continue;
@@ -83,6 +84,7 @@ void RunArrays::add(const RunResult& result) {
   rows.bits.reserve(result.samples.size() * n_sensors_);
   for (const Sample& sample : result.samples) {
     rows.bits.insert(rows.bits.end(), sample.bits.begin(), sample.bits.end());
+    rows.doors.insert(rows.doors.end(), sample.doors.begin(), sample.doors.end());
     rows.people.push_back(static_cast<std::uint16_t>(sample.people));
     for (const int people : sample.people_of_areas) rows.people_of_areas.push_back(static_cast<std::uint16_t>(people));
     rows.phase.push_back(phases_.number(sample.phase));
@@ -179,6 +181,7 @@ void RunArrays::add_rows(nb::dict& arrays) {
   arrays["phase_code"] = to_numpy(padded(rows_, &Rows::phase, n_windows_, 1), {n_runs, n_windows_});
   arrays["people_of_areas"] =
       to_numpy(padded(rows_, &Rows::people_of_areas, n_windows_, n_areas_), {n_runs, n_windows_, n_areas_});
+  arrays["door_open"] = to_numpy(padded(rows_, &Rows::doors, n_windows_, n_doors_), {n_runs, n_windows_, n_doors_});
   arrays["people"] = to_numpy(padded(rows_, &Rows::people, n_windows_, 1), {n_runs, n_windows_});
 }
 

@@ -16,7 +16,7 @@ namespace pirsim::python {
 class RunArrays {
  public:
   /// n_areas: of Model::areas().
-  RunArrays(std::size_t n_sensors, std::size_t n_areas);
+  RunArrays(std::size_t n_sensors, std::size_t n_areas, std::size_t n_doors);
 
   void add(const RunResult& result);
   /// Runs differ in length: arrays are as long as the longest, zeros behind the end of a run, where `valid` is false.
@@ -24,7 +24,8 @@ class RunArrays {
 
  private:
   struct Rows {
-    std::vector<std::uint8_t> bits;  ///< (n_windows x n_sensors)
+    std::vector<std::uint8_t> bits;   ///< (n_windows x n_sensors)
+    std::vector<std::uint8_t> doors;  ///< (n_windows x n_doors)
     std::vector<std::uint16_t> people, phase;
     std::vector<std::uint16_t> people_of_areas;  ///< (n_windows x n_areas)
     std::vector<std::int64_t> clock;             ///< seconds since 1970; empty without a clock
@@ -69,7 +70,7 @@ class RunArrays {
   [[nodiscard]] nanobind::list zones();
   void add_rows(nanobind::dict& arrays);
 
-  std::size_t n_sensors_, n_areas_;
+  std::size_t n_sensors_, n_areas_, n_doors_;
   std::size_t n_windows_ = 0;  ///< of the longest run
   bool has_clock_ = false;
   std::vector<double> time_s_;

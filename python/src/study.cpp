@@ -92,7 +92,7 @@ std::size_t count_of(const Runs& runs, const Model& model) { return runs ? runs-
 
 nb::dict run(const Model& model, Runs runs, unsigned threads, bool zones, bool signals, bool occupants,
              nb::handle progress) {
-  RunArrays arrays(model.scene().sensors.size(), model.areas().size());
+  RunArrays arrays(model.scene().sensors.size(), model.areas().size(), model.scene().doors.size());
   StudyOptions options;
   options.threads = threads;
   options.record = zones ? Record::samples_and_zones : Record::samples;
@@ -122,7 +122,7 @@ Recording record_runs(const Model& model, const Runs& runs, unsigned threads, nb
 
 nb::dict emit_runs(const Model& model, const Recording& recording, nb::handle effects,
                    std::optional<std::uint64_t> seed, nb::handle progress) {
-  RunArrays arrays(recording.n_sensors, model.areas().size());
+  RunArrays arrays(recording.n_sensors, model.areas().size(), model.scene().doors.size());
   EmitOptions options{.effects = {}, .seed = seed};
   if (!effects.is_none()) options.effects = from_python<std::vector<EffectSpec>>(effects, "effects");
   attend(progress, [&](Job& job) {
@@ -143,6 +143,12 @@ void add_study(nb::module_& module) {
       .def_prop_ro("tick_s", &Model::tick_s)
       .def_prop_ro("seed", [](const Model& model) { return model.script().seed; })
       .def_prop_ro("columns", [](const Model& model) { return nb::tuple(to_python(model.columns())); })
+      .def_prop_ro("doors",
+                   [](const Model& model) {
+                     std::vector<std::string> ids;
+                     for (const DoorSpec& door : model.scene().doors) ids.push_back(door.id);
+                     return nb::tuple(to_python(ids));
+                   })
       .def_prop_ro("areas", [](const Model& model) { return nb::tuple(to_python(model.areas())); })
       .def_prop_ro("trials", &trials)
       .def_prop_ro("warnings", &warnings)

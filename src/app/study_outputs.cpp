@@ -248,6 +248,12 @@ std::vector<std::string> sensor_ids(const Model& model) {
   return ids;
 }
 
+std::vector<std::string> door_ids(const Model& model) {
+  std::vector<std::string> ids;
+  for (const DoorSpec& door : model.scene().doors) ids.push_back(door.id);
+  return ids;
+}
+
 std::vector<std::size_t> first_zones(const Model& model) {
   const RayBundle& rays = model.rays();
   std::vector<std::size_t> begins;
@@ -326,7 +332,7 @@ class ZoneOutput {
 class CasasOutput {
  public:
   CasasOutput(const std::filesystem::path& file, const Model& model)
-      : output_(file), log_(output_.lines(), sensor_ids(model)) {}
+      : output_(file), log_(output_.lines(), sensor_ids(model), door_ids(model)) {}
 
   /// Bytes before compression.
   std::size_t add(const RunResult& result) {

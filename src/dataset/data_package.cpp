@@ -46,8 +46,10 @@ Json fields_of(const ColumnOwners& owners) {
   for (const Column<Row>& column : columns_of<Row>()) {
     if (column.each != nullptr && column.of == Each::sensor) {
       for (const std::string& sensor : owners.sensors) fields.push_back(field(column, sensor));
-    } else if (column.each != nullptr) {
+    } else if (column.each != nullptr && column.of == Each::area) {
       for (const std::string& area : owners.areas) fields.push_back(field(column, column_of_area(area)));
+    } else if (column.each != nullptr) {
+      for (const std::string& door : owners.doors) fields.push_back(field(column, column_of_door(door)));
     } else if (column.when != When::with_areas || !owners.areas.empty()) {
       fields.push_back(field(column, column.name));
     }

@@ -69,9 +69,10 @@ std::string to_uci864(std::span<const Reading> readings, const std::vector<std::
   return text;
 }
 
-std::string to_casas(const RunResult& run, const std::vector<std::string>& sensors) {
+std::string to_casas(const RunResult& run, const std::vector<std::string>& sensors,
+                     const std::vector<std::string>& doors) {
   std::ostringstream text;
-  io::CasasWriter log(text, sensors);
+  io::CasasWriter log(text, sensors, doors);
   log.add(run.samples, run.occupants);
   log.finish();
   return std::move(text).str();

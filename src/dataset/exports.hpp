@@ -26,7 +26,8 @@ struct Reading {
 /// Shaped like UCI's Room Occupancy Estimation (864): Date,Time,<sensor>_PIR,...,Room_Occupancy_Count.
 [[nodiscard]] std::string to_uci864(std::span<const Reading> readings, const std::vector<std::string>& sensors);
 /// As io::CasasWriter has it.
-[[nodiscard]] std::string to_casas(const RunResult& run, const std::vector<std::string>& sensors);
+[[nodiscard]] std::string to_casas(const RunResult& run, const std::vector<std::string>& sensors,
+                                   const std::vector<std::string>& doors);
 
 /// Hours of a day: share of the hour with anybody there, people on average.
 struct DayProfile {

@@ -38,7 +38,7 @@ std::vector<std::size_t> sensor_columns(const io::CsvTable& table) {
   std::vector<std::size_t> columns;
   const std::vector<std::string> names = table.names(), own = column_names<DayLine>();
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const bool is_sensor = std::ranges::find(own, names[i]) == own.end() && !is_column_of_area(names[i]);
+    const bool is_sensor = std::ranges::find(own, names[i]) == own.end() && owner_of(names[i]) == Each::sensor;
     if (is_sensor && table.n_rows() > 0 && !table.text(0, i).empty()) columns.push_back(i);
   }
   return columns;

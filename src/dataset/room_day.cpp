@@ -56,6 +56,8 @@ class DayWriter {
     sensor_of_column_ = places(columns.sensors, sensors_);
     areas_ = Areas(scene).names();
     area_of_column_ = places(columns.areas, areas_);
+    for (const DoorSpec& door : scene.doors) doors_.push_back(door.id);
+    door_of_column_ = places(columns.doors, doors_);
   }
 
   void write(const RunResult& result) {
@@ -68,7 +70,7 @@ class DayWriter {
         const int n_rows = rows_per_reading(recipe_.sensing).value();
         add(path("exports/uci864", ".csv"), to_uci864(readings(result.samples, n_rows), sensors_));
       }
-      if (shape == Export::casas) add(path("exports/casas", ".txt"), to_casas(result, sensors_));
+      if (shape == Export::casas) add(path("exports/casas", ".txt"), to_casas(result, sensors_, doors_));
     }
   }
 
@@ -101,7 +103,8 @@ class DayWriter {
     std::ostringstream text;
     io::TableWriter<DayLine> csv(text, column_names<DayLine>(columns_));
     for (std::size_t i = 0; i < samples.size(); ++i)
-      csv.write({room_, day_, samples[i], moved.arrivals[i], moved.departures[i], sensor_of_column_, area_of_column_});
+      csv.write({room_, day_, samples[i], moved.arrivals[i], moved.departures[i], sensor_of_column_, area_of_column_,
+                 door_of_column_});
     return text.str();
   }
 
@@ -165,8 +168,8 @@ class DayWriter {
   const ColumnOwners& columns_;  ///< of the dataset
   RoomDay& made_;
   int room_, day_;
-  std::vector<std::string> sensors_, areas_;
-  std::vector<int> sensor_of_column_, area_of_column_;
+  std::vector<std::string> sensors_, areas_, doors_;
+  std::vector<int> sensor_of_column_, area_of_column_, door_of_column_;
 };
 
 }  // namespace

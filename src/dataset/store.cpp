@@ -73,6 +73,7 @@ ColumnOwners columns_of(const RecipeSpec& recipe, const std::map<OwnScene, Scene
       for (const SensorSpec& sensor : scene.sensors) add(columns.sensors, sensor.id);
       const Areas areas(scene);
       for (const std::string& area : areas.names()) add(columns.areas, area);
+      for (const DoorSpec& door : scene.doors) add(columns.doors, door.id);
     }
   }
   return columns;

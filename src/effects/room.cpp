@@ -116,6 +116,10 @@ void alter_mirrored_room(StudyInForce& study, const EffectSpec& effect) {
   for (SeatSpec& seat : scene.seats) seat.world_from_seat = mirror.frame(seat.world_from_seat);
   for (PlaceSpec& place : scene.places) place.world_from_place = mirror.frame(place.world_from_place);
   for (EntranceSpec& door : scene.entrances) door.world_from_entrance = mirror.frame(door.world_from_entrance);
+  for (DoorSpec& door : scene.doors) {
+    door.world_from_door = mirror.frame(door.world_from_door);
+    door.hinge = door.hinge == DoorHinge::left ? DoorHinge::right : DoorHinge::left;
+  }
   scene.floor = mirrored(scene.floor, mirror);
   for (AreaSpec& area : scene.areas) area.outline = mirrored(area.outline, mirror);
   for (TrialInForce& trial : study.trials) {

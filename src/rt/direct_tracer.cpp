@@ -8,7 +8,10 @@ namespace pirsim::rt {
 DirectTracer::DirectTracer(const TracerSetup& setup, const RayKernel& kernel)
     : n_words_(ZoneSet(setup.clipped->n_zones()).words().size()),
       search_(*setup.clipped, kernel),
-      first_hits_(setup.clipped->rays.size(), search_) {}
+      first_hits_(setup.clipped->rays.size(), search_),
+      cuts_(setup.cuts) {
+  if (cuts_ != nullptr) turn_leaves(rest_steps(cuts_->leaves()));
+}
 
 void DirectTracer::add(std::size_t person, std::span<const PosedShape> solids, ZoneSet& zones) {
   if (people_.size() <= person) people_.resize(person + 1);
@@ -17,6 +20,12 @@ void DirectTracer::add(std::size_t person, std::span<const PosedShape> solids, Z
   seen.zones.resize(solids.size() * n_words_);
   for (const std::uint32_t i : search_.moved()) find_zones(seen.solids[i], &seen.zones[i * n_words_]);
   for (std::size_t i = 0; i < solids.size(); ++i) zones.add({&seen.zones[i * n_words_], n_words_});
+}
+
+void DirectTracer::turn_leaves(std::span<const LeafStep> steps) {
+  cuts_->cut(steps, range_);
+  search_.set_ranges(range_);
+  for (Person& person : people_) person.solids.clear();
 }
 
 void DirectTracer::find_zones(const FollowedSolid& solid, ZoneSet::Word* zones) {

@@ -19,6 +19,7 @@ class DirectTracer final : public Tracer {
     first_hits_.follow(moved, changes);
   }
   [[nodiscard]] std::vector<SolidId> first_hits() const override { return first_hits_.first_hits(); }
+  void turn_leaves(std::span<const LeafStep> steps) override;
   [[nodiscard]] bool may_be_remembered() const noexcept override { return true; }
 
  private:
@@ -34,6 +35,8 @@ class DirectTracer final : public Tracer {
   RaySearch search_;
   std::vector<Person> people_;
   FirstHits first_hits_;
+  const LeafCuts* cuts_;      ///< null: there are no doors
+  std::vector<float> range_;  ///< scratch
 };
 
 }  // namespace pirsim::rt

@@ -90,6 +90,8 @@ class EmbreeTracer final : public AnewTracer {
       : AnewTracer(setup.clipped->rays.size()),
         device_(setup.room->impl().device.get()),
         bundle_(*setup.clipped),
+        range_(setup.clipped->range),
+        cuts_(setup.cuts),
         cluster_cones_(cluster_cones(bundle_)),
         zone_cones_(zone_cones(bundle_)),
         cube_(make_scene(device_, RTC_SCENE_FLAG_ROBUST)),
@@ -102,7 +104,10 @@ class EmbreeTracer final : public AnewTracer {
     rtcCommitGeometry(cube.get());
     rtcAttachGeometry(cube_.get(), cube.get());
     commit(device_, cube_.get());
+    if (cuts_ != nullptr) turn_leaves(rest_steps(cuts_->leaves()));
   }
+
+  void turn_leaves(std::span<const LeafStep> steps) override { cuts_->cut(steps, range_); }
 
   void add(std::size_t person, std::span<const PosedShape> solids, ZoneSet& zones) override {
     while (people_.size() <= person) people_.push_back(make_stage());
@@ -207,7 +212,7 @@ class EmbreeTracer final : public AnewTracer {
   [[nodiscard]] bool sees_solid(SolidQuery& query, const Stage& stage, std::size_t zone) const noexcept {
     for (std::uint32_t i = bundle_.zone_rays_begin[zone]; i < bundle_.zone_rays_begin[zone + 1]; ++i) {
       query.ray = bundle_.rays[i];
-      query.range = bundle_.range[i];
+      query.range = range_[i];
       RTCRay ray = embree_ray(query.ray, query.range);
       any_hit(stage.scene.get(), query, ray);
       if (ray.tfar < 0.0F) return true;
@@ -217,7 +222,7 @@ class EmbreeTracer final : public AnewTracer {
 
   [[nodiscard]] std::optional<std::uint32_t> first_solid(SolidQuery& query, std::uint32_t ray) const noexcept {
     query.ray = bundle_.rays[ray];
-    query.range = bundle_.range[ray];
+    query.range = range_[ray];
     query.nearest.reset();
     RTCRayHit nearest = embree_ray_hit(query.ray, query.range);
     closest_hit(everybody_.scene.get(), query, nearest);
@@ -226,6 +231,8 @@ class EmbreeTracer final : public AnewTracer {
 
   RTCDevice device_;
   const RayBundle& bundle_;
+  std::vector<float> range_;             ///< (n_rays) cut at leaves as well
+  const LeafCuts* cuts_;                 ///< null: there are no doors
   std::vector<ViewCone> cluster_cones_;  ///< (n_clusters)
   std::vector<ViewCone> zone_cones_;     ///< (n_zones)
   SceneHandle cube_;                     ///< the one primitive that every instance shows: a cube around its solid

@@ -50,6 +50,15 @@ RaySearch::RaySearch(const RayBundle& clipped, const RayKernel& kernel)
   near_person_cones_.reserve(cones_.size());
 }
 
+void RaySearch::set_ranges(std::span<const float> range) noexcept {
+  for (RayPacket& packet : packets_) {
+    for (std::size_t i = 0; i < packet_size; ++i) {
+      const bool is_missing = packet.range[i] < 0.0F;
+      if (!is_missing) packet.range[i] = range[packet.ray[i]];
+    }
+  }
+}
+
 void RaySearch::follow(std::span<const PosedShape> solids, std::vector<FollowedSolid>& followed) {
   followed.resize(solids.size());
   moved_.clear();

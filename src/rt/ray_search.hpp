@@ -28,6 +28,9 @@ class RaySearch {
 
   /// Takes the solids to where they are now. followed: resized to (n_solids).
   void follow(std::span<const PosedShape> solids, std::vector<FollowedSolid>& followed);
+  /// How far the rays go from now on: none farther than in the bundle. range: (n_rays). What was followed before has
+  /// rays of other ranges: forget it.
+  void set_ranges(std::span<const float> range) noexcept;
   /// Of the last follow(): indices of the solids that aren't as they were, and of those of them that got other rays.
   [[nodiscard]] std::span<const std::uint32_t> moved() const noexcept { return moved_; }
   [[nodiscard]] std::span<const std::uint32_t> gathered() const noexcept { return left_; }

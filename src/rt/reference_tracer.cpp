@@ -28,7 +28,14 @@ void intersect_solid(const RTCIntersectFunctionNArguments* arguments) {
 class ReferenceTracer final : public AnewTracer {
  public:
   explicit ReferenceTracer(const TracerSetup& setup)
-      : AnewTracer(setup.rated->rays.size()), room_(setup.room->impl()), rated_(*setup.rated) {}
+      : AnewTracer(setup.rated->rays.size()), room_(setup.room->impl()), rated_(*setup.rated), cuts_(setup.cuts) {
+    if (cuts_ != nullptr) turn_leaves(rest_steps(cuts_->leaves()));
+  }
+
+  void turn_leaves(std::span<const LeafStep> steps) override {
+    leaves_.clear();
+    for (std::size_t i = 0; i < steps.size(); ++i) leaves_.emplace_back(cuts_->leaves()[i].at(steps[i]));
+  }
 
   void add(std::size_t, std::span<const PosedShape> solids, ZoneSet& zones) override {
     const SceneHandle scene = build(solids);
@@ -52,32 +59,42 @@ class ReferenceTracer final : public AnewTracer {
     RTCDevice device = room_.device.get();
     SceneHandle scene = make_scene(device, room_scene_flags);
     room_.attach_to(scene.get());
+    attach(leaves_, room_.n_meshes(), scene.get());
+    attach(solids, n_before_solids(), scene.get());
+    check(device, "attach a solid");
+    commit(device, scene.get());
+    return scene;
+  }
+  void attach(std::span<const PosedShape> solids, std::uint32_t first_id, RTCScene scene) const {
     for (std::uint32_t i = 0; i < solids.size(); ++i) {
-      const GeometryHandle geometry = make_geometry(device, RTC_GEOMETRY_TYPE_USER);
+      const GeometryHandle geometry = make_geometry(room_.device.get(), RTC_GEOMETRY_TYPE_USER);
       rtcSetGeometryUserPrimitiveCount(geometry.get(), 1);
       rtcSetGeometryUserData(geometry.get(), const_cast<PosedShape*>(&solids[i]));
       rtcSetGeometryBoundsFunction(geometry.get(), bound_solid, nullptr);
       rtcSetGeometryIntersectFunction(geometry.get(), intersect_solid);
       rtcCommitGeometry(geometry.get());
-      rtcAttachGeometryByID(scene.get(), geometry.get(), room_.n_meshes() + i);
+      rtcAttachGeometryByID(scene, geometry.get(), first_id + i);
     }
-    check(device, "attach a solid");
-    commit(device, scene.get());
-    return scene;
+  }
+  /// Meshes, and leaves, which come after them: a solid that begins where a leaf does is hidden.
+  [[nodiscard]] std::uint32_t n_before_solids() const noexcept {
+    return room_.n_meshes() + static_cast<std::uint32_t>(leaves_.size());
   }
 
-  /// What the ray hits first, if that is a solid: they come after the room's meshes.
+  /// What the ray hits first, if that is a solid.
   [[nodiscard]] std::optional<std::uint32_t> first_solid(RTCScene scene, std::uint32_t ray) const noexcept {
     QueryContext context;
     initialise(context);
     RTCRayHit nearest = embree_ray_hit(rated_.rays[ray], rated_.range[ray]);
     closest_hit(scene, context, nearest);
-    const bool is_solid = nearest.hit.geomID != RTC_INVALID_GEOMETRY_ID && nearest.hit.geomID >= room_.n_meshes();
-    return is_solid ? std::optional(nearest.hit.geomID - room_.n_meshes()) : std::nullopt;
+    const bool is_solid = nearest.hit.geomID != RTC_INVALID_GEOMETRY_ID && nearest.hit.geomID >= n_before_solids();
+    return is_solid ? std::optional(nearest.hit.geomID - n_before_solids()) : std::nullopt;
   }
 
   const Room::Impl& room_;
   const RayBundle& rated_;
+  const LeafCuts* cuts_;  ///< null: there are no doors
+  std::vector<PosedShape> leaves_;
 };
 
 }  // namespace

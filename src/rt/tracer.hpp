@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pirsim/rays.hpp"
+#include "rt/leaf_cuts.hpp"
 #include "rt/room.hpp"
 
 namespace pirsim::rt {
@@ -50,6 +51,9 @@ class Tracer {
   virtual void follow(std::span<const Moved> moved, std::vector<FirstHitChange>& changes) = 0;
   /// (n_rays) what each ray hits first since then, or no_solid.
   [[nodiscard]] virtual std::vector<SolidId> first_hits() const = 0;
+  /// From now on the leaves of doors stand so; at first as before a run. steps: (n_doors). Nobody is followed then:
+  /// take them away first.
+  virtual void turn_leaves(std::span<const LeafStep> steps) = 0;
   /// May whoever asks remember the answers? The slow tracers are there to be compared with: they look at every tick.
   [[nodiscard]] virtual bool may_be_remembered() const noexcept { return false; }
 };
@@ -59,6 +63,7 @@ struct TracerSetup {
   const Room* room = nullptr;
   const RayBundle* rated = nullptr;    ///< ranges as rated
   const RayBundle* clipped = nullptr;  ///< the same rays cut at the room
+  const LeafCuts* cuts = nullptr;      ///< of `clipped`; null: there are no doors
 };
 /// "avx512f", "avx2" or "baseline": what the direct tracer uses on this processor. Changes no bit.
 [[nodiscard]] std::string_view direct_instruction_set() noexcept;

@@ -31,7 +31,8 @@ class SceneCheck {
         !faults_.few(path.field("seats"), scene_.seats.size(), limits::seats) ||
         !faults_.few(path.field("places"), scene_.places.size(), limits::places) ||
         !faults_.few(path.field("entrances"), scene_.entrances.size(), limits::entrances) ||
-        !faults_.few(path.field("areas"), scene_.areas.size(), limits::areas)) {
+        !faults_.few(path.field("areas"), scene_.areas.size(), limits::areas) ||
+        !faults_.few(path.field("doors"), scene_.doors.size(), limits::doors)) {
       return;
     }
     check_meshes(path);
@@ -55,6 +56,14 @@ class SceneCheck {
       check_id(scene_.entrances[i].id, entrance, entrances);
       check_upright(scene_.entrances[i].world_from_entrance, entrance.field("world_from_entrance"));
       faults_.numbers(scene_.entrances[i], entrance);
+    }
+    Names doors("door");
+    for (std::size_t i = 0; i < scene_.doors.size(); ++i) {
+      const SpecPath door = path.item("doors", i);
+      check_id(scene_.doors[i].id, door, doors);
+      faults_.error_if(door.field("id"), door_id_fault(scene_.doors[i].id, scene_.sensors));
+      check_upright(scene_.doors[i].world_from_door, door.field("world_from_door"));
+      faults_.numbers(scene_.doors[i], door);
     }
     for (const auto& [name, model] : scene_.sensor_models) {
       const std::string key = "sensor_models['" + name + "']";
@@ -194,7 +203,13 @@ std::string use_fault(const std::string& use) {
 std::string column_fault(std::string_view id, const std::string& type) {
   const std::string named = type + " id '" + std::string(id) + "' ";
   if (is_column_of_area(id)) return named + "begins as the columns of areas do: '" + std::string(area_prefix) + "'";
+  if (is_column_of_door(id)) return named + "begins as the columns of doors do: '" + std::string(door_prefix) + "'";
   return is_column_name(id) ? named + "is the name of a column of rows" : "";
+}
+
+std::string door_id_fault(const std::string& id, const std::vector<SensorSpec>& sensors) {
+  const bool is_sensor = std::ranges::find(sensors, id, &SensorSpec::id) != sensors.end();
+  return is_sensor ? "door id '" + id + "' is the id of a sensor" : "";
 }
 
 std::string Names::fault_of_adding(const std::string& name) {

@@ -29,6 +29,8 @@ using TellFault = std::function<void(std::string_view field, const std::string& 
 
 /// Of what a place is for. A message or none.
 [[nodiscard]] std::string use_fault(const std::string& use);
+/// Of a door's id: exports name both doors and sensors.
+[[nodiscard]] std::string door_id_fault(const std::string& id, const std::vector<SensorSpec>& sensors);
 
 /// Names that must differ.
 class Names {

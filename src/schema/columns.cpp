@@ -49,6 +49,14 @@ constexpr Column<Sample> rows[]{
      nullptr,
      [](const Sample& row, std::size_t area) -> Cell { return row.people_of_areas[area]; },
      Each::area},
+    {{"one per door",
+      Holds::bit,
+      "only with [doors](scene.md#doors): `door_` and the door's id; 1 while it isn't shut, at `time_s`",
+      {},
+      When::simulated},
+     nullptr,
+     [](const Sample& row, std::size_t door) -> Cell { return row.doors[door]; },
+     Each::door},
     {{"one per sensor", Holds::bit, "1 if the sensor saw motion in (time_s - window, time_s]"},
      nullptr,
      [](const Sample& row, std::size_t sensor) -> Cell { return row.bits[sensor]; }},
@@ -148,6 +156,15 @@ constexpr Column<DayLine> day_rows[]{
        return line.row.people_of_areas[static_cast<std::size_t>(area)];
      },
      Each::area},
+    {{"one per door", Holds::bit,
+      "1 while this door isn't shut, at the end of the window. Empty: this room has no such door."},
+     nullptr,
+     [](const DayLine& line, std::size_t column) -> Cell {
+       const int door = line.door_of_column[column];
+       if (door < 0) return {};
+       return line.row.doors[static_cast<std::size_t>(door)];
+     },
+     Each::door},
     {{"one per sensor", Holds::bit,
       "1 if this sensor saw motion in the window. A motion sensor (Brick: Motion_Sensor), not an occupancy sensor: "
       "nobody who keeps still is seen. Empty: this room has no such sensor; see the resource sensors."},
@@ -226,7 +243,7 @@ std::span<const Column<DayOccupantLine>> columns_of() {
 std::span<const ColumnInfo> sum_columns() { return sums; }
 
 bool is_column_name(std::string_view name) {
-  return has<Sample>(name) || has<DayLine>(name) || is_column_of_area(name);
+  return has<Sample>(name) || has<DayLine>(name) || owner_of(name) != Each::sensor;
 }
 
 }  // namespace pirsim

@@ -225,6 +225,29 @@ struct Fields<AreaSpec> {
   static constexpr std::tuple all{FIELD(id), FIELD(outline)};
 };
 template <>
+struct Fields<DoorSpec> {
+  using S = DoorSpec;
+  static constexpr const char* name = "Door";
+  static constexpr const char* about =
+      "A door with a leaf: the origin is the middle of the threshold, -Z leads through the opening.";
+  // Defaults are assumed: leaves of flats are 0.6 to 0.9 m wide and 2 m high (ranges tried: turn_s 0.5-2, shut_share
+  // 0.2-1, stands_open_s 30-1800).
+  static constexpr std::tuple all{
+      FIELD(id),
+      FIELD(world_from_door),
+      FIELD(width_m, NumberRange{.min = 0.4, .max = 5.0}, "of the leaf"),
+      FIELD(height_m, NumberRange{.min = 0.5, .max = 10.0}, "of the leaf"),
+      FIELD(thickness_m, NumberRange{.min = 0.005, .max = 0.3}, "of the leaf"),
+      FIELD(hinge, "at which side whoever goes through along -Z sees it: `left` or `right`"),
+      FIELD(opens, "to which side: `inward`, where -Z points, or `outward`"),
+      FIELD(open_deg, NumberRange{.min = 5.0, .max = 180.0}, "how far the leaf turns"),
+      FIELD(turn_s, NumberRange{.min = 0.1, .max = 60.0}, "how long that takes"),
+      FIELD(state, "as people leave it: `open`, `shut`, or by `habit`"),
+      FIELD(shut_share, accepted::probability, "by habit: share of passes after which it is shut at once"),
+      FIELD(stands_open_s, NumberRange{.min = 0.0, .max = 86400.0},
+            "by habit: how long it stands open after the others")};
+};
+template <>
 struct Fields<SceneSpec> {
   using S = SceneSpec;
   static constexpr const char* name = "Scene";
@@ -235,6 +258,7 @@ struct Fields<SceneSpec> {
                                   FIELD(seats),
                                   FIELD(places, "to lie and to stand"),
                                   FIELD(entrances),
+                                  FIELD(doors),
                                   FIELD(floor),
                                   FIELD(areas, "apart from each other, in the order of the output's columns"),
                                   FIELD(sensor_models, "every model that a sensor names"),
@@ -745,7 +769,7 @@ struct Fields<NuisanceSpec> {
 
 /// Specs that Python has classes of, each before those that it is a part of.
 using SpecsOfPython =
-    std::tuple<Where, InputFile, SensorSpec, SeatSpec, PlaceSpec, EntranceSpec, OpticsSpec, ElementSpec, AmplifierSpec,
+    std::tuple<Where, InputFile, SensorSpec, SeatSpec, PlaceSpec, EntranceSpec, DoorSpec, OpticsSpec, ElementSpec, AmplifierSpec,
                ComparatorSpec, DetectorSpec, ZoneSpec, ClusterSpec, SensorModelSpec, AreaSpec, SceneSpec, action::Wait,
                action::Appear, action::Enter, action::Walk, action::Sit, action::Work, action::Rise, action::Leave,
                action::Turn, action::Follow, action::Lie, action::Stand, SeatScatterSpec, WarmthSpec, PersonSpec,

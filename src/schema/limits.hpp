@@ -29,6 +29,7 @@ inline constexpr std::size_t sensors = 2'000;
 inline constexpr std::size_t seats = 5'000;
 inline constexpr std::size_t places = 5'000;  ///< to lie and to stand
 inline constexpr std::size_t entrances = 1'000;
+inline constexpr std::size_t doors = 1'000;
 inline constexpr std::size_t floors = 1'000;
 inline constexpr std::size_t areas = 1'000;           ///< each is a column of rows
 inline constexpr std::size_t floor_corners = 10'000;  ///< of all floors, or all areas; every pair is compared

@@ -30,6 +30,19 @@ struct Words<Solidity> {
   static constexpr WordList<Solidity, 2> all{{{"solid", Solidity::solid}, {"screen", Solidity::screen}}};
 };
 template <>
+struct Words<DoorHinge> {
+  static constexpr WordList<DoorHinge, 2> all{{{"left", DoorHinge::left}, {"right", DoorHinge::right}}};
+};
+template <>
+struct Words<DoorOpens> {
+  static constexpr WordList<DoorOpens, 2> all{{{"inward", DoorOpens::inward}, {"outward", DoorOpens::outward}}};
+};
+template <>
+struct Words<DoorState> {
+  static constexpr WordList<DoorState, 3> all{
+      {{"open", DoorState::open}, {"shut", DoorState::shut}, {"habit", DoorState::habit}}};
+};
+template <>
 struct Words<Response> {
   static constexpr WordList<Response, 2> all{{{"zones", Response::zones}, {"analog", Response::analog}}};
 };

@@ -95,8 +95,23 @@ void Actor::start_action(const Scene& scene) {
   plan(scene);
 }
 
+DoorUser Actor::door_user(const FloorArea& floor, const Vec2& before) const {
+  constexpr double knees_m = 0.45;  // assumed: before the pelvis of who sits (0.4-0.55)
+  DoorUser user;
+  user.before = before;
+  user.now = user.knees = motion().position();
+  const bool on_feet = body_->presence().posture == Presence::Posture::on_feet;
+  if (!on_feet) user.knees += knees_m * direction_of(motion().heading());
+  constexpr double slow_m_s = 0.05;
+  if (motion().speed_m_s() > slow_m_s) user.gait = DoorUser::Gait::walks;
+  if (facts_.follows != nullptr) user.gait = DoorUser::Gait::led;
+  if (!floor.contains(user.now)) user.place = DoorUser::Place::doorway;
+  user.wants = body_->wanted_door();
+  return user;
+}
+
 void Actor::advance(const CompiledStudy& study, std::int64_t tick, std::span<const Presence> others,
-                    std::size_t n_before) {
+                    std::size_t n_before, const DoorsSeen& doors) {
   incidents_.clear();
   carry_on({study, others, tick - 1});
   if (body_) {
@@ -106,7 +121,7 @@ void Actor::advance(const CompiledStudy& study, std::int64_t tick, std::span<con
     } else if (restlessness_.acts()) {
       restlessness_.tick(body_motion(), choreographed_work());
     }
-    facts_.follows != nullptr ? body_motion().advance() : body_->advance(others, n_before, tick - 1);
+    facts_.follows != nullptr ? body_motion().advance() : body_->advance(others, n_before, doors, tick - 1);
     if (const auto incident = body_->take_incident()) incidents_.push_back(*incident);
   }
   phase_ = current_phase();

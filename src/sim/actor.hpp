@@ -35,7 +35,8 @@ class Actor {
   /// From tick - 1 to tick: starts, goes on with or interrupts actions, then moves the body. others: everyone else in
   /// the scene, in the order of the script; those before this person go first where ways cross.
   /// Throws Error(infeasible) if there is no way to where the script leads, even without others.
-  void advance(const CompiledStudy& study, std::int64_t tick, std::span<const Presence> others, std::size_t n_before);
+  void advance(const CompiledStudy& study, std::int64_t tick, std::span<const Presence> others, std::size_t n_before,
+               const DoorsSeen& doors);
 
   [[nodiscard]] bool present() const noexcept { return body_.has_value(); }
   /// Is it a person over this floor area?
@@ -50,6 +51,8 @@ class Actor {
   /// Only while present.
   [[nodiscard]] const body::Motion& motion() const { return body_->motion(); }
   [[nodiscard]] Presence presence() const;
+  /// Only while present. before: where they were at the last tick.
+  [[nodiscard]] DoorUser door_user(const FloorArea& floor, const Vec2& before) const;
   /// Taken, from setting out for it to walking away from it; or empty.
   [[nodiscard]] std::string_view seat() const noexcept { return seat_; }
   /// Sits or stands in a meeting, in natural style.

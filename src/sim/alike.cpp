@@ -84,6 +84,7 @@ bool same_meshes(const SceneSpec& a, const SceneSpec& b) {
 
 bool same_ground(const SceneSpec& a, const SceneSpec& b) {
   return a.floor == b.floor && std::ranges::equal(a.entrances, b.entrances, same<EntranceSpec>) &&
+         std::ranges::equal(a.doors, b.doors, same<DoorSpec>) &&
          std::ranges::equal(solids(a), solids(b), [](const TriMesh* x, const TriMesh* y) { return same(*x, *y); });
 }
 

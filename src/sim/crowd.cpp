@@ -21,7 +21,7 @@ std::optional<std::uint32_t> Conversation::speaker(std::span<const std::uint32_t
   return speaker_;
 }
 
-Crowd::Crowd(const CompiledStudy& study, std::uint32_t run) : conversation_(study.seed(), run) {
+Crowd::Crowd(const CompiledStudy& study, std::uint32_t run) : conversation_(study.seed(), run), doors_(study, run) {
   const std::size_t n_people = study.trial_of(run).people.size();
   std::shared_ptr<const DayPlan> plan;
   const TrialModel& trial = study.trial_of(run);
@@ -74,18 +74,36 @@ void Crowd::let_speak(const CompiledStudy& study, std::int64_t tick) {
 void Crowd::advance(const CompiledStudy& study, std::int64_t tick) {
   let_speak(study, tick);
   if (actors_.size() == 1) {  // nobody asks
-    actors_.front().advance(study, tick, {}, 0);
+    actors_.front().advance(study, tick, {}, 0, doors_.seen(study));
   } else if (!actors_.empty()) {
     advance_among_others(study, tick);
   }
   note_seats_left(study);
+  if (!doors_.steps().empty()) turn_leaves(study, tick);
+}
+
+/// People have seen the leaves as they stood at the last tick.
+void Crowd::turn_leaves(const CompiledStudy& study, std::int64_t tick) {
+  places_.resize(actors_.size());
+  door_users_.clear();
+  for (std::size_t i = 0; i < actors_.size(); ++i) {
+    const Actor& actor = actors_[i];
+    if (!actor.present()) {
+      places_[i].reset();
+      continue;
+    }
+    const Vec2 now = actor.motion().position();
+    door_users_.push_back(actor.door_user(study.scene().floor, places_[i].value_or(now)));
+    places_[i] = now;
+  }
+  doors_.advance(study, tick, door_users_);
 }
 
 void Crowd::advance_among_others(const CompiledStudy& study, std::int64_t tick) {
   gather_others_of_first();
   std::size_t n_before = 0;
   for (std::size_t i = 0; i < actors_.size(); ++i) {
-    actors_[i].advance(study, tick, others_, n_before);
+    actors_[i].advance(study, tick, others_, n_before, doors_.seen(study));
     presences_[i].reset();
     if (actors_[i].present()) presences_[i] = actors_[i].presence();
     if (i + 1 < actors_.size()) n_before = pass_on_others(i, n_before);
@@ -107,7 +125,7 @@ void Crowd::note_seats_left(const CompiledStudy& study) {
 }
 
 std::int64_t Crowd::away_until(const CompiledStudy& study, std::int64_t tick) const {
-  std::int64_t until = std::numeric_limits<std::int64_t>::max();
+  std::int64_t until = doors_.still_until(study, tick);
   for (const Actor& actor : actors_) until = std::min(until, actor.away_until(study, tick));
   return until;
 }

@@ -38,6 +38,7 @@ class Crowd {
   void advance(const CompiledStudy& study, std::int64_t tick);
 
   [[nodiscard]] const std::vector<Actor>& actors() const noexcept { return actors_; }
+  [[nodiscard]] const Doors& doors() const noexcept { return doors_; }
   /// Indices (into the scene's seats) of the seats from which somebody rose in the step to this tick.
   [[nodiscard]] const std::vector<std::size_t>& seats_left() const noexcept { return seats_left_; }
   /// Up to this tick nobody comes, and nothing of anybody changes; the present one (`tick`) if somebody is there.
@@ -55,6 +56,7 @@ class Crowd {
   /// in the script; returns how many do then.
   std::size_t pass_on_others(std::size_t i, std::size_t n_before);
   void note_seats_left(const CompiledStudy& study);
+  void turn_leaves(const CompiledStudy& study, std::int64_t tick);
   void let_speak(const CompiledStudy& study, std::int64_t tick);
 
   std::vector<Actor> actors_;
@@ -62,8 +64,11 @@ class Crowd {
   std::vector<std::uint8_t> seated_;                ///< (n_actors) 1 while seated
   std::vector<std::size_t> seats_left_;
   Conversation conversation_;
+  Doors doors_;
+  std::vector<std::optional<Vec2>> places_;  ///< (n_actors) at the last tick, in scenes with doors
   std::vector<Presence> others_;             ///< scratch
   std::vector<std::uint32_t> participants_;  ///< scratch
+  std::vector<DoorUser> door_users_;         ///< scratch
 };
 
 }  // namespace pirsim::sim

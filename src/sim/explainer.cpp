@@ -25,7 +25,7 @@ double Explainer::watts(const PowerShare& share) const {
 }
 
 void Explainer::settle(const RunState& state) {
-  meter_.explain(state.crowd.actors(), met_);
+  meter_.explain(state.crowd.actors(), state.crowd.doors().steps(), met_);
   for (const PowerShare& each : met_) {
     shares_[{zone_of_ray_[each.ray], each.person, each.part}].before_w += watts(each);
   }
@@ -43,7 +43,7 @@ void Explainer::advance() {
 }
 
 void Explainer::explain(const RunState& state, std::vector<TraceRow>& rows) {
-  meter_.explain(state.crowd.actors(), met_);
+  meter_.explain(state.crowd.actors(), state.crowd.doors().steps(), met_);
   for (const PowerShare& each : met_) {
     Share& share = shares_[{zone_of_ray_[each.ray], each.person, each.part}];
     share.now_w += watts(each);

@@ -20,6 +20,7 @@ std::vector<std::string> Model::columns() const {
   const bool has_clock =
       std::ranges::any_of(compiled_->trials(), [](const sim::TrialModel& trial) { return trial.clock.has_value(); });
   ColumnOwners owners{.areas = areas()};
+  for (const DoorSpec& door : scene().doors) owners.doors.push_back(door.id);
   for (const SensorSpec& sensor : scene().sensors) owners.sensors.push_back(sensor.id);
   return column_names<Sample>(owners, [&](When when) { return when != When::with_clock || has_clock; });
 }

@@ -22,12 +22,13 @@ Observer::Observer(const SensorArray& array, TracerKind kind, ZonesOf whose)
       person_zones_(array.channels().n_zones()),
       person_channels_(array.channels().n_channels()) {}
 
-void Observer::look(const std::vector<Actor>& actors, Exposure& exposure) {
-  if (tracer_) look_at_zones(actors, exposure);
-  if (power_meter_) power_meter_->measure(actors, exposure.powers);
+void Observer::look(const std::vector<Actor>& actors, std::span<const LeafStep> leaves, Exposure& exposure) {
+  if (tracer_) look_at_zones(actors, leaves, exposure);
+  if (power_meter_) power_meter_->measure(actors, leaves, exposure.powers);
 }
 
-void Observer::look_at_zones(const std::vector<Actor>& actors, Exposure& exposure) {
+void Observer::look_at_zones(const std::vector<Actor>& actors, std::span<const LeafStep> leaves, Exposure& exposure) {
+  if (leaves_.turn(leaves)) tracer_->turn_leaves(leaves);
   exposure.zones.clear();
   exposure.channels.clear();
   memory_.make_room_for(actors.size());
@@ -54,7 +55,7 @@ void Observer::look(std::span<const PosedShape> solids, const BodyRadiance& radi
 std::span<const ZoneSet::Word> Observer::row_of(std::size_t person, const Actor& actor) {
   const body::Humanoid& humanoid = actor.person().humanoid;
   const body::Outline outline = actor.motion().outline();
-  if (const auto known = memory_.find(person, &humanoid, outline); !known.empty()) return known;
+  if (const auto known = memory_.find(person, &humanoid, outline, leaves_.number()); !known.empty()) return known;
   person_zones_.clear();
   person_channels_.clear();
   tracer_->add(person, mannequins_[person].pose(humanoid, outline), person_zones_);

@@ -10,6 +10,7 @@
 #include "rt/tracer.hpp"
 #include "sim/actor.hpp"
 #include "sim/compiled_study.hpp"
+#include "sim/leaf_numbers.hpp"
 #include "sim/posture_memory.hpp"
 #include "sim/power_meter.hpp"
 #include "sim/solids.hpp"
@@ -20,11 +21,12 @@ namespace pirsim::sim {
 class Observer {
  public:
   Observer(const SensorArray& array, TracerKind kind, ZonesOf whose);
-  /// exposure: of the array, overwritten.
-  void look(const std::vector<Actor>& actors, Exposure& exposure);
+  /// leaves: (n_doors) as they stand; exposure: of the array, overwritten.
+  void look(const std::vector<Actor>& actors, std::span<const LeafStep> leaves, Exposure& exposure);
   /// At zones alone, which there are.
-  void look_at_zones(const std::vector<Actor>& actors, Exposure& exposure);
-  /// As look(), at one body alone, in any posture. solids: (n_parts) as append_solids() gives them.
+  void look_at_zones(const std::vector<Actor>& actors, std::span<const LeafStep> leaves, Exposure& exposure);
+  /// As look(), at one body alone, in any posture, with leaves as before a run. solids: (n_parts) as append_solids()
+  /// gives them.
   void look(std::span<const PosedShape> solids, const BodyRadiance& radiance, Exposure& exposure);
 
  private:
@@ -32,6 +34,7 @@ class Observer {
 
   const SensorArray& array_;
   std::unique_ptr<rt::Tracer> tracer_;  ///< null: no zones are wanted
+  LeafNumbers leaves_;
   PostureMemory memory_;
   std::unique_ptr<PowerMeter> power_meter_;  ///< null: no sensor is analog
   // Scratch.

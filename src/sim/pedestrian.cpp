@@ -311,16 +311,19 @@ bool Pedestrian::must_give_way(std::span<const Presence> others) const {
   return false;
 }
 
-void Pedestrian::keep_distance(std::span<const Presence> others, std::size_t n_before, std::int64_t now) {
+void Pedestrian::keep_distance(std::span<const Presence> others, std::size_t n_before, const DoorsSeen& doors,
+                               std::int64_t now) {
+  const double door_m = free_way_to_doors(doors);
+  const double before_door = std::sqrt(2.0 * braking_m_s2 * std::max(0.0, door_m));
   if (solidity_ != PersonSolidity::solid) {
-    motion_.limit_speed(motion_.pace_m_s());
+    motion_.limit_speed(std::min(motion_.pace_m_s(), before_door));
     return;
   }
   const double free_m = others.empty() ? look_ahead_m : free_way_ahead(others);
   const bool give_way = must_give_way(others.first(n_before));
   const double safe = give_way ? 0.0 : std::sqrt(2.0 * braking_m_s2 * std::max(0.0, free_m));
   const double pace = (width_ == Width::narrow ? squeeze_speed : 1.0) * motion_.pace_m_s();
-  motion_.limit_speed(std::min(pace, safe));
+  motion_.limit_speed(std::min({pace, safe, before_door}));
   if (free_m > (width_ == Width::narrow ? 0.0 : gap_m)) {
     blocked_ticks_ = 0;
     return;
@@ -354,10 +357,12 @@ bool Pedestrian::bumps_into(std::span<const Presence> others) const {
   });
 }
 
-void Pedestrian::advance(std::span<const Presence> others, std::size_t n_before, std::int64_t now) {
+void Pedestrian::advance(std::span<const Presence> others, std::size_t n_before, const DoorsSeen& doors,
+                         std::int64_t now) {
+  wanted_door_.reset();
   if (!others.empty()) sit_up(others, now);
   const std::int64_t counted = held_up_ticks_;
-  if (motion_.stage() == Stage::walking) keep_distance(others, n_before, now);
+  if (motion_.stage() == Stage::walking) keep_distance(others, n_before, doors, now);
   const Vec2 before = motion_.position();
   const bool waits = !others.empty() && bumps_into(others);
   if (waits && held_up_ticks_ == counted) be_held_up(now);

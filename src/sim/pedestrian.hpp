@@ -10,6 +10,7 @@
 #include "body/motion.hpp"
 #include "body/route.hpp"
 #include "sim/compiled_study.hpp"
+#include "sim/doors.hpp"
 #include "sim/presence.hpp"
 
 namespace pirsim::sim {
@@ -63,7 +64,9 @@ class Pedestrian {
   }
 
   /// n_before: of the others, those who go first where ways cross.
-  void advance(std::span<const Presence> others, std::size_t n_before, std::int64_t now);
+  void advance(std::span<const Presence> others, std::size_t n_before, const DoorsSeen& doors, std::int64_t now);
+  /// The door before which they wait, or through which they go next.
+  [[nodiscard]] std::optional<std::size_t> wanted_door() const noexcept { return wanted_door_; }
 
   /// Begun since the last call.
   [[nodiscard]] std::optional<Incident> take_incident() noexcept;
@@ -100,6 +103,13 @@ class Pedestrian {
   [[nodiscard]] bool free_to_draw_back(const Vec2& to, std::span<const Presence> others) const;
   [[nodiscard]] std::optional<std::vector<Vec2>> way_among(const Vec2& target, std::span<const Presence> others) const;
   [[nodiscard]] double free_way_ahead(std::span<const Presence> others) const;
+  struct WayToDoor {
+    double free_m = 0.0;              ///< on the route, before a leaf that isn't open is in the way
+    std::optional<double> through_m;  ///< where the route leads through it, if it does so soon
+  };
+  [[nodiscard]] WayToDoor way_to_door(const DoorsSeen& doors, std::size_t door) const;
+  /// Also notes which door they want to go through.
+  [[nodiscard]] double free_way_to_doors(const DoorsSeen& doors);
   [[nodiscard]] bool must_give_way(std::span<const Presence> others) const;
   [[nodiscard]] std::optional<Vec2> passing_place(const Presence& whom, std::span<const Presence> others,
                                                   double reach_m) const;
@@ -111,7 +121,7 @@ class Pedestrian {
   [[nodiscard]] bool bars(const Presence& other, const Vec2& from, const Vec2& to) const;
   void ask_up(const Vec2& target, std::span<const Presence> others, std::int64_t now);
   [[nodiscard]] bool bumps_into(std::span<const Presence> others) const;
-  void keep_distance(std::span<const Presence> others, std::size_t n_before, std::int64_t now);
+  void keep_distance(std::span<const Presence> others, std::size_t n_before, const DoorsSeen& doors, std::int64_t now);
   void be_held_up(std::int64_t now);
   void wish_way(Way way, std::int64_t now);
   void sit_up(std::span<const Presence> others, std::int64_t now);
@@ -136,6 +146,7 @@ class Pedestrian {
   std::int64_t held_up_ticks_ = 0;  ///< in all since the errand was set out on
   Width width_ = Width::usual;
   Presence::Solidity solidity_ = Presence::Solidity::solid;
+  std::optional<std::size_t> wanted_door_;
   bool leans_forward_ = false;  ///< for somebody who squeezes past
   std::optional<Incident> incident_;
 };

@@ -365,6 +365,19 @@ std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std:
   return planned_trials;
 }
 
+/// The open leaf as walkers go round it.
+TriMesh leaf_with_room(const DoorLeaf& leaf) {
+  constexpr double room_m = 0.06;  // assumed: so far arms swing beyond what walkers keep clear (0.04-0.08)
+  TriMesh mesh = leaf.open_mesh();
+  const Frame frame = leaf.frame_at(leaf.open_step()), leaf_from_world = inverse(frame);
+  for (Vec3& corner : mesh.positions) {
+    Vec3 local = leaf_from_world * corner;
+    local.z += local.z < 0.0 ? -room_m : room_m;
+    corner = frame * local;
+  }
+  return mesh;
+}
+
 }  // namespace
 
 std::vector<TrialModel> plan_people(const CompiledStudy& study, const std::vector<TrialInForce>& trials,
@@ -373,12 +386,16 @@ std::vector<TrialModel> plan_people(const CompiledStudy& study, const std::vecto
   check_actions(scene, trials);
   require_limit(scene, trials);
   const auto is_screen = [](const TriMesh& mesh) { return mesh.solidity == Solidity::screen; };
-  if (std::ranges::none_of(scene.meshes, is_screen)) {
+  const bool has_screens = std::ranges::any_of(scene.meshes, is_screen);
+  if (!has_screens && scene.doors.empty()) {
     return plan_among_solids(study, trials, scene, study.array().room(), floors_of(like, scene));
   }
   SceneSpec solid = scene;
   std::erase_if(solid.meshes, is_screen);
-  return plan_among_solids(study, trials, solid, rt::Room(solid.meshes), floors_of(like, scene));
+  const rt::Room room(solid.meshes);
+  // Ways lead through shut doors and round open leaves, so that one is never where somebody goes.
+  for (const DoorLeaf& leaf : study.array().leaves()) solid.meshes.push_back(leaf_with_room(leaf));
+  return plan_among_solids(study, trials, solid, room, floors_of(like, scene));
 }
 
 }  // namespace pirsim::sim

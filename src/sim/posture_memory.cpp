@@ -53,10 +53,12 @@ void PostureIndex::follow(std::size_t person, Number number) noexcept {
   last_[person] = number;
 }
 
-PostureIndex::Number PostureIndex::find(std::size_t person, std::uint64_t body, const body::Outline& outline) noexcept {
+PostureIndex::Number PostureIndex::find(std::size_t person, std::uint64_t body, const body::Outline& outline,
+                                        std::uint64_t doors) noexcept {
   static_assert(sizeof(body::Outline) % sizeof(Word) == 0);
   std::memcpy(wanted_.data(), &outline, sizeof outline);
-  wanted_.back() = body;
+  wanted_[n_outline_words] = body;
+  wanted_.back() = doors;
   // As a rule what came last time comes again; it lies just behind in memory.
   if (const Number next = successors_[last_[person]]; next != 0 && keys_[next - 1] == wanted_) {
     last_[person] = next;

@@ -20,22 +20,24 @@ class PostureIndex {
   /// Room for so many without allocating, if it is known.
   explicit PostureIndex(std::size_t n_expected = 0);
   /// 0 if the posture isn't known. body: whose measures, as a number or an address. person: counted from 0; what
-  /// followed upon their last posture before is looked at first.
-  [[nodiscard]] Number find(std::size_t person, std::uint64_t body, const body::Outline& outline) noexcept;
+  /// followed upon their last posture before is looked at first. doors: how they stand, as a number.
+  [[nodiscard]] Number find(std::size_t person, std::uint64_t body, const body::Outline& outline,
+                            std::uint64_t doors = 0) noexcept;
   /// Remembers what find() was last asked for in vain, for the same person.
   Number remember(std::size_t person);
   /// People are counted up to here.
   void make_room_for(std::size_t n_people);
   /// How many there are: the last number.
   [[nodiscard]] std::size_t size() const noexcept { return successors_.size() - 1; }
-  [[nodiscard]] std::uint64_t body(Number number) const noexcept { return keys_[number - 1].back(); }
+  [[nodiscard]] std::uint64_t body(Number number) const noexcept { return keys_[number - 1][n_outline_words]; }
   [[nodiscard]] body::Outline outline(Number number) const noexcept;
   /// Forgets all but the first n.
   void shrink(std::size_t n) noexcept;
   void forget_all() noexcept;  ///< but what find() was last asked for can still be remembered
 
  private:
-  using Key = std::array<Word, sizeof(body::Outline) / sizeof(Word) + 1>;
+  static constexpr std::size_t n_outline_words = sizeof(body::Outline) / sizeof(Word);
+  using Key = std::array<Word, n_outline_words + 2>;  ///< then whose body, and the doors
   [[nodiscard]] static std::size_t hash(const Key& key) noexcept;
   /// Where the key is, or would be.
   [[nodiscard]] std::size_t bucket_of(const Key& key) const noexcept;
@@ -63,9 +65,10 @@ class PostureMemory {
     rows_.reserve(capacity * words_per_row);
   }
   /// Empty if the posture isn't known; see PostureIndex::find.
-  [[nodiscard]] std::span<const Word> find(std::size_t person, const void* humanoid,
-                                           const body::Outline& outline) noexcept {
-    const PostureIndex::Number known = index_.find(person, reinterpret_cast<std::uintptr_t>(humanoid), outline);
+  [[nodiscard]] std::span<const Word> find(std::size_t person, const void* humanoid, const body::Outline& outline,
+                                           std::uint64_t doors = 0) noexcept {
+    const auto body = reinterpret_cast<std::uintptr_t>(humanoid);
+    const PostureIndex::Number known = index_.find(person, body, outline, doors);
     if (known == 0) return {};
     return {&rows_[(known - 1) * words_per_row_], words_per_row_};
   }

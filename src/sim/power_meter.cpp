@@ -27,7 +27,20 @@ std::array<std::uint8_t, body::n_parts> surfaces_of(const BodyRadiance& radiance
   return surfaces;
 }
 
-void PowerMeter::measure(const std::vector<Actor>& actors, std::span<PowerSteps> powers) {
+/// What people hid or showed before the leaves turned doesn't count any more.
+void PowerMeter::turn(std::span<const LeafStep> leaves) {
+  if (!leaves_.turn(leaves)) return;
+  moved_.clear();
+  for (std::size_t i = 0; i < figures_.size(); ++i) {
+    if (figures_[i].is_there) moved_.push_back({i, {}, {}});
+  }
+  take_away();
+  tracer_->turn_leaves(leaves);
+}
+
+void PowerMeter::measure(const std::vector<Actor>& actors, std::span<const LeafStep> leaves,
+                         std::span<PowerSteps> powers) {
+  turn(leaves);
   const auto first = std::ranges::find_if(actors, &Actor::present);
   const bool is_one = first != actors.end() && std::find_if(first + 1, actors.end(), [](const Actor& actor) {
                                                  return actor.present();
@@ -39,7 +52,7 @@ void PowerMeter::measure(const std::vector<Actor>& actors, std::span<PowerSteps>
   }
   const auto person = static_cast<std::size_t>(first - actors.begin());
   alone_.make_room_for(actors.size());
-  const auto known = alone_.find(person, &first->person().humanoid, first->motion().outline());
+  const auto known = alone_.find(person, &first->person().humanoid, first->motion().outline(), leaves_.number());
   if (!known.empty()) {
     std::ranges::transform(known, powers.begin(),
                            [](PostureMemory::Word word) { return std::bit_cast<PowerSteps>(word); });
@@ -67,7 +80,9 @@ void PowerMeter::measure(std::span<const PosedShape> solids, const BodyRadiance&
   std::ranges::copy(powers_, powers.begin());
 }
 
-void PowerMeter::explain(const std::vector<Actor>& actors, std::vector<PowerShare>& shares) {
+void PowerMeter::explain(const std::vector<Actor>& actors, std::span<const LeafStep> leaves,
+                         std::vector<PowerShare>& shares) {
+  turn(leaves);
   follow(actors);
   shares.clear();
   const std::vector<rt::SolidId> hits = tracer_->first_hits();

@@ -8,6 +8,7 @@
 
 #include "rt/tracer.hpp"
 #include "sim/actor.hpp"
+#include "sim/leaf_numbers.hpp"
 #include "sim/posture_memory.hpp"
 #include "sim/sensor_array.hpp"
 #include "sim/solids.hpp"
@@ -30,12 +31,12 @@ struct PowerShare {
 class PowerMeter {
  public:
   PowerMeter(const SensorArray& array, TracerKind kind);
-  /// powers: (n_receivers) overwritten.
-  void measure(const std::vector<Actor>& actors, std::span<PowerSteps> powers);
-  /// The same of one body alone. solids: (n_parts) as append_solids() gives them.
+  /// leaves: (n_doors) as they stand; powers: (n_receivers) overwritten.
+  void measure(const std::vector<Actor>& actors, std::span<const LeafStep> leaves, std::span<PowerSteps> powers);
+  /// The same of one body alone, with leaves as before a run. solids: (n_parts) as append_solids() gives them.
   void measure(std::span<const PosedShape> solids, const BodyRadiance& radiance, std::span<PowerSteps> powers);
   /// Ray by ray.
-  void explain(const std::vector<Actor>& actors, std::vector<PowerShare>& shares);
+  void explain(const std::vector<Actor>& actors, std::span<const LeafStep> leaves, std::vector<PowerShare>& shares);
 
  private:
   /// What was followed last of a person.
@@ -47,6 +48,7 @@ class PowerMeter {
     body::Outline outline;
   };
 
+  void turn(std::span<const LeafStep> leaves);
   /// Of those in moved_ nothing stays.
   void take_away();
   /// Takes the tracer to where people are now.
@@ -58,6 +60,7 @@ class PowerMeter {
 
   const PowerModel& power_;
   std::unique_ptr<rt::Tracer> tracer_;
+  LeafNumbers leaves_;
   PostureMemory alone_;             ///< powers of postures of who was alone
   std::vector<Figure> figures_;     ///< (n_people)
   std::vector<PowerSteps> powers_;  ///< (n_receivers) of figures_

@@ -97,6 +97,8 @@ std::string optics_of(const CompiledStudy& study) {
       digest.add(bytes(std::span(zones.range).subspan(begin, n)));
     }
   }
+  for (const DoorSpec& door : study.scene().doors) digest.add("door " + door.id + '\n');  // whose columns rows have
+  if (!array.leaves().empty()) digest.add(bytes(array.range()));
   if (array.analog() == nullptr) return digest.hex();
   const PowerModel& power = array.analog()->power();
   digest.add(bytes(power.receivers_begin()));

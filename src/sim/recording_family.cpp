@@ -87,10 +87,18 @@ class Painter {
   std::vector<PowerSteps> there_;  ///< scratch
 };
 
+/// What a posture shows hangs on leaves then: each study is recorded by itself.
+bool has_doors(const CompiledStudy& study) { return !study.scene().doors.empty(); }
+
 }  // namespace
 
 struct RecordingFamily::Impl {
-  Impl(const CompiledStudy& study, std::span<const std::uint32_t> runs) : first(study), sight(study) {
+  Impl(const Model& model, std::span<const std::uint32_t> runs) : first(model.compiled()), sight(first) {
+    const CompiledStudy& study = first;
+    if (has_doors(study)) {
+      tracks = pirsim::record(model, runs, 1, {});
+      return;
+    }
     tracks = empty_recording(study);
     for (const std::uint32_t run : runs) people.push_back(postures.follow(study, run));
     n_postures = postures.size();
@@ -148,7 +156,7 @@ struct RecordingFamily::Impl {
 };
 
 RecordingFamily::RecordingFamily(const Model& first, std::span<const std::uint32_t> runs)
-    : impl_(std::make_unique<Impl>(first.compiled(), runs)) {}
+    : impl_(std::make_unique<Impl>(first, runs)) {}
 RecordingFamily::~RecordingFamily() = default;
 RecordingFamily::RecordingFamily(RecordingFamily&&) noexcept = default;
 RecordingFamily& RecordingFamily::operator=(RecordingFamily&&) noexcept = default;
@@ -156,6 +164,7 @@ RecordingFamily& RecordingFamily::operator=(RecordingFamily&&) noexcept = defaul
 const Recording& RecordingFamily::first() const noexcept { return impl_->tracks; }
 
 Recording RecordingFamily::record(const Model& other, std::span<const std::uint32_t> runs) {
+  if (has_doors(impl_->first) || has_doors(other.compiled())) return pirsim::record(other, runs, 1, {});
   return impl_->record(other.compiled(), runs);
 }
 

@@ -40,6 +40,8 @@ void end_window(const CompiledStudy& study, RunState& state) {
   if (state.clock) sample.clock = state.clock->text(sample.time_s);
   sample.phase = trial.is_populated() ? use_of(study, state.crowd) : state.crowd.phase();
   count_people(study, state.crowd, sample);
+  sample.doors.clear();
+  for (const LeafStep step : state.crowd.doors().steps()) sample.doors.push_back(step == 0 ? 0 : 1);
   state.finished = trial.duration_s ? sample.time_s >= *trial.duration_s : state.crowd.done();
 }
 
@@ -65,7 +67,7 @@ const ZoneSet& zones_of_all(const CompiledStudy& study, RunState& state) {
     observer = std::make_unique<Observer>(study.array(), study.tracer(), ZonesOf::all_sensors);
     exposure = study.array().unexposed();
   }
-  observer->look_at_zones(state.crowd.actors(), exposure);
+  observer->look_at_zones(state.crowd.actors(), state.crowd.doors().steps(), exposure);
   return exposure.zones;
 }
 
@@ -90,7 +92,7 @@ Observer& observer_of(const CompiledStudy& study, RunState& state) {
 
 void sense(Observer& observer, RunState& state) {
   const Exposure& before = state.exposures[static_cast<std::size_t>((state.tick - 1) % 2)];
-  observer.look(state.crowd.actors(), state.exposure());
+  observer.look(state.crowd.actors(), state.crowd.doors().steps(), state.exposure());
   state.detector.tick(before, state.exposure(), state.triggers);
 }
 
@@ -110,7 +112,7 @@ void observe_tick(const CompiledStudy& study, RunState& state) {
 }  // namespace
 
 void settle(const CompiledStudy& study, RunState& state) {
-  observer_of(study, state).look(state.crowd.actors(), state.exposure());
+  observer_of(study, state).look(state.crowd.actors(), state.crowd.doors().steps(), state.exposure());
   state.detector.begin_run(study.seed(), state.run, state.exposure());
   if (state.logger.looks_ahead() && state.ahead.get() == nullptr) state.ahead.hold(state);
 }

@@ -115,8 +115,11 @@ SensorArray::SensorArray(const SceneSpec& scene, const SensingInForce& sensing, 
       ticks_per_window_(sensing.ticks_per_window),
       rated_(rated_rays(scene, sensing, *room_)),
       clipped_(rated_),
+      leaves_(leaves_of(scene, 1.0 / sensing.tick_rate_hz)),
       channels_(rated_, sensing.change_per) {
   room_->clip(clipped_);
+  if (!leaves_.empty()) cuts_.emplace(clipped_, leaves_);
+  rest_range_ = range(rest_steps(leaves_));
   if (sensing.dual_polarity) {
     polarity_.emplace(scene, *sensing.dual_polarity, n_levels_, 1.0 / sensing.tick_rate_hz);
   }
@@ -127,6 +130,11 @@ SensorArray::SensorArray(const SceneSpec& scene, const SensingInForce& sensing, 
   }
   if (!AnalogModel::is_needed(scene, sensing)) return;
   analog_.emplace(scene, sensing, *room_, like != nullptr ? like->analog() : nullptr);
+  rest_power_range_ = analog_->power().clipped().range;
+  if (!leaves_.empty()) {
+    power_cuts_.emplace(analog_->power().clipped(), leaves_);
+    power_cuts_->cut(rest_steps(leaves_), rest_power_range_);
+  }
   ZoneSet unheard(clipped_.n_zones());
   for (std::size_t i = 0; i < n_sensors(); ++i) {
     if (!is_analog(i)) continue;
@@ -137,6 +145,7 @@ SensorArray::SensorArray(const SceneSpec& scene, const SensingInForce& sensing, 
   }
   if (std::ranges::all_of(analog_->sensors(), [](const auto& sensor) { return sensor != nullptr; })) return;
   of_zone_sensors_.emplace(without(rated_, unheard), without(clipped_, unheard));
+  if (!leaves_.empty()) zone_cuts_.emplace(of_zone_sensors_->second, leaves_);
 }
 
 RayBundle without(const RayBundle& bundle, const ZoneSet& zones) {
@@ -154,14 +163,30 @@ RayBundle without(const RayBundle& bundle, const ZoneSet& zones) {
   return rest;
 }
 
+std::vector<float> SensorArray::range(std::span<const LeafStep> steps) const {
+  if (!cuts_) return clipped_.range;
+  std::vector<float> range;
+  cuts_->cut(steps, range);
+  return range;
+}
+
+namespace {
+
+const rt::LeafCuts* of(const std::optional<rt::LeafCuts>& cuts) { return cuts ? &*cuts : nullptr; }
+
+}  // namespace
+
 std::unique_ptr<rt::Tracer> SensorArray::make_tracer(TracerKind kind, ZonesOf whose) const {
-  if (whose == ZonesOf::all_sensors || !analog_) return rt::make_tracer(kind, {room_.get(), &rated_, &clipped_});
+  if (whose == ZonesOf::all_sensors || !analog_) {
+    return rt::make_tracer(kind, {room_.get(), &rated_, &clipped_, of(cuts_)});
+  }
   if (!of_zone_sensors_) return nullptr;
-  return rt::make_tracer(kind, {room_.get(), &of_zone_sensors_->first, &of_zone_sensors_->second});
+  return rt::make_tracer(kind, {room_.get(), &of_zone_sensors_->first, &of_zone_sensors_->second, of(zone_cuts_)});
 }
 
 std::unique_ptr<rt::Tracer> SensorArray::make_power_tracer(TracerKind kind) const {
-  return rt::make_tracer(kind, {room_.get(), &analog_->power().rays().bundle, &analog_->power().clipped()});
+  return rt::make_tracer(kind,
+                         {room_.get(), &analog_->power().rays().bundle, &analog_->power().clipped(), of(power_cuts_)});
 }
 
 Exposure SensorArray::unexposed() const {

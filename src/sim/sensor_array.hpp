@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -39,8 +40,10 @@ class SensorArray {
 
   [[nodiscard]] const rt::Room& room() const noexcept { return *room_; }
   [[nodiscard]] const std::shared_ptr<const rt::Room>& shared_room() const noexcept { return room_; }
-  [[nodiscard]] const RayBundle& rated() const noexcept { return rated_; }      ///< rays at their rated ranges
-  [[nodiscard]] const RayBundle& clipped() const noexcept { return clipped_; }  ///< the same, cut at the room
+  [[nodiscard]] const RayBundle& rated() const noexcept { return rated_; }  ///< rays at their rated ranges
+  [[nodiscard]] const RayBundle& clipped() const noexcept {
+    return clipped_;
+  }  ///< the same, cut at the room, not at doors
   [[nodiscard]] std::size_t n_sensors() const noexcept { return clipped_.n_sensors(); }
   /// Zones joined as `change_per` says.
   [[nodiscard]] const pir::Channels& channels() const noexcept { return channels_; }
@@ -62,6 +65,14 @@ class SensorArray {
     return analog_ && analog_->sensors()[sensor] != nullptr;
   }
 
+  /// (n_doors) whose leaves hide what is behind them.
+  [[nodiscard]] const std::vector<DoorLeaf>& leaves() const noexcept { return leaves_; }
+  /// How far the rays go, of all sensors, while leaves stand so. steps: (n_doors).
+  [[nodiscard]] std::vector<float> range(std::span<const LeafStep> steps) const;
+  /// The same with leaves as before a run, and of the analog sensors' rays, if there are any.
+  [[nodiscard]] const std::vector<float>& range() const noexcept { return rest_range_; }
+  [[nodiscard]] const std::vector<float>& power_range() const noexcept { return rest_power_range_; }
+
   /// Sees no zones at all, and is null, if none are to be looked at.
   [[nodiscard]] std::unique_ptr<rt::Tracer> make_tracer(TracerKind kind, ZonesOf whose) const;
   /// Of the analog sensors' rays; only if there are any.
@@ -79,12 +90,17 @@ class SensorArray {
   std::size_t n_levels_;
   int ticks_per_window_;
   RayBundle rated_, clipped_;
+  std::vector<DoorLeaf> leaves_;
+  std::optional<rt::LeafCuts> cuts_;  ///< of clipped_; none without doors, as below
   /// Without the rays of analog sensors; only if there are analog sensors and others.
   std::optional<std::pair<RayBundle, RayBundle>> of_zone_sensors_;
+  std::optional<rt::LeafCuts> zone_cuts_;  ///< of its second
   pir::Channels channels_;
   std::optional<pir::PolarityFilter> polarity_;
   std::vector<std::optional<pir::Comparator>> zone_outputs_;
   std::optional<AnalogModel> analog_;
+  std::optional<rt::LeafCuts> power_cuts_;  ///< of its rays
+  std::vector<float> rest_range_, rest_power_range_;
 };
 
 /// Without the rays of these zones, which stay in number.

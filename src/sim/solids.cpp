@@ -14,6 +14,7 @@ void append_solids(const Actor& actor, std::vector<PosedShape>& solids) {
 
 std::vector<BeamSegment> beams_of(const Model& model, const State& state, std::size_t sensor) {
   const RayBundle& bundle = model.rays();
+  const std::vector<float> range = model.compiled().array().range(state.run_state().crowd.doors().steps());
   const auto first_ray = [&](std::uint32_t cluster) {
     return bundle.zone_rays_begin[bundle.cluster_zones_begin[cluster]];
   };
@@ -23,7 +24,7 @@ std::vector<BeamSegment> beams_of(const Model& model, const State& state, std::s
   for (auto i = first_ray(bundle.sensor_clusters_begin[sensor]);
        i < first_ray(bundle.sensor_clusters_begin[sensor + 1]); ++i) {
     const Ray& ray = bundle.rays[i];
-    float reach = bundle.range[i];
+    float reach = range[i];
     bool sees_person = false;
     for (const PosedShape& solid : solids) {
       if (const auto distance = entry_distance(ray, solid, reach)) {

@@ -6,11 +6,12 @@
 #include <limits>
 
 #include "pirsim/geometry.hpp"
+#include "sim/doors.hpp"
 
 namespace pirsim::sim {
 
 StandingPlaces::StandingPlaces(const SceneSpec& scene, const PersonModel& person, const std::string& door)
-    : scene_(scene), person_(person) {
+    : scene_(scene), person_(person), leaves_(leaves_of(scene, 1.0)) {
   const EntranceSpec& entrance = *std::ranges::find(scene.entrances, door, &EntranceSpec::id);
   outside_ = floor_point(entrance.world_from_entrance * Vec3(0, 0, entrance.outside_m));
 }
@@ -26,7 +27,9 @@ bool StandingPlaces::is_out_of_the_way(const Vec2& place) const {
   const bool in_doorway = std::ranges::any_of(scene_.entrances, [&](const EntranceSpec& door) {
     return glm::distance(place, floor_point(door.world_from_entrance.origin)) < from_door_m;
   });
-  return !in_doorway && std::ranges::none_of(person_.seats, [&](const auto& entry) {
+  const bool at_door = std::ranges::any_of(
+      leaves_, [&](const DoorLeaf& leaf) { return leaf.distance_to_sweep_m(place) < Doors::hold_m; });
+  return !in_doorway && !at_door && std::ranges::none_of(person_.seats, [&](const auto& entry) {
     const SeatPlan& plan = entry.second;
     const Frame& seat = plan.place.world_from_seat;
     return glm::distance(place, floor_point(seat.origin)) < from_seat_m ||

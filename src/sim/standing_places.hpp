@@ -33,6 +33,7 @@ class StandingPlaces {
 
   const SceneSpec& scene_;
   const PersonModel& person_;
+  std::vector<DoorLeaf> leaves_;
   Vec2 outside_{0.0};
 };
 

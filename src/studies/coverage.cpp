@@ -105,7 +105,7 @@ class SquareCounter {
         const rt::BoundingSphere around{Vec3f(foot_ + cross.middle), static_cast<float>(cross.reach_m)};
         if (!rt::may_touch(study_.zone_cones()[zone], around)) continue;
         for (auto i = rays.zone_rays_begin[zone]; i < rays.zone_rays_begin[zone + 1]; ++i) {
-          mark_poses(rays.rays[i], rays.range[i], k, near);
+          mark_poses(rays.rays[i], array_.range()[i], k, near);
         }
       }
       if (near) for_active([&](std::size_t pose) { exposures_[pose].zones.insert(zone); });
@@ -120,7 +120,7 @@ class SquareCounter {
     const RayBundle& rays = power.clipped();
     for (std::uint32_t i = 0; i < rays.rays.size(); ++i) {
       bool near = false;
-      for (std::size_t k = 0; k < posed_.size(); ++k) mark_poses(rays.rays[i], rays.range[i], k, near);
+      for (std::size_t k = 0; k < posed_.size(); ++k) mark_poses(rays.rays[i], array_.power_range()[i], k, near);
       if (!near) continue;
       const sim::PowerSteps step = power.power(i, radiance_);
       const std::uint32_t receiver = power.receiver_of(i);

@@ -138,8 +138,8 @@ void require_usable(const rt::Camera& camera) {
 }
 
 constexpr rt::Colour idle_beam{0.10F, 0.45F, 0.75F}, seeing_beam{0.90F, 0.02F, 0.02F};
-constexpr rt::Colour seat_colour{0.55F, 0.10F, 0.55F}, door_colour{0.05F, 0.45F, 0.12F},
-    area_colour{0.02F, 0.38F, 0.42F}, scale_colour{0.05F, 0.05F, 0.06F};
+constexpr rt::Colour leaf_colour{0.62F, 0.50F, 0.36F}, seat_colour{0.55F, 0.10F, 0.55F},
+    door_colour{0.05F, 0.45F, 0.12F}, area_colour{0.02F, 0.38F, 0.42F}, scale_colour{0.05F, 0.05F, 0.06F};
 
 /// A text beside a point of the room.
 struct Label {
@@ -177,6 +177,10 @@ void mark_doors(const SceneSpec& scene, Marks& marks) {
     marks.lines.push_back({at(-0.5 * door.width_m, 0.0), at(0.5 * door.width_m, 0.0), door_colour});
     marks.lines.push_back({at(0.0, 0.0), at(0.0, -way_m), door_colour});
     marks.labels.push_back({at(0.0, 0.0), door.id, door_colour});
+  }
+  for (const DoorSpec& door : scene.doors) {
+    const Vec3 above = door.world_from_door * Vec3(0.0, door.height_m + 0.1, 0.0);
+    marks.labels.push_back({above, door.id, door_colour});
   }
 }
 
@@ -419,6 +423,9 @@ io::Pixels picture(const Model& model, const State& state, const PictureSpec& sp
     for (std::size_t i = 0; i < shapes.size(); ++i)
       solids.push_back({shapes[i], colour_of(static_cast<body::Part>(i), person)});
   }
+  const std::vector<DoorLeaf>& leaves = model.compiled().array().leaves();
+  const std::span<const LeafStep> steps = state.run_state().crowd.doors().steps();
+  for (std::size_t i = 0; i < leaves.size(); ++i) solids.push_back({leaves[i].at(steps[i]), leaf_colour});
   std::vector<rt::Beam> beams = unseen_floor(scene);
   const auto edges = static_cast<std::ptrdiff_t>(beams.size());
   for (const std::size_t sensor : spec.beams_of) {

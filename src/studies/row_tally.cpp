@@ -64,12 +64,13 @@ void RowTally::take_header() {
   ColumnOwners owners;
   for (const std::string& field : fields_) {
     if (is_column_of_area(field)) owners.areas.push_back(field.substr(area_prefix.size()));
+    if (is_column_of_door(field)) owners.doors.push_back(field.substr(door_prefix.size()));
   }
   std::vector<std::string> columns = column_names<Sample>(owners);  // of days
   if (!begins_with(columns)) columns = column_names<Sample>(owners, [](When when) { return when != When::with_clock; });
   if (!begins_with(columns)) throw Error(ErrorCode::input, "the rows don't begin with the header of a study's rows");
   first_sensor_ = columns.size();
-  first_area_ = first_sensor_ - owners.areas.size();
+  first_area_ = first_sensor_ - owners.doors.size() - owners.areas.size();
   row_.people_of_areas.resize(owners.areas.size());
   phase_ = static_cast<std::size_t>(std::ranges::find(columns, "phase") - columns.begin());
   const std::vector<std::string> sensors(fields_.begin() + static_cast<std::ptrdiff_t>(first_sensor_), fields_.end());

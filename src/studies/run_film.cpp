@@ -102,6 +102,9 @@ Film film(const Model& model, std::uint32_t run, const FilmSpec& spec) {
     result.run.people.push_back(without_keys(actor));
     result.run.people.back().number = result.run.people.size() - 1;
   }
+  const std::vector<DoorLeaf>& leaves = model.compiled().array().leaves();
+  for (std::size_t i = 0; i < leaves.size(); ++i)
+    result.run.leaves.push_back({model.scene().doors[i].id, leaves[i].box(), {}});
   result.signals_v.resize(model.scene().sensors.size());
   Peaks peaks(result.signals_v.size());
   const std::int64_t first_tick = state.tick();
@@ -111,6 +114,8 @@ Film film(const Model& model, std::uint32_t run, const FilmSpec& spec) {
     if ((state.tick() - first_tick) % ticks_per_key == 0 || ends) {
       result.run.key_times_s.push_back(time_s(state));
       for (std::size_t i = 0; i < actors.size(); ++i) add_key(actors[i], result.run.people[i]);
+      for (std::size_t i = 0; i < leaves.size(); ++i)
+        result.run.leaves[i].world_from_leaf.push_back(leaves[i].frame_at(state.run_state().crowd.doors().steps()[i]));
       result.active_zones.push_back(members(state.zones()));
       peaks.take(state, result.signals_v);
     }

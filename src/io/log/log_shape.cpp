@@ -299,9 +299,9 @@ class Finder {
     const bool is_ours = std::ranges::find(table_.names, "time_s") != table_.names.end();
     return is_of_area(column) || (is_ours && is_column_name(table_.names[column]));
   }
-  /// Counts the people of a part of the room, not all of them.
+  /// Counts the people of a part of the room, not all of them, or is a door's.
   [[nodiscard]] bool is_of_area(std::size_t column) const {
-    return is_column_of_area(table_.names[column]) && is_count(column);
+    return owner_of(table_.names[column]) != Each::sensor && is_count(column);
   }
   void find_people(LogShape& shape) const {
     shape.people_mean = map_.people_mean;

@@ -48,6 +48,8 @@ class Room {
           this.heads.push({ node, id: about.person, colour: node.material.color.clone() });
           node.material.color.lerp(new three.Color("#f1d0b5"), 0.75);
         }
+      } else if (about && about.type === "leaf") {
+        node.material = new three.MeshLambertMaterial({ color: node.material.color.clone() });
       } else if (node.isMesh) {
         solids.push(node);
         this.box.expandByObject(node);

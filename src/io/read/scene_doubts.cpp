@@ -15,6 +15,8 @@
 #include "geom/floor_overlap.hpp"
 #include "geom/triangle_surface.hpp"
 #include "io/read/scene_parts.hpp"
+#include "schema/areas.hpp"
+#include "schema/door_leaf.hpp"
 #include "schema/scene_unit.hpp"
 
 namespace pirsim::io::detail {
@@ -65,6 +67,7 @@ class SceneDoubts {
     for (std::size_t i = 0; i < scene_.seats.size(); ++i) seat(scene_.seats[i], nodes_.seats[i]);
     for (std::size_t i = 0; i < scene_.places.size(); ++i) place(scene_.places[i], nodes_.places[i]);
     neighbours();
+    for (std::size_t i = 0; i < scene_.doors.size(); ++i) door(i);
   }
 
  private:
@@ -133,44 +136,93 @@ class SceneDoubts {
 
   /// How much of its width is a wall, or furniture right before or behind it.
   void doorway(const EntranceSpec& entrance, int node) {
-    constexpr int n_across = 20;
     constexpr double share_in_doubt = 0.25;  // assumed: more than a frame and an open leaf take (0.05-0.2)
-    std::array<int, n_across> by{};          // the mesh that is met there
+    const Closed closed = closed_of(entrance.world_from_entrance, entrance.width_m);
+    if (closed.share <= share_in_doubt) return;
+    tell("doorway", node, "entrance '" + entrance.id + "'",
+         "entrance '" + entrance.id + "': '" + name(closed.mesh) + "' stands in " +
+             in_metres(entrance.width_m * closed.share) + " of its width of " + in_metres(entrance.width_m));
+  }
+  /// Of the width of an opening.
+  struct Closed {
+    double share = 0.0;
+    int mesh = -1;  ///< one that is met there
+  };
+  [[nodiscard]] Closed closed_of(const Frame& opening, double width_m) const {
+    constexpr int n_across = 20;
+    std::array<int, n_across> by{};  // the mesh that is met there
     by.fill(-1);
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
-      if (reaches(boxes_[i], entrance)) close(entrance, static_cast<int>(i), by);
+      if (reaches(boxes_[i], opening, width_m)) close(opening, width_m, static_cast<int>(i), by);
     }
     const auto closed = std::ranges::count_if(by, [](int mesh) { return mesh >= 0; });
-    if (static_cast<double>(closed) <= share_in_doubt * n_across) return;
-    tell("doorway", node, "entrance '" + entrance.id + "'",
-         "entrance '" + entrance.id + "': '" + name(*std::ranges::max_element(by)) + "' stands in " +
-             in_metres(entrance.width_m * static_cast<double>(closed) / n_across) + " of its width of " +
-             in_metres(entrance.width_m));
+    return {static_cast<double>(closed) / n_across, *std::ranges::max_element(by)};
   }
+
+  /// Its frame, what it sweeps and what it leads between.
+  void door(std::size_t index) {
+    constexpr double tick_s = 0.05, beside_m = 0.1;  // assumed: half of a jamb (0.05-0.2)
+    const DoorSpec& door = scene_.doors[index];
+    const int node = nodes_.doors[index];
+    const std::string named = "door '" + door.id + "'";
+    const auto say = [&](const char* kind, const std::string& what) { tell(kind, node, named, named + what); };
+    const double above_m = door.world_from_door.origin.y - scene_.floor.height_m();
+    if (std::abs(above_m) > 0.1)
+      say("door height",
+          " isn't on the floor, but " + in_metres(std::abs(above_m)) + (above_m > 0.0 ? " above it" : " below it"));
+    const DoorLeaf leaf(door, tick_s);
+    const Closed in_leaf = closed_of(door.world_from_door, door.width_m);
+    if (in_leaf.share > 0.0)
+      say("door width", ": '" + name(in_leaf.mesh) + "' stands in " + in_metres(in_leaf.share * door.width_m) +
+                            " of its leaf's width of " + in_metres(door.width_m));
+    if (closed_of(door.world_from_door, door.width_m + 2.0 * beside_m).share == 0.0)
+      say("no wall", " is in no wall: there is nothing beside its leaf");
+    for (std::size_t other = 0; other < index; ++other) {
+      const double apart_m = glm::distance(door.world_from_door.origin, scene_.doors[other].world_from_door.origin);
+      if (apart_m < 0.2) say("same door", " is at the place of door '" + scene_.doors[other].id + "'");
+    }
+    if (!areas_.empty()) {
+      constexpr double away_m = 0.4;  // assumed: beyond a thick wall (0.3-0.6)
+      const Vec2 before = floor_point(door.world_from_door * Vec3(0, 0, away_m));
+      const Vec2 behind = floor_point(door.world_from_door * Vec3(0, 0, -away_m));
+      const bool leads_out = !scene_.floor.contains(before) || !scene_.floor.contains(behind);
+      if (!leads_out && areas_.at(before) == areas_.at(behind))
+        say("areas",
+            " doesn't lie between two areas: both of its sides are '" + std::string(areas_.name_at(before)) + "'");
+    }
+    for (const SeatSpec& seat : scene_.seats) {
+      constexpr double room_m = 0.25, knees_m = 0.45;  // assumed: half of a body, the length of a thigh
+      const Vec2 at = floor_point(seat.world_from_seat.origin);
+      const Vec2 knees = floor_point(seat.world_from_seat * Vec3(0, 0, -knees_m));
+      if (std::min(leaf.distance_to_sweep_m(at), leaf.distance_to_sweep_m(knees)) < room_m)
+        say("leaf hits", ": its leaf hits who sits on seat '" + seat.id + "'");
+    }
+  }
+
   static constexpr double half_depth_m = 0.25;  ///< of a doorway; assumed: most of a wall, less than a person needs
-  [[nodiscard]] static bool reaches(const Box& box, const EntranceSpec& entrance) {
-    const double reach_m = 0.5 * entrance.width_m + half_depth_m;
-    const Vec3 at = entrance.world_from_entrance.origin;
+  [[nodiscard]] static bool reaches(const Box& box, const Frame& opening, double width_m) {
+    const double reach_m = 0.5 * width_m + half_depth_m;
+    const Vec3 at = opening.origin;
     return box.least.x <= at.x + reach_m && box.most.x >= at.x - reach_m && box.least.z <= at.z + reach_m &&
            box.most.z >= at.z - reach_m;
   }
   /// Notes the mesh wherever it crosses a line through the doorway at the height of shins, hips or heads.
   template <std::size_t n_across>
-  void close(const EntranceSpec& entrance, int mesh, std::array<int, n_across>& by) const {
-    const Frame entrance_from_world = inverse(entrance.world_from_entrance);
+  void close(const Frame& opening, double width_m, int mesh, std::array<int, n_across>& by) const {
+    const Frame opening_from_world = inverse(opening);
     const TriMesh& given = scene_.meshes[static_cast<std::size_t>(mesh)];
-    const double floor_y = scene_.floor.height_m() - entrance.world_from_entrance.origin.y;
+    const double floor_y = scene_.floor.height_m() - opening.origin.y;
     const auto local = [&](std::uint32_t corner) {  // so that a line through the doorway is upright
-      const Vec3 p = entrance_from_world * given.positions[corner];
+      const Vec3 p = opening_from_world * given.positions[corner];
       return Vec3(p.x, p.z, p.y - floor_y);
     };
     for (const auto& [a, b, c] : given.triangles) {
       const Vec3 at_a = local(a), at_b = local(b), at_c = local(c);
       const Vec3 least = glm::min(at_a, glm::min(at_b, at_c)), most = glm::max(at_a, glm::max(at_b, at_c));
       if (least.y > half_depth_m || most.y < -half_depth_m) continue;
-      if (2.0 * least.x > entrance.width_m || 2.0 * most.x < -entrance.width_m) continue;
+      if (2.0 * least.x > width_m || 2.0 * most.x < -width_m) continue;
       for (std::size_t i = 0; i < n_across; ++i) {
-        const double x = entrance.width_m * ((static_cast<double>(i) + 0.5) / n_across - 0.5);
+        const double x = width_m * ((static_cast<double>(i) + 0.5) / n_across - 0.5);
         for (const double height_m : {0.3, 1.0, 1.7}) {
           const auto depth_m = height_at(at_a, at_b, at_c, {x, 0.0, height_m});
           if (depth_m && std::abs(*depth_m) <= half_depth_m) by[i] = mesh;
@@ -335,6 +387,7 @@ class SceneDoubts {
   [[nodiscard]] const std::string& name(int mesh) const { return scene_.meshes[static_cast<std::size_t>(mesh)].name; }
 
   const SceneSpec& scene_;
+  const Areas areas_ = Areas(scene_);
   const MarkedNodes& nodes_;
   const DoubtSink& tell_;
   std::vector<Box> boxes_;  ///< (n_meshes)

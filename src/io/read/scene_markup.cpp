@@ -76,6 +76,7 @@ class MarkupReader {
     if (type == "seat") result = seat();
     if (type == "place") result = place();
     if (type == "entrance") result = placed<EntranceSpec>();
+    if (type == "door") result = placed<DoorSpec>();
     if (type == "floor") result = floor();
     if (type == "area") result = area();
     if (type == "surface") result = surface();
@@ -89,7 +90,7 @@ class MarkupReader {
   }
 
  private:
-  static std::string types_told() { return "known are sensor, seat, place, entrance, floor, area, surface and ignore"; }
+  static std::string types_told() { return "known are sensor, seat, place, entrance, door, floor, area, surface and ignore"; }
 
   /// Names and numbers of what has a place in the room.
   template <typename Spec>
@@ -109,7 +110,8 @@ class MarkupReader {
       if constexpr (std::same_as<Value, std::optional<std::string>>) {
         if (value_.contains(field.name)) value = name(field.name);
       }
-      if constexpr (std::same_as<Value, double>) value = number(field.name, value, field.range);
+      if constexpr (std::same_as<Value, double>) value = number(field.name, value, field.range, unit_of(field.name));
+      if constexpr (Worded<Value>) value = word(field.name, value);
     });
     return spec;
   }
@@ -203,6 +205,28 @@ class MarkupReader {
     return text;
   }
 
+  /// Of what the key ends in.
+  static std::string unit_of(std::string_view key) {
+    return key.ends_with("_deg")     ? "degrees"
+           : key.ends_with("_s")     ? "seconds"
+           : key.ends_with("_share") ? "parts of 1"
+                                     : "metres";
+  }
+
+  template <Worded Enum>
+  Enum word(const char* key, Enum otherwise) {
+    if (!value_.contains(key)) return otherwise;
+    std::vector<std::string> known;
+    for (const auto& [text, meaning] : Words<Enum>::all) {
+      if (value_[key] == text) return meaning;
+      known.emplace_back(text);
+    }
+    const std::string given = value_[key].is_string() ? value_[key].template get<std::string>() : "";
+    error(std::string("/") + key, std::string("'") + key + "' is " + shortened(value_[key].dump()) + ", not one of " +
+                                      pirsim::joined(known, ", ") + did_you_mean(given, known));
+    return otherwise;
+  }
+
   double number(const char* key, double otherwise, const NumberRange& range, const std::string& unit = "metres") {
     if (!value_.contains(key)) return otherwise;
     if (value_[key].is_number() && range.holds(value_[key].get<double>())) return value_[key].get<double>();
@@ -246,7 +270,7 @@ class MarkupReader {
 }  // namespace
 
 std::vector<std::string> mark_types() {
-  return {"sensor", "seat", "place", "entrance", "floor", "area", "surface", "ignore"};
+  return {"sensor", "seat", "place", "entrance", "door", "floor", "area", "surface", "ignore"};
 }
 
 std::optional<NodeMark> read_mark(const GivenMark& given, Diagnostics& faults, GroupedWarnings& warnings) {

@@ -43,9 +43,9 @@ struct Surface {
 struct Ignore {};
 }  // namespace mark
 
-/// Sensors, seats and entrances without their place, which is the node's.
-using Markup =
-    std::variant<SensorSpec, SeatSpec, PlaceSpec, EntranceSpec, mark::Floor, mark::Area, mark::Surface, mark::Ignore>;
+/// Sensors, seats, places, entrances and doors without their place, which is the node's.
+using Markup = std::variant<SensorSpec, SeatSpec, PlaceSpec, EntranceSpec, DoorSpec, mark::Floor, mark::Area,
+                            mark::Surface, mark::Ignore>;
 /// The outline that a mark gives, or null.
 [[nodiscard]] const mark::Outlined* outlined(const Markup* markup);
 
@@ -89,7 +89,7 @@ void warn_of_near_marks(const GltfDocument& document, int node, GroupedWarnings&
 /// Numbers of what bears the marks: nodes by their index, then what a marks file places. Seats, places, entrances
 /// and meshes as in the scene.
 struct MarkedNodes {
-  std::vector<int> sensors, seats, places, entrances, meshes, areas;
+  std::vector<int> sensors, seats, places, entrances, doors, meshes, areas;
   int floor = 0;
   std::set<int> as_meant = {};  ///< nothing about them is in doubt
 };

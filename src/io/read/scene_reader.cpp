@@ -47,7 +47,7 @@ class SceneBuilder {
     if (marks_file_) spec_.files.push_back(marks_file_->file);
     spec_.floor = floor_.build();
     require_floor();
-    if (!remarks_.has_errors()) check_areas();
+    if (!remarks_.has_errors()) check_among_each_other();
     if (!remarks_.has_errors()) warn_of_doubts();
     if (spec_.sensors.empty() && !remarks_.has_errors()) {
       remarks_.warning(document_.text.where(""), "the scene has no sensors");
@@ -126,6 +126,7 @@ class SceneBuilder {
     if (const auto* place = std::get_if<PlaceSpec>(&markup)) return name("place", place->id);
     if (const auto* entrance = std::get_if<EntranceSpec>(&markup)) return name("entrance", entrance->id);
     if (const auto* area = std::get_if<mark::Area>(&markup)) return name("area", area->id);
+    if (const auto* door = std::get_if<DoorSpec>(&markup)) return name("door", door->id);
     return std::holds_alternative<mark::Floor>(markup) ? "a floor" : "";
   }
 
@@ -175,6 +176,7 @@ class SceneBuilder {
     if (const auto* seat = std::get_if<SeatSpec>(&markup)) add_seat(placed, *seat);
     if (const auto* place = std::get_if<PlaceSpec>(&markup)) add_place(placed, *place);
     if (const auto* entrance = std::get_if<EntranceSpec>(&markup)) add_entrance(placed, *entrance);
+    if (const auto* door = std::get_if<DoorSpec>(&markup)) add_door(placed, *door);
     if (const auto* outline = outlined(&markup)) add_outlined(placed, *outline, markup);
   }
   /// What the marks file places in the room.
@@ -272,6 +274,13 @@ class SceneBuilder {
     entrance.world_from_entrance = upright_frame(placed);
     spec_.entrances.push_back(std::move(entrance));
   }
+  void add_door(const PlacedNode& placed, DoorSpec door) {
+    if (!has_room(spec_.doors.size(), limits::doors, "doors")) return;
+    check_unique("door", door.id, placed.node);
+    nodes_.doors.push_back(placed.node);
+    door.world_from_door = upright_frame(placed);
+    spec_.doors.push_back(std::move(door));
+  }
   /// Counts it; its mesh, if it has no polygon, is added with the others.
   void add_outlined(const PlacedNode& placed, const mark::Outlined& outline, const Markup& markup) {
     const bool is_floor = std::holds_alternative<mark::Floor>(markup);
@@ -300,14 +309,18 @@ class SceneBuilder {
     spec_.areas.push_back({std::get<mark::Area>(markup).id, *std::move(outline)});
     nodes_.areas.push_back(bearer);
   }
-  /// Once all sensors are known.
-  void check_areas() {
+  /// Of areas and doors, once all sensors are known.
+  void check_among_each_other() {
     for (std::size_t i = 0; i < spec_.areas.size(); ++i) {
       const std::string fault = area_id_fault(spec_.areas[i].id, spec_.sensors);
       if (!fault.empty()) mark_error(nodes_.areas[i], "/id", fault);
     }
     check_together(spec_.areas, spec_.floor,
                    [&](std::size_t area, const std::string& message) { mark_error(nodes_.areas[area], "", message); });
+    for (std::size_t i = 0; i < spec_.doors.size(); ++i) {
+      const std::string fault = door_id_fault(spec_.doors[i].id, spec_.sensors);
+      if (!fault.empty()) mark_error(nodes_.doors[i], "/id", fault);
+    }
     for (std::size_t i = 0; i < spec_.sensors.size(); ++i) {
       const std::string fault = area_fault(spec_.sensors[i], spec_.areas);
       if (!fault.empty()) mark_error(nodes_.sensors[i], "/area", fault);

@@ -1,6 +1,7 @@
 #include "io/write/casas_writer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <ostream>
 #include <utility>
 
@@ -48,15 +49,20 @@ std::map<std::string, std::vector<Spell>> spells_of(std::span<const Sample> rows
 
 std::vector<CasasWriter::Line> CasasWriter::lines_of(std::span<const Sample> rows) const {
   std::vector<Line> lines;
-  std::vector<std::uint8_t> on(sensors_.size(), 0);
-  const auto change = [&](std::size_t row, std::size_t sensor, bool now) {
-    if ((on[sensor] != 0) == now) return;
-    on[sensor] = now ? 1 : 0;
-    lines.push_back({row, moment(rows[row].clock) + ' ' + sensors_[sensor] + (now ? " ON" : " OFF")});
+  std::vector<std::uint8_t> on(sensors_.size(), 0), open(doors_.size(), 0);
+  const auto change = [&](std::size_t row, std::uint8_t& was, bool is, const std::string& name,
+                          const std::array<const char*, 2>& words) {
+    if ((was != 0) == is) return;
+    was = is ? 1 : 0;
+    lines.push_back({row, moment(rows[row].clock) + ' ' + name + ' ' + words[was]});
   };
-  for (std::size_t row = 0; row < rows.size(); ++row)
-    for (std::size_t i = 0; i < sensors_.size(); ++i) change(row, i, rows[row].bits[i] != 0);
-  for (std::size_t i = 0; i < sensors_.size(); ++i) change(rows.size() - 1, i, false);
+  constexpr std::array motion{"OFF", "ON"}, contact{"CLOSE", "OPEN"};
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    for (std::size_t i = 0; i < on.size(); ++i) change(row, on[i], rows[row].bits[i] != 0, sensors_[i], motion);
+    for (std::size_t i = 0; i < open.size(); ++i) change(row, open[i], rows[row].doors[i] != 0, doors_[i], contact);
+  }
+  for (std::size_t i = 0; i < on.size(); ++i) change(rows.size() - 1, on[i], false, sensors_[i], motion);
+  for (std::size_t i = 0; i < open.size(); ++i) change(rows.size() - 1, open[i], false, doors_[i], contact);
   return lines;
 }
 

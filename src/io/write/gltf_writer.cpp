@@ -15,7 +15,7 @@ namespace {
 constexpr double furniture_height_m = 1.8;
 constexpr double wall_opacity = 0.25;
 const Vec3 wall_colour(0.85);
-const Vec3 furniture_colour(0.6, 0.55, 0.5);
+const Vec3 furniture_colour(0.6, 0.55, 0.5), leaf_colour(0.55, 0.42, 0.28);
 
 // Okabe and Ito's colours, which colour-blind readers can tell apart; sensors take them in turn.
 const std::array<Vec3, 6> palette{Vec3(0.00, 0.45, 0.70), Vec3(0.90, 0.60, 0.00), Vec3(0.00, 0.62, 0.45),
@@ -69,6 +69,10 @@ void check(const ExportedRun& run, const Where& where) {
       faults.error(where, "key times must ascend from 0 or later");
       break;
     }
+  }
+  for (const ExportedLeaf& leaf : run.leaves) {
+    if (keys.empty() || leaf.world_from_leaf.size() != keys.size())
+      faults.error(where, "door '" + leaf.door + "' needs one pose a key time");
   }
   for (const ExportedPerson& person : run.people) check_person(person, keys.size(), where, faults);
   check_geometry(run, where, faults);
@@ -140,23 +144,45 @@ std::vector<Quat> continuous_rotations(const std::vector<Frame>& frames) {
   return rotations;
 }
 
+/// frames: (n_keys) of the node.
+void animate(GltfBuilder& document, int node, const std::vector<Frame>& frames, int key_times) {
+  std::vector<Vec3> origins;
+  for (const Frame& frame : frames) origins.push_back(frame.origin);
+  document.animate(node, "translation", key_times, document.add_track(origins), "LINEAR");
+  document.animate(node, "rotation", key_times, document.add_track(continuous_rotations(frames)), "LINEAR");
+}
+
+/// As it is at the first key.
+void stand(tinygltf::Node& node, const Frame& frame) {
+  const Quat rotation = glm::normalize(frame.rotation);
+  node.translation = {frame.origin.x, frame.origin.y, frame.origin.z};
+  node.rotation = {rotation.x, rotation.y, rotation.z, rotation.w};
+}
+
 void add_part(GltfBuilder& document, const ExportedPart& part, const std::string& person, int parent, int material,
               int key_times) {
   const std::string name = person + "/" + part.part;
-  const std::vector<Quat> rotations = continuous_rotations(part.world_from_part);
-  std::vector<Vec3> origins;
-  for (const Frame& frame : part.world_from_part) origins.push_back(frame.origin);
   tinygltf::Value::Object about = std::visit(DescribeShape{}, part.shape);
   about["person"] = tinygltf::Value(person);
   about["part"] = tinygltf::Value(part.part);
   tinygltf::Node node = named(name);
   node.mesh = add_solid(document, name, part.shape, material);
-  node.translation = {origins.front().x, origins.front().y, origins.front().z};
-  node.rotation = {rotations.front().x, rotations.front().y, rotations.front().z, rotations.front().w};
+  stand(node, part.world_from_part.front());
   node.extras = pirsim_extras("body_part", std::move(about));
-  const int index = document.add_node(std::move(node), parent);
-  document.animate(index, "translation", key_times, document.add_track(origins), "LINEAR");
-  document.animate(index, "rotation", key_times, document.add_track(rotations), "LINEAR");
+  animate(document, document.add_node(std::move(node), parent), part.world_from_part, key_times);
+}
+
+void add_leaves(GltfBuilder& document, const ExportedRun& run) {
+  if (run.leaves.empty()) return;
+  const int key_times = document.add_key_times(run.key_times_s);
+  const int material = document.add_material("leaf", leaf_colour, 1.0);
+  for (const ExportedLeaf& leaf : run.leaves) {
+    tinygltf::Node node = named(leaf.door);
+    node.mesh = add_solid(document, leaf.door, leaf.shape, material);
+    stand(node, leaf.world_from_leaf.front());
+    node.extras = pirsim_extras("leaf", {{"door", tinygltf::Value(leaf.door)}});
+    animate(document, document.add_node(std::move(node)), leaf.world_from_leaf, key_times);
+  }
 }
 
 void add_people(GltfBuilder& document, const ExportedRun& run) {
@@ -199,6 +225,7 @@ GltfBuilder document_of(const ExportedRun& run, const Where& where) {
   check(run, where);
   GltfBuilder document(run.title.empty() ? "run" : run.title);
   add_room(document, run.meshes);
+  add_leaves(document, run);
   add_people(document, run);
   add_beams(document, run.beams);
   return document;

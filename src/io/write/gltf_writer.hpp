@@ -35,10 +35,18 @@ struct ExportedBeams {
   std::vector<std::pair<Vec3, Vec3>> segments;  ///< world metres
 };
 
+/// Of a door, one node named as it.
+struct ExportedLeaf {
+  std::string door;
+  Shape shape;
+  std::vector<Frame> world_from_leaf;  ///< (n_keys)
+};
+
 struct ExportedRun {
   std::string title;
   std::vector<TriMesh> meshes;
   std::vector<ExportedPerson> people;
+  std::vector<ExportedLeaf> leaves{};
   std::vector<ExportedBeams> beams;
   std::vector<double> key_times_s;  ///< (n_keys) ascending from 0 or later; at least one if there are people
 };

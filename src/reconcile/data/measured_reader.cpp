@@ -186,7 +186,7 @@ void MeasuredReader::refuse_unknown_columns(const std::vector<std::string>& sens
   }
   known.insert(known.end(), sensors.begin(), sensors.end());
   for (const std::string& name : table_.names()) {
-    if (std::ranges::find(known, name) != known.end() || is_column_of_area(name)) continue;
+    if (std::ranges::find(known, name) != known.end() || owner_of(name) != Each::sensor) continue;
     faults_.error({file_, 1, 1}, "unknown column '" + name + "'" + near_or_all(name, known));
   }
 }

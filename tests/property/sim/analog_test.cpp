@@ -242,7 +242,7 @@ TEST_CASE("a crowd of natural people gives embree's powers at every tick, whoeve
     const auto n_present = static_cast<std::size_t>(std::ranges::count_if(actors, &sim::Actor::present));
     n_left += n_present < n_before ? 1 : 0;
     n_before = n_present;
-    sim::PowerMeter(model.compiled().array(), fastest_tracer).measure(actors, anew);
+    sim::PowerMeter(model.compiled().array(), fastest_tracer).measure(actors, {}, anew);
     REQUIRE(anew == powers[tick]);
   }
   CHECK(n_left >= 2);
@@ -390,6 +390,7 @@ TEST_CASE("what a meter has looked at before changes nothing, a body of another 
   std::vector<PosedShape> solids;
   sim::append_solids(actors.front(), solids);
   const sim::BodyRadiance at_20 = sim::radiance_of({}, 20.0), at_10 = sim::radiance_of({}, 10.0);
+  const std::span<const LeafStep> no_doors;
   sim::PowerMeter used(array, fastest_tracer);
   const auto check_as_anew = [&](const auto&... what) {
     std::vector<sim::PowerSteps> powers(array.analog()->power().n_receivers()), anew = powers;
@@ -400,9 +401,9 @@ TEST_CASE("what a meter has looked at before changes nothing, a body of another 
   };
   check_as_anew(solids, at_20);
   check_as_anew(solids, at_10);
-  check_as_anew(actors);
+  check_as_anew(actors, no_doors);
   check_as_anew(solids, at_20);
-  check_as_anew(actors);
+  check_as_anew(actors, no_doors);
 }
 
 TEST_CASE("beside sensors of the other response each sensor answers as it does among its own kind", "[sim][analog]") {

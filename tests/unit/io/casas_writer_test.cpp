@@ -22,6 +22,7 @@ struct Day {
       row.time_s = 60.0 * static_cast<double>(i + 1);
       row.clock = date + "T00:0" + std::to_string(i + 1) + ":00";
       row.bits = {bits[i][0], bits[i][1]};
+      row.doors = {0};
       if (!activities[i].empty()) occupants.push_back({row.time_s, row.clock, "ann", activities[i], ""});
     }
   }
@@ -29,7 +30,7 @@ struct Day {
 
 std::string log_of(const std::vector<Day>& days) {
   std::ostringstream text;
-  CasasWriter log(text, {"M1", "M2"});
+  CasasWriter log(text, {"M1", "M2"}, {"D1"});
   for (const Day& day : days) log.add(day.rows, day.occupants);
   log.finish();
   return text.str();
@@ -45,6 +46,16 @@ TEST_CASE("a log of CASAS has a line a change, and no sensor stays on at its end
         "2026-03-02 00:04:00 M1 OFF\n"
         "2026-03-02 00:04:00 M2 OFF\n");
   CHECK(log_of({}).empty());
+}
+
+TEST_CASE("a log of CASAS has contacts of doors, which are shut at its end") {
+  Day day("2026-03-02", {{0, 0}, {1, 0}, {0, 0}}, {"", "", ""});
+  day.rows[1].doors = day.rows[2].doors = {1};
+  CHECK(log_of({day}) ==
+        "2026-03-02 00:02:00 M1 ON\n"
+        "2026-03-02 00:02:00 D1 OPEN\n"
+        "2026-03-02 00:03:00 M1 OFF\n"
+        "2026-03-02 00:03:00 D1 CLOSE\n");
 }
 
 TEST_CASE("activities begin and end at the lines within them; a line with two labels stands twice; moves are none") {

@@ -1,0 +1,95 @@
+#include "schema/door_leaf.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace pirsim {
+namespace {
+
+double to_segment_m(const Vec2& p, const Vec2& end) noexcept {
+  const double along = std::clamp(glm::dot(p, end) / glm::dot(end, end), 0.0, 1.0);
+  return glm::distance(p, along * end);
+}
+
+}  // namespace
+
+DoorLeaf::DoorLeaf(const DoorSpec& door, double tick_s) : door_(door) {
+  constexpr double most_steps = 60000.0;
+  open_step_ = static_cast<LeafStep>(std::clamp(std::round(door.turn_s / tick_s), 1.0, most_steps));
+  if (door.state == DoorState::open) rest_step_ = open_step_;
+}
+
+double DoorLeaf::angle(LeafStep step) const noexcept { return radians(door_.open_deg) * step / open_step_; }
+
+Frame DoorLeaf::frame_at(LeafStep step) const noexcept {
+  const double from_hinge = door_.hinge == DoorHinge::left ? 1.0 : -1.0;
+  const double inward = door_.opens == DoorOpens::inward ? 1.0 : -1.0;
+  const Vec3 hinge(-0.5 * from_hinge * door_.width_m, 0.0, 0.0);
+  const Quat turn = rotation_from_heading(from_hinge * inward * angle(step));
+  const Vec3 centre = hinge + turn * Vec3(0.5 * from_hinge * door_.width_m, 0.5 * door_.height_m, 0.0);
+  return door_.world_from_door * Frame{turn, centre};
+}
+
+PosedBox DoorLeaf::swept() const noexcept {
+  const double side = door_.hinge == DoorHinge::left ? -0.5 : 0.5, reach = door_.width_m + door_.thickness_m;
+  const Frame hinge{{1, 0, 0, 0}, {side * door_.width_m, 0.5 * door_.height_m, 0.0}};
+  return std::get<PosedBox>(
+      place(Box{{reach, 0.5 * door_.height_m + door_.thickness_m, reach}}, door_.world_from_door * hinge));
+}
+
+TriMesh DoorLeaf::open_mesh() const {
+  TriMesh mesh;
+  mesh.name = "leaf of door '" + door_.id + "'";
+  const Frame frame = frame_at(open_step_);
+  const Vec3 half = box().half_extents;
+  for (const double x : {-half.x, half.x}) {
+    for (const double y : {-half.y, half.y}) {
+      for (const double z : {-half.z, half.z}) mesh.positions.push_back(frame * Vec3(x, y, z));
+    }
+  }
+  mesh.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
+                    {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
+  return mesh;
+}
+
+Vec2 DoorLeaf::from_hinge(const Vec2& point) const noexcept {
+  const Frame& frame = door_.world_from_door;
+  const Vec3 local = inverse(frame) * Vec3(point.x, frame.origin.y, point.y);
+  return {0.5 * door_.width_m + (door_.hinge == DoorHinge::left ? local.x : -local.x),
+          door_.opens == DoorOpens::inward ? -local.z : local.z};
+}
+
+double DoorLeaf::distance_to_sweep_m(const Vec2& point) const noexcept {
+  const Vec2 p = from_hinge(point);
+  const double turned = std::atan2(p.y, p.x), open = angle(open_step_);
+  if (turned >= 0.0 && turned <= open) return std::max(0.0, glm::length(p) - door_.width_m);
+  const Vec2 shut_end(door_.width_m, 0.0), open_end = door_.width_m * Vec2(std::cos(open), std::sin(open));
+  return std::max(0.0, std::min(to_segment_m(p, shut_end), to_segment_m(p, open_end)) - 0.5 * door_.thickness_m);
+}
+
+double DoorLeaf::distance_to_leaf_m(const Vec2& point, LeafStep step) const noexcept {
+  const Vec2 end = door_.width_m * Vec2(std::cos(angle(step)), std::sin(angle(step)));
+  return std::max(0.0, to_segment_m(from_hinge(point), end) - 0.5 * door_.thickness_m);
+}
+
+bool DoorLeaf::leads_through(const Vec2& a, const Vec2& b) const noexcept {
+  const Vec2 p = from_hinge(a), q = from_hinge(b);
+  if ((p.y < 0.0) == (q.y < 0.0)) return false;
+  const double along = p.x + (q.x - p.x) * p.y / (p.y - q.y);
+  return along >= 0.0 && along <= door_.width_m;
+}
+
+std::vector<DoorLeaf> leaves_of(const SceneSpec& scene, double tick_s) {
+  std::vector<DoorLeaf> leaves;
+  for (const DoorSpec& door : scene.doors) leaves.emplace_back(door, tick_s);
+  return leaves;
+}
+
+std::vector<LeafStep> rest_steps(const std::vector<DoorLeaf>& leaves) {
+  std::vector<LeafStep> steps;
+  for (const DoorLeaf& leaf : leaves) steps.push_back(leaf.rest_step());
+  return steps;
+}
+
+}  // namespace pirsim

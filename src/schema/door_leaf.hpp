@@ -1,0 +1,55 @@
+// The leaf of a door: where it is at each step of its turn, and what of the floor it sweeps.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "pirsim/scene.hpp"
+#include "pirsim/shapes.hpp"
+
+namespace pirsim {
+
+/// A leaf turns evenly, a step a tick: 0 is shut.
+using LeafStep = std::uint16_t;
+
+class DoorLeaf {
+ public:
+  DoorLeaf(const DoorSpec& door, double tick_s);
+
+  [[nodiscard]] LeafStep open_step() const noexcept { return open_step_; }
+  [[nodiscard]] LeafStep rest_step() const noexcept { return rest_step_; }  ///< as the door stands before a run
+  [[nodiscard]] bool rests(LeafStep step) const noexcept { return step == 0 || step == open_step_; }
+  /// The leaf itself, a box in its own frame, and where that is.
+  [[nodiscard]] Box box() const noexcept { return {0.5 * Vec3(door_.width_m, door_.height_m, door_.thickness_m)}; }
+  [[nodiscard]] Frame frame_at(LeafStep step) const noexcept;
+  [[nodiscard]] PosedBox at(LeafStep step) const noexcept { return std::get<PosedBox>(place(box(), frame_at(step))); }
+  /// A box around all of these.
+  [[nodiscard]] PosedBox swept() const noexcept;
+  /// The open leaf as walkers see it, called as the door is.
+  [[nodiscard]] TriMesh open_mesh() const;
+
+  [[nodiscard]] Vec2 threshold() const noexcept { return floor_point(door_.world_from_door.origin); }
+  /// No part of the leaf is ever farther from the threshold's middle.
+  [[nodiscard]] double reach_m() const noexcept { return 1.5 * door_.width_m + door_.thickness_m; }
+  /// Between a point of the floor and what the leaf sweeps; 0 inside.
+  [[nodiscard]] double distance_to_sweep_m(const Vec2& point) const noexcept;
+  /// The same to the leaf where it is now.
+  [[nodiscard]] double distance_to_leaf_m(const Vec2& point, LeafStep step) const noexcept;
+  /// Does the straight way from a to b lead through the opening?
+  [[nodiscard]] bool leads_through(const Vec2& a, const Vec2& b) const noexcept;
+
+ private:
+  [[nodiscard]] double angle(LeafStep step) const noexcept;
+  /// From the hinge: along the shut leaf, and to the side to which it opens.
+  [[nodiscard]] Vec2 from_hinge(const Vec2& point) const noexcept;
+
+  DoorSpec door_;
+  LeafStep open_step_ = 1, rest_step_ = 0;
+};
+
+/// (n_doors)
+[[nodiscard]] std::vector<DoorLeaf> leaves_of(const SceneSpec& scene, double tick_s);
+/// (n_doors) as they stand before a run.
+[[nodiscard]] std::vector<LeafStep> rest_steps(const std::vector<DoorLeaf>& leaves);
+
+}  // namespace pirsim
