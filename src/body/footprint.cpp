@@ -110,6 +110,7 @@ double distance(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) noex
 }  // namespace
 
 std::vector<Footprint> footprints(std::span<const TriMesh> meshes, double lower_m, double upper_m) {
+  constexpr double touching_m = 1e-3;  // what rounding makes of a lintel that begins where the heights end
   std::vector<Footprint> result;
   for (std::uint32_t mesh = 0; mesh < meshes.size(); ++mesh) {
     if (meshes[mesh].solidity == Solidity::screen) continue;
@@ -117,7 +118,8 @@ std::vector<Footprint> footprints(std::span<const TriMesh> meshes, double lower_
     for (const auto& [a, b, c] : meshes[mesh].triangles) {
       const std::vector<Vec3> triangle{positions[a], positions[b], positions[c]};
       const std::vector<Vec3> slab = clipped(clipped(triangle, lower_m, 1.0), upper_m, -1.0);
-      if (slab.empty()) continue;
+      const auto is_above = [&](const Vec3& p) { return p.y >= upper_m - touching_m; };
+      if (slab.empty() || std::ranges::all_of(triangle, is_above)) continue;
       const Footprint footprint = seen_from_above(slab, mesh);
       if (result.empty() || !join(result.back(), footprint)) result.push_back(footprint);
     }

@@ -25,7 +25,8 @@ struct Footprint {
   Vec2 upper{0.0};
 };
 
-/// The footprints of all triangles that reach into heights [lower_m, upper_m] (world y). Lines that overlap the line
+/// The footprints of all triangles that reach into heights [lower_m, upper_m] (world y); what only touches upper_m from
+/// above doesn't: a lintel at 2.00 m is a usual one. Lines that overlap the line
 /// before them, of the same mesh, are one with it.
 [[nodiscard]] std::vector<Footprint> footprints(std::span<const TriMesh> meshes, double lower_m, double upper_m);
 

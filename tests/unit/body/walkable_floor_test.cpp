@@ -125,6 +125,24 @@ Way mirrored(Way way, double width) {
 
 }  // namespace
 
+TEST_CASE("a lintel at 2.00 m leaves its doorway open, one below it closes it") {
+  const auto leads_through = [](double lintel_m, double floor_m) {
+    std::vector<Block> blocks{{{1.9, 0.0}, {2.1, 1.0}, 0.0, 2.6}, {{1.9, 1.9}, {2.1, 3.0}, 0.0, 2.6}};
+    blocks.push_back({{1.9, 1.0}, {2.1, 1.9}, lintel_m, 2.6});
+    std::vector<TriMesh> meshes = meshes_of(blocks);
+    for (TriMesh& mesh : meshes) {
+      for (Vec3& corner : mesh.positions) corner.y = static_cast<float>(corner.y + floor_m);  // as files keep it
+    }
+    const FloorArea floor({{{0, 0}, {4, 0}, {4, 3}, {0, 3}}}, static_cast<float>(floor_m));
+    return WalkableFloor(floor, {}, meshes, clearance).find_way({1, 1.5}, {3, 1.5}).has_value();
+  };
+  for (const double floor_m : {0.0, 0.1, -3.3, 7.7, 100.3}) {
+    CHECK(leads_through(2.0, floor_m));
+    CHECK(leads_through(2.3, floor_m));
+    CHECK_FALSE(leads_through(1.98, floor_m));
+  }
+}
+
 TEST_CASE("a point is walkable exactly where it keeps the clearance from a block", "[walkable_floor]") {
   const Block block{{1.013, 1.27}, {2.1, 1.9}};
   const WalkableFloor floor(rectangle(4, 3), {}, meshes_of({block}), clearance);
