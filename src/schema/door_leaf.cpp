@@ -22,13 +22,27 @@ DoorLeaf::DoorLeaf(const DoorSpec& door, double tick_s) : door_(door) {
 
 double DoorLeaf::angle(LeafStep step) const noexcept { return radians(door_.open_deg) * step / open_step_; }
 
-Frame DoorLeaf::frame_at(LeafStep step) const noexcept {
+Frame DoorLeaf::frame_at(LeafStep step) const noexcept { return frame_turned(angle(step)); }
+
+Frame DoorLeaf::frame_turned(double open) const noexcept {
   const double from_hinge = door_.hinge == DoorHinge::left ? 1.0 : -1.0;
   const double inward = door_.opens == DoorOpens::inward ? 1.0 : -1.0;
   const Vec3 hinge(-0.5 * from_hinge * door_.width_m, 0.0, 0.0);
-  const Quat turn = rotation_from_heading(from_hinge * inward * angle(step));
+  const Quat turn = rotation_from_heading(from_hinge * inward * open);
   const Vec3 centre = hinge + turn * Vec3(0.5 * from_hinge * door_.width_m, 0.5 * door_.height_m, 0.0);
   return door_.world_from_door * Frame{turn, centre};
+}
+
+std::vector<Vec2> DoorLeaf::sweep() const {
+  constexpr double step_deg = 7.5;
+  const double to_end = door_.hinge == DoorHinge::left ? 0.5 : -0.5;
+  const auto at = [&](double open_deg, double end) {
+    return floor_point(frame_turned(radians(open_deg)) * Vec3(end * door_.width_m, 0.0, 0.0));
+  };
+  std::vector<Vec2> line{at(0.0, -to_end)};
+  for (double open_deg = 0.0; open_deg < door_.open_deg; open_deg += step_deg) line.push_back(at(open_deg, to_end));
+  line.push_back(at(door_.open_deg, to_end));
+  return line;
 }
 
 PosedBox DoorLeaf::swept() const noexcept {
@@ -71,6 +85,10 @@ double DoorLeaf::distance_to_sweep_m(const Vec2& point) const noexcept {
 double DoorLeaf::distance_to_leaf_m(const Vec2& point, LeafStep step) const noexcept {
   const Vec2 end = door_.width_m * Vec2(std::cos(angle(step)), std::sin(angle(step)));
   return std::max(0.0, to_segment_m(from_hinge(point), end) - 0.5 * door_.thickness_m);
+}
+
+bool DoorLeaf::on_one_side(const Vec2& a, const Vec2& b) const noexcept {
+  return (from_hinge(a).y < 0.0) == (from_hinge(b).y < 0.0);
 }
 
 bool DoorLeaf::leads_through(const Vec2& a, const Vec2& b) const noexcept {

@@ -28,6 +28,9 @@ class DoorLeaf {
   /// The open leaf as walkers see it, called as the door is.
   [[nodiscard]] TriMesh open_mesh() const;
 
+  /// What it sweeps, seen from above, a closed polygon: the hinge, then the end of the leaf from shut to open.
+  [[nodiscard]] std::vector<Vec2> sweep() const;
+
   [[nodiscard]] Vec2 threshold() const noexcept { return floor_point(door_.world_from_door.origin); }
   /// No part of the leaf is ever farther from the threshold's middle.
   [[nodiscard]] double reach_m() const noexcept { return 1.5 * door_.width_m + door_.thickness_m; }
@@ -35,11 +38,15 @@ class DoorLeaf {
   [[nodiscard]] double distance_to_sweep_m(const Vec2& point) const noexcept;
   /// The same to the leaf where it is now.
   [[nodiscard]] double distance_to_leaf_m(const Vec2& point, LeafStep step) const noexcept;
+  /// Both before the wall in which the door is, or both behind it.
+  [[nodiscard]] bool on_one_side(const Vec2& a, const Vec2& b) const noexcept;
   /// Does the straight way from a to b lead through the opening?
   [[nodiscard]] bool leads_through(const Vec2& a, const Vec2& b) const noexcept;
 
  private:
   [[nodiscard]] double angle(LeafStep step) const noexcept;
+  /// Its own frame, turned about the hinge; open: radians.
+  [[nodiscard]] Frame frame_turned(double open) const noexcept;
   /// From the hinge: along the shut leaf, and to the side to which it opens.
   [[nodiscard]] Vec2 from_hinge(const Vec2& point) const noexcept;
 

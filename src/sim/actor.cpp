@@ -113,7 +113,7 @@ DoorUser Actor::door_user(const FloorArea& floor, const Vec2& before) const {
 void Actor::advance(const CompiledStudy& study, std::int64_t tick, std::span<const Presence> others,
                     std::size_t n_before, const DoorsSeen& doors) {
   incidents_.clear();
-  carry_on({study, others, tick - 1});
+  carry_on({study, others, tick - 1, doors});
   if (body_) {
     if (natural_) move_naturally();
     if (body_->motion().stage() != Stage::seated) {
@@ -130,7 +130,8 @@ void Actor::advance(const CompiledStudy& study, std::int64_t tick, std::span<con
 
 void Actor::carry_on(const Scene& scene) {
   const auto sitter = sits_on_ && !done() ? Pedestrian::Sitter::may_get_up : Pedestrian::Sitter::stays;
-  const bool busy = body_ && facts_.follows == nullptr && body_->makes_way(scene.others, scene.now, sitter);
+  const bool busy =
+      body_ && facts_.follows == nullptr && body_->makes_way(scene.others, scene.doors, scene.now, sitter);
   while (!done()) {
     if (!begun_) {
       if (action().at_s && scene.now < ticks(*action().at_s, scene.study)) return;

@@ -126,6 +126,7 @@ class Actor {
     const CompiledStudy& study;
     std::span<const Presence> others;
     std::int64_t now;
+    DoorsSeen doors = {};
   };
 
   [[nodiscard]] bool is_at_meeting() const;

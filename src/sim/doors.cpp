@@ -8,8 +8,6 @@
 namespace pirsim::sim {
 namespace {
 
-constexpr double standing_m =
-    0.38;  ///< assumed: kept between a leaf and who stands, less than who waits keeps (0.3-0.45)
 constexpr double sitting_m = 0.25;  ///< assumed: the same from pelvis and knees (0.2-0.3)
 constexpr double walking_m =
     0.95;  ///< assumed: who walks needs a way to stop before a leaf that begins to turn (0.8-1.2)
@@ -21,7 +19,8 @@ bool leads_by(const DoorLeaf& leaf, const DoorUser& user) {
 
 }  // namespace
 
-Doors::Doors(const CompiledStudy& study, std::uint32_t run) : steps_(rest_steps(study.array().leaves())) {
+Doors::Doors(const CompiledStudy& study, std::uint32_t run)
+    : steps_(rest_steps(study.array().leaves())), barred_(steps_.size(), 0) {
   for (std::uint32_t i = 0; i < steps_.size(); ++i) {
     const Goal goal = steps_[i] == 0 ? Goal::shut : Goal::open;
     doors_.push_back({.goal = goal, .habit = Stream({study.seed(), run, i, Purpose::door_habit})});
@@ -48,7 +47,7 @@ bool Doors::is_clear(const DoorLeaf& leaf, std::size_t i, std::span<const DoorUs
     if (user.place == DoorUser::Place::doorway && user.wants == i) return false;
     const double keep_m = user.gait != DoorUser::Gait::stands && rests ? walking_m
                           : user.knees != user.now                     ? sitting_m
-                                                                       : standing_m;
+                                                                       : clear_m;
     if (glm::distance(user.now, leaf.threshold()) > leaf.reach_m() + 1.0 + keep_m) return false;
     return std::min({leaf.distance_to_sweep_m(user.now), leaf.distance_to_sweep_m(user.knees),
                      leaf.distance_to_sweep_m(0.5 * (user.now + user.knees))}) < keep_m;
@@ -59,6 +58,7 @@ void Doors::advance_one(const CompiledStudy& study, std::size_t i, std::int64_t 
   const DoorLeaf& leaf = study.array().leaves()[i];
   Door& door = doors_[i];
   LeafStep& step = steps_[i];
+  barred_[i] = 0;
   bool is_led = false, is_wanted = false;
   for (const DoorUser& user : users) {
     if (glm::distance(user.now, leaf.threshold()) > leaf.reach_m() + 3.0) continue;
@@ -74,7 +74,10 @@ void Doors::advance_one(const CompiledStudy& study, std::size_t i, std::int64_t 
   if (step == goal) return;
   const bool is_forced =
       is_wanted && (is_led || tick - *door.wanted_since >= std::llround(patience_s * study.sensing().tick_rate_hz));
-  if (!is_forced && !is_clear(leaf, i, users)) return;
+  if (!is_forced && !is_clear(leaf, i, users)) {
+    barred_[i] = door.goal == Goal::open ? 1 : 0;
+    return;
+  }
   step = static_cast<LeafStep>(step < goal ? step + 1 : step - 1);
   if (step != goal) return;
   // If nobody goes through after all, it is shut as if somebody had left it open.

@@ -14,8 +14,9 @@ namespace pirsim::sim {
 
 /// What walkers see of doors.
 struct DoorsSeen {
-  std::span<const DoorLeaf> leaves;  ///< (n_doors)
-  std::span<const LeafStep> steps;   ///< (n_doors)
+  std::span<const DoorLeaf> leaves;      ///< (n_doors)
+  std::span<const LeafStep> steps;       ///< (n_doors)
+  std::span<const std::uint8_t> barred;  ///< (n_doors) 1: would open but for somebody in its way
 };
 
 /// What doors know of somebody.
@@ -28,11 +29,14 @@ struct DoorUser {
 };
 
 /// A value. A leaf turns while nobody is in its way, so it pushes nobody; who wants to go through waits before what it
-/// sweeps until it is open.
+/// sweeps until it is open, and whoever stands in its way steps back.
 class Doors {
  public:
   static constexpr double hold_m =
       0.6;  ///< assumed: kept from what a leaf sweeps by who waits: an arm that swings (0.5-0.7)
+
+  static constexpr double clear_m =
+      0.38;  ///< assumed: kept between a leaf that turns and who stands, less than who waits keeps (0.3-0.45)
 
   /// As they stand before a run.
   Doors(const CompiledStudy& study, std::uint32_t run);
@@ -41,7 +45,9 @@ class Doors {
   void advance(const CompiledStudy& study, std::int64_t tick, std::span<const DoorUser> users);
 
   [[nodiscard]] std::span<const LeafStep> steps() const noexcept { return steps_; }
-  [[nodiscard]] DoorsSeen seen(const CompiledStudy& study) const noexcept { return {study.array().leaves(), steps_}; }
+  [[nodiscard]] DoorsSeen seen(const CompiledStudy& study) const noexcept {
+    return {study.array().leaves(), steps_, barred_};
+  }
   /// Up to this tick nothing changes if nobody comes.
   [[nodiscard]] std::int64_t still_until(const CompiledStudy& study, std::int64_t tick) const noexcept;
 
@@ -58,8 +64,9 @@ class Doors {
   void note_pass(const CompiledStudy& study, std::size_t door, std::int64_t tick);
   [[nodiscard]] bool is_clear(const DoorLeaf& leaf, std::size_t door, std::span<const DoorUser> users) const;
 
-  std::vector<LeafStep> steps_;  ///< (n_doors)
-  std::vector<Door> doors_;      ///< (n_doors)
+  std::vector<LeafStep> steps_;       ///< (n_doors)
+  std::vector<std::uint8_t> barred_;  ///< (n_doors) see DoorsSeen
+  std::vector<Door> doors_;           ///< (n_doors)
 };
 
 }  // namespace pirsim::sim

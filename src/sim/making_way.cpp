@@ -13,6 +13,7 @@ using body::Stage;
 using PersonSolidity = Presence::Solidity;
 
 constexpr double wish_reaches_m = 3.0;  ///< assumed: who stands farther along a wished way isn't concerned yet
+constexpr double place_reach_m = 3.0;   ///< farther away nobody goes to wait
 constexpr double aside_most_s = 10.0;   ///< assumed: nobody waits aside for longer (tried 5-20)
 constexpr double get_up_after_s = 3.0;  ///< assumed: who is held up for so long asks sitters to get up
 constexpr double ask_every_s = 1.0;     ///< how often it is found out who bars the way
@@ -95,20 +96,19 @@ void Pedestrian::ask_up(const Vec2& target, std::span<const Presence> others, st
   asks_up_ = std::make_shared<const std::vector<std::uint32_t>>(std::move(asked));
 }
 
-std::optional<Vec2> Pedestrian::passing_place(const Presence& whom, std::span<const Presence> others,
-                                              double reach_m) const {
+template <class Accepts>
+std::optional<Vec2> Pedestrian::nearest_place(std::span<const Presence> others, const Accepts& accepts) const {
   constexpr int n_directions = 16;
-  constexpr double step_m = 0.15, farthest_m = 3.0;
-  const double keep_m = radius_m() + whom.room.radius_m + 0.5 * gap_m;
+  constexpr double step_m = 0.15;
   std::vector<body::Disc> discs;
   for (const Presence& other : others) {
     if (is_solid(other)) append_discs(other.room, 0.0, discs);
   }
-  for (double away = step_m; away <= farthest_m; away += step_m) {
+  for (double away = step_m; away <= place_reach_m; away += step_m) {
     for (int k = 0; k < n_directions; ++k) {
       const Vec2 place = motion_.position() + away * direction_of(2.0 * pi * k / n_directions);
       if (!person_->floor->walkable(place, place, discs)) continue;
-      if (distance_to_way(place, *whom.wished_way, reach_m + farthest_m) < keep_m) continue;
+      if (!accepts(place)) continue;
       if (person_->floor->walkable(motion_.position(), place, discs) ||
           person_->floor->find_way(motion_.position(), place, discs)) {
         return place;
@@ -116,6 +116,14 @@ std::optional<Vec2> Pedestrian::passing_place(const Presence& whom, std::span<co
     }
   }
   return std::nullopt;
+}
+
+std::optional<Vec2> Pedestrian::passing_place(const Presence& whom, std::span<const Presence> others,
+                                              double reach_m) const {
+  const double keep_m = radius_m() + whom.room.radius_m + 0.5 * gap_m;
+  return nearest_place(others, [&](const Vec2& place) {
+    return distance_to_way(place, *whom.wished_way, reach_m + place_reach_m) >= keep_m;
+  });
 }
 
 /// Once whom they got up for is past their seat, has sat down or has gone, and so has everybody else who got up and
@@ -153,17 +161,20 @@ bool Pedestrian::gets_up(std::span<const Presence> others, std::int64_t now) {
   return true;
 }
 
-bool Pedestrian::makes_way_among(std::span<const Presence> others, std::int64_t now, Sitter sitter) {
-  if (aside_) return waits_aside(others, now);
+bool Pedestrian::makes_way_among(std::span<const Presence> others, const DoorsSeen& doors, std::int64_t now,
+                                 Sitter sitter) {
+  if (aside_) return waits_aside(others, doors, now);
   if (motion_.stage() == Stage::seated) {
     return sitter == Sitter::may_get_up && solidity_ == PersonSolidity::solid && gets_up(others, now);
   }
-  return steps_aside(others, now);
+  return steps_back(others, doors, now) || steps_aside(others, now);
 }
 
-bool Pedestrian::waits_aside(std::span<const Presence> others, std::int64_t now) {
+bool Pedestrian::waits_aside(std::span<const Presence> others, const DoorsSeen& doors, std::int64_t now) {
   const bool got_up = aside_->way != nullptr;
-  const bool free = got_up ? can_go_back(*aside_, others, now) : is_past(*aside_, others);
+  const bool free = aside_->door ? doors.leaves[*aside_->door].distance_to_sweep_m(motion_.position()) >= Doors::hold_m
+                    : got_up     ? can_go_back(*aside_, others, now)
+                                 : is_past(*aside_, others);
   if (now >= aside_->until || free) {
     aside_.reset();
     forget_way();
@@ -206,6 +217,32 @@ bool Pedestrian::steps_aside(std::span<const Presence> others, std::int64_t now)
   if (motion_.stage() == Stage::walking) motion_.stop();
   forget_way();
   return true;
+}
+
+/// To wait for the leaf, on the side on which they are; among others who can make way if there is no better one.
+std::optional<Vec2> Pedestrian::place_before(const DoorLeaf& leaf, std::span<const Presence> others) const {
+  const auto is_before = [&](const Vec2& place) {
+    return leaf.distance_to_sweep_m(place) > Doors::hold_m && leaf.on_one_side(motion_.position(), place);
+  };
+  const auto place = nearest_place(others, is_before);
+  return place ? place : nearest_place({}, is_before);
+}
+
+/// Out of what a leaf sweeps that somebody wants to open, maybe themselves. Who walks there is gone in a moment.
+bool Pedestrian::steps_back(std::span<const Presence> others, const DoorsSeen& doors, std::int64_t now) {
+  if (!on_feet() || motion_.stage() == Stage::turning || motion_.speed_m_s() > 0.0) return false;
+  if (now % ticks(search_every_s) != 0) return false;
+  for (std::size_t i = 0; i < doors.leaves.size(); ++i) {
+    const DoorLeaf& leaf = doors.leaves[i];
+    if (doors.barred[i] == 0 || leaf.distance_to_sweep_m(motion_.position()) >= Doors::clear_m) continue;
+    const auto place = place_before(leaf, others);
+    if (!place) continue;
+    aside_ = Aside{*place, {held_up_since_.value_or(now), index_}, index_, now + ticks(aside_most_s), nullptr, i};
+    if (motion_.stage() == Stage::walking) motion_.stop();
+    forget_way();
+    return true;
+  }
+  return false;
 }
 
 /// While somebody squeezes past, or wants to, a sitter leans forward instead of back.

@@ -40,8 +40,8 @@ class Pedestrian {
   /// Of whoever sits: has their script something left to do, so that they would come back to their seat?
   enum class Sitter { stays, may_get_up };
   /// Makes way for others if need be; true while that is what the body does, so that commands have to wait.
-  bool makes_way(std::span<const Presence> others, std::int64_t now, Sitter sitter) {
-    return (aside_ || !others.empty()) && makes_way_among(others, now, sitter);
+  bool makes_way(std::span<const Presence> others, const DoorsSeen& doors, std::int64_t now, Sitter sitter) {
+    return (aside_ || !others.empty() || !doors.leaves.empty()) && makes_way_among(others, doors, now, sitter);
   }
   /// For somebody, and hasn't sat down again.
   [[nodiscard]] bool got_up() const noexcept { return got_up_from_ && motion_.stage() != body::Stage::seated; }
@@ -73,7 +73,7 @@ class Pedestrian {
 
  private:
   using Way = std::vector<Vec2>;
-  bool makes_way_among(std::span<const Presence> others, std::int64_t now, Sitter sitter);
+  bool makes_way_among(std::span<const Presence> others, const DoorsSeen& doors, std::int64_t now, Sitter sitter);
 
   static constexpr double gap_m = 0.1;              ///< assumed: kept between two people on foot beside their radii
   static constexpr double squeeze_gap_m = 0.03;     ///< assumed: between trunks that squeeze past (tried 0.02, 0.03)
@@ -82,10 +82,11 @@ class Pedestrian {
 
   struct Aside {
     Vec2 place{0.0};
-    Precedence precedence;                ///< inherited
-    std::uint32_t whom = 0;               ///< way is made for
-    std::int64_t until = 0;               ///< tick
-    std::shared_ptr<const Way> way = {};  ///< theirs, if a sitter got up for them
+    Precedence precedence;                 ///< inherited
+    std::uint32_t whom = 0;                ///< way is made for
+    std::int64_t until = 0;                ///< tick
+    std::shared_ptr<const Way> way = {};   ///< theirs, if a sitter got up for them
+    std::optional<std::size_t> door = {};  ///< way is made for its leaf
   };
 
   [[nodiscard]] std::int64_t ticks(double seconds) const noexcept;
@@ -111,12 +112,17 @@ class Pedestrian {
   /// Also notes which door they want to go through.
   [[nodiscard]] double free_way_to_doors(const DoorsSeen& doors);
   [[nodiscard]] bool must_give_way(std::span<const Presence> others) const;
+  /// Near by: accepted, walkable among others, and so is a way there.
+  template <class Accepts>
+  [[nodiscard]] std::optional<Vec2> nearest_place(std::span<const Presence> others, const Accepts& accepts) const;
   [[nodiscard]] std::optional<Vec2> passing_place(const Presence& whom, std::span<const Presence> others,
                                                   double reach_m) const;
   [[nodiscard]] bool can_go_back(const Aside& aside, std::span<const Presence> others, std::int64_t now) const;
   [[nodiscard]] bool is_past(const Aside& aside, std::span<const Presence> others) const;
-  bool waits_aside(std::span<const Presence> others, std::int64_t now);
+  bool waits_aside(std::span<const Presence> others, const DoorsSeen& doors, std::int64_t now);
   bool steps_aside(std::span<const Presence> others, std::int64_t now);
+  [[nodiscard]] std::optional<Vec2> place_before(const DoorLeaf& leaf, std::span<const Presence> others) const;
+  bool steps_back(std::span<const Presence> others, const DoorsSeen& doors, std::int64_t now);
   bool gets_up(std::span<const Presence> others, std::int64_t now);
   [[nodiscard]] bool bars(const Presence& other, const Vec2& from, const Vec2& to) const;
   void ask_up(const Vec2& target, std::span<const Presence> others, std::int64_t now);

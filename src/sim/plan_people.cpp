@@ -367,11 +367,12 @@ std::vector<TrialModel> plan_among_solids(const CompiledStudy& study, const std:
 
 /// The open leaf as walkers go round it.
 TriMesh leaf_with_room(const DoorLeaf& leaf) {
-  constexpr double room_m = 0.06;  // assumed: so far arms swing beyond what walkers keep clear (0.04-0.08)
+  constexpr double room_m = 0.08;  // assumed: so far arms swing beyond what walkers keep clear (0.04-0.08)
   TriMesh mesh = leaf.open_mesh();
   const Frame frame = leaf.frame_at(leaf.open_step()), leaf_from_world = inverse(frame);
   for (Vec3& corner : mesh.positions) {
     Vec3 local = leaf_from_world * corner;
+    local.x += local.x < 0.0 ? -room_m : room_m;  // at its end; at the hinge into the wall
     local.z += local.z < 0.0 ? -room_m : room_m;
     corner = frame * local;
   }
