@@ -10,6 +10,7 @@
 #include "pirsim/response.hpp"
 #include "schema/areas.hpp"
 #include "schema/occupancy_runs.hpp"
+#include "schema/words.hpp"
 #include "sim/compiled_study.hpp"
 #include "studies/home_outlook.hpp"
 #include "studies/room_plan.hpp"
@@ -160,6 +161,30 @@ void print_areas(std::ostream& out, const SceneSpec& scene) {
     out << "       of no area: " << (astray.size() == 1 ? "sensor " : "sensors ") << named(astray, 0) << '\n';
 }
 
+std::string habit_in_words(const DoorSpec& door) {
+  if (door.state == DoorState::open) return "always open";
+  if (door.state == DoorState::shut) return "shut behind whoever goes through";
+  return "shut after " + fixed(100.0 * door.shut_share, 0) + " % of passes, else open for " +
+         fixed(door.stands_open_s, 0) + " s";
+}
+
+/// What a leaf hides and to where it turns depends on all of this; where it leads is known by areas.
+void print_doors(std::ostream& out, const SceneSpec& scene) {
+  constexpr double away_m = 0.4;  // assumed: beyond a thick wall (0.3-0.6)
+  const Areas areas(scene);
+  const auto beside = [&](const DoorSpec& door, double ahead_m) {
+    const Vec2 at = floor_point(door.world_from_door * Vec3(0, 0, -ahead_m));
+    return scene.floor.contains(at) ? std::string(areas.name_at(at)) : "outside";
+  };
+  for (std::size_t i = 0; i < scene.doors.size(); ++i) {
+    const DoorSpec& door = scene.doors[i];
+    out << (i == 0 ? "doors: " : "       ") << door.id << ' ' << fixed(door.width_m, 2) << " x "
+        << fixed(door.height_m, 2) << " m, ";
+    if (!areas.empty()) out << "from " << beside(door, -away_m) << " to " << beside(door, away_m) << ", ";
+    out << "hinge " << word_of(door.hinge) << ", opens " << word_of(door.opens) << ", " << habit_in_words(door) << '\n';
+  }
+}
+
 /// Rows of 0.1 were those of zones: who runs an older script should know that its rows are others now.
 void print_response(std::ostream& out, const Model& model) {
   const SceneSpec& scene = model.scene();
@@ -183,11 +208,15 @@ void print_study(std::ostream& out, const Model& model, const CheckReport& repor
   out << scene.name << ": " << counted(scene.meshes.size(), "mesh", "meshes") << ", "
       << counted(scene.sensors.size(), "sensor") << ", " << counted(scene.seats.size(), "seat") << ", "
       << (scene.places.empty() ? "" : counted(scene.places.size(), "place") + ", ")
-      << counted(scene.entrances.size(), "entrance") << ", floor " << fixed(scene.floor.area_m2(), 2) << " m2\n";
+      << counted(scene.entrances.size(), "entrance")
+      << (scene.doors.empty() ? "" : ", " + counted(scene.doors.size(), "door")) << ", floor "
+      << fixed(scene.floor.area_m2(), 2) << " m2
+";
   out << script.name << ": " << counted(script.trials.size(), "trial") << " x "
       << counted(static_cast<std::size_t>(script.replicates), "replicate") << " = " << counted(model.n_runs(), "run")
       << '\n';
   print_areas(out, model.scene());
+  print_doors(out, model.scene());
   print_response(out, model);
   out << '\n';
   if (!script.trials.empty() && script.trials.front().schedule) {

@@ -16,6 +16,7 @@
 #include "io/write/gltf_writer.hpp"
 #include "pirsim/error.hpp"
 #include "rt/renderer.hpp"
+#include "schema/door_leaf.hpp"
 #include "sim/compiled_study.hpp"
 #include "sim/run_state.hpp"
 #include "sim/solids.hpp"
@@ -169,7 +170,7 @@ void mark_seats(const SceneSpec& scene, Marks& marks) {
   }
 }
 
-/// The threshold, and the way in.
+/// The threshold, and the way in; what a leaf sweeps.
 void mark_doors(const SceneSpec& scene, Marks& marks) {
   constexpr double way_m = 0.5, above_m = 0.02;
   for (const EntranceSpec& door : scene.entrances) {
@@ -179,6 +180,12 @@ void mark_doors(const SceneSpec& scene, Marks& marks) {
     marks.labels.push_back({at(0.0, 0.0), door.id, door_colour});
   }
   for (const DoorSpec& door : scene.doors) {
+    const std::vector<Vec2> sweep = DoorLeaf(door, 1.0).sweep();
+    const double y = door.world_from_door.origin.y + above_m;
+    for (std::size_t i = 0; i < sweep.size(); ++i) {
+      const Vec2 from = sweep[i], to = sweep[(i + 1) % sweep.size()];
+      marks.lines.push_back({Vec3(from.x, y, from.y), Vec3(to.x, y, to.y), door_colour});
+    }
     const Vec3 above = door.world_from_door * Vec3(0.0, door.height_m + 0.1, 0.0);
     marks.labels.push_back({above, door.id, door_colour});
   }

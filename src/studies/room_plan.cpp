@@ -10,6 +10,7 @@
 #include "geom/floor_distance.hpp"
 #include "geom/mesh_section.hpp"
 #include "pirsim/geometry.hpp"
+#include "schema/door_leaf.hpp"
 
 namespace pirsim::studies {
 namespace {
@@ -119,7 +120,11 @@ io::RoomPlan plan_of(const SceneSpec& scene) {
     const auto jamb = [&](double side) {
       return floor_point(door.world_from_entrance * Vec3(0.5 * side * door.width_m, 0.0, 0.0));
     };
-    plan.doors.push_back({door.id, jamb(-1.0), jamb(1.0)});
+    plan.doors.push_back({door.id, jamb(-1.0), jamb(1.0), {}});
+  }
+  for (const DoorSpec& door : scene.doors) {
+    std::vector<Vec2> sweep = DoorLeaf(door, 1.0).sweep();
+    plan.doors.push_back({door.id, sweep[0], sweep[1], std::move(sweep)});
   }
   for (const AreaSpec& area : scene.areas)
     plan.areas.push_back({area.id, roomiest_point(area.outline), area.outline.loops()});

@@ -74,10 +74,13 @@ Json to_json(const MapChart& chart) {
         {{"label", area.label}, {"x", area.middle.x}, {"z", area.middle.y}, {"loops", polygons(area.loops)}});
   }
   json["doors"] = Json::array();
+  std::vector<std::vector<Vec2>> sweeps;
   for (const RoomPlan::Door& door : chart.plan.doors) {
     json["doors"].push_back(
         {{"label", door.label}, {"x", door.from.x}, {"z", door.from.y}, {"x2", door.to.x}, {"z2", door.to.y}});
+    if (!door.sweep.empty()) sweeps.push_back(door.sweep);
   }
+  json["sweeps"] = polygons(sweeps);
   return json;
 }
 

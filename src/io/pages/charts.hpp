@@ -21,6 +21,7 @@ struct RoomPlan {
   struct Door {
     std::string label;
     Vec2 from{0.0}, to{0.0};  ///< its jambs
+    std::vector<Vec2> sweep;  ///< closed polygon: of its leaf, if it has one
   };
   struct Area {
     std::string label;

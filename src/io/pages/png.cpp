@@ -97,6 +97,7 @@ class MapPicture {
     for (const RoomPlan::Door& door : chart_.plan.doors) {
       for (const double aside : {-1.5, 1.5})
         line(pixel_of(door.from) + aside, pixel_of(door.to) + aside, door_green, no_dashes);
+      polygon(door.sweep, door_green, no_dashes);
     }
     for (const MapChart::Marker& at : chart_.plan.seats) seat(pixel_of(at.point), at.heading);
     for (const auto& loop : chart_.dashed) polygon(loop, white, long_dashes);

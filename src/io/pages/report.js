@@ -106,7 +106,8 @@
         { name: "areas", values: points(chart.areas.flatMap(({ loops }) => loops)) },
         { name: "furniture", values: points(chart.furniture) }, { name: "dashed", values: points(chart.dashed) },
         { name: "markers", values: chart.markers }, { name: "seats", values: chart.seats },
-        { name: "placed", values: names(chart, toPixels, inner, height) }, { name: "doors", values: chart.doors }, ...wall.data],
+        { name: "placed", values: names(chart, toPixels, inner, height) }, { name: "doors", values: chart.doors },
+        { name: "sweeps", values: points(chart.sweeps) }, ...wall.data],
       scales: [
         { name: "x", type: "linear", domain: [chart.x0, x1], range: "width", nice: false, zero: false },
         { name: "z", type: "linear", domain: [chart.z0, z1], range: [0, height], nice: false, zero: false },
@@ -125,6 +126,7 @@
         outline("areas", "#ffffff", [1, 0]), outline("areas", "#823caa", [6, 4]),
         outline("furniture", "#000000", [1, 0]), outline("furniture", "#ffffff", [3, 3]), ...wall.marks,
         outline("outline", css("--text"), [1, 0]), outline("dashed", "#ffffff", [6, 4]),
+        outline("sweeps", "#2da44e", [1, 0]),
         { type: "rule", from: { data: "doors" }, encode: { enter: Object.assign({ x2: { scale: "x", field: "x2" },
           y2: { scale: "z", field: "z2" }, stroke: { value: "#2da44e" }, strokeWidth: { value: 5 },
           tooltip: { signal: "'door ' + datum.label" } }, at) } },
