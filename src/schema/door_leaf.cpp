@@ -18,6 +18,14 @@ DoorLeaf::DoorLeaf(const DoorSpec& door, double tick_s) : door_(door) {
   constexpr double most_steps = 60000.0;
   open_step_ = static_cast<LeafStep>(std::clamp(std::round(door.turn_s / tick_s), 1.0, most_steps));
   if (door.state == DoorState::open) rest_step_ = open_step_;
+  // Walkers ask for distances at every step of their way.
+  const double to_end = door.hinge == DoorHinge::left ? 1.0 : -1.0,
+               to_side = door.opens == DoorOpens::inward ? -1.0 : 1.0;
+  const auto on_floor = [&](const Vec3& local) { return floor_point(door.world_from_door * local); };
+  hinge_ = on_floor({-0.5 * to_end * door.width_m, 0.0, 0.0});
+  along_ = on_floor({to_end, 0.0, 0.0}) - threshold();
+  inward_ = on_floor({0.0, 0.0, to_side}) - threshold();
+  open_end_ = door.width_m * Vec2(std::cos(angle(open_step_)), std::sin(angle(open_step_)));
 }
 
 double DoorLeaf::angle(LeafStep step) const noexcept { return radians(door_.open_deg) * step / open_step_; }
@@ -68,18 +76,15 @@ TriMesh DoorLeaf::open_mesh() const {
 }
 
 Vec2 DoorLeaf::from_hinge(const Vec2& point) const noexcept {
-  const Frame& frame = door_.world_from_door;
-  const Vec3 local = inverse(frame) * Vec3(point.x, frame.origin.y, point.y);
-  return {0.5 * door_.width_m + (door_.hinge == DoorHinge::left ? local.x : -local.x),
-          door_.opens == DoorOpens::inward ? -local.z : local.z};
+  return {glm::dot(point - hinge_, along_), glm::dot(point - hinge_, inward_)};
 }
 
 double DoorLeaf::distance_to_sweep_m(const Vec2& point) const noexcept {
   const Vec2 p = from_hinge(point);
-  const double turned = std::atan2(p.y, p.x), open = angle(open_step_);
-  if (turned >= 0.0 && turned <= open) return std::max(0.0, glm::length(p) - door_.width_m);
-  const Vec2 shut_end(door_.width_m, 0.0), open_end = door_.width_m * Vec2(std::cos(open), std::sin(open));
-  return std::max(0.0, std::min(to_segment_m(p, shut_end), to_segment_m(p, open_end)) - 0.5 * door_.thickness_m);
+  const bool is_within = p.y >= 0.0 && p.x * open_end_.y >= p.y * open_end_.x;  // between shut and open
+  if (is_within) return std::max(0.0, glm::length(p) - door_.width_m);
+  const double to_edges_m = std::min(to_segment_m(p, {door_.width_m, 0.0}), to_segment_m(p, open_end_));
+  return std::max(0.0, to_edges_m - 0.5 * door_.thickness_m);
 }
 
 double DoorLeaf::distance_to_leaf_m(const Vec2& point, LeafStep step) const noexcept {

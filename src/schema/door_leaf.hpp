@@ -51,6 +51,8 @@ class DoorLeaf {
   [[nodiscard]] Vec2 from_hinge(const Vec2& point) const noexcept;
 
   DoorSpec door_;
+  Vec2 hinge_{0.0}, along_{0.0}, inward_{0.0};  ///< on the floor; directions of the shut leaf and of its first way
+  Vec2 open_end_{0.0};                          ///< of the leaf, from the hinge
   LeafStep open_step_ = 1, rest_step_ = 0;
 };
 

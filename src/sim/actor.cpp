@@ -100,13 +100,12 @@ DoorUser Actor::door_user(const FloorArea& floor, const Vec2& before) const {
   DoorUser user;
   user.before = before;
   user.now = user.knees = motion().position();
-  const bool on_feet = body_->presence().posture == Presence::Posture::on_feet;
-  if (!on_feet) user.knees += knees_m * direction_of(motion().heading());
+  if (!body_->on_feet()) user.knees += knees_m * direction_of(motion().heading());
   constexpr double slow_m_s = 0.05;
   if (motion().speed_m_s() > slow_m_s) user.gait = DoorUser::Gait::walks;
   if (facts_.follows != nullptr) user.gait = DoorUser::Gait::led;
-  if (!floor.contains(user.now)) user.place = DoorUser::Place::doorway;
   user.wants = body_->wanted_door();
+  if (user.wants && !floor.contains(user.now)) user.place = DoorUser::Place::doorway;
   return user;
 }
 

@@ -1,5 +1,6 @@
 // How a pedestrian comes up to doors: they wait before what a leaf sweeps until it is open.
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -19,7 +20,8 @@ Pedestrian::WayToDoor Pedestrian::way_to_door(const DoorsSeen& doors, std::size_
   const DoorLeaf& leaf = doors.leaves[door];
   const LeafStep step = doors.steps[door];
   const double farthest_m = look_ahead_m + leaf.reach_m() + Doors::hold_m;
-  if (glm::distance(motion_.position(), leaf.threshold()) > farthest_m + leaf.reach_m())
+  const bool is_always_open = leaf.rest_step() == leaf.open_step();
+  if (is_always_open || glm::distance(motion_.position(), leaf.threshold()) > farthest_m + leaf.reach_m())
     return {unlimited_m, std::nullopt};
   constexpr double rounding_m = 1e-3;
   const double away_m = leaf.distance_to_sweep_m(motion_.position());
@@ -27,9 +29,16 @@ Pedestrian::WayToDoor Pedestrian::way_to_door(const DoorsSeen& doors, std::size_
   bool leads_through = false;
   double enters_m = farthest_m, through_m = farthest_m;
   Vec2 here = route_->position(walked_m_);
-  for (double ahead_m = 0.0; ahead_m < farthest_m && !leads_through; ahead_m += step_m) {
-    const bool is_outside = leaf.distance_to_sweep_m(here) >= keep_m;
+  const double end_m = std::min(farthest_m, route_->length_m() - walked_m_ + step_m);
+  for (double ahead_m = 0.0; ahead_m < end_m && !leads_through; ahead_m += step_m) {
+    const double off_m = leaf.distance_to_sweep_m(here);
+    const bool is_outside = off_m >= keep_m;
     if (is_outside && enters_m < farthest_m) break;  // past it
+    if (off_m > keep_m + 2.0 * step_m) {             // comes no nearer than this on a way so long
+      ahead_m += step_m * (std::floor((off_m - keep_m) / step_m) - 1.0);
+      here = route_->position(walked_m_ + ahead_m + step_m);
+      continue;
+    }
     if (!is_outside) enters_m = std::min(enters_m, std::max(0.0, ahead_m - step_m));
     const Vec2 next = route_->position(walked_m_ + ahead_m + step_m);
     leads_through = leaf.leads_through(here, next);

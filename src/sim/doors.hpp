@@ -24,8 +24,8 @@ struct DoorUser {
   Vec2 before{0.0}, now{0.0};                                  ///< at the last tick and at this one
   Vec2 knees{0.0};                                             ///< of who sits; `now` of others
   enum class Gait { stands, walks, led } gait = Gait::stands;  ///< led: along a way that is given, through anything
-  enum class Place { floor, doorway } place = Place::floor;
-  std::optional<std::size_t> wants;  ///< door that they wait for, or go through next
+  std::optional<std::size_t> wants;                            ///< door that they wait for, or go through next
+  enum class Place { floor, doorway } place = Place::floor;    ///< of who wants one
 };
 
 /// A value. A leaf turns while nobody is in its way, so it pushes nobody; who wants to go through waits before what it

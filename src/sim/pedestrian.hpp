@@ -43,6 +43,7 @@ class Pedestrian {
   bool makes_way(std::span<const Presence> others, const DoorsSeen& doors, std::int64_t now, Sitter sitter) {
     return (aside_ || !others.empty() || !doors.leaves.empty()) && makes_way_among(others, doors, now, sitter);
   }
+  [[nodiscard]] bool on_feet() const noexcept;
   /// For somebody, and hasn't sat down again.
   [[nodiscard]] bool got_up() const noexcept { return got_up_from_ && motion_.stage() != body::Stage::seated; }
   /// Rises if need be, then walks. Throws Error(infeasible) if there is no way even without others.
@@ -100,7 +101,6 @@ class Pedestrian {
     return width_ == Width::narrow ? other.trunk : other.room;
   }
   [[nodiscard]] double gap_to(const Presence& other) const noexcept;
-  [[nodiscard]] bool on_feet() const noexcept;
   [[nodiscard]] bool free_to_draw_back(const Vec2& to, std::span<const Presence> others) const;
   [[nodiscard]] std::optional<std::vector<Vec2>> way_among(const Vec2& target, std::span<const Presence> others) const;
   [[nodiscard]] double free_way_ahead(std::span<const Presence> others) const;
