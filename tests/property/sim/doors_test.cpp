@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "pirsim/look.hpp"
 #include "pirsim/state.hpp"
 #include "schema/words.hpp"
 #include "sim/run_state.hpp"
@@ -300,4 +301,42 @@ TEST_CASE("windows that are passed over because nobody is there know their doors
   for (std::size_t i = 0; i < rows.size(); ++i) CHECK(rows[i].doors.at(0) == open[i]);
   CHECK(std::ranges::count(open, 1) > 40);
   CHECK(open.back() == 0);
+}
+
+TEST_CASE("check lists doors beside areas, with what their leaves do; a scene without doors has no such line") {
+  const auto told = [](std::vector<DoorSpec> doors) {
+    SceneSpec scene = two_rooms(std::move(doors));
+    scene.areas = {{"west", FloorArea({{{0, -2}, {3, -2}, {3, 2}, {0, 2}}}, 0.0)},
+                   {"east", FloorArea({{{3, -2}, {6, -2}, {6, 2}, {3, 2}}}, 0.0)}};
+    return check_study(compile(scene, script_of({walker("W", 1.0, 1, 0.0)}))).text;
+  };
+  CHECK(told({}).find("door") == std::string::npos);
+  DoorSpec front = front_door(DoorState::habit);
+  front.hinge = DoorHinge::right;
+  const std::string text = told({front, inner_door(DoorState::open)});
+  INFO(text);
+  CHECK(text.find("1 entrance, 2 doors, floor 24.00 m2") != std::string::npos);
+  CHECK(text.find("doors: front 0.90 x 2.00 m, from outside to west, hinge right, opens inward, "
+                  "shut after 80 % of passes, else open for 300 s\n"
+                  "       inner 0.90 x 2.00 m, from west to east, hinge left, opens inward, always open\n") !=
+        std::string::npos);
+}
+
+TEST_CASE("what a leaf sweeps is drawn where it turns") {
+  for (const DoorHinge hinge : {DoorHinge::left, DoorHinge::right}) {
+    for (const DoorOpens opens : {DoorOpens::inward, DoorOpens::outward}) {
+      DoorSpec door = inner_door(DoorState::shut);
+      door.hinge = hinge;
+      door.opens = opens;
+      const DoorLeaf leaf(two_rooms({door}).doors.front(), 0.1);
+      const std::vector<Vec2> sweep = leaf.sweep();
+      REQUIRE(sweep.size() > 10);
+      CHECK(leaf.distance_to_leaf_m(sweep.front(), 0) < 1e-9);
+      CHECK(leaf.distance_to_leaf_m(sweep.front(), leaf.open_step()) < 1e-9);
+      CHECK(leaf.distance_to_leaf_m(sweep[1], 0) < 1e-9);
+      CHECK(leaf.distance_to_leaf_m(sweep.back(), leaf.open_step()) < 1e-9);
+      CHECK(sweep.back().x == Approx(opens == DoorOpens::inward ? 3.9 : 2.1));
+      for (std::size_t i = 1; i < sweep.size(); ++i) CHECK(glm::distance(sweep[i], sweep[0]) == Approx(0.9));
+    }
+  }
 }
