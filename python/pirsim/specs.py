@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Action", "Activity", "Amplifier", "Appear", "Area", "Clock", "Cluster", "Comparator", "Counts", "Detector",
-    "Diagnostic", "Effect", "Element", "Enter", "Entrance", "Floor", "Follow", "Frame", "HeldMeeting", "Household",
-    "InputFile", "Leave", "Lie", "Meetings", "Mesh", "Occupancy", "Optics", "Person", "Place", "Places", "Point2",
-    "Point3", "Positions", "Profile", "Resident", "Rise", "Scene", "Schedule", "Script", "Seat", "SeatScatter",
-    "Sensing", "Sensor", "SensorModel", "Sit", "Staff", "Stand", "Stay", "Summary", "Track", "Trial", "Turn", "Wait",
-    "Walk", "Warmth", "Where", "Work", "Zone",
+    "Diagnostic", "Door", "Effect", "Element", "Enter", "Entrance", "Floor", "Follow", "Frame", "HeldMeeting",
+    "Household", "InputFile", "Leave", "Lie", "Meetings", "Mesh", "Occupancy", "Optics", "Person", "Place", "Places",
+    "Point2", "Point3", "Positions", "Profile", "Resident", "Rise", "Scene", "Schedule", "Script", "Seat",
+    "SeatScatter", "Sensing", "Sensor", "SensorModel", "Sit", "Staff", "Stand", "Stay", "Summary", "Track", "Trial",
+    "Turn", "Wait", "Walk", "Warmth", "Where", "Work", "Zone",
 ]
 
 
@@ -99,6 +99,34 @@ class Entrance:
     """Of the opening."""
     outside_m: float = 1.5
     """How far behind it people wait."""
+
+
+@dataclass(slots=True)
+class Door:
+    """A door with a leaf: the origin is the middle of the threshold, -Z leads through the opening."""
+
+    id: str = ""
+    world_from_door: Frame = field(default_factory=Frame)
+    width_m: float = 0.8
+    """Of the leaf."""
+    height_m: float = 2.0
+    """Of the leaf."""
+    thickness_m: float = 0.04
+    """Of the leaf."""
+    hinge: Literal["left", "right"] = "left"
+    """At which side whoever goes through along -Z sees it: `left` or `right`."""
+    opens: Literal["inward", "outward"] = "inward"
+    """To which side: `inward`, where -Z points, or `outward`."""
+    open_deg: float = 90.0
+    """How far the leaf turns."""
+    turn_s: float = 1.0
+    """How long that takes."""
+    state: Literal["open", "shut", "habit"] = "habit"
+    """As people leave it: `open`, `shut`, or by `habit`."""
+    shut_share: float = 0.8
+    """By habit: share of passes after which it is shut at once."""
+    stands_open_s: float = 300.0
+    """By habit: how long it stands open after the others."""
 
 
 @dataclass(slots=True)
@@ -238,6 +266,7 @@ class Scene:
     places: list[Place] = field(default_factory=list)
     """To lie and to stand."""
     entrances: list[Entrance] = field(default_factory=list)
+    doors: list[Door] = field(default_factory=list)
     floor: Floor = field(default_factory=Floor)
     areas: list[Area] = field(default_factory=list)
     """Apart from each other, in the order of the output's columns."""

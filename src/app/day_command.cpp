@@ -62,7 +62,8 @@ std::string given_or(const std::string& text, const char* otherwise) { return te
 
 std::string office_lines(const DayOptions& options) {
   std::ostringstream text;
-  text << "  from: " << given_or(options.from, "00:00") << "                          # the part of each day that is simulated\n"
+  text << "  from: " << given_or(options.from, "00:00")
+       << "                          # the part of each day that is simulated\n"
        << "  to: " << given_or(options.to, "24:00") << '\n';
   if (options.staff > 0) text << replaced(staff_lines, "@staff@", std::to_string(options.staff));
   if (options.meetings == DayOptions::Meetings::held) text << meeting_lines;
@@ -88,7 +89,11 @@ std::string script_text(const DayOptions& options) {
   std::ostringstream text;
   text << "# Ordinary days. Each replicate is a day, from first_day on"
        << (is_home ? ".\n" : "; nobody comes on Saturdays and Sundays.\n") << "pirsim_script: 1\n"
-       << "name: " << (is_home ? "days at home" : options.staff > 0 ? "office days" : "meeting days") << '\n'
+       << "name: "
+       << (is_home             ? "days at home"
+           : options.staff > 0 ? "office days"
+                               : "meeting days")
+       << '\n'
        << "seed: 1\n"
        << "replicates: " << options.days << '\n'
        << "schedule:\n"

@@ -112,8 +112,8 @@ void add_preview_command(CLI::App& app) {
   command.add_option("--height", options->picture.height, "pixels (default: 720)")
       ->option_text("N")
       ->check(CLI::Range(16, 4320));
-  on_call(command, inputs, [options](const Inputs& given) { preview(given, *options); },
-          Needs::scene);
+  on_call(
+      command, inputs, [options](const Inputs& given) { preview(given, *options); }, Needs::scene);
 }
 
 }  // namespace pirsim::app

@@ -272,11 +272,11 @@ studies::Summary make_summary(const Model& model, const RunOptions& options) {
 /// A log is of days that follow each other.
 void require_one_clock(const Model& model) {
   const std::vector<TrialSpec>& trials = model.script().trials;
-  if (trials.size() == 1 && (trials.front().schedule || model.n_runs() == 1) &&
-      model.compiled().trials().front().clock)
+  if (trials.size() == 1 && (trials.front().schedule || model.n_runs() == 1) && model.compiled().trials().front().clock)
     return;
-  throw Error(ErrorCode::usage,
-              "--casas: a log has a date and a time on each line: it takes days of a schedule, or one run with `begin`");
+  throw Error(
+      ErrorCode::usage,
+      "--casas: a log has a date and a time on each line: it takes days of a schedule, or one run with `begin`");
 }
 
 /// What is recorded at every tick is in memory until its run ends.

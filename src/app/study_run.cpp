@@ -115,7 +115,8 @@ void tell_what_is_written(const RunOptions& options, const TableOutput& rows, st
     add(options.rows.output);
     text += ": " + std::to_string(rows.rows()) + " rows";
   }
-  for (const auto& file : {options.summary, options.report, options.zones, options.trace, options.occupants, options.casas})
+  for (const auto& file :
+       {options.summary, options.report, options.zones, options.trace, options.occupants, options.casas})
     add(file);
   if (!text.empty()) std::cerr << text << '\n';
 }

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "pirsim/study.hpp"
 #include "pirsim/script.hpp"
+#include "pirsim/study.hpp"
 
 namespace pirsim::dataset {
 

@@ -488,11 +488,9 @@ struct Fields<ResidentSpec> {
   static constexpr const char* name = "Resident";
   static constexpr const char* about = "Somebody who lives in a home.";
   static constexpr std::tuple all{
-      FIELD(id, "as `--occupants` names them"),
-      FIELD(occupation),
+      FIELD(id, "as `--occupants` names them"), FIELD(occupation),
       FIELD(age_years, NumberRange{.min = 16.0, .max = 110.0}, "how often they get up at night goes by it"),
-      FIELD(bed, "a place to lie; empty: one of the scene's for sleep that nobody has, in order"),
-      LABEL(where)};
+      FIELD(bed, "a place to lie; empty: one of the scene's for sleep that nobody has, in order"), LABEL(where)};
 };
 template <>
 struct Fields<HouseholdSpec> {
@@ -769,12 +767,12 @@ struct Fields<NuisanceSpec> {
 
 /// Specs that Python has classes of, each before those that it is a part of.
 using SpecsOfPython =
-    std::tuple<Where, InputFile, SensorSpec, SeatSpec, PlaceSpec, EntranceSpec, DoorSpec, OpticsSpec, ElementSpec, AmplifierSpec,
-               ComparatorSpec, DetectorSpec, ZoneSpec, ClusterSpec, SensorModelSpec, AreaSpec, SceneSpec, action::Wait,
-               action::Appear, action::Enter, action::Walk, action::Sit, action::Work, action::Rise, action::Leave,
-               action::Turn, action::Follow, action::Lie, action::Stand, SeatScatterSpec, WarmthSpec, PersonSpec,
-               ClockSpec, StaffSpec, HeldMeetingSpec, MeetingsSpec, ProfileSpec, ResidentSpec, HouseholdSpec, ScheduleSpec, CountsSpec, StaySpec,
-               PlacesSpec, TrackSpec, PositionsSpec, OccupancySpec, TrialSpec, SensingSpec, SummarySpec, EffectSpec,
-               ScriptSpec>;
+    std::tuple<Where, InputFile, SensorSpec, SeatSpec, PlaceSpec, EntranceSpec, DoorSpec, OpticsSpec, ElementSpec,
+               AmplifierSpec, ComparatorSpec, DetectorSpec, ZoneSpec, ClusterSpec, SensorModelSpec, AreaSpec, SceneSpec,
+               action::Wait, action::Appear, action::Enter, action::Walk, action::Sit, action::Work, action::Rise,
+               action::Leave, action::Turn, action::Follow, action::Lie, action::Stand, SeatScatterSpec, WarmthSpec,
+               PersonSpec, ClockSpec, StaffSpec, HeldMeetingSpec, MeetingsSpec, ProfileSpec, ResidentSpec,
+               HouseholdSpec, ScheduleSpec, CountsSpec, StaySpec, PlacesSpec, TrackSpec, PositionsSpec, OccupancySpec,
+               TrialSpec, SensingSpec, SummarySpec, EffectSpec, ScriptSpec>;
 
 }  // namespace pirsim

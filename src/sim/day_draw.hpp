@@ -14,8 +14,8 @@ namespace pirsim::sim {
 
 inline constexpr double minute_s = 60.0, hour_s = 3600.0;
 
-[[nodiscard]] double cut_normal(Stream& stream);                          ///< standard, cut at three
-[[nodiscard]] double around(Stream& stream, const ClockSpec& clock);      ///< seconds of the day
+[[nodiscard]] double cut_normal(Stream& stream);                      ///< standard, cut at three
+[[nodiscard]] double around(Stream& stream, const ClockSpec& clock);  ///< seconds of the day
 [[nodiscard]] double exponential(Stream& stream, double mean);
 
 /// The first four are those of the chain; lunch comes beside it.

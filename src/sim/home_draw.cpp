@@ -13,11 +13,11 @@ namespace {
 constexpr double home_day_ends_s = home_to_h * hour_s;
 
 // Assumed, with the range tried; the sums of a day are compared with the survey's in home_draw_test.
-constexpr double toilet_s = 4.0 * minute_s;                                             // 2 to 6 min
-constexpr double morning_wash_s = 20.0 * minute_s, evening_wash_s = 10.0 * minute_s;    // 10 to 30, 5 to 15
+constexpr double toilet_s = 4.0 * minute_s;                                              // 2 to 6 min
+constexpr double morning_wash_s = 20.0 * minute_s, evening_wash_s = 10.0 * minute_s;     // 10 to 30, 5 to 15
 constexpr double breakfast_s = 25.0 * minute_s, breakfast_cooking_s = 10.0 * minute_s;   // 10 to 30, 5 to 15
-constexpr double lunch_s = 55.0 * minute_s, dinner_s = 60.0 * minute_s;                 // 30 to 75
-constexpr double lunch_cooking_s = 45.0 * minute_s, dinner_cooking_s = 50.0 * minute_s; // 20 to 60
+constexpr double lunch_s = 55.0 * minute_s, dinner_s = 60.0 * minute_s;                  // 30 to 75
+constexpr double lunch_cooking_s = 45.0 * minute_s, dinner_cooking_s = 50.0 * minute_s;  // 20 to 60
 constexpr double shortest_pastime_s = 5.0 * minute_s;
 
 /// Of this mean, a third or three times as long in one of a hundred cases.
@@ -96,9 +96,9 @@ void go_out(StayLine& day, const HouseholdSpec& household, bool to_work, Stream&
     const double leaves_s = around(stream, household.leaves);
     return day.put(HomeActivity::away, leaves_s, std::max(leaves_s, around(stream, household.comes_home)));
   }
-  constexpr double goes_out = 0.85;                        // assumed (0.7-0.95): share of days
-  constexpr double first_h = 9.5, last_h = 17.5;           // assumed: when
-  constexpr double mean_s = 2.5 * hour_s;                  // shopping, exercise, company and ways. Ref: [Idescat2011]
+  constexpr double goes_out = 0.85;               // assumed (0.7-0.95): share of days
+  constexpr double first_h = 9.5, last_h = 17.5;  // assumed: when
+  constexpr double mean_s = 2.5 * hour_s;         // shopping, exercise, company and ways. Ref: [Idescat2011]
   const double share = stream.uniform(), when = stream.uniform(), length_s = about(stream, mean_s);
   const double from_s = (first_h + (last_h - first_h) * when) * hour_s;
   if (share < goes_out) day.put(HomeActivity::away, from_s, from_s + length_s);
@@ -179,7 +179,7 @@ void go_to_the_toilet(StayLine& day, const Nights& nights, double age_years, Str
 
 double night_visits(double age_years) {
   // Share of men and women who get up at all, averaged: 20-39, 40-59, 60 and older. Ref: [Soysal2023].
-  const double share = age_years < 40.0 ? 0.5 * (0.568 + 0.689)
+  const double share = age_years < 40.0   ? 0.5 * (0.568 + 0.689)
                        : age_years < 60.0 ? 0.5 * (0.702 + 0.743)
                                           : 0.5 * (0.827 + 0.847);
   return -std::log(1.0 - share);

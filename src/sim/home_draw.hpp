@@ -30,8 +30,8 @@ struct HomeDay {
   std::vector<Visit> visits;                     ///< at most one
 };
 
-/// A day, in days since 1970, that run `run` simulates. The same seed gives the same days, and one resident more changes
-/// nobody else's but for meals.
+/// A day, in days since 1970, that run `run` simulates. The same seed gives the same days, and one resident more
+/// changes nobody else's but for meals.
 [[nodiscard]] HomeDay draw_home_day(const HouseholdSpec& household, std::uint64_t seed, std::uint32_t run,
                                     std::int64_t day);
 

@@ -196,9 +196,9 @@ HomeManner manner_of(HomeActivity activity) {
 bool has_place_for(const SceneSpec& scene, HomeActivity activity) {
   const std::vector<std::string_view> uses = manner_of(activity).uses;
   return uses.empty() || std::ranges::any_of(spots_of(scene), [&](const Spot& spot) {
-    return (spot.uses.empty() && spot.posture == Posture::sit) ||
-           std::ranges::any_of(uses, [&](std::string_view use) { return is_for(spot, use); });
-  });
+           return (spot.uses.empty() && spot.posture == Posture::sit) ||
+                  std::ranges::any_of(uses, [&](std::string_view use) { return is_for(spot, use); });
+         });
 }
 
 DayPlan plan_home_day(const CompiledStudy& study, std::uint32_t run) { return HomeDayPlan(study, run).take(); }

@@ -168,8 +168,8 @@ class Day {
     }
   }
 
-  void take_part(ActionLine& line, const Meeting& meeting, const Attendance& who, const std::string& seat, double begin_s,
-                 const std::vector<std::string>& seats) const {
+  void take_part(ActionLine& line, const Meeting& meeting, const Attendance& who, const std::string& seat,
+                 double begin_s, const std::vector<std::string>& seats) const {
     const PersonModel& person = trial_.people[who.person];
     action::Work listen;
     listen.duration_s = until_next_s;

@@ -39,8 +39,8 @@ void print(std::ostream& out, const SightReport& report, const SceneSpec& scene)
   std::size_t width = std::string_view("any sensor").size();
   for (const SensorSight& sight : report.sensors) width = std::max(width, sight.sensor.size());
   const auto line = [&](const auto& sensor, const auto& rays, const auto& cut, const auto& longest, const auto& floor) {
-    out << "  " << std::left << std::setw(static_cast<int>(width)) << sensor << std::right << std::setw(6) << rays << std::setw(14) << cut
-        << std::setw(13) << longest << std::setw(10) << floor;
+    out << "  " << std::left << std::setw(static_cast<int>(width)) << sensor << std::right << std::setw(6) << rays
+        << std::setw(14) << cut << std::setw(13) << longest << std::setw(10) << floor;
   };
   out << "what each sensor sees of a person who stands on one of " << counted(report.places, "place") << " (every "
       << fixed(report.spacing_m, 2) << " m), or sits still (to be motion, the person has to move):\n";
@@ -210,9 +210,11 @@ void print_study(std::ostream& out, const Model& model, const CheckReport& repor
       << (scene.places.empty() ? "" : counted(scene.places.size(), "place") + ", ")
       << counted(scene.entrances.size(), "entrance")
       << (scene.doors.empty() ? "" : ", " + counted(scene.doors.size(), "door")) << ", floor "
-      << fixed(scene.floor.area_m2(), 2) << " m2
-";
-  out << script.name << ": " << counted(script.trials.size(), "trial") << " x "
+      << fixed(scene.floor.area_m2(), 2)
+      << " m2
+         ";
+      out
+      << script.name << ": " << counted(script.trials.size(), "trial") << " x "
       << counted(static_cast<std::size_t>(script.replicates), "replicate") << " = " << counted(model.n_runs(), "run")
       << '\n';
   print_areas(out, model.scene());

@@ -42,7 +42,8 @@ void print_resident(std::ostream& out, const ExpectedResident& resident) {
     if (resident.mean_s[i] > 0.0) order.push_back(i);
   std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) { return resident.mean_s[i]; });
   for (const std::size_t i : order)
-    out << (i == order.front() ? " " : ", ") << sim::manner_of(activity_of(i)).phase << ' ' << resident.mean_s[i] / 3600.0;
+    out << (i == order.front() ? " " : ", ") << sim::manner_of(activity_of(i)).phase << ' '
+        << resident.mean_s[i] / 3600.0;
   out << '\n';
 }
 

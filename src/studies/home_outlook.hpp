@@ -16,7 +16,7 @@ namespace pirsim::studies {
 /// Times are seconds of the day.
 struct ExpectedResident {
   std::string id, bed;
-  double mean_up_s = 0.0, mean_to_bed_s = 0.0;  ///< ends of the night's sleep
+  double mean_up_s = 0.0, mean_to_bed_s = 0.0;          ///< ends of the night's sleep
   std::array<double, sim::n_home_activities> mean_s{};  ///< of a day
 };
 

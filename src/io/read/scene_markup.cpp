@@ -90,7 +90,9 @@ class MarkupReader {
   }
 
  private:
-  static std::string types_told() { return "known are sensor, seat, place, entrance, door, floor, area, surface and ignore"; }
+  static std::string types_told() {
+    return "known are sensor, seat, place, entrance, door, floor, area, surface and ignore";
+  }
 
   /// Names and numbers of what has a place in the room.
   template <typename Spec>

@@ -23,13 +23,11 @@ struct Spell {
   std::size_t first = 0, last = 0;
 };
 
-bool is_activity(const std::string& phase) {
-  return std::ranges::find(phases_of_body, phase) == phases_of_body.end();
-}
+bool is_activity(const std::string& phase) { return std::ranges::find(phases_of_body, phase) == phases_of_body.end(); }
 
 /// By person, in order of time; who is away does nothing.
 std::map<std::string, std::vector<Spell>> spells_of(std::span<const Sample> rows,
-                                                     std::span<const OccupantRow> occupants) {
+                                                    std::span<const OccupantRow> occupants) {
   std::map<std::string, std::vector<Spell>> spells;
   std::size_t row = 0;
   for (const OccupantRow& occupant : occupants) {

@@ -68,9 +68,10 @@ TEST_CASE("time is used as the survey says, to a fifth, over a household of one 
   // Minutes an average day. Ref: [Idescat2011]. Everybody of ten and older. Meals at work count there: assumed, 45 min
   // on five of seven days of the one who works.
   const double meals_out = 0.5 * 45.0 * 5.0 / 7.0;
-  const std::vector<std::pair<double, double>> compared{
-      {mean({sleep}), 519.0}, {mean({eat}) + meals_out, 125.0}, {mean({toilet, wash}), 43.0}, {mean({cook}), 54.0},
-      {mean({chores}), 35.0 + 12.0}, {mean({tv}), 113.0},  {mean({read}), 15.0},         {mean({hobby}), 35.0}};
+  const std::vector<std::pair<double, double>> compared{{mean({sleep}), 519.0},        {mean({eat}) + meals_out, 125.0},
+                                                        {mean({toilet, wash}), 43.0},  {mean({cook}), 54.0},
+                                                        {mean({chores}), 35.0 + 12.0}, {mean({tv}), 113.0},
+                                                        {mean({read}), 15.0},          {mean({hobby}), 35.0}};
   for (const auto& [drawn, survey] : compared) {
     CAPTURE(drawn, survey);
     CHECK(std::abs(drawn - survey) < 0.2 * survey);

@@ -48,7 +48,8 @@ TEST_CASE("no two of a household have the same place planned for them at one tim
   }
 }
 
-TEST_CASE("residents lie in their beds at four, and are where the day has them but for their ways", "[people][seconds]") {
+TEST_CASE("residents lie in their beds at four, and are where the day has them but for their ways",
+          "[people][seconds]") {
   const Model model = flat();
   const std::uint32_t run = 1;
   const sim::HomeDay drawn = sim::draw_home_day(*model.compiled().trial_of(run).schedule->household,

@@ -117,7 +117,8 @@ void no_home(const std::string& schedule, int beds, const std::string& message) 
 }  // namespace
 
 TEST_CASE("A household is read, written and read again to the same; its days go from four to four") {
-  const ScriptSpec script = script_with(std::string(couple) + "    visits_a_week: 2\n    wakes: {mean: 06:30, sd_min: 10}\n");
+  const ScriptSpec script =
+      script_with(std::string(couple) + "    visits_a_week: 2\n    wakes: {mean: 06:30, sd_min: 10}\n");
   const ScheduleSpec& schedule = *script.trials.front().schedule;
   REQUIRE(schedule.household);
   CHECK(schedule.from_h == 4.0);
