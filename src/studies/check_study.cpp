@@ -210,11 +210,8 @@ void print_study(std::ostream& out, const Model& model, const CheckReport& repor
       << (scene.places.empty() ? "" : counted(scene.places.size(), "place") + ", ")
       << counted(scene.entrances.size(), "entrance")
       << (scene.doors.empty() ? "" : ", " + counted(scene.doors.size(), "door")) << ", floor "
-      << fixed(scene.floor.area_m2(), 2)
-      << " m2
-         ";
-      out
-      << script.name << ": " << counted(script.trials.size(), "trial") << " x "
+      << fixed(scene.floor.area_m2(), 2) << " m2\n";
+  out << script.name << ": " << counted(script.trials.size(), "trial") << " x "
       << counted(static_cast<std::size_t>(script.replicates), "replicate") << " = " << counted(model.n_runs(), "run")
       << '\n';
   print_areas(out, model.scene());
