@@ -828,7 +828,7 @@ class Scripts(unittest.TestCase):
         self.assertIn("'wurk' isn't an action (did you mean 'work'?)", told("--set", "people.0.actions.2={wurk: 3}"))
         self.assertIn("'dance' isn't an action; known are wait_s, wait, appear, enter, walk",
                       told("--set", "people.0.actions.2={dance: 3}"))
-        self.assertIn("'stand' isn't an action; known are", told("--set", "people.0.actions.2=stand"))
+        self.assertIn("'juggle' isn't an action; known are", told("--set", "people.0.actions.2=juggle"))
         self.assertIn("'sit' needs a value: `sit: ...`", told("--set", "people.0.actions.2=sit"))
         self.assertIn("'zzzzz' is not an effect; known are ", told("--set", "effects=[zzzzz]"))
         self.assertIn("false_triggers has no parameter 'prob'; known are ",
@@ -838,7 +838,7 @@ class Scripts(unittest.TestCase):
         def told(phases, *more):
             return study("--print-config", "--set", f"summary.phases={phases}", *more, code=3).stderr
         self.assertIn("summary.phases: no run has a phase 'workin' (did you mean 'working'?)", told("[workin]"))
-        self.assertIn("no run has a phase 'meeting'; there are outside, rising, ", told("[working, meeting]"))
+        self.assertIn("no run has a phase 'meeting'; there are getting_up, lying, ", told("[working, meeting]"))
         self.assertIn("no run has a phase 'working'", told("[working]", "--set", "people.0.actions.3.phase=desk"))
         study("--print-config", "--set", "summary.phases=[desk]", "--set", "people.0.actions.3.phase=desk")
         with tempfile.TemporaryDirectory() as folder:
