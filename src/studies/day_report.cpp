@@ -233,17 +233,16 @@ io::MapChart DayReport::floor_chart() const {
 io::ReportSection DayReport::section(const std::string& heading) const {
   io::ReportSection section{heading, {}, {}, {}};
   if (days_ == 0) {
-    section.paragraphs.push_back("Nobody came.");
+    section.paragraphs.push_back("Nobody was there.");
     return section;
   }
   constexpr std::size_t most_lines = 8;  // more can't be told apart
   const bool charts_areas = !areas_.empty() && model_->areas().size() <= most_lines;
   section.paragraphs.push_back(
-      (has_clock_
-           ? count_of(days_, "day") + " on which somebody came. The first chart tells how many people were in the "
-                                      "room at each time of day, "
-           : count_of(days_, "run") + " in which somebody came. The first chart tells how many people were in the "
-                                      "room as time went on, ") +
+      (has_clock_ ? count_of(days_, "day") + " with somebody there. The first chart tells how many people were in the "
+                                             "room at each time of day, "
+                  : count_of(days_, "run") + " with somebody there. The first chart tells how many people were in the "
+                                             "room as time went on, ") +
       (charts_areas ? "the second one how many of them were in each area, " : "") +
       "the next ones how much motion each sensor reported then.");
   section.charts.emplace_back(people_chart());
