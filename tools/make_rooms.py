@@ -269,7 +269,7 @@ def add_office_structure(scene, stock, height):
             ("pillar", (6.0, 0, -4.9), (6.4, height, -4.5))):
         scene.box(name, structure, plaster, low, high)
     for name, at, yaw in (("front door", [1.5, 0, 0], 0), ("side door", [12, 0, -0.8], 90)):
-        scene.node(name, structure, at=at, turned=rotation(yaw),
+        scene.node(name + " door", structure, at=at, turned=rotation(yaw),
                    mark={"type": "entrance", "id": name.replace(" ", "_"), "width_m": 1.0, "outside_m": 1.5})
 
 
@@ -372,9 +372,9 @@ def flat():
     scene.node("door", structure, at=[0, 0, -4.0], turned=rotation(-90),
                mark={"type": "entrance", "id": "door", "width_m": DOOR_WIDTH, "outside_m": 1.5})
     for name, at, yaw, hinge, state in (("front", [0, 0, -4.0], -90, "left", "shut"),
-                                        ("bath_door", [5.25, 0, -back], 0, "left", "habit"),
-                                        ("bedroom_door", [1.95, 0, -back], 0, "right", "habit")):
-        scene.node(name, structure, at=at, turned=rotation(yaw),
+                                        ("bath", [5.25, 0, -back], 0, "left", "habit"),
+                                        ("bedroom", [1.95, 0, -back], 0, "right", "habit")):
+        scene.node(name + " door", structure, at=at, turned=rotation(yaw),
                    mark={"type": "door", "id": name, "width_m": 0.88, "hinge": hinge, "state": state})
     for name, kind, low, high in (
             ("sofa", fabric, (1.2, 0, -0.9), (3.2, 0.42, -0.02)),

@@ -5,6 +5,7 @@
 #include <ostream>
 #include <utility>
 
+#include "pirsim/columns.hpp"
 #include "schema/phase_names.hpp"
 
 namespace pirsim::io {
@@ -57,10 +58,12 @@ std::vector<CasasWriter::Line> CasasWriter::lines_of(std::span<const Sample> row
   constexpr std::array motion{"OFF", "ON"}, contact{"CLOSE", "OPEN"};
   for (std::size_t row = 0; row < rows.size(); ++row) {
     for (std::size_t i = 0; i < on.size(); ++i) change(row, on[i], rows[row].bits[i] != 0, sensors_[i], motion);
-    for (std::size_t i = 0; i < open.size(); ++i) change(row, open[i], rows[row].doors[i] != 0, doors_[i], contact);
+    for (std::size_t i = 0; i < open.size(); ++i)
+      change(row, open[i], rows[row].doors[i] != 0, column_of_door(doors_[i]), contact);
   }
   for (std::size_t i = 0; i < on.size(); ++i) change(rows.size() - 1, on[i], false, sensors_[i], motion);
-  for (std::size_t i = 0; i < open.size(); ++i) change(rows.size() - 1, open[i], false, doors_[i], contact);
+  for (std::size_t i = 0; i < open.size(); ++i)
+    change(rows.size() - 1, open[i], false, column_of_door(doors_[i]), contact);
   return lines;
 }
 

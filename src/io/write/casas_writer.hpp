@@ -11,8 +11,8 @@
 
 namespace pirsim::io {
 
-/// `date time sensor ON|OFF` or `date time door OPEN|CLOSE`, a line a change, at the end of the row that shows it; a
-/// run begins with every sensor off and every door shut, and ends so. Where a run has occupants, the first line after
+/// `date time sensor ON|OFF` or `date time door_<id> OPEN|CLOSE`, a line a change, at the end of the row that shows it;
+/// a run begins with every sensor off and every door shut, and ends so. Where a run has occupants, the first line after
 /// somebody begins an activity has `<person>_<activity> begin` behind it, the last one before its end `... end`; a line
 /// with two such labels stands twice. What no sensor noticed has no labels, nor have mere movements (walking, sitting
 /// down). An activity goes on from one run to the next.

@@ -53,9 +53,9 @@ TEST_CASE("a log of CASAS has contacts of doors, which are shut at its end") {
   day.rows[1].doors = day.rows[2].doors = {1};
   CHECK(log_of({day}) ==
         "2026-03-02 00:02:00 M1 ON\n"
-        "2026-03-02 00:02:00 D1 OPEN\n"
+        "2026-03-02 00:02:00 door_D1 OPEN\n"
         "2026-03-02 00:03:00 M1 OFF\n"
-        "2026-03-02 00:03:00 D1 CLOSE\n");
+        "2026-03-02 00:03:00 door_D1 CLOSE\n");
 }
 
 TEST_CASE("activities begin and end at the lines within them; a line with two labels stands twice; moves are none") {
