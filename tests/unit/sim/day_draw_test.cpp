@@ -16,7 +16,6 @@ using namespace pirsim::sim;
 
 namespace {
 
-constexpr double hour_s = 3600.0, minute_s = 60.0;
 constexpr std::int64_t monday = 20514;  // 2026-03-02
 constexpr std::uint32_t n_days = 200;
 constexpr double z_limit = 3.29, ks_limit = 1.95;  // two-sided 0.001; of D sqrt(n) for large n
