@@ -61,7 +61,7 @@ void check_together(const ScheduleSpec& schedule, const TellFault& tell) {
   if (!is_office && !schedule.household)
     tell("staff", "nobody comes: give `staff`, `meetings`, `cleaning` or `household`");
   if (is_office && schedule.household)
-    tell("household", "goes without `staff`, `meetings`, `profile` and `cleaning`, which are of an office");
+    tell("household", "`household` goes without `staff`, `meetings`, `profile` and `cleaning`, which are of an office");
   if (!schedule.household && schedule.to_h > 24.0) tell("to_h", "`to` is beyond 24:00");
   if (schedule.household && (schedule.from_h != home_from_h || schedule.to_h != home_to_h))
     tell("to_h", "a household's day goes from 04:00 to 04:00: leave out `from` and `to`");

@@ -496,7 +496,8 @@ Progress Actor::carry_out(const LieOn& lie, const Scene& scene) {
 
 /// What a body goes through on its way there is passed over.
 Progress Actor::carry_out(const BeThere& there, const Scene& scene) {
-  const bool taken = somebody_near(there.before.stand, scene.others) ||
+  const bool since_long = scene.now == 0;  // when the run begins: nobody has to get past those beside
+  const bool taken = (!since_long && somebody_near(there.before.stand, scene.others)) ||
                      std::ranges::find(scene.others, *facts_.place, &Presence::seat) != scene.others.end();
   if (taken && ++waited_ticks_ < ticks(room_wait_s, scene.study)) return Progress::going_on;
   body_.emplace(scene.study, person(), index_, there.before.stand, there.before.heading);

@@ -50,7 +50,7 @@ TEST_CASE("A schedule is read, written and read again to the same") {
 
 TEST_CASE("What can't be in a schedule is refused with its place") {
   refused("  staf: [{count: 2}]\n", "s.yaml:3:3: error: schedule: unknown key 'staf'");
-  refused("  staff: [{count: 2}]\n  to: 25:00\n", "s.yaml:4:7: error: schedule: `to` is beyond 24:00");
+  refused("  staff: [{count: 2}]\n  to: 25:00\n", "s.yaml:4:7: error: to: expected a time of day from 00:00 to 24:00");
   refused("  staff: [{count: 2}]\n  from: 18:00\n  to: 9:00\n",
           "s.yaml:5:7: error: schedule: `to` is not after `from`");
   refused("  staff: [{count: 2}]\n  arrival: {mean: 18:00}\n  departure: {mean: 09:00}\n",
@@ -139,7 +139,7 @@ TEST_CASE("What can't be a household is refused with its place") {
   refused("  household: {residents: [{id: a, occupation: work}]}\n", "did you mean 'works'?");
   refused("  household: {residents: [{id: a, age_years: 3}]}\n", "age_years: expected");
   refused("  household: {residents: [{id: a}], goes_to_bed: {mean: 06:00}}\n", "goes_to_bed: is not after `wakes`");
-  refused(std::string(couple) + "  cleaning: 19:00\n", "household: goes without `staff`, `meetings`");
+  refused(std::string(couple) + "  cleaning: 19:00\n", "schedule: `household` goes without `staff`, `meetings`");
   refused(std::string(couple) + "  from: 06:00\n", "leave out `from` and `to`");
 }
 
