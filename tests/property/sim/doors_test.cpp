@@ -303,7 +303,7 @@ TEST_CASE("windows that are passed over because nobody is there know their doors
   CHECK(open.back() == 0);
 }
 
-TEST_CASE("check lists doors beside areas, with what their leaves do; a scene without doors has no such line") {
+TEST_CASE("check lists doors beside areas, with what their leaves do, a scene without doors has no such line") {
   const auto told = [](std::vector<DoorSpec> doors) {
     SceneSpec scene = two_rooms(std::move(doors));
     scene.areas = {{"west", FloorArea({{{0, -2}, {3, -2}, {3, 2}, {0, 2}}}, 0.0)},

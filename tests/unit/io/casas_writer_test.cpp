@@ -58,7 +58,7 @@ TEST_CASE("a log of CASAS has contacts of doors, which are shut at its end") {
         "2026-03-02 00:03:00 door_D1 CLOSE\n");
 }
 
-TEST_CASE("activities begin and end at the lines within them; a line with two labels stands twice; moves are none") {
+TEST_CASE("activities begin and end at the lines within them, a line with two labels stands twice, moves are none") {
   const Day day("2026-03-02", {{0, 0}, {1, 0}, {0, 0}, {0, 1}, {0, 0}, {1, 0}},
                 {"eating", "eating", "eating", "reading", "walking", "toilet"});
   CHECK(log_of({day}) ==

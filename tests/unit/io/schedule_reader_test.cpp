@@ -116,7 +116,7 @@ void no_home(const std::string& schedule, int beds, const std::string& message) 
 
 }  // namespace
 
-TEST_CASE("A household is read, written and read again to the same; its days go from four to four") {
+TEST_CASE("A household is read, written and read again to the same, its days go from four to four") {
   const ScriptSpec script =
       script_with(std::string(couple) + "    visits_a_week: 2\n    wakes: {mean: 06:30, sd_min: 10}\n");
   const ScheduleSpec& schedule = *script.trials.front().schedule;
@@ -143,7 +143,7 @@ TEST_CASE("What can't be a household is refused with its place") {
   refused(std::string(couple) + "  from: 06:00\n", "leave out `from` and `to`");
 }
 
-TEST_CASE("Residents take their own beds, then those that nobody has; one without is an error") {
+TEST_CASE("Residents take their own beds, then those that nobody has, one without is an error") {
   const ScriptSpec script = script_with(couple);
   const auto people = people_of(*script.trials.front().schedule, flat_with_beds(2), 1);
   REQUIRE(people.size() == 3);
