@@ -343,7 +343,8 @@ class Trace:
         listed = None if effects is None else [as_effect(effect) for effect in effects]
         own = None if seed is None else as_seed(seed)
         return make_result(_core.emit(_handle_of(model), self._handle, listed, own, progress),
-                           model.sensors.names, model.areas, model.seed if own is None else own)
+                           model.sensors.names, model.areas, model.doors,
+                           model.seed if own is None else own)
 
     def __repr__(self) -> str:
         return f"<pirsim.Trace of {self.n_runs} runs>"

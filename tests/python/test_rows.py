@@ -43,6 +43,8 @@ def columns_of(result):
         columns["time"] = result.clock[run, second]
     for i, area in enumerate(result.areas):
         columns["people_" + area] = result.people_of_areas[run, second, i]
+    for i, door in enumerate(result.doors):
+        columns["door_" + door] = result.door_open[run, second, i]
     for i, sensor in enumerate(result.sensors):
         columns[sensor] = result.bits[run, second, i]
     return {name: [as_text(value) for value in column] for name, column in columns.items()}
@@ -71,10 +73,11 @@ def cases(tmp_path_factory, data):
                    {"replicates": 1, "sensing.response": "analog", "trials.for_each.seat": ["S1"]}),
         "days": (rooms / "open_office.gltf", schedule, {}),
         "areas": (rooms / "two_rooms.gltf", studies / "two_rooms.yaml", {"sensing.response": "zones"}),
+        "home": (rooms / "flat.gltf", studies / "flat_week.yaml", {"replicates": 1, "sensing.response": "zones"}),
     }
 
 
-CASES = ["study A", "several people, runs of different length", "other windows", "analog", "days", "areas"]
+CASES = ["study A", "several people, runs of different length", "other windows", "analog", "days", "areas", "home"]
 
 
 def options(changes):
