@@ -7,6 +7,7 @@
 
 #include "core/digest.hpp"
 #include "effects/catalogue.hpp"
+#include "io/pages/page_parts.hpp"
 #include "pirsim/io.hpp"
 #include "pirsim/random.hpp"
 #include "reconcile/inference/analyst.hpp"
@@ -343,7 +344,7 @@ TEST_CASE("the whole loop writes a patched script that runs and closes the gap",
   CHECK_FALSE(compile(scene, patched_script).compiled().stages().empty());
   std::ifstream page_file(folder.path() / "report.html");
   const std::string page{std::istreambuf_iterator<char>(page_file), {}};
-  CHECK_THAT(page, contains(sentence(outcome)) && contains("Does it help"));
+  CHECK_THAT(page, contains(io::detail::escaped(sentence(outcome))) && contains("Does it help"));
   for (const Candidate& candidate : outcome.candidates) CHECK_THAT(page, contains(candidate.score.hypothesis));
 }
 
