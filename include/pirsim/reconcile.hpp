@@ -172,6 +172,7 @@ struct Provenance {
   /// What the user typed so that the model is this one, for commands to repeat: "--scene", "rooms/a.gltf", "--set", ...
   /// Empty: --scene and --script with the names above.
   std::vector<std::string> model_options;
+  std::string marks{};  ///< the scene's file of marks; empty: none
 };
 /// report.json, report.html, where.csv, candidates.csv, script_patched.yaml (if an effect was named) and trail.log
 /// (docs/formats/reconcile.md), each complete or not at all; the folder is made. Throws Error(io).

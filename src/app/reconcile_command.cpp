@@ -115,11 +115,6 @@ reconcile::Context context_of(const AnalysisOptions& options, AnalysisTeller& te
   return {options.seed, options.threads, teller.observer()};
 }
 
-std::string made_by(const Inputs& inputs) {
-  return "pirsim " + version() + " " + git_revision() + ", " + io::name_of_input(inputs.scene) + ", " +
-         io::name_of_input(inputs.script);
-}
-
 void reconcile_selftest(const Inputs& inputs, const AnalysisOptions& analysis, const SelftestOptions& options) {
   const ScriptSpec script = io::read_script(inputs.script, inputs.overrides);
   const SceneSpec scene = io::read_scene(inputs.scene, scene_options(inputs));
@@ -196,10 +191,10 @@ void reconcile_data(const Inputs& inputs, const AnalysisOptions& analysis, const
   std::cout << reconcile::sentence(outcome) << '\n';
   for (const std::string& detail : reconcile::details(outcome)) std::cout << detail << '\n';
   require_written();
-  reconcile::write_report(
-      options.output, outcome, measured, script, settings, context,
-      {"pirsim " + version() + " " + git_revision(), io::name_of_input(inputs.scene), io::name_of_input(inputs.script),
-       io::name_of_input(options.measured), model_options(inputs)});
+  reconcile::write_report(options.output, outcome, measured, script, settings, context,
+                          {"pirsim " + version() + " " + git_revision(), io::name_of_input(inputs.scene),
+                           io::name_of_input(inputs.script), io::name_of_input(options.measured), model_options(inputs),
+                           inputs.marks.empty() ? "" : io::name_of_input(inputs.marks)});
 }
 
 void offer_analysis(CLI::App& command, AnalysisOptions& options) {

@@ -227,10 +227,15 @@ void write_summary(const studies::Summary& summary, io::AtomicFile& file, const 
   if (verbosity != Verbosity::quiet) std::cerr << studies::to_text(summary);
 }
 
+std::string made_by(const Inputs& inputs) {
+  std::string text = "pirsim " + version() + " (" + git_revision() + ")";
+  for (const std::filesystem::path& file : {inputs.scene, inputs.marks, inputs.script})
+    if (!file.empty()) text += ", " + io::name_of_input(file);
+  return text;
+}
+
 void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs) {
-  report.footer = "pirsim " + version() + " (" + git_revision() + "), " + io::name_of_input(inputs.scene);
-  if (!inputs.marks.empty()) report.footer += ", " + io::name_of_input(inputs.marks);
-  if (!inputs.script.empty()) report.footer += ", " + io::name_of_input(inputs.script);
+  report.footer = made_by(inputs);
   file.stream() << io::to_html(report);
   file.commit();
 }

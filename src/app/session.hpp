@@ -69,6 +69,8 @@ void write_summary(const studies::Summary& summary, io::AtomicFile& file, const 
                    const std::string& title, const std::string& remarks, Verbosity verbosity);
 /// Writes a report with what made it in the footer, and commits the file.
 void write_page(io::AtomicFile& file, io::Report report, const Inputs& inputs);
+/// "pirsim 0.2.0 (1a2b3c4), room.gltf, marks.yaml, study.yaml"
+[[nodiscard]] std::string made_by(const Inputs& inputs);
 
 /// Thrown when nobody reads standard output any more, as in `pirsim ... | head`.
 struct ClosedPipe {};

@@ -172,6 +172,7 @@ std::string to_json(const Outcome& outcome, const Measured& measured, const Sett
                {"seed", context.seed},
                {"table", outcome.table_key},
                {"nuisance", nuisance}};
+  if (!provenance.marks.empty()) json["marks"] = provenance.marks;
   json["verdict_of_rows"] = name(outcome.verdict_of_rows);
   json["data_findings"] = Json::array();
   for (const DataFinding& finding : outcome.data_findings) json["data_findings"].push_back(to_json(finding));
@@ -280,7 +281,9 @@ void write_report(const std::filesystem::path& folder, const Outcome& outcome, c
                               std::to_string(usual.n_realizations) + ": --budget scales this number and those of the " +
                               "effects. Fewer datasets rule out fewer effects.");
   }
-  page.footer = provenance.program + ", " + provenance.scene + ", " + provenance.script + ", " + provenance.measured;
+  page.footer = provenance.program + ", " + provenance.scene +
+                (provenance.marks.empty() ? "" : ", " + provenance.marks) + ", " + provenance.script + ", " +
+                provenance.measured;
   io::write_text_file(folder / "report.html", io::to_html(page));
   io::write_text_file(folder / "report.json", to_json(outcome, measured, settings, context, provenance));
 }
