@@ -26,10 +26,8 @@ std::string off_floor_fault(const AreaSpec& area, const FloorArea& floor) {
 
 }  // namespace
 
-std::string area_id_fault(const std::string& id, const std::vector<SensorSpec>& sensors) {
+std::string area_id_fault(const std::string& id) {
   if (id == elsewhere) return "area id '" + id + "' is what pirsim calls the floor that is in no area";
-  if (std::ranges::find(sensors, id, &SensorSpec::id) != sensors.end())
-    return "area id '" + id + "' is the id of a sensor";
   return column_fault(id, "area");
 }
 

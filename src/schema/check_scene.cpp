@@ -61,7 +61,6 @@ class SceneCheck {
     for (std::size_t i = 0; i < scene_.doors.size(); ++i) {
       const SpecPath door = path.item("doors", i);
       check_id(scene_.doors[i].id, door, doors);
-      faults_.error_if(door.field("id"), door_id_fault(scene_.doors[i].id, scene_.sensors));
       check_upright(scene_.doors[i].world_from_door, door.field("world_from_door"));
       faults_.numbers(scene_.doors[i], door);
     }
@@ -154,7 +153,7 @@ class SceneCheck {
       const AreaSpec& area = scene_.areas[i];
       const SpecPath here = path.item("areas", i);
       check_id(area.id, here, ids);
-      faults_.error_if(here.field("id"), area_id_fault(area.id, scene_.sensors));
+      faults_.error_if(here.field("id"), area_id_fault(area.id));
       const std::string fault = area.outline.empty() ? "the area has no outline" : outline_fault(area.outline, "area");
       faults_.error_if(here.field("outline"), fault);
       are_outlined = are_outlined && fault.empty();
@@ -205,11 +204,6 @@ std::string column_fault(std::string_view id, const std::string& type) {
   if (is_column_of_area(id)) return named + "begins as the columns of areas do: '" + std::string(area_prefix) + "'";
   if (is_column_of_door(id)) return named + "begins as the columns of doors do: '" + std::string(door_prefix) + "'";
   return is_column_name(id) ? named + "is the name of a column of rows" : "";
-}
-
-std::string door_id_fault(const std::string& id, const std::vector<SensorSpec>& sensors) {
-  const bool is_sensor = std::ranges::find(sensors, id, &SensorSpec::id) != sensors.end();
-  return is_sensor ? "door id '" + id + "' is the id of a sensor" : "";
 }
 
 std::string Names::fault_of_adding(const std::string& name) {

@@ -29,8 +29,6 @@ using TellFault = std::function<void(std::string_view field, const std::string& 
 
 /// Of what a place is for. A message or none.
 [[nodiscard]] std::string use_fault(const std::string& use);
-/// Of a door's id: exports name both doors and sensors.
-[[nodiscard]] std::string door_id_fault(const std::string& id, const std::vector<SensorSpec>& sensors);
 
 /// Names that must differ.
 class Names {
@@ -53,8 +51,8 @@ class Names {
 /// what: "floor" or "area", for the message.
 [[nodiscard]] std::string outline_fault(const FloorArea& floor, const std::string& what = "floor");
 [[nodiscard]] std::string too_many_corners(const std::string& what);  ///< of all together
-/// Of an area's id, which must not be a column's, a sensor's or what those in no area are said to be in.
-[[nodiscard]] std::string area_id_fault(const std::string& id, const std::vector<SensorSpec>& sensors);
+/// Of an area's id, which must not be a column's or what those in no area are said to be in.
+[[nodiscard]] std::string area_id_fault(const std::string& id);
 /// Of areas whose outlines are right, beside each other and on the floor: each fault with the index of its area.
 void check_together(const std::vector<AreaSpec>& areas, const FloorArea& floor,
                     const std::function<void(std::size_t area, const std::string& message)>& tell);

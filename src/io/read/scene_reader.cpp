@@ -309,18 +309,14 @@ class SceneBuilder {
     spec_.areas.push_back({std::get<mark::Area>(markup).id, *std::move(outline)});
     nodes_.areas.push_back(bearer);
   }
-  /// Of areas and doors, once all sensors are known.
+  /// Of areas, once all sensors are known.
   void check_among_each_other() {
     for (std::size_t i = 0; i < spec_.areas.size(); ++i) {
-      const std::string fault = area_id_fault(spec_.areas[i].id, spec_.sensors);
+      const std::string fault = area_id_fault(spec_.areas[i].id);
       if (!fault.empty()) mark_error(nodes_.areas[i], "/id", fault);
     }
     check_together(spec_.areas, spec_.floor,
                    [&](std::size_t area, const std::string& message) { mark_error(nodes_.areas[area], "", message); });
-    for (std::size_t i = 0; i < spec_.doors.size(); ++i) {
-      const std::string fault = door_id_fault(spec_.doors[i].id, spec_.sensors);
-      if (!fault.empty()) mark_error(nodes_.doors[i], "/id", fault);
-    }
     for (std::size_t i = 0; i < spec_.sensors.size(); ++i) {
       const std::string fault = area_fault(spec_.sensors[i], spec_.areas);
       if (!fault.empty()) mark_error(nodes_.sensors[i], "/area", fault);

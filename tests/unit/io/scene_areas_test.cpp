@@ -80,7 +80,6 @@ TEST_CASE("faulty areas are refused with their names, one line each", "[scene]")
   CHECK_THAT(fault({{{"type", "area"}, {"polygon_xz_m", {{0, 0}, {2, 0}, {2, 2}}}}}), contains("area without 'id'"));
   CHECK_THAT(fault({area("time_s", 0, 0, 1, 1)}), contains("area id 'time_s' is the name of a column of rows"));
   CHECK_THAT(fault({area("elsewhere", 0, 0, 1, 1)}), contains("the floor that is in no area"));
-  CHECK_THAT(fault({area("PIR1", 0, 0, 1, 1), sensor("PIR1")}), contains("area id 'PIR1' is the id of a sensor"));
   CHECK_THAT(fault({sensor("people_kitchen"), kitchen}), contains("begins as the columns of areas do: 'people_'"));
   json watcher = sensor("PIR1");
   watcher["area"] = "kitchn";
