@@ -47,7 +47,7 @@ PUBLIC = {
     "effects": "effects",
     "model": "sim", "state": "sim", "study": "sim", "recording": "sim",
     "coverage": "studies", "look": "studies", "walk_test": "studies",
-    "room": "dataset", "dataset": "dataset",
+    "room": "dataset", "flat": "dataset", "dataset": "dataset",
     "csv": "io", "io": "io", "log": "io", "log_facts": "io",
     "counting": "counting", "calibrate": "calibrate",
     "reconcile": "reconcile", "reconcile_outcome": "reconcile",

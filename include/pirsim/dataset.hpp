@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "pirsim/flat.hpp"
 #include "pirsim/room.hpp"
 #include "pirsim/sample.hpp"
 #include "pirsim/schedule.hpp"
@@ -36,11 +37,27 @@ struct OwnScene {
   auto operator<=>(const OwnScene&) const = default;
 };
 
+/// Who lives in a home: drawn once for each. All ranges are `assumed`.
+struct HouseholdRangesSpec {
+  double works = 0.55;          ///< probability that a resident goes to work
+  Range age_years{25.0, 80.0};  ///< of each
+  Range visits_a_week{0.0, 2.0};
+  Range shift_min{-45.0, 45.0};  ///< by how much all clocks of a household are later than those below
+  HouseholdSpec usual;           ///< its clocks; the rest is drawn
+};
+
+/// Homes that are alike.
+struct HomeGroupSpec {
+  FlatSpec flats;
+  HouseholdRangesSpec household;
+};
+
 /// Rooms that are alike: drawn from ranges, or scenes of the user's own.
 struct RoomGroupSpec {
   int count = 1;
   RoomSpec rooms;
-  std::vector<OwnScene> scenes;  ///< if not empty: these, in turn, instead
+  std::optional<HomeGroupSpec> home{};  ///< if there: flats and who lives there, instead
+  std::vector<OwnScene> scenes;         ///< if not empty: these, in turn, instead
   ScheduleSpec schedule;
   /// How many of the schedule's staff a room has, at most one a seat; none: all of them.
   std::optional<CountRange> people;

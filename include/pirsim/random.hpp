@@ -60,6 +60,8 @@ enum class Purpose : std::uint32_t {
   dataset_part = 404,    ///< which rooms and days are for training, validation and test
   dataset_seed = 405,    ///< seeds of the studies that a dataset is made of
   weighted_rooms = 406,  ///< where drawing rooms by weight begins
+  flat = 407,            ///< rooms, furniture and sensors of a parametric flat; entity: which try
+  flat_household = 408,  ///< how many people live in a flat, what they do, how old they are, their habits
   test = 0xFFFF0000,     ///< reserved for tests
 };
 

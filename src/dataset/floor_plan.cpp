@@ -61,6 +61,16 @@ FloorPlan::FloorPlan(double width_m, double depth_m, std::optional<Rectangle> mi
                                      {missing_->upper.x, missing_->upper.y},
                                      {0.0, missing_->upper.y}});
   }
+  build_walls();
+}
+
+FloorPlan::FloorPlan(const Rectangle& bounds)
+    : bounds_(bounds),
+      outline_{{bounds.lower.x, bounds.upper.y}, bounds.upper, {bounds.upper.x, bounds.lower.y}, bounds.lower} {
+  build_walls();
+}
+
+void FloorPlan::build_walls() {
   const std::size_t n = outline_.size();
   const auto is_inner = [&](const Vec2& p) {
     return missing_ && p.y == missing_->upper.y && p.x != bounds_.lower.x && p.x != bounds_.upper.x;

@@ -43,6 +43,7 @@ struct Wall {
 class FloorPlan {
  public:
   FloorPlan(double width_m, double depth_m, std::optional<Rectangle> missing_corner);
+  explicit FloorPlan(const Rectangle& bounds);
 
   [[nodiscard]] const std::vector<Vec2>& outline() const noexcept { return outline_; }
   [[nodiscard]] const std::vector<Wall>& walls() const noexcept { return walls_; }
@@ -52,6 +53,8 @@ class FloorPlan {
   [[nodiscard]] const Rectangle& bounds() const noexcept { return bounds_; }
 
  private:
+  void build_walls();
+
   Rectangle bounds_;
   std::optional<Rectangle> missing_;
   std::vector<Vec2> outline_;

@@ -6,13 +6,9 @@
 #include <vector>
 
 #include "dataset/floor_plan.hpp"
+#include "dataset/usable_scene.hpp"
 
 namespace pirsim::dataset {
-
-/// Why an attempt failed, in words that fit behind "n times".
-struct NoPlace {
-  std::string reason;
-};
 
 /// Which models a sensor of the group may be: its own, or the usual one for where it hangs.
 [[nodiscard]] const std::vector<std::string>& models_of(const SensorGroupSpec& group);

@@ -173,6 +173,7 @@ SceneSpec read_own(const OwnScene& own, io::SceneOptions options) {
 SceneSpec room_of(const RecipeSpec& recipe, int number, const io::SceneOptions& options) {
   const RoomGroupSpec& group = group_of(recipe, number);
   if (const OwnScene* own = own_scene(recipe, number)) return read_own(*own, options);
+  if (group.home) return draw_flat(group.home->flats, recipe.seed, recipe.original_of(number), options).scene;
   return draw_room(group.rooms, recipe.seed, recipe.original_of(number), options).scene;
 }
 

@@ -1,0 +1,287 @@
+#include "dataset/flat_furnish.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "dataset/room_floor.hpp"
+
+namespace pirsim::dataset {
+namespace {
+
+using Kind = FlatRoomKind;
+
+class FlatFurnisher {
+ public:
+  FlatFurnisher(const FlatSpec& spec, int residents, FlatPlan plan, Stream& stream)
+      : spec_(spec), plan_(std::move(plan)), stream_(stream) {
+    flat_.residents = residents;
+    flat_.width_m = plan_.bounds.upper.x;
+    flat_.depth_m = -plan_.bounds.lower.y;
+    flat_.height_m = draw_length(spec.height_m, stream_);
+    for (std::size_t i = 0; i < plan_.rooms.size(); ++i) floors_.emplace_back(plan_.clear_floor(i));
+    for (const Doorway& door : plan_.doorways) keep_doorway_free(door);
+  }
+
+  std::variant<DrawnFlat, NoPlace> furnish() {
+    build_shell(plan_, flat_.height_m, flat_.scene);
+    add_beds();
+    for (std::size_t i = 0; i < plan_.rooms.size() && lacking_.empty(); ++i) furnish_room(i);
+    const SensorsAt at = one_of(spec_.sensors_at, stream_);
+    if (at == SensorsAt::doorways) {
+      hang_at_doorways(spec_, plan_, stream_, flat_.scene);
+    } else {
+      hang_in_rooms(spec_, plan_, flat_.height_m, stream_, flat_.scene);
+    }
+    if (!lacking_.empty()) return NoPlace{lacking_};
+    flat_.rooms = plan_.rooms;
+    return std::move(flat_);
+  }
+
+ private:
+  // Sizes are `assumed`: common furniture, as in the shipped flat; the ranges that were looked at stand behind.
+  static constexpr double off_wall_m = 0.02;
+  static constexpr double kept_free_at_door_m = 1.0;                    // 0.9-1.2, on both sides
+  static constexpr double bed_length_m = 2.05, bed_height_m = 0.48;     // 2.0-2.1, 0.45-0.5
+  static constexpr double pelvis_from_wall_m = 1.03;                    // of who lies: the head of the largest person has room
+  static constexpr double beside_bed_m = 0.7;                           // 0.6-0.8: to get in
+  static constexpr double sofa_depth_m = 0.9, sofa_height_m = 0.42;     // 0.85-1.0, 0.40-0.45
+  static constexpr double pelvis_above_seat_m = 0.09;
+  static constexpr double table_depth_m = 0.8, chair_from_table_m = 0.25, chair_spacing_m = 0.7, chair_zone_m = 0.9;
+  static constexpr double hip_height_m = 0.53;
+  static constexpr double counter_depth_m = 0.6, stand_from_counter_m = 0.37;  // 0.3-0.5
+  static constexpr double desk_depth_m = 0.7;                           // 0.6-0.8
+
+  enum class Wanted { always, if_it_fits };
+
+  void fail(const std::string& reason) {
+    if (lacking_.empty()) lacking_ = reason;
+  }
+
+  void keep_doorway_free(const Doorway& door) {
+    const Vec2 across{0.5 * doorway_m * door.direction.y, 0.5 * doorway_m * door.direction.x};
+    const auto keep = [&](std::size_t room, const Vec2& towards) {
+      const Vec2 far = door.middle + kept_free_at_door_m * towards;
+      floors_[room].keep_free({glm::min(glm::min(door.middle + across, door.middle - across), far - glm::abs(across)),
+                               glm::max(glm::max(door.middle + across, door.middle - across), far + glm::abs(across))});
+    };
+    keep(door.into, door.direction);
+    if (door.from) keep(*door.from, -door.direction);
+  }
+
+  // -- things --------------------------------------------------------------------------------------------------------
+
+  void add(const std::string& name, const Spot& spot, std::span<const BoxPart> parts) {
+    flat_.scene.meshes.push_back(boxes(name, spot, parts));
+  }
+  void add(const std::string& name, const Spot& spot, const std::vector<BoxPart>& parts) {
+    add(name, spot, std::span(parts));
+  }
+
+  /// Faces into the room (0 quarters) or the wall (2).
+  void add_seat(const std::string& id, const Spot& spot, const Vec2& own, int quarters, double height,
+                std::vector<std::string> uses) {
+    const Spot seat{spot * own, spot.quarters + quarters};
+    flat_.scene.seats.push_back({id, seat.frame(height), std::move(uses)});
+  }
+  void add_place(const std::string& id, PlacePosture posture, const Spot& spot, const Vec2& own, int quarters,
+                 double height, std::vector<std::string> uses) {
+    const Spot place{spot * own, spot.quarters + quarters};
+    flat_.scene.places.push_back({id, posture, place.frame(height), std::move(uses)});
+  }
+
+  // -- beds ----------------------------------------------------------------------------------------------------------
+
+  /// Two who share one get a wide one, in the first room that has none; the others are shared out.
+  void add_beds() {
+    std::vector<std::size_t> rooms;
+    for (std::size_t i = 0; i < plan_.rooms.size(); ++i)
+      if (plan_.rooms[i].kind == Kind::bedroom) rooms.push_back(i);
+    if (rooms.empty()) rooms.push_back(0);
+    std::size_t next = 0;
+    for (int left = flat_.residents; left > 0 && lacking_.empty();) {
+      const bool is_wide = stream_.uniform() < spec_.double_beds;
+      const int sleepers = is_wide && left >= 2 && left > static_cast<int>(rooms.size() - next % rooms.size()) - 1 ? 2 : 1;
+      add_bed(floors_[rooms[next++ % rooms.size()]], is_wide, sleepers);
+      left -= sleepers;
+    }
+  }
+
+  void add_bed(RoomFloor& floor, bool is_wide, int sleepers) {
+    const double half = 0.5 * draw_length(is_wide ? Range{1.4, 1.8} : Range{0.9, 1.0}, stream_);
+    const double end = -off_wall_m - bed_length_m;
+    const Rectangle solid{{-half, end}, {half, -off_wall_m}};
+    // One alone gets in at the right: x is mirrored by turns.
+    const double side = stream_.index(2) == 0 ? 1.0 : -1.0;
+    const double left = sleepers == 2 || side < 0.0 ? -half - beside_bed_m : -half;
+    const double right = sleepers == 2 || side > 0.0 ? half + beside_bed_m : half;
+    const Piece piece{solid, {{left, end}, {right, -off_wall_m}}};
+    const auto spot = floor.put_at_wall(piece, half + off_wall_m, stream_);
+    if (!spot) return fail("there was no place for a bed");
+    const std::string number = std::to_string(++beds_);
+    add("bed " + number, *spot, {{solid, 0.0, bed_height_m}});
+    const double x = is_wide ? 0.5 * half : 0.0;
+    for (int k = 0; k < sleepers; ++k) {
+      const double at = sleepers == 1 ? side * x : k == 0 ? -x : x;
+      const std::string id = "bed_" + number + (sleepers == 1 ? "" : k == 0 ? "_left" : "_right");
+      add_place(id, PlacePosture::lie, *spot, {at, -pelvis_from_wall_m}, 0, bed_height_m, {"sleep"});
+    }
+  }
+
+  // -- rooms ---------------------------------------------------------------------------------------------------------
+
+  void furnish_room(std::size_t index) {
+    RoomFloor& floor = floors_[index];
+    const auto has = [&](Kind kind) { return std::ranges::find(plan_.rooms, kind, &FlatRoom::kind) != plan_.rooms.end(); };
+    switch (plan_.rooms[index].kind) {
+      case Kind::living_room:
+        if (!has(Kind::kitchen)) add_kitchen(floor);
+        add_sofa(floor);
+        add_table(floor);
+        if (!has(Kind::bedroom)) add_wardrobe(floor);
+        return add_shelf(floor);
+      case Kind::kitchen:
+        return add_kitchen(floor);
+      case Kind::bedroom:
+        add_wardrobe(floor);
+        if (!has(Kind::study) && stream_.index(2) == 0) add_desk(floor, Wanted::if_it_fits);
+        return;
+      case Kind::study:
+        add_desk(floor, Wanted::always);
+        return add_shelf(floor);
+      case Kind::bath:
+        return add_bath(floor);
+      case Kind::corridor:
+        return;
+    }
+  }
+
+  /// Seats side by side, and a television opposite where there is room for it.
+  void add_sofa(RoomFloor& floor) {
+    const int seats = 2 + static_cast<int>(stream_.index(2));
+    const double half = 0.5 * (0.8 * seats + 0.3);
+    const Rectangle solid{{-half, -sofa_depth_m}, {half, -off_wall_m}};
+    const auto spot = floor.put_at_wall({solid, {{-half, -sofa_depth_m - 0.7}, {half, -off_wall_m}}}, half, stream_);
+    if (!spot) return fail("there was no place for a sofa");
+    add("sofa", *spot, {{solid, 0.0, sofa_height_m}});
+    add("sofa back", *spot, {{{{-half, -off_wall_m - 0.2}, {half, -off_wall_m}}, sofa_height_m, 0.85}});
+    for (int k = 0; k < seats; ++k)
+      add_seat("sofa_" + std::to_string(k + 1), *spot, {0.8 * (k + 0.5 - 0.5 * seats), -0.55}, 0,
+               sofa_height_m + pelvis_above_seat_m, {"tv", "rest", "read"});
+    add_television(floor, *spot);
+  }
+
+  void add_television(RoomFloor& floor, const Spot& sofa) {
+    const Rectangle& b = floor.bounds();
+    const Vec2 straight = sofa * Vec2(0.0, -1.0) - sofa.origin;
+    const double far = straight.x != 0.0 ? b.upper.x - b.lower.x : b.upper.y - b.lower.y;
+    const Spot opposite{sofa.origin + far * straight, sofa.quarters + 2};
+    const Piece piece{{{-0.7, -0.4}, {0.7, -off_wall_m}}, {{-0.7, -0.4}, {0.7, -off_wall_m}}};
+    if (!floor.fits(opposite, piece)) return;
+    floor.put(opposite, piece);
+    add("television", opposite,
+        {{piece.solid, 0.0, 0.45}, {{{-0.5, -0.22}, {0.5, -0.18}}, 0.5, 1.08}});
+  }
+
+  /// Chairs for the residents and a guest, two at least, on its long sides.
+  void add_table(RoomFloor& floor) {
+    const int across = std::max(1, (flat_.residents + 2) / 2);
+    const double half = 0.5 * (chair_spacing_m * across + 0.1), deep = 0.5 * table_depth_m;
+    const Rectangle solid{{-half, -deep}, {half, deep}};
+    const auto spot =
+        floor.put_anywhere({solid, {{-half, -deep - chair_zone_m}, {half, deep + chair_zone_m}}}, stream_);
+    if (!spot) return fail("there was no place for a table");
+    std::vector<BoxPart> parts{{solid, 0.71, 0.74}};
+    for (const double x : {-half + 0.08, half - 0.08}) parts.push_back({{{x - 0.03, -0.03}, {x + 0.03, 0.03}}, 0.0, 0.71});
+    add("table", *spot, parts);
+    for (int k = 0; k < 2 * across; ++k) {
+      const double x = (k / 2 + 0.5 - 0.5 * across) * chair_spacing_m, side = k % 2 == 0 ? 1.0 : -1.0;
+      add_seat("table_" + std::to_string(k + 1), *spot, {x, side * (deep + chair_from_table_m)}, k % 2 == 0 ? 0 : 2,
+               hip_height_m, {"eat", "play", "work"});
+    }
+  }
+
+  /// A counter with sink, stove and, at one end, a fridge.
+  void add_kitchen(RoomFloor& floor) {
+    const double half = 0.5 * draw_length({2.4, 3.2}, stream_), front = -off_wall_m - counter_depth_m;
+    const Rectangle solid{{-half, front}, {half, -off_wall_m}};
+    const auto spot = floor.put_at_wall({solid, {{-half, front - 0.9}, {half, -off_wall_m}}}, half, stream_);
+    if (!spot) return fail("there was no place for a kitchen counter");
+    const double side = stream_.index(2) == 0 ? 1.0 : -1.0;
+    const auto part = [&](double a, double b) {
+      return Rectangle{{std::min(side * a, side * b), front}, {std::max(side * a, side * b), -off_wall_m}};
+    };
+    add("counter", *spot, {{part(-half, half - 0.6), 0.0, 0.9}});
+    add("fridge", *spot, {{part(half - 0.6, half), 0.0, 1.8}});
+    const double length = 2.0 * half - 0.6;
+    const Vec2 stove(side * (-half + 0.28 * length), front - stand_from_counter_m);
+    const Vec2 sink(side * (-half + 0.75 * length), front - stand_from_counter_m);
+    add_place("stove", PlacePosture::stand, *spot, stove, 2, 0.0, {"cook"});
+    add_place("sink", PlacePosture::stand, *spot, sink, 2, 0.0, {"chores", "cook"});
+  }
+
+  void add_bath(RoomFloor& floor) {
+    const Rectangle shower{{-0.45, -0.9}, {0.45, 0.0}};
+    const auto tray = floor.put_at_wall({shower, {{-0.45, -1.4}, {0.45, 0.0}}}, 0.45, stream_);
+    if (!tray) return fail("there was no place for a shower");
+    add("shower tray", *tray, {{{{-0.44, -0.88}, {0.44, -off_wall_m}}, 0.0, 0.02}});
+    add_place("shower", PlacePosture::stand, *tray, {0.0, -0.45}, 0, 0.0, {"shower", "wash"});
+    const Rectangle bowl{{-0.2, -0.7}, {0.2, -off_wall_m}};
+    const auto toilet = floor.put_at_wall({bowl, {{-0.35, -1.2}, {0.35, -off_wall_m}}}, 0.4, stream_);
+    if (!toilet) return fail("there was no place for a toilet");
+    add("toilet", *toilet, {{bowl, 0.0, 0.42}});
+    add_seat("toilet", *toilet, {0.0, -0.48}, 0, 0.42 + pelvis_above_seat_m, {"toilet"});
+    const Rectangle basin{{-0.3, -0.42}, {0.3, -off_wall_m}};
+    const auto sink = floor.put_at_wall({basin, {{-0.35, -1.1}, {0.35, -off_wall_m}}}, 0.35, stream_);
+    if (!sink) return fail("there was no place for a basin");
+    add("basin", *sink, {{basin, 0.7, 0.85}});
+    add_place("washbasin", PlacePosture::stand, *sink, {0.0, -0.78}, 2, 0.0, {"wash", "dress"});
+  }
+
+  void add_wardrobe(RoomFloor& floor) {
+    const double half = 0.5 * draw_length({1.0, 1.8}, stream_);
+    const Rectangle solid{{-half, -0.62}, {half, -off_wall_m}};
+    const auto spot = floor.put_at_wall({solid, {{-half, -1.1}, {half, -off_wall_m}}}, half, stream_);
+    if (!spot) return fail("there was no place for a wardrobe");
+    add("wardrobe " + std::to_string(++wardrobes_), *spot, {{solid, 0.0, 2.0}});
+  }
+
+  void add_desk(RoomFloor& floor, Wanted wanted) {
+    const double half = 0.5 * draw_length({1.2, 1.6}, stream_), front = -off_wall_m - desk_depth_m;
+    const Rectangle solid{{-half, front}, {half, -off_wall_m}};
+    const auto spot = floor.put_at_wall({solid, {{-0.5, front - 1.0}, {0.5, -off_wall_m}}}, half, stream_);
+    if (!spot && wanted == Wanted::always) return fail("there was no place for a desk");
+    if (!spot) return;
+    const std::string number = std::to_string(++desks_);
+    add("desk " + number, *spot, {{solid, 0.71, 0.74}, {{{-half, front}, {0.04 - half, -off_wall_m}}, 0.0, 0.71},
+                                  {{{half - 0.04, front}, {half, -off_wall_m}}, 0.0, 0.71}});
+    add_seat("desk_" + number, *spot, {0.0, front - 0.28}, 2, hip_height_m, {"work"});
+  }
+
+  /// Where it fits.
+  void add_shelf(RoomFloor& floor) {
+    const double half = 0.5 * draw_length({0.8, 1.6}, stream_);
+    const double height = one_of(std::vector<double>{0.8, 1.2, 2.0}, stream_);
+    const Rectangle solid{{-half, -0.35}, {half, -off_wall_m}};
+    const auto spot = floor.put_at_wall({solid, {{-half, -0.8}, {half, -off_wall_m}}}, half, stream_);
+    if (spot) add("shelf " + std::to_string(++shelves_), *spot, {{solid, 0.0, height}});
+  }
+
+  const FlatSpec& spec_;
+  FlatPlan plan_;
+  Stream& stream_;
+  DrawnFlat flat_;
+  std::vector<RoomFloor> floors_;  ///< (rooms)
+  std::string lacking_;
+  int beds_ = 0, wardrobes_ = 0, desks_ = 0, shelves_ = 0;
+};
+
+}  // namespace
+
+std::variant<DrawnFlat, NoPlace> furnish_flat(const FlatSpec& spec, int residents, Stream& stream) {
+  auto plan = lay_out(spec, residents, stream);
+  if (auto* lacking = std::get_if<NoPlace>(&plan)) return *lacking;
+  return FlatFurnisher(spec, residents, std::get<FlatPlan>(std::move(plan)), stream).furnish();
+}
+
+}  // namespace pirsim::dataset

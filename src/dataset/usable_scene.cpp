@@ -1,0 +1,90 @@
+#include "dataset/usable_scene.hpp"
+
+#include <algorithm>
+
+#include "pirsim/model.hpp"
+#include "pirsim/room.hpp"
+#include "studies/sight.hpp"
+
+namespace pirsim::dataset {
+namespace {
+
+/// As large as the people of a schedule get: where this body gets to, all of them do.
+PersonSpec largest_person() {
+  constexpr double stature_m = 1.92, bmi = 32.0;
+  PersonSpec person;
+  person.id = "visitor";
+  person.stature_m = stature_m;
+  person.mass_kg = bmi * stature_m * stature_m;
+  return person;
+}
+
+/// What takes somebody to each seat and place.
+std::vector<ScriptedAction> stops_of(const SceneSpec& scene) {
+  std::vector<ScriptedAction> stops;
+  for (const SeatSpec& seat : scene.seats) stops.push_back({action::Sit{seat.id}, {}, {}, {}});
+  for (const PlaceSpec& place : scene.places) {
+    if (place.posture == PlacePosture::lie) {
+      stops.push_back({action::Lie{place.id}, {}, {}, {}});
+    } else {
+      stops.push_back({action::Stand{place.id}, {}, {}, {}});
+    }
+  }
+  return stops;
+}
+
+/// Goes to every seat and place, in and out through each door by turns.
+ScriptSpec tour_of(const SceneSpec& scene) {
+  PersonSpec visitor = largest_person();
+  const std::vector<ScriptedAction> stops = stops_of(scene);
+  const std::size_t n_doors = scene.entrances.size();
+  for (std::size_t i = 0; i < std::max(stops.size(), n_doors); ++i) {
+    const std::string& door = scene.entrances[i % n_doors].id;
+    visitor.actions.push_back({action::Enter{door}, {}, {}, {}});
+    visitor.actions.push_back(stops[i % stops.size()]);
+    visitor.actions.push_back({action::Leave{door}, {}, {}, {}});
+  }
+  ScriptSpec script;
+  script.name = "tour of " + scene.name;
+  script.trials.push_back({"1", {std::move(visitor)}});
+  return script;
+}
+
+}  // namespace
+
+std::string fault_of(const SceneSpec& scene) {
+  try {
+    const Model model = compile(scene, tour_of(scene));
+    const SightReport report = studies::look_around(model);
+    if (std::ranges::any_of(report.sensors, &SensorSight::sees_nothing)) return "a sensor saw nobody";
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::infeasible) throw;
+    return scene.places.empty() ? "a seat or door couldn't be reached" : "a seat, place or door couldn't be reached";
+  }
+  return {};
+}
+
+void ModelFinder::add_to(SceneSpec& scene) {
+  for (const SensorSpec& sensor : scene.sensors) {
+    if (!known_.contains(sensor.model)) {
+      const auto by = std::ranges::find_if(named_, [&](const Named& one) {
+        return std::ranges::find(one.models, sensor.model) != one.models.end();
+      });
+      const Where& named_at = by == named_.end() ? otherwise_ : by->where;
+      known_.emplace(sensor.model, io::find_sensor_model(sensor.model, {}, options_, named_at));
+    }
+    scene.sensor_models.emplace(sensor.model, known_.at(sensor.model));
+  }
+}
+
+void Failures::give_up(const std::string& what, int number, const Where& where) const {
+  std::string told;
+  for (const auto& [reason, times] : reasons_) {
+    told += (told.empty() ? "" : "; ") + std::to_string(times) + (times == 1 ? " time " : " times ") + reason;
+  }
+  throw Error(ErrorCode::infeasible, where,
+              what + ' ' + std::to_string(number) + ": none of " + std::to_string(most_tries) + ' ' + what +
+                  "s drawn from these ranges could be used (" + told + "): allow more space or less furniture");
+}
+
+}  // namespace pirsim::dataset
