@@ -25,15 +25,15 @@ enum class SensorsAt {
 
 /// What a flat may be like. All defaults are `assumed`: flats of our own choice, not a survey.
 struct FlatSpec {
-  CountRange rooms{1, 4};         ///< a living room, then bedrooms and perhaps a study; of one room the bed stands in it
-  CountRange residents{1, 2};     ///< each has a place to lie
-  std::optional<Range> size_m2;   ///< of the floor, inner walls included; none: usual_size_m2()
-  Range stretch{1.0, 1.6};        ///< width (along x) over depth
-  Range height_m{2.4, 2.7};       ///< of the ceiling
+  CountRange rooms{1, 4};        ///< a living room, then bedrooms and perhaps a study; of one room the bed stands in it
+  CountRange residents{1, 2};    ///< each has a place to lie
+  std::optional<Range> size_m2;  ///< of the floor, inner walls included; none: usual_size_m2()
+  Range stretch{1.0, 1.6};       ///< width (along x) over depth
+  Range height_m{2.4, 2.7};      ///< of the ceiling
   std::vector<FlatLayout> layouts{FlatLayout::corridor, FlatLayout::hall, FlatLayout::open};  ///< one is drawn
-  double own_kitchen = 0.6;       ///< probability that the kitchen isn't a part of the living room
-  double double_beds = 0.6;       ///< probability that two residents share a bed, and that one alone has a wide one
-  double study = 0.4;             ///< probability that a room that no bed needs is a study
+  double own_kitchen = 0.6;  ///< probability that the kitchen isn't a part of the living room
+  double double_beds = 0.6;  ///< probability that two residents share a bed, and that one alone has a wide one
+  double study = 0.4;        ///< probability that a room that no bed needs is a study
   std::vector<SensorsAt> sensors_at{SensorsAt::rooms};  ///< one is drawn
   std::vector<Mount> mounts{Mount::corner};             ///< of sensors in rooms, corner or ceiling; one is drawn
   std::vector<std::string> models;  ///< each sensor is one of them; empty: the usual one for where it hangs
@@ -50,8 +50,8 @@ enum class FlatRoomKind { living_room, kitchen, bedroom, study, bath, corridor }
 
 struct FlatRoom {
   FlatRoomKind kind = FlatRoomKind::living_room;
-  std::string id;   ///< of its area: "bedroom_2"
-  Rectangle area;   ///< up to the middle of inner walls: the rooms share the floor out
+  std::string id;  ///< of its area: "bedroom_2"
+  Rectangle area;  ///< up to the middle of inner walls: the rooms share the floor out
 };
 
 struct DrawnFlat {
@@ -63,9 +63,9 @@ struct DrawnFlat {
   SceneSpec scene;
 };
 
-/// Flat `number` (from 1) of these ranges: the same for the same seed and number, whatever else is drawn. Every seat and
-/// place can be reached by the largest body that a schedule draws, and every sensor sees somebody; a flat that fails is
-/// drawn again from the next sub-stream. Throws as draw_room() does.
+/// Flat `number` (from 1) of these ranges: the same for the same seed and number, whatever else is drawn. Every seat
+/// and place can be reached by the largest body that a schedule draws, and every sensor sees somebody; a flat that
+/// fails is drawn again from the next sub-stream. Throws as draw_room() does.
 [[nodiscard]] DrawnFlat draw_flat(const FlatSpec& spec, std::uint64_t seed, int number,
                                   const io::SceneOptions& options = {});
 

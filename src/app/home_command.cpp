@@ -66,7 +66,8 @@ void add_home_command(CLI::App& app) {
                 "corridor, hall or open: how rooms are reached (default: one of them)");
   offer_setting(command, *options, "--sensors-at", "sensors_at", "WORD",
                 "room or doorway: a sensor in each (default: room)");
-  offer_setting(command, *options, "--mount", "mount", "WORD", "corner or ceiling, of sensors in rooms (default: corner)");
+  offer_setting(command, *options, "--mount", "mount", "WORD",
+                "corner or ceiling, of sensors in rooms (default: corner)");
   offer_setting(command, *options, "--model", "model", "NAME", "of sensors, or [NAME,...]: one is drawn for each");
   offer_drawing(command, *options, "home");
   command.callback([options] { make_home(*options); });

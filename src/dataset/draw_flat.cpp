@@ -16,12 +16,12 @@ DrawnFlat draw_flat(const FlatSpec& spec, std::uint64_t seed, int number, const 
       failures.add(lacking->reason);
       continue;
     }
-    auto& flat = std::get<DrawnFlat>(drawn);
+    auto& [flat, demands] = std::get<FurnishedFlat>(drawn);
     flat.number = number;
     flat.tries = tries;
     flat.scene.name = "flat " + std::to_string(number);
     models.add_to(flat.scene);
-    const std::string fault = fault_of(flat.scene);
+    const std::string fault = fault_of(flat.scene, demands);
     if (fault.empty()) return std::move(flat);
     failures.add(fault);
   }

@@ -23,7 +23,7 @@ class FlatFurnisher {
     for (const Doorway& door : plan_.doorways) keep_doorway_free(door);
   }
 
-  std::variant<DrawnFlat, NoPlace> furnish() {
+  std::variant<FurnishedFlat, NoPlace> furnish() {
     build_shell(plan_, flat_.height_m, flat_.scene);
     add_beds();
     for (std::size_t i = 0; i < plan_.rooms.size() && lacking_.empty(); ++i) furnish_room(i);
@@ -35,22 +35,25 @@ class FlatFurnisher {
     }
     if (!lacking_.empty()) return NoPlace{lacking_};
     flat_.rooms = plan_.rooms;
-    return std::move(flat_);
+    return FurnishedFlat{std::move(flat_), std::move(demands_)};
   }
 
  private:
   // Sizes are `assumed`: common furniture, as in the shipped flat; the ranges that were looked at stand behind.
   static constexpr double off_wall_m = 0.02;
-  static constexpr double kept_free_at_door_m = 1.0;                    // 0.9-1.2, on both sides
-  static constexpr double bed_length_m = 2.05, bed_height_m = 0.48;     // 2.0-2.1, 0.45-0.5
-  static constexpr double pelvis_from_wall_m = 1.03;                    // of who lies: the head of the largest person has room
-  static constexpr double beside_bed_m = 0.7;                           // 0.6-0.8: to get in
-  static constexpr double sofa_depth_m = 0.9, sofa_height_m = 0.42;     // 0.85-1.0, 0.40-0.45
+  static constexpr double kept_free_at_door_m = 1.0;                 // 0.9-1.2, on both sides
+  static constexpr double bed_length_m = 2.05, bed_height_m = 0.48;  // 2.0-2.1, 0.45-0.5
+  static constexpr double pelvis_from_wall_m = 1.03;  // of who lies: the head of the largest person has room
+  static constexpr double beside_bed_m = 0.7;         // 0.6-0.8: to get in
+  static constexpr double sofa_depth_m = 0.9, sofa_height_m = 0.42;  // 0.85-1.0, 0.40-0.45
   static constexpr double pelvis_above_seat_m = 0.09;
   static constexpr double table_depth_m = 0.8, chair_from_table_m = 0.25, chair_spacing_m = 0.7, chair_zone_m = 0.9;
   static constexpr double hip_height_m = 0.53;
   static constexpr double counter_depth_m = 0.6, stand_from_counter_m = 0.37;  // 0.3-0.5
-  static constexpr double desk_depth_m = 0.7;                           // 0.6-0.8
+  static constexpr double knees_m = 0.45, back_m = 0.2;  // of sitters, from the pelvis: no leaf turns there
+  static constexpr double desk_depth_m = 0.7;            // 0.6-0.8
+
+  static constexpr std::size_t least_places = 8;  // half a square metre: what a sensor must see at least
 
   enum class Wanted { always, if_it_fits };
 
@@ -101,7 +104,8 @@ class FlatFurnisher {
     std::size_t next = 0;
     for (int left = flat_.residents; left > 0 && lacking_.empty();) {
       const bool is_wide = stream_.uniform() < spec_.double_beds;
-      const int sleepers = is_wide && left >= 2 && left > static_cast<int>(rooms.size() - next % rooms.size()) - 1 ? 2 : 1;
+      const int sleepers =
+          is_wide && left >= 2 && left > static_cast<int>(rooms.size() - next % rooms.size()) - 1 ? 2 : 1;
       add_bed(floors_[rooms[next++ % rooms.size()]], is_wide, sleepers);
       left -= sleepers;
     }
@@ -115,7 +119,9 @@ class FlatFurnisher {
     const double side = stream_.index(2) == 0 ? 1.0 : -1.0;
     const double left = sleepers == 2 || side < 0.0 ? -half - beside_bed_m : -half;
     const double right = sleepers == 2 || side > 0.0 ? half + beside_bed_m : half;
-    const Piece piece{solid, {{left, end}, {right, -off_wall_m}}};
+    // Two get to both sides round the foot.
+    const double foot = sleepers == 2 ? end - beside_bed_m : end;
+    const Piece piece{solid, {{left, foot}, {right, -off_wall_m}}};
     const auto spot = floor.put_at_wall(piece, half + off_wall_m, stream_);
     if (!spot) return fail("there was no place for a bed");
     const std::string number = std::to_string(++beds_);
@@ -125,6 +131,8 @@ class FlatFurnisher {
       const double at = sleepers == 1 ? side * x : k == 0 ? -x : x;
       const std::string id = "bed_" + number + (sleepers == 1 ? "" : k == 0 ? "_left" : "_right");
       add_place(id, PlacePosture::lie, *spot, {at, -pelvis_from_wall_m}, 0, bed_height_m, {"sleep"});
+      if (sleepers == 2)
+        demands_.points.push_back(*spot * Vec2(k == 0 ? -half - 0.4 : half + 0.4, -pelvis_from_wall_m));
     }
   }
 
@@ -132,7 +140,9 @@ class FlatFurnisher {
 
   void furnish_room(std::size_t index) {
     RoomFloor& floor = floors_[index];
-    const auto has = [&](Kind kind) { return std::ranges::find(plan_.rooms, kind, &FlatRoom::kind) != plan_.rooms.end(); };
+    const auto has = [&](Kind kind) {
+      return std::ranges::find(plan_.rooms, kind, &FlatRoom::kind) != plan_.rooms.end();
+    };
     switch (plan_.rooms[index].kind) {
       case Kind::living_room:
         if (!has(Kind::kitchen)) add_kitchen(floor);
@@ -161,7 +171,9 @@ class FlatFurnisher {
     const int seats = 2 + static_cast<int>(stream_.index(2));
     const double half = 0.5 * (0.8 * seats + 0.3);
     const Rectangle solid{{-half, -sofa_depth_m}, {half, -off_wall_m}};
-    const auto spot = floor.put_at_wall({solid, {{-half, -sofa_depth_m - 0.7}, {half, -off_wall_m}}}, half, stream_);
+    const Rectangle with_sitters{{-half, -0.55 - knees_m}, {half, -off_wall_m}};
+    const auto spot =
+        floor.put_at_wall({with_sitters, {{-half, -sofa_depth_m - 0.7}, {half, -off_wall_m}}}, half, stream_);
     if (!spot) return fail("there was no place for a sofa");
     add("sofa", *spot, {{solid, 0.0, sofa_height_m}});
     add("sofa back", *spot, {{{{-half, -off_wall_m - 0.2}, {half, -off_wall_m}}, sofa_height_m, 0.85}});
@@ -179,8 +191,7 @@ class FlatFurnisher {
     const Piece piece{{{-0.7, -0.4}, {0.7, -off_wall_m}}, {{-0.7, -0.4}, {0.7, -off_wall_m}}};
     if (!floor.fits(opposite, piece)) return;
     floor.put(opposite, piece);
-    add("television", opposite,
-        {{piece.solid, 0.0, 0.45}, {{{-0.5, -0.22}, {0.5, -0.18}}, 0.5, 1.08}});
+    add("television", opposite, {{piece.solid, 0.0, 0.45}, {{{-0.5, -0.22}, {0.5, -0.18}}, 0.5, 1.08}});
   }
 
   /// Chairs for the residents and a guest, two at least, on its long sides.
@@ -188,11 +199,13 @@ class FlatFurnisher {
     const int across = std::max(1, (flat_.residents + 2) / 2);
     const double half = 0.5 * (chair_spacing_m * across + 0.1), deep = 0.5 * table_depth_m;
     const Rectangle solid{{-half, -deep}, {half, deep}};
-    const auto spot =
-        floor.put_anywhere({solid, {{-half, -deep - chair_zone_m}, {half, deep + chair_zone_m}}}, stream_);
+    const double sitters = deep + chair_from_table_m + back_m;
+    const auto spot = floor.put_anywhere(
+        {{{-half, -sitters}, {half, sitters}}, {{-half, -deep - chair_zone_m}, {half, deep + chair_zone_m}}}, stream_);
     if (!spot) return fail("there was no place for a table");
     std::vector<BoxPart> parts{{solid, 0.71, 0.74}};
-    for (const double x : {-half + 0.08, half - 0.08}) parts.push_back({{{x - 0.03, -0.03}, {x + 0.03, 0.03}}, 0.0, 0.71});
+    for (const double x : {-half + 0.08, half - 0.08})
+      parts.push_back({{{x - 0.03, -0.03}, {x + 0.03, 0.03}}, 0.0, 0.71});
     add("table", *spot, parts);
     for (int k = 0; k < 2 * across; ++k) {
       const double x = (k / 2 + 0.5 - 0.5 * across) * chair_spacing_m, side = k % 2 == 0 ? 1.0 : -1.0;
@@ -227,7 +240,8 @@ class FlatFurnisher {
     add("shower tray", *tray, {{{{-0.44, -0.88}, {0.44, -off_wall_m}}, 0.0, 0.02}});
     add_place("shower", PlacePosture::stand, *tray, {0.0, -0.45}, 0, 0.0, {"shower", "wash"});
     const Rectangle bowl{{-0.2, -0.7}, {0.2, -off_wall_m}};
-    const auto toilet = floor.put_at_wall({bowl, {{-0.35, -1.2}, {0.35, -off_wall_m}}}, 0.4, stream_);
+    const auto toilet = floor.put_at_wall(
+        {{{-0.2, -0.48 - knees_m}, {0.2, -off_wall_m}}, {{-0.35, -1.2}, {0.35, -off_wall_m}}}, 0.4, stream_);
     if (!toilet) return fail("there was no place for a toilet");
     add("toilet", *toilet, {{bowl, 0.0, 0.42}});
     add_seat("toilet", *toilet, {0.0, -0.48}, 0, 0.42 + pelvis_above_seat_m, {"toilet"});
@@ -249,12 +263,15 @@ class FlatFurnisher {
   void add_desk(RoomFloor& floor, Wanted wanted) {
     const double half = 0.5 * draw_length({1.2, 1.6}, stream_), front = -off_wall_m - desk_depth_m;
     const Rectangle solid{{-half, front}, {half, -off_wall_m}};
-    const auto spot = floor.put_at_wall({solid, {{-0.5, front - 1.0}, {0.5, -off_wall_m}}}, half, stream_);
+    const Rectangle with_sitter{{-half, front - 0.28 - back_m}, {half, -off_wall_m}};
+    const auto spot = floor.put_at_wall({with_sitter, {{-0.5, front - 1.0}, {0.5, -off_wall_m}}}, half, stream_);
     if (!spot && wanted == Wanted::always) return fail("there was no place for a desk");
     if (!spot) return;
     const std::string number = std::to_string(++desks_);
-    add("desk " + number, *spot, {{solid, 0.71, 0.74}, {{{-half, front}, {0.04 - half, -off_wall_m}}, 0.0, 0.71},
-                                  {{{half - 0.04, front}, {half, -off_wall_m}}, 0.0, 0.71}});
+    std::vector<BoxPart> parts{{solid, 0.71, 0.74}};
+    for (const double x : {0.05 - half, half - 0.05})
+      parts.push_back({{{x - 0.02, front + 0.02}, {x + 0.02, -off_wall_m - 0.02}}, 0.0, 0.71});
+    add("desk " + number, *spot, parts);
     add_seat("desk_" + number, *spot, {0.0, front - 0.28}, 2, hip_height_m, {"work"});
   }
 
@@ -271,6 +288,7 @@ class FlatFurnisher {
   FlatPlan plan_;
   Stream& stream_;
   DrawnFlat flat_;
+  Demands demands_{{}, least_places};
   std::vector<RoomFloor> floors_;  ///< (rooms)
   std::string lacking_;
   int beds_ = 0, wardrobes_ = 0, desks_ = 0, shelves_ = 0;
@@ -278,7 +296,7 @@ class FlatFurnisher {
 
 }  // namespace
 
-std::variant<DrawnFlat, NoPlace> furnish_flat(const FlatSpec& spec, int residents, Stream& stream) {
+std::variant<FurnishedFlat, NoPlace> furnish_flat(const FlatSpec& spec, int residents, Stream& stream) {
   auto plan = lay_out(spec, residents, stream);
   if (auto* lacking = std::get_if<NoPlace>(&plan)) return *lacking;
   return FlatFurnisher(spec, residents, std::get<FlatPlan>(std::move(plan)), stream).furnish();

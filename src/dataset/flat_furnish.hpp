@@ -10,7 +10,11 @@
 namespace pirsim::dataset {
 
 /// A flat that isn't checked yet. Sensors have their models' names, but not the models.
-[[nodiscard]] std::variant<DrawnFlat, NoPlace> furnish_flat(const FlatSpec& spec, int residents, Stream& stream);
+struct FurnishedFlat {
+  DrawnFlat flat;
+  Demands demands;  ///< a place beside the bed for each who shares one
+};
+[[nodiscard]] std::variant<FurnishedFlat, NoPlace> furnish_flat(const FlatSpec& spec, int residents, Stream& stream);
 
 /// Which models a sensor that hangs so may be: the spec's, or the usual one.
 [[nodiscard]] const std::vector<std::string>& models_of(const FlatSpec& spec, SensorsAt at, Mount mount);

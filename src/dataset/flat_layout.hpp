@@ -13,15 +13,15 @@
 
 namespace pirsim::dataset {
 
-inline constexpr double flat_wall_m = 0.1;         ///< thickness of every wall
-inline constexpr double doorway_m = 0.9;           ///< width of every doorway
+inline constexpr double flat_wall_m = 0.1;  ///< thickness of every wall
+inline constexpr double doorway_m = 0.9;    ///< width of every doorway
 inline constexpr double doorway_height_m = 2.1;
 
 /// A gap in a wall, with a leaf or without.
 struct Doorway {
   std::optional<std::size_t> from;  ///< index of the room that it leads out of; none: from outside
   std::size_t into = 0;
-  Vec2 middle{0.0};  ///< on the wall's middle; of the front door on the floor's edge
+  Vec2 middle{0.0};     ///< on the wall's middle; of the front door on the floor's edge
   Vec2 direction{0.0};  ///< unit, into the room
   std::optional<DoorState> leaf;
   DoorHinge hinge = DoorHinge::left;  ///< at the wall that is nearer

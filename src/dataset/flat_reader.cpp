@@ -17,11 +17,13 @@ std::vector<Value> read_words(io::YamlMap& map, const std::string& key, std::vec
   std::vector<std::string> names;
   for (const auto& [name, value] : words) names.push_back(name);
   std::vector<Value> values;
-  const std::vector<io::YamlNode> items = node->is_list() ? io::read_list(*node, map.faults(), key) : std::vector{*node};
+  const std::vector<io::YamlNode> items =
+      node->is_list() ? io::read_list(*node, map.faults(), key) : std::vector{*node};
   for (const io::YamlNode& item : items) {
     if (const auto index = item.choice(map.faults(), key, names)) values.push_back(words[*index].second);
   }
-  if (items.empty()) map.faults().error(node->where(), key + ": expected " + names.front() + " or another of its words");
+  if (items.empty())
+    map.faults().error(node->where(), key + ": expected " + names.front() + " or another of its words");
   return values.empty() ? std::move(otherwise) : values;
 }
 
@@ -38,17 +40,16 @@ FlatSpec read_flat_keys(io::YamlMap& map) {
   if (has_size) spec.size_m2 = size;
   spec.stretch = read_range(map, "stretch", spec.stretch, {.min = 0.3, .max = 4.0});
   spec.height_m = read_range(map, "height_m", spec.height_m, {.min = 2.3, .max = 5.0});
-  spec.layouts = read_words(map, "layout", spec.layouts,
-                            Words<FlatLayout>{{"corridor", FlatLayout::corridor},
-                                              {"hall", FlatLayout::hall},
-                                              {"open", FlatLayout::open}});
+  spec.layouts = read_words(
+      map, "layout", spec.layouts,
+      Words<FlatLayout>{{"corridor", FlatLayout::corridor}, {"hall", FlatLayout::hall}, {"open", FlatLayout::open}});
   spec.own_kitchen = map.number("own_kitchen", spec.own_kitchen, share);
   spec.double_beds = map.number("double_beds", spec.double_beds, share);
   spec.study = map.number("study", spec.study, share);
   spec.sensors_at = read_words(map, "sensors_at", spec.sensors_at,
                                Words<SensorsAt>{{"room", SensorsAt::rooms}, {"doorway", SensorsAt::doorways}});
-  spec.mounts = read_words(map, "mount", spec.mounts,
-                           Words<Mount>{{"corner", Mount::corner}, {"ceiling", Mount::ceiling}});
+  spec.mounts =
+      read_words(map, "mount", spec.mounts, Words<Mount>{{"corner", Mount::corner}, {"ceiling", Mount::ceiling}});
   if (const auto model = map.child("model")) {
     spec.models = model->is_scalar() ? std::vector{model->text(map.faults(), "model")} : map.texts("model");
     spec.models_where = model->where();

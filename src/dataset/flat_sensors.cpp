@@ -8,8 +8,8 @@ namespace pirsim::dataset {
 namespace {
 
 constexpr double sensor_off_wall_m = 0.05;
-constexpr double above_doorway_m = 0.1;      // 0.05-0.2
-constexpr double doorway_tilt_deg = 75.0;    // 60-85: the strip before the door, not the room behind
+constexpr double above_doorway_m = 0.1;    // 0.05-0.2
+constexpr double doorway_tilt_deg = 75.0;  // 60-85: the strip before the door, not the room behind
 
 Quat looking(const Vec2& direction, double tilt_rad) {
   return rotation_from_heading(heading_of(direction)) * glm::angleAxis(-tilt_rad, Vec3(1, 0, 0));
@@ -41,7 +41,8 @@ std::vector<Rectangle> tall_furniture(const SceneSpec& scene, double height_m) {
       r = {{std::min(r.lower.x, p.x), std::min(r.lower.y, p.z)}, {std::max(r.upper.x, p.x), std::max(r.upper.y, p.z)}};
       top = std::max(top, p.y);
     }
-    if (top > 1.5 && top < height_m) tall.push_back(r);
+    constexpr double short_of_ceiling_m = 0.1;
+    if (top > 1.5 && top < height_m - short_of_ceiling_m) tall.push_back(r);
   }
   return tall;
 }

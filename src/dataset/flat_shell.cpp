@@ -62,7 +62,7 @@ class Shell {
     for (const Doorway& door : plan_.doorways) {
       constexpr double touch_m = 1e-6;
       const Vec2 m = door.middle;
-      const Rectangle &a = wall.area;
+      const Rectangle& a = wall.area;
       const bool is_in = m.x > a.lower.x - touch_m && m.x < a.upper.x + touch_m && m.y > a.lower.y - touch_m &&
                          m.y < a.upper.y + touch_m && (door.direction.x == 0.0) == wall.is_along_x;
       if (is_in) gaps.push_back(along(m));

@@ -24,7 +24,8 @@ class RoomFloor {
   void put(const Spot& spot, const Piece& piece);
   void keep_free(const Rectangle& rectangle) { kept_.push_back(rectangle); }
 
-  /// Its back to a wall, often in a corner: half_m from its middle to its sides. None after some attempts. Puts it there.
+  /// Its back to a wall, often in a corner: half_m from its middle to its sides. None after some attempts. Puts it
+  /// there.
   [[nodiscard]] std::optional<Spot> put_at_wall(const Piece& piece, double half_m, Stream& stream);
   /// Anywhere, turned by quarters.
   [[nodiscard]] std::optional<Spot> put_anywhere(const Piece& piece, Stream& stream);

@@ -19,9 +19,10 @@ PersonSpec largest_person() {
   return person;
 }
 
-/// What takes somebody to each seat and place.
-std::vector<ScriptedAction> stops_of(const SceneSpec& scene) {
+/// What takes somebody to each seat, place and point.
+std::vector<ScriptedAction> stops_of(const SceneSpec& scene, const Demands& demands) {
   std::vector<ScriptedAction> stops;
+  for (const Vec2& point : demands.points) stops.push_back({action::Walk{{point}}, {}, {}, {}});
   for (const SeatSpec& seat : scene.seats) stops.push_back({action::Sit{seat.id}, {}, {}, {}});
   for (const PlaceSpec& place : scene.places) {
     if (place.posture == PlacePosture::lie) {
@@ -34,9 +35,9 @@ std::vector<ScriptedAction> stops_of(const SceneSpec& scene) {
 }
 
 /// Goes to every seat and place, in and out through each door by turns.
-ScriptSpec tour_of(const SceneSpec& scene) {
+ScriptSpec tour_of(const SceneSpec& scene, const Demands& demands) {
   PersonSpec visitor = largest_person();
-  const std::vector<ScriptedAction> stops = stops_of(scene);
+  const std::vector<ScriptedAction> stops = stops_of(scene, demands);
   const std::size_t n_doors = scene.entrances.size();
   for (std::size_t i = 0; i < std::max(stops.size(), n_doors); ++i) {
     const std::string& door = scene.entrances[i % n_doors].id;
@@ -52,11 +53,13 @@ ScriptSpec tour_of(const SceneSpec& scene) {
 
 }  // namespace
 
-std::string fault_of(const SceneSpec& scene) {
+std::string fault_of(const SceneSpec& scene, const Demands& demands) {
   try {
-    const Model model = compile(scene, tour_of(scene));
+    const Model model = compile(scene, tour_of(scene, demands));
     const SightReport report = studies::look_around(model);
     if (std::ranges::any_of(report.sensors, &SensorSight::sees_nothing)) return "a sensor saw nobody";
+    const auto sees_little = [&](const SensorSight& sensor) { return sensor.places < demands.least_places; };
+    if (std::ranges::any_of(report.sensors, sees_little)) return "a sensor saw hardly any of the floor";
   } catch (const Error& error) {
     if (error.code() != ErrorCode::infeasible) throw;
     return scene.places.empty() ? "a seat or door couldn't be reached" : "a seat, place or door couldn't be reached";
@@ -67,9 +70,8 @@ std::string fault_of(const SceneSpec& scene) {
 void ModelFinder::add_to(SceneSpec& scene) {
   for (const SensorSpec& sensor : scene.sensors) {
     if (!known_.contains(sensor.model)) {
-      const auto by = std::ranges::find_if(named_, [&](const Named& one) {
-        return std::ranges::find(one.models, sensor.model) != one.models.end();
-      });
+      const auto by = std::ranges::find_if(
+          named_, [&](const Named& one) { return std::ranges::find(one.models, sensor.model) != one.models.end(); });
       const Where& named_at = by == named_.end() ? otherwise_ : by->where;
       known_.emplace(sensor.model, io::find_sensor_model(sensor.model, {}, options_, named_at));
     }

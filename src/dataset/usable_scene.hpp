@@ -15,9 +15,15 @@ struct NoPlace {
   std::string reason;
 };
 
-/// Why nobody could use what was drawn, or nothing: a seat or place that the largest person can't reach from the
-/// entrances, a sensor that sees nobody.
-[[nodiscard]] std::string fault_of(const SceneSpec& scene);
+/// What a scene must allow besides: its seats, places and entrances are reached, and its sensors see somebody.
+struct Demands {
+  std::vector<Vec2> points{};    ///< of the floor, where somebody must be able to walk
+  std::size_t least_places = 0;  ///< of a grid of 0.25 m, where each sensor must see who stands there
+};
+
+/// Why nobody could use what was drawn, or nothing: what the largest person can't reach from the entrances, a sensor
+/// that sees nobody.
+[[nodiscard]] std::string fault_of(const SceneSpec& scene, const Demands& demands = {});
 
 /// Finds each model once, however many attempts there are. Throws Error(input) where it was named.
 class ModelFinder {
