@@ -131,8 +131,7 @@ class FlatFurnisher {
       const double at = sleepers == 1 ? side * x : k == 0 ? -x : x;
       const std::string id = "bed_" + number + (sleepers == 1 ? "" : k == 0 ? "_left" : "_right");
       add_place(id, PlacePosture::lie, *spot, {at, -pelvis_from_wall_m}, 0, bed_height_m, {"sleep"});
-      if (sleepers == 2)
-        demands_.points.push_back(*spot * Vec2(k == 0 ? -half - 0.4 : half + 0.4, -pelvis_from_wall_m));
+      if (sleepers == 2) demands_.shared_beds.push_back(id);
     }
   }
 

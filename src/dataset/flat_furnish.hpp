@@ -12,7 +12,7 @@ namespace pirsim::dataset {
 /// A flat that isn't checked yet. Sensors have their models' names, but not the models.
 struct FurnishedFlat {
   DrawnFlat flat;
-  Demands demands;  ///< a place beside the bed for each who shares one
+  Demands demands;
 };
 [[nodiscard]] std::variant<FurnishedFlat, NoPlace> furnish_flat(const FlatSpec& spec, int residents, Stream& stream);
 

@@ -17,8 +17,8 @@ struct NoPlace {
 
 /// What a scene must allow besides: its seats, places and entrances are reached, and its sensors see somebody.
 struct Demands {
-  std::vector<Vec2> points{};    ///< of the floor, where somebody must be able to walk
-  std::size_t least_places = 0;  ///< of a grid of 0.25 m, where each sensor must see who stands there
+  std::vector<std::string> shared_beds{};  ///< places to lie that must be got onto from their own side
+  std::size_t least_places = 0;            ///< of a grid of 0.25 m, where each sensor must see who stands there
 };
 
 /// Why nobody could use what was drawn, or nothing: what the largest person can't reach from the entrances, a sensor
