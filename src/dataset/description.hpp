@@ -13,9 +13,9 @@ namespace pirsim::dataset {
 
 struct DescribedRoom {
   int number = 0;
-  Part part = Part::train;       ///< of its first day
-  std::optional<RoomKind> kind;  ///< none: the user's own
-  std::string scene_file;        ///< relative to the dataset, or as the user named it
+  Part part = Part::train;  ///< of its first day
+  std::string kind;         ///< as in recipes; empty: the user's own
+  std::string scene_file;   ///< relative to the dataset, or as the user named it
   SceneSpec scene;
   int staff = 0;
 };

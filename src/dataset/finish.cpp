@@ -77,7 +77,7 @@ DescribedRoom described_room(const Store& store, int number) {
   DescribedRoom room;
   room.number = number;
   const SceneSpec* own = store.own_scene(number);
-  if (own == nullptr) room.kind = group_of(store.recipe(), number).rooms.kind;
+  if (own == nullptr) room.kind = kind_of(group_of(store.recipe(), number));
   room.scene_file = own == nullptr ? room_path(number) : own_scene(store.recipe(), number)->file.filename().string();
   room.scene = own == nullptr ? io::read_scene(store.room_file(number), store.scenes()) : *own;
   return room;

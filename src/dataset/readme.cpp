@@ -111,7 +111,7 @@ std::string about_rooms(const Description& described) {
 
 /// How to run a day again; scenes of the recipe's author stay where they are.
 std::string rooms_and_scripts(const Description& described) {
-  const auto is_drawn = [](const DescribedRoom& room) { return room.kind.has_value(); };
+  const auto is_drawn = [](const DescribedRoom& room) { return !room.kind.empty(); };
   const auto drawn = std::ranges::find_if(described.rooms, is_drawn);
   std::string text = "- ";
   if (drawn != described.rooms.end()) text += "`rooms/`: the rooms as glTF; ";

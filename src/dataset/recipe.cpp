@@ -8,6 +8,7 @@
 #include <set>
 
 #include "dataset/floor_plan.hpp"
+#include "dataset/household.hpp"
 #include "effects/catalogue.hpp"
 #include "pirsim/random.hpp"
 #include "schema/clock.hpp"
@@ -47,6 +48,11 @@ int first_test_day(const RecipeSpec& recipe, const ScheduleSpec& schedule) {
 ScheduleSpec schedule_of(const RecipeSpec& recipe, const SceneSpec& scene, int room) {
   const RoomGroupSpec& group = group_of(recipe, room);
   ScheduleSpec schedule = group.schedule;
+  if (group.home) {
+    Stream stream({recipe.seed, word(recipe.original_of(room)), 1, Purpose::flat_household});
+    schedule.household = draw_household(group.home->household, scene, stream);
+    return schedule;
+  }
   std::vector<StaffSpec> pool;
   for (const StaffSpec& staff : schedule.staff) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(staff.count); ++i) {
@@ -151,6 +157,11 @@ const RoomGroupSpec& group_of(const RecipeSpec& recipe, int room) {
     first += group.count;
   }
   throw Error(ErrorCode::usage, "the recipe has rooms 1 to " + std::to_string(recipe.n_rooms()));
+}
+
+std::string kind_of(const RoomGroupSpec& group) {
+  if (group.home) return "home";
+  return group.rooms.kind == RoomKind::office ? "office" : "meeting";
 }
 
 const OwnScene* own_scene(const RecipeSpec& recipe, int room) {

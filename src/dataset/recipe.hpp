@@ -9,6 +9,8 @@ namespace pirsim::dataset {
 [[nodiscard]] std::vector<int> drawn_by_weight(const DrawBySpec& draw_by, std::uint64_t seed);
 
 [[nodiscard]] const RoomGroupSpec& group_of(const RecipeSpec& recipe, int room);
+/// "office", "meeting" or "home", of drawn rooms.
+[[nodiscard]] std::string kind_of(const RoomGroupSpec& group);
 /// The user's own file, or empty for a drawn room.
 [[nodiscard]] const OwnScene* own_scene(const RecipeSpec& recipe, int room);
 [[nodiscard]] SceneSpec read_own(const OwnScene& own, io::SceneOptions options);

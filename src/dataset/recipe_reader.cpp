@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "dataset/exports.hpp"
+#include "dataset/flat_reader.hpp"
+#include "dataset/household.hpp"
 #include "dataset/recipe.hpp"
 #include "dataset/room_reader.hpp"
 #include "io/files/compression.hpp"
@@ -13,6 +15,7 @@
 #include "io/read/reader_parts.hpp"
 #include "pirsim/dataset.hpp"
 #include "pirsim/effects.hpp"
+#include "schema/clock.hpp"
 
 namespace pirsim::dataset {
 namespace {
@@ -142,8 +145,43 @@ OwnScene read_own_scene(const YamlNode& node, const RecipeSpec& recipe, Diagnost
   return own;
 }
 
+bool is_home(const YamlNode& node, Diagnostics& faults) {
+  if (!node.is_map()) return false;
+  YamlMap map(node, faults, "rooms");
+  const auto kind = map.child("kind");
+  return kind && kind->is_scalar() && kind->text(faults, "kind") == "home";
+}
+
+/// Flats, and households instead of a schedule; of the recipe's they take the first day.
+RoomGroupSpec read_homes(const YamlNode& node, const std::optional<ScheduleSpec>& schedule, Diagnostics& faults) {
+  YamlMap map(node, faults, "rooms");
+  RoomGroupSpec group;
+  group.where = node.where();
+  static_cast<void>(map.child("kind"));
+  group.count = map.integer("count", group.count, {.min = 1, .max = most_rooms});
+  HomeGroupSpec& home = group.home.emplace();
+  home.flats = read_flat_keys(map);
+  if (const auto household = map.child("household")) home.household = read_household_ranges(*household, faults);
+  group.schedule.where = group.where;
+  group.schedule.first_day = map.text("first_day", schedule ? schedule->first_day : group.schedule.first_day);
+  group.schedule.from_h = home_from_h;
+  group.schedule.to_h = home_to_h;
+  try {
+    static_cast<void>(day_number(group.schedule.first_day, map.where("first_day")));
+  } catch (const Error& fault) {
+    faults.error(map.where("first_day"), fault.issues().front().message);
+  }
+  for (const char* key : {"schedule", "people"}) {
+    if (map.child(key))
+      faults.error(map.where(key), std::string(key) + ": a home has `household` and `residents` instead");
+  }
+  map.finish();
+  return group;
+}
+
 RoomGroupSpec read_group(const YamlNode& node, const RecipeSpec& recipe, const std::optional<ScheduleSpec>& schedule,
                          const std::optional<CountRange>& people, Diagnostics& faults) {
+  if (is_home(node, faults)) return read_homes(node, schedule, faults);
   YamlMap map(node, faults, "rooms");
   RoomGroupSpec group;
   group.where = node.where();

@@ -191,6 +191,7 @@ RoomDay simulate(const RecipeSpec& recipe, const Room& room, int day, const Colu
   const ScheduleSpec& schedule = *script.trials.front().schedule;
   record.date = clock_text(day_number(schedule.first_day, schedule.where) + day - 1, 0.0).substr(0, 10);
   for (const StaffSpec& staff : schedule.staff) record.staff += staff.count;
+  if (schedule.household) record.staff += static_cast<int>(schedule.household->residents.size());
   record.effects = script.effects;
   DayWriter writer(recipe, room.scene(), columns, made);
   const std::string script_text = io::to_yaml(script);

@@ -66,6 +66,15 @@ SensorGroupSpec read_sensors(const io::YamlNode& node, Diagnostics& faults) {
   return group;
 }
 
+/// Of a home other keys are read, as flat_reader.hpp says.
+RoomKind read_kind(io::YamlMap& map) {
+  enum class Word { office, meeting, home };
+  const Word word = map.choice<Word>("kind", Word::office,
+                                     {{"office", Word::office}, {"meeting", Word::meeting}, {"home", Word::home}});
+  if (word == Word::home) map.faults().error(map.where("kind"), "kind: a home is drawn by `pirsim home`");
+  return word == Word::meeting ? RoomKind::meeting : RoomKind::office;
+}
+
 }  // namespace
 
 Range read_range(io::YamlMap& map, const std::string& key, const Range& otherwise, NumberRange limits) {
@@ -87,7 +96,7 @@ CountRange read_count(io::YamlMap& map, const std::string& key, const CountRange
 RoomSpec read_room_keys(io::YamlMap& map) {
   RoomSpec spec;
   spec.where = map.where();
-  spec.kind = map.choice<RoomKind>("kind", spec.kind, {{"office", RoomKind::office}, {"meeting", RoomKind::meeting}});
+  spec.kind = read_kind(map);
   constexpr NumberRange sides{.min = 1.5, .max = 100.0}, share{.min = 0.0, .max = 1.0};
   spec.width_m = read_range(map, "width_m", spec.width_m, sides);
   spec.depth_m = read_range(map, "depth_m", spec.depth_m, sides);

@@ -30,10 +30,9 @@ constexpr Column<RoomLine> rooms[]{
     {room_column, room},
     {{"part", Holds::text, "train, validation or test_rooms; test_days are days of rooms in train."},
      [](const RoomLine& line) -> Cell { return line.part; }},
-    {{"kind", Holds::text, "office or meeting; own: a scene of the recipe's author."},
+    {{"kind", Holds::text, "office, meeting or home; own: a scene of the recipe's author."},
      [](const RoomLine& line) -> Cell {
-       const auto kind = line.described.kind;
-       return std::string_view(!kind ? "own" : *kind == RoomKind::office ? "office" : "meeting");
+       return line.described.kind.empty() ? std::string_view("own") : std::string_view(line.described.kind);
      }},
     {{"scene", Holds::text, "glTF file of the room."},
      [](const RoomLine& line) -> Cell { return line.described.scene_file; }},
@@ -45,7 +44,7 @@ constexpr Column<RoomLine> rooms[]{
      [](const RoomLine& line) { return whole(line.described.scene.seats.size()); }},
     {{"sensors", Holds::count, "Sensors.", "1"},
      [](const RoomLine& line) { return whole(line.described.scene.sensors.size()); }},
-    {{"staff", Holds::count, "People with a desk of their own here.", "1"},
+    {{"staff", Holds::count, "People with a desk of their own here, or who live here.", "1"},
      [](const RoomLine& line) { return whole(line.described.staff); }},
 };
 

@@ -1,0 +1,67 @@
+#include "dataset/household.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "dataset/floor_plan.hpp"
+#include "dataset/room_reader.hpp"
+#include "io/read/reader_parts.hpp"
+
+namespace pirsim::dataset {
+namespace {
+
+struct NamedClock {
+  const char* key;
+  ClockSpec HouseholdSpec::*clock;
+};
+constexpr std::array clocks{NamedClock{"wakes", &HouseholdSpec::wakes},
+                            NamedClock{"wakes_on_free_days", &HouseholdSpec::wakes_on_free_days},
+                            NamedClock{"goes_to_bed", &HouseholdSpec::goes_to_bed},
+                            NamedClock{"leaves", &HouseholdSpec::leaves},
+                            NamedClock{"comes_home", &HouseholdSpec::comes_home},
+                            NamedClock{"lunch", &HouseholdSpec::lunch},
+                            NamedClock{"dinner", &HouseholdSpec::dinner}};
+
+std::size_t beds_of(const SceneSpec& home) {
+  return static_cast<std::size_t>(std::ranges::count_if(home.places, [](const PlaceSpec& place) {
+    return place.posture == PlacePosture::lie && std::ranges::find(place.uses, "sleep") != place.uses.end();
+  }));
+}
+
+}  // namespace
+
+HouseholdRangesSpec read_household_ranges(const io::YamlNode& node, Diagnostics& faults) {
+  io::YamlMap map(node, faults, "household");
+  HouseholdRangesSpec ranges;
+  ranges.works = map.number("works", ranges.works, {.min = 0.0, .max = 1.0});
+  ranges.age_years = read_range(map, "age_years", ranges.age_years, {.min = 16.0, .max = 110.0});
+  ranges.visits_a_week = read_range(map, "visits_a_week", ranges.visits_a_week, {.min = 0.0, .max = 7.0});
+  ranges.shift_min = read_range(map, "shift_min", ranges.shift_min, {.min = -120.0, .max = 120.0});
+  for (const NamedClock& named : clocks) io::read_part(map, named.key, ranges.usual.*named.clock);
+  HouseholdSpec somebody = ranges.usual;
+  somebody.residents.emplace_back().id = "resident";
+  check_together(somebody, io::faults_of(map, "household"));
+  map.finish();
+  return ranges;
+}
+
+HouseholdSpec draw_household(const HouseholdRangesSpec& ranges, const SceneSpec& home, Stream& stream) {
+  constexpr double minutes = 60.0, last_h = 24.0;
+  HouseholdSpec household = ranges.usual;
+  household.visits_a_week = std::round(10.0 * draw(ranges.visits_a_week, stream)) / 10.0;
+  const double shift_h = std::round(draw(ranges.shift_min, stream)) / minutes;
+  for (const NamedClock& named : clocks) {
+    double& mean_h = (household.*named.clock).mean_h;
+    mean_h = std::clamp(std::round(minutes * (mean_h + shift_h)) / minutes, 0.0, last_h);
+  }
+  for (std::size_t i = 1; i <= beds_of(home); ++i) {
+    ResidentSpec& resident = household.residents.emplace_back();
+    resident.id = "resident_" + std::to_string(i);
+    resident.occupation = stream.uniform() < ranges.works ? Occupation::works : Occupation::at_home;
+    resident.age_years = std::round(draw(ranges.age_years, stream));
+  }
+  return household;
+}
+
+}  // namespace pirsim::dataset
