@@ -41,7 +41,10 @@ HouseholdRangesSpec read_household_ranges(const io::YamlNode& node, Diagnostics&
   for (const NamedClock& named : clocks) io::read_part(map, named.key, ranges.usual.*named.clock);
   HouseholdSpec somebody = ranges.usual;
   somebody.residents.emplace_back().id = "resident";
-  check_together(somebody, io::faults_of(map, "household"));
+  check_together(somebody, [&](std::string_view field, const std::string& message) {
+    const std::string key(field);
+    faults.error(map.where(key), "household: " + key + ": " + message);
+  });
   map.finish();
   return ranges;
 }

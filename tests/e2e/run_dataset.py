@@ -53,6 +53,34 @@ class Room(unittest.TestCase):
                                              code=5).stderr)
 
 
+class Home(unittest.TestCase):
+    def test_a_flat_is_drawn_checked_and_lived_in(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            keys = "--rooms", 2, "--residents", 2, "--sensors-at", "doorway", "--number", 4
+            told = pirsim("home", *keys, "-o", folder / "a.gltf").stderr
+            self.assertIn("for 2 residents, rooms living_room", told)
+            self.assertIn("PIR_bath_door (AMN33111)", told)
+            pirsim("home", *keys, "-o", folder / "b.gltf", "-q")
+            self.assertEqual((folder / "a.gltf").read_bytes(), (folder / "b.gltf").read_bytes())
+            home = "day", "--scene", folder / "a.gltf", "--home", 2, "--days", 1, "--sensors", DATA / "sensors"
+            script = folder / "day.yaml"
+            script.write_text(pirsim(*home, "--print-script").stdout)
+            checked = pirsim("check", "--scene", folder / "a.gltf", "--script", script, "--sensors", DATA / "sensors")
+            self.assertNotIn("warning", checked.stderr)
+            self.assertIn("bath_door", checked.stdout)
+
+    def test_faults_name_the_nearest(self):
+        self.assertIn("did you mean 'corridor'", pirsim("home", "--layout", "coridor", "-o", "x.gltf", code=2).stderr)
+        self.assertIn("did you mean 'residents'", pirsim("home", "--set", "resident=3", "-o", "x.gltf", code=2).stderr)
+        self.assertIn("--rooms 5", pirsim("home", "--rooms", 5, "-o", "x.gltf", code=2).stderr)
+        self.assertIn("none of 300 flats", pirsim("home", "--rooms", 1, "--size", 20, "--residents", 5, "-o", "x.gltf",
+                                                  code=5).stderr)
+        recipe = DATA / "recipes" / "homes.yaml"
+        self.assertIn("pirsim home draws it", pirsim("room", recipe, "-o", "x.gltf", code=2).stderr)
+        self.assertIn("pirsim room draws it", pirsim("home", DATA / "recipes" / "tiny.yaml", "-o", "x.gltf", code=2).stderr)
+
+
 class Dataset(unittest.TestCase):
     def test_more_people_than_seats_are_told_once(self):
         recipe = (DATA / "recipes" / "tiny.yaml").read_text()

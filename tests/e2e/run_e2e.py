@@ -54,9 +54,11 @@ OTHERS = {("day",): ("--scene", "nowhere.gltf", "--staff", "2", "-o", "rows.csv"
           ("merge",): ("shards", "-o", "rows.csv", "--script", "other.yaml"), ("effects",): (), ("help",): (),
           ("log",): ("nowhere.csv",), ("calibrate",): ("recipe.yaml", "--log", "nowhere.csv", "-o", "out"),
           ("count",): ("counter.json", "--log", "nowhere.csv"),
-          ("room",): ("-o", "room.gltf"), ("dataset",): ("recipe.yaml", "-o", "out")}
+          ("room",): ("-o", "room.gltf"), ("home",): ("-o", "flat.gltf"), ("dataset",): ("recipe.yaml", "-o", "out")}
 ROOM_VALUES = {"--set": "cut_share=0.3", "--kind": "meeting", "--desks": "rows", "--width": "6", "--height": "3",
                "--depth": "5"}
+HOME_VALUES = {"--set": "own_kitchen=0", "--rooms": "2", "--size": "60", "--height": "2.5", "--layout": "hall",
+               "--sensors-at": "doorway", "--mount": "ceiling", "--model": "EKMC1601111"}
 VALUES = {"--set": "name=other", "--response": "zones", "--marks": "marks.yaml", "--sensors": ".", "--tracer": "direct", "--report": "page.html", "--format": ".csv",
           "--summary": "sums.csv", "--zones": "zones.csv", "--trace": "trace.csv",
           "--occupants": "occupants.csv", "--casas": "log.txt", "--shard": "1/2", "--max-time": "5m",
@@ -82,6 +84,8 @@ def value_of(command, option):
         return "csv"
     if command == ("room",) and option in ROOM_VALUES:
         return ROOM_VALUES[option]
+    if command == ("home",) and option in HOME_VALUES:
+        return HOME_VALUES[option]
     return VALUES.get(option, "1" if option not in ("--out", "--answer") else "folder")
 
 

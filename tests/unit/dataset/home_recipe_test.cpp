@@ -1,0 +1,124 @@
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "dataset/recipe.hpp"
+#include "pirsim/dataset.hpp"
+#include "support/catch.hpp"
+#include "support/paths.hpp"
+#include "support/temporary_folder.hpp"
+
+using namespace pirsim;
+using namespace pirsim::dataset;
+
+namespace {
+
+io::SceneOptions shipped_sensors() { return {{test::data_dir() / "sensors"}, {}}; }
+
+RecipeSpec read(const std::string& text) {
+  const TemporaryFolder folder;
+  return read_recipe(folder.write("r.yaml", text));
+}
+
+RecipeSpec homes(const std::string& keys) {
+  return read("pirsim_recipe: 1\nrooms:\n  - {kind: home, count: 40, " + keys + "}\ndays: 2\n");
+}
+
+std::string faults_of(const std::string& keys) {
+  try {
+    static_cast<void>(homes(keys));
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+HouseholdSpec household_of(const RecipeSpec& recipe, int room, int day = 1) {
+  const SceneSpec scene = room_of(recipe, room, shipped_sensors());
+  return *script_of(recipe, scene, room, day).trials.front().schedule->household;
+}
+
+std::string content(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+}  // namespace
+
+TEST_CASE("each home has a household of its own within the ranges, the same on all of its days", "[dataset][home]") {
+  const RecipeSpec recipe = homes(
+      "rooms: [1, 3], residents: [1, 3], household: {works: 0.5, age_years: [30, 50], visits_a_week: [1, 2], "
+      "shift_min: [-60, 60], dinner: {mean: \"20:00\", sd_min: 15}}");
+  std::set<std::size_t> residents;
+  std::set<double> wakes;
+  int workers = 0, all = 0;
+  for (int room = 1; room <= 40; ++room) {
+    const HouseholdSpec household = household_of(recipe, room);
+    CHECK(household == household_of(recipe, room, 2));
+    residents.insert(household.residents.size());
+    wakes.insert(household.wakes.mean_h);
+    CHECK((household.visits_a_week >= 1.0 && household.visits_a_week <= 2.0));
+    const double shift_h = household.wakes.mean_h - HouseholdSpec{}.wakes.mean_h;
+    CHECK(std::abs(shift_h) <= 1.0);
+    CHECK(household.dinner.mean_h == Approx(20.0 + shift_h));  // all clocks together
+    CHECK(household.dinner.sd_min == 15.0);
+    for (const ResidentSpec& resident : household.residents) {
+      CHECK((resident.age_years >= 30.0 && resident.age_years <= 50.0));
+      workers += resident.occupation == Occupation::works ? 1 : 0;
+      ++all;
+    }
+  }
+  CHECK(residents == std::set<std::size_t>{1, 2, 3});
+  CHECK(wakes.size() > 20);
+  // Binomial: four standard errors of about sqrt(0.25 / all).
+  CHECK(std::abs(workers - 0.5 * all) < 4.0 * std::sqrt(0.25 * all));
+}
+
+TEST_CASE("what one home is doesn't depend on how many there are", "[dataset][home]") {
+  const RecipeSpec many = homes("residents: [1, 3]");
+  RecipeSpec few = many;
+  few.rooms.front().count = 5;
+  CHECK(household_of(many, 4) == household_of(few, 4));
+}
+
+TEST_CASE("the CASAS log of a home says who does what, whether or not occupants are told", "[dataset][home][seconds]") {
+  const TemporaryFolder folder;
+  const RecipeSpec recipe = read_recipe(folder.write("r.yaml", R"(pirsim_recipe: 1
+rooms:
+  - {kind: home, rooms: 1, residents: 1}
+days: 1
+sensing: {tick_rate_hz: 5, response: zones}
+exports: [casas]
+)"));
+  DatasetOptions options;
+  options.scenes = shipped_sensors();
+  const auto out = folder.path() / "out";
+  REQUIRE(make_room_days(recipe, out, options));
+  REQUIRE(finish_dataset(recipe, out, options));
+  const std::string log = content(out / "exports/casas/room_0001/day_01.txt");
+  for (const char* activity : {"sleeping", "toilet", "washing", "eating"}) {
+    CHECK_THAT(log, contains("resident_1_" + std::string(activity) + " begin"));
+    CHECK_THAT(log, contains("resident_1_" + std::string(activity) + " end"));
+  }
+  CHECK_THAT(log, contains("bath_door OPEN"));
+  CHECK_FALSE(std::filesystem::exists(out / "occupants"));
+  CHECK_THAT(content(out / "rooms.csv"), contains("1,train,home,rooms/room_0001.gltf"));
+}
+
+TEST_CASE("faults of homes in a recipe are told with their place and the nearest name", "[dataset][home]") {
+  CHECK(faults_of("rooms: 2").empty());
+  CHECK_THAT(faults_of("rooms: 9"), contains("r.yaml:3:36") && contains("rooms"));
+  CHECK_THAT(faults_of("seats: 2"), contains("seats"));
+  CHECK_THAT(faults_of("people: 2"), contains("`residents`"));
+  CHECK_THAT(faults_of("schedule: {from: 8}"), contains("`household`"));
+  CHECK_THAT(faults_of("first_day: 2026-02-30"), contains("r.yaml:3:") && contains("2026-02-30"));
+  CHECK_THAT(faults_of("household: {work: 1}"), contains("works"));
+  CHECK_THAT(faults_of("household: {works: 1.5}"), contains("works"));
+  CHECK_THAT(faults_of("household: {age_years: [5, 20]}"), contains("age_years"));
+  CHECK_THAT(faults_of("household: {shift_min: [-600, 0]}"), contains("shift_min"));
+  CHECK_THAT(faults_of("household: {residents: [{id: ann}]}"), contains("residents"));
+  CHECK_THAT(faults_of("household: {goes_to_bed: {mean: \"06:00\"}}"), contains("goes_to_bed"));
+  CHECK_THAT(faults_of("household: []"), contains("household"));
+}
