@@ -82,7 +82,7 @@ class Reader:
         self.run("placements", "-q", "--scene", self.room, "--script", self.write("placements.yaml", text))
 
     def recipe(self, text):
-        self.run("dataset", "-q", self.write("recipe.yaml", text), "-o", "dataset", "--shard", "1/45")
+        self.run("dataset", "-q", self.write("recipe.yaml", text), "-o", f"dataset_{len(text)}", "--shard", "1/45")
 
     def nuisance(self, text):
         self.run("reconcile", "seal", "-q", "--scene", self.room, "--script", self.write("study.yaml", SCRIPT), "--nuisance",
