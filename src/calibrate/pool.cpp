@@ -146,7 +146,7 @@ bool may_have(const dataset::RecipeSpec& recipe, int n_sensors) {
       least += sensors.count.least;
       most += sensors.count.most;
     }
-    return !group.scenes.empty() || (least <= n_sensors && n_sensors <= most);
+    return group.home || !group.scenes.empty() || (least <= n_sensors && n_sensors <= most);
   });
 }
 
