@@ -32,7 +32,8 @@ FlatSpec any_flat() {
   return spec;
 }
 
-/// Of all boxes that reach into what a body takes, seen from above. Boxes have eight corners each, one behind the other.
+/// Of all boxes that reach into what a body takes, seen from above. Boxes have eight corners each, one behind the
+/// other.
 std::vector<Rectangle> obstacles(const SceneSpec& scene) {
   std::vector<Rectangle> found;
   for (const TriMesh& mesh : scene.meshes) {
@@ -144,7 +145,8 @@ void check_doors(const DrawnFlat& flat) {
     CHECK(door.state == (door.id == "front_door" ? DoorState::shut : DoorState::habit));
     if (before) CHECK(door.id == flat.rooms[*behind].id + "_door");
     // The gap is free from the floor to the leaf's top, and the walls are hit beside it.
-    for (const Rectangle& r : obstacles(flat.scene)) CHECK(distance(floor_point(door.world_from_door.origin), r) > 0.44);
+    for (const Rectangle& r : obstacles(flat.scene))
+      CHECK(distance(floor_point(door.world_from_door.origin), r) > 0.44);
   }
 }
 
@@ -199,7 +201,8 @@ TEST_CASE("a hundred flats: all places are reached, areas share the floor out, d
       CHECK(has_use(flat.scene, use));
     for (const SensorSpec& sensor : flat.scene.sensors) {
       INFO(sensor.id);
-      const auto below = room_at(flat, floor_point(sensor.world_from_sensor.origin + 0.1 * sensor.world_from_sensor.forward()));
+      const auto below =
+          room_at(flat, floor_point(sensor.world_from_sensor.origin + 0.1 * sensor.world_from_sensor.forward()));
       REQUIRE(below);
       CHECK(flat.rooms[*below].id == sensor.area);
     }
