@@ -82,7 +82,7 @@ class Shell {
     if (!door.from) scene_.entrances.push_back({"entrance", frame, doorway_m, 1.5});
     if (!door.leaf) return;
     DoorSpec leaf;
-    leaf.id = door.from ? plan_.rooms[door.into].id + "_door" : "front_door";
+    leaf.id = door.from ? plan_.rooms[door.into].id : "front";
     leaf.world_from_door = frame;
     leaf.width_m = leaf_m;
     leaf.hinge = door.hinge;

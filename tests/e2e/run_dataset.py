@@ -68,7 +68,7 @@ class Home(unittest.TestCase):
             script.write_text(pirsim(*home, "--print-script").stdout)
             checked = pirsim("check", "--scene", folder / "a.gltf", "--script", script, "--sensors", DATA / "sensors")
             self.assertNotIn("warning", checked.stderr)
-            self.assertIn("bath_door", checked.stdout)
+            self.assertIn("doors: front", checked.stdout)
 
     def test_faults_name_the_nearest(self):
         self.assertIn("did you mean 'corridor'", pirsim("home", "--layout", "coridor", "-o", "x.gltf", code=2).stderr)

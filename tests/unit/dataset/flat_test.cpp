@@ -141,9 +141,9 @@ void check_doors(const DrawnFlat& flat) {
     const auto behind = room_at(flat, floor_point(door.world_from_door * Vec3(0.0, 0.0, -0.5)));
     REQUIRE(behind);
     CHECK(before != behind);
-    CHECK(before.has_value() == (door.id != "front_door"));
-    CHECK(door.state == (door.id == "front_door" ? DoorState::shut : DoorState::habit));
-    if (before) CHECK(door.id == flat.rooms[*behind].id + "_door");
+    CHECK(before.has_value() == (door.id != "front"));
+    CHECK(door.state == (door.id == "front" ? DoorState::shut : DoorState::habit));
+    if (before) CHECK(door.id == flat.rooms[*behind].id);
     // The gap is free from the floor to the leaf's top, and the walls are hit beside it.
     for (const Rectangle& r : obstacles(flat.scene))
       CHECK(distance(floor_point(door.world_from_door.origin), r) > 0.44);
