@@ -1,27 +1,15 @@
 #include "dataset/household.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "dataset/floor_plan.hpp"
 #include "dataset/room_reader.hpp"
 #include "io/read/reader_parts.hpp"
+#include "schema/household_clocks.hpp"
 
 namespace pirsim::dataset {
 namespace {
-
-struct NamedClock {
-  const char* key;
-  ClockSpec HouseholdSpec::*clock;
-};
-constexpr std::array clocks{NamedClock{"wakes", &HouseholdSpec::wakes},
-                            NamedClock{"wakes_on_free_days", &HouseholdSpec::wakes_on_free_days},
-                            NamedClock{"goes_to_bed", &HouseholdSpec::goes_to_bed},
-                            NamedClock{"leaves", &HouseholdSpec::leaves},
-                            NamedClock{"comes_home", &HouseholdSpec::comes_home},
-                            NamedClock{"lunch", &HouseholdSpec::lunch},
-                            NamedClock{"dinner", &HouseholdSpec::dinner}};
 
 std::size_t beds_of(const SceneSpec& home) {
   return static_cast<std::size_t>(std::ranges::count_if(home.places, [](const PlaceSpec& place) {
@@ -38,7 +26,7 @@ HouseholdRangesSpec read_household_ranges(const io::YamlNode& node, Diagnostics&
   ranges.age_years = read_range(map, "age_years", ranges.age_years, {.min = 16.0, .max = 110.0});
   ranges.visits_a_week = read_range(map, "visits_a_week", ranges.visits_a_week, {.min = 0.0, .max = 7.0});
   ranges.shift_min = read_range(map, "shift_min", ranges.shift_min, {.min = -120.0, .max = 120.0});
-  for (const NamedClock& named : clocks) io::read_part(map, named.key, ranges.usual.*named.clock);
+  for (const HouseholdClock& named : household_clocks) io::read_part(map, named.key, ranges.usual.*named.clock);
   HouseholdSpec somebody = ranges.usual;
   somebody.residents.emplace_back().id = "resident";
   check_together(somebody, [&](std::string_view field, const std::string& message) {
@@ -54,7 +42,7 @@ HouseholdSpec draw_household(const HouseholdRangesSpec& ranges, const SceneSpec&
   HouseholdSpec household = ranges.usual;
   household.visits_a_week = std::round(10.0 * draw(ranges.visits_a_week, stream)) / 10.0;
   const double shift_h = std::round(draw(ranges.shift_min, stream)) / minutes;
-  for (const NamedClock& named : clocks) {
+  for (const HouseholdClock& named : household_clocks) {
     double& mean_h = (household.*named.clock).mean_h;
     mean_h = std::clamp(std::round(minutes * (mean_h + shift_h)) / minutes, 0.0, last_h);
   }

@@ -1,6 +1,7 @@
 #include <numeric>
 
 #include "schema/clock.hpp"
+#include "schema/household_clocks.hpp"
 #include "schema/spec_faults.hpp"
 
 namespace pirsim {
@@ -87,12 +88,7 @@ void check(const HouseholdSpec& household, const SpecPath& path, SpecFaults& fau
   faults.together(household, path);
   for (std::size_t i = 0; i < household.residents.size(); ++i)
     faults.numbers(household.residents[i], path.item("residents", i));
-  for (const auto& [name, clock] :
-       {std::pair("wakes", &household.wakes), std::pair("wakes_on_free_days", &household.wakes_on_free_days),
-        std::pair("goes_to_bed", &household.goes_to_bed), std::pair("leaves", &household.leaves),
-        std::pair("comes_home", &household.comes_home), std::pair("lunch", &household.lunch),
-        std::pair("dinner", &household.dinner)})
-    faults.numbers(*clock, path.field(name));
+  for (const auto& [key, clock] : household_clocks) faults.numbers(household.*clock, path.field(key));
 }
 
 void check(const ScheduleSpec& schedule, const SpecPath& path, SpecFaults& faults) {

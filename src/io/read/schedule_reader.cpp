@@ -5,6 +5,7 @@
 
 #include "io/read/yaml_map.hpp"
 #include "schema/clock.hpp"
+#include "schema/household_clocks.hpp"
 #include "schema/occupancy_runs.hpp"
 
 namespace pirsim::io {
@@ -72,12 +73,7 @@ HouseholdSpec read_household(const YamlNode& node, Diagnostics& faults) {
     own.finish();
   }
   read_fields(map, household);
-  for (const auto& [key, clock] :
-       {std::pair("wakes", &household.wakes), std::pair("wakes_on_free_days", &household.wakes_on_free_days),
-        std::pair("goes_to_bed", &household.goes_to_bed), std::pair("leaves", &household.leaves),
-        std::pair("comes_home", &household.comes_home), std::pair("lunch", &household.lunch),
-        std::pair("dinner", &household.dinner)})
-    read_part(map, key, *clock);
+  for (const auto& [key, clock] : household_clocks) read_part(map, key, household.*clock);
   check_together(household, [&](std::string_view field, const std::string& message) {
     faults.error(map.where(std::string(field)), "household: " + std::string(field) + ": " + message);
   });
