@@ -102,7 +102,7 @@ exports: [casas]
     CHECK_THAT(log, contains("resident_1_" + std::string(activity) + " begin"));
     CHECK_THAT(log, contains("resident_1_" + std::string(activity) + " end"));
   }
-  CHECK_THAT(log, contains("bath_door OPEN"));
+  CHECK_THAT(log, contains("door_bath OPEN"));
   CHECK_FALSE(std::filesystem::exists(out / "occupants"));
   CHECK_THAT(content(out / "rooms.csv"), contains("1,train,home,rooms/room_0001.gltf"));
 }
