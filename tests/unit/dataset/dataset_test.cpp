@@ -13,6 +13,7 @@
 #include "io/files/compression.hpp"
 #include "support/catch.hpp"
 #include "support/paths.hpp"
+#include "support/shipped.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace pirsim;
@@ -20,8 +21,6 @@ using namespace pirsim::dataset;
 namespace fs = std::filesystem;
 
 namespace {
-
-io::SceneOptions shipped_sensors() { return {{test::data_dir() / "sensors"}, {}}; }
 
 /// Four rooms, three days of six minutes, ten in the meeting room.
 const std::string short_recipe = R"(pirsim_recipe: 1
@@ -87,7 +86,7 @@ struct Made {
   [[nodiscard]] fs::path out() const { return folder.path() / "out"; }
   [[nodiscard]] DatasetOptions options(unsigned threads = 1) const {
     DatasetOptions options;
-    options.scenes = shipped_sensors();
+    options.scenes = test::shipped_sensors();
     options.threads = threads;
     return options;
   }
@@ -97,7 +96,7 @@ struct Made {
     REQUIRE(is_whole);
   }
   [[nodiscard]] std::vector<std::uint32_t> missing() const {
-    return missing_room_days(recipe, out(), shipped_sensors());
+    return missing_room_days(recipe, out(), test::shipped_sensors());
   }
   [[nodiscard]] fs::path day(const std::string& kind, int room, int day, const std::string& ending) const {
     return out() / day_path(kind, room, day, ending);
@@ -334,7 +333,7 @@ TEST_CASE("effects are drawn within their ranges, a room's for all of its days",
   const Made made;
   std::set<double> sigmas, probabilities;
   for (int room = 1; room <= 4; ++room) {
-    const SceneSpec scene = room_of(made.recipe, room, shipped_sensors());
+    const SceneSpec scene = room_of(made.recipe, room, test::shipped_sensors());
     for (int day = 1; day <= 3; ++day) {
       const ScriptSpec script = script_of(made.recipe, scene, room, day);
       REQUIRE(script.effects.size() == 1 + scene.sensors.size());

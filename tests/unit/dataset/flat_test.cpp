@@ -10,7 +10,7 @@
 #include "dataset/flat_reader.hpp"
 #include "io/write/scene_writer.hpp"
 #include "support/catch.hpp"
-#include "support/paths.hpp"
+#include "support/shipped.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace pirsim;
@@ -18,10 +18,8 @@ using namespace pirsim::dataset;
 
 namespace {
 
-io::SceneOptions shipped_sensors() { return {{test::data_dir() / "sensors"}, {}}; }
-
 DrawnFlat drawn(const FlatSpec& spec, int number, std::uint64_t seed = 1) {
-  return draw_flat(spec, seed, number, shipped_sensors());
+  return draw_flat(spec, seed, number, test::shipped_sensors());
 }
 
 FlatSpec any_flat() {
@@ -247,7 +245,7 @@ TEST_CASE("a flat that was written is read back without a warning", "[flat]") {
     const DrawnFlat flat = drawn(any_flat(), number);
     INFO("flat " << number);
     io::write_scene(folder.path() / "flat.gltf", flat.scene);
-    const SceneSpec read = io::read_scene(folder.path() / "flat.gltf", shipped_sensors());
+    const SceneSpec read = io::read_scene(folder.path() / "flat.gltf", test::shipped_sensors());
     for (const Issue& warning : read.warnings) UNSCOPED_INFO(to_string(warning));
     CHECK(read.warnings.empty());
     CHECK(read.doors.size() == flat.scene.doors.size());

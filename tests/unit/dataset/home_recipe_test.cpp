@@ -6,15 +6,13 @@
 #include "dataset/recipe.hpp"
 #include "pirsim/dataset.hpp"
 #include "support/catch.hpp"
-#include "support/paths.hpp"
+#include "support/shipped.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace pirsim;
 using namespace pirsim::dataset;
 
 namespace {
-
-io::SceneOptions shipped_sensors() { return {{test::data_dir() / "sensors"}, {}}; }
 
 RecipeSpec read(const std::string& text) {
   const TemporaryFolder folder;
@@ -35,7 +33,7 @@ std::string faults_of(const std::string& keys) {
 }
 
 HouseholdSpec household_of(const RecipeSpec& recipe, int room, int day = 1) {
-  const SceneSpec scene = room_of(recipe, room, shipped_sensors());
+  const SceneSpec scene = room_of(recipe, room, test::shipped_sensors());
   return *script_of(recipe, scene, room, day).trials.front().schedule->household;
 }
 
@@ -93,7 +91,7 @@ sensing: {tick_rate_hz: 5, response: zones}
 exports: [casas]
 )"));
   DatasetOptions options;
-  options.scenes = shipped_sensors();
+  options.scenes = test::shipped_sensors();
   const auto out = folder.path() / "out";
   REQUIRE(make_room_days(recipe, out, options));
   REQUIRE(finish_dataset(recipe, out, options));

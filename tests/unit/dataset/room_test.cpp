@@ -8,7 +8,7 @@
 
 #include "dataset/room_reader.hpp"
 #include "support/catch.hpp"
-#include "support/paths.hpp"
+#include "support/shipped.hpp"
 #include "support/temporary_folder.hpp"
 
 using namespace pirsim;
@@ -16,10 +16,8 @@ using namespace pirsim::dataset;
 
 namespace {
 
-io::SceneOptions shipped_sensors() { return {{test::data_dir() / "sensors"}, {}}; }
-
 DrawnRoom drawn(const RoomSpec& spec, int number, std::uint64_t seed = 1) {
-  return draw_room(spec, seed, number, shipped_sensors());
+  return draw_room(spec, seed, number, test::shipped_sensors());
 }
 
 RoomSpec crowded_office() {
@@ -228,7 +226,7 @@ TEST_CASE("a room that was written is read back as it was", "[room]") {
     for (int number = 1; number <= 3; ++number) {
       const DrawnRoom room = drawn(number == 3 ? meeting_room() : crowded_office(), number);
       io::write_scene(folder.path() / name, room.scene);
-      const SceneSpec read = io::read_scene(folder.path() / name, shipped_sensors());
+      const SceneSpec read = io::read_scene(folder.path() / name, test::shipped_sensors());
       CHECK(read.warnings.empty());
       REQUIRE(read.meshes.size() == room.scene.meshes.size());
       for (std::size_t i = 0; i < read.meshes.size(); ++i) {
