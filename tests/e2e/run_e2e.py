@@ -303,6 +303,63 @@ class Days(unittest.TestCase):
             self.assertIn(told, pirsim("day", *room, "--staff", 2, option, value, code=2).stderr)
 
 
+class Homes(unittest.TestCase):
+    def day_of_two(self, folder):
+        flat = DATA / "rooms" / "flat.gltf"
+        text = pirsim("day", "--scene", flat, "--home", 2, "--days", 2, "--print-script").stdout
+        return flat, write(folder, "home.yaml", text + "sensing: {response: zones, tick_rate_hz: 5}\n")
+
+    def test_check_tells_who_is_expected_and_what_has_no_place(self):
+        with tempfile.TemporaryDirectory() as folder:
+            flat, script = self.day_of_two(folder)
+            checked = pirsim("check", "--scene", flat, "--script", script)
+            self.assertIn("household: 2 days from 2026-03-02 (2 working days)", checked.stdout)
+            for person, bed in (("resident_1", "bed_left"), ("resident_2", "bed_right")):
+                line = next(line for line in checked.stdout.splitlines() if line.split()[:1] == [person])
+                self.assertIn(f"bed {bed}; up 0", line)
+                hours = sum(float(hours) for hours in re.findall(r"\w+ ([\d.]+)(?:,|$)", line.split("day:")[1]))
+                self.assertAlmostEqual(hours, 24, delta=0.06 * 11)  # told to a tenth of an hour
+            self.assertNotIn("no place for", checked.stderr)
+            room = json.loads(flat.read_text())
+            for node in room["nodes"]:
+                mark = node.get("extras", {}).get("pirsim", {})
+                if mark.get("type") == "place":
+                    mark["for"] = [use for use in mark["for"] if use not in ("toilet", "cook")] or ["phone"]
+            poor = write(folder, "poor.gltf", json.dumps(room))
+            self.assertIn("home.yaml:7:3: warning: household: no place for toilet (`for: [toilet]` in its mark): residents do "
+                          "that where they are (and 1 more: cooking)",
+                          pirsim("check", "-q", "--scene", poor, "--script", script).stderr)
+
+    def test_a_log_has_the_rows_changes_and_each_activity_begins_and_ends(self):
+        with tempfile.TemporaryDirectory() as folder:
+            flat, script = self.day_of_two(folder)
+            out = pathlib.Path(folder)
+            pirsim("--scene", flat, "--script", script, "-q", "-o", out / "rows.csv", "--casas", out / "log.txt")
+            rose = {}
+            before = {}
+            for row in rows((out / "rows.csv").read_text()):
+                if row["time_s"] == "1":
+                    before = {}
+                for name in row:
+                    if name.startswith(("PIR_", "door_")):
+                        rose[name] = rose.get(name, 0) + (row[name] == "1" and before.get(name, "0") == "0")
+                        before[name] = row[name]
+            lines = [line.split() for line in (out / "log.txt").read_text().splitlines()]
+            seen = {tuple(line[:4]) for line in lines}  # one with two labels stands twice
+            for name, times in rose.items():
+                self.assertEqual(sum(line[2] == name and line[3] in ("ON", "OPEN") for line in seen), times, name)
+            open_now = set()
+            for line in lines:
+                if line[5:] == ["begin"]:
+                    self.assertNotIn(line[4], open_now)
+                    open_now.add(line[4])
+                elif line[5:] == ["end"]:
+                    open_now.remove(line[4])
+            self.assertEqual(open_now, set())
+            self.assertEqual([line[:2] for line in lines], sorted(line[:2] for line in lines))
+            self.assertIn("--casas: a log has a date", study("--casas", out / "x.txt", code=2).stderr)
+
+
 class OwnClock(unittest.TestCase):
     """The example of docs/formats/script.md: anna comes at 06:45 and goes at 08:15, in a run that begins at 06:00."""
     PAGE = HERE.parents[1] / "docs" / "formats" / "script.md"
