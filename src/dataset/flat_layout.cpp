@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "dataset/flat_names.hpp"
+
 namespace pirsim::dataset {
 namespace {
 
@@ -47,24 +49,6 @@ double least_width_m(Kind kind) {
       break;
   }
   return corridor_least_m;
-}
-
-std::string id_of(Kind kind) {
-  switch (kind) {
-    case Kind::living_room:
-      return "living_room";
-    case Kind::kitchen:
-      return "kitchen";
-    case Kind::bath:
-      return "bath";
-    case Kind::study:
-      return "study";
-    case Kind::bedroom:
-      return "bedroom";
-    case Kind::corridor:
-      break;
-  }
-  return "corridor";
 }
 
 void shuffle(std::vector<Kind>& kinds, Stream& stream) {
@@ -187,7 +171,7 @@ class FlatArchitect {
   }
 
   static std::string spoken(Kind kind) {
-    std::string word = id_of(kind);
+    std::string word = area_name(kind);
     std::ranges::replace(word, '_', ' ');
     return word;
   }
@@ -195,11 +179,8 @@ class FlatArchitect {
   /// The living room first, the others in the order in which they are listed in files.
   void name_rooms() {
     std::ranges::stable_sort(plan_.rooms, {}, &FlatRoom::kind);
-    std::size_t bedrooms = 0;
-    for (FlatRoom& room : plan_.rooms) {
-      room.id = id_of(room.kind);
-      if (room.kind == Kind::bedroom && ++bedrooms > 1) room.id += '_' + std::to_string(bedrooms);
-    }
+    int bedrooms = 0;
+    for (FlatRoom& room : plan_.rooms) room.id = area_name(room.kind, room.kind == Kind::bedroom ? ++bedrooms : 1);
   }
 
   [[nodiscard]] std::optional<std::size_t> corridor() const {
@@ -241,14 +222,14 @@ class FlatArchitect {
     const double keep = 0.5 * flat_wall_m + door_from_wall_m + 0.5 * doorway_m;
     if (high - low < 2.0 * keep) return fail("a room had no wall for its door");
     const bool is_behind = b.upper.y <= a.lower.y;
-    const bool has_leaf = kind == Kind::bath || kind == Kind::bedroom;
+    const bool is_shut = has_leaf(kind);
     // A leaf rests at a side wall; a gap may be anywhere.
     const double room_m = high - low - 2.0 * keep;
     const bool at_low_end = stream_.index(2) == 0;
-    const double along = draw_length({0.0, has_leaf ? std::min(room_m, 0.3) : room_m}, stream_);
+    const double along = draw_length({0.0, is_shut ? std::min(room_m, 0.3) : room_m}, stream_);
     Doorway door{from, into, {}, {0.0, is_behind ? -1.0 : 1.0}, {}, {}};
     door.middle = {whole_cm(at_low_end ? low + keep + along : high - keep - along), is_behind ? b.upper.y : b.lower.y};
-    if (has_leaf) door.leaf = DoorState::habit;
+    if (is_shut) door.leaf = DoorState::habit;
     // Who goes towards -z has +x to the right.
     door.hinge = at_low_end == is_behind ? DoorHinge::left : DoorHinge::right;
     plan_.doorways.push_back(door);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "dataset/flat_furnish.hpp"
+#include "dataset/flat_names.hpp"
 
 namespace pirsim::dataset {
 namespace {
@@ -15,10 +16,10 @@ Quat looking(const Vec2& direction, double tilt_rad) {
   return rotation_from_heading(heading_of(direction)) * glm::angleAxis(-tilt_rad, Vec3(1, 0, 0));
 }
 
-SensorSpec& add_sensor(const FlatSpec& spec, SensorsAt at, Mount mount, const std::string& id, Stream& stream,
+SensorSpec& add_sensor(const FlatSpec& spec, SensorsAt at, Mount mount, const std::string& name, Stream& stream,
                        SceneSpec& scene) {
   SensorSpec& sensor = scene.sensors.emplace_back();
-  sensor.id = "PIR_" + id;
+  sensor.id = name;
   sensor.model = one_of(models_of(spec, at, mount), stream);
   return sensor;
 }
@@ -60,7 +61,7 @@ void hang_in_rooms(const FlatSpec& spec, const FlatPlan& plan, double height_m, 
   const Mount mount = one_of(spec.mounts, stream);
   const std::vector<Rectangle> tall = tall_furniture(scene, height_m);
   for (std::size_t i = 0; i < plan.rooms.size(); ++i) {
-    SensorSpec& sensor = add_sensor(spec, SensorsAt::rooms, mount, plan.rooms[i].id, stream, scene);
+    SensorSpec& sensor = add_sensor(spec, SensorsAt::rooms, mount, room_sensor_name(plan.rooms[i].id), stream, scene);
     sensor.area = plan.rooms[i].id;
     const Rectangle r = plan.clear_floor(i);
     const Vec2 centre = 0.5 * (r.lower + r.upper);
@@ -85,8 +86,8 @@ void hang_in_rooms(const FlatSpec& spec, const FlatPlan& plan, double height_m, 
 
 void hang_at_doorways(const FlatSpec& spec, const FlatPlan& plan, Stream& stream, SceneSpec& scene) {
   for (const Doorway& door : plan.doorways) {
-    const std::string id = door.from ? plan.rooms[door.into].id + "_door" : "front_door";
-    SensorSpec& sensor = add_sensor(spec, SensorsAt::doorways, Mount::wall, id, stream, scene);
+    const std::string name = doorway_sensor_name(door.from ? plan.rooms[door.into].id : front_door_name);
+    SensorSpec& sensor = add_sensor(spec, SensorsAt::doorways, Mount::wall, name, stream, scene);
     // Nobody hangs one outside of the front door.
     const Vec2 towards = door.from ? -door.direction : door.direction;
     sensor.area = plan.rooms[door.from.value_or(door.into)].id;

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 
 #include "dataset/flat_furnish.hpp"
+#include "dataset/flat_names.hpp"
 
 namespace pirsim::dataset {
 namespace {
@@ -82,7 +83,7 @@ class Shell {
     if (!door.from) scene_.entrances.push_back({"entrance", frame, doorway_m, 1.5});
     if (!door.leaf) return;
     DoorSpec leaf;
-    leaf.id = door.from ? plan_.rooms[door.into].id : "front";
+    leaf.id = door.from ? plan_.rooms[door.into].id : front_door_name;
     leaf.world_from_door = frame;
     leaf.width_m = leaf_m;
     leaf.hinge = door.hinge;

@@ -4,6 +4,8 @@
 #include <fstream>
 
 #include "core/digest.hpp"
+#include "dataset/flat_furnish.hpp"
+#include "dataset/flat_names.hpp"
 #include "dataset/furnish.hpp"
 #include "pirsim/version.hpp"
 #include "schema/areas.hpp"
@@ -25,7 +27,18 @@ std::string hash_of(const fs::path& file) {
   return hash.hex();
 }
 
+void add_sensors(Fingerprint& print, const FlatSpec& flats, const io::SceneOptions& options) {
+  for (const SensorsAt at : flats.sensors_at) {
+    for (const Mount mount : flats.mounts) {
+      for (const std::string& model : models_of(flats, at, mount))
+        print.add(io::find_sensor_model(model, {}, options, flats.models_where));
+    }
+  }
+}
+
+/// Of drawn rooms or homes.
 void add_sensors(Fingerprint& print, const RoomGroupSpec& group, const io::SceneOptions& options) {
+  if (group.home) return add_sensors(print, group.home->flats, options);
   for (const SensorGroupSpec& sensors : group.rooms.sensors) {
     for (const std::string& model : models_of(sensors))
       print.add(io::find_sensor_model(model, {}, options, sensors.where));
@@ -55,25 +68,41 @@ std::string provenance_of(const RecipeSpec& recipe, const std::map<OwnScene, Sce
          compiler();
 }
 
-ColumnOwners columns_of(const RecipeSpec& recipe, const std::map<OwnScene, SceneSpec>& own_scenes) {
+/// PIR1, PIR2, ..., as many as a drawn room may have.
+std::vector<std::string> numbered_sensors(const RecipeSpec& recipe) {
   int most = 0;
   for (const RoomGroupSpec& group : recipe.rooms) {
     int sensors = 0;
     for (const SensorGroupSpec& sensor : group.rooms.sensors) sensors += sensor.count.most;
-    if (group.scenes.empty()) most = std::max(most, sensors);
+    if (group.scenes.empty() && !group.home) most = std::max(most, sensors);
   }
-  ColumnOwners columns;
-  const auto add = [](std::vector<std::string>& names, const std::string& name) {
+  std::vector<std::string> names;
+  for (int i = 1; i <= most; ++i) names.push_back("PIR" + std::to_string(i));
+  return names;
+}
+
+void add_new(std::vector<std::string>& names, const std::vector<std::string>& more) {
+  for (const std::string& name : more) {
     if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  }
+}
+
+ColumnOwners columns_of(const RecipeSpec& recipe, const std::map<OwnScene, SceneSpec>& own_scenes) {
+  ColumnOwners columns;
+  columns.sensors = numbered_sensors(recipe);
+  const auto add = [&](const ColumnOwners& names) {
+    add_new(columns.sensors, names.sensors);
+    add_new(columns.areas, names.areas);
+    add_new(columns.doors, names.doors);
   };
-  for (int i = 1; i <= most; ++i) columns.sensors.push_back("PIR" + std::to_string(i));
   for (const RoomGroupSpec& group : recipe.rooms) {
+    if (group.home) add(columns_of(group.home->flats));
     for (const OwnScene& own : group.scenes) {
       const SceneSpec& scene = own_scenes.at(own);
-      for (const SensorSpec& sensor : scene.sensors) add(columns.sensors, sensor.id);
-      const Areas areas(scene);
-      for (const std::string& area : areas.names()) add(columns.areas, area);
-      for (const DoorSpec& door : scene.doors) add(columns.doors, door.id);
+      ColumnOwners names{{}, Areas(scene).names(), {}};
+      for (const SensorSpec& sensor : scene.sensors) names.sensors.push_back(sensor.id);
+      for (const DoorSpec& door : scene.doors) names.doors.push_back(door.id);
+      add(names);
     }
   }
   return columns;

@@ -29,8 +29,8 @@ class Store {
   /// In one line: the recipe's hash, those of the user's own scenes, a digest of sensor models and own scenes as read,
   /// program, revision, compiler. Equal provenance: equal bytes.
   [[nodiscard]] const std::string& provenance() const noexcept { return provenance_; }
-  /// In all rows. Sensors: PIR1, PIR2, ... as many as a drawn room may have, and the ids of the user's own scenes that
-  /// aren't among them. Areas: those of the user's own scenes.
+  /// In all rows. Sensors: PIR1, PIR2, ... as many as a drawn room may have, and the ids of homes and of the user's own
+  /// scenes that aren't among them. Areas and doors: those of the user's own scenes, and those that homes may have.
   [[nodiscard]] const ColumnOwners& columns() const noexcept { return columns_; }
   /// As it was read; null for a drawn room.
   [[nodiscard]] const SceneSpec* own_scene(int room) const;

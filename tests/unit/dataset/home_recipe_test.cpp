@@ -1,10 +1,13 @@
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <set>
 #include <sstream>
 
+#include "dataset/flat_names.hpp"
 #include "dataset/recipe.hpp"
 #include "pirsim/dataset.hpp"
+#include "schema/areas.hpp"
 #include "support/catch.hpp"
 #include "support/shipped.hpp"
 #include "support/temporary_folder.hpp"
@@ -35,6 +38,38 @@ std::string faults_of(const std::string& keys) {
 HouseholdSpec household_of(const RecipeSpec& recipe, int room, int day = 1) {
   const SceneSpec scene = room_of(recipe, room, test::shipped_sensors());
   return *script_of(recipe, scene, room, day).trials.front().schedule->household;
+}
+
+/// Of comma-separated text, a line a row.
+std::vector<std::vector<std::string>> table(const std::string& text) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream fields(line);
+    for (rows.emplace_back(); std::getline(fields, line, ',');) rows.back().push_back(line);
+  }
+  return rows;
+}
+
+/// How often a column becomes 1, from 0 on.
+int rises(const std::vector<std::vector<std::string>>& rows, const std::string& name) {
+  const auto found = std::ranges::find(rows.front(), name);
+  REQUIRE(found != rows.front().end());
+  const auto column = static_cast<std::size_t>(found - rows.front().begin());
+  int n = 0;
+  std::string before = "0";
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const std::string& now = rows[i].at(column);
+    n += now == "1" && before == "0" ? 1 : 0;
+    before = now;
+  }
+  return n;
+}
+
+int times(const std::string& text, const std::string& part) {
+  int n = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+  return n;
 }
 
 std::string content(const std::filesystem::path& file) {
@@ -89,6 +124,7 @@ rooms:
 days: 1
 sensing: {tick_rate_hz: 5, response: zones}
 exports: [casas]
+rows: .csv
 )"));
   DatasetOptions options;
   options.scenes = test::shipped_sensors();
@@ -102,7 +138,45 @@ exports: [casas]
   }
   CHECK_THAT(log, contains("door_bath OPEN"));
   CHECK_FALSE(std::filesystem::exists(out / "occupants"));
+  // The rows have the same sensors and doors, and people by area. Lines with two labels stand twice.
+  const auto rows = table(content(out / "rows/room_0001/day_01.csv"));
+  std::istringstream lines(log);
+  std::string once;
+  for (std::string line, before; std::getline(lines, line); before = line.substr(0, line.find(" resident_"))) {
+    if (line.substr(0, line.find(" resident_")) != before) once += line + '\n';
+  }
+  for (const std::string area : {"living_room", "bath"}) {
+    CHECK(rises(rows, "PIR_" + area) > 0);
+    CHECK(rises(rows, "PIR_" + area) == times(once, " PIR_" + area + " ON"));
+    CHECK(rises(rows, "people_" + area) > 0);
+  }
+  CHECK(rises(rows, "door_bath") == times(once, " door_bath OPEN"));
+  CHECK_THAT(content(out / "sensors.csv"), contains("1,PIR_bath,EKMC1604111,zones,") && contains(",bath\n"));
+  CHECK_THAT(content(out / "areas.csv"), contains("1,living_room,"));
   CHECK_THAT(content(out / "rooms.csv"), contains("1,train,home,rooms/room_0001.gltf"));
+}
+
+TEST_CASE("a dataset has columns for all that its homes have, and for nothing that none can have",
+          "[dataset][home][seconds]") {
+  // Each list has all kinds that 30 homes of these ranges happen to show.
+  const char* ranges[]{"rooms: [1, 4], residents: 1, sensors_at: [room, doorway]", "rooms: 1, layout: open",
+                       "rooms: 2, layout: hall, sensors_at: doorway, own_kitchen: 0"};
+  for (const std::string keys : ranges) {
+    INFO(keys);
+    const RecipeSpec recipe = homes(keys);
+    std::set<std::string> areas, doors, sensors;
+    for (int room = 1; room <= 30; ++room) {
+      const SceneSpec scene = room_of(recipe, room, test::shipped_sensors());
+      const Areas marked(scene);
+      areas.insert(marked.names().begin(), marked.names().end());
+      for (const DoorSpec& door : scene.doors) doors.insert(door.id);
+      for (const SensorSpec& sensor : scene.sensors) sensors.insert(sensor.id);
+    }
+    const ColumnOwners columns = columns_of(recipe.rooms.front().home->flats);
+    CHECK(std::set(columns.areas.begin(), columns.areas.end()) == areas);
+    CHECK(std::set(columns.doors.begin(), columns.doors.end()) == doors);
+    CHECK(std::set(columns.sensors.begin(), columns.sensors.end()) == sensors);
+  }
 }
 
 TEST_CASE("faults of homes in a recipe are told with their place and the nearest name", "[dataset][home]") {
